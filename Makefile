@@ -1,0 +1,48 @@
+# Everything sets up its own .venv; every path is relative, so a checkout may live under a name with spaces.
+PYTHON ?= python3
+PY := .venv/bin/python
+PIP := $(PY) -m pip --disable-pip-version-check --quiet
+export OMP_WAIT_POLICY := passive
+export PIP_CONSTRAINT := constraints.txt
+
+.PHONY: reproduce test lint types contract tests validate bench docs clean
+
+reproduce: .venv/.runtime
+	$(PY) -m suchus.cli reproduce --out out
+
+test: lint types contract tests
+
+lint: .venv/.dev
+	$(PY) -m ruff check .
+	$(PY) -m ruff format --check .
+
+types: .venv/.dev
+	$(PY) -m mypy
+
+contract: .venv/.dev
+	$(PY) -c "from importlinter.cli import lint_imports_command; lint_imports_command()" --no-cache
+
+tests: .venv/.dev
+	$(PY) -m pytest -n auto --dist worksteal -m "not validate"
+
+validate: .venv/.dev
+	$(PY) -m pytest -m validate -s
+
+.venv/.base:
+	$(PYTHON) -m venv .venv
+	touch $@
+
+.venv/.runtime: .venv/.base pyproject.toml constraints.txt
+	@echo "Installing suchus into .venv (once, about a minute) ..."
+	$(PIP) install --editable .
+	touch $@
+
+.venv/.dev: .venv/.runtime
+	$(PIP) install --editable ".[dev]"
+	touch $@
+
+bench: .venv/.dev
+	@for f in bench/bench_*.py; do echo; echo "== $$f"; $(PY) "$$f" || exit 1; done
+
+clean:
+	rm -rf .venv out build dist site

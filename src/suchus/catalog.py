@@ -1,0 +1,57 @@
+"""A shelf of modules, each of which declares one thing: the only dynamic import in suchus."""
+
+from collections.abc import Iterator, Mapping
+from importlib import import_module
+from pathlib import Path
+from pkgutil import iter_modules
+from typing import Any, Generic, TypeVar
+
+from suchus.errors import InvalidDesign, UnknownName
+
+T = TypeVar("T")
+
+
+class Catalog(Mapping[str, T], Generic[T]):
+    """A lazy mapping from module name to what the module declares.
+
+    Listing the names reads file names only; a module is imported when its name is asked for.
+
+    Args:
+        kind: the singular noun, also the name each module must declare (``robot``, ``gait``, ``experiment``).
+        package: dotted name of the package whose modules stand on this shelf.
+        declares: dotted name of the type of what is declared, as ``module:Class``.
+    """
+
+    def __init__(self, kind: str, package: str, declares: str) -> None:
+        self.kind = kind
+        self._package = package
+        self._declares = declares
+
+    def __iter__(self) -> Iterator[str]:
+        root = import_module(self._package)
+        return iter(sorted(m.name for m in iter_modules(root.__path__) if not m.name.startswith("_")))
+
+    def __len__(self) -> int:
+        return sum(1 for _ in self)
+
+    def __contains__(self, name: object) -> bool:
+        return name in tuple(self)
+
+    def __getitem__(self, name: str) -> T:
+        if name not in self:
+            raise UnknownName(self.kind, name, self)
+        module = import_module(f"{self._package}.{name}")
+        thing: Any = getattr(module, self.kind, None)
+        path, _, cls = self._declares.partition(":")
+        wanted = getattr(import_module(path), cls)
+        if not isinstance(thing, wanted):
+            found = "nothing" if thing is None else f"a {type(thing).__name__}"
+            file = Path(str(module.__file__)).name
+            raise InvalidDesign(
+                f"{self._package.replace('.', '/')}/{file} must declare `{self.kind}`, a {cls}, "
+                f"but declares {found}; add it or move the file off the shelf."
+            )
+        return thing  # type: ignore[no-any-return]
+
+    def __repr__(self) -> str:
+        return f"Catalog({self.kind}: {', '.join(self)})"

@@ -1,0 +1,63 @@
+"""A whole robot."""
+
+from dataclasses import dataclass
+
+from suchus.design.contact import Contact
+from suchus.design.leg import Leg
+from suchus.design.spine import Spine
+from suchus.design.tail import Tail
+from suchus.design.trunk import Head, Pelvis, Thorax
+from suchus.errors import InvalidDesign
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Crocodile:
+    """A crocodile-like robot: four legs, a spine of five joints, a cable-driven tail."""
+
+    name: str
+    """How it is called."""
+    hind_leg: Leg
+    """The left hind leg; the right one mirrors it."""
+    front_leg: Leg
+    """The left front leg; the right one mirrors it."""
+    pelvis: Pelvis
+    """The hind girdle."""
+    spine: Spine
+    """The trunk between the girdles."""
+    thorax: Thorax
+    """The front girdle."""
+    head: Head
+    """The head."""
+    tail: Tail
+    """The tail."""
+    contact: Contact
+    """How its surfaces meet the ground."""
+
+    def __post_init__(self) -> None:
+        if not self.head.snout > self.thorax.shoulder:
+            raise InvalidDesign(
+                f"head.snout is {self.head.snout} m but thorax.shoulder is {self.thorax.shoulder} m; "
+                "the snout must lie ahead of the shoulders."
+            )
+        for name, leg in (("front_leg", self.front_leg), ("hind_leg", self.hind_leg)):
+            body = max(self.spine.radius, self.pelvis.height / 2, self.thorax.height / 2)
+            if leg.reach[1] + leg.foot_radius <= body:
+                raise InvalidDesign(
+                    f"{name} reaches {leg.reach[1] + leg.foot_radius:.3f} m below its hip but the belly hangs "
+                    f"{body:.3f} m below it; the foot cannot reach the ground: lengthen femur or tibia."
+                )
+
+    @property
+    def mass(self) -> float:
+        """Of the whole robot [kg]."""
+        trunk = self.pelvis.mass + 4 * self.spine.link_mass + self.thorax.mass + self.head.mass
+        return trunk + 2 * (self.hind_leg.mass + self.front_leg.mass) + self.tail.mass
+
+    @property
+    def length(self) -> float:
+        """From the tip of the snout to the tip of the tail when straight [m]."""
+        return self.spine.length + self.head.snout + self.tail.length
+
+    def leg(self, name: str) -> Leg:
+        """Return the leg of a girdle: ``LF`` and ``RF`` the front one, ``LH`` and ``RH`` the hind one."""
+        return self.front_leg if name.endswith("F") else self.hind_leg

@@ -1,0 +1,64 @@
+"""The two girdles and the head."""
+
+from dataclasses import dataclass
+
+from suchus.design.checks import require
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Pelvis:
+    """The hind girdle, frame 0 of the spine; it holds battery and electronics."""
+
+    mass: float
+    """[kg]."""
+    length: float
+    """Along the body [m]."""
+    width: float
+    """Across the body [m]."""
+    height: float
+    """[m]."""
+
+    def __post_init__(self) -> None:
+        require("pelvis", "mass", self.mass, 0.02, 50.0, "kg")
+        for field in ("length", "width", "height"):
+            require("pelvis", field, getattr(self, field), 0.005, 1.0, "m")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Thorax:
+    """The front girdle, rigid with frame 5 of the spine."""
+
+    mass: float
+    """[kg]."""
+    shoulder: float
+    """From the fifth spine joint forward to the front girdle's axis [m]."""
+    width: float
+    """Across the body [m]."""
+    height: float
+    """[m]."""
+
+    def __post_init__(self) -> None:
+        require("thorax", "mass", self.mass, 0.02, 50.0, "kg")
+        require("thorax", "shoulder", self.shoulder, 0.0, 1.0, "m")
+        for field in ("width", "height"):
+            require("thorax", field, getattr(self, field), 0.005, 1.0, "m")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Head:
+    """The head, rigid with the thorax."""
+
+    mass: float
+    """[kg]."""
+    snout: float
+    """From the fifth spine joint forward to the tip of the snout [m]."""
+    width: float
+    """At the jaw joint [m]."""
+    height: float
+    """At the jaw joint [m]."""
+
+    def __post_init__(self) -> None:
+        require("head", "mass", self.mass, 0.02, 50.0, "kg")
+        require("head", "snout", self.snout, 0.02, 2.0, "m")
+        for field in ("width", "height"):
+            require("head", field, getattr(self, field), 0.005, 1.0, "m")
