@@ -1,1 +1,31 @@
-""""""
+"""From a record to a picture: every figure is drawn from what was recorded and nothing else."""
+
+from suchus.figures.style import (
+    COLOURS,
+    DIVERGING,
+    LINES,
+    SEQUENTIAL,
+    STYLE,
+    WIDTH,
+    caption,
+    captioned,
+    new,
+    panels,
+    save,
+    styled,
+)
+
+__all__ = [
+    "COLOURS",
+    "DIVERGING",
+    "LINES",
+    "SEQUENTIAL",
+    "STYLE",
+    "WIDTH",
+    "caption",
+    "captioned",
+    "new",
+    "panels",
+    "save",
+    "styled",
+]
