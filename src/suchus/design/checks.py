@@ -1,35 +1,107 @@
-"""How a design refuses an impossible number."""
+"""How a design refuses impossible numbers: all that are wrong in one part, named at once."""
 
 import math
+from dataclasses import dataclass
+from types import TracebackType
+from typing import Any
 
 from suchus.errors import InvalidDesign
 
 
-def require(owner: str, field: str, value: float, low: float, high: float, unit: str) -> None:
-    """Refuse a number outside its range, or one that is not a number.
+@dataclass(frozen=True, slots=True)
+class Complaint:
+    """What is wrong with one field, or with several together."""
+
+    field: str
+    """Name of the field; empty where the fault lies in several together."""
+    text: str
+    """What was found and what is allowed, ready to follow the field's name."""
+
+
+class InvalidFields(InvalidDesign):
+    """A part of a design with impossible fields.
+
+    Attributes:
+        complaints: one for each mistake.
+    """
+
+    def __init__(self, owner: str, complaints: tuple[Complaint, ...]) -> None:
+        self.complaints = complaints
+        super().__init__(
+            "; ".join(f"{owner}.{c.field} {c.text}" if c.field else c.text for c in complaints) + "."
+        )
+
+
+class Checks:
+    """Collects what is wrong with a frozen value and raises once, on leaving the ``with`` block.
 
     Args:
-        owner: what the number belongs to, for the message.
-        field: name of the field.
-        value: the number.
-        low: least allowed value.
-        high: greatest allowed value.
-        unit: unit of all three, for the message.
+        owner: what the value is called, for the message.
+        design: the value whose fields are checked.
 
     Raises:
-        InvalidDesign: the value is not finite, below ``low`` or above ``high``.
+        InvalidFields: on leaving the block, if anything was wrong.
     """
-    if not (isinstance(value, (int, float)) and math.isfinite(value) and low <= value <= high):
-        raise InvalidDesign(f"{owner}.{field} is {value!r} {unit}; {low:g} to {high:g} {unit} is allowed.")
+
+    def __init__(self, owner: str, design: object) -> None:
+        self._owner = owner
+        self._design = design
+        self._complaints: list[Complaint] = []
+
+    def __enter__(self) -> "Checks":
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if error is None and self._complaints:
+            raise InvalidFields(self._owner, tuple(self._complaints))
+
+    def number(self, field: str, low: float, high: float, unit: str) -> None:
+        """Refuse what is not a finite number of ``low`` to ``high``."""
+        value = getattr(self._design, field)
+        if not _within(value, low, high):
+            self._complain(field, f"is {_show(value, unit)}; {_show(low)} to {_show(high, unit)} is allowed")
+
+    def whole(self, field: str, low: int, high: int) -> None:
+        """Refuse what is not a whole number of ``low`` to ``high``."""
+        value = getattr(self._design, field)
+        if not (isinstance(value, int) and _within(value, low, high)):
+            self._complain(field, f"is {_show(value)}; a whole number of {low} to {high} is allowed")
+
+    def range(self, field: str, low: float, high: float, unit: str) -> None:
+        """Refuse what is not an increasing pair within ``low`` to ``high``."""
+        value = getattr(self._design, field)
+        pair = isinstance(value, tuple) and len(value) == 2 and all(_within(end, low, high) for end in value)
+        if not (pair and value[0] < value[1]):
+            limits = f"{_show(low)} to {_show(high, unit)}"
+            self._complain(field, f"is {_show(value, unit)}; an increasing pair within {limits} is allowed")
+
+    def that(self, holds: bool, text: str) -> None:
+        """Refuse a combination of fields that does not hold, with a clause that says why."""
+        if not holds:
+            self._complain("", text)
+
+    def _complain(self, field: str, text: str) -> None:
+        self._complaints.append(Complaint(field, text))
 
 
-def require_range(owner: str, field: str, value: tuple[float, float], low: float, high: float, unit: str) -> None:
-    """Refuse a pair that is not an increasing range within ``low`` to ``high``.
+def require(owner: str, field: str, value: float, low: float, high: float, unit: str) -> None:
+    """Refuse a lone number outside its range, or one that is not a number.
 
     Raises:
-        InvalidDesign: an end is out of bounds, or the first is not below the second.
+        InvalidFields: the value is not finite, below ``low`` or above ``high``.
     """
-    for end in value:
-        require(owner, field, end, low, high, unit)
-    if not value[0] < value[1]:
-        raise InvalidDesign(f"{owner}.{field} is {value!r} {unit}; the first must be below the second.")
+    if not _within(value, low, high):
+        text = f"is {_show(value, unit)}; {_show(low)} to {_show(high, unit)} is allowed"
+        raise InvalidFields(owner, (Complaint(field, text),))
+
+
+def _within(value: Any, low: float, high: float) -> bool:
+    number = isinstance(value, (int, float)) and not isinstance(value, bool)
+    return number and math.isfinite(value) and low <= value <= high
+
+
+def _show(value: Any, unit: str = "") -> str:
+    plain = f"{value:g}" if isinstance(value, float) else repr(value)
+    return f"{plain} {unit}".rstrip()

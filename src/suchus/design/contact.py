@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from suchus.design.checks import require
+from suchus.design.checks import Checks
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -17,6 +17,7 @@ class Contact:
     """How fast penetration is corrected, MuJoCo's ``solref[0]`` [s]."""
 
     def __post_init__(self) -> None:
-        require("contact", "foot_friction", self.foot_friction, 0.01, 3.0, "")
-        require("contact", "skin_friction", self.skin_friction, 0.01, 3.0, "")
-        require("contact", "time_constant", self.time_constant, 0.004, 0.2, "s")
+        with Checks("contact", self) as check:
+            check.number("foot_friction", 0.01, 3.0, "")
+            check.number("skin_friction", 0.01, 3.0, "")
+            check.number("time_constant", 0.004, 0.2, "s")

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from suchus.design.checks import require, require_range
+from suchus.design.checks import Checks
 from suchus.design.servo import Servo
 
 
@@ -35,14 +35,15 @@ class Leg:
     """The servo at each of the three joints."""
 
     def __post_init__(self) -> None:
-        require("leg", "hip_offset", self.hip_offset, 0.005, 1.0, "m")
-        require("leg", "femur", self.femur, 0.01, 1.0, "m")
-        require("leg", "tibia", self.tibia, 0.01, 1.0, "m")
-        require("leg", "foot_radius", self.foot_radius, 0.002, 0.1, "m")
-        require("leg", "radius", self.radius, 0.002, 0.1, "m")
-        require("leg", "mass", self.mass, 0.02, 20.0, "kg")
-        for field in ("yaw_range", "pitch_range", "knee_range"):
-            require_range("leg", field, getattr(self, field), -3.1416, 3.1416, "rad")
+        with Checks("leg", self) as check:
+            check.number("hip_offset", 0.005, 1.0, "m")
+            check.number("femur", 0.01, 1.0, "m")
+            check.number("tibia", 0.01, 1.0, "m")
+            check.number("foot_radius", 0.002, 0.1, "m")
+            check.number("radius", 0.002, 0.1, "m")
+            check.number("mass", 0.02, 20.0, "kg")
+            for field in ("yaw_range", "pitch_range", "knee_range"):
+                check.range(field, -3.1416, 3.1416, "rad")
 
     @property
     def reach(self) -> tuple[float, float]:

@@ -2,12 +2,12 @@
 
 from dataclasses import dataclass
 
+from suchus.design.checks import Checks
 from suchus.design.contact import Contact
 from suchus.design.leg import Leg
 from suchus.design.spine import Spine
 from suchus.design.tail import Tail
 from suchus.design.trunk import Head, Pelvis, Thorax
-from suchus.errors import InvalidDesign
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -34,17 +34,19 @@ class Crocodile:
     """How its surfaces meet the ground."""
 
     def __post_init__(self) -> None:
-        if not self.head.snout > self.thorax.shoulder:
-            raise InvalidDesign(
-                f"head.snout is {self.head.snout} m but thorax.shoulder is {self.thorax.shoulder} m; "
-                "the snout must lie ahead of the shoulders."
+        with Checks("robot", self) as check:
+            check.that(
+                self.head.snout > self.thorax.shoulder,
+                f"head.snout is {self.head.snout:g} m but thorax.shoulder is {self.thorax.shoulder:g} m: "
+                "the snout must lie ahead of the shoulders",
             )
-        for name, leg in (("front_leg", self.front_leg), ("hind_leg", self.hind_leg)):
-            body = max(self.spine.radius, self.pelvis.height / 2, self.thorax.height / 2)
-            if leg.reach[1] + leg.foot_radius <= body:
-                raise InvalidDesign(
-                    f"{name} reaches {leg.reach[1] + leg.foot_radius:.3f} m below its hip but the belly hangs "
-                    f"{body:.3f} m below it; the foot cannot reach the ground: lengthen femur or tibia."
+            belly = max(self.spine.radius, self.pelvis.height / 2, self.thorax.height / 2)
+            for name, leg in (("front_leg", self.front_leg), ("hind_leg", self.hind_leg)):
+                depth = leg.reach[1] + leg.foot_radius
+                check.that(
+                    depth > belly,
+                    f"{name} reaches {depth:.3f} m below its hip but the belly hangs {belly:.3f} m below it: "
+                    "the foot cannot reach the ground; lengthen femur or tibia",
                 )
 
     @property

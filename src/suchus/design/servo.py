@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from suchus.design.checks import require
+from suchus.design.checks import Checks
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -29,12 +29,13 @@ class Servo:
     """Viscous friction of the gear [N m s/rad]."""
 
     def __post_init__(self) -> None:
-        require("servo", "kp", self.kp, 0.1, 1e4, "N m/rad")
-        require("servo", "ki", self.ki, 0.0, 1e4, "N m/(rad s)")
-        require("servo", "kd", self.kd, 0.0, 1e3, "N m s/rad")
-        require("servo", "integral_limit", self.integral_limit, 0.0, 1e3, "N m")
-        require("servo", "torque", self.torque, 0.01, 1e3, "N m")
-        require("servo", "speed", self.speed, 0.1, 100.0, "rad/s")
-        require("servo", "armature", self.armature, 1e-4, 1.0, "kg m2")
-        require("servo", "friction", self.friction, 0.0, 10.0, "N m")
-        require("servo", "damping", self.damping, 0.0, 10.0, "N m s/rad")
+        with Checks("servo", self) as check:
+            check.number("kp", 0.1, 1e4, "N m/rad")
+            check.number("ki", 0.0, 1e4, "N m/(rad s)")
+            check.number("kd", 0.0, 1e3, "N m s/rad")
+            check.number("integral_limit", 0.0, 1e3, "N m")
+            check.number("torque", 0.01, 1e3, "N m")
+            check.number("speed", 0.1, 100.0, "rad/s")
+            check.number("armature", 1e-4, 1.0, "kg m2")
+            check.number("friction", 0.0, 10.0, "N m")
+            check.number("damping", 0.0, 10.0, "N m s/rad")

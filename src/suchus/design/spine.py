@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from suchus.design.checks import require, require_range
+from suchus.design.checks import Checks
 from suchus.design.servo import Servo
 
 
@@ -31,12 +31,13 @@ class Spine:
     """The servo of each pitch joint: it carries the forebody as a cantilever when the robot rises."""
 
     def __post_init__(self) -> None:
-        require("spine", "base", self.base, 0.005, 2.0, "m")
-        require("spine", "link", self.link, 0.01, 1.0, "m")
-        require("spine", "radius", self.radius, 0.005, 0.5, "m")
-        require("spine", "link_mass", self.link_mass, 0.01, 20.0, "kg")
-        require_range("spine", "yaw_range", self.yaw_range, -3.1416, 3.1416, "rad")
-        require_range("spine", "pitch_range", self.pitch_range, -3.1416, 3.1416, "rad")
+        with Checks("spine", self) as check:
+            check.number("base", 0.005, 2.0, "m")
+            check.number("link", 0.01, 1.0, "m")
+            check.number("radius", 0.005, 0.5, "m")
+            check.number("link_mass", 0.01, 20.0, "kg")
+            check.range("yaw_range", -3.1416, 3.1416, "rad")
+            check.range("pitch_range", -3.1416, 3.1416, "rad")
 
     @property
     def length(self) -> float:

@@ -2,14 +2,13 @@
 
 from dataclasses import dataclass
 
-from suchus.design.checks import require, require_range
+from suchus.design.checks import Checks
 from suchus.design.servo import Servo
-from suchus.errors import InvalidDesign
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Tail:
-    """From the pelvis backward: pitch joint, root, ``joints`` cable joints, ``fin_segments`` passive segments.
+    """From the pelvis backward: pitch joint, root, ``joints`` cable joints, ``fin_segments`` passive ones.
 
     The frame of the cable section: x backward, y right, z up; a positive bend turns the tip to the right.
     """
@@ -58,27 +57,26 @@ class Tail:
     """The servo that turns the pulley; torque and angle are those of its own shaft."""
 
     def __post_init__(self) -> None:
-        require("tail", "offset", self.offset, 0.0, 1.0, "m")
-        require("tail", "root", self.root, 0.001, 1.0, "m")
-        require("tail", "plate", self.plate, 0.001, 0.5, "m")
-        require("tail", "gap", self.gap, 0.001, 0.5, "m")
-        require("tail", "cord_spacing", self.cord_spacing, 0.001, 0.5, "m")
-        require("tail", "pulley", self.pulley, 0.001, 0.5, "m")
-        require("tail", "joint_stiffness", self.joint_stiffness, 0.0, 100.0, "N m/rad")
-        require("tail", "joint_damping", self.joint_damping, 0.0, 10.0, "N m s/rad")
-        require("tail", "fin_length", self.fin_length, 0.01, 2.0, "m")
-        require("tail", "fin_stiffness_lateral", self.fin_stiffness_lateral, 0.001, 100.0, "N m/rad")
-        require("tail", "fin_stiffness_vertical", self.fin_stiffness_vertical, 0.001, 100.0, "N m/rad")
-        require("tail", "fin_damping", self.fin_damping, 0.0, 10.0, "N m s/rad")
-        require("tail", "radius_root", self.radius_root, 0.002, 0.5, "m")
-        require("tail", "radius_tip", self.radius_tip, 0.002, 0.5, "m")
-        require("tail", "mass", self.mass, 0.02, 20.0, "kg")
-        require_range("tail", "pitch_range", self.pitch_range, -3.1416, 3.1416, "rad")
-        require("tail", "bend_limit", self.bend_limit, 0.01, 3.1416, "rad")
-        for field, low, high in (("joints", 1, 30), ("fin_segments", 1, 30)):
-            value = getattr(self, field)
-            if not (isinstance(value, int) and low <= value <= high):
-                raise InvalidDesign(f"tail.{field} is {value!r}; a whole number of {low} to {high} is allowed.")
+        with Checks("tail", self) as check:
+            check.number("offset", 0.0, 1.0, "m")
+            check.number("root", 0.001, 1.0, "m")
+            check.number("plate", 0.001, 0.5, "m")
+            check.number("gap", 0.001, 0.5, "m")
+            check.number("cord_spacing", 0.001, 0.5, "m")
+            check.number("pulley", 0.001, 0.5, "m")
+            check.number("joint_stiffness", 0.0, 100.0, "N m/rad")
+            check.number("joint_damping", 0.0, 10.0, "N m s/rad")
+            check.number("fin_length", 0.01, 2.0, "m")
+            check.number("fin_stiffness_lateral", 0.001, 100.0, "N m/rad")
+            check.number("fin_stiffness_vertical", 0.001, 100.0, "N m/rad")
+            check.number("fin_damping", 0.0, 10.0, "N m s/rad")
+            check.number("radius_root", 0.002, 0.5, "m")
+            check.number("radius_tip", 0.002, 0.5, "m")
+            check.number("mass", 0.02, 20.0, "kg")
+            check.range("pitch_range", -3.1416, 3.1416, "rad")
+            check.number("bend_limit", 0.01, 3.1416, "rad")
+            check.whole("joints", 1, 30)
+            check.whole("fin_segments", 1, 30)
 
     @property
     def pitch(self) -> float:

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from suchus.design.checks import require
+from suchus.design.checks import Checks
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -19,9 +19,10 @@ class Pelvis:
     """[m]."""
 
     def __post_init__(self) -> None:
-        require("pelvis", "mass", self.mass, 0.02, 50.0, "kg")
-        for field in ("length", "width", "height"):
-            require("pelvis", field, getattr(self, field), 0.005, 1.0, "m")
+        with Checks("pelvis", self) as check:
+            check.number("mass", 0.02, 50.0, "kg")
+            for field in ("length", "width", "height"):
+                check.number(field, 0.005, 1.0, "m")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -38,10 +39,11 @@ class Thorax:
     """[m]."""
 
     def __post_init__(self) -> None:
-        require("thorax", "mass", self.mass, 0.02, 50.0, "kg")
-        require("thorax", "shoulder", self.shoulder, 0.0, 1.0, "m")
-        for field in ("width", "height"):
-            require("thorax", field, getattr(self, field), 0.005, 1.0, "m")
+        with Checks("thorax", self) as check:
+            check.number("mass", 0.02, 50.0, "kg")
+            check.number("shoulder", 0.0, 1.0, "m")
+            for field in ("width", "height"):
+                check.number(field, 0.005, 1.0, "m")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -58,7 +60,8 @@ class Head:
     """At the jaw joint [m]."""
 
     def __post_init__(self) -> None:
-        require("head", "mass", self.mass, 0.02, 50.0, "kg")
-        require("head", "snout", self.snout, 0.02, 2.0, "m")
-        for field in ("width", "height"):
-            require("head", field, getattr(self, field), 0.005, 1.0, "m")
+        with Checks("head", self) as check:
+            check.number("mass", 0.02, 50.0, "kg")
+            check.number("snout", 0.02, 2.0, "m")
+            for field in ("width", "height"):
+                check.number(field, 0.005, 1.0, "m")
