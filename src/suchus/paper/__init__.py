@@ -1,1 +1,46 @@
-""""""
+"""The article as data: its tables, claims, misprints and signs; imports the standard library only."""
+
+from suchus.paper.claim import Claim
+from suchus.paper.claims import CLAIMS
+from suchus.paper.errata import ERRATA
+from suchus.paper.misprint import Misprint
+from suchus.paper.signs import BendAngles, JointSums, to_bend_angles, to_joint_sums
+from suchus.paper.tables import (
+    FEMUR,
+    HIP_OFFSET,
+    LEG_CHAIN,
+    SPINE_BASE,
+    SPINE_CHAIN,
+    SPINE_LINK,
+    TABLE_I,
+    TABLE_II,
+    TAIL_JOINTS,
+    TIBIA,
+)
+from suchus.paper.timing import CRAWL_END, CRAWL_START, CYCLE_PERIOD, CYCLES, SNAPSHOT_TIMES
+
+__all__ = [
+    "CLAIMS",
+    "CRAWL_END",
+    "CRAWL_START",
+    "CYCLES",
+    "CYCLE_PERIOD",
+    "ERRATA",
+    "FEMUR",
+    "HIP_OFFSET",
+    "LEG_CHAIN",
+    "SNAPSHOT_TIMES",
+    "SPINE_BASE",
+    "SPINE_CHAIN",
+    "SPINE_LINK",
+    "TABLE_I",
+    "TABLE_II",
+    "TAIL_JOINTS",
+    "TIBIA",
+    "BendAngles",
+    "Claim",
+    "JointSums",
+    "Misprint",
+    "to_bend_angles",
+    "to_joint_sums",
+]

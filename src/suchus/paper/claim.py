@@ -1,0 +1,41 @@
+"""One statement of the article."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Claim:
+    """A number that the article states, or a statement that can be tested."""
+
+    key: str
+    """Its name here."""
+    where: str
+    """Section and figure or equation."""
+    quantity: str
+    """What is claimed, in a few words."""
+    value: float | None
+    """The number in SI units; None where the article states no number."""
+    unit: str
+    """SI unit, ``-`` for none."""
+    tolerance: float
+    """Half-width of the band that counts as reproduced, in ``unit``.
+
+    Zero for whole numbers and for statements; elsewhere the reason stands beside the number in ``claims_*``.
+    """
+    sense: str
+    """The statement in one plain sentence; it can hold where the number does not."""
+    quote: str
+    """The article's own words, shortened with dots."""
+
+    def __str__(self) -> str:
+        if self.value is None:
+            return f"{self.quantity} ({self.where})"
+        unit = "" if self.unit == "-" else f" {self.unit}"
+        return f"{self.quantity}: {self.value:g}{unit} ({self.where})"
+
+
+def said(key: str, where: str, quantity: str, sense: str, quote: str) -> Claim:
+    """Return a claim without a number: a statement that holds or does not."""
+    return Claim(
+        key=key, where=where, quantity=quantity, value=None, unit="-", tolerance=0.0, sense=sense, quote=quote
+    )

@@ -1,0 +1,272 @@
+"""What the article says about its robot on land (sections IV.A to IV.D)."""
+
+from suchus.paper.claim import Claim, said
+from suchus.paper.timing import CYCLE_PERIOD, CYCLES, SNAPSHOT_TIMES
+
+DISPLACEMENT_COORDINATED = 0.73
+DISPLACEMENT_LIMBS_ONLY = 0.16
+
+FAULT_READING = 0.10
+"""For a percentage read from a curve whose baseline, faulted leg and kind of fault are not stated [-].
+
+Ten points of a hundred: our own spread over one or both legs, limp or locked, is as wide.
+"""
+HEIGHT_READING = 0.04
+"""For a height whose datum (back, head, snout) is not stated: half the height of the robot's head [m]."""
+
+
+def _fault(key: str, figure: int, joint: str, trunk: bool, change: float, sense: str, quote: str) -> Claim:
+    return Claim(
+        key=f"fault_{key}_{'coordinated' if trunk else 'limbs_only'}",
+        where=f"IV.C, Fig. {figure}",
+        quantity=f"change of displacement, {joint} lost, trunk {'moving' if trunk else 'still'}",
+        value=change,
+        unit="-",
+        tolerance=FAULT_READING,
+        sense=sense,
+        quote=quote,
+    )
+
+
+STABILITY = (
+    Claim(
+        key="cycle_period",
+        where="IV.A, Fig. 13",
+        quantity="duration of a crawling cycle",
+        value=CYCLE_PERIOD,
+        unit="s",
+        tolerance=0.1,  # one line width of a gait diagram
+        sense="A crawling cycle takes four seconds.",
+        quote="1-5 seconds is the first crawling cycle and 5-9 seconds is the second crawling cycle",
+    ),
+    Claim(
+        key="cycle_count",
+        where="IV.A, Fig. 13",
+        quantity="cycles in the experiment",
+        value=float(CYCLES),
+        unit="-",
+        tolerance=0.0,
+        sense="The experiment holds two cycles.",
+        quote="The experiment contains two complete crawling cycles",
+    ),
+    *(
+        Claim(
+            key=f"snapshot_time_{i + 1}",
+            where="IV.A, Fig. 14",
+            quantity=f"time of snapshot {i + 1}",
+            value=time,
+            unit="s",
+            tolerance=0.05,  # half of the last digit
+            sense="The posture is shown at 1.2, 1.5 and 1.8 s.",
+            quote="screenshots of the simulation experiments at 1.2s, 1.5s and 1.8s",
+        )
+        for i, time in enumerate(SNAPSHOT_TIMES)
+    ),
+    said(
+        "spine_sinusoidal",
+        "IV.A, Fig. 14",
+        "swing of the spine",
+        "The spine swings from side to side in a sine with the limbs.",
+        "the spine swings from side to side in a sinusoidal pattern with the limbs",
+    ),
+    said(
+        "tail_supports",
+        "IV.A, Fig. 14",
+        "tail on the ground",
+        "The dragged tail supports the body and makes it more stable.",
+        "the tail stays on the ground ... to provide support for the body and improve the stability",
+    ),
+    said(
+        "com_on_support_line",
+        "IV.A, Fig. 14",
+        "centre of mass over the supporting feet at 1.2, 1.5 and 1.8 s",
+        "Stability needs the centre of mass on the line of the two supporting feet.",
+        "The center of gravity should always be on the line of the two supporting points",
+    ),
+    said(
+        "tilt_limbs_only",
+        "IV.A, Fig. 14",
+        "tilt without spine and tail",
+        "With limbs only the body tilts at 1.2 s because its centre of mass is off the supporting line.",
+        "at 1.2 seconds, the bionic crocodile robot tilts its body",
+    ),
+    said(
+        "com_fluctuation",
+        "IV.A, Fig. 15",
+        "fluctuation of the height of the centre of mass",
+        "The height of the centre of mass fluctuates less with spine and tail than without.",
+        "the variation amplitude ... with the tails involved ... is significantly smaller",
+    ),
+)
+
+DISPLACEMENT = (
+    Claim(
+        key="displacement_coordinated",
+        where="IV.B, Fig. 16",
+        quantity="forward displacement with spine and tail",
+        value=DISPLACEMENT_COORDINATED,
+        unit="m",
+        tolerance=0.05,  # 7 %: contact and servo models alone move the result by as much
+        sense="With spine and tail the robot moves forward.",
+        quote="the robot achieves a displacement of 0.73 meters in the forward direction",
+    ),
+    Claim(
+        key="displacement_limbs_only",
+        where="IV.B, Fig. 16",
+        quantity="forward displacement with limbs only",
+        value=DISPLACEMENT_LIMBS_ONLY,
+        unit="m",
+        tolerance=0.02,  # 12 %: slip decides a third of it
+        sense="With limbs only the robot moves forward, but little.",
+        quote="0.16 meters when the spine and tail are not engaged in the motion",
+    ),
+    Claim(
+        key="displacement_ratio",
+        where="IV.B, Fig. 16",
+        quantity="displacement with spine and tail over displacement without",
+        value=DISPLACEMENT_COORDINATED / DISPLACEMENT_LIMBS_ONLY,  # not printed; follows from the two
+        unit="-",
+        tolerance=0.8,  # both displacements at the ends of their own bands
+        sense="In the same time the robot gets farther with spine and tail than without.",
+        quote="the robot attains a higher velocity, covering more distance in the same time",
+    ),
+)
+
+FAULTS = (
+    _fault(
+        "front_yaw",
+        18,
+        "front yaw joint",
+        False,
+        -0.80,
+        "Without the trunk, losing a front yaw joint costs most of the displacement.",
+        "without trunk cooperative motion has an 80% reduction in locomotion",
+    ),
+    _fault(
+        "front_yaw",
+        18,
+        "front yaw joint",
+        True,
+        -0.22,
+        "With the trunk, losing a front yaw joint costs little.",
+        "with trunk cooperative motion has only a 22% reduction in locomotion",
+    ),
+    _fault(
+        "hind_yaw",
+        19,
+        "hind yaw joint",
+        False,
+        -0.75,
+        "Without the trunk, losing a hind yaw joint costs most of the displacement.",
+        "without trunk cooperative motion has a 75% decrease in locomotion",
+    ),
+    _fault(
+        "hind_yaw",
+        19,
+        "hind yaw joint",
+        True,
+        -0.17,
+        "With the trunk, losing a hind yaw joint costs little.",
+        "with trunk cooperative motion has only a 17% decrease in locomotion",
+    ),
+    _fault(
+        "front_pitch",
+        20,
+        "front pitch joint",
+        False,
+        -1.0,
+        "Without the trunk, losing a front pitch joint ends forward motion.",
+        "the pitching joint of the front leg caused the ... robot to lose the ability of forward motion",
+    ),
+    _fault(
+        "front_pitch",
+        20,
+        "front pitch joint",
+        True,
+        -1.0,
+        "Even with the trunk, losing a front pitch joint ends forward motion.",
+        "the pitching joint of the front leg caused the ... robot to lose the ability of forward motion",
+    ),
+    _fault(
+        "hind_pitch",
+        21,
+        "hind pitch joint",
+        False,
+        -0.55,
+        "Without the trunk, losing a hind pitch joint costs about half of the speed.",
+        "without cooperating motion of trunk had a 55% reduction in locomotion velocity",
+    ),
+    _fault(
+        "hind_pitch",
+        21,
+        "hind pitch joint",
+        True,
+        0.0,
+        "With the trunk, losing a hind pitch joint costs almost nothing.",
+        "with cooperating motion of trunk showed almost no reduction in locomotion",
+    ),
+    said(
+        "fault_support",
+        "IV.C, Fig. 21",
+        "support with a hind pitch joint lost",
+        "Tail, right front leg and left hind leg carry the body so that the damaged hind leg can swing.",
+        "through the support function of the tail, right front leg and left back leg",
+    ),
+    said(
+        "fault_tolerance",
+        "IV.C, V",
+        "fault tolerance with and without the trunk",
+        "With spine and tail the robot bears the loss of a joint better.",
+        "heightened fault tolerance when individual joints are compromised",
+    ),
+)
+
+HEIGHTS = (
+    Claim(
+        key="height_crawl",
+        where="IV.D, Fig. 24",
+        quantity="reachable height when crawling",
+        value=0.16,
+        unit="m",
+        tolerance=HEIGHT_READING,
+        sense="Crawling, the robot reaches no higher than its legs let it.",
+        quote="can reach a height of 0.16m in the crawling state",
+    ),
+    Claim(
+        key="height_standing",
+        where="IV.D, Figs 23, 24",
+        quantity="reachable height when standing on hind legs and tail",
+        value=0.68,
+        unit="m",
+        tolerance=HEIGHT_READING,
+        sense="On hind legs and tail the robot stands up and reaches much higher.",
+        quote="and 0.68m in the bipedal standing state",
+    ),
+    Claim(
+        key="height_ratio",
+        where="IV.D, Fig. 24",
+        quantity="reachable height standing over crawling",
+        value=4.25,
+        unit="-",
+        tolerance=0.5,  # 12 %: what HEIGHT_READING makes of the quotient at the taller end
+        sense="Standing, the robot reaches several times as high as crawling.",
+        quote="The reachable height in the bipedal standing state is 4.25 times higher",
+    ),
+    said(
+        "height_from_legs",
+        "IV.D, Fig. 23a",
+        "what limits the crawling height",
+        "The crawling height follows the length of the legs.",
+        "depends on the length of its legs when crawling on land",
+    ),
+    said(
+        "height_from_spine_head_legs",
+        "IV.D, Fig. 23b",
+        "what limits the standing height",
+        "The standing height follows the lengths of spine, head and hind legs together.",
+        "determined by the length of the spine, the length of the head and the length of the hind legs",
+    ),
+)
+
+LAND = (*STABILITY, *DISPLACEMENT, *FAULTS, *HEIGHTS)
+"""The claims of section IV about the land."""

@@ -1,0 +1,82 @@
+"""What the article says about its robot in water (sections II.A and IV.B)."""
+
+from suchus.paper.claim import Claim, said
+from suchus.paper.wave_constants import C1, C2, K
+
+
+def _constant(key: str, name: str, value: float, digit: float) -> Claim:
+    return Claim(
+        key=key,
+        where="IV.B, eq. (20)",
+        quantity=f"{name} of the body wave",
+        value=value,
+        unit="-",  # none is printed
+        tolerance=digit / 2,  # half of the last printed digit
+        sense="The midline of the swimming robot is fitted by (20) with c1 = 0.027, c2 = 0.30, k = 0.023.",
+        quote="c1 = 0.027, c2 = 0.30 and k = 0.023",
+    )
+
+
+WATER = (
+    said(
+        "swim_tail_sine",
+        "II.A",
+        "swing of the tail in water",
+        "The swimming tail swings like a sine wave.",
+        "The tail's swinging motion resembles a sine wave",
+    ),
+    said(
+        "swim_body_wave",
+        "II.A, IV.B, eq. (20)",
+        "wave of the trunk in water",
+        "The midline of the swimming body is a sine wave under a growing envelope.",
+        "described in this paper as fish-like body waves",
+    ),
+    _constant("wave_c1", "linear envelope coefficient c1", C1, 0.001),
+    _constant("wave_c2", "quadratic envelope coefficient c2", C2, 0.01),
+    _constant("wave_k", "wave number k", K, 0.001),
+    said(
+        "swim_pressure_convex",
+        "IV.B, Fig. 17a",
+        "pressure on both sides of the tail at T/4",
+        "At a quarter of the cycle the pressure on the convex side of the tail is above that on "
+        "the concave side.",
+        "the pressure on the bending and convex side of the flexible tail is greater than ... concave",
+    ),
+    said(
+        "swim_diagonal_force",
+        "IV.B, Fig. 17a",
+        "force at T/4",
+        "The pressure difference at a quarter of the cycle pushes the robot diagonally forward.",
+        "results in a diagonal forward force, propelling the robot in a diagonal direction",
+    ),
+    said(
+        "swim_pressure_falls",
+        "IV.B, Fig. 17b, c",
+        "pressure difference after T/4",
+        "As body and tail move back to the axis the pressure difference falls.",
+        "move towards the head-to-tail axis, the pressure difference gradually decreases",
+    ),
+    said(
+        "swim_thrust_symmetric",
+        "IV.B, Fig. 17c",
+        "thrust at 3T/4",
+        "At three quarters of the cycle the thrust mirrors that at one quarter.",
+        "generates a symmetrical diagonal forward thrust",
+    ),
+    said(
+        "swim_s_shape",
+        "IV.B, Fig. 17",
+        "track of the swimming robot",
+        "The robot swims along an S-shaped track.",
+        'producing an "S"-shaped swimming trajectory',
+    ),
+    said(
+        "swim_tail_thrust",
+        "II.A, IV.B",
+        "where thrust comes from",
+        "Tail and spine give the main thrust in water.",
+        "When moving through the water, the swing of the tail and spine provides the main thrust.",
+    ),
+)
+"""The claims about the water."""

@@ -1,0 +1,12 @@
+"""When things happen in the article's crawling experiments (IV.A)."""
+
+CYCLE_PERIOD = 4.0
+"""Duration of one crawling cycle [s]: seconds 1 to 5, then 5 to 9."""
+CYCLES = 2
+"""Number of cycles in an experiment [-]."""
+CRAWL_START = 1.0
+"""When the first cycle begins [s]."""
+CRAWL_END = CRAWL_START + CYCLES * CYCLE_PERIOD
+"""When the last cycle ends [s]."""
+SNAPSHOT_TIMES = (1.2, 1.5, 1.8)
+"""When Fig. 14 shows the robot [s]."""
