@@ -1,7 +1,7 @@
 """The article's four bend angles and the sums of joint angles that they stand for: converted here only.
 
 III.D calls the angles of index 1 "pitch" and those of index 2 "yaw", yet says of the first that they go left
-and right, of the second that they go to the top and the bottom of the body. We name them by what they do. Left
+and right, of the second that they go to the top and bottom of the body. We name them by what they do. Left
 and up are negative, right and down positive. The article states the positive side for the spine's lateral and
 the tail's vertical angle only; for the other two we take the opposite of the stated negative side.
 """
@@ -47,7 +47,7 @@ class JointSums(NamedTuple):
 
 
 def spine_lateral(yaw_sum: Angle) -> Angle:
-    """Return theta_q1 for a sum of spine yaw angles [rad], and the sum for theta_q1: the map undoes itself."""
+    """Return theta_q1 for a sum of spine yaw angles [rad], or the sum for theta_q1: the map undoes itself."""
     return -yaw_sum  # type: ignore[no-any-return]
 
 
