@@ -1,1 +1,6 @@
-""""""
+"""From a design to a MuJoCo model: the only room that writes MJCF."""
+
+from suchus.model.build import build, compile_model, joint_addresses, topology
+from suchus.model.names import SITES, TRUNK_BODIES, sensor_names
+
+__all__ = ["SITES", "TRUNK_BODIES", "build", "compile_model", "joint_addresses", "sensor_names", "topology"]

@@ -1,1 +1,18 @@
-""""""
+"""From time to intended posture: phases, foot paths, bends, servo targets."""
+
+from suchus.motion.gait import Gait
+from suchus.motion.phase import limb_phase, stance, tail_bend, trunk_bend
+from suchus.motion.posture import check_limits, foot_targets, servo_targets
+from suchus.motion.timing import START
+
+__all__ = [
+    "START",
+    "Gait",
+    "check_limits",
+    "foot_targets",
+    "limb_phase",
+    "servo_targets",
+    "stance",
+    "tail_bend",
+    "trunk_bend",
+]

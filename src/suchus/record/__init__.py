@@ -1,1 +1,22 @@
-""""""
+"""What happened: the schema of a run, its place on disk and where it comes from."""
+
+from suchus.record.place import check_replaceable, check_writable, new_file, new_folder
+from suchus.record.provenance import digest, plain, provenance, versions
+from suchus.record.schema import PER_RUN, VARIABLES, dataset
+from suchus.record.store import load, save
+
+__all__ = [
+    "PER_RUN",
+    "VARIABLES",
+    "check_replaceable",
+    "check_writable",
+    "dataset",
+    "digest",
+    "load",
+    "new_file",
+    "new_folder",
+    "plain",
+    "provenance",
+    "save",
+    "versions",
+]

@@ -1,0 +1,52 @@
+"""The contract of a controller: a frozen setting that starts a machine for a batch."""
+
+from collections.abc import Sequence
+from typing import NamedTuple, Protocol, runtime_checkable
+
+import numpy as np
+from jaxtyping import Float
+
+from suchus.control.sensed import Sensed
+from suchus.design import Crocodile
+from suchus.motion import Gait
+
+
+class Command(NamedTuple):
+    """What a controller says for one control period."""
+
+    targets: Float[np.ndarray, "run 19"]
+    """Servo angles [rad]."""
+    phase: Float[np.ndarray, "run 4"]
+    """Phase of each limb, not wrapped [cycle]."""
+
+
+class Controller(Protocol):
+    """A running controller of a batch; it may keep state."""
+
+    def rest(self) -> Float[np.ndarray, "run 19"]:
+        """Return the servo angles in which the robots are put on the ground [rad]."""
+
+    def command(self, tick: int, sensed: Sensed | None) -> Command:
+        """Answer for control period ``tick``; ``sensed`` is None where ``Control.feels`` is false."""
+
+
+@runtime_checkable
+class Control(Protocol):
+    """A controller as a value on a run; runs with equal values share one running controller."""
+
+    @property
+    def feels(self) -> bool:
+        """Whether it wants to know what the robot senses."""
+
+    def start(
+        self, robots: Sequence[Crocodile], gaits: Sequence[Gait], seeds: Sequence[int], ticks: int, period: float
+    ) -> Controller:
+        """Start the controller for a batch: one robot, gait and seed per run.
+
+        Args:
+            robots: the designs.
+            gaits: the gaits.
+            seeds: for whatever is random.
+            ticks: number of control periods to come.
+            period: of control [s].
+        """

@@ -1,0 +1,32 @@
+"""What a batch of robots feels at one instant."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Sensed:
+    """Sensor readings; nothing else reaches a controller."""
+
+    time: float
+    """Since the beginning of the run [s]."""
+    servo_position: Float[np.ndarray, "run 19"]
+    """Servo angles [rad]."""
+    servo_velocity: Float[np.ndarray, "run 19"]
+    """Servo speeds [rad/s]."""
+    servo_torque: Float[np.ndarray, "run 19"]
+    """Servo torques [N m]."""
+    foot_pressure: Float[np.ndarray, "run 4"]
+    """Normal force under each foot [N]."""
+    belly_pressure: Float[np.ndarray, "run 6"]
+    """Normal force under each body of the trunk, from the hind girdle forward [N]."""
+    tail_pressure: Float[np.ndarray, "run"]
+    """Normal force under the tail [N]."""
+    orientation: Float[np.ndarray, "run 4"]
+    """Of the IMU in the pelvis, as a quaternion wxyz [-]."""
+    angular_velocity: Float[np.ndarray, "run 3"]
+    """Of the IMU, in its own frame [rad/s]."""
+    acceleration: Float[np.ndarray, "run 3"]
+    """Of the IMU with gravity, in its own frame [m/s2]."""

@@ -1,0 +1,139 @@
+"""A batch of MuJoCo simulations with each run's own ground and faults."""
+
+import copy
+from collections.abc import Sequence
+from typing import Any
+
+import mujoco
+import numpy as np
+from mujoco.batch import Batch, SimulationError
+
+from suchus import threads
+from suchus.design import cable_joints, servo_names
+from suchus.land.faults import Fault, Limp, Weak
+from suchus.land.run import Ground, Run
+from suchus.model import compile_model, joint_addresses
+
+_GRAVITY = 9.81  # [m/s2]
+_TOO_FAST = 1e3  # [rad/s] or [m/s]; nothing on a robot moves so fast: the physics has come apart
+_CURRENT = mujoco.mjtStage.mjSTAGE_VEL  # after a step, positions and velocities describe the new state
+
+
+class Bench:
+    """The simulations of one group of runs, whose robots share a topology.
+
+    Runs of one robot share a model, with per-run values where they differ (``Batch.expand``); runs of several
+    robots each have their own (``Batch.set_models``).
+    """
+
+    def __init__(self, runs: Sequence[Run], timestep: float) -> None:
+        shared = compile_model(runs[0].robot, timestep)
+        self._single = all(run.robot == runs[0].robot for run in runs)
+        self._models: list[Any] = []
+        if not self._single:
+            self._models = [copy.copy(compile_model(run.robot, timestep)) for run in runs]
+        self.batch = Batch(shared, len(runs), nthread=min(threads.count(), len(runs)), persistent=True)
+        self._lay_ground(runs)
+        if self._models:
+            self.batch.set_models(self._models)
+        self.model = shared
+        self.qpos, self.qvel, self.ctrl, self.sensors = (
+            self.batch.bind(name) for name in ("qpos", "qvel", "ctrl", "sensordata")
+        )
+        self.alive = np.ones(len(runs), dtype=bool)
+        self.ended = np.full(len(runs), np.inf)
+        self.cause = [""] * len(runs)
+
+    def _field(self, name: str, sim: int) -> np.ndarray:
+        """Return a run's own values of a model field, for writing."""
+        if self._single:
+            values: np.ndarray = self.batch.expand(name)[sim]
+            return values
+        owner: Any = self._models[sim]
+        for part in name.split("."):
+            owner = getattr(owner, part)
+        return np.asarray(owner)
+
+    def _lay_ground(self, runs: Sequence[Run]) -> None:
+        for sim, run in enumerate(runs):
+            if run.ground.grip != 1.0:
+                self._field("geom_friction", sim)[1:, 0] *= run.ground.grip
+            if run.ground.uphill or run.ground.sideways:
+                self._field("opt.gravity", sim)[:] = _gravity(run.ground)
+
+    def break_servo(self, sim: int, fault: Fault) -> None:
+        """Let a servo go limp or weak from now on."""
+        servo = servo_names().index(fault.joint)
+        if isinstance(fault, Limp):
+            if self._single:
+                self.batch.expand("opt.disableactuator")[sim] |= 1 << servo
+            else:
+                self._models[sim].opt.disableactuator |= 1 << servo
+        elif isinstance(fault, Weak):
+            self._field("actuator_forcerange", sim)[servo] *= fault.fraction
+        if self._models:
+            self.batch.set_models(self._models)
+
+    def place(self, runs: Sequence[Run], first: np.ndarray) -> None:
+        """Put every robot on the ground in its first posture, nothing below the surface.
+
+        Args:
+            runs: the runs.
+            first: the servo angles at the start, shape (run, 19) [rad].
+        """
+        act = self.batch.bind("act")
+        for sim, run in enumerate(runs):
+            model = self._models[sim] if self._models else self.model
+            self.qpos[sim] = settled(model, run, first[sim])
+            act[sim] = _activations(model, first[sim])
+            self.ctrl[sim] = first[sim]
+        self.batch.forward()
+
+    def advance(self, targets: np.ndarray, steps: int, time: float) -> None:
+        """Command servo angles and advance the living by some steps; who diverges dies, with the time and the cause.
+
+        Args:
+            targets: shape (run, 19) [rad].
+            steps: number of physics steps.
+            time: at which they begin [s].
+        """
+        self.ctrl[self.alive] = targets[self.alive]
+        try:
+            self.batch.step(None if self.alive.all() else np.flatnonzero(self.alive), nstep=steps, stage=_CURRENT)
+        except SimulationError as error:
+            for sim in error.ids:
+                self._end(int(sim), time, self.batch.error(int(sim)))
+        fastest = np.abs(self.qvel).max(axis=1)
+        for sim in np.flatnonzero(self.alive & ~(fastest < _TOO_FAST)):  # a NaN is not below anything
+            self._end(int(sim), time, f"a speed of {fastest[sim]:.3g} was reached")
+
+    def _end(self, sim: int, time: float, cause: str) -> None:
+        if self.alive[sim]:
+            self.alive[sim], self.ended[sim], self.cause[sim] = False, time, cause
+
+
+def settled(model: Any, run: Run, servos: np.ndarray) -> np.ndarray:
+    """Return the generalised positions of a robot that stands on the ground with given servo angles."""
+    data = mujoco.MjData(model)
+    cable, pulley_per_bend = cable_joints(run.robot), run.robot.tail.cord_spacing / 2 / run.robot.tail.pulley
+    data.qpos[2] = run.gait.hip_height
+    data.qpos[joint_addresses(model, servo_names()[:-1])] = servos[:-1]
+    data.qpos[joint_addresses(model, cable)] = servos[-1] / pulley_per_bend / len(cable)
+    mujoco.mj_forward(model, data)
+    deepest = min((float(c.dist) for c in data.contact), default=0.0)
+    data.qpos[2] -= min(deepest, 0.0)
+    return np.array(data.qpos)
+
+
+def _activations(model: Any, servos: np.ndarray) -> np.ndarray:
+    """Return the servos' inner states at rest: the slew-limited target first, then the integral."""
+    act = np.zeros(model.na)
+    act[model.actuator_actadr] = servos
+    return act
+
+
+def _gravity(ground: Ground) -> np.ndarray:
+    """Return gravity in the frame of a tilted ground [m/s2]."""
+    down = np.array([-np.sin(ground.uphill), 0.0, -np.cos(ground.uphill)])
+    c, s = np.cos(ground.sideways), np.sin(ground.sideways)
+    return _GRAVITY * np.array([down[0], down[2] * s, down[2] * c])

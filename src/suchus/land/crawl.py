@@ -1,0 +1,65 @@
+"""One robot, one gait, one record."""
+
+from collections.abc import Sequence
+
+import xarray as xr
+
+from suchus.control import Control, OpenLoop
+from suchus.design import Crocodile
+from suchus.errors import Diverged
+from suchus.land.faults import Fault
+from suchus.land.run import Ground, Run
+from suchus.land.simulate import simulate
+from suchus.motion import Gait
+
+
+def crawl(
+    robot: Crocodile,
+    gait: Gait,
+    *,
+    duration: float = 9.0,
+    faults: Sequence[Fault] = (),
+    ground: Ground | None = None,
+    control: Control | None = None,
+    noise: float = 0.0,
+    seed: int = 0,
+    timestep: float = 0.002,
+) -> xr.Dataset:
+    """Let a robot walk.
+
+    Args:
+        robot: who walks.
+        gait: how.
+        duration: including the first second, in which the robot settles [s].
+        faults: what breaks, and when.
+        ground: on what; level ground if None.
+        control: open loop if None.
+        noise: standard deviation of noise on every servo angle commanded [rad].
+        seed: of the noise.
+        timestep: of the physics [s].
+
+    Returns:
+        The record, without the dimension ``run`` (see ``record.schema``).
+
+    Raises:
+        Diverged: the physics came apart; the error carries the time and the record so far.
+        OutsideLimits: the robot's joints cannot follow the gait.
+    """
+    run = Run(
+        robot=robot,
+        gait=gait,
+        ground=ground or Ground(),
+        faults=tuple(faults),
+        control=control or OpenLoop(),
+        noise=noise,
+        seed=seed,
+    )
+    record = simulate([run], duration=duration, timestep=timestep).isel(run=0)
+    if record.cause.item():
+        time = float(record.ended)
+        raise Diverged(
+            f"the crawl came apart at {time:.2f} s: {record.cause.item()}. A shorter timestep than {timestep} s may help.",
+            time=time,
+            record=record.sel(time=slice(None, time + 1e-9)),
+        )
+    return record

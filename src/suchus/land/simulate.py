@@ -1,0 +1,122 @@
+"""Simulate runs: physics in MuJoCo, a controller for the whole batch at every control period."""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+import xarray as xr
+
+from suchus.design.checks import require
+from suchus.errors import InvalidDesign
+from suchus.land.bench import Bench
+from suchus.land.faults import check_faults
+from suchus.land.readings import Readings
+from suchus.land.run import Run
+from suchus.land.troubles import Troubles
+from suchus.model import topology
+from suchus.motion import check_limits
+
+CONTROL_PERIOD = 0.01  # [s]; 100 Hz, what a bus of hobby servos sustains
+
+Progress = Callable[[float], None]
+
+
+def simulate(
+    runs: Sequence[Run],
+    *,
+    duration: float = 9.0,
+    timestep: float = 0.002,
+    every: int = 1,
+    progress: Progress | None = None,
+) -> xr.Dataset:
+    """Simulate a batch of runs.
+
+    The same runs give the same bytes, whatever the number of threads. A run that diverges ends there: its samples
+    from then on are NaN, ``ended`` and ``cause`` say when and why, and the others go on.
+
+    Args:
+        runs: at least one; the robots must share their number of tail joints for one record.
+        duration: [s].
+        timestep: of the physics [s]; a whole part of the control period.
+        every: keep one sample of so many control periods.
+        progress: called with the share that is done.
+
+    Returns:
+        A record with the dimensions ``run`` and ``time`` (see ``record.schema``), the first sample at time 0.
+        Forces and torques are those of the last physics step before each sample.
+
+    Raises:
+        InvalidDesign: no runs, robots of different topology, a bad duration or time step.
+        OutsideLimits: a gait that a robot's joints cannot follow.
+        UnknownName: a fault of a joint that does not exist.
+    """
+    runs = tuple(runs)
+    steps = _check(runs, duration, timestep, every)
+    ticks = round(duration / CONTROL_PERIOD)
+    parts, order = [], []
+    groups = _groups(runs)
+    for number, members in enumerate(groups):
+        some = [runs[i] for i in members]
+
+        def report(share: float, done: int = number) -> None:
+            if progress is not None:
+                progress((done + share) / len(groups))
+
+        parts.append(_simulate_group(some, ticks, steps, timestep, every, report))
+        order.extend(members)
+    record = parts[0] if len(parts) == 1 else xr.concat(parts, "run", join="exact", data_vars="minimal")
+    record = record.isel(run=np.argsort(order)).assign_coords(run=np.arange(len(runs)))
+    record.attrs.update(timestep=timestep, control_period=CONTROL_PERIOD)
+    return record
+
+
+def _check(runs: Sequence[Run], duration: float, timestep: float, every: int) -> int:
+    """Refuse what cannot be simulated; return the number of physics steps in a control period."""
+    if not runs:
+        raise InvalidDesign("there are no runs to simulate; give at least one.")
+    require("simulate", "duration", duration, CONTROL_PERIOD, 86400.0, "s")
+    require("simulate", "timestep", timestep, 1e-5, CONTROL_PERIOD, "s")
+    require("simulate", "every", every, 1, 10000, "control periods")
+    steps = round(CONTROL_PERIOD / timestep)
+    if abs(steps * timestep - CONTROL_PERIOD) > 1e-9:
+        raise InvalidDesign(f"simulate.timestep is {timestep} s; it must divide the control period of {CONTROL_PERIOD} s.")
+    if len({topology(run.robot) for run in runs}) > 1:
+        raise InvalidDesign("the robots of one batch must have equally many tail joints; simulate them one after another.")
+    for pair in {(run.robot, run.gait) for run in runs}:
+        check_limits(*pair)
+    for run in runs:
+        check_faults(run.faults, duration)
+    return steps
+
+
+def _groups(runs: Sequence[Run]) -> list[list[int]]:
+    """Return the indices of the runs that share a controller."""
+    groups: dict[object, list[int]] = {}
+    for i, run in enumerate(runs):
+        groups.setdefault(run.control, []).append(i)
+    return list(groups.values())
+
+
+def _simulate_group(
+    runs: Sequence[Run], ticks: int, steps: int, timestep: float, every: int, progress: Progress
+) -> xr.Dataset:
+    bench = Bench(runs, timestep)
+    control = runs[0].control
+    controller = control.start(
+        [run.robot for run in runs], [run.gait for run in runs], [run.seed for run in runs], ticks + 1, CONTROL_PERIOD
+    )
+    bench.place(runs, controller.rest())
+    troubles = Troubles(runs, bench, ticks + 1, CONTROL_PERIOD)
+    readings = Readings(bench, runs, ticks // every + 1)
+    for tick in range(ticks + 1):
+        troubles.happen(tick)
+        sensed = troubles.deafen(readings.sensed(tick * CONTROL_PERIOD)) if control.feels else None
+        command = controller.command(tick, sensed)
+        targets = troubles.disturb(tick, command.targets)
+        if tick % every == 0:
+            readings.store(tick // every, command.phase, targets)
+        if tick < ticks:
+            bench.advance(targets, steps, tick * CONTROL_PERIOD)
+        if tick % 16 == 0:
+            progress(tick / ticks)
+    progress(1.0)
+    return readings.record(np.arange(0, ticks + 1, every) * CONTROL_PERIOD)

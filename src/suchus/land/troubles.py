@@ -1,0 +1,59 @@
+"""What goes wrong during a batch: faults when their time comes, and noise."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from suchus.control import Sensed
+from suchus.design import servo_names
+from suchus.land.bench import Bench
+from suchus.land.faults import Deaf, Fault, Locked
+from suchus.land.run import Run
+
+
+class Troubles:
+    """The faults and the noise of all runs of a batch."""
+
+    def __init__(self, runs: Sequence[Run], bench: Bench, ticks: int, period: float) -> None:
+        self._bench = bench
+        self._due: dict[int, list[tuple[int, Fault]]] = {}
+        for sim, run in enumerate(runs):
+            for fault in run.faults:
+                self._due.setdefault(int(np.ceil(fault.at / period - 1e-9)), []).append((sim, fault))
+        self._held = np.full((len(runs), len(servo_names())), np.nan)
+        self._deaf: list[tuple[int, str]] = []
+        self._noise = {
+            sim: run.noise * np.random.default_rng(run.seed).standard_normal((ticks, len(servo_names())))
+            for sim, run in enumerate(runs)
+            if run.noise > 0
+        }
+
+    def happen(self, tick: int) -> None:
+        """Let the faults of this control period begin."""
+        for sim, fault in self._due.get(tick, ()):
+            if isinstance(fault, Locked):
+                servo = servo_names().index(fault.joint)
+                now = self._bench.sensors[sim, servo]  # the first readings are the servos' angles
+                self._held[sim, servo] = now if fault.angle is None else fault.angle
+            elif isinstance(fault, Deaf):
+                self._deaf.append((sim, fault.sensor))
+            else:
+                self._bench.break_servo(sim, fault)
+
+    def deafen(self, sensed: Sensed) -> Sensed:
+        """Return what is sensed by what still senses."""
+        if not self._deaf:
+            return sensed
+        heard = {name: getattr(sensed, name).copy() for _, name in self._deaf}
+        for sim, name in self._deaf:
+            heard[name][sim] = 0.0
+        return replace(sensed, **heard)
+
+    def disturb(self, tick: int, targets: np.ndarray) -> np.ndarray:
+        """Return the angles that the servos are told in the end, shape (run, 19) [rad]."""
+        if self._noise:
+            targets = targets.copy()
+            for sim, noise in self._noise.items():
+                targets[sim] += noise[tick]
+        return np.where(np.isnan(self._held), targets, self._held)

@@ -1,0 +1,66 @@
+"""A gait: how feet, trunk and tail move over one cycle."""
+
+from dataclasses import dataclass, replace
+
+from suchus.design.checks import require
+from suchus.errors import InvalidDesign
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Gait:
+    """A periodic gait. Phases run from 0 to 1 [cycle]; each limb swings first, then stands.
+
+    Feet follow paths fixed to their girdle, so that a swing of the trunk adds to the stride of the legs.
+    """
+
+    name: str
+    """How it is called."""
+    period: float
+    """Of one cycle [s]."""
+    duty_factor: float
+    """Share of the cycle in which a foot stands [-]."""
+    limb_phases: tuple[float, float, float, float]
+    """Phase of LF, RF, LH, RH when the walk begins [cycle]."""
+    stroke: float
+    """Half of the way that a foot goes back in stance, in its girdle's frame [m]."""
+    lift: float
+    """How high a foot is lifted in swing [m]."""
+    front_reach: float
+    """How far a front foot stands outside its hip [m]."""
+    hind_reach: float
+    """How far a hind foot stands outside its hip [m]."""
+    hip_height: float
+    """Height of both girdles' hip axes above the ground [m]."""
+    trunk_bend: float
+    """Amplitude of the lateral bend of the whole trunk, the sum of its yaw angles [rad]."""
+    spine_phase: float
+    """How late the trunk bends against the legs [cycle]; 0: each girdle carries its swing foot forward."""
+    tail_bend: float
+    """Amplitude of the lateral bend of the tail [rad]."""
+    tail_phase: float
+    """How late the tail bends against the trunk [cycle]; 0.5: an S, head and tail to opposite sides."""
+    tail_pitch: float
+    """Steady angle of the tail's pitch joint, down positive [rad]: the ground carries the tail, or it is lifted."""
+
+    def __post_init__(self) -> None:
+        require("gait", "period", self.period, 0.1, 60.0, "s")
+        require("gait", "duty_factor", self.duty_factor, 0.05, 0.95, "")
+        if len(self.limb_phases) != 4:
+            raise InvalidDesign(f"gait.limb_phases has {len(self.limb_phases)} numbers; LF, RF, LH, RH need one each.")
+        for i, phase in enumerate(self.limb_phases):
+            require("gait", f"limb_phases[{i}]", phase, -1.0, 1.0, "cycle")
+        require("gait", "stroke", self.stroke, -0.3, 0.3, "m")
+        require("gait", "lift", self.lift, 0.0, 0.3, "m")
+        require("gait", "front_reach", self.front_reach, -0.3, 1.0, "m")
+        require("gait", "hind_reach", self.hind_reach, -0.3, 1.0, "m")
+        require("gait", "hip_height", self.hip_height, 0.01, 1.0, "m")
+        require("gait", "trunk_bend", self.trunk_bend, 0.0, 3.1416, "rad")
+        require("gait", "spine_phase", self.spine_phase, -1.0, 1.0, "cycle")
+        require("gait", "tail_bend", self.tail_bend, 0.0, 3.1416, "rad")
+        require("gait", "tail_phase", self.tail_phase, -1.0, 1.0, "cycle")
+        require("gait", "tail_pitch", self.tail_pitch, -3.1416, 3.1416, "rad")
+
+    def mirrored(self) -> "Gait":
+        """Return the gait with left and right swapped."""
+        lf, rf, lh, rh = self.limb_phases
+        return replace(self, limb_phases=(rf, lf, rh, lh))
