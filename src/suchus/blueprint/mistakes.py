@@ -1,0 +1,95 @@
+"""From what a validator complains of to sentences that a person can act on."""
+
+from collections.abc import Mapping
+from dataclasses import fields, is_dataclass
+from difflib import get_close_matches
+from typing import Any
+
+from suchus.design.checks import InvalidFields
+from suchus.errors import InvalidDesign, UnreadableFile
+
+Place = tuple[str | int, ...]
+"""Keys from the top of a file down to a value."""
+
+_NEEDED: Mapping[str, str] = {
+    "float_type": "a number is needed",
+    "finite_number": "a finite number is needed",
+    "int_type": "a whole number is needed",
+    "int_from_float": "a whole number is needed",
+    "string_type": "a text in quotes is needed",
+    "bool_type": "true or false is needed",
+    "tuple_type": "a list in brackets is needed",
+    "dataclass_type": "a table is needed",
+}
+
+
+class MistakenFile(UnreadableFile, InvalidDesign):
+    """A file whose values cannot be what they should be.
+
+    Attributes:
+        mistakes: where each mistake is, and what it is.
+    """
+
+    def __init__(self, name: str, mistakes: Mapping[Place, str]) -> None:
+        self.mistakes = {dotted(place): text for place, text in mistakes.items()}
+        listed = [f"{place} {text}".lstrip() for place, text in self.mistakes.items()]
+        if len(listed) == 1:
+            super().__init__(f"{name} has a mistake: {listed[0]}.")
+        else:
+            numbered = "; ".join(f"({i}) {one}" for i, one in enumerate(listed, 1))
+            super().__init__(f"{name} has {len(listed)} mistakes: {numbered}.")
+
+
+def dotted(place: Place) -> str:
+    """Return a place as people write it: ``spine.yaw_range[0]``."""
+    parts = (f"[{key}]" if isinstance(key, int) else f".{key}" for key in place)
+    return "".join(parts).lstrip(".")
+
+
+def explain(error: Mapping[str, Any], kind: type) -> dict[Place, str]:
+    """Return what one of pydantic's errors says, by place; a part can complain of several fields at once."""
+    place: Place = tuple(error["loc"])
+    cause = error.get("ctx", {}).get("error")
+    if isinstance(cause, InvalidFields):
+        return {(*place, *_keys(c.field)): c.text for c in cause.complaints}
+    if error["type"] == "missing":
+        return {place: "is missing"}
+    if error["type"] == "unexpected_keyword_argument":
+        return {place: _unknown(place, kind)}
+    return {place: f"is {_show(error['input'])}; {_needed(error, cause)}"}
+
+
+def _keys(field: str) -> Place:
+    name, _, index = field.rstrip("]").partition("[")
+    return () if not name else (name, int(index)) if index else (name,)
+
+
+def _needed(error: Mapping[str, Any], cause: Exception | None) -> str:
+    context = error.get("ctx", {})
+    if error["type"] in ("too_long", "too_short"):
+        wanted = context.get("max_length", context.get("min_length"))
+        return f"{wanted} values are needed"
+    if error["type"] == "literal_error":
+        return f"{context['expected']} is allowed"
+    if cause is not None:
+        return str(cause).rstrip(".")
+    return _NEEDED.get(error["type"], str(error["msg"]))
+
+
+def _unknown(place: Place, kind: type) -> str:
+    known = _fields_at(place[:-1], kind)
+    near = get_close_matches(str(place[-1]), known, n=1, cutoff=0.5)
+    if near:
+        return f"is not known (did you mean {dotted((*place[:-1], near[0]))}?)"
+    return f"is not known; there is {', '.join(known)}"
+
+
+def _fields_at(place: Place, kind: Any) -> list[str]:
+    for key in place:
+        kind = next((f.type for f in fields(kind) if f.name == key), None) if is_dataclass(kind) else None
+    return [f.name for f in fields(kind)] if is_dataclass(kind) else []
+
+
+def _show(value: Any) -> str:
+    text = repr(value)
+    return text if len(text) <= 40 else f"{text[:37]}..."

@@ -1,0 +1,118 @@
+"""From a TOML file to a frozen value; what the file does not say can come from a shelf."""
+
+import json
+import tomllib
+from collections.abc import Mapping
+from copy import deepcopy
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any, TypeVar
+
+from pydantic import TypeAdapter, ValidationError
+
+from suchus.blueprint.mistakes import MistakenFile, Place, explain
+from suchus.errors import UnreadableFile
+
+T = TypeVar("T")
+
+
+def read(path: Path, kind: type[T], shelf: Mapping[str, T]) -> T:
+    """Read a robot or a gait from a TOML file.
+
+    ``base = "caiman"`` at the top starts from that one of the shelf and overrides what the file says. A file
+    without a ``name`` lends its own.
+
+    Args:
+        path: the file.
+        kind: the frozen dataclass that it describes.
+        shelf: what ``base`` may name.
+
+    Raises:
+        UnreadableFile: the file is missing or no TOML.
+        MistakenFile: values are missing, unknown, of the wrong kind or impossible; it names all of them.
+    """
+    data = _parse(path)
+    base = data.pop("base", None)
+    known = base is None or (isinstance(base, str) and base in shelf)
+    spare = asdict(shelf[base if base and known else next(iter(shelf))])  # type: ignore[call-overload]
+    mistakes: dict[Place, str] = {}
+    if not known:
+        mistakes["base",] = f"is {base!r}; there is {', '.join(shelf)}"
+    if base is not None:
+        data = _merge({**spare, "name": path.stem}, data)
+    return _validated({"name": path.stem, **data}, kind, spare, path.name, mistakes)
+
+
+def _parse(path: Path) -> dict[str, Any]:
+    try:
+        text = path.read_text(encoding="utf-8")
+    except FileNotFoundError:
+        raise UnreadableFile(f"there is no file {path}.") from None
+    except UnicodeDecodeError as error:
+        raise UnreadableFile(f"{path} is not a text file in UTF-8.") from error
+    except OSError as error:
+        raise UnreadableFile(f"{path} cannot be read: {(error.strerror or str(error)).lower()}.") from error
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise UnreadableFile(f"{path} is not valid TOML: {error}.") from error
+
+
+def _validated(
+    data: dict[str, Any], kind: type[T], spare: Mapping[str, Any], name: str, mistakes: dict[Place, str]
+) -> T:
+    """Validate, mend what is wrong with spare values and look again, until nothing new is found."""
+    adapter = TypeAdapter(kind)
+    mended: set[Place] = set()
+    while True:
+        try:
+            value = adapter.validate_json(json.dumps(data, default=str), strict=True, extra="forbid")
+        except ValidationError as error:
+            found: dict[Place, str] = {}
+            for one in error.errors(include_url=False):
+                found |= explain(one, kind)
+        else:
+            break
+        fresh = {p: text for p, text in found.items() if _whole(p) not in mended and not _follows(p, mended)}
+        mistakes |= fresh
+        mendable = [_mend(data, _whole(place), spare) for place in fresh]
+        if not mendable or not all(mendable):
+            break
+        mended |= {_whole(place) for place in fresh}
+    if mistakes:
+        raise MistakenFile(name, mistakes)
+    return value
+
+
+def _whole(place: Place) -> Place:
+    """The place of the list that an element stands in, else the place itself."""
+    while place and isinstance(place[-1], int):
+        place = place[:-1]
+    return place
+
+
+def _follows(place: Place, mended: set[Place]) -> bool:
+    """Whether a complaint about a whole part may stem from a value that we put into it."""
+    return any(m[: len(place)] == place for m in mended)
+
+
+def _mend(data: Any, place: Place, spare: Any) -> bool:
+    """Put the spare value at a place, or drop what should not be there; tell whether that was possible."""
+    if not place:
+        return False
+    for key in place[:-1]:
+        if not (isinstance(data, dict) and isinstance(spare, dict) and key in data and key in spare):
+            return False
+        data, spare = data[key], spare[key]
+    data.pop(place[-1], None)
+    if place[-1] in spare:
+        data[place[-1]] = deepcopy(spare[place[-1]])
+    return True
+
+
+def _merge(base: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:
+    merged = dict(deepcopy(base))
+    for key, value in over.items():
+        there = merged.get(key)
+        merged[key] = _merge(there, value) if isinstance(there, dict) and isinstance(value, dict) else value
+    return merged

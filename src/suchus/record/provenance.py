@@ -1,0 +1,72 @@
+"""Where a result comes from: what was asked, with which software, how long it took. No dates."""
+
+import hashlib
+import json
+import math
+import platform
+from collections.abc import Mapping
+from dataclasses import fields, is_dataclass
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import PurePath
+from typing import Any
+
+_PACKAGES = ("suchus", "mujoco", "numpy", "scipy", "numba", "xarray", "h5netcdf", "matplotlib")
+
+
+def provenance(settings: Mapping[str, Any], *, seconds: float) -> dict[str, Any]:
+    """Return where a result comes from; equal runs differ in ``seconds`` at most.
+
+    Args:
+        settings: the fields of the experiment; ``seed`` among them, if it has one.
+        seconds: how long the run took [s].
+    """
+    return {
+        "config_hash": digest(settings),
+        "versions": versions(),
+        "seed": plain(settings.get("seed")),
+        "seconds": round(seconds, 3),
+    }
+
+
+def digest(settings: Mapping[str, Any]) -> str:
+    """Return the SHA-256 of the settings, the same on every machine and in any order of keys."""
+    text = json.dumps(plain(settings), sort_keys=True, separators=(",", ":"), allow_nan=False)
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def versions() -> dict[str, str]:
+    """Return the version of Python and of every package that can change a number or a picture."""
+    found = {"python": platform.python_version()}
+    for name in _PACKAGES:
+        try:
+            found[name] = version(name)
+        except PackageNotFoundError:
+            found[name] = "not installed"
+    return found
+
+
+def plain(value: Any) -> Any:
+    """Return a value as JSON can hold it: dataclasses as objects, arrays and tuples as lists.
+
+    Numbers that are not finite become the words ``nan``, ``inf`` and ``-inf``.
+
+    Raises:
+        TypeError: the value has no such form.
+    """
+    if value is None or isinstance(value, (str, bool, int)):
+        return value
+    if isinstance(value, float):
+        return float(value) if math.isfinite(value) else str(float(value))
+    if is_dataclass(value) and not isinstance(value, type):
+        return {f.name: plain(getattr(value, f.name)) for f in fields(value)}
+    if isinstance(value, Mapping):
+        return {str(key): plain(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [plain(item) for item in value]
+    if isinstance(value, (set, frozenset)):
+        return sorted((plain(item) for item in value), key=repr)
+    if isinstance(value, PurePath):
+        return value.as_posix()
+    if hasattr(value, "tolist"):
+        return plain(value.tolist())
+    raise TypeError(f"a {type(value).__name__} cannot be written as JSON: {value!r}")
