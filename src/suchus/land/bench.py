@@ -9,7 +9,7 @@ import numpy as np
 from mujoco.batch import Batch, SimulationError
 
 from suchus import threads
-from suchus.design import cable_joints, servo_names
+from suchus.design import cable_joints, servo_names, spine_joints
 from suchus.land.faults import Fault, Limp, Weak
 from suchus.land.run import Ground, Run
 from suchus.model import compile_model, joint_addresses
@@ -113,10 +113,15 @@ class Bench:
 
 
 def settled(model: Any, run: Run, servos: np.ndarray) -> np.ndarray:
-    """Return the generalised positions of a robot that stands on the ground with given servo angles."""
+    """Return the generalised positions of a robot that stands on the ground with given servo angles.
+
+    It faces forward on the whole: a bent trunk turns the girdles to either side of +x by equal angles.
+    """
     data = mujoco.MjData(model)
     cable, pulley_per_bend = cable_joints(run.robot), run.robot.tail.cord_spacing / 2 / run.robot.tail.pulley
     data.qpos[2] = run.gait.hip_height
+    turn = -sum(servos[servo_names().index(name)] for name in spine_joints() if "yaw" in name) / 2
+    data.qpos[3:7] = np.cos(turn / 2), 0.0, 0.0, np.sin(turn / 2)
     data.qpos[joint_addresses(model, servo_names()[:-1])] = servos[:-1]
     data.qpos[joint_addresses(model, cable)] = servos[-1] / pulley_per_bend / len(cable)
     mujoco.mj_forward(model, data)

@@ -1,1 +1,35 @@
-""""""
+"""From a record to numbers: pure, and along whatever dimensions the record has besides time."""
+
+from suchus.metrics.energy import cost_of_transport, peak_torque, work
+from suchus.metrics.gait import duty_factor, loaded, sensed_phase
+from suchus.metrics.progress import displacement, heading, heading_change, path_length, slip
+from suchus.metrics.stability import (
+    height_peak_to_peak,
+    height_std,
+    roll_peak_to_peak,
+    support_distance,
+    support_polygon,
+    tilt,
+)
+from suchus.metrics.window import between
+
+__all__ = [
+    "between",
+    "cost_of_transport",
+    "displacement",
+    "duty_factor",
+    "heading",
+    "heading_change",
+    "height_peak_to_peak",
+    "height_std",
+    "loaded",
+    "path_length",
+    "peak_torque",
+    "roll_peak_to_peak",
+    "sensed_phase",
+    "slip",
+    "support_distance",
+    "support_polygon",
+    "tilt",
+    "work",
+]

@@ -38,7 +38,7 @@ class Gait:
     tail_bend: float
     """Amplitude of the lateral bend of the tail [rad]."""
     tail_phase: float
-    """How late the tail bends against the trunk [cycle]; 0.5: an S, head and tail to opposite sides."""
+    """How late the tail bends against the trunk [cycle]; 0: head and tail swing to opposite sides."""
     tail_pitch: float
     """Steady angle of the tail's pitch joint, down positive [rad]: the ground carries the tail, or it is lifted."""
 

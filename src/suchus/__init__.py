@@ -1,0 +1,72 @@
+"""suchus: the open laboratory for crocodile-like robots.
+
+Names are loaded when they are first asked for, so that ``import suchus`` costs nothing.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from suchus.catalog import Catalog as Catalog
+    from suchus.design import Crocodile as Crocodile
+    from suchus.errors import Diverged as Diverged
+    from suchus.errors import IncompatibleRecord as IncompatibleRecord
+    from suchus.errors import InvalidDesign as InvalidDesign
+    from suchus.errors import NotConverged as NotConverged
+    from suchus.errors import OutsideLimits as OutsideLimits
+    from suchus.errors import SuchusError as SuchusError
+    from suchus.errors import UnknownName as UnknownName
+    from suchus.errors import Unreachable as Unreachable
+    from suchus.errors import UnreadableFile as UnreadableFile
+    from suchus.experiment import Experiment as Experiment
+    from suchus.experiment import Outcome as Outcome
+    from suchus.experiments import EXPERIMENTS as EXPERIMENTS
+    from suchus.gaits import GAITS as GAITS
+    from suchus.land import Deaf as Deaf
+    from suchus.land import Ground as Ground
+    from suchus.land import Limp as Limp
+    from suchus.land import Locked as Locked
+    from suchus.land import Run as Run
+    from suchus.land import Weak as Weak
+    from suchus.land import crawl as crawl
+    from suchus.land import simulate as simulate
+    from suchus.motion import Gait as Gait
+    from suchus.robots import ROBOTS as ROBOTS
+
+__version__ = "0.1.0"
+
+_HOMES = {
+    "Catalog": "suchus.catalog",
+    "Crocodile": "suchus.design",
+    **dict.fromkeys(
+        (
+            "Diverged",
+            "IncompatibleRecord",
+            "InvalidDesign",
+            "NotConverged",
+            "OutsideLimits",
+            "SuchusError",
+            "UnknownName",
+            "Unreachable",
+            "UnreadableFile",
+        ),
+        "suchus.errors",
+    ),
+    **dict.fromkeys(("Experiment", "Outcome"), "suchus.experiment"),
+    "EXPERIMENTS": "suchus.experiments",
+    "GAITS": "suchus.gaits",
+    "ROBOTS": "suchus.robots",
+    "Gait": "suchus.motion",
+    **dict.fromkeys(("Deaf", "Ground", "Limp", "Locked", "Run", "Weak", "crawl", "simulate"), "suchus.land"),
+}
+__all__ = ["__version__", *_HOMES]  # noqa: PLE0604 - the names are strings
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(f"suchus has no {name!r}; it has {', '.join(sorted(_HOMES))}.")
+    return getattr(import_module(_HOMES[name]), name)
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -1,0 +1,27 @@
+"""What it costs."""
+
+import xarray as xr
+
+from suchus.metrics.progress import displacement
+from suchus.metrics.window import between
+from suchus.motion import START
+
+_GRAVITY = 9.81  # [m/s2]
+
+
+def work(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
+    """Return the work of all servos, braking counted as much as driving [J]."""
+    part = between(record, start, end)
+    power = abs(part.servo_torque * part.servo_velocity).sum("servo", skipna=False)
+    return power.integrate("time")
+
+
+def cost_of_transport(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
+    """Return the work per weight and way on the ground [-]."""
+    way = displacement(record, start, end).sel(xyz=["x", "y"])
+    return work(record, start, end) / (record.mass * _GRAVITY * (way**2).sum("xyz") ** 0.5)
+
+
+def peak_torque(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
+    """Return the greatest torque of each servo [N m]."""
+    return abs(between(record, start, end).servo_torque).max("time")

@@ -1,0 +1,51 @@
+"""How far, whereto, and with how much slipping."""
+
+import numpy as np
+import xarray as xr
+
+from suchus.metrics.gait import loaded
+from suchus.metrics.window import between
+from suchus.motion import START
+
+
+def displacement(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
+    """Return the way of the centre of mass in the world, with the dimension ``xyz`` [m]."""
+    com = between(record, start, end).centre_of_mass
+    return com.isel(time=-1) - com.isel(time=0)
+
+
+def heading(record: xr.Dataset) -> xr.DataArray:
+    """Return over time whereto the body faces: the mean of the two girdles' directions, left positive [rad]."""
+    w, x, y, z = (record.orientation.sel(wxyz=c) for c in "wxyz")
+    yaw = xr.apply_ufunc(np.arctan2, 2 * (w * z + x * y), 1 - 2 * (y**2 + z**2))
+    trunk = sum(record.joint_angle.sel(joint=f"spine_yaw_{i}") for i in (1, 2, 3))
+    return xr.apply_ufunc(lambda a: np.unwrap(a, axis=-1), yaw.transpose(..., "time")) + trunk / 2
+
+
+def heading_change(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
+    """Return how far the body has turned, left positive [rad]."""
+    facing = heading(between(record, start, end))
+    return facing.isel(time=-1) - facing.isel(time=0)
+
+
+def path_length(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
+    """Return the length of the way of the centre of mass on the ground, cycle by cycle [m].
+
+    The swaying within a cycle does not count: the way is sampled once per cycle.
+    """
+    part = between(record, start, end)
+    period = float(part.period.max())
+    every = max(1, round(period / float(part.time[1] - part.time[0])))
+    points = part.centre_of_mass.sel(xyz=["x", "y"]).isel(time=slice(None, None, every))
+    if points.sizes["time"] < 2:
+        points = part.centre_of_mass.sel(xyz=["x", "y"]).isel(time=[0, -1])
+    return ((points.diff("time") ** 2).sum("xyz") ** 0.5).sum("time")
+
+
+def slip(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
+    """Return how far a loaded foot slides, the mean over the feet, over the way of the centre of mass [-]."""
+    part = between(record, start, end)
+    steps = part.foot_position.sel(xyz=["x", "y"]).diff("time")
+    slid = ((steps**2).sum("xyz") ** 0.5).where(loaded(part).isel(time=slice(1, None)), 0.0)
+    way = displacement(part, start, end).sel(xyz=["x", "y"])
+    return slid.sum("time").mean("leg") / (way**2).sum("xyz") ** 0.5
