@@ -31,6 +31,7 @@ def build(robot: Crocodile, *, timestep: float = TIMESTEP) -> Any:
     """
     spec = mujoco.MjSpec()
     spec.modelname = robot.name
+    spec.compiler.degree = False
     _set_options(spec, timestep)
     _add_ground(spec)
     pelvis = spec.worldbody.add_body(name="pelvis", pos=[0, 0, 0.2])
