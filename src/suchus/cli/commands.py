@@ -1,0 +1,43 @@
+"""The commands: one line each. What a command needs is imported when it is called."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pkgutil import resolve_name
+
+from suchus.errors import SuchusError
+
+
+class BadCommand(SuchusError):
+    """Words on the command line that make no sense."""
+
+
+@dataclass(frozen=True, slots=True)
+class Command:
+    """A word after ``suchus``."""
+
+    name: str
+    """The word."""
+    usage: str
+    """What may follow it."""
+    summary: str
+    """What it does, in one line."""
+    function: str
+    """``module:function`` that takes the remaining words and returns the exit code."""
+
+    def __call__(self, words: Sequence[str]) -> int:
+        """Carry the command out and return the exit code."""
+        function: Callable[[Sequence[str]], int] = resolve_name(self.function)
+        return function(words)
+
+
+COMMANDS = (
+    Command(
+        "reproduce",
+        "[--out DIR]",
+        "run every experiment and write the report",
+        "suchus.cli.reproduce:reproduce",
+    ),
+    Command("run", "NAME [--FIELD VALUE ...]", "run one experiment", "suchus.cli.run:run"),
+    Command("list", "", "show the robots, the gaits and the experiments", "suchus.cli.shelves:show"),
+)
+"""Every command, in the order of the help."""

@@ -1,0 +1,155 @@
+"""From the words after ``suchus run NAME`` to an experiment with its fields set."""
+
+import io
+import re
+from collections.abc import Callable, Sequence
+from contextlib import redirect_stderr
+from dataclasses import dataclass, field, fields, make_dataclass
+from pathlib import Path
+from typing import Annotated, Any
+
+import tyro
+from tyro.constructors import ConstructorRegistry, PrimitiveConstructorSpec, PrimitiveTypeInfo
+
+from suchus import blueprint
+from suchus.catalog import Catalog
+from suchus.cli.commands import BadCommand
+from suchus.design import Crocodile
+from suchus.errors import SuchusError, UnknownName
+from suchus.experiment import Experiment
+from suchus.gaits import GAITS
+from suchus.motion import Gait
+from suchus.robots import ROBOTS
+
+QUICK = Annotated[
+    bool,
+    tyro.conf.FlagCreatePairsOff,
+    tyro.conf.arg(help="Start from the quick form, small enough for a test."),
+]
+OUT = Annotated[
+    Path, tyro.conf.arg(help="Folder for results; each experiment gets a folder of its own in it.")
+]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Choice:
+    """What the words ask for."""
+
+    experiment: Experiment
+    """The question with its fields set."""
+    quick: bool
+    """Whether it started from its quick form."""
+    out: Path
+    """The folder for results."""
+
+
+def choose(experiment: Experiment, name: str, words: Sequence[str]) -> Choice:
+    """Return what the words after ``suchus run NAME`` ask for.
+
+    Raises:
+        SuchusError: an option or a value makes no sense; the message is one sentence.
+        SystemExit: help was asked for, and printed.
+    """
+    quick = "--quick" in words
+    start = experiment.quick() if quick else experiment
+    prog = f"suchus run {name}"
+    options = make_dataclass(
+        "Options",
+        [
+            ("quick", QUICK, field(default=False)),
+            ("out", OUT, field(default=Path("out"))),
+            ("experiment", Annotated[type(start), tyro.conf.arg(name="")], field(default=start)),
+        ],
+    )
+    names = ["quick", "out", *(f.name for f in fields(start))]  # type: ignore[arg-type]
+    chosen = parse(options, prog, words, f"{start.title}\n\nAnswers: {start.shows}", names)
+    return Choice(experiment=chosen.experiment, quick=quick, out=chosen.out)
+
+
+def parse(options: type, prog: str, words: Sequence[str], description: str, names: Sequence[str]) -> Any:
+    """Let tyro read the words; what it refuses becomes one sentence.
+
+    Args:
+        options: dataclass of what can be said.
+        prog: the command, for messages.
+        words: what follows it.
+        description: the head of the help.
+        names: fields that can be set, for the message about one that cannot.
+
+    Raises:
+        UnknownName: there is no such option.
+        BadCommand: an option or a value makes no sense.
+        SystemExit: help was asked for, and printed.
+    """
+    box = io.StringIO()
+    chosen: Any
+    try:
+        with redirect_stderr(box):
+            chosen, unknown = tyro.cli(
+                options,
+                prog=prog,
+                description=description,
+                args=list(words),
+                registry=_registry(),
+                return_unknown_args=True,
+            )
+    except SystemExit as error:
+        if error.code:
+            raise BadCommand(f"{_sentence(box.getvalue())}; see {prog} --help.") from None
+        raise
+    except ValueError as error:
+        raise error if isinstance(error, SuchusError) else BadCommand(f"{str(error).rstrip('.')}.") from error
+    if unknown:
+        if unknown[0].startswith("-"):
+            raise UnknownName(
+                "option", unknown[0].partition("=")[0], [f"--{n.replace('_', '-')}" for n in names]
+            )
+        raise BadCommand(f"{unknown[0]!r} is one word too many; see {prog} --help.")
+    return chosen
+
+
+def _registry() -> ConstructorRegistry:
+    """Robots and gaits are named on the command line, or written in a file."""
+    registry = ConstructorRegistry()
+    registry.primitive_rule(_shelf_rule(Crocodile, ROBOTS, "ROBOT"))
+    registry.primitive_rule(_shelf_rule(Gait, GAITS, "GAIT"))
+    return registry
+
+
+def _shelf_rule(
+    kind: type, shelf: Catalog[Any], metavar: str
+) -> Callable[[PrimitiveTypeInfo], PrimitiveConstructorSpec[Any] | None]:
+    spec: PrimitiveConstructorSpec[Any] = PrimitiveConstructorSpec(
+        nargs=1,
+        metavar=f"{metavar}|FILE.toml",
+        instance_from_str=lambda words: _find(words[0], kind, shelf),
+        is_instance=lambda value: isinstance(value, kind),
+        str_from_instance=lambda value: [str(value.name)],
+    )
+    return lambda info: spec if info.type is kind else None
+
+
+def _find(word: str, kind: type, shelf: Catalog[Any]) -> Any:
+    """What a word stands for: a name on the shelf, or a file."""
+    try:
+        if word not in shelf and (word.endswith(".toml") or Path(word).exists()):
+            return blueprint.read(Path(word), kind, shelf)
+        return shelf[word]
+    except UnknownName as error:
+        raise BadCommand(f"{error} A path to a TOML file will do as well.") from error
+    except SuchusError as error:  # some are ValueErrors, which tyro would take for its own
+        raise BadCommand(str(error)) from error
+
+
+def _sentence(box: str) -> str:
+    """What tyro draws as a box, up to its first line across, as a sentence without a stop."""
+    lines: list[str] = []
+    for line in re.sub(r"\x1b\[[0-9;]*m", "", box).splitlines():
+        text = line.strip(" │╭╮╰╯")
+        if line.startswith(("╭", "╰")):
+            continue
+        if set(text) <= {"─"} and lines:
+            break
+        lines.append(text)
+    sentence = " ".join(lines).removeprefix("Error parsing ").rstrip(".")
+    return sentence[:1].lower() + sentence[1:]

@@ -1,0 +1,45 @@
+"""One experiment from question to folder."""
+
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+from suchus.experiment import Experiment, Outcome, Progress
+from suchus.figures import styled
+from suchus.report import check_place, save_outcome
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Done:
+    """What came of an experiment."""
+
+    outcome: Outcome
+    """Its outcome."""
+    folder: Path
+    """Where its files are."""
+    seconds: float
+    """How long running and drawing took [s]."""
+
+
+def perform(experiment: Experiment, name: str, out: Path, progress: Progress, command: str) -> Done:
+    """Run an experiment, draw its figures and save all of it in ``out / name``.
+
+    Args:
+        experiment: the question.
+        name: its name on the shelf.
+        out: the folder for results.
+        progress: told how far the run has come.
+        command: what makes the same result again.
+
+    Raises:
+        Unwritable: the results cannot be saved; told before the run where it can be known.
+    """
+    start = time.perf_counter()
+    check_place(out / name)
+    outcome = experiment.run(progress)
+    progress("drawing", 1.0)
+    with styled():
+        figures = experiment.draw(outcome)
+    progress("saving", 1.0)
+    folder = save_outcome(outcome, figures, experiment, out / name, command=command)
+    return Done(outcome=outcome, folder=folder, seconds=time.perf_counter() - start)

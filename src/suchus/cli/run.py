@@ -1,0 +1,54 @@
+"""``suchus run NAME``: one experiment, its results into a folder."""
+
+import shlex
+from collections.abc import Sequence
+
+from suchus.cli.commands import BadCommand
+from suchus.cli.options import choose
+from suchus.cli.perform import perform
+from suchus.cli.shelves import titles
+from suchus.cli.terminal import show_outcome, working
+from suchus.experiments import EXPERIMENTS
+from suchus.record import check_writable
+
+
+def run(words: Sequence[str]) -> int:
+    """Run one experiment and return 0.
+
+    Raises:
+        SuchusError: the words make no sense, or the run failed.
+    """
+    if words[:1] in (["-h"], ["--help"]):
+        print(_help())
+        return 0
+    if not words or words[0].startswith("-"):
+        there = ", ".join(EXPERIMENTS)
+        raise BadCommand(
+            f"the name of the experiment comes first, as in suchus run NAME --quick; there is {there}."
+        )
+    name, *options = words
+    choice = choose(EXPERIMENTS[name], name, options)
+    check_writable(choice.out)
+    with working() as bar:
+        done = perform(
+            choice.experiment, name, choice.out, bar.task(name), shlex.join(["suchus", "run", *words])
+        )
+    show_outcome(choice.experiment, done)
+    return 0
+
+
+def _help() -> str:
+    shelf = titles("suchus.experiments")
+    width = max((len(name) for name in shelf), default=0)
+    return "\n".join(
+        (
+            "usage: suchus run NAME [--quick] [--out DIR] [--FIELD VALUE ...]",
+            "",
+            "Run one experiment. Its numbers, verdicts, figures and record go into DIR/NAME.",
+            "",
+            "experiments:",
+            *(f"  {name:<{width}}  {title}".rstrip() for name, title in shelf.items()),
+            "",
+            "suchus run NAME --help lists what can be changed about an experiment.",
+        )
+    )

@@ -1,0 +1,47 @@
+"""``suchus list``: what stands on the shelves, told without importing any of it."""
+
+import ast
+from collections.abc import Sequence
+from importlib.util import find_spec
+from pathlib import Path
+
+from suchus.cli.commands import BadCommand
+
+_SHELVES = (
+    ("robots", "suchus.robots"),
+    ("gaits", "suchus.gaits"),
+    ("experiments", "suchus.experiments"),
+)
+_USAGE = "usage: suchus list\n\nShow the robots, the gaits and the experiments, each with its title."
+
+
+def show(words: Sequence[str]) -> int:
+    """Print every shelf and return 0."""
+    if any(word in ("-h", "--help") for word in words):
+        print(_USAGE)
+        return 0
+    if words:
+        raise BadCommand(f"suchus list takes no {words[0]!r}.")
+    shelves = [(heading, titles(package)) for heading, package in _SHELVES]
+    width = max((len(name) for _, shelf in shelves for name in shelf), default=0)
+    for i, (heading, shelf) in enumerate(shelves):
+        print("\n" * bool(i) + heading)
+        for name, title in shelf.items():
+            print(f"  {name:<{width}}  {title}".rstrip())
+    return 0
+
+
+def titles(package: str) -> dict[str, str]:
+    """Return the first line of each module's docstring by name, sorted by name."""
+    spec = find_spec(package)
+    folders = [Path(place) for place in (spec.submodule_search_locations or ())] if spec else []
+    files = (file for folder in folders for file in folder.glob("*.py") if not file.stem.startswith("_"))
+    return {file.stem: _title(file) for file in sorted(files, key=lambda file: file.stem)}
+
+
+def _title(file: Path) -> str:
+    try:
+        text = ast.get_docstring(ast.parse(file.read_text(encoding="utf-8")))
+    except (SyntaxError, UnicodeDecodeError):
+        return "(cannot be read)"
+    return (text or "").partition("\n")[0]

@@ -1,0 +1,81 @@
+"""What people see in the terminal: bars while it works, then a table of verdicts."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+from rich.console import Console
+from rich.markup import escape
+from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
+from rich.table import Table
+
+from suchus import experiment as contract
+from suchus.cli.perform import Done
+
+_COLOURS = {"reproduced": "green", "same sense": "yellow", "contradicted": "red", "not testable": "dim"}
+
+
+@dataclass(frozen=True, slots=True)
+class Bars:
+    """Progress bars on standard error; nothing where that is no terminal."""
+
+    _progress: Progress
+
+    def task(self, name: str) -> contract.Progress:
+        """Add a bar and return what moves it."""
+        task: TaskID = self._progress.add_task(name, total=1.0, stage="")
+
+        def move(stage: str, share: float) -> None:
+            self._progress.update(task, completed=share, stage=stage)
+
+        return move
+
+    def say(self, text: str) -> None:
+        """Print a line above the bars."""
+        self._progress.console.print(escape(text), highlight=False, soft_wrap=True)
+
+
+@contextmanager
+def working() -> Iterator[Bars]:
+    """Show progress while the block runs."""
+    console = Console(stderr=True)
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TimeElapsedColumn(),
+        TextColumn("[dim]{task.fields[stage]}"),
+    )
+    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress:
+        yield Bars(progress)
+
+
+def show_outcome(question: contract.Experiment, done: Done) -> None:
+    """Print the verdicts, and where everything else is."""
+    console = Console(highlight=False)
+    console.print(f"[bold]{escape(question.title)}[/]")
+    if done.outcome.verdicts:
+        table = Table(box=None, padding=(0, 2, 0, 0))
+        for heading, side in (
+            ("claim", "left"),
+            ("printed", "right"),
+            ("measured", "right"),
+            ("verdict", "left"),
+        ):
+            table.add_column(heading, justify=side, style=None)  # type: ignore[arg-type]
+        for verdict in done.outcome.verdicts:
+            claim = verdict.claim
+            table.add_row(
+                escape(f"{claim.quantity} ({claim.where})"),
+                quantity(claim.value, claim.unit),
+                quantity(verdict.measured, claim.unit),
+                f"[{_COLOURS[verdict.verdict]}]{verdict.verdict}[/]",
+            )
+        console.print(table)
+    console.print(f"{done.seconds:.1f} s; everything is in {escape(str(done.folder))}", soft_wrap=True)
+
+
+def quantity(value: float | None, unit: str) -> str:
+    """Return a number with its unit, as people write it."""
+    if value is None:
+        return ""
+    return f"{value:.3g}" if unit == "-" else f"{value:.3g} {unit}"

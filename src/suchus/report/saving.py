@@ -1,0 +1,97 @@
+"""An outcome as a folder: its numbers and verdicts, figures, record and tables."""
+
+import json
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from matplotlib.figure import Figure
+
+from suchus import figures as pictures
+from suchus import record
+from suchus.experiment import Experiment, Measure, Outcome, Verdict
+
+OUTCOME = "outcome.json"
+RECORD = "record.nc"
+
+
+def check_place(folder: Path) -> None:
+    """Refuse a place for results that cannot be written to or holds something else.
+
+    Raises:
+        Unwritable: no results can go there.
+    """
+    record.check_writable(folder)
+    record.check_replaceable(folder, mark=OUTCOME)
+
+
+def save_outcome(
+    outcome: Outcome, figures: Mapping[str, Figure], experiment: Experiment, folder: Path, *, command: str
+) -> Path:
+    """Write an outcome as a folder, which appears complete or not at all, and return its path.
+
+    Args:
+        outcome: what came out.
+        figures: its figures by name.
+        experiment: the question.
+        folder: where; an earlier result there is replaced.
+        command: what makes the same result again.
+
+    Raises:
+        Unwritable: the place cannot be written to, or is taken.
+    """
+    with record.new_folder(folder, mark=OUTCOME) as draft:
+        for name, figure in figures.items():
+            pictures.save(figure, draft, name)
+        for name, text in outcome.tables.items():
+            (draft / name).write_text(text, encoding="utf-8")
+        record.save(outcome.record, draft / RECORD)
+        captions = {name: pictures.caption(figure) for name, figure in figures.items()}
+        told = describe(outcome, experiment, captions, command)
+        text = json.dumps(told, indent=2, ensure_ascii=False, allow_nan=False)
+        (draft / OUTCOME).write_text(text + "\n", encoding="utf-8")
+    return folder
+
+
+def describe(
+    outcome: Outcome, experiment: Experiment, captions: Mapping[str, str], command: str
+) -> dict[str, Any]:
+    """Return what ``outcome.json`` says; numbers that are not finite become null."""
+    return {
+        "experiment": outcome.experiment,
+        "title": experiment.title,
+        "shows": experiment.shows,
+        "decides": " ".join(experiment.decides.split()),
+        "command": command,
+        "settings": record.plain(outcome.settings),
+        "measures": {name: _measure(measure) for name, measure in outcome.measures.items()},
+        "verdicts": [_verdict(verdict) for verdict in outcome.verdicts],
+        "figures": [{"name": name, "caption": text} for name, text in captions.items()],
+        "tables": list(outcome.tables),
+        "provenance": record.provenance(outcome.settings, seconds=outcome.seconds),
+    }
+
+
+def _measure(measure: Measure) -> dict[str, Any]:
+    return {"value": _finite(measure.value), "unit": measure.unit}
+
+
+def _verdict(verdict: Verdict) -> dict[str, Any]:
+    claim = verdict.claim
+    return {
+        "claim": claim.key,
+        "quantity": claim.quantity,
+        "statement": claim.sense,
+        "where": claim.where,
+        "printed": _finite(claim.value),
+        "measured": _finite(verdict.measured),
+        "unit": claim.unit,
+        "verdict": verdict.verdict,
+        "why": " ".join(verdict.why.split()),
+    }
+
+
+def _finite(value: Any) -> float | int | None:
+    number = record.plain(value)
+    return number if isinstance(number, (int, float)) and math.isfinite(number) else None
