@@ -1,8 +1,8 @@
 """The leg: a yaw and a pitch axis that meet at the hip, and a knee.
 
-All points are in the leg's D-H base frame on the midline of the body: x outward, y forward, z down; left and right
-legs share the formulas (``suchus.kinematics.body`` mirrors the right ones). Positive angles move the foot forward
-(yaw) and down (pitch) and bend the shank down (knee).
+All points are in the leg's D-H base frame on the midline of the body: x outward, y forward, z down; left and
+right legs share the formulas (``suchus.kinematics.body`` mirrors the right ones). Positive angles move the
+foot forward (yaw) and down (pitch) and bend the shank down (knee).
 """
 
 from collections.abc import Iterator
@@ -58,8 +58,9 @@ def inverse(
 ) -> Float[np.ndarray, "*batch 3"]:
     """Return the joint angles that bring the foot to a point: (9) to (14) for every quadrant and branch.
 
-    With ``side=-1`` the leg reaches over its own yaw axis; knee and foot then lie where they lie with ``side=1``
-    and the opposite ``knee``. For a foot on the yaw axis every yaw is a solution; 0, pi or -pi is returned.
+    With ``side=-1`` the leg reaches over its own yaw axis; knee and foot then lie where they lie with
+    ``side=1`` and the opposite ``knee``. For a foot on the yaw axis every yaw is a solution; 0, pi or -pi is
+    returned.
 
     Args:
         leg: the lengths.
@@ -93,8 +94,8 @@ def inverse(
 def jacobian(leg: LegLinks, angles: Float[np.ndarray, "*batch 3"]) -> Float[np.ndarray, "*batch 3 3"]:
     """Return how the foot moves with the joints [m/rad]; a foot force F needs the torques J^T F.
 
-    Its determinant is ``-femur tibia r sin(knee)`` with r the foot's distance from the yaw axis: singular with a
-    straight or folded knee, and with the foot on that axis.
+    Its determinant is ``-femur tibia r sin(knee)`` with r the foot's distance from the yaw axis: singular
+    with a straight or folded knee, and with the foot on that axis.
 
     Args:
         leg: the lengths.
@@ -162,8 +163,8 @@ def _unreachable(leg: LegLinks, points: np.ndarray) -> Unreachable:
         distance = float(np.linalg.norm(bad[0] - hip))
     first = ", ".join(f"{c:.4g}" for c in bad[0])
     return Unreachable(
-        f"{len(bad)} of {len(points)} foot points are out of reach; the first, ({first}) m, lies {distance:.4g} m"
-        f" from the hip, and {near:.4g} to {far:.4g} m can be reached: move it there.",
+        f"{len(bad)} of {len(points)} foot points are out of reach; the first, ({first}) m, is {distance:.4g}"
+        f" m from the hip, and {near:.4g} to {far:.4g} m can be reached: move it there.",
         points=bad,
         reach=(near, far),
     )

@@ -16,7 +16,7 @@ LEG = (
         where="eqs (2)-(5)",
         printed="a1, a2, a3, a4 in the matrices 0T1 to 3T4",
         ours="a0, a1 = 0, a2, a3, as in (1) and (7) to (14)",
-        shows="With Table I read by its printed labels the matrices put a zero where (7) has a0.",
+        shows="With a1 = 70, a2 = 0, a3 = 86, a4 = 89 mm in (2) to (5), (7) would have a2 = 0, a3 = 86 mm.",
     ),
     Misprint(
         key="eq_7_third_column",

@@ -1,0 +1,120 @@
+"""Where feet, snout and tail tip are, for a whole robot.
+
+Everything is in the frame of the pelvis: origin on the midline at the hind girdle's axis, x forward, y left,
+z up. Angles come in the order of ``suchus.design.joint_names``.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from jaxtyping import Float
+
+from suchus.design import LEGS, Crocodile, cable_joints, fin_joints, joint_names, leg_joints, spine_joints
+from suchus.errors import InvalidDesign
+from suchus.kinematics import leg, spine
+
+
+class Landmarks(NamedTuple):
+    """Points of the body in the frame of the pelvis."""
+
+    feet: Float[np.ndarray, "*batch 4 3"]
+    """Centres of the feet in the order of ``LEGS`` [m]."""
+    snout: Float[np.ndarray, "*batch 3"]
+    """Tip of the snout [m]."""
+    tail: Float[np.ndarray, "*batch 3"]
+    """Tip of the tail [m]."""
+
+
+def landmarks(robot: Crocodile, angles: Float[np.ndarray, "*batch joint"]) -> Landmarks:
+    """Return feet, snout and tail tip.
+
+    Args:
+        robot: the robot.
+        angles: of every hinge, in the order of ``joint_names(robot)`` [rad].
+
+    Raises:
+        InvalidDesign: the number of angles is not the robot's number of hinges.
+    """
+    count = len(joint_names(robot))
+    if angles.shape[-1] != count:
+        raise InvalidDesign(
+            f"{angles.shape[-1]} angles were given; {robot.name} has {count} hinges: give one for each."
+        )
+    legs, trunk = len(leg_joints()), len(leg_joints()) + len(spine_joints())
+    T = spine.forward(robot.spine, angles[..., legs:trunk])
+    return Landmarks(
+        feet=feet(robot, angles[..., :trunk]),
+        snout=T[..., :3, 3] + robot.head.snout * T[..., :3, 0],
+        tail=tail_points(robot, angles[..., trunk:])[..., -1, :],
+    )
+
+
+def feet(robot: Crocodile, angles: Float[np.ndarray, "*batch 17"]) -> Float[np.ndarray, "*batch 4 3"]:
+    """Return the centres of the feet in the order of ``LEGS`` [m].
+
+    Args:
+        robot: the robot.
+        angles: of the legs, then of the spine [rad].
+    """
+    T = spine.forward(robot.spine, angles[..., len(leg_joints()) :])
+    shoulder = T[..., :3, 3] + robot.thorax.shoulder * T[..., :3, 0]
+    found = np.empty((*angles.shape[:-1], len(LEGS), 3))
+    for i, name in enumerate(LEGS):
+        foot = from_leg_frame(leg.forward(robot.leg(name), angles[..., 3 * i : 3 * i + 3]), name)
+        if name.endswith("F"):
+            foot = shoulder + np.einsum("...ij,...j->...i", T[..., :3, :3], foot)
+        found[..., i, :] = foot
+    return found
+
+
+def from_leg_frame(point: Float[np.ndarray, "*batch 3"], name: str) -> Float[np.ndarray, "*batch 3"]:
+    """Return a point of a leg's D-H base frame in the frame of its girdle: x forward, y left, z up [m].
+
+    A right leg is the mirror image of a left one.
+    """
+    left = 1.0 if name.startswith("L") else -1.0
+    return np.stack([point[..., 1], left * point[..., 0], -point[..., 2]], axis=-1)
+
+
+def to_leg_frame(point: Float[np.ndarray, "*batch 3"], name: str) -> Float[np.ndarray, "*batch 3"]:
+    """Return a point of a girdle's frame in the D-H base frame of a leg [m]; see ``from_leg_frame``."""
+    left = 1.0 if name.startswith("L") else -1.0
+    return np.stack([left * point[..., 1], point[..., 0], -point[..., 2]], axis=-1)
+
+
+def tail_points(
+    robot: Crocodile, angles: Float[np.ndarray, "*batch joint"]
+) -> Float[np.ndarray, "*batch point 3"]:
+    """Return the tail from its pitch joint to its tip: pitch joint, cable joints, joints of the end, tip [m].
+
+    Args:
+        robot: the robot.
+        angles: the tail's pitch, its cable joints, the yaw and pitch of each segment of its end [rad].
+    """
+    tail = robot.tail
+    cables, segments = len(cable_joints(robot)), len(fin_joints(robot)) // 2
+    x = np.broadcast_to(np.array([-1.0, 0.0, 0.0]), (*angles.shape[:-1], 3))  # along the straight tail
+    points = [tail.offset * x]
+    R = _pitched(angles[..., 0])
+    reach = tail.root + tail.pitch / 2
+    for i in range(cables):
+        points.append(points[-1] + reach * -R[..., :, 0])
+        R, reach = R @ _yawed(angles[..., 1 + i]), tail.pitch
+    points.append(points[-1] + tail.pitch / 2 * -R[..., :, 0])
+    for i in range(segments):
+        bend = angles[..., 1 + cables + 2 * i : 3 + cables + 2 * i]
+        R = R @ _yawed(bend[..., 0]) @ _pitched(bend[..., 1])
+        points.append(points[-1] + tail.fin_length / segments * -R[..., :, 0])
+    return np.stack(points, axis=-2)
+
+
+def _yawed(angle: np.ndarray) -> np.ndarray:
+    """Return the turn about +z: it takes the tail's tip to the right."""
+    s, c, zero, one = np.sin(angle), np.cos(angle), np.zeros_like(angle), np.ones_like(angle)
+    return np.stack([c, -s, zero, s, c, zero, zero, zero, one], axis=-1).reshape(*angle.shape, 3, 3)
+
+
+def _pitched(angle: np.ndarray) -> np.ndarray:
+    """Return the turn about -y: it takes the tail's tip down."""
+    s, c, zero, one = np.sin(angle), np.cos(angle), np.zeros_like(angle), np.ones_like(angle)
+    return np.stack([c, zero, -s, zero, one, zero, s, zero, c], axis=-1).reshape(*angle.shape, 3, 3)
