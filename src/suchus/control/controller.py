@@ -39,7 +39,12 @@ class Control(Protocol):
         """Whether it wants to know what the robot senses."""
 
     def start(
-        self, robots: Sequence[Crocodile], gaits: Sequence[Gait], seeds: Sequence[int], ticks: int, period: float
+        self,
+        robots: Sequence[Crocodile],
+        gaits: Sequence[Gait],
+        seeds: Sequence[int],
+        ticks: int,
+        period: float,
     ) -> Controller:
         """Start the controller for a batch: one robot, gait and seed per run.
 

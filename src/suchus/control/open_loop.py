@@ -22,7 +22,12 @@ class OpenLoop:
         return False
 
     def start(
-        self, robots: Sequence[Crocodile], gaits: Sequence[Gait], seeds: Sequence[int], ticks: int, period: float
+        self,
+        robots: Sequence[Crocodile],
+        gaits: Sequence[Gait],
+        seeds: Sequence[int],
+        ticks: int,
+        period: float,
     ) -> "Table":
         """Tabulate every gait; runs with the same robot and gait share their rows."""
         del seeds
@@ -41,7 +46,10 @@ class Table:
     """Servo angles and limb phases of every distinct gait of a batch, by tick."""
 
     def __init__(
-        self, targets: Float[np.ndarray, "gait tick 19"], phase: Float[np.ndarray, "gait tick 4"], row: np.ndarray
+        self,
+        targets: Float[np.ndarray, "gait tick 19"],
+        phase: Float[np.ndarray, "gait tick 4"],
+        row: np.ndarray,
     ) -> None:
         self._targets = targets
         self._phase = phase

@@ -22,7 +22,7 @@ class Sensed:
     """Normal force under each foot [N]."""
     belly_pressure: Float[np.ndarray, "run 6"]
     """Normal force under each body of the trunk, from the hind girdle forward [N]."""
-    tail_pressure: Float[np.ndarray, "run"]
+    tail_pressure: Float[np.ndarray, " run"]
     """Normal force under the tail [N]."""
     orientation: Float[np.ndarray, "run 4"]
     """Of the IMU in the pelvis, as a quaternion wxyz [-]."""

@@ -27,9 +27,7 @@ class InvalidFields(InvalidDesign):
 
     def __init__(self, owner: str, complaints: tuple[Complaint, ...]) -> None:
         self.complaints = complaints
-        super().__init__(
-            "; ".join(f"{owner}.{c.field} {c.text}" if c.field else c.text for c in complaints) + "."
-        )
+        super().__init__("; ".join(f"{owner}.{c.field} {c.text}" if c.field else c.text for c in complaints) + ".")
 
 
 class Checks:

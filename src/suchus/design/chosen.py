@@ -14,4 +14,4 @@ class Chosen:
     high: float
     """Greatest plausible value, in the field's unit."""
     why: str
-    """One sentence: not in the paper; chosen because ..."""
+    """Not in the paper; chosen because of this."""

@@ -25,45 +25,27 @@ gait = Gait(
 """Spine and tail take part."""
 
 _FITTED = (
-    "Not in the paper; leg stroke and trunk bend are the two numbers that were chosen so that the two displacements come "
-    "out as printed, with everything else the same in both. The map of the ratio shows what other values give."
+    "leg stroke and trunk bend are the two numbers chosen so that both displacements come out as printed, "
+    "all else being equal; the map of their ratio shows what other values give"
 )
-chosen: tuple[Chosen, ...] = (
-    Chosen(field="duty_factor", low=0.5, high=0.75, why="Not in the paper; a diagonal walk with no flight."),
-    Chosen(field="stroke", low=0.0, high=0.1, why=_FITTED),
-    Chosen(field="trunk_bend", low=0.0, high=1.75, why=_FITTED),
-    Chosen(
-        field="spine_phase",
-        low=-0.15,
-        high=0.15,
-        why="Not in the paper (Fig. 12 is lost); zero carries each girdle's swing foot farthest ahead at touch-down.",
+_LOST = "Fig. 12 is lost; "
+_ROWS: tuple[tuple[str, float, float, str], ...] = (
+    ("duty_factor", 0.5, 0.75, "a diagonal walk without flight"),
+    ("stroke", 0.0, 0.1, _FITTED),
+    ("trunk_bend", 0.0, 1.75, _FITTED),
+    (
+        "spine_phase",
+        -0.15,
+        0.15,
+        _LOST + "zero carries each girdle's swing foot farthest ahead at touch-down",
     ),
-    Chosen(field="lift", low=0.015, high=0.05, why="Not in the paper; clears the sag of the diagonal pair's load."),
-    Chosen(field="front_reach", low=0.07, high=0.11, why="Not in the paper; the shank stands upright in mid-stance."),
-    Chosen(field="hind_reach", low=0.08, high=0.12, why="Not in the paper; wider than in front, as the hip is higher up."),
-    Chosen(
-        field="hip_height",
-        low=0.07,
-        high=0.12,
-        why="Not in the paper; the femur is level and the shank upright, the sprawl of the article's Fig. 3a.",
-    ),
-    Chosen(
-        field="tail_bend",
-        low=0.0,
-        high=1.2,
-        why="Not in the paper (Fig. 12 is lost); changes the displacement by less than 0.03 m.",
-    ),
-    Chosen(
-        field="tail_phase",
-        low=0.0,
-        high=0.5,
-        why="Not in the paper (Fig. 12 is lost); against the trunk, which keeps the heading best.",
-    ),
-    Chosen(
-        field="tail_pitch",
-        low=0.1,
-        high=0.3,
-        why="Not in the paper; the tail drags without lifting the hind feet (prototype: best at 0.2 to 0.3 rad).",
-    ),
+    ("lift", 0.015, 0.05, "clears the sag of the diagonal pair under load"),
+    ("front_reach", 0.07, 0.11, "the shank stands upright in mid-stance"),
+    ("hind_reach", 0.08, 0.12, "the shank stands upright in mid-stance; the hind leg is longer"),
+    ("hip_height", 0.07, 0.12, "level femur and upright shank, the sprawl of the article's Fig. 3a"),
+    ("tail_bend", 0.0, 1.2, _LOST + "it changes the displacement by less than 0.03 m"),
+    ("tail_phase", 0.0, 0.5, _LOST + "against the trunk, which keeps the heading best"),
+    ("tail_pitch", 0.1, 0.3, "the tail drags without lifting the hind feet"),
 )
-"""Every number of the gait that the article does not give."""
+chosen = tuple(Chosen(field=field, low=low, high=high, why=why) for field, low, high, why in _ROWS)
+"""Every number of the gait that the article does not give, with its plausible range and the reason."""

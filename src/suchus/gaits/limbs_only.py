@@ -2,10 +2,10 @@
 
 from dataclasses import replace
 
-from suchus.gaits.belly_crawl import chosen as chosen
-from suchus.gaits.belly_crawl import gait as _crawl
+from suchus.gaits import belly_crawl
 
 LIFTED = -0.25  # [rad]; clear of the ground, and the passive end does not touch it either
 
-gait = replace(_crawl, name="limbs_only", trunk_bend=0.0, tail_bend=0.0, tail_pitch=LIFTED)
+gait = replace(belly_crawl.gait, name="limbs_only", trunk_bend=0.0, tail_bend=0.0, tail_pitch=LIFTED)
 """Legs alone."""
+chosen = belly_crawl.chosen

@@ -2,9 +2,9 @@
 
 from dataclasses import replace
 
-from suchus.gaits.belly_crawl import chosen as chosen
-from suchus.gaits.belly_crawl import gait as _crawl
+from suchus.gaits import belly_crawl
 from suchus.gaits.limbs_only import LIFTED
 
-gait = replace(_crawl, name="spine_only", tail_bend=0.0, tail_pitch=LIFTED)
+gait = replace(belly_crawl.gait, name="spine_only", tail_bend=0.0, tail_pitch=LIFTED)
 """Legs and trunk."""
+chosen = belly_crawl.chosen

@@ -2,8 +2,8 @@
 
 from dataclasses import replace
 
-from suchus.gaits.belly_crawl import chosen as chosen
-from suchus.gaits.belly_crawl import gait as _crawl
+from suchus.gaits import belly_crawl
 
-gait = replace(_crawl, name="tail_drag", trunk_bend=0.0)
+gait = replace(belly_crawl.gait, name="tail_drag", trunk_bend=0.0)
 """Legs and tail."""
+chosen = belly_crawl.chosen

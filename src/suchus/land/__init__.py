@@ -1,8 +1,8 @@
 """Simulation on land: a batch of runs from the start; one crawl is a batch of one."""
 
-from suchus.land.crawl import crawl
+from suchus.land.crawling import crawl
 from suchus.land.faults import Deaf, Fault, Limp, Locked, Weak
 from suchus.land.run import Ground, Run
-from suchus.land.simulate import CONTROL_PERIOD, simulate
+from suchus.land.simulation import CONTROL_PERIOD, simulate
 
 __all__ = ["CONTROL_PERIOD", "Deaf", "Fault", "Ground", "Limp", "Locked", "Run", "Weak", "crawl", "simulate"]

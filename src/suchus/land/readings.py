@@ -67,7 +67,7 @@ class Readings:
             "ended": last,
             "cause": np.array(self._bench.cause),
         }
-        coordinates = {
+        coordinates: dict[str, Sequence[object] | np.ndarray] = {
             "run": np.arange(len(robots)),
             "time": time,
             "leg": LEGS,
@@ -81,7 +81,8 @@ class Readings:
         return dataset(arrays, per_run, coordinates)
 
     def _arrays(self) -> dict[str, np.ndarray]:
-        read, n, samples = self._sensors, *self._sensors.shape[:2]
+        read = self._sensors
+        n, samples = read.shape[:2]
 
         def block(names: Sequence[str], suffix: str) -> np.ndarray:
             return self._block(read, names, suffix)

@@ -25,7 +25,15 @@ def add_leg(girdle: Any, ahead: float, name: str, leg: Leg, contact: Contact) ->
     hip = girdle.add_body(name=f"{name}_femur", pos=[ahead, side * leg.hip_offset, 0.0])
     _hinge(hip, f"{name}_yaw", [0.0, 0.0, -side], leg.yaw_range, leg)
     _hinge(hip, f"{name}_pitch", [-side, 0.0, 0.0], leg.pitch_range, leg)
-    skin(hip, f"{name}_femur", [0, 0, 0], [x * leg.femur for x in out], leg.radius, _SHARES[0] * leg.mass, contact)
+    skin(
+        hip,
+        f"{name}_femur",
+        [0, 0, 0],
+        [x * leg.femur for x in out],
+        leg.radius,
+        _SHARES[0] * leg.mass,
+        contact,
+    )
     shank = hip.add_body(name=f"{name}_tibia", pos=[x * leg.femur for x in out])
     _hinge(shank, f"{name}_knee", [-side, 0.0, 0.0], leg.knee_range, leg)
     end = [x * leg.tibia for x in out]

@@ -61,8 +61,8 @@ def dataset(
         raise IncompatibleRecord(f"a record needs {', '.join(missing)} too.")
     data = xr.Dataset(coords={"xyz": list(XYZ), "wxyz": list(WXYZ)})
     for name, labels in coordinates.items():
-        dims = name if name in ("run", "time", "leg", "segment", "joint", "servo") else "run"
-        data.coords[name] = (dims, np.asarray(labels))
+        along = name if name in ("run", "time", "leg", "segment", "joint", "servo") else "run"
+        data.coords[name] = (along, np.asarray(labels))
     data.coords["time"].attrs["units"] = "s"
     for name, (dims, unit, what) in VARIABLES.items():
         data[name] = (("run", *dims), arrays[name], {"units": unit, "long_name": what})

@@ -94,176 +94,124 @@ robot = Crocodile(
 )
 """The article's robot."""
 
-_FORE_WHY = "The article gives the hind leg only; 0.9 of it, as fore legs of crocodilians are 0.8 to 0.9 as long."
-_LIMITS_WHY = (
-    "Not in the paper; wide enough that the legs can fold under the body for the erect postures, "
-    "and within what a 270 degree servo turns."
-)
-_RADIUS_WHY = "Not in the paper; room for a hobby servo's case, and a belly that clears the ground in the crawl."
-_PID_WHY = (
-    "Not in the paper beyond 'PID'; 1 to 2 degrees of static droop in stance, damping close to critical. "
-    "Integral action is off: stance forces would wind it up."
-)
+_PID = "1 to 2 degrees of static droop in stance, damping close to critical; integral action would wind up in stance"
+_CASE = "room for a hobby servo's case, and a belly that clears the ground in the crawl"
+_FORE_LEG = "the article gives the hind leg only; crocodilians' fore legs are 0.8 to 0.9 as long"
+_FOLD = "the legs can fold under the body for erect postures, and a 270 degree servo turns that far"
+_BRACKET = "what brackets of this size allow, and what rising needs"
+
+_Row = tuple[str, float, float, str]
 
 
-def _servo_chosen(path: str, low: float, high: float, why: str) -> tuple[Chosen, ...]:
+def _servo_rows(path: str, low: float, high: float, why: str) -> tuple[_Row, ...]:
     return (
-        Chosen(field=f"{path}.torque", low=low, high=high, why=why),
-        Chosen(field=f"{path}.kp", low=20.0, high=80.0, why=_PID_WHY),
-        Chosen(field=f"{path}.ki", low=0.0, high=20.0, why=_PID_WHY),
-        Chosen(field=f"{path}.kd", low=0.3, high=1.2, why=_PID_WHY),
-        Chosen(field=f"{path}.integral_limit", low=0.1, high=1.0, why="Not in the paper; unused while ki is zero."),
-        Chosen(
-            field=f"{path}.speed",
-            low=5.0,
-            high=10.0,
-            why="Not in the paper; no-load speed of a hobby servo of this torque class.",
-        ),
-        Chosen(
-            field=f"{path}.armature",
-            low=0.002,
-            high=0.01,
-            why="Not in the paper; rotor inertia times the square of a 250:1 gear of that class.",
-        ),
-        Chosen(field=f"{path}.friction", low=0.01, high=0.1, why="Not in the paper; about 1 % of the torque limit."),
-        Chosen(field=f"{path}.damping", low=0.01, high=0.1, why="Not in the paper; back-driven gear, measured class."),
+        (f"{path}.torque", low, high, why),
+        (f"{path}.kp", 20.0, 80.0, _PID),
+        (f"{path}.ki", 0.0, 20.0, _PID),
+        (f"{path}.kd", 0.3, 1.2, _PID),
+        (f"{path}.integral_limit", 0.1, 1.0, "unused while ki is zero"),
+        (f"{path}.speed", 5.0, 10.0, "no-load speed of a hobby servo of this torque class"),
+        (f"{path}.armature", 0.002, 0.01, "rotor inertia times the square of a 250:1 gear of that class"),
+        (f"{path}.friction", 0.01, 0.1, "about 1 % of the torque limit"),
+        (f"{path}.damping", 0.01, 0.1, "a gear of that class, driven backward"),
     )
 
 
-def _leg_chosen(path: str) -> tuple[Chosen, ...]:
-    own = "Not in the paper; a rubber ball that a pressure sensor fits into."
+def _leg_rows(path: str) -> tuple[_Row, ...]:
     return (
-        Chosen(field=f"{path}.foot_radius", low=0.008, high=0.020, why=own),
-        Chosen(field=f"{path}.radius", low=0.008, high=0.015, why="Not in the paper; a tube that carries the servos."),
-        Chosen(
-            field=f"{path}.mass",
-            low=0.15,
-            high=0.30,
-            why="Not in the paper; three 60 g servos and brackets. An isometric alligator of this length has 3.1 kg.",
+        (f"{path}.foot_radius", 0.008, 0.020, "a rubber ball that a pressure sensor fits into"),
+        (f"{path}.radius", 0.008, 0.015, "a tube that carries the servos"),
+        (
+            f"{path}.mass",
+            0.15,
+            0.30,
+            "three 60 g servos and brackets; an isometric alligator of this length has 3.1 kg",
         ),
-        *_servo_chosen(
-            f"{path}.servo",
-            2.0,
-            4.0,
-            "Not in the paper; a trotting leg needs 1.3 N m in the crawl and 2.6 N m at the hip when the robot rises.",
-        ),
+        *((f"{path}.{joint}_range[{i}]", -2.5, 2.7, _FOLD) for joint in ("yaw", "pitch", "knee") for i in (0, 1)),
+        *_servo_rows(f"{path}.servo", 2.0, 4.0, "1.3 N m in the crawl, 2.6 N m at the hip when the robot rises"),
     )
 
 
-chosen: tuple[Chosen, ...] = (
-    *(
-        Chosen(field=f"front_leg.{name}", low=low, high=high, why=_FORE_WHY)
-        for name, low, high in (
-            ("hip_offset", 0.056, 0.070),
-            ("femur", 0.069, 0.086),
-            ("tibia", 0.071, 0.089),
-        )
+_ROWS: tuple[_Row, ...] = (
+    ("front_leg.hip_offset", 0.056, 0.070, _FORE_LEG),
+    ("front_leg.femur", 0.069, 0.086, _FORE_LEG),
+    ("front_leg.tibia", 0.071, 0.089, _FORE_LEG),
+    *_leg_rows("front_leg"),
+    *_leg_rows("hind_leg"),
+    (
+        "pelvis.mass",
+        0.45,
+        0.90,
+        "battery and electronics: the centre of mass is near the hips, so that it can rise",
     ),
-    *_leg_chosen("front_leg"),
-    *_leg_chosen("hind_leg"),
-    Chosen(
-        field="pelvis.mass",
-        low=0.45,
-        high=0.90,
-        why="Not in the paper; battery and electronics sit here, so that the centre of mass is near the hips and "
-        "the robot can rise (prototype: 0.75 kg stood where 0.60 kg fell).",
+    ("pelvis.length", 0.06, 0.12, _CASE),
+    ("pelvis.width", 0.08, 0.14, _CASE),
+    ("pelvis.height", 0.05, 0.08, _CASE),
+    ("spine.radius", 0.025, 0.04, _CASE),
+    ("spine.link_mass", 0.12, 0.25, "two 60 g servos and a bracket"),
+    *((f"spine.{axis}_range[{i}]", -1.3, 1.3, _BRACKET) for axis in ("yaw", "pitch") for i in (0, 1)),
+    *_servo_rows("spine.yaw_servo", 1.5, 4.0, "the crawl asks for 2.5 N m at the peaks"),
+    *_servo_rows("spine.pitch_servo", 2.5, 5.0, "lifting the level forebody asks for 3.1 N m at the first pitch joint"),
+    ("thorax.mass", 0.30, 0.45, "with the head at most 0.6 kg, or the trunk's servos cannot lift it"),
+    ("thorax.shoulder", 0.03, 0.07, "the shoulders clear the last joint"),
+    ("thorax.width", 0.08, 0.14, _CASE),
+    ("thorax.height", 0.05, 0.08, _CASE),
+    ("head.mass", 0.15, 0.30, "with the thorax at most 0.6 kg, or the trunk's servos cannot lift it"),
+    (
+        "head.snout",
+        0.20,
+        0.25,
+        "hind leg, spine and head make the printed reach of 0.68 m when all is stretched",
     ),
-    Chosen(field="pelvis.length", low=0.06, high=0.12, why=_RADIUS_WHY),
-    Chosen(field="pelvis.width", low=0.08, high=0.14, why=_RADIUS_WHY),
-    Chosen(field="pelvis.height", low=0.05, high=0.08, why=_RADIUS_WHY),
-    Chosen(field="spine.radius", low=0.025, high=0.04, why=_RADIUS_WHY),
-    Chosen(field="spine.link_mass", low=0.12, high=0.25, why="Not in the paper; two 60 g servos and a bracket each."),
-    *_servo_chosen("spine.yaw_servo", 1.5, 4.0, "Not in the paper; the crawl asks for 2.5 N m at the peaks."),
-    *_servo_chosen(
-        "spine.pitch_servo",
-        2.5,
-        5.0,
-        "Not in the paper; lifting the level forebody off the ground asks for 3.1 N m at the first pitch joint.",
+    ("head.width", 0.06, 0.10, "a caiman's broad snout"),
+    ("head.height", 0.03, 0.06, "a caiman's flat head"),
+    ("tail.offset", 0.03, 0.06, "the pelvis ends here"),
+    ("tail.root", 0.03, 0.06, "room for the pitch servo and the pulley"),
+    (
+        "tail.plate",
+        0.025,
+        0.035,
+        "with the gap 45 mm a joint, which makes the tail half of the body as the text says",
     ),
-    Chosen(
-        field="thorax.mass",
-        low=0.30,
-        high=0.45,
-        why="Not in the paper; with the head at most 0.6 kg, or the trunk servos cannot lift it.",
+    ("tail.gap", 0.010, 0.018, "no gap closes before 180 degrees of bend"),
+    ("tail.cord_spacing", 0.04, 0.06, "fits the plates"),
+    ("tail.pulley", 0.020, 0.030, "half the cord spacing: 90 degrees of servo bend the tail by 90 degrees"),
+    (
+        "tail.joint_stiffness",
+        0.3,
+        2.0,
+        "spreads the bend over the joints within 10 degrees under ground load",
     ),
-    Chosen(field="thorax.shoulder", low=0.03, high=0.07, why="Not in the paper; the shoulders clear the last joint."),
-    Chosen(field="thorax.width", low=0.08, high=0.14, why=_RADIUS_WHY),
-    Chosen(field="thorax.height", low=0.05, high=0.08, why=_RADIUS_WHY),
-    Chosen(field="head.mass", low=0.15, high=0.30, why="Not in the paper; see thorax.mass."),
-    Chosen(
-        field="head.snout",
-        low=0.20,
-        high=0.25,
-        why="Not in the paper; 0.2125 m makes leg, spine and head 0.68 m when all is stretched, the printed reach.",
+    ("tail.joint_damping", 0.01, 0.05, "rubber, damping ratio about 0.3"),
+    ("tail.fin_length", 0.12, 0.18, "makes the tail half of the body"),
+    (
+        "tail.fin_stiffness_lateral",
+        0.2,
+        1.0,
+        "'flexible material'; the tip lags by about a quarter cycle at 1 Hz",
     ),
-    Chosen(field="head.width", low=0.06, high=0.10, why="Not in the paper; a caiman's broad snout."),
-    Chosen(field="head.height", low=0.03, high=0.06, why="Not in the paper; a caiman's flat head."),
-    Chosen(field="tail.offset", low=0.03, high=0.06, why="Not in the paper; the pelvis ends here."),
-    Chosen(field="tail.root", low=0.03, high=0.06, why="Not in the paper; room for the pitch servo and the pulley."),
-    Chosen(
-        field="tail.plate",
-        low=0.025,
-        high=0.035,
-        why="Not in the paper; with the gap 45 mm a joint, so that the tail is half of the body as the text says.",
+    (
+        "tail.fin_stiffness_vertical",
+        0.5,
+        3.0,
+        "three times the lateral one: a blade higher than wide, which carries weight",
     ),
-    Chosen(field="tail.gap", low=0.010, high=0.018, why="Not in the paper; no gap closes before 180 degrees of bend."),
-    Chosen(field="tail.cord_spacing", low=0.04, high=0.06, why="Not in the paper; fits the plates."),
-    Chosen(
-        field="tail.pulley",
-        low=0.020,
-        high=0.030,
-        why="Not in the paper; half the cord spacing, so that 90 degrees of servo bend the tail by 90 degrees.",
+    ("tail.fin_damping", 0.01, 0.05, "damping ratio about 0.3"),
+    ("tail.radius_root", 0.02, 0.035, _CASE),
+    ("tail.radius_tip", 0.005, 0.012, "a tapering tail"),
+    (
+        "tail.mass",
+        0.35,
+        0.80,
+        "13 % of the body, since the cable's servo sits in the pelvis; an alligator's is 28 %",
     ),
-    Chosen(
-        field="tail.joint_stiffness",
-        low=0.3,
-        high=2.0,
-        why="Not in the paper; spreads the bend evenly over the joints under ground load (prototype: within 10 degrees).",
-    ),
-    Chosen(field="tail.joint_damping", low=0.01, high=0.05, why="Not in the paper; rubber, damping ratio about 0.3."),
-    Chosen(field="tail.fin_length", low=0.12, high=0.18, why="Not in the paper; makes the tail half of the body."),
-    Chosen(
-        field="tail.fin_stiffness_lateral",
-        low=0.2,
-        high=1.0,
-        why="Not in the paper ('flexible material'); the tip lags by about a quarter cycle at 1 Hz.",
-    ),
-    Chosen(
-        field="tail.fin_stiffness_vertical",
-        low=0.5,
-        high=3.0,
-        why="Not in the paper; three times the lateral one: the blade is higher than wide, and it carries weight.",
-    ),
-    Chosen(field="tail.fin_damping", low=0.01, high=0.05, why="Not in the paper; damping ratio about 0.3."),
-    Chosen(field="tail.radius_root", low=0.02, high=0.035, why=_RADIUS_WHY),
-    Chosen(field="tail.radius_tip", low=0.005, high=0.012, why="Not in the paper; a tapering tail."),
-    Chosen(
-        field="tail.mass",
-        low=0.35,
-        high=0.80,
-        why="Not in the paper; 13 % of the body: the wires' servo sits in the pelvis (an alligator's tail is 28 %).",
-    ),
-    *_servo_chosen("tail.pitch_servo", 1.5, 4.0, "Not in the paper; rising asks for 1.9 N m."),
-    *_servo_chosen("tail.cable_servo", 1.5, 4.0, "Not in the paper; bending against ground and springs asks for 1 N m."),
-    Chosen(field="contact.foot_friction", low=0.5, high=1.0, why="Not in the paper; rubber on a floor."),
-    Chosen(field="contact.skin_friction", low=0.2, high=0.6, why="Not in the paper; plastic on a floor."),
-    Chosen(field="contact.time_constant", low=0.005, high=0.02, why="Not in the paper; measured not to matter."),
-    *(
-        Chosen(field=f"{leg}.{joint}_range[{i}]", low=-2.5, high=2.7, why=_LIMITS_WHY)
-        for leg in ("front_leg", "hind_leg")
-        for joint in ("yaw", "pitch", "knee")
-        for i in (0, 1)
-    ),
-    *(
-        Chosen(
-            field=f"{path}[{i}]",
-            low=-1.3,
-            high=1.3,
-            why="Not in the paper; what brackets of this size allow, and what rising needs.",
-        )
-        for path in ("spine.yaw_range", "spine.pitch_range", "tail.pitch_range")
-        for i in (0, 1)
-    ),
-    Chosen(field="tail.bend_limit", low=1.0, high=2.4, why="Not in the paper; 15 degrees a joint."),
+    *((f"tail.pitch_range[{i}]", -1.3, 1.3, _BRACKET) for i in (0, 1)),
+    ("tail.bend_limit", 1.0, 2.4, "15 degrees a joint"),
+    *_servo_rows("tail.pitch_servo", 1.5, 4.0, "rising asks for 1.9 N m"),
+    *_servo_rows("tail.cable_servo", 1.5, 4.0, "bending against ground and springs asks for 1 N m"),
+    ("contact.foot_friction", 0.5, 1.0, "rubber on a floor"),
+    ("contact.skin_friction", 0.2, 0.6, "plastic on a floor"),
+    ("contact.time_constant", 0.005, 0.02, "measured not to matter"),
 )
+chosen = tuple(Chosen(field=field, low=low, high=high, why=why) for field, low, high, why in _ROWS)
 """Every number of the robot that the article does not give, with its plausible range and the reason."""

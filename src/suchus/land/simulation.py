@@ -78,9 +78,13 @@ def _check(runs: Sequence[Run], duration: float, timestep: float, every: int) ->
     require("simulate", "every", every, 1, 10000, "control periods")
     steps = round(CONTROL_PERIOD / timestep)
     if abs(steps * timestep - CONTROL_PERIOD) > 1e-9:
-        raise InvalidDesign(f"simulate.timestep is {timestep} s; it must divide the control period of {CONTROL_PERIOD} s.")
+        raise InvalidDesign(
+            f"simulate.timestep is {timestep} s; it must divide the control period of {CONTROL_PERIOD} s."
+        )
     if len({topology(run.robot) for run in runs}) > 1:
-        raise InvalidDesign("the robots of one batch must have equally many tail joints; simulate them one after another.")
+        raise InvalidDesign(
+            "the robots of one batch must have equally many tail joints; simulate them one after another."
+        )
     for pair in {(run.robot, run.gait) for run in runs}:
         check_limits(*pair)
     for run in runs:
@@ -102,7 +106,11 @@ def _simulate_group(
     bench = Bench(runs, timestep)
     control = runs[0].control
     controller = control.start(
-        [run.robot for run in runs], [run.gait for run in runs], [run.seed for run in runs], ticks + 1, CONTROL_PERIOD
+        [run.robot for run in runs],
+        [run.gait for run in runs],
+        [run.seed for run in runs],
+        ticks + 1,
+        CONTROL_PERIOD,
     )
     bench.place(runs, controller.rest())
     troubles = Troubles(runs, bench, ticks + 1, CONTROL_PERIOD)

@@ -9,7 +9,7 @@ from suchus.design import Crocodile
 from suchus.errors import Diverged
 from suchus.land.faults import Fault
 from suchus.land.run import Ground, Run
-from suchus.land.simulate import simulate
+from suchus.land.simulation import simulate
 from suchus.motion import Gait
 
 
