@@ -53,5 +53,10 @@ class Catalog(Mapping[str, T], Generic[T]):
             )
         return thing  # type: ignore[no-any-return]
 
+    def beside(self, name: str, attribute: str, default: Any) -> Any:
+        """Return what else a module declares, such as the reasons for its numbers, or ``default``."""
+        self[name]
+        return getattr(import_module(f"{self._package}.{name}"), attribute, default)
+
     def __repr__(self) -> str:
         return f"Catalog({self.kind}: {', '.join(self)})"

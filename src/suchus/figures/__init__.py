@@ -1,5 +1,6 @@
 """From a record to a picture: every figure is drawn from what was recorded and nothing else."""
 
+from suchus.figures.drawing import dimension_drawing
 from suchus.figures.style import (
     COLOURS,
     DIVERGING,
@@ -24,6 +25,7 @@ __all__ = [
     "WIDTH",
     "caption",
     "captioned",
+    "dimension_drawing",
     "new",
     "panels",
     "save",

@@ -1,0 +1,142 @@
+"""The dimension drawing of a robot: seen from above and from the side, standing with its knees bent."""
+
+from math import cos, radians, sin
+from typing import Any
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Circle, Polygon
+
+from suchus.design import Crocodile, Leg
+from suchus.figures.style import COLOURS, captioned, panels, styled
+
+_TILT = radians(20)  # of the shank outward, for the drawing only
+_BODY, _FIN, _LIMB = "#C9DCCB", "#E4EEE5", "#4D6B57"
+_EDGE: dict[str, Any] = {"edgecolor": _LIMB, "linewidth": 1.2}
+
+
+def dimension_drawing(robot: Crocodile) -> Figure:
+    """Return a robot from above and from the side with its main dimensions [mm]."""
+    with styled(axes__grid=False):
+        figure, axes = panels(2, 1, height=5.4, sharex=True, height_ratios=[1.5, 1])
+        _from_above(axes[0, 0], robot)
+        _from_the_side(axes[1, 0], robot)
+        for ax, title in zip(axes[:, 0], ("from above", "from the side"), strict=True):
+            ax.set_aspect("equal")
+            ax.set_axis_off()
+            ax.set_title(title, color=COLOURS["neutral"])
+    return captioned(
+        figure,
+        f"The robot {robot.name} from above and from the side: {_mm(robot.length)} mm long, "
+        f"{_mm(robot.tail.length)} mm of it tail, {robot.mass:.2f} kg, 19 servos. "
+        "Circles are joints; the pale end of the tail is passive. Dimensions in mm.",
+    )
+
+
+def _from_above(ax: Axes, robot: Crocodile) -> None:
+    front = robot.spine.length + robot.thorax.shoulder
+    for x, leg in ((0.0, robot.hind_leg), (front, robot.front_leg)):
+        for side in (1, -1):
+            _leg(ax, x, leg, side)
+    _tail(ax, robot, 0.0, 0.0)
+    width = robot.spine.radius
+    _box(ax, 0.0, robot.spine.length, width)
+    _box(ax, -robot.tail.offset, robot.pelvis.length / 2, robot.pelvis.width / 2)
+    _head(ax, robot, robot.head.width / 2, 0.0)
+    _box(ax, robot.spine.length, front + 0.02, robot.thorax.width / 2)
+    for i in range(5):
+        _joint(ax, robot.spine.base + i * robot.spine.link, 0.0)
+    below = -max(leg.hip_offset + leg.femur + leg.tibia * sin(_TILT) for leg in (robot.hind_leg, robot.front_leg))
+    nose = robot.spine.length + robot.head.snout
+    _measure(ax, -robot.tail.length, nose, below - 0.03)
+    _measure(ax, 0.0, front, -below + 0.025)
+
+
+def _from_the_side(ax: Axes, robot: Crocodile) -> None:
+    height = _stance(robot.hind_leg)
+    front = robot.spine.length + robot.thorax.shoulder
+    nose = robot.spine.length + robot.head.snout
+    ax.axhline(0.0, color=COLOURS["ground"], linewidth=1.2)
+    _tail(ax, robot, height, robot.tail.radius_tip)
+    _box(ax, 0.0, robot.spine.length, robot.spine.radius, height)
+    _box(ax, -robot.tail.offset, robot.pelvis.length / 2, robot.pelvis.height / 2, height)
+    _head(ax, robot, robot.head.height / 2, height)
+    _box(ax, robot.spine.length, front + 0.02, robot.thorax.height / 2, height)
+    for x, leg in ((0.0, robot.hind_leg), (front, robot.front_leg)):
+        foot = leg.foot_radius
+        ax.plot([x, x], [height, foot], color=_LIMB, linewidth=5, solid_capstyle="round")
+        ax.add_patch(Circle((x, foot), foot, facecolor=COLOURS["neutral"], **_EDGE))
+        _joint(ax, x, height)
+    _measure(ax, -robot.tail.length, 0.0, -0.045)
+    _measure(ax, 0.0, front, -0.045)
+    _measure(ax, front, nose, -0.045)
+
+
+def _stance(leg: Leg) -> float:
+    return leg.tibia * cos(_TILT) + leg.foot_radius
+
+
+def _leg(ax: Axes, x: float, leg: Leg, side: int) -> None:
+    knee = leg.hip_offset + leg.femur
+    foot = knee + leg.tibia * sin(_TILT)
+    ax.plot([x, x], [0.0, side * foot], color=_LIMB, linewidth=5, solid_capstyle="round", zorder=0.5)
+    ax.add_patch(Circle((x, side * foot), leg.foot_radius, facecolor=COLOURS["neutral"], zorder=2, **_EDGE))
+    for y in (leg.hip_offset, knee):
+        _joint(ax, x, side * y)
+
+
+def _tail(ax: Axes, robot: Crocodile, height: float, tip_height: float) -> None:
+    """The cable section, a line for each joint, and the passive end in a paler tint."""
+    tail = robot.tail
+    total = tail.length - tail.offset
+
+    def at(way: float) -> tuple[float, float, float]:
+        share = way / total
+        radius = tail.radius_root + (tail.radius_tip - tail.radius_root) * share
+        return -tail.offset - way, height + (tip_height - height) * share, radius
+
+    driven = tail.root + tail.joints * tail.pitch
+    for start, end, colour in ((0.0, driven, _BODY), (driven, total, _FIN)):
+        (x0, y0, r0), (x1, y1, r1) = at(start), at(end)
+        ax.add_patch(Polygon([(x0, y0 + r0), (x1, y1 + r1), (x1, y1 - r1), (x0, y0 - r0)], facecolor=colour, **_EDGE))
+    for i in range(tail.joints):
+        x, y, radius = at(tail.root + i * tail.pitch)
+        ax.plot([x, x], [y - radius, y + radius], color=_LIMB, linewidth=1.0)
+    _joint(ax, -tail.offset, height)
+
+
+def _box(ax: Axes, start: float, end: float, half: float, height: float = 0.0) -> None:
+    corners = [(start, height - half), (end, height - half), (end, height + half), (start, height + half)]
+    ax.add_patch(Polygon(corners, facecolor=_BODY, joinstyle="round", **_EDGE))
+
+
+def _head(ax: Axes, robot: Crocodile, half: float, height: float) -> None:
+    start = robot.spine.length + robot.thorax.shoulder
+    end = robot.spine.length + robot.head.snout
+    jaw = start + 0.35 * (end - start)
+    outline = [
+        (start, half * 0.8),
+        (jaw, half),
+        (end, half * 0.35),
+        (end, -half * 0.35),
+        (jaw, -half),
+        (start, -half * 0.8),
+    ]
+    ax.add_patch(Polygon([(x, y + height) for x, y in outline], facecolor=_BODY, joinstyle="round", **_EDGE))
+
+
+def _joint(ax: Axes, x: float, y: float) -> None:
+    ax.plot(
+        [x], [y], "o", markersize=5.5, markerfacecolor="white", markeredgecolor=_LIMB, markeredgewidth=1.3, zorder=3
+    )
+
+
+def _measure(ax: Axes, start: float, end: float, y: float) -> None:
+    arrow = {"arrowstyle": "<->", "color": "#555555", "linewidth": 0.9, "shrinkA": 0, "shrinkB": 0}
+    ax.annotate("", (start, y), (end, y), arrowprops=arrow, annotation_clip=False)
+    box = {"facecolor": "white", "edgecolor": "none", "pad": 1.5}
+    ax.text((start + end) / 2, y, _mm(end - start), ha="center", va="center", fontsize=11, bbox=box)
+
+
+def _mm(length: float) -> str:
+    return f"{1000 * length:.0f}"
