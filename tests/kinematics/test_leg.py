@@ -84,9 +84,7 @@ def test_boundary_points_are_reached():
 def test_foot_on_the_yaw_axis_is_reached():
     p = np.array([0.070, 0.0, 0.1])
     for knee, side in BRANCHES:
-        np.testing.assert_allclose(
-            leg.forward(HIND, leg.inverse(HIND, p, knee=knee, side=side)), p, atol=1e-16
-        )
+        np.testing.assert_allclose(leg.forward(HIND, leg.inverse(HIND, p, knee=knee, side=side)), p, atol=1e-16)
 
 
 def test_points_out_of_reach_are_named():

@@ -53,9 +53,7 @@ def test_pitched_spine_lies_in_the_sagittal_plane():
     q[:, [0, 2, 4]] = 0
     T = spine.forward(SPINE, q)
     both = q[:, 1] + q[:, 3]
-    np.testing.assert_allclose(
-        T[:, 0, 3], 0.111 + 0.121 * np.cos(q[:, 1]) + 0.0605 * np.cos(both), atol=1e-15
-    )
+    np.testing.assert_allclose(T[:, 0, 3], 0.111 + 0.121 * np.cos(q[:, 1]) + 0.0605 * np.cos(both), atol=1e-15)
     np.testing.assert_allclose(T[:, 2, 3], -0.121 * np.sin(q[:, 1]) - 0.0605 * np.sin(both), atol=1e-15)
 
 
@@ -102,9 +100,7 @@ def test_straight_spine_is_found_although_it_is_singular():
     np.testing.assert_allclose(spine.least_bending(SPINE, p, 0.0), 0, atol=1e-6)
 
 
-@pytest.mark.parametrize(
-    "p", [(0.6, 0, 0), (0.0505, 0, 0.242), (np.nan, 0, 0), (np.inf, 0, 0), (0, 1e200, 0)]
-)
+@pytest.mark.parametrize("p", [(0.6, 0, 0), (0.0505, 0, 0.242), (np.nan, 0, 0), (np.inf, 0, 0), (0, 1e200, 0)])
 def test_points_out_of_reach_are_named(p):
     for solve in (
         lambda p: spine.inverse(SPINE, p, 0.0, first_yaw=0.0),

@@ -70,9 +70,7 @@ def test_both_cords_and_the_slack_add_up_to_nothing(built, share):
 @given(plates, st.floats(-1, 1))
 def test_mirrored_bend_swaps_the_cords(built, share):
     bend = share * tail.bend_limit(built)
-    np.testing.assert_allclose(
-        tail.cable_changes(built, bend), tail.cable_changes(built, -bend)[::-1], atol=1e-16
-    )
+    np.testing.assert_allclose(tail.cable_changes(built, bend), tail.cable_changes(built, -bend)[::-1], atol=1e-16)
 
 
 def test_quadratic_over_linear_term_is_the_tangent():

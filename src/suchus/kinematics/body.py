@@ -82,9 +82,7 @@ def to_leg_frame(point: Float[np.ndarray, "*batch 3"], name: str) -> Float[np.nd
     return np.stack([left * point[..., 1], point[..., 0], -point[..., 2]], axis=-1)
 
 
-def tail_points(
-    robot: Crocodile, angles: Float[np.ndarray, "*batch joint"]
-) -> Float[np.ndarray, "*batch point 3"]:
+def tail_points(robot: Crocodile, angles: Float[np.ndarray, "*batch joint"]) -> Float[np.ndarray, "*batch point 3"]:
     """Return the tail from its pitch joint to its tip: pitch joint, cable joints, joints of the end, tip [m].
 
     Args:

@@ -7,9 +7,7 @@ from suchus.errors import InvalidDesign
 from suchus.paper.tables import Chain
 
 
-def transform(
-    a: float, alpha: float, d: float, theta: Float[np.ndarray, "*batch"]
-) -> Float[np.ndarray, "*batch 4 4"]:
+def transform(a: float, alpha: float, d: float, theta: Float[np.ndarray, "*batch"]) -> Float[np.ndarray, "*batch 4 4"]:
     """Return the transform from frame n to frame n - 1: turn about x, go along x, turn about z, go along z.
 
     Args:
@@ -45,9 +43,7 @@ def frames(chain: Chain, angles: Float[np.ndarray, "*batch joint"]) -> Float[np.
     """
     count = len(chain.a)
     if angles.shape[-1] != count:
-        raise InvalidDesign(
-            f"{angles.shape[-1]} angles were given for a chain of {count} links; give one per link."
-        )
+        raise InvalidDesign(f"{angles.shape[-1]} angles were given for a chain of {count} links; give one per link.")
     T = np.empty((*angles.shape, 4, 4))
     for i in range(count):
         step = transform(chain.a[i], chain.alpha[i], chain.d[i], angles[..., i])

@@ -48,9 +48,7 @@ def knee_point(leg: LegLinks, angles: Float[np.ndarray, "*batch 3"]) -> Float[np
     """
     yaw, pitch, _ = np.moveaxis(angles, -1, 0)
     reach = leg.femur * np.cos(pitch)
-    return np.stack(
-        [leg.hip_offset + np.cos(yaw) * reach, np.sin(yaw) * reach, leg.femur * np.sin(pitch)], axis=-1
-    )
+    return np.stack([leg.hip_offset + np.cos(yaw) * reach, np.sin(yaw) * reach, leg.femur * np.sin(pitch)], axis=-1)
 
 
 def inverse(

@@ -21,7 +21,7 @@ ROUNDING = 1e-12
 TRIALS = 48
 """First yaw angles that ``least_bending`` tries on each branch before it refines the best [-]."""
 STEEP, STEEP_COST = 0.05, 1e3
-"""A head less level than this [-] has no azimuth to speak of: ``least_bending`` avoids it at this cost [rad2]."""
+"""A head less level than this [-] has no azimuth to speak of; ``least_bending`` makes it cost much [rad2]."""
 REFINEMENTS = 60
 """Golden-section steps of ``least_bending`` [-]: enough to exhaust double precision."""
 
@@ -150,7 +150,7 @@ def least_bending(
 def _closed_form(
     spine: SpineLinks, point: np.ndarray, azimuth: np.ndarray, first_yaw: np.ndarray, branch: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the angles for a given first yaw, NaN where there are none, and how level the head is, 0 to 1."""
+    """Return the angles for a given first yaw, NaN where there are none; and how level the head is, to 1."""
     s1, c1 = np.sin(first_yaw), np.cos(first_yaw)
     x, y = point[..., 0] - spine.base, point[..., 1]
     wx = (c1 * x + s1 * y) / spine.link - 1.0  # from joint 2 to joint 5, in links, seen from link 1
@@ -187,9 +187,7 @@ def _feasible_yaw(spine: SpineLinks, points: np.ndarray) -> tuple[np.ndarray, ..
     return np.arctan2(y, x), low, high, (lost | (low > high + ROUNDING))[:, 0]
 
 
-def _golden_section(
-    cost: Callable[[np.ndarray], np.ndarray], low: np.ndarray, high: np.ndarray
-) -> np.ndarray:
+def _golden_section(cost: Callable[[np.ndarray], np.ndarray], low: np.ndarray, high: np.ndarray) -> np.ndarray:
     """Return where each cost is least between ``low`` and ``high``, all at once."""
     golden = (np.sqrt(5.0) - 1.0) / 2.0
     left, right = high - golden * (high - low), low + golden * (high - low)

@@ -17,9 +17,7 @@ def bend_limit(tail: TailPlates) -> float:
     return float(2 * tail.joints * np.arctan2(tail.gap, tail.cord_spacing))
 
 
-def cable_changes(
-    tail: TailPlates, bend: ArrayLike
-) -> tuple[Float[np.ndarray, "*batch"], Float[np.ndarray, "*batch"]]:
+def cable_changes(tail: TailPlates, bend: ArrayLike) -> tuple[Float[np.ndarray, "*batch"], Float[np.ndarray, "*batch"]]:
     """Return by how much both cords get longer inside the tail, exactly, over all joints.
 
     Args:

@@ -84,9 +84,7 @@ READINGS: Mapping[str, Reading] = MappingProxyType(
 """The readings of (20) that were tried, by letter."""
 
 
-def reading(
-    name: str, *, length: float, angular_frequency: float, sign: int = -1, waves_per_body: float = 1.0
-) -> Wave:
+def reading(name: str, *, length: float, angular_frequency: float, sign: int = -1, waves_per_body: float = 1.0) -> Wave:
     """Return the wave of (20) under one of ``READINGS``.
 
     Args:

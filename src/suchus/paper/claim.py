@@ -36,6 +36,4 @@ class Claim:
 
 def said(key: str, where: str, quantity: str, sense: str, quote: str) -> Claim:
     """Return a claim without a number: a statement that holds or does not."""
-    return Claim(
-        key=key, where=where, quantity=quantity, value=None, unit="-", tolerance=0.0, sense=sense, quote=quote
-    )
+    return Claim(key=key, where=where, quantity=quantity, value=None, unit="-", tolerance=0.0, sense=sense, quote=quote)

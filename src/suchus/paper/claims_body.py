@@ -194,8 +194,7 @@ STRUCTURE = (
         "actuators of the robot",
         19,  # not printed as a sum: 4 x 3 + 5 + 2 of III.D
         "Four legs of three, five in the spine and two in the tail make 19 actuators.",
-        "one yaw joint servo motor, two pitch ... three yaw ... two pitch ... one pitch ..., a "
-        "linear actuator",
+        "one yaw joint servo motor, two pitch ... three yaw ... two pitch ... one pitch ..., a linear actuator",
     ),
     said(
         "tail_end_flexible",

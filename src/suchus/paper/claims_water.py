@@ -39,8 +39,7 @@ WATER = (
         "swim_pressure_convex",
         "IV.B, Fig. 17a",
         "pressure on both sides of the tail at T/4",
-        "At a quarter of the cycle the pressure on the convex side of the tail is above that on "
-        "the concave side.",
+        "At a quarter of the cycle the pressure on the convex side of the tail is above that on the concave side.",
         "the pressure on the bending and convex side of the flexible tail is greater than ... concave",
     ),
     said(

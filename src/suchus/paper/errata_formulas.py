@@ -67,8 +67,7 @@ LEG = (
         where="eq. (14)",
         printed="given as the solution without conditions",
         ours="two branch signs, atan2 throughout, refusal outside |a2 - a3| <= R <= a2 + a3",
-        shows="Exact where Px > a0 and Pz > 0, wrong at every point of the other three quarters "
-        "of the workspace.",
+        shows="Exact where Px > a0 and Pz > 0, wrong at every point of the other three quarters of the workspace.",
     ),
     Misprint(
         key="eq_14_primes",
@@ -99,8 +98,7 @@ SPINE = (
         where="eq. (15), Px and Py",
         printed="0.5 C1 C2 C3 and 0.5 C2 C3 S1",
         ours="60.5 C1 C2 C3 C4 and 60.5 S1 C2 C3 C4",
-        shows="A straight spine comes out 232.5 mm long instead of 292.5; with the change it "
-        "equals Table II exactly.",
+        shows="A straight spine comes out 232.5 mm long instead of 292.5; with the change it equals Table II exactly.",
     ),
     Misprint(
         key="eq_15_theta5",
@@ -117,8 +115,7 @@ TAIL = (
         where="eqs (16), (17)",
         printed="the change in length of the two strings",
         ours="the change at one joint; the cord changes by N times as much",
-        shows="The hole-to-hole distances of the whole chain of plates add up to N times (16), "
-        "and (18) has the N.",
+        shows="The hole-to-hole distances of the whole chain of plates add up to N times (16), and (18) has the N.",
     ),
     Misprint(
         key="eq_16_symbols",
@@ -172,8 +169,7 @@ WAVE = (
         where="eq. (20)",
         printed="c1 = 0.027, c2 = 0.30, k = 0.023 without units, no omega",
         ours="a named reading; by default lengths in body lengths and one wave per body",
-        shows="No single system of units gives a fish-like amplitude and a fish-like wavelength "
-        "on a body of 1 m.",
+        shows="No single system of units gives a fish-like amplitude and a fish-like wavelength on a body of 1 m.",
     ),
 )
 

@@ -7,8 +7,7 @@ SIGNS = (
         key="bend_angle_names",
         where="III.D",
         printed="theta_q1, theta_w1 are pitch angles, theta_q2, theta_w2 yaw angles",
-        ours="index 1 is lateral (left negative, right positive), index 2 vertical (up negative, "
-        "down positive)",
+        ours="index 1 is lateral (left negative, right positive), index 2 vertical (up negative, down positive)",
         shows="The sentences on the signs say left and right of the first, top and bottom of the second.",
     ),
     Misprint(
@@ -26,8 +25,7 @@ NUMBERS = (
         where="IV.C, Fig. 19",
         printed="hind yaw joint lost, no trunk: 75 % less than the intact coordinated robot",
         ours="reported beside both baselines, 0.73 and 0.16 m",
-        shows="25 % of 0.73 m is 0.1825 m: the damaged robot would beat the intact one without a "
-        "trunk (0.16 m).",
+        shows="25 % of 0.73 m is 0.1825 m: the damaged robot would beat the intact one without a trunk (0.16 m).",
     ),
     Misprint(
         key="fault_55_percent",
