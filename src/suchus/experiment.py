@@ -4,7 +4,7 @@ import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from typing import Any, ClassVar, Literal
 
 import xarray as xr
@@ -19,6 +19,11 @@ Progress = Callable[[str, float], None]
 def silent(stage: str, share: float) -> None:
     """Show no progress."""
     del stage, share
+
+
+def staged(progress: Progress, stage: str, start: float, end: float) -> Callable[[float], None]:
+    """Return a progress of one stage that fills the part from ``start`` to ``end`` of the whole."""
+    return lambda share: progress(stage, start + share * (end - start))
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,6 +99,10 @@ class Experiment(ABC):
     @abstractmethod
     def quick(self) -> "Experiment":
         """Return the same question, small enough for a test."""
+
+    def settings(self) -> dict[str, Any]:
+        """Return the fields as plain values."""
+        return asdict(self)  # type: ignore[call-overload]
 
     @classmethod
     def name(cls) -> str:

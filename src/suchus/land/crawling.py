@@ -58,7 +58,8 @@ def crawl(
     if record.cause.item():
         time = float(record.ended)
         raise Diverged(
-            f"the crawl came apart at {time:.2f} s: {record.cause.item()}. A shorter timestep than {timestep} s may help.",
+            f"the crawl came apart at {time:.2f} s: {record.cause.item()}. "
+            f"A shorter timestep than {timestep} s may help.",
             time=time,
             record=record.sel(time=slice(None, time + 1e-9)),
         )

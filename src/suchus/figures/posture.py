@@ -1,0 +1,166 @@
+"""A posture as a vector drawing: from above or from the side, with support and centre of mass."""
+
+from typing import Any, Literal, NamedTuple
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.patches import Circle, Polygon
+
+from suchus.design import LEGS, Crocodile
+from suchus.figures.style import COLOURS
+from suchus.kinematics import body, spine
+from suchus.kinematics import leg as leg_kinematics
+from suchus.metrics import loaded, support_polygon
+
+View = Literal["above", "side"]
+_BODY, _EDGE = "#C9DCCB", "#4D6B57"
+
+
+class Skeleton(NamedTuple):
+    """Points of the body in the world."""
+
+    trunk: np.ndarray
+    """From the tail's pitch joint over the hind girdle's axis and the five joints to shoulder and snout, (9, 3) [m]."""
+    tail: np.ndarray
+    """From the pitch joint to the tip, (point, 3) [m]."""
+    legs: np.ndarray
+    """Midline, hip, knee and foot of each leg, (4, 4, 3) [m]."""
+
+
+class _Bone(NamedTuple):
+    hip_offset: float
+    femur: float
+    tibia: float
+
+
+def skeleton(robot: Crocodile, record: xr.Dataset, time: float) -> Skeleton:
+    """Return the body's points in the world at one time.
+
+    Args:
+        robot: whose record it is.
+        record: of one run.
+        time: [s].
+    """
+    now = record.sel(time=time, method="nearest")
+    angles = now.joint_angle.values.astype(float)
+    R, at = _rotation(now.orientation.values.astype(float)), now.position.values.astype(float)
+    trunk, legs = _front(robot, angles), np.empty((4, 4, 3))
+    T = spine.forward(robot.spine, angles[12:17])
+    shoulder = T[:3, 3] + robot.thorax.shoulder * T[:3, 0]
+    for i, name in enumerate(LEGS):
+        for j, points in enumerate(_leg(robot, name, angles[3 * i : 3 * i + 3])):
+            legs[i, j] = shoulder + T[:3, :3] @ points if name.endswith("F") else points
+    tail = body.tail_points(robot, angles[17:])
+    return Skeleton(*(at + points @ R.T for points in (trunk, tail, legs)))
+
+
+def _front(robot: Crocodile, angles: np.ndarray) -> np.ndarray:
+    points = [np.array([-robot.tail.offset, 0.0, 0.0]), np.zeros(3)]
+    bends = angles[12:17]
+    for i in range(5):
+        straight = np.zeros(5)
+        straight[:i] = bends[:i]
+        # joint i + 1 lies before the joints beyond it turn anything: cut the chain there
+        T = spine.forward(robot.spine, straight)
+        ahead = (4 - i) * robot.spine.link
+        points.append(T[:3, 3] - ahead * T[:3, 0] if i < 4 else T[:3, 3])
+    T = spine.forward(robot.spine, bends)
+    for reach in (robot.thorax.shoulder, robot.head.snout):
+        points.append(T[:3, 3] + reach * T[:3, 0])
+    return np.array(points)
+
+
+def _leg(robot: Crocodile, name: str, angles: np.ndarray) -> list[np.ndarray]:
+    leg = robot.leg(name)
+    bones = [_Bone(0.0, 0.0, 0.0), _Bone(leg.hip_offset, 0.0, 0.0), _Bone(leg.hip_offset, leg.femur, 0.0), leg]
+    return [body.from_leg_frame(leg_kinematics.forward(bone, angles), name) for bone in bones]
+
+
+def _rotation(quaternion: np.ndarray) -> np.ndarray:
+    w, x, y, z = quaternion
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+
+
+def draw_posture(
+    ax: Axes, robot: Crocodile, record: xr.Dataset, time: float, *, view: View = "above", support: bool = True
+) -> None:
+    """Draw a posture, feet that stand filled, the support polygon and the centre of mass projected.
+
+    Args:
+        ax: to draw on; its aspect becomes equal.
+        robot: whose record it is.
+        record: of one run.
+        time: [s].
+        view: from above (x to the right, y up) or from the robot's left side is seen from its right (x right, z up).
+        support: whether to draw support and centre of mass.
+    """
+    rows = [0, 1] if view == "above" else [0, 2]
+    bones = skeleton(robot, record, time)
+    stands = loaded(record.sel(time=time, method="nearest")).values
+    if view == "side":
+        ax.axhline(0.0, color=COLOURS["ground"], linewidth=1.2, zorder=0)
+    if support and view == "above":
+        _support(ax, record, time)
+    for name, points, standing in zip(LEGS, bones.legs[..., rows], stands, strict=True):
+        near = view == "above" or name.startswith("R")
+        colour = _EDGE if near else "#A9BBAE"
+        ax.plot(*points.T, color=colour, linewidth=3.2, solid_capstyle="round", solid_joinstyle="round", zorder=1)
+        foot = Circle(
+            tuple(points[-1]), robot.leg(name).foot_radius, facecolor=_EDGE if standing else "white", edgecolor=_EDGE
+        )
+        foot.set_zorder(4)
+        ax.add_patch(foot)
+    _flesh(ax, robot, bones, rows)
+    if support:
+        com = record.centre_of_mass.sel(time=time, method="nearest").values.astype(float)[rows]
+        _mark_mass(ax, com, view)
+    ax.set_aspect("equal")
+
+
+def _flesh(ax: Axes, robot: Crocodile, bones: Skeleton, rows: list[int]) -> None:
+    tail = bones.tail[:, rows]
+    share = np.linspace(0.0, 1.0, len(tail))
+    radii = robot.tail.radius_root + share * (robot.tail.radius_tip - robot.tail.radius_root)
+    _hull(ax, tail, radii)
+    width = robot.head.width / 2
+    trunk = np.array([0.9, 1.2, 1.0, 1.0, 1.0, 1.0, 1.1, 1.2]) * robot.spine.radius
+    middle = bones.trunk[-2, rows] + 0.45 * (bones.trunk[-1, rows] - bones.trunk[-2, rows])
+    points = np.vstack([bones.trunk[:-1, rows], middle, bones.trunk[-1, rows]])
+    _hull(ax, points, np.array([*trunk, 0.85 * width, 0.3 * width]))
+    joints = bones.trunk[2:7, rows]
+    ax.plot(
+        *joints.T, "o", markersize=3.2, markerfacecolor="white", markeredgecolor=_EDGE, markeredgewidth=0.9, zorder=3
+    )
+
+
+def _hull(ax: Axes, points: np.ndarray, radii: np.ndarray) -> None:
+    """Draw a chain with its width."""
+    ahead = np.gradient(points, axis=0)
+    length = np.linalg.norm(ahead, axis=1, keepdims=True)
+    across = np.column_stack([-ahead[:, 1], ahead[:, 0]]) / np.maximum(length, 1e-9)
+    outline = np.vstack([points + radii[:, None] * across, (points - radii[:, None] * across)[::-1]])
+    ax.add_patch(Polygon(outline, facecolor=_BODY, edgecolor=_EDGE, linewidth=1.0, joinstyle="round", zorder=2))
+
+
+def _support(ax: Axes, record: xr.Dataset, time: float) -> None:
+    corners = support_polygon(record, time)
+    if len(corners) >= 3:
+        ax.add_patch(Polygon(corners, facecolor="#F2C46D", alpha=0.45, edgecolor="#B8860B", linewidth=1.4, zorder=0.5))
+    elif len(corners) == 2:
+        ax.add_collection(LineCollection([corners], colors="#B8860B", linewidths=3.0, zorder=0.5))
+
+
+def _mark_mass(ax: Axes, com: np.ndarray, view: View) -> None:
+    style: dict[str, Any] = {"color": COLOURS["alarm"], "zorder": 5}
+    ax.plot(com[0], com[1], "o", markersize=7, markerfacecolor="white", markeredgewidth=1.8, **style)
+    ax.plot(com[0], com[1], "+", markersize=7, markeredgewidth=1.4, **style)
+    if view == "side":
+        ax.plot([com[0], com[0]], [0.0, com[1]], linewidth=1.0, linestyle=(0, (2, 2)), **style)
