@@ -26,9 +26,7 @@ QUICK = Annotated[
     tyro.conf.FlagCreatePairsOff,
     tyro.conf.arg(help="Start from the quick form, small enough for a test."),
 ]
-OUT = Annotated[
-    Path, tyro.conf.arg(help="Folder for results; each experiment gets a folder of its own in it.")
-]
+OUT = Annotated[Path, tyro.conf.arg(help="Folder for results; each experiment gets a folder of its own in it.")]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -101,9 +99,7 @@ def parse(options: type, prog: str, words: Sequence[str], description: str, name
         raise error if isinstance(error, SuchusError) else BadCommand(f"{str(error).rstrip('.')}.") from error
     if unknown:
         if unknown[0].startswith("-"):
-            raise UnknownName(
-                "option", unknown[0].partition("=")[0], [f"--{n.replace('_', '-')}" for n in names]
-            )
+            raise UnknownName("option", unknown[0].partition("=")[0], [f"--{n.replace('_', '-')}" for n in names])
         raise BadCommand(f"{unknown[0]!r} is one word too many; see {prog} --help.")
     return chosen
 
@@ -152,4 +148,4 @@ def _sentence(box: str) -> str:
             break
         lines.append(text)
     sentence = " ".join(lines).removeprefix("Error parsing ").rstrip(".")
-    return sentence[:1].lower() + sentence[1:]
+    return re.sub(r"^[A-Z]|\. [A-Z]", lambda start: start[0].lower().replace(".", ";"), sentence)

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from suchus.cli.commands import BadCommand
 from suchus.cli.options import choose
 from suchus.cli.perform import perform
-from suchus.cli.shelves import titles
+from suchus.cli.shelves import entry, titles
 from suchus.cli.terminal import show_outcome, working
 from suchus.experiments import EXPERIMENTS
 from suchus.record import check_writable
@@ -23,16 +23,12 @@ def run(words: Sequence[str]) -> int:
         return 0
     if not words or words[0].startswith("-"):
         there = ", ".join(EXPERIMENTS)
-        raise BadCommand(
-            f"the name of the experiment comes first, as in suchus run NAME --quick; there is {there}."
-        )
+        raise BadCommand(f"the name of the experiment comes first, as in suchus run NAME --quick; there is {there}.")
     name, *options = words
     choice = choose(EXPERIMENTS[name], name, options)
     check_writable(choice.out)
     with working() as bar:
-        done = perform(
-            choice.experiment, name, choice.out, bar.task(name), shlex.join(["suchus", "run", *words])
-        )
+        done = perform(choice.experiment, name, choice.out, bar.task(name), shlex.join(["suchus", "run", *words]))
     show_outcome(choice.experiment, done)
     return 0
 
@@ -47,7 +43,7 @@ def _help() -> str:
             "Run one experiment. Its numbers, verdicts, figures and record go into DIR/NAME.",
             "",
             "experiments:",
-            *(f"  {name:<{width}}  {title}".rstrip() for name, title in shelf.items()),
+            *(entry(name, title, width) for name, title in shelf.items()),
             "",
             "suchus run NAME --help lists what can be changed about an experiment.",
         )

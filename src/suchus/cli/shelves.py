@@ -4,6 +4,8 @@ import ast
 from collections.abc import Sequence
 from importlib.util import find_spec
 from pathlib import Path
+from shutil import get_terminal_size
+from textwrap import fill
 
 from suchus.cli.commands import BadCommand
 
@@ -27,8 +29,14 @@ def show(words: Sequence[str]) -> int:
     for i, (heading, shelf) in enumerate(shelves):
         print("\n" * bool(i) + heading)
         for name, title in shelf.items():
-            print(f"  {name:<{width}}  {title}".rstrip())
+            print(entry(name, title, width))
     return 0
+
+
+def entry(name: str, title: str, width: int) -> str:
+    """Return a name and its title side by side, the title wrapped to the terminal."""
+    columns = max(60, min(110, get_terminal_size().columns))
+    return fill(title, columns, initial_indent=f"  {name:<{width}}  ", subsequent_indent=" " * (width + 4))
 
 
 def titles(package: str) -> dict[str, str]:

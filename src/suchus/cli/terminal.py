@@ -11,6 +11,7 @@ from rich.table import Table
 
 from suchus import experiment as contract
 from suchus.cli.perform import Done
+from suchus.report import quantity
 
 _COLOURS = {"reproduced": "green", "same sense": "yellow", "contradicted": "red", "not testable": "dim"}
 
@@ -72,10 +73,3 @@ def show_outcome(question: contract.Experiment, done: Done) -> None:
             )
         console.print(table)
     console.print(f"{done.seconds:.1f} s; everything is in {escape(str(done.folder))}", soft_wrap=True)
-
-
-def quantity(value: float | None, unit: str) -> str:
-    """Return a number with its unit, as people write it."""
-    if value is None:
-        return ""
-    return f"{value:.3g}" if unit == "-" else f"{value:.3g} {unit}"

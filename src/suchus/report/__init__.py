@@ -1,5 +1,19 @@
 """Outcomes become files, and files become one page."""
 
+from suchus.report.numbers import number, quantity
+from suchus.report.page import render_page, write_page
+from suchus.report.result import Failure, Picture, Result, load_result
 from suchus.report.saving import check_place, save_outcome
 
-__all__ = ["check_place", "save_outcome"]
+__all__ = [
+    "Failure",
+    "Picture",
+    "Result",
+    "check_place",
+    "load_result",
+    "number",
+    "quantity",
+    "render_page",
+    "save_outcome",
+    "write_page",
+]

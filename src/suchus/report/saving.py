@@ -54,9 +54,7 @@ def save_outcome(
     return folder
 
 
-def describe(
-    outcome: Outcome, experiment: Experiment, captions: Mapping[str, str], command: str
-) -> dict[str, Any]:
+def describe(outcome: Outcome, experiment: Experiment, captions: Mapping[str, str], command: str) -> dict[str, Any]:
     """Return what ``outcome.json`` says; numbers that are not finite become null."""
     return {
         "experiment": outcome.experiment,
