@@ -67,8 +67,8 @@ def show_outcome(question: contract.Experiment, done: Done) -> None:
             claim = verdict.claim
             table.add_row(
                 escape(f"{claim.quantity} ({claim.where})"),
-                quantity(claim.value, claim.unit),
-                quantity(verdict.measured, claim.unit),
+                quantity(claim.value, claim.unit, 3),
+                quantity(verdict.measured, claim.unit, 3),
                 f"[{_COLOURS[verdict.verdict]}]{verdict.verdict}[/]",
             )
         console.print(table)

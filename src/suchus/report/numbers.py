@@ -1,13 +1,14 @@
 """Numbers as people read them."""
 
+import re
 from math import degrees
 
 
-def quantity(value: float | None, unit: str) -> str:
+def quantity(value: float | None, unit: str, digits: int = 4) -> str:
     """Return a number with its unit; angles in degrees too. Nothing where there is no number."""
     if value is None:
         return ""
-    shown = number(value)
+    shown = number(value, digits)
     if unit == "rad":
         return f"{shown} rad ({number(degrees(value), 3)}°)"
     return shown if unit in ("-", "1", "") else f"{shown} {unit}"
@@ -20,3 +21,8 @@ def number(value: float, digits: int = 4) -> str:
     mantissa, _, power = f"{value:.{digits}g}".partition("e")
     exponent = f" × 10^{int(power)}" if power else ""
     return f"{mantissa}{exponent}".replace("-", "−")
+
+
+def tied(text: str) -> str:
+    """Return a text whose ``Fig. 16`` and ``eq. (14)`` do not break over lines."""
+    return re.sub(r"\b(Figs?|Table|Section|eqs?)(\.?) ", "\\1\\2\N{NO-BREAK SPACE}", text)

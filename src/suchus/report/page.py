@@ -13,7 +13,7 @@ from suchus import figures
 from suchus.gaits import GAITS
 from suchus.paper import CLAIMS, ERRATA
 from suchus.record import new_file, versions
-from suchus.report.numbers import quantity
+from suchus.report.numbers import quantity, tied
 from suchus.report.result import Failure, Result, data_uri
 from suchus.report.tables import choices, parts
 from suchus.robots import ROBOTS
@@ -50,7 +50,7 @@ def render_page(results: Sequence[Result], failures: Sequence[Failure]) -> str:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters["quantity"] = quantity
+    environment.filters |= {"quantity": quantity, "tied": tied}
     style = Markup(environment.get_template("style.css").render())
     return environment.get_template("page.html").render(style=style, **_content(results, failures)) + "\n"
 

@@ -89,4 +89,4 @@ def _shown(value: Any, unit: str) -> str:
 
 def _plain(meaning: str) -> str:
     """A meaning without the brackets of its unit and the marks of its code words."""
-    return re.sub(r"\s*\[[^\]]*\]", "", " ".join(meaning.split())).replace("``", "")
+    return re.sub(r"\s*\[[^\]]*\]", "", " ".join(meaning.split())).replace("``", "").removeprefix(".")
