@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from suchus.land import Ground as Ground
     from suchus.land import Limp as Limp
     from suchus.land import Locked as Locked
+    from suchus.land import Push as Push
     from suchus.land import Run as Run
     from suchus.land import Weak as Weak
     from suchus.land import crawl as crawl
@@ -57,7 +58,7 @@ _HOMES = {
     "GAITS": "suchus.gaits",
     "ROBOTS": "suchus.robots",
     "Gait": "suchus.motion",
-    **dict.fromkeys(("Deaf", "Ground", "Limp", "Locked", "Run", "Weak", "crawl", "simulate"), "suchus.land"),
+    **dict.fromkeys(("Deaf", "Ground", "Limp", "Locked", "Push", "Run", "Weak", "crawl", "simulate"), "suchus.land"),
 }
 __all__ = ["__version__", *_HOMES]  # noqa: PLE0604 - the names are strings
 

@@ -74,6 +74,16 @@ class Bench:
         if self._models:
             self.batch.set_models(self._models)
 
+    def push(self, sim: int, body: str, force: np.ndarray) -> None:
+        """Let a force act on the centre of mass of a body from now on.
+
+        Args:
+            sim: the run.
+            body: name of the body.
+            force: in the world, shape (3,) [N]; zeros end the push.
+        """
+        self.batch.bind("xfrc_applied")[sim, self.model.body(body).id, :3] = force
+
     def place(self, runs: Sequence[Run], first: np.ndarray) -> None:
         """Put every robot on the ground in its first posture, nothing below the surface.
 

@@ -8,6 +8,7 @@ from suchus.control import Control, OpenLoop
 from suchus.design import Crocodile
 from suchus.errors import Diverged
 from suchus.land.faults import Fault
+from suchus.land.push import Push
 from suchus.land.run import Ground, Run
 from suchus.land.simulation import simulate
 from suchus.motion import Gait
@@ -19,6 +20,7 @@ def crawl(
     *,
     duration: float = 9.0,
     faults: Sequence[Fault] = (),
+    pushes: Sequence[Push] = (),
     ground: Ground | None = None,
     control: Control | None = None,
     noise: float = 0.0,
@@ -32,6 +34,7 @@ def crawl(
         gait: how.
         duration: including the first second, in which the robot settles [s].
         faults: what breaks, and when.
+        pushes: forces from outside.
         ground: on what; level ground if None.
         control: open loop if None.
         noise: standard deviation of noise on every servo angle commanded [rad].
@@ -50,6 +53,7 @@ def crawl(
         gait=gait,
         ground=ground or Ground(),
         faults=tuple(faults),
+        pushes=tuple(pushes),
         control=control or OpenLoop(),
         noise=noise,
         seed=seed,

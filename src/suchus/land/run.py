@@ -1,4 +1,4 @@
-"""A run: which robot walks how, on what, with what broken."""
+"""A run: which robot walks how, on what, with what broken, pushed when."""
 
 from dataclasses import dataclass, field
 
@@ -6,6 +6,7 @@ from suchus.control import Control, OpenLoop
 from suchus.design import Crocodile
 from suchus.design.checks import require
 from suchus.land.faults import Fault
+from suchus.land.push import Push
 from suchus.motion import Gait
 
 
@@ -38,6 +39,8 @@ class Run:
     """On what."""
     faults: tuple[Fault, ...] = ()
     """What breaks, and when."""
+    pushes: tuple[Push, ...] = ()
+    """Forces from outside; their sum acts where they overlap."""
     control: Control = field(default_factory=OpenLoop)
     """What turns the gait and the senses into servo angles."""
     noise: float = 0.0

@@ -9,6 +9,7 @@ from suchus.design.checks import require
 from suchus.errors import InvalidDesign
 from suchus.land.bench import Bench
 from suchus.land.faults import check_faults
+from suchus.land.push import check_pushes
 from suchus.land.readings import Readings
 from suchus.land.run import Run
 from suchus.land.troubles import Troubles
@@ -47,7 +48,7 @@ def simulate(
     Raises:
         InvalidDesign: no runs, robots of different topology, a bad duration or time step.
         OutsideLimits: a gait that a robot's joints cannot follow.
-        UnknownName: a fault of a joint that does not exist.
+        UnknownName: a fault of a joint, or a push on a body, that does not exist.
     """
     runs = tuple(runs)
     steps = _check(runs, duration, timestep, every)
@@ -89,6 +90,7 @@ def _check(runs: Sequence[Run], duration: float, timestep: float, every: int) ->
         check_limits(*pair)
     for run in runs:
         check_faults(run.faults, duration)
+        check_pushes(run.pushes, run.robot, duration)
     return steps
 
 

@@ -1,4 +1,4 @@
-"""What goes wrong during a batch: faults when their time comes, and noise."""
+"""What goes wrong during a batch: faults and pushes when their time comes, and noise."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -13,10 +13,12 @@ from suchus.land.run import Run
 
 
 class Troubles:
-    """The faults and the noise of all runs of a batch."""
+    """The faults, the pushes and the noise of all runs of a batch."""
 
     def __init__(self, runs: Sequence[Run], bench: Bench, ticks: int, period: float) -> None:
         self._bench = bench
+        self._period = period
+        self._pushes = [(sim, push) for sim, run in enumerate(runs) for push in run.pushes]
         self._due: dict[int, list[tuple[int, Fault]]] = {}
         for sim, run in enumerate(runs):
             for fault in run.faults:
@@ -30,7 +32,9 @@ class Troubles:
         }
 
     def happen(self, tick: int) -> None:
-        """Let the faults of this control period begin."""
+        """Let the faults of this control period begin, and push."""
+        if self._pushes:
+            self._push(tick)
         for sim, fault in self._due.get(tick, ()):
             if isinstance(fault, Locked):
                 servo = servo_names().index(fault.joint)
@@ -40,6 +44,15 @@ class Troubles:
                 self._deaf.append((sim, fault.sensor))
             else:
                 self._bench.break_servo(sim, fault)
+
+    def _push(self, tick: int) -> None:
+        forces: dict[tuple[int, str], np.ndarray] = {}
+        for sim, push in self._pushes:
+            share = push.share(tick * self._period, (tick + 1) * self._period)
+            key = sim, push.body
+            forces[key] = forces.get(key, np.zeros(3)) + share * np.array(push.force)
+        for (sim, body), force in forces.items():
+            self._bench.push(sim, body, force)
 
     def deafen(self, sensed: Sensed) -> Sensed:
         """Return what is sensed by what still senses."""
