@@ -1,0 +1,195 @@
+"""The gait diagram: who stands when, and whereto spine and tail bend meanwhile. The form of the article's Fig. 12."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch, Rectangle
+
+from suchus.design import LEGS
+from suchus.errors import InvalidDesign
+from suchus.figures.style import COLOURS, WIDTH, panels, styled
+
+_BLACK, _GREY, _EDGE = "#111111", "#9A9A9A", "#333333"
+_SHADES = (_BLACK, _GREY)
+_DASHES: tuple[Any, ...] = ("-", (0, (4, 2)))
+_ROWS = (*LEGS, "spine", "tail")
+_STRAIGHT = 0.05  # share of the largest bend that counts as straight
+_STILL = np.radians(1.0)  # a bend that never exceeds this has no sign
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class GaitTrack:
+    """One way of walking over time, as the diagram shows it."""
+
+    time: np.ndarray
+    """Increasing, shape (time,) [s or cycle]."""
+    stance: np.ndarray
+    """Whether a foot stands, in the order of ``LEGS``, shape (leg, time) [-]."""
+    spine: np.ndarray
+    """Lateral angle of the spine in the article's sign, right positive, shape (time,) [rad]."""
+    tail: np.ndarray
+    """Lateral angle of the tail in the article's sign, right positive, shape (time,) [rad]."""
+    label: str
+    """What it is, for the legend."""
+    spine_spread: np.ndarray | None = None
+    """Half-width of a band around ``spine`` [rad]."""
+    tail_spread: np.ndarray | None = None
+    """Half-width of a band around ``tail`` [rad]."""
+
+    def __post_init__(self) -> None:
+        n = len(self.time)
+        shapes = {"stance": (len(LEGS), n), "spine": (n,), "tail": (n,)}
+        for name, wanted in shapes.items():
+            found = np.shape(getattr(self, name))
+            if found != wanted:
+                raise InvalidDesign(f"gait track {self.label!r}: {name} has shape {found}; {wanted} is needed.")
+        if n < 2 or not np.all(np.diff(self.time) > 0):
+            raise InvalidDesign(f"gait track {self.label!r}: time needs two samples or more that increase.")
+
+
+def gait_diagram(
+    tracks: Sequence[GaitTrack], *, cycles: Sequence[float] = (), unit: str = "s", bends: bool = True
+) -> Figure:
+    """Return the diagram of one or two ways of walking: bars on top, the two angles below.
+
+    Args:
+        tracks: the first in black, the second in grey and dashed.
+        cycles: where cycles begin and end, in the unit of time.
+        unit: of time, ``s`` or ``cycle``.
+        bends: whether to draw the angles below the bars.
+    """
+    ratios = [2.1, 1.5] if bends else [1.0]
+    with styled():
+        figure, axes = panels(
+            len(ratios), 1, width=WIDTH + 1.0, height=5.9 if bends else 3.6, sharex=True, height_ratios=ratios
+        )
+        draw_bars(axes[0, 0], tracks)
+        if bends:
+            draw_bends(axes[1, 0], tracks)
+        for ax in axes[:, 0]:
+            for at in cycles:
+                ax.axvline(at, color=COLOURS["neutral"], linewidth=0.9, linestyle=(0, (1, 2)), zorder=0)
+        axes[-1, 0].set_xlabel(f"time [{unit}]")
+    return figure
+
+
+def draw_bars(ax: Axes, tracks: Sequence[GaitTrack]) -> None:
+    """Draw a bar wherever a foot stands, and the signs of the two lateral angles.
+
+    Black (or grey, for a second track): a foot stands; spine or tail bend to the right, the article's positive side.
+    An open bar: they bend to the left. No bar: a foot swings; spine or tail are straight.
+
+    Args:
+        ax: to draw on.
+        tracks: one or two.
+    """
+    if not 1 <= len(tracks) <= len(_SHADES):
+        raise InvalidDesign(f"a gait diagram shows 1 or {len(_SHADES)} tracks; {len(tracks)} were given.")
+    height = 0.66 / len(tracks)
+    for i, (track, shade) in enumerate(zip(tracks, _SHADES, strict=False)):
+        top = -0.33 + i * height
+        for row, stands in enumerate(track.stance):
+            _bars(ax, track.time, stands, (row + top, 0.92 * height), shade, shade)
+        for row, angle in ((4, track.spine), (5, track.tail)):
+            signs = bend_sign(angle)
+            place = (row + top + 0.25, 0.92 * height)  # a gap sets the two signs apart from the four legs
+            _bars(ax, track.time, signs > 0, place, shade, shade, "+" if len(tracks) == 1 else "")
+            _bars(ax, track.time, signs < 0, place, "white", shade, "\N{MINUS SIGN}" if len(tracks) == 1 else "")
+    ax.set_yticks([0, 1, 2, 3, 4.25, 5.25], _ROWS)
+    ax.set_ylim(5.75, -0.5)
+    ax.set_xlim(min(t.time[0] for t in tracks), max(t.time[-1] for t in tracks))
+    ax.tick_params(axis="y", length=0)
+    ax.grid(False)
+    ax.axhline(3.625, color=COLOURS["grid"], linewidth=0.9)
+    _bar_legend(ax, tracks)
+
+
+def draw_bends(ax: Axes, tracks: Sequence[GaitTrack]) -> None:
+    """Draw the lateral angles of spine and tail over time, right positive [deg].
+
+    Args:
+        ax: to draw on.
+        tracks: the first drawn through, the second dashed.
+    """
+    ax.axhline(0.0, color=_EDGE, linewidth=0.8)
+    for track, dashes in zip(tracks, _DASHES, strict=False):
+        for name in ("spine", "tail"):
+            angle, spread = np.degrees(getattr(track, name)), getattr(track, f"{name}_spread")
+            label = f"{name}, {track.label}" if len(tracks) > 1 else name
+            ax.plot(track.time, angle, color=COLOURS[name], linestyle=dashes, label=label)
+            if spread is not None:
+                half = np.degrees(spread)
+                ax.fill_between(track.time, angle - half, angle + half, color=COLOURS[name], alpha=0.2, linewidth=0)
+    ax.set_ylabel("left  \N{LEFTWARDS ARROW}  angle [deg]  \N{RIGHTWARDS ARROW}  right")
+    ax.margins(y=0.08)
+    ax.legend(
+        loc="lower center",
+        bbox_to_anchor=(0.5, 1.0),
+        ncols=2 * len(tracks),
+        frameon=False,
+        borderpad=0.1,
+        columnspacing=1.2,
+        handlelength=1.7,
+    )
+
+
+def bend_sign(angle: np.ndarray) -> np.ndarray:
+    """Return the sign of a lateral angle over time: 1 right, -1 left, 0 straight, shape (time,) [-].
+
+    Straight is what bends less than a twentieth of the largest bend; a body that stays within a degree is straight.
+
+    Args:
+        angle: shape (time,) [rad].
+    """
+    largest = float(np.nanmax(np.abs(angle), initial=0.0))
+    if largest < _STILL:
+        return np.zeros(len(angle), dtype=int)
+    return np.where(np.abs(angle) > _STRAIGHT * largest, np.sign(angle), 0).astype(int)
+
+
+def stretches(time: np.ndarray, holds: np.ndarray) -> list[tuple[float, float]]:
+    """Return from when to when something holds.
+
+    Args:
+        time: shape (time,).
+        holds: shape (time,).
+    """
+    half = np.concatenate([[time[0]], (time[1:] + time[:-1]) / 2, [time[-1]]])
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], np.asarray(holds, dtype=bool), [False]]).astype(int)))
+    return [(float(half[a]), float(half[b])) for a, b in list(pairwise(edges))[::2]]
+
+
+def _bars(
+    ax: Axes, time: np.ndarray, holds: np.ndarray, place: tuple[float, float], fill: str, edge: str, sign: str = ""
+) -> None:
+    top, height = place
+    span = float(time[-1] - time[0])
+    for start, end in stretches(time, holds):
+        ax.add_patch(
+            Rectangle((start, top), end - start, height, facecolor=fill, edgecolor=edge, linewidth=1.0, zorder=3)
+        )
+        if sign and end - start > 0.03 * span:
+            colour = "white" if fill == _BLACK else edge
+            middle = ((start + end) / 2, top + height / 2)
+            ax.text(*middle, sign, color=colour, ha="center", va="center_baseline", fontsize=13, zorder=4)
+
+
+def _bar_legend(ax: Axes, tracks: Sequence[GaitTrack]) -> None:
+    handles = [Patch(facecolor=shade, edgecolor=shade) for _, shade in zip(tracks, _SHADES, strict=False)]
+    labels = [track.label for track in tracks]
+    ax.legend(
+        [*handles, Patch(facecolor="white", edgecolor=_BLACK)],
+        [f"{label}: stands, bends right" for label in labels] + ["bends left"],
+        loc="lower left",
+        bbox_to_anchor=(0.0, 1.0),
+        ncols=len(tracks) + 1,
+        frameon=False,
+        borderpad=0.1,
+        handlelength=1.4,
+        columnspacing=1.2,
+    )
