@@ -138,14 +138,13 @@ def _find(word: str, kind: type, shelf: Catalog[Any]) -> Any:
 
 
 def _sentence(box: str) -> str:
-    """What tyro draws as a box, up to its first line across, as a sentence without a stop."""
+    """What tyro draws as a titled box, up to its first line across, as a sentence without a stop."""
     lines: list[str] = []
-    for line in re.sub(r"\x1b\[[0-9;]*m", "", box).splitlines():
-        text = line.strip(" │╭╮╰╯")
-        if line.startswith(("╭", "╰")):
-            continue
-        if set(text) <= {"─"} and lines:
+    for line in re.sub(r"\x1b\[[0-9;]*m", "", box).splitlines()[1:]:
+        text = line.strip(" │╰╯")
+        if not set(text) <= {"─", "-"}:
+            lines.append(text)
+        elif lines:
             break
-        lines.append(text)
     sentence = " ".join(lines).removeprefix("Error parsing ").rstrip(".")
     return re.sub(r"^[A-Z]|\. [A-Z]", lambda start: start[0].lower().replace(".", ";"), sentence)

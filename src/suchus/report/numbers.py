@@ -3,6 +3,8 @@
 import re
 from math import degrees
 
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
 
 def quantity(value: float | None, unit: str, digits: int = 4) -> str:
     """Return a number with its unit; angles in degrees too. Nothing where there is no number."""
@@ -19,8 +21,8 @@ def number(value: float, digits: int = 4) -> str:
     if isinstance(value, int):
         return str(value).replace("-", "−")
     mantissa, _, power = f"{value:.{digits}g}".partition("e")
-    exponent = f" × 10^{int(power)}" if power else ""
-    return f"{mantissa}{exponent}".replace("-", "−")
+    exponent = f" × 10{str(int(power)).translate(_RAISED)}" if power else ""
+    return mantissa.replace("-", "−") + exponent
 
 
 def tied(text: str) -> str:

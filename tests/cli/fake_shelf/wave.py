@@ -1,0 +1,71 @@
+"""How high is a wave?"""
+
+import time
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+import xarray as xr
+
+from suchus.design import Crocodile
+from suchus.errors import InvalidDesign
+from suchus.experiment import Experiment, Measure, Outcome, judge, silent
+from suchus.figures import LINES, captioned, panels
+from suchus.gaits import GAITS
+from suchus.motion import Gait
+from suchus.robots import ROBOTS
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Wave(Experiment):
+    title = "How high is a wave?"
+    shows = "Fig. 16"
+    claims = ("displacement_coordinated",)
+    decides = "The number that is put in."
+
+    robot: Crocodile = ROBOTS["caiman"]
+    """Who waves."""
+    gait: Gait = GAITS["belly_crawl"]
+    """How it walks."""
+    amplitude: float = 0.73
+    """Height of the wave [m]."""
+    samples: int = 200
+    """How many samples [-]."""
+    pause: float = 0.0
+    """How long to dawdle [s]."""
+    seed: int = 7
+    """Seed of nothing."""
+
+    def __post_init__(self):
+        if not self.amplitude > 0:
+            raise InvalidDesign(f"amplitude is {self.amplitude:g} m; more than 0 m is allowed.")
+
+    def run(self, progress=silent):
+        progress("waving", 0.0)
+        time.sleep(self.pause)
+        t = np.linspace(0.0, 8.0, self.samples)
+        wave = xr.Dataset(
+            {"height": ("time", self.amplitude * np.sin(t), {"units": "m"})}, coords={"time": t}, attrs={"n": {"a": 1}}
+        )
+        return Outcome(
+            experiment="wave",
+            measures={"height": Measure(self.amplitude, "m"), "nothing": Measure(float("nan"), "-")},
+            verdicts=(
+                judge("displacement_coordinated", self.amplitude, "It was put in <b>by hand</b>."),
+                judge("com_fluctuation", None, "A wave has no mass."),
+            ),
+            record=wave,
+            settings={f.name: getattr(self, f.name) for f in fields(self)},
+            tables={"samples.txt": "time height\n0 0\n"},
+        )
+
+    def draw(self, outcome):
+        figure, axes = panels()
+        axes[0, 0].plot(outcome.record.time, outcome.record.height, **LINES["ours"])
+        axes[0, 0].set(xlabel="time [s]", ylabel="height [m]")
+        return {"wave": captioned(figure, 'Height of a "wave" & its time.')}
+
+    def quick(self):
+        return replace(self, samples=20)
+
+
+experiment = Wave()

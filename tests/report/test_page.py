@@ -1,0 +1,183 @@
+import re
+from html.parser import HTMLParser
+
+import pytest
+import xarray as xr
+
+from suchus.errors import IncompatibleRecord, UnreadableFile
+from suchus.experiment import Experiment, Measure, Outcome, judge, silent
+from suchus.figures import captioned, panels, styled
+from suchus.gaits import GAITS
+from suchus.paper import ERRATA
+from suchus.report import Failure, load_result, number, quantity, render_page, save_outcome
+from suchus.robots import ROBOTS
+
+
+class Question(Experiment):
+    title = "Is <everything> escaped & told?"
+    shows = "Fig. 16"
+    decides = "What is put in."
+
+    def run(self, progress=silent):
+        return Outcome(
+            experiment="question",
+            measures={"way": Measure(-0.5, "m"), "turn": Measure(1.0, "rad"), "ghost": Measure(float("inf"), "m")},
+            verdicts=(
+                judge("displacement_coordinated", 0.5, 'It was "put in" <i>by hand</i>.'),
+                judge("cycle_count", 2, "Two."),
+                judge("com_fluctuation", None, "Nobody looked."),
+            ),
+            record=xr.Dataset({"x": ("time", [0.0, 1.0])}),
+            settings={"seed": 1},
+            tables={"rows.txt": "a < b\n"},
+        )
+
+    def draw(self, outcome):
+        figures = {}
+        for name in ("first", "second"):
+            with styled():
+                figure, axes = panels()
+                axes[0, 0].fill_between([0, 1], outcome.record.x)
+            figures[name] = captioned(figure, f'The "{name}" figure & its <clip>.')
+        return figures
+
+    def quick(self):
+        return self
+
+
+@pytest.fixture
+def result(tmp_path):
+    question = Question()
+    outcome = question.run()
+    folder = save_outcome(
+        outcome, question.draw(outcome), question, tmp_path / "question", command="suchus run question"
+    )
+    return load_result(folder)
+
+
+class Page(HTMLParser):
+    def __init__(self, text):
+        super().__init__()
+        self.tags = []
+        self.text = []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.append((tag, dict(attrs)))
+
+    def handle_data(self, data):
+        self.text.append(data)
+
+    def all(self, *names):
+        return [attrs for tag, attrs in self.tags if tag in names]
+
+
+@pytest.fixture
+def page(result):
+    failure = Failure(name="other_question", sentence="It <broke>.", trace="Traceback ...")
+    return Page(render_page([result], [failure]))
+
+
+def test_the_page_asks_nothing_of_the_network(page):
+    for _, attrs in page.tags:
+        for name in ("src", "href", "srcset", "data", "poster", "action"):
+            assert attrs.get(name, "#").startswith(("#", "data:"))
+    assert page.all("script", "iframe", "object", "embed") == []
+    assert not re.search(r"url\(|@import", "".join(page.text))
+
+
+def test_every_picture_tells_its_caption_to_those_who_cannot_see_it(page):
+    images = page.all("img")
+    assert [image["alt"] for image in images[1:]] == [
+        'The "first" figure & its <clip>.',
+        'The "second" figure & its <clip>.',
+    ]
+    assert all(len(image["alt"]) > 10 for image in images)
+
+
+def test_identifiers_are_unique_and_every_link_arrives(page):
+    ids = [attrs["id"] for _, attrs in page.tags if "id" in attrs]
+    assert len(ids) == len(set(ids))
+    assert {a["href"][1:] for a in page.all("a")} <= set(ids)
+
+
+def test_the_page_can_be_read_without_sight_and_by_keyboard(page):
+    assert page.all("html") == [{"lang": "en"}]
+    assert page.all("a")[0] == {"class": "skip", "href": "#verdicts"}
+    assert all("scope" in heading for heading in page.all("th"))
+    assert len(page.all("h1")) == 1
+    labelled = [attrs for attrs in page.all("div") if attrs.get("role") == "region"]
+    assert all(attrs.get("aria-label") and attrs.get("tabindex") == "0" for attrs in labelled)
+
+
+def test_the_verdicts_stand_first_and_in_the_order_of_the_article(page):
+    text = " ".join(" ".join(page.text).split())
+    assert text.index("Verdicts") < text.index("Is <everything>")
+    places = [text.index(why) for why in ("Two.", "Nobody looked.", 'It was "put in" <i>by hand</i>.')]
+    assert places == sorted(places)
+    for said in ("0.73 m", "0.5 m", "same sense", "reproduced", "not testable", "IV.B"):
+        assert said in text
+
+
+def test_the_page_tells_everything_that_it_promises(page):
+    text = " ".join(" ".join(page.text).split())
+    robot = ROBOTS["caiman"]
+    for said in (
+        "What is put in.",
+        "−0.5 m",
+        "1 rad (57.3°)",
+        "not finite",
+        "a < b",
+        "suchus run question",
+        "It <broke>.",
+        "Traceback ...",
+        quantity(robot.hind_leg.femur, "m"),
+        "From hip to knee, the table's a2.",
+        *(m.shows.split("  ")[0] for m in ERRATA.values()),
+        *(chosen.why for chosen in ROBOTS.beside("caiman", "chosen", ())),
+        *(chosen.why for name in GAITS for chosen in GAITS.beside(name, "chosen", ())),
+    ):
+        assert " ".join(said.split()) in text
+
+
+def test_a_page_without_results_is_still_a_page():
+    page = Page(render_page([], []))
+    assert "No claim was touched." in page.text
+
+
+def test_heavy_drawings_are_shown_as_pixels(result, tmp_path, monkeypatch):
+    monkeypatch.setattr("suchus.report.result._HEAVY", 0)
+    (tmp_path / "question" / "first.svg").write_text("<svg>" + " " * 10**6 + "</svg>")
+    pictures = load_result(tmp_path / "question").pictures
+    assert pictures[0].source.startswith("data:image/png")
+    assert result.pictures[0].source.startswith("data:image/svg+xml")
+
+
+def test_a_folder_that_holds_no_outcome_is_refused(tmp_path):
+    with pytest.raises(UnreadableFile, match="cannot be read"):
+        load_result(tmp_path)
+    (tmp_path / "outcome.json").write_text('{"figures": [], "tables": []}')
+    with pytest.raises(IncompatibleRecord, match="lacks experiment"):
+        load_result(tmp_path)
+    (tmp_path / "outcome.json").write_text("[]")
+    with pytest.raises(IncompatibleRecord, match="no outcome"):
+        load_result(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "text"),
+    [
+        (0.73, "m", "0.73 m"),
+        (-1.5, "-", "−1.5"),
+        (None, "m", ""),
+        (2, "-", "2"),
+        (1.25e-7, "N", "1.25 × 10⁻⁷ N"),
+        (3.141592653589793, "rad", "3.142 rad (180°)"),
+    ],
+)
+def test_numbers_read_well(value, unit, text):
+    assert quantity(value, unit) == text
+
+
+def test_a_number_keeps_the_digits_asked_for():
+    assert number(0.123456, 2) == "0.12"
