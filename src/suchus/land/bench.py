@@ -40,6 +40,8 @@ class Bench:
         self.qpos, self.qvel, self.ctrl, self.sensors = (
             self.batch.bind(name) for name in ("qpos", "qvel", "ctrl", "sensordata")
         )
+        self.readings = self.sensors.copy()
+        self._forces = slice(int(shared.sensor("LF_force").adr[0]), int(shared.sensor("tail_force").adr[0]) + 3)
         self.alive = np.ones(len(runs), dtype=bool)
         self.ended = np.full(len(runs), np.inf)
         self.cause = [""] * len(runs)
@@ -98,9 +100,13 @@ class Bench:
             act[sim] = _activations(model, first[sim])
             self.ctrl[sim] = first[sim]
         self.batch.forward()
+        self.readings[:] = self.sensors
 
     def advance(self, targets: np.ndarray, steps: int, time: float) -> None:
         """Command servo angles and advance the living by some steps; who diverges dies, with the time and the cause.
+
+        On return ``readings`` holds what the sensors say: contact forces as their mean over the steps, as a pressure
+        sensor filters them, everything else as it is now.
 
         Args:
             targets: shape (run, 19) [rad].
@@ -108,11 +114,16 @@ class Bench:
             time: at which they begin [s].
         """
         self.ctrl[self.alive] = targets[self.alive]
-        try:
-            self.batch.step(None if self.alive.all() else np.flatnonzero(self.alive), nstep=steps, stage=_CURRENT)
-        except SimulationError as error:
-            for sim in error.ids:
-                self._end(int(sim), time, self.batch.error(int(sim)))
+        pressed = np.zeros_like(self.readings[:, self._forces])
+        for _ in range(steps):
+            try:
+                self.batch.step(None if self.alive.all() else np.flatnonzero(self.alive), stage=_CURRENT)
+            except SimulationError as error:
+                for sim in error.ids:
+                    self._end(int(sim), time, self.batch.error(int(sim)))
+            pressed += self.sensors[:, self._forces]
+        self.readings[:] = self.sensors
+        self.readings[:, self._forces] = pressed / steps
         fastest = np.abs(self.qvel).max(axis=1)
         for sim in np.flatnonzero(self.alive & ~(fastest < _TOO_FAST)):  # a NaN is not below anything
             self._end(int(sim), time, f"a speed of {fastest[sim]:.3g} was reached")

@@ -34,14 +34,14 @@ class Readings:
     def store(self, sample: int, phase: np.ndarray, targets: np.ndarray) -> None:
         """Keep one sample of the living."""
         alive = slice(None) if self._bench.alive.all() else self._bench.alive
-        self._sensors[alive, sample] = self._bench.sensors[alive]
+        self._sensors[alive, sample] = self._bench.readings[alive]
         self._qpos[alive, sample] = self._bench.qpos[alive]
         self._phase[alive, sample] = phase[alive]
         self._targets[alive, sample] = targets[alive]
 
     def sensed(self, time: float) -> Sensed:
         """Return what the robots feel now."""
-        read = self._bench.sensors
+        read = self._bench.readings
         return Sensed(
             time=time,
             servo_position=self._block(read, servo_names(), "position"),

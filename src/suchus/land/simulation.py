@@ -43,7 +43,7 @@ def simulate(
 
     Returns:
         A record with the dimensions ``run`` and ``time`` (see ``record.schema``), the first sample at time 0.
-        Forces and torques are those of the last physics step before each sample.
+        Contact forces are means over the control period before each sample, torques those of its last physics step.
 
     Raises:
         InvalidDesign: no runs, robots of different topology, a bad duration or time step.

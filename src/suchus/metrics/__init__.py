@@ -6,6 +6,7 @@ from suchus.metrics.progress import displacement, heading, heading_change, path_
 from suchus.metrics.stability import (
     height_peak_to_peak,
     height_std,
+    line_distance,
     roll_peak_to_peak,
     support_distance,
     support_polygon,
@@ -22,6 +23,7 @@ __all__ = [
     "heading_change",
     "height_peak_to_peak",
     "height_std",
+    "line_distance",
     "loaded",
     "path_length",
     "peak_torque",

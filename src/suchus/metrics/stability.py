@@ -5,6 +5,7 @@ import xarray as xr
 from jaxtyping import Float
 from scipy.spatial import ConvexHull, QhullError
 
+from suchus.errors import IncompatibleRecord
 from suchus.metrics.gait import LOADED
 from suchus.metrics.window import between
 from suchus.motion import START
@@ -73,6 +74,26 @@ def support_distance(record: xr.Dataset, time: float, threshold: float = LOADED)
         return float(np.linalg.norm(com - corners[0]))
     nearest = min(_to_segment(com, a, b) for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True))
     return -nearest if len(corners) >= 3 and _inside(com, corners) else nearest
+
+
+def line_distance(record: xr.Dataset, time: float) -> float:
+    """Return how far the projected centre of mass is from the line through the two feet meant to stand [m].
+
+    Args:
+        record: of one run whose gait has two feet standing at that time.
+        time: [s].
+
+    Raises:
+        IncompatibleRecord: not two feet are meant to stand.
+    """
+    now = record.sel(time=time, method="nearest")
+    stands = (np.mod(now.limb_phase, 1.0) >= 1.0 - now.duty_factor).values
+    if stands.sum() != 2:
+        raise IncompatibleRecord(f"at {time} s {stands.sum()} feet are meant to stand; a line needs two.")
+    first, second = now.foot_position.sel(xyz=["x", "y"]).values[stands].astype(float)
+    along = (second - first) / np.linalg.norm(second - first)
+    to = now.centre_of_mass.sel(xyz=["x", "y"]).values.astype(float) - first
+    return float(abs(along[0] * to[1] - along[1] * to[0]))
 
 
 def _to_segment(point: np.ndarray, start: np.ndarray, end: np.ndarray) -> float:

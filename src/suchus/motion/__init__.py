@@ -2,7 +2,7 @@
 
 from suchus.motion.gait import Gait
 from suchus.motion.phase import limb_phase, stance, tail_bend, trunk_bend
-from suchus.motion.targets import check_limits, foot_targets, servo_targets
+from suchus.motion.targets import check_limits, foot_targets, longest_stroke, servo_targets
 from suchus.motion.timing import START
 
 __all__ = [
@@ -11,6 +11,7 @@ __all__ = [
     "check_limits",
     "foot_targets",
     "limb_phase",
+    "longest_stroke",
     "servo_targets",
     "stance",
     "tail_bend",

@@ -75,6 +75,15 @@ def servo_targets(
     return targets
 
 
+def longest_stroke(robot: Crocodile, gait: Gait) -> float:
+    """Return the longest half stroke that all four legs can reach, less 2 % [m]."""
+    longest = []
+    for leg, reach in ((robot.front_leg, gait.front_reach), (robot.hind_leg, gait.hind_reach)):
+        aside2 = reach**2 + (gait.hip_height - leg.foot_radius) ** 2
+        longest.append(0.98 * max(leg.reach[1] ** 2 - aside2, 0.0) ** 0.5)
+    return min(longest)
+
+
 def check_limits(robot: Crocodile, gait: Gait) -> None:
     """Refuse a gait that a robot's joints cannot follow.
 
