@@ -54,9 +54,5 @@ def _inline(value: Any) -> str:
     if is_dataclass(value):
         value = {f.name: getattr(value, f.name) for f in fields(value)}
     if isinstance(value, Mapping):
-        return (
-            "{"
-            + ", ".join(f"{json.dumps(k)} = {_inline(v)}" for k, v in value.items() if v is not None)
-            + "}"
-        )
+        return "{" + ", ".join(f"{json.dumps(k)} = {_inline(v)}" for k, v in value.items() if v is not None) + "}"
     raise TypeError(f"a {type(value).__name__} has no form in TOML: {value!r}")

@@ -1,0 +1,56 @@
+"""The page docs/robots_from_files.md can be followed literally."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from suchus.cli import main
+from suchus.cli.options import choose
+from suchus.experiments import EXPERIMENTS
+from suchus.gaits import GAITS
+from suchus.robots import ROBOTS
+
+PAGE = (Path(__file__).parents[2] / "docs" / "robots_from_files.md").read_text()
+
+
+def blocks(language):
+    return re.findall(rf"```{language}\n(.*?)```", PAGE, re.DOTALL)
+
+
+@pytest.fixture
+def desk(tmp_path, monkeypatch):
+    """A folder with the two files of the page."""
+    monkeypatch.chdir(tmp_path)
+    robot, gait = blocks("toml")
+    Path("my_robot.toml").write_text(robot)
+    Path("my_gait.toml").write_text(gait)
+
+
+@pytest.mark.usefixtures("desk")
+def test_the_commands_of_the_page_choose_its_robot_and_gait():
+    commands = [line.split() for block in blocks("") for line in block.splitlines() if line.startswith("suchus run")]
+    assert len(commands) == 2
+    for _, _, name, *words in commands:
+        question = choose(EXPERIMENTS[name], name, words).experiment
+        if "--robot" in words:
+            assert question.robot.name == "my_robot"
+            assert question.robot.tail.joints == 8
+            assert question.robot.front_leg == ROBOTS["caiman"].front_leg
+        else:
+            assert (question.gait.name, question.gait.period) == ("my_gait", 3.0)
+            assert question.gait.stroke == GAITS["belly_crawl"].stroke
+
+
+@pytest.mark.usefixtures("desk")
+def test_the_python_of_the_page_runs(capsys):
+    exec("\n".join(blocks("python")), {})
+    assert re.fullmatch(r"\d\.\d\d m, \d\.\d\d kg\n", capsys.readouterr().out)
+    assert Path("caiman.toml").is_file()
+
+
+@pytest.mark.usefixtures("desk", "fakes")
+def test_the_mistakes_of_the_page_are_told_in_its_words(capsys):
+    Path("my_robot.toml").write_text('base = "caiman"\n[hind_leg]\nfemurr = 1\ntibia = -0.1\n')
+    assert main(["run", "wave", "--robot", "my_robot.toml"]) == 2
+    assert capsys.readouterr().err in PAGE
