@@ -173,3 +173,21 @@ def test_shapes_follow_the_batch():
     assert spine.least_bending(SPINE, p, psi).shape == (2, 3, 5)
     assert spine.least_bending(SPINE, p, 0.1).shape == (2, 3, 5)
     assert spine.least_bending(SPINE, p[0, 0], 0.1).shape == (5,)
+
+
+def test_least_bending_shuns_a_vertical_head():
+    q = postures(300, 50, seed=3)
+    T = spine.forward(SPINE, q)
+    found = spine.forward(SPINE, spine.least_bending(SPINE, T[:, :3, 3], azimuth_of(T)))
+    level, was = (np.hypot(A[:, 0, 0], A[:, 1, 0]) for A in (found, T))
+    assert np.all(level[was > 0.06] >= 0.05)
+    np.testing.assert_allclose(np.exp(1j * azimuth_of(found)), np.exp(1j * azimuth_of(T)), atol=1e-9)
+
+
+def test_many_points_are_solved_as_few_are(monkeypatch):
+    T = spine.forward(SPINE, postures(7))
+    p, psi = T[:, :3, 3], azimuth_of(T)
+    whole = spine.least_bending(SPINE, p, psi)
+    monkeypatch.setattr(spine, "CHUNK", 3)
+    np.testing.assert_array_equal(spine.least_bending(SPINE, p, psi), whole)
+    assert spine.least_bending(SPINE, np.empty((0, 3)), 0.0).shape == (0, 5)

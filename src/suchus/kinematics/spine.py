@@ -18,6 +18,8 @@ from suchus.paper.tables import SPINE_CHAIN, Chain
 
 ROUNDING = 1e-12
 """How far a cosine may exceed one by rounding alone [-]."""
+CHUNK = 1000
+"""Points that ``least_bending`` solves at a time, to spare memory [-]."""
 TRIALS = 48
 """First yaw angles that ``least_bending`` tries on each branch before it refines the best [-]."""
 STEEP, STEEP_COST = 0.05, 1e3
@@ -96,11 +98,23 @@ def inverse(
     """
     if branch not in (1, -1):
         raise InvalidDesign(f"branch is {branch!r}; 1 or -1 is allowed.")
-    angles, _ = _closed_form(spine, point, np.asarray(azimuth), np.asarray(first_yaw), np.asarray(branch))
+    angles = candidates(spine, point, azimuth, first_yaw=first_yaw, branch=branch)
     lost = np.isnan(angles).any(axis=-1)
     if lost.any():
         raise _unreachable(spine, np.broadcast_to(point, (*lost.shape, 3))[lost], "with this first yaw angle")
     return angles
+
+
+def candidates(
+    spine: SpineLinks,
+    point: Float[np.ndarray, "*batch 3"],
+    azimuth: ArrayLike,
+    *,
+    first_yaw: ArrayLike,
+    branch: ArrayLike,
+) -> Float[np.ndarray, "*batch 5"]:
+    """Return what ``inverse`` returns, but NaN where nothing can be reached; all arguments broadcast."""
+    return _closed_form(spine, point, np.asarray(azimuth), np.asarray(first_yaw), np.asarray(branch))[0]
 
 
 def least_bending(
@@ -121,6 +135,13 @@ def least_bending(
     """
     points = point.reshape(-1, 3)
     heading = np.broadcast_to(np.asarray(azimuth, dtype=np.float64), point.shape[:-1]).reshape(-1, 1)
+    parts = range(0, max(len(points), 1), CHUNK)
+    solved = [_least_bent(spine, points[i : i + CHUNK], heading[i : i + CHUNK]) for i in parts]
+    return np.concatenate(solved).reshape(*point.shape[:-1], 5)
+
+
+def _least_bent(spine: SpineLinks, points: np.ndarray, heading: np.ndarray) -> np.ndarray:
+    """Return the least bent angles, shape (point, 5); headings have the shape (point, 1)."""
     aim, low, high, lost = _feasible_yaw(spine, points)
     if lost.any():
         raise _unreachable(spine, points[lost], "by any posture")
@@ -143,7 +164,7 @@ def least_bending(
     step = np.pi / (TRIALS - 1)
     t = _golden_section(lambda at: bending(at, case), middle - step, middle + step)
     t = np.where(bending(t, case) <= bending(middle, case), t, middle)
-    return posture(t, case)[0].reshape(*point.shape[:-1], 5)
+    return posture(t, case)[0][:, 0]
 
 
 @np.errstate(divide="ignore", invalid="ignore", over="ignore")
@@ -170,8 +191,8 @@ def _closed_form(
     fifth = np.arctan2(ca * x4[1] - sa * x4[0], sa * z4[0] - ca * z4[1])
     level = np.cos(fifth) * (ca * x4[0] + sa * x4[1]) + np.sin(fifth) * (ca * z4[0] + sa * z4[1])
     fifth = np.where(level < 0, _wrapped(fifth + np.pi), fifth)
-    first = np.broadcast_to(_wrapped(first_yaw), third.shape)
-    return np.stack([first, second, third, np.arctan2(s4, c4), fifth], axis=-1), np.abs(level)
+    angles = np.broadcast_arrays(_wrapped(first_yaw), second, third, np.arctan2(s4, c4), fifth)
+    return np.stack(angles, axis=-1), np.abs(level)
 
 
 @np.errstate(divide="ignore", invalid="ignore", over="ignore")
