@@ -53,7 +53,7 @@ def draw_snapshots(robot: Crocodile, record: xr.Dataset, arms: Mapping[str, int]
         times: of the columns [s].
     """
     with styled(axes__grid=False):
-        figure, axes = panels(len(arms), len(times), width=10.5, height=2.5 * len(arms) + 0.5, sharex=True, sharey=True)
+        figure, axes = panels(len(arms), len(times), width=10.5, height=1.9 * len(arms), sharex="row", sharey="row")
         for row, (role, run) in zip(axes, arms.items(), strict=True):
             for ax, time in zip(row, times, strict=True):
                 draw_posture(ax, robot, record.isel(run=run), time)
