@@ -5,9 +5,8 @@ from typing import Any
 import mujoco
 
 from suchus.design import Contact, Leg
+from suchus.kinematics.mass import LEG_SHARES
 from suchus.model.surface import skin, sole
-
-_SHARES = (0.60, 0.35, 0.05)  # femur, tibia, foot
 
 
 def add_leg(girdle: Any, ahead: float, name: str, leg: Leg, contact: Contact) -> None:
@@ -31,14 +30,14 @@ def add_leg(girdle: Any, ahead: float, name: str, leg: Leg, contact: Contact) ->
         [0, 0, 0],
         [x * leg.femur for x in out],
         leg.radius,
-        _SHARES[0] * leg.mass,
+        LEG_SHARES[0] * leg.mass,
         contact,
     )
     shank = hip.add_body(name=f"{name}_tibia", pos=[x * leg.femur for x in out])
     _hinge(shank, f"{name}_knee", [-side, 0.0, 0.0], leg.knee_range, leg)
     end = [x * leg.tibia for x in out]
-    skin(shank, f"{name}_tibia", [0, 0, 0], end, 0.8 * leg.radius, _SHARES[1] * leg.mass, contact)
-    sole(shank, f"{name}_foot", end, leg.foot_radius, _SHARES[2] * leg.mass, contact)
+    skin(shank, f"{name}_tibia", [0, 0, 0], end, 0.8 * leg.radius, LEG_SHARES[1] * leg.mass, contact)
+    sole(shank, f"{name}_foot", end, leg.foot_radius, LEG_SHARES[2] * leg.mass, contact)
     shank.add_site(name=f"{name}_foot", pos=end, size=[0.002, 0, 0])
 
 

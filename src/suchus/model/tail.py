@@ -3,9 +3,9 @@
 from typing import Any
 
 import mujoco
-import numpy as np
 
 from suchus.design import Crocodile, Tail, cable_joints
+from suchus.kinematics.mass import tail_segments
 from suchus.model.surface import skin
 from suchus.model.trunk import hinge
 
@@ -15,7 +15,7 @@ CABLE = "tail_cable"
 def add_tail(spec: Any, pelvis: Any, robot: Crocodile) -> None:
     """Hang the tail on the pelvis and lay its cable."""
     tail, contact = robot.tail, robot.contact
-    lengths, radii, masses = _segments(tail)
+    lengths, radii, masses = tail_segments(tail)
     body = pelvis.add_body(name="tail_root", pos=[-tail.offset, 0, 0])
     hinge(body, "tail_pitch", [0, -1, 0], tail.pitch_range, tail.pitch_servo)
     for i, (length, radius, mass) in enumerate(zip(lengths, radii, masses, strict=True)):
@@ -28,20 +28,6 @@ def add_tail(spec: Any, pelvis: Any, robot: Crocodile) -> None:
         skin(body, body.name, [0, 0, 0], [-length, 0, 0], radius, mass, contact)
     body.add_site(name="tail_tip", pos=[-lengths[-1], 0, 0], size=[0.002, 0, 0])
     _lay_cable(spec, robot)
-
-
-def _segments(tail: Tail) -> tuple[list[float], list[float], list[float]]:
-    """Return length, radius and mass of each segment, the root first."""
-    lengths = [
-        tail.root + tail.pitch / 2,
-        *([tail.pitch] * (tail.joints - 1)),
-        tail.pitch / 2,
-        *([tail.fin_length / tail.fin_segments] * tail.fin_segments),
-    ]
-    middles = np.cumsum(lengths) - 0.5 * np.array(lengths)
-    radii = np.interp(middles, [0.0, float(np.sum(lengths))], [tail.radius_root, tail.radius_tip])
-    volumes = radii**2 * lengths
-    return lengths, radii.tolist(), (tail.mass * volumes / volumes.sum()).tolist()
 
 
 def _cable_joint(body: Any, name: str, tail: Tail) -> None:

@@ -1,0 +1,137 @@
+"""Where the mass of a robot is: the pieces of its body, and the centre of mass of a posture.
+
+Everything is in the frame of the pelvis, as in ``suchus.kinematics.body``.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from jaxtyping import Float
+
+from suchus.design import LEGS, Crocodile, Tail, cable_joints, joint_names
+from suchus.errors import InvalidDesign
+from suchus.kinematics import body, leg, spine
+
+LEG_SHARES = (0.60, 0.35, 0.05)
+"""How a leg's mass is spread over femur, tibia and foot [-]."""
+GRAVITY = 9.81
+"""[m/s2]."""
+
+
+class TailSegments(NamedTuple):
+    """The segments of a tail, the root first: plates between their joints, then the passive end."""
+
+    lengths: list[float]
+    """[m]."""
+    radii: list[float]
+    """[m]."""
+    masses: list[float]
+    """[kg]."""
+
+
+def tail_segments(tail: Tail) -> TailSegments:
+    """Return length, radius and mass of each segment; the mass is spread in proportion to volume."""
+    lengths = [
+        tail.root + tail.pitch / 2,
+        *([tail.pitch] * (tail.joints - 1)),
+        tail.pitch / 2,
+        *([tail.fin_length / tail.fin_segments] * tail.fin_segments),
+    ]
+    middles = np.cumsum(lengths) - 0.5 * np.array(lengths)
+    radii = np.interp(middles, [0.0, float(np.sum(lengths))], [tail.radius_root, tail.radius_tip])
+    volumes = radii**2 * lengths
+    return TailSegments(lengths, radii.tolist(), (tail.mass * volumes / volumes.sum()).tolist())
+
+
+class Pieces(NamedTuple):
+    """The pieces of a robot: pelvis, four links of the trunk, thorax, head; three per leg; the tail's segments."""
+
+    masses: Float[np.ndarray, " piece"]
+    """[kg]."""
+    centres: Float[np.ndarray, "*batch piece 3"]
+    """Their centres of mass in the frame of the pelvis [m]."""
+
+
+def pieces(robot: Crocodile, angles: Float[np.ndarray, "*batch joint"]) -> Pieces:
+    """Return every piece of the body.
+
+    Args:
+        robot: the robot.
+        angles: of every hinge, in the order of ``joint_names(robot)`` [rad].
+
+    Raises:
+        InvalidDesign: the number of angles is not the robot's number of hinges.
+    """
+    count = len(joint_names(robot))
+    if angles.shape[-1] != count:
+        raise InvalidDesign(
+            f"{angles.shape[-1]} angles were given; {robot.name} has {count} hinges: give one for each."
+        )
+    masses = [robot.pelvis.mass, *4 * [robot.spine.link_mass], robot.thorax.mass, robot.head.mass]
+    for name in LEGS:
+        masses += [share * robot.leg(name).mass for share in LEG_SHARES]
+    masses += tail_segments(robot.tail).masses
+    centres = (*_trunk(robot, angles), *_legs(robot, angles), *_tail(robot, angles))
+    return Pieces(np.array(masses), np.stack(centres, axis=-2))
+
+
+def centre_of_mass(robot: Crocodile, angles: Float[np.ndarray, "*batch joint"]) -> Float[np.ndarray, "*batch 3"]:
+    """Return the centre of mass of a posture in the frame of the pelvis [m].
+
+    Args:
+        robot: the robot.
+        angles: of every hinge, in the order of ``joint_names(robot)`` [rad].
+
+    Raises:
+        InvalidDesign: the number of angles is not the robot's number of hinges.
+    """
+    found = pieces(robot, angles)
+    return np.einsum("p,...pi->...i", found.masses / found.masses.sum(), found.centres)
+
+
+def cantilever_torque(robot: Crocodile) -> float:
+    """Return what the first pitch joint of a straight trunk must give to lift the level forebody off the ground [N m].
+
+    The front legs hang out sideways, so that their weight acts at the shoulders.
+    """
+    found = pieces(robot, np.zeros(len(joint_names(robot))))
+    joint = robot.spine.base + robot.spine.link
+    ahead = found.centres[:, 0] - joint
+    return float(GRAVITY * np.sum(found.masses[ahead > 0] * ahead[ahead > 0]))
+
+
+def _trunk(robot: Crocodile, angles: np.ndarray) -> list[np.ndarray]:
+    bends = angles[..., 12:17]
+    joints = spine.joints(robot.spine, bends)
+    T = spine.forward(robot.spine, bends)
+    shoulder, snout = robot.thorax.shoulder, robot.head.snout
+    return [
+        np.zeros((*angles.shape[:-1], 3)),
+        *((joints[..., i, :] + joints[..., i + 1, :]) / 2 for i in range(4)),
+        T[..., :3, 3] + shoulder / 2 * T[..., :3, 0],
+        T[..., :3, 3] + (shoulder + snout) / 2 * T[..., :3, 0],
+    ]
+
+
+def _legs(robot: Crocodile, angles: np.ndarray) -> list[np.ndarray]:
+    T = spine.forward(robot.spine, angles[..., 12:17])
+    shoulder = T[..., :3, 3] + robot.thorax.shoulder * T[..., :3, 0]
+    found = []
+    for i, name in enumerate(LEGS):
+        links, bends = robot.leg(name), angles[..., 3 * i : 3 * i + 3]
+        knee, foot = leg.knee_point(links, bends), leg.forward(links, bends)
+        hip = np.broadcast_to(np.array([links.hip_offset, 0.0, 0.0]), knee.shape)
+        for point in ((hip + knee) / 2, (knee + foot) / 2, foot):
+            at = body.from_leg_frame(point, name)
+            if name.endswith("F"):
+                at = shoulder + np.einsum("...ij,...j->...i", T[..., :3, :3], at)
+            found.append(at)
+    return found
+
+
+def _tail(robot: Crocodile, angles: np.ndarray) -> list[np.ndarray]:
+    points = body.tail_points(robot, angles[..., 17:])
+    cables = len(cable_joints(robot))
+    # the middle of the last plate ends a segment, though no joint is there: the passive end begins
+    assert points.shape[-2] == cables + 2 + robot.tail.fin_segments
+    return [(points[..., i, :] + points[..., i + 1, :]) / 2 for i in range(points.shape[-2] - 1)]
