@@ -15,7 +15,8 @@ PAGE = (Path(__file__).parents[2] / "docs" / "robots_from_files.md").read_text()
 
 
 def blocks(language):
-    return re.findall(rf"```{language}\n(.*?)```", PAGE, re.DOTALL)
+    fenced = (block.partition("\n") for block in PAGE.split("```")[1::2])
+    return [text for first, _, text in fenced if first == language]
 
 
 @pytest.fixture
