@@ -11,7 +11,13 @@ from suchus.motion.gait import Gait
 from suchus.motion.phase import tail_bend, trunk_bend
 
 
-def foot_targets(robot: Crocodile, gait: Gait, phase: Float[np.ndarray, "*b 4"]) -> Float[np.ndarray, "*b 4 3"]:
+def foot_targets(
+    robot: Crocodile,
+    gait: Gait,
+    phase: Float[np.ndarray, "*b 4"],
+    *,
+    stroke: Float[np.ndarray, "*b 4"] | None = None,
+) -> Float[np.ndarray, "*b 4 3"]:
     """Return the intended foot centres, each in the D-H base frame of its leg (outward, forward, down) [m].
 
     Stance goes straight back at constant speed. Swing goes forward as half a cosine and is lifted as a squared
@@ -21,6 +27,7 @@ def foot_targets(robot: Crocodile, gait: Gait, phase: Float[np.ndarray, "*b 4"])
         robot: the design.
         gait: the gait.
         phase: of the limbs [cycle].
+        stroke: half of the way of each foot [m]; the gait's own if None.
     """
     cycle = np.mod(phase, 1.0)
     swing = 1.0 - gait.duty_factor
@@ -33,7 +40,7 @@ def foot_targets(robot: Crocodile, gait: Gait, phase: Float[np.ndarray, "*b 4"])
         reach = gait.front_reach if name.endswith("F") else gait.hind_reach
         feet[..., i, 0] = leg.hip_offset + reach
         feet[..., i, 2] = gait.hip_height - leg.foot_radius
-    feet[..., 1] = gait.stroke * forward
+    feet[..., 1] = (gait.stroke if stroke is None else stroke) * forward
     feet[..., 2] -= gait.lift * np.where(cycle < swing, np.sin(np.pi * s) ** 2, 0.0)
     return feet
 
@@ -45,6 +52,7 @@ def servo_targets(
     *,
     trunk: Float[np.ndarray, "*b"] | None = None,
     tail: Float[np.ndarray, "*b"] | None = None,
+    stroke: Float[np.ndarray, "*b 4"] | None = None,
 ) -> Float[np.ndarray, "*b 19"]:
     """Return the servo angles of the intended posture, in the order of ``design.servo_names()`` [rad].
 
@@ -54,11 +62,12 @@ def servo_targets(
         phase: of the limbs [cycle].
         trunk: lateral bend of the trunk [rad]; the gait's own law if None.
         tail: lateral bend of the tail [rad]; the gait's own law if None.
+        stroke: half of the way of each foot [m]; the gait's own if None.
 
     Raises:
         OutsideLimits: the legs cannot reach their feet's paths.
     """
-    feet = foot_targets(robot, gait, phase)
+    feet = foot_targets(robot, gait, phase, stroke=stroke)
     targets = np.zeros((*phase.shape[:-1], 19))
     for i, name in enumerate(LEGS):
         try:
