@@ -1,0 +1,104 @@
+"""Bodies in the water: a shape with a motion, and what several of them say together on the grid."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from suchus.errors import InvalidDesign
+from suchus.flow.compiled import PAD
+from suchus.flow.grid import Grid
+from suchus.flow.immerse import REACH, THINNEST
+from suchus.flow.pose import Motion, Pose
+from suchus.flow.shape import Field, Shape
+
+Window = tuple[int, int, int, int]
+"""Padded cell indices j0, j1, i0, i1 around the bodies."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Body:
+    """A shape that moves as it is told."""
+
+    shape: Shape
+    """What it looks like in its own frame."""
+    motion: Pose | Motion = Pose()
+    """Where its frame is: a fixed pose, or a pose for every time [s]."""
+    name: str = "body"
+    """Its name in records and messages."""
+
+    def pose(self, time: float) -> Pose:
+        """Return the pose at a time [s]."""
+        return self.motion if isinstance(self.motion, Pose) else self.motion(time)
+
+    @property
+    def still(self) -> bool:
+        """Whether neither shape nor pose ever change."""
+        moving = not isinstance(self.motion, Pose) or any(self.motion.velocity) or self.motion.spin
+        return self.shape.rigid and not moving
+
+
+def window_of(body: Body, pose: Pose, grid: Grid, time: float) -> Window:
+    """Return the cells around a body that it acts on.
+
+    Raises:
+        InvalidDesign: the body touches a side of the domain or lies beyond it.
+    """
+    x0, x1, y0, y1 = body.shape.bounds(time, pose)
+    margin = (REACH + 2) * grid.cell
+    ox, oy = grid.origin
+    wide, high = grid.size
+    if not (x0 - margin > ox and y0 - margin > oy and x1 + margin < ox + wide and y1 + margin < oy + high):
+        raise InvalidDesign(
+            f"at t = {time:.4g} s, {body.name} reaches over x = {x0:.4g} to {x1:.4g} m, y = {y0:.4g} to {y1:.4g} m, "
+            f"outside the domain x = {ox:.4g} to {ox + wide:.4g} m, y = {oy:.4g} to {oy + high:.4g} m "
+            f"(less {margin:.2g} m on each side); enlarge the grid, or let the frame follow the body."
+        )
+    h = grid.cell
+    return (
+        int((y0 - margin - oy) / h) + PAD, int((y1 + margin - oy) / h) + PAD + 2,
+        int((x0 - margin - ox) / h) + PAD, int((x1 + margin - ox) / h) + PAD + 2,
+    )  # fmt: skip
+
+
+def unite(windows: list[Window]) -> Window:
+    """Return the smallest window around all."""
+    if not windows:
+        return PAD, PAD, PAD, PAD
+    return (
+        min(w[0] for w in windows), max(w[1] for w in windows), min(w[2] for w in windows), max(w[3] for w in windows)
+    )  # fmt: skip
+
+
+def measure_all(bodies: list[Body], poses: list[Pose], x: np.ndarray, y: np.ndarray, time: float, h: float) -> Field:
+    """Return the field of all bodies on a window: at every point, that of the nearest body."""
+    first = bodies[0].shape.measure(x, y, time, poses[0], (REACH + 1) * h)
+    for body, pose in zip(bodies[1:], poses[1:], strict=True):
+        other = body.shape.measure(x, y, time, pose, (REACH + 1) * h)
+        nearer = other.distance < first.distance
+        first = Field(
+            np.where(nearer, other.distance, first.distance),
+            np.where(nearer, other.normal_x, first.normal_x),
+            np.where(nearer, other.normal_y, first.normal_y),
+            np.where(nearer, other.velocity_x, first.velocity_x),
+            np.where(nearer, other.velocity_y, first.velocity_y),
+        )
+    return first
+
+
+def thin_share(body: Body, grid: Grid, time: float) -> float:
+    """Return the share of the body's length that is thinner than ``THINNEST`` cells.
+
+    Raises:
+        InvalidDesign: all of the body is.
+    """
+    station, thickness = body.shape.thickness(time)
+    least, most = THINNEST * grid.cell, float(thickness.max())
+    if most < least:
+        raise InvalidDesign(
+            f"{body.name} is {most:.4g} m thick at most, {most / grid.cell:.2g} cells of {grid.cell:.4g} m; the water "
+            f"leaks through less than {THINNEST:.2f} cells. Take cells of at most {most / THINNEST:.3g} m."
+        )
+    if station.size == 1:
+        return 0.0
+    thin = 0.5 * ((thickness[1:] < least).astype(float) + (thickness[:-1] < least).astype(float))
+    return float((thin * np.diff(station)).sum() / (station[-1] - station[0]))

@@ -1,0 +1,171 @@
+"""A body given by its midline and the half-width along it: fish, robots, foils."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from suchus.errors import InvalidDesign
+from suchus.flow.mass import Mass, of_midline
+from suchus.flow.paint import paint, ring, sections
+from suchus.flow.pose import Pose
+from suchus.flow.shape import Field, Markers, Shape, positive
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Spine:
+    """A midline at one time, in the body's own frame; arrays of shape (station,), from one end to the other.
+
+    Raises:
+        InvalidDesign: on creation, for arrays that do not fit each other or are not finite.
+    """
+
+    x: np.ndarray
+    """Position [m]."""
+    y: np.ndarray
+    """Position [m]."""
+    heading: np.ndarray
+    """Angle of the midline's direction, continuous along it [rad]."""
+    half_width: np.ndarray
+    """Half of the thickness across the midline [m]."""
+    x_rate: np.ndarray
+    """Velocity [m/s]."""
+    y_rate: np.ndarray
+    """Velocity [m/s]."""
+    heading_rate: np.ndarray
+    """Rate of the heading [rad/s]."""
+    half_width_rate: np.ndarray | None = None
+    """Rate of the half-width, or None if it stays [m/s]."""
+
+    def __post_init__(self) -> None:
+        if self.x.ndim != 1 or self.x.size < 3:
+            raise InvalidDesign(f"the midline has shape {self.x.shape}; give at least 3 stations in one row.")
+        for name in ("y", "heading", "half_width", "x_rate", "y_rate", "heading_rate", "half_width_rate"):
+            values = getattr(self, name)
+            if values is not None and values.shape != self.x.shape:
+                raise InvalidDesign(f"{name} of the midline has shape {values.shape}; x has {self.x.shape}.")
+            if values is not None and not np.isfinite(values).all():
+                raise InvalidDesign(f"{name} of the midline is not finite at station {np.argmin(np.isfinite(values))}.")
+        if (self.half_width < 0).any():
+            raise InvalidDesign(f"half_width of the midline goes down to {self.half_width.min():.4g} m; it is never negative.")
+
+    @property
+    def rows(self) -> np.ndarray:
+        """The stations for the kernels, shape (7, station)."""
+        return np.stack(
+            [self.x, self.y, self.heading, self.half_width, self.x_rate, self.y_rate, self.heading_rate]
+        ).astype(np.float64)
+
+    @property
+    def swell(self) -> np.ndarray:
+        """Rate of the half-width, zero if it stays [m/s]."""
+        return np.zeros(self.x.size) if self.half_width_rate is None else self.half_width_rate.astype(np.float64)
+
+    @property
+    def arc(self) -> np.ndarray:
+        """Arc length from the first station, shape (station,) [m]."""
+        return np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(self.x), np.diff(self.y)))])
+
+    def placed(self, pose: Pose) -> "Spine":
+        """Return the midline in the world."""
+        x, y = pose.to_world(self.x, self.y)
+        vx, vy = pose.turn(self.x_rate, self.y_rate)
+        cx, cy = pose.carry(x, y)
+        return replace(
+            self, x=x, y=y, heading=self.heading + pose.angle, x_rate=vx + cx, y_rate=vy + cy,
+            heading_rate=self.heading_rate + pose.spin,
+        )  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Midline(Shape):
+    """A body that bends: its cross-sections stay straight and square to the midline."""
+
+    spine: Callable[[float], Spine]
+    """The midline at every time [s]."""
+    deforms: bool = True
+    """Whether the midline changes with time; False saves work."""
+
+    @property
+    def rigid(self) -> bool:
+        """Whether the shape never changes."""
+        return not self.deforms
+
+    def measure(self, x: np.ndarray, y: np.ndarray, time: float, pose: Pose, reach: float) -> Field:
+        """Return the field on the points of a window."""
+        placed = self.spine(time).placed(pose)
+        h = (x[-1] - x[0]) / (x.size - 1)
+        return Field(*paint(placed.rows, placed.swell, x[0], y[0], h, x.size, y.size, float(reach)))
+
+    def markers(self, time: float, pose: Pose, spacing: float) -> Markers:
+        """Return the middles of the outline's edges, long edges split."""
+        placed = self.spine(time).placed(pose)
+        outline = ring(placed.rows)
+        n, arc = placed.x.size, placed.arc
+        station = np.concatenate([arc, arc[::-1]])
+        nxt = np.roll(outline, -1, axis=1)
+        length = np.hypot(*(nxt - outline))
+        edge = np.flatnonzero(length > 1e-9 * arc[-1])
+        parts = np.maximum(1, np.round(length[edge] / spacing)).astype(int)
+        edge = np.repeat(edge, parts)
+        part = np.concatenate([(np.arange(p) + 0.5) / p for p in parts])
+        count = np.repeat(parts, parts)
+        point = outline[:, edge] * (1 - part) + nxt[:, edge] * part
+        along = nxt[:, edge] - outline[:, edge]
+        normal = np.stack([along[1], -along[0]]) / length[edge]
+        s = station[edge] * (1 - part) + np.roll(station, -1)[edge] * part
+        side = np.where(edge < n - 1, -1.0, np.where((edge >= n) & (edge < 2 * n - 1), 1.0, 0.0))
+        guess = np.where(edge < n, edge, 2 * n - 1 - edge)
+        motion = sections(point, guess, placed.rows, placed.swell)
+        return Markers(*point, *normal, length[edge] / count, *motion, s, side)
+
+    def bounds(self, time: float, pose: Pose) -> tuple[float, float, float, float]:
+        """Return the rectangle around the outline."""
+        outline = ring(self.spine(time).placed(pose).rows)
+        return (
+            float(outline[0].min()), float(outline[0].max()), float(outline[1].min()), float(outline[1].max())
+        )  # fmt: skip
+
+    def mass(self, time: float) -> Mass:
+        """Return area, centre and moments, section by section."""
+        spine = self.spine(time)
+        return of_midline(spine.rows)
+
+    def thickness(self, time: float) -> tuple[np.ndarray, np.ndarray]:
+        """Return arc length and thickness at the stations."""
+        spine = self.spine(time)
+        return spine.arc, 2 * spine.half_width
+
+
+def foil(chord: float, *, thickness: float, camber: float = 0.0, camber_at: float = 0.4, stations: int = 201) -> Midline:
+    """Return a NACA four-digit foil, its nose at the origin and its chord along +x.
+
+    Args:
+        chord: length of the chord [m].
+        thickness: largest thickness over chord, 0.12 for NACA 0012 [-].
+        camber: largest camber over chord [-].
+        camber_at: where the camber is largest, over chord [-].
+        stations: points along the midline [-].
+
+    Raises:
+        InvalidDesign: a length or share outside its range.
+
+    Source: Jacobs, Ward and Pinkerton 1933, NACA Report 460 (closed trailing edge).
+    """
+    positive("chord", chord)
+    if not (0 < thickness < 0.5 and 0 <= camber < 0.2 and 0 < camber_at < 1):
+        raise InvalidDesign(
+            f"a foil of thickness {thickness}, camber {camber} at {camber_at} is outside 0 to 0.5, 0 to 0.2, 0 to 1."
+        )
+    x = 0.5 * (1 - np.cos(np.linspace(0, np.pi, stations)))
+    half = 5 * thickness * (0.2969 * np.sqrt(x) - 0.1260 * x - 0.3516 * x**2 + 0.2843 * x**3 - 0.1036 * x**4)
+    p = camber_at
+    front = x < p
+    y = camber * np.where(front, (2 * p * x - x**2) / p**2, (1 - 2 * p + 2 * p * x - x**2) / (1 - p) ** 2)
+    slope = camber * np.where(front, 2 * (p - x) / p**2, 2 * (p - x) / (1 - p) ** 2)
+    zero = np.zeros(stations)
+    spine = Spine(
+        x=chord * x, y=chord * y, heading=np.arctan(slope), half_width=chord * np.maximum(half, 0),
+        x_rate=zero, y_rate=zero, heading_rate=zero,
+    )  # fmt: skip
+    return Midline(spine=lambda time: spine, deforms=False)

@@ -1,0 +1,166 @@
+"""Distance, normal and velocity of a body given by a midline and its half-widths, painted onto a window.
+
+Every edge of the outline paints the points near it; winding numbers along the rows tell inside from outside; and
+each point moves with the cross-section of the midline that it lies on, which is continuous across the body's
+middle. (The velocity of the nearest outline point is not, and the force then jumps from step to step.)
+"""
+
+import numpy as np
+
+from suchus.flow.compiled import compiled
+
+
+@compiled
+def distance_to_edge(px, py, ax, ay, bx, by):
+    """Return the squared distance of a point to an edge and where along it the nearest point lies, 0 to 1."""
+    ex, ey = bx - ax, by - ay
+    dx, dy = px - ax, py - ay
+    size = ex * ex + ey * ey
+    share = (dx * ex + dy * ey) / size if size > 0.0 else 0.0
+    share = min(max(share, 0.0), 1.0)
+    dx -= share * ex
+    dy -= share * ey
+    return dx * dx + dy * dy, share
+
+
+@compiled
+def _paint_edge(square, edge, share, k, ax, ay, bx, by, x0, y0, h, reach):
+    """Keep edge ``k`` at the points that no other edge is nearer to."""
+    ny, nx = square.shape
+    i0 = max(int(np.ceil((min(ax, bx) - reach - x0) / h)), 0)
+    i1 = min(int(np.floor((max(ax, bx) + reach - x0) / h)), nx - 1)
+    j0 = max(int(np.ceil((min(ay, by) - reach - y0) / h)), 0)
+    j1 = min(int(np.floor((max(ay, by) + reach - y0) / h)), ny - 1)
+    for j in range(j0, j1 + 1):
+        for i in range(i0, i1 + 1):
+            d2, f = distance_to_edge(x0 + i * h, y0 + j * h, ax, ay, bx, by)
+            if d2 < square[j, i]:
+                square[j, i] = d2
+                edge[j, i] = k
+                share[j, i] = f
+
+
+@compiled
+def _wind_edge(winding, ax, ay, bx, by, x0, y0, h):
+    """Note on every row that the edge crosses, at the first point right of it, which way it crosses."""
+    ny, nx = winding.shape
+    low, high, way = (ay, by, 1) if ay < by else (by, ay, -1)
+    j0 = max(int(np.ceil((low - y0) / h)), 0)
+    for j in range(j0, ny):
+        y = y0 + j * h
+        if y >= high:
+            break
+        x = ax + (bx - ax) * (y - ay) / (by - ay)
+        i = max(int(np.ceil((x - x0) / h)), 0)
+        if i < nx:
+            winding[j, i] += way
+
+
+@compiled
+def find_section(px, py, start, sx, sy, tx, ty):
+    """Return the segment of the midline whose cross-section holds the point, and where along it, 0 to 1."""
+    last = sx.size - 2
+    k = min(start, last)
+    here = (px - sx[k]) * tx[k] + (py - sy[k]) * ty[k]
+    while here < 0.0 and k > 0:
+        k -= 1
+        here = (px - sx[k]) * tx[k] + (py - sy[k]) * ty[k]
+    ahead = (px - sx[k + 1]) * tx[k + 1] + (py - sy[k + 1]) * ty[k + 1]
+    while ahead >= 0.0 and k < last:
+        k += 1
+        here = ahead
+        ahead = (px - sx[k + 1]) * tx[k + 1] + (py - sy[k + 1]) * ty[k + 1]
+    span = here - ahead
+    share = here / span if span > 0.0 else 0.0
+    return k, min(max(share, 0.0), 1.0)
+
+
+@compiled
+def section_velocity(px, py, k, f, spine, width_rate):
+    """Return the velocity that the cross-section carries to a point.
+
+    ``spine`` rows: x, y, heading, half-width, and the rates of x, y and heading.
+    """
+    g = 1.0 - f
+    dx = px - (g * spine[0, k] + f * spine[0, k + 1])
+    dy = py - (g * spine[1, k] + f * spine[1, k + 1])
+    heading = g * spine[2, k] + f * spine[2, k + 1]
+    half = g * spine[3, k] + f * spine[3, k + 1]
+    turn = g * spine[6, k] + f * spine[6, k + 1]
+    swell = g * width_rate[k] + f * width_rate[k + 1]
+    nx, ny = -np.sin(heading), np.cos(heading)
+    out = min(max((dx * nx + dy * ny) / half, -1.0), 1.0) * swell if half > 0.0 else 0.0
+    vx = g * spine[4, k] + f * spine[4, k + 1] - turn * dy + out * nx
+    vy = g * spine[5, k] + f * spine[5, k + 1] + turn * dx + out * ny
+    return vx, vy
+
+
+@compiled
+def ring(spine):
+    """Return the outline counter-clockwise: up the right side and back along the left, shape (2, 2 n)."""
+    n = spine.shape[1]
+    out = np.empty((2, 2 * n))
+    for k in range(n):
+        ox, oy = -spine[3, k] * np.sin(spine[2, k]), spine[3, k] * np.cos(spine[2, k])
+        out[0, k], out[1, k] = spine[0, k] - ox, spine[1, k] - oy
+        out[0, 2 * n - 1 - k], out[1, 2 * n - 1 - k] = spine[0, k] + ox, spine[1, k] + oy
+    return out
+
+
+@compiled
+def paint(spine, width_rate, x0, y0, h, nx, ny, reach):
+    """Return distance, normal (x, y) and velocity (x, y) on the window, shape (5, ny, nx)."""
+    outline = ring(spine)
+    count = outline.shape[1]
+    n = spine.shape[1]
+    tx, ty = np.cos(spine[2]), np.sin(spine[2])
+    square = np.full((ny, nx), reach * reach)
+    edge = np.full((ny, nx), -1, np.int32)
+    share = np.zeros((ny, nx))
+    winding = np.zeros((ny, nx), np.int32)
+    for k in range(count):
+        m = (k + 1) % count
+        ax, ay, bx, by = outline[0, k], outline[1, k], outline[0, m], outline[1, m]
+        if ax == bx and ay == by:
+            continue
+        _paint_edge(square, edge, share, k, ax, ay, bx, by, x0, y0, h, reach)
+        if ay != by:
+            _wind_edge(winding, ax, ay, bx, by, x0, y0, h)
+    out = np.zeros((5, ny, nx))
+    for j in range(ny):
+        wound, k = 0, 0
+        for i in range(nx):
+            wound += winding[j, i]
+            e = edge[j, i]
+            sign = -1.0 if wound != 0 else 1.0
+            d = np.sqrt(square[j, i])
+            out[0, j, i] = sign * d
+            if e < 0 and wound == 0:
+                continue
+            px, py = x0 + i * h, y0 + j * h
+            if e >= 0:
+                m = (e + 1) % count
+                ex, ey = outline[0, m] - outline[0, e], outline[1, m] - outline[1, e]
+                if d > 1e-6 * h:
+                    out[1, j, i] = sign * (px - outline[0, e] - share[j, i] * ex) / d
+                    out[2, j, i] = sign * (py - outline[1, e] - share[j, i] * ey) / d
+                else:
+                    size = np.sqrt(ex * ex + ey * ey)
+                    out[1, j, i], out[2, j, i] = ey / size, -ex / size
+                k = e if e < n else 2 * n - 1 - e
+            k, f = find_section(px, py, min(k, n - 2), spine[0], spine[1], tx, ty)
+            out[3, j, i], out[4, j, i] = section_velocity(px, py, k, f, spine, width_rate)
+    return out
+
+
+@compiled
+def sections(point, guess, spine, width_rate):
+    """Return velocity (x, y) and turning rate of the cross-sections that hold the points, shape (3, point)."""
+    tx, ty = np.cos(spine[2]), np.sin(spine[2])
+    out = np.empty((3, point.shape[1]))
+    for m in range(point.shape[1]):
+        px, py = point[0, m], point[1, m]
+        k, f = find_section(px, py, min(guess[m], spine.shape[1] - 2), spine[0], spine[1], tx, ty)
+        out[0, m], out[1, m] = section_velocity(px, py, k, f, spine, width_rate)
+        out[2, m] = (1.0 - f) * spine[6, k] + f * spine[6, k + 1]
+    return out

@@ -1,0 +1,45 @@
+"""A progress line for long runs: how far, how many cells per second, how long still."""
+
+from time import monotonic
+from types import TracebackType
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
+
+_QUIET = 2.0
+"""Wall-clock time before anything is shown [s]."""
+
+
+class Bar:
+    """Shows a run's progress on the error stream, once it has lasted two seconds."""
+
+    def __init__(self, start: float, until: float, cells: int, *, show: bool) -> None:
+        self._start, self._until, self._cells, self._show = start, until, cells, show
+        self._began, self._steps = monotonic(), 0
+        self._progress: Progress | None = None
+        self._task = TaskID(0)
+
+    def __enter__(self) -> "Bar":
+        """Start the clock."""
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        """Leave the last line standing."""
+        if self._progress is not None:
+            self._progress.stop()
+
+    def move(self, time: float) -> None:
+        """Tell that a step has ended at a time [s]."""
+        self._steps += 1
+        elapsed = monotonic() - self._began
+        if not self._show or elapsed < _QUIET:
+            return
+        if self._progress is None:
+            self._progress = Progress(
+                TextColumn("t = {task.completed:.3g} of {task.total:.3g} s"), BarColumn(),
+                TextColumn("{task.fields[speed]:.1f} M cells/s"), TimeRemainingColumn(),
+                console=Console(stderr=True), refresh_per_second=4,
+            )  # fmt: skip
+            self._progress.start()
+            self._task = self._progress.add_task("", total=self._until, completed=self._start, speed=0.0)
+        self._progress.update(self._task, completed=time, speed=self._steps * self._cells / elapsed / 1e6)

@@ -1,0 +1,48 @@
+"""What a simulation tells: one row per time step."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+COLUMNS = (
+    "pressure_x", "pressure_y", "shear_x", "shear_y", "torque", "power", "x", "y", "angle", "velocity_x", "velocity_y",
+    "spin",
+)  # fmt: skip
+"""Values kept of each body at each step, in the order of the last axis of ``Record.bodies``."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Record:
+    """Time series of a simulation, per metre of depth."""
+
+    names: tuple[str, ...]
+    """Names of the bodies."""
+    time: np.ndarray
+    """Time at the end of each step, shape (step,) [s]."""
+    step: np.ndarray
+    """Length of each step, shape (step,) [s]."""
+    cycles: np.ndarray
+    """Multigrid cycles of the two pressure solves, shape (step, 2) [-]."""
+    divergence: np.ndarray
+    """Largest divergence left over, in fastest speed per cell, shape (step,) [-]."""
+    bodies: np.ndarray
+    """The ``COLUMNS`` of each body, shape (step, body, column) [N/m, N, W/m, m, rad, m/s, rad/s]."""
+
+    def column(self, name: str, body: str | int = 0) -> np.ndarray:
+        """Return one column of one body, shape (step,)."""
+        k = self.names.index(body) if isinstance(body, str) else body
+        return self.bodies[:, k, COLUMNS.index(name)]
+
+    def force(self, body: str | int = 0) -> np.ndarray:
+        """Return the force on a body, pressure and friction together, shape (step, 2) [N/m]."""
+        return np.stack(
+            [self.column(f"pressure_{a}", body) + self.column(f"shear_{a}", body) for a in ("x", "y")], axis=1
+        )
+
+    def after(self, time: float) -> "Record":
+        """Return the steps that end after a time [s]."""
+        k = self.time > time
+        return Record(
+            names=self.names, time=self.time[k], step=self.step[k], cycles=self.cycles[k],
+            divergence=self.divergence[k], bodies=self.bodies[k],
+        )  # fmt: skip

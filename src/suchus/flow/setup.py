@@ -1,0 +1,113 @@
+"""What is to be simulated: grid, water, sides and bodies, checked before anything runs."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import isfinite, sqrt
+from typing import Literal
+
+import numpy as np
+
+from suchus.errors import InvalidDesign
+from suchus.flow.body import Body, thin_share, window_of
+from suchus.flow.free import FreeBody, Swimmer
+from suchus.flow.grid import Grid
+from suchus.flow.pose import Pose
+from suchus.flow.sides import Sides
+
+LAYER_CELLS = 0.7
+"""Fewest cells across a boundary layer of thickness L / sqrt(Re) [-]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Setup:
+    """A flow to be simulated.
+
+    Raises:
+        InvalidDesign: on creation, for values that cannot be or that the grid cannot carry.
+    """
+
+    grid: Grid
+    """The cells."""
+    viscosity: float
+    """Kinematic viscosity of the water [m^2/s]."""
+    density: float = 1000.0
+    """Density of the water [kg/m^3]."""
+    stream: tuple[float, float] | Callable[[float], tuple[float, float]] = (0.0, 0.0)
+    """Velocity of the far water, fixed or for every time [m/s]."""
+    sides: Sides = Sides()
+    """What happens on the sides of the domain."""
+    bodies: tuple[Body | FreeBody, ...] = ()
+    """The bodies in the water."""
+    follow: str | None = None
+    """Name of the body whose centre the grid travels with; None keeps the grid where it is."""
+    follow_axes: tuple[bool, bool] = (True, True)
+    """Whether the grid travels along x and along y."""
+    courant: float = 0.8
+    """Share of a cell that the water may cross in one step [-]."""
+    step: float | None = None
+    """Fixed time step, or None to choose it from ``courant`` [s]."""
+    tolerance: float = 1e-5
+    """Mean divergence left over, in fastest speed per cell; the largest may be ten times that [-]."""
+    precision: Literal["single", "double"] = "single"
+    """Precision of the fields; sums are always double."""
+    coarse: bool = False
+    """Whether a Reynolds number that the grid cannot carry is let through."""
+
+    def __post_init__(self) -> None:
+        for name in ("viscosity", "density", "tolerance"):
+            value = getattr(self, name)
+            if not (isfinite(value) and value > 0):
+                raise InvalidDesign(f"{name} is {value}; a positive number is needed.")
+        if not 0 < self.courant <= 1:
+            raise InvalidDesign(f"courant is {self.courant}; above 1 the time stepping explodes. Give 0 to 1, say 0.8.")
+        if self.step is not None and not self.step > 0:
+            raise InvalidDesign(f"step is {self.step} s; a time step is positive. Give None to let the solver choose.")
+        if self.precision not in ("single", "double"):
+            raise InvalidDesign(f"precision is {self.precision!r}; there is 'single' and 'double'.")
+        if self.precision == "single" and self.tolerance < 5e-7:
+            raise InvalidDesign(
+                f"tolerance {self.tolerance} is below what single precision resolves (5e-7); take precision='double'."
+            )
+        names = [b.name for b in self.bodies]
+        if len(set(names)) != len(names):
+            raise InvalidDesign(f"bodies are named {names}; give each its own name.")
+        if self.follow is not None and self.follow not in names:
+            raise InvalidDesign(f"the grid is to follow {self.follow!r}, and the bodies are named {names}.")
+
+    @property
+    def dtype(self) -> type:
+        """Type of the fields."""
+        return np.float32 if self.precision == "single" else np.float64
+
+    def far(self, time: float) -> tuple[float, float]:
+        """Return the velocity of the far water at a time [m/s]."""
+        return self.stream(time) if callable(self.stream) else self.stream
+
+    def check(self) -> dict[str, float]:
+        """Return, per body, the share of its length that is too thin for the grid.
+
+        Raises:
+            InvalidDesign: a body outside the domain, too thin everywhere, or a Reynolds number that the grid
+                cannot carry.
+        """
+        thin = {}
+        for body in self.bodies:
+            pose = body.pose(0.0) if isinstance(body, Body) else Swimmer.of(body).pose(body.shape.mass(0.0))
+            window_of(body, pose, self.grid, 0.0)
+            thin[body.name] = thin_share(body, self.grid, 0.0)
+            self._check_layer(body, pose)
+        return thin
+
+    def _check_layer(self, body: Body | FreeBody, pose: Pose) -> None:
+        x0, x1, y0, y1 = body.shape.bounds(0.0, pose)
+        length = max(x1 - x0, y1 - y0)
+        markers = body.shape.markers(0.0, pose, self.grid.cell)
+        sx, sy = self.far(0.0)
+        speed = float(np.hypot(markers.velocity_x - sx, markers.velocity_y - sy).max())
+        reynolds = speed * length / self.viscosity
+        if reynolds > 1 and length / sqrt(reynolds) < LAYER_CELLS * self.grid.cell and not self.coarse:
+            raise InvalidDesign(
+                f"at Reynolds number {reynolds:.4g} the boundary layer of {body.name} is {length / sqrt(reynolds):.3g} m "
+                f"thin, and a cell is {self.grid.cell:.3g} m; take cells of at most "
+                f"{length / sqrt(reynolds) / LAYER_CELLS:.3g} m, a lower Reynolds number, or coarse=True to go on anyway."
+            )

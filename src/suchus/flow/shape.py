@@ -1,0 +1,248 @@
+"""Shapes of bodies: a signed distance, a normal and a velocity at points, and markers along the outline.
+
+Distances are negative inside; normals point into the water.
+"""
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from math import isfinite
+
+import numpy as np
+
+from suchus.errors import InvalidDesign
+from suchus.flow.mass import Mass, of_outline
+from suchus.flow.pose import Pose
+
+
+@dataclass(slots=True)
+class Field:
+    """What a body says about the points of a window, each array of shape (y, x)."""
+
+    distance: np.ndarray
+    """Signed distance to the surface, negative inside [m]."""
+    normal_x: np.ndarray
+    """Outward normal along x [-]."""
+    normal_y: np.ndarray
+    """Outward normal along y [-]."""
+    velocity_x: np.ndarray
+    """Velocity of the body, carried on smoothly a few cells into the water, along x [m/s]."""
+    velocity_y: np.ndarray
+    """The same along y [m/s]."""
+
+
+@dataclass(slots=True)
+class Markers:
+    """Points along the outline, counter-clockwise; arrays of shape (marker,)."""
+
+    x: np.ndarray
+    """Position along x [m]."""
+    y: np.ndarray
+    """Position along y [m]."""
+    normal_x: np.ndarray
+    """Outward normal along x [-]."""
+    normal_y: np.ndarray
+    """Outward normal along y [-]."""
+    length: np.ndarray
+    """Length of outline that the marker stands for [m]."""
+    velocity_x: np.ndarray
+    """Velocity of the surface along x [m/s]."""
+    velocity_y: np.ndarray
+    """Velocity of the surface along y [m/s]."""
+    spin: np.ndarray
+    """Rate at which the surface there turns [rad/s]."""
+    station: np.ndarray
+    """Where along the body: arc length of the midline, or of the outline where there is no midline [m]."""
+    side: np.ndarray
+    """+1 on the left of the midline, -1 on the right, 0 where there is no midline [-]."""
+
+
+class Shape(ABC):
+    """A body's shape in its own frame; it may change with time."""
+
+    @abstractmethod
+    def measure(self, x: np.ndarray, y: np.ndarray, time: float, pose: Pose, reach: float) -> Field:
+        """Return the field on the points of a window, axes ``x`` (nx,) and ``y`` (ny,) [m].
+
+        Only distances below ``reach`` [m] need be exact.
+        """
+
+    @abstractmethod
+    def markers(self, time: float, pose: Pose, spacing: float) -> Markers:
+        """Return markers along the outline, about ``spacing`` [m] apart."""
+
+    @abstractmethod
+    def bounds(self, time: float, pose: Pose) -> tuple[float, float, float, float]:
+        """Return the smallest rectangle around the body: x0, x1, y0, y1 [m]."""
+
+    @abstractmethod
+    def thickness(self, time: float) -> tuple[np.ndarray, np.ndarray]:
+        """Return stations along the body and its thickness there, two arrays of one shape [m]."""
+
+    @abstractmethod
+    def mass(self, time: float) -> Mass:
+        """Return area, centre and moments in the body's own frame."""
+
+    @property
+    def rigid(self) -> bool:
+        """Whether the shape never changes."""
+        return True
+
+
+def positive(name: str, value: float) -> None:
+    """Refuse a length that is not a positive number.
+
+    Raises:
+        InvalidDesign: naming the value.
+    """
+    if not (isfinite(value) and value > 0):
+        raise InvalidDesign(f"{name} is {value} m; a positive length is needed.")
+
+
+class Solid(Shape):
+    """A rigid shape: says its distance and outline in its own frame, and the pose does the rest."""
+
+    @abstractmethod
+    def distance(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return signed distance and outward normal at points of the body's frame [m]."""
+
+    @abstractmethod
+    def outline(self, count: int) -> tuple[np.ndarray, np.ndarray]:
+        """Return ``count`` points around the outline, counter-clockwise, about evenly spaced [m]."""
+
+    def measure(self, x: np.ndarray, y: np.ndarray, time: float, pose: Pose, reach: float) -> Field:
+        """Return the field on the points of a window."""
+        wx, wy = np.meshgrid(x, y)
+        d, nx, ny = self.distance(*pose.to_body(wx, wy))
+        return Field(d, *pose.turn(nx, ny), *(np.broadcast_to(v, d.shape) for v in pose.carry(wx, wy)))
+
+    def markers(self, time: float, pose: Pose, spacing: float) -> Markers:
+        """Return the middles of the outline's edges."""
+        rough = np.stack(self.outline(256))
+        around = float(np.hypot(*(np.roll(rough, -1, axis=1) - rough)).sum())
+        px, py = self.outline(max(32, int(np.ceil(around / spacing))))
+        qx, qy = np.roll(px, -1), np.roll(py, -1)
+        length = np.hypot(qx - px, qy - py)
+        nx, ny = pose.turn((qy - py) / length, (px - qx) / length)
+        mx, my = pose.to_world((px + qx) / 2, (py + qy) / 2)
+        vx, vy = (np.broadcast_to(v, mx.shape) for v in pose.carry(mx, my))
+        station = np.cumsum(length) - length / 2
+        zero = np.zeros_like(mx)
+        return Markers(mx, my, nx, ny, length, vx, vy, np.full_like(mx, pose.spin), station, zero)
+
+    def bounds(self, time: float, pose: Pose) -> tuple[float, float, float, float]:
+        """Return the rectangle around the outline."""
+        x, y = pose.to_world(*self.outline(256))
+        return float(x.min()), float(x.max()), float(y.min()), float(y.max())
+
+    def mass(self, time: float) -> Mass:
+        """Return area, centre and moments of the outline's polygon."""
+        return of_outline(*self.outline(2048))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Cylinder(Solid):
+    """A circle."""
+
+    diameter: float
+    """Diameter [m]."""
+
+    def __post_init__(self) -> None:
+        positive("diameter", self.diameter)
+
+    def distance(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return signed distance and outward normal."""
+        r = np.maximum(np.hypot(x, y), 1e-12 * self.diameter)
+        return r - self.diameter / 2, x / r, y / r
+
+    def outline(self, count: int) -> tuple[np.ndarray, np.ndarray]:
+        """Return points on the circle; their polygon has the circle's own area and length to second order."""
+        turn = np.linspace(0, 2 * np.pi, count, endpoint=False)
+        return self.diameter / 2 * np.cos(turn), self.diameter / 2 * np.sin(turn)
+
+    def thickness(self, time: float) -> tuple[np.ndarray, np.ndarray]:
+        """Return the diameter."""
+        return np.zeros(1), np.full(1, self.diameter)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Ellipse(Solid):
+    """An ellipse with its axes along the body's axes."""
+
+    length: float
+    """Full axis along the body's x [m]."""
+    width: float
+    """Full axis along the body's y [m]."""
+
+    def __post_init__(self) -> None:
+        positive("length", self.length)
+        positive("width", self.width)
+
+    def distance(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return signed distance and outward normal, by Newton's method on the foot point's angle."""
+        a, b = self.length / 2, self.width / 2
+        px, py = np.abs(x), np.abs(y)
+        cos, sin = np.full_like(px, 2**-0.5), np.full_like(px, 2**-0.5)
+        for _ in range(5):  # each step replaces the ellipse by its circle of curvature: safe from every start
+            ex, ey = (a * a - b * b) * cos**3 / a, (b * b - a * a) * sin**3 / b
+            r = np.hypot(a * cos - ex, b * sin - ey)
+            q = np.maximum(np.hypot(px - ex, py - ey), 1e-300)
+            cos = np.clip(((px - ex) * r / q + ex) / a, 0, 1)
+            sin = np.clip(((py - ey) * r / q + ey) / b, 0, 1)
+            size = np.maximum(np.hypot(cos, sin), 1e-300)
+            cos, sin = cos / size, sin / size
+        nx, ny = cos / a, sin / b
+        size = np.hypot(nx, ny)
+        nx, ny = nx / size, ny / size
+        d = (px - a * cos) * nx + (py - b * sin) * ny
+        return d, np.copysign(nx, x), np.copysign(ny, y)
+
+    def outline(self, count: int) -> tuple[np.ndarray, np.ndarray]:
+        """Return points around the ellipse, evenly spaced along it."""
+        fine = np.linspace(0, 2 * np.pi, 8 * count + 1)
+        x, y = self.length / 2 * np.cos(fine), self.width / 2 * np.sin(fine)
+        arc = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x), np.diff(y)))])
+        turn = np.interp(np.linspace(0, arc[-1], count, endpoint=False), arc, fine)
+        return self.length / 2 * np.cos(turn), self.width / 2 * np.sin(turn)
+
+    def thickness(self, time: float) -> tuple[np.ndarray, np.ndarray]:
+        """Return the smaller axis."""
+        return np.zeros(1), np.full(1, min(self.length, self.width))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Plate(Solid):
+    """A flat plate along the body's x with round ends, its middle at the origin."""
+
+    length: float
+    """Length over all [m]."""
+    thick: float
+    """Thickness [m]."""
+
+    def __post_init__(self) -> None:
+        positive("length", self.length)
+        positive("thick", self.thick)
+        if self.thick > self.length:
+            raise InvalidDesign(f"a plate {self.thick} m thick is longer than thick; give a length of at least that.")
+
+    def distance(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return signed distance and outward normal."""
+        half = (self.length - self.thick) / 2
+        dx = x - np.clip(x, -half, half)
+        r = np.hypot(dx, y)
+        safe = np.maximum(r, 1e-12 * self.length)
+        flat = r <= safe * 1e-6
+        return r - self.thick / 2, dx / safe, np.where(flat, 1.0, y / safe)
+
+    def outline(self, count: int) -> tuple[np.ndarray, np.ndarray]:
+        """Return points around the plate, evenly spaced."""
+        r, half = self.thick / 2, (self.length - self.thick) / 2
+        turn, flat = np.pi * r, 2 * half
+        s = np.linspace(0, 2 * (turn + flat), count, endpoint=False)
+        lap, second = s % (turn + flat), np.where(s >= turn + flat, -1.0, 1.0)
+        angle = np.minimum(lap / r, np.pi) - np.pi / 2
+        along = np.maximum(lap - turn, 0.0)
+        return second * (half + r * np.cos(angle) - along), second * r * np.sin(angle)
+
+    def thickness(self, time: float) -> tuple[np.ndarray, np.ndarray]:
+        """Return the thickness."""
+        return np.zeros(1), np.full(1, self.thick)

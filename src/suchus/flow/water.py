@@ -1,0 +1,209 @@
+"""The water's fields and one time step: predict, project, correct, project.
+
+All arrays have the padded shape (ny + 2 PAD, nx + 2 PAD), rows contiguous. Inside, lengths are in cells: a time
+step is ``dt / cell``, a viscosity ``viscosity / cell``, a pressure that over the density [m^2/s^2].
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from suchus.errors import NotConverged
+from suchus.flow import multigrid, poisson
+from suchus.flow.advect import advance
+from suchus.flow.body import Body, Window, measure_all, unite, window_of
+from suchus.flow.border import Border
+from suchus.flow.compiled import PAD
+from suchus.flow.grid import Grid
+from suchus.flow.immerse import fill, fill_source, immerse
+from suchus.flow.pose import Pose
+from suchus.flow.project import correct, fastest, residual
+from suchus.flow.sides import Sides
+
+MOST_CYCLES = 60
+"""Iterations of the pressure solver before it counts as stuck [-]."""
+
+
+@dataclass(slots=True)
+class Solve:
+    """How one pressure solve went."""
+
+    cycles: int
+    """Iterations [-]."""
+    mean: float
+    """Mean divergence left over [m/s per cell]."""
+    largest: float
+    """Largest divergence left over [m/s per cell]."""
+
+
+class Water:
+    """Velocity and pressure on a grid, and the bodies as the equations see them.
+
+    Attributes:
+        u, v: velocity on the left and lower faces [m/s].
+        p: pressure over density at the cell centres [m^2/s^2].
+        window: padded cell indices around the bodies.
+        solves: how the last two pressure solves went.
+    """
+
+    def __init__(self, grid: Grid, sides: Sides, viscosity: float, dtype: type) -> None:
+        nx, ny = grid.cells
+        shape = (ny + 2 * PAD, nx + 2 * PAD)
+        self.grid, self.sides, self.dtype = grid, sides, dtype
+        self.nu = dtype(viscosity / grid.cell)
+        self.border = Border.of(sides, grid, dtype)
+        # Fluid: now, predicted, corrected; pressure
+        self.u, self.v, self._u1, self._v1, self._u2, self._v2, self.p = (np.zeros(shape, dtype) for _ in range(7))
+        # Body: its velocity, kernel moments, own divergence; and the fluid's bare update in its window
+        self.bu, self.bv, self._mu1xx, self._mu1xy, self._mu1yx, self._mu1yy = (np.zeros(shape, dtype) for _ in range(6))
+        self._source, self._raw_u, self._raw_v = (np.zeros(shape, dtype) for _ in range(3))
+        # Pressure solver
+        self._x, self._d, self._q = (np.zeros(shape, dtype) for _ in range(3))
+        self._layout = poisson.levels(ny, nx)
+        self._store = poisson.make_store(self._layout, dtype)
+        self._sums = np.zeros((shape[0], 3))
+        self.window: Window = (PAD, PAD, PAD, PAD)
+        self.solves: list[Solve] = []
+
+    def _part(self, kind: int) -> np.ndarray:
+        return multigrid.level(self._store, self._layout, kind, 0)
+
+    @property
+    def mu0(self) -> tuple[np.ndarray, np.ndarray]:
+        """Share of the fluid on the left and lower faces [-]."""
+        return self._part(multigrid.CX), self._part(multigrid.CY)
+
+    @property
+    def arrays(self) -> float:
+        """Memory of all fields in arrays of the padded grid [-]."""
+        own = [a for a in vars(self).values() if isinstance(a, np.ndarray) and a.dtype == self.dtype]
+        return sum(a.size for a in own) / self.u.size
+
+    def place(self, bodies: list[Body], poses: list[Pose], time: float) -> None:
+        """Write the bodies into the equations as they are at a time [s].
+
+        Raises:
+            InvalidDesign: a body reaches out of the domain.
+        """
+        old = self.window
+        new = unite([window_of(b, p, self.grid, time) for b, p in zip(bodies, poses, strict=True)])
+        self._clear(old)
+        self.window = new
+        poisson.place_window(self._layout, unite([w for w in (old, new) if w[1] > w[0]]))
+        if new[1] > new[0]:
+            self._measure(bodies, poses, time)
+        multigrid.coarsen(self._store, self._layout)
+        poisson.place_window(self._layout, new)
+
+    def _clear(self, window: Window) -> None:
+        j0, j1, i0, i1 = window
+        here = np.s_[j0 : j1 + 1, i0 : i1 + 1]
+        for mu0 in self.mu0:
+            mu0[here] = 1
+        for a in (self.bu, self.bv, self._mu1xx, self._mu1xy, self._mu1yx, self._mu1yy, self._source):
+            a[here] = 0
+
+    def _measure(self, bodies: list[Body], poses: list[Pose], time: float) -> None:
+        j0, j1, i0, i1 = self.window
+        h, grid = self.grid.cell, self.grid
+        here = np.s_[j0 : j1 + 1, i0 : i1 + 1]
+        x_face, y_face = grid.faces(i0, i1 + 1, 0), grid.faces(j0, j1 + 1, 1)
+        x_mid, y_mid = grid.centres(i0, i1 + 1, 0), grid.centres(j0, j1 + 1, 1)
+        mu0_u, mu0_v = self.mu0
+        f = measure_all(bodies, poses, x_face, y_mid, time, h)
+        fill(f.distance / h, f.normal_x, f.normal_y, mu0_u[here], self._mu1xx[here], self._mu1xy[here])
+        self.bu[here] = f.velocity_x
+        f = measure_all(bodies, poses, x_mid, y_face, time, h)
+        fill(f.distance / h, f.normal_x, f.normal_y, mu0_v[here], self._mu1yx[here], self._mu1yy[here])
+        self.bv[here] = f.velocity_y
+        fill_source(self._source, self.bu, self.bv, mu0_u, mu0_v, np.array(self.window))
+
+    def fastest(self) -> float:
+        """Return the largest |u| + |v| [m/s]."""
+        fastest(self.u, self.v, self._sums)
+        return float(self._sums[PAD:-PAD, 0].max())
+
+    def step(self, dt: float, stream: tuple[float, float], push: tuple[float, float], limits: tuple[float, float]) -> None:
+        """Advance velocity and pressure by ``dt`` [s] around the bodies placed at its end.
+
+        Args:
+            dt: time step [s].
+            stream: velocity of the far water at the end of the step [m/s].
+            push: uniform acceleration of the water [m/s^2].
+            limits: mean and largest divergence that may be left [m/s per cell].
+
+        On return the velocity is divergence-free to ``limits`` outside the bodies and fits the sides.
+        """
+        real, h = self.dtype, self.grid.cell
+        step = real(dt / h)
+        force = (real(push[0] * h), real(push[1] * h))
+        self.border.prepare(self.u, self.v, float(step), stream)
+        self.solves = []
+        now, one, two = (self.u, self.v), (self._u1, self._v1), (self._u2, self._v2)
+        self._advance(one, now, now, now, step, force, real(0))
+        self._project(one, step, limits)
+        self._advance(two, one, now, one, step, force, real(0.5))
+        self._project(two, real(0.5) * step, limits)
+        (self.u, self.v), (self._u2, self._v2) = two, now
+
+    def _advance(self, out, blend, base, rate, dt, push, keep) -> None:  # type: ignore[no-untyped-def]
+        window = np.array(self.window)
+        repeats = self.sides.repeats
+        advance(
+            *out, *blend, *base, *rate, self.p, self._raw_u, self._raw_v, window, repeats, dt, self.nu, push, keep
+        )  # fmt: skip
+        if window[1] > window[0]:
+            mu0_u, mu0_v = self.mu0
+            immerse(
+                out[0], blend[0], self._raw_u, self.bu, mu0_u, self._mu1xx, self._mu1xy, self.p, 0, window, dt, keep
+            )
+            immerse(
+                out[1], blend[1], self._raw_v, self.bv, mu0_v, self._mu1yx, self._mu1yy, self.p, 1, window, dt, keep
+            )
+        self.border.fill(*out)
+
+    def _project(self, velocity: tuple[np.ndarray, np.ndarray], dt: float, limits: tuple[float, float]) -> None:
+        window = np.array(self.window)
+        r = self._part(multigrid.B)
+        residual(r, *velocity, self._source, self._part(multigrid.DINV), window, self.sides.repeats, self._sums)
+        sums = self._sums[PAD:-PAD]
+        cells = self.grid.cells[0] * self.grid.cells[1]
+        went = Solve(0, float(sums[:, 1].sum()) / cells, float(sums[:, 2].max()))
+        if went.mean > limits[0] or went.largest > limits[1]:
+            went = self._solve(limits)
+            gain = self.dtype(1 / dt)
+            correct(*velocity, self.p, self._x, *self.mu0, window, gain)
+            for seal, axis in ((self.p, 0), (self.p.T, 1)):
+                multigrid.seal_ends(seal, self.sides.repeats[1 - axis])
+            self.border.fill(*velocity)
+        self.solves.append(went)
+
+    def potential(self, u: np.ndarray, v: np.ndarray, limit: float) -> np.ndarray:
+        """Return the pressure that answers a body acceleration given on the faces of the window.
+
+        The result is a work array: use it before the next call.
+
+        Raises:
+            NotConverged: the pressure solver got stuck.
+        """
+        j0, j1, i0, i1 = self.window
+        r = self._part(multigrid.B)
+        r[:] = 0
+        r[j0:j1, i0:i1] = (u[:-1, :-1] - u[:-1, 1:]) + (v[:-1, :-1] - v[1:, :-1])
+        r[self._part(multigrid.DINV) == 0] = 0
+        self._solve((limit, 10 * limit))
+        return self._x
+
+    def _solve(self, limits: tuple[float, float]) -> Solve:
+        went = Solve(
+            *poisson.solve(
+                self._x, self._d, self._q, self._store, self._layout, self.sides.repeats, self._sums, *limits, MOST_CYCLES
+            )
+        )
+        if not (went.mean <= 10 * limits[0] and went.largest <= 10 * limits[1]):
+            raise NotConverged(
+                f"the pressure solver stopped after {went.cycles} cycles with a divergence of {went.mean:.2g} m/s per "
+                f"cell on the average and {went.largest:.2g} at most, where {limits[0]:.2g} and {limits[1]:.2g} are "
+                f"allowed; take a larger tolerance, or precision='double'."
+            )
+        return went
