@@ -68,7 +68,7 @@ def show_outcome(question: contract.Experiment, done: Done) -> None:
             table.add_row(
                 escape(f"{claim.quantity} ({claim.where})"),
                 quantity(claim.value, claim.unit, 3),
-                quantity(verdict.measured, claim.unit, 3),
+                quantity(verdict.measured, claim.unit, 3) if claim.value is not None else "",
                 f"[{_COLOURS[verdict.verdict]}]{verdict.verdict}[/]",
             )
         console.print(table)

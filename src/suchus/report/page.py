@@ -80,8 +80,8 @@ def _content(results: Sequence[Result], failures: Sequence[Failure]) -> dict[str
 
 
 def _place(result: Result, order: Mapping[str, int]) -> int:
-    """Where the article comes to the first claim of a result; what claims nothing comes last."""
-    return min((order.get(v["claim"], len(order)) for v in result.told["verdicts"]), default=len(order))
+    """Where the article comes to the last claim of a result, its main one; what claims nothing comes last."""
+    return max((order.get(v["claim"], len(order)) for v in result.told["verdicts"]), default=len(order))
 
 
 def _drawing() -> dict[str, str]:
