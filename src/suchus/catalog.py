@@ -51,7 +51,7 @@ class Catalog(Mapping[str, T], Generic[T]):
                 f"{self._package.replace('.', '/')}/{file} must declare `{self.kind}`, a {cls}, "
                 f"but declares {found}; add it or move the file off the shelf."
             )
-        return thing  # type: ignore[no-any-return]
+        return thing
 
     def beside(self, name: str, attribute: str, default: Any) -> Any:
         """Return what else a module declares, such as the reasons for its numbers, or ``default``."""

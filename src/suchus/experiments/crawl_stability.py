@@ -115,12 +115,10 @@ class CrawlStability(Experiment):
         names = ("coordinated", "tail_drag", "limbs_only")
         runs = []
         for stroke, bend, lift, duty, grip in low + draws * (high - low):
-            legs = {"stroke": float(stroke), "lift": float(lift), "duty_factor": float(duty)}
-            gaits = (
-                replace(self.coordinated, **legs, trunk_bend=float(bend)),
-                replace(self.tail_drag, **legs),
-                replace(self.limbs_only, **legs),
-            )
+            gaits = [
+                replace(gait, stroke=float(stroke), lift=float(lift), duty_factor=float(duty))
+                for gait in (replace(self.coordinated, trunk_bend=float(bend)), self.tail_drag, self.limbs_only)
+            ]
             runs += [Run(robot=self.robot, gait=gait, ground=Ground(grip=float(grip))) for gait in gaits]
         record = simulate(runs, duration=end, timestep=_COARSE, every=5, progress=progress)
         shape = (self.variations, len(names))
@@ -182,16 +180,16 @@ class CrawlStability(Experiment):
                 max(off["coordinated"]) / 1000,
                 f"At the three times the projected centre of mass is {min(off['coordinated']):.0f} to "
                 f"{max(off['coordinated']):.0f} mm from the line of the two supporting feet with spine and tail and "
-                f"{min(off['limbs_only']):.0f} to {max(off['limbs_only']):.0f} mm with limbs only, and neither falls: a "
-                f"swing foot or the tail catches the body. On the line would be within {1000 * _ON_LINE:.0f} mm.",
+                f"{min(off['limbs_only']):.0f} to {max(off['limbs_only']):.0f} mm with limbs only, and neither falls: "
+                f"a swing foot or the tail catches the body. On the line would be within {1000 * _ON_LINE:.0f} mm.",
                 holds=max(off["coordinated"]) < 1000 * _ON_LINE,
             ),
             judge(
                 "tilt_limbs_only",
                 float(np.radians(lean["limbs_only"][0])),
-                f"With limbs only the pelvis leans by {', '.join(f'{x:.1f}' for x in lean['limbs_only'])} degrees at the "
-                f"three times, with spine and tail by {', '.join(f'{x:.1f}' for x in lean['coordinated'])}; its centre of "
-                f"mass is {off['limbs_only'][0]:.0f} mm off the supporting line at the first.",
+                f"The pelvis leans by {_listed(lean['limbs_only'])} degrees at the three times with limbs only, by "
+                f"{_listed(lean['coordinated'])} with spine and tail; without them the centre of mass is "
+                f"{off['limbs_only'][0]:.0f} mm off the supporting line at the first.",
                 holds=bool((lean["limbs_only"] > lean["coordinated"]).all() and off["limbs_only"][0] > 1000 * _ON_LINE),
             ),
             judge(
@@ -221,6 +219,10 @@ class CrawlStability(Experiment):
         }
 
 
+def _listed(numbers: np.ndarray) -> str:
+    return ", ".join(f"{number:.1f}" for number in numbers)
+
+
 def _lean(record: xr.Dataset, time: float) -> float:
     """Return the angle between the pelvis's vertical and the world's at one time [rad]."""
     lean = tilt(record.sel(time=[time], method="nearest"))
@@ -230,7 +232,8 @@ def _lean(record: xr.Dataset, time: float) -> float:
 def _sine_share(record: xr.Dataset) -> float:
     """Return how much of the trunk's sensed bend a sine at the gait's frequency explains [-]."""
     part = record.sel(time=slice(START, None))
-    bend = sum(part.servo_angle.sel(servo=f"spine_yaw_{i}") for i in (1, 2, 3)).values  # type: ignore[union-attr]
+    yaws = [part.servo_angle.sel(servo=f"spine_yaw_{i}").values for i in (1, 2, 3)]
+    bend = np.sum(yaws, axis=0)
     turn = 2 * np.pi * (part.time.values - START) / float(record.period)
     terms = np.column_stack([np.ones_like(turn), np.cos(turn), np.sin(turn)])
     left = bend - terms @ np.linalg.lstsq(terms, bend, rcond=None)[0]

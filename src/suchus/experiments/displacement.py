@@ -38,9 +38,9 @@ class Displacement(Experiment):
     claims = ("displacement_coordinated", "displacement_limbs_only", "displacement_ratio", "bending_lengthens_stride")
     decides = (
         "The legs' stroke and the bend of the trunk decide, and both are free: at a fixed trunk bend the ratio falls "
-        "from beyond ten at small strokes to below two at long ones. With the shown pair both displacements come out as "
-        "printed; a designer who wants to know what a spine is worth should read the map. Bending late against the legs "
-        "costs its gain, and bending in antiphase walks the robot backwards. Friction of the feet hardly matters."
+        "from beyond ten at small strokes to below two at long ones. With the shown pair both displacements come out "
+        "as printed; a designer who wants to know what a spine is worth should read the map. Bending late against the "
+        "legs costs its gain, and bending in antiphase walks the robot backwards. Friction of the feet hardly matters."
     )
 
     robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
@@ -160,7 +160,7 @@ class Displacement(Experiment):
     def _verdicts(self, record: xr.Dataset) -> tuple[Any, ...]:
         way, ratio = _forward(record).values, _ratio(record)
         chosen = (
-            f"Leg stroke ({1000 * self.gait.stroke:.0f} mm) and trunk bend ({degrees(self.gait.trunk_bend):.0f} degrees) "
+            f"Leg stroke ({1000 * self.gait.stroke:.0f} mm) and trunk bend ({degrees(self.gait.trunk_bend):.0f} deg) "
             "are free in the article and were chosen to give its two displacements."
         )
         return (
@@ -177,7 +177,7 @@ class Displacement(Experiment):
             judge(
                 "bending_lengthens_stride",
                 float(way[0] - way[1]),
-                "At the same stroke of the legs the girdles carry the feet farther; nothing else was changed but the tail.",
+                "At the same stroke of the legs the girdles carry the feet farther; only the tail differs besides.",
                 holds=bool(way[0] > way[1]),
             ),
         )
@@ -216,8 +216,8 @@ class Displacement(Experiment):
             ax.set_title("the spine's phase")
         return captioned(
             figure,
-            "What decides the ratio. Left: way with spine and tail over way with limbs only; the star is the crawl of the "
-            "other figure, the orange line the article's ratio. Right: bending late costs the gain, half a cycle late "
+            "What decides the ratio. Left: way with spine and tail over way with limbs only; the star is the crawl of "
+            "the other figure, the orange line the article's ratio. Right: bending late costs the gain, half a cycle late "
             "walks backwards.",
         )
 

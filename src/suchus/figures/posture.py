@@ -12,6 +12,7 @@ from suchus.design import LEGS, Crocodile
 from suchus.figures.style import COLOURS
 from suchus.kinematics import body, spine
 from suchus.kinematics import leg as leg_kinematics
+from suchus.kinematics.links import LegLinks
 from suchus.metrics import loaded, support_polygon
 
 View = Literal["above", "side"]
@@ -74,7 +75,12 @@ def _front(robot: Crocodile, angles: np.ndarray) -> np.ndarray:
 
 def _leg(robot: Crocodile, name: str, angles: np.ndarray) -> list[np.ndarray]:
     leg = robot.leg(name)
-    bones = [_Bone(0.0, 0.0, 0.0), _Bone(leg.hip_offset, 0.0, 0.0), _Bone(leg.hip_offset, leg.femur, 0.0), leg]
+    bones: list[LegLinks] = [
+        _Bone(0.0, 0.0, 0.0),
+        _Bone(leg.hip_offset, 0.0, 0.0),
+        _Bone(leg.hip_offset, leg.femur, 0.0),
+        leg,
+    ]
     return [body.from_leg_frame(leg_kinematics.forward(bone, angles), name) for bone in bones]
 
 
