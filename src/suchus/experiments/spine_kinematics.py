@@ -34,7 +34,7 @@ class SpineKinematics(Experiment):
 
     robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot whose spine is examined."""
-    postures: int = 20_000
+    postures: int = 100_000
     """Number of random postures [-]."""
     grid: int = 90
     """Cells along the longer side of the maps [-]."""
@@ -47,8 +47,10 @@ class SpineKinematics(Experiment):
 
     def run(self, progress: Progress = silent) -> Outcome:
         """Invert random postures, compare them with (15), and map the workspace."""
-        if self.postures < 1:
-            raise InvalidDesign(f"spine_kinematics.postures is {self.postures}; at least 1 is needed.")
+        if self.postures < 1 or self.grid < 2:
+            raise InvalidDesign(
+                f"spine_kinematics has {self.postures} postures and a grid of {self.grid}; at least 1 and 2 are needed."
+            )
         with stopwatch() as seconds:
             back = self.robot.spine
             angles = _random(back, self.postures, self.seed)
@@ -147,7 +149,7 @@ def _density(x: np.ndarray, y: np.ndarray, cell: float) -> tuple[np.ndarray, np.
 def _workspace(back: Spine, angles: np.ndarray, grid: int) -> xr.Dataset:
     """Map how often joint 5 is where, from above and from the side, and a few postures."""
     x, y, z = spine.forward(back, angles)[:, :3, 3].T
-    cell = float(np.ptp(y)) / grid
+    cell = float(np.ptp(y)) / grid  # [m]
     top, x1, y1 = _density(x, y, cell)
     side, x2, z2 = _density(x, z, cell)
     yaw, pitch = back.yaw_range[1], back.pitch_range[1]
@@ -219,7 +221,7 @@ def _turns(back: Spine) -> xr.Dataset:
 def _family(robot: Crocodile) -> xr.Dataset:
     """Return every posture that brings joint 5 to one point with one azimuth, and the least bent one."""
     back = robot.spine
-    aim = spine.forward(back, np.radians([24.0, -12, 10, -12, 6]))
+    aim = spine.forward(back, np.radians([20.0, 20, -45, 40, -45]))
     target, azimuth = aim[:3, 3], float(_azimuth(aim))
     best = spine.least_bending(back, target, azimuth)
     first = np.linspace(-pi / 2, pi / 2, 721)

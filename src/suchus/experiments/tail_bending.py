@@ -18,7 +18,7 @@ SMALL = 0.05
 """A neglected term below this share of what is kept counts as small [-]."""
 TAUT = 1e-4
 """Slack below this, a tenth of a millimetre, would not show on a real cord [m]."""
-SHAPES = tuple(pi * i / 4 for i in range(5))
+SHAPES = (0.0, pi / 2, pi)
 """Bends at which the tail is drawn [rad]."""
 
 

@@ -1,17 +1,22 @@
 """Pictures of legs and spine: where they reach, and what the printed formulas do instead."""
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
+from matplotlib.patheffects import withStroke
 
 from suchus.figures.style import COLOURS, LINES, SEQUENTIAL, captioned, panels, styled
 
 _MM = 1000.0
 _OURS, _PRINTED, _ALARM = COLOURS["ours"], COLOURS["printed"], COLOURS["alarm"]
 _EXACT = 1e-9  # [m]
+_OUTLINE = withStroke(linewidth=4.5, foreground="#222222")
+_LIMB: dict[str, Any] = {"linewidth": 2.6, "markersize": 4.5, "path_effects": [_OUTLINE]}
 
 
 def leg_inverse(record: xr.Dataset) -> Figure:
@@ -36,7 +41,7 @@ def leg_inverse(record: xr.Dataset) -> Figure:
         right.stairs(100 * record.share_ours.values[:-1], edges, color=_OURS, linewidth=1.8)
         right.set_xscale("log")
         right.set_xlim(1e-15, 1e3)
-        right.set_xticks([1e-15, 1e-12, 1e-9, 1e-6, 1e-3, 1], minor=False)
+        right.set_xticks([1e-15, 1e-10, 1e-5, 1], minor=False)
         right.set_xlabel("foot lands off by [mm]")
         right.set_ylabel("share of the points [%]")
         top = 100 * float(max(record.share_printed.max(), record.share_ours.max()))
@@ -62,7 +67,7 @@ def _section_axes(ax: Axes, title: str) -> None:
 def leg_workspace(record: xr.Dataset) -> Figure:
     """Return where the foot reaches within the joints' limits, with three postures."""
     with styled(axes__grid=False):
-        figure, axes = panels(1, 2, height=4.1)
+        figure, axes = panels(1, 2, height=3.7)
         views = (("dexterity_section", "down", "from the front"), ("dexterity_top", "ahead", "from above"))
         for ax, (name, up, title) in zip(axes[0], views, strict=True):
             mesh = ax.pcolormesh(
@@ -70,21 +75,23 @@ def leg_workspace(record: xr.Dataset) -> Figure:
             )
             _leg_reach(ax, record, record.attrs["floor"] if up == "ahead" else 0.0)
             _section_axes(ax, title)
-            for colour, posture in zip(("#FFFFFF", "#F4C27A", "#F08A5D"), record.posture.values, strict=True):
+            drawn = list(zip(("#FFFFFF", "#F7B267", "#F25C54"), record.posture.values, strict=True))
+            for colour, posture in drawn[: 1 if up == "ahead" else None]:
                 points = _MM * record.posture_points.sel(posture=posture, axis=["outward", up])
-                ax.plot(*points.values.T, "-o", color=colour, linewidth=2.6, markersize=4.5, label=str(posture))
+                ax.plot(*points.values.T, "-o", color=colour, label=str(posture), **_LIMB)
+            ax.set_facecolor("#D9DDE1")
         axes[0, 1].invert_yaxis()
         axes[0, 1].set_ylabel("ahead of the hip [mm]")
         axes[0, 0].axhline(_MM * record.attrs["floor"], color="white", linewidth=0.8, linestyle=":")
         handles, labels = axes[0, 0].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside upper center", ncols=3, facecolor="#57606A", labelcolor="white")
+        figure.legend(handles, labels, loc="outside lower center", ncols=3)
         figure.colorbar(mesh, ax=axes[0].tolist(), label="dexterity, |det J| scaled [-]", shrink=0.75)
     return captioned(
         figure,
-        "Where the hind foot reaches within the joints' limits, from the front (through the hip) and from above (in "
-        "the "
-        "plane on which a sprawled foot stands, dotted). Dark: the leg is near a singularity, straight, folded or with "
-        "the foot on the yaw axis. Circles: the reach without limits. Three postures of the article's Fig. 3.",
+        "Where the hind foot reaches within the joints' limits, from the front (through the hip) and from above "
+        "(in the plane on which a sprawled foot stands, dotted). Grey: out of reach; dashed: the reach without "
+        "limits. Dark: the leg is near a singularity, straight, folded or with the foot on the yaw axis. Legs: "
+        "sprawled, half erect and erect.",
     )
 
 
@@ -122,47 +129,42 @@ def leg_misprints(record: xr.Dataset) -> Figure:
         right.set_title("Table I under its labels")
     return captioned(
         figure,
-        "Two misprints of the leg. Left: the knee angle by the printed denominator of (10) agrees where AC equals BC "
-        "and has no value near the hip. Right: fed to (1) under its printed labels, Table I turns the second joint "
-        "into another yaw joint: the foot never leaves the level of the hip.",
+        "Two misprints of the leg. Left: the knee angle by the printed denominator of (10) agrees with ours at "
+        "two distances only and has no value near the hip. Right: fed to (1) under its printed labels, Table I "
+        "turns the second joint into another yaw joint: the foot never leaves the level of the hip.",
     )
 
 
 def spine_workspace(record: xr.Dataset) -> Figure:
     """Return how often joint 5 of a random posture is where, from above and from the side."""
     with styled(axes__grid=False):
-        figure, axes = panels(2, 1, height=6.4, sharex=True, height_ratios=[1.75, 1])
+        figure, axes = panels(1, 2, height=4.3, sharey=True, sharex=True)
         views = (
-            ("density_top", "top_x", "top_y", "y", ("straight", "left", "right"), "from above", "left [mm]"),
-            ("density_side", "side_x", "side_z", "z", ("straight", "up", "down"), "from the left", "up [mm]"),
+            ("density_top", "top_x", "top_y", "y", ("straight", "left", "right"), "from above", "to the left [mm]"),
+            ("density_side", "side_x", "side_z", "z", ("straight", "up", "down"), "from the side", "up [mm]"),
         )
         peak = float(record.density_top.max())
-        for ax, (name, x, y, axis, postures, title, label) in zip(axes[:, 0], views, strict=True):
+        for ax, (name, x, y, axis, postures, title, label) in zip(axes[0], views, strict=True):
             share = record[name].T.where(record[name].T > 0)
-            mesh = ax.pcolormesh(
-                _MM * record[x],
-                _MM * record[y],
-                share,
-                cmap=SEQUENTIAL,
-                norm=LogNorm(peak / 300, peak),
-                rasterized=True,
-            )
+            norm = LogNorm(peak / 100, peak)
+            mesh = ax.pcolormesh(_MM * record[x], _MM * record[y], share, cmap=SEQUENTIAL, norm=norm, rasterized=True)
             for posture in postures:
                 points = _MM * record.posture_points.sel(posture=posture, axis=["x", axis])
-                ax.plot(*points.values.T, "-o", color=_ALARM, linewidth=2.2, markersize=4.5)
-            ax.plot(0, 0, "s", color=_PRINTED, markersize=8)
+                ax.plot(*points.values.T, "-o", color="#F25C54", **_LIMB)
+            ax.plot(0, 0, "s", color=_PRINTED, markersize=9)
+            ax.annotate("pelvis", (0, 0), (-4, 10), textcoords="offset points")
             ax.set_aspect("equal")
             ax.set_ylabel(label)
+            ax.set_xlabel("ahead of the hips [mm]")
             ax.set_title(title)
-        axes[1, 0].set_xlabel("ahead of the hips [mm]")
-        axes[0, 0].annotate("pelvis", (0, 0), (-2, 10), textcoords="offset points", ha="center")
-        figure.colorbar(mesh, ax=axes[:, 0].tolist(), label="share of random postures [-]", shrink=0.6)
+        reach = _MM * float(record.posture_points.max())
+        axes[0, 0].set(xlim=(-0.08 * reach, 1.05 * reach), ylim=(-0.75 * reach, 0.75 * reach))
+        figure.colorbar(mesh, ax=axes[0].tolist(), label="share of random postures [-]", shrink=0.8)
     return captioned(
         figure,
-        "Where the fifth spine joint gets to when every joint turns at random within its limits. Red: straight, and "
-        "bent "
-        "as far as the limits allow to each side, up and down. From straight no joint moves the end forward or back: "
-        "the neutral posture is singular.",
+        "Where the fifth spine joint gets to when every joint turns at random within its limits, yellow where it "
+        "often is. Red: straight, and bent as far as the limits allow to each side, up and down. From straight no "
+        "joint moves the end forward or back: the neutral posture is singular.",
     )
 
 
@@ -178,13 +180,16 @@ def spine_misprint(record: xr.Dataset) -> Figure:
             ends = [_MM * record[f"track_{n}"].sel(bend=bend, method="nearest") for n in ("ours", "printed")]
             left.plot(*[[e.sel(axis=a) for e in ends] for a in "yx"], "o-", color=_ALARM, linewidth=1.3, markersize=4)
         gap = _MM * float(record.track_ours.sel(bend=0)[0] - record.track_printed.sel(bend=0)[0])
-        left.annotate(f"{gap:.0f} mm", (0, 262), (8, -3), textcoords="offset points", color=_ALARM)
+        left.annotate(f"{gap:.0f} mm", (0, 262), (6, -4), textcoords="offset points", color=_ALARM)
         left.set_aspect("equal")
         left.invert_xaxis()
         left.set_xlabel("left [mm]")
         left.set_ylabel("ahead of the hips [mm]")
         left.set_title("joint 5 while the trunk bends")
-        left.legend(loc="lower center")
+        left.plot(0, 0, "s", color=_PRINTED, markersize=8)
+        left.annotate("pelvis", (0, 0), (9, -2), textcoords="offset points")
+        left.set_ylim(-15, 310)
+        left.legend(loc="center", bbox_to_anchor=(0.5, 0.3))
         edges = np.append(record.error, 2 * record.error[-1] - record.error[-2]) * _MM
         right.stairs(100 * record.error_share.values, edges, color=_PRINTED, fill=True, alpha=0.55)
         right.axvline(0, color=_OURS, linewidth=2.4)
@@ -203,18 +208,18 @@ def spine_misprint(record: xr.Dataset) -> Figure:
 def spine_least_bending(record: xr.Dataset) -> Figure:
     """Return the postures that do the same, and how the least bent one is chosen."""
     with styled():
-        figure, axes = panels(1, 2, height=3.7, width_ratios=[1, 1.15])
+        figure, axes = panels(1, 2, height=3.7, width_ratios=[1, 1.1])
         left, right = axes[0]
         for member in record.family_points:
             left.plot(*(_MM * member.sel(axis=["y", "x"])).values.T, "-o", color=COLOURS["neutral"], alpha=0.45, lw=1.3)
         best = _MM * record.best_points.sel(axis=["y", "x"])
         left.plot(*best.values.T, "-o", color=_OURS, linewidth=2.8)
         left.plot(*best.values[-2], "o", color=_ALARM, markersize=9, zorder=5)
-        left.annotate("joint 5", best.values[-2], (9, -5), textcoords="offset points", color=_ALARM)
-        left.annotate("snout", best.values[-1], (9, -3), textcoords="offset points")
+        left.annotate("joint 5", best.values[-2], (-7, 8), textcoords="offset points", color=_ALARM, ha="right")
+        left.annotate("snout", best.values[-1], (0, 9), textcoords="offset points", ha="center")
         left.set_aspect("equal")
         left.invert_xaxis()
-        left.margins(x=0.35)
+        left.margins(x=0.2, y=0.16)
         left.set_xlabel("left [mm]")
         left.set_ylabel("ahead of the hips [mm]")
         left.set_title("same place, same azimuth")

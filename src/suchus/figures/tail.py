@@ -10,31 +10,31 @@ from suchus.figures.style import COLOURS, captioned, panels, styled
 
 _MM = 1000.0
 _OURS, _PRINTED, _ALARM = COLOURS["ours"], COLOURS["printed"], COLOURS["alarm"]
-_PALE = "#CFE3F1"
 
 
 def tail_positions(record: xr.Dataset) -> Figure:
     """Return the tail at several bends, ours with its plates and as printed in (19)."""
     with styled():
-        figure, axes = panels(1, 2, height=3.9, sharex=True, sharey=True)
-        for shape, bend in zip(range(record.sizes["shape"]), record["shape"].values, strict=True):
-            strength = 0.35 + 0.65 * shape / max(record.sizes["shape"] - 1, 1)
-            ours = _MM * record.joints_ours[shape].values
-            end = _MM * record.end[shape].values
-            line = np.vstack([[0, 0], ours, end])
-            axes[0, 0].plot(line[:, 0], line[:, 1], "-o", color=_OURS, alpha=strength, markersize=4, linewidth=1.5)
-            _plates(axes[0, 0], line, record, strength)
-            tip = end + 26 * np.array([np.cos(bend), np.sin(bend)])
-            axes[0, 0].text(*tip, f"{np.degrees(bend):.0f}°", color=_OURS, ha="center", va="center")
-            wrong = np.vstack([[0, 0], _MM * record.joints_printed[shape].values])
-            axes[0, 1].plot(wrong[:, 0], wrong[:, 1], "-o", color=_PRINTED, alpha=strength, markersize=4, linewidth=1.5)
-            away = wrong[-1] + 26 * np.sign(wrong[-1, 0] or 1) * np.array([0.7, 0.7])
-            axes[0, 1].text(*away, f"{np.degrees(bend):.0f}°", color=_PRINTED, ha="center", va="center")
+        figure, axes = panels(1, 2, height=3.7)
+        left, right = axes[0]
+        shades = (COLOURS["water"], COLOURS["ours"], "#083B5C")
+        for i, (bend, shade) in enumerate(zip(record["shape"].values, shades, strict=False)):
+            end, name = _MM * record.end[i].values, f"{np.degrees(bend):.0f}°"
+            line = np.vstack([[0, 0], _MM * record.joints_ours[i].values, end])
+            _plates(left, line, record, shade)
+            left.plot(*line.T, "-o", color=shade, markersize=4, linewidth=1.6)
+            tip = end + 40 * np.array([np.cos(bend), np.sin(bend)])
+            left.text(*tip, name, color=shade, ha="center", va="center", weight="bold")
+            wrong = np.vstack([[0, 0], _MM * record.joints_printed[i].values])
+            right.plot(*wrong.T, "-o", color=shade, markersize=4, linewidth=1.6)
+            right.annotate(name, wrong[-1], (10, -10), textcoords="offset points", color=shade, weight="bold")
         for ax, title in zip(axes[0], ("ours", "as printed, (19)"), strict=True):
             ax.set_aspect("equal")
             ax.set_xlabel("backward [mm]")
             ax.set_title(title)
-        axes[0, 0].set_ylabel("to the right [mm]")
+        left.set_ylabel("to the right [mm]")
+        left.margins(0.12)
+        right.margins(0.12)
     return captioned(
         figure,
         "The cable section of the tail, straight and bent. Left: our joints and end lie in the middle of the gaps "
@@ -43,8 +43,8 @@ def tail_positions(record: xr.Dataset) -> Figure:
     )
 
 
-def _plates(ax: Axes, line: np.ndarray, record: xr.Dataset, strength: float) -> None:
-    """Draw the plates between the joints; the first and the last begin or end at their middles."""
+def _plates(ax: Axes, line: np.ndarray, record: xr.Dataset, shade: str) -> None:
+    """Draw the plates between the joints; line begins in the middle of the first and ends in that of the last."""
     plate, width = _MM * record.attrs["plate"], 1.1 * _MM * record.attrs["cord_spacing"]
     for i in range(len(line) - 1):
         along = (line[i + 1] - line[i]) / np.linalg.norm(line[i + 1] - line[i])
@@ -52,7 +52,7 @@ def _plates(ax: Axes, line: np.ndarray, record: xr.Dataset, strength: float) -> 
         middle = line[0] if i == 0 else line[-1] if i == len(line) - 2 else (line[i] + line[i + 1]) / 2
         ends = [middle - along * plate / 2, middle + along * plate / 2]
         corners = [ends[0] - across, ends[1] - across, ends[1] + across, ends[0] + across]
-        ax.add_patch(Polygon(corners, facecolor=_PALE, edgecolor=_OURS, alpha=0.6 * strength, linewidth=0.8))
+        ax.add_patch(Polygon(corners, facecolor="white", edgecolor=shade, linewidth=1.0))
 
 
 def tail_cord_error(record: xr.Dataset) -> Figure:
@@ -67,11 +67,11 @@ def tail_cord_error(record: xr.Dataset) -> Figure:
         above.text(92, 3.0, "cord let out: (17) gives too much", color=COLOURS["limbs_only"], ha="right")
         above.text(92, -3.4, "cord pulled in: (17) pulls too little", color=_OURS, ha="right")
         above.set_ylabel("error of (17) [%]")
-        below.plot(bend, _MM * record.slack, color=_ALARM)
-        below.text(100, _MM * float(record.slack.max()) * 0.52, "slack [mm]", color=_ALARM, ha="right")
-        below.plot(bend, np.degrees(record.deficit), color=COLOURS["spine"], linestyle=(0, (5, 1.5, 1, 1.5)))
-        below.text(178, 1.3, "bend missing if (18) drives the cord [deg]", color=COLOURS["spine"], ha="right")
-        below.set_ylabel("[mm], [deg]")
+        missing = np.degrees(record.deficit)
+        below.plot(bend, missing, color=COLOURS["spine"], linestyle=(0, (5, 1.5, 1, 1.5)), label="bend missing [deg]")
+        below.plot(bend, _MM * record.slack, color=_ALARM, label="cord hanging loose [mm]")
+        below.legend(loc="upper left")
+        below.set_ylabel("[deg] or [mm]")
         below.set_xlabel("bend of the tail [deg]")
         below.set_xlim(0, float(bend.max()))
         below.set_xticks(np.arange(0, float(bend.max()) + 1, 30))

@@ -1,0 +1,121 @@
+from dataclasses import replace
+from math import pi
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+from suchus.errors import InvalidDesign, OutsideLimits
+from suchus.experiment import Outcome
+from suchus.experiments import leg_kinematics, spine_kinematics, tail_bending
+from suchus.figures import caption, save
+
+MODULES = {m.experiment.name(): m.experiment for m in (leg_kinematics, spine_kinematics, tail_bending)}
+
+
+@pytest.fixture(scope="module")
+def outcomes() -> dict[str, Outcome]:
+    return {name: experiment.quick().run() for name, experiment in MODULES.items()}
+
+
+def values(outcome: Outcome) -> dict[str, float]:
+    return {name: measure.value for name, measure in outcome.measures.items()}
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_every_claim_gets_a_verdict_and_every_number_is_finite(name, outcomes):
+    outcome = outcomes[name]
+    assert tuple(v.claim.key for v in outcome.verdicts) == MODULES[name].claims
+    assert all(np.isfinite(m.value) for m in outcome.measures.values())
+    assert outcome.experiment == name
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_every_variable_has_a_unit(name, outcomes):
+    record = outcomes[name].record
+    numbers = [v for v in {**record.data_vars, **record.coords}.values() if v.dtype.kind == "f"]
+    assert numbers
+    assert [v.name for v in numbers if "units" not in v.attrs] == []
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_same_question_gives_the_same_answer(name, outcomes):
+    again = MODULES[name].quick().run()
+    assert again.record.identical(outcomes[name].record)
+    assert again.measures == outcomes[name].measures
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_figures_are_drawn_with_captions(name, outcomes, tmp_path):
+    figures = MODULES[name].draw(outcomes[name])
+    assert len(figures) == 3
+    for stem, figure in figures.items():
+        assert isinstance(figure, Figure)
+        assert len(caption(figure)) > 60
+        for file in save(figure, tmp_path, stem):
+            assert file.stat().st_size > 3000
+
+
+def test_printed_leg_inverse_holds_in_a_quarter_and_ours_everywhere(outcomes):
+    found = values(outcomes["leg_kinematics"])
+    assert found["printed_inverse_holds"] == pytest.approx(0.25, abs=0.03)
+    assert found["printed_inverse_holds"] + found["printed_inverse_fails"] == 1
+    assert found["round_trip_error"] < 1e-14
+    assert found["reach_near"] == pytest.approx(0.003)
+    assert found["reach_far"] == pytest.approx(0.175)
+    words = {v.claim.key: v.verdict for v in outcomes["leg_kinematics"].verdicts}
+    assert words == {"leg_inverse": "contradicted", "leg_servos": "reproduced", "actuator_count": "reproduced"}
+
+
+def test_spine_is_292_and_a_half_millimetres_long_and_printed_a_link_less(outcomes):
+    found = values(outcomes["spine_kinematics"])
+    assert found["straight_length"] == pytest.approx(0.2925)
+    assert found["straight_length_printed"] == pytest.approx(0.2325)
+    assert 0.038 < found["printed_error_min"] < found["printed_error_max"] <= 0.060
+    assert found["printed_error_mean"] == pytest.approx(0.052, abs=1e-3)
+    assert found["round_trip_error"] < 1e-14
+    assert found["original_angles_found"] == 1
+    assert found["bending_saved_median"] > 0
+    assert found["straight_jacobian_rank"] == 4
+    assert outcomes["spine_kinematics"].verdicts[0].verdict == "contradicted"
+
+
+def test_tail_numbers_are_those_of_the_audit(outcomes):
+    found = values(outcomes["tail_bending"])
+    assert found["cord_toward_90"] == pytest.approx(-0.0399278, abs=1e-7)
+    assert found["cord_away_90"] == pytest.approx(0.0383879, abs=1e-7)
+    assert found["slack_180"] == pytest.approx(0.0061334, abs=1e-7)
+    assert found["error_of_eq_17_toward_180"] == pytest.approx(-0.0380, abs=1e-4)
+    assert found["error_of_eq_17_away_180"] == pytest.approx(0.0411, abs=1e-4)
+    assert np.degrees(found["bend_deficit_max"]) == pytest.approx(6.74, abs=0.01)
+    assert found["printed_last_joint_error_straight"] == pytest.approx(0.226, abs=1e-3)
+    assert found["printed_last_joint_error_max"] == pytest.approx(0.464, abs=1e-3)
+    words = {v.claim.key: v.verdict for v in outcomes["tail_bending"].verdicts}
+    assert words["tail_quadratic_small"] == words["tail_share"] == words["tail_joints"] == "reproduced"
+    assert words["tail_joint_positions"] == words["tail_cords_inextensible"] == "contradicted"
+
+
+def test_neglected_term_is_the_tangent(outcomes):
+    record = outcomes["tail_bending"].record.isel(bend=slice(1, None))
+    kept, exact = record.shortened, -record.toward
+    np.testing.assert_allclose((exact - kept) / kept, record.neglected, rtol=1e-9)
+
+
+def test_impossible_settings_are_refused():
+    tail = MODULES["tail_bending"]
+    for bad in (replace(tail, furthest=2 * pi), replace(tail, furthest=-1.0), replace(tail, steps=1)):
+        with pytest.raises(OutsideLimits, match="gaps close"):
+            bad.run()
+    with pytest.raises(InvalidDesign, match="at least"):
+        replace(MODULES["spine_kinematics"], postures=0).run()
+    with pytest.raises(InvalidDesign, match="at least"):
+        replace(MODULES["leg_kinematics"], points=0).run()
+
+
+def test_shorter_sweep_is_drawn_too(tmp_path):
+    short = replace(MODULES["tail_bending"], furthest=1.0, steps=11)
+    outcome = short.run()
+    for stem, figure in short.draw(outcome).items():
+        save(figure, tmp_path, stem)
+    assert "slack_30" in outcome.measures
+    assert "slack_90" not in outcome.measures
