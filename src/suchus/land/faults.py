@@ -5,8 +5,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
-from suchus.design import servo_names
-from suchus.errors import InvalidDesign, UnknownName
+from suchus.design import Crocodile, servo_names
+from suchus.errors import InvalidDesign, OutsideLimits, UnknownName
+from suchus.motion.targets import servo_range
 
 SENSORS = (
     "servo_position",
@@ -61,7 +62,10 @@ class Weak:
 
 @dataclass(frozen=True, slots=True)
 class Deaf:
-    """A group of sensors that reads zero from now on."""
+    """A group of sensors that reads zero from now on; a robot that does not listen to them walks on as before.
+
+    An orientation of zero is that of a robot that stands level and faces forward.
+    """
 
     sensor: str
     """Name of the group, as ``foot_pressure``."""
@@ -78,12 +82,18 @@ class Deaf:
 Fault = Limp | Locked | Weak | Deaf
 
 
-def check_faults(faults: Sequence[Fault], duration: float) -> None:
+def check_faults(faults: Sequence[Fault], robot: Crocodile, duration: float) -> None:
     """Refuse faults that cannot happen.
+
+    Args:
+        faults: of one run.
+        robot: that they happen to.
+        duration: of the run [s].
 
     Raises:
         UnknownName: no such joint or sensor.
         InvalidDesign: a time outside the run, a fraction outside 0 to 1, two faults of one joint.
+        OutsideLimits: a joint held at an angle that it cannot reach.
     """
     for fault in faults:
         names = servo_names() if fault.acts_on == "servo" else SENSORS
@@ -93,8 +103,10 @@ def check_faults(faults: Sequence[Fault], duration: float) -> None:
             raise InvalidDesign(f"{fault} happens at {fault.at} s; the run lasts from 0 to {duration} s.")
         if isinstance(fault, Weak) and not 0.0 <= fault.fraction <= 1.0:
             raise InvalidDesign(f"{fault} leaves {fault.fraction} of the torque; 0 to 1 is allowed.")
-        if isinstance(fault, Locked) and fault.angle is not None and not math.isfinite(fault.angle):
-            raise InvalidDesign(f"{fault} holds {fault.angle} rad; a finite angle is needed.")
+        if isinstance(fault, Locked) and fault.angle is not None:
+            low, high = servo_range(robot, fault.joint)
+            if not low <= fault.angle <= high:
+                raise OutsideLimits(f"{fault} holds {fault.angle:g} rad; {low:.3f} to {high:.3f} rad is allowed.")
     for i, fault in enumerate(faults):
         for other in faults[:i]:
             if fault.joint == other.joint:

@@ -35,7 +35,7 @@ def simulate(
     from then on are NaN, ``ended`` and ``cause`` say when and why, and the others go on.
 
     Args:
-        runs: at least one; the robots must share their number of tail joints for one record.
+        runs: at least one; the robots must share their number of tail joints, and which servos have integral action.
         duration: [s].
         timestep: of the physics [s]; a whole part of the control period.
         every: keep one sample of so many control periods.
@@ -84,12 +84,13 @@ def _check(runs: Sequence[Run], duration: float, timestep: float, every: int) ->
         )
     if len({topology(run.robot) for run in runs}) > 1:
         raise InvalidDesign(
-            "the robots of one batch must have equally many tail joints; simulate them one after another."
+            "the robots of one batch must have equally many tail joints, and integral action in the same servos; "
+            "simulate them one after another."
         )
     for pair in {(run.robot, run.gait) for run in runs}:
         check_limits(*pair)
     for run in runs:
-        check_faults(run.faults, duration)
+        check_faults(run.faults, run.robot, duration)
         check_pushes(run.pushes, run.robot, duration)
     return steps
 

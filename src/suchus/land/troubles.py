@@ -60,7 +60,7 @@ class Troubles:
             return sensed
         heard = {name: getattr(sensed, name).copy() for _, name in self._deaf}
         for sim, name in self._deaf:
-            heard[name][sim] = 0.0
+            heard[name][sim] = (1.0, 0.0, 0.0, 0.0) if name == "orientation" else 0.0
         return replace(sensed, **heard)
 
     def disturb(self, tick: int, targets: np.ndarray) -> np.ndarray:

@@ -60,9 +60,13 @@ def compile_model(robot: Crocodile, timestep: float = TIMESTEP) -> Any:
         raise InvalidDesign(f"robot {robot.name!r} does not compile: {error}") from error
 
 
-def topology(robot: Crocodile) -> tuple[int, int]:
-    """Return what two robots must share to run in one batch: their numbers of cable and passive joints."""
-    return robot.tail.joints, robot.tail.fin_segments
+def topology(robot: Crocodile) -> tuple[int, int, tuple[str, ...]]:
+    """Return what two robots must share to run in one batch.
+
+    That is their numbers of cable and passive joints, and which servos have integral action and so a state of its own.
+    """
+    integrating = tuple(name for name in servo_names() if servo_of(robot, name).ki > 0)
+    return robot.tail.joints, robot.tail.fin_segments, integrating
 
 
 def joint_addresses(model: Any, names: Sequence[str]) -> list[int]:
