@@ -4,10 +4,11 @@ import numpy as np
 from jaxtyping import Float
 
 from suchus.errors import InvalidDesign
+from suchus.kinematics.links import Numbers
 from suchus.paper.tables import Chain
 
 
-def transform(a: float, alpha: float, d: float, theta: Float[np.ndarray, "*batch"]) -> Float[np.ndarray, "*batch 4 4"]:
+def transform(a: float, alpha: float, d: float, theta: Numbers) -> Float[np.ndarray, "*batch 4 4"]:
     """Return the transform from frame n to frame n - 1: turn about x, go along x, turn about z, go along z.
 
     Args:

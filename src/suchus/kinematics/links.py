@@ -1,6 +1,11 @@
 """What the kinematics needs to know of a robot: a few lengths, whoever holds them."""
 
-from typing import Protocol, runtime_checkable
+from typing import Protocol, TypeAlias, runtime_checkable
+
+import numpy as np
+
+Numbers: TypeAlias = int | float | np.ndarray
+"""One number or an array of them."""
 
 
 @runtime_checkable

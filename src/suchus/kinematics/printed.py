@@ -5,10 +5,9 @@ Nothing else in suchus may compute with them. Where a printed formula has no val
 
 import numpy as np
 from jaxtyping import Float
-from numpy.typing import ArrayLike
 
 from suchus.kinematics import dh
-from suchus.kinematics.links import LegLinks, SpineLinks, TailPlates
+from suchus.kinematics.links import LegLinks, Numbers, SpineLinks, TailPlates
 from suchus.paper.tables import LEG_CHAIN, Chain
 
 LOST_TERM = 0.0005
@@ -85,7 +84,7 @@ def spine_position(spine: SpineLinks, angles: Float[np.ndarray, "*batch 5"]) -> 
     )
 
 
-def cable_changes(tail: TailPlates, bend: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
+def cable_changes(tail: TailPlates, bend: Numbers) -> tuple[np.ndarray, np.ndarray]:
     """Return (16) as printed, one joint's change given as the cord's: toward and away from the bend [m].
 
     Paper: Eq. (16).
@@ -93,19 +92,19 @@ def cable_changes(tail: TailPlates, bend: ArrayLike) -> tuple[np.ndarray, np.nda
     theta, count = np.asarray(bend, dtype=np.float64), tail.joints
     turn = tail.cord_spacing * np.sin(theta / (2 * count))
     sag = 2 * tail.gap * np.sin(theta / (4 * count)) ** 2
-    return -(turn + sag), turn - sag
+    return np.asarray(-(turn + sag)), np.asarray(turn - sag)
 
 
-def cable_changes_shortened(tail: TailPlates, bend: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
+def cable_changes_shortened(tail: TailPlates, bend: Numbers) -> tuple[np.ndarray, np.ndarray]:
     """Return (17), one joint's change without its quadratic term: toward and away from the bend [m].
 
     Paper: Eq. (17).
     """
     turn = tail.cord_spacing * np.sin(np.asarray(bend, dtype=np.float64) / (2 * tail.joints))
-    return -turn, turn
+    return np.asarray(-turn), np.asarray(turn)
 
 
-def servo_angle_deg(tail: TailPlates, bend: ArrayLike) -> np.ndarray:
+def servo_angle_deg(tail: TailPlates, bend: Numbers) -> np.ndarray:
     """Return the wheel's angle as printed, in degrees for a bend in radians.
 
     Paper: Eq. (18).
@@ -114,7 +113,7 @@ def servo_angle_deg(tail: TailPlates, bend: ArrayLike) -> np.ndarray:
     return np.asarray(180 / (np.pi * tail.pulley) * tail.joints * tail.cord_spacing * sine)
 
 
-def joint_positions(tail: TailPlates, bend: ArrayLike) -> Float[np.ndarray, "*batch joint 2"]:
+def joint_positions(tail: TailPlates, bend: Numbers) -> Float[np.ndarray, "*batch joint 2"]:
     """Return the tail's joints [m] with the index i under the sum, two cosines and the lost first half pitch.
 
     Paper: Eq. (19).

@@ -9,11 +9,10 @@ from collections.abc import Callable
 
 import numpy as np
 from jaxtyping import Float
-from numpy.typing import ArrayLike
 
 from suchus.errors import InvalidDesign, Unreachable
 from suchus.kinematics import dh
-from suchus.kinematics.links import SpineLinks
+from suchus.kinematics.links import Numbers, SpineLinks
 from suchus.paper.tables import SPINE_CHAIN, Chain
 
 ROUNDING = 1e-12
@@ -71,16 +70,16 @@ def jacobian(
 
 def inverse(
     spine: SpineLinks,
-    point: Float[np.ndarray, "*batch 3"],
-    azimuth: ArrayLike,
+    point: Float[np.ndarray, "*point 3"],
+    azimuth: Numbers,
     *,
-    first_yaw: ArrayLike,
+    first_yaw: Numbers,
     branch: int = 1,
 ) -> Float[np.ndarray, "*batch 5"]:
     """Return the angles that bring joint 5 to a point and turn the head to an azimuth, for a given first yaw.
 
-    Position and azimuth are four equations for five joints: the first yaw angle is free. ``least_bending``
-    chooses it.
+    Position and azimuth are four equations for five joints: the first yaw angle is free, and ``least_bending``
+    chooses it. Point, azimuth and first yaw broadcast.
 
     Args:
         spine: the lengths.
@@ -107,18 +106,18 @@ def inverse(
 
 def candidates(
     spine: SpineLinks,
-    point: Float[np.ndarray, "*batch 3"],
-    azimuth: ArrayLike,
+    point: Float[np.ndarray, "*point 3"],
+    azimuth: Numbers,
     *,
-    first_yaw: ArrayLike,
-    branch: ArrayLike,
+    first_yaw: Numbers,
+    branch: Numbers,
 ) -> Float[np.ndarray, "*batch 5"]:
-    """Return what ``inverse`` returns, but NaN where nothing can be reached; all arguments broadcast."""
+    """Return what ``inverse`` returns, but NaN where nothing can be reached; the branch may be an array, too."""
     return _closed_form(spine, point, np.asarray(azimuth), np.asarray(first_yaw), np.asarray(branch))[0]
 
 
 def least_bending(
-    spine: SpineLinks, point: Float[np.ndarray, "*batch 3"], azimuth: ArrayLike
+    spine: SpineLinks, point: Float[np.ndarray, "*batch 3"], azimuth: Numbers
 ) -> Float[np.ndarray, "*batch 5"]:
     """Return the angles of ``inverse`` whose squares have the least sum.
 
@@ -192,7 +191,7 @@ def _closed_form(
     level = np.cos(fifth) * (ca * x4[0] + sa * x4[1]) + np.sin(fifth) * (ca * z4[0] + sa * z4[1])
     fifth = np.where(level < 0, _wrapped(fifth + np.pi), fifth)
     angles = np.broadcast_arrays(_wrapped(first_yaw), second, third, np.arctan2(s4, c4), fifth)
-    return np.stack(angles, axis=-1), np.abs(level)
+    return np.stack(angles, axis=-1), np.asarray(np.abs(level))
 
 
 @np.errstate(divide="ignore", invalid="ignore", over="ignore")
@@ -223,7 +222,7 @@ def _golden_section(cost: Callable[[np.ndarray], np.ndarray], low: np.ndarray, h
     return np.asarray((low + high) / 2.0)
 
 
-def _wrapped(angle: np.ndarray) -> np.ndarray:
+def _wrapped(angle: Numbers) -> np.ndarray:
     """Return the angle within -pi to pi."""
     return np.asarray(np.arctan2(np.sin(angle), np.cos(angle)))
 

@@ -6,10 +6,9 @@ bend turns the tip to the right. "Toward" is the cord on the side of a positive 
 
 import numpy as np
 from jaxtyping import Float
-from numpy.typing import ArrayLike
 
 from suchus.errors import OutsideLimits
-from suchus.kinematics.links import TailPlates
+from suchus.kinematics.links import Numbers, TailPlates
 
 
 def bend_limit(tail: TailPlates) -> float:
@@ -17,7 +16,7 @@ def bend_limit(tail: TailPlates) -> float:
     return float(2 * tail.joints * np.arctan2(tail.gap, tail.cord_spacing))
 
 
-def cable_changes(tail: TailPlates, bend: ArrayLike) -> tuple[Float[np.ndarray, "*batch"], Float[np.ndarray, "*batch"]]:
+def cable_changes(tail: TailPlates, bend: Numbers) -> tuple[Float[np.ndarray, "*batch"], Float[np.ndarray, "*batch"]]:
     """Return by how much both cords get longer inside the tail, exactly, over all joints.
 
     Args:
@@ -46,7 +45,7 @@ def cable_changes(tail: TailPlates, bend: ArrayLike) -> tuple[Float[np.ndarray, 
     return np.asarray(-turn - sag), np.asarray(turn - sag)
 
 
-def slack(tail: TailPlates, bend: ArrayLike) -> Float[np.ndarray, "*batch"]:
+def slack(tail: TailPlates, bend: Numbers) -> Float[np.ndarray, "*batch"]:
     """Return the cord that a bend sets free [m]: both cords on one wheel cannot stay taut.
 
     Args:
@@ -60,7 +59,7 @@ def slack(tail: TailPlates, bend: ArrayLike) -> Float[np.ndarray, "*batch"]:
     return np.asarray(-(toward + away))
 
 
-def servo_angle(tail: TailPlates, bend: ArrayLike) -> Float[np.ndarray, "*batch"]:
+def servo_angle(tail: TailPlates, bend: Numbers) -> Float[np.ndarray, "*batch"]:
     """Return how far the servo's wheel turns for a bend [rad].
 
     Args:
@@ -73,7 +72,7 @@ def servo_angle(tail: TailPlates, bend: ArrayLike) -> Float[np.ndarray, "*batch"
     return np.asarray(tail.joints * tail.cord_spacing * np.sin(half) / tail.pulley)
 
 
-def bend_of_servo(tail: TailPlates, angle: ArrayLike) -> Float[np.ndarray, "*batch"]:
+def bend_of_servo(tail: TailPlates, angle: Numbers) -> Float[np.ndarray, "*batch"]:
     """Return the bend that the servo's wheel makes [rad]: the inverse of ``servo_angle``.
 
     Args:
@@ -94,7 +93,7 @@ def bend_of_servo(tail: TailPlates, angle: ArrayLike) -> Float[np.ndarray, "*bat
     return np.asarray(2 * tail.joints * np.arcsin(sine))
 
 
-def joint_positions(tail: TailPlates, bend: ArrayLike) -> Float[np.ndarray, "*batch joint 2"]:
+def joint_positions(tail: TailPlates, bend: Numbers) -> Float[np.ndarray, "*batch joint 2"]:
     """Return where the joints are in the plane of the tail [m].
 
     Args:
@@ -111,7 +110,7 @@ def joint_positions(tail: TailPlates, bend: ArrayLike) -> Float[np.ndarray, "*ba
     return np.cumsum(steps, axis=-2)
 
 
-def end_position(tail: TailPlates, bend: ArrayLike) -> Float[np.ndarray, "*batch 2"]:
+def end_position(tail: TailPlates, bend: Numbers) -> Float[np.ndarray, "*batch 2"]:
     """Return the middle of the last plate in the plane of the tail [m]; the flexible end begins there."""
     theta = np.asarray(bend, dtype=np.float64)
     half = (tail.plate + tail.gap) / 2

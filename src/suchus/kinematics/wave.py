@@ -13,9 +13,9 @@ from types import MappingProxyType
 
 import numpy as np
 from jaxtyping import Float
-from numpy.typing import ArrayLike
 
 from suchus.errors import InvalidDesign, UnknownName
+from suchus.kinematics.links import Numbers
 from suchus.paper.wave_constants import C1, C2, K
 
 MILLIMETRE, CENTIMETRE = 1e-3, 1e-2
@@ -118,13 +118,13 @@ def as_printed(*, angular_frequency: float) -> Wave:
     return reading("A", length=1.0, angular_frequency=angular_frequency, sign=1)
 
 
-def envelope(wave: Wave, x: ArrayLike) -> Float[np.ndarray, "*batch"]:
+def envelope(wave: Wave, x: Numbers) -> Float[np.ndarray, "*batch"]:
     """Return the amplitude [m] at ``x`` [m], measured from the head towards the tail."""
     place = np.asarray(x, dtype=np.float64)
     return np.asarray((wave.linear + wave.quadratic * place) * place)
 
 
-def displacement(wave: Wave, x: ArrayLike, t: ArrayLike) -> Float[np.ndarray, "*batch"]:
+def displacement(wave: Wave, x: Numbers, t: Numbers) -> Float[np.ndarray, "*batch"]:
     """Return how far the midline lies off the axis.
 
     Args:
@@ -140,19 +140,19 @@ def displacement(wave: Wave, x: ArrayLike, t: ArrayLike) -> Float[np.ndarray, "*
     return np.asarray(envelope(wave, x) * np.sin(_phase(wave, x, t)))
 
 
-def slope(wave: Wave, x: ArrayLike, t: ArrayLike) -> Float[np.ndarray, "*batch"]:
+def slope(wave: Wave, x: Numbers, t: Numbers) -> Float[np.ndarray, "*batch"]:
     """Return the midline's slope dy/dx [-]; arguments as for ``displacement``."""
     place, phase = np.asarray(x, dtype=np.float64), _phase(wave, x, t)
     growth = wave.linear + 2 * wave.quadratic * place
     return np.asarray(growth * np.sin(phase) + wave.wave_number * envelope(wave, place) * np.cos(phase))
 
 
-def speed(wave: Wave, x: ArrayLike, t: ArrayLike) -> Float[np.ndarray, "*batch"]:
+def speed(wave: Wave, x: Numbers, t: Numbers) -> Float[np.ndarray, "*batch"]:
     """Return the midline's sideways speed dy/dt [m/s]; arguments as for ``displacement``."""
     rate = wave.sign * wave.angular_frequency
     return np.asarray(rate * envelope(wave, x) * np.cos(_phase(wave, x, t)))
 
 
-def _phase(wave: Wave, x: ArrayLike, t: ArrayLike) -> np.ndarray:
+def _phase(wave: Wave, x: Numbers, t: Numbers) -> np.ndarray:
     place, time = np.asarray(x, dtype=np.float64), np.asarray(t, dtype=np.float64)
     return np.asarray(wave.wave_number * place + wave.sign * wave.angular_frequency * time)

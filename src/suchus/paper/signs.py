@@ -48,7 +48,7 @@ class JointSums(NamedTuple):
 
 def spine_lateral(yaw_sum: Angle) -> Angle:
     """Return theta_q1 for a sum of spine yaw angles [rad], or the sum for theta_q1: the map undoes itself."""
-    return -yaw_sum  # type: ignore[no-any-return]
+    return -yaw_sum
 
 
 def to_joint_sums(bends: BendAngles) -> JointSums:

@@ -1,0 +1,139 @@
+"""How fast is the kinematics? Beside it ikpy and roboticstoolbox, where they are installed.
+
+Usage: python bench/bench_kinematics.py [points]
+"""
+
+import platform
+import sys
+import time
+from collections.abc import Callable
+from importlib import import_module
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+
+from suchus.design import joint_names
+from suchus.kinematics import landmarks, leg, spine
+from suchus.robots import ROBOTS
+
+ROBOT = ROBOTS["caiman"]
+HIND = ROBOT.hind_leg
+FEW = 200  # points for the iterative solvers
+
+
+def best_of(action: Callable[[], Any], repeats: int = 7) -> float:
+    """Return the shortest of several times [s]."""
+    times = []
+    for _ in range(repeats):
+        start = time.perf_counter()
+        action()
+        times.append(time.perf_counter() - start)
+    return min(times)
+
+
+def optional(name: str) -> ModuleType | None:
+    """Return a module, or None with a line that says so."""
+    try:
+        return import_module(name)
+    except Exception as error:  # an installed package may fail to import for reasons of its own
+        print(f"{name:28s} left out: {type(error).__name__}: {error}")
+        return None
+
+
+def shell(count: int) -> np.ndarray:
+    """Return points spread evenly over what the foot can reach [m]."""
+    rng = np.random.default_rng(0)
+    way = rng.normal(size=(count, 3))
+    way /= np.linalg.norm(way, axis=1, keepdims=True)
+    near, far = HIND.reach
+    return np.array([HIND.hip_offset, 0, 0]) + way * np.cbrt(rng.uniform(near**3, far**3, (count, 1)))
+
+
+def report(what: str, seconds: float, count: int, note: str = "") -> None:
+    """Print one line."""
+    print(f"{what:28s} {seconds * 1e3:9.1f} ms for {count:8d}   {seconds / count * 1e9:12.1f} ns each   {note}")
+
+
+def ours(count: int) -> None:
+    """Time our own functions."""
+    foot = shell(count)
+    angles = leg.inverse(HIND, foot)
+    error = float(np.abs(leg.forward(HIND, angles) - foot).max())
+    seconds = best_of(lambda: leg.inverse(HIND, foot))
+    verdict = "" if count < 1_000_000 else "target 150 ms: " + ("met" if seconds < 0.15 else "MISSED")
+    report("leg.inverse", seconds, count, f"error {error:.1e} m  {verdict}")
+    report("leg.forward", best_of(lambda: leg.forward(HIND, angles)), count)
+    report("leg.jacobian", best_of(lambda: leg.jacobian(HIND, angles), 3), count)
+    some = count // 10
+    bends = np.random.default_rng(1).uniform(-0.7, 0.7, (some, 5))
+    T = spine.forward(ROBOT.spine, bends)
+    azimuth = np.arctan2(T[:, 1, 0], T[:, 0, 0])
+    report("spine.forward", best_of(lambda: spine.forward(ROBOT.spine, bends), 3), some)
+    closed = best_of(lambda: spine.inverse(ROBOT.spine, T[:, :3, 3], azimuth, first_yaw=bends[:, 0]), 3)
+    report("spine.inverse", closed, some)
+    least = slice(0, max(some // 100, 1))
+    seconds = best_of(lambda: spine.least_bending(ROBOT.spine, T[least, :3, 3], azimuth[least]), 3)
+    report("spine.least_bending", seconds, least.stop)
+    posture = np.random.default_rng(2).uniform(-0.5, 0.5, (some, len(joint_names(ROBOT))))
+    report("landmarks of a robot", best_of(lambda: landmarks(ROBOT, posture), 3), some)
+
+
+def with_ikpy() -> None:
+    """Time ikpy on the same leg: yaw about z, pitch and knee about -y, numerically from the sprawled posture."""
+    if optional("ikpy") is None:
+        return
+    chain, link = import_module("ikpy.chain"), import_module("ikpy.link")
+    a0, a2, a3 = HIND.hip_offset, HIND.femur, HIND.tibia
+
+    def hinge(name: str, x: float, axis: list[float] | None) -> Any:
+        joint = "fixed" if axis is None else "revolute"
+        return link.URDFLink(
+            name=name, origin_translation=[x, 0, 0], origin_orientation=[0, 0, 0], rotation=axis, joint_type=joint
+        )
+
+    hinges = [
+        hinge("yaw", a0, [0, 0, 1]),
+        hinge("pitch", 0, [0, -1, 0]),
+        hinge("knee", a2, [0, -1, 0]),
+        hinge("foot", a3, None),
+    ]
+    arm = chain.Chain([link.OriginLink(), *hinges], active_links_mask=[False, True, True, True, False])
+    foot = shell(FEW)
+    start = [0.0, 0.0, 0.0, 1.5, 0.0]
+    seconds = best_of(lambda: [arm.inverse_kinematics(p, initial_position=start) for p in foot], 1)
+    ends = [arm.forward_kinematics(arm.inverse_kinematics(p, initial_position=start))[:3, 3] for p in foot]
+    report("ikpy", seconds, FEW, f"median error {np.median(np.linalg.norm(ends - foot, axis=1)):.1e} m")
+
+
+def with_roboticstoolbox() -> None:
+    """Time roboticstoolbox on the same modified D-H chain, position only."""
+    rtb = optional("roboticstoolbox")
+    if rtb is None:
+        return
+    mask = [1, 1, 1, 0, 0, 0]
+    links = [
+        rtb.RevoluteMDH(a=HIND.hip_offset, alpha=0.0),
+        rtb.RevoluteMDH(a=0.0, alpha=np.pi / 2),
+        rtb.RevoluteMDH(a=HIND.femur, alpha=0.0),
+    ]
+    se3 = import_module("spatialmath").SE3
+    arm = rtb.DHRobot(links, tool=se3(HIND.tibia, 0, 0))
+    foot = shell(FEW)
+    seconds = best_of(lambda: [arm.ikine_LM(se3(*p), mask=mask) for p in foot], 1)
+    found = [arm.ikine_LM(se3(*p), mask=mask) for p in foot]
+    solved = np.mean([bool(f.success) for f in found])
+    report("roboticstoolbox", seconds, FEW, f"solved {solved:.0%}")
+
+
+def main() -> None:
+    """Print the settings, then all times."""
+    count = int(sys.argv[1]) if len(sys.argv) > 1 else 1_000_000
+    print(f"python {platform.python_version()}, numpy {np.__version__}, {platform.machine()}, one thread, best of 7")
+    ours(count)
+    with_ikpy()
+    with_roboticstoolbox()
+
+
+if __name__ == "__main__":
+    main()
