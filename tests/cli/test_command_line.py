@@ -175,21 +175,27 @@ def test_an_experiment_that_breaks_does_not_stop_the_others(capsys, tmp_path):
 
 
 def test_ctrl_c_stops_with_130_and_leaves_nothing_half_written(tmp_path):
-    assert main(["run", "wave", "--quick", "--out", str(tmp_path)]) == 0
-    before = (tmp_path / "wave/outcome.json").read_bytes()
-    words = [sys.executable, "-c", DRIVER, "run", "wave", "--pause", "60", "--out", str(tmp_path)]
+    out, started = tmp_path / "out", tmp_path / "started"
+    assert main(["run", "wave", "--quick", "--out", str(out)]) == 0
+    before = (out / "wave/outcome.json").read_bytes()
     process = subprocess.Popen(
-        words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env={**os.environ, "PYTHONUNBUFFERED": "1"}
+        [sys.executable, "-c", DRIVER, "run", "wave", "--pause", "60", "--out", str(out)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        env={**os.environ, "WAVE_STARTED": str(started)},
     )
-    time.sleep(4.0)
+    while not started.exists():
+        assert process.poll() is None
+        time.sleep(0.05)
     process.send_signal(signal.SIGINT)
-    out, err = process.communicate(timeout=30)
+    told, complaint = process.communicate(timeout=30)
     assert process.returncode == 130
-    assert out == ""
-    assert err.startswith("suchus: stopped")
-    assert err.count("\n") == 1
-    assert [f.name for f in tmp_path.iterdir()] == ["wave"]
-    assert (tmp_path / "wave/outcome.json").read_bytes() == before
+    assert told == ""
+    assert complaint.startswith("suchus: stopped")
+    assert complaint.count("\n") == 1
+    assert [f.name for f in out.iterdir()] == ["wave"]
+    assert (out / "wave/outcome.json").read_bytes() == before
 
 
 def test_ctrl_c_while_saving_keeps_the_earlier_result(tmp_path, monkeypatch, capsys):

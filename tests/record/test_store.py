@@ -99,6 +99,19 @@ def test_a_folder_appears_complete_or_not_at_all(tmp_path):
     assert list(tmp_path.iterdir()) == [place]
 
 
+def test_a_folder_that_is_not_ours_is_never_replaced(tmp_path):
+    (tmp_path / "result").mkdir()
+    (tmp_path / "result" / "thesis.tex").touch()
+
+    def replace():
+        with new_folder(tmp_path / "result", mark="m"):
+            pass
+
+    with pytest.raises(Unwritable, match="was not written by suchus"):
+        replace()
+    assert (tmp_path / "result" / "thesis.tex").exists()
+
+
 def test_a_new_folder_can_be_read_by_those_who_may_read_its_parent(tmp_path):
     with new_folder(tmp_path / "result", mark="m"):
         pass

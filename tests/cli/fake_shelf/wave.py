@@ -1,7 +1,9 @@
 """How high is a wave?"""
 
+import os
 import time
 from dataclasses import dataclass, fields, replace
+from pathlib import Path
 
 import numpy as np
 import xarray as xr
@@ -41,7 +43,9 @@ class Wave(Experiment):
 
     def run(self, progress=silent):
         progress("waving", 0.0)
-        time.sleep(self.pause)
+        if self.pause:
+            Path(os.environ["WAVE_STARTED"]).touch()
+            time.sleep(self.pause)
         t = np.linspace(0.0, 8.0, self.samples)
         wave = xr.Dataset(
             {"height": ("time", self.amplitude * np.sin(t), {"units": "m"})}, coords={"time": t}, attrs={"n": {"a": 1}}
