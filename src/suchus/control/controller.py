@@ -20,6 +20,7 @@ class Command(NamedTuple):
     """Phase of each limb, not wrapped [cycle]."""
 
 
+@runtime_checkable
 class Controller(Protocol):
     """A running controller of a batch; it may keep state."""
 

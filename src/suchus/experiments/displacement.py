@@ -217,8 +217,8 @@ class Displacement(Experiment):
         return captioned(
             figure,
             "What decides the ratio. Left: way with spine and tail over way with limbs only; the star is the crawl of "
-            "the other figure, the orange line the article's ratio. Right: bending late costs the gain, half a cycle late "
-            "walks backwards.",
+            "the other figure, the orange line the article's ratio. Right: bending late costs the gain, half a cycle "
+            "late walks backwards.",
         )
 
 

@@ -2,6 +2,7 @@
 
 from suchus.metrics.energy import cost_of_transport, peak_torque, work
 from suchus.metrics.gait import duty_factor, loaded, sensed_phase
+from suchus.metrics.loss import loss, says
 from suchus.metrics.progress import displacement, heading, heading_change, path_length, slip
 from suchus.metrics.stability import (
     height_peak_to_peak,
@@ -25,9 +26,11 @@ __all__ = [
     "height_std",
     "line_distance",
     "loaded",
+    "loss",
     "path_length",
     "peak_torque",
     "roll_peak_to_peak",
+    "says",
     "sensed_phase",
     "slip",
     "support_distance",

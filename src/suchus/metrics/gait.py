@@ -18,7 +18,7 @@ def duty_factor(record: xr.Dataset, threshold: float = LOADED) -> xr.DataArray:
 
 
 def sensed_phase(record: xr.Dataset, threshold: float = LOADED) -> xr.DataArray:
-    """Return the phase of each leg's load against LF's, from the first harmonic of its stance [cycle].
+    """Return the phase by which each leg is ahead of LF, from the first harmonic of its stance [cycle].
 
     Args:
         record: over a whole number of cycles.
@@ -27,4 +27,4 @@ def sensed_phase(record: xr.Dataset, threshold: float = LOADED) -> xr.DataArray:
     stands = loaded(record, threshold).astype(float)
     turn = np.exp(-2j * np.pi * (record.time - record.time[0]) / record.period)
     angle = xr.apply_ufunc(np.angle, (stands * turn).sum("time"))
-    return np.mod((angle.sel(leg="LF", drop=True) - angle) / (2 * np.pi), 1.0)
+    return np.mod((angle - angle.sel(leg="LF", drop=True)) / (2 * np.pi), 1.0)

@@ -38,12 +38,12 @@ def trunk_bend(gait: Gait, phase: Float[np.ndarray, "*b 4"]) -> Float[np.ndarray
         gait: the gait.
         phase: of the limbs [cycle].
     """
-    return -gait.trunk_bend * _pull(gait, phase, gait.spine_phase)
+    return np.asarray(-gait.trunk_bend * _pull(gait, phase, gait.spine_phase))
 
 
 def tail_bend(gait: Gait, phase: Float[np.ndarray, "*b 4"]) -> Float[np.ndarray, "*b"]:
     """Return the lateral bend of the tail, tip to the right positive [rad]."""
-    return -gait.tail_bend * _pull(gait, phase, gait.spine_phase + gait.tail_phase)
+    return np.asarray(-gait.tail_bend * _pull(gait, phase, gait.spine_phase + gait.tail_phase))
 
 
 def _pull(gait: Gait, phase: Float[np.ndarray, "*b 4"], late: float) -> Float[np.ndarray, "*b"]:

@@ -1,0 +1,152 @@
+"""Metrics on records made by hand, whose answers are known exactly."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from suchus.errors import IncompatibleRecord
+from suchus.metrics import (
+    between,
+    cost_of_transport,
+    displacement,
+    duty_factor,
+    heading_change,
+    height_peak_to_peak,
+    height_std,
+    line_distance,
+    path_length,
+    peak_torque,
+    roll_peak_to_peak,
+    sensed_phase,
+    slip,
+    support_distance,
+    support_polygon,
+    tilt,
+    work,
+)
+
+TIME = np.arange(0, 901) * 0.01
+LEGS = ["LF", "RF", "LH", "RH"]
+JOINTS = [f"spine_yaw_{i}" for i in (1, 2, 3)]
+FEET = np.array([[0.3, 0.15, 0.0], [0.3, -0.15, 0.0], [0.0, 0.15, 0.0], [0.0, -0.15, 0.0]])
+
+
+def hand_made(**changes) -> xr.Dataset:
+    """Return a record of a robot that stands still at the origin, with some variables replaced."""
+    n = len(TIME)
+    arrays = {
+        "centre_of_mass": (("time", "xyz"), np.tile([0.1, 0.0, 0.08], (n, 1))),
+        "orientation": (("time", "wxyz"), np.tile([1.0, 0.0, 0.0, 0.0], (n, 1))),
+        "foot_position": (("time", "leg", "xyz"), np.tile(FEET, (n, 1, 1))),
+        "foot_force": (("time", "leg", "xyz"), np.tile([0.0, 0.0, 5.0], (n, 4, 1))),
+        "joint_angle": (("time", "joint"), np.zeros((n, 3))),
+        "servo_torque": (("time", "servo"), np.zeros((n, 2))),
+        "servo_velocity": (("time", "servo"), np.zeros((n, 2))),
+        "limb_phase": (("time", "leg"), np.tile([0.0, 0.5, 0.5, 0.0], (n, 1))),
+        "mass": ((), 2.0),
+        "period": ((), 4.0),
+        "duty_factor": ((), 0.5),
+    }
+    arrays |= {name: (arrays[name][0], values) for name, values in changes.items()}
+    coords = {"time": TIME, "xyz": list("xyz"), "wxyz": list("wxyz"), "leg": LEGS, "joint": JOINTS}
+    return xr.Dataset(arrays, coords=coords)
+
+
+def moving(x=0.0, y=0.0, z=0.0) -> np.ndarray:
+    return np.stack(np.broadcast_arrays(x, y, z, TIME), axis=-1)[:, :3].astype(float)
+
+
+def about(axis: int, angle) -> np.ndarray:
+    quaternion = np.zeros((len(TIME), 4))
+    quaternion[:, 0], quaternion[:, 1 + axis] = np.cos(angle / 2), np.sin(angle / 2)
+    return quaternion
+
+
+def test_displacement_is_measured_from_the_beginning_of_the_walk():
+    record = hand_made(centre_of_mass=moving(x=0.5 * TIME, y=-0.1 * TIME))
+    assert displacement(record).values == pytest.approx([4.0, -0.8, 0.0])
+    assert displacement(record, 2.0, 3.0).values == pytest.approx([0.5, -0.1, 0.0])
+
+
+def test_path_length_counts_turns_but_not_the_sway_within_a_cycle():
+    sway = 0.05 * np.sin(2 * np.pi * TIME / 4.0 - np.pi / 2)
+    there_and_back = np.where(TIME < 5.0, TIME - 1.0, 9.0 - TIME)
+    record = hand_made(centre_of_mass=moving(x=there_and_back, y=sway))
+    assert float(path_length(record)) == pytest.approx(8.0)
+    assert displacement(record).values[0] == pytest.approx(0.0)
+
+
+def test_a_turn_to_the_left_is_positive_and_may_exceed_half_a_turn():
+    record = hand_made(orientation=about(2, 1.2 * (TIME - 1.0)))
+    assert float(heading_change(record)) == pytest.approx(1.2 * 8.0)
+
+
+def test_heading_is_the_mean_of_the_girdles():
+    bend = np.zeros((len(TIME), 3))
+    bend[:, 0] = 0.4 * (TIME - 1) / 8
+    assert float(heading_change(hand_made(joint_angle=bend))) == pytest.approx(0.2)
+
+
+def test_height_of_a_sine():
+    record = hand_made(centre_of_mass=moving(z=0.08 + 0.01 * np.sin(2 * np.pi * (TIME - 1) / 4)))
+    assert float(height_std(record)) == pytest.approx(0.01 / np.sqrt(2), rel=2e-3)
+    assert float(height_peak_to_peak(record)) == pytest.approx(0.02, rel=1e-4)
+
+
+def test_roll_is_positive_with_the_left_side_up_and_pitch_with_the_nose_down():
+    assert tilt(hand_made(orientation=about(0, np.full(len(TIME), 0.1))))["roll"].values == pytest.approx(0.1)
+    assert tilt(hand_made(orientation=about(1, np.full(len(TIME), 0.1))))["pitch"].values == pytest.approx(0.1)
+    swing = hand_made(orientation=about(0, 0.1 * np.sin(np.pi * TIME)))
+    assert float(roll_peak_to_peak(swing)) == pytest.approx(0.2, rel=1e-3)
+
+
+def test_duty_factor_and_phase_of_square_waves():
+    force = np.zeros((len(TIME), 4, 3))
+    for i, (phase, duty) in enumerate([(0.0, 0.5), (0.5, 0.5), (0.3, 0.5), (0.9, 0.5)]):
+        force[:, i, 2] = 5.0 * (np.mod((TIME - 1) / 4 + phase, 1.0) < duty)
+    walk = between(hand_made(foot_force=force)).isel(time=slice(0, -1))
+    assert duty_factor(walk).values == pytest.approx(0.5, abs=2e-3)
+    assert np.mod(sensed_phase(walk).values + 1e-6, 1.0) == pytest.approx([0.0, 0.5, 0.3, 0.9], abs=5e-3)
+
+
+def test_a_foot_that_slides_while_loaded_slips_and_a_lifted_one_does_not():
+    feet = np.tile(FEET, (len(TIME), 1, 1))
+    feet[:, 0, 0] += 0.1 * TIME
+    walk = {"foot_position": feet, "centre_of_mass": moving(x=0.2 * TIME)}
+    assert float(slip(hand_made(**walk))) == pytest.approx(0.8 / 4 / 1.6)
+    lifted = np.tile([0.0, 0.0, 5.0], (len(TIME), 4, 1))
+    lifted[:, 0] = 0.0
+    assert float(slip(hand_made(**walk, foot_force=lifted))) == 0.0
+
+
+def test_work_counts_braking_as_much_as_driving():
+    torque = np.column_stack([np.full(len(TIME), 2.0), np.full(len(TIME), -1.0)])
+    speed = np.column_stack([np.full(len(TIME), 0.5), np.full(len(TIME), 0.25)])
+    record = hand_made(servo_torque=torque, servo_velocity=speed, centre_of_mass=moving(x=0.2 * TIME))
+    assert float(work(record)) == pytest.approx(8 * 1.25)
+    assert float(cost_of_transport(record)) == pytest.approx(10.0 / (2.0 * 9.81 * 1.6))
+    assert peak_torque(record).values == pytest.approx([2.0, 1.0])
+
+
+def test_support_is_the_hull_of_the_standing_feet():
+    record = hand_made()
+    assert len(support_polygon(record, 2.0)) == 4
+    assert support_distance(record, 2.0) == pytest.approx(-0.1)  # the hind edge is nearest
+    force = np.tile([0.0, 0.0, 5.0], (len(TIME), 4, 1))
+    force[:, 0] = 0.0
+    outside = hand_made(foot_force=force, centre_of_mass=moving(x=0.25, y=0.1))
+    assert support_distance(outside, 2.0) > 0
+    force[:, 3] = 0.0
+    diagonal = hand_made(foot_force=force)
+    assert support_distance(diagonal, 2.0) == pytest.approx(0.05 * np.cos(np.pi / 4), abs=1e-9)
+
+
+def test_line_of_the_supporting_pair():
+    assert line_distance(hand_made(), 2.0) == pytest.approx(0.05 / np.sqrt(2))  # RF and LH are meant to stand
+    with pytest.raises(IncompatibleRecord, match="a line needs two"):
+        line_distance(hand_made(limb_phase=np.full((len(TIME), 4), 0.9)), 2.0)
+
+
+def test_a_window_outside_the_record_is_a_sentence():
+    with pytest.raises(IncompatibleRecord, match="nothing to measure is left between 20"):
+        between(hand_made(), 20.0, 30.0)

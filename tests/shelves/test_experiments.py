@@ -1,0 +1,90 @@
+"""What holds for every experiment on the shelf."""
+
+import json
+import os
+from dataclasses import fields
+from math import isfinite
+from pathlib import Path
+
+import pytest
+
+from suchus.experiments import EXPERIMENTS
+from suchus.figures import caption
+from suchus.paper import CLAIMS
+
+GOLDEN = Path(__file__).parent.parent / "golden"
+
+
+@pytest.fixture(scope="module", params=list(EXPERIMENTS))
+def quick(request):
+    experiment = EXPERIMENTS[request.param].quick()
+    return experiment, experiment.run()
+
+
+def test_it_says_what_it_asks_and_what_decides(quick):
+    experiment, _ = quick
+    assert experiment.title.endswith("?")
+    assert experiment.shows
+    assert experiment.decides
+    assert all(field.name for field in fields(experiment))
+
+
+def test_its_measures_are_numbers_with_units(quick):
+    experiment, outcome = quick
+    assert outcome.experiment == experiment.name()
+    assert outcome.measures
+    for name, measure in outcome.measures.items():
+        assert name.isidentifier(), name
+        assert isinstance(measure.value, (int, float)), name
+        assert measure.unit, name
+
+
+def test_every_claim_gets_a_verdict_with_a_reason(quick):
+    experiment, outcome = quick
+    assert sorted(experiment.claims) == sorted(verdict.claim.key for verdict in outcome.verdicts)
+    for verdict in outcome.verdicts:
+        assert verdict.claim == CLAIMS[verdict.claim.key]
+        assert len(verdict.why) > 10
+        assert (verdict.measured is None) == (verdict.verdict == "not testable")
+        assert verdict.measured is None or isfinite(verdict.measured)
+
+
+def test_every_variable_of_its_record_has_a_unit(quick):
+    _, outcome = quick
+    assert outcome.record.data_vars
+    missing = [name for name, values in outcome.record.data_vars.items() if "units" not in values.attrs]
+    assert missing == []
+
+
+def test_its_figures_have_captions(quick):
+    experiment, outcome = quick
+    figures = experiment.draw(outcome)
+    assert figures
+    for name, figure in figures.items():
+        assert name.isidentifier()
+        assert len(caption(figure)) > 20, name
+
+
+def test_it_answers_the_same_twice_to_the_byte(quick):
+    experiment, outcome = quick
+    again = experiment.run()
+    assert _exact(again) == _exact(outcome)
+    assert again.record.identical(outcome.record)
+
+
+def _exact(outcome) -> dict[str, str]:
+    return {name: repr(measure.value) for name, measure in outcome.measures.items()}
+
+
+def test_its_numbers_are_those_of_last_time(quick, request):
+    """Golden numbers: a change here is a change of behaviour. Renew with SUCHUS_GOLDEN=write after thinking."""
+    experiment, outcome = quick
+    file = GOLDEN / f"{experiment.name()}.json"
+    found = {name: measure.value for name, measure in sorted(outcome.measures.items())}
+    if os.environ.get("SUCHUS_GOLDEN") == "write":
+        GOLDEN.mkdir(exist_ok=True)
+        file.write_text(json.dumps(found, indent=1) + "\n")
+    expected = json.loads(file.read_text())
+    assert sorted(expected) == sorted(found)
+    # other processors round differently, and contact amplifies it: a hundredth, or a little of the unit
+    assert found == pytest.approx(expected, rel=0.02, abs=2e-3, nan_ok=True)
