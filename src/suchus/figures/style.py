@@ -120,7 +120,7 @@ def new(*, width: float = WIDTH, height: float = 3.8) -> Figure:
 
 def panels(
     rows: int = 1, columns: int = 1, *, width: float = WIDTH, height: float | None = None, **options: Any
-) -> tuple[Figure, np.ndarray[Any, np.dtype[np.object_]]]:
+) -> tuple[Figure, np.ndarray[Any, np.dtype[Any]]]:
     """Return a figure and its axes, shape (rows, columns).
 
     Args:
