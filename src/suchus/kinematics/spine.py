@@ -35,13 +35,31 @@ def chain(spine: SpineLinks) -> Chain:
 def forward(spine: SpineLinks, angles: Float[np.ndarray, "*batch 5"]) -> Float[np.ndarray, "*batch 4 4"]:
     """Return frame 5 in frame 0; its last column is joint 5 [m], its first the direction of the head.
 
+    It is the product of Table II written out: each joint turns two of the axes before it.
+
     Args:
         spine: the lengths.
         angles: yaw, pitch, yaw, pitch, yaw [rad].
 
     Paper: Eq. (15).
     """
-    return dh.frames(chain(spine), angles)[..., -1, :, :]
+    c, s = np.cos(angles), np.sin(angles)
+    c1, c2, c3, c4, c5 = (c[..., i, None] for i in range(5))
+    s1, s2, s3, s4, s5 = (s[..., i, None] for i in range(5))
+    up = np.array([0.0, 0.0, 1.0])
+    x1 = np.concatenate([c1, s1, 0.0 * c1], axis=-1)
+    left = np.concatenate(
+        [-s1, c1, 0.0 * c1], axis=-1
+    )  # the first pitch joint's axis; the others follow the body: x along, y left, z up
+    x2, z2 = c2 * x1 - s2 * up, s2 * x1 + c2 * up
+    x3, y3 = c3 * x2 + s3 * left, c3 * left - s3 * x2
+    x4, z4 = c4 * x3 - s4 * z2, s4 * x3 + c4 * z2
+    T = np.zeros((*angles.shape[:-1], 4, 4))
+    T[..., :3, 0], T[..., :3, 1], T[..., :3, 2] = c5 * x4 + s5 * y3, c5 * y3 - s5 * x4, z4
+    T[..., :3, 3] = spine.link * (x1 + x2 + x3 + x4)
+    T[..., 0, 3] += spine.base
+    T[..., 3, 3] = 1.0
+    return T
 
 
 def joints(spine: SpineLinks, angles: Float[np.ndarray, "*batch 5"]) -> Float[np.ndarray, "*batch 5 3"]:
@@ -190,7 +208,8 @@ def _closed_form(
     fifth = np.arctan2(ca * x4[1] - sa * x4[0], sa * z4[0] - ca * z4[1])
     level = np.cos(fifth) * (ca * x4[0] + sa * x4[1]) + np.sin(fifth) * (ca * z4[0] + sa * z4[1])
     fifth = np.where(level < 0, _wrapped(fifth + np.pi), fifth)
-    angles = np.broadcast_arrays(_wrapped(first_yaw), second, third, np.arctan2(s4, c4), fifth)
+    first = np.where(np.isnan(u), np.nan, _wrapped(first_yaw))
+    angles = np.broadcast_arrays(first, second, third, np.arctan2(s4, c4), fifth)
     return np.stack(angles, axis=-1), np.asarray(np.abs(level))
 
 
