@@ -11,6 +11,7 @@ import xarray as xr
 from suchus.design import Crocodile
 from suchus.experiment import Experiment, Measure, Outcome, Progress, judge, silent, staged, stopwatch
 from suchus.figures import LINES, captioned, panels, styled
+from suchus.figures.crawls import draw_crawls
 from suchus.figures.maps import draw_map
 from suchus.figures.timeseries import draw_band, draw_lines, mark_cycles, mark_printed
 from suchus.gaits import GAITS
@@ -183,10 +184,12 @@ class Displacement(Experiment):
         )
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
-        """Draw the way over time and what decides it."""
+        """Draw the crawls, the way over time and what decides it."""
+        record = outcome.record
         return {
-            "displacement_over_time": _over_time(outcome.record),
-            "displacement_map": self._drawn_map(outcome.record),
+            "crawling": draw_crawls(self.robot, record, _ARMS),
+            "displacement_over_time": _over_time(record),
+            "displacement_map": self._drawn_map(record),
         }
 
     def _drawn_map(self, record: xr.Dataset) -> Any:

@@ -34,9 +34,9 @@ class GaitDiagram(Experiment):
     shows = "Section III.D, Fig. 12"
     claims = ("diagonal_gait", "gait_diagram", "tail_swings_in_crawl", "cycle_period", "cycle_count")
     decides = (
-        "The legs' phases are commanded, so that the diagonal pairs come as no surprise. What the simulation adds: "
-        "feet stand longer than commanded, since the body tips onto the swing foot until the other pair takes over, and "
-        "the trunk lags behind its command where stance feet hold it back."
+        "The legs' phases are commanded, so that the diagonal pairs come as no surprise. What the simulation "
+        "adds: feet stand longer than commanded, since the body tips onto the swing foot until the other pair takes "
+        "over, and the trunk lags behind its command where stance feet hold it back."
     )
 
     robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])

@@ -1,5 +1,6 @@
 """A posture as a vector drawing: from above or from the side, with support and centre of mass."""
 
+from collections.abc import Sequence
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
@@ -7,6 +8,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.patches import Circle, Polygon
+from scipy.interpolate import CubicSpline, PchipInterpolator
 
 from suchus.design import LEGS, Crocodile
 from suchus.figures.style import COLOURS
@@ -131,16 +133,50 @@ def draw_posture(
     ax.set_aspect("equal")
 
 
+def draw_strip(
+    ax: Axes, robot: Crocodile, record: xr.Dataset, times: Sequence[float], *, role: str, aside: float = 0.0
+) -> None:
+    """Draw a robot from above at several times, the earlier ones paler, with the track of its centre of mass.
+
+    Args:
+        ax: to draw on; its aspect becomes equal.
+        robot: whose record it is.
+        record: of one run.
+        times: increasing [s].
+        role: of ``style.COLOURS``, for the track.
+        aside: how far to the left of its place it is drawn [m].
+    """
+    moved = record.assign(
+        {name: record[name] + _aside(record, aside) for name in ("position", "centre_of_mass", "foot_position")}
+    )
+    for i, time in enumerate(times):
+        before = set(ax.get_children())
+        draw_posture(ax, robot, moved, time, support=False)
+        fade = 0.18 + 0.82 * (i / max(len(times) - 1, 1)) ** 3
+        for artist in set(ax.get_children()) - before:
+            artist.set_alpha(fade)
+            artist.set_zorder(artist.get_zorder() + 10 * i)
+    part = moved.centre_of_mass.sel(time=slice(times[0], times[-1]))
+    x, y = (part.sel(xyz=axis).values for axis in "xy")
+    ax.plot(x, y, color=COLOURS[role], linewidth=2.4, zorder=10 * len(times) + 9)
+    ax.plot(x[[0, -1]], y[[0, -1]], "o", color=COLOURS[role], markersize=7, zorder=10 * len(times) + 9)
+
+
+def _aside(record: xr.Dataset, aside: float) -> xr.DataArray:
+    return xr.DataArray([0.0, aside, 0.0], dims="xyz", coords={"xyz": record.xyz})
+
+
 def _flesh(ax: Axes, robot: Crocodile, bones: Skeleton, rows: list[int]) -> None:
     tail = bones.tail[:, rows]
     share = np.linspace(0.0, 1.0, len(tail))
     radii = robot.tail.radius_root + share * (robot.tail.radius_tip - robot.tail.radius_root)
     _hull(ax, tail, radii)
     width = robot.head.width / 2
-    trunk = np.array([0.9, 1.2, 1.0, 1.0, 1.0, 1.0, 1.1, 1.2]) * robot.spine.radius
-    middle = bones.trunk[-2, rows] + 0.45 * (bones.trunk[-1, rows] - bones.trunk[-2, rows])
-    points = np.vstack([bones.trunk[:-1, rows], middle, bones.trunk[-1, rows]])
-    _hull(ax, points, np.array([*trunk, 0.85 * width, 0.3 * width]))
+    trunk = np.array([0.9, 1.3, 1.15, 1.05, 1.0, 1.05, 1.15, 1.3]) * robot.spine.radius
+    neck, snout = bones.trunk[-2, rows], bones.trunk[-1, rows]
+    head = [neck + share * (snout - neck) for share in (0.3, 0.5, 0.8, 1.0)]
+    points = np.vstack([bones.trunk[:-1, rows], *head])
+    _hull(ax, points, np.array([*trunk, 0.75 * width, 0.95 * width, 0.5 * width, 0.38 * width]))
     joints = bones.trunk[2:7, rows]
     ax.plot(
         *joints.T, "o", markersize=3.2, markerfacecolor="white", markeredgecolor=_EDGE, markeredgewidth=0.9, zorder=3
@@ -148,11 +184,14 @@ def _flesh(ax: Axes, robot: Crocodile, bones: Skeleton, rows: list[int]) -> None
 
 
 def _hull(ax: Axes, points: np.ndarray, radii: np.ndarray) -> None:
-    """Draw a chain with its width."""
-    ahead = np.gradient(points, axis=0)
-    length = np.linalg.norm(ahead, axis=1, keepdims=True)
-    across = np.column_stack([-ahead[:, 1], ahead[:, 0]]) / np.maximum(length, 1e-9)
-    outline = np.vstack([points + radii[:, None] * across, (points - radii[:, None] * across)[::-1]])
+    """Draw a chain of points as a smooth body with its half width at each."""
+    steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    along = np.concatenate([[0.0], np.cumsum(np.maximum(steps, 1e-6))])
+    fine = np.linspace(0.0, along[-1], 60)
+    middle, half = CubicSpline(along, points)(fine), PchipInterpolator(along, radii)(fine)
+    ahead = np.gradient(middle, axis=0)
+    across = np.column_stack([-ahead[:, 1], ahead[:, 0]]) / np.maximum(np.linalg.norm(ahead, axis=1), 1e-9)[:, None]
+    outline = np.vstack([middle + half[:, None] * across, (middle - half[:, None] * across)[::-1]])
     ax.add_patch(Polygon(outline, facecolor=_BODY, edgecolor=_EDGE, linewidth=1.0, joinstyle="round", zorder=2))
 
 

@@ -1,0 +1,51 @@
+"""Crawls side by side, from above, as far as each gets in the same time."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from suchus.design import Crocodile
+from suchus.figures.posture import draw_strip
+from suchus.figures.style import COLOURS, LINES, captioned, panels, styled
+from suchus.motion import START
+
+
+def draw_crawls(robot: Crocodile, record: xr.Dataset, arms: Sequence[str]) -> Figure:
+    """Draw one robot per run from above at the beginning, between and at the end of its walk.
+
+    Args:
+        robot: whose record it is.
+        record: with one run per arm.
+        arms: roles of ``style.LINES``.
+    """
+    end = float(record.time[-1])
+    times = np.linspace(START, end, 3)
+    apart = 0.42  # [m]
+    with styled(axes__grid=False):
+        figure, axes = panels(1, 1, width=10.5, height=5.2)
+        ax = axes[0, 0]
+        way = record.centre_of_mass.sel(xyz="x")
+        for i, role in enumerate(arms):
+            run, aside = record.isel(run=i), -apart * i
+            draw_strip(ax, robot, run, times, role=role, aside=aside)
+            start, stop = (float(way.isel(run=i).sel(time=t, method="nearest")) for t in (START, end))
+            dim = aside - 0.21
+            ax.annotate(
+                "", (start, dim), (stop, dim), arrowprops={"arrowstyle": "|-|", "color": COLOURS[role], "lw": 2}
+            )
+            ax.text(
+                max(stop, start + 0.02) + 0.03,
+                dim,
+                f"{stop - start:.2f} m, {LINES[role]['label']}",
+                color=COLOURS[role],
+                va="center",
+                fontsize=13,
+            )
+        ax.set_axis_off()
+    return captioned(
+        figure,
+        f"Two crawls from above with identical leg commands, at {times[0]:g}, {times[1]:g} and {times[2]:g} s, with "
+        "the track of the centre of mass: above spine and tail take part, below the legs work alone. Filled feet stand.",
+    )
