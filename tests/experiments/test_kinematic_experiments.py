@@ -9,6 +9,7 @@ from suchus.errors import InvalidDesign, OutsideLimits
 from suchus.experiment import Outcome
 from suchus.experiments import leg_kinematics, spine_kinematics, tail_bending
 from suchus.figures import caption, save
+from suchus.robots import ROBOTS
 
 MODULES = {m.experiment.name(): m.experiment for m in (leg_kinematics, spine_kinematics, tail_bending)}
 
@@ -103,13 +104,35 @@ def test_neglected_term_is_the_tangent(outcomes):
 
 def test_impossible_settings_are_refused():
     tail = MODULES["tail_bending"]
-    for bad in (replace(tail, furthest=2 * pi), replace(tail, furthest=-1.0), replace(tail, steps=1)):
-        with pytest.raises(OutsideLimits, match="gaps close"):
+    for bad in (replace(tail, furthest=np.nan), replace(tail, furthest=-1.0), replace(tail, steps=1)):
+        with pytest.raises(OutsideLimits, match="positive angle"):
             bad.run()
     with pytest.raises(InvalidDesign, match="at least"):
         replace(MODULES["spine_kinematics"], postures=0).run()
     with pytest.raises(InvalidDesign, match="at least"):
         replace(MODULES["leg_kinematics"], points=0).run()
+
+
+def test_sweep_ends_where_the_gaps_close():
+    outcome = replace(MODULES["tail_bending"], furthest=2 * pi, steps=5).run()
+    assert float(outcome.record.bend[-1]) == values(outcome)["bend_limit_of_gaps"]
+
+
+@pytest.mark.parametrize(("femur", "tibia", "joints", "gap"), [(0.05, 0.02, 1, 0.005), (0.03, 0.2, 30, 0.01)])
+def test_odd_robots_are_examined_too(femur, tibia, joints, gap, tmp_path):
+    robot = ROBOTS["caiman"]
+    odd = replace(
+        robot,
+        hind_leg=replace(robot.hind_leg, femur=femur, tibia=tibia),
+        spine=replace(robot.spine, base=0.2, link=0.03),
+        tail=replace(robot.tail, joints=joints, gap=gap),
+    )
+    for experiment in MODULES.values():
+        quick = replace(experiment.quick(), robot=odd)
+        outcome = quick.run()
+        assert all(np.isfinite(m.value) for m in outcome.measures.values())
+        for stem, figure in quick.draw(outcome).items():
+            save(figure, tmp_path, stem)
 
 
 def test_shorter_sweep_is_drawn_too(tmp_path):

@@ -245,17 +245,13 @@ def _sweep(hind: Leg) -> xr.Dataset:
 def _postures(hind: Leg) -> xr.Dataset:
     """Draw the leg sprawled, half erect and erect."""
     a0 = hind.hip_offset
-    feet = {
-        "sprawled": (a0 + hind.femur, 0.0, hind.tibia),
-        "half erect": (a0 + 0.6 * hind.femur, 0.0, 0.8 * hind.reach[1]),
-        "erect": (a0 + 0.1 * hind.femur, 0.0, 0.93 * hind.reach[1]),
-    }
-    angles = leg.inverse(hind, np.array(list(feet.values())))
-    hip = np.broadcast_to([a0, 0.0, 0.0], (len(feet), 3))
+    named = {"sprawled": (0, 0, 90), "half erect": (0, 35, 70), "erect": (0, 66, 42)}  # [deg]
+    angles = np.radians(list(named.values()))
+    hip = np.broadcast_to([a0, 0.0, 0.0], (len(named), 3))
     points = np.stack([hip, leg.knee_point(hind, angles), leg.forward(hind, angles)], axis=1)
     return xr.Dataset(
         {"posture_points": (("posture", "point", "axis"), points, {"units": "m", "long_name": "hip, knee, foot"})},
-        coords={"posture": list(feet), "point": ["hip", "knee", "foot"], "axis": ["outward", "ahead", "down"]},
+        coords={"posture": list(named), "point": ["hip", "knee", "foot"], "axis": ["outward", "ahead", "down"]},
     )
 
 

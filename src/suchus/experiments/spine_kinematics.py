@@ -128,9 +128,10 @@ def _verdicts(measures: dict[str, Measure]) -> tuple[Verdict, ...]:
     return (
         judge(
             "spine_forward",
-            error,
+            error / long,
             f"(15) lost one term: the straight spine is {1000 * long:.1f} mm long by Table II and {1000 * short:.1f} "
-            f"by (15), and bent by up to 30 degrees a joint its end is up to {1000 * error:.0f} mm off.",
+            f"by (15), and bent by up to 30 degrees a joint its end is up to {1000 * error:.0f} mm off; "
+            "measured is that share of the spine's length.",
             holds=error < 1e-9,
         ),
         *(

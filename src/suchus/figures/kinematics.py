@@ -33,7 +33,9 @@ def leg_inverse(record: xr.Dataset) -> Figure:
         figure.colorbar(mesh, ax=left, label="foot lands off by [mm]", shrink=0.85)
         hip = _MM * record.attrs["hip_offset"]
         left.plot(hip, 0, "o", color=_ALARM, markersize=6)
-        left.text(hip + 62, 70, "exact", color=_OURS, ha="center", weight="bold")
+        left.text(
+            hip + 350 * record.attrs["far"], 400 * record.attrs["far"], "exact", color=_OURS, ha="center", weight="bold"
+        )
         left.annotate("hip", (hip, 0), (8, -13), textcoords="offset points", color=_ALARM)
         _section_axes(left, "as printed, (14)")
         edges = _MM * record.error.values
@@ -112,8 +114,9 @@ def leg_misprints(record: xr.Dataset) -> Figure:
         left.plot(distance, np.degrees(record.knee_ours), **LINES["ours"])
         left.plot(distance, np.degrees(record.knee_printed), **LINES["printed"])
         nowhere = distance.values[np.isnan(record.knee_printed.values)]
-        left.axvspan(nowhere.min(), nowhere.max(), color=_ALARM, alpha=0.12, linewidth=0)
-        left.text(nowhere.mean(), 5, "no value", color=_ALARM, ha="center", rotation=90, va="bottom")
+        if nowhere.size:
+            left.axvspan(nowhere.min(), nowhere.max(), color=_ALARM, alpha=0.12, linewidth=0)
+            left.text(nowhere.mean(), 5, "no value", color=_ALARM, ha="center", rotation=90, va="bottom")
         left.set_xlabel("from hip to foot [mm]")
         left.set_ylabel("knee angle [deg]")
         left.set_yticks(range(0, 181, 30))
@@ -180,7 +183,8 @@ def spine_misprint(record: xr.Dataset) -> Figure:
             ends = [_MM * record[f"track_{n}"].sel(bend=bend, method="nearest") for n in ("ours", "printed")]
             left.plot(*[[e.sel(axis=a) for e in ends] for a in "yx"], "o-", color=_ALARM, linewidth=1.3, markersize=4)
         gap = _MM * float(record.track_ours.sel(bend=0)[0] - record.track_printed.sel(bend=0)[0])
-        left.annotate(f"{gap:.0f} mm", (0, 262), (6, -4), textcoords="offset points", color=_ALARM)
+        middle = _MM * float(record.track_ours.sel(bend=0)[0]) - gap / 2
+        left.annotate(f"{gap:.0f} mm", (0, middle), (6, -4), textcoords="offset points", color=_ALARM)
         left.set_aspect("equal")
         left.invert_xaxis()
         left.set_xlabel("left [mm]")
@@ -188,7 +192,7 @@ def spine_misprint(record: xr.Dataset) -> Figure:
         left.set_title("joint 5 while the trunk bends")
         left.plot(0, 0, "s", color=_PRINTED, markersize=8)
         left.annotate("pelvis", (0, 0), (9, -2), textcoords="offset points")
-        left.set_ylim(-15, 310)
+        left.set_ylim(-15, middle + gap)
         left.legend(loc="center", bbox_to_anchor=(0.5, 0.3))
         edges = np.append(record.error, 2 * record.error[-1] - record.error[-2]) * _MM
         right.stairs(100 * record.error_share.values, edges, color=_PRINTED, fill=True, alpha=0.55)

@@ -64,8 +64,10 @@ def tail_cord_error(record: xr.Dataset) -> Figure:
         above.axhline(0, color=COLOURS["neutral"], linewidth=1)
         above.plot(bend, 100 * record.error_away, color=COLOURS["limbs_only"], linestyle=(0, (5, 2)))
         above.plot(bend, 100 * record.error_toward, color=_OURS)
-        above.text(92, 3.0, "cord let out: (17) gives too much", color=COLOURS["limbs_only"], ha="right")
-        above.text(92, -3.4, "cord pulled in: (17) pulls too little", color=_OURS, ha="right")
+        above.text(
+            0.07, 0.82, "cord let out: (17) gives too much", color=COLOURS["limbs_only"], transform=above.transAxes
+        )
+        above.text(0.07, 0.12, "cord pulled in: (17) pulls too little", color=_OURS, transform=above.transAxes)
         above.set_ylabel("error of (17) [%]")
         missing = np.degrees(record.deficit)
         below.plot(bend, missing, color=COLOURS["spine"], linestyle=(0, (5, 1.5, 1, 1.5)), label="bend missing [deg]")
@@ -94,8 +96,8 @@ def tail_cords(record: xr.Dataset) -> Figure:
             left.plot(bend, _MM * record[name], color=_OURS, label="exact, (16) times N" if sign > 0 else None)
             label = "shortened, (17) times N" if sign > 0 else None
             left.plot(bend, sign * _MM * record.shortened, color=_PRINTED, linestyle=(0, (4, 2)), label=label)
-        left.text(170, 45, "away", ha="right", color=_OURS)
-        left.text(120, -70, "toward the bend", ha="right", color=_OURS)
+        left.text(0.95, 0.57, "away", ha="right", color=_OURS, transform=left.transAxes)
+        left.text(0.66, 0.1, "toward the bend", ha="right", color=_OURS, transform=left.transAxes)
         left.set_ylabel("change of the cord [mm]")
         left.set_title("cords")
         left.legend(loc="upper left", fontsize=10)
