@@ -9,6 +9,7 @@ from typing import Any, ClassVar, Literal
 
 import xarray as xr
 
+from suchus.errors import UnknownName
 from suchus.paper import CLAIMS, Claim
 
 Word = Literal["reproduced", "same sense", "contradicted", "not testable"]
@@ -130,6 +131,8 @@ def judge(
     Raises:
         UnknownName: no claim has this key.
     """
+    if key not in CLAIMS:
+        raise UnknownName("claim", key, CLAIMS)
     claim = CLAIMS[key]
     word: Word
     if measured is None:

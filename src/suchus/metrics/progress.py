@@ -3,9 +3,10 @@
 import numpy as np
 import xarray as xr
 
-from suchus.metrics.gait import loaded
 from suchus.metrics.window import between
 from suchus.motion import START
+
+_GRAVITY = 9.81  # [m/s2]
 
 
 def displacement(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
@@ -43,9 +44,13 @@ def path_length(record: xr.Dataset, start: float = START, end: float | None = No
 
 
 def slip(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
-    """Return how far a loaded foot slides, the mean over the feet, over the way of the centre of mass [-]."""
+    """Return how far the feet slide under load, over the way of the centre of mass [-].
+
+    Each foot's sliding counts by the share of the weight that the foot carries meanwhile.
+    """
     part = between(record, start, end)
     steps = part.foot_position.sel(xyz=["x", "y"]).diff("time")
-    slid = ((steps**2).sum("xyz") ** 0.5).where(loaded(part).isel(time=slice(1, None)), 0.0)
+    carried = part.foot_force.sel(xyz="z").isel(time=slice(1, None)) / (part.mass * _GRAVITY)
+    slid = ((steps**2).sum("xyz") ** 0.5 * carried).sum(["time", "leg"])
     way = displacement(part, start, end).sel(xyz=["x", "y"])
-    return slid.sum("time").mean("leg") / (way**2).sum("xyz") ** 0.5
+    return slid / (way**2).sum("xyz") ** 0.5

@@ -1,0 +1,22 @@
+"""Change the robot and the gait: frozen values, varied with dataclasses.replace.
+
+Here: how far does the crawl get with weaker trunk servos, and with a longer tail?
+
+Usage: python examples/03_your_own_robot.py
+"""
+
+from dataclasses import replace
+
+import suchus
+from suchus.metrics import displacement
+
+caiman, gait = suchus.ROBOTS["caiman"], suchus.GAITS["belly_crawl"]
+weak = replace(caiman, name="weak", spine=replace(caiman.spine, yaw_servo=replace(caiman.spine.yaw_servo, torque=1.0)))
+tailed = replace(caiman, name="tailed", tail=replace(caiman.tail, fin_length=0.25))
+for robot in (caiman, weak, tailed):
+    forward = float(displacement(suchus.crawl(robot, gait)).sel(xyz="x"))
+    print(f"{robot.name:8s} {robot.length:.2f} m long, {robot.mass:.2f} kg: {forward:.2f} m")
+try:
+    replace(caiman.hind_leg, tibia=-0.08)
+except suchus.InvalidDesign as error:
+    print("refused:", error)
