@@ -1,7 +1,28 @@
 """From what the robot senses to what its servos are told, for a whole batch at once."""
 
 from suchus.control.controller import Command, Control, Controller
+from suchus.control.coordinated import Coordinated, Kick
+from suchus.control.heading import HeadingRule
+from suchus.control.limbs import LAWS, LimbLaw
 from suchus.control.open_loop import OpenLoop
 from suchus.control.sensed import Sensed
+from suchus.control.shared import OWNERS, Shared
+from suchus.control.spine import SpineRule
+from suchus.control.tail import TailRule
 
-__all__ = ["Command", "Control", "Controller", "OpenLoop", "Sensed"]
+__all__ = [
+    "LAWS",
+    "OWNERS",
+    "Command",
+    "Control",
+    "Controller",
+    "Coordinated",
+    "HeadingRule",
+    "Kick",
+    "LimbLaw",
+    "OpenLoop",
+    "Sensed",
+    "Shared",
+    "SpineRule",
+    "TailRule",
+]

@@ -5,6 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
+from suchus.design import servo_names
+
+TRUNK_YAW = [servo_names().index(f"spine_yaw_{i}") for i in (1, 2, 3)]
+"""Columns of the trunk's yaw servos."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Sensed:
@@ -30,3 +35,8 @@ class Sensed:
     """Of the IMU, in its own frame [rad/s]."""
     acceleration: Float[np.ndarray, "run 3"]
     """Of the IMU with gravity, in its own frame [m/s2]."""
+
+
+def finite(values: Float[np.ndarray, "*any"]) -> Float[np.ndarray, "*any"]:
+    """Return readings with zero where a run that came apart left nothing to read."""
+    return np.where(np.isfinite(values), values, 0.0)

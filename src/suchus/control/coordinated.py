@@ -1,0 +1,183 @@
+"""The closed loop: limbs, spine and tail each with a rule of its own, joined by the shared variables."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple
+
+import numpy as np
+from jaxtyping import Float
+
+from suchus.control.controller import Command
+from suchus.control.heading import Heading, HeadingRule, Steering
+from suchus.control.limbs import LAWS, LimbLaw, Limbs
+from suchus.control.open_loop import OpenLoop
+from suchus.control.sensed import Sensed
+from suchus.control.shared import silence
+from suchus.control.spine import Spine, SpineRule
+from suchus.control.tail import Tail, TailRule
+from suchus.design import Crocodile
+from suchus.design.checks import Checks, require
+from suchus.errors import InvalidDesign
+from suchus.motion import START, Gait, servo_targets
+
+_SLACK = 1e-9  # [s]; times are multiples of the control period up to rounding
+
+
+@dataclass(frozen=True, slots=True)
+class Kick:
+    """A disturbance of the clock: limbs that jump ahead."""
+
+    at: float
+    """When [s]."""
+    ahead: tuple[float, float, float, float]
+    """How far LF, RF, LH, RH jump [cycle]."""
+
+    def __post_init__(self) -> None:
+        require("kick", "at", self.at, 0.0, 86400.0, "s")
+        if len(self.ahead) != 4:
+            raise InvalidDesign(f"kick.ahead has {len(self.ahead)} numbers; LF, RF, LH, RH need one each.")
+        for i, cycles in enumerate(self.ahead):
+            require("kick", f"ahead[{i}]", cycles, -1.0, 1.0, "cycle")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Coordinated:
+    """Three feedback rules over the gait's clock, and a heading loop for who wants one.
+
+    With the law ``off`` and no rule the commands are those of ``OpenLoop``, to the bit.
+
+    Paper: section III.D, Fig. 10.
+    """
+
+    limbs: LimbLaw = LAWS["cross_load"]
+    """Limb to limb; ``LAWS["off"]`` for none."""
+    spine: SpineRule | None = field(default_factory=SpineRule)
+    """Spine to spine; None for none: the trunk still follows the limbs' phases."""
+    tail: TailRule | None = field(default_factory=TailRule)
+    """Tail to tail; None for none: the tail still follows the trunk."""
+    heading: HeadingRule | None = None
+    """Which keeps the direction of the walk; None for none."""
+    sharing: bool = True
+    """Whether spine and tail hear of the limbs' phases; if not they follow the clock, each for itself."""
+    random_start: bool = False
+    """Whether the limbs begin with random phases, drawn with the run's seed, instead of the gait's."""
+    kicks: tuple[Kick, ...] = ()
+    """Limbs that jump ahead, and when."""
+    load_noise: float = 0.0
+    """Standard deviation of the noise on what each foot feels, as a part of the load [-]; drawn with the run's seed."""
+
+    def __post_init__(self) -> None:
+        with Checks("coordinated", self) as checks:
+            checks.number("load_noise", 0.0, 10.0, "")
+
+    @property
+    def feels(self) -> bool:
+        """Whether any rule is on."""
+        return self.limbs.feels or any(rule is not None for rule in (self.spine, self.tail, self.heading))
+
+    def start(
+        self,
+        robots: Sequence[Crocodile],
+        gaits: Sequence[Gait],
+        seeds: Sequence[int],
+        ticks: int,
+        period: float,
+    ) -> "Coordinator":
+        """Start the rules for a batch."""
+        return Coordinator(self, robots, gaits, seeds, ticks, period)
+
+
+class _Group(NamedTuple):
+    robot: Crocodile
+    gait: Gait
+    runs: np.ndarray
+
+
+class Coordinator:
+    """The controllers of limbs, spine and tail of a batch, and the posture that they ask for together."""
+
+    def __init__(
+        self,
+        control: Coordinated,
+        robots: Sequence[Crocodile],
+        gaits: Sequence[Gait],
+        seeds: Sequence[int],
+        ticks: int,
+        period: float,
+    ) -> None:
+        self._period = period
+        self._sharing = control.sharing
+        self._table = OpenLoop().start(robots, gaits, seeds, ticks, period)
+        self._groups = _grouped(robots, gaits)
+        by_gait = [(group.gait, group.runs) for group in self._groups]
+        ahead = np.zeros((len(robots), 4))
+        if control.random_start:
+            ahead = np.array([_random_phases(seed) - gait.limb_phases for seed, gait in zip(seeds, gaits, strict=True)])
+        self._kicks = {int(np.ceil(kick.at / period - _SLACK)): np.array(kick.ahead) for kick in control.kicks}
+        self._noise = [np.random.default_rng([seed, 1]) for seed in seeds] if control.load_noise > 0 else []
+        self._loudness = control.load_noise
+        self._limbs = Limbs(control.limbs, robots, gaits, ahead, period)
+        self._spine = Spine(control.spine, robots, by_gait, period)
+        self._tail = Tail(control.tail, robots, gaits, by_gait, period)
+        self._heading = None if control.heading is None else Heading(control.heading, robots, gaits, ticks, period)
+        self._shared = silence(len(robots))
+        self._steering = Steering.none(len(robots))
+
+    def rest(self) -> Float[np.ndarray, "run 19"]:
+        """The posture of the first phases."""
+        self._share(0, None, walking=False)
+        return self._posture(0)
+
+    def command(self, tick: int, sensed: Sensed | None) -> Command:
+        """Let every controller read the shared variables and what it feels, and say what the servos do."""
+        walking = tick * self._period >= START - _SLACK
+        if tick in self._kicks:
+            self._limbs.ahead = self._limbs.ahead + self._kicks[tick]
+        if sensed is not None and self._noise:
+            sensed = self._noisy(sensed)
+        self._share(tick, sensed, walking=walking)
+        if sensed is not None and self._heading is not None:
+            self._steering = self._heading.step(sensed, walking=walking)
+        targets = self._posture(tick)
+        if sensed is not None and walking:
+            targets = self._spine.correct(targets, self._shared.trunk_bend + self._steering.trunk, sensed)
+            targets = self._tail.correct(targets, sensed)
+        return Command(targets, self._shared.limb_phase)
+
+    def _share(self, tick: int, sensed: Sensed | None, *, walking: bool) -> None:
+        clock = self._table.command(tick, None).phase
+        limbs = self._limbs.step(self._shared, sensed, clock, walking=walking)
+        heard = limbs if self._sharing else replace(limbs, limb_phase=clock)
+        self._shared = replace(self._tail.step(self._spine.step(heard)), limb_phase=limbs.limb_phase)
+
+    def _posture(self, tick: int) -> Float[np.ndarray, "run 19"]:
+        """Return the servo angles; where nothing is ahead of the clock and nobody steers, those of the table."""
+        targets = self._table.command(tick, None).targets
+        moved = self._limbs.ahead.any(axis=1) | self._steering.any()
+        for robot, gait, members in self._groups:
+            runs = members[moved[members]]
+            if runs.size:
+                targets[runs] = servo_targets(
+                    robot,
+                    gait,
+                    self._shared.limb_phase[runs],
+                    trunk=self._shared.trunk_bend[runs] + self._steering.trunk[runs],
+                    tail=self._shared.tail_bend[runs],
+                    stroke=gait.stroke * (1.0 + self._steering.stroke[runs]),
+                )
+        return targets
+
+    def _noisy(self, sensed: Sensed) -> Sensed:
+        noise = np.array([rng.standard_normal(4) for rng in self._noise])
+        return replace(sensed, foot_pressure=sensed.foot_pressure * np.maximum(1.0 + self._loudness * noise, 0.0))
+
+
+def _grouped(robots: Sequence[Crocodile], gaits: Sequence[Gait]) -> list[_Group]:
+    members: dict[tuple[Crocodile, Gait], list[int]] = {}
+    for i, pair in enumerate(zip(robots, gaits, strict=True)):
+        members.setdefault(pair, []).append(i)
+    return [_Group(robot, gait, np.array(runs)) for (robot, gait), runs in members.items()]
+
+
+def _random_phases(seed: int) -> np.ndarray:
+    return np.random.default_rng([seed, 0]).random(4)

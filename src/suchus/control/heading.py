@@ -1,0 +1,116 @@
+"""A heading loop: what the IMU says about the direction of the walk, answered by one side's stroke."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import pi
+from typing import NamedTuple
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from suchus.control.sensed import TRUNK_YAW, Sensed, finite
+from suchus.design import Crocodile
+from suchus.design.checks import Checks
+from suchus.motion import Gait, longest_stroke
+
+_LEFT = np.array([1.0, -1.0, 1.0, -1.0])
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HeadingRule:
+    """Keeps the body's direction by walking with longer strokes on one side.
+
+    The body's direction is that of the pelvis by the IMU plus half of the trunk's sensed bend. With psi its error,
+    averaged over the last cycle, and T the period, the legs' strokes become A (1 - u) on the left and A (1 + u) on
+    the right, and u = -(gain psi + integral_gain sum(psi dt)/T).
+    """
+
+    direction: float = 0.0
+    """Asked direction against the one at the beginning of the walk, left positive [rad]."""
+    gain: float = 3.0
+    """Answer to the error [1/rad]; a unit of u turns the crawl by 0.3 to 0.5 rad a cycle, so 3 mends in one."""
+    integral_gain: float = 1.0
+    """Answer to the error that stays, per cycle [1/rad]; a limp leg needs a lasting u of almost 2."""
+    most: float = 2.0
+    """Most that u becomes [-]; beyond 1 the shorter side strides backward. A leg's reach may allow less."""
+    trunk: float = 0.4
+    """Lasting bend of the trunk per u, left positive [rad]; it helps where strokes have little effect."""
+
+    def __post_init__(self) -> None:
+        with Checks("heading_rule", self) as checks:
+            checks.number("direction", -pi, pi, "rad")
+            checks.number("gain", 0.0, 100.0, "1/rad")
+            checks.number("integral_gain", 0.0, 100.0, "1/rad")
+            checks.number("most", 0.0, 10.0, "")
+            checks.number("trunk", -1.5, 1.5, "rad")
+
+
+class Steering(NamedTuple):
+    """What the heading loop adds to the posture."""
+
+    stroke: Float[np.ndarray, "run 4"]
+    """By how much each leg's stroke is longer, as a part of it [-]."""
+    trunk: Float[np.ndarray, " run"]
+    """Lasting bend of the trunk [rad]."""
+
+    @classmethod
+    def none(cls, runs: int) -> "Steering":
+        """Return what steers straight ahead."""
+        return cls(np.zeros((runs, 4)), np.zeros(runs))
+
+    def any(self) -> Bool[np.ndarray, " run"]:
+        """Tell which runs are steered."""
+        return self.stroke.any(axis=1) | (self.trunk != 0.0)
+
+
+class Heading:
+    """The heading loops of a batch."""
+
+    def __init__(
+        self,
+        rule: HeadingRule,
+        robots: Sequence[Crocodile],
+        gaits: Sequence[Gait],
+        ticks: int,
+        period: float,
+    ) -> None:
+        self._rule = rule
+        self._runs = np.arange(len(gaits))
+        self._cycle = np.array([max(1, round(gait.period / period)) for gait in gaits])
+        self._most = np.array([_most(rule, robot, gait) for robot, gait in zip(robots, gaits, strict=True)])
+        self._summed = np.zeros((ticks + 1, len(gaits)))
+        self._count = 0
+        self._lasting = np.zeros(len(gaits))
+        self._last = np.zeros(len(gaits))
+        self._turned = np.zeros(len(gaits))
+
+    def step(self, sensed: Sensed, *, walking: bool) -> Steering:
+        """Answer to the direction that is felt now."""
+        if not walking:
+            return Steering.none(len(self._runs))
+        error = self._error(sensed)
+        self._lasting = np.clip(self._lasting - self._rule.integral_gain * error / self._cycle, -self._most, self._most)
+        steer = np.clip(self._lasting - self._rule.gain * error, -self._most, self._most)
+        return Steering(-_LEFT * steer[:, None], self._rule.trunk * steer)
+
+    def _error(self, sensed: Sensed) -> np.ndarray:
+        """Return the error of the direction, averaged over the last cycle or what there is of it [rad]."""
+        w, x, y, z = finite(sensed.orientation).T
+        facing = (
+            np.arctan2(2 * (w * z + x * y), 1 - 2 * (y**2 + z**2))
+            + finite(sensed.servo_position[:, TRUNK_YAW]).sum(1) / 2
+        )
+        if self._count > 0:
+            self._turned = self._turned + (facing - self._last + pi) % (2 * pi) - pi
+        self._last = facing
+        self._count += 1
+        self._summed[self._count] = self._summed[self._count - 1] + self._turned
+        window = np.minimum(self._cycle, self._count)
+        mean = (self._summed[self._count] - self._summed[self._count - window, self._runs]) / window
+        return mean - self._rule.direction
+
+
+def _most(rule: HeadingRule, robot: Crocodile, gait: Gait) -> float:
+    if gait.stroke == 0.0:
+        return 0.0
+    return min(rule.most, max(longest_stroke(robot, gait) / abs(gait.stroke) - 1.0, 0.0))

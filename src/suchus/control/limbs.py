@@ -1,0 +1,164 @@
+"""Limb to limb: one phase oscillator per limb, slowed or hastened by what the feet carry."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from math import exp, pi
+from types import MappingProxyType
+
+import numpy as np
+from jaxtyping import Float
+
+from suchus.control.sensed import TRUNK_YAW, Sensed, finite
+from suchus.control.shared import Shared
+from suchus.design import Crocodile
+from suchus.design.checks import Checks
+from suchus.errors import OutsideLimits
+from suchus.motion import Gait
+
+GRAVITY = 9.81
+"""[m/s2]; for a foot's normal share of the weight."""
+SIDES = np.array([1.0, -1.0, -1.0, 1.0])
+"""The diagonal pair of each limb: LF and RH 1, RF and LH -1."""
+_DIAGONAL = 0.02  # [cycle]; how far from diagonal pairs a gait may be that a law with pairs coordinates
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LimbLaw:
+    """How the phase of a limb answers to loads and to the trunk's torque.
+
+    With theta the limb's phase as an angle whose middle of stance is at 270 degrees, n the load of a foot over its
+    quarter of the weight, s = 1 for LF and RH and -1 for RF and LH, and u the sum of the trunk's yaw torques over
+    its limit:
+
+        d(theta)/dt = 2 pi/T [1 - cos(theta - shift) (own n + diagonal n_d + contralateral n_c + ipsilateral n_i)
+                                - trunk s u cos(theta)]
+
+    A foot that still carries load late in its stance waits; one that is loaded early hurries to mid-stance.
+    """
+
+    own: float = 0.0
+    """Weight of the foot's own load [-]."""
+    diagonal: float = 0.0
+    """Weight of the load of the foot diagonally opposite [-]."""
+    contralateral: float = 0.0
+    """Weight of the load of the other foot of the same girdle [-]."""
+    ipsilateral: float = 0.0
+    """Weight of the load of the other foot of the same side [-]."""
+    trunk: float = 0.0
+    """Weight of the trunk's yaw torque [-]."""
+    shift: float = 0.0
+    """Phase shift of the answer to loads [rad]; at the phase where the load peaks the mean clock is not slowed."""
+    delay: float = 0.04
+    """Time constant of the low-pass filter on loads and torque [s]; as slow as a rubber foot is anyway."""
+    clip: float = 2.5
+    """Most that a load counts, in quarters of the weight [-]; two feet carry everything in the crawl, impacts more."""
+
+    def __post_init__(self) -> None:
+        with Checks("limb_law", self) as checks:
+            for name in ("own", "diagonal", "contralateral", "ipsilateral", "trunk"):
+                checks.number(name, -10.0, 10.0, "")
+            checks.number("shift", -pi, pi, "rad")
+            checks.number("delay", 0.0, 10.0, "s")
+            checks.number("clip", 0.1, 100.0, "")
+
+    @property
+    def feels(self) -> bool:
+        """Whether any sensor counts."""
+        return any((self.own, self.diagonal, self.contralateral, self.ipsilateral, self.trunk))
+
+    @property
+    def pairs(self) -> bool:
+        """Whether it makes diagonal pairs, whatever the gait."""
+        return any((self.diagonal, self.contralateral, self.ipsilateral, self.trunk))
+
+
+_CROSS = LimbLaw(own=0.1, diagonal=0.1, contralateral=-0.1, ipsilateral=-0.1, shift=0.244)
+LAWS: Mapping[str, LimbLaw] = MappingProxyType(
+    {
+        "off": LimbLaw(),
+        "own_load": LimbLaw(own=0.2, shift=0.244),
+        "cross_load": _CROSS,
+        "body_limb": LimbLaw(trunk=0.3),
+        "wrong_sign": replace(_CROSS, own=-0.1, diagonal=-0.1, contralateral=0.1, ipsilateral=0.1),
+    }
+)
+"""The laws by name.
+
+``off``: the clock alone. ``own_load``: each limb feels its own foot and nobody tells it anything (Owaki and Ishiguro
+2017); coordination is then mechanical. ``cross_load``: the loads of the two diagonal pairs against each other.
+``body_limb``: the limbs feel the trunk's torque, in the spirit of Suzuki et al. 2021 (our own form: theirs is for
+another body). ``wrong_sign``: the cross-load law reversed, which must fail.
+"""
+
+
+class Limbs:
+    """The oscillators of a batch. Their state is how far each limb is ahead of the gait's clock."""
+
+    def __init__(
+        self,
+        law: LimbLaw,
+        robots: Sequence[Crocodile],
+        gaits: Sequence[Gait],
+        ahead: Float[np.ndarray, "run 4"],
+        period: float,
+    ) -> None:
+        if law.pairs:
+            for gait in gaits:
+                _refuse_others(gait)
+        self.ahead = ahead
+        self._law = law
+        self._cycles_per_tick = period / np.array([gait.period for gait in gaits])[:, None]
+        self._middle = np.array([gait.duty_factor / 2 - 0.25 for gait in gaits])[:, None]
+        self._share = np.array([robot.mass * GRAVITY / 4 for robot in robots])[:, None]
+        self._torque = np.array([3 * robot.spine.yaw_servo.torque for robot in robots])
+        self._keep = exp(-period / law.delay) if law.delay > 0 else 0.0
+        self._load: np.ndarray | None = None
+        self._twist: np.ndarray | None = None
+        own, diagonal, other, same = law.own, law.diagonal, law.contralateral, law.ipsilateral
+        self._weights = np.array(
+            [
+                [own, other, same, diagonal],
+                [other, own, diagonal, same],
+                [same, diagonal, own, other],
+                [diagonal, same, other, own],
+            ]
+        )
+
+    def step(
+        self, shared: Shared, sensed: Sensed | None, clock: Float[np.ndarray, "run 4"], *, walking: bool
+    ) -> Shared:
+        """Let the oscillators turn for one control period.
+
+        Args:
+            shared: what the others say.
+            sensed: what the robots feel.
+            clock: phase of each limb by the gait's clock [cycle].
+            walking: whether the walk has begun; before, the phases stand still.
+        """
+        if self._law.feels and sensed is not None:
+            load, twist = self._filter(sensed)
+            if walking:
+                self.ahead = self.ahead - self._cycles_per_tick * self._brake(shared.limb_phase, load, twist)
+        return shared.written_by("limbs", limb_phase=clock + self.ahead)
+
+    def _filter(self, sensed: Sensed) -> tuple[np.ndarray, np.ndarray]:
+        load = np.minimum(finite(sensed.foot_pressure) / self._share, self._law.clip)
+        twist = finite(sensed.servo_torque[:, TRUNK_YAW]).sum(axis=1) / self._torque
+        self._load = load if self._load is None else load + self._keep * (self._load - load)
+        self._twist = twist if self._twist is None else twist + self._keep * (self._twist - twist)
+        return self._load, self._twist
+
+    def _brake(self, phase: np.ndarray, load: np.ndarray, twist: np.ndarray) -> np.ndarray:
+        angle = 2 * pi * (phase + self._middle)
+        brake = np.cos(angle - self._law.shift) * (load @ self._weights)  # the weights are symmetric
+        return brake + self._law.trunk * np.cos(angle) * SIDES * twist[:, None]
+
+
+def _refuse_others(gait: Gait) -> None:
+    lf, rf, lh, rh = gait.limb_phases
+    worst = max(abs((difference + 0.5) % 1.0 - 0.5) for difference in (lf - rh, rf - lh, lf - rf + 0.5))
+    if worst > _DIAGONAL:
+        raise OutsideLimits(
+            f"gait {gait.name!r} has limb phases {gait.limb_phases}, {worst:.2f} cycle away from diagonal pairs; this "
+            "limb law would turn it into a trot: use the law 'off' or 'own_load'."
+        )

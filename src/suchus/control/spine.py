@@ -1,0 +1,79 @@
+"""Spine to spine: the trunk's bend follows the limbs, and its joints share each other's error."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import exp
+
+import numpy as np
+from jaxtyping import Float
+
+from suchus.control.sensed import TRUNK_YAW, Sensed, finite
+from suchus.control.shared import Shared
+from suchus.design import Crocodile
+from suchus.design.checks import Checks
+from suchus.motion import Gait, trunk_bend
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SpineRule:
+    """Every yaw joint of the trunk takes over a part of what all of them together lack.
+
+    With B the bend that the limbs' phases ask for and q the sensed yaw angles, e is the low-passed B - sum(q), and
+    each joint is told B/3 + share e. A joint that is stuck, weak or sagging is so made up for by the others.
+    """
+
+    share: float = 0.3
+    """Part of the missing bend that each joint takes over [-]; 0.6 is stable too and makes up for more."""
+    delay: float = 0.1
+    """Time constant of the low-pass filter on the missing bend [s]; longer than a servo needs, shorter than a step."""
+
+    def __post_init__(self) -> None:
+        with Checks("spine_rule", self) as checks:
+            checks.number("share", 0.0, 2.0, "")
+            checks.number("delay", 0.0, 10.0, "s")
+
+
+class Spine:
+    """The trunks of a batch."""
+
+    def __init__(
+        self,
+        rule: SpineRule | None,
+        robots: Sequence[Crocodile],
+        groups: Sequence[tuple[Gait, np.ndarray]],
+        period: float,
+    ) -> None:
+        self._rule = rule
+        self._groups = groups
+        low, high = np.array([robot.spine.yaw_range for robot in robots]).T
+        self._low, self._high = low[:, None], high[:, None]
+        self._keep = exp(-period / rule.delay) if rule is not None and rule.delay > 0 else 0.0
+        self._lacking = np.zeros(len(robots))
+
+    def step(self, shared: Shared) -> Shared:
+        """Let the bend follow the limbs: each of the four pulls with a quarter of the amplitude."""
+        bend, direction = np.empty_like(shared.trunk_bend), np.empty_like(shared.trunk_bend)
+        for gait, runs in self._groups:
+            bend[runs] = trunk_bend(gait, shared.limb_phase[runs])
+            direction[runs] = trunk_bend(gait, shared.limb_phase[runs] + 0.25)
+        return shared.written_by("spine", trunk_bend=bend, trunk_direction=direction)
+
+    def correct(
+        self, targets: Float[np.ndarray, "run 19"], asked: Float[np.ndarray, " run"], sensed: Sensed
+    ) -> Float[np.ndarray, "run 19"]:
+        """Return the targets with the missing bend shared out.
+
+        Args:
+            targets: servo angles [rad].
+            asked: bend of the trunk [rad].
+            sensed: what the robots feel.
+        """
+        if self._rule is None:
+            return targets
+        lacking = asked - finite(sensed.servo_position[:, TRUNK_YAW]).sum(axis=1)
+        self._lacking = lacking + self._keep * (self._lacking - lacking)
+        told = targets.copy()
+        told[:, TRUNK_YAW] = np.clip(
+            targets[:, TRUNK_YAW] + self._rule.share * self._lacking[:, None], self._low, self._high
+        )
+        return told

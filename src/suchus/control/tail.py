@@ -1,0 +1,85 @@
+"""Tail to tail: the tail bends with the trunk, and the ground carries it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from suchus.control.sensed import Sensed, finite
+from suchus.control.shared import Shared
+from suchus.design import Crocodile, servo_names
+from suchus.design.checks import Checks
+from suchus.motion import Gait, tail_bend
+
+PITCH = servo_names().index("tail_pitch")
+"""Column of the tail's pitch servo."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TailRule:
+    """The tail's pitch gives way until its servo holds nothing, so that the ground carries the tail on any slope.
+
+    d(pitch)/dt = -rate torque, within a range. A gait that lifts its tail keeps it lifted.
+    """
+
+    rate: float = 0.5
+    """How fast it gives way [rad/(s N m)]; over a cycle it settles, within a step it hardly moves."""
+    lowest: float = 0.55
+    """Farthest down [rad]; beyond, the tail would lift the hind feet."""
+    highest: float = -0.05
+    """Farthest up [rad]; level, the tail no longer touches."""
+
+    def __post_init__(self) -> None:
+        with Checks("tail_rule", self) as checks:
+            checks.number("rate", 0.0, 100.0, "rad/(s N m)")
+            checks.number("lowest", -1.3, 1.3, "rad")
+            checks.number("highest", -1.3, 1.3, "rad")
+            checks.that(self.highest <= self.lowest, "highest must be at most lowest: down is positive")
+
+
+class Tail:
+    """The tails of a batch."""
+
+    def __init__(
+        self,
+        rule: TailRule | None,
+        robots: Sequence[Crocodile],
+        gaits: Sequence[Gait],
+        groups: Sequence[tuple[Gait, np.ndarray]],
+        period: float,
+    ) -> None:
+        self._rule = rule
+        self._groups = groups
+        self._period = period
+        self._pitch = np.array([gait.tail_pitch for gait in gaits])
+        if rule is not None:
+            reach = np.array([robot.tail.pitch_range for robot in robots])
+            self._low = np.maximum(reach[:, 0], np.minimum(rule.highest, self._pitch))
+            self._high = np.minimum(reach[:, 1], np.maximum(rule.lowest, self._pitch))
+            self._drags = self._pitch >= 0.0
+
+    def step(self, shared: Shared) -> Shared:
+        """Let the bend follow the trunk, as late as the gait wants it; where no trunk bends, it follows the limbs."""
+        bend, direction = np.empty_like(shared.tail_bend), np.empty_like(shared.tail_bend)
+        for gait, runs in self._groups:
+            if gait.trunk_bend > 0.0:
+                scale, late = gait.tail_bend / gait.trunk_bend, 2 * np.pi * gait.tail_phase
+                now, later = shared.trunk_bend[runs], shared.trunk_direction[runs]
+                bend[runs] = scale * (np.cos(late) * now - np.sin(late) * later)
+                direction[runs] = scale * (np.cos(late) * later + np.sin(late) * now)
+            else:
+                bend[runs] = tail_bend(gait, shared.limb_phase[runs])
+                direction[runs] = tail_bend(gait, shared.limb_phase[runs] + 0.25)
+        return shared.written_by("tail", tail_bend=bend, tail_direction=direction)
+
+    def correct(self, targets: Float[np.ndarray, "run 19"], sensed: Sensed) -> Float[np.ndarray, "run 19"]:
+        """Return the targets with the tail's pitch given way for one control period more."""
+        if self._rule is None:
+            return targets
+        gives = self._rule.rate * self._period * finite(sensed.servo_torque[:, PITCH])
+        moved = np.clip(self._pitch - gives, self._low, self._high)
+        self._pitch = np.where(self._drags, moved, self._pitch)
+        told = targets.copy()
+        told[:, PITCH] = self._pitch
+        return told
