@@ -38,6 +38,12 @@ COMMANDS = (
         "suchus.cli.reproduce:reproduce",
     ),
     Command("run", "NAME [--FIELD VALUE ...]", "run one experiment", "suchus.cli.run:run"),
+    Command(
+        "capture",
+        "TRACKS [--out FILE.toml]",
+        "read a gait from tracked keypoints",
+        "suchus.cli.capture:capture",
+    ),
     Command("list", "", "show the robots, the gaits and the experiments", "suchus.cli.shelves:show"),
 )
 """Every command, in the order of the help."""

@@ -1,0 +1,32 @@
+"""Tracked keypoints of a walking body -> spine and tail angles, foot contacts, one mean cycle -> a gait."""
+
+from suchus.capture.animal import Animal, film_animal
+from suchus.capture.film import Camera, film, keypoints
+from suchus.capture.reading import Reading, read_tracks, told, write_gait
+from suchus.capture.retarget import Captured, driven_share, to_gait
+from suchus.capture.table import write_table
+from suchus.capture.tracks import Tracks, UnusableTracks
+from suchus.capture.walk import Seen, Walk, observe
+from suchus.capture.wave import standing_index
+
+__all__ = [
+    "Animal",
+    "Camera",
+    "Captured",
+    "Reading",
+    "Seen",
+    "Tracks",
+    "UnusableTracks",
+    "Walk",
+    "driven_share",
+    "film",
+    "film_animal",
+    "keypoints",
+    "observe",
+    "read_tracks",
+    "standing_index",
+    "to_gait",
+    "told",
+    "write_gait",
+    "write_table",
+]

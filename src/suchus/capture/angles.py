@@ -1,0 +1,80 @@
+"""From keypoints to the article's four bend angles, and to the bend at every point of the midline.
+
+Every segment of the midline looks forward: from the point behind to the point ahead. Lateral angles are taken in the
+ground plane, seen from above; vertical ones against it, which needs heights. Bends beyond half a turn fold over.
+"""
+
+from itertools import pairwise
+
+import numpy as np
+from jaxtyping import Float
+
+from suchus.capture.tracks import Tracks
+from suchus.paper import BendAngles, JointSums, to_bend_angles
+
+
+def azimuth(tracks: Tracks, ahead: str, behind: str) -> Float[np.ndarray, " frame"]:
+    """Return whereto a segment looks in the ground plane, a quarter turn from x to y [rad]."""
+    d = tracks.at(ahead) - tracks.at(behind)
+    return np.arctan2(d[:, 1], d[:, 0])
+
+
+def elevation(tracks: Tracks, ahead: str, behind: str) -> Float[np.ndarray, " frame"]:
+    """Return how far a segment looks up [rad]; NaN where no heights were seen."""
+    if not tracks.upright:
+        return np.full(len(tracks.time), np.nan)
+    d = tracks.at(ahead) - tracks.at(behind)
+    return np.arctan2(d[:, 2], np.hypot(d[:, 0], d[:, 1]))
+
+
+def bend_angles(tracks: Tracks, tail_share: float = 1.0) -> BendAngles:
+    """Return the four angles of Figs 11 and 12 in the article's signs, each of shape (frame,) [rad].
+
+    The spine's is the whole trunk's: the direction of the front girdle (``neck`` or ``snout`` before ``shoulder``)
+    against that of the hind one (``hip`` before ``tail_base``), which equals the sum of the joint angles between
+    them. The tail's lateral angle is that of the tail against the hind girdle, at a share of the tail's length; its
+    vertical one is that of its first segment, the tail's pitch.
+
+    Args:
+        tracks: the keypoints.
+        tail_share: where along the tail its direction is taken, 1 at the tip [-].
+    """
+    pelvis, root = ("hip", "tail_base"), tracks.tail_chain[1:3]
+    return to_bend_angles(
+        JointSums(
+            spine_yaw=wrapped(azimuth(tracks, *tracks.thorax) - azimuth(tracks, *pelvis)),
+            spine_pitch=elevation(tracks, *pelvis) - elevation(tracks, *tracks.thorax),
+            tail_yaw=_tail_yaw(tracks, tail_share),
+            tail_pitch=elevation(tracks, *root) - elevation(tracks, *pelvis),
+        )
+    )
+
+
+def _tail_yaw(tracks: Tracks, share: float) -> Float[np.ndarray, " frame"]:
+    """Return how far the tail looks left of the girdle, drawn through between the middles of its segments [rad]."""
+    segments = list(pairwise(tracks.tail_chain[1:]))
+    lengths = np.array([np.nanmedian(np.linalg.norm(tracks.at(a) - tracks.at(b), axis=-1)) for a, b in segments])
+    middles = np.cumsum(lengths) - lengths / 2
+    at = share * lengths.sum()
+    pelvis = azimuth(tracks, "hip", "tail_base")
+    right = int(np.clip(np.searchsorted(middles, at), 0, len(segments) - 1))
+    left = right if at >= middles[-1] or right == 0 else right - 1
+    before, after = (wrapped(azimuth(tracks, *segments[i]) - pelvis) for i in (left, right))
+    weight = 0.0 if left == right else (at - middles[left]) / (middles[right] - middles[left])
+    return wrapped(before + weight * wrapped(after - before))
+
+
+def joint_bends(tracks: Tracks, chain: tuple[str, ...]) -> Float[np.ndarray, "joint frame"]:
+    """Return the lateral bend at every point between two segments of a chain, front end left positive [rad].
+
+    Args:
+        tracks: the keypoints.
+        chain: points of the midline from front to back.
+    """
+    looks = [azimuth(tracks, ahead, behind) for ahead, behind in pairwise(chain)]
+    return np.array([wrapped(front - back) for front, back in pairwise(looks)]).reshape(-1, len(tracks.time))
+
+
+def wrapped(angle: np.ndarray) -> np.ndarray:
+    """Return an angle within half a turn of zero [rad]."""
+    return np.asarray(np.mod(angle + np.pi, 2 * np.pi) - np.pi)

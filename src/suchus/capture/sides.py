@@ -1,0 +1,46 @@
+"""Left and right: whether the feet lie on the side that their names say."""
+
+import numpy as np
+
+from suchus.capture.tracks import Tracks, UnusableTracks
+
+_ALWAYS = 0.9  # share of the frames that counts as always
+_SOMETIMES = 0.02  # share that a point's noise does not explain
+
+
+def check_sides(tracks: Tracks) -> None:
+    """Refuse tracks in which a left foot lies right of its right neighbour, seen along the body.
+
+    Raises:
+        UnusableTracks: it names the pair, or says that the whole picture is mirrored, and tells the frames.
+    """
+    front, hind = _crossed(tracks, "LF", "RF", *tracks.thorax), _crossed(tracks, "LH", "RH", "hip", "tail_base")
+    shares = float(np.mean(front)), float(np.mean(hind))
+    if min(shares) > _ALWAYS:
+        raise UnusableTracks(
+            f"in {tracks.source} LF and LH lie on the right of the body, RF and RH on the left: left and right are "
+            "swapped in both pairs, or y points the other way; rename the feet, or give --y-axis up or down "
+            "(images have it down)."
+        )
+    for (left, right), crossed, share in zip((("LF", "RF"), ("LH", "RH")), (front, hind), shares, strict=True):
+        if share > _ALWAYS:
+            raise UnusableTracks(
+                f"in {tracks.source} {left} lies on the right of the body and {right} on the left, in "
+                f"{100 * share:.0f} % of the frames: left and right of this pair are swapped; give --names "
+                f"{left}={right} {right}={left}."
+            )
+        if share > _SOMETIMES:
+            frames = np.flatnonzero(crossed)
+            raise UnusableTracks(
+                f"in {tracks.source} {left} and {right} are swapped in {len(frames)} frames, first in frame "
+                f"{frames[0] + 1} at {tracks.time[frames[0]]:.2f} s and last in frame {frames[-1] + 1}: exchange "
+                "them there."
+            )
+
+
+def _crossed(tracks: Tracks, left: str, right: str, ahead: str, behind: str) -> np.ndarray:
+    """Tell in which frames the left foot lies right of the right one, of those in which all is seen."""
+    look = tracks.at(ahead) - tracks.at(behind)
+    across = tracks.at(left) - tracks.at(right)
+    side = look[:, 0] * across[:, 1] - look[:, 1] * across[:, 0]
+    return np.asarray(side < 0)  # lost points are NaN, which is not below zero

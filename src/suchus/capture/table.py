@@ -1,0 +1,164 @@
+"""Tracks as a plain CSV table: one row per frame, a header that names every column and its unit.
+
+``time [s], hip_x [mm], hip_y [mm], ...``: the first column is the time; the others are a keypoint, an axis (x and y,
+or x, y and z) and a unit (m, cm, mm or px, the same for all). An empty cell is a lost point. A column
+``hip_confidence [-]`` may follow. Metres have y to the left of x, seen from above; pixels, as in images, to the right.
+"""
+
+import csv
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from suchus.capture.tracks import UNITS, Tracks, UnusableTracks, renamed
+from suchus.errors import UnreadableFile
+from suchus.record import new_file
+
+_HEADING = re.compile(r"\s*(?P<point>.+)_(?P<axis>x|y|z|confidence)\s*\[(?P<unit>[^\]]*)\]\s*")
+_EXAMPLE = "time [s], hip_x [mm], hip_y [mm], ..."
+
+
+class _Column(NamedTuple):
+    point: str
+    axis: str
+
+
+def is_table(path: Path) -> bool:
+    """Tell whether a file is a CSV table that is not one of DeepLabCut's or LightningPose's."""
+    if path.suffix.lower() not in (".csv", ".txt"):
+        return False
+    with path.open("rb") as file:
+        return not file.read(16).lstrip(b"\xef\xbb\xbf").lower().startswith(b"scorer")
+
+
+def read_table(path: Path, *, names: Mapping[str, str], confidence: float, y_down: bool | None) -> Tracks:
+    """Read a CSV table.
+
+    Args:
+        path: the file.
+        names: our name of a keypoint by the file's, where they differ.
+        confidence: points with less are lost.
+        y_down: whether y points to the right of x, seen from above; None: in pixels only.
+
+    Raises:
+        UnreadableFile: it is missing or empty, or a heading or a cell makes no sense.
+    """
+    rows = _rows(path)
+    columns, unit = _columns(rows[0], path.name)
+    values = _numbers(rows, path.name)
+    points = tuple(dict.fromkeys(c.point for c in columns))
+    axes = "xyz" if any(c.axis == "z" for c in columns) else "xy"
+    position = np.full((len(values), len(points), len(axes)), np.nan)
+    trusted = np.ones((len(values), len(points)), dtype=bool)
+    for column, series in zip(columns, values[:, 1:].T, strict=True):
+        i = points.index(column.point)
+        if column.axis == "confidence":
+            trusted[:, i] = series >= confidence
+        else:
+            position[:, i, axes.index(column.axis)] = series
+    position[~trusted | np.isnan(position).any(axis=-1)] = np.nan
+    if unit == "px" if y_down is None else y_down:
+        position[..., 1] *= -1
+    scale = 1.0 if unit == "px" else UNITS[unit]
+    return Tracks(
+        time=values[:, 0],
+        points=renamed(points, names, path.name),
+        position=scale * position,
+        unit="px" if unit == "px" else "m",
+        source=path.name,
+    )
+
+
+def write_table(tracks: Tracks, path: Path) -> Path:
+    """Write tracks as a CSV table, lengths in millimetres or pixels, and return the path.
+
+    Raises:
+        Unwritable: the place cannot be written to.
+    """
+    unit, scale, sign = ("px", 1.0, -1.0) if tracks.unit == "px" else ("mm", 1000.0, 1.0)
+    axes = "xyz"[: tracks.position.shape[-1]]
+    headings = [f"{point}_{axis} [{unit}]" for point in tracks.points for axis in axes]
+    position = scale * tracks.position
+    position[..., 1] *= sign
+    with new_file(path) as draft, draft.open("w", encoding="utf-8", newline="") as file:
+        out = csv.writer(file, lineterminator="\n")
+        out.writerow(["time [s]", *headings])
+        for time, row in zip(tracks.time, position.reshape(len(tracks.time), -1), strict=True):
+            out.writerow([f"{time:.4f}", *("" if np.isnan(x) else f"{x:.1f}" for x in row)])
+    return path
+
+
+def _rows(path: Path) -> list[list[str]]:
+    try:
+        with path.open(encoding="utf-8-sig", newline="") as file:
+            rows = [row for row in csv.reader(file) if any(cell.strip() for cell in row)]
+    except UnicodeDecodeError as error:
+        raise UnreadableFile(f"{path} is not a text file in UTF-8.") from error
+    except OSError as error:
+        raise UnreadableFile(f"{path} cannot be read: {(error.strerror or str(error)).lower()}.") from error
+    except csv.Error as error:
+        raise UnreadableFile(f"{path} is no CSV table: {error}.") from error
+    if not rows:
+        raise UnreadableFile(f"{path} is empty; a header ({_EXAMPLE}) and one row per frame are needed.")
+    if len(rows) == 1:
+        raise UnusableTracks(f"{path.name} holds a header and no frame; at least one cycle is needed.")
+    return rows
+
+
+def _columns(header: list[str], name: str) -> tuple[list[_Column], str]:
+    if header[0].strip().lower() != "time [s]":
+        raise UnreadableFile(
+            f"the first column of {name} is {header[0].strip()!r}; 'time [s]' is needed, as in: {_EXAMPLE}"
+        )
+    columns, units = [], set()
+    for heading in header[1:]:
+        found = _HEADING.fullmatch(heading)
+        if found is None:
+            raise UnreadableFile(
+                f"{name} has a column {heading.strip()!r}; a keypoint, an axis and a unit are needed, as in: {_EXAMPLE}"
+            )
+        columns.append(_Column(found["point"], found["axis"]))
+        if found["axis"] != "confidence":
+            units.add(found["unit"].strip())
+    strange = sorted(units - set(UNITS))
+    if strange:
+        raise UnreadableFile(f"{name} has lengths in {strange[0]!r}; {', '.join(UNITS)} are known.")
+    if len(units) > 1:
+        raise UnreadableFile(f"{name} has lengths in {' and in '.join(sorted(units))}; one unit for all is needed.")
+    if len(set(columns)) < len(columns):
+        twice = next(c for c in columns if columns.count(c) > 1)
+        raise UnreadableFile(f"{name} has the column {twice.point}_{twice.axis} twice.")
+    if not units:
+        raise UnreadableFile(f"{name} has no column with a position; they look like this: {_EXAMPLE}")
+    return columns, units.pop()
+
+
+def _numbers(rows: list[list[str]], name: str) -> np.ndarray:
+    """Return every cell below the header as a number, NaN where it is empty, shape (frame, column)."""
+    values = np.full((len(rows) - 1, len(rows[0])), np.nan)
+    for i, row in enumerate(rows[1:]):
+        if len(row) != len(rows[0]):
+            raise UnreadableFile(
+                f"frame {i + 1} of {name} has {len(row)} cells, the header {len(rows[0])}; they must agree."
+            )
+        try:
+            values[i] = [float(cell) if cell.strip() else np.nan for cell in row]
+        except ValueError:
+            j = next(j for j, cell in enumerate(row) if not _is_number(cell))
+            raise UnreadableFile(
+                f"frame {i + 1} of {name} has {row[j]!r} in the column {rows[0][j].strip()!r}; a number is needed, "
+                "or nothing where the point was lost."
+            ) from None
+    values[np.isinf(values)] = np.nan
+    return values
+
+
+def _is_number(cell: str) -> bool:
+    try:
+        float(cell or "nan")
+    except ValueError:
+        return not cell.strip()
+    return True

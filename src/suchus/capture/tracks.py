@@ -1,0 +1,183 @@
+"""Tracks: where the keypoints of a body are in every frame, and what they must be to be of use."""
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+from jaxtyping import Float
+
+from suchus.design import LEGS
+from suchus.errors import SuchusError
+
+NEEDED = ("shoulder", "hip", "tail_base", "tail_tip", *LEGS)
+"""Keypoints that every file must hold, besides ``neck`` or ``snout``."""
+
+UNITS: Mapping[str, float] = {"m": 1.0, "cm": 0.01, "mm": 0.001, "px": float("nan")}
+"""Units of length and what they are in metres; pixels are of unknown size."""
+
+_RATE = (5.0, 5000.0)  # [1/s]; slower cannot show a step, faster is no camera
+_TRUNK = (0.01, 5.0)  # [m]; from a hatchling lizard to a crocodile longer than any measured
+_LOST = 0.5  # share of lost frames beyond which a point is useless
+
+
+class UnusableTracks(SuchusError, ValueError):
+    """Keypoints that no gait can be read from."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Tracks:
+    """Keypoints of one body over time, seen by a camera that stands still.
+
+    From the front to the back of the midline: ``snout``, ``neck``, ``shoulder``, ``spine_n`` to ``spine_1``, ``hip``,
+    ``tail_base``, ``tail_1`` to ``tail_n``, ``tail_tip``; and the feet ``LF``, ``RF``, ``LH``, ``RH``. The axes are
+    right-handed, seen from above: x anywhere on the ground, y a quarter turn to the left of it, z up.
+    """
+
+    time: np.ndarray
+    """Of each frame, shape (frame,) [s]."""
+    points: tuple[str, ...]
+    """Names of the keypoints."""
+    position: np.ndarray
+    """Of each keypoint, shape (frame, point, axis) with two axes or three; NaN where it was lost [m or px]."""
+    unit: str
+    """Of the positions: ``m``, or ``px`` where the scale is unknown."""
+    source: str
+    """Where they come from, for messages."""
+
+    def at(self, point: str) -> Float[np.ndarray, "frame axis"]:
+        """Return the track of one point."""
+        return np.asarray(self.position[:, self.points.index(point)])
+
+    @property
+    def rate(self) -> float:
+        """Frames per second [1/s]."""
+        return float(1.0 / np.median(np.diff(self.time)))
+
+    @property
+    def upright(self) -> bool:
+        """Whether heights were seen."""
+        return self.position.shape[-1] == 3
+
+    @property
+    def thorax(self) -> tuple[str, str]:
+        """The two points that show whereto the front girdle faces, the front one first."""
+        return ("neck" if "neck" in self.points else "snout"), "shoulder"
+
+    @property
+    def trunk_chain(self) -> tuple[str, ...]:
+        """Midline points from the front girdle to the tail's base, front to back."""
+        return (*self.thorax, *self._numbered("spine")[::-1], "hip", "tail_base")
+
+    @property
+    def tail_chain(self) -> tuple[str, ...]:
+        """Midline points from the hind girdle to the tail's tip, front to back."""
+        return ("hip", "tail_base", *self._numbered("tail"), "tail_tip")
+
+    def between(self, start: float | None, end: float | None) -> "Tracks":
+        """Return the frames from ``start`` to ``end`` [s]."""
+        keep = np.ones(len(self.time), dtype=bool)
+        if start is not None:
+            keep &= self.time >= start - 1e-9
+        if end is not None:
+            keep &= self.time <= end + 1e-9
+        return replace(self, time=self.time[keep], position=self.position[keep])
+
+    def trunk_length(self) -> float:
+        """Return the length of the trunk from hip to shoulder along the points between, in the unit of the tracks."""
+        chain = ("shoulder", *self._numbered("spine")[::-1], "hip")
+        steps = [np.linalg.norm(self.at(a) - self.at(b), axis=-1) for a, b in pairwise(chain)]
+        total = np.sum(steps, axis=0)
+        # a chord without points between is as long as the trunk only while the trunk is straight
+        return float(np.nanmedian(total) if len(chain) > 2 else np.nanpercentile(total, 95))
+
+    def _numbered(self, stem: str) -> tuple[str, ...]:
+        found = [name for name in self.points if re.fullmatch(rf"{stem}_\d+", name)]
+        return tuple(sorted(found, key=lambda name: int(name.rpartition("_")[2])))
+
+
+def known_name(name: str) -> str:
+    """Return our spelling of a keypoint's name: ``Tail Base``, ``tailBase`` and ``TAIL-BASE`` are ``tail_base``."""
+    if name.upper() in LEGS:
+        return name.upper()
+    spaced = re.sub(r"(?<=[a-z])(?=[A-Z0-9])", "_", name.strip())
+    return re.sub(r"[\s\-_]+", "_", spaced).lower()
+
+
+def renamed(points: tuple[str, ...], names: Mapping[str, str], source: str) -> tuple[str, ...]:
+    """Return our names of a file's keypoints.
+
+    Args:
+        points: as the file calls them.
+        names: our name of some, by the file's name.
+        source: for messages.
+
+    Raises:
+        UnusableTracks: a name that the file does not hold, or two keypoints of one name.
+    """
+    unknown = [name for name in names if name not in points]
+    if unknown:
+        raise UnusableTracks(f"{source} holds no keypoint {unknown[0]!r}; it holds {', '.join(points)}.")
+    ours = tuple(names.get(name) or known_name(name) for name in points)
+    twice = sorted({name for name in ours if ours.count(name) > 1})
+    if twice:
+        raise UnusableTracks(f"{source} holds more than one keypoint {twice[0]!r}; each needs a name of its own.")
+    return ours
+
+
+def check_tracks(tracks: Tracks) -> None:
+    """Refuse tracks that no gait can be read from; left and right are looked at elsewhere.
+
+    Raises:
+        UnusableTracks: points are missing or mostly lost, time or size make no sense.
+    """
+    _check_points(tracks)
+    _check_time(tracks)
+    _check_seen(tracks)
+    if tracks.unit == "m":
+        length = tracks.trunk_length()
+        if not _TRUNK[0] <= length <= _TRUNK[1]:
+            raise UnusableTracks(
+                f"in {tracks.source} the trunk measures {length:.4g} m from hip to shoulder; {_TRUNK[0]:g} to "
+                f"{_TRUNK[1]:g} m is expected: the unit is wrong, give m, cm, mm or px."
+            )
+
+
+def _check_points(tracks: Tracks) -> None:
+    missing = [name for name in NEEDED if name not in tracks.points]
+    if not {"neck", "snout"} & set(tracks.points):
+        missing.insert(0, "neck (or snout)")
+    if missing:
+        raise UnusableTracks(
+            f"{tracks.source} lacks the keypoint{'s' * (len(missing) > 1)} {', '.join(missing)}; it holds "
+            f"{', '.join(tracks.points)}: rename with --names THEIRS=OURS, or track them."
+        )
+
+
+def _check_time(tracks: Tracks) -> None:
+    n = len(tracks.time)
+    if n < 2:
+        raise UnusableTracks(f"{tracks.source} holds {n} frame{'s' * (n != 1)}; at least one cycle is needed.")
+    steps = np.diff(tracks.time)
+    if not (np.isfinite(tracks.time).all() and np.all(steps > 0)):
+        at = int(np.argmin(np.where(np.isfinite(steps), steps, -np.inf))) + 1
+        raise UnusableTracks(
+            f"in {tracks.source} the time does not increase from frame {at} to frame {at + 1}; every frame needs a "
+            "later time than the one before."
+        )
+    if not _RATE[0] <= tracks.rate <= _RATE[1]:
+        raise UnusableTracks(
+            f"in {tracks.source} frames are {np.median(steps):.4g} s apart; {1 / _RATE[1]:g} to {1 / _RATE[0]:g} s is "
+            "allowed: is the time in milliseconds, or in frames?"
+        )
+
+
+def _check_seen(tracks: Tracks) -> None:
+    for name in (*tracks.trunk_chain, *tracks.tail_chain, *LEGS):
+        lost = float(np.mean(np.isnan(tracks.at(name)).any(axis=-1)))
+        if lost > _LOST:
+            raise UnusableTracks(
+                f"in {tracks.source} the keypoint {name} is lost in {100 * lost:.0f} % of the frames; at most "
+                f"{100 * _LOST:.0f} % may be: track it again, or lower the confidence that is asked for."
+            )

@@ -1,0 +1,249 @@
+"""What was seen of a walk: its mean cycle, its numbers with their spread, and what kind of wave it is."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from suchus.capture.angles import bend_angles, joint_bends, wrapped
+from suchus.capture.cycle import Periodic, find_period, fit, harmonics_for
+from suchus.capture.feet import GRID, Contact, Sweep, contact, sweep
+from suchus.capture.sides import check_sides
+from suchus.capture.tracks import Tracks, UnusableTracks, check_tracks
+from suchus.capture.wave import standing_index
+from suchus.design import LEGS
+
+_BINS = 20  # of phase, for the spread
+_SHARP = 3.0  # a joint bends if its amplitude exceeds so many of its standard errors
+_ADVANCE = 0.3  # share of the way that feet sweep below which the body does not advance
+
+
+class Seen(NamedTuple):
+    """A number that was seen."""
+
+    value: float
+    """Over all cycles."""
+    spread: float
+    """Standard deviation from cycle to cycle; NaN if fewer than two were seen."""
+    unit: str
+    """SI unit, ``-`` for none, ``cycle``, or ``trunk`` for lengths of the trunk from hip to shoulder."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Walk:
+    """A walk as it was seen; nothing in it knows of a robot.
+
+    Bends are what the body did, not what anybody told it to do: on film a robot's trunk bends by the angle that its
+    servos reached.
+    """
+
+    source: str
+    """Where the tracks come from."""
+    cycles: float
+    """How many were seen [-]."""
+    upright: bool
+    """Whether heights were seen."""
+    numbers: Mapping[str, Seen]
+    """Every number by name; see ``docs/capture.md``."""
+    bends: Mapping[str, complex]
+    """First harmonic of each of the four angles: the angle is its steady part and the real part of this times
+    ``exp(2 pi i phase)`` [rad]."""
+    cycle: xr.Dataset
+    """The mean cycle over ``phase`` and ``leg``: the four angles with ``<name>_spread``, ``foot_speed``, ``stance``.
+    Phase 0 is where a gait of this footfall begins: LF starts to swing."""
+
+    def value(self, name: str) -> float:
+        """Return a number without its spread."""
+        return self.numbers[name].value
+
+
+class _Reading(NamedTuple):
+    """What one stretch of time shows."""
+
+    angles: dict[str, Periodic]
+    feet: dict[str, Contact]
+    sweeps: dict[str, Sweep]
+    advance: float  # of the body in one cycle [m or px]
+    trunk: float  # [m or px]
+    period: float
+
+
+def observe(tracks: Tracks, *, tail_share: float = 1.0) -> Walk:
+    """Read a walk from tracks.
+
+    Args:
+        tracks: of one body that walks with a steady gait.
+        tail_share: where along the tail its lateral angle is taken, 1 at the tip [-]; for a robot whose tail's end is
+            passive, the share that its servo bends.
+
+    Raises:
+        UnusableTracks: points are missing or lost, left and right are swapped, units are wrong, nothing repeats, less
+            than one cycle was seen, noise hides the steps, or the camera goes along.
+    """
+    check_tracks(tracks)
+    check_sides(tracks)
+    period = find_period(tracks.time, _swinging(tracks), tracks.source)
+    whole = _read(tracks, period, tail_share)
+    _check_advance(whole, tracks.source)
+    count = int((tracks.time[-1] - tracks.time[0]) / period + 0.05)
+    each = [_numbers(_read(_cycle(tracks, i, period), period, tail_share)) for i in range(count)] if count >= 2 else []
+    numbers = {name: Seen(value, _spread(name, value, each), _unit(name)) for name, value in _numbers(whole).items()}
+    numbers["period"] = Seen(period, float("nan"), "s")
+    for name, chain in _chains(tracks).items():
+        numbers[f"standing_{name}"] = Seen(_index(tracks, chain, period), float("nan"), "-")
+    zero = _zero(whole)
+    return Walk(
+        source=tracks.source,
+        cycles=float((tracks.time[-1] - tracks.time[0]) / period),
+        upright=tracks.upright,
+        numbers=numbers,
+        bends={name: complex(_first(whole.angles[name], zero)) for name in whole.angles},
+        cycle=_mean_cycle(tracks, whole, zero),
+    )
+
+
+def _swinging(tracks: Tracks) -> np.ndarray:
+    """Signals that swing once a cycle: trunk and tail, and each foot along the body."""
+    angles = bend_angles(tracks)
+    look = tracks.at("shoulder") - tracks.at("hip")
+    ahead = look[:, :2] / np.linalg.norm(look[:, :2], axis=1, keepdims=True)
+    feet = [((tracks.at(leg) - tracks.at("hip"))[:, :2] * ahead).sum(axis=1) for leg in LEGS]
+    return np.array([angles.spine_lateral, angles.tail_lateral, *feet])
+
+
+def _read(tracks: Tracks, period: float, tail_share: float) -> _Reading:
+    angles = bend_angles(tracks, tail_share)._asdict()
+    fits = {}
+    for name, series in angles.items():
+        seen = int(np.isfinite(series).sum())
+        if seen:
+            fits[name] = fit(tracks.time, series, period, harmonics=harmonics_for(seen, tracks.rate * period, most=6))
+    way = [fit(tracks.time, tracks.at("hip")[:, i], period, harmonics=2, drift=1).drift[0] for i in (0, 1)]
+    return _Reading(
+        fits,
+        {leg: contact(tracks, leg, period) for leg in LEGS},
+        {leg: sweep(tracks, leg, period) for leg in LEGS},
+        float(np.hypot(*way)) * period,
+        tracks.trunk_length(),
+        period,
+    )
+
+
+def _numbers(reading: _Reading) -> dict[str, float]:
+    zero = _zero(reading)
+    spine, tail = (_first(reading.angles[name], zero) for name in ("spine_lateral", "tail_lateral"))
+    numbers = {"stride": reading.advance / reading.trunk}
+    first = reading.feet["LF"].middle
+    for leg in LEGS:
+        foot, path = reading.feet[leg], reading.sweeps[leg]
+        numbers |= {
+            f"duty_{leg}": foot.duty,
+            f"phase_{leg}": (first - foot.middle) % 1.0,
+            f"retraction_{leg}": path.retraction,
+            f"stroke_{leg}": path.stroke / reading.trunk,
+            f"outward_{leg}": path.outward / reading.trunk,
+            f"lift_{leg}": path.lift / reading.trunk,
+        }
+    for name, one in reading.angles.items():
+        numbers |= {name: float(abs(one.harmonics[0])), f"{name}_steady": one.mean}
+        numbers[f"{name}_overtones"] = float(np.linalg.norm(one.harmonics[1:]) / max(abs(one.harmonics[0]), 1e-12))
+    numbers["spine_rightmost"] = float(-np.angle(spine) / (2 * np.pi)) % 1.0
+    numbers["tail_lag"] = float(np.angle(spine / tail) / (2 * np.pi)) % 1.0
+    return {name: value for name, value in numbers.items() if np.isfinite(value)}
+
+
+def _zero(reading: _Reading) -> float:
+    """Phase of the tracks' clock at which the gait begins: LF's mid-stance, back by swing and half of stance."""
+    duty = float(np.mean([foot.duty for foot in reading.feet.values()]))
+    return reading.feet["LF"].middle - (1.0 - duty / 2)
+
+
+def _first(one: Periodic, zero: float) -> complex:
+    return complex(one.harmonics[0] * np.exp(2j * np.pi * zero))
+
+
+def _cycle(tracks: Tracks, number: int, period: float) -> Tracks:
+    start = tracks.time[0] + number * period
+    return tracks.between(start, start + period)
+
+
+def _spread(name: str, value: float, each: list[dict[str, float]]) -> float:
+    found = np.array([one[name] for one in each if name in one])
+    if len(found) < 2:
+        return float("nan")
+    apart = found - value
+    if _unit(name) == "cycle":
+        apart = wrapped(2 * np.pi * apart) / (2 * np.pi)
+    return float(np.std(apart, ddof=1))
+
+
+def _unit(name: str) -> str:
+    stem = name.partition("_")[0]
+    if stem in ("phase",) or name in ("spine_rightmost", "tail_lag"):
+        return "cycle"
+    if stem in ("stroke", "outward", "lift", "stride"):
+        return "trunk"
+    return "-" if stem in ("duty", "retraction") or name.endswith("overtones") else "rad"
+
+
+def _chains(tracks: Tracks) -> dict[str, tuple[str, ...]]:
+    trunk, tail = tracks.trunk_chain, tracks.tail_chain
+    return {"trunk": trunk, "tail": tail, "body": (*trunk, *tail[2:])}
+
+
+def _index(tracks: Tracks, chain: tuple[str, ...], period: float) -> float:
+    """Standing index of a chain, over the joints whose bend stands out of the noise; NaN with fewer than two."""
+    amplitude, phase = [], []
+    for series in joint_bends(tracks, chain):
+        one = fit(tracks.time, series, period, harmonics=3)
+        if abs(one.harmonics[0]) > _SHARP * one.error:
+            amplitude.append(abs(one.harmonics[0]))
+            phase.append(np.angle(one.harmonics[0]))
+    return standing_index(amplitude, phase) if len(amplitude) > 1 else float("nan")
+
+
+def _check_advance(reading: _Reading, source: str) -> None:
+    """On ground at rest the body goes farther in a cycle than a foot sweeps back."""
+    swept = 2 * float(np.mean([path.stroke for path in reading.sweeps.values()]))
+    if reading.advance < _ADVANCE * swept:
+        raise UnusableTracks(
+            f"in {source} the body advances by {reading.advance / reading.trunk:.2f} of its trunk's length in a cycle "
+            f"while its feet sweep {swept / reading.trunk:.2f} of it: it walks on a belt, on the spot, or the camera "
+            "goes along; standing feet can only be told over ground that rests in the picture."
+        )
+
+
+def _mean_cycle(tracks: Tracks, reading: _Reading, zero: float) -> xr.Dataset:
+    phase = np.arange(GRID) / GRID
+    time = (phase + zero) * reading.period
+    data = xr.Dataset(coords={"phase": ("phase", phase, {"units": "1"}), "leg": list(LEGS)})
+    for name, one in reading.angles.items():
+        attrs = {"units": "rad", "long_name": f"{name.replace('_', ' ')}, {_positive(name)} positive"}
+        data[name] = ("phase", one.mean + one.swing(time), attrs)
+        data[f"{name}_spread"] = (
+            "phase",
+            _left_over(tracks, one, phase, zero),
+            {"units": "rad", "long_name": "standard deviation of the frames about the mean, camera noise included"},
+        )
+    back = -round(zero * GRID)
+    for name, field, unit in (("foot_speed", "speed", f"{tracks.unit}/s"), ("stance", "stance", "1")):
+        rows = [np.roll(getattr(reading.feet[leg], field), back) for leg in LEGS]
+        data[name] = (("leg", "phase"), np.array(rows), {"units": unit})
+    return data
+
+
+def _positive(name: str) -> str:
+    return "right" if name.endswith("lateral") else "down"
+
+
+def _left_over(tracks: Tracks, one: Periodic, phase: np.ndarray, zero: float) -> np.ndarray:
+    """Standard deviation of the frames about the mean cycle, in bins of phase, drawn through [rad]."""
+    at = np.mod(tracks.time / one.period - zero, 1.0)
+    bins = np.minimum((at * _BINS).astype(int), _BINS - 1)
+    use = np.isfinite(one.residual)
+    count = np.bincount(bins[use], minlength=_BINS)
+    power = np.bincount(bins[use], weights=one.residual[use] ** 2, minlength=_BINS)
+    spread = np.where(count > 1, np.sqrt(power / np.maximum(count, 1)), one.noise)
+    return np.asarray(np.interp(phase, (np.arange(_BINS) + 0.5) / _BINS, spread, period=1.0))

@@ -1,0 +1,121 @@
+"""``suchus capture TRACKS``: keypoints of a walking body in, a gait file and its diagram out."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+from typing import Annotated, Literal
+
+import numpy as np
+import tyro
+
+from suchus.capture import Reading, Walk, driven_share, observe, read_tracks, to_gait, told, write_gait
+from suchus.cli.commands import BadCommand
+from suchus.cli.options import parse
+from suchus.cli.terminal import working
+from suchus.design import Crocodile
+from suchus.figures import captioned, save
+from suchus.figures.gait_diagram import GaitTrack, gait_diagram
+from suchus.gaits import GAITS
+from suchus.motion import Gait
+from suchus.record import check_writable
+from suchus.robots import ROBOTS
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Options:
+    """What can be said after ``suchus capture``."""
+
+    tracks: Annotated[Path, tyro.conf.Positional]
+    """CSV table, or a file of DeepLabCut, SLEAP or LightningPose."""
+    out: Path = Path("captured.toml")
+    """The gait file; its diagram is saved beside it."""
+    robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
+    """Who shall walk like that."""
+    base: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
+    """Gait that lends what was not seen."""
+    duty: Literal["retraction", "contact"] = "retraction"
+    """What the duty factor is: the share in which feet go back along the body, or in which they rest on the ground."""
+    names: tuple[str, ...] = ()
+    """Keypoints that the file calls otherwise, as THEIRS=OURS."""
+    fps: float | None = None
+    """Frames per second, if the file does not hold it."""
+    software: str | None = None
+    """What wrote the file; guessed by default."""
+    individual: str | None = None
+    """Whose tracks, if the file holds several."""
+    confidence: float = 0.6
+    """Points with less are lost."""
+    y_axis: Literal["auto", "up", "down"] = "auto"
+    """Whether y points left (up) or right (down) of x, seen from above; images have it down."""
+    start: float | None = None
+    """Leave out what comes before [s]."""
+    end: float | None = None
+    """Leave out what comes after [s]."""
+
+
+def capture(words: Sequence[str]) -> int:
+    """Read a gait from tracks, write it and its diagram, say what was seen, and return 0.
+
+    Raises:
+        SuchusError: the words or the tracks make no sense.
+    """
+    about = "Read a gait from tracked keypoints of a walking body: a gait file to run, and its diagram."
+    options: Options = parse(Options, "suchus capture", words, about, [f.name for f in fields(Options)])
+    if options.out.suffix != ".toml":
+        raise BadCommand(f"the gait goes into a .toml file; --out is {str(options.out)!r}.")
+    check_writable(options.out.parent)
+    with working() as bars:
+        move = bars.task(options.tracks.name)
+        move("reading", 0.1)
+        tracks = read_tracks(options.tracks, _how(options)).between(options.start, options.end)
+        move("looking for the cycle", 0.3)
+        walk = observe(tracks, tail_share=driven_share(options.robot))
+        move("writing", 0.8)
+        captured = to_gait(walk, options.robot, options.base, name=options.out.stem, duty=options.duty)
+        write_gait(captured, walk, options.out)
+        picture = _draw(walk, options.out)
+    print(*told(walk), *(f"note: {note}" for note in captured.notes), sep="\n")
+    print(f"gait: {options.out}\ndiagram: {picture}\nrun it: suchus run displacement --gait {options.out}")
+    return 0
+
+
+def _how(options: Options) -> Reading:
+    names = {}
+    for pair in options.names:
+        theirs, equals, ours = pair.partition("=")
+        if not (theirs and equals and ours):
+            raise BadCommand(f"--names has {pair!r}; THEIRS=OURS is needed, as in left_fore_paw=LF.")
+        names[theirs] = ours
+    return Reading(
+        names=names,
+        rate=options.fps,
+        software=options.software,
+        individual=options.individual,
+        confidence=options.confidence,
+        y_down=None if options.y_axis == "auto" else options.y_axis == "down",
+    )
+
+
+def _draw(walk: Walk, out: Path) -> Path:
+    """Draw two mean cycles one after the other."""
+    one = walk.cycle
+    figure = gait_diagram(
+        [
+            GaitTrack(
+                time=np.concatenate([one.phase.values, 1.0 + one.phase.values]),
+                stance=np.tile(one.stance.values, 2),
+                spine=np.tile(one.spine_lateral.values, 2),
+                tail=np.tile(one.tail_lateral.values, 2),
+                spine_spread=np.tile(one.spine_lateral_spread.values, 2),
+                tail_spread=np.tile(one.tail_lateral_spread.values, 2),
+                label=walk.source,
+            )
+        ],
+        cycles=(0.0, 1.0, 2.0),
+        unit="cycle",
+    )
+    text = (
+        f"The mean of {walk.cycles:.1f} cycles of {walk.source}, drawn twice. Black: a foot stands, spine or tail bend "
+        "to the right. Bands: standard deviation of single frames, camera noise included."
+    )
+    return save(captioned(figure, text), out.parent, out.stem)[1]
