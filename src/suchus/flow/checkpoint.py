@@ -41,7 +41,8 @@ def save(sim: "Simulation", path: Path) -> None:
     water = sim.water
     state = {
         "version": np.array(VERSION), "setup": np.array(fingerprint(sim)), "time": np.array(sim.time),
-        "last": np.array(sim._last), "speed": np.array(sim._speed), "frame": sim.frame,
+        "last": np.array(sim._last), "speed": np.array(sim._speed), "peak": np.array(sim._peak),
+        "offset": np.array(water.offset), "reference": np.array(sim._reference), "frame": sim.frame,
         "u": water.u, "v": water.v, "p": water.p, "stream": np.array(water.border.stream),
         "rows": np.array(sim._rows).reshape(len(sim._rows), -1),
     }  # fmt: skip
@@ -81,7 +82,9 @@ def load(sim: "Simulation", path: Path) -> None:
 
 def _restore(sim: "Simulation", state: dict[str, np.ndarray]) -> None:
     water = sim.water
-    sim.time, sim._last, sim._speed = (float(state[k]) for k in ("time", "last", "speed"))
+    sim.time, sim._last, sim._speed, sim._peak = (float(state[k]) for k in ("time", "last", "speed", "peak"))
+    sim._reference = float(state["reference"])
+    water.offset = float(state["offset"])
     sim.frame = state["frame"]
     sim._rows = list(state["rows"])
     sim._placed = False

@@ -14,8 +14,27 @@ from suchus.flow.compiled import BLOCK, PAD, compiled, threaded
 REACH = 3.0
 """Distance from the surface up to which normals and velocities are needed [cells]."""
 
+LEAST_SHARE = 1e-3
+"""Share of the fluid kept inside the bodies, so that the pressure equation has no pockets cut off from the rest [-]."""
+
 THINNEST = 2.0 + 2.0**0.5
 """Thickness below which no cell is wholly inside and the water leaks through [cells]."""
+
+
+def wall_offset(viscosity: float, fastest: float, courant: float) -> float:
+    """Return how far outside the surface the immersion must act for the water to stick to the surface [cells].
+
+    Applied step after step, the immersion lets friction pull the resting point of a linear profile into the body,
+    the farther the larger ``k = viscosity dt / cell^2``. The fit is to the exact steady state of the discrete
+    one-dimensional profile, averaged over the wall's position between the nodes: 0.03 cells at k = 0.001, 0.10
+    at 0.01, 0.27 at 0.1, 0.35 at 0.2. Without it a cylinder has too little drag by 2 % at 32 cells a diameter.
+
+    Args:
+        viscosity: over the cell size [m/s].
+        fastest: fastest water so far [m/s].
+        courant: share of a cell crossed in a step [-].
+    """
+    return float(0.66 * (courant * viscosity / (fastest + 4 * viscosity)) ** 0.4)
 
 
 @compiled
@@ -43,7 +62,7 @@ def fill(d, nx, ny, mu0, mu1_x, mu1_y):
     for j in range(d.shape[0]):
         for i in range(d.shape[1]):
             share = moment0(d[j, i])
-            mu0[j, i] = share if share > 1e-4 else 0.0
+            mu0[j, i] = max(share, LEAST_SHARE)
             first = 0.5 * moment1(d[j, i])
             mu1_x[j, i] = first * nx[j, i]
             mu1_y[j, i] = first * ny[j, i]

@@ -19,6 +19,9 @@ X, Y, B, CX, CY, DINV = range(6)
 FIRST, SECOND = 0.5617, 1.3896
 """Jacobi weights: Chebyshev roots for the eigenvalues 0.5 to 2 of the scaled operator [-]."""
 
+EXTRA = 3
+"""Pairs of extra smoothing steps in the body's window, where the coefficients vary [-]."""
+
 COARSEST = 32
 """Most cells along a side of the last level, which is solved by smoothing alone [-]."""
 
@@ -146,6 +149,19 @@ def _smooth(out, x, b, cx, cy, dinv, place, j0, j1, weight, periodic):
             )
             _relax_body(out[j, f:t], b[j, f:t], dinv[j, f:t], m[f:t], ax, weight)
         seal_row(out[j], periodic)
+
+
+@compiled
+def _smooth_window(out, x, b, cx, cy, dinv, place, weight):
+    f, t = place[5], place[6]
+    ax = np.empty(t - f, x.dtype)
+    for j in range(place[3], place[4]):
+        m = x[j]
+        _apply_body(
+            ax, m[f:t], m[f - 1 : t - 1], m[f + 1 : t + 1], x[j - 1, f:t], x[j + 1, f:t],
+            cx[j, f:t], cx[j, f + 1 : t + 1], cy[j, f:t], cy[j + 1, f:t],
+        )  # fmt: skip
+        _relax_body(out[j, f:t], b[j, f:t], dinv[j, f:t], m[f:t], ax, weight)
 
 
 @compiled
@@ -286,6 +302,9 @@ def cycle(store, layout, periodic):
             seal_ends(y, py)
             _smooth_threaded(x, y, b, cx, cy, dinv, place, real(FIRST), px)
         seal_ends(x, py)
+        for _ in range(EXTRA):
+            _smooth_window(y, x, b, cx, cy, dinv, place, real(SECOND))
+            _smooth_window(x, y, b, cx, cy, dinv, place, real(FIRST))
 
 
 @compiled

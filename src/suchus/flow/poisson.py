@@ -12,6 +12,9 @@ from numba import prange
 from suchus.flow.compiled import BLOCK, PAD, compiled, threaded
 from suchus.flow.multigrid import B, CX, CY, DINV, X, apply_row, coarsen, cycle, level, seal_ends, seal_row
 
+STALLED = 3
+"""Cycles without progress after which rounding, not the residual, is what is left [-]."""
+
 
 @compiled
 def _dot(a, b):
@@ -114,7 +117,7 @@ def solve(x, d, q, store, layout, periodic, sums, mean_limit, max_limit, most):
     cells = layout[0, 1] * layout[0, 2]
     s, e = PAD, x.shape[0] - PAD
     last = 1.0
-    mean, largest = 0.0, 0.0
+    mean, largest, best, since = 0.0, 0.0, np.inf, 0
     for k in range(most):
         cycle(store, layout, periodic)
         beta = 0.0
@@ -135,8 +138,13 @@ def solve(x, d, q, store, layout, periodic, sums, mean_limit, max_limit, most):
         if mean <= mean_limit and largest <= max_limit:
             seal_ends(x, periodic[1])
             return k + 1, mean, largest
+        worst = max(mean / mean_limit, largest / max_limit)
+        since = 0 if worst < 0.8 * best else since + 1
+        best = min(best, worst)
+        if since == STALLED:
+            break
     seal_ends(x, periodic[1])
-    return most, mean, largest
+    return k + 1, mean, largest
 
 
 def levels(ny: int, nx: int) -> np.ndarray:

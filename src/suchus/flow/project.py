@@ -45,6 +45,17 @@ def residual(r, u, v, source, dinv, window, periodic, sums):
             sums[j, 2] = largest
 
 
+@threaded
+def level_out(r, mean, periodic):
+    """Subtract ``mean`` from every cell: what the bodies swallow or push out, the domain takes up evenly."""
+    s, e = PAD, r.shape[1] - PAD
+    end = r.shape[0] - PAD
+    for block in prange((end - PAD + BLOCK - 1) // BLOCK):
+        for j in range(PAD + block * BLOCK, min(PAD + (block + 1) * BLOCK, end)):
+            r[j, s:e] -= mean
+            seal_row(r[j], periodic[0])
+
+
 @compiled
 def _correct_plain(u, v, p, x, x_left, x_low, gain):
     for k in range(u.size):

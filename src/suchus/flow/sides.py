@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from suchus.errors import InvalidDesign
-from suchus.flow.compiled import PAD
+from suchus.flow.grid import Grid
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -87,3 +87,13 @@ class Sides:
     def repeats(self) -> tuple[bool, bool]:
         """Whether the domain is periodic along x and along y."""
         return isinstance(self.left, Periodic), isinstance(self.bottom, Periodic)
+
+    def fastest(self, grid: Grid) -> float:
+        """Return the fastest speed that a wall or an inflow imposes [m/s]."""
+        speeds = [0.0]
+        for side, axis in ((self.left, 1), (self.right, 1), (self.bottom, 0), (self.top, 0)):
+            if isinstance(side, Wall):
+                speeds.append(abs(side.speed))
+            elif isinstance(side, Inflow):
+                speeds.append(float(np.abs(side.profile((grid.x, grid.y)[axis])).max()))
+        return max(speeds)

@@ -14,6 +14,7 @@ from suchus.flow.body import Body
 from suchus.flow.compiled import PAD
 from suchus.flow.force import ControlVolume, Surface, edge_mean, sample
 from suchus.flow.free import FreeBody, Swimmer
+from suchus.flow.immerse import wall_offset
 from suchus.flow.pose import Pose
 from suchus.flow.progress import Bar
 from suchus.flow.record import COLUMNS, Record
@@ -54,7 +55,10 @@ class Simulation:
         self.water.u[:], self.water.v[:] = stream
         self.water.border.stream = stream
         self._placed = False
-        self._speed = max(float(np.hypot(*stream)), 1e-12)
+        self._speed = max([self._marker_speed(b, self._in_frame(self.pose(b.name))) for b in setup.bodies] + [1e-12])
+        self._speed = max(float(np.hypot(*stream)), self._speed)
+        self._reference = 0.0  # fastest stream, body or wall so far
+        self._peak = 2 * self._speed  # fastest water so far; beside a bluff body, twice the stream
 
     # --- state -------------------------------------------------------------------------------------------------
 
@@ -71,6 +75,10 @@ class Simulation:
             position=(pose.position[0] - fx, pose.position[1] - fy), angle=pose.angle,
             velocity=(pose.velocity[0] - fu, pose.velocity[1] - fv), spin=pose.spin,
         )  # fmt: skip
+
+    def _marker_speed(self, body: Body | FreeBody, pose: Pose) -> float:
+        markers = body.shape.markers(self.time, pose, self.setup.grid.cell)
+        return float(np.hypot(markers.velocity_x, markers.velocity_y).max())
 
     def _stream(self, time: float) -> tuple[float, float]:
         u, v = self.setup.far(time)
@@ -109,6 +117,8 @@ class Simulation:
             Diverged: the fields are no longer finite or far too fast; the record's fields are the last good ones.
         """
         numba.set_num_threads(min(self._threads, numba.config.NUMBA_NUM_THREADS))
+        if not self._rows:
+            self._speed = max(self._speed, self.water.fastest(), self.setup.sides.fastest(self.setup.grid))
         dt = self.next_step() if dt is None else dt
         for swimmer in self.swimmers.values():
             swimmer.advance(self.time, dt, self._last or dt, self.setup.density)
@@ -118,7 +128,9 @@ class Simulation:
         time = self.time + dt
         poses = [self._in_frame(self.pose(b.name, time)) for b in self.setup.bodies]
         moving = self.setup.follow is not None or not all(b.still for b in self.setup.bodies)
-        if moving or not self._placed:
+        offset = wall_offset(float(self.water.nu), self._peak, self.setup.courant)
+        if moving or not self._placed or abs(offset - self.water.offset) > 2e-3:
+            self.water.offset = offset
             self.water.place(list(self.setup.bodies), poses, time)
             self._placed = True
         push = tuple(-(self.frame[1] - old_frame[1]) / dt)
@@ -149,12 +161,15 @@ class Simulation:
                 if swimmer.steps % ADDED_EVERY == 1:
                     swimmer.added = added_mass(water, markers, (float(about[0]), float(about[1])), setup.density)
             body_speed = max(body_speed, float(np.hypot(markers.velocity_x, markers.velocity_y).max()))
+        self._peak = max(self._peak, fastest)
         self._speed = max(float(np.hypot(*water.border.stream)), body_speed, min(fastest, 10 * self._speed), 1e-12)
         solves = water.solves
         row[:5] = [self.time, dt, solves[0].cycles, solves[1].cycles, solves[1].largest / self._speed]
         for control in self._controls:
             self._control_rows.append(control.force(water, dt, (push[0], push[1]), setup.density))
-        reference = max(float(np.hypot(*water.border.stream)), body_speed)
+        self._reference = reference = max(
+            self._reference, float(np.hypot(*water.border.stream)), body_speed, setup.sides.fastest(setup.grid)
+        )
         if not np.isfinite(fastest) or not np.isfinite(row).all() or (reference > 0 and fastest > FASTEST * reference):
             good = {"u": water._u2.copy(), "v": water._v2.copy()}
             raise Diverged(
@@ -240,10 +255,10 @@ class Simulation:
     def record(self) -> Record:
         """The time series so far."""
         n = len(self.setup.bodies)
-        rows = np.array(self._rows).reshape(-1, 5 + n * len(COLUMNS))
+        rows = np.array(self._rows).reshape(len(self._rows), 5 + n * len(COLUMNS))
         return Record(
             names=tuple(b.name for b in self.setup.bodies), time=rows[:, 0], step=rows[:, 1],
-            cycles=rows[:, 2:4].astype(int), divergence=rows[:, 4], bodies=rows[:, 5:].reshape(-1, n, len(COLUMNS)),
+            cycles=rows[:, 2:4].astype(int), divergence=rows[:, 4], bodies=rows[:, 5:].reshape(len(rows), n, len(COLUMNS)),
         )  # fmt: skip
 
     def surface(self, name: str | None = None) -> Surface:

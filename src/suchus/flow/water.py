@@ -17,11 +17,14 @@ from suchus.flow.compiled import PAD
 from suchus.flow.grid import Grid
 from suchus.flow.immerse import fill, fill_source, immerse
 from suchus.flow.pose import Pose
-from suchus.flow.project import correct, fastest, residual
+from suchus.flow.project import correct, fastest, level_out, residual
 from suchus.flow.sides import Sides
 
 MOST_CYCLES = 60
 """Iterations of the pressure solver before it counts as stuck [-]."""
+
+STUCK = 1000.0
+"""Residual over its limit above which a solve has failed; below, rounding stopped it short [-]."""
 
 
 @dataclass(slots=True)
@@ -63,6 +66,7 @@ class Water:
         self._store = poisson.make_store(self._layout, dtype)
         self._sums = np.zeros((shape[0], 3))
         self.window: Window = (PAD, PAD, PAD, PAD)
+        self.offset = 0.0
         self.solves: list[Solve] = []
 
     def _part(self, kind: int) -> np.ndarray:
@@ -111,10 +115,10 @@ class Water:
         x_mid, y_mid = grid.centres(i0, i1 + 1, 0), grid.centres(j0, j1 + 1, 1)
         mu0_u, mu0_v = self.mu0
         f = measure_all(bodies, poses, x_face, y_mid, time, h)
-        fill(f.distance / h, f.normal_x, f.normal_y, mu0_u[here], self._mu1xx[here], self._mu1xy[here])
+        fill(f.distance / h - self.offset, f.normal_x, f.normal_y, mu0_u[here], self._mu1xx[here], self._mu1xy[here])
         self.bu[here] = f.velocity_x
         f = measure_all(bodies, poses, x_mid, y_face, time, h)
-        fill(f.distance / h, f.normal_x, f.normal_y, mu0_v[here], self._mu1yx[here], self._mu1yy[here])
+        fill(f.distance / h - self.offset, f.normal_x, f.normal_y, mu0_v[here], self._mu1yx[here], self._mu1yy[here])
         self.bv[here] = f.velocity_y
         fill_source(self._source, self.bu, self.bv, mu0_u, mu0_v, np.array(self.window))
 
@@ -170,6 +174,9 @@ class Water:
         cells = self.grid.cells[0] * self.grid.cells[1]
         went = Solve(0, float(sums[:, 1].sum()) / cells, float(sums[:, 2].max()))
         if went.mean > limits[0] or went.largest > limits[1]:
+            mean = float(sums[:, 0].sum()) / cells
+            if abs(mean) > 1e-3 * limits[0]:
+                level_out(r, self.dtype(mean), self.sides.repeats)
             went = self._solve(limits)
             gain = self.dtype(1 / dt)
             correct(*velocity, self.p, self._x, *self.mu0, window, gain)
@@ -200,7 +207,7 @@ class Water:
                 self._x, self._d, self._q, self._store, self._layout, self.sides.repeats, self._sums, *limits, MOST_CYCLES
             )
         )
-        if not (went.mean <= 10 * limits[0] and went.largest <= 10 * limits[1]):
+        if not (went.mean <= STUCK * limits[0] and went.largest <= STUCK * limits[1]):
             raise NotConverged(
                 f"the pressure solver stopped after {went.cycles} cycles with a divergence of {went.mean:.2g} m/s per "
                 f"cell on the average and {went.largest:.2g} at most, where {limits[0]:.2g} and {limits[1]:.2g} are "
