@@ -39,7 +39,7 @@ def one_sentence(capsys):
 
 
 BAD = {
-    "walk": "there is reproduce, run, list",
+    "walk": "there is reproduce, run",
     "run": "wave",
     "run --quick": "comes first",
     "run wav": "Did you mean 'wave'?",
