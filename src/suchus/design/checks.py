@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 from types import TracebackType
 from typing import Any
 
@@ -74,6 +75,14 @@ class Checks:
         if not (pair and value[0] < value[1]):
             limits = f"{_show(low)} to {_show(high, unit)}"
             self._complain(field, f"is {_show(value, unit)}; an increasing pair within {limits} is allowed")
+
+    def rising(self, field: str, low: float, high: float, unit: str) -> None:
+        """Refuse what is not a row of at least one number, each greater than the one before, within the bounds."""
+        value = getattr(self._design, field)
+        row = isinstance(value, tuple) and value and all(_within(item, low, high) for item in value)
+        if not (row and all(a < b for a, b in pairwise(value))):
+            limits = f"{_show(low)} to {_show(high, unit)}"
+            self._complain(field, f"is {_show(value)}; increasing numbers within {limits} are needed, at least one")
 
     def that(self, holds: bool, text: str) -> None:
         """Refuse a combination of fields that does not hold, with a clause that says why."""

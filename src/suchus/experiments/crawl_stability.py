@@ -9,6 +9,7 @@ import xarray as xr
 from scipy.stats import qmc
 
 from suchus.design import Crocodile
+from suchus.design.checks import Checks
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Verdict, judge, silent, staged, stopwatch
 from suchus.figures.stability import draw_heights, draw_snapshots, draw_variations
 from suchus.gaits import GAITS
@@ -73,6 +74,12 @@ class CrawlStability(Experiment):
     """Crawls with other strokes, bends, lifts, duty factors and friction, to see in how many the claim holds [-]."""
     seed: int = 0
     """Of the variations."""
+
+    def __post_init__(self) -> None:
+        with Checks(self.name(), self) as check:
+            check.whole("cycles", 1, 1000)
+            check.whole("variations", 1, 4096)
+            check.whole("seed", 0, 2**31)
 
     def quick(self) -> "CrawlStability":
         """One cycle, two variations."""

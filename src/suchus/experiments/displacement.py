@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 
 from suchus.design import Crocodile
+from suchus.design.checks import Checks
 from suchus.experiment import Experiment, Measure, Outcome, Progress, judge, silent, staged, stopwatch
 from suchus.figures import LINES, captioned, panels, styled
 from suchus.figures.crawls import draw_crawls
@@ -66,6 +67,17 @@ class Displacement(Experiment):
     """How late the trunk bends, for the curve [cycle]."""
     seed: int = 0
     """Of noise and grip."""
+
+    def __post_init__(self) -> None:
+        with Checks(self.name(), self) as check:
+            check.whole("cycles", 1, 1000)
+            check.whole("repeats", 1, 1000)
+            check.whole("seed", 0, 2**31)
+            check.number("noise", 0.0, 1.0, "rad")
+            check.number("grip_spread", 0.0, 0.9, "")
+            check.rising("strokes", 0.0, 0.3, "m")
+            check.rising("bends", 0.0, 3.0, "rad")
+            check.rising("phases", -1.0, 1.0, "cycle")
 
     def quick(self) -> "Displacement":
         """One cycle, two repeats, four corners of the map."""

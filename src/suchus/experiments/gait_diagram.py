@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from suchus.design import LEGS, Crocodile
+from suchus.design.checks import Checks
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Verdict, judge, silent, staged, stopwatch
 from suchus.figures import captioned
 from suchus.figures.gait_diagram import GaitTrack, gait_diagram
@@ -45,6 +46,10 @@ class GaitDiagram(Experiment):
     """How."""
     cycles: int = int(CYCLES)
     """How many cycles are shown [-]."""
+
+    def __post_init__(self) -> None:
+        with Checks(self.name(), self) as check:
+            check.whole("cycles", 2, 1000)  # one cycle cannot show that it repeats itself
 
     def quick(self) -> "GaitDiagram":
         """The same: it takes a second."""

@@ -46,5 +46,6 @@ def draw_crawls(robot: Crocodile, record: xr.Dataset, arms: Sequence[str]) -> Fi
     return captioned(
         figure,
         f"Two crawls from above with identical leg commands, at {times[0]:g}, {times[1]:g} and {times[2]:g} s, with "
-        "the track of the centre of mass: above spine and tail take part, below the legs work alone. Filled feet stand.",
+        "the track of the centre of mass: above spine and tail take part, below the legs work alone. Filled feet "
+        "stand.",
     )

@@ -1,0 +1,8 @@
+"""``python -m suchus`` is the command line."""
+
+import sys
+
+from suchus.cli import main
+
+if __name__ == "__main__":
+    sys.exit(main())
