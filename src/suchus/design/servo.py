@@ -1,6 +1,6 @@
 """A position servo: PID gains and what the motor can give."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from suchus.design.checks import Checks
 
@@ -39,3 +39,12 @@ class Servo:
             check.number("armature", 1e-4, 1.0, "kg m2")
             check.number("friction", 0.0, 10.0, "N m")
             check.number("damping", 0.0, 10.0, "N m s/rad")
+
+    def with_speed_line(self) -> "Servo":
+        """Return the servo with a straight torque-speed line.
+
+        Its damping then takes away what a motor at its voltage lacks when it turns: the torque that reaches the joint
+        falls from ``torque`` at rest to nothing at ``speed``. It costs the physics no time. Below saturation a real
+        servo would make up for the loss; this one lags behind instead, by less than 0.08 rad at ``speed``.
+        """
+        return replace(self, damping=self.torque / self.speed)

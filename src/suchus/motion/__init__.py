@@ -1,13 +1,14 @@
 """From time to intended posture: phases, foot paths, bends, servo targets."""
 
-from suchus.motion.gait import Gait
+from suchus.motion.gait import Gait, Legs
 from suchus.motion.phase import limb_phase, stance, tail_bend, trunk_bend
-from suchus.motion.targets import check_limits, foot_targets, longest_stroke, servo_targets
+from suchus.motion.targets import check_limits, foot_targets, longest_stroke, servo_targets, within_reach
 from suchus.motion.timing import START
 
 __all__ = [
     "START",
     "Gait",
+    "Legs",
     "check_limits",
     "foot_targets",
     "limb_phase",
@@ -16,4 +17,5 @@ __all__ = [
     "stance",
     "tail_bend",
     "trunk_bend",
+    "within_reach",
 ]

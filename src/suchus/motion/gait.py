@@ -1,9 +1,18 @@
 """A gait: how feet, trunk and tail move over one cycle."""
 
 from dataclasses import dataclass, replace
+from typing import Literal, get_args
 
 from suchus.design.checks import require
 from suchus.errors import InvalidDesign
+
+Legs = Literal["sprawled", "erect"]
+"""How legs stand.
+
+``sprawled``: the plane of a leg turns with its foot, as in the article's Fig. 3a. ``erect``: it stays upright along the
+body, the foot below the hip, the elbow behind and the knee ahead, and the stride comes from pitch and knee alone, as
+in Fig. 3b.
+"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -29,6 +38,12 @@ class Gait:
     """How far a front foot stands outside its hip [m]."""
     hind_reach: float
     """How far a hind foot stands outside its hip [m]."""
+    front_ahead: float
+    """How far the middle of a front foot's path lies ahead of its hip [m]."""
+    hind_ahead: float
+    """How far the middle of a hind foot's path lies ahead of its hip [m]."""
+    legs: Legs
+    """``sprawled`` or ``erect``; erect feet stand below their hips, so that both reaches are zero."""
     hip_height: float
     """Height of both girdles' hip axes above the ground [m]."""
     trunk_bend: float
@@ -53,6 +68,15 @@ class Gait:
         require("gait", "lift", self.lift, 0.0, 0.3, "m")
         require("gait", "front_reach", self.front_reach, -0.3, 1.0, "m")
         require("gait", "hind_reach", self.hind_reach, -0.3, 1.0, "m")
+        require("gait", "front_ahead", self.front_ahead, -0.3, 0.3, "m")
+        require("gait", "hind_ahead", self.hind_ahead, -0.3, 0.3, "m")
+        if self.legs not in get_args(Legs):
+            raise InvalidDesign(f"gait.legs is {self.legs!r}; {' or '.join(get_args(Legs))} is allowed.")
+        if self.legs == "erect" and (self.front_reach, self.hind_reach) != (0.0, 0.0):
+            raise InvalidDesign(
+                f"gait.front_reach is {self.front_reach:g} m and gait.hind_reach {self.hind_reach:g} m; erect legs "
+                "stand below their hips, so that both must be 0 m."
+            )
         require("gait", "hip_height", self.hip_height, 0.01, 1.0, "m")
         require("gait", "trunk_bend", self.trunk_bend, 0.0, 3.1416, "rad")
         require("gait", "spine_phase", self.spine_phase, -1.0, 1.0, "cycle")

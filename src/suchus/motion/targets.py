@@ -3,12 +3,14 @@
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import LEGS, Crocodile, servo_names
+from suchus.design import LEGS, Crocodile, Leg, servo_names
 from suchus.errors import OutsideLimits, Unreachable
 from suchus.kinematics import leg as leg_kinematics
 from suchus.kinematics import tail as tail_kinematics
 from suchus.motion.gait import Gait
 from suchus.motion.phase import tail_bend, trunk_bend
+
+_INSIDE = 1e-6  # [m]; how far inside its reach a clipped leg stays
 
 
 def foot_targets(
@@ -17,6 +19,7 @@ def foot_targets(
     phase: Float[np.ndarray, "*b 4"],
     *,
     stroke: Float[np.ndarray, "*b 4"] | None = None,
+    lower: Float[np.ndarray, "*b 4"] | None = None,
 ) -> Float[np.ndarray, "*b 4 3"]:
     """Return the intended foot centres, each in the D-H base frame of its leg (outward, forward, down) [m].
 
@@ -28,6 +31,7 @@ def foot_targets(
         gait: the gait.
         phase: of the limbs [cycle].
         stroke: half of the way of each foot [m]; the gait's own if None.
+        lower: how much lower than the gait says each foot is [m]; no lower if None.
     """
     cycle = np.mod(phase, 1.0)
     swing = 1.0 - gait.duty_factor
@@ -37,10 +41,13 @@ def foot_targets(
     feet = np.empty((*phase.shape, 3))
     for i, name in enumerate(LEGS):
         leg = robot.leg(name)
-        reach = gait.front_reach if name.endswith("F") else gait.hind_reach
-        feet[..., i, 0] = leg.hip_offset + reach
+        front = name.endswith("F")
+        feet[..., i, 0] = leg.hip_offset + (gait.front_reach if front else gait.hind_reach)
+        feet[..., i, 1] = gait.front_ahead if front else gait.hind_ahead
         feet[..., i, 2] = gait.hip_height - leg.foot_radius
-    feet[..., 1] = (gait.stroke if stroke is None else stroke) * forward
+    feet[..., 1] += (gait.stroke if stroke is None else stroke) * forward
+    if lower is not None:
+        feet[..., 2] += lower
     feet[..., 2] -= gait.lift * np.where(cycle < swing, np.sin(np.pi * s) ** 2, 0.0)
     return feet
 
@@ -53,6 +60,8 @@ def servo_targets(
     trunk: Float[np.ndarray, "*b"] | None = None,
     tail: Float[np.ndarray, "*b"] | None = None,
     stroke: Float[np.ndarray, "*b 4"] | None = None,
+    lower: Float[np.ndarray, "*b 4"] | None = None,
+    clip: bool = False,
 ) -> Float[np.ndarray, "*b 19"]:
     """Return the servo angles of the intended posture, in the order of ``design.servo_names()`` [rad].
 
@@ -63,15 +72,17 @@ def servo_targets(
         trunk: lateral bend of the trunk [rad]; the gait's own law if None.
         tail: lateral bend of the tail [rad]; the gait's own law if None.
         stroke: half of the way of each foot [m]; the gait's own if None.
+        lower: how much lower than the gait says each foot is [m]; no lower if None.
+        clip: let a leg that is too short point to its foot.
 
     Raises:
-        OutsideLimits: the legs cannot reach their feet's paths.
+        OutsideLimits: the legs cannot reach their feet's paths, and ``clip`` is false.
     """
-    feet = foot_targets(robot, gait, phase, stroke=stroke)
+    feet = foot_targets(robot, gait, phase, stroke=stroke, lower=lower)
     targets = np.zeros((*phase.shape[:-1], 19))
     for i, name in enumerate(LEGS):
         try:
-            targets[..., 3 * i : 3 * i + 3] = leg_kinematics.inverse(robot.leg(name), feet[..., i, :])
+            targets[..., 3 * i : 3 * i + 3] = _leg_angles(robot.leg(name), name, gait, feet[..., i, :], clip=clip)
         except Unreachable as error:
             raise OutsideLimits(
                 f"gait {gait.name!r} asks {name} for a foot path outside its reach: {error} "
@@ -84,13 +95,42 @@ def servo_targets(
     return targets
 
 
+def _leg_angles(leg: Leg, name: str, gait: Gait, foot: np.ndarray, *, clip: bool) -> np.ndarray:
+    """Return yaw, pitch and knee that bring a foot to its place the way that the gait's legs stand [rad]."""
+    if clip:
+        foot = within_reach(leg, foot)
+    if gait.legs == "sprawled":
+        return leg_kinematics.inverse(leg, foot)
+    # the plane of an erect leg faces back in front and forward behind; in it the foot may lie to either side of the hip
+    facing = -1.0 if name.endswith("F") else 1.0
+    along = facing * foot[..., 1]
+    flat = np.stack([leg.hip_offset + along, np.zeros_like(along), foot[..., 2]], axis=-1)
+    angles = np.where(
+        along[..., None] < 0.0, leg_kinematics.inverse(leg, flat, side=-1), leg_kinematics.inverse(leg, flat)
+    )
+    angles[..., 0] = facing * np.pi / 2
+    return angles
+
+
+def within_reach(leg: Leg, foot: Float[np.ndarray, "*b 3"]) -> Float[np.ndarray, "*b 3"]:
+    """Return foot points drawn along the line to the hip into what the leg reaches [m]."""
+    hip = np.array([leg.hip_offset, 0.0, 0.0])
+    away = foot - hip
+    far = np.linalg.norm(away, axis=-1, keepdims=True)
+    near, most = leg.reach
+    return np.asarray(hip + away * np.clip(far, near + _INSIDE, most - _INSIDE) / np.maximum(far, _INSIDE))
+
+
 def longest_stroke(robot: Crocodile, gait: Gait) -> float:
     """Return the longest half stroke that all four legs can reach, less 2 % [m]."""
     longest = []
-    for leg, reach in ((robot.front_leg, gait.front_reach), (robot.hind_leg, gait.hind_reach)):
+    for leg, reach, ahead in (
+        (robot.front_leg, gait.front_reach, gait.front_ahead),
+        (robot.hind_leg, gait.hind_reach, gait.hind_ahead),
+    ):
         aside2 = reach**2 + (gait.hip_height - leg.foot_radius) ** 2
-        longest.append(0.98 * max(leg.reach[1] ** 2 - aside2, 0.0) ** 0.5)
-    return min(longest)
+        longest.append(0.98 * max(leg.reach[1] ** 2 - aside2, 0.0) ** 0.5 - abs(ahead))
+    return max(min(longest), 0.0)
 
 
 def check_limits(robot: Crocodile, gait: Gait) -> None:

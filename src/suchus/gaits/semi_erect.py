@@ -1,0 +1,45 @@
+"""The semi-erect walk: feet half under the body, hips that yaw and lift, a trunk that swings along."""
+
+from math import radians
+
+from suchus.design import Chosen
+from suchus.motion import Gait
+
+gait = Gait(
+    name="semi_erect",
+    period=0.8,
+    duty_factor=0.6,
+    limb_phases=(0.0, 0.5, 0.44, -0.06),
+    stroke=0.042,
+    lift=0.040,
+    front_reach=0.055,
+    hind_reach=0.060,
+    front_ahead=-0.035,
+    hind_ahead=0.020,
+    legs="sprawled",
+    hip_height=0.118,
+    trunk_bend=radians(30),
+    spine_phase=0.0,
+    tail_bend=radians(13),
+    tail_phase=0.0,
+    tail_pitch=0.38,
+)
+"""A walking trot between crawl and high walk."""
+
+_ROWS: tuple[tuple[str, float, float, str], ...] = (
+    ("duty_factor", 0.55, 0.65, "a walk without flight whose swing stays within 7 rad/s"),
+    ("stroke", 0.033, 0.045, "longer ones ask the knee for more than 8 rad/s"),
+    ("lift", 0.02, 0.05, "lifting by 40 mm keeps the distance on bumps; on even ground it costs power alone"),
+    ("front_reach", 0.035, 0.06, "a track of 0.24 m: wide enough not to roll, narrow enough to carry the body high"),
+    ("hind_reach", 0.045, 0.07, "a track of 0.26 m: wide enough not to roll, narrow enough to carry the body high"),
+    ("front_ahead", -0.05, -0.02, "behind the hip, which turns the elbow back"),
+    ("hind_ahead", 0.02, 0.05, "ahead of the hip, which turns the knee forward"),
+    ("hip_height", 0.11, 0.13, "70 mm of clearance below the belly"),
+    ("trunk_bend", 0.17, 0.7, "each degree adds 2.5 mm/s; beyond 40 degrees the heading wanders"),
+    ("spine_phase", -0.15, 0.15, "zero carries each girdle's swing foot farthest ahead at touch-down"),
+    ("tail_bend", 0.0, 0.52, "it changes speed by less than 2 %"),
+    ("tail_phase", 0.0, 0.5, "against the trunk, which keeps the heading best"),
+    ("tail_pitch", 0.3, 0.4, "the tail carries 5 N and keeps the body from rolling"),
+)
+chosen = tuple(Chosen(field=field, low=low, high=high, why=why) for field, low, high, why in _ROWS)
+"""The article gives no number of it: every number with its plausible range and the reason."""

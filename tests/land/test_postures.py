@@ -1,0 +1,55 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from suchus.gaits import GAITS
+from suchus.land import Run, simulate
+from suchus.metrics import between, displacement, heading_change, roll_peak_to_peak
+from suchus.model import compile_model
+
+NAMES = ("low_crawl", "semi_erect", "high_walk")
+
+
+@pytest.fixture(scope="module")
+def limited(robot):
+    front, hind = (replace(leg, servo=leg.servo.with_speed_line()) for leg in (robot.front_leg, robot.hind_leg))
+    return replace(robot, name="limited", front_leg=front, hind_leg=hind)
+
+
+@pytest.fixture(scope="module")
+def walks(robot, limited):
+    runs = [Run(robot=who, gait=GAITS[name]) for who in (robot, limited) for name in NAMES]
+    return simulate(runs, duration=7.0, every=2, timestep=0.005)
+
+
+def test_postures_reach_their_speeds_on_even_ground(walks):
+    speed = displacement(walks, 2.0).sel(xyz="x").values[:3] / 5.0
+    for reached, (low, high) in zip(speed, ((0.18, 0.24), (0.20, 0.44), (0.12, 0.22)), strict=True):
+        assert low < reached < high
+
+
+def test_postures_are_steady_straight_and_off_the_belly(walks):
+    assert np.degrees(roll_peak_to_peak(walks, 2.0).values).max() < 10
+    assert np.degrees(abs(heading_change(walks)).values).max() < 5
+    assert float(between(walks, 2.0).belly_force.sel(xyz="z").max()) == 0.0
+
+
+def test_the_body_rises_from_crawl_to_high_walk(walks):
+    height = between(walks, 2.0).centre_of_mass.sel(xyz="z").mean("time").values[:3]
+    assert height[0] < height[1] - 0.03 < height[2] - 0.04
+
+
+def test_a_torque_speed_line_costs_the_postures_no_speed_and_holds_their_joints_below_it(walks, limited):
+    way = displacement(walks, 2.0).sel(xyz="x").values
+    assert way[3:] == pytest.approx(way[:3], rel=0.05)
+    legs = abs(between(walks, 2.0).servo_velocity.isel(run=slice(3, None), servo=slice(0, 12)))
+    assert float(legs.quantile(0.99, "time").max()) <= limited.hind_leg.servo.speed
+
+
+def test_a_torque_speed_line_leaves_no_torque_at_full_speed(limited):
+    servo, model = limited.hind_leg.servo, compile_model(limited)
+    damping = float(model.joint("RH_knee").damping[0])
+    for share in (0.0, 0.5, 1.0):
+        left = servo.torque - damping * share * servo.speed
+        assert left == pytest.approx((1 - share) * servo.torque)
