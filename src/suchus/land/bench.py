@@ -9,10 +9,10 @@ import numpy as np
 from mujoco.batch import Batch, SimulationError
 
 from suchus import threads
-from suchus.design import cable_joints, servo_names, spine_joints
+from suchus.design import servo_names
 from suchus.land.faults import Fault, Limp, Weak
 from suchus.land.run import Ground, Run
-from suchus.model import compile_model, joint_addresses
+from suchus.model import activations, compile_model, standing
 
 _GRAVITY = 9.81  # [m/s2]
 _TOO_FAST = 1e3  # [rad/s] or [m/s]; nothing on a robot moves so fast: the physics has come apart
@@ -96,8 +96,8 @@ class Bench:
         act = self.batch.bind("act")
         for sim, run in enumerate(runs):
             model = self._models[sim] if self._models else self.model
-            self.qpos[sim] = settled(model, run, first[sim])
-            act[sim] = _activations(model, first[sim])
+            self.qpos[sim] = standing(model, run.robot, run.gait.hip_height, first[sim])
+            act[sim] = activations(model, first[sim])
             self.ctrl[sim] = first[sim]
         self.batch.forward()
         self.readings[:] = self.sensors
@@ -131,31 +131,6 @@ class Bench:
     def _end(self, sim: int, time: float, cause: str) -> None:
         if self.alive[sim]:
             self.alive[sim], self.ended[sim], self.cause[sim] = False, time, cause
-
-
-def settled(model: Any, run: Run, servos: np.ndarray) -> np.ndarray:
-    """Return the generalised positions of a robot that stands on the ground with given servo angles.
-
-    It faces forward on the whole: a bent trunk turns the girdles to either side of +x by equal angles.
-    """
-    data = mujoco.MjData(model)
-    cable, pulley_per_bend = cable_joints(run.robot), run.robot.tail.cord_spacing / 2 / run.robot.tail.pulley
-    data.qpos[2] = run.gait.hip_height
-    turn = -sum(servos[servo_names().index(name)] for name in spine_joints() if "yaw" in name) / 2
-    data.qpos[3:7] = np.cos(turn / 2), 0.0, 0.0, np.sin(turn / 2)
-    data.qpos[joint_addresses(model, servo_names()[:-1])] = servos[:-1]
-    data.qpos[joint_addresses(model, cable)] = servos[-1] / pulley_per_bend / len(cable)
-    mujoco.mj_forward(model, data)
-    deepest = min((float(c.dist) for c in data.contact), default=0.0)
-    data.qpos[2] -= min(deepest, 0.0)
-    return np.array(data.qpos)
-
-
-def _activations(model: Any, servos: np.ndarray) -> np.ndarray:
-    """Return the servos' inner states at rest: the slew-limited target first, then the integral."""
-    act = np.zeros(model.na)
-    act[model.actuator_actadr] = servos
-    return act
 
 
 def _gravity(ground: Ground) -> np.ndarray:

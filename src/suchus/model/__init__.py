@@ -2,5 +2,16 @@
 
 from suchus.model.build import build, compile_model, joint_addresses, topology
 from suchus.model.names import SITES, TRUNK_BODIES, sensor_names
+from suchus.model.standing import activations, standing
 
-__all__ = ["SITES", "TRUNK_BODIES", "build", "compile_model", "joint_addresses", "sensor_names", "topology"]
+__all__ = [
+    "SITES",
+    "TRUNK_BODIES",
+    "activations",
+    "build",
+    "compile_model",
+    "joint_addresses",
+    "sensor_names",
+    "standing",
+    "topology",
+]
