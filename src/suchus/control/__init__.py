@@ -1,6 +1,6 @@
 """From what the robot senses to what its servos are told, for a whole batch at once."""
 
-from suchus.control.controller import Command, Control, Controller
+from suchus.control.controller import Command, Control, Controller, Joinable
 from suchus.control.coordinated import Coordinated, Kick
 from suchus.control.heading import HeadingRule
 from suchus.control.limbs import LAWS, LimbLaw
@@ -18,6 +18,7 @@ __all__ = [
     "Controller",
     "Coordinated",
     "HeadingRule",
+    "Joinable",
     "Kick",
     "LimbLaw",
     "OpenLoop",

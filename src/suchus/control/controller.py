@@ -1,7 +1,7 @@
 """The contract of a controller: a frozen setting that starts a machine for a batch."""
 
 from collections.abc import Sequence
-from typing import NamedTuple, Protocol, runtime_checkable
+from typing import Any, NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float
@@ -56,3 +56,19 @@ class Control(Protocol):
             ticks: number of control periods to come.
             period: of control [s].
         """
+
+
+@runtime_checkable
+class Joinable(Control, Protocol):
+    """A control whose values, different as they may be, can steer the runs of one batch together."""
+
+    @staticmethod
+    def start_together(
+        controls: Sequence[Any],
+        robots: Sequence[Crocodile],
+        gaits: Sequence[Gait],
+        seeds: Sequence[int],
+        ticks: int,
+        period: float,
+    ) -> Controller:
+        """Start the controller for a batch: one control, robot, gait and seed per run; see ``Control.start``."""

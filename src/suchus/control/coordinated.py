@@ -83,8 +83,20 @@ class Coordinated:
         ticks: int,
         period: float,
     ) -> "Coordinator":
-        """Start the rules for a batch."""
-        return Coordinator(self, robots, gaits, seeds, ticks, period)
+        """Start the rules for a batch that shares them."""
+        return self.start_together([self] * len(robots), robots, gaits, seeds, ticks, period)
+
+    @staticmethod
+    def start_together(
+        controls: "Sequence[Coordinated]",
+        robots: Sequence[Crocodile],
+        gaits: Sequence[Gait],
+        seeds: Sequence[int],
+        ticks: int,
+        period: float,
+    ) -> "Coordinator":
+        """Start the rules for a batch in which every run has its own."""
+        return Coordinator(controls, robots, gaits, seeds, ticks, period)
 
 
 class _Group(NamedTuple):
@@ -98,7 +110,7 @@ class Coordinator:
 
     def __init__(
         self,
-        control: Coordinated,
+        controls: Sequence[Coordinated],
         robots: Sequence[Crocodile],
         gaits: Sequence[Gait],
         seeds: Sequence[int],
@@ -106,20 +118,27 @@ class Coordinator:
         period: float,
     ) -> None:
         self._period = period
-        self._sharing = control.sharing
         self._table = OpenLoop().start(robots, gaits, seeds, ticks, period)
         self._groups = _grouped(robots, gaits)
         by_gait = [(group.gait, group.runs) for group in self._groups]
         ahead = np.zeros((len(robots), 4))
-        if control.random_start:
-            ahead = np.array([_random_phases(seed) - gait.limb_phases for seed, gait in zip(seeds, gaits, strict=True)])
-        self._kicks = {int(np.ceil(kick.at / period - _SLACK)): np.array(kick.ahead) for kick in control.kicks}
-        self._noise = [np.random.default_rng([seed, 1]) for seed in seeds] if control.load_noise > 0 else []
-        self._loudness = control.load_noise
-        self._limbs = Limbs(control.limbs, robots, gaits, ahead, period)
-        self._spine = Spine(control.spine, robots, by_gait, period)
-        self._tail = Tail(control.tail, robots, gaits, by_gait, period)
-        self._heading = None if control.heading is None else Heading(control.heading, robots, gaits, ticks, period)
+        self._noise: list[tuple[int, float, np.random.Generator]] = []
+        self._kicks: dict[int, list[tuple[int, np.ndarray]]] = {}
+        for run, (control, gait, seed) in enumerate(zip(controls, gaits, seeds, strict=True)):
+            if control.random_start:
+                ahead[run] = np.random.default_rng([seed, 0]).random(4) - gait.limb_phases
+            if control.load_noise > 0.0:
+                self._noise.append((run, control.load_noise, np.random.default_rng([seed, 1])))
+            for kick in control.kicks:
+                self._kicks.setdefault(int(np.ceil(kick.at / period - _SLACK)), []).append((run, np.array(kick.ahead)))
+        self._hears = np.array([control.sharing for control in controls])[:, None]
+        self._limbs = Limbs([control.limbs for control in controls], robots, gaits, ahead, period)
+        self._spine = Spine([control.spine for control in controls], robots, by_gait, period)
+        self._tail = Tail([control.tail for control in controls], robots, gaits, by_gait, period)
+        steered = any(control.heading is not None for control in controls)
+        self._heading = (
+            Heading([control.heading for control in controls], robots, gaits, ticks, period) if steered else None
+        )
         self._shared = silence(len(robots))
         self._steering = Steering.none(len(robots))
 
@@ -131,8 +150,8 @@ class Coordinator:
     def command(self, tick: int, sensed: Sensed | None) -> Command:
         """Let every controller read the shared variables and what it feels, and say what the servos do."""
         walking = tick * self._period >= START - _SLACK
-        if tick in self._kicks:
-            self._limbs.ahead = self._limbs.ahead + self._kicks[tick]
+        for run, ahead in self._kicks.get(tick, ()):
+            self._limbs.kick(run, ahead)
         if sensed is not None and self._noise:
             sensed = self._noisy(sensed)
         self._share(tick, sensed, walking=walking)
@@ -147,7 +166,7 @@ class Coordinator:
     def _share(self, tick: int, sensed: Sensed | None, *, walking: bool) -> None:
         clock = self._table.command(tick, None).phase
         limbs = self._limbs.step(self._shared, sensed, clock, walking=walking)
-        heard = limbs if self._sharing else replace(limbs, limb_phase=clock)
+        heard = replace(limbs, limb_phase=np.where(self._hears, limbs.limb_phase, clock))
         self._shared = replace(self._tail.step(self._spine.step(heard)), limb_phase=limbs.limb_phase)
 
     def _posture(self, tick: int) -> Float[np.ndarray, "run 19"]:
@@ -168,8 +187,10 @@ class Coordinator:
         return targets
 
     def _noisy(self, sensed: Sensed) -> Sensed:
-        noise = np.array([rng.standard_normal(4) for rng in self._noise])
-        return replace(sensed, foot_pressure=sensed.foot_pressure * np.maximum(1.0 + self._loudness * noise, 0.0))
+        pressure = sensed.foot_pressure.copy()
+        for run, loudness, rng in self._noise:
+            pressure[run] *= np.maximum(1.0 + loudness * rng.standard_normal(4), 0.0)
+        return replace(sensed, foot_pressure=pressure)
 
 
 def _grouped(robots: Sequence[Crocodile], gaits: Sequence[Gait]) -> list[_Group]:
@@ -177,7 +198,3 @@ def _grouped(robots: Sequence[Crocodile], gaits: Sequence[Gait]) -> list[_Group]
     for i, pair in enumerate(zip(robots, gaits, strict=True)):
         members.setdefault(pair, []).append(i)
     return [_Group(robot, gait, np.array(runs)) for (robot, gait), runs in members.items()]
-
-
-def _random_phases(seed: int) -> np.ndarray:
-    return np.random.default_rng([seed, 0]).random(4)

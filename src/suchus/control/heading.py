@@ -68,16 +68,21 @@ class Heading:
 
     def __init__(
         self,
-        rule: HeadingRule,
+        rules: Sequence[HeadingRule | None],
         robots: Sequence[Crocodile],
         gaits: Sequence[Gait],
         ticks: int,
         period: float,
     ) -> None:
-        self._rule = rule
+        off = HeadingRule(gain=0.0, integral_gain=0.0, trunk=0.0)
+        settings = [rule or off for rule in rules]
+        self._direction, self._gain, self._integral_gain, self._trunk = (
+            np.array([getattr(rule, name) for rule in settings])
+            for name in ("direction", "gain", "integral_gain", "trunk")
+        )
         self._runs = np.arange(len(gaits))
         self._cycle = np.array([max(1, round(gait.period / period)) for gait in gaits])
-        self._most = np.array([_most(rule, robot, gait) for robot, gait in zip(robots, gaits, strict=True)])
+        self._most = np.array([_most(*those) for those in zip(settings, robots, gaits, strict=True)])
         self._summed = np.zeros((ticks + 1, len(gaits)))
         self._count = 0
         self._lasting = np.zeros(len(gaits))
@@ -89,9 +94,9 @@ class Heading:
         if not walking:
             return Steering.none(len(self._runs))
         error = self._error(sensed)
-        self._lasting = np.clip(self._lasting - self._rule.integral_gain * error / self._cycle, -self._most, self._most)
-        steer = np.clip(self._lasting - self._rule.gain * error, -self._most, self._most)
-        return Steering(-_LEFT * steer[:, None], self._rule.trunk * steer)
+        self._lasting = np.clip(self._lasting - self._integral_gain * error / self._cycle, -self._most, self._most)
+        steer = np.clip(self._lasting - self._gain * error, -self._most, self._most)
+        return Steering(-_LEFT * steer[:, None], self._trunk * steer)
 
     def _error(self, sensed: Sensed) -> np.ndarray:
         """Return the error of the direction, averaged over the last cycle or what there is of it [rad]."""
@@ -107,7 +112,7 @@ class Heading:
         self._summed[self._count] = self._summed[self._count - 1] + self._turned
         window = np.minimum(self._cycle, self._count)
         mean = (self._summed[self._count] - self._summed[self._count - window, self._runs]) / window
-        return mean - self._rule.direction
+        return mean - self._direction
 
 
 def _most(rule: HeadingRule, robot: Crocodile, gait: Gait) -> float:

@@ -2,13 +2,13 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import exp, pi
+from math import pi
 from types import MappingProxyType
 
 import numpy as np
 from jaxtyping import Float
 
-from suchus.control.sensed import TRUNK_YAW, Sensed, finite
+from suchus.control.sensed import TRUNK_YAW, Sensed, finite, keep
 from suchus.control.shared import Shared
 from suchus.design import Crocodile
 from suchus.design.checks import Checks
@@ -96,33 +96,28 @@ class Limbs:
 
     def __init__(
         self,
-        law: LimbLaw,
+        laws: Sequence[LimbLaw],
         robots: Sequence[Crocodile],
         gaits: Sequence[Gait],
         ahead: Float[np.ndarray, "run 4"],
         period: float,
     ) -> None:
-        if law.pairs:
-            for gait in gaits:
+        for law, gait in set(zip(laws, gaits, strict=True)):
+            if law.pairs:
                 _refuse_others(gait)
         self.ahead = ahead
-        self._law = law
+        self._feels = any(law.feels for law in laws)
+        self._weights = np.array([_weights(law) for law in laws])
+        self._trunk, self._shift, self._clip = (
+            np.array([getattr(law, name) for law in laws])[:, None] for name in ("trunk", "shift", "clip")
+        )
+        self._keep = np.array([keep(law.delay, period) for law in laws])[:, None]
         self._cycles_per_tick = period / np.array([gait.period for gait in gaits])[:, None]
         self._middle = np.array([gait.duty_factor / 2 - 0.25 for gait in gaits])[:, None]
         self._share = np.array([robot.mass * GRAVITY / 4 for robot in robots])[:, None]
-        self._torque = np.array([3 * robot.spine.yaw_servo.torque for robot in robots])
-        self._keep = exp(-period / law.delay) if law.delay > 0 else 0.0
+        self._torque = np.array([3 * robot.spine.yaw_servo.torque for robot in robots])[:, None]
         self._load: np.ndarray | None = None
         self._twist: np.ndarray | None = None
-        own, diagonal, other, same = law.own, law.diagonal, law.contralateral, law.ipsilateral
-        self._weights = np.array(
-            [
-                [own, other, same, diagonal],
-                [other, own, diagonal, same],
-                [same, diagonal, own, other],
-                [diagonal, same, other, own],
-            ]
-        )
 
     def step(
         self, shared: Shared, sensed: Sensed | None, clock: Float[np.ndarray, "run 4"], *, walking: bool
@@ -135,23 +130,28 @@ class Limbs:
             clock: phase of each limb by the gait's clock [cycle].
             walking: whether the walk has begun; before, the phases stand still.
         """
-        if self._law.feels and sensed is not None:
+        if self._feels and sensed is not None:
             load, twist = self._filter(sensed)
             if walking:
                 self.ahead = self.ahead - self._cycles_per_tick * self._brake(shared.limb_phase, load, twist)
         return shared.written_by("limbs", limb_phase=clock + self.ahead)
 
+    def kick(self, run: int, ahead: Float[np.ndarray, " 4"]) -> None:
+        """Let the limbs of one run jump ahead [cycle]."""
+        self.ahead = self.ahead.copy()
+        self.ahead[run] += ahead
+
     def _filter(self, sensed: Sensed) -> tuple[np.ndarray, np.ndarray]:
-        load = np.minimum(finite(sensed.foot_pressure) / self._share, self._law.clip)
-        twist = finite(sensed.servo_torque[:, TRUNK_YAW]).sum(axis=1) / self._torque
+        load = np.minimum(finite(sensed.foot_pressure) / self._share, self._clip)
+        twist = finite(sensed.servo_torque[:, TRUNK_YAW]).sum(axis=1, keepdims=True) / self._torque
         self._load = load if self._load is None else load + self._keep * (self._load - load)
         self._twist = twist if self._twist is None else twist + self._keep * (self._twist - twist)
         return self._load, self._twist
 
     def _brake(self, phase: np.ndarray, load: np.ndarray, twist: np.ndarray) -> np.ndarray:
         angle = 2 * pi * (phase + self._middle)
-        brake = np.cos(angle - self._law.shift) * (load @ self._weights)  # the weights are symmetric
-        return brake + self._law.trunk * np.cos(angle) * SIDES * twist[:, None]
+        heard = (self._weights * load[:, None, :]).sum(axis=-1)
+        return np.cos(angle - self._shift) * heard + self._trunk * np.cos(angle) * SIDES * twist
 
 
 def _refuse_others(gait: Gait) -> None:
@@ -162,3 +162,14 @@ def _refuse_others(gait: Gait) -> None:
             f"gait {gait.name!r} has limb phases {gait.limb_phases}, {worst:.2f} cycle away from diagonal pairs; this "
             "limb law would turn it into a trot: use the law 'off' or 'own_load'."
         )
+
+
+def _weights(law: LimbLaw) -> list[list[float]]:
+    """Return how much each limb (row) listens to each foot (column)."""
+    own, diagonal, other, same = law.own, law.diagonal, law.contralateral, law.ipsilateral
+    return [
+        [own, other, same, diagonal],
+        [other, own, diagonal, same],
+        [same, diagonal, own, other],
+        [diagonal, same, other, own],
+    ]

@@ -1,6 +1,7 @@
 """What a batch of robots feels at one instant."""
 
 from dataclasses import dataclass
+from math import exp
 
 import numpy as np
 from jaxtyping import Float
@@ -40,3 +41,13 @@ class Sensed:
 def finite(values: Float[np.ndarray, "*any"]) -> Float[np.ndarray, "*any"]:
     """Return readings with zero where a run that came apart left nothing to read."""
     return np.where(np.isfinite(values), values, 0.0)
+
+
+def keep(delay: float, period: float) -> float:
+    """Return what a low-pass filter keeps of its old value over one control period [-].
+
+    Args:
+        delay: time constant of the filter [s]; 0 for none.
+        period: of control [s].
+    """
+    return exp(-period / delay) if delay > 0.0 else 0.0

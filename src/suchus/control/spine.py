@@ -2,12 +2,11 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import exp
 
 import numpy as np
 from jaxtyping import Float
 
-from suchus.control.sensed import TRUNK_YAW, Sensed, finite
+from suchus.control.sensed import TRUNK_YAW, Sensed, finite, keep
 from suchus.control.shared import Shared
 from suchus.design import Crocodile
 from suchus.design.checks import Checks
@@ -38,16 +37,17 @@ class Spine:
 
     def __init__(
         self,
-        rule: SpineRule | None,
+        rules: Sequence[SpineRule | None],
         robots: Sequence[Crocodile],
         groups: Sequence[tuple[Gait, np.ndarray]],
         period: float,
     ) -> None:
-        self._rule = rule
+        self._on = np.array([rule is not None for rule in rules])
+        self._part = np.array([0.0 if rule is None else rule.share for rule in rules])[:, None]
+        self._keep = np.array([0.0 if rule is None else keep(rule.delay, period) for rule in rules])
         self._groups = groups
         low, high = np.array([robot.spine.yaw_range for robot in robots]).T
         self._low, self._high = low[:, None], high[:, None]
-        self._keep = exp(-period / rule.delay) if rule is not None and rule.delay > 0 else 0.0
         self._lacking = np.zeros(len(robots))
 
     def step(self, shared: Shared) -> Shared:
@@ -68,12 +68,11 @@ class Spine:
             asked: bend of the trunk [rad].
             sensed: what the robots feel.
         """
-        if self._rule is None:
+        if not self._on.any():
             return targets
         lacking = asked - finite(sensed.servo_position[:, TRUNK_YAW]).sum(axis=1)
         self._lacking = lacking + self._keep * (self._lacking - lacking)
-        told = targets.copy()
-        told[:, TRUNK_YAW] = np.clip(
-            targets[:, TRUNK_YAW] + self._rule.share * self._lacking[:, None], self._low, self._high
-        )
-        return told
+        told = np.clip(targets[:, TRUNK_YAW] + self._part * self._lacking[:, None], self._low, self._high)
+        corrected = targets.copy()
+        corrected[:, TRUNK_YAW] = np.where(self._on[:, None], told, targets[:, TRUNK_YAW])
+        return corrected

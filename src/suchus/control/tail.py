@@ -43,21 +43,22 @@ class Tail:
 
     def __init__(
         self,
-        rule: TailRule | None,
+        rules: Sequence[TailRule | None],
         robots: Sequence[Crocodile],
         gaits: Sequence[Gait],
         groups: Sequence[tuple[Gait, np.ndarray]],
         period: float,
     ) -> None:
-        self._rule = rule
         self._groups = groups
-        self._period = period
         self._pitch = np.array([gait.tail_pitch for gait in gaits])
-        if rule is not None:
-            reach = np.array([robot.tail.pitch_range for robot in robots])
-            self._low = np.maximum(reach[:, 0], np.minimum(rule.highest, self._pitch))
-            self._high = np.minimum(reach[:, 1], np.maximum(rule.lowest, self._pitch))
-            self._drags = self._pitch >= 0.0
+        self._on = np.array([rule is not None for rule in rules]) & (self._pitch >= 0.0)
+        self._step = period * np.array([0.0 if rule is None else rule.rate for rule in rules])
+        low, high = np.array([robot.tail.pitch_range for robot in robots]).T
+        for i, rule in enumerate(rules):
+            if rule is not None:
+                low[i] = max(low[i], min(rule.highest, self._pitch[i]))
+                high[i] = min(high[i], max(rule.lowest, self._pitch[i]))
+        self._low, self._high = low, high
 
     def step(self, shared: Shared) -> Shared:
         """Let the bend follow the trunk, as late as the gait wants it; where no trunk bends, it follows the limbs."""
@@ -75,11 +76,10 @@ class Tail:
 
     def correct(self, targets: Float[np.ndarray, "run 19"], sensed: Sensed) -> Float[np.ndarray, "run 19"]:
         """Return the targets with the tail's pitch given way for one control period more."""
-        if self._rule is None:
+        if not self._on.any():
             return targets
-        gives = self._rule.rate * self._period * finite(sensed.servo_torque[:, PITCH])
-        moved = np.clip(self._pitch - gives, self._low, self._high)
-        self._pitch = np.where(self._drags, moved, self._pitch)
-        told = targets.copy()
-        told[:, PITCH] = self._pitch
-        return told
+        gives = self._step * finite(sensed.servo_torque[:, PITCH])
+        self._pitch = np.clip(self._pitch - gives, self._low, self._high)
+        corrected = targets.copy()
+        corrected[:, PITCH] = np.where(self._on, self._pitch, targets[:, PITCH])
+        return corrected

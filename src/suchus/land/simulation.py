@@ -5,6 +5,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 import xarray as xr
 
+from suchus.control import Controller, Joinable
 from suchus.design.checks import require
 from suchus.errors import InvalidDesign
 from suchus.land.bench import Bench
@@ -96,31 +97,35 @@ def _check(runs: Sequence[Run], duration: float, timestep: float, every: int) ->
 
 
 def _groups(runs: Sequence[Run]) -> list[list[int]]:
-    """Return the indices of the runs that share a controller."""
+    """Return the indices of the runs that share a controller: equal controls, or controls that can be joined."""
     groups: dict[object, list[int]] = {}
     for i, run in enumerate(runs):
-        groups.setdefault(run.control, []).append(i)
+        joined = isinstance(run.control, Joinable)
+        groups.setdefault(type(run.control) if joined else run.control, []).append(i)
     return list(groups.values())
+
+
+def _start(runs: Sequence[Run], ticks: int) -> Controller:
+    """Start the controller of a group."""
+    robots, gaits, seeds = [run.robot for run in runs], [run.gait for run in runs], [run.seed for run in runs]
+    control = runs[0].control
+    if isinstance(control, Joinable):
+        return control.start_together([run.control for run in runs], robots, gaits, seeds, ticks, CONTROL_PERIOD)
+    return control.start(robots, gaits, seeds, ticks, CONTROL_PERIOD)
 
 
 def _simulate_group(
     runs: Sequence[Run], ticks: int, steps: int, timestep: float, every: int, progress: Progress
 ) -> xr.Dataset:
     bench = Bench(runs, timestep)
-    control = runs[0].control
-    controller = control.start(
-        [run.robot for run in runs],
-        [run.gait for run in runs],
-        [run.seed for run in runs],
-        ticks + 1,
-        CONTROL_PERIOD,
-    )
+    feels = any(run.control.feels for run in runs)
+    controller = _start(runs, ticks + 1)
     bench.place(runs, controller.rest())
     troubles = Troubles(runs, bench, ticks + 1, CONTROL_PERIOD)
     readings = Readings(bench, runs, ticks // every + 1)
     for tick in range(ticks + 1):
         troubles.happen(tick)
-        sensed = troubles.deafen(readings.sensed(tick * CONTROL_PERIOD)) if control.feels else None
+        sensed = troubles.deafen(readings.sensed(tick * CONTROL_PERIOD)) if feels else None
         command = controller.command(tick, sensed)
         targets = troubles.disturb(tick, command.targets)
         if tick % every == 0:
