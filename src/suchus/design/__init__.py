@@ -1,6 +1,6 @@
 """What a robot is: frozen values in SI units, without defaults and without physics."""
 
-from suchus.design.chosen import Chosen
+from suchus.design.chosen import Chosen, value_at, with_values
 from suchus.design.contact import Contact
 from suchus.design.joints import (
     LEGS,
@@ -38,4 +38,6 @@ __all__ = [
     "leg_joints",
     "servo_names",
     "spine_joints",
+    "value_at",
+    "with_values",
 ]

@@ -1,6 +1,14 @@
-"""A number that the article does not give, with the reason for ours."""
+"""A number that the article does not give, with the reason for ours; and the same design with other numbers."""
 
-from dataclasses import dataclass
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, is_dataclass, replace
+from typing import Any, TypeVar
+
+from suchus.errors import UnknownName
+
+T = TypeVar("T")
+_STEP = re.compile(r"(\w+)|\[(\d+)\]")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -15,3 +23,56 @@ class Chosen:
     """Greatest plausible value, in the field's unit."""
     why: str
     """Not in the paper; chosen because of this."""
+
+
+def value_at(design: Any, path: str) -> Any:
+    """Return what a field of a robot or gait holds.
+
+    Args:
+        design: the robot, the gait, or a part.
+        path: dotted, as ``spine.pitch_servo.torque`` or ``spine.yaw_range[0]``.
+
+    Raises:
+        UnknownName: there is no such field.
+    """
+    for step in _steps(path):
+        design = _step(design, step)
+    return design
+
+
+def with_values(design: T, values: Mapping[str, Any]) -> T:
+    """Return a robot or gait that differs in some fields, checked once all of them are set.
+
+    Args:
+        design: the robot, the gait, or a part; it stays as it is.
+        values: by path, see ``value_at``.
+
+    Raises:
+        UnknownName: there is no such field.
+        InvalidDesign: the values cannot be, alone or together.
+    """
+    branches: dict[str | int, dict[str, Any]] = {}
+    for path, value in values.items():
+        first, *rest = _steps(path)
+        _step(design, first)
+        branches.setdefault(first, {})["".join(f"[{s}]" if isinstance(s, int) else f".{s}" for s in rest)] = value
+    changed = {
+        step: below[""] if "" in below else with_values(_step(design, step), below) for step, below in branches.items()
+    }
+    if isinstance(design, tuple):
+        return type(design)(changed.get(i, item) for i, item in enumerate(design))
+    return replace(design, **{str(step): value for step, value in changed.items()})  # type: ignore[type-var]
+
+
+def _steps(path: str) -> list[str | int]:
+    return [int(index) if index else name for name, index in _STEP.findall(path)]
+
+
+def _step(design: Any, step: str | int) -> Any:
+    if isinstance(step, int):
+        there: tuple[Any, ...] = tuple(range(len(design))) if isinstance(design, tuple) else ()
+    else:
+        there = tuple(f.name for f in fields(design)) if is_dataclass(design) else ()
+    if step not in there:
+        raise UnknownName("field", str(step), [str(name) for name in there])
+    return design[step] if isinstance(step, int) else getattr(design, step)

@@ -1,13 +1,19 @@
 """Simulation on land: a batch of runs from the start; one crawl is a batch of one."""
 
+from suchus.land.arenas import ARENAS
 from suchus.land.crawling import crawl
 from suchus.land.faults import Deaf, Fault, Limp, Locked, Weak
+from suchus.land.lost import KINDS, LEGS_LOST, LOST, angle_at, lost
 from suchus.land.push import Push
 from suchus.land.run import Ground, Run
 from suchus.land.simulation import CONTROL_PERIOD, simulate
 
 __all__ = [
+    "ARENAS",
     "CONTROL_PERIOD",
+    "KINDS",
+    "LEGS_LOST",
+    "LOST",
     "Deaf",
     "Fault",
     "Ground",
@@ -16,6 +22,8 @@ __all__ = [
     "Push",
     "Run",
     "Weak",
+    "angle_at",
     "crawl",
+    "lost",
     "simulate",
 ]

@@ -2,6 +2,7 @@
 
 from suchus.metrics.energy import cost_of_transport, peak_torque, work
 from suchus.metrics.gait import duty_factor, loaded, sensed_phase
+from suchus.metrics.loads import swing_lift, swing_loads
 from suchus.metrics.loss import loss, says
 from suchus.metrics.progress import displacement, heading, heading_change, path_length, slip
 from suchus.metrics.stability import (
@@ -13,7 +14,7 @@ from suchus.metrics.stability import (
     support_polygon,
     tilt,
 )
-from suchus.metrics.window import between
+from suchus.metrics.window import between, whole
 
 __all__ = [
     "between",
@@ -35,6 +36,9 @@ __all__ = [
     "slip",
     "support_distance",
     "support_polygon",
+    "swing_lift",
+    "swing_loads",
     "tilt",
+    "whole",
     "work",
 ]

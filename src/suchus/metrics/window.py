@@ -2,7 +2,7 @@
 
 import xarray as xr
 
-from suchus.errors import IncompatibleRecord
+from suchus.errors import Diverged, IncompatibleRecord
 from suchus.motion import START
 
 _SLACK = 1e-9  # [s]; sample times are multiples of the control period up to rounding
@@ -27,3 +27,25 @@ def between(record: xr.Dataset, start: float = START, end: float | None = None) 
             f"nothing to measure is left between {start} and {last if end is None else end} s."
         )
     return part
+
+
+def whole(record: xr.Dataset) -> xr.Dataset:
+    """Return a record none of whose runs ended early.
+
+    Args:
+        record: of several runs.
+
+    Raises:
+        Diverged: the physics of a run came apart; the error carries the time and the record of that run so far.
+    """
+    for i, cause in enumerate(record.cause.values):
+        if cause:
+            one = record.isel(run=i)
+            time = float(one.ended)
+            raise Diverged(
+                f"run {i} of {record.sizes['run']}, {one.label.item()}, came apart at {time:.2f} s: {cause}. "
+                "A shorter timestep may help.",
+                time=time,
+                record=one.sel(time=slice(None, time + _SLACK)),
+            )
+    return record

@@ -1,0 +1,35 @@
+"""What carries the body."""
+
+import numpy as np
+import xarray as xr
+
+from suchus.metrics.window import between
+from suchus.motion import START
+
+
+def swing_loads(record: xr.Dataset, leg: str, start: float = START, end: float | None = None) -> xr.DataArray:
+    """Return what presses on the ground while a leg is meant to swing: means, with the dimension ``part`` [N].
+
+    The parts are the four legs, ``tail`` and ``belly``.
+    """
+    part = between(record, start, end)
+    loads = xr.concat(
+        [
+            part.foot_force.sel(xyz="z", drop=True).rename(leg="part"),
+            part.tail_force.sel(xyz="z", drop=True).expand_dims(part=["tail"]),
+            part.belly_force.sel(xyz="z", drop=True).sum("segment").expand_dims(part=["belly"]),
+        ],
+        "part",
+    )
+    return loads.where(_swings(part, leg)).mean("time").assign_attrs(units="N")
+
+
+def swing_lift(record: xr.Dataset, leg: str, start: float = START, end: float | None = None) -> xr.DataArray:
+    """Return how far the centre of a foot rises while it is meant to swing: from lowest to highest [m]."""
+    part = between(record, start, end)
+    height = part.foot_position.sel(leg=leg, xyz="z", drop=True).where(_swings(part, leg))
+    return (height.max("time") - height.min("time")).assign_attrs(units="m")
+
+
+def _swings(part: xr.Dataset, leg: str) -> xr.DataArray:
+    return np.mod(part.limb_phase.sel(leg=leg, drop=True), 1.0) < 1.0 - part.duty_factor

@@ -1,0 +1,179 @@
+import csv
+import io
+from dataclasses import replace
+from itertools import product
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from suchus.design import servo_names
+from suchus.errors import Diverged
+from suchus.experiments import EXPERIMENTS
+from suchus.gaits import GAITS
+from suchus.land import KINDS, LEGS_LOST, LOST, Limp, Locked, Run, angle_at, lost, simulate
+from suchus.metrics import displacement, loss, says, swing_lift, swing_loads, whole
+from suchus.metrics.loss import BANDS
+from suchus.motion import foot_targets, servo_targets
+from suchus.paper import CLAIMS
+from suchus.robots import ROBOTS
+
+CAIMAN = ROBOTS["caiman"]
+CRAWL = GAITS["belly_crawl"]
+ARMS = ("coordinated", "limbs_only")
+
+
+@pytest.fixture(scope="module")
+def campaign():
+    return EXPERIMENTS["joint_faults"].quick()
+
+
+@pytest.fixture(scope="module")
+def outcome(campaign):
+    return campaign.run()
+
+
+def test_the_full_campaign_is_as_large_as_asked():
+    full = EXPERIMENTS["joint_faults"]
+    runs = full.variations * len(ARMS) * (1 + len(LOST) * len(KINDS) * len(LEGS_LOST))
+    assert full.variations >= 8
+    assert runs >= 256
+    assert 1.0 + full.cycles * full.gait.period == pytest.approx(9.0)
+
+
+@pytest.mark.parametrize(
+    ("joint", "servos"), [("front_yaw", ("LF_yaw", "RF_yaw")), ("hind_pitch", ("LH_pitch", "RH_pitch"))]
+)
+def test_lost_joints_are_those_of_the_girdle(joint, servos):
+    assert lost(CAIMAN, CRAWL, joint, "limp", "one") == (Limp(servos[0]),)
+    assert lost(CAIMAN, CRAWL, joint, "limp", "both") == tuple(Limp(name) for name in servos)
+    held = lost(CAIMAN, CRAWL, joint, "locked", "both")
+    assert all(isinstance(fault, Locked) for fault in held)
+    assert [fault.joint for fault in held] == list(servos)
+
+
+def test_a_locked_joint_holds_in_the_middle_of_what_the_gait_asks_of_it():
+    asked = servo_targets(CAIMAN, CRAWL, np.linspace(0, 1, 4001)[:, None] + np.array(CRAWL.limb_phases))
+    angles = asked[:, servo_names().index("LH_pitch")]
+    assert angle_at(CAIMAN, CRAWL, "LH_pitch", 0.0) == pytest.approx(angles.min(), abs=1e-3)
+    assert angle_at(CAIMAN, CRAWL, "LH_pitch", 1.0) == pytest.approx(angles.max(), abs=1e-3)
+    assert angle_at(CAIMAN, CRAWL, "LH_pitch", 0.5) == pytest.approx((angles.min() + angles.max()) / 2, abs=1e-3)
+    # strokes are symmetric: the middle of a yaw joint points straight outward
+    assert angle_at(CAIMAN, CRAWL, "LF_yaw", 0.5) == pytest.approx(0.0, abs=1e-3)
+
+
+def test_the_words_of_the_article_hold_for_its_own_numbers():
+    assert set(BANDS) == {f"fault_{joint}_{arm}" for joint in LOST for arm in ARMS}
+    for key in BANDS:
+        assert says(key, np.array(CLAIMS[key].value))
+        assert not says(key, np.array(np.nan))
+    assert list(says("fault_hind_pitch_coordinated", np.array([-0.05, -0.2, 0.3]))) == [True, False, True]
+
+
+def test_no_fault_costs_nothing_and_standing_still_costs_all():
+    way = xr.DataArray([0.7, 0.0, -0.7, 1.4])
+    assert np.allclose(loss(way, xr.DataArray(0.7)), [0.0, -1.0, -2.0, 1.0])
+
+
+def test_every_measure_of_the_issue_is_there_with_its_range(outcome):
+    for cell in product(LOST, KINDS, LEGS_LOST, ARMS):
+        name = f"loss_{'_'.join(cell)}"
+        low, middle, high = (outcome.measures[f"{name}{end}"].value for end in ("_low", "", "_high"))
+        assert low <= middle <= high
+        assert outcome.measures[name].unit == "-"
+    assert {verdict.claim.key for verdict in outcome.verdicts} == set(EXPERIMENTS["joint_faults"].claims)
+
+
+def test_the_first_variation_is_the_gait_as_given_and_the_rest_differ(campaign, outcome):
+    record = outcome.record
+    for one in GAITS.beside("belly_crawl", "chosen", ()):
+        values = record[f"gait_{one.field}"].values
+        assert values[0] == getattr(CRAWL, one.field)
+        assert one.low <= values[1] <= one.high
+        assert values[1] != values[0]
+    assert record.grip[0] == 1.0
+    assert abs(record.grip[1] - 1.0) <= campaign.grip_spread
+
+
+def test_both_arms_of_a_variation_have_the_same_legs(campaign):
+    for gaits, _ in campaign._varied():
+        legs = [foot_targets(CAIMAN, gaits[arm], np.linspace(0, 1, 50)[:, None] + np.zeros(4)) for arm in ARMS]
+        assert np.array_equal(*legs)
+        assert gaits["limbs_only"].trunk_bend == 0.0
+        assert gaits["limbs_only"].tail_pitch == GAITS["limbs_only"].tail_pitch
+
+
+def test_the_campaign_measures_what_lone_runs_do(campaign, outcome):
+    record = outcome.record.isel(variation=0)
+    runs = [
+        Run(robot=CAIMAN, gait=CRAWL),
+        Run(robot=CAIMAN, gait=CRAWL, faults=lost(CAIMAN, CRAWL, "hind_yaw", "limp", "both")),
+        Run(robot=CAIMAN, gait=GAITS["limbs_only"], faults=lost(CAIMAN, CRAWL, "front_pitch", "locked", "one")),
+    ]
+    alone = simulate(runs, duration=1.0 + CRAWL.period, timestep=campaign.timestep)
+    way = displacement(alone).sel(xyz="x").values
+    assert float(record.intact_forward.sel(arm="coordinated")) == way[0]
+    assert float(record.forward.sel(arm="coordinated", joint="hind_yaw", kind="limp", legs="both")) == way[1]
+    assert float(record.forward.sel(arm="limbs_only", joint="front_pitch", kind="locked", legs="one")) == way[2]
+    change = outcome.measures["loss_hind_yaw_limp_both_coordinated_high"].value
+    assert change >= way[1] / way[0] - 1.0
+
+
+def test_net_is_no_shorter_than_forward(outcome):
+    assert np.all(outcome.record.net >= abs(outcome.record.forward) - 1e-12)
+
+
+def test_the_table_has_a_row_for_every_reading_and_repeats_the_measures(outcome):
+    rows = list(csv.DictReader(io.StringIO(outcome.tables["faults.csv"])))
+    assert [tuple(row[k] for k in ("joint", "kind", "legs", "arm")) for row in rows] == list(
+        product(LOST, KINDS, LEGS_LOST, ARMS)
+    )
+    for row in rows:
+        name = "_".join(row[k] for k in ("joint", "kind", "legs", "arm"))
+        assert float(row["change"]) == pytest.approx(outcome.measures[f"loss_{name}"].value, abs=6e-4)
+        assert float(row["printed_change"]) == CLAIMS[f"fault_{row['joint']}_{row['arm']}"].value
+        assert all(np.isfinite(float(row[k])) for k in row if k not in ("joint", "kind", "legs", "arm"))
+
+
+def test_what_robust_physics_says_about_lost_joints(outcome):
+    value = {name: measure.value for name, measure in outcome.measures.items()}
+    # no feet on the ground in front: no forward motion; a held joint is better than a limp one
+    assert value["loss_front_pitch_limp_one_coordinated"] < -0.9
+    for joint, legs in product(("front_pitch", "hind_pitch"), LEGS_LOST):
+        assert value[f"loss_{joint}_locked_{legs}_coordinated"] > value[f"loss_{joint}_limp_{legs}_coordinated"] + 0.2
+    # with spine and tail, two lost yaw joints cost more than one
+    for joint in ("front_yaw", "hind_yaw"):
+        assert value[f"loss_{joint}_limp_both_coordinated"] < value[f"loss_{joint}_limp_one_coordinated"]
+
+
+def test_reading_a_lost_joint_otherwise_changes_the_verdicts(campaign, outcome):
+    def words(question, record):
+        return [(v.claim.key, v.measured) for v in question._verdicts(record)][:8]
+
+    locked = replace(campaign, kind="locked")
+    assert words(campaign, outcome.record) != words(locked, outcome.record)
+    for key, measured in words(locked, outcome.record):
+        joint, arm = (
+            key.removeprefix("fault_").rsplit("_", 1) if key.endswith("coordinated") else (key[6:-11], "limbs_only")
+        )
+        assert measured == outcome.measures[f"loss_{joint}_locked_one_{arm}"].value
+
+
+def test_loads_while_a_leg_swings_carry_the_robot():
+    record = simulate([Run(robot=CAIMAN, gait=CRAWL)], duration=5.0, timestep=0.005)
+    loads = swing_loads(record, "RH").isel(run=0)
+    assert set(loads.part.values) == {"LF", "RF", "LH", "RH", "tail", "belly"}
+    # on average over a cycle the ground carries the weight; over a swing nearly so
+    assert float(loads.sum()) == pytest.approx(CAIMAN.mass * 9.81, rel=0.1)
+    assert float(loads.sel(part="RH")) < 0.5 * float(loads.sel(part="LH"))
+    assert 0.005 < float(swing_lift(record, "RH").isel(run=0)) < 0.05
+
+
+def test_a_run_that_comes_apart_is_not_measured():
+    record = simulate([Run(robot=CAIMAN, gait=CRAWL)] * 2, duration=0.5, timestep=0.005)
+    assert whole(record) is record
+    broken = record.assign(cause=("run", ["", "a speed of 2e3 was reached"]), ended=("run", [0.5, 0.2]))
+    with pytest.raises(Diverged, match=r"run 1 of 2, belly_crawl, came apart at 0\.20 s") as caught:
+        whole(broken)
+    assert caught.value.time == 0.2
+    assert float(caught.value.record.time[-1]) == pytest.approx(0.2)
