@@ -14,7 +14,7 @@ LEAST_FRAMES = 12
 """Frames in one cycle below which steps cannot be told apart [-]."""
 _FASTEST = 12.0  # [1/s]; the stride frequency of the fastest small lizards
 _ROUNDS = 3  # of leaving out points that jumped
-_JUMP = 5.0  # times the usual residual
+_JUMP = 8.0  # times the usual residual; what a body does in steps stays well below
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -70,13 +70,13 @@ def read_poses(
 
 def _load(path: Path, software: str, rate: float | None) -> Any:
     try:
-        from movement.io import load_poses  # noqa: PLC0415  an optional extra
+        from movement.io import load_dataset  # noqa: PLC0415  an optional extra
     except ImportError as error:
         raise MissingExtra(
             f"{path.name} is a file of {software}, which the movement library reads; install it: {_INSTALL}."
         ) from error
     try:
-        return load_poses.from_file(path, source_software=software, fps=rate)
+        return load_dataset(path, source_software=software, fps=rate)
     except (
         OSError,
         ValueError,

@@ -15,7 +15,7 @@ def check_sides(tracks: Tracks) -> None:
         UnusableTracks: it names the pair, or says that the whole picture is mirrored, and tells the frames.
     """
     front, hind = _crossed(tracks, "LF", "RF", *tracks.thorax), _crossed(tracks, "LH", "RH", "hip", "tail_base")
-    shares = float(np.mean(front)), float(np.mean(hind))
+    shares = float(np.nanmean(front)), float(np.nanmean(hind))
     if min(shares) > _ALWAYS:
         raise UnusableTracks(
             f"in {tracks.source} LF and LH lie on the right of the body, RF and RH on the left: left and right are "
@@ -30,7 +30,7 @@ def check_sides(tracks: Tracks) -> None:
                 f"{left}={right} {right}={left}."
             )
         if share > _SOMETIMES:
-            frames = np.flatnonzero(crossed)
+            frames = np.flatnonzero(crossed == 1)
             raise UnusableTracks(
                 f"in {tracks.source} {left} and {right} are swapped in {len(frames)} frames, first in frame "
                 f"{frames[0] + 1} at {tracks.time[frames[0]]:.2f} s and last in frame {frames[-1] + 1}: exchange "
@@ -39,8 +39,8 @@ def check_sides(tracks: Tracks) -> None:
 
 
 def _crossed(tracks: Tracks, left: str, right: str, ahead: str, behind: str) -> np.ndarray:
-    """Tell in which frames the left foot lies right of the right one, of those in which all is seen."""
+    """Return 1 in frames in which the left foot lies right of the right one, 0 where it does not, NaN where lost."""
     look = tracks.at(ahead) - tracks.at(behind)
     across = tracks.at(left) - tracks.at(right)
     side = look[:, 0] * across[:, 1] - look[:, 1] * across[:, 0]
-    return np.asarray(side < 0)  # lost points are NaN, which is not below zero
+    return np.where(np.isnan(side), np.nan, side < 0)

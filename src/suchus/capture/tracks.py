@@ -84,6 +84,15 @@ class Tracks:
             keep &= self.time <= end + 1e-9
         return replace(self, time=self.time[keep], position=self.position[keep])
 
+    def ahead(self) -> "Tracks":
+        """Return the tracks turned so that the body faces along x on average: no number depends on the camera then."""
+        d = self.at("shoulder") - self.at("hip")
+        facing = np.angle(np.nanmean(np.exp(1j * np.arctan2(d[:, 1], d[:, 0]))))
+        c, s = np.cos(facing), np.sin(facing)
+        position = self.position.copy()
+        position[..., :2] = position[..., :2] @ np.array([[c, -s], [s, c]])
+        return replace(self, position=position)
+
     def trunk_length(self) -> float:
         """Return the length of the trunk from hip to shoulder along the points between, in the unit of the tracks."""
         chain = ("shoulder", *self._numbered("spine")[::-1], "hip")
@@ -169,7 +178,7 @@ def _check_time(tracks: Tracks) -> None:
     if not _RATE[0] <= tracks.rate <= _RATE[1]:
         raise UnusableTracks(
             f"in {tracks.source} frames are {np.median(steps):.4g} s apart; {1 / _RATE[1]:g} to {1 / _RATE[0]:g} s is "
-            "allowed: is the time in milliseconds, or in frames?"
+            "allowed: the time seems to be in milliseconds or frames, seconds are needed."
         )
 
 

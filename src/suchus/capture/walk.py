@@ -17,6 +17,7 @@ from suchus.design import LEGS
 
 _BINS = 20  # of phase, for the spread
 _SHARP = 3.0  # a joint bends if its amplitude exceeds so many of its standard errors
+_TOGETHER = 0.25  # least share of frames in which all points of a signal are seen
 _ADVANCE = 0.3  # share of the way that feet sweep below which the body does not advance
 
 
@@ -84,7 +85,10 @@ def observe(tracks: Tracks, *, tail_share: float = 1.0) -> Walk:
     """
     check_tracks(tracks)
     check_sides(tracks)
-    period = find_period(tracks.time, _swinging(tracks), tracks.source)
+    tracks = tracks.ahead()
+    signals = _swinging(tracks)
+    _check_signals(signals, tracks.source)
+    period = find_period(tracks.time, signals, tracks.source)
     whole = _read(tracks, period, tail_share)
     _check_advance(whole, tracks.source)
     count = int((tracks.time[-1] - tracks.time[0]) / period + 0.05)
@@ -111,6 +115,17 @@ def _swinging(tracks: Tracks) -> np.ndarray:
     ahead = look[:, :2] / np.linalg.norm(look[:, :2], axis=1, keepdims=True)
     feet = [((tracks.at(leg) - tracks.at("hip"))[:, :2] * ahead).sum(axis=1) for leg in LEGS]
     return np.array([angles.spine_lateral, angles.tail_lateral, *feet])
+
+
+def _check_signals(signals: np.ndarray, source: str) -> None:
+    """Points that are lost in turns may leave no frame in which a bend can be seen."""
+    names = ("the spine's bend", "the tail's bend", *(f"the way of {leg}" for leg in LEGS))
+    for name, seen in zip(names, np.isfinite(signals).mean(axis=1), strict=True):
+        if seen < _TOGETHER:
+            raise UnusableTracks(
+                f"in {source} {name} can be seen in {100 * seen:.0f} % of the frames, at least {100 * _TOGETHER:.0f} % "
+                "are needed: its points are lost in turns; track them again."
+            )
 
 
 def _read(tracks: Tracks, period: float, tail_share: float) -> _Reading:

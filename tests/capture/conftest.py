@@ -1,0 +1,45 @@
+import pytest
+
+from suchus.capture import Animal, Camera
+from suchus.gaits import GAITS
+from suchus.land import crawl as let_crawl
+from suchus.robots import ROBOTS
+
+
+@pytest.fixture(scope="session")
+def caiman():
+    return ROBOTS["caiman"]
+
+
+@pytest.fixture(scope="session")
+def crawl(caiman):
+    return let_crawl(caiman, GAITS["belly_crawl"], duration=9.0, timestep=0.005)
+
+
+@pytest.fixture
+def noisy():
+    return Camera(rate=50.0, noise=0.002, lost=0.05, heading=2.1, scale=731.0, heights=False, seed=0)
+
+
+@pytest.fixture
+def clean():
+    return Camera(rate=100.0, noise=0.0, lost=0.0, heading=0.0, scale=None, heights=True, seed=0)
+
+
+@pytest.fixture
+def lizard():
+    return Animal(
+        trunk=0.12,
+        tail=0.20,
+        period=0.8,
+        duty_factor=0.7,
+        limb_phases=(0.0, 0.5, 0.25, 0.75),  # lateral sequence: LH, LF, RH, RF
+        stride=0.15,
+        outward=0.06,
+        lift=0.02,
+        spine_bend=0.5,
+        spine_rightmost=0.2,
+        tail_bend=0.7,
+        tail_lag=1 / 3,
+        tail_wave=0.0,
+    )

@@ -1,0 +1,126 @@
+"""Bad input is one sentence that names what is wrong."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from suchus.capture import UnusableTracks, film, film_animal, observe
+from suchus.capture.tracks import renamed
+
+
+@pytest.fixture
+def tracks(lizard, clean):
+    return film_animal(lizard, replace(clean, heights=False), cycles=4)
+
+
+def without(tracks, *names):
+    keep = [i for i, name in enumerate(tracks.points) if name not in names]
+    return replace(tracks, points=tuple(tracks.points[i] for i in keep), position=tracks.position[:, keep])
+
+
+def swapped(tracks, left, right, frames=slice(None)):
+    position = tracks.position.copy()
+    i, j = tracks.points.index(left), tracks.points.index(right)
+    position[frames, i], position[frames, j] = tracks.position[frames, j], tracks.position[frames, i]
+    return replace(tracks, position=position)
+
+
+def refused(tracks, *words):
+    with pytest.raises(UnusableTracks) as caught:
+        observe(tracks)
+    sentence = str(caught.value)
+    assert "\n" not in sentence
+    assert sentence.endswith(".")
+    for word in words:
+        assert word in sentence
+    return sentence
+
+
+def test_missing_keypoints_are_named(tracks):
+    assert "lacks the keypoints shoulder, LF;" in refused(without(tracks, "LF", "shoulder"), "--names")
+    refused(without(tracks, "neck", "snout"), "neck (or snout)")
+
+
+def test_a_snout_does_where_there_is_no_neck(tracks):
+    points = tuple("snout" if name == "neck" else name for name in tracks.points)
+    seen = observe(replace(tracks, points=points)).numbers
+    assert {name: value for name, (value, _, _) in seen.items()} == {
+        name: value for name, (value, _, _) in observe(tracks).numbers.items()
+    }
+
+
+def test_a_point_that_is_mostly_lost_is_named(tracks):
+    position = tracks.position.copy()
+    position[: int(0.7 * len(position)), tracks.points.index("RH")] = np.nan
+    refused(replace(tracks, position=position), "RH is lost in 70 % of the frames")
+
+
+def test_points_lost_in_turns_are_told(tracks):
+    position = tracks.position.copy()
+    most = int(0.45 * len(position))
+    position[:most, tracks.points.index("neck")] = np.nan
+    position[-most:, tracks.points.index("tail_base")] = np.nan
+    refused(replace(tracks, position=position), "the spine's bend", "lost in turns")
+
+
+@pytest.mark.parametrize("cycles", [0.4, 0.7, 1.05])
+def test_less_than_a_cycle(lizard, clean, cycles):
+    refused(film_animal(lizard, clean, cycles=cycles), "cycles are needed")
+
+
+def test_less_than_a_cycle_of_our_crawl(caiman, crawl, noisy):
+    refused(film(caiman, crawl.sel(time=slice(0, 4.0)), noisy), "cycles are needed")
+
+
+def test_swapped_pairs_are_named(tracks):
+    refused(swapped(tracks, "LF", "RF"), "LF lies on the right", "100 %", "LF=RF RF=LF")
+    refused(swapped(tracks, "LH", "RH"), "LH lies on the right", "LH=RH RH=LH")
+    refused(swapped(swapped(tracks, "LF", "RF"), "LH", "RH"), "both pairs", "y points the other way")
+
+
+def test_a_swap_for_a_while_is_named_with_its_frames(tracks):
+    refused(swapped(tracks, "LH", "RH", slice(100, 130)), "30 frames", "frame 101 at 1.00 s", "frame 130")
+
+
+def test_wrong_units_are_told(tracks):
+    refused(replace(tracks, position=1000 * tracks.position), "the trunk measures 120 m", "unit is wrong")
+    refused(replace(tracks, position=tracks.position / 1000), "unit is wrong")
+    refused(replace(tracks, time=1000 * tracks.time), "milliseconds")
+    refused(replace(tracks, time=tracks.time / 1000), "apart")
+
+
+def test_time_must_increase(tracks):
+    time = tracks.time.copy()
+    time[7] = time[6]
+    refused(replace(tracks, time=time), "frame 7 to frame 8")
+
+
+def test_no_frame_and_one_frame(tracks):
+    refused(tracks.between(50.0, None), "0 frames")
+    refused(tracks.between(0.0, 0.0), "1 frame;")
+
+
+def test_an_animal_at_rest(tracks):
+    still = np.broadcast_to(tracks.position[:1], tracks.position.shape)
+    refused(replace(tracks, position=still), "nothing in", "repeats")
+
+
+def test_a_camera_that_goes_along(tracks):
+    position = tracks.position - tracks.at("hip")[:, None, :]
+    refused(replace(tracks, position=position), "the camera goes along")
+
+
+def test_noise_that_hides_the_steps(lizard, clean):
+    loud = film_animal(lizard, replace(clean, heights=False, noise=0.02), cycles=4)
+    with pytest.raises(UnusableTracks):
+        observe(loud)
+
+
+def test_names_are_known_however_they_are_written():
+    ours = renamed(("Tail Base", "tailTip", "lf", "Spine1", "paw"), {"paw": "RH"}, "a file")
+    assert ours == ("tail_base", "tail_tip", "LF", "spine_1", "RH")
+    with pytest.raises(UnusableTracks, match="no keypoint 'foot'"):
+        renamed(("hip",), {"foot": "LF"}, "a file")
+    with pytest.raises(UnusableTracks, match="more than one keypoint 'LF'"):
+        renamed(("lf", "LF"), {}, "a file")

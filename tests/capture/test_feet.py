@@ -1,0 +1,44 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from suchus.capture import film_animal
+from suchus.capture.feet import GRID, Contact, contact, grid, path_shape, sweep
+from suchus.gaits import GAITS
+from suchus.motion import foot_targets
+
+
+@pytest.mark.parametrize("duty", [0.4, 0.5, 0.7])
+def test_the_path_is_that_of_a_gait(caiman, duty):
+    gait = replace(GAITS["belly_crawl"], duty_factor=duty, stroke=0.02)
+    ahead = foot_targets(caiman, gait, np.tile(grid()[:, None], 4))[:, 0, 1]
+    np.testing.assert_allclose(path_shape(duty), (ahead - gait.front_ahead) / gait.stroke, atol=1e-9)
+
+
+@pytest.mark.parametrize(("leg", "touch_down"), [("LF", 0.3), ("RF", 0.8), ("LH", 0.05), ("RH", 0.55)])
+def test_contact_edges_of_a_foot_that_starts_smoothly(lizard, clean, leg, touch_down):
+    tracks = film_animal(lizard, clean, cycles=4)
+    found = contact(tracks, leg, lizard.period)
+    apart = (found.touch_down - touch_down + 0.5) % 1.0 - 0.5
+    assert abs(apart) < 0.01
+    np.testing.assert_allclose(found.duty, 0.7, atol=0.015)
+    np.testing.assert_allclose(found.stance.mean(), found.duty, atol=1.5 / GRID)
+
+
+def test_the_speed_of_a_standing_foot_is_nearly_nothing(lizard, clean):
+    found = contact(film_animal(lizard, clean, cycles=4), "LF", lizard.period)
+    assert found.speed[(grid() > 0.4) & (grid() < 0.9)].max() < 0.03 * found.speed.max()
+
+
+def test_the_middle_of_a_stance_across_the_end_of_the_cycle():
+    edges = Contact(np.zeros(GRID), np.zeros(GRID, dtype=bool), lift_off=0.2, touch_down=0.8)
+    np.testing.assert_allclose([edges.duty, edges.middle], [0.4, 0.0], atol=1e-12)
+
+
+def test_a_straight_trunk_makes_the_sweep_that_of_the_ground(lizard, clean):
+    tracks = film_animal(replace(lizard, spine_bend=0.0), clean, cycles=4)
+    found = sweep(tracks, "LF", lizard.period)
+    np.testing.assert_allclose(np.ptp(found.forward) / 2, lizard.stride * lizard.duty_factor / 2, rtol=0.05)
+    np.testing.assert_allclose(found.outward, lizard.outward, rtol=1e-6)
+    np.testing.assert_allclose(found.lift, lizard.lift, rtol=0.02)

@@ -1,0 +1,167 @@
+"""Film a walk that is known, with camera noise, and get it back."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from suchus import blueprint
+from suchus.capture import Walk, driven_share, film, film_animal, observe, to_gait, write_gait
+from suchus.design import LEGS
+from suchus.gaits import GAITS
+from suchus.land import crawl as let_crawl
+from suchus.metrics import displacement
+from suchus.motion import START, Gait, limb_phase, tail_bend, trunk_bend
+
+PHASE = 0.02  # [cycle]
+AMPLITUDE = 0.05
+
+
+def apart(a, b):
+    return np.abs((np.asarray(a) - np.asarray(b) + 0.5) % 1.0 - 0.5)
+
+
+def first_harmonic(time, values, period):
+    return 2 * np.mean((values - values.mean()) * np.exp(-2j * np.pi * time / period))
+
+
+def filmed(caiman, crawl, camera) -> tuple[Walk, Gait]:
+    walk = observe(film(caiman, crawl, camera), tail_share=driven_share(caiman))
+    return walk, to_gait(walk, caiman, GAITS["belly_crawl"], name="back").gait
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_our_crawl_comes_back_as_commanded(caiman, crawl, noisy, seed):
+    told = GAITS["belly_crawl"]
+    rng = np.random.default_rng(seed)
+    camera = replace(noisy, seed=seed, heading=float(rng.uniform(-3, 3)), scale=float(rng.uniform(200, 2000)))
+    _, back = filmed(caiman, crawl, camera)
+    np.testing.assert_allclose(back.period, told.period, rtol=0.005)
+    assert apart(back.limb_phases, told.limb_phases).max() < PHASE
+    assert apart(back.spine_phase, told.spine_phase) < PHASE
+    # under load the trunk lags its command by 0.02 cycle and the tail does not: what is seen differs by as much
+    assert apart(back.tail_phase, told.tail_phase) < 0.025
+    np.testing.assert_allclose(back.trunk_bend, told.trunk_bend, rtol=AMPLITUDE)
+    np.testing.assert_allclose(back.tail_bend, told.tail_bend, rtol=AMPLITUDE)
+    np.testing.assert_allclose(back.stroke, told.stroke, rtol=AMPLITUDE)
+    np.testing.assert_allclose(back.duty_factor, told.duty_factor, atol=0.04)
+    np.testing.assert_allclose([back.front_reach, back.hind_reach], [told.front_reach, told.hind_reach], atol=0.004)
+
+
+def test_our_crawl_comes_back_as_simulated(caiman, crawl, noisy):
+    walk, _ = filmed(caiman, crawl, noisy)
+    part = crawl.sel(time=slice(START, START + 8.0 - 1e-6))
+    time = part.time.values - START
+    trunk = first_harmonic(time, -sum(part.joint_angle.sel(joint=f"spine_yaw_{i}") for i in (1, 2, 3)).values, 4.0)
+    tail = first_harmonic(time, sum(part.joint_angle.sel(joint=f"tail_yaw_{i}") for i in range(1, 7)).values, 4.0)
+    np.testing.assert_allclose(walk.value("spine_lateral"), abs(trunk), rtol=0.03)
+    np.testing.assert_allclose(walk.value("tail_lateral"), abs(tail), rtol=AMPLITUDE)
+    assert apart(walk.value("tail_lag"), np.angle(trunk / tail) / (2 * np.pi)) < 0.01
+    assert walk.value("standing_trunk") > 0.98  # one servo command for all three joints
+    # front feet stand while they carry load; hind feet slide under load before they leave the ground
+    loaded = (part.foot_force.sel(xyz="z") > 0.5).mean("time").values
+    np.testing.assert_allclose([walk.value("duty_LF"), walk.value("duty_RF")], loaded[:2], atol=0.09)
+
+
+def test_heights_give_lift_and_tail_pitch(caiman, crawl, noisy):
+    walk, back = filmed(caiman, crawl, replace(noisy, heights=True))
+    pitch = float(crawl.joint_angle.sel(joint="tail_pitch", time=slice(START, None)).mean())
+    np.testing.assert_allclose(back.tail_pitch, pitch, atol=0.02)
+    heights = crawl.foot_position.sel(xyz="z", time=slice(START, None))
+    lifts = (heights.max("time") - heights.min("time")).values / (caiman.spine.length + caiman.thorax.shoulder)
+    np.testing.assert_allclose([walk.value(f"lift_{leg}") for leg in LEGS], lifts, atol=0.02)
+    assert walk.upright
+
+
+def test_what_was_captured_runs_as_far(caiman, crawl, noisy, tmp_path):
+    walk = observe(film(caiman, crawl, noisy), tail_share=driven_share(caiman))
+    captured = to_gait(walk, caiman, GAITS["belly_crawl"], name="caiman_walk")
+    file = write_gait(captured, walk, tmp_path / "caiman_walk.toml")
+    read = blueprint.read(file, Gait, GAITS)
+    assert read == captured.gait
+    again = let_crawl(caiman, read, duration=START + 2 * read.period, timestep=0.005)
+    np.testing.assert_allclose(displacement(again)[0], displacement(crawl)[0], rtol=0.1)
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_a_lateral_sequence_walk_of_a_lizard_comes_back(caiman, lizard, noisy, seed):
+    camera = replace(noisy, rate=100.0, noise=0.0008, seed=seed)
+    walk = observe(film_animal(lizard, camera, cycles=5))
+    phases = [walk.value(f"phase_{leg}") for leg in LEGS]
+    assert apart(phases, lizard.limb_phases).max() < PHASE
+    np.testing.assert_allclose([walk.value(f"duty_{leg}") for leg in LEGS], 0.7, atol=0.03)
+    np.testing.assert_allclose(walk.value("spine_lateral"), lizard.spine_bend, rtol=AMPLITUDE)
+    np.testing.assert_allclose(walk.value("tail_lateral"), lizard.tail_bend, rtol=AMPLITUDE)
+    assert apart(walk.value("tail_lag"), 1 / 3) < PHASE
+    assert apart(walk.value("spine_rightmost"), lizard.spine_rightmost) < PHASE
+    np.testing.assert_allclose(walk.value("stride"), lizard.stride / lizard.trunk, rtol=AMPLITUDE)
+    gait = to_gait(walk, caiman, GAITS["belly_crawl"], name="lizard").gait
+    np.testing.assert_allclose(gait.duty_factor, 0.7, atol=0.02)
+    assert walk.value("standing_trunk") > 0.95
+    assert walk.value("standing_tail") > 0.95
+
+
+@pytest.mark.parametrize("duty", ["retraction", "contact"])
+def test_the_gait_bends_as_the_animal_did(caiman, lizard, clean, duty):
+    walk = observe(film_animal(lizard, clean, cycles=4))
+    gait = to_gait(walk, caiman, GAITS["belly_crawl"], name="lizard", duty=duty).gait
+    time = np.linspace(START, START + gait.period, 200, endpoint=False)
+    limbs = limb_phase(gait, time)
+    # the animal's clock: both have LF's mid-stance in common
+    phase = (time - START) / gait.period + (gait.duty_factor - lizard.duty_factor) / 2
+    spine = lizard.spine_bend * np.cos(2 * np.pi * (phase - lizard.spine_rightmost))
+    tail = lizard.tail_bend * np.cos(2 * np.pi * (phase - lizard.spine_rightmost - lizard.tail_lag))
+    np.testing.assert_allclose(-trunk_bend(gait, limbs), spine, atol=0.03)
+    np.testing.assert_allclose(tail_bend(gait, limbs), tail, atol=0.03)
+
+
+def test_a_travelling_tail_is_told_not_dropped(caiman, lizard, clean):
+    walk = observe(film_animal(replace(lizard, tail_wave=0.6), clean, cycles=4))
+    assert walk.value("standing_tail") < 0.5
+    assert walk.value("standing_trunk") > 0.95
+    notes = " ".join(to_gait(walk, caiman, GAITS["belly_crawl"], name="x").notes)
+    assert "the tail bends as a travelling wave" in notes
+    assert "the trunk bends" not in notes
+
+
+def test_a_footfall_whose_bends_cancel_is_told(caiman, lizard, clean):
+    pace = replace(lizard, limb_phases=(0.0, 0.5, 0.0, 0.5))
+    captured = to_gait(observe(film_animal(pace, clean, cycles=4)), caiman, GAITS["belly_crawl"], name="x")
+    assert captured.gait.trunk_bend == 0.0
+    assert any("cancel" in note for note in captured.notes)
+
+
+def test_heading_scale_and_losses_change_nothing_on_clean_tracks(caiman, crawl, clean):
+    first, _ = filmed(caiman, crawl, replace(clean, heights=False))
+    second, _ = filmed(caiman, crawl, replace(clean, heights=False, heading=-2.5, scale=913.0))
+    third, _ = filmed(caiman, crawl, replace(clean, heights=False, lost=0.1))
+    for name, seen in first.numbers.items():
+        np.testing.assert_allclose(second.value(name), seen.value, rtol=1e-5, atol=1e-6, err_msg=name)
+        if name.startswith(("duty", "spine_lateral")) and name.count("_") == 1:
+            np.testing.assert_allclose(third.value(name), seen.value, atol=0.02, err_msg=name)
+
+
+def test_mirrored_tracks_give_the_mirrored_walk(lizard, clean):
+    tracks = film_animal(lizard, clean, cycles=4)
+    other = {"LF": "RF", "RF": "LF", "LH": "RH", "RH": "LH"}
+    mirrored = replace(
+        tracks,
+        points=tuple(other.get(name, name) for name in tracks.points),
+        position=tracks.position * np.array([1.0, -1.0, 1.0]),
+    )
+    one, two = observe(tracks), observe(mirrored)
+    np.testing.assert_allclose(two.value("duty_RF"), one.value("duty_LF"), atol=1e-6)
+    np.testing.assert_allclose(two.value("tail_lag"), one.value("tail_lag"), atol=1e-6)
+    # seen from RF's stance, which is half a cycle away, the mirrored spine bends the same way
+    assert apart(two.value("spine_rightmost"), one.value("spine_rightmost")) < 0.01
+
+
+def test_a_film_of_one_seed_is_one_film(caiman, crawl, noisy):
+    one, two = (film(caiman, crawl, noisy) for _ in range(2))
+    np.testing.assert_array_equal(one.position, two.position)
+
+
+def test_too_fast_an_animal_is_slowed_down_and_it_is_told(caiman, lizard, clean):
+    captured = to_gait(observe(film_animal(lizard, clean, cycles=4)), caiman, GAITS["belly_crawl"], name="x")
+    assert captured.gait.period > lizard.period
+    assert any("turn faster than its servo can" in note for note in captured.notes)
