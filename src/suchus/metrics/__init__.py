@@ -5,6 +5,7 @@ from suchus.metrics.gait import duty_factor, loaded, sensed_phase
 from suchus.metrics.loads import swing_lift, swing_loads
 from suchus.metrics.loss import loss, says
 from suchus.metrics.progress import displacement, heading, heading_change, path_length, slip
+from suchus.metrics.reach import held, lead, reach, static_margin
 from suchus.metrics.stability import (
     height_peak_to_peak,
     height_std,
@@ -25,15 +26,19 @@ __all__ = [
     "heading_change",
     "height_peak_to_peak",
     "height_std",
+    "held",
+    "lead",
     "line_distance",
     "loaded",
     "loss",
     "path_length",
     "peak_torque",
+    "reach",
     "roll_peak_to_peak",
     "says",
     "sensed_phase",
     "slip",
+    "static_margin",
     "support_distance",
     "support_polygon",
     "swing_lift",

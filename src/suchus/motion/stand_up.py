@@ -1,0 +1,138 @@
+"""The way from lying to standing on hind legs and tail, in six postures, and how high any posture could reach."""
+
+from math import radians
+
+import numpy as np
+from jaxtyping import Float
+
+from suchus.design import Crocodile, joint_names
+from suchus.kinematics.body import landmarks
+from suchus.kinematics.mass import centre_of_mass
+from suchus.motion.posture import Keyed, Posture, hind_leg
+
+PELVIS_PITCH = radians(80)
+"""Of the pelvis when standing [rad]; it settles at 85 degrees, where the tail's joint reaches the end of its range."""
+TRUNK_FIRST, TRUNK_SECOND = radians(6), radians(3)
+"""Of the trunk's pitch joints when standing [rad]; the trunk then points straight up."""
+LEAD = 0.05
+"""Where the centre of mass is commanded behind the feet when standing [m].
+
+The servos give way under the load and the tail pushes, so that it settles at 0.08 m. With 0.02 m the robot stands
+5 mm higher and falls at less than half the push; with zero it does not stay up.
+"""
+STRETCH = 0.937
+"""Height of the hips over the feet when standing, as a share of the hind leg [-]; a straight knee cannot push."""
+_STANCE = 0.03  # [m] outside the hips; farther apart the feet reach less far ahead
+_ARMS_LYING = {"arm_yaw": 0.0, "arm_pitch": -0.1, "arm_knee": 0.5}  # spread, so that the shoulders come down
+_ARMS_RAISED = {"arm_yaw": 0.2, "arm_pitch": -0.3, "arm_knee": 1.2}  # off the ground and near the trunk
+
+
+def stand_up(
+    robot: Crocodile,
+    *,
+    pelvis_pitch: float = PELVIS_PITCH,
+    stretch: float = STRETCH,
+    lead: float = LEAD,
+    slower: float = 1.0,
+) -> Keyed:
+    """Return the way up for a robot, beginning on the ground and ending on hind legs and tail.
+
+    1. It lies on its belly. 2. The hind feet swing ahead, past the centre of mass. 3. They take the load.
+    4. The trunk bends up like a cobra's while the pelvis stays low: now the centre of mass is well behind the feet.
+    5. and 6. The pelvis pitches up and the hips rise over the feet while the trunk straightens.
+
+    Heights follow the hind legs; where the hips are follows from the centre of mass.
+
+    Args:
+        robot: who stands up.
+        pelvis_pitch: of the pelvis when standing [rad].
+        stretch: height of the hips over the feet when standing, as a share of the hind leg's length [-].
+        lead: where the centre of mass is commanded behind the feet when standing [m].
+        slower: factor on all times [-].
+    """
+    leg = robot.hind_leg
+    length = leg.femur + leg.tibia
+    ground = max(robot.pelvis.height / 2, robot.spine.radius) + 0.002
+    lying = {"pelvis_pitch": 0.0, "trunk_first": 0.0, "trunk_second": 0.0, **_ARMS_LYING}
+    relaxed = {"hip_height": ground, "tail_press": -0.02, **lying}
+    raised = {"stance": _STANCE, "lift": 0.0, "tail_press": 0.02, **_ARMS_RAISED}
+    postures = (
+        Posture(lead=-0.57 * length, stance=0.06, lift=0.0, **relaxed),
+        Posture(lead=0.17 * length, stance=_STANCE, lift=0.02, **relaxed),
+        Posture(hip_height=ground + 0.021, lead=0.17 * length, stance=_STANCE, lift=0.0, tail_press=0.0, **lying),
+        Posture(
+            hip_height=ground + 0.021,
+            pelvis_pitch=0.0,
+            lead=0.43 * length,
+            trunk_first=radians(50),
+            trunk_second=radians(40),
+            **raised,
+        ),
+        Posture(
+            hip_height=leg.foot_radius + 0.55 * length,
+            pelvis_pitch=radians(45),
+            lead=0.34 * length,
+            trunk_first=radians(30),
+            trunk_second=radians(20),
+            **raised,
+        ),
+        Posture(
+            hip_height=leg.foot_radius + stretch * length,
+            pelvis_pitch=pelvis_pitch,
+            lead=lead,
+            trunk_first=TRUNK_FIRST,
+            trunk_second=TRUNK_SECOND,
+            **(raised | {"tail_press": 0.01}),
+        ),
+    )
+    times = tuple(slower * t for t in (0.0, 1.0, 1.5, 3.5, 5.0, 7.5))
+    return Keyed(name="stand_up", times=times, postures=postures)
+
+
+def stretched(robot: Crocodile) -> float:
+    """Return hind leg, spine and head in one straight line [m]; no posture reaches higher over the feet's centres."""
+    leg = robot.hind_leg
+    return leg.femur + leg.tibia + robot.spine.length + robot.head.snout
+
+
+def tallest(
+    robot: Crocodile, lead: Float[np.ndarray, "*batch"], *, stance: float = _STANCE
+) -> Float[np.ndarray, "*batch"]:
+    """Return how high the snout can be while the centre of mass lies ``lead`` behind the feet [m].
+
+    Joint ranges and the length of the legs hold; torques, droop and the last millimetre of a straight knee do not
+    count. Found on a grid of 2 degrees for the pelvis and 5 degrees for the trunk's joints.
+
+    Args:
+        robot: the design.
+        lead: how far the centre of mass lies behind the feet [m].
+        stance: how far a hind foot stands outside its hip [m].
+    """
+    pitch, first, second = (
+        g.ravel()
+        for g in np.meshgrid(*(np.radians(np.arange(a, b, c)) for a, b, c in ((46, 91, 2), (-15, 46, 5), (-15, 46, 5))))
+    )
+    leg = robot.hind_leg
+    angles = np.zeros((len(pitch), len(joint_names(robot))))
+    for i, name in enumerate(("arm_yaw", "arm_pitch", "arm_knee")):
+        angles[:, i] = angles[:, 3 + i] = _ARMS_RAISED[name]
+    angles[:, 13], angles[:, 15] = -first, -second
+    s, c = np.sin(pitch), np.cos(pitch)
+    heights = []
+    for some in np.ravel(lead):
+        behind, down = np.full(len(pitch), some), np.full(len(pitch), 0.9 * leg.reach[1])
+        for _ in range(4):  # the legs' own weight moves the centre of mass a little
+            angles[:, 6:9] = angles[:, 9:12] = hind_leg(
+                leg, np.stack([np.full(len(pitch), stance), behind, down], axis=-1), pitch, clip=True
+            )
+            tail = robot.tail
+            drop = (down + leg.foot_radius - tail.offset * s - tail.radius_tip) / (tail.length - tail.offset)
+            angles[:, 17] = np.arcsin(np.clip(drop, -1.0, 1.0)) - pitch
+            com = centre_of_mass(robot, angles)
+            behind = c * com[:, 0] - s * com[:, 2] + some
+            down = np.sqrt(np.maximum(leg.reach[1] ** 2 - behind**2 - stance**2, 0.0))
+        snout = landmarks(robot, angles).snout
+        fits = (angles[:, 17] >= tail.pitch_range[0]) & (angles[:, 17] <= tail.pitch_range[1]) & (down > 0)
+        height = down + leg.foot_radius + s * snout[:, 0] + c * snout[:, 2]
+        heights.append(float(np.max(np.where(fits, height, 0.0))))
+    return np.reshape(np.array(heights), np.shape(lead))

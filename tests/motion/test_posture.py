@@ -1,0 +1,123 @@
+from dataclasses import replace
+
+import mujoco
+import numpy as np
+import pytest
+
+import suchus
+from suchus.design import joint_names, servo_names
+from suchus.errors import InvalidDesign, OutsideLimits
+from suchus.kinematics import leg as leg_kinematics
+from suchus.model import compile_model, joint_addresses
+from suchus.motion.posture import Keyed, hind_leg, plan
+from suchus.motion.stand_up import STRETCH, stand_up, stretched, tallest
+
+CAIMAN = suchus.ROBOTS["caiman"]
+RISE = stand_up(CAIMAN)
+TIME = np.linspace(0.0, RISE.duration, 76)
+
+
+def in_mujoco(robot, targets, pitch, hip_height):
+    """Put a robot into a posture and return its MuJoCo data."""
+    model = compile_model(robot)
+    data = mujoco.MjData(model)
+    data.qpos[2] = hip_height
+    data.qpos[3:7] = np.cos(pitch / 2), 0.0, -np.sin(pitch / 2), 0.0  # front end up
+    names = [name for name in joint_names(robot) if name in servo_names()]
+    data.qpos[joint_addresses(model, names)] = targets[: len(names)]
+    mujoco.mj_forward(model, data)
+    return data
+
+
+@pytest.mark.parametrize("tick", [0, 15, 37, 50, 75])
+def test_mujoco_finds_feet_and_centre_of_mass_where_the_plan_puts_them(tick):
+    planned = plan(CAIMAN, RISE, TIME)
+    down = planned.feet[tick, 2]
+    data = in_mujoco(CAIMAN, planned.targets[tick], planned.pitch[tick], down)
+    for side, name in ((1.0, "LH"), (-1.0, "RH")):
+        foot = data.site(f"{name}_foot").xpos
+        out = side * (CAIMAN.hind_leg.hip_offset + planned.feet[tick, 0])
+        assert foot == pytest.approx([planned.feet[tick, 1], out, 0.0], abs=1e-9)
+    com = data.subtree_com[1]
+    assert planned.feet[tick, 1] - com[0] == pytest.approx(planned.lead[tick], abs=1e-9)
+    assert com[1] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_every_key_has_its_centre_of_mass_where_it_says():
+    planned = plan(CAIMAN, RISE, np.array(RISE.times))
+    assert planned.lead == pytest.approx([p.lead for p in RISE.postures], abs=1e-9)
+
+
+def test_the_centre_of_mass_is_behind_the_feet_before_the_front_lifts_and_stays_there():
+    planned = plan(CAIMAN, RISE, TIME)
+    lifted = RISE.times[2] <= TIME
+    assert planned.lead[lifted].min() > 0.025
+
+
+def test_planted_feet_do_not_move_apart_or_leave_the_ground():
+    planned = plan(CAIMAN, RISE, TIME)
+    planted = RISE.times[2] <= TIME
+    assert np.ptp(planned.feet[planted, 0]) == pytest.approx(0.0, abs=1e-12)
+    height = np.interp(TIME[planted], RISE.times, np.zeros(len(RISE.times)))
+    assert height == pytest.approx(0.0)
+
+
+def test_the_body_rests_in_every_key():
+    for key in RISE.times:
+        near = plan(CAIMAN, RISE, np.clip(np.array([key - 1e-4, key, key + 1e-4]), 0, RISE.duration)).targets
+        assert np.abs(np.diff(near, axis=0)).max() < 1e-6
+
+
+def test_left_and_right_are_alike_and_the_way_back_is_the_way_up():
+    planned = plan(CAIMAN, RISE, TIME).targets
+    assert np.array_equal(planned[:, 0:3], planned[:, 3:6])
+    assert np.array_equal(planned[:, 6:9], planned[:, 9:12])
+    back = plan(CAIMAN, RISE.reversed("sit_down", slower=2.0), 2.0 * TIME).targets
+    assert back == pytest.approx(planned[::-1], abs=1e-9)
+
+
+def test_before_and_after_the_keys_the_postures_hold():
+    early, late = plan(CAIMAN, RISE, np.array([-5.0, 0.0])), plan(CAIMAN, RISE, np.array([7.5, 99.0]))
+    assert np.array_equal(*early.targets)
+    assert np.array_equal(*late.targets)
+
+
+def test_a_hind_leg_reaches_points_that_do_not_turn_with_the_pelvis():
+    leg = CAIMAN.hind_leg
+    level = hind_leg(leg, np.array([0.05, 0.03, 0.1]), np.array(0.0))
+    assert level == pytest.approx(leg_kinematics.inverse(leg, np.array([leg.hip_offset + 0.05, 0.03, 0.1])))
+    far = hind_leg(leg, np.array([0.0, 0.3, 0.4]), np.array(0.3), clip=True)
+    assert far[2] == pytest.approx(0.0, abs=0.01)  # a stretched knee
+
+
+def test_nothing_reaches_higher_than_the_stretched_robot():
+    parts = CAIMAN.hind_leg.femur + CAIMAN.hind_leg.tibia + CAIMAN.spine.length + CAIMAN.head.snout
+    assert stretched(CAIMAN) == parts
+    heights = tallest(CAIMAN, np.array([0.0, 0.03, 0.06, 0.1]))
+    assert heights.max() < stretched(CAIMAN) + CAIMAN.hind_leg.foot_radius
+    assert heights.max() > stretched(CAIMAN)
+    assert np.all(np.diff(heights[1:]) < 0)  # safety costs height
+
+
+def test_a_longer_leg_makes_a_taller_posture():
+    longer = replace(CAIMAN.hind_leg, femur=CAIMAN.hind_leg.femur + 0.02)
+    hips = [stand_up(replace(CAIMAN, hind_leg=leg)).postures[-1].hip_height for leg in (CAIMAN.hind_leg, longer)]
+    assert hips[1] - hips[0] == pytest.approx(STRETCH * 0.02)
+
+
+def test_a_posture_out_of_reach_is_refused_with_a_remedy():
+    high = replace(RISE.postures[-1], hip_height=0.3)
+    with pytest.raises(OutsideLimits, match=r"hind feet of robot 'caiman' cannot stay .* Lower hip_height, lead or"):
+        plan(CAIMAN, Keyed(name="up", times=(0.0,), postures=(high,)), TIME)
+    bent = replace(RISE.postures[0], trunk_first=1.4)
+    with pytest.raises(OutsideLimits, match=r"asks spine_pitch_1 of robot 'caiman' for -1.400 rad; -1.047 to 1.047"):
+        plan(CAIMAN, Keyed(name="bent", times=(0.0,), postures=(bent,)), TIME)
+
+
+def test_impossible_postures_and_times_are_refused():
+    with pytest.raises(InvalidDesign, match=r"posture.hip_height is nan m"):
+        replace(RISE.postures[0], hip_height=float("nan"))
+    with pytest.raises(InvalidDesign, match="2 times for 1 postures"):
+        Keyed(name="x", times=(0.0, 1.0), postures=RISE.postures[:1])
+    with pytest.raises(InvalidDesign, match="must increase from 0 s"):
+        Keyed(name="x", times=(0.0, 0.0), postures=RISE.postures[:2])
