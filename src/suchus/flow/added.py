@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from suchus.flow.force import Surface, padded
+from suchus.flow.force import GAP, Surface, padded
 from suchus.flow.probe import wall_pressure
 from suchus.flow.shape import Markers
 from suchus.flow.water import Water
@@ -39,7 +39,7 @@ def added_mass(water: Water, markers: Markers, about: tuple[float, float], densi
         u, v = (1 - mu0_u) * au / scale, (1 - mu0_v) * av / scale
         potential = water.potential(u, v, _LIMIT)
         pressure = np.empty(px.size)
-        wall_pressure(potential, px, py, markers.normal_x, markers.normal_y, 0.0, 1.0, pressure)
+        wall_pressure(potential, px, py, markers.normal_x, markers.normal_y, GAP, pressure)
         surface = Surface(markers=markers, pressure=density * h * scale * pressure, shear=np.zeros((2, px.size)))
         load = surface.load(about)
         out[:, k] = [-load.force[0], -load.force[1], -load.torque]

@@ -1,6 +1,6 @@
 """Bodies in the water: a shape with a motion, and what several of them say together on the grid."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
@@ -76,11 +76,7 @@ def measure_all(bodies: list[Body], poses: list[Pose], x: np.ndarray, y: np.ndar
         other = body.shape.measure(x, y, time, pose, (REACH + 1) * h)
         nearer = other.distance < first.distance
         first = Field(
-            np.where(nearer, other.distance, first.distance),
-            np.where(nearer, other.normal_x, first.normal_x),
-            np.where(nearer, other.normal_y, first.normal_y),
-            np.where(nearer, other.velocity_x, first.velocity_x),
-            np.where(nearer, other.velocity_y, first.velocity_y),
+            *(np.where(nearer, getattr(other, f.name), getattr(first, f.name)) for f in fields(Field))
         )
     return first
 

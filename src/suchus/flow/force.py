@@ -10,13 +10,8 @@ from suchus.flow.probe import wall_pressure, wall_shear
 from suchus.flow.shape import Markers
 from suchus.flow.water import Water
 
-PRESSURE_AT = (1.0, 1.0)
-"""Where the wall pressure is read: distance of the first point, and to the second, off the wall [cells].
-
-Read on the wall itself, the pressures of both sides of a thin tail mix: 10 % of force noise where this has 1 %."""
-
-SHEAR_GAP = 1.0
-"""Spacing of the three points from which the wall shear is fitted [cells]."""
+GAP = 1.0
+"""Spacing of the points off the wall from which wall pressure and wall shear are fitted [cells]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -81,9 +76,9 @@ def sample(water: Water, markers: Markers, density: float) -> Surface:
     x, y = padded(markers, water.grid)
     pressure, shear = np.empty(x.size), np.empty((2, x.size))
     nx, ny = markers.normal_x, markers.normal_y
-    wall_pressure(water.p, x, y, nx, ny, *PRESSURE_AT, pressure)
+    wall_pressure(water.p, x, y, nx, ny, GAP, pressure)
     wall_shear(
-        water.u, water.v, x, y, nx, ny, markers.velocity_x, markers.velocity_y, markers.spin * h, SHEAR_GAP, shear
+        water.u, water.v, x, y, nx, ny, markers.velocity_x, markers.velocity_y, markers.spin * h, GAP, shear
     )
     level = float(edge_mean(water.p))
     return Surface(

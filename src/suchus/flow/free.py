@@ -85,18 +85,15 @@ class Swimmer:
             velocity=(self.rate[0] - ux + spin * ry, self.rate[1] - uy - spin * rx), spin=spin,
         )  # fmt: skip
 
-    def advance(self, time: float, dt: float, last: float, water_density: float) -> None:
-        """Move on by ``dt`` [s] under the water's forces of the last steps; ``last`` is the last step [s]."""
+    def advance(self, time: float, dt: float, water_density: float) -> None:
+        """Move on by ``dt`` [s] under the water's forces of the last two steps."""
         shape = self.body.shape
         density = water_density if self.body.density is None else self.body.density
         now, then = shape.mass(time), shape.mass(time + dt)
         inertia = np.diag([density * then.area, density * then.area, density * then.moment])
         steady = self.load + self.added @ self.push
-        if self.steps > 3:  # not across the jolt of an impulsive start
-            gain = 0.5 * (dt + last) / last
-            guess = steady + gain * (steady - self.steady[0])
-        else:
-            guess = steady
+        # The mean of two steps: extrapolating instead feeds every ripple of the force back into the motion.
+        guess = 0.5 * (steady + self.steady[0]) if self.steps > 3 else steady
         self.steady = np.stack([steady, self.steady[0]])
         guess = guess - np.array([0, 0, density * (then.moment - now.moment) / dt * self.rate[2]])
         go = np.array(self.body.free)

@@ -109,7 +109,11 @@ def ring(spine):
 
 @compiled
 def paint(spine, width_rate, x0, y0, h, nx, ny, reach):
-    """Return distance, normal (x, y) and velocity (x, y) on the window, shape (5, ny, nx)."""
+    """Return distance, normal (x, y), velocity (x, y) and thickness on the window, shape (6, ny, nx).
+
+    The thickness is that of the cross-section one cell inside the nearest point of the outline: near the blunt
+    nose it is large, along a tail it is the tail's.
+    """
     outline = ring(spine)
     count = outline.shape[1]
     n = spine.shape[1]
@@ -126,7 +130,8 @@ def paint(spine, width_rate, x0, y0, h, nx, ny, reach):
         _paint_edge(square, edge, share, k, ax, ay, bx, by, x0, y0, h, reach)
         if ay != by:
             _wind_edge(winding, ax, ay, bx, by, x0, y0, h)
-    out = np.zeros((5, ny, nx))
+    out = np.zeros((6, ny, nx))
+    out[5] = np.inf
     for j in range(ny):
         wound, k = 0, 0
         for i in range(nx):
@@ -148,6 +153,10 @@ def paint(spine, width_rate, x0, y0, h, nx, ny, reach):
                     size = np.sqrt(ex * ex + ey * ey)
                     out[1, j, i], out[2, j, i] = ey / size, -ex / size
                 k = e if e < n else 2 * n - 1 - e
+                qx = px - out[1, j, i] * (out[0, j, i] + h)
+                qy = py - out[2, j, i] * (out[0, j, i] + h)
+                m, f = find_section(qx, qy, min(k, n - 2), spine[0], spine[1], tx, ty)
+                out[5, j, i] = 2.0 * ((1.0 - f) * spine[3, m] + f * spine[3, m + 1])
             k, f = find_section(px, py, min(k, n - 2), spine[0], spine[1], tx, ty)
             out[3, j, i], out[4, j, i] = section_velocity(px, py, k, f, spine, width_rate)
     return out

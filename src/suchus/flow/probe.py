@@ -12,15 +12,17 @@ def at(a, x, y):
 
 
 @compiled
-def wall_pressure(p, x, y, nx, ny, first, gap, out):
-    """Write the pressure at the markers, carried from two points in the water straight to the wall.
+def wall_pressure(p, x, y, nx, ny, gap, out):
+    """Write the pressure at the markers from a parabola through three points off the wall.
 
-    Points lie ``first`` and ``first + gap`` cells from the wall; marker positions in padded indices of the cells.
+    The points lie 1, 2 and 3 times ``gap`` cells off the wall; marker positions in padded indices of the cells.
+    Read on the wall itself, the pressures of both sides of a thin tail mix and the force is ten times as noisy.
     """
     for m in range(x.size):
-        a = at(p, x[m] + first * nx[m], y[m] + first * ny[m])
-        b = at(p, x[m] + (first + gap) * nx[m], y[m] + (first + gap) * ny[m])
-        out[m] = a + (a - b) * first / gap
+        a = at(p, x[m] + gap * nx[m], y[m] + gap * ny[m])
+        b = at(p, x[m] + 2 * gap * nx[m], y[m] + 2 * gap * ny[m])
+        c = at(p, x[m] + 3 * gap * nx[m], y[m] + 3 * gap * ny[m])
+        out[m] = 3 * (a - b) + c
 
 
 @compiled

@@ -28,6 +28,8 @@ class Field:
     """Velocity of the body, carried on smoothly a few cells into the water, along x [m/s]."""
     velocity_y: np.ndarray
     """The same along y [m/s]."""
+    thickness: np.ndarray
+    """Thickness of the body behind the nearest point of its surface, infinite where it is thick [m]."""
 
 
 @dataclass(slots=True)
@@ -113,7 +115,8 @@ class Solid(Shape):
         """Return the field on the points of a window."""
         wx, wy = np.meshgrid(x, y)
         d, nx, ny = self.distance(*pose.to_body(wx, wy))
-        return Field(d, *pose.turn(nx, ny), *(np.broadcast_to(v, d.shape) for v in pose.carry(wx, wy)))
+        motion = (np.broadcast_to(v, d.shape) for v in pose.carry(wx, wy))
+        return Field(d, *pose.turn(nx, ny), *motion, np.full(d.shape, np.inf))
 
     def markers(self, time: float, pose: Pose, spacing: float) -> Markers:
         """Return the middles of the outline's edges."""

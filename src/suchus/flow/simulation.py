@@ -28,6 +28,16 @@ FASTEST = 100.0
 """Speed, over that of stream and bodies, above which a simulation counts as diverged [-]."""
 
 
+LANDING = 16
+"""Steps before the end of a run over which the time step is evened out, so that the last one is no jolt [-]."""
+
+
+def _even(dt: float, left: float) -> float:
+    """Return the step that arrives in whole steps, once the end is near [s]."""
+    count = np.ceil(left / dt * (1 - 1e-9))
+    return float(left / count) if count <= LANDING else dt
+
+
 class Simulation:
     """A flow that starts with the water moving like the far stream and goes on step by step.
 
@@ -121,7 +131,7 @@ class Simulation:
             self._speed = max(self._speed, self.water.fastest(), self.setup.sides.fastest(self.setup.grid))
         dt = self.next_step() if dt is None else dt
         for swimmer in self.swimmers.values():
-            swimmer.advance(self.time, dt, self._last or dt, self.setup.density)
+            swimmer.advance(self.time, dt, self.setup.density)
         old_frame = self.frame.copy()
         self._frame_velocity_at(self.time + dt)
         self.frame[0] += dt * 0.5 * (old_frame[1] + self.frame[1])
@@ -216,10 +226,8 @@ class Simulation:
         with Bar(self.time, until, cells, show=progress) as bar:
             try:
                 while self.time < until * (1 - 1e-12):
-                    dt = self.next_step()
-                    left = until - self.time
-                    self.advance(left if left <= dt else (left / 2 if left < 2 * dt else dt))
-                    if self.time >= until * (1 - 1e-12):
+                    self.advance(_even(self.next_step(), until - self.time))
+                    if until - self.time < 1e-6 * self._last:  # rounding must not leave a tiny last step
                         self.time = until
                     bar.move(self.time)
                     if watch is not None and (self.time >= due or self.time == until):

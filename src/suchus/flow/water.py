@@ -115,10 +115,10 @@ class Water:
         x_mid, y_mid = grid.centres(i0, i1 + 1, 0), grid.centres(j0, j1 + 1, 1)
         mu0_u, mu0_v = self.mu0
         f = measure_all(bodies, poses, x_face, y_mid, time, h)
-        fill(f.distance / h - self.offset, f.normal_x, f.normal_y, mu0_u[here], self._mu1xx[here], self._mu1xy[here])
+        fill(f.distance / h - self.offset, f.normal_x, f.normal_y, f.thickness / h + 2 * self.offset, mu0_u[here], self._mu1xx[here], self._mu1xy[here])
         self.bu[here] = f.velocity_x
         f = measure_all(bodies, poses, x_mid, y_face, time, h)
-        fill(f.distance / h - self.offset, f.normal_x, f.normal_y, mu0_v[here], self._mu1yx[here], self._mu1yy[here])
+        fill(f.distance / h - self.offset, f.normal_x, f.normal_y, f.thickness / h + 2 * self.offset, mu0_v[here], self._mu1yx[here], self._mu1yy[here])
         self.bv[here] = f.velocity_y
         fill_source(self._source, self.bu, self.bv, mu0_u, mu0_v, np.array(self.window))
 

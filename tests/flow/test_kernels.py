@@ -1,0 +1,86 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from suchus.flow import multigrid, poisson
+from suchus.flow.advect import limited_quick, median
+from suchus.flow.compiled import PAD
+from suchus.flow.immerse import moment0, moment1, wall_offset
+
+number = st.floats(-1e3, 1e3)
+
+
+@given(number, number, number)
+def test_median_is_the_middle_one(a, b, c):
+    assert median(a, b, c) == sorted([a, b, c])[1]
+
+
+@given(number, number)
+def test_quick_is_exact_on_straight_lines(value, slope):
+    assert limited_quick(value - slope, value, value + slope) == pytest.approx(value + slope / 2, abs=1e-9)
+
+
+@given(number, number, number)
+def test_limited_face_value_lies_between_its_neighbours(a, b, c):
+    low, high = min(b, c), max(b, c)
+    assert low - 1e-9 <= limited_quick(a, b, c) <= high + 1e-9
+
+
+def test_quick_of_a_parabola_by_hand():
+    assert limited_quick(1.0, 4.0, 9.0) == pytest.approx(6.25)  # 2.5 squared
+
+
+def test_moments_are_the_integrals_of_the_kernel():
+    y = np.linspace(-1, 1, 200_001)
+    kernel = 0.5 * (1 + np.cos(np.pi * y))
+    for d in (-0.7, -0.2, 0.0, 0.4, 0.9):
+        wet = y > -d
+        assert moment0(d) == pytest.approx(np.trapezoid(np.where(wet, kernel, 0), y), abs=1e-5)
+        assert moment1(d) == pytest.approx(np.trapezoid(np.where(wet, y * kernel, 0), y), abs=1e-5)
+    assert (moment0(-1.0), moment0(1.0), moment1(1.0), moment1(-1.0)) == (0, 1, 0, 0)
+
+
+def test_wall_offset_is_the_fit_it_says():
+    for k, shift in ((0.01, 0.104), (0.1, 0.272), (0.2, 0.348)):
+        # viscosity such that courant nu / (fastest + 4 nu) = k, with courant 0.9
+        assert wall_offset(k / (0.9 - 4 * k), 1.0, 0.9) == pytest.approx(shift, abs=0.012)
+
+
+def _body(cx, cy, thin):
+    ny, nx = cx.shape
+    for c, ox, oy in ((cx, 0, 0.5), (cy, 0.5, 0)):
+        for j in range(ny):
+            for i in range(nx):
+                across = abs((j + oy) - (34 + 0.2 * (i + ox - 50))) - thin
+                c[j, i] = max(moment0(max(across, abs(i + ox - 50) - 20)), 1e-3)
+
+
+@pytest.mark.parametrize("thin", [None, 6.0, 1.5])
+def test_the_pressure_solver_solves(thin):
+    ny, nx = 64, 96
+    layout = poisson.levels(ny, nx)
+    store = poisson.make_store(layout, np.float64)
+    cx, cy = multigrid.level(store, layout, multigrid.CX, 0), multigrid.level(store, layout, multigrid.CY, 0)
+    if thin is not None:
+        _body(cx, cy, thin)
+        poisson.place_window(layout, (20, 50, 20, 82))
+        multigrid.coarsen(store, layout)
+    rng = np.random.default_rng(0)
+    b = multigrid.level(store, layout, multigrid.B, 0)
+    u, v = cx * rng.standard_normal(cx.shape), cy * rng.standard_normal(cx.shape)
+    u[:, [PAD, -PAD]] = 0
+    v[[PAD, -PAD]] = 0
+    inner = np.s_[PAD:-PAD, PAD:-PAD]
+    b[inner] = u[inner] - u[PAD:-PAD, PAD + 1 : -PAD + 1] + v[inner] - v[PAD + 1 : -PAD + 1, PAD:-PAD]
+    for row in b:
+        multigrid.seal_row(row, False)
+    wanted = b[inner].copy()
+    x, d, q = (np.zeros(b.shape) for _ in range(3))
+    sums = np.zeros((ny + 2 * PAD, 3))
+    cycles, mean, largest = poisson.solve(x, d, q, store, layout, (False, False), sums, 1e-9, 1e-8, 60)
+    assert cycles < (12 if thin is None else 30)
+    out = np.empty(nx)
+    for j in range(ny):  # the answer is checked with the operator, not with the solver's own residual
+        multigrid.apply_row(out, x, cx, cy, layout[0], j + PAD)
+        assert np.abs(out - wanted[j]).max() < 1e-7

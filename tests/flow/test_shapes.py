@@ -1,0 +1,119 @@
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from suchus import flow
+from suchus.errors import InvalidDesign
+
+STILL = flow.Pose()
+SHAPES = [
+    flow.Cylinder(diameter=1.0),
+    flow.Ellipse(length=2.0, width=0.7),
+    flow.Plate(length=2.0, thick=0.3),
+    flow.foil(2.0, thickness=0.2),
+    flow.foil(2.0, thickness=0.2, camber=0.04),
+]
+
+
+def test_distance_to_a_circle_is_exact():
+    axis = np.linspace(-1, 1, 21)
+    field = SHAPES[0].measure(axis, axis, 0.0, STILL, 1.0)
+    assert field.distance == pytest.approx(np.hypot(axis[None, :], axis[:, None]) - 0.5, abs=1e-12)
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_distance_is_that_to_the_nearest_marker(shape):
+    pose = flow.Pose(position=(0.3, -0.1), angle=0.4)
+    x, y = np.arange(-2, 3, 0.08), np.arange(-2, 2, 0.08)
+    field = shape.measure(x, y, 0.0, pose, 0.5)
+    m = shape.markers(0.0, pose, 0.004)
+    gx, gy = np.meshgrid(x, y)
+    nearest = np.sqrt(((gx[..., None] - m.x) ** 2 + (gy[..., None] - m.y) ** 2).min(axis=-1))
+    near = nearest < 0.4
+    assert np.abs(np.abs(field.distance) - nearest)[near].max() < 0.01
+    assert np.hypot(field.normal_x, field.normal_y)[near & (nearest > 1e-3)] == pytest.approx(1, abs=1e-6)
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_normals_close_and_markers_enclose_the_area(shape):
+    m = shape.markers(0.0, STILL, 0.01)
+    assert abs((m.normal_x * m.length).sum()) < 1e-9
+    assert abs((m.normal_y * m.length).sum()) < 1e-9
+    area = 0.5 * ((m.x * m.normal_x + m.y * m.normal_y) * m.length).sum()
+    assert area == pytest.approx(shape.mass(0.0).area, rel=0.01)
+    assert area > 0
+
+
+def test_mass_of_circle_and_ellipse():
+    mass = flow.Cylinder(diameter=1.0).mass(0.0)
+    assert (mass.area, mass.moment) == pytest.approx((np.pi / 4, np.pi / 32), rel=1e-4)
+    mass = flow.Ellipse(length=2.0, width=1.0).mass(0.0)
+    assert mass.moment == pytest.approx(np.pi * 1.0 * 0.5 * (1 + 0.25) / 4, rel=1e-4)
+
+
+def _eel(time):
+    return flow.eel(1.0).spine(time)
+
+
+def test_rates_of_the_eel_are_the_derivatives():
+    t, dt = 0.37, 1e-6
+    before, now, after = _eel(t - dt), _eel(t), _eel(t + dt)
+    for name in ("x", "y", "heading"):
+        rate = (getattr(after, name) - getattr(before, name)) / (2 * dt)
+        assert getattr(now, f"{name}_rate") == pytest.approx(rate, abs=1e-7)
+
+
+def test_centre_rate_of_the_eel_is_nearly_the_derivative_of_its_centre():
+    shape, t, dt = flow.eel(1.0), 0.2, 1e-5
+    a, b = shape.mass(t - dt), shape.mass(t + dt)
+    rate = (np.array(b.centre) - np.array(a.centre)) / (2 * dt)
+    assert shape.mass(t).centre_rate == pytest.approx(rate, abs=0.02)
+
+
+def test_velocity_is_continuous_across_the_midline():
+    spine = _eel(0.1)
+    k = 150
+    nx, ny = -np.sin(spine.heading[k]), np.cos(spine.heading[k])
+    x = spine.x[k] + np.array([-1e-6, 1e-6]) * nx
+    y = spine.y[k] + np.array([-1e-6, 1e-6]) * ny
+    out = []
+    for px, py in zip(x, y, strict=True):
+        f = flow.eel(1.0).measure(np.array([px, px + 0.01]), np.array([py, py + 0.01]), 0.1, STILL, 0.05)
+        out.append((f.velocity_x[0, 0], f.velocity_y[0, 0]))
+    assert out[0] == pytest.approx(out[1], abs=1e-4)
+    assert out[0][1] == pytest.approx(spine.y_rate[k], abs=1e-3)
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.floats(-3, 3), st.floats(-1, 1), st.floats(-1, 1))
+def test_a_turned_midline_is_the_turned_field(angle, px, py):
+    pose = flow.Pose(position=(px, py), angle=angle, velocity=(0.3, 0.1), spin=0.7)
+    shape = flow.eel(1.0, stations=65)
+    m, n = shape.markers(0.2, STILL, 0.05), shape.markers(0.2, pose, 0.05)
+    wx, wy = pose.to_world(m.x, m.y)
+    assert (n.x, n.y) == (pytest.approx(wx), pytest.approx(wy))
+    vx, vy = pose.turn(m.velocity_x, m.velocity_y)
+    cx, cy = pose.carry(wx, wy)
+    assert n.velocity_x == pytest.approx(vx + cx, abs=1e-9)
+    assert n.velocity_y == pytest.approx(vy + cy, abs=1e-9)
+
+
+def test_naca_0012_is_twelve_percent_thick():
+    _, thickness = flow.foil(1.0, thickness=0.12).thickness(0.0)
+    assert thickness.max() == pytest.approx(0.12, rel=1e-3)
+    assert thickness[-1] == pytest.approx(0, abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("make", "part"),
+    [
+        (lambda: flow.Cylinder(diameter=-1.0), "diameter is -1.0 m"),
+        (lambda: flow.Plate(length=0.1, thick=0.2), "0.2 m thick"),
+        (lambda: flow.foil(1.0, thickness=0.9), "thickness 0.9"),
+        (lambda: flow.Spine(x=np.zeros(3), y=np.zeros(4), heading=np.zeros(3), half_width=np.zeros(3), x_rate=np.zeros(3), y_rate=np.zeros(3), heading_rate=np.zeros(3)), "y of the midline"),
+    ],
+)
+def test_impossible_shapes_are_refused(make, part):
+    with pytest.raises(InvalidDesign, match=part):
+        make()
