@@ -5,7 +5,7 @@ from suchus.land.crawling import crawl
 from suchus.land.faults import Deaf, Fault, Limp, Locked, Weak
 from suchus.land.lost import KINDS, LEGS_LOST, LOST, angle_at, lost
 from suchus.land.push import Push
-from suchus.land.run import Ground, Run
+from suchus.land.run import VACUUM, WATER, Afloat, Ground, Run
 from suchus.land.simulation import CONTROL_PERIOD, simulate
 
 __all__ = [
@@ -14,6 +14,9 @@ __all__ = [
     "KINDS",
     "LEGS_LOST",
     "LOST",
+    "VACUUM",
+    "WATER",
+    "Afloat",
     "Deaf",
     "Fault",
     "Ground",

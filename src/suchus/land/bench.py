@@ -11,7 +11,7 @@ from mujoco.batch import Batch, SimulationError
 from suchus import threads
 from suchus.design import servo_names
 from suchus.land.faults import Fault, Limp, Weak
-from suchus.land.run import Ground, Run
+from suchus.land.run import Afloat, Ground, Run
 from suchus.model import activations, compile_model, standing
 
 _GRAVITY = 9.81  # [m/s2]
@@ -28,6 +28,7 @@ class Bench:
 
     def __init__(self, runs: Sequence[Run], timestep: float) -> None:
         shared = compile_model(runs[0].robot, timestep)
+        self.model = shared
         self._single = all(run.robot == runs[0].robot for run in runs)
         self._models: list[Any] = []
         if not self._single:
@@ -36,7 +37,6 @@ class Bench:
         self._lay_ground(runs)
         if self._models:
             self.batch.set_models(self._models)
-        self.model = shared
         self.qpos, self.qvel, self.ctrl, self.sensors = (
             self.batch.bind(name) for name in ("qpos", "qvel", "ctrl", "sensordata")
         )
@@ -62,6 +62,22 @@ class Bench:
                 self._field("geom_friction", sim)[1:, 0] *= run.ground.grip
             if run.ground.uphill or run.ground.sideways:
                 self._field("opt.gravity", sim)[:] = _gravity(run.ground)
+            if run.afloat is not None:
+                self._cast_off(sim, run.afloat)
+
+    def _cast_off(self, sim: int, afloat: Afloat) -> None:
+        self._field("opt.gravity", sim)[:] = 0.0
+        self._set_option("density", sim, afloat.density)
+        self._set_option("viscosity", sim, afloat.viscosity)
+        self._set_option("integrator", sim, int(mujoco.mjtIntegrator.mjINT_RK4))
+        no_contact = int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
+        self._set_option("disableflags", sim, int(self.model.opt.disableflags) | no_contact)
+
+    def _set_option(self, name: str, sim: int, value: float) -> None:
+        if self._single:
+            self.batch.expand(f"opt.{name}")[sim] = value
+        else:
+            setattr(self._models[sim].opt, name, value)
 
     def break_servo(self, sim: int, fault: Fault) -> None:
         """Let a servo go limp or weak from now on."""

@@ -92,6 +92,7 @@ class Readings:
             "orientation": self._qpos[..., 3:7],
             "joint_angle": self._qpos[..., self._joints],
             "centre_of_mass": read[..., self._at["centre_of_mass"]],
+            "angular_momentum": read[..., self._at["angular_momentum"]],
             "snout": block(("snout",), "position"),
             "tail_tip": block(("tail_tip",), "position"),
             "foot_position": block([f"{leg}_foot" for leg in LEGS], "position").reshape(n, samples, 4, 3),

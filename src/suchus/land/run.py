@@ -28,6 +28,31 @@ class Ground:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Afloat:
+    """No ground and no gravity: in vacuum, or neutrally buoyant in a fluid at rest.
+
+    The fluid acts by MuJoCo's ellipsoid model, a drag and lift of each piece of the body by its own motion alone; it
+    knows no wake, and of the added mass only what turns with a piece, not what resists its acceleration. Contacts are
+    off; the physics is integrated by Runge-Kutta steps of fourth order, since those keep angular momentum.
+    """
+
+    density: float
+    """Of the fluid [kg/m3]; 0 in vacuum."""
+    viscosity: float
+    """Dynamic viscosity of the fluid [Pa s]; 0 in vacuum."""
+
+    def __post_init__(self) -> None:
+        require("afloat", "density", self.density, 0.0, 2e4, "kg/m3")
+        require("afloat", "viscosity", self.viscosity, 0.0, 1e3, "Pa s")
+
+
+VACUUM = Afloat(density=0.0, viscosity=0.0)
+"""Where nothing acts from outside."""
+WATER = Afloat(density=1000.0, viscosity=1e-3)
+"""Fresh water of 20 degrees Celsius."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Run:
     """One run of a batch."""
 
@@ -37,6 +62,8 @@ class Run:
     """How."""
     ground: Ground = field(default_factory=Ground)
     """On what."""
+    afloat: Afloat | None = None
+    """In what it floats, instead of lying on the ground; None for the ground."""
     faults: tuple[Fault, ...] = ()
     """What breaks, and when."""
     pushes: tuple[Push, ...] = ()

@@ -147,6 +147,7 @@ def _add_sensors(spec: Any) -> None:
     spec.add_sensor(name="imu_gyroscope", type=kind.mjSENS_GYRO, objtype=of.mjOBJ_SITE, objname="imu")
     spec.add_sensor(name="imu_accelerometer", type=kind.mjSENS_ACCELEROMETER, objtype=of.mjOBJ_SITE, objname="imu")
     spec.add_sensor(name="centre_of_mass", type=kind.mjSENS_SUBTREECOM, objtype=of.mjOBJ_BODY, objname="pelvis")
+    spec.add_sensor(name="angular_momentum", type=kind.mjSENS_SUBTREEANGMOM, objtype=of.mjOBJ_BODY, objname="pelvis")
     for site in SITES:
         spec.add_sensor(name=f"{site}_position", type=kind.mjSENS_FRAMEPOS, objtype=of.mjOBJ_SITE, objname=site)
 

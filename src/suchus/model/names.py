@@ -22,5 +22,6 @@ def sensor_names() -> tuple[str, ...]:
         "imu_gyroscope",
         "imu_accelerometer",
         "centre_of_mass",
+        "angular_momentum",
         *(f"{site}_position" for site in SITES),
     )

@@ -46,4 +46,5 @@ def _touches(geom: Any, friction: float, contact: Contact, dimensions: int, colo
     geom.condim = dimensions
     geom.solref = [contact.time_constant, 1.0]
     geom.contype, geom.conaffinity = 0, 1  # the ground only: no self-collision
+    geom.fluid_ellipsoid = 1  # how a fluid would act, where there is one
     geom.rgba = list(colour)

@@ -14,6 +14,7 @@ VARIABLES: Mapping[str, tuple[tuple[str, ...], str, str]] = {
     "position": (("time", "xyz"), "m", "pelvis in the world"),
     "orientation": (("time", "wxyz"), "1", "pelvis in the world, unit quaternion"),
     "centre_of_mass": (("time", "xyz"), "m", "of the whole robot in the world"),
+    "angular_momentum": (("time", "xyz"), "kg m2/s", "of the whole robot about its centre of mass, in the world"),
     "snout": (("time", "xyz"), "m", "tip of the snout in the world"),
     "tail_tip": (("time", "xyz"), "m", "tip of the tail in the world"),
     "foot_position": (("time", "leg", "xyz"), "m", "centre of each foot in the world"),
