@@ -115,6 +115,26 @@ def test_each_robot_of_a_batch_is_answered_for_itself():
     assert np.abs(told[1] - told[0]).max() > 0.005
 
 
+def test_runs_that_stand_at_different_times_share_a_batch():
+    late = replace(SOON, at=1.2, balance=None)
+    runs = [Run(robot=CAIMAN, gait=CRAWL, control=c) for c in (SOON, late)]
+    together = simulate(runs, duration=2.0, timestep=0.005)
+    alone = simulate(runs[1:], duration=2.0, timestep=0.005)
+    assert np.array_equal(together.servo_target.isel(run=1), alone.servo_target.isel(run=0))
+    assert np.array_equal(together.snout.isel(run=1), alone.snout.isel(run=0))
+    assert not np.array_equal(together.servo_target.isel(run=1), together.servo_target.isel(run=0))
+
+
+def test_without_balance_nothing_is_corrected():
+    blind = replace(SOON, balance=None)
+    both = Standing.start_together([SOON, blind], [CAIMAN] * 2, [CRAWL] * 2, [0, 0], 3000, PERIOD)
+    tick = round((SOON.upright_from(CAIMAN) + 1.0) / PERIOD)
+    for i, pitch in enumerate((1.4, 1.2)):
+        told = both.command(tick + i, felt(np.array([pitch, pitch]), count=2)).targets
+    assert np.abs(told[0] - told[1]).max() > 0.01
+    assert told[1] == pytest.approx(plan(CAIMAN, stand_up(CAIMAN), np.array([99.0])).targets[0], abs=1e-9)
+
+
 def test_the_caiman_stands_up_and_down_again():
     record = simulate([Run(robot=CAIMAN, gait=CRAWL, control=SOON)], duration=24.0, timestep=0.005, every=10)
     height, behind = reach(CAIMAN, record).isel(run=0), lead(record).isel(run=0)

@@ -1,7 +1,7 @@
 """Standing up, standing, and sitting down again, on what pelvis, feet and tail feel."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -75,8 +75,8 @@ BALANCE = Balance(
 )
 """Not in the paper; the gains came out of a search over 80 sets, each pushed eleven times.
 
-More than twice these gains, and any answer of the hips to the speed, swing by themselves. On level ground the tail
-carries 0.2 of the weight in the posture of ``motion.stand_up``.
+Twice these gains swing by themselves, and an answer of the hips to the speed made every push worse. On level ground
+the tail carries 0.2 of the weight in the posture of ``motion.stand_up``.
 """
 
 
@@ -132,14 +132,26 @@ class Standing:
         Raises:
             OutsideLimits: a robot cannot take the postures.
         """
+        return self.start_together([self] * len(robots), robots, gaits, seeds, ticks, period)
+
+    @staticmethod
+    def start_together(
+        controls: Sequence["Standing"],
+        robots: Sequence[Crocodile],
+        gaits: Sequence[Gait],
+        seeds: Sequence[int],
+        ticks: int,
+        period: float,
+    ) -> "Stander":
+        """Start runs that differ in when and how they stand; see ``start``."""
         del seeds
-        pairs = list(zip(robots, gaits, strict=True))
-        unique = {pair: i for i, pair in enumerate(dict.fromkeys(pairs))}
+        keys = [(replace(c, balance=None), r, g) for c, r, g in zip(controls, robots, gaits, strict=True)]
+        unique = {key: i for i, key in enumerate(dict.fromkeys(keys))}
         time = np.arange(ticks) * period
-        courses = [self._course(robot, gait, time) for robot, gait in unique]
+        courses = [control._course(robot, gait, time) for control, robot, gait in unique]
         course = Course(*(np.array(part) for part in zip(*courses, strict=True)))
         legs = [robot.hind_leg for robot in robots]
-        return Stander(self.balance, course, np.array([unique[pair] for pair in pairs]), legs, period)
+        return Stander([c.balance for c in controls], course, np.array([unique[key] for key in keys]), legs, period)
 
     def _course(self, robot: Crocodile, gait: Gait, time: np.ndarray) -> "Course":
         up, leave, end = self._rise(robot), self.upright_until(robot), self.down_from(robot)
@@ -178,9 +190,15 @@ class Stander:
     """The running controller of a batch that stands up."""
 
     def __init__(
-        self, balance: Balance | None, course: Course, row: np.ndarray, legs: Sequence[Leg], period: float
+        self,
+        balances: Sequence[Balance | None],
+        course: Course,
+        row: np.ndarray,
+        legs: Sequence[Leg],
+        period: float,
     ) -> None:
-        self._balance = balance
+        self._gains = {f.name: np.array([getattr(b or BALANCE, f.name) for b in balances]) for f in fields(Balance)}
+        self._answers = np.array([b is not None for b in balances])
         self._course = course
         self._row = row
         self._legs = [(leg, np.array([leg == other for other in legs])) for leg in dict.fromkeys(legs)]
@@ -195,10 +213,10 @@ class Stander:
     def command(self, tick: int, sensed: Sensed | None) -> Command:
         """Follow the course, and while upright correct it by what is felt."""
         now = Course(*(part[self._row, tick] for part in self._course))
-        if sensed is None or self._balance is None:
+        if sensed is None:
             return Command(now.targets, now.phase)
-        upright = now.pitch > self._balance.upright
-        back, bend = self._answer(self._balance, now, sensed, upright)
+        upright = self._answers & (now.pitch > self._gains["upright"])
+        back, bend = self._answer(now, sensed, upright)
         targets = now.targets.copy()
         feet = now.feet + back[:, None] * np.array([0.0, 1.0, 0.0])
         for leg, who in self._legs:
@@ -208,20 +226,22 @@ class Stander:
         targets[upright, _FIRST_PITCH] -= bend[upright]
         return Command(targets, now.phase)
 
-    def _answer(self, b: Balance, now: Course, sensed: Sensed, upright: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def _answer(self, now: Course, sensed: Sensed, upright: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return how far the hips go back [m] and the trunk bends back [rad]."""
+        g = self._gains
         low = now.pitch - _pitch(sensed.orientation)
         self._mean = np.where(upright & np.isfinite(self._mean), self._mean, low)
-        self._mean += self._period / b.washout * (low - self._mean)
+        self._mean += self._period / g["washout"] * (low - self._mean)
         beyond = low - self._mean
         rate = sensed.angular_velocity[:, 1] + now.rate  # about the axis to the left: front end down positive
         hind, tail = sensed.foot_pressure[:, 2:].sum(axis=1), np.maximum(sensed.tail_pressure, 0.0)
-        lacking = b.tail_share - tail / np.maximum(hind + tail, 1.0)
-        crept = self._crept + b.hips_per_tail * self._period * lacking
-        self._crept = np.where(upright, np.clip(crept, -b.hips_most, b.hips_most), 0.0)
-        back = b.hips_per_pitch * beyond + b.hips_per_rate * rate + self._crept
-        bend = b.trunk_per_pitch * beyond + b.trunk_per_rate * rate
-        return np.clip(back, -b.hips_most, b.hips_most), np.clip(bend, -b.trunk_most, b.trunk_most)
+        lacking = g["tail_share"] - tail / np.maximum(hind + tail, 1.0)
+        hips, trunk = g["hips_most"], g["trunk_most"]
+        crept = self._crept + g["hips_per_tail"] * self._period * lacking
+        self._crept = np.where(upright, np.clip(crept, -hips, hips), 0.0)
+        back = g["hips_per_pitch"] * beyond + g["hips_per_rate"] * rate + self._crept
+        bend = g["trunk_per_pitch"] * beyond + g["trunk_per_rate"] * rate
+        return np.clip(back, -hips, hips), np.clip(bend, -trunk, trunk)
 
 
 def _pitch(orientation: np.ndarray) -> np.ndarray:
