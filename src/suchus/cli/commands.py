@@ -44,6 +44,12 @@ COMMANDS = (
         "read a gait from tracked keypoints",
         "suchus.cli.capture:capture",
     ),
+    Command(
+        "export",
+        "[--format mjcf|urdf] [--robot ROBOT]",
+        "write a robot for other tools",
+        "suchus.cli.export:export_robot",
+    ),
     Command("list", "", "show the robots, the gaits and the experiments", "suchus.cli.shelves:show"),
 )
 """Every command, in the order of the help."""

@@ -1,0 +1,47 @@
+"""``suchus export``: a robot as a folder that other tools open."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+from typing import Annotated
+
+import tyro
+
+from suchus.cli.options import parse
+from suchus.design import Crocodile
+from suchus.gaits import GAITS
+from suchus.model.export import Format, export
+from suchus.motion import Gait
+from suchus.record import check_writable
+from suchus.robots import ROBOTS
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Options:
+    """What can be said after ``suchus export``."""
+
+    format: Format = "mjcf"
+    """MJCF for MuJoCo, URDF for nearly everything else."""
+    robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
+    """Which robot."""
+    home: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
+    """Gait whose mid-stance is the home posture of the MJCF."""
+    timestep: Annotated[float, tyro.conf.arg(metavar="SECONDS")] = 0.002
+    """Of the physics in the MJCF."""
+    out: Path | None = None
+    """The folder; by default export/ROBOT_FORMAT. An older export there is replaced, anything else is refused."""
+
+
+def export_robot(words: Sequence[str]) -> int:
+    """Write the folder, say where it is, and return 0.
+
+    Raises:
+        SuchusError: the words make no sense, or the place cannot be written to.
+    """
+    about = "Write a robot for other tools: model, scene, home posture, and a README of what the format leaves out."
+    options: Options = parse(Options, "suchus export", words, about, [f.name for f in fields(Options)])
+    folder = options.out or Path("export") / f"{options.robot.name}_{options.format}"
+    check_writable(folder.parent)
+    export(options.robot, options.home, folder, options.format, timestep=options.timestep)
+    print(f"{options.robot.name} as {options.format.upper()}: {folder}")
+    return 0

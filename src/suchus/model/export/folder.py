@@ -1,0 +1,122 @@
+"""A folder for another tool: the model, what goes with it, and what the format leaves out."""
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Literal, get_args
+
+from suchus import blueprint
+from suchus.design import Crocodile
+from suchus.errors import InvalidDesign, UnknownName
+from suchus.model.build import TIMESTEP
+from suchus.model.export.mjcf import mjcf
+from suchus.model.export.urdf import BALL, ball, unsaid, urdf
+from suchus.motion import Gait, check_limits
+from suchus.record import digest, new_folder, versions
+
+Format = Literal["mjcf", "urdf"]
+MARK = "suchus_export.json"
+"""The file by which an export is known; a folder without it is never replaced."""
+_LICENCE = """This model was written by suchus (https://pypi.org/project/suchus) and carries its licence, Apache-2.0:
+https://www.apache.org/licenses/LICENSE-2.0
+Its numbers come from robot.toml; keep this note with copies.
+"""
+
+
+def export(robot: Crocodile, gait: Gait, folder: Path, kind: Format, *, timestep: float = TIMESTEP) -> Path:
+    """Write a robot for another tool and return the folder, which appears whole or not at all.
+
+    Args:
+        robot: the design.
+        gait: whose mid-stance is the home posture.
+        folder: an older export there is replaced, anything else is refused.
+        kind: of model.
+        timestep: of the physics, for MJCF [s].
+
+    Raises:
+        UnknownName: there is no such format.
+        InvalidDesign: the robot's name makes no file name.
+        OutsideLimits: the robot cannot take the home posture.
+        Unwritable: the place cannot be written to, or is taken.
+    """
+    if kind not in get_args(Format):
+        raise UnknownName("format", kind, get_args(Format))
+    if not robot.name or robot.name.startswith(".") or any(c in robot.name for c in "/\\\0"):
+        raise InvalidDesign(f"the robot is named {robot.name!r}, which makes no file name; give it another name.")
+    check_limits(robot, gait)
+    texts = _mjcf(robot, gait, timestep) if kind == "mjcf" else _urdf(robot)
+    origin = {"format": kind, "robot": digest({"robot": robot}), "home": digest({"gait": gait}), "versions": versions()}
+    texts |= {
+        "robot.toml": blueprint.render(robot),
+        "LICENSE": _LICENCE,
+        MARK: json.dumps(origin, indent=1, sort_keys=True) + "\n",
+    }
+    with new_folder(folder, mark=MARK) as draft:
+        for name, text in texts.items():
+            (draft / name).parent.mkdir(exist_ok=True)
+            (draft / name).write_text(text, encoding="utf-8")
+    return folder
+
+
+def _mjcf(robot: Crocodile, gait: Gait, timestep: float) -> dict[str, str]:
+    model, scene = mjcf(robot, gait, timestep=timestep)
+    files = {
+        f"{robot.name}.xml": "the robot: bodies, joints, tendon, servos, sensors, keyframe `home`",
+        "scene.xml": "the robot on flat ground",
+    }
+    text = _readme(
+        robot,
+        files,
+        f"python -m mujoco.viewer --mjcf={_quoted('scene.xml')}",
+        f"Needs MuJoCo 4.0 or later: the servos are its `pid` actuators. `home` is the mid-stance of {gait.name}: "
+        "start from it, with `mj_resetDataKeyframe`. The scene compiles to the numbers of suchus's own model, to the "
+        "last bit.",
+        (
+            "The gait and its controller: MJCF holds a body, not what it does. Servo angles over time come from "
+            "`suchus export-commands`.",
+            "The two cords run over one pulley; the tendon is the first order of their change in length (within 1.2 % "
+            "up to a bend of 180 degrees), as in suchus itself.",
+        ),
+    )
+    return {f"{robot.name}.xml": model, "scene.xml": scene, "README.md": text}
+
+
+def _urdf(robot: Crocodile) -> dict[str, str]:
+    files = {f"{robot.name}.urdf": "the robot: links, joints, limits, shapes", BALL: "a ball that ellipsoids stretch"}
+    about = (
+        "Joints and frames (feet, snout, tail_tip, imu) carry the names that suchus gives them; x forward, y left, z "
+        "up, in metres, kilograms and radians."
+    )
+    text = _readme(robot, files, f"yourdfpy {_quoted(robot.name + '.urdf')}", about, unsaid(robot))
+    return {f"{robot.name}.urdf": urdf(robot), BALL: ball(), "README.md": text}
+
+
+def _readme(robot: Crocodile, files: Mapping[str, str], look: str, about: str, left_out: tuple[str, ...]) -> str:
+    files = {
+        **files,
+        "robot.toml": "every number, with its meaning and unit",
+        "LICENSE": "Apache-2.0",
+        MARK: "which robot, which software",
+    }
+    lines = [
+        f"# {robot.name}",
+        "",
+        f"A crocodile-like robot of {robot.mass:.2f} kg and {robot.length:.2f} m, written by suchus.",
+        "",
+        about,
+        "",
+        "| file | holds |",
+        "|---|---|",
+        *(f"| `{name}` | {what} |" for name, what in files.items()),
+        "",
+        f"Look at it: `{look}`",
+        "",
+        "## What this format does not say",
+        "",
+        *(f"* {text}" for text in left_out),
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def _quoted(name: str) -> str:
+    return f"'{name}'" if " " in name else name

@@ -1,0 +1,201 @@
+"""URDF: links, joints, limits and shapes; what it cannot say is listed in ``UNSAID``."""
+
+from typing import Any
+from xml.etree import ElementTree
+
+import mujoco
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from suchus.design import Crocodile, cable_joints, fin_joints
+from suchus.model.build import compile_model, servo_of
+from suchus.model.export.mjcf import numbers
+from suchus.model.names import SITES
+
+BALL = "meshes/ball.obj"
+"""A ball of radius 1, which ellipsoids stretch; URDF has none of its own."""
+UNSAID = (
+    "The cable. In the model one servo turns a pulley and a tendon bends all {cables} tail joints ({first} to {last}) "
+    "at once; here each is a joint of its own, its effort limit the torque that the cable can give it. "
+    "Turn them all by the same angle: the bend of the tail over {cables}.",
+    "Springs. The cable joints have {stiffness:g} N m/rad; the passive joints of the tail's end ({fins}) have "
+    "{lateral:g} N m/rad sideways and {vertical:g} N m/rad up and down at the first, half of it at the last. Their "
+    "effort limit is 0, since nothing drives them. Add the springs in your simulator, or hold these joints at zero.",
+    "Servos. They are position servos (PID) with a slew limit; only the limits of torque and speed are here. The gains "
+    "are in robot.toml.",
+    "Rotor inertia of the servos (armature), in robot.toml.",
+    "Contact: the friction of feet ({foot:g}) and skin ({skin:g}), and that the body does not touch itself: leave "
+    "self-collision off.",
+    "Two joints in one point. The second link of a hip and of a passive tail joint has no mass; its link is named "
+    "after the joint that carries it.",
+    "Capsules are a cylinder and two balls; ellipsoids are a faceted ball ("
+    + BALL
+    + "), up to {faceted:.2g} % inside.",
+    "Sensors, and the free joint: the root link is pelvis.",
+)
+_RINGS, _SECTORS = 24, 48
+_FREE_SPEED = 100.0  # [rad/s]; a limit must be given; nothing on the robot turns so fast
+
+
+def urdf(robot: Crocodile) -> str:
+    """Return a robot as URDF, with the joints and frames of the MuJoCo model by the same names, in full precision.
+
+    Args:
+        robot: the design.
+    """
+    model = compile_model(robot)
+    root = ElementTree.Element("robot", name=robot.name)
+    for body in range(1, model.nbody):
+        _add_body(root, model, body, robot)
+    for site in (*SITES, "imu"):
+        where = model.site(site)
+        ElementTree.SubElement(root, "link", name=site)
+        parent = model.body(int(where.bodyid[0])).name
+        joint = _joint(root, f"{site}_fixed", "fixed", parent, site)
+        _origin(joint, where.pos, where.quat)
+    ElementTree.indent(root)
+    return '<?xml version="1.0"?>\n' + ElementTree.tostring(root, encoding="unicode") + "\n"
+
+
+def unsaid(robot: Crocodile) -> tuple[str, ...]:
+    """Return what the URDF of a robot leaves out, and what to do about it."""
+    tail = robot.tail
+    values = {
+        "cables": tail.joints,
+        "first": cable_joints(robot)[0],
+        "last": cable_joints(robot)[-1],
+        "stiffness": tail.joint_stiffness,
+        "fins": ", ".join(fin_joints(robot)),
+        "lateral": tail.fin_stiffness_lateral,
+        "vertical": tail.fin_stiffness_vertical,
+        "foot": robot.contact.foot_friction,
+        "skin": robot.contact.skin_friction,
+        "faceted": 100 * (1 - np.cos(np.pi / _SECTORS)),
+    }
+    return tuple(text.format(**values) for text in UNSAID)
+
+
+def ball() -> str:
+    """Return a ball of radius 1 as a Wavefront OBJ text: corners on the sphere, triangles facing outward."""
+    corners = [(0.0, 0.0, 1.0)]
+    for polar in np.pi * np.arange(1, _RINGS) / _RINGS:
+        for turn in 2 * np.pi * np.arange(_SECTORS) / _SECTORS:
+            corners.append((np.sin(polar) * np.cos(turn), np.sin(polar) * np.sin(turn), np.cos(polar)))
+    corners.append((0.0, 0.0, -1.0))
+
+    def at(ring: int, sector: int) -> int:
+        if ring in (0, _RINGS):
+            return 1 if ring == 0 else len(corners)
+        return 2 + (ring - 1) * _SECTORS + sector % _SECTORS
+
+    lines = ["# a ball of radius 1, written by suchus", *(f"v {x:.9f} {y:.9f} {z:.9f}" for x, y, z in corners)]
+    for ring in range(_RINGS):
+        for sector in range(_SECTORS):
+            a, b = at(ring, sector), at(ring, sector + 1)
+            c, d = at(ring + 1, sector), at(ring + 1, sector + 1)
+            lines += [f"f {a} {c} {d}"] if ring < _RINGS - 1 else []
+            lines += [f"f {a} {d} {b}"] if 0 < ring < _RINGS - 1 else []
+            lines += [f"f {a} {c} {b}"] if ring == _RINGS - 1 else []
+    return "\n".join(lines) + "\n"
+
+
+def _add_body(root: ElementTree.Element, model: Any, body: int, robot: Crocodile) -> None:
+    """Add a body's link, and before it the joints that carry it: all but the last end in a massless link."""
+    name = model.body(body).name
+    parent = model.body(int(model.body_parentid[body])).name
+    first, count = int(model.body_jntadr[body]), int(model.body_jntnum[body])
+    hinges = [j for j in range(first, first + count) if model.jnt_type[j] == mujoco.mjtJoint.mjJNT_HINGE]
+    for number, hinge in enumerate(hinges):
+        label = model.joint(hinge).name
+        child = name if number == len(hinges) - 1 else f"{label}_link"
+        if child != name:
+            ElementTree.SubElement(root, "link", name=child)
+        joint = _joint(root, label, "revolute", parent, child)
+        place = (
+            (model.body_pos[body], model.body_quat[body]) if number == 0 else (np.zeros(3), np.array([1.0, 0, 0, 0]))
+        )
+        _origin(joint, *place)
+        _turn(joint, model, hinge, robot)
+        parent = child
+    link = ElementTree.SubElement(root, "link", name=name)
+    _inertial(link, model, body)
+    for geom in range(int(model.body_geomadr[body]), int(model.body_geomadr[body] + model.body_geomnum[body])):
+        _shape(link, model, geom)
+
+
+def _joint(root: ElementTree.Element, name: str, kind: str, parent: str, child: str) -> ElementTree.Element:
+    joint = ElementTree.SubElement(root, "joint", name=name, type=kind)
+    ElementTree.SubElement(joint, "parent", link=parent)
+    ElementTree.SubElement(joint, "child", link=child)
+    return joint
+
+
+def _turn(joint: ElementTree.Element, model: Any, hinge: int, robot: Crocodile) -> None:
+    """Say about what axis, how far, with what friction, and within what limits a hinge turns."""
+    name = model.joint(hinge).name
+    dof = int(model.jnt_dofadr[hinge])
+    ElementTree.SubElement(joint, "axis", xyz=numbers(model.jnt_axis[hinge]))
+    if name in cable_joints(robot):
+        tail = robot.tail
+        effort, speed = tail.cable_servo.torque * tail.cord_spacing / 2 / tail.pulley, tail.cable_servo.speed
+    elif name in fin_joints(robot):
+        effort, speed = 0.0, _FREE_SPEED
+    else:
+        effort, speed = servo_of(robot, name).torque, servo_of(robot, name).speed
+    low, high = model.jnt_range[hinge]
+    limit = {"lower": low, "upper": high, "effort": effort, "velocity": speed}
+    ElementTree.SubElement(joint, "limit", {k: numbers([v]) for k, v in limit.items()})
+    rubbing = {"damping": model.dof_damping[dof], "friction": model.dof_frictionloss[dof]}
+    ElementTree.SubElement(joint, "dynamics", {k: numbers([v]) for k, v in rubbing.items()})
+
+
+def _inertial(link: ElementTree.Element, model: Any, body: int) -> None:
+    inertial = ElementTree.SubElement(link, "inertial")
+    _origin(inertial, model.body_ipos[body], model.body_iquat[body])
+    ElementTree.SubElement(inertial, "mass", value=numbers([model.body_mass[body]]))
+    xx, yy, zz = model.body_inertia[body]
+    moments = {"ixx": xx, "ixy": 0.0, "ixz": 0.0, "iyy": yy, "iyz": 0.0, "izz": zz}
+    ElementTree.SubElement(inertial, "inertia", {k: numbers([v]) for k, v in moments.items()})
+
+
+def _shape(link: ElementTree.Element, model: Any, geom: int) -> None:
+    kinds = mujoco.mjtGeom
+    kind, size, place = model.geom_type[geom], model.geom_size[geom], model.geom_pos[geom]
+    quat, colour = model.geom_quat[geom], model.geom_rgba[geom]
+    pieces: list[tuple[str, dict[str, str], np.ndarray]]
+    if kind == kinds.mjGEOM_SPHERE:
+        pieces = [("sphere", {"radius": numbers([size[0]])}, place)]
+    elif kind == kinds.mjGEOM_ELLIPSOID:
+        pieces = [("mesh", {"filename": BALL, "scale": numbers(size)}, place)]
+    else:
+        end = _rotation(quat).apply([0.0, 0.0, size[1]])
+        rod = {"radius": numbers([size[0]]), "length": numbers([2 * size[1]])}
+        cap = {"radius": numbers([size[0]])}
+        pieces = [("cylinder", rod, place), ("sphere", cap, place - end), ("sphere", cap, place + end)]
+    shade = " ".join(f"{c:.3g}" for c in colour)
+    for purpose in ("visual", "collision"):
+        for tag, attributes, where in pieces:
+            part = ElementTree.SubElement(link, purpose)
+            _origin(part, where, quat)
+            ElementTree.SubElement(ElementTree.SubElement(part, "geometry"), tag, attributes)
+            if purpose == "visual":
+                material = ElementTree.SubElement(part, "material", name=f"colour_{shade.replace(' ', '_')}")
+                ElementTree.SubElement(material, "color", rgba=shade)
+
+
+def _origin(element: ElementTree.Element, place: np.ndarray, quat: np.ndarray) -> None:
+    ElementTree.SubElement(element, "origin", xyz=numbers(place), rpy=numbers(_roll_pitch_yaw(quat)))
+
+
+def _roll_pitch_yaw(quat: np.ndarray) -> tuple[float, float, float]:
+    """Return the angles about the fixed axes x, y, z; where x and z fall together, all of the turn is about z [rad]."""
+    turn = _rotation(quat).as_matrix()
+    level = np.hypot(turn[0, 0], turn[1, 0])
+    pitch = np.arctan2(-turn[2, 0], level)
+    if level < 1e-9:
+        return 0.0, pitch, np.arctan2(-turn[0, 1], turn[1, 1])
+    return np.arctan2(turn[2, 1], turn[2, 2]), pitch, np.arctan2(turn[1, 0], turn[0, 0])
+
+
+def _rotation(quat: np.ndarray) -> Rotation:
+    return Rotation.from_quat(quat, scalar_first=True)

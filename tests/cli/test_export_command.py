@@ -1,0 +1,32 @@
+import pytest
+
+from suchus.cli import main
+from suchus.model.export import MARK
+
+
+def test_export_writes_a_folder_named_after_robot_and_format(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(["export", "--format", "urdf"]) == 0
+    assert "export/caiman_urdf" in capsys.readouterr().out
+    assert (tmp_path / "export" / "caiman_urdf" / MARK).is_file()
+
+
+BAD = {
+    "--format usd": "'usd'",
+    "--robot kaiman": "Did you mean 'caiman'?",
+    "--out /dev/null/here": "cannot be written",
+    "--out .": "was not written by suchus",
+    "--formt urdf": "Did you mean '--format'?",
+}
+
+
+@pytest.mark.parametrize("words", BAD)
+def test_bad_words_are_one_sentence_and_leave_nothing(words, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "mine.txt").write_text("mine")
+    assert main(["export", *words.split()]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.count("\n") == 1
+    assert BAD[words] in err
+    assert [p.name for p in tmp_path.iterdir()] == ["mine.txt"]
