@@ -22,17 +22,18 @@ _CURRENT = mujoco.mjtStage.mjSTAGE_VEL  # after a step, positions and velocities
 class Bench:
     """The simulations of one group of runs, whose robots share a topology.
 
-    Runs of one robot share a model, with per-run values where they differ (``Batch.expand``); runs of several
-    robots each have their own (``Batch.set_models``).
+    Runs of one robot on one relief share a model, with per-run values where they differ (``Batch.expand``); other runs
+    each have their own (``Batch.set_models``).
     """
 
     def __init__(self, runs: Sequence[Run], timestep: float) -> None:
-        shared = compile_model(runs[0].robot, timestep)
+        shared = compile_model(runs[0].robot, timestep, runs[0].ground.relief)
         self.model = shared
-        self._single = all(run.robot == runs[0].robot for run in runs)
+        self._single = len({(run.robot, run.ground.relief) for run in runs}) == 1
         self._models: list[Any] = []
         if not self._single:
-            self._models = [copy.copy(compile_model(run.robot, timestep)) for run in runs]
+            self._models = [copy.copy(compile_model(run.robot, timestep, run.ground.relief)) for run in runs]
+        self._timestep = timestep
         self.batch = Batch(shared, len(runs), nthread=min(threads.count(), len(runs)), persistent=True)
         self._lay_ground(runs)
         if self._models:
@@ -111,7 +112,7 @@ class Bench:
         """
         act = self.batch.bind("act")
         for sim, run in enumerate(runs):
-            model = self._models[sim] if self._models else self.model
+            model = compile_model(run.robot, self._timestep)  # every run begins on even ground
             self.qpos[sim] = standing(model, run.robot, run.gait.hip_height, first[sim])
             act[sim] = activations(model, first[sim])
             self.ctrl[sim] = first[sim]

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from suchus.control import Control, OpenLoop
 from suchus.design import Crocodile
 from suchus.design.checks import require
+from suchus.design.relief import Relief
 from suchus.land.faults import Fault
 from suchus.land.push import Push
 from suchus.motion import Gait
@@ -12,7 +13,7 @@ from suchus.motion import Gait
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Ground:
-    """Even ground, possibly tilted."""
+    """Ground: even or with relief, possibly tilted."""
 
     grip: float = 1.0
     """Factor on the friction of all the robot's surfaces [-]."""
@@ -20,6 +21,8 @@ class Ground:
     """Slope along the walk, up positive [rad]."""
     sideways: float = 0.0
     """Slope across the walk, left side up positive [rad]."""
+    relief: Relief | None = None
+    """What stands up from it; None where it is even."""
 
     def __post_init__(self) -> None:
         require("ground", "grip", self.grip, 0.01, 10.0, "")

@@ -97,11 +97,15 @@ def _check(runs: Sequence[Run], duration: float, timestep: float, every: int) ->
 
 
 def _groups(runs: Sequence[Run]) -> list[list[int]]:
-    """Return the indices of the runs that share a controller: equal controls, or controls that can be joined."""
+    """Return the indices of the runs that share a controller: equal controls, or controls that can be joined.
+
+    Runs on different types of relief have models of different sizes and run one after another.
+    """
     groups: dict[object, list[int]] = {}
     for i, run in enumerate(runs):
         joined = isinstance(run.control, Joinable)
-        groups.setdefault(type(run.control) if joined else run.control, []).append(i)
+        key = type(run.control) if joined else run.control, type(run.ground.relief)
+        groups.setdefault(key, []).append(i)
     return list(groups.values())
 
 

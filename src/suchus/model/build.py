@@ -7,7 +7,9 @@ from typing import Any
 import mujoco
 
 from suchus.design import LEGS, Crocodile, Servo, servo_names
+from suchus.design.relief import Relief
 from suchus.errors import InvalidDesign
+from suchus.model.ground import add_ground
 from suchus.model.legs import add_leg
 from suchus.model.names import SITES, TRUNK_BODIES
 from suchus.model.tail import CABLE, add_tail
@@ -17,14 +19,15 @@ TIMESTEP = 0.002  # [s]; 0.5 to 8 ms were measured to give the same displacement
 _POSITION_INPUT = 1  # the servo takes an angle; the other inputs of MuJoCo's pid stay unused
 
 
-def build(robot: Crocodile, *, timestep: float = TIMESTEP) -> Any:
-    """Write a robot on flat ground as a ``mujoco.MjSpec``.
+def build(robot: Crocodile, *, timestep: float = TIMESTEP, relief: Relief | None = None) -> Any:
+    """Write a robot on the ground as a ``mujoco.MjSpec``.
 
     World: x forward, y left, z up; the free joint carries the pelvis, whose frame is the spine's frame 0.
 
     Args:
         robot: the design.
         timestep: of the physics [s].
+        relief: what stands up from even ground.
 
     Returns:
         The ``mujoco.MjSpec``, ready for ``compile()`` or for further edits.
@@ -33,7 +36,7 @@ def build(robot: Crocodile, *, timestep: float = TIMESTEP) -> Any:
     spec.modelname = robot.name
     spec.compiler.degree = False
     _set_options(spec, timestep)
-    _add_ground(spec)
+    add_ground(spec, relief)
     pelvis = spec.worldbody.add_body(name="pelvis", pos=[0, 0, 0.2])
     pelvis.add_freejoint(name="root")
     thorax = add_trunk(pelvis, robot)
@@ -48,14 +51,14 @@ def build(robot: Crocodile, *, timestep: float = TIMESTEP) -> Any:
 
 
 @lru_cache(maxsize=64)
-def compile_model(robot: Crocodile, timestep: float = TIMESTEP) -> Any:
-    """Compile a robot; the same value gives the same ``mujoco.MjModel`` again: copy it before an edit.
+def compile_model(robot: Crocodile, timestep: float = TIMESTEP, relief: Relief | None = None) -> Any:
+    """Compile a robot on its ground; the same values give the same ``mujoco.MjModel`` again: copy it before an edit.
 
     Raises:
         InvalidDesign: MuJoCo cannot compile it.
     """
     try:
-        return build(robot, timestep=timestep).compile()
+        return build(robot, timestep=timestep, relief=relief).compile()
     except ValueError as error:
         raise InvalidDesign(f"robot {robot.name!r} does not compile: {error}") from error
 
@@ -93,18 +96,6 @@ def _set_options(spec: Any, timestep: float) -> None:
     option.impratio = 10.0
     option.jacobian = mujoco.mjtJacobian.mjJAC_SPARSE  # 1.6 to 1.8 times faster here than dense
     option.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET  # divergence ends a run, it does not restart it
-
-
-def _add_ground(spec: Any) -> None:
-    spec.worldbody.add_geom(
-        name="ground",
-        type=mujoco.mjtGeom.mjGEOM_PLANE,
-        size=[0, 0, 0.05],
-        contype=1,
-        conaffinity=0,
-        rgba=[0.86, 0.84, 0.78, 1.0],
-    )
-    spec.worldbody.add_light(pos=[0, 0, 3], dir=[0, 0, -1])
 
 
 def _add_servo(spec: Any, name: str, robot: Crocodile) -> None:

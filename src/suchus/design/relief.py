@@ -1,0 +1,118 @@
+"""What stands up from even ground: a step, a stone in the path, bumps."""
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from jaxtyping import Float
+from scipy.ndimage import gaussian_filter
+
+from suchus.design.checks import Checks
+
+REACH = (-1.0, 6.0)
+"""Along which relief extends, from the hips of a robot at the start [m]."""
+ASIDE = 1.4
+"""How far it extends to either side [m]; beyond it the ground is even."""
+CELL = 0.025
+"""Between the points of a height field [m]; about the size of a foot."""
+_RAMP = 0.15  # [m]; over which bumps grow from nothing
+_OUTER = (0.02, 0.98)  # between these shares of a field's heights lies what is called its height
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Step:
+    """A single step up across the path; the ground stays high behind it."""
+
+    at: float
+    """Of its edge, ahead of the hips at the start [m]."""
+    height: float
+    """[m]."""
+
+    def __post_init__(self) -> None:
+        with Checks("step", self) as checks:
+            checks.number("at", *REACH, "m")
+            checks.number("height", 0.001, 0.5, "m")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Stone:
+    """A block in the path."""
+
+    at: float
+    """Of its middle, ahead of the hips at the start [m]."""
+    aside: float
+    """Of its middle, to the left of the hips at the start [m]."""
+    height: float
+    """[m]."""
+    length: float
+    """Along the path [m]."""
+    width: float
+    """Across it [m]."""
+
+    def __post_init__(self) -> None:
+        with Checks("stone", self) as checks:
+            checks.number("at", *REACH, "m")
+            checks.number("aside", -ASIDE, ASIDE, "m")
+            checks.number("height", 0.001, 0.5, "m")
+            checks.number("length", 0.005, 1.0, "m")
+            checks.number("width", 0.005, 1.0, "m")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Bumps:
+    """A field of random bumps ahead of even ground: smoothed noise."""
+
+    height: float
+    """From low to high: between them lie 96 % of the field [m]."""
+    correlation: float
+    """Distance over which heights lose their correlation, to 1/e [m]."""
+    start: float
+    """Where the field begins, ahead of the hips at the start [m]."""
+    seed: int
+    """Of the noise."""
+
+    def __post_init__(self) -> None:
+        with Checks("bumps", self) as checks:
+            checks.number("height", 0.001, 0.5, "m")
+            checks.number("correlation", CELL, 1.0, "m")
+            checks.number("start", *REACH, "m")
+            checks.whole("seed", 0, 2**32 - 1)
+
+
+Relief = Step | Stone | Bumps
+"""Whatever stands up from even ground."""
+
+
+@lru_cache(maxsize=64)
+def field(bumps: Bumps) -> Float[np.ndarray, "across along"]:
+    """Return the heights of a field of bumps on a grid of ``CELL`` from the right rear corner on [m].
+
+    Smoothing white noise with a Gaussian of half the correlation length leaves a correlation of 1/e at that length.
+    """
+    across, along = round(2 * ASIDE / CELL) + 1, round((REACH[1] - REACH[0]) / CELL) + 1
+    noise = np.random.default_rng(bumps.seed).standard_normal((across, along))
+    smooth = gaussian_filter(noise, bumps.correlation / 2 / CELL, mode="wrap")
+    low, high = np.quantile(smooth, _OUTER)
+    grown = np.clip((REACH[0] + CELL * np.arange(along) - bumps.start) / _RAMP, 0.0, 1.0)
+    heights = np.asarray((smooth - (low + high) / 2) / (high - low) * bumps.height * grown)
+    heights.flags.writeable = False
+    return heights
+
+
+def profile(relief: Relief | None, x: Float[np.ndarray, "*b"]) -> Float[np.ndarray, "*b"]:
+    """Return the height of the ground along the line on which a robot starts [m].
+
+    Args:
+        relief: None for even ground.
+        x: ahead of the hips at the start [m].
+    """
+    if isinstance(relief, Step):
+        return np.where(x >= relief.at, relief.height, 0.0)
+    if isinstance(relief, Stone):
+        inside = (np.abs(x - relief.at) <= relief.length / 2) & (abs(relief.aside) <= relief.width / 2)
+        return np.where(inside, relief.height, 0.0)
+    if isinstance(relief, Bumps):
+        heights = field(relief)
+        along = REACH[0] + CELL * np.arange(heights.shape[1])
+        return np.asarray(np.interp(x, along, heights[heights.shape[0] // 2]))
+    return np.zeros_like(x)
