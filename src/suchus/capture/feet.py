@@ -16,7 +16,7 @@ MOVING = 0.15
 _DUTIES = np.round(np.arange(0.30, 0.91, 0.01), 2)  # that a path is compared with
 _TOP = 14  # harmonics of a foot's way; enough for the jerk of lifting off
 _LOUD = 3.0  # times the uncertainty of the speed that a moving foot must exceed
-_DRAWN = 0.03  # [cycle]; an edge is drawn no farther than this
+_RUN_UP = 0.025  # [cycle]; the rise to ``MOVING`` and to twice it lie no farther apart, or it is a slip before it
 _BLURRED = 0.45  # share of the top speed at which noise hides the steps
 
 
@@ -31,16 +31,13 @@ class Contact(NamedTuple):
     """Phase at which it begins to swing."""
     touch_down: float
     """Phase at which it begins to stand."""
+    middle: float
+    """Phase of the middle of its stance, half a cycle from the middle of its fast movement."""
 
     @property
     def duty(self) -> float:
         """Share of the cycle in which it stands [-]."""
         return (self.lift_off - self.touch_down) % 1.0
-
-    @property
-    def middle(self) -> float:
-        """Phase of the middle of its stance [cycle]."""
-        return (self.touch_down + self.duty / 2) % 1.0
 
 
 class Sweep(NamedTuple):
@@ -67,9 +64,9 @@ def contact(tracks: Tracks, leg: str, period: float) -> Contact:
     """Return when a foot stands in the mean cycle.
 
     Its ways along x and y are fitted with drift and harmonics; it swings in the longest stretch in which the speed of
-    that fit exceeds ``MOVING`` of its maximum. Shorter stretches are slips. Either edge of the swing is where the
-    rise of the speed, drawn from that threshold and twice it, meets zero: right for a foot that starts smoothly as
-    well as for one that starts with a jerk.
+    that fit exceeds twice ``MOVING`` of its maximum. Shorter stretches are slips. Either edge of the swing is where
+    the rise of the speed, drawn from that threshold and half of it, meets zero: right for a foot that starts smoothly
+    as well as for one that starts with a jerk.
 
     Args:
         tracks: the keypoints.
@@ -95,23 +92,30 @@ def contact(tracks: Tracks, leg: str, period: float) -> Contact:
             f"{100 * blur / top:.0f} % of its maximum, at most {100 * _BLURRED / _LOUD:.0f} % may be; film more "
             "cycles, faster, or nearer."
         )
-    start, length = _longest(speed > moving)
-    swing = speed[(start - 1 + np.arange(length + 2)) % GRID]
-    lift_off = (start - 1 + _edge(swing, moving)) / GRID
-    touch_down = (start + length - _edge(swing[::-1], moving)) / GRID
+    start, length = _longest(speed > 2 * moving)
+    outward = np.arange(GRID // 2)
+    lift_off = (start - _edge(speed[(start - outward) % GRID], moving)) / GRID
+    last = start + length - 1
+    touch_down = (last + _edge(speed[(last + outward) % GRID], moving)) / GRID
     stance = (phase - touch_down) % 1.0 < (lift_off - touch_down) % 1.0
-    return Contact(speed, stance, lift_off % 1.0, touch_down % 1.0)
+    fast = [_crossing(speed[at % GRID], 2 * moving) for at in (start - outward, last + outward)]
+    middle = (start + last + fast[1] - fast[0]) / 2 / GRID + 0.5  # noise moves these edges least
+    return Contact(speed, stance, lift_off % 1.0, touch_down % 1.0, middle % 1.0)
 
 
 def _edge(speed: np.ndarray, moving: float) -> float:
-    """Return where a rising speed, drawn back from ``moving`` and twice it, meets zero [steps of the grid]."""
-    crossed: list[float] = []
-    for level in (moving, 2 * moving):
-        i = int(np.argmax(speed > level))
-        if i == 0:  # never so fast
-            return crossed[0]
-        crossed.append(i - (speed[i] - level) / (speed[i] - speed[i - 1]))
-    return float(crossed[0] - min(crossed[1] - crossed[0], _DRAWN * GRID))
+    """Return where a falling speed, drawn through twice ``moving`` and ``moving``, meets zero [steps of the grid]."""
+    fast, slow = (_crossing(speed, level) for level in (2 * moving, moving))
+    return fast + 2 * min(slow - fast, _RUN_UP * GRID)
+
+
+def _crossing(speed: np.ndarray, level: float) -> float:
+    """Return where a speed first falls to a level [steps]; its end if it never does."""
+    below = speed <= level
+    if not below.any():
+        return float(len(speed))
+    i = int(np.argmax(below))
+    return i - float((level - speed[i]) / (speed[i - 1] - speed[i]))
 
 
 def sweep(tracks: Tracks, leg: str, period: float) -> Sweep:

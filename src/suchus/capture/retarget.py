@@ -15,7 +15,7 @@ from suchus.motion import Gait, check_limits, servo_targets, tail_bend, trunk_be
 Duty = Literal["retraction", "contact"]
 """Which share of the cycle becomes the duty factor: feet going back along the body, or feet at rest on the ground.
 
-A gait commands the first. On a film of our own crawl, which commands 0.5, feet go back for 0.48 of the cycle but rest
+A gait commands the first. On a film of our own crawl, which commands 0.5, feet go back for 0.47 of the cycle but rest
 for 0.61, because the body sags onto feet that should have left the ground.
 """
 
