@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from suchus.catalog import Catalog as Catalog
+    from suchus.control import Coordinated as Coordinated
+    from suchus.control import HeadingRule as HeadingRule
     from suchus.design import Crocodile as Crocodile
     from suchus.errors import Diverged as Diverged
     from suchus.errors import IncompatibleRecord as IncompatibleRecord
@@ -38,6 +40,7 @@ __version__ = "0.1.0"
 
 _HOMES = {
     "Catalog": "suchus.catalog",
+    **dict.fromkeys(("Coordinated", "HeadingRule"), "suchus.control"),
     "Crocodile": "suchus.design",
     **dict.fromkeys(
         (
