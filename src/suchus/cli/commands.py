@@ -50,6 +50,12 @@ COMMANDS = (
         "write a robot for other tools",
         "suchus.cli.export:export_robot",
     ),
+    Command(
+        "export-commands",
+        "GAIT [--map FILE.toml]",
+        "write a gait as timed servo angles",
+        "suchus.cli.export_commands:export_commands",
+    ),
     Command("list", "", "show the robots, the gaits and the experiments", "suchus.cli.shelves:show"),
 )
 """Every command, in the order of the help."""

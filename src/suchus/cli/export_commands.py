@@ -1,0 +1,105 @@
+"""``suchus export-commands GAIT``: a gait as servo angles and pulses, checked against what the servos can do."""
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, field, fields
+from pathlib import Path
+from typing import Annotated
+
+import tyro
+
+from suchus import blueprint
+from suchus.cli.commands import BadCommand
+from suchus.cli.options import parse
+from suchus.cli.terminal import working
+from suchus.design import Crocodile
+from suchus.design.checks import require
+from suchus.gaits import GAITS
+from suchus.hardware import (
+    STRAIGHT,
+    Load,
+    check_commands,
+    check_loads,
+    commands,
+    csv_text,
+    loads,
+    read_map,
+    trajectory_text,
+    write_map,
+)
+from suchus.hardware.limits import AT_LIMIT
+from suchus.motion import Gait
+from suchus.record import check_replaceable, check_writable, digest, new_folder, versions
+from suchus.robots import ROBOTS
+
+MARK = "suchus_commands.json"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Options:
+    """What can be said after ``suchus export-commands``."""
+
+    gait: Annotated[Gait, tyro.conf.Positional] = field(default_factory=lambda: GAITS["belly_crawl"])
+    """Which gait."""
+    robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
+    """Whose joints and servos."""
+    map: Path | None = None
+    """Servo map; by default 270 degree servos mounted in the middle, channels in order."""
+    write_map: Path | None = None
+    """Only write that default map to this TOML file, to start your own from."""
+    cycles: int = 1
+    """How many cycles; one can be repeated, its last sample is its first."""
+    at_limit: float = AT_LIMIT
+    """Share of the walk that a servo may spend at its torque limit."""
+    out: Path | None = None
+    """The folder; by default export/GAIT_commands. An older one there is replaced, anything else is refused."""
+
+
+def export_commands(words: Sequence[str]) -> int:
+    """Write the commands, say what the servos bear, and return 0.
+
+    Raises:
+        SuchusError: the words make no sense, the servos cannot do it, or the place cannot be written to.
+    """
+    about = "Write a gait as timed servo angles: CSV with pulses, and a ROS trajectory_msgs/JointTrajectory."
+    options: Options = parse(Options, "suchus export-commands", words, about, [f.name for f in fields(Options)])
+    if options.write_map is not None:
+        print(f"servo map: {write_map(STRAIGHT, options.write_map)}")
+        return 0
+    require("export-commands", "at_limit", options.at_limit, 0.0, 1.0, "")
+    if any(c in options.gait.name for c in "/\\\0") and options.out is None:
+        raise BadCommand(f"the gait is named {options.gait.name!r}, which makes no folder; say --out DIR.")
+    folder = options.out or Path("export") / f"{options.gait.name}_commands"
+    check_writable(folder.parent)
+    check_replaceable(folder, mark=MARK)
+    servo_map = STRAIGHT if options.map is None else read_map(options.map)
+    told = commands(options.robot, options.gait, servo_map, options.cycles)
+    check_commands(options.robot, options.gait, servo_map, told)
+    with working() as bars:
+        move = bars.task(options.gait.name)
+        borne = loads(options.robot, options.gait, progress=lambda share: move("walking", share))
+    check_loads(options.robot, options.gait, borne, options.at_limit)
+    origin = {"gait": digest({"gait": options.gait}), "robot": digest({"robot": options.robot}), "versions": versions()}
+    with new_folder(folder, mark=MARK) as draft:
+        (draft / "commands.csv").write_text(csv_text(told), encoding="utf-8")
+        (draft / "trajectory.yaml").write_text(trajectory_text(told), encoding="utf-8")
+        (draft / "loads.csv").write_text(_loads_text(borne), encoding="utf-8")
+        write_map(servo_map, draft / "servo_map.toml")
+        (draft / "gait.toml").write_text(blueprint.render(options.gait), encoding="utf-8")
+        (draft / MARK).write_text(json.dumps(origin, indent=1, sort_keys=True) + "\n", encoding="utf-8")
+    hardest = max(borne, key=lambda name: borne[name].torque / borne[name].limit)
+    load = borne[hardest]
+    print(f"{len(told.time)} samples over {told.time[-1]:g} s: {folder}")
+    print(
+        f"hardest worked in simulation: {hardest}, {load.torque:.2f} of {load.limit:g} N m, "
+        f"at the limit for {100 * load.at_limit:.1f} % of the walk"
+    )
+    return 0
+
+
+def _loads_text(borne: Mapping[str, Load]) -> str:
+    lines = ["servo,peak_torque_Nm,torque_limit_Nm,share_at_limit,first_at_s"]
+    for name, load in borne.items():
+        peak, limit, share, first = asdict(load).values()
+        lines.append(f"{name},{peak:.4f},{limit:g},{share:.4f},{'' if first != first else f'{first:.2f}'}")
+    return "\n".join(lines) + "\n"

@@ -1,0 +1,22 @@
+"""From a gait to the servos of a robot that stands on a table: angles, pulses, limits, files."""
+
+from suchus.hardware.commands import Commands, commands
+from suchus.hardware.files import csv_text, trajectory_text
+from suchus.hardware.limits import Load, check_commands, check_loads, loads
+from suchus.hardware.servo_map import STRAIGHT, ServoLine, ServoMap, read_map, write_map
+
+__all__ = [
+    "STRAIGHT",
+    "Commands",
+    "Load",
+    "ServoLine",
+    "ServoMap",
+    "check_commands",
+    "check_loads",
+    "commands",
+    "csv_text",
+    "loads",
+    "read_map",
+    "trajectory_text",
+    "write_map",
+]

@@ -1,0 +1,142 @@
+"""Which servo hangs on which channel, how it is mounted, and what pulses it understands."""
+
+from dataclasses import dataclass, fields
+from math import pi
+from pathlib import Path
+
+from suchus import blueprint
+from suchus.design import servo_names
+from suchus.design.checks import Checks
+from suchus.design.meaning import meanings
+from suchus.errors import InvalidDesign
+from suchus.record import new_file
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ServoLine:
+    """One servo: its pulse is ``pulse_centre + pulse_per_radian (direction angle + offset)``."""
+
+    name: str
+    """Name of the servo, as ``LF_yaw``; the angle of ``tail_cable`` is that of its pulley."""
+    channel: int
+    """Of the servo board [-]."""
+    direction: int
+    """1 if longer pulses turn the joint in its positive sense, -1 if they turn it the other way [-]."""
+    offset: float
+    """Angle of the servo's shaft, in its own sense, when the joint is at zero: how the horn is mounted [rad]."""
+    pulse_centre: float
+    """Width that turns the shaft to its own zero [us]."""
+    pulse_per_radian: float
+    """How much wider it is for each radian of the shaft [us/rad]."""
+    pulse_min: float
+    """Shortest allowed [us]."""
+    pulse_max: float
+    """Longest allowed [us]."""
+
+    def __post_init__(self) -> None:
+        with Checks(f"servo {self.name!r}", self) as check:
+            check.whole("channel", 0, 1023)
+            check.that(self.direction in (-1, 1), f"direction is {self.direction!r}; 1 or -1 is allowed")
+            check.number("offset", -2 * pi, 2 * pi, "rad")
+            check.number("pulse_centre", 100.0, 10000.0, "us")
+            check.number("pulse_per_radian", 1.0, 10000.0, "us/rad")
+            check.number("pulse_min", 50.0, 10000.0, "us")
+            check.number("pulse_max", 50.0, 10000.0, "us")
+            check.that(
+                self.pulse_min < self.pulse_max,
+                f"pulse_min is {self.pulse_min:g} us and pulse_max {self.pulse_max:g} us; they must increase",
+            )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ServoMap:
+    """All servos of a robot."""
+
+    name: str
+    """How it is called."""
+    rate: float
+    """How often commands are sent [Hz]."""
+    servos: tuple[ServoLine, ...]
+    """One for each of the robot's servos, in any order."""
+
+    def __post_init__(self) -> None:
+        with Checks("servo map", self) as check:
+            check.number("rate", 1.0, 1000.0, "Hz")
+        names = [line.name for line in self.servos]
+        missing = [name for name in servo_names() if name not in names]
+        unknown = [name for name in names if name not in servo_names()]
+        twice = sorted({name for name in names if names.count(name) > 1})
+        if missing or unknown or twice:
+            said = (("lacks", missing), ("has unknown", unknown), ("has more than once", twice))
+            text = "; it ".join(f"{verb} {', '.join(which)}" for verb, which in said if which)
+            raise InvalidDesign(
+                f"servo map {self.name!r} {text}; every servo is needed once: {', '.join(servo_names())}."
+            )
+        channels = [line.channel for line in self.servos]
+        for line in self.servos:
+            if channels.count(line.channel) > 1:
+                sharing = ", ".join(other.name for other in self.servos if other.channel == line.channel)
+                raise InvalidDesign(
+                    f"servo map {self.name!r} has {sharing} on channel {line.channel}; one each is allowed."
+                )
+
+    def ordered(self) -> tuple[ServoLine, ...]:
+        """Return the servos in the order of ``design.servo_names()``."""
+        by_name = {line.name: line for line in self.servos}
+        return tuple(by_name[name] for name in servo_names())
+
+
+STRAIGHT = ServoMap(
+    name="straight",
+    rate=50.0,
+    servos=tuple(
+        ServoLine(
+            name=name,
+            channel=channel,
+            direction=1,
+            offset=0.0,
+            pulse_centre=1500.0,
+            pulse_per_radian=round(2000.0 / (1.5 * pi), 3),
+            pulse_min=500.0,
+            pulse_max=2500.0,
+        )
+        for channel, name in enumerate(servo_names())
+    ),
+)
+"""Servos that turn 270 degrees over 500 to 2500 us, mounted in the middle, channels in order: a map to start from."""
+
+
+def read_map(path: Path) -> ServoMap:
+    """Read a servo map from a TOML file.
+
+    Raises:
+        UnreadableFile: the file is missing or no TOML.
+        MistakenFile: values are missing, unknown, of the wrong kind or impossible.
+    """
+    return blueprint.read(path, ServoMap, {STRAIGHT.name: STRAIGHT})
+
+
+def write_map(servo_map: ServoMap, path: Path) -> Path:
+    """Write a servo map as a TOML file with one line for each servo, and return the path.
+
+    Raises:
+        Unwritable: the place cannot be written to.
+    """
+    told = meanings(ServoLine)
+    notes = [f"# {name}: {' '.join(told[name].split())}" for name in told]
+    lines = [
+        f"# A servo's pulse is pulse_centre + pulse_per_radian (direction angle + offset).\n{chr(10).join(notes)}\n",
+        f"name = {_value(servo_map.name)}",
+        f"rate = {servo_map.rate!r}  # {meanings(ServoMap)['rate']}",
+        "servos = [",
+    ]
+    for line in servo_map.servos:
+        items = ", ".join(f"{f.name} = {_value(getattr(line, f.name))}" for f in fields(line))
+        lines.append(f"  {{{items}}},")
+    with new_file(path) as draft:
+        draft.write_text("\n".join([*lines, "]"]) + "\n", encoding="utf-8")
+    return path
+
+
+def _value(value: object) -> str:
+    return f'"{value}"' if isinstance(value, str) else repr(value)

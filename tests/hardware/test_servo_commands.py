@@ -1,0 +1,164 @@
+"""A gait becomes pulses that the servos can follow, or a sentence."""
+
+import csv
+import io
+import re
+from dataclasses import replace
+from math import pi
+
+import numpy as np
+import pytest
+
+from suchus.blueprint import MistakenFile
+from suchus.design import servo_names
+from suchus.errors import InvalidDesign, OutsideLimits
+from suchus.hardware import (
+    STRAIGHT,
+    Load,
+    check_commands,
+    check_loads,
+    commands,
+    csv_text,
+    loads,
+    read_map,
+    trajectory_text,
+    write_map,
+)
+from suchus.motion import START, limb_phase, servo_targets
+
+
+def remapped(**lines):
+    """The straight map with some servos changed."""
+    return replace(STRAIGHT, servos=tuple(replace(s, **lines.get(s.name, {})) for s in STRAIGHT.servos))
+
+
+def test_angles_are_the_gaits_own_and_the_last_sample_is_the_first(robot, crawl_gait):
+    told = commands(robot, crawl_gait, STRAIGHT, cycles=2)
+    assert told.time[-1] == pytest.approx(2 * crawl_gait.period, abs=1e-12)
+    np.testing.assert_array_equal(told.angles[-1], told.angles[0])
+    intended = servo_targets(robot, crawl_gait, limb_phase(crawl_gait, START + told.time[:-1]))
+    np.testing.assert_allclose(told.angles[:-1], intended, atol=1e-12)
+    assert np.diff(told.time) == pytest.approx(1 / STRAIGHT.rate)
+
+
+def test_a_rate_that_does_not_divide_the_cycle_still_closes_it(robot, crawl_gait):
+    told = commands(robot, replace(crawl_gait, period=3.333), replace(STRAIGHT, rate=47.0))
+    assert told.time[-1] == pytest.approx(3.333, abs=1e-12)
+    np.testing.assert_array_equal(told.pulses[-1], told.pulses[0])
+
+
+def test_the_cable_follows_the_articles_equation_18(robot, crawl_gait):
+    told = commands(robot, crawl_gait, STRAIGHT)
+    tail, bend = robot.tail, crawl_gait.tail_bend
+    widest = tail.joints * tail.cord_spacing * np.sin(bend / (2 * tail.joints)) / tail.pulley
+    assert abs(told.angles[:, servo_names().index("tail_cable")]).max() == pytest.approx(widest, rel=1e-3)
+
+
+def test_a_pulse_knows_centre_scale_direction_and_offset(robot, crawl_gait):
+    servo_map = remapped(LF_knee={"direction": -1, "offset": 0.5, "pulse_centre": 1400.0, "pulse_per_radian": 300.0})
+    told, plain = commands(robot, crawl_gait, servo_map), commands(robot, crawl_gait, STRAIGHT)
+    knee = servo_names().index("LF_knee")
+    np.testing.assert_allclose(told.pulses[:, knee], 1400 + 300 * (0.5 - told.angles[:, knee]))
+    others = [i for i in range(19) if i != knee]
+    np.testing.assert_array_equal(told.pulses[:, others], plain.pulses[:, others])
+    np.testing.assert_allclose(plain.pulses[:, 0], 1500 + 2000 / (1.5 * pi) * plain.angles[:, 0], rtol=1e-6)
+
+
+def test_the_order_of_a_map_does_not_matter(robot, crawl_gait):
+    backward = replace(STRAIGHT, servos=STRAIGHT.servos[::-1])
+    np.testing.assert_array_equal(
+        commands(robot, crawl_gait, backward).pulses, commands(robot, crawl_gait, STRAIGHT).pulses
+    )
+
+
+def test_speeds_are_the_derivative_of_the_angles(robot, limbs_gait):
+    told = commands(robot, limbs_gait, replace(STRAIGHT, rate=400.0), cycles=2)
+    middle = (told.angles[2:] - told.angles[:-2]) / (told.time[2:] - told.time[:-2])[:, None]
+    np.testing.assert_allclose(told.speeds[1:-1], middle, atol=1e-9)
+    np.testing.assert_array_equal(told.speeds[0], told.speeds[-1])
+
+
+def test_too_fast_a_gait_is_refused_with_servo_speed_and_limit(robot, crawl_gait):
+    hasty = replace(crawl_gait, period=0.3)
+    servo_map = replace(STRAIGHT, rate=200.0)
+    with pytest.raises(OutsideLimits, match=r"turns \w+ of robot 'caiman' at [\d.]+ rad/s .* up to 7 rad/s is allowed"):
+        check_commands(robot, hasty, servo_map, commands(robot, hasty, servo_map))
+    check_commands(robot, crawl_gait, STRAIGHT, commands(robot, crawl_gait, STRAIGHT))
+
+
+def test_a_pulse_outside_the_map_is_refused(robot, crawl_gait):
+    servo_map = remapped(RH_knee={"offset": 1.0})
+    with pytest.raises(OutsideLimits, match=r"RH_knee at .* 500 to 2500 us"):
+        check_commands(robot, crawl_gait, servo_map, commands(robot, crawl_gait, servo_map))
+
+
+def test_a_servo_too_weak_for_the_walk_is_named_with_its_share(robot, limbs_gait):
+    quick = replace(limbs_gait, period=1.6)
+    borne = loads(robot, quick, cycles=1)
+    check_loads(robot, quick, borne)
+    assert 0.2 < borne["LH_pitch"].torque < robot.hind_leg.servo.torque
+    weak = replace(robot, hind_leg=replace(robot.hind_leg, servo=replace(robot.hind_leg.servo, torque=0.5)))
+    borne = loads(weak, quick, cycles=1)
+    assert borne["LH_pitch"].torque == pytest.approx(0.5)
+    with pytest.raises(OutsideLimits, match=r"torque limit: .*LH_pitch for \d+ % of the walk \(0\.5 N m"):
+        check_loads(weak, quick, borne)
+
+
+def test_the_allowed_share_at_the_limit_is_a_threshold(robot, crawl_gait):
+    borne = {"LF_yaw": Load(torque=3.0, limit=3.0, at_limit=0.1, first=0.4)}
+    check_loads(robot, crawl_gait, borne, 0.1)
+    with pytest.raises(OutsideLimits, match="10 % of the walk"):
+        check_loads(robot, crawl_gait, borne, 0.09)
+
+
+def test_a_map_reads_back_equal_from_a_file_with_a_line_for_each_servo(tmp_path):
+    servo_map = remapped(RF_yaw={"direction": -1, "offset": 1 / 3})
+    path = write_map(servo_map, tmp_path / "map.toml")
+    assert read_map(path) == servo_map
+    assert sum(line.startswith("  {name") for line in path.read_text().splitlines()) == 19
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (('name = "LF_yaw"', 'name = "LF_yam"'), r"lacks LF_yaw; it has unknown LF_yam"),
+        (("channel = 3,", "channel = 4,"), r"RF_yaw, RF_pitch on channel 4"),
+        (("channel = 3, direction = 1", "channel = 3, direction = 2"), r"direction is 2; 1 or -1"),
+        (("pulse_min = 500.0", "pulse_min = 2600.0"), r"must increase"),
+        (("rate = 50.0", "rate = 0.0"), r"rate is 0"),
+        (("offset = 0.0", 'offset = "much"'), r"a number is needed"),
+    ],
+)
+def test_mistakes_in_a_map_are_named(change, said, tmp_path):
+    path = write_map(STRAIGHT, tmp_path / "map.toml")
+    path.write_text(path.read_text().replace(*change, 1))
+    with pytest.raises((MistakenFile, InvalidDesign), match=said):
+        read_map(path)
+
+
+def test_the_table_holds_what_is_commanded(robot, crawl_gait):
+    told = commands(robot, crawl_gait, STRAIGHT)
+    rows = list(csv.DictReader(io.StringIO(csv_text(told))))
+    assert len(rows) == len(told.time)
+    assert float(rows[7]["time_s"]) == pytest.approx(told.time[7])
+    for i, name in enumerate(servo_names()):
+        assert float(rows[7][f"{name}_rad"]) == pytest.approx(told.angles[7, i], abs=1e-6)
+        assert float(rows[7][f"{name}_us"]) == pytest.approx(told.pulses[7, i], abs=0.06)
+
+
+def test_the_trajectory_has_the_fields_of_the_ros_message(robot, crawl_gait):
+    told = commands(robot, crawl_gait, STRAIGHT)
+    text = trajectory_text(told)
+    assert text.startswith("header:\n  stamp: {sec: 0, nanosec: 0}\n  frame_id: ''\njoint_names: [LF_yaw, ")
+    times = [int(s) + 1e-9 * int(n) for s, n in re.findall(r"time_from_start: \{sec: (\d+), nanosec: (\d+)\}", text)]
+    assert times == pytest.approx(told.time.tolist(), abs=1e-9)
+    assert (np.diff(times) > 0).all()
+    for word, values in (("positions", told.angles), ("velocities", told.speeds)):
+        rows = [[float(v) for v in row.split(",")] for row in re.findall(rf"{word}: \[(.*)\]", text)]
+        np.testing.assert_allclose(rows, values, atol=1e-9)
+    yaml = pytest.importorskip("yaml", reason="PyYAML is not installed; the text was read by hand above")
+    message = yaml.safe_load(text)
+    assert set(message) == {"header", "joint_names", "points"}
+    assert message["joint_names"] == list(servo_names())
+    keys = {"positions", "velocities", "accelerations", "effort", "time_from_start"}
+    assert all(set(point) == keys for point in message["points"])
