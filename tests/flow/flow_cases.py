@@ -1,5 +1,7 @@
 """Flows that small tests and the validation share: each answers with numbers, at a resolution of the caller's."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from suchus import flow
@@ -10,7 +12,9 @@ def taylor_green(n, *, viscosity=0.02, until=0.5):
     """RMS error of the decaying vortices in the unit square [m/s]."""
     grid = flow.Grid(cells=(n, n), cell=1 / n)
     sim = flow.Simulation(
-        flow.Setup(grid=grid, viscosity=viscosity, sides=flow.Sides.periodic(), precision="double", tolerance=1e-8, courant=0.5)
+        flow.Setup(
+            grid=grid, viscosity=viscosity, sides=flow.Sides.periodic(), precision="double", tolerance=1e-8, courant=0.5
+        )
     )
     k = 2 * np.pi
     faces, mids = grid.faces(0, n + 2 * PAD, 0), grid.centres(0, n + 2 * PAD, 0)
@@ -22,13 +26,20 @@ def taylor_green(n, *, viscosity=0.02, until=0.5):
     return float(np.sqrt(np.mean((sim.water.u - exact)[inner] ** 2)))
 
 
-def cylinder(cells, reynolds, *, x, y, until, kick=0.0, control=None, courant=0.8, double=False, progress=False, threads=None):
+def cylinder(
+    cells, reynolds, *, x, y, until, kick=0.0, control=None, courant=0.8, double=False, progress=False, threads=None
+):
     """A cylinder of diameter 1 in a stream of speed 1, started at once; forces come as coefficients."""
     grid = flow.Grid.covering(x, y, cell=1 / cells)
     body = flow.Body(shape=flow.Cylinder(diameter=1.0))
     sim = flow.Simulation(
         flow.Setup(
-            grid=grid, viscosity=1 / reynolds, density=1.0, stream=(1.0, 0.0), bodies=(body,), courant=courant,
+            grid=grid,
+            viscosity=1 / reynolds,
+            density=1.0,
+            stream=(1.0, 0.0),
+            bodies=(body,),
+            courant=courant,
             precision="double" if double else "single",
         ),
         thread_count=threads,
@@ -56,7 +67,9 @@ def wake_length(sim):
 def added(shape, cells, *, half=8.0):
     """Added mass of a shape in water of density 1, in a box of ``2 half`` [kg/m, kg, kg m]."""
     grid = flow.Grid.covering((-half, half), (-half, half), cell=1 / cells)
-    sim = flow.Simulation(flow.Setup(grid=grid, viscosity=1e-9, density=1.0, bodies=(flow.Body(shape=shape),), coarse=True))
+    sim = flow.Simulation(
+        flow.Setup(grid=grid, viscosity=1e-9, density=1.0, bodies=(flow.Body(shape=shape),), coarse=True)
+    )
     sim.water.place(list(sim.setup.bodies), [flow.Pose()], 0.0)
     return flow.added_mass(sim.water, shape.markers(0.0, flow.Pose(), 1 / cells), (0.0, 0.0), 1.0)
 
@@ -66,9 +79,7 @@ def oscillating(cells, *, keulegan, stokes, periods, width, height, courant=0.8)
     amplitude = keulegan / (2 * np.pi)
     speed = 2 * np.pi * amplitude
     grid = flow.Grid.covering((-width / 2, width / 2), (-height / 2, height / 2), cell=1 / cells)
-    body = flow.Body(
-        shape=flow.Cylinder(diameter=1.0), motion=flow.Oscillation(frequency=1.0, heave=(-amplitude, 0.0))
-    )
+    body = flow.Body(shape=flow.Cylinder(diameter=1.0), motion=flow.Oscillation(frequency=1.0, heave=(-amplitude, 0.0)))
     sim = flow.Simulation(flow.Setup(grid=grid, viscosity=1 / stokes, density=1.0, bodies=(body,), courant=courant))
     record = sim.run(float(periods), progress=False).after(periods - 1.0)
     middle = record.time - record.step / 2
@@ -92,8 +103,10 @@ def channel(rows, mean_speed, until, *, kick=0.0):
     grid = flow.Grid.covering((0.0, 2.2), (0.0, 0.41), cell=h)
     grid = flow.Grid(cells=(grid.cells[0], rows), cell=h)
     sides = flow.Sides(
-        left=flow.Inflow(profile=lambda y: 6 * mean_speed * y * (0.41 - y) / 0.41**2), right=flow.Outflow(),
-        bottom=flow.Wall(), top=flow.Wall(),
+        left=flow.Inflow(profile=lambda y: 6 * mean_speed * y * (0.41 - y) / 0.41**2),
+        right=flow.Outflow(),
+        bottom=flow.Wall(),
+        top=flow.Wall(),
     )
     body = flow.Body(shape=flow.Cylinder(diameter=0.1), motion=flow.Pose(position=(0.2, 0.2)))
     sim = flow.Simulation(flow.Setup(grid=grid, viscosity=1e-3, density=1.0, sides=sides, bodies=(body,)))
@@ -122,3 +135,9 @@ def swimming_eel(cells, cycles, *, size=(4.0, 2.0), tolerance=1e-5, angle=0.0, f
         flow.Setup(grid=grid, viscosity=1.4e-4, density=1.0, bodies=(body,), follow="eel", tolerance=tolerance)
     )
     return sim, sim.run(float(cycles), progress=False, watch=frames, every=None if frames is None else 0.05)
+
+
+def blunted(spine, least):
+    """The same midline, behind its head nowhere thinner than ``2 least`` [m]."""
+    behind = spine.arc > 0.04 * spine.arc[-1]
+    return replace(spine, half_width=np.where(behind, np.maximum(spine.half_width, least), spine.half_width))

@@ -111,7 +111,18 @@ def test_naca_0012_is_twelve_percent_thick():
         (lambda: flow.Cylinder(diameter=-1.0), "diameter is -1.0 m"),
         (lambda: flow.Plate(length=0.1, thick=0.2), "0.2 m thick"),
         (lambda: flow.foil(1.0, thickness=0.9), "thickness 0.9"),
-        (lambda: flow.Spine(x=np.zeros(3), y=np.zeros(4), heading=np.zeros(3), half_width=np.zeros(3), x_rate=np.zeros(3), y_rate=np.zeros(3), heading_rate=np.zeros(3)), "y of the midline"),
+        (
+            lambda: flow.Spine(
+                x=np.zeros(3),
+                y=np.zeros(4),
+                heading=np.zeros(3),
+                half_width=np.zeros(3),
+                x_rate=np.zeros(3),
+                y_rate=np.zeros(3),
+                heading_rate=np.zeros(3),
+            ),
+            "y of the midline",
+        ),
     ],
 )
 def test_impossible_shapes_are_refused(make, part):

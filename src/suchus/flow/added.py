@@ -23,7 +23,6 @@ def added_mass(water: Water, markers: Markers, about: tuple[float, float], densi
     grid, h = water.grid, water.grid.cell
     j0, j1, i0, i1 = water.window
     here = np.s_[j0 : j1 + 1, i0 : i1 + 1]
-    x, y = grid.faces(i0, i1 + 1, 0) - about[0], grid.faces(j0, j1 + 1, 1) - about[1]
     x_mid, y_mid = grid.centres(i0, i1 + 1, 0) - about[0], grid.centres(j0, j1 + 1, 1) - about[1]
     shape = (j1 + 1 - j0, i1 + 1 - i0)
     modes = (

@@ -1,3 +1,5 @@
+# mypy: disable-error-code="no-untyped-def, var-annotated"
+# (the kernels get their types from numba, once per precision)
 """Momentum on the staggered grid: limited QUICK advection and central diffusion, in cells and flow units.
 
 ``u[j, i]`` sits on the left face of cell (i, j), ``v[j, i]`` on its lower face; ``PAD`` rows and columns of
@@ -79,11 +81,28 @@ def _advance_u(out, blend, base, u, v, p, raw, window, j0, j1, s, e, dt, nu, pus
         a, b = s - 1, e
         row = u[r]
         flux_row(
-            across, row[a:b], row[a + 1 : b + 1], row[a - 1 : b - 1], row[a:b], row[a + 1 : b + 1], row[a + 2 : b + 2], nu
+            across,
+            row[a:b],
+            row[a + 1 : b + 1],
+            row[a - 1 : b - 1],
+            row[a:b],
+            row[a + 1 : b + 1],
+            row[a + 2 : b + 2],
+            nu,
         )
         _update_row(
-            out[r, s:e], blend[r, s:e], base[r, s:e], across[:n], across[1:], low, high, p[r, s:e], p[r, s - 1 : e - 1],
-            dt, push, keep,
+            out[r, s:e],
+            blend[r, s:e],
+            base[r, s:e],
+            across[:n],
+            across[1:],
+            low,
+            high,
+            p[r, s:e],
+            p[r, s - 1 : e - 1],
+            dt,
+            push,
+            keep,
         )
         if wj0 <= r < wj1:
             f, t = wi0 - s, wi1 - s
@@ -110,8 +129,18 @@ def _advance_v(out, blend, base, u, v, p, raw, window, j0, j1, s, e, dt, nu, pus
             across, u[c - 1, a:b], u[c, a:b], row[a - 2 : b - 2], row[a - 1 : b - 1], row[a:b], row[a + 1 : b + 1], nu
         )
         _update_row(
-            out[c, s:e], blend[c, s:e], base[c, s:e], across[:n], across[1:], low, high, p[c, s:e], p[c - 1, s:e],
-            dt, push, keep,
+            out[c, s:e],
+            blend[c, s:e],
+            base[c, s:e],
+            across[:n],
+            across[1:],
+            low,
+            high,
+            p[c, s:e],
+            p[c - 1, s:e],
+            dt,
+            push,
+            keep,
         )
         if wj0 <= c < wj1:
             f, t = wi0 - s, wi1 - s
@@ -121,7 +150,9 @@ def _advance_v(out, blend, base, u, v, p, raw, window, j0, j1, s, e, dt, nu, pus
 
 
 @threaded
-def advance(out_u, out_v, blend_u, blend_v, base_u, base_v, u, v, p, raw_u, raw_v, window, periodic, dt, nu, push, keep):
+def advance(
+    out_u, out_v, blend_u, blend_v, base_u, base_v, u, v, p, raw_u, raw_v, window, periodic, dt, nu, push, keep
+):
     """Advance both velocities by ``dt`` with the rates at (``u``, ``v``) and the pressure ``p``.
 
     ``out = keep * blend + (1 - keep) * (base + dt * rate)``. In the body's ``window`` (j0, j1, i0, i1) the bare
@@ -135,9 +166,7 @@ def advance(out_u, out_v, blend_u, blend_v, base_u, base_v, u, v, p, raw_u, raw_
     for block in prange((ny + BLOCK - 1) // BLOCK):
         j0 = PAD + block * BLOCK
         j1 = min(j0 + BLOCK, end)
-        _advance_u(
-            out_u, blend_u, base_u, u, v, p, raw_u, window, j0, j1, su, PAD + nx, dt, nu, push[0], keep
-        )
+        _advance_u(out_u, blend_u, base_u, u, v, p, raw_u, window, j0, j1, su, PAD + nx, dt, nu, push[0], keep)
         _advance_v(
             out_v, blend_v, base_v, u, v, p, raw_v, window, max(j0, sv), j1, PAD, PAD + nx, dt, nu, push[1], keep
         )

@@ -1,11 +1,12 @@
 """Bodies in the water: a shape with a motion, and what several of them say together on the grid."""
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 
 import numpy as np
 
 from suchus.errors import InvalidDesign
 from suchus.flow.compiled import PAD
+from suchus.flow.free import FreeBody
 from suchus.flow.grid import Grid
 from suchus.flow.immerse import REACH, THINNEST
 from suchus.flow.pose import Motion, Pose
@@ -21,7 +22,7 @@ class Body:
 
     shape: Shape
     """What it looks like in its own frame."""
-    motion: Pose | Motion = Pose()
+    motion: Pose | Motion = field(default_factory=Pose)
     """Where its frame is: a fixed pose, or a pose for every time [s]."""
     name: str = "body"
     """Its name in records and messages."""
@@ -37,7 +38,10 @@ class Body:
         return self.shape.rigid and not moving
 
 
-def window_of(body: Body, pose: Pose, grid: Grid, time: float) -> Window:
+AnyBody = Body | FreeBody
+
+
+def window_of(body: AnyBody, pose: Pose, grid: Grid, time: float) -> Window:
     """Return the cells around a body that it acts on.
 
     Raises:
@@ -69,19 +73,17 @@ def unite(windows: list[Window]) -> Window:
     )  # fmt: skip
 
 
-def measure_all(bodies: list[Body], poses: list[Pose], x: np.ndarray, y: np.ndarray, time: float, h: float) -> Field:
+def measure_all(bodies: list[AnyBody], poses: list[Pose], x: np.ndarray, y: np.ndarray, time: float, h: float) -> Field:
     """Return the field of all bodies on a window: at every point, that of the nearest body."""
     first = bodies[0].shape.measure(x, y, time, poses[0], (REACH + 1) * h)
     for body, pose in zip(bodies[1:], poses[1:], strict=True):
         other = body.shape.measure(x, y, time, pose, (REACH + 1) * h)
         nearer = other.distance < first.distance
-        first = Field(
-            *(np.where(nearer, getattr(other, f.name), getattr(first, f.name)) for f in fields(Field))
-        )
+        first = Field(*(np.where(nearer, getattr(other, f.name), getattr(first, f.name)) for f in fields(Field)))
     return first
 
 
-def thin_share(body: Body, grid: Grid, time: float) -> float:
+def thin_share(body: AnyBody, grid: Grid, time: float) -> float:
     """Return the share of the body's length that is thinner than ``THINNEST`` cells.
 
     Raises:

@@ -95,7 +95,7 @@ class Border:
         for name, axis, low in (("left", 0, True), ("right", 0, False), ("bottom", 1, True), ("top", 1, False)):
             along = grid.cells[1 - axis]
             side = getattr(sides, name)
-            prescribed = np.zeros(along, dtype)
+            prescribed: np.ndarray = np.zeros(along, dtype)
             if isinstance(side, Inflow):
                 prescribed[:] = side.profile(grid.centres(PAD, PAD + along, 1 - axis))
             edges.append(Edge(side, axis, low, grid.cells[axis], prescribed))

@@ -1,3 +1,5 @@
+# mypy: disable-error-code="no-untyped-def, var-annotated"
+# (the kernels get their types from numba, once per precision)
 """Forces on bodies: pressure and shear along the outline, and the momentum through a box around them."""
 
 from dataclasses import dataclass
@@ -77,9 +79,7 @@ def sample(water: Water, markers: Markers, density: float) -> Surface:
     pressure, shear = np.empty(x.size), np.empty((2, x.size))
     nx, ny = markers.normal_x, markers.normal_y
     wall_pressure(water.p, x, y, nx, ny, GAP, pressure)
-    wall_shear(
-        water.u, water.v, x, y, nx, ny, markers.velocity_x, markers.velocity_y, markers.spin * h, GAP, shear
-    )
+    wall_shear(water.u, water.v, x, y, nx, ny, markers.velocity_x, markers.velocity_y, markers.spin * h, GAP, shear)
     level = float(edge_mean(water.p))
     return Surface(
         markers=markers, pressure=density * (pressure - level), shear=density * float(water.nu) * shear

@@ -1,3 +1,5 @@
+# mypy: disable-error-code="no-untyped-def, var-annotated"
+# (the kernels get their types from numba, once per precision)
 """The body in the equations: second-order boundary data immersion, in cells and flow units.
 
 Near the body the velocity is ``mu0 f + (1 - mu0) V + mu1 d(f - V)/dn``, where f is the fluid's own update, V the
@@ -9,7 +11,7 @@ Source: Maertens and Weymouth 2015, Comput. Methods Appl. Mech. Eng. 283, 106-12
 import numpy as np
 from numba import prange
 
-from suchus.flow.compiled import BLOCK, PAD, compiled, threaded
+from suchus.flow.compiled import BLOCK, compiled, threaded
 
 REACH = 3.0
 """Distance from the surface up to which normals and velocities are needed [cells]."""
@@ -107,7 +109,9 @@ def immerse(out, blend, raw, b, mu0, mu1_x, mu1_y, p, along, window, dt, keep):
     rows = window[1] - window[0]
     for block in prange((rows + BLOCK - 1) // BLOCK):
         rise = np.empty(e - s, p.dtype)
-        for j in range(max(window[0] + block * BLOCK, window[0] + 1), min(window[0] + (block + 1) * BLOCK, window[1] - 1)):
+        for j in range(
+            max(window[0] + block * BLOCK, window[0] + 1), min(window[0] + (block + 1) * BLOCK, window[1] - 1)
+        ):
             if along == 0:
                 rise[:] = p[j, s:e] - p[j, s - 1 : e - 1]
             else:

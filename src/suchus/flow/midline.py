@@ -47,7 +47,9 @@ class Spine:
             if values is not None and not np.isfinite(values).all():
                 raise InvalidDesign(f"{name} of the midline is not finite at station {np.argmin(np.isfinite(values))}.")
         if (self.half_width < 0).any():
-            raise InvalidDesign(f"half_width of the midline goes down to {self.half_width.min():.4g} m; it is never negative.")
+            raise InvalidDesign(
+                f"half_width of the midline goes down to {self.half_width.min():.4g} m; it is never negative."
+            )
 
     @property
     def rows(self) -> np.ndarray:
@@ -116,8 +118,8 @@ class Midline(Shape):
         s = station[edge] * (1 - part) + np.roll(station, -1)[edge] * part
         side = np.where(edge < n - 1, -1.0, np.where((edge >= n) & (edge < 2 * n - 1), 1.0, 0.0))
         guess = np.where(edge < n, edge, 2 * n - 1 - edge)
-        motion = sections(point, guess, placed.rows, placed.swell)
-        return Markers(*point, *normal, length[edge] / count, *motion, s, side)
+        vx, vy, spin = sections(point, guess, placed.rows, placed.swell)
+        return Markers(point[0], point[1], normal[0], normal[1], length[edge] / count, vx, vy, spin, s, side)
 
     def bounds(self, time: float, pose: Pose) -> tuple[float, float, float, float]:
         """Return the rectangle around the outline."""
@@ -137,7 +139,9 @@ class Midline(Shape):
         return spine.arc, 2 * spine.half_width
 
 
-def foil(chord: float, *, thickness: float, camber: float = 0.0, camber_at: float = 0.4, stations: int = 201) -> Midline:
+def foil(
+    chord: float, *, thickness: float, camber: float = 0.0, camber_at: float = 0.4, stations: int = 201
+) -> Midline:
     """Return a NACA four-digit foil, its nose at the origin and its chord along +x.
 
     Args:
@@ -168,4 +172,4 @@ def foil(chord: float, *, thickness: float, camber: float = 0.0, camber_at: floa
         x=chord * x, y=chord * y, heading=np.arctan(slope), half_width=chord * np.maximum(half, 0),
         x_rate=zero, y_rate=zero, heading_rate=zero,
     )  # fmt: skip
-    return Midline(spine=lambda time: spine, deforms=False)
+    return Midline(spine=lambda _: spine, deforms=False)

@@ -1,3 +1,5 @@
+# mypy: disable-error-code="no-untyped-def, var-annotated"
+# (the kernels get their types from numba, once per precision)
 """Geometric multigrid for ``-div(c grad x) = b`` on the cells: one cycle, used as a preconditioner.
 
 All levels live in one array ``store[kind, ...]``, level after level, each with ``PAD`` cells around it. The
@@ -84,8 +86,16 @@ def apply_row(out, x, cx, cy, place, j):
     if place[3] <= j < place[4]:
         s, e = place[5], place[6]
         _apply_body(
-            out[s - PAD : e - PAD], m[s:e], m[s - 1 : e - 1], m[s + 1 : e + 1], a[s:e], b[s:e],
-            cx[j, s:e], cx[j, s + 1 : e + 1], cy[j, s:e], cy[j + 1, s:e],
+            out[s - PAD : e - PAD],
+            m[s:e],
+            m[s - 1 : e - 1],
+            m[s + 1 : e + 1],
+            a[s:e],
+            b[s:e],
+            cx[j, s:e],
+            cx[j, s + 1 : e + 1],
+            cy[j, s:e],
+            cy[j + 1, s:e],
         )
 
 
@@ -140,12 +150,22 @@ def _smooth(out, x, b, cx, cy, dinv, place, j0, j1, weight, periodic):
     ax = np.empty(place[6] - place[5], x.dtype)
     for j in range(j0, j1):
         m = x[j]
-        _relax_plain(out[j, s:e], b[j, s:e], m[s:e], m[s - 1 : e - 1], m[s + 1 : e + 1], x[j - 1, s:e], x[j + 1, s:e], weight)
+        _relax_plain(
+            out[j, s:e], b[j, s:e], m[s:e], m[s - 1 : e - 1], m[s + 1 : e + 1], x[j - 1, s:e], x[j + 1, s:e], weight
+        )
         if place[3] <= j < place[4]:
             f, t = place[5], place[6]
             _apply_body(
-                ax, m[f:t], m[f - 1 : t - 1], m[f + 1 : t + 1], x[j - 1, f:t], x[j + 1, f:t],
-                cx[j, f:t], cx[j, f + 1 : t + 1], cy[j, f:t], cy[j + 1, f:t],
+                ax,
+                m[f:t],
+                m[f - 1 : t - 1],
+                m[f + 1 : t + 1],
+                x[j - 1, f:t],
+                x[j + 1, f:t],
+                cx[j, f:t],
+                cx[j, f + 1 : t + 1],
+                cy[j, f:t],
+                cy[j + 1, f:t],
             )
             _relax_body(out[j, f:t], b[j, f:t], dinv[j, f:t], m[f:t], ax, weight)
         seal_row(out[j], periodic)
@@ -280,9 +300,14 @@ def cycle(store, layout, periodic):
             seal_ends(x, py)
             _restrict_threaded(coarse, x, b, cx, cy, place, px)
     _solve_coarsest(
-        level(store, layout, X, last), level(store, layout, Y, last), level(store, layout, B, last),
-        level(store, layout, CX, last), level(store, layout, CY, last), level(store, layout, DINV, last),
-        layout[last], periodic,
+        level(store, layout, X, last),
+        level(store, layout, Y, last),
+        level(store, layout, B, last),
+        level(store, layout, CX, last),
+        level(store, layout, CY, last),
+        level(store, layout, DINV, last),
+        layout[last],
+        periodic,
     )
     for k in range(last - 1, -1, -1):
         x, y, b = level(store, layout, X, k), level(store, layout, Y, k), level(store, layout, B, k)

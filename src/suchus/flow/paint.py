@@ -1,3 +1,5 @@
+# mypy: disable-error-code="no-untyped-def, var-annotated"
+# (the kernels get their types from numba, once per precision)
 """Distance, normal and velocity of a body given by a midline and its half-widths, painted onto a window.
 
 Every edge of the outline paints the points near it; winding numbers along the rows tell inside from outside; and

@@ -1,3 +1,5 @@
+# mypy: disable-error-code="no-untyped-def, var-annotated"
+# (the kernels get their types from numba, once per precision)
 """The pressure equation: conjugate gradients, preconditioned by one multigrid cycle.
 
 Solves ``-div(c grad x) = b`` from nothing; the caller has already applied the last pressure, which is the warm
@@ -10,7 +12,7 @@ import numpy as np
 from numba import prange
 
 from suchus.flow.compiled import BLOCK, PAD, compiled, threaded
-from suchus.flow.multigrid import B, CX, CY, DINV, X, apply_row, coarsen, cycle, level, seal_ends, seal_row
+from suchus.flow.multigrid import CX, CY, DINV, B, X, apply_row, cycle, level, seal_ends, seal_row
 
 STALLED = 3
 """Cycles without progress after which rounding, not the residual, is what is left [-]."""

@@ -1,3 +1,5 @@
+# mypy: disable-error-code="no-untyped-def, var-annotated"
+# (the kernels get their types from numba, once per precision)
 """Values of the staggered fields at points between the nodes."""
 
 from suchus.flow.compiled import compiled

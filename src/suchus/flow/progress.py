@@ -23,7 +23,9 @@ class Bar:
         """Start the clock."""
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
         """Leave the last line standing."""
         if self._progress is not None:
             self._progress.stop()
@@ -41,5 +43,5 @@ class Bar:
                 console=Console(stderr=True), refresh_per_second=4,
             )  # fmt: skip
             self._progress.start()
-            self._task = self._progress.add_task("", total=self._until, completed=self._start, speed=0.0)
+            self._task = self._progress.add_task("", total=self._until, speed=0.0)
         self._progress.update(self._task, completed=time, speed=self._steps * self._cells / elapsed / 1e6)

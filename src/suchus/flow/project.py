@@ -1,3 +1,5 @@
+# mypy: disable-error-code="no-untyped-def, var-annotated"
+# (the kernels get their types from numba, once per precision)
 """Divergence before the pressure solve, and the correction after it, in cells and flow units."""
 
 import numpy as np

@@ -1,7 +1,7 @@
 """What is to be simulated: grid, water, sides and bodies, checked before anything runs."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import isfinite, sqrt
 from typing import Literal
 
@@ -34,7 +34,7 @@ class Setup:
     """Density of the water [kg/m^3]."""
     stream: tuple[float, float] | Callable[[float], tuple[float, float]] = (0.0, 0.0)
     """Velocity of the far water, fixed or for every time [m/s]."""
-    sides: Sides = Sides()
+    sides: Sides = field(default_factory=Sides)
     """What happens on the sides of the domain."""
     bodies: tuple[Body | FreeBody, ...] = ()
     """The bodies in the water."""
@@ -107,7 +107,8 @@ class Setup:
         reynolds = speed * length / self.viscosity
         if reynolds > 1 and length / sqrt(reynolds) < LAYER_CELLS * self.grid.cell and not self.coarse:
             raise InvalidDesign(
-                f"at Reynolds number {reynolds:.4g} the boundary layer of {body.name} is {length / sqrt(reynolds):.3g} m "
-                f"thin, and a cell is {self.grid.cell:.3g} m; take cells of at most "
-                f"{length / sqrt(reynolds) / LAYER_CELLS:.3g} m, a lower Reynolds number, or coarse=True to go on anyway."
+                f"at Reynolds number {reynolds:.4g} the boundary layer of {body.name} is {length / sqrt(reynolds):.3g} "
+                f"m thin, and a cell is {self.grid.cell:.3g} m; take cells of at most "
+                f"{length / sqrt(reynolds) / LAYER_CELLS:.3g} m, a lower Reynolds number, "
+                f"or coarse=True to go on anyway."
             )

@@ -1,3 +1,4 @@
+# ruff: noqa: ARG002 - rigid and bending shapes share one interface, rigid ones ignore the time
 """Shapes of bodies: a signed distance, a normal and a velocity at points, and markers along the outline.
 
 Distances are negative inside; normals point into the water.
@@ -115,8 +116,8 @@ class Solid(Shape):
         """Return the field on the points of a window."""
         wx, wy = np.meshgrid(x, y)
         d, nx, ny = self.distance(*pose.to_body(wx, wy))
-        motion = (np.broadcast_to(v, d.shape) for v in pose.carry(wx, wy))
-        return Field(d, *pose.turn(nx, ny), *motion, np.full(d.shape, np.inf))
+        vx, vy = (np.broadcast_to(v, d.shape) for v in pose.carry(wx, wy))
+        return Field(d, *pose.turn(nx, ny), vx, vy, np.full(d.shape, np.inf))
 
     def markers(self, time: float, pose: Pose, spacing: float) -> Markers:
         """Return the middles of the outline's edges."""

@@ -116,7 +116,8 @@ class Simulation:
         if self.setup.step > 1.2 * limit:
             raise OutsideLimits(
                 f"at t = {self.time:.4g} s a step of {self.setup.step:.3g} s has Courant number "
-                f"{self.setup.step / limit:.3g}; above 1 it explodes. Take a step of at most {0.8 * limit:.3g} s, or None."
+                f"{self.setup.step / limit:.3g}; above 1 it explodes. Take a step of at most {0.8 * limit:.3g} s, "
+                f"or None."
             )
         return self.setup.step
 
@@ -183,9 +184,9 @@ class Simulation:
         if not np.isfinite(fastest) or not np.isfinite(row).all() or (reference > 0 and fastest > FASTEST * reference):
             good = {"u": water._u2.copy(), "v": water._v2.copy()}
             raise Diverged(
-                f"at t = {self.time:.4g} s the fastest water moves with {fastest:.3g} m/s, where stream and bodies have "
-                f"{reference:.3g} m/s; take a smaller courant (now {setup.courant}), a finer grid or a lower Reynolds "
-                f"number. The last good velocities are in the error's record['u'] and ['v'].",
+                f"at t = {self.time:.4g} s the fastest water moves with {fastest:.3g} m/s, where stream and bodies "
+                f"have {reference:.3g} m/s; take a smaller courant (now {setup.courant}), a finer grid or a lower "
+                f"Reynolds number. The last good velocities are in the error's record['u'] and ['v'].",
                 time=self.time - dt, record={**good, "record": self.record},
             )  # fmt: skip
         self._rows.append(row)
@@ -266,7 +267,8 @@ class Simulation:
         rows = np.array(self._rows).reshape(len(self._rows), 5 + n * len(COLUMNS))
         return Record(
             names=tuple(b.name for b in self.setup.bodies), time=rows[:, 0], step=rows[:, 1],
-            cycles=rows[:, 2:4].astype(int), divergence=rows[:, 4], bodies=rows[:, 5:].reshape(len(rows), n, len(COLUMNS)),
+            cycles=rows[:, 2:4].astype(int), divergence=rows[:, 4],
+            bodies=rows[:, 5:].reshape(len(rows), n, len(COLUMNS)),
         )  # fmt: skip
 
     def surface(self, name: str | None = None) -> Surface:

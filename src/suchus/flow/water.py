@@ -5,13 +5,14 @@ step is ``dt / cell``, a viscosity ``viscosity / cell``, a pressure that over th
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from suchus.errors import NotConverged
 from suchus.flow import multigrid, poisson
 from suchus.flow.advect import advance
-from suchus.flow.body import Body, Window, measure_all, unite, window_of
+from suchus.flow.body import AnyBody, Window, measure_all, unite, window_of
 from suchus.flow.border import Border
 from suchus.flow.compiled import PAD
 from suchus.flow.grid import Grid
@@ -39,6 +40,10 @@ class Solve:
     """Largest divergence left over [m/s per cell]."""
 
 
+def _fields(count: int, shape: tuple[int, int], dtype: type) -> list[np.ndarray]:
+    return [np.zeros(shape, dtype) for _ in range(count)]
+
+
 class Water:
     """Velocity and pressure on a grid, and the bodies as the equations see them.
 
@@ -56,12 +61,12 @@ class Water:
         self.nu = dtype(viscosity / grid.cell)
         self.border = Border.of(sides, grid, dtype)
         # Fluid: now, predicted, corrected; pressure
-        self.u, self.v, self._u1, self._v1, self._u2, self._v2, self.p = (np.zeros(shape, dtype) for _ in range(7))
+        self.u, self.v, self._u1, self._v1, self._u2, self._v2, self.p = _fields(7, shape, dtype)
         # Body: its velocity, kernel moments, own divergence; and the fluid's bare update in its window
-        self.bu, self.bv, self._mu1xx, self._mu1xy, self._mu1yx, self._mu1yy = (np.zeros(shape, dtype) for _ in range(6))
-        self._source, self._raw_u, self._raw_v = (np.zeros(shape, dtype) for _ in range(3))
+        self.bu, self.bv, self._mu1xx, self._mu1xy, self._mu1yx, self._mu1yy = _fields(6, shape, dtype)
+        self._source, self._raw_u, self._raw_v = _fields(3, shape, dtype)
         # Pressure solver
-        self._x, self._d, self._q = (np.zeros(shape, dtype) for _ in range(3))
+        self._x, self._d, self._q = _fields(3, shape, dtype)
         self._layout = poisson.levels(ny, nx)
         self._store = poisson.make_store(self._layout, dtype)
         self._sums = np.zeros((shape[0], 3))
@@ -83,7 +88,7 @@ class Water:
         own = [a for a in vars(self).values() if isinstance(a, np.ndarray) and a.dtype == self.dtype]
         return sum(a.size for a in own) / self.u.size
 
-    def place(self, bodies: list[Body], poses: list[Pose], time: float) -> None:
+    def place(self, bodies: list[AnyBody], poses: list[Pose], time: float) -> None:
         """Write the bodies into the equations as they are at a time [s].
 
         Raises:
@@ -107,7 +112,7 @@ class Water:
         for a in (self.bu, self.bv, self._mu1xx, self._mu1xy, self._mu1yx, self._mu1yy, self._source):
             a[here] = 0
 
-    def _measure(self, bodies: list[Body], poses: list[Pose], time: float) -> None:
+    def _measure(self, bodies: list[AnyBody], poses: list[Pose], time: float) -> None:
         j0, j1, i0, i1 = self.window
         h, grid = self.grid.cell, self.grid
         here = np.s_[j0 : j1 + 1, i0 : i1 + 1]
@@ -115,10 +120,26 @@ class Water:
         x_mid, y_mid = grid.centres(i0, i1 + 1, 0), grid.centres(j0, j1 + 1, 1)
         mu0_u, mu0_v = self.mu0
         f = measure_all(bodies, poses, x_face, y_mid, time, h)
-        fill(f.distance / h - self.offset, f.normal_x, f.normal_y, f.thickness / h + 2 * self.offset, mu0_u[here], self._mu1xx[here], self._mu1xy[here])
+        fill(
+            f.distance / h - self.offset,
+            f.normal_x,
+            f.normal_y,
+            f.thickness / h + 2 * self.offset,
+            mu0_u[here],
+            self._mu1xx[here],
+            self._mu1xy[here],
+        )
         self.bu[here] = f.velocity_x
         f = measure_all(bodies, poses, x_mid, y_face, time, h)
-        fill(f.distance / h - self.offset, f.normal_x, f.normal_y, f.thickness / h + 2 * self.offset, mu0_v[here], self._mu1yx[here], self._mu1yy[here])
+        fill(
+            f.distance / h - self.offset,
+            f.normal_x,
+            f.normal_y,
+            f.thickness / h + 2 * self.offset,
+            mu0_v[here],
+            self._mu1yx[here],
+            self._mu1yy[here],
+        )
         self.bv[here] = f.velocity_y
         fill_source(self._source, self.bu, self.bv, mu0_u, mu0_v, np.array(self.window))
 
@@ -127,7 +148,9 @@ class Water:
         fastest(self.u, self.v, self._sums)
         return float(self._sums[PAD:-PAD, 0].max())
 
-    def step(self, dt: float, stream: tuple[float, float], push: tuple[float, float], limits: tuple[float, float]) -> None:
+    def step(
+        self, dt: float, stream: tuple[float, float], push: tuple[float, float], limits: tuple[float, float]
+    ) -> None:
         """Advance velocity and pressure by ``dt`` [s] around the bodies placed at its end.
 
         Args:
@@ -152,10 +175,8 @@ class Water:
 
     def _advance(self, out, blend, base, rate, dt, push, keep) -> None:  # type: ignore[no-untyped-def]
         window = np.array(self.window)
-        repeats = self.sides.repeats
-        advance(
-            *out, *blend, *base, *rate, self.p, self._raw_u, self._raw_v, window, repeats, dt, self.nu, push, keep
-        )  # fmt: skip
+        fields: tuple[Any, ...] = (*out, *blend, *base, *rate, self.p, self._raw_u, self._raw_v)
+        advance(*fields, window, self.sides.repeats, dt, self.nu, push, keep)
         if window[1] > window[0]:
             mu0_u, mu0_v = self.mu0
             immerse(
@@ -204,7 +225,15 @@ class Water:
     def _solve(self, limits: tuple[float, float]) -> Solve:
         went = Solve(
             *poisson.solve(
-                self._x, self._d, self._q, self._store, self._layout, self.sides.repeats, self._sums, *limits, MOST_CYCLES
+                self._x,
+                self._d,
+                self._q,
+                self._store,
+                self._layout,
+                self.sides.repeats,
+                self._sums,
+                *limits,
+                MOST_CYCLES,
             )
         )
         if not (went.mean <= STUCK * limits[0] and went.largest <= STUCK * limits[1]):

@@ -1,0 +1,164 @@
+"""Pictures of flows: vorticity, pressure, time series; and the validation's table and figures."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from suchus.errors import IncompatibleRecord
+from suchus.flow import Record, Simulation
+
+
+def _panel(width: float, height: float) -> tuple[Figure, Axes]:
+    figure = Figure(figsize=(width, height), layout="constrained", dpi=110)
+    return figure, figure.add_subplot()
+
+
+def _field(sim: Simulation, values: np.ndarray, limit: float, label: str, cmap: str, shift: float) -> Figure:
+    grid = sim.setup.grid
+    wide, high = grid.size
+    figure, axes = _panel(7.5, 1.0 + 6.2 * high / wide)
+    x0, y0 = grid.origin[0] + shift * grid.cell, grid.origin[1] + shift * grid.cell
+    extent = (x0, x0 + values.shape[1] * grid.cell, y0, y0 + values.shape[0] * grid.cell)
+    image = axes.imshow(
+        values, origin="lower", extent=extent, cmap=cmap, vmin=-limit, vmax=limit, interpolation="bilinear"
+    )
+    body = sim.fluid_share
+    if body.min() < 0.5:
+        axes.contourf(grid.x, grid.y, body, levels=[-1, 0.5], colors=["0.25"])
+    axes.set_xlabel("x (m)")
+    axes.set_ylabel("y (m)")
+    axes.set_title(f"t = {sim.time:.3g} s", loc="left", fontsize="medium")
+    figure.colorbar(image, ax=axes, label=label, shrink=0.85, extend="both")
+    return figure
+
+
+def vorticity(sim: Simulation, *, limit: float | None = None) -> Figure:
+    """Return a picture of the vorticity, red counter-clockwise; ``limit`` is the end of the scale [1/s]."""
+    values = sim.vorticity
+    end = float(np.quantile(np.abs(values), 0.99)) if limit is None else limit
+    return _field(sim, values, max(end, 1e-9), "vorticity (1/s)", "RdBu_r", 0.5)
+
+
+def pressure(sim: Simulation, *, limit: float | None = None) -> Figure:
+    """Return a picture of the pressure; ``limit`` is the end of the scale [Pa]."""
+    values = sim.pressure
+    end = float(np.quantile(np.abs(values), 0.99)) if limit is None else limit
+    return _field(sim, values, max(end, 1e-9), "pressure (Pa)", "PuOr_r", 0.0)
+
+
+def forces(record: Record, body: str | int = 0) -> Figure:
+    """Return the force on a body over time, after the jolt of the first steps."""
+    figure, axes = _panel(7.0, 3.0)
+    force = record.force(body)
+    for values, label in ((force[:, 0], "along x"), (force[:, 1], "along y")):
+        axes.plot(record.time, values, label=label, linewidth=1.2)
+    settled = force[len(force) // 20 :]
+    low, high = float(settled.min()), float(settled.max())
+    margin = 0.1 * max(high - low, 1e-12)
+    axes.set_ylim(low - margin, high + margin)
+    axes.set_xlabel("time (s)")
+    axes.set_ylabel("force (N/m)")
+    axes.legend(frameon=False)
+    return figure
+
+
+def _rows(folder: Path) -> list[dict[str, Any]]:
+    rows = [json.loads(path.read_text(encoding="utf-8")) for path in sorted(folder.glob("*.json"))]
+    if not rows:
+        raise IncompatibleRecord(f"{folder} holds no validation rows; run `make validate` first.")
+    return rows
+
+
+def _curves(rows: list[dict[str, Any]], case: str, part: str) -> dict[str, Any] | None:
+    found = [r["curves"] for r in rows if r["case"] == case and part in r["quantity"] and r["curves"]]
+    return found[0] if found else None
+
+
+def _draw_started(rows: list[dict[str, Any]]) -> Figure:
+    figure = Figure(figsize=(8.0, 3.0), layout="constrained", dpi=100)
+    for k, reynolds in enumerate((40, 550)):
+        axes = figure.add_subplot(1, 2, k + 1)
+        curves = _curves(rows, "impulsively started cylinder", f"Re {reynolds}")
+        if curves:
+            axes.plot(curves["t"], curves["cd"], label="surface")
+            axes.plot(curves["t"], curves["box"], linestyle="--", linewidth=1, label="momentum box")
+            axes.plot(curves["data_t"], curves["data_cd"], "k.", label="Koumoutsakos and Leonard 1995")
+            late = [c for t, c in zip(curves["t"], curves["cd"], strict=True) if t > 0.3]
+            axes.set_ylim(0.8 * min(late), 1.15 * max(late))
+            axes.set_xlim(0, max(curves["t"]))
+        axes.set_title(f"impulsively started cylinder, Re {reynolds}", fontsize="medium")
+        axes.set_xlabel("t U / R")
+        axes.set_ylabel("drag coefficient")
+        axes.legend(frameon=False, fontsize="small")
+    return figure
+
+
+def _draw_cavity(rows: list[dict[str, Any]]) -> Figure:
+    figure = Figure(figsize=(8.0, 3.0), layout="constrained", dpi=100)
+    left, right = figure.subplots(1, 2)
+    for reynolds, colour in ((100, "C0"), (1000, "C1")):
+        curves = _curves(rows, "lid-driven cavity", f"Re {reynolds}")
+        if curves:
+            left.plot(curves["u"], curves["y"], colour, label=f"Re {reynolds}")
+            left.plot(curves["data_u"], curves["data_y"], ".", color=colour)
+            right.plot(curves["x"], curves["v"], colour)
+            right.plot(curves["data_x"], curves["data_v"], ".", color=colour)
+    left.set(xlabel="u over the lid's speed", ylabel="y", title="lid-driven cavity, x = 0.5")
+    right.set(xlabel="x", ylabel="v over the lid's speed", title="y = 0.5; dots: Ghia et al. 1982")
+    left.legend(frameon=False)
+    return figure
+
+
+def _draw_convergence(rows: list[dict[str, Any]]) -> Figure:
+    figure = Figure(figsize=(8.0, 2.9), layout="constrained", dpi=100)
+    left, right = figure.subplots(1, 2)
+    curves = _curves(rows, "Taylor-Green", "order")
+    if curves:
+        size, error = np.array(curves["size"]), np.array(curves["error"])
+        left.loglog(size, error, "o-", label="rms error")
+        left.loglog(size, error[-1] * (size[-1] / size) ** 2, "k--", linewidth=0.8, label="second order")
+        left.set_xticks(size, [str(n) for n in size])
+        left.minorticks_off()
+    left.set(xlabel="cells along a side", ylabel="error (m/s)", title="Taylor-Green vortices")
+    left.legend(frameon=False)
+    curves = _curves(rows, "free eel", "mean speed")
+    if curves:
+        right.plot(curves["cells"], curves["speed"], "o-")
+        right.set_ylim(0, 1.15 * max(curves["speed"]))
+    right.set(xlabel="cells along the body", ylabel="speed (L/T)", title="free eel, cycle 6")
+    return figure
+
+
+def write_validation(folder: Path, docs: Path) -> None:
+    """Write ``validation.md`` and its figures to ``docs`` from the rows that the validation kept in ``folder``.
+
+    Raises:
+        IncompatibleRecord: there are no rows.
+    """
+    rows = _rows(folder)
+    pictures = docs / "pictures"
+    pictures.mkdir(parents=True, exist_ok=True)
+    for name, draw in (("started", _draw_started), ("cavity", _draw_cavity), ("convergence", _draw_convergence)):
+        draw(rows).savefig(pictures / f"flow_{name}.png")
+    lines = [
+        "# Validation of the flow solver", "",
+        "Written by `make validate` (`tests/flow/test_validate_flow.py`); every row is a run of this code.",
+        "What the rows mean and where they fall short: [flow.md](flow.md).", "",
+        "| case | quantity | ours | published or exact | difference | grid | domain | source |", "|" + "---|" * 8,
+    ]  # fmt: skip
+    for row in rows:
+        theirs = row["theirs"]
+        number = isinstance(theirs, int | float)
+        off = f"{100 * (row['ours'] / theirs - 1):+.1f} %" if number and theirs else ""
+        shown = f"{theirs:.4g}" if number else str(theirs)
+        lines.append(
+            f"| {row['case']} | {row['quantity']} | {row['ours']:.4g} | {shown} | {off} | {row['grid']} "
+            f"| {row['domain']} | {row['source']} |"
+        )
+    for name in ("started", "cavity", "convergence"):
+        lines += ["", f"![{name}](pictures/flow_{name}.png)"]
+    (docs / "validation.md").write_text("\n".join(lines) + "\n", encoding="utf-8")
