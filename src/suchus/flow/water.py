@@ -5,7 +5,6 @@ step is ``dt / cell``, a viscosity ``viscosity / cell``, a pressure that over th
 """
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -175,8 +174,10 @@ class Water:
 
     def _advance(self, out, blend, base, rate, dt, push, keep) -> None:  # type: ignore[no-untyped-def]
         window = np.array(self.window)
-        fields: tuple[Any, ...] = (*out, *blend, *base, *rate, self.p, self._raw_u, self._raw_v)
-        advance(*fields, window, self.sides.repeats, dt, self.nu, push, keep)
+        advance(
+            out[0], out[1], blend[0], blend[1], base[0], base[1], rate[0], rate[1], self.p, self._raw_u, self._raw_v,
+            window, self.sides.repeats, dt, self.nu, push, keep,
+        )  # fmt: skip
         if window[1] > window[0]:
             mu0_u, mu0_v = self.mu0
             immerse(
