@@ -56,9 +56,8 @@ def main():
     steps = options.parse_args().steps
     many = min(2, numba.config.NUMBA_NUM_THREADS)
     for threads in sorted({1, many}):
-        print(
-            f"memory, {threads} thread(s): {bandwidth(16_000_000, threads):.1f} GB/s far, {bandwidth(500_000, threads):.1f} GB/s near"
-        )
+        far, near = bandwidth(16_000_000, threads), bandwidth(500_000, threads)
+        print(f"memory, {threads} thread(s): {far:.1f} GB/s far, {near:.1f} GB/s near")
     for cells in (128, 256):
         rates = {}
         for threads in sorted({1, many}):
