@@ -2,6 +2,7 @@
 
 from suchus.motion.gait import Gait, Legs
 from suchus.motion.phase import limb_phase, stance, tail_bend, trunk_bend
+from suchus.motion.roll import Roll, check_roll, roll_targets
 from suchus.motion.targets import check_limits, foot_targets, longest_stroke, servo_targets, within_reach
 from suchus.motion.timing import START
 
@@ -9,10 +10,13 @@ __all__ = [
     "START",
     "Gait",
     "Legs",
+    "Roll",
     "check_limits",
+    "check_roll",
     "foot_targets",
     "limb_phase",
     "longest_stroke",
+    "roll_targets",
     "servo_targets",
     "stance",
     "tail_bend",

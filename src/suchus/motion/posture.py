@@ -148,6 +148,19 @@ def plan(robot: Crocodile, sequence: Keyed, time: Float[np.ndarray, "*batch"]) -
     )
 
 
+def mass_ahead(robot: Crocodile, posture: Posture, feet_ahead: float) -> float:
+    """Return how far the centre of mass lies ahead of the hips in a posture [m], whatever its own ``lead``.
+
+    Args:
+        robot: the design.
+        posture: the posture.
+        feet_ahead: how far the hind feet are ahead of the hips [m]; a leg that is too short points to its foot.
+    """
+    given = {name: np.array(getattr(posture, name)) for name in FIELDS}
+    angles = _angles(robot, given, np.array(feet_ahead), clip=True)
+    return float(_ahead(given["pelvis_pitch"], centre_of_mass(robot, angles)))
+
+
 def hind_leg(
     leg: Leg, feet: Float[np.ndarray, "*batch 3"], pitch: Float[np.ndarray, "*batch"], *, clip: bool = False
 ) -> Float[np.ndarray, "*batch 3"]:

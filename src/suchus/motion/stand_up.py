@@ -1,5 +1,6 @@
 """The way from lying to standing on hind legs and tail, in six postures, and how high any posture could reach."""
 
+from dataclasses import replace
 from math import radians
 
 import numpy as np
@@ -8,7 +9,7 @@ from jaxtyping import Float
 from suchus.design import Crocodile, joint_names
 from suchus.kinematics.body import landmarks
 from suchus.kinematics.mass import centre_of_mass
-from suchus.motion.posture import Keyed, Posture, hind_leg
+from suchus.motion.posture import Keyed, Posture, hind_leg, mass_ahead
 
 PELVIS_PITCH = radians(80)
 """Of the pelvis when standing [rad]; it settles at 85 degrees, where the tail's joint reaches the end of its range."""
@@ -23,6 +24,7 @@ The servos give way under the load and the tail pushes, so that it settles at 0.
 STRETCH = 0.937
 """Height of the hips over the feet when standing, as a share of the hind leg [-]; a straight knee cannot push."""
 _STANCE = 0.03  # [m] outside the hips; farther apart the feet reach less far ahead
+_NOT_QUITE = 0.99  # of the leg's length: a straight knee has no strength
 _ARMS_LYING = {"arm_yaw": 0.0, "arm_pitch": -0.1, "arm_knee": 0.5}  # spread, so that the shoulders come down
 _ARMS_RAISED = {"arm_yaw": 0.2, "arm_pitch": -0.3, "arm_knee": 1.2}  # off the ground and near the trunk
 
@@ -55,25 +57,23 @@ def stand_up(
     ground = max(robot.pelvis.height / 2, robot.spine.radius) + 0.002
     lying = {"pelvis_pitch": 0.0, "trunk_first": 0.0, "trunk_second": 0.0, **_ARMS_LYING}
     relaxed = {"hip_height": ground, "tail_press": -0.02, **lying}
-    raised = {"stance": _STANCE, "lift": 0.0, "tail_press": 0.02, **_ARMS_RAISED}
+    level = Posture(hip_height=ground + 0.021, lead=0.0, stance=_STANCE, lift=0.0, tail_press=0.0, **lying)
+    bent = replace(level, trunk_first=radians(50), trunk_second=radians(40), tail_press=0.02, **_ARMS_RAISED)
+    ahead = _feet_ahead(robot, level)
+    lead_level, lead_bent = (ahead - mass_ahead(robot, posture, ahead) for posture in (level, bent))
+    raised = {"stance": _STANCE, "lift": 0.0, **_ARMS_RAISED}
     postures = (
         Posture(lead=-0.57 * length, stance=0.06, lift=0.0, **relaxed),
-        Posture(lead=0.17 * length, stance=_STANCE, lift=0.02, **relaxed),
-        Posture(hip_height=ground + 0.021, lead=0.17 * length, stance=_STANCE, lift=0.0, tail_press=0.0, **lying),
-        Posture(
-            hip_height=ground + 0.021,
-            pelvis_pitch=0.0,
-            lead=0.43 * length,
-            trunk_first=radians(50),
-            trunk_second=radians(40),
-            **raised,
-        ),
+        Posture(lead=lead_level, stance=_STANCE, lift=0.02, **relaxed),
+        replace(level, lead=lead_level),
+        replace(bent, lead=lead_bent),
         Posture(
             hip_height=leg.foot_radius + 0.55 * length,
             pelvis_pitch=radians(45),
             lead=0.34 * length,
             trunk_first=radians(30),
             trunk_second=radians(20),
+            tail_press=0.02,
             **raised,
         ),
         Posture(
@@ -82,11 +82,25 @@ def stand_up(
             lead=lead,
             trunk_first=TRUNK_FIRST,
             trunk_second=TRUNK_SECOND,
-            **(raised | {"tail_press": 0.01}),
+            tail_press=0.01,
+            **raised,
         ),
     )
     times = tuple(slower * t for t in (0.0, 1.0, 1.5, 3.5, 5.0, 7.5))
     return Keyed(name="stand_up", times=times, postures=postures)
+
+
+def _feet_ahead(robot: Crocodile, level: Posture) -> float:
+    """Return how far ahead of its hips a lying robot sets its hind feet [m].
+
+    That is 0.17 of the leg's length, the caiman's 30 mm, past the centre of mass, or as far as the legs reach if the
+    forebody is too heavy.
+    """
+    leg = robot.hind_leg
+    length = leg.femur + leg.tibia
+    down = level.hip_height - leg.foot_radius
+    longest = np.sqrt((_NOT_QUITE * length) ** 2 - down**2 - level.stance**2)
+    return float(min(mass_ahead(robot, level, longest) + 0.17 * length, longest))
 
 
 def stretched(robot: Crocodile) -> float:

@@ -1,0 +1,107 @@
+"""The death roll: lateral and vertical bends of trunk and tail, a quarter of a cycle apart."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from suchus.design import Crocodile, servo_names
+from suchus.design.checks import Checks
+from suchus.errors import OutsideLimits
+from suchus.kinematics import tail as tail_kinematics
+from suchus.motion.targets import servo_range
+
+_LEGS_BACK = -np.pi / 2
+_TRUNK_YAW = [servo_names().index(f"spine_yaw_{i}") for i in (1, 2, 3)]
+_TRUNK_PITCH = [servo_names().index(f"spine_pitch_{i}") for i in (1, 2)]
+_TAIL_PITCH, _TAIL_CABLE = servo_names().index("tail_pitch"), servo_names().index("tail_cable")
+_LEG_YAW = [servo_names().index(f"{leg}_yaw") for leg in ("LF", "RF", "LH", "RH")]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Roll:
+    """A bend that goes around the body once in a cycle, legs folded back.
+
+    With t in cycles the trunk's front end bends to the left by ``trunk_lateral cos(2 pi t)`` and down by
+    ``trunk_vertical cos(2 pi (t - late))``; the tail's tip the same with its own amplitudes, ``tail_late`` cycles
+    later. In the first cycle the amplitudes grow from zero.
+    """
+
+    frequency: float
+    """Of the bends [Hz]."""
+    trunk_lateral: float
+    """Amplitude of the sum of the trunk's yaw angles [rad]."""
+    trunk_vertical: float
+    """Amplitude of the sum of the trunk's pitch angles [rad]."""
+    tail_lateral: float
+    """Amplitude of the bend of the cable section [rad]."""
+    tail_vertical: float
+    """Amplitude of the tail's pitch joint [rad]."""
+    late: float
+    """How late the vertical bend comes after the lateral one [cycle]: 0.25 goes around, -0.25 the other way."""
+    tail_late: float
+    """How late the tail bends after the trunk [cycle]: 0 makes a C of the body, 0.5 an S."""
+
+    def __post_init__(self) -> None:
+        with Checks("roll", self) as check:
+            check.number("frequency", 0.02, 10.0, "Hz")
+            for field in ("trunk_lateral", "trunk_vertical", "tail_lateral", "tail_vertical"):
+                check.number(field, 0.0, 3.1416, "rad")
+            check.number("late", -1.0, 1.0, "cycle")
+            check.number("tail_late", -1.0, 1.0, "cycle")
+
+
+def roll_targets(robot: Crocodile, roll: Roll, time: Float[np.ndarray, "*b"]) -> Float[np.ndarray, "*b 19"]:
+    """Return the servo angles of a roll, in the order of ``design.servo_names()`` [rad].
+
+    Args:
+        robot: the design.
+        roll: the motion.
+        time: since its beginning [s].
+    """
+    cycles = roll.frequency * time
+    grown = np.clip(cycles, 0.0, 1.0)
+    grown = grown**2 * (3.0 - 2.0 * grown)
+    targets = np.zeros((*np.shape(time), len(servo_names())))
+    targets[..., _LEG_YAW] = _LEGS_BACK
+
+    def bend(amplitude: float, late: float) -> np.ndarray:
+        return np.asarray(amplitude * grown * np.cos(2 * np.pi * (cycles - late)))
+
+    targets[..., _TRUNK_YAW] = bend(roll.trunk_lateral, 0.0)[..., None] / len(_TRUNK_YAW)
+    targets[..., _TRUNK_PITCH] = bend(roll.trunk_vertical, roll.late)[..., None] / len(_TRUNK_PITCH)
+    targets[..., _TAIL_PITCH] = bend(roll.tail_vertical, roll.late + roll.tail_late)
+    to_the_right = -bend(roll.tail_lateral, roll.tail_late)
+    targets[..., _TAIL_CABLE] = tail_kinematics.servo_angle(robot.tail, to_the_right)
+    return targets
+
+
+def check_roll(robot: Crocodile, roll: Roll) -> None:
+    """Refuse a roll that a robot's joints or servos cannot follow.
+
+    Raises:
+        OutsideLimits: a joint would have to leave its range, or a servo to turn faster than it can; the message names
+            it.
+    """
+    if roll.tail_lateral > robot.tail.bend_limit:
+        raise OutsideLimits(
+            f"the roll bends the tail by {roll.tail_lateral:.3f} rad; robot {robot.name!r} allows up to "
+            f"{robot.tail.bend_limit:.3f} rad: lower tail_lateral."
+        )
+    time = (1.0 + np.arange(257) / 256) / roll.frequency
+    angles = roll_targets(robot, roll, time)
+    speeds = np.abs(np.diff(angles, axis=0)).max(axis=0) / (time[1] - time[0])
+    for i, name in enumerate(servo_names()):
+        low, high = servo_range(robot, name)
+        least, most = float(angles[:, i].min()), float(angles[:, i].max())
+        if least < low or most > high:
+            raise OutsideLimits(
+                f"the roll asks {name} of robot {robot.name!r} for {least:.3f} to {most:.3f} rad; {low:.3f} to "
+                f"{high:.3f} rad is allowed: bend less."
+            )
+        limit = robot.servo(name).speed
+        if speeds[i] > limit:
+            raise OutsideLimits(
+                f"the roll asks {name} of robot {robot.name!r} for {speeds[i]:.2f} rad/s; the servo turns at "
+                f"{limit:.2f} rad/s at most: lower the frequency or the bend."
+            )
