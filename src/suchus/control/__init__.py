@@ -5,6 +5,7 @@ from suchus.control.coordinated import Coordinated, Kick
 from suchus.control.heading import HeadingRule
 from suchus.control.limbs import LAWS, LimbLaw
 from suchus.control.open_loop import OpenLoop
+from suchus.control.rolling import Rolling
 from suchus.control.sensed import Sensed
 from suchus.control.shared import OWNERS, Shared
 from suchus.control.spine import SpineRule
@@ -22,6 +23,7 @@ __all__ = [
     "Kick",
     "LimbLaw",
     "OpenLoop",
+    "Rolling",
     "Sensed",
     "Shared",
     "SpineRule",

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from suchus.design.checks import Checks
 from suchus.design.contact import Contact
 from suchus.design.leg import Leg
+from suchus.design.servo import Servo
 from suchus.design.spine import Spine
 from suchus.design.tail import Tail
 from suchus.design.trunk import Head, Pelvis, Thorax
@@ -63,3 +64,13 @@ class Crocodile:
     def leg(self, name: str) -> Leg:
         """Return the leg of a girdle: ``LF`` and ``RF`` the front one, ``LH`` and ``RH`` the hind one."""
         return self.front_leg if name.endswith("F") else self.hind_leg
+
+    def servo(self, name: str) -> Servo:
+        """Return the servo that carries a name of ``design.servo_names()``."""
+        if name == "tail_pitch":
+            return self.tail.pitch_servo
+        if name == "tail_cable":
+            return self.tail.cable_servo
+        if name.startswith("spine"):
+            return self.spine.yaw_servo if "yaw" in name else self.spine.pitch_servo
+        return self.leg(name[:2]).servo

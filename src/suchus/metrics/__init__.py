@@ -6,6 +6,7 @@ from suchus.metrics.loads import swing_lift, swing_loads
 from suchus.metrics.loss import loss, says
 from suchus.metrics.progress import displacement, heading, heading_change, path_length, slip
 from suchus.metrics.reach import held, lead, reach, static_margin
+from suchus.metrics.rolling import roll_angle, roll_rate
 from suchus.metrics.stability import (
     height_peak_to_peak,
     height_std,
@@ -34,7 +35,9 @@ __all__ = [
     "path_length",
     "peak_torque",
     "reach",
+    "roll_angle",
     "roll_peak_to_peak",
+    "roll_rate",
     "says",
     "sensed_phase",
     "slip",

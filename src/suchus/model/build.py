@@ -79,13 +79,7 @@ def joint_addresses(model: Any, names: Sequence[str]) -> list[int]:
 
 def servo_of(robot: Crocodile, name: str) -> Servo:
     """Return the servo that carries a name of ``design.servo_names()``."""
-    if name == "tail_pitch":
-        return robot.tail.pitch_servo
-    if name == "tail_cable":
-        return robot.tail.cable_servo
-    if name.startswith("spine"):
-        return robot.spine.yaw_servo if "yaw" in name else robot.spine.pitch_servo
-    return robot.leg(name[:2]).servo
+    return robot.servo(name)
 
 
 def _set_options(spec: Any, timestep: float) -> None:

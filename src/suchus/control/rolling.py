@@ -1,0 +1,64 @@
+"""The death roll as a control: a table of servo angles over time, legs folded back."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from suchus.control.open_loop import Table
+from suchus.design import Crocodile
+from suchus.motion import Gait, Roll, check_roll, roll_targets
+
+
+@dataclass(frozen=True, slots=True)
+class Rolling:
+    """Commands of a roll from time zero; the gait of the run is not asked, its limbs have no phase of their own."""
+
+    roll: Roll
+    """The motion."""
+
+    @property
+    def feels(self) -> bool:
+        """Nothing is sensed."""
+        return False
+
+    def start(
+        self,
+        robots: Sequence[Crocodile],
+        gaits: Sequence[Gait],
+        seeds: Sequence[int],
+        ticks: int,
+        period: float,
+    ) -> Table:
+        """Tabulate the roll for every robot.
+
+        Raises:
+            OutsideLimits: a robot cannot follow it.
+        """
+        return self.start_together([self] * len(robots), robots, gaits, seeds, ticks, period)
+
+    @staticmethod
+    def start_together(
+        controls: Sequence["Rolling"],
+        robots: Sequence[Crocodile],
+        gaits: Sequence[Gait],
+        seeds: Sequence[int],
+        ticks: int,
+        period: float,
+    ) -> Table:
+        """Tabulate the rolls of a batch, one per run.
+
+        Raises:
+            OutsideLimits: a robot cannot follow its roll.
+        """
+        del gaits, seeds
+        pairs = [(control.roll, robot) for control, robot in zip(controls, robots, strict=True)]
+        unique = {pair: i for i, pair in enumerate(dict.fromkeys(pairs))}
+        time = np.arange(ticks) * period
+        targets = np.empty((len(unique), ticks, 19))
+        phase = np.empty((len(unique), ticks, 4))
+        for (roll, robot), i in unique.items():
+            check_roll(robot, roll)
+            targets[i] = roll_targets(robot, roll, time)
+            phase[i] = (roll.frequency * time)[:, None]
+        return Table(targets, phase, np.array([unique[pair] for pair in pairs]))
