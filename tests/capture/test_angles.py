@@ -57,6 +57,23 @@ def test_keypoints_are_where_the_simulation_has_them(caiman, crawl):
         np.testing.assert_allclose(found[leg], crawl.foot_position.values[:, i], atol=1e-9)
 
 
+def test_points_of_one_rigid_part_keep_their_distance(caiman, crawl):
+    found = keypoints(caiman, crawl)
+    for one, two, length in (
+        ("neck", "shoulder", 0.05),
+        ("snout", "shoulder", caiman.head.snout - caiman.thorax.shoulder),
+        ("shoulder", "spine_3", caiman.thorax.shoulder),
+        ("spine_1", "hip", caiman.spine.base),
+        ("hip", "tail_base", caiman.tail.offset),
+        ("tail_base", "tail_1", caiman.tail.root + caiman.tail.pitch / 2),
+    ):
+        apart = np.linalg.norm(found[one] - found[two], axis=1)
+        np.testing.assert_allclose(apart, length, atol=1e-9, err_msg=f"{one} {two}")
+    for one, two in (("spine_3", "spine_2"), ("spine_2", "spine_1")):  # a pitch joint lies between
+        apart = np.linalg.norm(found[one] - found[two], axis=1)
+        np.testing.assert_allclose(apart, 2 * caiman.spine.link, rtol=0.01)
+
+
 def test_the_crawl_shows_the_joint_angles_that_it_had(caiman, crawl, clean):
     camera = Camera(rate=100.0, noise=0.0, lost=0.0, heading=0.0, scale=None, heights=False, seed=0)
     tracks = tracked(keypoints(caiman, crawl), crawl.time.values, camera, source="a crawl")

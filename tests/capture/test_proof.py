@@ -46,6 +46,7 @@ def test_our_crawl_comes_back_as_commanded(caiman, crawl, noisy, seed):
     np.testing.assert_allclose(back.stroke, told.stroke, rtol=AMPLITUDE)
     np.testing.assert_allclose(back.duty_factor, told.duty_factor, atol=0.04)
     np.testing.assert_allclose([back.front_reach, back.hind_reach], [told.front_reach, told.hind_reach], atol=0.004)
+    np.testing.assert_allclose([back.front_ahead, back.hind_ahead], [told.front_ahead, told.hind_ahead], atol=0.006)
 
 
 def test_our_crawl_comes_back_as_simulated(caiman, crawl, noisy):

@@ -95,7 +95,8 @@ def told(walk: Walk) -> list[str]:
         "limb phase [cycle]: " + ", ".join(f"{leg} {one(f'phase_{leg}', 3)}" for leg in LEGS),
         f"spine: {one('spine_lateral', 1, turn)} degrees to either side, farthest right at phase "
         f"{one('spine_rightmost', 3)}",
-        f"tail: {one('tail_lateral', 1, turn)} degrees to either side, {one('tail_lag', 3)} cycles behind the spine",
+        f"tail: {one('tail_lateral', 1, turn)} degrees to either side at {walk.tail_share:.2f} of its length, "
+        f"{one('tail_lag', 3)} cycles behind the spine",
         f"standing index (1 standing, 0 travelling): trunk {one('standing_trunk')}, tail {one('standing_tail')}, "
         f"body {one('standing_body')}",
     ]

@@ -160,6 +160,8 @@ def _shaped(walk: Walk, robot: Crocodile, gait: Gait, base: Gait, notes: list[st
         stroke=_rounded(stroke),
         front_reach=_rounded(trunk * _mean(walk, "outward", LEGS[:2]) - robot.front_leg.hip_offset),
         hind_reach=_rounded(trunk * _mean(walk, "outward", LEGS[2:]) - robot.hind_leg.hip_offset),
+        front_ahead=_rounded(trunk * _mean(walk, "ahead", LEGS[:2])),
+        hind_ahead=_rounded(trunk * _mean(walk, "ahead", LEGS[2:])),
     )
 
 
@@ -182,6 +184,8 @@ def _within_limits(robot: Crocodile, gait: Gait, base: Gait, notes: list[str]) -
         gait,
         front_reach=base.front_reach,
         hind_reach=base.hind_reach,
+        front_ahead=base.front_ahead,
+        hind_ahead=base.hind_ahead,
         lift=base.lift,
         tail_pitch=float(np.clip(gait.tail_pitch, *robot.tail.pitch_range)),
     )

@@ -14,6 +14,7 @@ from suchus.capture.sides import check_sides
 from suchus.capture.tracks import Tracks, UnusableTracks, check_tracks
 from suchus.capture.wave import standing_index
 from suchus.design import LEGS
+from suchus.design.checks import require
 
 _BINS = 20  # of phase, for the spread
 _SHARP = 3.0  # a joint bends if its amplitude exceeds so many of its standard errors
@@ -46,6 +47,8 @@ class Walk:
     """How many were seen [-]."""
     upright: bool
     """Whether heights were seen."""
+    tail_share: float
+    """Where along the tail its lateral angle was taken, 1 at the tip [-]."""
     numbers: Mapping[str, Seen]
     """Every number by name; see ``docs/capture.md``."""
     bends: Mapping[str, complex]
@@ -80,9 +83,11 @@ def observe(tracks: Tracks, *, tail_share: float = 1.0) -> Walk:
             passive, the share that its servo bends.
 
     Raises:
+        InvalidDesign: ``tail_share`` is no share.
         UnusableTracks: points are missing or lost, left and right are swapped, units are wrong, nothing repeats, less
             than one cycle was seen, noise hides the steps, or the camera goes along.
     """
+    require("observe", "tail_share", tail_share, 0.05, 1.0, "")
     check_tracks(tracks)
     check_sides(tracks)
     tracks = tracks.ahead()
@@ -102,6 +107,7 @@ def observe(tracks: Tracks, *, tail_share: float = 1.0) -> Walk:
         source=tracks.source,
         cycles=float((tracks.time[-1] - tracks.time[0]) / period),
         upright=tracks.upright,
+        tail_share=tail_share,
         numbers=numbers,
         bends={name: complex(_first(whole.angles[name], zero)) for name in whole.angles},
         cycle=_mean_cycle(tracks, whole, zero),
@@ -159,6 +165,7 @@ def _numbers(reading: _Reading) -> dict[str, float]:
             f"retraction_{leg}": path.retraction,
             f"stroke_{leg}": path.stroke / reading.trunk,
             f"outward_{leg}": path.outward / reading.trunk,
+            f"ahead_{leg}": float(path.forward.mean()) / reading.trunk,
             f"lift_{leg}": path.lift / reading.trunk,
         }
     for name, one in reading.angles.items():
@@ -198,7 +205,7 @@ def _unit(name: str) -> str:
     stem = name.partition("_")[0]
     if stem in ("phase",) or name in ("spine_rightmost", "tail_lag"):
         return "cycle"
-    if stem in ("stroke", "outward", "lift", "stride"):
+    if stem in ("stroke", "outward", "ahead", "lift", "stride"):
         return "trunk"
     return "-" if stem in ("duty", "retraction") or name.endswith("overtones") else "rad"
 

@@ -35,6 +35,8 @@ class Options:
     """Gait that lends what was not seen."""
     duty: Literal["retraction", "contact"] = "retraction"
     """What the duty factor is: the share in which feet go back along the body, or in which they rest on the ground."""
+    tail_share: float | None = None
+    """Where along the tail its bend is taken, 1 at the tip; by default where the robot's cable ends."""
     names: tuple[str, ...] = ()
     """Keypoints that the file calls otherwise, as THEIRS=OURS."""
     fps: float | None = None
@@ -69,7 +71,7 @@ def capture(words: Sequence[str]) -> int:
         move("reading", 0.1)
         tracks = read_tracks(options.tracks, _how(options)).between(options.start, options.end)
         move("looking for the cycle", 0.3)
-        walk = observe(tracks, tail_share=driven_share(options.robot))
+        walk = observe(tracks, tail_share=_share(options))
         move("writing", 0.8)
         captured = to_gait(walk, options.robot, options.base, name=options.out.stem, duty=options.duty)
         write_gait(captured, walk, options.out)
@@ -77,6 +79,10 @@ def capture(words: Sequence[str]) -> int:
     print(*told(walk), *(f"note: {note}" for note in captured.notes), sep="\n")
     print(f"gait: {options.out}\ndiagram: {picture}\nrun it: suchus run displacement --gait {options.out}")
     return 0
+
+
+def _share(options: Options) -> float:
+    return driven_share(options.robot) if options.tail_share is None else options.tail_share
 
 
 def _how(options: Options) -> Reading:
