@@ -37,7 +37,8 @@ def main() -> None:
     def raw(runs: int, nthread: int) -> None:
         data = [mujoco.MjData(model) for _ in range(nthread)]
         with rollout.Rollout(nthread=nthread) as roll:
-            roll.rollout([model] * runs, data, np.tile(start, (runs, 1)), np.broadcast_to(targets, (runs, *targets.shape)))
+            controls = np.broadcast_to(targets, (runs, *targets.shape))
+            roll.rollout([model] * runs, data, np.tile(start, (runs, 1)), controls)
 
     def ours(runs: int) -> None:
         simulate([Run(robot=robot, gait=gait, seed=i) for i in range(runs)], duration=DURATION)
@@ -48,7 +49,8 @@ def main() -> None:
     for runs in (1, RUNS):
         raw_time, our_time = best(lambda n=runs: raw(n, min(n, nthread))), best(lambda n=runs: ours(n))
         print(
-            f"{runs:3d} runs: rollout {runs * steps / raw_time:8.0f} steps/s, suchus {runs * steps / our_time:8.0f} steps/s, "
+            f"{runs:3d} runs: rollout {runs * steps / raw_time:8.0f} steps/s, "
+            f"suchus {runs * steps / our_time:8.0f} steps/s, "
             f"ratio {raw_time / our_time:.2f}, {runs * DURATION / our_time:.0f} times real time"
         )
 

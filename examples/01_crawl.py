@@ -13,6 +13,7 @@ for name in ("belly_crawl", "limbs_only"):
     record = suchus.crawl(robot, suchus.GAITS[name])  # 9 s: one to settle, two cycles of four
     forward = float(displacement(record).sel(xyz="x"))
     print(
-        f"{name:12s} {forward:.2f} m forward, height of the centre of mass +- {1000 * float(height_std(record)):.1f} mm, "
+        f"{name:12s} {forward:.2f} m forward, "
+        f"height of the centre of mass +- {1000 * float(height_std(record)):.1f} mm, "
         f"cost of transport {float(cost_of_transport(record)):.2f}, slip {float(slip(record)):.2f}"
     )

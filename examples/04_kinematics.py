@@ -17,6 +17,7 @@ try:
 except suchus.Unreachable as error:
     print("leg:", error)
 bent = spine.forward(robot.spine, np.radians([10.0, 0.0, 10.0, 0.0, 10.0]))
-print(f"spine: joint 5 at {np.round(bent[:3, 3], 4)} m, head turned by {np.degrees(np.arctan2(bent[1, 0], bent[0, 0])):.0f} deg")
+turned = np.degrees(np.arctan2(bent[1, 0], bent[0, 0]))
+print(f"spine: joint 5 at {np.round(bent[:3, 3], 4)} m, head turned by {turned:.0f} degrees")
 toward, away = tail.cable_changes(robot.tail, np.radians(90.0))
-print(f"tail: a bend of 90 degrees pulls {-1000 * toward:.2f} mm of one cord, gives {1000 * away:.2f} mm of the other")
+print(f"tail: 90 degrees of bend pull {-1000 * toward:.2f} mm of one cord and give {1000 * away:.2f} mm of the other")
