@@ -172,9 +172,10 @@ class Displacement(Experiment):
 
     def _verdicts(self, record: xr.Dataset) -> tuple[Any, ...]:
         way, ratio = _forward(record).values, _ratio(record)
+        ours = (self.robot, self.gait) == (ROBOTS["caiman"], GAITS["belly_crawl"])
         chosen = (
-            f"Leg stroke ({1000 * self.gait.stroke:.0f} mm) and trunk bend ({degrees(self.gait.trunk_bend):.0f} deg) "
-            "are free in the article and were chosen to give its two displacements."
+            f"Leg stroke ({1000 * self.gait.stroke:.0f} mm) and trunk bend ({degrees(self.gait.trunk_bend):.0f} deg) are "
+            f"free in the article{' and were chosen to give its two displacements' if ours else ''}."
         )
         return (
             judge("displacement_coordinated", float(way[0]), chosen),
