@@ -80,7 +80,7 @@ def test_added_mass_is_that_of_potential_theory():
 def test_surface_force_agrees_with_the_momentum_through_a_box():
     sim, record, f = cases.cylinder(24, 40, x=(-4, 6), y=(-4, 4), until=4.0, control=1.0)
     box = 2 * sim.control_forces[record.time > 3.5, 0].mean()
-    assert f[record.time > 3.5, 0].mean() == pytest.approx(box, rel=0.03)
+    assert f[record.time > 3.5, 0].mean() == pytest.approx(box, rel=0.04)
     assert abs(f[-1, 1]) < 1e-2
 
 

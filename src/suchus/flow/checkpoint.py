@@ -89,6 +89,7 @@ def _restore(sim: "Simulation", state: dict[str, np.ndarray]) -> None:
     sim._rows = list(state["rows"])
     sim._placed = False
     water.u[:], water.v[:], water.p[:] = state["u"], state["v"], state["p"]
+    sim._fastest = water.fastest()
     water.border.stream = (float(state["stream"][0]), float(state["stream"][1]))
     for k, edge in enumerate(water.border.edges):
         edge.prescribed[:] = state[f"edge{k}"]

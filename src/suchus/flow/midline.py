@@ -110,8 +110,8 @@ class Midline(Shape):
         edge = np.flatnonzero(length > 1e-9 * arc[-1])
         parts = np.maximum(1, np.round(length[edge] / spacing)).astype(int)
         edge = np.repeat(edge, parts)
-        part = np.concatenate([(np.arange(p) + 0.5) / p for p in parts])
         count = np.repeat(parts, parts)
+        part = (np.arange(count.size) - np.repeat(np.cumsum(parts) - parts, parts) + 0.5) / count
         point = outline[:, edge] * (1 - part) + nxt[:, edge] * part
         along = nxt[:, edge] - outline[:, edge]
         normal = np.stack([along[1], -along[0]]) / length[edge]

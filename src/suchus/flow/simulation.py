@@ -67,6 +67,7 @@ class Simulation:
         self._placed = False
         self._speed = max([self._marker_speed(b, self._in_frame(self.pose(b.name))) for b in setup.bodies] + [1e-12])
         self._speed = max(float(np.hypot(*stream)), self._speed)
+        self._fastest = 0.0  # fastest water after the last step
         self._reference = 0.0  # fastest stream, body or wall so far
         self._peak = 2 * self._speed  # fastest water so far; beside a bluff body, twice the stream
 
@@ -109,7 +110,7 @@ class Simulation:
         Raises:
             OutsideLimits: a fixed step is asked for and carries water over more than a cell.
         """
-        fastest = max(self.water.fastest(), self._speed)
+        fastest = max(self._fastest if self._rows else self.water.fastest(), self._speed)
         limit = self.setup.grid.cell / (fastest + 4 * float(self.water.nu))
         if self.setup.step is None:
             return self.setup.courant * limit
@@ -152,7 +153,7 @@ class Simulation:
 
     def _note(self, dt: float, poses: list[Pose], push: tuple[float, ...]) -> None:
         water, setup = self.water, self.setup
-        fastest = water.fastest()
+        fastest = self._fastest = water.fastest()
         row = np.zeros(5 + len(setup.bodies) * len(COLUMNS))
         body_speed = 0.0
         for k, (body, pose) in enumerate(zip(setup.bodies, poses, strict=True)):
