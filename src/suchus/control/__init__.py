@@ -1,5 +1,6 @@
 """From what the robot senses to what its servos are told, for a whole batch at once."""
 
+from suchus.control.attitude import AttitudeRule
 from suchus.control.controller import Command, Control, Controller, Joinable
 from suchus.control.coordinated import Coordinated, Kick
 from suchus.control.heading import HeadingRule
@@ -9,11 +10,15 @@ from suchus.control.rolling import Rolling
 from suchus.control.sensed import Sensed
 from suchus.control.shared import OWNERS, Shared
 from suchus.control.spine import SpineRule
+from suchus.control.switching import SwitchRule
 from suchus.control.tail import TailRule
+from suchus.control.walking import Change, Walking
 
 __all__ = [
     "LAWS",
     "OWNERS",
+    "AttitudeRule",
+    "Change",
     "Command",
     "Control",
     "Controller",
@@ -27,5 +32,7 @@ __all__ = [
     "Sensed",
     "Shared",
     "SpineRule",
+    "SwitchRule",
     "TailRule",
+    "Walking",
 ]

@@ -1,0 +1,85 @@
+"""What the IMU says about roll and pitch, answered by the height of the feet."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from suchus.control.sensed import Sensed
+from suchus.design import Crocodile
+from suchus.design.checks import Checks
+
+_LEFT = np.array([1.0, -1.0, 1.0, -1.0])
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AttitudeRule:
+    """Keeps the body level over uneven ground: feet on the side that sinks push down, on the side that rises give way.
+
+    With w a hip's distance from the midline and x its distance ahead of the middle between the girdles, a foot is
+    lowered by -w (roll gain + roll rate gain) to the left of the midline, by the opposite to the right, and by
+    x (pitch gain + pitch rate gain). Roll counts with the left side up, pitch with the nose down.
+    """
+
+    roll: float = 1.0
+    """Part of the roll that the feet make up for at once [-]; 1 levels the hips."""
+    roll_rate: float = 0.1
+    """The same for how fast it rolls [s]."""
+    pitch: float = 0.7
+    """Part of the pitch that the feet make up for at once [-]."""
+    pitch_rate: float = 0.06
+    """The same for how fast it pitches [s]."""
+    washout: float = 3.0
+    """Over which roll and pitch are compared with their own means [s]: a slope is no stumble."""
+    most: float = 0.03
+    """Most that a foot is raised or lowered [m]; a leg gives little more."""
+
+    def __post_init__(self) -> None:
+        with Checks("attitude_rule", self) as checks:
+            for field in ("roll", "roll_rate", "pitch", "pitch_rate"):
+                checks.number(field, -10.0, 10.0, "")
+            checks.number("washout", 0.1, 600.0, "s")
+            checks.number("most", 0.0, 0.1, "m")
+
+
+class Attitude:
+    """The attitude of a batch, and what the feet do about it; each run has its own rule or none."""
+
+    def __init__(self, rules: Sequence[AttitudeRule | None], robots: Sequence[Crocodile], period: float) -> None:
+        given = [rule if rule is not None else _NONE for rule in rules]
+        self._gain = np.array([(r.roll, r.roll_rate, r.pitch, r.pitch_rate) for r in given]).T[..., None]  # (4, run, 1)
+        self._most = np.array([[r.most] for r in given])
+        self._keep = np.exp(-period / np.array([r.washout for r in given]))
+        self._aside = np.array([_LEFT * [r.leg(leg).hip_offset for leg in ("LF", "RF", "LH", "RH")] for r in robots])
+        self._ahead = np.array([_halves(r) for r in robots])
+        self._mean = np.zeros((2, len(robots)))
+        self._felt = False
+
+    def lower(self, sensed: Sensed) -> Float[np.ndarray, "run 4"]:
+        """Return how much lower each foot goes [m]."""
+        tilt = np.stack(roll_and_pitch(sensed.orientation))
+        if not self._felt:
+            self._mean, self._felt = tilt.copy(), True
+        self._mean = tilt + self._keep * (self._mean - tilt)
+        roll, pitch = (tilt - self._mean)[..., None]
+        rates = sensed.angular_velocity
+        rolled = self._gain[0] * roll + self._gain[1] * rates[:, :1]
+        pitched = self._gain[2] * pitch + self._gain[3] * rates[:, 1:2]
+        lower = -self._aside * rolled + self._ahead * pitched
+        return np.asarray(np.clip(np.nan_to_num(lower), -self._most, self._most))
+
+
+_NONE = AttitudeRule(roll=0.0, roll_rate=0.0, pitch=0.0, pitch_rate=0.0)
+
+
+def roll_and_pitch(orientation: Float[np.ndarray, "run 4"]) -> tuple[np.ndarray, np.ndarray]:
+    """Return roll, left side up positive, and pitch, nose down positive, of each run [rad]."""
+    w, x, y, z = orientation.T
+    roll = np.arctan2(2 * (w * x + y * z), 1 - 2 * (x**2 + y**2))
+    return roll, np.arcsin(np.clip(2 * (w * y - z * x), -1.0, 1.0))
+
+
+def _halves(robot: Crocodile) -> np.ndarray:
+    half = (robot.spine.length + robot.thorax.shoulder) / 2
+    return np.array([half, half, -half, -half])

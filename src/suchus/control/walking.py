@@ -1,0 +1,188 @@
+"""Walking that changes its gait, steers, and keeps its body level."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from suchus.control.attitude import Attitude, AttitudeRule
+from suchus.control.controller import Command
+from suchus.control.sensed import Sensed
+from suchus.control.switching import Switcher, SwitchRule
+from suchus.design import Crocodile
+from suchus.design.checks import Checks, require
+from suchus.errors import OutsideLimits
+from suchus.motion import START, Gait, servo_targets, tail_bend, trunk_bend
+from suchus.motion.transition import Transition, transition
+
+_LEFT = np.array([1.0, -1.0, 1.0, -1.0])
+_SLACK = 1e-9  # [s]
+_GROWS = 0.5  # [cycle]; over which stroke and bends grow after a change of gait
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Change:
+    """A change of gait at a time of its own."""
+
+    at: float
+    """When it begins [s]."""
+    gait: Gait
+    """To which gait."""
+
+    def __post_init__(self) -> None:
+        require("change", "at", self.at, 0.0, 86400.0, "s")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Walking:
+    """The run's gait, with what is asked of it besides; runs that differ share a batch.
+
+    With nothing asked the servo angles are those of ``OpenLoop``.
+    """
+
+    attitude: AttitudeRule | None = None
+    """Which keeps the body level; None for none."""
+    changes: tuple[Change, ...] = ()
+    """Changes of gait that are asked for, in the order of their times."""
+    switching: SwitchRule | None = None
+    """Which changes the gait by what is felt; None for none."""
+    bend: float = 0.0
+    """Lasting bend of the trunk, left positive [rad]; it steers to the left."""
+    asymmetry: float = 0.0
+    """Share by which left strokes are shorter and right strokes longer [-]; it steers to the left."""
+
+    def __post_init__(self) -> None:
+        with Checks("walking", self) as checks:
+            checks.number("bend", -2.0, 2.0, "rad")
+            checks.number("asymmetry", -3.0, 3.0, "")
+            times = [change.at for change in self.changes]
+            checks.that(times == sorted(times), f"walking.changes begin at {times} s; their times must increase")
+            checks.that(
+                not self.changes or self.switching is None, "walking has changes and switching; give one of them"
+            )
+
+    @property
+    def feels(self) -> bool:
+        """Whether any rule is on."""
+        return self.attitude is not None or self.switching is not None
+
+    def start(
+        self, robots: Sequence[Crocodile], gaits: Sequence[Gait], seeds: Sequence[int], ticks: int, period: float
+    ) -> "Walker":
+        """Start walking."""
+        return self.start_together([self] * len(robots), robots, gaits, seeds, ticks, period)
+
+    @staticmethod
+    def start_together(
+        controls: Sequence["Walking"],
+        robots: Sequence[Crocodile],
+        gaits: Sequence[Gait],
+        seeds: Sequence[int],
+        ticks: int,
+        period: float,
+    ) -> "Walker":
+        """Start walking, each run with its own control.
+
+        Raises:
+            OutsideLimits: a robot whose trunk cannot bend as far as it is asked to.
+        """
+        del seeds, ticks
+        for control, robot, gait in zip(controls, robots, gaits, strict=True):
+            most = 3 * min(abs(end) for end in robot.spine.yaw_range)
+            if abs(control.bend) + gait.trunk_bend > most + 1e-9:
+                raise OutsideLimits(
+                    f"gait {gait.name!r} bends the trunk by {gait.trunk_bend:.3f} rad and steering by "
+                    f"{abs(control.bend):.3f} rad; robot {robot.name!r} allows {most:.3f} rad in all: "
+                    "lower walking.bend."
+                )
+        return Walker(controls, robots, gaits, period)
+
+
+class Walker:
+    """The running controller of a batch of walks."""
+
+    def __init__(
+        self, controls: Sequence[Walking], robots: Sequence[Crocodile], gaits: Sequence[Gait], period: float
+    ) -> None:
+        self._controls, self._robots, self._gaits = list(controls), list(robots), list(gaits)
+        self._period = period
+        n = len(robots)
+        self._began = np.full(n, START)
+        self._cycles = np.zeros(n)  # walked before the present gait [cycle]
+        self._full = np.zeros(n)  # over which stroke and bends grow [s]; zero: at once
+        self._script: dict[int, tuple[float, Transition, np.ndarray]] = {}
+        self._bend = np.array([control.bend for control in controls])
+        self._stroke = 1.0 - _LEFT * np.array([[control.asymmetry] for control in controls])
+        self._attitude = Attitude([control.attitude for control in controls], robots, period)
+        self._switcher = Switcher([control.switching for control in controls], gaits, period)
+        self._lower = np.zeros((n, 4))
+        self._last = self._walk(0.0)
+
+    def rest(self) -> Float[np.ndarray, "run 19"]:
+        """The posture of the first phases."""
+        return self._last.targets
+
+    def command(self, tick: int, sensed: Sensed | None) -> Command:
+        """Walk on, or take another step of a change of gait."""
+        time = tick * self._period
+        if sensed is not None:
+            self._lower = self._attitude.lower(sensed) if time >= START - _SLACK else np.zeros_like(self._lower)
+        self._finish(time)
+        now = self._walk(time)
+        for run, asked in self._asked(time, sensed, now.phase):
+            way = transition(self._robots[run], self._gaits[run], asked)
+            self._script[run] = (time, way, self._last.targets[run].copy())
+            self._cycles[run] += np.ceil((time - self._began[run]) / self._gaits[run].period)
+            self._gaits[run] = asked
+        for run, (begun, way, start) in self._script.items():
+            now.targets[run] = way.at(time - begun, start)
+            now.phase[run] = self._last.phase[run]
+        self._last = now
+        return Command(now.targets.copy(), now.phase.copy())
+
+    def gait_of(self, run: int) -> Gait:
+        """Return the gait in which a run walks, or to which it is changing."""
+        return self._gaits[run]
+
+    def _asked(self, time: float, sensed: Sensed | None, phase: np.ndarray) -> list[tuple[int, Gait]]:
+        """Return who begins another gait now."""
+        busy = set(self._script)
+        asked = []
+        for run, control in enumerate(self._controls):
+            due = [change.gait for change in control.changes if change.at <= time + _SLACK]
+            if run not in busy and due and due[-1] != self._gaits[run]:
+                asked.append((run, due[-1]))
+        if sensed is not None and time >= START - _SLACK:
+            asked += self._switcher.decide(sensed, phase, self._gaits, busy)
+        return asked
+
+    def _finish(self, time: float) -> None:
+        for run, (begun, way, _) in list(self._script.items()):
+            if time >= begun + way.duration - _SLACK:
+                del self._script[run]
+                self._began[run] = time
+                self._full[run] = _GROWS * self._gaits[run].period
+
+    def _walk(self, time: float) -> Command:
+        """Return the intended posture of every run by its clock; those of runs that change their gait do not count."""
+        targets, phases = np.zeros((len(self._robots), 19)), np.zeros((len(self._robots), 4))
+        groups: dict[tuple[Crocodile, Gait], list[int]] = {}
+        for run, pair in enumerate(zip(self._robots, self._gaits, strict=True)):
+            groups.setdefault(pair, []).append(run)
+        since = np.maximum(time - self._began, 0.0)
+        size = np.where(self._full > 0, np.clip(since / np.maximum(self._full, 1e-9), 0.0, 1.0), 1.0)
+        for (robot, gait), runs in groups.items():
+            phase = (since[runs] / gait.period + self._cycles[runs])[:, None] + np.array(gait.limb_phases)
+            phases[runs] = phase
+            targets[runs] = servo_targets(
+                robot,
+                gait,
+                phase,
+                trunk=size[runs] * trunk_bend(gait, phase) + self._bend[runs],
+                tail=size[runs] * tail_bend(gait, phase),
+                stroke=gait.stroke * size[runs, None] * self._stroke[runs],
+                lower=self._lower[runs],
+                clip=True,
+            )
+        return Command(targets, phases)
