@@ -3,22 +3,28 @@
 from suchus.motion.gait import Gait, Legs
 from suchus.motion.phase import limb_phase, stance, tail_bend, trunk_bend
 from suchus.motion.roll import Roll, check_roll, roll_targets
+from suchus.motion.swim import Bends, Swim, bends, check_swim, swim_targets
 from suchus.motion.targets import check_limits, foot_targets, longest_stroke, servo_targets, within_reach
 from suchus.motion.timing import START
 
 __all__ = [
     "START",
+    "Bends",
     "Gait",
     "Legs",
     "Roll",
+    "Swim",
+    "bends",
     "check_limits",
     "check_roll",
+    "check_swim",
     "foot_targets",
     "limb_phase",
     "longest_stroke",
     "roll_targets",
     "servo_targets",
     "stance",
+    "swim_targets",
     "tail_bend",
     "trunk_bend",
     "within_reach",

@@ -1,0 +1,136 @@
+"""A swimming motion: the trunk's yaw joints and the tail's cable as sines, limbs folded back."""
+
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+from jaxtyping import Float
+
+from suchus.design import LEGS, Crocodile, servo_names
+from suchus.design.checks import Checks, require
+from suchus.errors import InvalidDesign, OutsideLimits
+from suchus.kinematics import tail as tail_kinematics
+
+YAWS = ("spine_yaw_1", "spine_yaw_2", "spine_yaw_3")
+"""The trunk's yaw servos from the pelvis forward."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Swim:
+    """A periodic swimming motion: every lateral angle is ``amplitude cos(2 pi (f t - late))``."""
+
+    name: str
+    """How it is called."""
+    frequency: float
+    """Of the wave, f [Hz]."""
+    yaw: tuple[float, float, float]
+    """Amplitudes of the trunk's yaw joints from the pelvis forward, front end left [rad]."""
+    yaw_late: tuple[float, float, float]
+    """How late each of them bends [cycle]."""
+    tail: float
+    """Amplitude of the bend of the tail's cable section, tip to the right [rad]."""
+    tail_late: float
+    """How late the tail bends [cycle]."""
+
+    def __post_init__(self) -> None:
+        with Checks("swim", self) as check:
+            check.number("frequency", 0.01, 20.0, "Hz")
+            check.number("tail", 0.0, 3.1416, "rad")
+            check.number("tail_late", -1.0, 1.0, "cycle")
+        for field in ("yaw", "yaw_late"):
+            values = getattr(self, field)
+            if len(values) != 3:
+                raise InvalidDesign(
+                    f"swim.{field} has {len(values)} numbers; the trunk has three yaw joints: give three."
+                )
+            for i, value in enumerate(values):
+                low, high, unit = (0.0, 3.1416, "rad") if field == "yaw" else (-1.0, 1.0, "cycle")
+                require("swim", f"{field}[{i}]", value, low, high, unit)
+
+    def reversed(self) -> "Swim":
+        """Return the motion played backwards: the wave runs the other way."""
+        first, second, third = self.yaw_late
+        return replace(self, yaw_late=(-first, -second, -third), tail_late=-self.tail_late)
+
+    def trunk_only(self) -> "Swim":
+        """Return the motion with the tail straight."""
+        return replace(self, tail=0.0)
+
+    def tail_only(self) -> "Swim":
+        """Return the motion with the trunk straight."""
+        return replace(self, yaw=(0.0, 0.0, 0.0))
+
+
+class Bends(NamedTuple):
+    """Lateral angles and their rates."""
+
+    yaw: Float[np.ndarray, "*b 3"]
+    """Trunk's yaw joints from the pelvis forward [rad]."""
+    tail: Float[np.ndarray, "*b"]
+    """Bend of the cable section [rad]."""
+    yaw_rate: Float[np.ndarray, "*b 3"]
+    """[rad/s]."""
+    tail_rate: Float[np.ndarray, "*b"]
+    """[rad/s]."""
+
+
+def bends(swim: Swim, time: Float[np.ndarray, "*b"]) -> Bends:
+    """Return the lateral angles of a swimming motion.
+
+    Args:
+        swim: the motion.
+        time: [s].
+    """
+    rate = 2 * np.pi * swim.frequency
+    yaw_phase = rate * time[..., None] - 2 * np.pi * np.array(swim.yaw_late)
+    tail_phase = rate * time - 2 * np.pi * swim.tail_late
+    amplitude = np.array(swim.yaw)
+    return Bends(
+        np.asarray(amplitude * np.cos(yaw_phase)),
+        np.asarray(swim.tail * np.cos(tail_phase)),
+        np.asarray(-rate * amplitude * np.sin(yaw_phase)),
+        np.asarray(-rate * swim.tail * np.sin(tail_phase)),
+    )
+
+
+def swim_targets(robot: Crocodile, swim: Swim, time: Float[np.ndarray, "*b"]) -> Float[np.ndarray, "*b 19"]:
+    """Return the servo angles of a swimming motion, in the order of ``design.servo_names()`` [rad].
+
+    Args:
+        robot: the design.
+        swim: the motion.
+        time: [s].
+    """
+    names = servo_names()
+    now = bends(swim, time)
+    targets = np.zeros((*np.shape(time), len(names)))
+    targets[..., [names.index(f"{leg}_yaw") for leg in LEGS]] = -np.pi / 2
+    targets[..., [names.index(name) for name in YAWS]] = now.yaw
+    targets[..., names.index("tail_cable")] = tail_kinematics.servo_angle(robot.tail, now.tail)
+    return targets
+
+
+def check_swim(robot: Crocodile, swim: Swim) -> None:
+    """Refuse a swimming motion that a robot's joints or servos cannot follow.
+
+    Raises:
+        OutsideLimits: a joint would have to leave its range, or a servo to turn faster than it can; the message names
+            it and by how much.
+    """
+    low, high = robot.spine.yaw_range
+    asked = [(name, amplitude, min(-low, high)) for name, amplitude in zip(YAWS, swim.yaw, strict=True)]
+    asked.append(("tail_cable", swim.tail, robot.tail.bend_limit))
+    for name, amplitude, limit in asked:
+        if amplitude > limit:
+            raise OutsideLimits(
+                f"swim {swim.name!r} bends {name} by {amplitude:.3f} rad to either side, {amplitude - limit:.3f} rad "
+                f"more than the {limit:.3f} rad that robot {robot.name!r} allows: lower the amplitude, or take a "
+                "longer wave."
+            )
+        shaft = float(tail_kinematics.servo_angle(robot.tail, amplitude)) if name == "tail_cable" else amplitude
+        speed, most = 2 * np.pi * swim.frequency * shaft, robot.servo(name).speed
+        if speed > most:
+            raise OutsideLimits(
+                f"swim {swim.name!r} turns {name} at {speed:.2f} rad/s; its servo turns at {most:.2f} rad/s at most: "
+                f"lower the frequency to {swim.frequency * most / speed:.2f} Hz, or the amplitude."
+            )

@@ -1,0 +1,187 @@
+"""The robot seen from above, limbs folded away: how wide it is along its midline, and how its joints bend that.
+
+Frame: the snout at the origin when the base rests there, x towards the tail, y to the robot's right, so that x is
+that of (20); a heading is the direction from head to tail. Arc length s runs from the snout to the tip of the tail.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from jaxtyping import Float
+
+from suchus.design import Crocodile, cable_joints
+from suchus.errors import InvalidDesign
+from suchus.kinematics.mass import tail_segments
+from suchus.motion import Bends
+
+STATIONS = 257
+"""Points along the midline, 4 mm apart on a robot of 1 m [-]."""
+
+
+class Silhouette(NamedTuple):
+    """The body along its straight midline, the union of its pieces."""
+
+    half_width: Float[np.ndarray, " station"]
+    """To either side [m]."""
+    half_height: Float[np.ndarray, " station"]
+    """Up and down [m]."""
+
+
+def silhouette(robot: Crocodile, s: Float[np.ndarray, " station"]) -> Silhouette:
+    """Return how far the straight robot reaches sideways and upwards, limbs left out.
+
+    Args:
+        robot: the design.
+        s: from the snout [m].
+    """
+    joint_5, girdle = robot.head.snout, robot.head.snout + robot.spine.length
+    thorax, head = robot.thorax, robot.head
+    length = head.snout - thorax.shoulder
+    ellipsoids = (
+        (length / 2, length / 2, head.width / 2, head.height / 2),
+        (joint_5 - thorax.shoulder / 2, max(thorax.shoulder, 0.02) + 0.012, thorax.width / 2, thorax.height / 2),
+        (girdle, robot.pelvis.length / 2, robot.pelvis.width / 2, robot.pelvis.height / 2),
+    )
+    wide, high = np.zeros_like(s), np.zeros_like(s)
+    for middle, along, across, up in ellipsoids:
+        round_ = np.sqrt(np.clip(1.0 - ((s - middle) / along) ** 2, 0.0, None))
+        wide, high = np.maximum(wide, across * round_), np.maximum(high, up * round_)
+    capsules = [(joint_5 + i * robot.spine.link, robot.spine.link, robot.spine.radius) for i in range(4)]
+    at = girdle + robot.tail.offset
+    lengths, radii, _ = tail_segments(robot.tail)
+    for long, radius in zip(lengths, radii, strict=True):
+        capsules.append((at, long, radius))
+        at += long
+    for start, long, radius in capsules:
+        beyond = np.maximum(np.maximum(start - s, s - start - long), 0.0)
+        reach = np.sqrt(np.clip(radius**2 - beyond**2, 0.0, None))
+        wide, high = np.maximum(wide, reach), np.maximum(high, reach)
+    return Silhouette(wide, high)
+
+
+class Base(NamedTuple):
+    """Where the snout is and how the head points."""
+
+    x: Float[np.ndarray, "*b"]
+    """[m]."""
+    y: Float[np.ndarray, "*b"]
+    """[m]."""
+    heading: Float[np.ndarray, "*b"]
+    """Direction from snout to neck [rad]."""
+    x_rate: Float[np.ndarray, "*b"]
+    """[m/s]."""
+    y_rate: Float[np.ndarray, "*b"]
+    """[m/s]."""
+    heading_rate: Float[np.ndarray, "*b"]
+    """[rad/s]."""
+
+
+class Curve(NamedTuple):
+    """A bent midline and how it moves; every array has the shape (*b, station)."""
+
+    x: Float[np.ndarray, "*b station"]
+    """[m]."""
+    y: Float[np.ndarray, "*b station"]
+    """[m]."""
+    heading: Float[np.ndarray, "*b station"]
+    """[rad]."""
+    x_rate: Float[np.ndarray, "*b station"]
+    """[m/s]."""
+    y_rate: Float[np.ndarray, "*b station"]
+    """[m/s]."""
+    heading_rate: Float[np.ndarray, "*b station"]
+    """[rad/s]."""
+
+
+@dataclass(frozen=True)
+class Outline:
+    """The robot's midline, from its joints.
+
+    Each joint's bend is smeared over its flexible length, the curvature as a raised cosine: to the next yaw joint's
+    half way on either side in the trunk, to the next joint in tail and passive end. Where joints bend alike the
+    curvature is even.
+    """
+
+    robot: Crocodile
+    """Whose midline."""
+    stations: int = STATIONS
+    """Points along it [-]."""
+
+    def __post_init__(self) -> None:
+        if self.stations < 33:
+            raise InvalidDesign(f"outline.stations is {self.stations}; at least 33 are needed to follow the joints.")
+
+    @cached_property
+    def s(self) -> Float[np.ndarray, " station"]:
+        """Arc length from the snout [m]."""
+        return np.linspace(0.0, self.robot.length, self.stations)
+
+    @cached_property
+    def silhouette(self) -> Silhouette:
+        """How wide and high the body is at the stations."""
+        return silhouette(self.robot, self.s)
+
+    @cached_property
+    def places(self) -> Float[np.ndarray, " joint"]:
+        """Where the lateral joints are: three of the trunk from the pelvis forward, cable joints, passive ones [m]."""
+        robot, tail = self.robot, self.robot.tail
+        trunk = robot.head.snout + robot.spine.link * np.array([4.0, 2.0, 0.0])
+        first = robot.head.snout + robot.spine.length + tail.offset + tail.root + tail.pitch / 2
+        cable = first + tail.pitch * np.arange(len(cable_joints(robot)))
+        fin = robot.length - tail.fin_length * (1.0 - np.arange(tail.fin_segments) / tail.fin_segments)
+        return np.concatenate([trunk, cable, fin])
+
+    @cached_property
+    def reaches(self) -> Float[np.ndarray, " joint"]:
+        """Half of the length over which each joint bends the midline [m]."""
+        robot, tail = self.robot, self.robot.tail
+        count = len(cable_joints(robot))
+        fin = tail.fin_length / tail.fin_segments
+        return np.array([*3 * [robot.spine.link], *count * [tail.pitch], *tail.fin_segments * [fin]])
+
+    @cached_property
+    def bending(self) -> Float[np.ndarray, "middle 4"]:
+        """How the heading halfway between stations grows with the three yaw angles and the tail's bend [-]."""
+        middle = 0.5 * (self.s[1:] + self.s[:-1])
+        return self.bending_at(middle)
+
+    def bending_at(self, s: Float[np.ndarray, " point"]) -> Float[np.ndarray, "point 4"]:
+        """Return how the heading at points grows with the three yaw angles and the tail's bend [-].
+
+        A trunk joint that turns the front end left turns what lies behind it right, seen from the front.
+        """
+        along = np.clip((s[:, None] - self.places) / self.reaches, -1.0, 1.0)
+        steps = 0.5 * (1.0 + along + np.sin(np.pi * along) / np.pi)
+        cables = len(cable_joints(self.robot))
+        return np.column_stack([-steps[:, :3], steps[:, 3 : 3 + cables].mean(axis=1)])
+
+    def curve(self, bends: Bends, base: Base | None = None) -> Curve:
+        """Return the midline, its stations equally far apart along it whatever the bends.
+
+        Args:
+            bends: lateral angles and their rates; the passive end is held straight.
+            base: the snout; at rest at the origin, the head along x, if None.
+        """
+        angles = np.concatenate([bends.yaw, np.asarray(bends.tail)[..., None]], axis=-1)
+        rates = np.concatenate([bends.yaw_rate, np.asarray(bends.tail_rate)[..., None]], axis=-1)
+        if base is None:
+            base = Base(*(np.zeros(angles.shape[:-1]) for _ in Base._fields))
+        middle = angles @ self.bending.T + base.heading[..., None]
+        spin = rates @ self.bending.T + base.heading_rate[..., None]
+        step = self.robot.length / (self.stations - 1)
+        at_stations = self.bending_at(self.s)
+        return Curve(
+            _summed(base.x, step * np.cos(middle)),
+            _summed(base.y, step * np.sin(middle)),
+            angles @ at_stations.T + base.heading[..., None],
+            _summed(base.x_rate, -step * np.sin(middle) * spin),
+            _summed(base.y_rate, step * np.cos(middle) * spin),
+            rates @ at_stations.T + base.heading_rate[..., None],
+        )
+
+
+def _summed(first: Float[np.ndarray, "*b"], steps: Float[np.ndarray, "*b step"]) -> Float[np.ndarray, "*b station"]:
+    start = np.asarray(first)[..., None]
+    return np.concatenate([start, start + np.cumsum(steps, axis=-1)], axis=-1)
