@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
 from difflib import get_close_matches
-from typing import Any
+from typing import Any, get_args
 
 from suchus.design.checks import InvalidFields
 from suchus.errors import InvalidDesign, UnreadableFile
@@ -86,7 +86,10 @@ def _unknown(place: Place, kind: type) -> str:
 
 def _fields_at(place: Place, kind: Any) -> list[str]:
     for key in place:
-        kind = next((f.type for f in fields(kind) if f.name == key), None) if is_dataclass(kind) else None
+        if isinstance(key, int):
+            kind = next(iter(get_args(kind)), None)
+        else:
+            kind = next((f.type for f in fields(kind) if f.name == key), None) if is_dataclass(kind) else None
     return [f.name for f in fields(kind)] if is_dataclass(kind) else []
 
 

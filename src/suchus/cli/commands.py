@@ -44,6 +44,7 @@ COMMANDS = (
         "read a gait from tracked keypoints",
         "suchus.cli.capture:capture",
     ),
+    Command("study", "FILE.toml [--out DIR]", "run many variants, resumable", "suchus.cli.study:study"),
     Command(
         "export",
         "[--format mjcf|urdf] [--robot ROBOT]",

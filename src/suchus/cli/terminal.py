@@ -31,6 +31,11 @@ class Bars:
 
         return move
 
+    @property
+    def seen(self) -> bool:
+        """Whether there is a terminal to show them on."""
+        return self._progress.console.is_terminal
+
     def say(self, text: str) -> None:
         """Print a line above the bars."""
         self._progress.console.print(escape(text), highlight=False, soft_wrap=True)

@@ -1,0 +1,120 @@
+"""One batch of a study: from points to a table of results."""
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from suchus.errors import SuchusError
+from suchus.land import Run, simulate
+from suchus.motion import check_limits
+from suchus.study.measures import measured, unit_of
+from suchus.study.plan import Plan
+from suchus.study.study import Study
+
+Progress = Callable[[float], None]
+
+
+def run_chunk(study: Study, number: int, progress: Progress | None = None) -> xr.Dataset:
+    """Run one batch of a study; it depends on nothing but the study and the number.
+
+    A run that cannot be built, refuses to walk or comes apart has NaN for numbers and says why in ``error``.
+
+    Args:
+        study: the study.
+        number: of the batch.
+        progress: called with the share that is done.
+
+    Returns:
+        A table along ``sample``: a column for each field that varies, one or more for each measure, ``seed``,
+        ``error``.
+    """
+    plan = Plan(study)
+    samples = plan.chunk(number)
+    rows: dict[int, dict[str, float]] = {}
+    errors: dict[int, str] = {}
+    runs: dict[int, Run] = {}
+    for sample in samples:
+        try:
+            run = plan.run(sample)
+            check_limits(run.robot, run.gait)
+            runs[sample] = run
+        except SuchusError as error:
+            errors[sample] = _say(error)
+    _walk(study, runs, rows, errors, progress or _silent)
+    return _table(study, [plan[s] for s in samples], samples, rows, errors)
+
+
+def _walk(
+    study: Study, runs: Mapping[int, Run], rows: dict[int, dict[str, float]], errors: dict[int, str], progress: Progress
+) -> None:
+    """Simulate runs together; if one of them spoils the batch, halve it until the one is found."""
+    if not runs:
+        return
+    try:
+        record = simulate(list(runs.values()), duration=study.duration, timestep=study.timestep, progress=progress)
+    except SuchusError as error:
+        if len(runs) == 1:
+            errors[next(iter(runs))] = _say(error)
+            return
+        middle, items = len(runs) // 2, list(runs.items())
+        _walk(study, dict(items[:middle]), rows, errors, progress)
+        _walk(study, dict(items[middle:]), rows, errors, progress)
+        return
+    for i, sample in enumerate(runs):
+        one = record.isel(run=i)
+        if one.cause.item():
+            errors[sample] = f"Diverged: the physics came apart at {float(one.ended):.2f} s: {one.cause.item()}"
+            continue
+        try:
+            rows[sample] = measured(one, study.measure)  # alone: a measure may look at all runs that it is given
+        except SuchusError as error:
+            errors[sample] = _say(error)
+
+
+def _table(
+    study: Study,
+    points: Sequence[Any],
+    samples: range,
+    rows: Mapping[int, Mapping[str, float]],
+    errors: Mapping[int, str],
+) -> xr.Dataset:
+    table = xr.Dataset(coords={"sample": np.asarray(samples, dtype=np.int64)})
+    for vary in study.vary:
+        values = [point.values[vary.field] for point in points]
+        table[vary.field] = ("sample", _column(values, vary.ends))
+    table["seed"] = ("sample", np.array([point.seed for point in points], dtype=np.int64))
+    columns = list(dict.fromkeys(name for row in rows.values() for name in row))
+    for column in columns:
+        name = max((m for m in study.measure if column == m or column.startswith(f"{m}_")), key=len)
+        numbers = np.array([rows.get(s, {}).get(column, np.nan) for s in samples])
+        table[column] = ("sample", numbers, {"units": unit_of(name)})
+    table["error"] = ("sample", np.array([errors.get(s, "") for s in samples]))
+    return table
+
+
+def _column(values: Sequence[Any], possible: Sequence[Any]) -> np.ndarray:
+    """Numbers where all possible values are numbers, else how they are called."""
+    if all(isinstance(v, (int, float)) for v in possible):
+        return np.array(values, dtype=float)
+    return np.array([called(v) for v in values])
+
+
+def called(value: Any) -> str:
+    """Return what a value is called in a table: its name; for faults, what breaks; ``none`` for nothing."""
+    if isinstance(value, tuple):
+        return " + ".join(called(item) for item in value) or "none"
+    name = getattr(value, "name", None)
+    if isinstance(name, str):
+        return name
+    joint = getattr(value, "joint", None)
+    return f"{type(value).__name__.lower()} {joint}" if joint else str(value)
+
+
+def _say(error: SuchusError) -> str:
+    return f"{type(error).__name__}: {' '.join(str(error).split())}"
+
+
+def _silent(share: float) -> None:
+    del share

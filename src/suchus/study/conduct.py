@@ -1,0 +1,105 @@
+"""Conducting a study: every batch that is not there yet, then all results together."""
+
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import NamedTuple
+
+import xarray as xr
+
+from suchus.study.chunk import run_chunk
+from suchus.study.plan import Plan
+from suchus.study.store import Store
+from suchus.study.study import Study
+
+
+class Told(NamedTuple):
+    """How far a study is."""
+
+    done: float
+    """Runs that are done, parts of a batch included."""
+    total: int
+    """Runs in all."""
+    failed: int
+    """Runs that failed so far."""
+    rate: float
+    """Runs per second since it was started; 0 before the first."""
+
+    @property
+    def left(self) -> float:
+        """Time that is left [s]; infinite before the first run."""
+        return (self.total - self.done) / self.rate if self.rate > 0 else float("inf")
+
+    def __str__(self) -> str:
+        failures = f", {self.failed} failed" if self.failed else ""
+        left = f", {_duration(self.left)} left" if self.rate > 0 else ""
+        return f"{int(self.done)} of {self.total} runs, {self.rate:.1f}/s{left}{failures}"
+
+
+Progress = Callable[[Told], None]
+
+
+def conduct(study: Study, folder: Path, *, progress: Progress | None = None) -> xr.Dataset:
+    """Run what of a study is not in its store yet, and return all results.
+
+    Batches are stored as they are finished: whatever stops the program, at most the running batch is lost. Started
+    again it goes on, and ends with the same bytes as if nothing had happened.
+
+    Args:
+        study: the study.
+        folder: its store.
+        progress: told how far it is.
+
+    Returns:
+        A table along ``sample``, as ``run_chunk`` describes it; also in the store as NetCDF and CSV.
+
+    Raises:
+        Unwritable: the store cannot be written to.
+        IncompatibleRecord: the store is another study's or another version's.
+    """
+    plan = Plan(study)
+    with Store(folder, study).opened() as store:
+        missing = [number for number in range(plan.chunks) if not store.has(number)]
+        counter = _Counter(store, plan, missing, progress or _silent)
+        for number in missing:
+            table = run_chunk(study, number, counter.within(number))
+            store.put(number, table)
+            counter.finished(number, table)
+        return store.gather(plan.chunks)
+
+
+class _Counter:
+    """Counts runs and failures, those of an earlier start included, and the time of this one."""
+
+    def __init__(self, store: Store, plan: Plan, missing: list[int], progress: Progress) -> None:
+        self._plan = plan
+        self._progress = progress
+        self._before = len(plan) - sum(len(plan.chunk(number)) for number in missing)
+        self._done = self._before
+        self._failed = store.failures(set(range(plan.chunks)) - set(missing))
+        self._start = time.perf_counter()
+
+    def within(self, number: int) -> Callable[[float], None]:
+        """Return what tells of the share of a batch."""
+        return lambda share: self._tell(self._done + share * len(self._plan.chunk(number)))
+
+    def finished(self, number: int, table: xr.Dataset) -> None:
+        """Count a batch."""
+        self._done += len(self._plan.chunk(number))
+        self._failed += int((table.error != "").sum())
+        self._tell(self._done)
+
+    def _tell(self, done: float) -> None:
+        seconds = time.perf_counter() - self._start
+        rate = (done - self._before) / seconds if seconds > 0 else 0.0
+        self._progress(Told(done, len(self._plan), self._failed, rate))
+
+
+def _duration(seconds: float) -> str:
+    if seconds < 90:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60:.0f} min" if seconds < 5400 else f"{seconds / 3600:.1f} h"
+
+
+def _silent(told: Told) -> None:
+    del told

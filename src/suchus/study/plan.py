@@ -1,0 +1,134 @@
+"""The points of a study: which values each run takes."""
+
+from collections.abc import Mapping, Sequence
+from functools import lru_cache
+from typing import Any, NamedTuple
+
+import numpy as np
+from scipy import stats
+from scipy.stats import qmc
+
+from suchus.design import with_values
+from suchus.errors import InvalidDesign
+from suchus.land import Run
+from suchus.study.study import Study, Vary
+
+_MOST = 10_000_000
+
+
+class Point(NamedTuple):
+    """One run of a study."""
+
+    values: Mapping[str, Any]
+    """By field."""
+    seed: int
+    """Of the run."""
+
+
+class Plan(Sequence[Point]):
+    """Every run of a study in order: the samples, within each the combinations, within each the seeds.
+
+    Args:
+        study: the study.
+
+    Raises:
+        InvalidDesign: it has more than ten million runs.
+    """
+
+    def __init__(self, study: Study) -> None:
+        self.study = study
+        factorial = study.design == "factorial"
+        self._each = [v for v in study.vary if factorial or v.each]
+        self._sampled = [v for v in study.vary if not (factorial or v.each)]
+        self._levels = [levels(v) for v in self._each]
+        self._combinations = int(np.prod([len(v) for v in self._levels], dtype=float)) if self._levels else 1
+        count = (study.samples or 1) if self._sampled else 1
+        self._length = count * self._combinations * study.seeds
+        if self._length > _MOST:
+            raise InvalidDesign(f"study {study.name!r} has {self._length} runs; up to {_MOST} are allowed.")
+        self._shares = _shares(study.design, count, len(self._sampled), study.seed)
+
+    def __len__(self) -> int:
+        return self._length
+
+    def __getitem__(self, index: Any) -> Any:
+        if isinstance(index, slice):
+            return [self[i] for i in range(*index.indices(len(self)))]
+        if not 0 <= index < len(self):
+            raise IndexError(index)
+        rest, repeat = divmod(index, self.study.seeds)
+        sample, combination = divmod(rest, self._combinations)
+        chosen: dict[str, Any] = {}
+        for vary, levels_ in zip(reversed(self._each), reversed(self._levels), strict=True):
+            combination, level = divmod(combination, len(levels_))
+            chosen[vary.field] = levels_[level]
+        for vary, share in zip(self._sampled, self._shares[sample], strict=True):
+            chosen[vary.field] = value_of(vary, float(share))
+        return Point({v.field: chosen[v.field] for v in self.study.vary}, self.study.seed + repeat)
+
+    @property
+    def chunks(self) -> int:
+        """How many batches it takes."""
+        return -(-len(self) // self.study.chunk)
+
+    def chunk(self, number: int) -> range:
+        """Return which runs a batch holds."""
+        first = number * self.study.chunk
+        return range(first, min(first + self.study.chunk, len(self)))
+
+    def run(self, index: int) -> Run:
+        """Return one run.
+
+        Raises:
+            InvalidDesign: its values cannot be together.
+        """
+        point = self[index]
+        run = with_values(self.study.run, {"seed": point.seed, "label": str(index)})
+        for depth in sorted({_depth(path) for path in point.values}):  # a whole gait first, then its fields
+            run = with_values(run, {path: v for path, v in point.values.items() if _depth(path) == depth})
+        return run
+
+
+def _depth(path: str) -> int:
+    return path.count(".") + path.count("[")
+
+
+def levels(vary: Vary) -> tuple[Any, ...]:
+    """Return the values of a field that are combined."""
+    if vary.values is not None:
+        return vary.values
+    assert vary.steps is not None
+    return tuple(value_of(vary, i / (vary.steps - 1)) for i in range(vary.steps))
+
+
+def value_of(vary: Vary, share: float) -> Any:
+    """Return the value below which a share of a field's values lies.
+
+    Args:
+        vary: the field.
+        share: 0 to 1.
+    """
+    if vary.values is not None:
+        return vary.values[min(int(share * len(vary.values)), len(vary.values) - 1)]
+    if vary.mean is not None and vary.spread is not None:
+        low = -np.inf if vary.low is None else (vary.low - vary.mean) / vary.spread
+        high = np.inf if vary.high is None else (vary.high - vary.mean) / vary.spread
+        inside = stats.norm.cdf(low) + share * (stats.norm.cdf(high) - stats.norm.cdf(low))
+        inside = float(np.clip(inside, 1e-12, 1 - 1e-12))
+        return float(vary.mean + vary.spread * np.clip(stats.norm.ppf(inside), low, high))
+    assert vary.low is not None
+    assert vary.high is not None
+    if vary.scale == "log":
+        return float(np.clip(vary.low * (vary.high / vary.low) ** share, vary.low, vary.high))
+    return float(vary.low + (vary.high - vary.low) * share)
+
+
+@lru_cache(maxsize=4)
+def _shares(design: str, count: int, fields: int, seed: int) -> np.ndarray:
+    """Return evenly spread points of the unit cube, shape (count, fields)."""
+    if fields == 0:
+        return np.empty((count, 0))
+    if design == "latin":
+        return np.asarray(qmc.LatinHypercube(fields, rng=np.random.default_rng(seed)).random(count))
+    sobol = qmc.Sobol(fields, rng=np.random.default_rng(seed))
+    return np.asarray(sobol.random_base2(max(count - 1, 0).bit_length())[:count])

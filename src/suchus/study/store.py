@@ -1,0 +1,159 @@
+"""Where the results of a study are kept as they come: a folder of parts, each of which is there whole or not at all."""
+
+import fcntl
+import hashlib
+import json
+import shutil
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import fields
+from pathlib import Path
+from typing import Any
+
+import xarray as xr
+
+from suchus.errors import IncompatibleRecord, UnreadableFile, Unwritable
+from suchus.record import check_writable, load, new_file, save, versions
+from suchus.study.study import Study
+
+MARK = "study.json"
+RESULTS, TABLE = "results.nc", "results.csv"
+_FORMAT = 1
+_DECIDING = ("suchus", "python", "mujoco", "numpy", "scipy", "xarray", "h5netcdf")
+
+
+class Store:
+    """The parts of a study on disk.
+
+    Args:
+        folder: where they are, or shall be.
+        study: whose they are.
+    """
+
+    def __init__(self, folder: Path, study: Study) -> None:
+        self.folder = folder
+        self.study = study
+
+    @contextmanager
+    def opened(self) -> Iterator["Store"]:
+        """Hold the store: make it, or check that it is this study's, and keep others out.
+
+        Raises:
+            Unwritable: the place cannot be written to, is taken by something else, or another process is at it.
+            IncompatibleRecord: it holds another study, or was written by another version; it stays as it is.
+        """
+        check_writable(self.folder)
+        mark = self.folder / MARK
+        if mark.is_file():
+            self._check(mark)
+        elif self.folder.exists() and (not self.folder.is_dir() or any(self._foreign())):
+            raise Unwritable(f"{self.folder} exists and holds no study; choose another place or move it away.")
+        else:
+            with new_file(mark) as draft:
+                draft.write_text(json.dumps(self._origin(), indent=1, sort_keys=True) + "\n", encoding="utf-8")
+        with mark.open("rb") as held:
+            try:
+                fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                raise Unwritable(
+                    f"{self.folder} is being written by another process; wait or choose another."
+                ) from None
+            self._sweep()
+            yield self
+
+    def part(self, number: int) -> Path:
+        """Return the file of one batch."""
+        return self.folder / "parts" / f"{number:06d}.nc"
+
+    def has(self, number: int) -> bool:
+        """Tell whether a batch is finished and can be read."""
+        try:
+            return self.part(number).is_file() and load(self.part(number)).attrs.get("part") == number
+        except IncompatibleRecord:
+            return False
+
+    def put(self, number: int, table: xr.Dataset) -> None:
+        """Keep the results of a batch.
+
+        Raises:
+            Unwritable: the disk is full, or gone.
+        """
+        save(table.assign_attrs(part=number, study=self.study.name), self.part(number))
+
+    def failures(self, numbers: Iterable[int]) -> int:
+        """Return how many runs of some finished batches failed."""
+        return sum(int((load(self.part(number)).error != "").sum()) for number in numbers)
+
+    def gather(self, parts: int) -> xr.Dataset:
+        """Put all parts together, as ``results.nc`` and ``results.csv`` too, and return them.
+
+        Raises:
+            UnreadableFile: a part is missing.
+            Unwritable: the place cannot be written to.
+        """
+        tables = []
+        for number in range(parts):
+            if not self.part(number).is_file():
+                raise UnreadableFile(
+                    f"{self.folder} lacks part {number} of {parts}; start the study again to finish it."
+                )
+            tables.append(load(self.part(number)))
+        columns = {str(name): v.attrs for table in tables for name, v in table.data_vars.items() if name != "error"}
+        whole = xr.concat(
+            tables, "sample", join="outer", data_vars="all", combine_attrs="drop", fill_value=float("nan")
+        )
+        for name, attributes in columns.items():
+            whole[name].attrs = attributes
+        whole = whole[[*columns, "error"]].assign_attrs(study=self.study.name, settings=self._origin()["fields"])
+        save(whole, self.folder / RESULTS)
+        with new_file(self.folder / TABLE) as draft:
+            whole.to_dataframe().to_csv(draft, lineterminator="\n")
+        return whole
+
+    def _origin(self) -> dict[str, Any]:
+        held = {f.name: repr(getattr(self.study, f.name)) for f in fields(self.study)}
+        found = versions()
+        return {
+            "format": _FORMAT,
+            "name": self.study.name,
+            "hash": hashlib.sha256(repr(self.study).encode()).hexdigest(),
+            "fields": held,
+            "versions": {name: found.get(name, "not installed") for name in _DECIDING},
+        }
+
+    def _check(self, mark: Path) -> None:
+        """Refuse what another study or another version wrote."""
+        try:
+            there = json.loads(mark.read_text(encoding="utf-8"))
+            name, held, theirs = there["name"], there["fields"], there["versions"]
+        except (OSError, ValueError, KeyError, TypeError) as error:
+            raise IncompatibleRecord(f"{mark} is no description of a study; choose another place.") from error
+        ours = self._origin()
+        if held != ours["fields"]:
+            other = [key for key in ours["fields"] if held.get(key) != ours["fields"][key]]
+            raise IncompatibleRecord(
+                f"{self.folder} holds study {name!r}, which differs from {self.study.name!r} in {', '.join(other)}; "
+                "choose another place, or finish that one with its own file."
+            )
+        changed = [
+            f"{key} {theirs.get(key)} (here {value})"
+            for key, value in ours["versions"].items()
+            if theirs.get(key) != value
+        ]
+        if changed or there.get("format") != _FORMAT:
+            by = ", ".join(changed) or f"format {there.get('format')} (here {_FORMAT})"
+            raise IncompatibleRecord(
+                f"{self.folder} was written by {by}; mixed results would not be the same to the byte: choose another "
+                "place, or install those versions to finish it."
+            )
+
+    def _foreign(self) -> Iterator[Path]:
+        """Everything in the folder but drafts that a kill left behind before the study was described."""
+        return (entry for entry in self.folder.iterdir() if not entry.name.startswith(f".{MARK}-"))
+
+    def _sweep(self) -> None:
+        """Take away drafts that a kill left behind."""
+        for place in (self.folder, self.folder / "parts"):
+            for draft in place.glob(".*.*-*"):
+                if draft.is_dir():
+                    shutil.rmtree(draft, ignore_errors=True)

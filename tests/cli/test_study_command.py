@@ -1,0 +1,121 @@
+import pytest
+
+from suchus.cli import main
+from suchus.errors import SuchusError
+from suchus.land import Limp, Weak
+from suchus.study import read_study
+
+PAGE = """
+name = "grip"
+duration = 1.1
+measure = ["displacement"]
+
+[[vary]]
+field = "ground.grip"
+values = [0.5, 1.0]
+
+[[vary]]
+field = "gait.hip_height"
+values = [0.09, 0.3]
+"""
+
+
+@pytest.fixture(autouse=True)
+def here(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "grip.toml").write_text(PAGE)
+
+
+def test_a_study_says_where_its_results_are_and_what_failed(tmp_path, capsys):
+    assert main(["study", "grip.toml"]) == 0
+    out, err = capsys.readouterr()
+    assert "4 runs, 2 failed: out/studies/grip/results.nc" in out
+    assert "the first that failed is sample 1: OutsideLimits: gait 'belly_crawl'" in out
+    assert err == ""
+    before = (tmp_path / "out" / "studies" / "grip" / "results.nc").stat().st_mtime_ns
+    assert main(["study", "grip.toml"]) == 0
+    assert (tmp_path / "out" / "studies" / "grip" / "results.csv").is_file()
+    assert (tmp_path / "out" / "studies" / "grip" / "results.nc").stat().st_mtime_ns >= before
+
+
+BAD = {
+    ("ground.grip", "ground.gripp"): "Did you mean 'grip'?",
+    ("[0.5, 1.0]", "[0.5, 100.0]"): "varies ground.grip, but ground.grip is 100; 0.01 to 10 is allowed",
+    ("[0.5, 1.0]", '["much"]'): "varies ground.grip, but ground.grip is 'much'",
+    ("field =", "feild ="): "did you mean vary[0].field?",
+    ("duration = 1.1", "duration = -1.0"): "0.01 to 86400 s is allowed",
+    ('"displacement"', '"displacment"'): "Did you mean 'displacement'?",
+    ('name = "grip"', 'robot = "kaiman"'): "Did you mean 'caiman'?",
+    ('name = "grip"', 'design = "sobol"'): "samples is missing",
+    ('name = "grip"', 'name = "a/b"'): "say --out DIR",
+    ("[[vary]]", "[[vary]"): "is not valid TOML",
+}
+
+
+@pytest.mark.parametrize("change", BAD)
+def test_a_bad_file_is_one_sentence_and_leaves_nothing(change, tmp_path, capsys):
+    (tmp_path / "grip.toml").write_text(PAGE.replace(*change, 1))
+    assert main(["study", "grip.toml"]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.count("\n") == 1
+    assert BAD[change] in err
+    assert [p.name for p in tmp_path.iterdir()] == ["grip.toml"]
+
+
+def test_bad_places_are_one_sentence(tmp_path, capsys):
+    for words, said in (
+        ("none.toml", "there is no file none.toml"),
+        ("grip.toml --out /dev/null/here", "cannot be written"),
+        ("grip.toml --out .", "holds no study"),
+    ):
+        assert main(["study", *words.split()]) == 2
+        err = capsys.readouterr().err
+        assert said in err
+        assert err.count("\n") == 1
+    assert [p.name for p in tmp_path.iterdir()] == ["grip.toml"]
+
+
+def test_robots_gaits_and_faults_are_named_or_described(tmp_path):
+    (tmp_path / "mine.toml").write_text('base = "belly_crawl"\nstroke = 0.01\n')
+    (tmp_path / "s.toml").write_text("""
+measure = ["slip"]
+[[faults]]
+kind = "weak"
+joint = "LH_knee"
+fraction = 0.25
+[[vary]]
+field = "gait"
+values = ["limbs_only", "mine.toml"]
+[[vary]]
+field = "robot.contact.foot_friction"
+low = 0.4
+high = 0.8
+steps = 2
+""")
+    asked = read_study(tmp_path / "s.toml")
+    assert asked.name == "s"
+    assert asked.run.faults == (Weak("LH_knee", 0.25),)
+    assert [g.stroke for g in asked.vary[0].values] == [0.027, 0.01]
+    (tmp_path / "f.toml").write_text("""
+measure = ["slip"]
+[[vary]]
+field = "faults"
+values = [[], [{kind = "limp", joint = "LF_yaw", at = 1.0}]]
+""")
+    assert read_study(tmp_path / "f.toml").vary[0].values == ((), (Limp("LF_yaw", 1.0),))
+
+
+@pytest.mark.parametrize(
+    ("fault", "said"),
+    [
+        ('[{kind = "limpp", joint = "LF_yaw"}]', "limp, locked, weak or deaf"),
+        ('["limp LF_yaw"]', "lists of tables"),
+        ('[{kind = "limp", joint = "LF_yaw", angle = 1.0}]', "it cannot have"),
+    ],
+)
+def test_a_fault_that_is_none_is_refused(fault, said, tmp_path):
+    page = f'measure = ["slip"]\n[[vary]]\nfield = "faults"\nvalues = [{fault}]\n'
+    (tmp_path / "f.toml").write_text(page)
+    with pytest.raises(SuchusError, match=said):
+        read_study(tmp_path / "f.toml")
