@@ -1,5 +1,6 @@
 """From a record to numbers: pure, and along whatever dimensions the record has besides time."""
 
+from suchus.metrics.decisive import Border, border, rank_correlation
 from suchus.metrics.energy import cost_of_transport, peak_torque, work
 from suchus.metrics.gait import duty_factor, loaded, sensed_phase
 from suchus.metrics.loads import swing_lift, swing_loads
@@ -19,7 +20,9 @@ from suchus.metrics.stability import (
 from suchus.metrics.window import between, whole
 
 __all__ = [
+    "Border",
     "between",
+    "border",
     "cost_of_transport",
     "displacement",
     "duty_factor",
@@ -34,6 +37,7 @@ __all__ = [
     "loss",
     "path_length",
     "peak_torque",
+    "rank_correlation",
     "reach",
     "roll_angle",
     "roll_peak_to_peak",

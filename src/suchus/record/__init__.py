@@ -1,5 +1,6 @@
 """What happened: the schema of a run, its place on disk and where it comes from."""
 
+from suchus.record.parts import Parts, code_digest
 from suchus.record.place import check_replaceable, check_writable, new_file, new_folder
 from suchus.record.provenance import digest, plain, provenance, versions
 from suchus.record.schema import PER_RUN, VARIABLES, dataset
@@ -8,8 +9,10 @@ from suchus.record.store import load, save
 __all__ = [
     "PER_RUN",
     "VARIABLES",
+    "Parts",
     "check_replaceable",
     "check_writable",
+    "code_digest",
     "dataset",
     "digest",
     "load",

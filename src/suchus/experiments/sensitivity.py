@@ -1,0 +1,313 @@
+"""Do the article's statements survive other choices of what it does not say?"""
+
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
+from math import log2
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from scipy.stats import qmc
+
+from suchus.design import Chosen, Crocodile, with_values
+from suchus.design.checks import require
+from suchus.errors import InvalidDesign, OutsideLimits
+from suchus.experiment import Experiment, Measure, Outcome, Progress, silent, staged, stopwatch
+from suchus.figures.sensitivity import draw_claim
+from suchus.gaits import GAITS
+from suchus.land import LOST, Run, lost, simulate
+from suchus.land.lost import Kind, Legs
+from suchus.metrics import border, displacement, height_std, loss, rank_correlation, says
+from suchus.motion import START, Gait, check_limits
+from suchus.paper import CLAIMS, CYCLES
+from suchus.record import Parts, check_writable
+from suchus.robots import ROBOTS
+
+_ARMS = ("coordinated", "limbs_only")
+_STATES = ("intact", *LOST)
+_TRUNK = ("trunk_bend", "spine_phase", "tail_bend", "tail_phase", "tail_pitch")  # the rest of a gait is its legs
+_LEAST_RATIO = 0.02  # a way with limbs only below this part of the way with spine and tail makes a ratio of 50
+_STANDS = 0.01  # [m]; an intact robot that gets no farther has nothing to keep when a joint is lost
+_MADE_BY = (
+    *("design", "robots", "gaits", "kinematics", "motion", "control", "model", "land", "metrics", "record"),
+    "experiments/sensitivity.py",
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Sensitivity(Experiment):
+    """Every number that the article does not give, swept over its plausible range at once.
+
+    The numbers are those of ``chosen`` beside the robot and the gait on the shelf, but for the limits of the joints: a
+    limit only forbids, and whether a gait is forbidden is told apart. The points are a scrambled Sobol sequence. Each
+    sample is a robot and a gait that walk with spine and tail and with limbs only, intact and with each of four joints
+    lost. A sample that cannot be built, whose gait its joints cannot follow, or whose physics came apart, is counted.
+    """
+
+    title = "Do the article's statements survive other choices of what it does not say?"
+    shows = "Section IV, Figs 15 to 21"
+    in_reproduce = False
+    decides = (
+        "The stroke of the legs and the bend of the trunk decide about displacement and ratio; masses, servos and "
+        "friction hardly do. For each claim the page shows in which share of the samples its sentence is true, which "
+        "parameters its number follows, and the border that best separates true from false."
+    )
+
+    robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
+    """Whose other fields all samples share."""
+    gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
+    """The crawl whose other fields all samples share."""
+    control: Gait = field(default_factory=lambda: GAITS["limbs_only"])
+    """What trunk and tail do in the control group."""
+    samples: int = 1024
+    """How many designs and gaits, a power of two, as Sobol's sequence asks [-]; about a quarter cannot walk."""
+    chunk: int = 32
+    """How many samples are simulated at once, and kept as one part [-]."""
+    cycles: int = int(CYCLES)
+    """How many cycles are measured [-]."""
+    kind: Kind = "limp"
+    """How a joint is lost; see ``joint_faults``."""
+    legs: Legs = "one"
+    """In how many legs."""
+    timestep: float = 0.01
+    """Of the physics [s]; ``halved`` shows what it costs."""
+    halved: int = 32
+    """So many samples are repeated with half the time step [-]."""
+    least: float = 0.05
+    """An intact robot with spine and tail that gets no farther cannot lose anything that could be measured [m]."""
+    parts: Path | None = Path("~/.cache/suchus/parts")
+    """Folder that keeps finished parts, so that an interrupted run goes on where it stopped; None keeps nothing."""
+    seed: int = 0
+    """Of the sequence's scrambling."""
+
+    def __post_init__(self) -> None:
+        for name, least in (("samples", 2), ("chunk", 1), ("cycles", 1), ("halved", 0)):
+            require("sensitivity", name, getattr(self, name), least, 2**20, "")
+        if log2(self.samples) % 1:
+            near = 2 ** round(log2(self.samples))
+            raise InvalidDesign(f"sensitivity.samples is {self.samples}; a power of two is needed, such as {near}.")
+
+    def quick(self) -> "Sensitivity":
+        """Eight samples, one cycle; nothing is kept."""
+        return replace(self, samples=8, chunk=4, cycles=1, halved=1, parts=None)
+
+    def run(self, progress: Progress = silent) -> Outcome:
+        """Sweep."""
+        with stopwatch() as seconds:
+            record = self._swept(progress)
+            record = record.merge(_answers(record, self.least))
+            return Outcome(
+                experiment=self.name(),
+                measures=_measures(record),
+                verdicts=(),
+                record=record,
+                settings=self.settings(),
+                tables={"sensitivity.csv": _table(record)},
+                seconds=seconds(),
+            )
+
+    def _chosen(self) -> tuple[tuple[Chosen, ...], tuple[Chosen, ...]]:
+        """Return what is free about the robot and about the gait."""
+        of_robot = ROBOTS.beside("caiman", "chosen", ())
+        return tuple(one for one in of_robot if "_range[" not in one.field), GAITS.beside("belly_crawl", "chosen", ())
+
+    def _points(self, free: Sequence[Chosen]) -> np.ndarray:
+        """Return the value of every free number in every sample, (sample, parameter); more samples only add to them."""
+        low, high = (np.array([getattr(one, end) for one in free]) for end in ("low", "high"))
+        shares = qmc.Sobol(len(free), rng=self.seed).random_base2(round(log2(self.samples)))
+        return np.asarray(low + (high - low) * shares)
+
+    def _swept(self, progress: Progress) -> xr.Dataset:
+        """Simulate every sample, part by part, and some of them again with half the time step."""
+        of_robot, of_gait = self._chosen()
+        points = self._points((*of_robot, *of_gait))
+        if self.parts is not None:
+            check_writable(self.parts.expanduser())
+        asked = {name: value for name, value in self.settings().items() if name not in ("parts", "samples", "halved")}
+        kept = Parts(self.parts, asked, _MADE_BY)
+        jobs = [(at, self.timestep) for at in _spans(self.samples, self.chunk)]
+        jobs += [(at, self.timestep / 2) for at in _spans(min(self.halved, self.samples), self.chunk)]
+        done: dict[float, list[xr.Dataset]] = {self.timestep: [], self.timestep / 2: []}
+        for number, (at, timestep) in enumerate(jobs):
+            told = staged(
+                progress, f"samples {at.start + 1} to {at.stop}", number / len(jobs), (number + 1) / len(jobs)
+            )
+            make = partial(self._walked, points[at], timestep, told)
+            done[timestep].append(kept.get(f"{at.start}_{at.stop}_{1e6 * timestep:.0f}us", make))
+            told(1.0)
+        record = xr.concat(done[self.timestep], "sample")
+        if self.halved:
+            again = xr.concat(done[self.timestep / 2], "sample").drop_vars("status")
+            fine = {str(v): f"fine_{v}" for v in again.data_vars} | {"sample": "repeated"}
+            record = record.merge(again.rename(fine))
+        record["value"] = (("sample", "parameter"), points, {"units": "1", "long_name": "each in its own unit"})
+        names = [f"robot.{one.field}" for one in of_robot] + [f"gait.{one.field}" for one in of_gait]
+        return record.assign_coords(parameter=names)
+
+    def _walked(self, points: np.ndarray, timestep: float, progress: Callable[[float], None]) -> xr.Dataset:
+        """Let some samples walk."""
+        status, runs, walking = [], [], []
+        for i, point in enumerate(points):
+            try:
+                runs += self._runs(point)
+                walking.append(i)
+                status.append("walked")
+            except OutsideLimits:
+                status.append("outside limits")
+            except InvalidDesign:
+                status.append("impossible")
+        forward, std = (np.full((len(points), len(_ARMS), len(_STATES)), np.nan) for _ in range(2))
+        if runs:
+            duration = START + self.cycles * self.gait.period
+            record = simulate(runs, duration=duration, timestep=timestep, every=10, progress=progress)
+            shape = (len(walking), *forward.shape[1:])
+            forward[walking] = displacement(record).sel(xyz="x").values.reshape(shape)
+            std[walking] = height_std(record).values.reshape(shape)
+            for i, broken in zip(
+                walking, (record.cause.values.reshape(len(walking), -1) != "").any(axis=1), strict=True
+            ):
+                status[i] = "came apart" if broken else "walked"
+        return xr.Dataset(
+            {
+                "forward": (("sample", "arm", "state"), forward, {"units": "m", "long_name": "displacement forward"}),
+                "std": (("sample", "arm", "state"), std, {"units": "m", "long_name": "of the height of the mass"}),
+                "status": ("sample", np.array(status), {"units": "1", "long_name": "what became of it"}),
+            },
+            coords={"arm": list(_ARMS), "state": list(_STATES)},
+        )
+
+    def _runs(self, point: np.ndarray) -> list[Run]:
+        """Return the runs of one sample.
+
+        Raises:
+            InvalidDesign: such a robot or gait cannot be.
+            OutsideLimits: the robot's joints cannot follow the gait.
+        """
+        of_robot, of_gait = self._chosen()
+        values = [float(value) for value in point]
+        robot = with_values(self.robot, {one.field: v for one, v in zip(of_robot, values, strict=False)})
+        gait = with_values(self.gait, {one.field: v for one, v in zip(of_gait, values[len(of_robot) :], strict=True)})
+        limbs = replace(gait, name=self.control.name, **{name: getattr(self.control, name) for name in _TRUNK})
+        for each in (gait, limbs):
+            check_limits(robot, each)
+        return [
+            Run(robot=robot, gait=each, faults=faults)
+            for each in (gait, limbs)
+            for faults in ((), *(lost(robot, each, joint, self.kind, self.legs) for joint in LOST))
+        ]
+
+    def draw(self, outcome: Outcome) -> Mapping[str, Any]:
+        """Draw one picture per claim."""
+        return {f"sensitivity_{key}": draw_claim(outcome.record, str(key)) for key in outcome.record.claim.values}
+
+
+def _spans(whole: int, part: int) -> list[slice]:
+    return [slice(start, min(start + part, whole)) for start in range(0, whole, part)]
+
+
+def _quantities(forward: xr.DataArray, std: xr.DataArray, least: float) -> dict[str, tuple[xr.DataArray, xr.DataArray]]:
+    """Return for each claim its number in every sample, and whether its sentence is true there; NaN: cannot be told."""
+    intact, height = forward.sel(state="intact"), std.sel(state="intact")
+    ours, bare = (intact.sel(arm=arm, drop=True) for arm in _ARMS)
+    able = ours.where(ours > least)
+    ratio = able / bare.clip(min=_LEAST_RATIO * able)
+    calm = height.sel(arm="coordinated", drop=True) / height.sel(arm="limbs_only", drop=True)
+    found = {
+        "displacement_coordinated": (ours, ours > 0),
+        "displacement_limbs_only": (bare, bare > 0),
+        "displacement_ratio": (ratio, ratio > 1),
+        "com_fluctuation": (calm, calm < 1),
+    }
+    kept = []
+    for joint in LOST:
+        for arm in _ARMS:
+            way, key = forward.sel(state=joint, arm=arm, drop=True), f"fault_{joint}_{arm}"
+            change = loss(way, able)
+            found[key] = (change, change.copy(data=says(key, change.values)))
+            whole = intact.sel(arm=arm, drop=True)
+            kept.append((way / whole.where(whole > _STANDS)).clip(min=0.0))
+    pairs = [(a > b).where(np.isfinite(a) & np.isfinite(b)) for a, b in zip(kept[::2], kept[1::2], strict=True)]
+    better = xr.concat(pairs, "joint").mean("joint", skipna=False)
+    found["fault_tolerance"] = (better, better > 0.5)
+    return found
+
+
+def _answers(record: xr.Dataset, least: float) -> xr.Dataset:
+    """Return number and truth of each claim in every sample, and what decides."""
+    found = _quantities(record.forward, record["std"], least)
+    claims, parameters = list(found), record.value.values
+    told = np.array([quantity.values for quantity, _ in found.values()])
+    holds = np.array([truth.values for _, truth in found.values()])
+    there = np.isfinite(told)
+    follows = [rank_correlation(parameters, each) for each in told]
+    borders = [border(parameters[there[i]], holds[i][there[i]]) for i in range(len(claims))]
+    one = {"units": "1"}
+    data = xr.Dataset(
+        {
+            "number": (("claim", "sample"), told, one | {"long_name": "number of the claim"}),
+            "holds": (("claim", "sample"), holds & there, one | {"long_name": "whether its sentence is true"}),
+            "correlation": (("claim", "parameter"), np.array([rho for rho, _ in follows]), one),
+            "chance": (("claim", "parameter"), np.array([p for _, p in follows]), one),
+            "border_of": ("claim", np.array([b.parameter if b else -1 for b in borders]), one),
+            "border_at": ("claim", np.array([b.at if b else np.nan for b in borders]), one),
+            "border_above": ("claim", np.array([bool(b and b.above) for b in borders]), one),
+            "border_separation": ("claim", np.array([b.separation if b else np.nan for b in borders]), one),
+        },
+        coords={"claim": claims},
+    )
+    if "fine_forward" in record:
+        fine = _quantities(record.fine_forward, record.fine_std, least)
+        data["fine_number"] = (("claim", "repeated"), np.array([q.values for q, _ in fine.values()]), one)
+        data["fine_holds"] = (("claim", "repeated"), np.array([h.values for _, h in fine.values()]), one)
+    return data
+
+
+def _measures(record: xr.Dataset) -> Mapping[str, Measure]:
+    count = Counter(record.status.values.tolist())
+    measures = {
+        f"samples_{name.replace(' ', '_')}": Measure(count[name], "-")
+        for name in ("walked", "outside limits", "impossible", "came apart")
+    }
+    for key in record.claim.values:
+        told = record.sel(claim=key)
+        there, claim = np.isfinite(told.number), CLAIMS[str(key)]
+        measures[f"share_{key}"] = Measure(float(told.holds.where(there).mean()), "-")
+        measures[f"told_{key}"] = Measure(int(there.sum()), "-")
+        measures[f"median_{key}"] = Measure(float(told.number.median()), claim.unit)
+        if claim.value is not None:
+            near = abs(told.number - claim.value) <= claim.tolerance
+            measures[f"printed_share_{key}"] = Measure(float(near.where(there).mean()), "-")
+        measures[f"separation_{key}"] = Measure(float(told.border_separation), "-")
+    if "fine_forward" in record:
+        first = record.isel(sample=slice(0, record.sizes["repeated"]))
+        off = abs(first.forward.values - record.fine_forward.values)
+        both = np.isfinite(first.number.values) & np.isfinite(record.fine_number.values)
+        turned = (first.holds.values != record.fine_holds.values)[both]
+        measures["halving_median"] = Measure(float(np.nanmedian(off)) if np.isfinite(off).any() else np.nan, "m")
+        measures["halving_turns"] = Measure(float(turned.mean()) if turned.size else np.nan, "-")
+    return measures
+
+
+def _table(record: xr.Dataset) -> str:
+    """Return one row per claim: how often it is true, what its number follows, where its border is."""
+    rows = ["claim,samples,true_share,median,low_5,high_95,border_parameter,border_at,true_side,separation,follows"]
+    for key in record.claim.values:
+        told = record.sel(claim=key)
+        number = told.number.values[np.isfinite(told.number.values)]
+        order = np.argsort(-abs(told.correlation.values))[:4]
+        follows = " ".join(f"{record.parameter.values[i]}:{told.correlation.values[i]:+.2f}" for i in order)
+        low, middle, high = np.quantile(number, (0.05, 0.5, 0.95)) if number.size else (np.nan,) * 3
+        at, side = int(told.border_of), "above" if told.border_above else "below"
+        name = str(record.parameter.values[at]) if at >= 0 else ""
+        share = float(told.holds.values[np.isfinite(told.number.values)].mean()) if number.size else np.nan
+        rows.append(
+            f"{key},{number.size},{share:.3f},{middle:.4g},{low:.4g},{high:.4g},{name},{float(told.border_at):.4g},"
+            f"{side if name else ''},{float(told.border_separation):.2f},{follows}"
+        )
+    return "\n".join(rows) + "\n"
+
+
+experiment = Sensitivity()

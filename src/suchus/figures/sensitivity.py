@@ -1,0 +1,117 @@
+"""How a claim fares over many designs and gaits: its number, what it follows, its border."""
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from scipy import stats
+
+from suchus.figures.style import COLOURS, captioned, panels, styled
+from suchus.paper import CLAIMS
+
+_TRUE, _FALSE = "#0072B2", "#D55E00"
+_SHOWN = 8
+_SURE = 0.01  # probability of any correlation as great by chance, among all parameters
+
+
+def draw_claim(record: xr.Dataset, claim: str) -> Figure:
+    """Draw one claim over all samples.
+
+    Args:
+        record: of the sweep: ``number`` and ``holds`` over claim and sample, ``correlation`` over claim and parameter,
+            ``value`` over sample and parameter, and the border.
+        claim: key of the claim.
+    """
+    told = record.sel(claim=claim)
+    there = np.isfinite(told.number.values)
+    number, holds = told.number.values[there], told.holds.values[there].astype(bool)
+    with styled():
+        figure, axes = panels(1, 3, width=13.0, height=4.3, width_ratios=[1.0, 0.8, 1.0])
+        left, middle, right = axes[0]
+        _numbers(left, number, holds, claim)
+        _correlations(middle, told, len(number))
+        _plane(right, told, there, holds)
+    share = f"{100 * holds.mean():.0f} %" if holds.size else "none"
+    return captioned(
+        figure,
+        f"{CLAIMS[claim].sense} True in {share} of {len(number)} samples. Left: {CLAIMS[claim].quantity}; the line is "
+        "the article's number. Middle: rank correlation with the parameters it follows most; within the grey band it "
+        "could be chance. Right: the two that tell most, and the border that best separates true from false.",
+    )
+
+
+def _numbers(ax: Axes, number: np.ndarray, holds: np.ndarray, claim: str) -> None:
+    printed, unit = CLAIMS[claim].value, CLAIMS[claim].unit
+    if number.size:
+        low, high = np.quantile(number, (0.01, 0.99))
+        if printed is not None:
+            low, high = min(low, printed), max(high, printed)
+        edges = np.linspace(low, high + 1e-9, 33).tolist()
+        clipped = np.clip(number, low, high)
+        ax.hist([clipped[holds], clipped[~holds]], edges, stacked=True, color=[_TRUE, _FALSE], label=["true", "false"])
+    if printed is not None:
+        ax.axvline(printed, color=COLOURS["printed"], linestyle=(0, (4, 2)), label="as printed")
+    ax.set_xlabel(f"{_short(claim)} [{unit}]")
+    ax.set_ylabel("samples [-]")
+    ax.grid(False, axis="x")
+    ax.set_title(f"the sentence is true in {100 * holds.mean():.0f} %" if holds.size else "nothing to tell")
+    ax.legend(loc="best", fontsize=10)
+
+
+def _short(claim: str) -> str:
+    """What stands on the axis: the quantity as far as it fits."""
+    if claim.startswith("fault_") and CLAIMS[claim].value is not None:
+        return "change of displacement"
+    short = {
+        "displacement_ratio": "way with spine and tail / limbs only",
+        "com_fluctuation": "std of height, spine and tail / limbs only",
+        "fault_tolerance": "faults better borne with spine and tail",
+    }
+    return short.get(claim, "displacement forward")
+
+
+def _correlations(ax: Axes, told: xr.Dataset, samples: int) -> None:
+    order = np.argsort(-abs(told.correlation.values))[:_SHOWN][::-1]
+    values = told.correlation.values[order]
+    ax.barh(range(len(order)), values, color=[_TRUE if v > 0 else _FALSE for v in values], height=0.65)
+    ax.set_yticks(range(len(order)), [_plain(str(told.parameter.values[i])) for i in order], fontsize=10)
+    limit = _chance(samples, told.sizes["parameter"])
+    ax.axvspan(-limit, limit, color="#BBBBBB", alpha=0.45, linewidth=0, zorder=3)
+    ax.axvline(0.0, color="#555555", linewidth=0.9)
+    ax.set_xlim(-1.0, 1.0)
+    ax.set_xlabel("rank correlation [-]")
+    ax.grid(False, axis="y")
+    ax.set_title("what its number follows")
+
+
+def _chance(samples: int, parameters: int) -> float:
+    """Return the rank correlation that the greatest of so many reaches by chance once in a hundred times."""
+    if samples < 4:
+        return 1.0
+    t = stats.t.isf(_SURE / parameters / 2, samples - 2)
+    return float(t / np.sqrt(samples - 2 + t**2))
+
+
+def _plain(parameter: str) -> str:
+    of, _, name = parameter.partition(".")
+    words = name.replace("_", " ").replace(".", ", ")
+    return words if of == "robot" else f"{words} (gait)"
+
+
+def _plane(ax: Axes, told: xr.Dataset, there: np.ndarray, holds: np.ndarray) -> None:
+    first = int(told.border_of)
+    order = [int(i) for i in np.argsort(-abs(told.correlation.values))]
+    if first < 0:
+        first = order[0]
+    second = next(i for i in order if i != first)
+    x, y = (told.value.values[there][:, i] for i in (first, second))
+    for some, colour, mark, label in ((holds, _TRUE, "o", "true"), (~holds, _FALSE, "X", "false")):
+        ax.scatter(x[some], y[some], s=16, color=colour, marker=mark, alpha=0.65, linewidth=0, label=label)
+    if int(told.border_of) >= 0:
+        at, side = float(told.border_at), "above" if told.border_above else "below"
+        ax.axvline(at, color="black", linewidth=1.4)
+        ax.set_title(f"rather true {side} {at:.3g} (separation {float(told.border_separation):.2f})")
+    else:
+        ax.set_title("no border within the ranges")
+    ax.set_xlabel(_plain(str(told.parameter.values[first])))
+    ax.set_ylabel(_plain(str(told.parameter.values[second])))

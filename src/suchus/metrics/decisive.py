@@ -1,0 +1,53 @@
+"""Which parameters decide: rank correlations, and the border between where a statement holds and where it does not."""
+
+from typing import NamedTuple
+
+import numpy as np
+from jaxtyping import Bool, Float
+from scipy import stats
+
+_FEW = 5  # samples on one side; fewer say nothing about a border
+
+
+class Border(NamedTuple):
+    """The value of one parameter that best tells where a statement holds."""
+
+    parameter: int
+    """Which."""
+    at: float
+    """Its value there, in the parameter's unit."""
+    above: bool
+    """Whether the statement rather holds above."""
+    separation: float
+    """Share of the samples where it holds, less that where it does not, on the side where it rather holds [-].
+
+    The statistic of Kolmogorov and Smirnov: 1 if the border tells everything, 0 if nothing.
+    """
+    chance: float
+    """How probable so great a separation of this parameter is by chance [-]."""
+
+
+def rank_correlation(
+    parameters: Float[np.ndarray, "sample parameter"], quantity: Float[np.ndarray, " sample"]
+) -> tuple[Float[np.ndarray, " parameter"], Float[np.ndarray, " parameter"]]:
+    """Return Spearman's rank correlation of each parameter with a quantity, and how probable it is by chance.
+
+    Samples without the quantity (NaN) are left out; a quantity that never changes correlates with nothing.
+    """
+    there = np.isfinite(quantity)
+    number = parameters.shape[1]
+    if there.sum() < 3 or np.ptp(quantity[there]) == 0.0:
+        return np.zeros(number), np.ones(number)
+    found = [stats.spearmanr(column, quantity[there]) for column in parameters[there].T]
+    return np.array([each.statistic for each in found]), np.array([each.pvalue for each in found])
+
+
+def border(parameters: Float[np.ndarray, "sample parameter"], holds: Bool[np.ndarray, " sample"]) -> Border | None:
+    """Return the border that best tells where a statement holds, or None where it nearly always or never does."""
+    if min(int(holds.sum()), int((~holds).sum())) < _FEW:
+        return None
+    found = [stats.ks_2samp(column[holds], column[~holds], method="asymp") for column in parameters.T]
+    best = int(np.argmax([each.statistic for each in found]))
+    one = found[best]
+    # the sign is positive where more of the first sample lies below the location
+    return Border(best, float(one.statistic_location), one.statistic_sign < 0, float(one.statistic), float(one.pvalue))
