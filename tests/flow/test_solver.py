@@ -69,6 +69,24 @@ def test_a_frame_that_follows_the_body_changes_nothing():
     assert b.column("x")[-1] == pytest.approx(-0.6)
 
 
+def test_a_frame_that_follows_a_shaking_body_sees_the_same_forces():
+    """The frame accelerates; its own inertia must not press on the body."""
+    shaking = flow.Body(
+        shape=flow.Cylinder(diameter=1.0), motion=flow.Oscillation(frequency=1.0, heave=(0.1, 0.0), phase=np.pi / 2)
+    )
+    settings = {
+        "viscosity": 0.025,
+        "density": 1.0,
+        "step": 0.0125,
+        "grid": flow.Grid.covering((-4.0, 4.0), (-4.0, 4.0), cell=1 / 16),
+        "bodies": (shaking,),
+    }
+    still, followed = flow.Simulation(flow.Setup(**settings)), flow.Simulation(flow.Setup(follow="body", **settings))
+    a, b = still.run(0.8, progress=False).force()[:, 0], followed.run(0.8, progress=False).force()[:, 0]
+    assert np.ptp(a) > 2
+    assert np.abs(a - b).max() < 0.06 * np.ptp(a)
+
+
 def test_added_mass_is_that_of_potential_theory():
     circle = cases.added(flow.Cylinder(diameter=1.0), 24)
     assert np.diag(circle)[:2] == pytest.approx(np.pi / 4, rel=0.02)
@@ -146,6 +164,7 @@ def test_a_run_goes_on_from_its_checkpoint_to_the_same_bytes(tmp_path):
     assert second.water.u.tobytes() == whole.water.u.tobytes()
     assert record.bodies.tobytes() == whole.record.bodies.tobytes()
     assert record.time.tobytes() == whole.record.time.tobytes()
+    assert (second._peak, second._reference) == (whole._peak, whole._reference)
 
 
 def test_a_broken_checkpoint_or_one_of_another_setup_is_refused(tmp_path):

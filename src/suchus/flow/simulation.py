@@ -19,6 +19,7 @@ from suchus.flow.pose import Pose
 from suchus.flow.progress import Bar
 from suchus.flow.record import COLUMNS, Record
 from suchus.flow.setup import Setup
+from suchus.flow.shape import Markers
 from suchus.flow.water import Water
 
 ADDED_EVERY = 8
@@ -26,6 +27,11 @@ ADDED_EVERY = 8
 
 FASTEST = 100.0
 """Speed, over that of stream and bodies, above which a simulation counts as diverged [-]."""
+
+
+def _fastest_marker(markers: Markers) -> float:
+    """Return the fastest speed of a body's surface in the frame of the grid [m/s]."""
+    return float(np.hypot(markers.velocity_x, markers.velocity_y).max())
 
 
 LANDING = 16
@@ -65,8 +71,8 @@ class Simulation:
         self.water.u[:], self.water.v[:] = stream
         self.water.border.stream = stream
         self._placed = False
-        self._speed = max([self._marker_speed(b, self._in_frame(self.pose(b.name))) for b in setup.bodies] + [1e-12])
-        self._speed = max(float(np.hypot(*stream)), self._speed)
+        outlines = [b.shape.markers(0.0, self._in_frame(self.pose(b.name)), setup.grid.cell) for b in setup.bodies]
+        self._speed = max([float(np.hypot(*stream)), 1e-12] + [_fastest_marker(m) for m in outlines])
         self._fastest = 0.0  # fastest water after the last step
         self._reference = 0.0  # fastest stream, body or wall so far
         self._peak = 2 * self._speed  # fastest water so far; beside a bluff body, twice the stream
@@ -86,10 +92,6 @@ class Simulation:
             position=(pose.position[0] - fx, pose.position[1] - fy), angle=pose.angle,
             velocity=(pose.velocity[0] - fu, pose.velocity[1] - fv), spin=pose.spin,
         )  # fmt: skip
-
-    def _marker_speed(self, body: Body | FreeBody, pose: Pose) -> float:
-        markers = body.shape.markers(self.time, pose, self.setup.grid.cell)
-        return float(np.hypot(markers.velocity_x, markers.velocity_y).max())
 
     def _stream(self, time: float) -> tuple[float, float]:
         u, v = self.setup.far(time)
@@ -145,19 +147,23 @@ class Simulation:
             self.water.offset = offset
             self.water.place(list(self.setup.bodies), poses, time)
             self._placed = True
+        markers = [
+            b.shape.markers(time, p, self.setup.grid.cell) for b, p in zip(self.setup.bodies, poses, strict=True)
+        ]
+        ahead = float(np.hypot(*self._stream(time)))
+        self._speed = max([self._speed, ahead] + [_fastest_marker(m) for m in markers])  # it may just start to move
         push = tuple(-(self.frame[1] - old_frame[1]) / dt)
         limits = (self.setup.tolerance * self._speed, 10 * self.setup.tolerance * self._speed)
         self.water.step(dt, self._stream(time), (float(push[0]), float(push[1])), limits)
         self.time, self._last = time, dt
-        self._note(dt, poses, push)
+        self._note(dt, poses, markers, push)
 
-    def _note(self, dt: float, poses: list[Pose], push: tuple[float, ...]) -> None:
+    def _note(self, dt: float, poses: list[Pose], outlines: list[Markers], push: tuple[float, ...]) -> None:
         water, setup = self.water, self.setup
         fastest = self._fastest = water.fastest()
         row = np.zeros(5 + len(setup.bodies) * len(COLUMNS))
         body_speed = 0.0
-        for k, (body, pose) in enumerate(zip(setup.bodies, poses, strict=True)):
-            markers = body.shape.markers(self.time, pose, setup.grid.cell)
+        for k, (body, pose, markers) in enumerate(zip(setup.bodies, poses, outlines, strict=True)):
             surface = sample(water, markers, setup.density)
             swimmer = self.swimmers.get(body.name)
             about = pose.position if swimmer is None else tuple(swimmer.place[:2] - self.frame[0])
@@ -172,7 +178,7 @@ class Simulation:
                 swimmer.load = np.array([*load.force, load.torque])
                 if swimmer.steps % ADDED_EVERY == 1:
                     swimmer.added = added_mass(water, markers, (float(about[0]), float(about[1])), setup.density)
-            body_speed = max(body_speed, float(np.hypot(markers.velocity_x, markers.velocity_y).max()))
+            body_speed = max(body_speed, _fastest_marker(markers))
         self._peak = max(self._peak, fastest)
         self._speed = max(float(np.hypot(*water.border.stream)), body_speed, min(fastest, 10 * self._speed), 1e-12)
         solves = water.solves
