@@ -2,16 +2,17 @@
 
 import time
 from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import tyro
 
 from suchus.cli.commands import BadCommand
 from suchus.cli.options import parse
 from suchus.cli.terminal import Bars, working
-from suchus.study import Told, conduct, read_study
+from suchus.study import Told, conduct, connected, read_study
 from suchus.study.store import RESULTS, TABLE
 
 _EVERY = 10.0  # [s]; between lines where there is no terminal for a bar
@@ -23,6 +24,8 @@ class Options:
 
     file: Annotated[Path, tyro.conf.Positional]
     """The study, a TOML file; see docs/studies.md."""
+    scheduler: str | None = None
+    """Address of a Dask scheduler whose workers run it, as tcp://127.0.0.1:8786; the same bytes."""
     out: Path | None = None
     """The store; by default out/studies/NAME. One that this study began is finished, anything else is refused."""
 
@@ -39,8 +42,9 @@ def study(words: Sequence[str]) -> int:
     if options.out is None and any(c in asked.name for c in "/\\\0"):
         raise BadCommand(f"the study is named {asked.name!r}, which makes no folder; say --out DIR.")
     folder = options.out or Path("out") / "studies" / asked.name
-    with working() as bars:
-        results = conduct(asked, folder, progress=_shown(bars, asked.name))
+    cluster: AbstractContextManager[Any] = nullcontext() if options.scheduler is None else connected(options.scheduler)
+    with cluster as client, working() as bars:
+        results = conduct(asked, folder, progress=_shown(bars, asked.name), client=client)
     failed = {sample: str(error) for sample, error in enumerate(results.error.values) if error}
     print(f"{results.sizes['sample']} runs, {len(failed)} failed: {folder / RESULTS}, {folder / TABLE}")
     for sample, error in list(failed.items())[:1]:

@@ -1,6 +1,7 @@
 """Many runs: what varies, what is measured, and a store that a kill cannot spoil."""
 
 from suchus.study.chunk import run_chunk
+from suchus.study.cluster import NoCluster, connected
 from suchus.study.conduct import Told, conduct
 from suchus.study.measures import MEASURES
 from suchus.study.page import read_study
@@ -8,4 +9,16 @@ from suchus.study.plan import Plan
 from suchus.study.store import Store
 from suchus.study.study import Study, Vary
 
-__all__ = ["MEASURES", "Plan", "Store", "Study", "Told", "Vary", "conduct", "read_study", "run_chunk"]
+__all__ = [
+    "MEASURES",
+    "NoCluster",
+    "Plan",
+    "Store",
+    "Study",
+    "Told",
+    "Vary",
+    "conduct",
+    "connected",
+    "read_study",
+    "run_chunk",
+]

@@ -3,11 +3,12 @@
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import xarray as xr
 
 from suchus.study.chunk import run_chunk
+from suchus.study.cluster import spread
 from suchus.study.plan import Plan
 from suchus.study.store import Store
 from suchus.study.study import Study
@@ -39,7 +40,7 @@ class Told(NamedTuple):
 Progress = Callable[[Told], None]
 
 
-def conduct(study: Study, folder: Path, *, progress: Progress | None = None) -> xr.Dataset:
+def conduct(study: Study, folder: Path, *, progress: Progress | None = None, client: Any = None) -> xr.Dataset:
     """Run what of a study is not in its store yet, and return all results.
 
     Batches are stored as they are finished: whatever stops the program, at most the running batch is lost. Started
@@ -49,20 +50,23 @@ def conduct(study: Study, folder: Path, *, progress: Progress | None = None) -> 
         study: the study.
         folder: its store.
         progress: told how far it is.
+        client: a ``distributed.Client``, whose workers then run the batches; this process if None. The bytes are the
+            same.
 
     Returns:
         A table along ``sample``, as ``run_chunk`` describes it; also in the store as NetCDF and CSV.
 
     Raises:
         Unwritable: the store cannot be written to.
-        IncompatibleRecord: the store is another study's or another version's.
+        IncompatibleRecord: the store is another study's or another version's, or a worker has another version.
+        NoCluster: the cluster was lost.
     """
     plan = Plan(study)
     with Store(folder, study).opened() as store:
         missing = [number for number in range(plan.chunks) if not store.has(number)]
         counter = _Counter(store, plan, missing, progress or _silent)
-        for number in missing:
-            table = run_chunk(study, number, counter.within(number))
+        here = ((number, run_chunk(study, number, counter.within(number))) for number in missing)
+        for number, table in here if client is None else spread(study, missing, client):
             store.put(number, table)
             counter.finished(number, table)
         return store.gather(plan.chunks)

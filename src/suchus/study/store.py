@@ -112,13 +112,12 @@ class Store:
 
     def _origin(self) -> dict[str, Any]:
         held = {f.name: repr(getattr(self.study, f.name)) for f in fields(self.study)}
-        found = versions()
         return {
             "format": _FORMAT,
             "name": self.study.name,
             "hash": hashlib.sha256(repr(self.study).encode()).hexdigest(),
             "fields": held,
-            "versions": {name: found.get(name, "not installed") for name in _DECIDING},
+            "versions": deciding(),
         }
 
     def _check(self, mark: Path) -> None:
@@ -157,3 +156,9 @@ class Store:
             for draft in place.glob(".*.*-*"):
                 if draft.is_dir():
                     shutil.rmtree(draft, ignore_errors=True)
+
+
+def deciding() -> dict[str, str]:
+    """Return the versions of what makes a study's bytes."""
+    found = versions()
+    return {name: found.get(name, "not installed") for name in _DECIDING}
