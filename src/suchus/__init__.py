@@ -34,7 +34,9 @@ if TYPE_CHECKING:
     from suchus.land import crawl as crawl
     from suchus.land import simulate as simulate
     from suchus.motion import Gait as Gait
+    from suchus.motion import Swim as Swim
     from suchus.robots import ROBOTS as ROBOTS
+    from suchus.water import swim as swim
 
 __version__ = "0.1.0"
 
@@ -61,6 +63,8 @@ _HOMES = {
     "GAITS": "suchus.gaits",
     "ROBOTS": "suchus.robots",
     "Gait": "suchus.motion",
+    "Swim": "suchus.motion",
+    "swim": "suchus.water",
     **dict.fromkeys(("Deaf", "Ground", "Limp", "Locked", "Push", "Run", "Weak", "crawl", "simulate"), "suchus.land"),
 }
 __all__ = ["__version__", *_HOMES]  # noqa: PLE0604 - the names are strings

@@ -1,0 +1,125 @@
+"""One robot, one swimming motion, one record: by the models that cost nothing."""
+
+import numpy as np
+import xarray as xr
+
+from suchus.design import Crocodile
+from suchus.kinematics.mass import GRAVITY
+from suchus.motion import Swim, check_swim
+from suchus.water.outline import Curve, Outline
+from suchus.water.slender import Model, Water, cruise, cycle, reactive, recoil, resistive
+
+MODELS: dict[str, Model] = {"resistive": resistive, "reactive": reactive}
+"""The models by name."""
+
+
+def swim(robot: Crocodile, motion: Swim, *, water: Water | None = None, stations: int = 257) -> xr.Dataset:
+    """Return how a robot swims by the resistive and the reactive model.
+
+    ``thrust_held`` is the mean force on a body that is kept from moving on but free to sway and turn; everything else
+    belongs to free swimming at the speed where the mean force vanishes. The passive end of the tail is straight, the
+    body as heavy as the water it displaces; limbs do nothing.
+
+    Args:
+        robot: who swims.
+        motion: how.
+        water: density, viscosity and coefficients; fresh water if None.
+        stations: points along the midline.
+
+    Returns:
+        A record with the dimensions ``model``, ``time`` (one cycle) and ``station``; x runs from the snout to the tail,
+        y to the right, in a frame that travels with the body.
+
+    Raises:
+        OutsideLimits: the joints or servos cannot follow the motion.
+        NotConverged: thrust and drag never balance.
+    """
+    check_swim(robot, motion)
+    outline, still = Outline(robot, stations), water or Water()
+    held = cycle(outline, motion, *recoil(outline, motion, 0.0, still))
+    per_model: dict[str, list[float]] = {name: [] for name in _PER_MODEL}
+    curves = []
+    for model in MODELS.values():
+        free = cruise(outline, motion, model, still)
+        curve = cycle(outline, motion, free.sway, free.turn)
+        curves.append(curve)
+        values = _numbers(robot, motion, outline, curve, free.speed, free.power)
+        for name, value in {"thrust_held": model(outline, held, 0.0, still).thrust, **values}.items():
+            per_model[name].append(value)
+    return _record(outline, motion, still, curves, per_model)
+
+
+_PER_MODEL = {
+    "thrust_held": ("N", "mean force forward, kept from moving on"),
+    "speed": ("m/s", "free swimming, forward"),
+    "speed_lengths": ("1/s", "free swimming, in body lengths"),
+    "power": ("W", "of the joints on the water"),
+    "slip": ("1", "speed over that of the body wave"),
+    "strouhal": ("1", "frequency times the way of the tail's tip from side to side, over speed"),
+    "cost_of_transport": ("1", "power over displaced weight and speed"),
+    "head_yaw": ("rad", "amplitude of the head's direction"),
+}
+
+
+def _numbers(
+    robot: Crocodile, motion: Swim, outline: Outline, curve: Curve, speed: float, power: float
+) -> dict[str, float]:
+    swing = float(np.ptp(curve.y[:, -1]))
+    weight = GRAVITY * displaced(outline)
+    moving = speed != 0.0
+    return {
+        "speed": speed,
+        "speed_lengths": speed / robot.length,
+        "power": power,
+        "slip": speed / wave_speed(outline, motion, curve),
+        "strouhal": motion.frequency * swing / abs(speed) if moving else float("nan"),
+        "cost_of_transport": power / (weight * abs(speed)) if moving else float("nan"),
+        "head_yaw": float(np.ptp(curve.heading[:, 0])) / 2,
+    }
+
+
+def displaced(outline: Outline, density: float = 1000.0) -> float:
+    """Return the mass of the water that the body displaces, its sections taken as ellipses [kg]."""
+    wide, high = outline.silhouette
+    return float(density * np.pi * np.trapezoid(wide * high, outline.s))
+
+
+def wave_speed(outline: Outline, motion: Swim, curve: Curve) -> float:
+    """Return the speed of the body wave towards the tail, negative if it runs to the head [m/s].
+
+    The phase of the sideways motion along the body is fitted with a straight line, each place weighted with the square
+    of its amplitude.
+    """
+    count = len(curve.y)
+    turning = np.exp(-2j * np.pi * np.arange(count) / count)
+    harmonic = turning @ curve.y
+    weight = np.abs(harmonic) ** 2
+    if weight.sum() == 0.0:
+        return float("inf")
+    late = -np.unwrap(np.angle(harmonic))
+    s = outline.s - np.average(outline.s, weights=weight)
+    k = float(np.sum(weight * s * late) / np.sum(weight * s**2))
+    return 2 * np.pi * motion.frequency / k if k else float("inf")
+
+
+def _record(
+    outline: Outline, motion: Swim, water: Water, curves: list[Curve], per_model: dict[str, list[float]]
+) -> xr.Dataset:
+    count = len(curves[0].x)
+    data = xr.Dataset(
+        coords={
+            "model": list(MODELS),
+            "time": ("time", np.arange(count) / count / motion.frequency, {"units": "s"}),
+            "station": ("station", outline.s, {"units": "m", "long_name": "along the midline from the snout"}),
+        }
+    )
+    for name, (unit, what) in _PER_MODEL.items():
+        data[name] = ("model", per_model[name], {"units": unit, "long_name": what})
+    for field, unit in (("x", "m"), ("y", "m"), ("heading", "rad"), ("x_rate", "m/s"), ("y_rate", "m/s")):
+        values = np.stack([getattr(curve, field) for curve in curves])
+        data[field] = (("model", "time", "station"), values, {"units": unit})
+    for name, values in outline.silhouette._asdict().items():
+        data[name] = ("station", values, {"units": "m"})
+    data["displaced_mass"] = ((), displaced(outline, water.density), {"units": "kg"})
+    data.attrs.update(schema="suchus swim record 1", robot=outline.robot.name, motion=motion.name)
+    return data

@@ -1,0 +1,94 @@
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+
+from suchus.errors import InvalidDesign, OutsideLimits, UnknownName
+from suchus.water import BodyWave, EelWave, Outline, fit, printed_wave
+
+
+@pytest.mark.parametrize(
+    ("waves", "misfit", "yaw", "tail"),
+    [(1 / 1.5, 4, 11, 24), (1.0, 8, 20, 39), (1 / 0.7, 14, 30, 52)],  # the audit's table, of a body of 1.055 m
+)
+def test_reading_i_fits_as_the_audit_expects(robot, waves, misfit, yaw, tail):
+    found = fit(robot, printed_wave(robot, "I", waves_per_body=waves))
+    assert 100 * found.misfit == pytest.approx(misfit, abs=1.5)
+    assert np.degrees(max(found.swim.yaw)) == pytest.approx(yaw, abs=6)
+    assert np.degrees(found.swim.tail) == pytest.approx(tail, abs=8)
+
+
+def test_the_literal_reading_is_hardly_a_wave_and_fits_well(robot):
+    found = fit(robot, printed_wave(robot, "A"))
+    assert found.misfit < 0.03
+    assert np.degrees(max(found.swim.yaw)) == pytest.approx(5, abs=2)
+
+
+def test_the_printed_sign_plays_the_motion_backwards(robot):
+    printed, ours = (fit(robot, printed_wave(robot, sign=sign), name="w").swim for sign in (1, -1))
+    assert np.exp(2j * np.pi * np.array(printed.yaw_late)) == pytest.approx(
+        np.exp(2j * np.pi * np.array(ours.reversed().yaw_late)), abs=1e-6
+    )
+    assert printed.yaw == pytest.approx(ours.yaw, abs=1e-9)
+
+
+def test_a_wave_of_the_tail_leaves_the_trunk_nearly_alone(robot):
+    found = fit(robot, printed_wave(robot, "H")).swim
+    assert max(found.yaw) < 0.25 * found.tail
+
+
+@dataclass(frozen=True)
+class Arc:
+    """A body that bends evenly along the cable section and nowhere else, as far as small angles go."""
+
+    robot: object
+    bend: float
+    period: float = 2.0
+
+    def slope(self, x, time):
+        share = Outline(self.robot).bending_at(np.atleast_1d(x))[:, 3]
+        return self.bend * np.cos(np.pi * time) * share
+
+    def displacement(self, x, time):
+        return np.concatenate([[0.0], np.cumsum(np.diff(x) * self.slope(0.5 * (x[1:] + x[:-1]), time))])
+
+
+def test_what_the_joints_can_make_is_found_again(robot):
+    wave = Arc(robot, 0.01)
+    assert isinstance(wave, BodyWave)
+    found = fit(robot, wave)
+    assert found.swim.tail == pytest.approx(0.01, rel=1e-3)
+    assert max(found.swim.yaw) < 1e-5
+    assert found.swim.frequency == 0.5
+    assert found.misfit < 1e-3
+
+
+@pytest.mark.parametrize(("reading", "joint"), [("B", "spine_yaw_1"), ("J", "spine_yaw_1"), ("G", "tail_yaw_")])
+def test_a_wave_that_the_joints_cannot_make_names_the_joint(robot, reading, joint):
+    with pytest.raises(OutsideLimits) as refused:
+        fit(robot, printed_wave(robot, reading), name="printed")
+    assert joint in str(refused.value)
+    assert "rad" in str(refused.value)
+
+
+def test_the_eel_of_the_literature_can_be_made(robot):
+    found = fit(robot, EelWave(length=robot.length, frequency=1.0))
+    assert found.misfit < 0.1
+    assert np.degrees(max(found.swim.yaw)) < 45
+    assert np.degrees(found.swim.tail) < 90
+
+
+def test_slopes_are_derivatives(robot):
+    x = np.linspace(0.01, robot.length, 50)
+    for wave in (printed_wave(robot), EelWave(length=robot.length, frequency=0.7)):
+        difference = (
+            wave.displacement(x + 1e-6, np.float64(0.3)) - wave.displacement(x - 1e-6, np.float64(0.3))
+        ) / 2e-6
+        np.testing.assert_allclose(wave.slope(x, np.float64(0.3)), difference, atol=1e-7)
+
+
+def test_wrong_requests_are_refused(robot):
+    with pytest.raises(UnknownName):
+        printed_wave(robot, "Z")
+    with pytest.raises(InvalidDesign, match="period"):
+        fit(robot, Arc(robot, 0.01, period=-1.0))
