@@ -174,8 +174,8 @@ class Displacement(Experiment):
         way, ratio = _forward(record).values, _ratio(record)
         ours = (self.robot, self.gait) == (ROBOTS["caiman"], GAITS["belly_crawl"])
         chosen = (
-            f"Leg stroke ({1000 * self.gait.stroke:.0f} mm) and trunk bend ({degrees(self.gait.trunk_bend):.0f} deg) are "
-            f"free in the article{' and were chosen to give its two displacements' if ours else ''}."
+            f"Leg stroke ({1000 * self.gait.stroke:.0f} mm) and trunk bend ({degrees(self.gait.trunk_bend):.0f} deg) "
+            f"are free in the article{' and were chosen to give its two displacements' if ours else ''}."
         )
         return (
             judge("displacement_coordinated", float(way[0]), chosen),
