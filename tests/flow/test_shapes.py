@@ -128,3 +128,13 @@ def test_naca_0012_is_twelve_percent_thick():
 def test_impossible_shapes_are_refused(make, part):
     with pytest.raises(InvalidDesign, match=part):
         make()
+
+
+@pytest.mark.parametrize("time", [0.0, 1.0, 2.0])
+def test_a_row_through_nose_and_tail_is_outside_beyond_them(time):
+    x = np.arange(-40, 260) / 128
+    y = -0.25 + np.arange(64) / 128  # one row lies on the eel's nose and tail tip
+    field = flow.eel(1.0).measure(x, y, time, STILL, 0.03)
+    assert (field.distance[:, x > 1.01] > 0).all()
+    assert (field.distance[:, x < -0.01] > 0).all()
+    assert (field.distance < 0).sum() / 128**2 == pytest.approx(flow.eel(1.0).mass(time).area, rel=0.03)

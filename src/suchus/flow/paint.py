@@ -48,10 +48,9 @@ def _wind_edge(winding, ax, ay, bx, by, x0, y0, h):
     ny, nx = winding.shape
     low, high, way = (ay, by, 1) if ay < by else (by, ay, -1)
     j0 = max(int(np.ceil((low - y0) / h)), 0)
-    for j in range(j0, ny):
+    j1 = min(int(np.ceil((high - y0) / h)), ny)  # rounded as j0 is, or a vertex on a row counts twice or never
+    for j in range(j0, j1):
         y = y0 + j * h
-        if y >= high:
-            break
         x = ax + (bx - ax) * (y - ay) / (by - ay)
         i = max(int(np.ceil((x - x0) / h)), 0)
         if i < nx:
