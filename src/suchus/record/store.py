@@ -29,8 +29,8 @@ def save(record: xr.Dataset, path: Path) -> Path:
     marked.attrs = {_MARK: _VERSION, _ATTRIBUTES: attributes}
     packed = {"zlib": True, "complevel": 4, "shuffle": True}
     encoding = {str(k): packed for k, v in marked.variables.items() if v.dtype.kind in "biuf" and v.size > 1}
-    with new_file(path) as draft:
-        marked.to_netcdf(draft, engine="h5netcdf", encoding=encoding)
+    with new_file(path) as draft:  # through memory: HDF5 itself dies when the disk is full
+        draft.write_bytes(marked.to_netcdf(engine="h5netcdf", encoding=encoding))
     return path
 
 
