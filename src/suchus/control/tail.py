@@ -23,8 +23,8 @@ class TailRule:
     d(pitch)/dt = -rate torque, within a range. A gait that lifts its tail keeps it lifted.
     """
 
-    rate: float = 0.5
-    """How fast it gives way [rad/(s N m)]; over a cycle it settles, within a step it hardly moves."""
+    rate: float = 0.3
+    """How fast it gives way [rad/(s N m)]; faster gains more uphill, this drifts least on slopes to the side."""
     lowest: float = 0.55
     """Farthest down [rad]; beyond, the tail would lift the hind feet."""
     highest: float = -0.05

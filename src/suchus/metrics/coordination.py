@@ -20,7 +20,7 @@ def phase_error(phase: xr.DataArray, gait: Gait) -> xr.DataArray:
         phase: of the limbs, with the dimension ``leg`` [cycle].
         gait: whose phases are meant.
     """
-    meant = dict(zip(LEGS, gait.limb_phases, strict=True))
+    meant: dict[str, float] = dict(zip(LEGS, gait.limb_phases, strict=True))
     errors = []
     for one, other in _PAIRS:
         off = phase.sel(leg=one, drop=True) - phase.sel(leg=other, drop=True) - (meant[one] - meant[other])

@@ -1,0 +1,189 @@
+"""Pictures of the closed loop: limbs that find their gait, what each rule gains, where a disturbed robot goes."""
+
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
+from typing import Any, Final
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.colors import TwoSlopeNorm
+from matplotlib.figure import Figure
+from matplotlib.ticker import MultipleLocator
+
+from suchus.design import LEGS
+from suchus.figures.style import COLOURS, DIVERGING, captioned, panels, styled
+from suchus.motion import Gait, stance
+
+_LAWS: Final[Mapping[str, tuple[str, str]]] = MappingProxyType(
+    {
+        "off": ("no feedback", COLOURS["neutral"]),
+        "own_load": ("own foot's load", COLOURS["tail_drag"]),
+        "cross_load": ("loads of all feet", COLOURS["coordinated"]),
+        "body_limb": ("torque of the trunk", COLOURS["spine_only"]),
+        "wrong_sign": ("wrong sign", COLOURS["alarm"]),
+        "closed_noisy": ("all rules, noisy feet", COLOURS["coordinated"]),
+    }
+)
+_ARMS: Final[Mapping[str, tuple[str, str, Any]]] = MappingProxyType(
+    {
+        "open": ("no feedback", COLOURS["limbs_only"], (0, (5, 2))),
+        "closed": ("three rules", COLOURS["coordinated"], "-"),
+        "steered": ("three rules and heading loop", COLOURS["tail_drag"], (0, (5, 1.5, 1, 1.5))),
+    }
+)
+_RULES: Final[Mapping[str, str]] = MappingProxyType(
+    {
+        "open": "none",
+        "limbs": "limbs",
+        "spine": "spine",
+        "tail": "tail",
+        "closed": "all three",
+        "steered": "+ heading",
+    }
+)
+_WORDS: Final[Mapping[str, str]] = MappingProxyType(
+    {
+        "none": "undisturbed",
+        "kick": "limbs kicked out of phase",
+        "locked_spine": "middle spine joint stuck",
+        "uphill": "uphill",
+        "downhill": "downhill",
+        "side_slope": "slope, left side up",
+        "other_side": "slope, right side up",
+        "push": "push from the right",
+        "limp_yaw": "front yaw limp",
+        "load_noise": "noisy feet",
+    }
+)
+
+
+def draw_fans(error: xr.DataArray, within: float) -> Figure:
+    """Draw the phase error of every start over the cycles, one panel per law.
+
+    Args:
+        error: with the dimensions ``law``, ``start`` and ``time`` (in cycles) [cycle].
+        within: what counts as coordinated [cycle].
+    """
+    with styled():
+        figure, axes = panels(2, 3, width=10.5, height=5.6, sharex=True, sharey=True)
+        for ax, (law, (label, colour)) in zip(axes.flat, _LAWS.items(), strict=True):
+            some = error.sel(law=law).transpose("time", "start")
+            ax.axhspan(0.0, within, color=COLOURS["grid"], linewidth=0)
+            ax.plot(error.time, some, color=colour, linewidth=0.8, alpha=0.5)
+            ax.plot(error.time, some.median("start"), color="black", linewidth=2.0)
+            ax.set_title(label)
+            ax.set_xlim(0.0, float(error.time[-1]))
+            ax.set_ylim(0.0, 0.52)
+        for ax in axes[-1]:
+            ax.set_xlabel("cycles since the start")
+        for ax in axes[:, 0]:
+            ax.set_ylabel("phase error [cycle]")
+    return captioned(
+        figure,
+        f"How far the limbs are from the gait, from {error.sizes['start']} random starts under each law; the black "
+        "line is the median, the grey band counts as coordinated. Noisy feet: 30 % noise on every load, spine and tail "
+        "rules on.",
+    )
+
+
+def draw_onset(phase: xr.DataArray, gait: Gait, start: int = 0) -> Figure:
+    """Draw which feet are meant to stand from one random start, without and with feedback.
+
+    Args:
+        phase: of the limbs, with the dimensions ``law``, ``start``, ``start_time`` (in cycles) and ``leg`` [cycle].
+        gait: that they walk.
+        start: which one.
+    """
+    with styled(axes__grid=False):
+        figure, axes = panels(3, 1, height=5.4, sharex=True)
+        for ax, law in zip(axes.flat, ("off", "own_load", "cross_load"), strict=True):
+            some = phase.sel(law=law).isel(start=start).transpose("start_time", "leg")
+            _bars(ax, some.start_time.values, stance(gait, some.values))
+            ax.set_title(_LAWS[law][0])
+        axes[-1, 0].set_xlabel("cycles since the start")
+    return captioned(
+        figure,
+        "Feet on the ground (bars) from one random start. Without feedback the limbs keep the phases that they began "
+        "with; with it the two diagonal pairs, blue and orange, find each other and take turns.",
+    )
+
+
+def _bars(ax: Axes, time: np.ndarray, stands: np.ndarray) -> None:
+    width = float(time[1] - time[0])
+    for row, leg in enumerate(LEGS):
+        edges = np.flatnonzero(np.diff(np.concatenate([[0], stands[:, row].astype(int), [0]])))
+        spans = [(time[a], width * (b - a)) for a, b in zip(edges[::2], edges[1::2], strict=True)]
+        colour = COLOURS["coordinated"] if leg in ("LF", "RH") else COLOURS["RH"]
+        ax.broken_barh(spans, (row - 0.36, 0.72), facecolors=colour)
+    ax.set_yticks(range(len(LEGS)), LEGS)
+    ax.set_ylim(len(LEGS) - 0.4, -0.6)
+    ax.set_xlim(max(0.0, float(time[0])), float(time[-1]))
+
+
+def draw_gain(way: xr.DataArray) -> Figure:
+    """Draw the way after each disturbance under each rule, as a part of the undisturbed way without feedback.
+
+    Args:
+        way: with the dimensions ``disturbance`` and ``arm`` [m].
+    """
+    share = (way / way.sel(disturbance="none", arm="open").item()).transpose("disturbance", "arm")
+    share = share.sel(arm=list(_RULES), disturbance=list(_WORDS))
+    with styled(axes__grid=False):
+        figure, axes = panels(1, 1, width=8.2, height=5.2)
+        ax = axes[0, 0]
+        scale = TwoSlopeNorm(100.0, vmin=20.0, vmax=140.0)
+        shown = ax.pcolormesh(100 * share.values, cmap=DIVERGING, norm=scale, edgecolors="white", linewidth=2)
+        for (row, column), value in np.ndenumerate(share.values):
+            dark = not 0.5 < value < 1.3
+            ax.text(
+                column + 0.5,
+                row + 0.5,
+                f"{100 * value:.0f}",
+                ha="center",
+                va="center",
+                color="white" if dark else "black",
+            )
+        ax.set_xticks(np.arange(len(_RULES)) + 0.5, list(_RULES.values()))
+        ax.set_yticks(np.arange(len(_WORDS)) + 0.5, list(_WORDS.values()))
+        ax.tick_params(length=0)
+        ax.invert_yaxis()
+        ax.set_xlabel("which rules are on")
+        for side in ax.spines.values():
+            side.set_visible(False)
+        figure.colorbar(shown, ax=ax, label="way forward [%]", pad=0.02, ticks=range(20, 141, 20))
+    return captioned(
+        figure,
+        "Way forward in the cycles after a disturbance, in percent of the undisturbed way without feedback. Each rule "
+        "mends what it feels; the last column adds the heading loop to all three.",
+    )
+
+
+def draw_tracks(record: xr.Dataset, disturbances: Sequence[str]) -> Figure:
+    """Draw from above where the robot goes after a disturbance.
+
+    Args:
+        record: with ``x`` and ``y`` along ``disturbance``, ``arm`` and ``time`` [m], from the disturbance on.
+        disturbances: which ones, one panel each.
+    """
+    with styled():
+        figure, axes = panels(1, len(disturbances), width=10.5, height=4.8)
+        for ax, name in zip(axes.flat, disturbances, strict=True):
+            for arm, (label, colour, dashes) in _ARMS.items():
+                one = record.sel(disturbance=name, arm=arm)
+                x, y = one.x - one.x.isel(time=0), one.y - one.y.isel(time=0)
+                ax.plot(-y, x, color=colour, linestyle=dashes, label=label)
+                ax.plot(-y[-1], x[-1], "o", color=colour)
+            ax.plot(0, 0, "s", color="black")
+            ax.set_aspect("equal", adjustable="datalim")
+            ax.xaxis.set_major_locator(MultipleLocator(0.5))
+            ax.yaxis.set_major_locator(MultipleLocator(0.5))
+            ax.set_title(_WORDS[name])
+            ax.set_xlabel("to the right [m]")
+        axes[0, 0].set_ylabel("forward [m]")
+        figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
+    return captioned(
+        figure,
+        "The centre of mass from above, from the disturbance (square) on. The three rules do not feel a direction; "
+        "the heading loop does and walks with longer strokes on one side.",
+    )
