@@ -12,7 +12,7 @@ from suchus.land import Run, simulate
 from suchus.metrics.reach import lead, reach
 from suchus.motion import limb_phase, servo_targets
 from suchus.motion.posture import plan
-from suchus.motion.stand_up import stand_up
+from suchus.motion.rising import stand_up
 
 CAIMAN, CRAWL = suchus.ROBOTS["caiman"], suchus.GAITS["belly_crawl"]
 SOON = Standing(at=0.2, hold=4.0, blend=1.0)

@@ -10,7 +10,7 @@ from suchus.errors import InvalidDesign, OutsideLimits
 from suchus.kinematics import leg as leg_kinematics
 from suchus.model import compile_model, joint_addresses
 from suchus.motion.posture import Keyed, hind_leg, plan
-from suchus.motion.stand_up import STRETCH, stand_up, stretched, tallest
+from suchus.motion.rising import STRETCH, stand_up, stretched, tallest
 
 CAIMAN = suchus.ROBOTS["caiman"]
 RISE = stand_up(CAIMAN)

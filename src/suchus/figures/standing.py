@@ -15,7 +15,7 @@ from suchus.metrics import tilt
 from suchus.paper import CLAIMS
 
 _TOUCHES = 0.5  # [N]; less is no support
-_SPACES = (0.0, 0.93, 1.63, 2.3, 2.95)  # [m] where the robots of the strip stand, so that no two overlap
+_SPACES = (0.0, 1.02, 1.95, 2.6, 3.23)  # [m] where the robots of the strip stand, so that no two overlap
 _FEEDBACK = {"on": COLOURS["ours"], "off": COLOURS["limbs_only"]}
 
 
@@ -33,13 +33,15 @@ def draw_side_views(robot: Crocodile, record: xr.Dataset) -> Figure:
         "feet ahead": at + 0.33 * rise,
         "trunk up": at + 0.555 * rise,
         "half up": at + 0.72 * rise,
-        "standing": (up + leave) / 2,
+        "standing": min(up + 2.0, (up + leave) / 2),
     }
     with styled(axes__grid=False):
-        figure, axes = panels(1, 1, width=13.0, height=3.9)
+        figure, axes = panels(1, 1, width=13.0, height=3.2)
         ax = axes[0, 0]
         for x, (name, time) in zip(_SPACES, times.items(), strict=True):
             one = record.isel(run=0).sel(time=[time], method="nearest")
+            if name != "crawling":  # in the crawl the pelvis swings, and x is the way
+                one = _facing_right(one)
             here = one.assign({n: one[n] + _shift(one, x) for n in _PLACES})
             draw_posture(ax, robot, here, time, view="side")
             _mark_support(ax, here.isel(time=0))
@@ -69,6 +71,18 @@ def _shift(record: xr.Dataset, x: float) -> xr.DataArray:
     """Return what brings the hind feet's middle to a place and keeps heights."""
     now = record.foot_position.sel(leg=["LH", "RH"], xyz="x").mean(("leg", "time"))
     return xr.DataArray([x - float(now), 0.0, 0.0], dims="xyz", coords={"xyz": record.xyz})
+
+
+def _facing_right(record: xr.Dataset) -> xr.Dataset:
+    """Return a moment of a record turned about the vertical, so that the pelvis faces along x."""
+    w, x, y, z = record.orientation.isel(time=0).values.astype(float)
+    turn = -np.arctan2(2 * (w * z - x * y), 1 - 2 * (x * x + z * z))  # from the axis to the left: it stays level
+    c, s = np.cos(turn), np.sin(turn)
+    R = xr.DataArray([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]], dims=("to", "xyz"), coords={"xyz": record.xyz})
+    turned = {n: (R * record[n]).sum("xyz").rename(to="xyz").assign_coords(xyz=record.xyz) for n in _PLACES}
+    half_c, half_s = np.cos(turn / 2), np.sin(turn / 2)
+    q = [half_c * w - half_s * z, half_c * x - half_s * y, half_c * y + half_s * x, half_c * z + half_s * w]
+    return record.assign(turned).assign(orientation=(("time", "wxyz"), [q]))
 
 
 def _mark_support(ax: Axes, now: xr.Dataset) -> None:
@@ -128,23 +142,13 @@ def draw_heights(record: xr.Dataset, hold: float) -> Figure:
         record: of the experiment.
         hold: how long it stands [s].
     """
-    _, at, up, _, _, end = record.attrs["stages"]
-    height = record.reach.isel(run=0)
-    repeats = record.repeat_reach
+    _, at, up, leave, _, end = record.attrs["stages"]
     with styled():
         figure, axes = panels(1, 2, width=10.0, height=4.4, sharey=True, width_ratios=[1, 1.35])
         for ax, begin, stop in ((axes[0, 0], at - 2.0, up + 2.0), (axes[0, 1], 0.0, end)):
-            some = repeats.sel(repeat_time=slice(begin, stop))
-            for feedback, colour in (("off", COLOURS["limbs_only"]), ("on", COLOURS["ours"])):
-                band = some.sel(feedback=feedback)
-                low, high = band.min("repeat"), band.max("repeat")
-                label = f"noisy servos, feedback {feedback}"
-                ax.fill_between(band.repeat_time, low, high, color=colour, alpha=0.35, linewidth=0, label=label)
-            part = height.sel(time=slice(begin, stop))
-            ax.plot(part.time, part, color=COLOURS["ours"], label="no noise")
+            _lay_heights(ax, record, begin, stop)
             for key in ("height_crawl", "height_standing"):
                 ax.axhline(CLAIMS[key].value or 0.0, **(dict(LINES["printed"]) | {"label": None, "linewidth": 1.3}))
-            ax.set_xlim(begin, stop)
             ax.set_ylim(0.0, 0.75)
             ax.set_xlabel("time [s]")
         for key in ("height_crawl", "height_standing"):
@@ -153,12 +157,30 @@ def draw_heights(record: xr.Dataset, hold: float) -> Figure:
         axes[0, 0].set_ylabel("height that it reaches [m]")
         axes[0, 0].set_title("standing up")
         axes[0, 1].set_title("crawl, stand, sit down, crawl on")
-        axes[0, 1].legend(loc="center", bbox_to_anchor=(0.53, 0.5))
+        close = axes[0, 1].inset_axes((0.26, 0.50, 0.5, 0.26))
+        _lay_heights(close, record, up + 1.0, leave)
+        close.set_title("standing, magnified", fontsize=10)
+        close.tick_params(labelsize=9)
+        axes[0, 1].legend(loc="upper center", bbox_to_anchor=(0.52, 0.42))
     return captioned(
         figure,
         f"Height of the highest point of head and trunk. The robot crawls, stands for {hold:.0f} s, sits down and "
         "crawls on. Dashed: the article's two heights. Bands: the range of repeats with noise on the servos.",
     )
+
+
+def _lay_heights(ax: Axes, record: xr.Dataset, begin: float, stop: float) -> None:
+    """Draw the heights of the quiet run, and the range of the noisy ones, from one time to another."""
+    some = record.repeat_reach.sel(repeat_time=slice(begin, stop))
+    for feedback, colour in _FEEDBACK.items():
+        band = some.sel(feedback=feedback)
+        label = f"noisy servos, feedback {feedback}"
+        ax.fill_between(
+            band.repeat_time, band.min("repeat"), band.max("repeat"), color=colour, alpha=0.3, linewidth=0, label=label
+        )
+    part = record.reach.isel(run=0).sel(time=slice(begin, stop))
+    ax.plot(part.time, part, color=COLOURS["ours"], label="no noise")
+    ax.set_xlim(begin, stop)
 
 
 def draw_limits(robot: Crocodile, record: xr.Dataset, up: float) -> Figure:
@@ -185,13 +207,20 @@ def draw_limits(robot: Crocodile, record: xr.Dataset, up: float) -> Figure:
         line = np.poly1d(np.polyfit(masses, record.map_cantilever, 1))(fine)
         ax.plot(fine, line, color=COLOURS["limbs_only"], linewidth=2.6, label="torque that lifts the level forebody")
         own = robot.thorax.mass + robot.head.mass
-        ax.plot(own, robot.spine.pitch_servo.torque + 0.17, "*", color="white", markeredgecolor="black", markersize=15)
+        ax.plot(
+            own + 0.37 * np.diff(masses).min(),
+            robot.spine.pitch_servo.torque,
+            "*",
+            color="white",
+            markeredgecolor="black",
+            markersize=15,
+        )
         step = (np.diff(masses).min() / 2, np.diff(torques).min() / 2)
         ax.set_xlim(masses[0] - step[0], masses[-1] + step[0])
         ax.set_ylim(torques[0] - step[1], torques[-1] + step[1])
         ax.set_xlabel("mass of thorax and head [kg]")
         ax.set_ylabel("torque of the trunk's pitch servos [N m]")
-        ax.legend(loc="upper left")
+        ax.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), borderaxespad=0.2)
         figure.colorbar(mesh, ax=ax, label="reach after standing up [m]")
     return captioned(
         figure,
@@ -239,7 +268,7 @@ def draw_ceiling(robot: Crocodile, record: xr.Dataset) -> Figure:
         )
         ax.set_xlabel("centre of mass behind the feet [mm]")
         ax.set_ylabel("reach [m]")
-        ax.set_ylim(0.64, 0.70)
+        ax.set_ylim(0.655, 0.70)
         ax.set_title("what a safe stand costs")
         ax.legend(loc="lower left")
     return captioned(
@@ -298,5 +327,5 @@ def draw_pushes(record: xr.Dataset, commanded: float) -> Figure:
         figure,
         "The smallest push of 0.2 s on the thorax that topples the standing robot, with feedback of pitch and tail "
         "load and without. Left: in the stand of the other figures. Right: over the distance of the centre of mass "
-        "behind the feet.",
+        "behind the feet, dashed without feedback.",
     )

@@ -7,6 +7,7 @@ from suchus.land.lost import KINDS, LEGS_LOST, LOST, angle_at, lost
 from suchus.land.push import Push
 from suchus.land.run import VACUUM, WATER, Afloat, Ground, Run
 from suchus.land.simulation import CONTROL_PERIOD, simulate
+from suchus.land.toppling import smallest_pushes
 
 __all__ = [
     "ARENAS",
@@ -29,4 +30,5 @@ __all__ = [
     "crawl",
     "lost",
     "simulate",
+    "smallest_pushes",
 ]

@@ -2,6 +2,8 @@
 
 from suchus.motion.gait import Gait, Legs
 from suchus.motion.phase import limb_phase, stance, tail_bend, trunk_bend
+from suchus.motion.posture import Keyed, Planned, Posture, plan
+from suchus.motion.rising import stand_up, stretched, tallest
 from suchus.motion.roll import Roll, check_roll, roll_targets
 from suchus.motion.swim import Bends, Swim, bends, check_swim, swim_targets
 from suchus.motion.targets import check_limits, foot_targets, longest_stroke, servo_targets, within_reach
@@ -11,7 +13,10 @@ __all__ = [
     "START",
     "Bends",
     "Gait",
+    "Keyed",
     "Legs",
+    "Planned",
+    "Posture",
     "Roll",
     "Swim",
     "bends",
@@ -21,11 +26,15 @@ __all__ = [
     "foot_targets",
     "limb_phase",
     "longest_stroke",
+    "plan",
     "roll_targets",
     "servo_targets",
     "stance",
+    "stand_up",
+    "stretched",
     "swim_targets",
     "tail_bend",
+    "tallest",
     "trunk_bend",
     "within_reach",
 ]
