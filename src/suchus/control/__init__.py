@@ -12,6 +12,7 @@ from suchus.control.shared import OWNERS, Shared
 from suchus.control.spine import SpineRule
 from suchus.control.switching import SwitchRule
 from suchus.control.tail import TailRule
+from suchus.control.turning import TurningCurve, turn
 from suchus.control.walking import Change, Walking
 
 __all__ = [
@@ -34,5 +35,7 @@ __all__ = [
     "SpineRule",
     "SwitchRule",
     "TailRule",
+    "TurningCurve",
     "Walking",
+    "turn",
 ]

@@ -98,7 +98,14 @@ def _rotation(quaternion: np.ndarray) -> np.ndarray:
 
 
 def draw_posture(
-    ax: Axes, robot: Crocodile, record: xr.Dataset, time: float, *, view: View = "above", support: bool = True
+    ax: Axes,
+    robot: Crocodile,
+    record: xr.Dataset,
+    time: float,
+    *,
+    view: View = "above",
+    support: bool = True,
+    ground: bool = True,
 ) -> None:
     """Draw a posture, feet that stand filled, the support polygon and the centre of mass projected.
 
@@ -109,11 +116,12 @@ def draw_posture(
         time: [s].
         view: from above (x to the right, y up) or from the robot's left side is seen from its right (x right, z up).
         support: whether to draw support and centre of mass.
+        ground: whether to draw even ground in a view from the side.
     """
     rows = [0, 1] if view == "above" else [0, 2]
     bones = skeleton(robot, record, time)
     stands = loaded(record.sel(time=time, method="nearest")).values
-    if view == "side":
+    if view == "side" and ground:
         ax.axhline(0.0, color=COLOURS["ground"], linewidth=1.2, zorder=0)
     if support and view == "above":
         _support(ax, record, time)

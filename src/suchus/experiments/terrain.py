@@ -1,0 +1,316 @@
+"""Which posture for which ground, and can the robot choose by what it feels?"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import permutations
+from typing import Any, Literal
+
+import numpy as np
+import xarray as xr
+
+from suchus.control import AttitudeRule, Change, Control, SwitchRule, Walking
+from suchus.design import Crocodile
+from suchus.design.relief import Bumps, Relief, Step, profile
+from suchus.experiment import Experiment, Measure, Outcome, Progress, judge, silent, staged, stopwatch
+from suchus.figures import captioned, panels, styled
+from suchus.figures.posture import draw_posture
+from suchus.figures.terrain import GAIT_LINES, draw_ground, draw_rough
+from suchus.gaits import GAITS
+from suchus.land import Ground, Run, simulate
+from suchus.land.arenas import BEFORE, STONE
+from suchus.metrics import between, cost_of_transport, displacement, heading_change, tilt
+from suchus.motion import START, Gait
+from suchus.robots import ROBOTS
+
+_FALLEN = np.radians(60)  # of roll or pitch: beyond this nothing on the robot brings it back
+_TOUCH = 0.5  # [N]; on the belly
+_SINGLE = ("low_crawl", "semi_erect", "high_walk", "high_walk_level")
+Surface = Literal["even", "bumps"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Terrain(Experiment):
+    """Low crawl, semi-erect walk, high walk without and with the IMU, and the robot that switches, on rough ground.
+
+    ``low_crawl`` and ``high_walk`` walk open loop, ``semi_erect`` and ``high_walk_level`` answer the IMU. ``switching``
+    begins semi-erect and returns to it, ``thrifty`` begins crawling and returns to that; both go up when the belly
+    touches. Each seed has its own bumps, the correlation lengths in turn, and its own place of step or stone. A run
+    has fallen once it rolled or pitched by more than 60 degrees.
+    """
+
+    title = "Which posture for which ground, and can the robot choose by what it feels?"
+    shows = "Section II.B, Fig. 3"
+    claims = ("crawl_structure_flat", "erect_structure_rough", "switches_structure")
+    in_reproduce = False
+    decides = (
+        "Clearance and a wide track decide. A belly just above the ground catches on bumps, steps and stones; erect "
+        "legs carry it clear but stand on a narrow track, and on bumps they need the IMU or fall. Semi-erect legs have "
+        "most of the clearance and the wide track, and get farthest nearly everywhere; only a stone too high for them "
+        "is better passed erect."
+    )
+
+    robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
+    """Who walks."""
+    crawl: Gait = field(default_factory=lambda: GAITS["low_crawl"])
+    """The sprawled gait."""
+    semi_erect: Gait = field(default_factory=lambda: GAITS["semi_erect"])
+    """The gait between."""
+    high_walk: Gait = field(default_factory=lambda: GAITS["high_walk"])
+    """The erect gait."""
+    bumps: tuple[float, ...] = (0.02, 0.03, 0.04, 0.06)
+    """Heights of random bumps [m]."""
+    steps: tuple[float, ...] = (0.01, 0.02, 0.03, 0.04, 0.05)
+    """Heights of a step up [m]."""
+    stones: tuple[float, ...] = (0.02, 0.04, 0.06, 0.08, 0.10)
+    """Heights of a stone between the feet [m]."""
+    correlations: tuple[float, ...] = (0.06, 0.10)
+    """Correlation lengths of the bumps, in turn over the seeds [m]."""
+    surfaces: tuple[Surface, ...] = ("even", "bumps")
+    """On which postures turn into each other."""
+    transitions: int = 6
+    """How many of the six transitions between the three postures are tried [-]."""
+    seeds: int = 8
+    """Runs of each kind [-]."""
+    walked: float = 8.0
+    """How long each run walks [s]."""
+    timestep: float = 0.005
+    """Of the physics [s]."""
+
+    def quick(self) -> "Terrain":
+        """Three grounds, one seed, a short walk, two transitions on even ground."""
+        return replace(
+            self, bumps=(0.03,), steps=(), stones=(0.04,), surfaces=("even",), transitions=2, seeds=1, walked=1.5
+        )
+
+    def run(self, progress: Progress = silent) -> Outcome:
+        """Walk on all of it."""
+        with stopwatch() as seconds:
+            rough = self._rough(progress)
+            changed = self._changes(staged(progress, "transitions", 0.9, 0.97))
+            record = self._example(staged(progress, "example", 0.97, 1.0)).merge(rough).merge(changed)
+            return Outcome(
+                experiment=self.name(),
+                measures=self._measures(record),
+                verdicts=self._verdicts(record),
+                record=record,
+                settings=self.settings(),
+                seconds=seconds(),
+            )
+
+    def arms(self) -> Mapping[str, tuple[Gait, Control]]:
+        """Return gait and control of every arm."""
+        ladder, level = (self.crawl, self.semi_erect, self.high_walk), AttitudeRule()
+        return {
+            "low_crawl": (self.crawl, Walking()),
+            "semi_erect": (self.semi_erect, Walking(attitude=level)),
+            "high_walk": (self.high_walk, Walking()),
+            "high_walk_level": (self.high_walk, Walking(attitude=level)),
+            "switching": (self.semi_erect, Walking(attitude=level, switching=SwitchRule(ladder=ladder, home=1))),
+            "thrifty": (self.crawl, Walking(attitude=level, switching=SwitchRule(ladder=ladder, home=0))),
+        }
+
+    def grounds(self) -> list[tuple[str, float, list[Relief | None]]]:
+        """Return kind, height and the relief of every seed."""
+        places = np.random.default_rng(0).uniform(-1.0, 1.0, (self.seeds, 2))
+        rows: list[tuple[str, float, list[Relief | None]]] = [("bumps", 0.0, [None] * self.seeds)]
+        for height in self.bumps:
+            lengths = [self.correlations[seed % len(self.correlations)] for seed in range(self.seeds)]
+            fields = [
+                Bumps(height=height, correlation=length, start=BEFORE, seed=seed) for seed, length in enumerate(lengths)
+            ]
+            rows.append(("bumps", height, list(fields)))
+        for height in self.steps:
+            rows.append(("step", height, [Step(at=float(0.66 + 0.06 * x), height=height) for x, _ in places]))
+        for height in self.stones:
+            stones = [
+                replace(STONE, at=float(0.75 + 0.05 * x), aside=float(0.02 * y), height=height) for x, y in places
+            ]
+            rows.append(("stone", height, list(stones)))
+        return rows
+
+    def _rough(self, progress: Progress) -> xr.Dataset:
+        grounds, arms = self.grounds(), self.arms()
+        found = []
+        for i, (kind, height, reliefs) in enumerate(grounds):
+            runs = [
+                Run(robot=self.robot, gait=gait, control=control, ground=Ground(relief=relief), label=arm)
+                for arm, (gait, control) in arms.items()
+                for relief in (reliefs if height else reliefs[:1])
+            ]
+            stage = staged(
+                progress, f"{kind} {1000 * height:.0f} mm", 0.9 * i / len(grounds), 0.9 * (i + 1) / len(grounds)
+            )
+            record = simulate(runs, duration=START + self.walked, timestep=self.timestep, every=5, progress=stage)
+            values = _look(record).reshape(len(arms), -1, len(_UNITS))
+            found.append(np.broadcast_to(values, (len(arms), self.seeds, len(_UNITS))))
+        table = np.array(found)
+        data = xr.Dataset(
+            {
+                name: (("ground", "arm", "seed"), table[..., i], {"units": unit})
+                for i, (name, unit) in enumerate(_UNITS.items())
+            },
+            coords={"arm": list(arms), "kind": ("ground", [kind for kind, _, _ in grounds])},
+        )
+        data["height"] = ("ground", [height for _, height, _ in grounds], {"units": "m"})
+        data["walked"] = ((), self.walked, {"units": "s"})
+        return data
+
+    def _changes(self, progress: Any) -> xr.Dataset:
+        """Return how far the body tilts while every posture turns into every other."""
+        pairs = list(permutations((self.crawl, self.semi_erect, self.high_walk), 2))[: self.transitions]
+        bumps = Bumps(height=0.03, correlation=self.correlations[-1], start=BEFORE, seed=1)
+        runs = [
+            Run(
+                robot=self.robot,
+                gait=here,
+                control=Walking(attitude=AttitudeRule(), changes=(Change(at=START + 1.0, gait=there),)),
+                ground=Ground(relief=bumps if surface == "bumps" else None),
+                label=f"{here.name} to {there.name}",
+            )
+            for here, there in pairs
+            for surface in self.surfaces
+        ]
+        record = simulate(runs, duration=START + 6.0, timestep=self.timestep, every=5, progress=progress)
+        tilted = _most_tilt(record).reshape(len(pairs), len(self.surfaces))
+        after = displacement(record, START + 4.6).sel(xyz="x").values.reshape(len(pairs), len(self.surfaces))
+        return xr.Dataset(
+            {
+                "change_tilt": (("change", "surface"), tilted, {"units": "rad"}),
+                "change_after": (("change", "surface"), after, {"units": "m"}),
+            },
+            coords={"change": [f"{a.name} to {b.name}" for a, b in pairs], "surface": list(self.surfaces)},
+        )
+
+    def _example(self, progress: Any) -> xr.Dataset:
+        """Return three robots on one field of bumps, for the figure."""
+        arms = self.arms()
+        relief = Bumps(height=0.04, correlation=self.correlations[-1], start=BEFORE, seed=2)
+        runs = [
+            Run(robot=self.robot, gait=arms[arm][0], control=arms[arm][1], ground=Ground(relief=relief), label=arm)
+            for arm in ("low_crawl", "semi_erect", "high_walk_level")
+        ]
+        record = simulate(runs, duration=START + self.walked / 2, timestep=self.timestep, every=5, progress=progress)
+        along = np.arange(-1.2, 2.4, 0.01)
+        shown = xr.Dataset(
+            {"ground_height": ("along", profile(relief, along), {"units": "m"})}, coords={"along": along}
+        )
+        shown.along.attrs["units"] = "m"
+        return record.merge(shown)
+
+    def _measures(self, record: xr.Dataset) -> Mapping[str, Measure]:
+        measures: dict[str, Measure] = {}
+        for arm in record.arm.values:
+            one = record.sel(arm=arm)
+            flat = one.isel(ground=0, seed=0)
+            measures |= {
+                f"flat_forward_{arm}": Measure(float(flat.forward), "m"),
+                f"flat_cost_{arm}": Measure(float(flat.cost), "-"),
+                f"falls_{arm}": Measure(float(one.fell.sum()), "-"),
+                f"belly_{arm}": Measure(float(one.belly.mean()), "-"),
+                f"aside_{arm}": Measure(float(abs(one.aside).mean()), "m"),
+            }
+            for kind in dict.fromkeys(record.kind.values):
+                rough = one.isel(ground=np.flatnonzero((record.kind.values == kind) & (record.height.values > 0)))
+                measures[f"kept_{kind}_{arm}"] = Measure(float(rough.forward.mean() / flat.forward), "-")
+        low = record.isel(ground=np.flatnonzero(record.height.values <= 0.04))
+        share = _share_of_best(record)
+        worst = int(share.argmin("ground"))
+        return measures | {
+            "switching_share_of_best_worst": Measure(float(share.min()), "-"),
+            "switching_worst_height": Measure(float(record.height[worst]), "m"),
+            "switching_grounds_within_5_percent": Measure(float((share >= 0.95).sum()), "-"),
+            "grounds": Measure(float(record.sizes["ground"]), "-"),
+            "switching_falls_up_to_40_mm": Measure(float(low.fell.sel(arm="switching").sum()), "-"),
+            **{
+                f"transition_tilt_{surface}": Measure(float(record.change_tilt.sel(surface=surface).max()), "rad")
+                for surface in record.surface.values
+            },
+        }
+
+    def _verdicts(self, record: xr.Dataset) -> tuple[Any, ...]:
+        flat = record.isel(ground=0, seed=0)
+        cost = float(flat.cost.sel(arm="low_crawl") / flat.cost.sel(arm="high_walk"))
+        rough = record.isel(ground=np.flatnonzero(record.height.values >= 0.03)).forward.mean("seed")
+        erect, crawl = rough.sel(arm="high_walk").values, rough.sel(arm="low_crawl").values
+        level, semi = rough.sel(arm="high_walk_level").values, rough.sel(arm="semi_erect").values
+        ahead, n = float((erect > crawl).mean()), len(crawl)
+        upright = float((record.change_tilt < _FALLEN).mean())
+        return (
+            judge(
+                "crawl_structure_flat",
+                cost,
+                f"On even ground the crawl costs {cost:.2f} of the high walk's work per way, at about its speed.",
+                holds=cost < 1.0,
+            ),
+            judge(
+                "erect_structure_rough",
+                ahead,
+                f"In part. Of {n} grounds 30 mm and rougher the erect walk gets farther than the low crawl on "
+                f"{int((erect > crawl).sum())} open loop and on {int((level > crawl).sum())} with the IMU; open loop "
+                f"it falls on bumps. Semi-erect legs beat both on {int((semi > np.maximum(level, crawl)).sum())}.",
+                holds=ahead > 0.5,
+            ),
+            judge(
+                "switches_structure",
+                upright,
+                f"{record.change_tilt.size} transitions out of one walk into another, 3.5 s each, on even ground and "
+                f"bumps of 30 mm: {100 * upright:.0f} % upright, with tilts up to "
+                f"{np.degrees(float(record.change_tilt.max())):.0f} degrees.",
+                holds=upright == 1.0,
+            ),
+        )
+
+    def draw(self, outcome: Outcome) -> Mapping[str, Any]:
+        """Draw the postures on bumps, and the way on every ground."""
+        record = outcome.record
+        return {"postures": self._postures(record), "rough_ground": draw_rough(record, GAIT_LINES)}
+
+    def _postures(self, record: xr.Dataset) -> Any:
+        with styled(axes__grid=False):
+            figure, axes = panels(3, 1, width=8.6, height=6.6)
+            for ax, run in zip(axes[:, 0], record.run.values, strict=True):
+                one = record.sel(run=run)
+                draw_posture(ax, self.robot, one, float(one.time[-1]), view="side", support=False, ground=False)
+                draw_ground(ax, record.along.values, record.ground_height.values)
+                ax.set_title(str(GAIT_LINES[str(one.label.item())]["label"]))
+                middle = float(one.centre_of_mass.sel(xyz="x")[-1])
+                ax.set_xlim(middle - 0.68, middle + 0.62)
+                ax.set_ylim(-0.06, 0.26)
+                ax.set_ylabel("[m]")
+            axes[-1, 0].set_xlabel("along the path [m]")
+        return captioned(
+            figure,
+            "Three postures on the same bumps of 40 mm, halfway through the walk: the sprawled crawl, semi-erect legs, "
+            "and erect legs with elbows behind and knees ahead. Filled feet stand.",
+        )
+
+
+_UNITS = {"forward": "m", "aside": "m", "turned": "rad", "fell": "1", "cost": "1", "belly": "1"}
+
+
+def _look(record: xr.Dataset) -> np.ndarray:
+    """Return what ``_UNITS`` names, shape (run, 6)."""
+    part, way = between(record), displacement(record)
+    columns: Sequence[Any] = (
+        way.sel(xyz="x"),
+        way.sel(xyz="y"),
+        heading_change(record),
+        _most_tilt(record) > _FALLEN,
+        cost_of_transport(record),
+        (part.belly_force.sel(xyz="z").sum("segment") > _TOUCH).mean("time"),
+    )
+    return np.stack([np.asarray(column, dtype=float) for column in columns], axis=-1)
+
+
+def _most_tilt(record: xr.Dataset) -> np.ndarray:
+    angles = tilt(between(record))
+    return np.maximum(abs(angles["roll"]).max("time").values, abs(angles["pitch"]).max("time").values)
+
+
+def _share_of_best(record: xr.Dataset) -> xr.DataArray:
+    """Return the way of the switching robot over that of the best single posture, by ground [-]."""
+    way = record.forward.mean("seed")
+    return way.sel(arm="switching", drop=True) / way.sel(arm=list(_SINGLE)).max("arm")
+
+
+experiment = Terrain()

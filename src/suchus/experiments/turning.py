@@ -1,0 +1,168 @@
+"""How tightly does it turn, and does it walk the circle that was asked for?"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from suchus.control import TurningCurve, Walking, turn
+from suchus.design import Crocodile
+from suchus.experiment import Experiment, Measure, Outcome, Progress, silent, staged, stopwatch
+from suchus.figures.terrain import GAIT_LINES, draw_turning
+from suchus.gaits import GAITS
+from suchus.land import Run, simulate
+from suchus.metrics import between, heading_change
+from suchus.motion import START, Gait
+from suchus.robots import ROBOTS
+
+_STRAIGHT = 1e-3  # [1/m]; no radius beyond a kilometre
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Turning(Experiment):
+    """Curvature of the way against a lasting bend, against unequal strokes, and against both; then circles on command.
+
+    The curvature is the change of heading over the length of the way, over whole cycles from the second on. The way is
+    measured from cycle to cycle, so that the swaying within one does not count.
+    """
+
+    title = "How tightly does it turn, and does it walk the circle that was asked for?"
+    shows = "Section II.B"
+    decides = (
+        "A lasting bend turns the legs of one girdle against those of the other, and every gait follows it; unequal "
+        "strokes turn sprawled legs, which have stroke to spare, better than erect ones. Together they turn tightest. "
+        "The curvature grows steadily with their mixture, so that the mixture for an asked radius can be read off "
+        "once it was measured."
+    )
+
+    robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
+    """Who turns."""
+    gaits: tuple[Gait, ...] = field(
+        default_factory=lambda: tuple(GAITS[n] for n in ("low_crawl", "semi_erect", "high_walk"))
+    )
+    """In which gaits."""
+    bends: tuple[float, ...] = (0.0, 0.17, 0.35, 0.52, 0.79)
+    """Lasting bends of the trunk [rad]."""
+    asymmetries: tuple[float, ...] = (0.0, 0.25, 0.5, 0.75, 1.0)
+    """By how much left strokes are shorter and right ones longer [-]."""
+    mixtures: tuple[float, ...] = (0.0, 0.1, 0.2, 0.3, 0.45, 0.6, 0.8, 1.0)
+    """Shares of the last bend together with, on sprawled legs, the last asymmetry [-]."""
+    asked: tuple[float, ...] = (0.6, 0.8, 1.2, 2.0, 3.0)
+    """Radii of the circles on command [m]."""
+    cycles: int = 10
+    """How many cycles are measured, after one more [-]."""
+    timestep: float = 0.005
+    """Of the physics [s]."""
+
+    def quick(self) -> "Turning":
+        """One gait, three mixtures, one circle."""
+        return replace(
+            self,
+            gaits=(GAITS["semi_erect"],),
+            bends=(0.0, 0.52),
+            asymmetries=(0.0, 0.5),
+            mixtures=(0.0, 0.5, 1.0),
+            asked=(1.0,),
+            cycles=3,
+        )
+
+    def run(self, progress: Progress = silent) -> Outcome:
+        """Turn."""
+        with stopwatch() as seconds:
+            rows = []
+            for i, gait in enumerate(self.gaits):
+                share = i / len(self.gaits), (i + 1) / len(self.gaits)
+                rows.append(self._of(gait, staged(progress, gait.name, *share)))
+            record = xr.concat(rows, "gait").assign_coords(gait=[gait.name for gait in self.gaits])
+            return Outcome(
+                experiment=self.name(),
+                measures=self._measures(record),
+                verdicts=(),
+                record=record,
+                settings=self.settings(),
+                seconds=seconds(),
+            )
+
+    def _of(self, gait: Gait, progress: Any) -> xr.Dataset:
+        bent = [Walking(bend=bend) for bend in self.bends]
+        uneven = [Walking(asymmetry=share) for share in self.asymmetries]
+        most = self.bends[-1], self.asymmetries[-1] if gait.legs == "sprawled" else 0.0
+        mixed = [Walking(bend=m * most[0], asymmetry=m * most[1]) for m in self.mixtures]
+        found = self._curvatures(gait, [*bent, *uneven, *mixed], lambda share: progress(0.7 * share))
+        a, b = len(bent), len(bent) + len(uneven)
+        curve = _curve(most, self.mixtures, found[b:])
+        circles = [turn(curve, max(radius, 1.001 * curve.tightest)) for radius in self.asked]
+        walked = self._curvatures(gait, circles, lambda share: progress(0.7 + 0.3 * share))
+        data = xr.Dataset(
+            {
+                "curvature_bend": ("bend", found[:a], {"units": "1/m"}),
+                "curvature_asymmetry": ("asymmetry", found[a:b], {"units": "1/m"}),
+                "curvature_mixture": ("mixture", found[b:], {"units": "1/m"}),
+                "radius": (
+                    "asked",
+                    np.where(np.array(self.asked) >= curve.tightest, 1.0 / np.maximum(walked, _STRAIGHT), np.nan),
+                    {"units": "m"},
+                ),
+            },
+            coords={
+                "bend": list(self.bends),
+                "asymmetry": list(self.asymmetries),
+                "mixture": list(self.mixtures),
+                "asked": list(self.asked),
+            },
+        )
+        for name, unit in (("bend", "rad"), ("asymmetry", "1"), ("mixture", "1"), ("asked", "m")):
+            data[name].attrs["units"] = unit
+        return data
+
+    def _curvatures(self, gait: Gait, controls: Sequence[Walking], progress: Any) -> np.ndarray:
+        """Return the curvature of the way with each control [1/m]."""
+        runs = [Run(robot=self.robot, gait=gait, control=control) for control in controls]
+        end = START + (self.cycles + 1) * gait.period
+        record = simulate(runs, duration=end, timestep=self.timestep, progress=progress)
+        part = between(record, START + gait.period, end)
+        every = round(gait.period / float(part.time[1] - part.time[0]))
+        points = part.centre_of_mass.sel(xyz=["x", "y"]).isel(time=slice(None, None, every))
+        way = ((points.diff("time") ** 2).sum("xyz") ** 0.5).sum("time")
+        return np.asarray(heading_change(record, START + gait.period, end) / way)
+
+    def _measures(self, record: xr.Dataset) -> Mapping[str, Measure]:
+        measures: dict[str, Measure] = {}
+        for name in record.gait.values:
+            one = record.sel(gait=name)
+            off = abs(one.radius / one.asked - 1.0)
+            measures |= {
+                f"tightest_bend_{name}": Measure(_radius(one.curvature_bend), "m"),
+                f"tightest_asymmetry_{name}": Measure(_radius(one.curvature_asymmetry), "m"),
+                f"tightest_both_{name}": Measure(_radius(one.curvature_mixture), "m"),
+                f"circles_walked_{name}": Measure(float(one.radius.notnull().sum()), "-"),
+                f"radius_off_{name}": Measure(float(off.max()), "-"),
+                f"bend_times_radius_{name}": Measure(float(one.bend[-1] * _radius(one.curvature_bend[-1:])), "m"),
+            }
+        return measures
+
+    def draw(self, outcome: Outcome) -> Mapping[str, Any]:
+        """Draw curvatures and circles."""
+        return {"turning": draw_turning(outcome.record, GAIT_LINES)}
+
+
+def _curve(most: tuple[float, float], mixtures: Sequence[float], curvatures: np.ndarray) -> TurningCurve:
+    """Return the part of a measured curve that rises."""
+    level, rising = curvatures, 1
+    while rising < len(level) and level[rising] > level[rising - 1] + _STRAIGHT:
+        rising += 1
+    return TurningCurve(
+        bend=most[0],
+        asymmetry=most[1],
+        mixtures=tuple(float(m) for m in mixtures[:rising]),
+        curvatures=tuple(float(c) for c in level[:rising]),
+    )
+
+
+def _radius(curvature: xr.DataArray) -> float:
+    return float(1.0 / max(float(curvature.max()), _STRAIGHT))
+
+
+experiment = Turning()

@@ -1,0 +1,135 @@
+"""Postures on rough ground, their speeds, and how they turn."""
+
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from suchus.figures.style import COLOURS, captioned, panels, styled
+
+GAIT_LINES: Mapping[str, Mapping[str, Any]] = MappingProxyType(
+    {
+        "belly_crawl": {"color": "#767676", "marker": "v", "linestyle": (0, (1, 1.2)), "label": "belly crawl"},
+        "low_crawl": {"color": "#009E73", "marker": "s", "linestyle": (0, (5, 2)), "label": "low crawl"},
+        "semi_erect": {"color": "#0072B2", "marker": "o", "linestyle": "-", "label": "semi-erect"},
+        "high_walk": {"color": "#D55E00", "marker": "^", "linestyle": (0, (5, 1.5, 1, 1.5)), "label": "high walk"},
+        "high_walk_level": {"color": "#E69F00", "marker": "D", "linestyle": "-", "label": "high walk, IMU"},
+        "switching": {"color": "#B0558A", "marker": "*", "linestyle": (0, (3, 1)), "label": "switching"},
+        "thrifty": {
+            "color": "#56B4E9",
+            "marker": "P",
+            "linestyle": (0, (3, 1, 1, 1)),
+            "label": "switching, from crawl",
+        },
+    }
+)
+"""Colour, marker, dashes and label of each gait or arm."""
+_ANIMALS = (0.1, 0.7)  # [m/s]; Nile crocodiles of 1.5 to 7 kg in the high walk (Michel, SICB abstract 76-8)
+
+
+def draw_speed_range(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]]) -> Figure:
+    """Draw speed, cost, duty factor and Froude number over cycle time, the servos with a speed line thinly."""
+    with styled():
+        figure, axes = panels(2, 2, width=9.6, height=7.0)
+        rows = (
+            ("speed", "speed [m/s]", 1.0),
+            ("cost", "cost of transport [-]", 1.0),
+            ("duty", "duty factor [-]", 1.0),
+            ("froude", "Froude number [-]", 1.0),
+        )
+        for ax, (name, label, scale) in zip(axes.flat, rows, strict=True):
+            for gait in record.gait.values:
+                for model, width in (("line", 0.9), ("slew", 2.0)):
+                    one = record.sel(gait=gait, servo_model=model)
+                    style = dict(lines[str(gait)]) | {"linewidth": width, "markersize": 3 if model == "line" else 6}
+                    if model == "line":
+                        style |= {"label": None, "alpha": 0.7}
+                    ax.plot(one.period, scale * one[name], **style)
+            ax.set_xscale("log")
+            ax.set_xticks([0.5, 1, 2, 4], ["0.5", "1", "2", "4"])
+            ax.minorticks_off()
+            ax.set_ylabel(label)
+        axes[0, 0].axhspan(*_ANIMALS, color="#EFE3C8", zorder=0)
+        axes[0, 0].text(
+            0.98, 0.95, "Nile crocodiles, 1.5 to 7 kg", transform=axes[0, 0].transAxes, ha="right", va="top"
+        )
+        axes[0, 0].set_ylim(0.0, 0.75)
+        axes[0, 1].set_ylim(0.0, None)
+        axes[1, 1].set_yscale("log")
+        for ax in axes[1]:
+            ax.set_xlabel("cycle time [s]")
+        axes[1, 0].legend(loc="best")
+    return captioned(
+        figure,
+        "Every gait over its cycle time. Thin: legs whose servos lose torque with speed, whose cost includes what the "
+        "motor loses. Band: animals of the robot's size.",
+    )
+
+
+def draw_turning(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]]) -> Figure:
+    """Draw curvature against bend and asymmetry, and asked against measured radius."""
+    with styled():
+        figure, axes = panels(1, 3, width=11.5, height=4.0)
+        for ax, name, label, scale in (
+            (axes[0, 0], "bend", "lasting bend [deg]", 180 / np.pi),
+            (axes[0, 1], "asymmetry", "asymmetry of strokes [-]", 1.0),
+        ):
+            for gait in record.gait.values:
+                ax.plot(scale * record[name], record[f"curvature_{name}"].sel(gait=gait), **lines[str(gait)])
+            ax.set_xlabel(label)
+            ax.set_ylabel("curvature of the way [1/m]")
+            ax.set_ylim(-0.1, 2.8)
+        axes[0, 0].legend(loc="upper left")
+        ax = axes[0, 2]
+        asked = record.asked.values
+        ax.fill_between(asked, 0.9 * asked, 1.1 * asked, color="#E3E3E3", zorder=0, label="within 10 %")
+        ax.plot(asked, asked, color=COLOURS["neutral"], linewidth=0.9)
+        for gait in record.gait.values:
+            style = dict(lines[str(gait)]) | {"linestyle": "none", "label": None}
+            ax.plot(asked, record.radius.sel(gait=gait), **style)
+        ax.set_xlabel("asked radius [m]")
+        ax.set_ylabel("measured radius [m]")
+        ax.legend(loc="upper left")
+    return captioned(
+        figure,
+        "How the robot turns: left and middle, curvature of its way with a bent trunk and with unequal strokes; right, "
+        "a turn command that mixes both.",
+    )
+
+
+def draw_rough(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]]) -> Figure:
+    """Draw the way on bumps, steps and stones over their height, falls as crosses."""
+    kinds = [str(kind) for kind in dict.fromkeys(record.kind.values)]
+    with styled():
+        figure, axes = panels(1, len(kinds), width=11.5, height=4.6, sharey=True)
+        for ax, kind in zip(axes[0], kinds, strict=True):
+            some = record.isel(ground=np.flatnonzero((record.kind.values == kind) | (record.height.values == 0)))
+            order = np.argsort(some.height.values)
+            some = some.isel(ground=order)
+            for arm in record.arm.values:
+                one = some.sel(arm=arm)
+                x, y = 1000 * some.height.values, one.forward.mean("seed").values
+                ax.plot(x, y, **(dict(lines[str(arm)]) | {"markersize": 6}))
+                fell = one.fell.mean("seed").values
+                ax.plot(x[fell > 0], y[fell > 0], "x", color=COLOURS["alarm"], markersize=11, markeredgewidth=2)
+            ax.set_title({"bumps": "random bumps", "step": "a step up", "stone": "a stone in the path"}[kind])
+            ax.set_xlabel("height [mm]")
+            ax.set_ylim(0.0, None)
+        axes[0, 0].set_ylabel(f"way in {float(record.walked):g} s [m]")
+        handles, labels = axes[0, 0].get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside lower center", ncols=len(labels), fontsize=10)
+    return captioned(
+        figure,
+        "Way on rough ground, means over the seeds; crosses where some robots fell. Semi-erect legs get farthest on "
+        "most ground; erect legs need the IMU on bumps and pass higher stones.",
+    )
+
+
+def draw_ground(ax: Axes, x: np.ndarray, height: Sequence[float] | np.ndarray) -> None:
+    """Draw the profile of the ground, filled."""
+    ax.fill_between(x, height, -0.06, color="#D9CDB8", zorder=0.2, linewidth=0)
+    ax.plot(x, height, color=COLOURS["ground"], linewidth=1.4, zorder=0.3)
