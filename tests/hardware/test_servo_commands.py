@@ -65,9 +65,10 @@ def test_a_pulse_knows_centre_scale_direction_and_offset(robot, crawl_gait):
 
 
 def test_the_order_of_a_map_does_not_matter(robot, crawl_gait):
-    backward = replace(STRAIGHT, servos=STRAIGHT.servos[::-1])
+    servo_map = remapped(LF_yaw={"direction": -1}, RH_knee={"offset": 0.2})
+    backward = replace(servo_map, servos=servo_map.servos[::-1])
     np.testing.assert_array_equal(
-        commands(robot, crawl_gait, backward).pulses, commands(robot, crawl_gait, STRAIGHT).pulses
+        commands(robot, crawl_gait, backward).pulses, commands(robot, crawl_gait, servo_map).pulses
     )
 
 

@@ -13,6 +13,7 @@ from suchus.design import Crocodile, joint_names
 from suchus.errors import InvalidDesign, Unwritable
 from suchus.model import SITES, compile_model, joint_addresses
 from suchus.model.export import MARK, ball, export, unsaid
+from suchus.model.export.urdf import _roll_pitch_yaw
 from suchus.robots import ROBOTS
 
 NOT_PHYSICS = ("key", "name", "tex", "mat", "skin", "vis", "nnames", "nbuffer", "nkey", "ntex", "signature")
@@ -153,6 +154,39 @@ def test_every_shape_of_the_urdf_lies_where_it_is_in_the_model(robot, crawl_gait
             ]
             for end in (middle + half * along, middle - half * along):
                 assert min(np.linalg.norm(end - b) for b in balls) < 1e-12
+
+
+def test_roll_pitch_yaw_give_the_rotation_back_also_where_roll_and_yaw_fall_together():
+    half = np.sqrt(0.5)
+    random = np.random.default_rng(3).normal(size=(20, 4))
+    for quat in [(half, 0, half, 0), (half, 0, -half, 0), (0.5, 0.5, 0.5, -0.5), (1, 0, 0, 0), *random]:
+        turn = np.empty(9)
+        mujoco.mju_quat2Mat(turn, np.array(quat, dtype=float) / np.linalg.norm(quat))
+        roll, pitch, yaw = _roll_pitch_yaw(np.array(quat, dtype=float))
+        ours = about((0, 0, 1), yaw) @ about((0, 1, 0), pitch) @ about((1, 0, 0), roll)
+        np.testing.assert_allclose(ours, turn.reshape(3, 3), atol=1e-12)
+
+
+def test_every_link_of_the_urdf_has_the_inertia_of_its_body(any_robot, crawl_gait, tmp_path):
+    folder = export(any_robot, crawl_gait, tmp_path / "u", "urdf")
+    model = compile_model(any_robot)
+    links = {
+        link.get("name"): link.find("inertial")
+        for link in ElementTree.parse(folder / f"{any_robot.name}.urdf").iter("link")
+    }
+    for body in range(1, model.nbody):
+        inertial = links[model.body(body).name]
+        assert float(inertial.find("mass").get("value")) == model.body_mass[body]
+        place = [float(v) for v in inertial.find("origin").get("xyz").split()]
+        np.testing.assert_array_equal(place, model.body_ipos[body])
+        r, p, y = map(float, inertial.find("origin").get("rpy").split())
+        turn = about((0, 0, 1), y) @ about((0, 1, 0), p) @ about((1, 0, 0), r)
+        moments = np.diag([float(inertial.find("inertia").get(k)) for k in ("ixx", "iyy", "izz")])
+        theirs = np.empty(9)
+        mujoco.mju_quat2Mat(theirs, model.body_iquat[body])
+        theirs = theirs.reshape(3, 3)
+        expected = theirs @ np.diag(model.body_inertia[body]) @ theirs.T
+        np.testing.assert_allclose(turn @ moments @ turn.T, expected, atol=1e-15)
 
 
 def test_the_ball_is_closed_round_and_faces_outward():
