@@ -247,8 +247,8 @@ class Terrain(Experiment):
                 "erect_structure_rough",
                 ahead,
                 f"With the IMU. Of {n} grounds 30 mm and rougher the erect walk that answers the IMU gets farther "
-                f"than the crawl on {int((level > crawl).sum())}, falling {int(fell.sel(arm='high_walk_level'))} times in "
-                f"{runs} runs; open loop on {int((erect > crawl).sum())}, falling {int(fell.sel(arm='high_walk'))} "
+                f"than the crawl on {int((level > crawl).sum())}, falling {int(fell.sel(arm='high_walk_level'))} times "
+                f"in {runs} runs; open loop on {int((erect > crawl).sum())}, falling {int(fell.sel(arm='high_walk'))} "
                 f"times. Semi-erect legs beat both structures on {int((semi > np.maximum(level, crawl)).sum())}.",
                 holds=bool(ahead > 0.5 and fell.sel(arm="high_walk_level") <= fell.sel(arm="low_crawl")),
             ),
