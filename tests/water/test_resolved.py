@@ -1,0 +1,55 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import suchus
+from suchus.errors import InvalidDesign, OutsideLimits
+from suchus.motion import Swim
+from suchus.water import Outline, Tether, free_swim, immersed, tether
+
+MOTION = Swim(name="wave", frequency=1.0, yaw=(0.35, 0.15, 0.1), yaw_late=(0.1, -0.1, -0.3), tail=0.75, tail_late=-0.1)
+COARSE = Tether(cells=32, viscosity=1e-3, cycles=1)
+
+
+def mirrored(motion: Swim) -> Swim:
+    """Return the motion half a cycle later, left and right swapped."""
+    first, second, third = motion.yaw_late
+    return replace(motion, yaw_late=(first + 0.5, second + 0.5, third + 0.5), tail_late=motion.tail_late + 0.5)
+
+
+@pytest.mark.parametrize("time", [0.2, 0.47, 1.3])
+def test_the_sections_move_as_the_midline_changes(robot, time):
+    shape = immersed(Outline(robot, 65), MOTION, sway=0.01 + 0.02j, turn=0.1 - 0.05j, grow=0.5)
+    now, before, after = (shape.spine(t) for t in (time, time - 1e-6, time + 1e-6))
+    for name in ("x", "y", "heading"):
+        difference = (getattr(after, name) - getattr(before, name)) / 2e-6
+        np.testing.assert_allclose(getattr(now, f"{name}_rate"), difference, atol=1e-6)
+
+
+def test_a_motion_grows_from_a_straight_body_at_rest(robot):
+    spine = immersed(Outline(robot, 65), MOTION, turn=0.1, grow=0.5).spine(0.0)
+    assert np.all(spine.y == 0.0)
+    assert np.all(spine.y_rate == 0.0)
+
+
+def test_a_body_that_does_not_move_feels_nothing(robot):
+    record = tether(robot, replace(MOTION, yaw=(0.0, 0.0, 0.0), tail=0.0), COARSE)
+    assert float(abs(record.thrust).max()) < 1e-9
+    assert float(abs(record.joint_torque).max()) < 1e-9
+
+
+def test_a_mirrored_start_gives_a_mirrored_track(robot):
+    here, there = (free_swim(robot, motion, COARSE) for motion in (MOTION, mirrored(MOTION)))
+    assert float(here.speed[-1]) == pytest.approx(float(there.speed[-1]), abs=1e-4)
+    np.testing.assert_allclose(here.snout_y, -there.snout_y, atol=1e-4)
+    assert float(abs(here.snout_y).max()) > 1e-3
+
+
+def test_impossible_swims_are_refused(robot):
+    with pytest.raises(OutsideLimits, match="tail_cable"):
+        free_swim(robot, replace(MOTION, frequency=3.0), COARSE)
+    with pytest.raises(InvalidDesign, match="cells"):
+        Tether(cells=8, viscosity=1e-3, cycles=1)
+    with pytest.raises(InvalidDesign, match="boundary layer"):
+        tether(suchus.ROBOTS["caiman"], MOTION, replace(COARSE, viscosity=1e-6))
