@@ -98,7 +98,7 @@ class Study:
     timestep: float = 0.005
     """Of the physics [s]; up to 5 ms the crawl's displacement was measured to stay the same within 0.1 %."""
     chunk: int = 32
-    """How many runs are simulated together, and lost when the study is killed [-]; about 2 MB of memory for each."""
+    """How many runs are simulated together, and lost when the study is killed [-]; about 3 MB of memory for each."""
     reasons: tuple[str, ...] = field(default=())
     """Why these fields and ranges, for whoever reads the results."""
 
