@@ -3,8 +3,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from suchus.control import AttitudeRule, TurningCurve, turn
+from suchus.control import CURVES, AttitudeRule, TurningCurve, turn
 from suchus.errors import InvalidDesign, OutsideLimits
+from suchus.gaits import GAITS
+from suchus.land import Run, simulate
+from suchus.metrics import heading_change, path_length
+from suchus.motion import START
 
 CURVE = TurningCurve(bend=0.8, asymmetry=0.5, mixtures=(0.0, 0.5, 1.0), curvatures=(0.0, 1.0, 2.5))
 
@@ -34,3 +38,13 @@ def test_a_curve_that_does_not_rise_is_refused():
         TurningCurve(bend=0.8, asymmetry=0.0, mixtures=(0.0, 1.0), curvatures=(1.0, 0.5))
     with pytest.raises(InvalidDesign, match="as many mixtures"):
         TurningCurve(bend=0.8, asymmetry=0.0, mixtures=(0.0, 0.5, 1.0), curvatures=(0.0, 1.0))
+
+
+def test_curves_on_the_shelf_walk_the_circle_to_either_side(robot):
+    asked = np.array([1.1, -1.1])
+    for name in ("semi_erect", "high_walk"):
+        runs = [Run(robot=robot, gait=GAITS[name], control=turn(CURVES[name], radius)) for radius in asked]
+        start, end = START + 0.8, START + 0.8 * 7
+        record = simulate(runs, duration=end, timestep=0.005)
+        walked = path_length(record, start, end).values / heading_change(record, start, end).values
+        assert walked == pytest.approx(asked, rel=0.1)

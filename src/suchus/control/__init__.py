@@ -12,10 +12,11 @@ from suchus.control.shared import OWNERS, Shared
 from suchus.control.spine import SpineRule
 from suchus.control.switching import SwitchRule
 from suchus.control.tail import TailRule
-from suchus.control.turning import TurningCurve, turn
+from suchus.control.turning import CURVES, TurningCurve, turn
 from suchus.control.walking import Change, Walking
 
 __all__ = [
+    "CURVES",
     "LAWS",
     "OWNERS",
     "AttitudeRule",

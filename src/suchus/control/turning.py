@@ -1,7 +1,9 @@
 """A turn command: which bend and which strokes make the robot walk a circle of an asked radius."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import pairwise
+from types import MappingProxyType
 
 import numpy as np
 
@@ -57,3 +59,28 @@ def turn(curve: TurningCurve, radius: float, *, attitude: AttitudeRule | None = 
         )
     share = float(np.sign(radius) * np.interp(1.0 / abs(radius), curve.curvatures, curve.mixtures))
     return Walking(bend=share * curve.bend, asymmetry=share * curve.asymmetry, attitude=attitude)
+
+
+CURVES: Mapping[str, TurningCurve] = MappingProxyType(
+    {
+        "low_crawl": TurningCurve(
+            bend=0.79,
+            asymmetry=1.0,
+            mixtures=(0.0, 0.1, 0.2, 0.3, 0.45, 0.6, 0.8, 1.0),
+            curvatures=(-0.002, 0.169, 0.332, 0.506, 0.734, 0.944, 1.263, 1.59),
+        ),
+        "semi_erect": TurningCurve(
+            bend=0.79,
+            asymmetry=1.0,
+            mixtures=(0.0, 0.1, 0.2, 0.3, 0.45, 0.6, 0.8, 1.0),
+            curvatures=(0.012, 0.272, 0.592, 0.817, 1.213, 1.612, 1.865, 2.313),
+        ),
+        "high_walk": TurningCurve(
+            bend=0.79,
+            asymmetry=0.0,
+            mixtures=(0.0, 0.1, 0.2, 0.3, 0.45, 0.6, 0.8, 1.0),
+            curvatures=(-0.001, 0.215, 0.436, 0.672, 1.222, 1.764, 2.19, 2.567),
+        ),
+    }
+)
+"""By gait, as the experiment ``turning`` measured them on the robot ``caiman``."""
