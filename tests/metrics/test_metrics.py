@@ -76,6 +76,15 @@ def test_path_length_counts_turns_but_not_the_sway_within_a_cycle():
     assert displacement(record).values[0] == pytest.approx(0.0)
 
 
+def test_each_run_of_a_batch_is_sampled_at_its_own_period():
+    zigzag = moving(y=0.1 * (np.mod(TIME - 1, 4.0) >= 2.0))
+    slow = hand_made(centre_of_mass=zigzag)
+    fast = slow.assign(period=2.0)
+    both = path_length(xr.concat([slow, fast], "run"))
+    assert both.values == pytest.approx([float(path_length(slow)), float(path_length(fast))])
+    assert both.values == pytest.approx([0.0, 0.4])
+
+
 def test_a_turn_to_the_left_is_positive_and_may_exceed_half_a_turn():
     record = hand_made(orientation=about(2, 1.2 * (TIME - 1.0)))
     assert float(heading_change(record)) == pytest.approx(1.2 * 8.0)

@@ -34,8 +34,11 @@ def path_length(record: xr.Dataset, start: float = START, end: float | None = No
 
     The swaying within a cycle does not count: the way is sampled once per cycle.
     """
+    if "run" in record.dims:  # each run is sampled at its own period
+        ways = [path_length(record.isel(run=i), start, end) for i in range(record.sizes["run"])]
+        return xr.concat(ways, "run")
     part = between(record, start, end)
-    period = float(part.period.max())
+    period = float(part.period)
     every = max(1, round(period / float(part.time[1] - part.time[0])))
     points = part.centre_of_mass.sel(xyz=["x", "y"]).isel(time=slice(None, None, every))
     if points.sizes["time"] < 2:
