@@ -100,6 +100,8 @@ class BipedalReach(Experiment):
     """Number of forces between two of them [-]."""
     wait: float = 3.0
     """How long a robot is left alone before a push and after it [s]; a fall takes less than 2 s."""
+    timestep: float = 0.002
+    """Of the physics in the run of the figures [s]; sweeps take 5 ms."""
     longer: float = 0.05
     """By which part legs, spine and head are lengthened, one after another [-]."""
 
@@ -112,6 +114,7 @@ class BipedalReach(Experiment):
             check.whole("finer", 0, 100)
             check.that(len(self.hips) > 1, f"{self.name()}.hips has {len(self.hips)} heights; two at least are needed")
             check.number("wait", 0.1, 60.0, "s")
+            check.number("timestep", 1e-5, 0.01, "s")
             check.number("longer", 0.001, 0.2, "")
 
     def quick(self) -> "BipedalReach":
@@ -127,6 +130,7 @@ class BipedalReach(Experiment):
             pushes=(2.0, 25.0),
             finer=0,
             wait=1.5,
+            timestep=_COARSE,
         )
 
     def run(self, progress: Progress = silent) -> Outcome:
@@ -155,7 +159,9 @@ class BipedalReach(Experiment):
         """Return the run of the figures, and the heights of its repeats."""
         duration = standing.down_from(self.robot) + self.gait.period
         calm = Run(robot=self.robot, gait=self.gait, control=standing)
-        record = simulate([calm], duration=duration, every=2, progress=lambda share: progress(0.5 * share))
+        record = simulate(
+            [calm], duration=duration, timestep=self.timestep, every=2, progress=lambda share: progress(0.5 * share)
+        )
         blind = replace(calm, control=replace(standing, balance=None))
         shaken = [
             replace(run, noise=self.noise, seed=seed) for run in (calm, blind) for seed in range(1, 1 + self.repeats)

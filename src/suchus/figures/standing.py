@@ -158,7 +158,7 @@ def draw_heights(record: xr.Dataset, hold: float) -> Figure:
         axes[0, 0].set_title("standing up")
         axes[0, 1].set_title("crawl, stand, sit down, crawl on")
         close = axes[0, 1].inset_axes((0.26, 0.50, 0.5, 0.26))
-        _lay_heights(close, record, up + 1.0, leave)
+        _lay_heights(close, record, up + 0.02 * (leave - up), leave)
         close.set_title("standing, magnified", fontsize=10)
         close.tick_params(labelsize=9)
         axes[0, 1].legend(loc="upper center", bbox_to_anchor=(0.52, 0.42))
