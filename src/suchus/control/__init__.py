@@ -10,16 +10,19 @@ from suchus.control.rolling import Rolling
 from suchus.control.sensed import Sensed
 from suchus.control.shared import OWNERS, Shared
 from suchus.control.spine import SpineRule
+from suchus.control.standing import BALANCE, Balance, Standing
 from suchus.control.switching import SwitchRule
 from suchus.control.tail import TailRule
 from suchus.control.turning import CURVES, TurningCurve, turn
 from suchus.control.walking import Change, Walking
 
 __all__ = [
+    "BALANCE",
     "CURVES",
     "LAWS",
     "OWNERS",
     "AttitudeRule",
+    "Balance",
     "Change",
     "Command",
     "Control",
@@ -34,6 +37,7 @@ __all__ = [
     "Sensed",
     "Shared",
     "SpineRule",
+    "Standing",
     "SwitchRule",
     "TailRule",
     "TurningCurve",
