@@ -16,7 +16,7 @@ from suchus.motion import Swim, check_swim
 from suchus.motion.swim import YAWS
 from suchus.water.immersed import immersed
 from suchus.water.outline import Outline
-from suchus.water.slender import cycle
+from suchus.water.slender import Water, cycle, recoil
 from suchus.water.swimming import wave_speed
 
 _GROWS = 0.5
@@ -49,10 +49,10 @@ class Tether:
             check.number("viscosity", 1e-7, 10.0, "m2/s")
 
 
-def _check(outline: Outline, motion: Swim, setting: Tether) -> None:
+def _check(outline: Outline, motion: Swim, setting: Tether, sway: complex, turn: complex) -> None:
     """Refuse what joints, servos or grid cannot follow."""
     check_swim(outline.robot, motion)
-    length, moving = outline.robot.length, cycle(outline, motion)
+    length, moving = outline.robot.length, cycle(outline, motion, sway, turn)
     speed = float(np.hypot(moving.x_rate, moving.y_rate).max())
     layer, cell = (length * setting.viscosity / max(speed, 1e-12)) ** 0.5, length / setting.cells
     if layer < LAYER_CELLS * cell:
@@ -82,7 +82,7 @@ def tether(
     """
     length, period = robot.length, 1.0 / motion.frequency
     outline = Outline(robot, setting.cells + 1)
-    _check(outline, motion, setting)
+    _check(outline, motion, setting, 0j, turn)
     shape = immersed(outline, motion, turn=turn, grow=_GROWS * period)
     grid = flow.Grid.covering(
         (-0.75 * length, 2.0 * length), (-0.75 * length, 0.75 * length), cell=length / setting.cells
@@ -210,7 +210,7 @@ def free_swim(robot: Crocodile, motion: Swim, setting: Tether, *, progress: Prog
     """
     length, period = robot.length, 1.0 / motion.frequency
     outline = Outline(robot, setting.cells + 1)
-    _check(outline, motion, setting)
+    _check(outline, motion, setting, *recoil(outline, motion, 0.0, Water()))
     shape = immersed(outline, motion, grow=_GROWS * period)
     grid = flow.Grid.covering((-1.0 * length, 2.5 * length), (-length, length), cell=length / setting.cells)
     body = flow.FreeBody(shape=shape, start=(0.5 * length, 0.0))
