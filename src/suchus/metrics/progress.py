@@ -36,7 +36,7 @@ def path_length(record: xr.Dataset, start: float = START, end: float | None = No
     """
     if "run" in record.dims:  # each run is sampled at its own period
         ways = [path_length(record.isel(run=i), start, end) for i in range(record.sizes["run"])]
-        return xr.concat(ways, "run")
+        return xr.concat(ways, "run", coords="different", compat="equals")
     part = between(record, start, end)
     period = float(part.period)
     every = max(1, round(period / float(part.time[1] - part.time[0])))
