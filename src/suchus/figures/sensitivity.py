@@ -7,11 +7,11 @@ from matplotlib.figure import Figure
 from scipy import stats
 
 from suchus.figures.style import COLOURS, captioned, panels, styled
+from suchus.metrics.decisive import SURE
 from suchus.paper import CLAIMS
 
 _TRUE, _FALSE = "#0072B2", "#D55E00"
 _SHOWN = 8
-_SURE = 0.01  # probability of any correlation as great by chance, among all parameters
 
 
 def draw_claim(record: xr.Dataset, claim: str) -> Figure:
@@ -36,7 +36,7 @@ def draw_claim(record: xr.Dataset, claim: str) -> Figure:
         figure,
         f"{CLAIMS[claim].sense} True in {share} of {len(number)} samples. Left: {CLAIMS[claim].quantity}; the line is "
         "the article's number. Middle: rank correlation with the parameters it follows most; within the grey band it "
-        "could be chance. Right: the two that tell most, and the border that best separates true from false.",
+        "could be chance. Right: the two that tell most; blue is the side of the border where it is rather true.",
     )
 
 
@@ -47,6 +47,11 @@ def _numbers(ax: Axes, number: np.ndarray, holds: np.ndarray, claim: str) -> Non
         if printed is not None:
             low, high = min(low, printed), max(high, printed)
         edges = np.linspace(low, high + 1e-9, 33).tolist()
+        if claim == "displacement_ratio":
+            ax.set_xscale("log")
+            edges = np.geomspace(low, high * (1 + 1e-9), 33).tolist()
+            ax.set_xticks([0.5, 1, 2, 5, 10, 20, 50], ["0.5", "1", "2", "5", "10", "20", "50"])
+            ax.minorticks_off()
         clipped = np.clip(number, low, high)
         ax.hist([clipped[holds], clipped[~holds]], edges, stacked=True, color=[_TRUE, _FALSE], label=["true", "false"])
     if printed is not None:
@@ -88,7 +93,7 @@ def _chance(samples: int, parameters: int) -> float:
     """Return the rank correlation that the greatest of so many reaches by chance once in a hundred times."""
     if samples < 4:
         return 1.0
-    t = stats.t.isf(_SURE / parameters / 2, samples - 2)
+    t = stats.t.isf(SURE / parameters / 2, samples - 2)
     return float(t / np.sqrt(samples - 2 + t**2))
 
 
@@ -108,10 +113,12 @@ def _plane(ax: Axes, told: xr.Dataset, there: np.ndarray, holds: np.ndarray) -> 
     for some, colour, mark, label in ((holds, _TRUE, "o", "true"), (~holds, _FALSE, "X", "false")):
         ax.scatter(x[some], y[some], s=16, color=colour, marker=mark, alpha=0.65, linewidth=0, label=label)
     if int(told.border_of) >= 0:
-        at, side = float(told.border_at), "above" if told.border_above else "below"
+        at, edge = float(told.border_at), ax.get_xlim()
         ax.axvline(at, color="black", linewidth=1.4)
-        ax.set_title(f"rather true {side} {at:.3g} (separation {float(told.border_separation):.2f})")
+        ax.axvspan(at, edge[1] if told.border_above else edge[0], color=_TRUE, alpha=0.08, linewidth=0, zorder=0)
+        ax.set_xlim(edge)
+        ax.set_title(f"border at {at:.3g}, separation {float(told.border_separation):.2f}")
     else:
         ax.set_title("no border within the ranges")
-    ax.set_xlabel(_plain(str(told.parameter.values[first])))
-    ax.set_ylabel(_plain(str(told.parameter.values[second])))
+    for axis, i in ((ax.set_xlabel, first), (ax.set_ylabel, second)):
+        axis(f"{_plain(str(told.parameter.values[i]))} [{told.parameter_unit.values[i]}]")

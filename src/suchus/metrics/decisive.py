@@ -6,6 +6,8 @@ import numpy as np
 from jaxtyping import Bool, Float
 from scipy import stats
 
+SURE = 0.01
+"""What counts as chance: how often the greatest of all parameters reaches as much without any reason [-]."""
 _FEW = 5  # samples on one side; fewer say nothing about a border
 
 
@@ -43,11 +45,17 @@ def rank_correlation(
 
 
 def border(parameters: Float[np.ndarray, "sample parameter"], holds: Bool[np.ndarray, " sample"]) -> Border | None:
-    """Return the border that best tells where a statement holds, or None where it nearly always or never does."""
+    """Return the border that best tells where a statement holds.
+
+    None where it nearly always or never holds, and where the best of so many parameters would separate as well by
+    chance once in a hundred times.
+    """
     if min(int(holds.sum()), int((~holds).sum())) < _FEW:
         return None
     found = [stats.ks_2samp(column[holds], column[~holds], method="asymp") for column in parameters.T]
     best = int(np.argmax([each.statistic for each in found]))
     one = found[best]
+    if float(one.pvalue) * len(found) > SURE:
+        return None
     # the sign is positive where more of the first sample lies below the location
     return Border(best, float(one.statistic_location), one.statistic_sign < 0, float(one.statistic), float(one.pvalue))
