@@ -56,7 +56,7 @@ def test_the_centre_of_mass_is_behind_the_feet_before_the_front_lifts_and_stays_
 
 def test_planted_feet_do_not_move_apart_and_the_hips_only_rise_and_go_forward():
     planned = plan(CAIMAN, RISE, TIME)
-    planted = TIME >= RISE.times[2]
+    planted = RISE.times[2] <= TIME
     assert np.ptp(planned.feet[planted, 0]) == pytest.approx(0.0, abs=1e-12)
     assert np.all(np.diff(planned.feet[planted, 2]) >= -1e-12)
     assert np.all(np.diff(planned.feet[planted, 1]) <= 1e-9)

@@ -40,9 +40,7 @@ class Swim:
         for field in ("yaw", "yaw_late"):
             values = getattr(self, field)
             if len(values) != 3:
-                raise InvalidDesign(
-                    f"swim.{field} has {len(values)} numbers; three yaw joints need one each."
-                )
+                raise InvalidDesign(f"swim.{field} has {len(values)} numbers; three yaw joints need one each.")
             for i, value in enumerate(values):
                 low, high, unit = (0.0, 3.1416, "rad") if field == "yaw" else (-1.0, 1.0, "cycle")
                 require("swim", f"{field}[{i}]", value, low, high, unit)
