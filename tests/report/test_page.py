@@ -140,6 +140,21 @@ def test_the_page_tells_everything_that_it_promises(page):
         assert " ".join(said.split()) in text
 
 
+def test_verdicts_of_a_quick_form_say_so(result, tmp_path):
+    question = Question()
+    outcome = question.run()
+    save_outcome(
+        outcome,
+        question.draw(outcome),
+        question,
+        tmp_path / "again" / "question",
+        command="suchus run question --quick",
+    )
+    short = render_page([load_result(tmp_path / "again" / "question")], [])
+    assert short.count("<em>Quick form.</em>") == len(outcome.verdicts)
+    assert "Quick form" not in render_page([result], [])
+
+
 def test_a_page_without_results_is_still_a_page():
     page = Page(render_page([], []))
     assert "No claim was touched." in page.text

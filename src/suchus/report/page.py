@@ -55,15 +55,25 @@ def render_page(results: Sequence[Result], failures: Sequence[Failure]) -> str:
     return environment.get_template("page.html").render(style=style, **_content(results, failures)) + "\n"
 
 
+def _short(result: Result) -> bool:
+    """Tell whether a result comes from the quick form of its question."""
+    return str(result.told["command"]).endswith("--quick")
+
+
 def _content(results: Sequence[Result], failures: Sequence[Failure]) -> dict[str, Any]:
     order = {key: place for place, key in enumerate(CLAIMS)}
     results = sorted(results, key=lambda result: _place(result, order))
-    verdicts = [{**verdict, "experiment": result.name} for result in results for verdict in result.told["verdicts"]]
+    verdicts = [
+        {**verdict, "experiment": result.name, "short": _short(result)}
+        for result in results
+        for verdict in result.told["verdicts"]
+    ]
     verdicts.sort(key=lambda verdict: order.get(verdict["claim"], len(order)))
     count = Counter(str(verdict["verdict"]) for verdict in verdicts)
     robot = ROBOTS[ROBOT]
     return {
         "results": results,
+        "short": {result.name: _short(result) for result in results},
         "failures": failures,
         "verdicts": verdicts,
         "marks": _MARKS,
