@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 from scipy.stats import qmc
 
+from suchus.control import Coordinated, HeadingRule
 from suchus.design import Chosen, Crocodile, meaning, value_at, with_values
 from suchus.experiment import Experiment, Measure, Outcome, Progress, judge, silent, staged, stopwatch
 from suchus.figures.faults import draw_held, draw_losses, draw_over_time, draw_tracks
@@ -42,7 +43,8 @@ class JointFaults(Experiment):
 
     All of it over variations of gait and friction. A change of displacement is measured against the intact run with
     spine and tail of the same variation, as the article does; ``faults.csv`` has it against the intact run of the same
-    arm too. Displacement is forward, along the direction that the body faced at the start.
+    arm too. A fifth arm, ``steered``, repeats the judged reading with the feedback rules and the heading loop.
+    Displacement is forward, along the direction that the body faced at the start.
     """
 
     title = "How far does it still crawl when joints of its legs are lost?"
@@ -102,7 +104,8 @@ class JointFaults(Experiment):
         with stopwatch() as seconds:
             record = self._campaign(staged(progress, "campaign", 0.0, 0.8))
             record = record.merge(self._held(staged(progress, "places of locking", 0.8, 0.9)))
-            record = record.merge(self._support(staged(progress, "support", 0.9, 1.0)))
+            record = record.merge(self._support(staged(progress, "support", 0.9, 0.92)))
+            record = record.merge(self._steered(staged(progress, "steered", 0.92, 1.0)))
             return Outcome(
                 experiment=self.name(),
                 measures=self._measures(record),
@@ -214,6 +217,34 @@ class JointFaults(Experiment):
             coords={"state": ["intact", *KINDS], "part": [str(name) for name in loads.part.values]},
         )
 
+    def _steered(self, progress: Any) -> xr.Dataset:
+        """Run the judged reading of every joint once more with all feedback rules and the heading loop."""
+        control = Coordinated(heading=HeadingRule())
+        runs = [
+            Run(
+                robot=self.robot,
+                gait=gaits["coordinated"],
+                ground=Ground(grip=grip),
+                faults=lost(self.robot, gaits["coordinated"], joint, self.kind, self.legs, hold=self.hold),
+                control=control,
+                noise=self.noise if i else 0.0,
+                seed=self.seed + i,
+            )
+            for i, (gaits, grip) in enumerate(self._varied())
+            for joint in LOST
+        ]
+        record = whole(simulate(runs, duration=self._duration, timestep=self.timestep, every=10, progress=progress))
+        shape = (-1, len(LOST))
+        way, turned = displacement(record).sel(xyz="x").values, heading_change(record).values
+        steered = ("variation", "joint")
+        return xr.Dataset(
+            {
+                "steered_forward": (steered, way.reshape(shape), {"units": "m", "long_name": "forward, steered"}),
+                "steered_turn": (steered, turned.reshape(shape), {"units": "rad", "long_name": "turned, steered"}),
+            },
+            coords={"joint": list(LOST)},
+        )
+
     def _measures(self, record: xr.Dataset) -> Mapping[str, Measure]:
         change, measures = _changes(record), {}
         for arm in _ARMS:
@@ -226,6 +257,11 @@ class JointFaults(Experiment):
             measures[f"net_loss_{name}"] = Measure(float(change["net"].sel(at).median()), "-")
             measures[f"path_loss_{name}"] = Measure(float(change["path"].sel(at).median()), "-")
             measures[f"turn_{name}"] = Measure(float(record.turn.sel(at).median()), "rad")
+        kept = loss(record.steered_forward, record.intact_forward.sel(arm="coordinated", drop=True))
+        for joint in LOST:
+            name = f"{joint}_{self.kind}_{self.legs}_steered"
+            measures |= _ranged(f"loss_{name}", kept.sel(joint=joint), "-")
+            measures[f"turn_{name}"] = Measure(float(record.steered_turn.sel(joint=joint).median()), "rad")
         better, beyond = _bears_better(record), _kept(record).sel(arm="limbs_only")
         measures["share_spine_and_tail_bear_better"] = Measure(float(better.mean()), "-")
         measures["share_limbs_only_beyond_intact"] = Measure(float((beyond > 1.0).mean()), "-")
