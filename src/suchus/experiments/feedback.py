@@ -65,7 +65,6 @@ class Feedback(Experiment):
 
     title = "Do three feedback rules coordinate limbs, spine and tail, and what do they help against?"
     shows = "Sections II.B and III.D, Fig. 10"
-    in_reproduce = False  # two minutes alone; its quick form stands in the report
     claims = ("feedback_rules", "shared_variables")
     decides = (
         "Load decides. A limb that waits while its foot still carries finds its place against the others from any "
