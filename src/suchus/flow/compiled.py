@@ -17,7 +17,7 @@ R = TypeVar("R")
 BLOCK = 32
 """Rows that one thread takes at a time [-]."""
 
-SERIAL_BELOW = 32_768
+SERIAL_BELOW = 4_096
 """Levels with fewer cells than this run on one thread: starting threads would take longer [-]."""
 
 PAD = 2
