@@ -13,10 +13,9 @@ from suchus.control.shared import Shared
 from suchus.design import Crocodile
 from suchus.design.checks import Checks
 from suchus.errors import OutsideLimits
+from suchus.kinematics.mass import GRAVITY
 from suchus.motion import Gait
 
-GRAVITY = 9.81
-"""[m/s2]; for a foot's normal share of the weight."""
 SIDES = np.array([1.0, -1.0, -1.0, 1.0])
 """The diagonal pair of each limb: LF and RH 1, RF and LH -1."""
 _DIAGONAL = 0.02  # [cycle]; how far from diagonal pairs a gait may be that a law with pairs coordinates
@@ -135,6 +134,11 @@ class Limbs:
             if walking:
                 self.ahead = self.ahead - self._cycles_per_tick * self._brake(shared.limb_phase, load, twist)
         return shared.written_by("limbs", limb_phase=clock + self.ahead)
+
+    def take_over(self, before: "Limbs") -> None:
+        """Go on from where the oscillators of the same runs stand; limbs that nothing coordinates fall in step."""
+        if self._feels:
+            self.ahead, self._load, self._twist = before.ahead, before._load, before._twist
 
     def kick(self, run: int, ahead: Float[np.ndarray, " 4"]) -> None:
         """Let the limbs of one run jump ahead [cycle]."""

@@ -12,12 +12,12 @@ from suchus.experiment import Experiment, Measure, Outcome, Progress, judge, sil
 from suchus.figures.terrain import GAIT_LINES, draw_speed_range
 from suchus.gaits import GAITS
 from suchus.kinematics.body import tail_points
+from suchus.kinematics.mass import GRAVITY
 from suchus.land import Run, simulate
 from suchus.metrics import between, cost_of_transport, displacement, duty_factor, roll_peak_to_peak
 from suchus.motion import START, Gait
 from suchus.robots import ROBOTS
 
-_GRAVITY = 9.81  # [m/s2]
 _TOUCHES = 0.005  # [m]; a tail this close to the ground lies on it
 _HALF = (0.35, 0.65)  # what "about half" may be
 _LEGS = slice(0, 12)
@@ -97,7 +97,7 @@ class SpeedRange(Experiment):
             speed,
             float(duty_factor(part).mean()),
             float(cost_of_transport(one, start, end)),
-            speed**2 / (_GRAVITY * run.gait.hip_height),
+            speed**2 / (GRAVITY * run.gait.hip_height),
             float(roll_peak_to_peak(one, start, end)),
             fastest,
             float((part.tail_force.sel(xyz="z") > 0.1).mean()),

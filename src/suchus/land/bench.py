@@ -10,11 +10,11 @@ from mujoco.batch import Batch, SimulationError
 
 from suchus import threads
 from suchus.design import servo_names
+from suchus.kinematics.mass import GRAVITY
 from suchus.land.faults import Fault, Limp, Weak
 from suchus.land.run import Afloat, Ground, Run
 from suchus.model import activations, compile_model, standing
 
-_GRAVITY = 9.81  # [m/s2]
 _TOO_FAST = 1e3  # [rad/s] or [m/s]; nothing on a robot moves so fast: the physics has come apart
 _CURRENT = mujoco.mjtStage.mjSTAGE_VEL  # after a step, positions and velocities describe the new state
 
@@ -154,4 +154,4 @@ def _gravity(ground: Ground) -> np.ndarray:
     """Return gravity in the frame of a tilted ground [m/s2]."""
     down = np.array([-np.sin(ground.uphill), 0.0, -np.cos(ground.uphill)])
     c, s = np.cos(ground.sideways), np.sin(ground.sideways)
-    return _GRAVITY * np.array([down[0], down[2] * s, down[2] * c])
+    return GRAVITY * np.array([down[0], down[2] * s, down[2] * c])

@@ -2,11 +2,10 @@
 
 import xarray as xr
 
+from suchus.kinematics.mass import GRAVITY
 from suchus.metrics.progress import displacement
 from suchus.metrics.window import between
 from suchus.motion import START
-
-_GRAVITY = 9.81  # [m/s2]
 
 
 def work(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
@@ -19,7 +18,7 @@ def work(record: xr.Dataset, start: float = START, end: float | None = None) -> 
 def cost_of_transport(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
     """Return the work per weight and way on the ground [-]."""
     way = displacement(record, start, end).sel(xyz=["x", "y"])
-    return work(record, start, end) / (record.mass * _GRAVITY * (way**2).sum("xyz") ** 0.5)
+    return work(record, start, end) / (record.mass * GRAVITY * (way**2).sum("xyz") ** 0.5)
 
 
 def peak_torque(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:

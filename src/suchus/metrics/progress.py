@@ -3,10 +3,9 @@
 import numpy as np
 import xarray as xr
 
+from suchus.kinematics.mass import GRAVITY
 from suchus.metrics.window import between
 from suchus.motion import START
-
-_GRAVITY = 9.81  # [m/s2]
 
 
 def displacement(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
@@ -53,7 +52,7 @@ def slip(record: xr.Dataset, start: float = START, end: float | None = None) -> 
     """
     part = between(record, start, end)
     steps = part.foot_position.sel(xyz=["x", "y"]).diff("time")
-    carried = part.foot_force.sel(xyz="z").isel(time=slice(1, None)) / (part.mass * _GRAVITY)
+    carried = part.foot_force.sel(xyz="z").isel(time=slice(1, None)) / (part.mass * GRAVITY)
     slid = ((steps**2).sum("xyz") ** 0.5 * carried).sum(["time", "leg"])
     way = displacement(part, start, end).sel(xyz=["x", "y"])
     return slid / (way**2).sum("xyz") ** 0.5
