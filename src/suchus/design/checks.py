@@ -1,6 +1,7 @@
 """How a design refuses impossible numbers: all that are wrong in one part, named at once."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from types import TracebackType
@@ -61,6 +62,18 @@ class Checks:
         value = getattr(self._design, field)
         if not _within(value, low, high):
             self._complain(field, f"is {_show(value, unit)}; {_show(low)} to {_show(high, unit)} is allowed")
+
+    def each(self, field: str, names: Sequence[str], low: float, high: float, unit: str) -> None:
+        """Refuse a row that has not one finite number of ``low`` to ``high`` for each name."""
+        row = getattr(self._design, field)
+        if len(row) != len(names):
+            self._complain(field, f"has {len(row)} numbers; {', '.join(names)} need one each")
+            return
+        for i, value in enumerate(row):
+            if not _within(value, low, high):
+                self._complain(
+                    f"{field}[{i}]", f"is {_show(value, unit)}; {_show(low)} to {_show(high, unit)} is allowed"
+                )
 
     def whole(self, field: str, low: int, high: int) -> None:
         """Refuse what is not a whole number of ``low`` to ``high``."""

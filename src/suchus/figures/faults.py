@@ -125,7 +125,7 @@ def draw_over_time(record: xr.Dataset, kind: str, legs: str) -> Figure:
         figure,
         f"Way of the centre of mass with a {kind} joint in {'one leg' if legs == 'one' else 'both legs'} of a girdle: "
         "medians and ranges over the variations of gait and friction. Dotted: the intact robots. Diamonds: what the "
-        "article's percentages make of its 0.73 m.",
+        f"article's percentages make of its {CLAIMS['displacement_coordinated'].value:g} m.",
     )
 
 

@@ -274,7 +274,8 @@ def draw_ceiling(robot: Crocodile, record: xr.Dataset) -> Figure:
     return captioned(
         figure,
         "Why the printed height is the greatest there is. Left: hind leg, spine and head in one line; the head, which "
-        "the article does not give, was chosen so that they sum up to the printed 0.68 m. Right: the greatest height "
+        "the article does not give, was chosen so that they sum up to the "
+        f"printed {printed:g} m. Right: the greatest height "
         "of the snout over the distance of the centre of mass behind the feet, torques aside, and what is simulated.",
     )
 

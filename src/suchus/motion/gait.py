@@ -3,8 +3,8 @@
 from dataclasses import dataclass, replace
 from typing import Literal, get_args
 
-from suchus.design.checks import require
-from suchus.errors import InvalidDesign
+from suchus.design import LEGS
+from suchus.design.checks import Checks
 
 Legs = Literal["sprawled", "erect"]
 """How legs stand.
@@ -13,6 +13,23 @@ Legs = Literal["sprawled", "erect"]
 body, the foot below the hip, the elbow behind and the knee ahead, and the stride comes from pitch and knee alone, as
 in Fig. 3b.
 """
+
+_ALLOWED = {
+    "period": (0.1, 60.0, "s"),
+    "duty_factor": (0.05, 0.95, ""),
+    "stroke": (-0.3, 0.3, "m"),
+    "lift": (0.0, 0.3, "m"),
+    "front_reach": (-0.3, 1.0, "m"),
+    "hind_reach": (-0.3, 1.0, "m"),
+    "front_ahead": (-0.3, 0.3, "m"),
+    "hind_ahead": (-0.3, 0.3, "m"),
+    "hip_height": (0.01, 1.0, "m"),
+    "trunk_bend": (0.0, 3.1416, "rad"),
+    "spine_phase": (-1.0, 1.0, "cycle"),
+    "tail_bend": (0.0, 3.1416, "rad"),
+    "tail_phase": (-1.0, 1.0, "cycle"),
+    "tail_pitch": (-3.1416, 3.1416, "rad"),
+}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -58,31 +75,17 @@ class Gait:
     """Steady angle of the tail's pitch joint, down positive [rad]: the ground carries the tail, or it is lifted."""
 
     def __post_init__(self) -> None:
-        require("gait", "period", self.period, 0.1, 60.0, "s")
-        require("gait", "duty_factor", self.duty_factor, 0.05, 0.95, "")
-        if len(self.limb_phases) != 4:
-            raise InvalidDesign(f"gait.limb_phases has {len(self.limb_phases)} numbers; LF, RF, LH, RH need one each.")
-        for i, phase in enumerate(self.limb_phases):
-            require("gait", f"limb_phases[{i}]", phase, -1.0, 1.0, "cycle")
-        require("gait", "stroke", self.stroke, -0.3, 0.3, "m")
-        require("gait", "lift", self.lift, 0.0, 0.3, "m")
-        require("gait", "front_reach", self.front_reach, -0.3, 1.0, "m")
-        require("gait", "hind_reach", self.hind_reach, -0.3, 1.0, "m")
-        require("gait", "front_ahead", self.front_ahead, -0.3, 0.3, "m")
-        require("gait", "hind_ahead", self.hind_ahead, -0.3, 0.3, "m")
-        if self.legs not in get_args(Legs):
-            raise InvalidDesign(f"gait.legs is {self.legs!r}; {' or '.join(get_args(Legs))} is allowed.")
-        if self.legs == "erect" and (self.front_reach, self.hind_reach) != (0.0, 0.0):
-            raise InvalidDesign(
+        with Checks("gait", self) as checks:
+            for field, (low, high, unit) in _ALLOWED.items():
+                checks.number(field, low, high, unit)
+            checks.each("limb_phases", LEGS, -1.0, 1.0, "cycle")
+            known = self.legs in get_args(Legs)
+            checks.that(known, f"gait.legs is {self.legs!r}; {' or '.join(get_args(Legs))} is allowed")
+            checks.that(
+                self.legs != "erect" or (self.front_reach, self.hind_reach) == (0.0, 0.0),
                 f"gait.front_reach is {self.front_reach:g} m and gait.hind_reach {self.hind_reach:g} m; erect legs "
-                "stand below their hips, so that both must be 0 m."
+                "stand below their hips, so that both must be 0 m",
             )
-        require("gait", "hip_height", self.hip_height, 0.01, 1.0, "m")
-        require("gait", "trunk_bend", self.trunk_bend, 0.0, 3.1416, "rad")
-        require("gait", "spine_phase", self.spine_phase, -1.0, 1.0, "cycle")
-        require("gait", "tail_bend", self.tail_bend, 0.0, 3.1416, "rad")
-        require("gait", "tail_phase", self.tail_phase, -1.0, 1.0, "cycle")
-        require("gait", "tail_pitch", self.tail_pitch, -3.1416, 3.1416, "rad")
 
     def mirrored(self) -> "Gait":
         """Return the gait with left and right swapped."""
