@@ -136,11 +136,18 @@ class Coordinator:
         self._spine = Spine([control.spine for control in controls], robots, by_gait, period)
         self._tail = Tail([control.tail for control in controls], robots, gaits, by_gait, period)
         steered = any(control.heading is not None for control in controls)
-        self._heading = (
-            Heading([control.heading for control in controls], robots, gaits, ticks, period) if steered else None
-        )
+        self._heading = Heading([control.heading for control in controls], robots, gaits, period) if steered else None
         self._shared = silence(len(robots))
         self._steering = Steering.none(len(robots))
+
+    def take_over(self, before: "Coordinator") -> None:
+        """Go on from where another coordinator of the same runs stands, with other gaits or rules."""
+        self._limbs.take_over(before._limbs)
+        self._spine.take_over(before._spine)
+        self._tail.take_over(before._tail)
+        self._shared = before._shared
+        if self._heading is not None and before._heading is not None:
+            self._heading.take_over(before._heading)
 
     def rest(self) -> Float[np.ndarray, "run 19"]:
         """The posture of the first phases."""

@@ -71,7 +71,6 @@ class Heading:
         rules: Sequence[HeadingRule | None],
         robots: Sequence[Crocodile],
         gaits: Sequence[Gait],
-        ticks: int,
         period: float,
     ) -> None:
         off = HeadingRule(gain=0.0, integral_gain=0.0, trunk=0.0)
@@ -83,8 +82,9 @@ class Heading:
         self._runs = np.arange(len(gaits))
         self._cycle = np.array([max(1, round(gait.period / period)) for gait in gaits])
         self._most = np.array([_most(*those) for those in zip(settings, robots, gaits, strict=True)])
-        self._summed = np.zeros((ticks + 1, len(gaits)))
+        self._summed = np.zeros((int(self._cycle.max()) + 1, len(gaits)))  # a ring, as long as the longest cycle
         self._count = 0
+        self._walks = False
         self._lasting = np.zeros(len(gaits))
         self._last = np.zeros(len(gaits))
         self._turned = np.zeros(len(gaits))
@@ -98,6 +98,11 @@ class Heading:
         steer = np.clip(self._lasting - self._gain * error, -self._most, self._most)
         return Steering(-_LEFT * steer[:, None], self._trunk * steer)
 
+    def take_over(self, before: "Heading") -> None:
+        """Go on from where the loops of the same runs stand; the mean over the last cycle begins anew."""
+        self._walks, self._last, self._turned = before._walks, before._last, before._turned
+        self._lasting = np.clip(before._lasting, -self._most, self._most)
+
     def _error(self, sensed: Sensed) -> np.ndarray:
         """Return the error of the direction, averaged over the last cycle or what there is of it [rad]."""
         w, x, y, z = finite(sensed.orientation).T
@@ -105,13 +110,15 @@ class Heading:
             np.arctan2(2 * (w * z + x * y), 1 - 2 * (y**2 + z**2))
             + finite(sensed.servo_position[:, TRUNK_YAW]).sum(1) / 2
         )
-        if self._count > 0:
+        if self._walks:
             self._turned = self._turned + (facing - self._last + pi) % (2 * pi) - pi
-        self._last = facing
+        self._walks, self._last = True, facing
         self._count += 1
-        self._summed[self._count] = self._summed[self._count - 1] + self._turned
+        size = len(self._summed)
+        now, before = self._count % size, (self._count - 1) % size
+        self._summed[now] = self._summed[before] + self._turned
         window = np.minimum(self._cycle, self._count)
-        mean = (self._summed[self._count] - self._summed[self._count - window, self._runs]) / window
+        mean = (self._summed[now] - self._summed[(self._count - window) % size, self._runs]) / window
         return mean - self._direction
 
 

@@ -58,6 +58,10 @@ class Spine:
             direction[runs] = trunk_bend(gait, shared.limb_phase[runs] + 0.25)
         return shared.written_by("spine", trunk_bend=bend, trunk_direction=direction)
 
+    def take_over(self, before: "Spine") -> None:
+        """Go on from where the trunks of the same runs stand."""
+        self._lacking = before._lacking
+
     def correct(
         self, targets: Float[np.ndarray, "run 19"], asked: Float[np.ndarray, " run"], sensed: Sensed
     ) -> Float[np.ndarray, "run 19"]:

@@ -50,7 +50,8 @@ class Tail:
         period: float,
     ) -> None:
         self._groups = groups
-        self._pitch = np.array([gait.tail_pitch for gait in gaits])
+        self._asked = np.array([gait.tail_pitch for gait in gaits])
+        self._pitch = self._asked
         self._on = np.array([rule is not None for rule in rules]) & (self._pitch >= 0.0)
         self._step = period * np.array([0.0 if rule is None else rule.rate for rule in rules])
         low, high = np.array([robot.tail.pitch_range for robot in robots]).T
@@ -73,6 +74,10 @@ class Tail:
                 bend[runs] = tail_bend(gait, shared.limb_phase[runs])
                 direction[runs] = tail_bend(gait, shared.limb_phase[runs] + 0.25)
         return shared.written_by("tail", tail_bend=bend, tail_direction=direction)
+
+    def take_over(self, before: "Tail") -> None:
+        """Go on from where the tails of the same runs stand, as far as the gait asks for the same pitch."""
+        self._pitch = np.where(self._on & (self._asked == before._asked), before._pitch, self._asked)
 
     def correct(self, targets: Float[np.ndarray, "run 19"], sensed: Sensed) -> Float[np.ndarray, "run 19"]:
         """Return the targets with the tail's pitch given way for one control period more."""

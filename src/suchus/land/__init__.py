@@ -3,10 +3,12 @@
 from suchus.land.arenas import ARENAS
 from suchus.land.crawling import crawl
 from suchus.land.faults import Deaf, Fault, Limp, Locked, Weak
+from suchus.land.live import Live
+from suchus.land.loop import CONTROL_PERIOD
 from suchus.land.lost import KINDS, LEGS_LOST, LOST, angle_at, lost
 from suchus.land.push import Push
 from suchus.land.run import VACUUM, WATER, Afloat, Ground, Run
-from suchus.land.simulation import CONTROL_PERIOD, simulate
+from suchus.land.simulation import simulate
 from suchus.land.toppling import smallest_pushes
 
 __all__ = [
@@ -22,6 +24,7 @@ __all__ = [
     "Fault",
     "Ground",
     "Limp",
+    "Live",
     "Locked",
     "Push",
     "Run",

@@ -62,7 +62,7 @@ class Bench:
             if run.ground.grip != 1.0:
                 self._field("geom_friction", sim)[1:, 0] *= run.ground.grip
             if run.ground.uphill or run.ground.sideways:
-                self._field("opt.gravity", sim)[:] = _gravity(run.ground)
+                self.tilt(sim, run.ground)
             if run.afloat is not None:
                 self._cast_off(sim, run.afloat)
 
@@ -92,6 +92,16 @@ class Bench:
             self._field("actuator_forcerange", sim)[servo] *= fault.fraction
         if self._models:
             self.batch.set_models(self._models)
+
+    def mend_servo(self, sim: int, joint: str) -> None:
+        """Give a servo its torque back from now on; only where all runs share a model, as a lone run does."""
+        servo = servo_names().index(joint)
+        self.batch.expand("opt.disableactuator")[sim] &= ~(1 << servo)
+        self.batch.expand("actuator_forcerange")[sim, servo] = self.model.actuator_forcerange[servo]
+
+    def tilt(self, sim: int, ground: Ground) -> None:
+        """Let a ground slope as it says from now on; its grip and relief are not looked at."""
+        self._field("opt.gravity", sim)[:] = _gravity(ground)
 
     def push(self, sim: int, body: str, force: np.ndarray) -> None:
         """Let a force act on the centre of mass of a body from now on.

@@ -55,6 +55,10 @@ class Readings:
             acceleration=read[:, self._at["imu_accelerometer"]].copy(),
         )
 
+    def sample(self, run: int, sample: int) -> dict[str, np.ndarray]:
+        """Return one stored sample of one run: the variables of ``record.VARIABLES`` without run and time."""
+        return {name: np.array(values[run, sample]) for name, values in self._arrays().items()}
+
     def record(self, time: np.ndarray) -> xr.Dataset:
         """Return everything that was read, in the schema of a run."""
         robots = [run.robot for run in self._runs]

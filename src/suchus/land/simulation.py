@@ -5,19 +5,15 @@ from collections.abc import Callable, Sequence
 import numpy as np
 import xarray as xr
 
-from suchus.control import Controller, Joinable
+from suchus.control import Joinable
 from suchus.design.checks import require
 from suchus.errors import InvalidDesign
-from suchus.land.bench import Bench
 from suchus.land.faults import check_faults
+from suchus.land.loop import CONTROL_PERIOD, Loop, physics_steps
 from suchus.land.push import check_pushes
-from suchus.land.readings import Readings
 from suchus.land.run import Run
-from suchus.land.troubles import Troubles
 from suchus.model import topology
 from suchus.motion import check_limits
-
-CONTROL_PERIOD = 0.01  # [s]; 100 Hz, what a bus of hobby servos sustains
 
 Progress = Callable[[float], None]
 
@@ -76,13 +72,8 @@ def _check(runs: Sequence[Run], duration: float, timestep: float, every: int) ->
     if not runs:
         raise InvalidDesign("there are no runs to simulate; give at least one.")
     require("simulate", "duration", duration, CONTROL_PERIOD, 86400.0, "s")
-    require("simulate", "timestep", timestep, 1e-5, CONTROL_PERIOD, "s")
     require("simulate", "every", every, 1, 10000, "control periods")
-    steps = round(CONTROL_PERIOD / timestep)
-    if abs(steps * timestep - CONTROL_PERIOD) > 1e-9:
-        raise InvalidDesign(
-            f"simulate.timestep is {timestep} s; it must divide the control period of {CONTROL_PERIOD} s."
-        )
+    steps = physics_steps(timestep)
     if len({topology(run.robot) for run in runs}) > 1:
         raise InvalidDesign(
             "the robots of one batch must have equally many tail joints, and integral action in the same servos; "
@@ -109,34 +100,17 @@ def _groups(runs: Sequence[Run]) -> list[list[int]]:
     return list(groups.values())
 
 
-def _start(runs: Sequence[Run], ticks: int) -> Controller:
-    """Start the controller of a group."""
-    robots, gaits, seeds = [run.robot for run in runs], [run.gait for run in runs], [run.seed for run in runs]
-    control = runs[0].control
-    if isinstance(control, Joinable):
-        return control.start_together([run.control for run in runs], robots, gaits, seeds, ticks, CONTROL_PERIOD)
-    return control.start(robots, gaits, seeds, ticks, CONTROL_PERIOD)
-
-
 def _simulate_group(
     runs: Sequence[Run], ticks: int, steps: int, timestep: float, every: int, progress: Progress
 ) -> xr.Dataset:
-    bench = Bench(runs, timestep)
-    feels = any(run.control.feels for run in runs)
-    controller = _start(runs, ticks + 1)
-    bench.place(runs, controller.rest())
-    troubles = Troubles(runs, bench, ticks + 1, CONTROL_PERIOD)
-    readings = Readings(bench, runs, ticks // every + 1)
+    loop = Loop(runs, ticks + 1, steps, timestep, samples=ticks // every + 1)
     for tick in range(ticks + 1):
-        troubles.happen(tick)
-        sensed = troubles.deafen(readings.sensed(tick * CONTROL_PERIOD)) if feels else None
-        command = controller.command(tick, sensed)
-        targets = troubles.disturb(tick, command.targets)
+        command = loop.decide(tick)
         if tick % every == 0:
-            readings.store(tick // every, command.phase, targets)
+            loop.readings.store(tick // every, command.phase, command.targets)
         if tick < ticks:
-            bench.advance(targets, steps, tick * CONTROL_PERIOD)
+            loop.advance(tick, command.targets)
         if tick % 16 == 0:
             progress(tick / ticks)
     progress(1.0)
-    return readings.record(np.arange(0, ticks + 1, every) * CONTROL_PERIOD)
+    return loop.readings.record(np.arange(0, ticks + 1, every) * CONTROL_PERIOD)

@@ -9,6 +9,7 @@ from suchus.control import Sensed
 from suchus.design import servo_names
 from suchus.land.bench import Bench
 from suchus.land.faults import Deaf, Fault, Locked
+from suchus.land.push import Push
 from suchus.land.run import Run
 
 
@@ -36,14 +37,27 @@ class Troubles:
         if self._pushes:
             self._push(tick)
         for sim, fault in self._due.get(tick, ()):
-            if isinstance(fault, Locked):
-                servo = servo_names().index(fault.joint)
-                now = self._bench.sensors[sim, servo]  # the first readings are the servos' angles
-                self._held[sim, servo] = now if fault.angle is None else fault.angle
-            elif isinstance(fault, Deaf):
-                self._deaf.append((sim, fault.sensor))
-            else:
-                self._bench.break_servo(sim, fault)
+            self.begin(sim, fault)
+
+    def begin(self, sim: int, fault: Fault) -> None:
+        """Let a fault begin now."""
+        if isinstance(fault, Locked):
+            servo = servo_names().index(fault.joint)
+            now = self._bench.sensors[sim, servo]  # the first readings are the servos' angles
+            self._held[sim, servo] = now if fault.angle is None else fault.angle
+        elif isinstance(fault, Deaf):
+            self._deaf.append((sim, fault.sensor))
+        else:
+            self._bench.break_servo(sim, fault)
+
+    def mend(self, sim: int, joint: str) -> None:
+        """Let a servo obey again; only where all runs share a model, as a lone run does."""
+        self._held[sim, servo_names().index(joint)] = np.nan
+        self._bench.mend_servo(sim, joint)
+
+    def push(self, sim: int, push: Push) -> None:
+        """Add a push."""
+        self._pushes.append((sim, push))
 
     def _push(self, tick: int) -> None:
         forces: dict[tuple[int, str], np.ndarray] = {}
@@ -53,6 +67,7 @@ class Troubles:
             forces[key] = forces.get(key, np.zeros(3)) + share * np.array(push.force)
         for (sim, body), force in forces.items():
             self._bench.push(sim, body, force)
+        self._pushes = [(sim, push) for sim, push in self._pushes if push.at + push.duration > tick * self._period]
 
     def deafen(self, sensed: Sensed) -> Sensed:
         """Return what is sensed by what still senses."""

@@ -1,0 +1,144 @@
+"""A run without an end, of which nearly everything can be changed while it goes."""
+
+from dataclasses import replace
+from math import inf
+
+import numpy as np
+
+from suchus.control import Coordinated
+from suchus.control.coordinated import Coordinator
+from suchus.errors import Diverged, InvalidDesign
+from suchus.land.faults import Fault, check_faults
+from suchus.land.loop import CONTROL_PERIOD, Loop, physics_steps, start
+from suchus.land.push import Push, check_pushes
+from suchus.land.run import Ground, Run
+from suchus.motion import START, Gait, check_limits
+
+_START = round(START / CONTROL_PERIOD)  # [control period]
+
+
+class Live:
+    """One robot that walks until told otherwise, one control period at a time.
+
+    The controller hears of one cycle again and again; so a gait's period is rounded to whole control periods. With
+    an unchanged gait of such a period, all goes as in ``simulate``, up to rounding.
+
+    Args:
+        run: how it begins; its faults and pushes happen at their times.
+        timestep: of the physics [s]; a whole part of the control period.
+
+    Raises:
+        InvalidDesign: a time step that does not fit, servo noise, or a control other than ``Coordinated``.
+        OutsideLimits: a gait that the robot's joints cannot follow.
+        UnknownName: a fault of a joint, or a push on a body, that does not exist.
+    """
+
+    def __init__(self, run: Run, *, timestep: float = 0.002) -> None:
+        if run.noise > 0.0 or not isinstance(run.control, Coordinated):
+            raise InvalidDesign("a live run takes no noise on its servos, and a control of type Coordinated.")
+        steps = physics_steps(timestep)
+        check_faults(run.faults, run.robot, inf)
+        check_pushes(run.pushes, run.robot, inf)
+        self.run = _whole(run)
+        self._loop = Loop([self.run], _ticks(self.run), steps, timestep, samples=1)
+        self._tick = self._beat = 0
+        self._look()
+
+    @property
+    def time(self) -> float:
+        """Since the beginning [s]."""
+        return self._tick * CONTROL_PERIOD
+
+    @property
+    def now(self) -> dict[str, np.ndarray]:
+        """What a record would hold of this instant: the variables of ``record.VARIABLES``, without run and time."""
+        return self._now
+
+    @property
+    def positions(self) -> np.ndarray:
+        """The generalised positions, as ``mujoco.MjData.qpos``."""
+        return np.array(self._loop.bench.qpos[0])
+
+    def step(self) -> None:
+        """Let one control period pass.
+
+        Raises:
+            Diverged: the physics came apart, now or before.
+        """
+        self._loop.advance(self._tick, self._command.targets)
+        if not self._loop.bench.alive[0]:
+            time, cause = float(self._loop.bench.ended[0]), self._loop.bench.cause[0]
+            raise Diverged(f"the walk came apart at {time:.2f} s: {cause}.", time=time)
+        self._tick += 1
+        self._beat += 1
+        if self._beat >= _START + _cycle(self.run):
+            self._beat -= _cycle(self.run)
+        self._look()
+
+    def walk(self, gait: Gait | None = None, control: Coordinated | None = None) -> None:
+        """Walk on in another gait or by other rules, from the same phase of the cycle.
+
+        Raises:
+            OutsideLimits: the robot's joints cannot follow the gait, or the rules cannot coordinate it.
+        """
+        share = max(self._beat - _START, 0) / _cycle(self.run)
+        run = _whole(replace(self.run, gait=gait or self.run.gait, control=control or self.run.control))
+        controller = start([run], _ticks(run))
+        if isinstance(controller, Coordinator) and isinstance(self._loop.controller, Coordinator):
+            controller.take_over(self._loop.controller)
+        self.run, self._loop.controller, self._loop.feels = run, controller, run.control.feels
+        if self._beat >= _START:
+            self._beat = _START + round(share * _cycle(run)) % _cycle(run)
+
+    def begin(self, fault: Fault) -> None:
+        """Let something break now; what was wrong with the same joint before is over.
+
+        Raises:
+            UnknownName: no such joint or sensor.
+            OutsideLimits: a joint held at an angle that it cannot reach.
+        """
+        check_faults([replace(fault, at=0.0)], self.run.robot, inf)
+        if fault.acts_on == "servo":
+            self._loop.troubles.mend(0, fault.joint)
+        self._loop.troubles.begin(0, fault)
+
+    def mend(self, joint: str) -> None:
+        """Repair a joint."""
+        self._loop.troubles.mend(0, joint)
+
+    def push(self, push: Push) -> None:
+        """Push at the push's time, which may be now.
+
+        Raises:
+            UnknownName: the robot has no such body.
+        """
+        check_pushes([push], self.run.robot, inf)
+        self._loop.troubles.push(0, push)
+
+    def tilt(self, ground: Ground) -> None:
+        """Let the ground slope as another one does; grip and relief stay."""
+        self._loop.bench.tilt(0, ground)
+
+    def _look(self) -> None:
+        """Decide what the servos are told next, and read everything."""
+        self._command = self._loop.decide(self._tick, self._beat)
+        self._loop.readings.store(0, self._command.phase, self._command.targets)
+        self._now = self._loop.readings.sample(0, 0)
+
+
+def _cycle(run: Run) -> int:
+    """Return the length of a cycle in control periods."""
+    return round(run.gait.period / CONTROL_PERIOD)
+
+
+def _ticks(run: Run) -> int:
+    """Return how many control periods a controller must know."""
+    return _START + _cycle(run) + 1
+
+
+def _whole(run: Run) -> Run:
+    """Return a run whose gait's period is a whole number of control periods, checked."""
+    period = max(1, round(run.gait.period / CONTROL_PERIOD)) * CONTROL_PERIOD
+    gait = replace(run.gait, period=period)
+    check_limits(run.robot, gait)
+    return replace(run, gait=gait)
