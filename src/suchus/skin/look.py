@@ -1,0 +1,31 @@
+"""Proportions that make it look like the animal."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Look:
+    """Proportions of the animal where the robot has none; none of them touches the physics."""
+
+    around: int = 28
+    """Points around the body, a multiple of four [-]: edges of about 10 mm on the article's robot."""
+    step: float = 0.0065
+    """Between rings along a body one metre long, longer on longer ones [m]."""
+    roundness: float = 2.3
+    """Exponent of the trunk's section [-]: crocodilians are flatter on back and belly than an ellipse."""
+    margin: float = 1.04
+    """How far the skin stands off the shapes beneath [-]."""
+    flank: float = 0.93
+    """Width of the trunk between the girdles over the mean of theirs [-]: it narrows but slightly in the animal."""
+    fin: float = 2.3
+    """Height of the tail above its axis over its radius, near the tip [-]: the animal's is a sculling blade."""
+    gape: float = 0.075
+    """How far the lower jaw hangs open [rad]: enough to see the teeth."""
+    skull: float = 0.30
+    """Where the jaw joint lies from shoulders to snout [-]; ahead of it is head, behind it neck."""
+    teeth: int = 13
+    """On each side of each jaw that shows [-]; crocodiles have 14 to 19."""
+
+
+SKIN = Look()
+"""The look of every robot on the shelf."""
