@@ -1,0 +1,251 @@
+"""A walk that somebody watches and meddles with: commands in, state out. It knows nothing of browsers."""
+
+from dataclasses import dataclass, field, replace
+from math import cos, sin
+from threading import RLock
+from typing import Any, Literal
+
+import numpy as np
+
+from suchus.control import LAWS, Coordinated, HeadingRule
+from suchus.design import Crocodile, servo_names
+from suchus.design.relief import Bumps
+from suchus.errors import Diverged, SuchusError, UnknownName
+from suchus.gaits.limbs_only import LIFTED
+from suchus.land import CONTROL_PERIOD, Ground, Limp, Live, Locked, Push, Run
+from suchus.land.arenas import BEFORE
+from suchus.motion import START, Gait, check_limits
+from suchus.viewer.history import History
+from suchus.viewer.knobs import BUMPS, DIRECTION, FORCE, LASTING, SIDE_SLOPE, SLOPE, SPEED, Knob, tuned
+
+Kind = Literal["limp", "locked"]
+Switch = Literal["spine", "tail", "coordination", "heading"]
+
+_OPEN = Coordinated(limbs=LAWS["off"], spine=None, tail=None)
+_CORRELATION = 0.06  # [m]; of the bumps, as on the shelf of arenas
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Settings:
+    """Everything that was chosen; what it makes of the walk is in ``Session``."""
+
+    gait: Gait
+    """As the sliders say."""
+    spine: bool = True
+    """Whether the trunk bends; if not, it is straight as in the article's control group."""
+    tail: bool = True
+    """Whether the tail swings on the ground; if not, it is straight and lifted."""
+    coordination: bool = False
+    """Whether the three feedback rules are on."""
+    heading: bool = False
+    """Whether the heading loop is on."""
+    uphill: float = 0.0
+    """Slope along the walk [rad]."""
+    sideways: float = 0.0
+    """Slope across the walk, left side up positive [rad]."""
+    bumps: float = 0.0
+    """Height of the bumps ahead [m]; 0 for even ground."""
+    force: float = 15.0
+    """Of the next push [N]."""
+    lasting: float = 0.2
+    """Of the next push [s]."""
+    direction: float = 1.5707963267948966
+    """Of the next push, from forward to the left [rad]."""
+    speed: float = 1.0
+    """Simulated over real time [-]."""
+    broken: tuple[tuple[str, Kind], ...] = ()
+    """Which joints are lost, and how."""
+
+    @property
+    def walked(self) -> Gait:
+        """The gait with the switches of spine and tail."""
+        gait = self.gait
+        if not self.spine:
+            gait = replace(gait, trunk_bend=0.0)
+        return gait if self.tail else replace(gait, tail_bend=0.0, tail_pitch=LIFTED)
+
+    @property
+    def control(self) -> Coordinated:
+        """The rules that are on."""
+        rules = Coordinated() if self.coordination else _OPEN
+        return replace(rules, heading=HeadingRule()) if self.heading else rules
+
+    @property
+    def ground(self) -> Ground:
+        """What it walks on."""
+        bumps = Bumps(height=self.bumps, correlation=_CORRELATION, start=BEFORE, seed=0) if self.bumps else None
+        return Ground(uphill=self.uphill, sideways=self.sideways, relief=bumps)
+
+
+_PLAIN: dict[str, Knob] = {
+    "uphill": SLOPE, "sideways": SIDE_SLOPE, "bumps": BUMPS, "force": FORCE, "lasting": LASTING,
+    "direction": DIRECTION, "speed": SPEED,
+}  # fmt: skip
+
+
+@dataclass(slots=True)
+class Instant:
+    """What is seen at one instant."""
+
+    time: float = 0.0
+    """Since the walk was begun [s]."""
+    now: dict[str, np.ndarray] = field(default_factory=dict)
+    """By the names of ``record.VARIABLES``, without run and time."""
+    forward: float = 0.0
+    """Way of the centre of mass since the first cycle began [m]."""
+    aside: float = 0.0
+    """The same to the left [m]."""
+    pushed: tuple[float, float, float] | None = None
+    """The force of a push that lasts [N]."""
+    trouble: str = ""
+    """Why the walk has ended; empty while it has not."""
+
+
+class Session:
+    """One watched walk. All methods may be called from any thread; none raises for what a person typed.
+
+    Args:
+        robot: who walks.
+        gait: how.
+        timestep: of the physics [s].
+
+    Raises:
+        OutsideLimits: the robot's joints cannot follow the gait.
+        InvalidDesign: the time step does not divide the control period.
+    """
+
+    def __init__(self, robot: Crocodile, gait: Gait, *, timestep: float = 0.005) -> None:
+        check_limits(robot, gait)
+        self.robot = robot
+        self.settings = Settings(gait=gait)
+        self.begun = 0
+        self._timestep = timestep
+        self._lock = RLock()
+        self._push: Push | None = None
+        self._begin()
+
+    def reset(self) -> None:
+        """Begin the walk anew with everything as it is set, what is broken included."""
+        with self._lock:
+            self._begin()
+
+    def advance(self, seconds: float) -> None:
+        """Let so much time pass in the simulation; what is left of a control period passes next time [s]."""
+        with self._lock:
+            if self.state.trouble:
+                return
+            self._due += seconds
+            while self._due >= CONTROL_PERIOD - 1e-9 and not self.state.trouble:
+                self._due -= CONTROL_PERIOD
+                self._step()
+
+    def tune(self, name: str, value: object) -> str:
+        """Turn a knob of the gait as far as the robot follows; return a sentence if that is not as asked."""
+        with self._lock:
+            gait, notice = tuned(self.robot, self.settings.gait, name, value)
+            return notice if gait == self.settings.gait else self._change(replace(self.settings, gait=gait)) or notice
+
+    def adopt(self, gait: Gait) -> str:
+        """Walk on in another gait; return a sentence if the robot cannot."""
+        with self._lock:
+            return self._change(replace(self.settings, gait=gait))
+
+    def switch(self, name: Switch, on: bool) -> str:
+        """Turn spine, tail, the feedback rules or the heading loop on or off; return a sentence if that cannot be."""
+        with self._lock:
+            changes: dict[str, Any] = {name: bool(on)}
+            return self._change(replace(self.settings, **changes))
+
+    def put(self, name: str, value: object) -> str:
+        """Set slope, bumps, playback speed or what the next push is; return a sentence if that is not as asked.
+
+        Args:
+            name: a field of ``Settings`` that is a number.
+            value: in the unit of its knob; anything.
+        """
+        knob = _PLAIN[name]
+        with self._lock:
+            asked, notice = knob.within(value, getattr(self.settings, name) / knob.scale)
+            changes: dict[str, Any] = {name: asked * knob.scale}
+            before, self.settings = self.settings, replace(self.settings, **changes)
+            if name == "bumps" and self.settings.bumps != before.bumps:
+                self._begin()
+            elif name in ("uphill", "sideways"):
+                self._live.tilt(self.settings.ground)
+            return notice
+
+    def lose(self, joint: str, kind: Kind) -> str:
+        """Let a joint go limp, or lock it where it is; return a sentence if there is no such joint."""
+        with self._lock:
+            if joint not in servo_names():
+                return str(UnknownName("joint", joint, servo_names()))
+            others = tuple(pair for pair in self.settings.broken if pair[0] != joint)
+            self.settings = replace(self.settings, broken=(*others, (joint, kind)))
+            self._live.begin(Limp(joint) if kind == "limp" else Locked(joint))
+            return ""
+
+    def mend(self, joint: str | None = None) -> None:
+        """Repair a joint, or all of them."""
+        with self._lock:
+            for name, _ in self.settings.broken:
+                if joint in (None, name):
+                    self._live.mend(name)
+            kept = () if joint is None else tuple(pair for pair in self.settings.broken if pair[0] != joint)
+            self.settings = replace(self.settings, broken=kept)
+
+    def push(self) -> None:
+        """Push the trunk as the settings say, now."""
+        with self._lock:
+            s = self.settings
+            force = (s.force * cos(s.direction), s.force * sin(s.direction), 0.0)
+            push = Push(force=force, at=self._live.time, duration=s.lasting)
+            self._live.push(push)
+            self._push = push
+
+    def table(self) -> dict[str, np.ndarray]:
+        """Return the last seconds, by the names of ``history.COLUMNS``."""
+        with self._lock:
+            return self._history.table()
+
+    def look(self) -> Instant:
+        """Return what is seen now."""
+        with self._lock:
+            return replace(self.state)
+
+    def _begin(self) -> None:
+        s = self.settings
+        # a locked joint holds the angle that it has as the walk begins
+        faults = tuple(Limp(joint) if kind == "limp" else Locked(joint) for joint, kind in s.broken)
+        run = Run(robot=self.robot, gait=s.walked, ground=s.ground, control=s.control, faults=faults)
+        self._live = Live(run, timestep=self._timestep)
+        self._history = History()
+        self._push, self._due = None, 0.0
+        self._origin = self._live.now["centre_of_mass"]
+        self.begun += 1
+        self.state = Instant(now=self._live.now)
+        self._history.note(0.0, self._live.now, (0.0, 0.0))
+
+    def _change(self, settings: Settings) -> str:
+        """Walk on by other settings, or keep the old ones and say why."""
+        try:
+            self._live.walk(settings.walked, settings.control)
+        except SuchusError as error:
+            return str(error)
+        self.settings = settings
+        return ""
+
+    def _step(self) -> None:
+        try:
+            self._live.step()
+        except Diverged as error:
+            self.state.trouble = f"{str(error).rstrip('.')}. Press reset to begin anew."
+            return
+        time, now = self._live.time, self._live.now
+        if time <= START + 1e-9:
+            self._origin = now["centre_of_mass"]
+        forward, aside, _ = now["centre_of_mass"] - self._origin
+        if self._push is not None and time >= self._push.at + self._push.duration:
+            self._push = None
+        pushed = self._push.force if self._push else None
+        self.state = Instant(time=time, now=now, forward=float(forward), aside=float(aside), pushed=pushed)
+        self._history.note(time, now, (float(forward), float(aside)))

@@ -1,0 +1,174 @@
+from dataclasses import replace
+from math import inf, nan
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from suchus.errors import OutsideLimits
+from suchus.gaits import GAITS
+from suchus.land import simulate
+from suchus.motion import Gait, check_limits
+from suchus.robots import ROBOTS
+from suchus.viewer import Session
+from suchus.viewer.knobs import GAIT_KNOBS, shown, tuned
+from suchus.viewer.session import _PLAIN
+
+ROBOT, CRAWL = ROBOTS["caiman"], GAITS["belly_crawl"]
+GAIT = replace(CRAWL, period=1.0)
+
+
+def walked(*, gait: Gait = GAIT, lost: str = "", seconds: float = 3.0) -> Session:
+    session = Session(ROBOT, gait)
+    if lost:
+        assert session.lose(lost, "limp") == ""
+    session.advance(seconds)
+    return session
+
+
+@pytest.fixture(scope="module")
+def sound() -> Session:
+    return walked()
+
+
+@pytest.mark.parametrize("name", GAIT_KNOBS)
+@pytest.mark.parametrize("gait", [GAITS[name] for name in GAITS], ids=list(GAITS))
+def test_both_ends_of_every_slider_leave_a_gait_that_the_robot_can_walk(gait, name):
+    for end in (GAIT_KNOBS[name].low, GAIT_KNOBS[name].high):
+        found, notice = tuned(ROBOT, gait, name, end)
+        check_limits(ROBOT, found)
+        assert notice or shown(found, name) == pytest.approx(end)
+
+
+def test_hips_too_high_for_the_legs_stop_where_they_end():
+    found, notice = tuned(ROBOT, CRAWL, "hip_height", 170.0)
+    assert 90.0 < shown(found, "hip_height") < 170.0
+    assert "cannot follow 170 mm" in notice
+    further = replace(found, hip_height=found.hip_height + 1e-4)
+    with pytest.raises(OutsideLimits):
+        check_limits(ROBOT, further)
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.sampled_from(sorted(GAIT_KNOBS)), st.one_of(st.floats(), st.text(), st.none(), st.integers()))
+def test_whatever_is_typed_the_gait_stays_one_that_can_be_walked(name, value):
+    found, notice = tuned(ROBOT, CRAWL, name, value)
+    check_limits(ROBOT, found)
+    knob = GAIT_KNOBS[name]
+    assert knob.low - 1e-9 <= shown(found, name) <= knob.high + 1e-9
+    if notice:
+        assert knob.label in notice
+
+
+@pytest.mark.parametrize(("value", "left"), [(99.0, 4.0), (-3, 0.05), ("fast", 1.0), (nan, 1.0), (inf, 1.0)])
+def test_a_wrong_speed_is_clamped_and_said(value, left):
+    session = Session(ROBOT, GAIT)
+    assert "playback speed" in session.put("speed", value)
+    assert session.settings.speed == left
+
+
+def test_every_plain_knob_is_a_field_of_the_settings():
+    session = Session(ROBOT, GAIT)
+    for name, knob in _PLAIN.items():
+        assert session.put(name, knob.high) == ""
+        assert getattr(session.settings, name) == pytest.approx(knob.high * knob.scale)
+    session.advance(0.1)
+    assert not session.look().trouble
+
+
+def test_a_watched_walk_is_the_walk_of_a_batch(sound):
+    record = simulate([sound._live.run], duration=3.0, timestep=0.005).isel(run=0)
+    way = record.centre_of_mass.sel(xyz="x")
+    assert sound.look().forward == pytest.approx(float(way[-1] - way.sel(time=1.0)), abs=1e-6)
+
+
+def test_a_limp_joint_changes_the_displacement(sound):
+    lame = walked(lost="LF_yaw")
+    assert abs(lame.look().forward - sound.look().forward) > 0.01
+
+
+def test_mirrored_commands_give_a_mirrored_walk():
+    left = walked(lost="LF_yaw", seconds=2.5).look()
+    right = walked(gait=GAIT.mirrored(), lost="RF_yaw", seconds=2.5).look()
+    assert left.forward == pytest.approx(right.forward, abs=1e-4)
+    assert left.aside == pytest.approx(-right.aside, abs=1e-4)
+
+
+def test_sessions_do_not_disturb_each_other(sound):
+    one, other = Session(ROBOT, GAIT), Session(ROBOT, GAIT)
+    for _ in range(30):
+        one.advance(0.1)
+        other.advance(0.1)
+        other.tune("stroke", 5.0)
+        other.lose("RH_knee", "locked")
+    assert one.look().forward == sound.look().forward
+    assert other.look().forward != one.look().forward
+
+
+def test_the_limbs_alone_walk_as_the_control_group_does():
+    session = Session(ROBOT, CRAWL)
+    session.switch("spine", False)
+    session.switch("tail", False)
+    assert replace(session.settings.walked, name="limbs_only") == GAITS["limbs_only"]
+    session.switch("tail", True)
+    assert replace(session.settings.walked, name="tail_drag") == GAITS["tail_drag"]
+
+
+def test_rules_that_cannot_coordinate_a_gait_are_refused_with_a_sentence():
+    session = Session(ROBOT, GAITS["high_walk"])
+    assert "diagonal" in session.switch("coordination", True)
+    assert not session.settings.coordination
+    session.advance(0.1)
+    assert not session.look().trouble
+
+
+def test_repaired_joints_are_no_longer_listed():
+    session = Session(ROBOT, GAIT)
+    session.lose("LF_yaw", "limp")
+    session.lose("LF_yaw", "locked")
+    session.lose("RH_pitch", "limp")
+    assert session.settings.broken == (("LF_yaw", "locked"), ("RH_pitch", "limp"))
+    session.mend("LF_yaw")
+    assert session.settings.broken == (("RH_pitch", "limp"),)
+    session.mend()
+    assert session.settings.broken == ()
+    assert "LF_wrist" in session.lose("LF_wrist", "limp")
+
+
+def test_a_push_lasts_as_long_as_it_says():
+    session = Session(ROBOT, GAIT)
+    session.advance(0.5)
+    session.push()
+    session.advance(0.15)
+    assert session.look().pushed == pytest.approx((0.0, 15.0, 0.0), abs=1e-9)
+    session.advance(0.1)
+    assert session.look().pushed is None
+    assert session.look().now["centre_of_mass"][1] > 0.005
+
+
+def test_a_reset_begins_the_same_walk_anew(sound):
+    session = walked(seconds=1.5)
+    session.reset()
+    assert session.look().time == 0.0
+    session.advance(3.0)
+    assert session.look().forward == sound.look().forward
+
+
+def test_a_walk_that_comes_apart_says_so_and_can_be_begun_anew(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)  # where MuJoCo writes its warnings
+    session = walked(seconds=0.3)
+    session._live._loop.bench.qvel[0, 3] = nan
+    session.advance(0.5)
+    assert "came apart at 0.3" in session.look().trouble
+    session.advance(0.5)
+    session.reset()
+    session.advance(0.2)
+    assert session.look() and not session.look().trouble
+
+
+def test_the_plots_reach_back_a_few_seconds(sound):
+    table = sound.table()
+    assert np.all(np.diff(table["time"]) > 0)
+    weight = sum(table[name][-100:].mean() for name in ("LF", "RF", "LH", "RH", "belly", "tail"))
+    assert weight == pytest.approx(ROBOT.mass * 9.81, rel=0.1)
