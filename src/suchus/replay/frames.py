@@ -1,0 +1,96 @@
+"""From a record to the frames of a replay."""
+
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from suchus.design import LEGS, Crocodile, joint_names
+from suchus.errors import IncompatibleRecord
+from suchus.skin import Poses, poses
+
+RATE = 30.0
+"""Frames kept for each second [1/s]; the player moves smoothly between them."""
+MOST = 2700
+"""Frames kept at most [-]: a minute and a half at the full rate, 1 MB; longer runs get fewer per second."""
+_NEEDED = ("position", "orientation", "joint_angle", "centre_of_mass", "foot_position", "foot_force")
+
+
+class Frames(NamedTuple):
+    """What happened, at equal steps of time."""
+
+    start: float
+    """Time of the first frame [s]."""
+    rate: float
+    """Frames in a second [1/s]."""
+    bones: Poses
+    """(frame, bone, ...)."""
+    mass: np.ndarray
+    """Centre of mass, (frame, 3) [m]."""
+    feet: np.ndarray
+    """Centres of the feet, (frame, 4, 3) [m]."""
+    forces: np.ndarray
+    """Of the ground on the feet, (frame, 4, 3) [N]."""
+
+
+def checked(record: xr.Dataset, robot: Crocodile) -> xr.Dataset:
+    """Return one run of a robot, with what a replay needs of it.
+
+    Raises:
+        IncompatibleRecord: it is no run on land, several runs, of another robot, or without a frame.
+    """
+    missing = [name for name in _NEEDED if name not in record]
+    if missing:
+        raise IncompatibleRecord(f"the record has no {', '.join(missing)}; a replay is made from a run on land.")
+    if "run" in record.dims:
+        count = record.sizes["run"]
+        if count != 1:
+            raise IncompatibleRecord(f"the record holds {count} runs; choose one, as in record.isel(run=0).")
+        record = record.isel(run=0)
+    if "robot" in record.coords and str(record.robot.item()) != robot.name:
+        raise IncompatibleRecord(
+            f"the record is of robot {record.robot.item()!r}, not of {robot.name!r}: give the robot that was recorded."
+        )
+    found, expected = [str(name) for name in record.joint.values], list(joint_names(robot))
+    if found != expected:
+        odd = sorted(set(found) ^ set(expected)) or found
+        raise IncompatibleRecord(
+            f"the record's {len(found)} joints are not the {len(expected)} of {robot.name!r}: {', '.join(odd[:4])} "
+            f"{'is' if len(odd) == 1 else 'are'} not in both; give the robot that was recorded."
+        )
+    if list(record.leg.values) != list(LEGS):
+        raise IncompatibleRecord(f"the record's legs are {', '.join(map(str, record.leg.values))}, not LF, RF, LH, RH.")
+    kept = record[list(_NEEDED)]
+    finite = [np.isfinite(kept[name]).all([d for d in kept[name].dims if d != "time"]).values for name in _NEEDED]
+    count = int(np.logical_and.accumulate(np.all(finite, axis=0)).sum())
+    if count == 0:
+        raise IncompatibleRecord("the record has no frame to show: run for longer than one sample.")
+    return kept.isel(time=slice(0, count))
+
+
+def frames(record: xr.Dataset, robot: Crocodile, rate: float | None = None) -> Frames:
+    """Return the frames of one run.
+
+    Args:
+        record: of one run, as ``checked`` returns it.
+        robot: whose it is.
+        rate: frames in a second [1/s]; by default the nearest to ``RATE`` that the samples give, fewer of a long run.
+    """
+    time = record.time.values.astype(float)
+    span = float(time[-1] - time[0])
+    if rate is None:
+        step = span / max(len(time) - 1, 1)
+        every = max(1, round(1.0 / RATE / step), int(np.ceil(len(time) / MOST))) if step > 0 else 1
+        rate = 1.0 / (every * step) if step > 0 else RATE
+    at = time[0] + np.arange(int(span * rate + 1e-6) + 1) / rate
+    nearest = np.clip(np.searchsorted(time, at - 0.5 * np.median(np.diff(time, append=time[-1] + 1))), 0, len(time) - 1)
+    kept = record.isel(time=nearest)
+    values = {name: kept[name].values.astype(float) for name in _NEEDED}
+    return Frames(
+        start=float(time[0]),
+        rate=float(rate),
+        bones=poses(robot, values["position"], values["orientation"], values["joint_angle"]),
+        mass=values["centre_of_mass"],
+        feet=values["foot_position"],
+        forces=values["foot_force"],
+    )

@@ -1,0 +1,500 @@
+"use strict";
+// A small WebGL2 player: robots as skinned meshes, what they stand on, and what carries them. World: x forward, z up.
+(() => {
+  const $ = (id) => document.getElementById(id);
+  const meta = JSON.parse($("meta").textContent);
+  const canvas = $("scene");
+  const gl = canvas.getContext("webgl2", { antialias: true, stencil: true, alpha: false });
+  if (!gl) return;
+
+  // ---- what was recorded -------------------------------------------------------------------------------------
+  const bytes = Uint8Array.from(atob($("data").textContent.trim()), (c) => c.charCodeAt(0));
+  const kinds = { int8: Int8Array, uint8: Uint8Array, int16: Int16Array, uint16: Uint16Array, float32: Float32Array };
+  const take = (ref) => new kinds[ref.kind](bytes.buffer, ref.start, ref.count);
+
+  // ---- vectors and quaternions (wxyz) --------------------------------------------------------------------------
+  const sub = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+  const add = (a, b, k = 1) => [a[0] + k * b[0], a[1] + k * b[1], a[2] + k * b[2]];
+  const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+  const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+  const unit = (a) => { const n = Math.hypot(...a) || 1; return [a[0] / n, a[1] / n, a[2] / n]; };
+  const turn = (q, v) => { const u = [q[1], q[2], q[3]], t = cross(u, v).map((c) => 2 * c);
+    return add(add(v, t, q[0]), cross(u, t)); };
+  const times = (a, b) => { // column-major 4 x 4
+    const out = new Float32Array(16);
+    for (let c = 0; c < 4; c++) for (let r = 0; r < 4; r++)
+      for (let k = 0; k < 4; k++) out[4 * c + r] += a[4 * k + r] * b[4 * c + k];
+    return out;
+  };
+
+  // ---- programs ------------------------------------------------------------------------------------------------
+  const program = (vertex, fragment) => {
+    const made = gl.createProgram();
+    for (const [kind, text] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]]) {
+      const shader = gl.createShader(kind);
+      gl.shaderSource(shader, "#version 300 es\nprecision highp float;\n" + text);
+      gl.compileShader(shader);
+      if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw new Error(gl.getShaderInfoLog(shader));
+      gl.attachShader(made, shader);
+    }
+    gl.linkProgram(made);
+    if (!gl.getProgramParameter(made, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(made));
+    const uniforms = {};
+    for (let i = 0; i < gl.getProgramParameter(made, gl.ACTIVE_UNIFORMS); i++) {
+      const name = gl.getActiveUniform(made, i).name.replace("[0]", "");
+      uniforms[name] = gl.getUniformLocation(made, name);
+    }
+    return { made, uniforms };
+  };
+  const LIGHT = unit([-0.35, -0.45, 1.0]);
+  const lit = `
+    uniform vec3 uEye; uniform vec4 uTint; uniform float uNight;
+    vec3 lit(vec3 colour, vec3 n, vec3 at) {
+      vec3 L = normalize(vec3(${LIGHT})), V = normalize(uEye - at), H = normalize(L + V);
+      float sky = 0.5 + 0.5 * n.z;
+      vec3 c = colour * (mix(vec3(0.30, 0.28, 0.25), vec3(0.55, 0.58, 0.62), sky) + 0.72 * max(dot(n, L), 0.0));
+      c += 0.16 * pow(max(dot(n, H), 0.0), 28.0) + 0.10 * pow(1.0 - max(dot(n, V), 0.0), 3.0) * sky;
+      return c * mix(1.0, 0.86, uNight);
+    }`;
+  const skinned = program(`
+    layout(location=0) in vec3 aAt; layout(location=1) in vec3 aNormal; layout(location=2) in vec3 aColour;
+    layout(location=3) in uvec2 aBone; layout(location=4) in float aWeight;
+    uniform mat4 uView; uniform float uScale; uniform vec4 uTurn[${meta.bones}]; uniform vec4 uShift[${meta.bones}];
+    uniform vec4 uFlat; out vec3 vAt, vNormal, vColour;
+    vec3 turn(vec4 q, vec3 v) { vec3 t = 2.0 * cross(q.yzw, v); return v + q.x * t + cross(q.yzw, t); }
+    void main() {
+      vec3 p = aAt * uScale;
+      uint a = aBone.x, b = aBone.y;
+      vAt = mix(turn(uTurn[b], p) + uShift[b].xyz, turn(uTurn[a], p) + uShift[a].xyz, aWeight);
+      vNormal = mix(turn(uTurn[b], aNormal), turn(uTurn[a], aNormal), aWeight);
+      if (uFlat.w > 0.5) vAt = vec3(vAt.xy - uFlat.xy * vAt.z, 0.0006);
+      vColour = aColour;
+      gl_Position = uView * vec4(vAt, 1.0);
+    }`, `
+    in vec3 vAt, vNormal, vColour; uniform vec4 uFlat; out vec4 colour; ${lit}
+    void main() {
+      if (uFlat.w > 0.5) { colour = vec4(0.0, 0.0, 0.0, uFlat.z); return; }
+      colour = vec4(lit(mix(vColour, uTint.rgb, uTint.a), normalize(vNormal), vAt), uFlat.z);
+    }`);
+  const plain = program(`
+    layout(location=0) in vec3 aAt; layout(location=1) in vec3 aNormal; layout(location=2) in vec4 aColour;
+    uniform mat4 uView; out vec3 vAt, vNormal; out vec4 vColour;
+    void main() { vAt = aAt; vNormal = aNormal; vColour = aColour; gl_Position = uView * vec4(aAt, 1.0); }`, `
+    in vec3 vAt, vNormal; in vec4 vColour; out vec4 colour; ${lit}
+    void main() {
+      bool flat_ = dot(vNormal, vNormal) < 0.01;
+      colour = vec4(flat_ ? vColour.rgb : lit(vColour.rgb, normalize(vNormal), vAt), vColour.a);
+    }`);
+  const floor = program(`
+    layout(location=0) in vec3 aAt; uniform mat4 uView; uniform vec3 uEye; out vec2 vAt;
+    void main() { vAt = aAt.xy * 14.0 + uEye.xy; gl_Position = uView * vec4(vAt, 0.0, 1.0); }`, `
+    in vec2 vAt; uniform vec3 uEye, uBack, uLine; out vec4 colour;
+    float line(vec2 at, float each, float wide) {
+      vec2 from = abs(fract(at / each - 0.5) - 0.5) * each, w = fwidth(at);
+      vec2 hit = 1.0 - smoothstep(vec2(wide * 0.5), vec2(wide * 0.5) + 1.2 * w, from);
+      return max(hit.x, hit.y) * clamp(each / (6.0 * max(w.x, w.y)), 0.0, 1.0);
+    }
+    void main() {
+      float far = length(vAt - uEye.xy), fade = 1.0 - smoothstep(2.0, 9.0, far);
+      float k = max(0.22 * line(vAt, 0.1, 0.0006), 0.70 * line(vAt, 1.0, 0.002));
+      colour = vec4(mix(uBack, uLine, k * fade), 1.0);
+    }`);
+
+  const buffer = (data, target = gl.ARRAY_BUFFER) => {
+    const made = gl.createBuffer();
+    gl.bindBuffer(target, made);
+    gl.bufferData(target, data, gl.STATIC_DRAW);
+    return made;
+  };
+  const attribute = (at, size, kind, normalised) => {
+    gl.enableVertexAttribArray(at);
+    gl.vertexAttribPointer(at, size, kind, normalised, 0, 0);
+  };
+  const skins = meta.skins.map((skin) => {
+    const array = gl.createVertexArray();
+    gl.bindVertexArray(array);
+    buffer(take(skin.vertices)); attribute(0, 3, gl.SHORT, true);
+    buffer(take(skin.normals)); attribute(1, 3, gl.BYTE, true);
+    buffer(take(skin.colours)); attribute(2, 3, gl.UNSIGNED_BYTE, true);
+    buffer(take(skin.bones)); gl.enableVertexAttribArray(3); gl.vertexAttribIPointer(3, 2, gl.UNSIGNED_BYTE, 0, 0);
+    buffer(take(skin.weights)); attribute(4, 1, gl.UNSIGNED_BYTE, true);
+    buffer(take(skin.faces), gl.ELEMENT_ARRAY_BUFFER);
+    return { array, count: skin.faces.count, scale: skin.scale, rest: skin.rest };
+  });
+  const quad = gl.createVertexArray();
+  gl.bindVertexArray(quad);
+  buffer(new Float32Array([-1, -1, 0, 1, -1, 0, -1, 1, 0, 1, 1, 0])); attribute(0, 3, gl.FLOAT, false);
+
+  // triangles that are made anew for each picture: position, normal, colour
+  const dynamic = gl.createVertexArray();
+  gl.bindVertexArray(dynamic);
+  const dynamicBuffer = buffer(new Float32Array(0));
+  const lay = () => { for (const [at, size, start] of [[0, 3, 0], [1, 3, 12], [2, 4, 24]]) {
+    gl.enableVertexAttribArray(at); gl.vertexAttribPointer(at, size, gl.FLOAT, false, 40, start); } };
+  lay();
+  let relief = null;
+  if (meta.relief.length) {
+    const made = [];
+    for (const piece of meta.relief) solid(piece, made);
+    relief = { array: gl.createVertexArray(), count: made.length / 10 };
+    gl.bindVertexArray(relief.array);
+    buffer(new Float32Array(made)); lay();
+  }
+  gl.bindVertexArray(null);
+
+  function push(to, a, b, c, colour, n) {
+    n = n || unit(cross(sub(b, a), sub(c, a)));
+    for (const p of [a, b, c]) to.push(...p, ...n, ...colour);
+  }
+  function solid(piece, to) { // a grid of heights, or a block
+    const colour = [...meta.colours.relief, 1];
+    if (piece.heights) {
+      const z = take(piece.heights), [rows, columns] = piece.shape;
+      const at = (i, j) => [piece.x0 + j * piece.cell, piece.y0 + i * piece.cell, piece.scale * z[i * columns + j] + 0.0004];
+      for (let i = 0; i + 1 < rows; i++) for (let j = 0; j + 1 < columns; j++) {
+        const [a, b, c, d] = [at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)];
+        if (Math.max(a[2], b[2], c[2], d[2]) - Math.min(a[2], b[2], c[2], d[2]) < 1e-5) continue;
+        push(to, a, b, c, colour); push(to, a, c, d, colour);
+      }
+      return;
+    }
+    const [x0, x1, y0, y1, z] = piece.block;
+    const corner = (i) => [i & 1 ? x1 : x0, i & 2 ? y1 : y0, i & 4 ? z : 0];
+    for (const [a, b, c, d] of [[4, 5, 7, 6], [0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3]]) {
+      push(to, corner(a), corner(b), corner(c), colour); push(to, corner(a), corner(c), corner(d), colour);
+    }
+  }
+
+  // ---- state ---------------------------------------------------------------------------------------------------
+  const calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
+  const asked = new URLSearchParams(location.hash.slice(1));
+  const state = { time: 0, playing: !calm && !asked.has("t"), speed: 1, forces: true, support: true, tracks: true,
+    follow: true, compare: meta.actors.length > 1 ? "beside" : "hidden", dark: matchMedia("(prefers-color-scheme: dark)").matches };
+  const camera = { azimuth: -0.95, elevation: 0.36, distance: 2.2 * meta.length, target: [0, 0, 0.06], moved: [0, 0, 0] };
+  let dirty = true, last = 0, shown = null;
+
+  const actors = meta.actors.map((actor) => {
+    const read = Object.fromEntries(Object.entries(actor.arrays).map(([name, ref]) => [name, take(ref)]));
+    return { ...actor, ...read, skin: skins[actor.skin], side: 0 };
+  });
+
+  function frame(actor, time) { // bones, feet, forces and centre of mass between two samples
+    const f = Math.min(Math.max((time - meta.start) * meta.rate, 0), actor.frames - 1);
+    const i = Math.min(Math.floor(f), Math.max(actor.frames - 2, 0)), s = actor.frames > 1 ? f - i : 0, n = actor.skin.rest.length;
+    const j = Math.min(i + 1, actor.frames - 1);
+    const turns = new Float32Array(4 * meta.bones), shifts = new Float32Array(4 * meta.bones);
+    for (let b = 0; b < n; b++) {
+      const u = 4 * (i * n + b), v = 4 * (j * n + b), q = [0, 0, 0, 0];
+      let same = 0;
+      for (let k = 0; k < 4; k++) same += actor.turns[u + k] * actor.turns[v + k];
+      for (let k = 0; k < 4; k++) q[k] = (1 - s) * actor.turns[u + k] + s * Math.sign(same || 1) * actor.turns[v + k];
+      const size = Math.hypot(...q) || 1;
+      for (let k = 0; k < 4; k++) q[k] /= size;
+      const at = [0, 1, 2].map((k) => actor.origin[k] + actor.reach *
+        ((1 - s) * actor.places[3 * (i * n + b) + k] + s * actor.places[3 * (j * n + b) + k]) / 32767);
+      at[1] += actor.side;
+      turns.set(q, 4 * b);
+      shifts.set(sub(at, turn(q, actor.skin.rest[b])), 4 * b);
+    }
+    const mix = (array, size, k, o) => (1 - s) * array[size * i + k] + s * array[size * j + k] + o;
+    const three = (array, size, k, o = 0) => [mix(array, size, k, 0), mix(array, size, k + 1, o), mix(array, size, k + 2, 0)];
+    return { turns, shifts, mass: three(actor.mass, 3, 0, actor.side),
+      feet: [0, 3, 6, 9].map((k) => three(actor.feet, 12, k, actor.side)),
+      forces: [0, 3, 6, 9].map((k) => three(actor.forces, 12, k)) };
+  }
+
+  // ---- shapes made anew ----------------------------------------------------------------------------------------
+  function arrow(to, from, along, colour) {
+    const long = Math.hypot(...along);
+    if (long < 0.006) return;
+    const d = unit(along), u = unit(cross(d, Math.abs(d[2]) > 0.9 ? [1, 0, 0] : [0, 0, 1])), v = cross(d, u);
+    const head = Math.min(0.028, 0.5 * long), neck = long - head, n = 10;
+    const ring = (k, r, at) => { const a = 2 * Math.PI * k / n;
+      return add(add(add(from, d, at), u, r * Math.cos(a)), v, r * Math.sin(a)); };
+    const away = (k) => { const a = 2 * Math.PI * k / n; return add(u.map((c) => c * Math.cos(a)), v, Math.sin(a)); };
+    const facet = (a, b, c, na, nb, nc) => to.push(...a, ...na, ...colour, ...b, ...nb, ...colour, ...c, ...nc, ...colour);
+    for (let k = 0; k < n; k++) {
+      const a = ring(k, 0.0045, 0), b = ring(k + 1, 0.0045, 0), c = ring(k + 1, 0.0045, neck), e = ring(k, 0.0045, neck);
+      facet(a, b, c, away(k), away(k + 1), away(k + 1)); facet(a, c, e, away(k), away(k + 1), away(k));
+      push(to, ring(k, 0.0115, neck), ring(k + 1, 0.0115, neck), add(from, d, long), colour);
+    }
+  }
+  function disc(to, at, radius, colour, n = 20) {
+    for (let k = 0; k < n; k++) {
+      const p = (i) => [at[0] + radius * Math.cos(2 * Math.PI * i / n), at[1] + radius * Math.sin(2 * Math.PI * i / n), at[2]];
+      push(to, at, p(k), p(k + 1), colour, [0, 0, 0]);
+    }
+  }
+  function ball(to, at, radius, colour) {
+    const p = (i, j) => { const a = Math.PI * i / 8, b = 2 * Math.PI * j / 12;
+      return [Math.sin(a) * Math.cos(b), Math.sin(a) * Math.sin(b), Math.cos(a)]; };
+    for (let i = 0; i < 8; i++) for (let j = 0; j < 12; j++)
+      for (const t of [[p(i, j), p(i + 1, j), p(i + 1, j + 1)], [p(i, j), p(i + 1, j + 1), p(i, j + 1)]])
+        for (const n of t) to.push(...add(at, n, radius), ...n, ...colour);
+  }
+  function ribbon(to, a, b, wide, colour) { // flat on the ground
+    const d = sub(b, a), size = Math.hypot(d[0], d[1]);
+    if (size < 1e-6) return;
+    const n = [-d[1] / size * wide / 2, d[0] / size * wide / 2, 0];
+    push(to, add(a, n, -1), add(b, n, -1), add(b, n), colour, [0, 0, 0]);
+    push(to, add(a, n, -1), add(b, n), add(a, n), colour, [0, 0, 0]);
+  }
+  function hull(points) { // Andrew's monotone chain
+    const p = [...points].sort((a, b) => a[0] - b[0] || a[1] - b[1]);
+    const left = (a, b, c) => (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) > 0;
+    const half = (list) => list.reduce((kept, c) => {
+      while (kept.length > 1 && !left(kept[kept.length - 2], kept[kept.length - 1], c)) kept.pop();
+      return [...kept, c]; }, []).slice(0, -1);
+    return p.length < 3 ? p : [...half(p), ...half(p.reverse())];
+  }
+  const under = (foot, radius, lift) => [foot[0], foot[1], Math.max(foot[2] - radius, 0) + lift];
+
+  function tracks(to, actor, faint) {
+    const until = Math.min(Math.floor((state.time - meta.start) * meta.rate), actor.frames - 1), step = 2;
+    for (let leg = 0; leg < 4; leg++) {
+      const colour = [...meta.colours.legs[leg], faint ? 0.35 : 0.85];
+      const at = (i) => { const k = 12 * i + 3 * leg;
+        return under([actor.feet[k], actor.feet[k + 1] + actor.side, actor.feet[k + 2]], actor.radii[leg], 0.0011); };
+      for (let i = 0; i + step <= until; i += step) {
+        const stands = actor.forces[12 * i + 3 * leg + 2] > meta.loaded;
+        const a = at(i), b = at(i + step);
+        if (!stands) a[2] = b[2] = 0.0011;
+        ribbon(to, a, b, stands ? 0.008 : 0.0025, colour);
+      }
+    }
+    const mass = (i) => [actor.mass[3 * i], actor.mass[3 * i + 1] + actor.side, 0.0012];
+    for (let i = 0; i + step <= until; i += step) ribbon(to, mass(i), mass(i + step), 0.003, [...meta.colours.mass, faint ? 0.3 : 0.8]);
+  }
+  function support(to, actor, now) {
+    const standing = now.feet.map((foot, leg) => [under(foot, actor.radii[leg], 0.0014), now.forces[leg][2] > meta.loaded])
+      .filter(([, stands]) => stands).map(([at]) => at);
+    const corners = hull(standing), colour = meta.colours.support;
+    for (let i = 1; i + 1 < corners.length; i++) push(to, corners[0], corners[i], corners[i + 1], [...colour, 0.40], [0, 0, 0]);
+    for (let i = 0; i < corners.length; i++) ribbon(to, corners[i], corners[(i + 1) % corners.length], 0.005, [...colour, 0.95]);
+    const shadow = [now.mass[0], now.mass[1], 0.0018];
+    disc(to, shadow, 0.012, [...meta.colours.mass, 1]);
+    disc(to, add(shadow, [0, 0, 0.0002]), 0.007, [1, 1, 1, 1]);
+  }
+
+  // ---- drawing -------------------------------------------------------------------------------------------------
+  function view() {
+    const { azimuth, elevation, distance } = camera, e = Math.cos(elevation);
+    const target = add(camera.target, camera.moved);
+    const away = [e * Math.cos(azimuth), e * Math.sin(azimuth), Math.sin(elevation)];
+    const eye = add(target, away, distance);
+    const right = unit(cross([0, 0, 1], away)), up = cross(away, right);
+    const look = new Float32Array([right[0], up[0], away[0], 0, right[1], up[1], away[1], 0, right[2], up[2], away[2], 0,
+      -dot(right, eye), -dot(up, eye), -dot(away, eye), 1]);
+    const aspect = canvas.width / canvas.height, f = 1 / Math.tan(0.30 * Math.max(1, 0.75 / aspect)), near = 0.02, far = 60;
+    const lens = new Float32Array([f / aspect, 0, 0, 0, 0, f, 0, 0, 0, 0, (far + near) / (near - far), -1, 0, 0, 2 * far * near / (near - far), 0]);
+    return { matrix: times(lens, look), eye, right, up };
+  }
+  function usePlain(seen) {
+    gl.useProgram(plain.made);
+    gl.uniformMatrix4fv(plain.uniforms.uView, false, seen.matrix);
+    gl.uniform3fv(plain.uniforms.uEye, seen.eye);
+    gl.uniform1f(plain.uniforms.uNight, +state.dark);
+  }
+  function triangles(made, seen, write) {
+    if (!made.length) return;
+    usePlain(seen);
+    gl.bindVertexArray(dynamic);
+    gl.bindBuffer(gl.ARRAY_BUFFER, dynamicBuffer);
+    gl.bufferData(gl.ARRAY_BUFFER, new Float32Array(made), gl.DYNAMIC_DRAW);
+    gl.depthMask(write);
+    gl.drawArrays(gl.TRIANGLES, 0, made.length / 10);
+    gl.depthMask(true);
+  }
+  function robot(actor, now, seen, { flat = 0, alpha = 1, tint = [0, 0, 0, 0] } = {}) {
+    const u = skinned.uniforms;
+    gl.useProgram(skinned.made);
+    gl.uniformMatrix4fv(u.uView, false, seen.matrix);
+    gl.uniform3fv(u.uEye, seen.eye);
+    gl.uniform1f(u.uNight, +state.dark);
+    gl.uniform1f(u.uScale, actor.skin.scale);
+    gl.uniform4fv(u.uTurn, now.turns);
+    gl.uniform4fv(u.uShift, now.shifts);
+    gl.uniform4fv(u.uTint, tint);
+    gl.uniform4f(u.uFlat, LIGHT[0] / LIGHT[2], LIGHT[1] / LIGHT[2], alpha, flat);
+    gl.bindVertexArray(actor.skin.array);
+    gl.drawElements(gl.TRIANGLES, actor.skin.count, gl.UNSIGNED_SHORT, 0);
+  }
+  function shadow(actor, now, seen, alpha) {
+    gl.enable(gl.STENCIL_TEST);
+    gl.clear(gl.STENCIL_BUFFER_BIT);
+    gl.stencilFunc(gl.EQUAL, 0, 255);
+    gl.stencilOp(gl.KEEP, gl.KEEP, gl.INCR);
+    gl.depthMask(false);
+    robot(actor, now, seen, { flat: 1, alpha });
+    gl.depthMask(true);
+    gl.disable(gl.STENCIL_TEST);
+  }
+  function through(actor, now, seen) { // a ghost: its nearest surface only, half transparent
+    gl.colorMask(false, false, false, false);
+    robot(actor, now, seen);
+    gl.colorMask(true, true, true, true);
+    gl.depthFunc(gl.EQUAL);
+    robot(actor, now, seen, { alpha: 0.5, tint: [...meta.colours.ghost, 0.6] });
+    gl.depthFunc(gl.LESS);
+  }
+
+  function draw() {
+    const wide = Math.round(canvas.clientWidth * Math.min(devicePixelRatio, 2)), high = Math.round(canvas.clientHeight * Math.min(devicePixelRatio, 2));
+    if (canvas.width !== wide || canvas.height !== high) { canvas.width = wide; canvas.height = high; }
+    const seenActors = state.compare === "hidden" ? actors.slice(0, 1) : actors;
+    actors.forEach((actor, i) => { actor.side = i && state.compare === "beside" ? meta.aside : 0; });
+    const now = seenActors.map((actor) => frame(actor, state.time));
+    if (state.follow) {
+      const sum = now.reduce((at, one) => add(at, one.mass, 1 / now.length), [0, 0, 0]);
+      camera.target = [sum[0], sum[1], Math.max(0.06, 0.8 * sum[2])];
+    }
+    const seen = view(), back = state.dark ? [0.085, 0.098, 0.106] : [0.925, 0.925, 0.905];
+    gl.viewport(0, 0, canvas.width, canvas.height);
+    gl.clearColor(...back, 1);
+    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT | gl.STENCIL_BUFFER_BIT);
+    gl.enable(gl.DEPTH_TEST);
+    gl.enable(gl.BLEND);
+    gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
+    gl.useProgram(floor.made);
+    gl.uniformMatrix4fv(floor.uniforms.uView, false, seen.matrix);
+    gl.uniform3fv(floor.uniforms.uEye, seen.eye);
+    gl.uniform3fv(floor.uniforms.uBack, back);
+    gl.uniform3fv(floor.uniforms.uLine, state.dark ? [0.42, 0.46, 0.48] : [0.60, 0.60, 0.57]);
+    gl.bindVertexArray(quad);
+    gl.drawArrays(gl.TRIANGLE_STRIP, 0, 4);
+    if (relief) {
+      usePlain(seen);
+      gl.bindVertexArray(relief.array);
+      gl.drawArrays(gl.TRIANGLES, 0, relief.count);
+    } else seenActors.forEach((actor, i) => shadow(actor, now[i], seen, (state.dark ? 0.45 : 0.22) / (i + 1)));
+    const flat = [], solids = [];
+    seenActors.forEach((actor, i) => {
+      if (state.tracks) tracks(flat, actor, i > 0);
+      if (state.support && !i) support(flat, actor, now[i]);
+      if (state.forces) now[i].forces.forEach((force, leg) =>
+        arrow(solids, under(now[i].feet[leg], actor.radii[leg], 0), force.map((f) => f * meta.metres_per_newton), [...meta.colours.force, 1]));
+      if (state.support && !i) ball(solids, now[i].mass, 0.009, [...meta.colours.mass, 1]);
+    });
+    gl.enable(gl.POLYGON_OFFSET_FILL);
+    gl.polygonOffset(-1, -4);
+    triangles(flat, seen, false);
+    gl.disable(gl.POLYGON_OFFSET_FILL);
+    robot(actors[0], now[0], seen);
+    triangles(solids, seen, true);
+    if (seenActors.length > 1) through(actors[1], now[1], seen);
+    if (state.support) { gl.disable(gl.DEPTH_TEST); const mark = []; hoop(mark, now[0].mass, seen); triangles(mark, seen, false); gl.enable(gl.DEPTH_TEST); }
+    labels(seen);
+    readout(now);
+    shown = now;
+  }
+  function hoop(to, at, seen) { // the centre of mass is inside the body: a ring seen through it
+    for (let k = 0; k < 24; k++) {
+      const p = (i, r) => add(add(at, seen.right, r * Math.cos(Math.PI * i / 12)), seen.up, r * Math.sin(Math.PI * i / 12));
+      push(to, p(k, 0.008), p(k + 1, 0.008), p(k + 1, 0.012), [...meta.colours.mass, 0.95], [0, 0, 0]);
+      push(to, p(k, 0.008), p(k + 1, 0.012), p(k, 0.012), [...meta.colours.mass, 0.95], [0, 0, 0]);
+    }
+  }
+
+  // ---- words on the picture --------------------------------------------------------------------------------------
+  const scale = $("scale");
+  const marks = Array.from({ length: meta.marks[1] - meta.marks[0] + 1 }, (_, i) => {
+    const mark = document.createElement("span");
+    mark.textContent = `${meta.marks[0] + i} m`.replace("-", "−");
+    scale.append(mark);
+    return { mark, at: [meta.marks[0] + i, meta.mark_side, 0] };
+  });
+  const names = actors.map((actor, i) => { const mark = document.createElement("span"); mark.className = i ? "name ghost" : "name";
+    mark.textContent = actors.length > 1 ? actor.label : ""; scale.append(mark); return mark; });
+  function put(mark, at, seen, visible = true) {
+    const m = seen.matrix, w = m[3] * at[0] + m[7] * at[1] + m[11] * at[2] + m[15];
+    const x = (m[0] * at[0] + m[4] * at[1] + m[8] * at[2] + m[12]) / w, y = (m[1] * at[0] + m[5] * at[1] + m[9] * at[2] + m[13]) / w;
+    mark.style.display = visible && w > 0.05 && Math.abs(x) < 1 && Math.abs(y) < 1 ? "" : "none";
+    mark.style.transform = `translate(${(x + 1) / 2 * canvas.clientWidth}px, ${(1 - y) / 2 * canvas.clientHeight}px) translate(-50%, -50%)`;
+  }
+  function labels(seen) {
+    for (const { mark, at } of marks) put(mark, at, seen);
+    actors.forEach((actor, i) => put(names[i], add(frame(actor, state.time).mass, [0, 0, 0.16]), seen, i === 0 || state.compare !== "hidden"));
+  }
+  const metres = (v) => `${v.toFixed(2).replace("-", "−")} m`;
+  function readout(now) {
+    $("clock").textContent = `${state.time.toFixed(2)} s`;
+    $("time").value = state.time;
+    $("time").setAttribute("aria-valuetext", `${state.time.toFixed(1)} seconds`);
+    const way = (i) => now[i].mass[0] - actors[i].mass[0];
+    $("told").textContent = now.map((_, i) => `${actors.length > 1 ? actors[i].label + ": " : ""}${metres(way(i))} forward, ` +
+      `height ${metres(now[i].mass[2])}`).join("  ·  ");
+  }
+
+  // ---- controls ------------------------------------------------------------------------------------------------
+  const end = meta.start + (Math.max(...actors.map((actor) => actor.frames)) - 1) / meta.rate;
+  const redraw = () => { if (!dirty) { dirty = true; requestAnimationFrame(tick); } };
+  const seek = (time) => { state.time = Math.min(Math.max(time, meta.start), end); redraw(); };
+  const play = (on) => { state.playing = on; last = 0; if (on && state.time >= end - 1e-6) state.time = meta.start;
+    $("play").textContent = on ? "Pause" : "Play"; redraw(); };
+  const views = { corner: [-0.95, 0.36], left: [Math.PI / 2, 0.06], right: [-Math.PI / 2, 0.06], front: [0, 0.12], above: [-Math.PI / 2, 1.55] };
+  const look = (name) => { [camera.azimuth, camera.elevation] = views[name]; camera.moved = [0, 0, 0]; camera.distance = fitted(); redraw(); };
+  const fitted = () => meta.length * (state.compare === "beside" ? 2.0 : 1.6) * Math.max(1, 1.15 * canvas.clientHeight / canvas.clientWidth);
+  const theme = (dark) => { state.dark = dark; document.documentElement.dataset.theme = dark ? "dark" : "light";
+    $("theme").textContent = dark ? "Light" : "Dark"; redraw(); };
+  $("time").min = meta.start; $("time").max = end; $("time").step = 1 / meta.rate;
+  $("time").addEventListener("input", (e) => { if (state.playing) play(false); seek(+e.target.value); });
+  $("play").addEventListener("click", () => play(!state.playing));
+  $("speed").addEventListener("change", (e) => { state.speed = +e.target.value; });
+  $("view").addEventListener("change", (e) => look(e.target.value));
+  $("theme").addEventListener("click", () => theme(!state.dark));
+  for (const name of ["forces", "support", "tracks", "follow"])
+    $(name).addEventListener("change", (e) => { state[name] = e.target.checked; redraw(); });
+  if ($("compare")) $("compare").addEventListener("change", (e) => { state.compare = e.target.value; camera.distance = fitted(); redraw(); });
+  const orbit = (dx, dy) => { camera.azimuth -= 0.006 * dx;
+    camera.elevation = Math.min(Math.max(camera.elevation + 0.006 * dy, -0.12), 1.56); redraw(); };
+  const pan = (dx, dy) => { const s = view(), k = 0.62 * camera.distance / canvas.clientHeight;
+    camera.moved = add(add(camera.moved, s.right, -k * dx), s.up, k * dy); redraw(); };
+  const zoom = (by) => { camera.distance = Math.min(Math.max(camera.distance * by, 0.25 * meta.length), 12 * meta.length); redraw(); };
+  const fingers = new Map();
+  canvas.addEventListener("pointerdown", (e) => { canvas.setPointerCapture(e.pointerId); fingers.set(e.pointerId, [e.clientX, e.clientY]); });
+  canvas.addEventListener("pointermove", (e) => {
+    const before = fingers.get(e.pointerId);
+    if (!before) return;
+    const dx = e.clientX - before[0], dy = e.clientY - before[1];
+    if (fingers.size === 1) (e.shiftKey || e.buttons & 6 ? pan : orbit)(dx, dy);
+    else { // two fingers: their distance zooms, their middle pans
+      const other = [...fingers].find(([id]) => id !== e.pointerId)[1];
+      const far = (p) => Math.hypot(p[0] - other[0], p[1] - other[1]) || 1;
+      zoom(far(before) / far([e.clientX, e.clientY])); pan(dx / 2, dy / 2);
+    }
+    fingers.set(e.pointerId, [e.clientX, e.clientY]);
+  });
+  for (const name of ["pointerup", "pointercancel"]) canvas.addEventListener(name, (e) => fingers.delete(e.pointerId));
+  canvas.addEventListener("wheel", (e) => { e.preventDefault(); zoom(Math.exp(0.0012 * e.deltaY)); }, { passive: false });
+  canvas.addEventListener("contextmenu", (e) => e.preventDefault());
+  canvas.addEventListener("keydown", (e) => {
+    const acts = { ArrowLeft: () => orbit(18, 0), ArrowRight: () => orbit(-18, 0), ArrowUp: () => orbit(0, 18), ArrowDown: () => orbit(0, -18),
+      "+": () => zoom(0.88), "=": () => zoom(0.88), "-": () => zoom(1.14), ",": () => seek(state.time - 1 / meta.rate),
+      ".": () => seek(state.time + 1 / meta.rate), " ": () => play(!state.playing), Home: () => seek(meta.start), End: () => seek(end) };
+    const act = acts[e.key];
+    if (act && !e.ctrlKey && !e.metaKey && !e.altKey) { e.preventDefault(); act(); }
+  });
+  new ResizeObserver(redraw).observe(canvas);
+  canvas.addEventListener("webglcontextlost", () => { document.body.classList.remove("alive"); state.playing = false; });
+
+  function tick(stamp) {
+    dirty = false;
+    if (state.playing) {
+      if (last) state.time += state.speed * Math.min((stamp - last) / 1000, 0.25);
+      last = stamp;
+      if (state.time > end) state.time = meta.start;
+    }
+    draw();
+    if (state.playing) redraw();
+  }
+  document.body.classList.add("alive");
+  state.time = meta.start;
+  theme(state.dark);
+  if (asked.has("view") && views[asked.get("view")]) { $("view").value = asked.get("view"); look(asked.get("view")); }
+  camera.distance = fitted();
+  if (asked.has("t")) seek(+asked.get("t"));
+  $("play").textContent = state.playing ? "Pause" : "Play";
+  window.suchus = { state, camera, seek, play, mass: () => shown && shown.map((one) => one.mass) };
+  dirty = true;
+  requestAnimationFrame(tick);
+})();

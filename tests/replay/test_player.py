@@ -1,0 +1,123 @@
+"""The page in a real browser, from a file, offline."""
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from suchus.replay import replay, save
+
+playwright = pytest.importorskip("playwright.sync_api")
+BROWSER = shutil.which("chromium") or shutil.which("chromium-browser")
+FLAGS = [
+    "--no-sandbox",
+    "--use-gl=angle",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+]
+pytestmark = pytest.mark.skipif(BROWSER is None, reason="no chromium is installed: the replay is not tried in one")
+
+
+@pytest.fixture(scope="module")
+def browser():
+    with playwright.sync_playwright() as started:
+        opened = started.chromium.launch(executable_path=BROWSER, args=FLAGS)
+        yield opened
+        opened.close()
+
+
+@pytest.fixture(scope="module")
+def address(robot, crawled, limped, tmp_path_factory):
+    page = replay(crawled, robot, ghost=limped, labels=("intact", "one limp leg"), title="A limp leg")
+    return save(page, tmp_path_factory.mktemp("replay") / "run.html").as_uri()
+
+
+@pytest.fixture(scope="module")
+def page(browser, address):
+    """The page at rest at the start, with everything that it complained of or asked for."""
+    shown = browser.new_page(viewport={"width": 640, "height": 480})
+    shown.complaints, shown.asked = [], []
+    shown.on("console", lambda message: shown.complaints.append(message.text))
+    shown.on("pageerror", lambda error: shown.complaints.append(str(error)))
+    shown.on("request", lambda request: shown.asked.append(request.url))
+    shown.goto(address + "#t=0")
+    until(shown, "window.suchus && window.suchus.mass() !== null")
+    yield shown
+    shown.close()
+
+
+def until(shown, condition):
+    for _ in range(200):
+        if shown.evaluate(f"!!({condition})"):
+            return
+        shown.wait_for_timeout(50)
+    raise AssertionError(f"{condition} never came true")
+
+
+def test_it_plays_from_a_file_without_network_or_complaint(page, address):
+    start = page.evaluate("window.suchus.state.time")
+    page.get_by_role("button", name="Play").click()
+    until(page, f"window.suchus.state.time > {start} + 0.05")
+    page.get_by_role("button", name="Pause").click()
+    assert not page.evaluate("window.suchus.state.playing")
+    assert page.complaints == []
+    assert page.asked == [address]
+
+
+def test_the_time_slider_moves_the_robot(page, crawled):
+    page.evaluate("window.suchus.seek(0)")
+    until(page, "window.suchus.mass()[0][0] < 0.2")
+    before, picture = page.evaluate("window.suchus.mass()[0]"), page.locator("main").screenshot()
+    page.get_by_role("slider", name="Time").fill("2.4")
+    until(page, "window.suchus.state.time > 2.3 && window.suchus.mass()[0][0] > 0")
+    after = page.evaluate("window.suchus.mass()[0]")
+    expected = crawled.centre_of_mass.interp(time=2.4).values
+    assert after != before
+    assert after == pytest.approx(expected, abs=1e-3)
+    assert page.locator("main").screenshot() != picture
+
+
+def test_controls_are_named_and_the_keyboard_works(page):
+    for role, name in (
+        ("combobox", "Speed"),
+        ("combobox", "View"),
+        ("combobox", "Compare"),
+        ("checkbox", "foot forces"),
+    ):
+        assert page.get_by_role(role, name=name).count() == 1
+    assert "Three-dimensional replay" in page.locator("canvas").get_attribute("aria-label")
+    page.locator("canvas").focus()
+    azimuth = page.evaluate("window.suchus.camera.azimuth")
+    page.keyboard.press("ArrowLeft")
+    assert page.evaluate("window.suchus.camera.azimuth") != azimuth
+    page.keyboard.press("End")
+    assert page.evaluate("window.suchus.state.time") == pytest.approx(2.5, abs=0.1)
+
+
+def test_the_second_run_can_be_hidden_and_the_view_changed(page):
+    until(page, "window.suchus.mass().length === 2")
+    page.get_by_role("combobox", name="Compare").select_option("hidden")
+    until(page, "window.suchus.mass().length === 1")
+    page.get_by_role("combobox", name="View").select_option("above")
+    assert page.evaluate("window.suchus.camera.elevation") > 1.5
+    page.get_by_role("button", name="Switch between light and dark").click()
+    assert page.evaluate("document.documentElement.dataset.theme") == "dark"
+
+
+def test_without_webgl_there_is_a_picture(browser, address):
+    shown = browser.new_page()
+    shown.add_init_script("HTMLCanvasElement.prototype.getContext = () => null")
+    shown.goto(address)
+    assert shown.locator("#still svg").is_visible()
+    assert not shown.locator("#play").is_visible()
+    shown.close()
+
+
+def test_the_player_names_no_address():
+    folder = Path(replay.__code__.co_filename).parent / "templates"
+    assert not any("//" in text and "http" in text for text in (f.read_text() for f in folder.iterdir()))

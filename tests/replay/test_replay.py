@@ -1,0 +1,144 @@
+"""The page holds what was recorded, is small, and refuses what it cannot show."""
+
+import base64
+import json
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from suchus.design import LEGS
+from suchus.design.relief import Bumps, Step, Stone, field
+from suchus.errors import IncompatibleRecord
+from suchus.replay import replay, save
+from suchus.replay.frames import MOST, frames
+from suchus.skin import poses, skin
+
+
+def opened(page):
+    """Return what the page tells the player, and its bytes."""
+    meta = re.search(r'<script id="meta"[^>]*>(.*?)</script>', page, re.S)
+    data = re.search(r'<script id="data"[^>]*>(.*?)</script>', page, re.S)
+    return json.loads(meta[1]), base64.b64decode(data[1])
+
+
+def read(raw, ref):
+    return np.frombuffer(raw, ref["kind"], ref["count"], ref["start"])
+
+
+def test_positions_are_those_of_the_bodies_to_a_tenth_of_a_millimetre(robot, crawled):
+    meta, raw = opened(replay(crawled, robot))
+    actor = meta["actors"][0]
+    places = read(raw, actor["arrays"]["places"]).reshape(actor["frames"], -1, 3)
+    shown = actor["origin"] + places / 32767 * actor["reach"]
+    for i in (0, actor["frames"] // 2, actor["frames"] - 1):
+        now = crawled.sel(time=meta["start"] + i / meta["rate"], method="nearest")
+        at = poses(robot, now.position.values, now.orientation.values, now.joint_angle.values)
+        assert np.allclose(at.positions, shown[i], atol=1e-4)
+    turns = read(raw, actor["arrays"]["turns"]).reshape(actor["frames"], -1, 4) / 32767
+    assert np.allclose(np.linalg.norm(turns, axis=-1), 1.0, atol=1e-4)
+
+
+def test_feet_of_the_bones_are_the_recorded_feet(robot, crawled):
+    """The forward kinematics of the bones agrees with MuJoCo's sites."""
+    shown = frames(crawled, robot)
+    for i, leg in enumerate(LEGS):
+        bone = skin(robot).bones.index(f"{leg}_tibia")
+        links, side = robot.leg(leg), 1.0 if leg.startswith("L") else -1.0
+        q = shown.bones.quaternions[:, bone]
+        w, x, y, z = q.T
+        out = np.stack([2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)], axis=-1)
+        foot = shown.bones.positions[:, bone] + side * links.tibia * out
+        assert np.allclose(shown.feet[:, i], foot, atol=1e-6)
+
+
+def test_skin_comes_through(robot, crawled):
+    meta, raw = opened(replay(crawled, robot))
+    told, surface = meta["skins"][0], skin(robot)
+    vertices = read(raw, told["vertices"]).reshape(-1, 3) / 32767 * told["scale"]
+    assert np.allclose(surface.vertices, vertices, atol=5e-5)
+    assert np.array_equal(surface.faces.ravel(), read(raw, told["faces"]))
+    assert np.allclose(surface.weights[:, 0], read(raw, told["weights"]) / 255, atol=0.5 / 255 + 1e-9)
+
+
+def test_the_page_is_small_alone_and_the_same_twice(robot, crawled, limped):
+    one = replay(crawled, robot, ghost=limped, labels=("intact", "limp"))
+    assert len(one.encode()) < 1_000_000
+    assert one == replay(crawled, robot, ghost=limped, labels=("intact", "limp"))
+    addresses = set(re.findall(r"https?://([^/\"]*)", one))
+    assert addresses <= {"www.w3.org", "purl.org", "creativecommons.org"}  # names of SVG's vocabularies, never asked
+    assert "<title>caiman: belly crawl</title>" in one
+
+
+def test_words_cannot_break_the_page(robot, crawled):
+    page = replay(crawled, robot, ghost=crawled, labels=("</script><b>", "x"), title="<i>&", caption='"><script>')
+    assert "<i>" not in page
+    assert "</script><b>" not in page
+    assert opened(page)[0]["actors"][0]["label"] == "</script><b>"
+
+
+def test_frames_are_thirty_a_second_and_fewer_of_long_runs(robot, crawled):
+    assert 25 < frames(crawled, robot).rate < 40
+    long = crawled.isel(time=np.resize(np.arange(crawled.sizes["time"]), 3 * MOST * 4))
+    long = long.assign_coords(time=0.01 * np.arange(long.sizes["time"]))
+    assert len(frames(long, robot).mass) <= MOST
+    assert len(replay(long, robot).encode()) < 5_000_000
+
+
+def test_one_frame_is_a_still(robot, crawled):
+    meta, _ = opened(replay(crawled.isel(time=slice(0, 1)), robot))
+    assert meta["actors"][0]["frames"] == 1
+
+
+def test_a_run_that_came_apart_ends_there(robot, crawled):
+    broken = crawled.copy(deep=True)
+    broken.position[100:] = np.nan
+    assert len(frames_of(replay(broken, robot))) < len(frames_of(replay(crawled, robot)))
+
+
+def frames_of(page):
+    meta, raw = opened(page)
+    return read(raw, meta["actors"][0]["arrays"]["mass"]).reshape(-1, 3)
+
+
+@pytest.mark.parametrize(
+    "relief",
+    [
+        Step(at=0.6, height=0.02),
+        Stone(at=0.5, aside=0.1, height=0.03, length=0.1, width=0.2),
+        Bumps(height=0.03, correlation=0.06, start=0.3, seed=1),
+    ],
+    ids=lambda relief: type(relief).__name__,
+)
+def test_relief_is_told(robot, crawled, relief):
+    meta, raw = opened(replay(crawled, robot, relief=relief))
+    (piece,) = meta["relief"]
+    if isinstance(relief, Bumps):
+        heights = piece["scale"] * read(raw, piece["heights"]).reshape(piece["shape"])
+        assert np.allclose(field(relief), heights, atol=1e-5)
+    else:
+        assert piece["block"][4] == relief.height
+
+
+def test_what_cannot_be_shown_is_told_in_one_sentence(robot, crawled, long_tail):
+    several = crawled.expand_dims(run=[0, 1])
+    nothing = crawled.copy(deep=True)
+    nothing.position[:] = np.nan
+    for record, who, words in (
+        (crawled.drop_vars("joint_angle"), robot, "joint_angle"),
+        (several, robot, "2 runs"),
+        (crawled, long_tail, "long_tail"),
+        (crawled, replace(long_tail, name="caiman"), "joints"),
+        (crawled.isel(time=slice(0, 0)), robot, "no frame"),
+        (nothing, robot, "no frame"),
+    ):
+        with pytest.raises(IncompatibleRecord, match=words) as told:
+            replay(record, who)
+        assert "\n" not in str(told.value)
+
+
+def test_saving_leaves_nothing_half_written(robot, crawled, tmp_path):
+    page = replay(crawled, robot)
+    assert save(page, tmp_path / "run.html").read_text(encoding="utf-8") == page
+    assert [file.name for file in tmp_path.iterdir()] == ["run.html"]
