@@ -66,6 +66,8 @@ class Outcome:
     """The experiment's own fields, as plain values."""
     tables: Mapping[str, str] = field(default_factory=dict)
     """Further text files to stand beside the figures, by file name."""
+    films: Mapping[str, bytes] = field(default_factory=dict)
+    """Moving pictures to stand beside the figures: a GIF by file name; see ``figures.film``."""
     seconds: float = 0.0
     """How long the run took [s]."""
 

@@ -2,31 +2,55 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any, NamedTuple
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from suchus.design import Crocodile
 from suchus.design.checks import Checks
-from suchus.experiment import Experiment, Measure, Outcome, Progress, judge, silent, staged, stopwatch
-from suchus.figures.swimming import draw_forces, draw_free, draw_pressure
-from suchus.motion import Swim
+from suchus.experiment import Experiment, Measure, Outcome, Progress, Verdict, judge, silent, staged, stopwatch
+from suchus.figures.swimming import draw_forces, draw_free, draw_quarters, draw_sides, film_pressure, film_vorticity
+from suchus.kinematics.wave import READINGS
 from suchus.robots import ROBOTS
-from suchus.water import Fit, Tether, fit, free_swim, printed_wave, swim, tether
+from suchus.water import (
+    ExactWave,
+    Fit,
+    Motion,
+    Quarters,
+    Swum,
+    Tether,
+    attempts,
+    convex_higher,
+    crossings,
+    efficiency,
+    fit,
+    free_swim,
+    level,
+    printed_wave,
+    swim,
+    tether,
+    towed,
+)
 
-_CONVEX, _SYMMETRIC = 0.0, 0.15  # a pressure difference counts from zero on; mirrored forces agree within 15 %
-_ARMS = ("trunk and tail", "trunk only", "tail only", "as printed")
+_ARMS = ("trunk and tail", "trunk only", "tail only", "as printed", "exact wave", "exact wave as printed")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Swimming(Experiment):
     """The robot's own outline in a two-dimensional flow, its joints fitted to (20).
 
-    Held, as the article's Fig. 17: the snout stays and the last of some cycles is measured. ``pressure_difference``
-    is the mean pressure along the convex side of the tail less that along the concave side; which is which follows
-    from the bend between the tail's root and its tip. Free: from rest, in a grid that travels along; the speed is the
-    mean of the last cycle. Everything is per metre of depth.
+    Held, as the article's Fig. 17: the snout stays and the last of some cycles is measured. ``pressure_difference`` is
+    the mean pressure along the convex side of the tail less that along the concave side; which side is convex follows
+    from the bend between the tail's root and its tip. The difference falls if its size at T/2 is below that at T/4; it
+    moves by ``pressure_moves`` tail lengths towards the tip, the place being the mean along the tail weighted with the
+    size of the difference. The thrust is symmetric if the forces at T/4 and 3T/4, left and right swapped, differ by
+    less than 15 % of the greater part of the force (``thrust_asymmetry``). Free: from rest, in a grid that travels
+    along; the speed is the mean of the last cycle, ``efficiency`` the power that towing the straight body at that speed
+    takes over the power of the joints. An S-shaped track crosses its mean line at least three times in two cycles.
+    Trunk, tail, and the wave that the midline follows exactly are compared after ``arm_cycles``. Other readings of
+    (20) are held in a thicker water, at ``readings_reynolds``. Everything is per metre of depth.
     """
 
     title = "How does it swim?"
@@ -41,9 +65,11 @@ class Swimming(Experiment):
     )
     decides = (
         "The tail. It alone swims faster than trunk and tail together, and the trunk alone hardly at all. Running the "
-        "wave as printed, from tail to head, costs a third of the speed but does not turn the body round, as drag "
-        "along the body alone would have it: the tail sheds its wake behind it either way. The Reynolds number is that "
-        "of the flow literature's eel, and the flow is a slice of unlimited depth: forces exceed a round body's."
+        "wave as printed, from tail to head, does not turn the body round, as drag along the body alone would have it: "
+        "the growing swing of the tail sheds its wake behind it either way. A body that followed the printed wave "
+        "exactly would hardly move; with its few joints, which make most of the wave a flapping of the tail, the robot "
+        "still goes head first. The Reynolds number is that of the flow literature's eel, and the flow is a slice of "
+        "unlimited depth: forces exceed a round body's."
     )
 
     robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
@@ -55,151 +81,204 @@ class Swimming(Experiment):
     reynolds: float = 7000.0
     """Frequency times length squared over viscosity [-]; the robot's own would be 1e6, beyond any affordable grid."""
     cells: int = 96
-    """Cells per body length [-]."""
+    """Cells per body length of the held body [-]."""
     coarse_cells: int = 64
-    """The same where only a comparison is asked [-]."""
+    """The same of free bodies [-]."""
     cycles: int = 3
     """Of the held body; the last is measured [-]."""
     free_cycles: int = 8
     """Of the free body; the last is measured [-]."""
-    waves: tuple[float, ...] = (2 / 3, 1.3)
-    """Further waves per body whose speed is measured [-]; more than 1.4 ask the trunk for more than it has."""
+    arm_cycles: int = 6
+    """After which trunk, tail and exact wave are compared [-]."""
+    readings: tuple[str, ...] = ("A", "C", "F", "H", "K")
+    """Further readings of (20) whose thrust is measured [-]; the joints cannot make the others."""
+    readings_reynolds: float = 1000.0
+    """Reynolds number of these [-]; their tails are up to four times as fast and would need a finer grid."""
+    readings_cells: int = 40
+    """Cells per body length of these [-]."""
+    frames: int = 20
+    """Of the films, over one cycle [-]."""
+    keep: str = ""
+    """Folder for what is finished of an interrupted run, from which it goes on; empty keeps nothing."""
 
     def __post_init__(self) -> None:
         with Checks("swimming", self) as check:
             check.number("frequency", 0.01, 20.0, "Hz")
             check.number("reynolds", 10.0, 2e4, "")
-            check.whole("cells", 24, 1024)
-            check.whole("coarse_cells", 24, 1024)
-            check.whole("cycles", 2, 100)
-            check.whole("free_cycles", 2, 100)
+            check.number("readings_reynolds", 10.0, 2e4, "")
+            for name in ("cells", "coarse_cells", "readings_cells"):
+                check.whole(name, 32, 1024)
+            check.whole("frames", 1, 200)
+            for name in ("cycles", "free_cycles", "arm_cycles"):
+                check.whole(name, 2, 100)
 
     def quick(self) -> "Swimming":
         """A coarse grid, a thick water, few cycles."""
-        return replace(self, cells=32, coarse_cells=32, cycles=2, free_cycles=2, reynolds=1000.0, waves=(1.3,))
+        return replace(
+            self, cells=32, coarse_cells=32, cycles=2, free_cycles=2, arm_cycles=2, reynolds=1000.0, readings=("H",),
+            readings_cells=32, frames=4,
+        )  # fmt: skip
 
     def run(self, progress: Progress = silent) -> Outcome:
         """Swim."""
         with stopwatch() as seconds:
-            ours, printed = (self._fit(sign=sign) for sign in (-1, 1))
-            held = self._held(ours, self.cells, staged(progress, "held", 0.0, 0.3))
-            back = self._held(printed, self.coarse_cells, staged(progress, "as printed", 0.3, 0.4))
-            free = self._free(ours.swim, staged(progress, "free", 0.4, 0.55))
-            arms = self._arms(ours.swim, printed.swim, free, staged(progress, "trunk and tail", 0.55, 0.85))
-            waves = self._waves(staged(progress, "wavelengths", 0.85, 1.0))
+            ours, printed = (self._fit(sign) for sign in (-1, 1))
+            held = self._held(ours, self.cells, staged(progress, "held", 0.0, 0.15))
+            back = self._held(printed, self.coarse_cells, staged(progress, "as printed", 0.15, 0.2))
+            free = self._free("trunk and tail", ours.swim, staged(progress, "free", 0.2, 0.4))
+            arms = self._arms(ours, printed, free, staged(progress, "trunk and tail apart", 0.4, 0.9))
+            readings, table = self._readings(staged(progress, "readings of (20)", 0.9, 0.95))
+            drag = self._drag(float(free.speed[-1]), staged(progress, "towed", 0.95, 1.0))
             models = swim(self.robot, ours.swim)
             record = xr.merge(
-                [_prefixed(held, "held"), _prefixed(back, "printed"), _prefixed(free, "free"), arms, waves],
+                [
+                    _prefixed(held, "held"),
+                    _prefixed(back[["thrust", "aside", "power"]], "printed"),
+                    _prefixed(free, "free"),
+                    arms,
+                    readings,
+                ],
                 join="exact",
             )
             record["model_speed"] = models.speed
+            record["towed_drag"] = ((), drag, {"units": "N/m"})
             record.attrs["misfit"] = ours.misfit
+            progress("films", 1.0)
+            films = {"swimming_vorticity.gif": film_vorticity(record), "swimming_pressure.gif": film_pressure(record)}
+            self._forget()
             return Outcome(
                 experiment=self.name(),
-                measures=self._measures(record),
-                verdicts=self._verdicts(record),
+                measures=self._measures(held, back, free, record),
+                verdicts=self._verdicts(held, free, arms),
                 record=record,
                 settings=self.settings(),
+                tables={"readings.md": table},
+                films=films,
                 seconds=seconds(),
             )
 
-    @property
-    def _viscosity(self) -> float:
-        return self.frequency * self.robot.length**2 / self.reynolds
+    def _setting(self, cells: int, cycles: int, reynolds: float | None = None) -> Tether:
+        viscosity = self.frequency * self.robot.length**2 / (reynolds or self.reynolds)
+        return Tether(cells=cells, viscosity=viscosity, cycles=cycles, frames=self.frames)
 
-    def _fit(self, *, sign: int = -1, waves: float = 1.0) -> Fit:
-        wave = printed_wave(self.robot, self.reading, frequency=self.frequency, sign=sign, waves_per_body=waves)
+    def _fit(self, sign: int) -> Fit:
+        wave = printed_wave(self.robot, self.reading, frequency=self.frequency, sign=sign)
         return fit(self.robot, wave, name=f"(20), reading {self.reading}")
 
+    def _kept(self, name: str) -> Path | None:
+        return Path(self.keep) / f"{name.replace(' ', '_')}.npz" if self.keep else None
+
+    def _forget(self) -> None:
+        """Remove what was kept: everything is finished."""
+        for path in Path(self.keep).glob("*.npz*") if self.keep else ():
+            path.unlink()
+
     def _held(self, fitted: Fit, cells: int, progress: Callable[[float], None]) -> xr.Dataset:
-        held = Tether(cells=cells, viscosity=self._viscosity, cycles=self.cycles)
-        return tether(self.robot, fitted.swim, held, turn=fitted.head, progress=progress)
+        checkpoint, setting = self._kept(f"held at {cells}"), self._setting(cells, self.cycles)
+        return tether(
+            self.robot, fitted.swim, setting, turn=fitted.head, checkpoint=checkpoint, progress=progress
+        )  # fmt: skip
 
-    def _free(self, motion: Swim, progress: Callable[[float], None]) -> xr.Dataset:
-        setting = Tether(cells=self.coarse_cells, viscosity=self._viscosity, cycles=self.free_cycles)
-        return free_swim(self.robot, motion, setting, progress=progress)
+    def _free(self, arm: str, motion: Motion, progress: Callable[[float], None], cycles: int = 0) -> xr.Dataset:
+        setting = self._setting(self.coarse_cells, cycles or self.free_cycles)
+        return free_swim(self.robot, motion, setting, checkpoint=self._kept(f"free {arm}"), progress=progress)
 
-    def _arms(self, motion: Swim, printed: Swim, both: xr.Dataset, progress: Callable[[float], None]) -> xr.Dataset:
-        speeds = [both.speed.values]
-        for i, some in enumerate((motion.trunk_only(), motion.tail_only(), printed)):
-            speeds.append(self._free(some, _part(progress, i, 3)).speed.values)
-        data = xr.Dataset({"arm_speed": (("arm", "cycle"), np.array(speeds), {"units": "m/s"})})
+    def _arms(self, ours: Fit, printed: Fit, both: xr.Dataset, progress: Callable[[float], None]) -> xr.Dataset:
+        exact = [
+            ExactWave(name=name, wave=printed_wave(self.robot, self.reading, frequency=self.frequency, sign=sign))
+            for name, sign in zip(_ARMS[4:], (-1, 1), strict=True)
+        ]
+        motions: tuple[Motion, ...] = (ours.swim.trunk_only(), ours.swim.tail_only(), printed.swim, *exact)
+        speeds = np.full((len(_ARMS), self.free_cycles), np.nan)
+        speeds[0] = both.speed
+        for i, motion in enumerate(motions):
+            cycles = self.free_cycles if _ARMS[i + 1] == "as printed" else self.arm_cycles
+            swum = self._free(_ARMS[i + 1], motion, _part(progress, i, len(motions)), cycles)
+            speeds[i + 1, :cycles] = swum.speed.values[: self.free_cycles]
+        data = xr.Dataset({"arm_speed": (("arm", "cycle"), speeds, {"units": "m/s"})})
         return data.assign_coords(arm=list(_ARMS), cycle=np.arange(1, self.free_cycles + 1))
 
-    def _waves(self, progress: Callable[[float], None]) -> xr.Dataset:
-        speeds, misfits = [], []
-        for i, waves in enumerate(self.waves):
-            fitted = self._fit(waves=waves)
-            speeds.append(float(self._free(fitted.swim, _part(progress, i, len(self.waves))).speed[-1]))
-            misfits.append(fitted.misfit)
-        data = xr.Dataset(
-            {
-                "speed_by_waves": ("waves", speeds, {"units": "m/s"}),
-                "misfit_by_waves": ("waves", misfits, {"units": "1"}),
-            },
-            coords={"waves": list(self.waves)},
-        )
-        data.waves.attrs["units"] = "1"
-        return data
+    def _readings(self, progress: Callable[[float], None]) -> tuple[xr.Dataset, str]:
+        """Return the mean thrust of further readings, and a table of all of them."""
+        tried = {one.letter: one for one in attempts(self.robot, frequency=self.frequency)}
+        setting, thrust = self._setting(self.readings_cells, self.cycles, self.readings_reynolds), []
+        for i, letter in enumerate(self.readings):
+            fitted, part = tried[letter].fitted, _part(progress, i, len(self.readings))
+            swum = None if fitted is None else tether(self.robot, fitted.swim, setting, turn=fitted.head, progress=part)
+            thrust.append(float("nan") if swum is None else float(swum.thrust.mean()))
+        lines = ["| reading of (20) | units | misfit | joints | thrust |", "|---|---|---|---|---|"]
+        for letter, one in tried.items():
+            misfit = "" if one.fitted is None else f"{100 * one.fitted.misfit:.1f} %"
+            joints = one.refusal or READINGS[letter].verdict
+            at = self.readings.index(letter) if letter in self.readings else None
+            force = "" if at is None else f"{thrust[at]:.1f} N/m at Re {self.readings_reynolds:.0f}"
+            lines.append(f"| {letter} | {READINGS[letter].meaning} | {misfit} | {joints} | {force} |")
+        data = xr.Dataset({"reading_thrust": ("reading", thrust, {"units": "N/m"})})
+        return data.assign_coords(reading=list(self.readings)), "\n".join(lines) + "\n"
 
-    def _measures(self, record: xr.Dataset) -> Mapping[str, Measure]:
-        length, speed = self.robot.length, float(record.free_speed[-1])
-        tip = float(np.ptp(_level(record.free_tail_y.values)))
-        arms = record.arm_speed.isel(cycle=-1)
-        measures = {
+    def _drag(self, speed: float, progress: Callable[[float], None]) -> float:
+        progress(0.0)
+        return towed(self.robot, max(abs(speed), 0.02 * self.robot.length), self._setting(self.coarse_cells, 1))
+
+    def _measures(
+        self, held: xr.Dataset, back: xr.Dataset, free: xr.Dataset, record: xr.Dataset
+    ) -> Mapping[str, Measure]:
+        swum, quarters = Swum.of(free, self.frequency), Quarters.of(held)
+        found = {
             "misfit": Measure(float(record.attrs["misfit"]), "-"),
-            "thrust_mean_head_to_tail": Measure(float(record.held_thrust.mean()), "N/m"),
-            "thrust_mean_as_printed": Measure(float(record.printed_thrust.mean()), "N/m"),
-            "convex_higher_share": Measure(_convex_higher(record), "-"),
-            "power_held": Measure(float(record.held_power.mean()), "W/m"),
-            "force_noise": Measure(float(record.held_noise), "-"),
-            "thin_share": Measure(float(record.held_thin), "-"),
-            "speed_free": Measure(speed, "m/s"),
-            "speed_free_lengths": Measure(speed / length, "1/s"),
-            "speed_free_gain_last_cycle": Measure(float(record.free_speed[-1] / record.free_speed[-2] - 1), "-"),
-            "slip": Measure(speed / float(record.free_wave_speed), "-"),
-            "strouhal": Measure(self.frequency * tip / speed, "-"),
-            "cost_of_transport": Measure(float(record.free_power[-1]) / (float(record.free_weight) * speed), "-"),
-            "head_yaw": Measure(float(np.ptp(record.free_heading.values)) / 2, "rad"),
+            f"thrust_mean_{self.reading}": Measure(float(held.thrust.mean()), "N/m"),
+            "thrust_mean_as_printed": Measure(float(back.thrust.mean()), "N/m"),
+            **{f"thrust_mean_{r}": Measure(float(record.reading_thrust.sel(reading=r)), "N/m") for r in self.readings},
+            "convex_higher_share": Measure(convex_higher(held), "-"),
+            "pressure_moves": Measure(quarters.moves, "-"),
+            "thrust_asymmetry": Measure(quarters.asymmetry, "-"),
+            "power_held": Measure(float(held.power.mean()), "W/m"),
+            "force_noise": Measure(float(held.noise), "-"),
+            "thin_share": Measure(float(held["thin"]), "-"),
+            "speed_free": Measure(swum.speed, "m/s"),
+            "speed_free_lengths": Measure(swum.speed / self.robot.length, "1/s"),
+            "speed_free_gain_last_cycle": Measure(swum.gain, "-"),
+            "slip": Measure(swum.slip, "-"),
+            "strouhal": Measure(swum.strouhal, "-"),
+            "efficiency": Measure(efficiency(float(record.towed_drag), swum.speed, float(free.power[-1])), "-"),
+            "cost_of_transport": Measure(swum.cost_of_transport, "-"),
+            "head_yaw": Measure(swum.head_yaw, "rad"),
         }
-        for arm in _ARMS:
-            measures[f"speed_{arm.replace(' ', '_')}"] = Measure(float(arms.sel(arm=arm)), "m/s")
-        for i, waves in enumerate(self.waves):
-            measures[f"speed_waves_{waves:.2f}".replace(".", "_")] = Measure(float(record.speed_by_waves[i]), "m/s")
+        arms = _compared(record, self.arm_cycles)
+        found |= {f"speed_{arm.replace(' ', '_')}": Measure(float(arms.sel(arm=arm)), "m/s") for arm in _ARMS}
         for model in record.model.values:
-            measures[f"speed_{model}"] = Measure(float(record.model_speed.sel(model=model)), "m/s")
-        for joint in record.joint.values:
-            peak = float(abs(record.held_joint_torque.sel(joint=joint)).max())
-            measures[f"joint_torque_peak_{joint}"] = Measure(peak, "N m/m")
-        for i, instant in enumerate(("1", "2", "3", "4")):
-            measures[f"pressure_difference_{instant}_quarter"] = Measure(float(record.held_difference[i]), "Pa")
-        return measures
+            found[f"speed_{model}"] = Measure(float(record.model_speed.sel(model=model)), "m/s")
+        for joint in held.joint.values:
+            peak = float(abs(held.joint_torque.sel(joint=joint)).max())
+            found[f"joint_torque_peak_{joint}"] = Measure(peak, "N m/m")
+        for i in range(4):
+            found[f"pressure_difference_{i + 1}_quarter"] = Measure(quarters.difference[i], "Pa")
+        return found
 
-    def _verdicts(self, record: xr.Dataset) -> tuple[Any, ...]:
-        said = _Quarters.of(record)
-        track = _level(record.free_snout_y.values)
-        crossings = int(np.sum(np.diff(np.sign(track)) != 0))
-        arms = record.arm_speed.isel(cycle=-1)
+    def _verdicts(self, held: xr.Dataset, free: xr.Dataset, arms: xr.Dataset) -> tuple[Verdict, ...]:
+        said, crossed, speeds = Quarters.of(held), crossings(free), _compared(arms, self.arm_cycles)
+        both, trunk, tail = (float(speeds.sel(arm=arm)) for arm in _ARMS[:3])
         return (
             judge(
                 "swim_pressure_convex",
                 said.difference[0],
                 "Mean pressure along the convex side of the tail less that along the concave side, at T/4 of (20); the "
-                f"convex side has the higher one in {100 * _convex_higher(record):.0f} % of the cycle.",
-                holds=said.difference[0] > _CONVEX,
+                f"convex side has the higher one in {100 * convex_higher(held):.0f} % of the cycle.",
+                holds=said.convex,
             ),
             judge(
                 "swim_diagonal_force",
                 said.thrust[0],
                 f"At T/4 the force is {said.thrust[0]:.1f} N/m forward and {said.aside[0]:.1f} N/m to the side; "
                 "diagonal is where neither is below a tenth of the other.",
-                holds=said.thrust[0] > 0.1 * abs(said.aside[0]) and abs(said.aside[0]) > 0.1 * said.thrust[0],
+                holds=said.diagonal,
             ),
             judge(
                 "swim_pressure_falls",
                 said.difference[1] - said.difference[0],
-                "Size of the pressure difference at T/2 against that at T/4.",
-                holds=abs(said.difference[1]) < abs(said.difference[0]),
+                f"Size of the pressure difference at T/2 against that at T/4: {abs(said.difference[1]):.0f} against "
+                f"{abs(said.difference[0]):.0f} Pa. Its place moves by {said.moves:+.2f} tail lengths to the tip.",
+                holds=said.falls,
             ),
             judge(
                 "swim_thrust_symmetric",
@@ -210,71 +289,44 @@ class Swimming(Experiment):
             ),
             judge(
                 "swim_s_shape",
-                float(np.ptp(track)),
-                f"In the last two cycles the snout crosses its own mean line {crossings} times.",
-                holds=crossings >= 3,
+                float(np.ptp(level(free.snout_y.values))),
+                f"In the last two cycles the snout crosses its own mean line {crossed} times.",
+                holds=crossed >= 3,
             ),
             judge(
                 "swim_tail_thrust",
-                float(arms.sel(arm=_ARMS[2]) / arms.sel(arm=_ARMS[0])),
-                f"With the limbs folded, trunk and tail together reach {float(arms[0]):.2f} m/s, the trunk alone "
-                f"{float(arms[1]):.2f} and the tail alone {float(arms[2]):.2f} m/s.",
-                holds=float(arms[0]) > 0 and float(arms[2]) > float(arms[1]),
+                tail / both,
+                f"With the limbs folded, trunk and tail together reach {both:.2f} m/s in {self.arm_cycles} cycles, the "
+                f"trunk alone {trunk:.2f} and the tail alone {tail:.2f} m/s.",
+                holds=both > 0 and tail > trunk,
             ),
         )
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
-        """Draw the pressure, the forces, the free swim."""
+        """Draw the fields, the two sides of the tail, the forces, the free swim."""
         record = outcome.record
         return {
-            "swimming_pressure": draw_pressure(record),
+            "swimming_pressure": draw_quarters(record),
+            "swimming_sides": draw_sides(record),
             "swimming_forces": draw_forces(record),
             "swimming_free": draw_free(record),
         }
-
-
-def _level(track: np.ndarray) -> np.ndarray:
-    """Return a track less its mean line."""
-    count = np.arange(track.size)
-    return np.asarray(track - np.polyval(np.polyfit(count, track, 1), count))
-
-
-def _convex_higher(record: xr.Dataset) -> float:
-    return float((record.held_difference_over_cycle > 0).mean())
 
 
 def _part(progress: Callable[[float], None], number: int, count: int) -> Callable[[float], None]:
     return lambda share: progress((number + share) / count)
 
 
-class _Quarters(NamedTuple):
-    """What Fig. 17 shows at T/4, T/2, 3T/4 and T."""
-
-    difference: list[float]
-    thrust: list[float]
-    aside: list[float]
-
-    @classmethod
-    def of(cls, record: xr.Dataset) -> "_Quarters":
-        quarters = [(i + 1) / 4 for i in range(4)]
-        thrust, aside = (record[f"held_{name}"].interp(held_phase=quarters).values for name in ("thrust", "aside"))
-        return cls(record.held_difference.values.tolist(), thrust.tolist(), aside.tolist())
-
-    @property
-    def mirrored(self) -> bool:
-        size = max(abs(self.thrust[0]), abs(self.aside[0]))
-        return (
-            abs(self.thrust[0] - self.thrust[2]) < _SYMMETRIC * size
-            and abs(self.aside[0] + self.aside[2]) < _SYMMETRIC * size
-        )
+def _compared(record: xr.Dataset, cycle: int) -> xr.DataArray:
+    """Return the speed of each arm in the cycle in which they are compared."""
+    return record.arm_speed.sel(cycle=min(cycle, int(record.cycle[-1])))
 
 
 def _prefixed(record: xr.Dataset, name: str) -> xr.Dataset:
-    kept = {"joint", "instant"} if name == "held" else {"joint"}
-    if name == "printed":
-        record = record[["thrust", "aside", "power"]].drop_vars(["joint", "instant"], errors="ignore")
-    names = {str(old): f"{name}_{old}" for old in record.variables if str(old) not in kept}
-    return record.rename(names | {str(d): f"{name}_{d}" for d in record.dims if str(d) not in record.variables})
+    """Return a record whose variables and dimensions carry the name of the swim."""
+    record = record.drop_vars([str(c) for c in record.coords if str(c) == "cycle"])
+    names = {str(old): f"{name}_{old}" for old in {*record.variables, *record.dims} if old not in ("joint", "cycle")}
+    return record.rename(names)
 
 
 experiment = Swimming()

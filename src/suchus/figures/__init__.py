@@ -1,6 +1,7 @@
 """From a record to a picture: every figure is drawn from what was recorded and nothing else."""
 
 from suchus.figures.drawing import dimension_drawing
+from suchus.figures.film import film, film_caption
 from suchus.figures.style import (
     COLOURS,
     DIVERGING,
@@ -26,6 +27,8 @@ __all__ = [
     "caption",
     "captioned",
     "dimension_drawing",
+    "film",
+    "film_caption",
     "new",
     "panels",
     "save",

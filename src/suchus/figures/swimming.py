@@ -1,46 +1,93 @@
-"""Swimming: the pressure around the held body, forces over a cycle, the free swim."""
+"""Swimming: the fields around the held body, forces over a cycle, the free swim, and its films."""
 
-import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Polygon
 
-from suchus.figures.style import COLOURS, DIVERGING, captioned, panels, styled
+from suchus.figures.fields import (
+    PRESSURE,
+    VORTICITY,
+    draw_body,
+    draw_field,
+    draw_streamlines,
+    move_body,
+    smooth,
+    span,
+)
+from suchus.figures.film import film
+from suchus.figures.style import COLOURS, captioned, panels, styled
 
-_SKIN, _EDGE = "#C9DCCB", "#2F4737"
 _QUARTERS = ("T/4", "T/2", "3T/4", "T")
+_FILM_DPI = 68
+_FILM_SECONDS = 2.4
 
 
-def draw_pressure(record: xr.Dataset) -> Figure:
-    """Draw the pressure around the held body at the four quarters of a cycle, as the article's Fig. 17.
+def draw_quarters(record: xr.Dataset) -> Figure:
+    """Draw pressure, vorticity and streamlines around the held body at the four quarters of a cycle, as Fig. 17.
 
     Args:
         record: of the experiment ``swimming``.
     """
-    x, y = record.held_x.values, record.held_y.values
-    pressure = record.held_pressure.values
-    limit = float(np.quantile(np.abs(pressure), 0.985))
+    # the jump at the tail's edge is far above what surrounds it: the scales end where the two sides still differ
+    limits = {
+        "pressure": span(record.held_pressure.values, 0.985),
+        "vorticity": span(record.held_vorticity.values, 0.97),
+    }
+    difference = record.held_difference.interp(held_phase=record.held_instant.values).values
     with styled(axes__grid=False):
-        figure, axes = panels(2, 2, width=10.5, height=6.4, sharex=True, sharey=True)
-        for i, (ax, name) in enumerate(zip(axes.flat, _QUARTERS, strict=True)):
-            image = ax.pcolormesh(x, y, pressure[i], cmap=DIVERGING, vmin=-limit, vmax=limit, shading="gouraud")
-            image.set_rasterized(True)
-            _body(ax, record, "held", i)
-            difference = float(record.held_difference[i])
-            ax.set_title(f"{name}: convex side of the tail {difference:+.0f} Pa", fontsize=12)
-            ax.set_aspect("equal")
-            ax.set_xlim(-0.35, 1.45 * record.held_midline_x.values.max())
-            ax.set_ylim(-0.5, 0.5)
-        for ax in axes[1]:
+        figure, axes = panels(4, 2, width=10.5, height=11.2, sharex=True, sharey=True)
+        images = {}
+        for i, quarter in enumerate(_QUARTERS):
+            for ax, what, colours in zip(axes[i], ("pressure", "vorticity"), (PRESSURE, VORTICITY), strict=True):
+                images[what] = draw_field(ax, record, "held", what, i, limits[what], colours)
+                draw_body(ax, record, "held", i)
+            draw_streamlines(axes[i, 1], record, "held", i)
+            axes[i, 0].set_title(f"{quarter}: convex side of the tail {difference[i]:+.0f} Pa", fontsize=12)
+            axes[i, 1].set_title(f"{quarter}", fontsize=12)
+            axes[i, 0].set_ylabel("y [m]")
+            for ax in axes[i]:
+                ax.set_xlim(-0.3, float(record.held_x[-1]))
+                ax.set_ylim(-0.55, 0.55)
+        for ax, what, unit in zip(axes[3], ("pressure", "vorticity"), ("Pa", "1/s"), strict=True):
             ax.set_xlabel("x [m], head to tail")
-        for ax in axes[:, 0]:
-            ax.set_ylabel("y [m]")
-        figure.colorbar(image, ax=axes, label="pressure [Pa]", shrink=0.8, extend="both")
+            figure.colorbar(
+                images[what], ax=ax, label=f"{what} [{unit}]", location="bottom", shrink=0.8, aspect=30, extend="both"
+            )
     return captioned(
         figure,
-        "Pressure around the body held at its snout, at the four quarters of (20) as it runs from head to tail. "
-        "The numbers are the mean pressure along the convex side of the tail less that along the concave side.",
+        "The water around the body held at its snout, at the four quarters of (20) as it runs from head to tail. Left: "
+        "pressure, purple above and brown below that of the far water; the numbers are the mean along the convex side "
+        "of the tail less that along the concave side. Right: vorticity, red counter-clockwise, and streamlines.",
+    )
+
+
+def draw_sides(record: xr.Dataset) -> Figure:
+    """Draw the pressure on the two sides of the tail at the four quarters, and where their difference sits.
+
+    Args:
+        record: of the experiment ``swimming``.
+    """
+    at = record[["held_place", "held_bend"]].interp(held_phase=record.held_instant.values)
+    place, bend = at.held_place.values, at.held_bend.values
+    with styled():
+        figure, axes = panels(1, 4, width=10.5, height=3.1, sharey=True)
+        for i, (ax, quarter) in enumerate(zip(axes[0], _QUARTERS, strict=True)):
+            convex = "left" if bend[i] > 0 else "right"
+            for side, colour in (("right", COLOURS["ours"]), ("left", COLOURS["limbs_only"])):
+                values = record.held_sides.isel(held_instant=i).sel(held_side=side)
+                label = f"{side}, convex" if side == convex else side
+                ax.plot(record.held_tail, values, color=colour, label=label)
+            ax.axvline(float(place[i]), color=COLOURS["neutral"], linestyle=(0, (2, 2)), linewidth=1.2)
+            ax.axhline(0.0, color="#999999", linewidth=0.8)
+            ax.set_title(quarter, fontsize=12)
+            ax.set_xlabel("along the tail")
+            ax.set_xticks([0.0, 0.5, 1.0])
+            ax.legend(fontsize=9, loc="best")
+        axes[0, 0].set_ylabel("pressure [Pa]")
+    return captioned(
+        figure,
+        "Pressure on the right and on the left of the held robot's tail, from its root (0) to its tip (1); right is "
+        "above in the pictures of the flow. Dotted the mean place of the difference between the two sides.",
     )
 
 
@@ -77,8 +124,8 @@ def draw_forces(record: xr.Dataset) -> Figure:
             ax.set_xlim(0.0, 1.0)
     return captioned(
         figure,
-        "Left: force along the body over the last cycle, dashed its mean; the wave as printed gives a fifth. "
-        "Right: moment about each joint of what the water does to the part beyond it. All per metre of depth.",
+        "Left: force along the body over the last cycle, dashed its mean, for the wave from head to tail and as "
+        "printed. Right: moment about each joint of what the water does to the part beyond it. All per metre of depth.",
     )
 
 
@@ -89,31 +136,25 @@ def draw_free(record: xr.Dataset) -> Figure:
         record: of the experiment ``swimming``.
     """
     with styled(axes__grid=False):
-        figure, axes = panels(2, 1, width=10.5, height=7.6, height_ratios=[1.35, 1])
+        figure, axes = panels(2, 1, width=10.5, height=8.2, height_ratios=[1.35, 1])
         ax = axes[0, 0]
-        vorticity = record.free_vorticity.values
-        limit = float(np.quantile(np.abs(vorticity), 0.97))
-        image = ax.pcolormesh(
-            record.free_corner_x, record.free_corner_y, vorticity, cmap="RdBu_r", vmin=-limit, vmax=limit,
-            shading="gouraud",
-        )  # fmt: skip
-        image.set_rasterized(True)
-        _body(ax, record, "free", None)
-        ax.set_aspect("equal")
-        ax.set_xlim(-0.4, float(record.free_corner_x[-1]))
-        ax.set_ylim(-0.6, 0.6)
-        ax.set_xlabel("x [m]; it swims to the left")
-        ax.set_ylabel("y [m]")
+        limit = span(record.free_vorticity.values[-1], 0.97)
+        image = draw_field(ax, record, "free", "vorticity", -1, limit, VORTICITY)
+        draw_body(ax, record, "free", -1)
+        _frame_free(ax, record)
         figure.colorbar(image, ax=ax, label="vorticity [1/s]", shrink=0.85, extend="both")
         ax = axes[1, 0]
         ax.grid(True)
-        cycles = record.cycle.values
-        styles = ((COLOURS["ours"], "o"), (COLOURS["spine"], "s"), (COLOURS["tail"], "^"), (COLOURS["limbs_only"], "v"))
-        for arm, (colour, marker) in zip(record.arm.values, styles, strict=True):
-            ax.plot(cycles, record.arm_speed.sel(arm=arm), color=colour, marker=marker, label=str(arm))
-        for model, dashes in zip(record.model.values, ((0, (1, 1.5)), (0, (5, 2))), strict=True):
+        colours = (COLOURS[role] for role in ("ours", "spine", "tail", "limbs_only", "ours", "limbs_only"))
+        for arm, colour, marker in zip(record.arm.values, colours, "os^vDX", strict=True):
+            dashes = (0, (5, 2)) if str(arm).startswith("exact") else "-"
+            label = f"{arm}, from head to tail" if str(arm) == "exact wave" else str(arm)
+            ax.plot(
+                record.cycle, record.arm_speed.sel(arm=arm), color=colour, marker=marker, linestyle=dashes, label=label
+            )
+        for model, dots in zip(record.model.values, ((0, (1, 1.5)), (0, (3, 1, 1, 1))), strict=True):
             speed = float(record.model_speed.sel(model=model))
-            ax.axhline(speed, color=COLOURS["neutral"], linestyle=dashes, label=f"{model} model, round body")
+            ax.axhline(speed, color=COLOURS["neutral"], linestyle=dots, label=f"{model} model, round body")
         ax.set_xlabel("cycle")
         ax.set_ylabel("mean speed [m/s]")
         ax.axhline(0.0, color="#999999", linewidth=0.8)
@@ -121,21 +162,56 @@ def draw_free(record: xr.Dataset) -> Figure:
     return captioned(
         figure,
         "Free swimming from rest. Above: vorticity at the end, red counter-clockwise. Below: mean speed of each cycle, "
-        "forward positive; grey what the cheap models say of the round body.",
+        "forward positive; dashed a midline that follows (20) exactly, grey what the cheap models say of the round "
+        "body.",
     )
+
+
+def film_vorticity(record: xr.Dataset) -> bytes:
+    """Return the last cycle of the free swim as a film of its vorticity.
+
+    Args:
+        record: of the experiment ``swimming``.
+    """
+    return _film(record, "vorticity", "1/s", VORTICITY, 0.97, "Vorticity over the last cycle of the free swim, red "
+                 "counter-clockwise; the picture travels with the body, which swims to the left.")  # fmt: skip
+
+
+def film_pressure(record: xr.Dataset) -> bytes:
+    """Return the last cycle of the free swim as a film of its pressure.
+
+    Args:
+        record: of the experiment ``swimming``.
+    """
+    return _film(record, "pressure", "Pa", PRESSURE, 0.985, "Pressure over the last cycle of the free swim, purple "
+                 "above and brown below that of the far water; the picture travels with the body.")  # fmt: skip
+
+
+def _film(record: xr.Dataset, what: str, unit: str, colours: str, share: float, caption: str) -> bytes:
+    values, phase = record[f"free_{what}"].values, record.free_frame.values
+    with styled(axes__grid=False, figure__dpi=_FILM_DPI):
+        figure, axes = panels(1, 1, width=9.6, height=4.3)
+        ax = axes[0, 0]
+        image = draw_field(ax, record, "free", what, 0, span(values, share), colours)
+        body = draw_body(ax, record, "free", 0)
+        _frame_free(ax, record)
+        figure.colorbar(image, ax=ax, label=f"{what} [{unit}]", shrink=0.85, extend="both")
+
+        def show(i: int) -> None:
+            image.set_data(smooth(values[i]))
+            move_body(body, record, "free", i)
+            ax.set_title(f"t = {phase[i]:.2f} T", fontsize=12)
+
+        return film(figure, show, len(values), seconds=_FILM_SECONDS, caption=caption)
+
+
+def _frame_free(ax: Axes, record: xr.Dataset) -> None:
+    ax.set_xlim(float(record.free_x[0]), float(record.free_x[-1]))
+    ax.set_ylim(-0.55, 0.55)
+    ax.set_xlabel("x [m]; it swims to the left")
+    ax.set_ylabel("y [m]")
 
 
 def _room_above(ax: Axes) -> None:
     low, high = ax.get_ylim()
     ax.set_ylim(low, high + 0.35 * (high - low))
-
-
-def _body(ax: Axes, record: xr.Dataset, name: str, instant: int | None) -> None:
-    x, y, heading, half = (record[f"{name}_midline_{what}"].values for what in ("x", "y", "heading", "half_width"))
-    if instant is not None:
-        x, y, heading, half = x[instant], y[instant], heading[instant], half[instant]
-    across = np.column_stack([-np.sin(heading), np.cos(heading)]) * half[:, None]
-    line = np.column_stack([x, y])
-    outline = np.vstack([line + across, (line - across)[::-1]])
-    ax.add_patch(Polygon(outline, facecolor=_SKIN, edgecolor=_EDGE, linewidth=1.1, zorder=3))
-    ax.plot(x, y, color=_EDGE, linewidth=0.9, linestyle=(0, (4, 2)), zorder=4)

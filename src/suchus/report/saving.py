@@ -46,6 +46,8 @@ def save_outcome(
             pictures.save(figure, draft, name)
         for name, text in outcome.tables.items():
             (draft / name).write_text(text, encoding="utf-8")
+        for name, film in outcome.films.items():
+            (draft / name).write_bytes(film)
         record.save(outcome.record, draft / RECORD)
         captions = {name: pictures.caption(figure) for name, figure in figures.items()}
         told = describe(outcome, experiment, captions, command)
@@ -67,6 +69,7 @@ def describe(outcome: Outcome, experiment: Experiment, captions: Mapping[str, st
         "verdicts": [_verdict(verdict) for verdict in outcome.verdicts],
         "figures": [{"name": name, "caption": text} for name, text in captions.items()],
         "tables": list(outcome.tables),
+        "films": [{"name": name, "caption": pictures.film_caption(film)} for name, film in outcome.films.items()],
         "provenance": record.provenance(outcome.settings, seconds=outcome.seconds),
     }
 

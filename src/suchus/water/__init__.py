@@ -1,33 +1,50 @@
 """The robot in water: its outline, waves fitted to its joints, and the models a designer calculates with."""
 
-from suchus.water.fit import BodyWave, EelWave, Fit, PrintedWave, fit, head_base, printed_wave
+from suchus.water.fit import Fit, fit, head_base
+from suchus.water.free import free_swim
+from suchus.water.held import tether, towed
 from suchus.water.immersed import immersed
+from suchus.water.measures import Quarters, Swum, convex_higher, crossings, efficiency, level
 from suchus.water.outline import Base, Curve, Outline, Silhouette, silhouette
-from suchus.water.resolved import Tether, free_swim, tether
+from suchus.water.readings import Attempt, attempts
 from suchus.water.slender import Cruise, Effort, Water, cruise, cycle, reactive, recoil, resistive
 from suchus.water.swimming import MODELS, displaced, swim, wave_speed
+from suchus.water.tank import Tether
+from suchus.water.undulation import ExactWave, Motion, Undulation, undulation
+from suchus.water.waves import BodyWave, EelWave, PrintedWave, printed_wave
 
 __all__ = [
     "MODELS",
+    "Attempt",
     "Base",
     "BodyWave",
     "Cruise",
     "Curve",
     "EelWave",
     "Effort",
+    "ExactWave",
     "Fit",
+    "Motion",
     "Outline",
     "PrintedWave",
+    "Quarters",
     "Silhouette",
+    "Swum",
     "Tether",
+    "Undulation",
     "Water",
+    "attempts",
+    "convex_higher",
+    "crossings",
     "cruise",
     "cycle",
     "displaced",
+    "efficiency",
     "fit",
     "free_swim",
     "head_base",
     "immersed",
+    "level",
     "printed_wave",
     "reactive",
     "recoil",
@@ -35,5 +52,7 @@ __all__ = [
     "silhouette",
     "swim",
     "tether",
+    "towed",
+    "undulation",
     "wave_speed",
 ]

@@ -1,100 +1,23 @@
-"""Waves that the joints are asked to make: (20) in each of its readings, the eel of the literature, and their fit.
+"""Waves that the joints are asked to make: the motion that comes nearest to them.
 
 The article commands a continuous wave; the robot has three yaw joints and one cable. So the wave's tangent angles are
 fitted by least squares, and what remains is reported.
 """
 
 from dataclasses import dataclass
-from typing import Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float
 
 from suchus.design import Crocodile, cable_joints
 from suchus.errors import InvalidDesign, OutsideLimits
-from suchus.kinematics import wave as wave_kinematics
-from suchus.kinematics.wave import READINGS, Wave
 from suchus.motion import Swim, bends
 from suchus.motion.swim import YAWS
 from suchus.water.outline import Base, Outline
+from suchus.water.waves import BodyWave, along
 
 _TIMES = 48
 """Instants of a cycle at which wave and joints are compared [-]."""
-_FINE = 2049
-"""Points along a wave from which its arc length is found [-]."""
-
-
-@runtime_checkable
-class BodyWave(Protocol):
-    """A midline that is given as a curve, x from the snout towards the tail."""
-
-    @property
-    def period(self) -> float:
-        """Of one cycle [s]."""
-
-    def displacement(self, x: np.ndarray, time: np.ndarray) -> np.ndarray:
-        """Return how far the midline lies off the axis, to the right positive [m]."""
-
-    def slope(self, x: np.ndarray, time: np.ndarray) -> np.ndarray:
-        """Return dy/dx [-]."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PrintedWave:
-    """(20) on a robot, from the snout or from the root of the tail on; ahead of that the body stays straight.
-
-    Paper: Eq. (20).
-    """
-
-    wave: Wave
-    """Its constants in SI units."""
-    origin: float
-    """Where x of the wave begins, from the snout [m]."""
-
-    @property
-    def period(self) -> float:
-        """Of one cycle [s]."""
-        return 2 * np.pi / self.wave.angular_frequency
-
-    def displacement(self, x: np.ndarray, time: np.ndarray) -> np.ndarray:
-        """Return how far the midline lies off the axis [m]."""
-        return wave_kinematics.displacement(self.wave, np.maximum(x - self.origin, 0.0), time)
-
-    def slope(self, x: np.ndarray, time: np.ndarray) -> np.ndarray:
-        """Return dy/dx [-]."""
-        inside = wave_kinematics.slope(self.wave, np.maximum(x - self.origin, 0.0), time)
-        return np.where(x >= self.origin, inside, 0.0)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class EelWave:
-    """The eel of the flow literature: ``0.125 (x + 0.03125) / 1.03125 sin 2 pi (x - t)`` in lengths and periods.
-
-    Source: IBAMR examples, ConstraintIB eel2d; Carling, Williams and Bowtell 1998, J. Exp. Biol. 201, 3143.
-    """
-
-    length: float
-    """Of the body [m]."""
-    frequency: float
-    """[Hz]."""
-
-    @property
-    def period(self) -> float:
-        """Of one cycle [s]."""
-        return 1.0 / self.frequency
-
-    def displacement(self, x: np.ndarray, time: np.ndarray) -> np.ndarray:
-        """Return how far the midline lies off the axis [m]."""
-        part = x / self.length
-        phase = 2 * np.pi * (part - self.frequency * time)
-        return np.asarray(self.length * 0.125 * (part + 0.03125) / 1.03125 * np.sin(phase))
-
-    def slope(self, x: np.ndarray, time: np.ndarray) -> np.ndarray:
-        """Return dy/dx [-]."""
-        part = x / self.length
-        phase = 2 * np.pi * (part - self.frequency * time)
-        grown = 2 * np.pi * (part + 0.03125) * np.cos(phase)
-        return np.asarray(0.125 / 1.03125 * (np.sin(phase) + grown))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -109,32 +32,6 @@ class Fit:
     """Rms distance of the joints' midline from the wave's, over the greatest swing of the wave's tail [-]."""
     asked: tuple[float, ...]
     """Greatest bend that the wave asks of each joint where it stands, in the order of ``Outline.places`` [rad]."""
-
-
-def printed_wave(
-    robot: Crocodile, reading: str = "I", *, frequency: float = 1.0, sign: int = -1, waves_per_body: float = 1.0
-) -> PrintedWave:
-    """Return (20) on a robot in one of its readings.
-
-    Args:
-        robot: whose body it runs along.
-        reading: letter of ``kinematics.wave.READINGS``.
-        frequency: which the article does not give [Hz].
-        sign: -1 runs from head to tail; 1 as printed.
-        waves_per_body: of reading I [-].
-
-    Raises:
-        UnknownName: there is no such reading.
-    """
-    wave = wave_kinematics.reading(
-        reading,
-        length=robot.length,
-        angular_frequency=2 * np.pi * frequency,
-        sign=sign,
-        waves_per_body=waves_per_body,
-    )
-    root = robot.head.snout + robot.spine.length + robot.tail.offset
-    return PrintedWave(wave=wave, origin=root if READINGS[reading].tail_only else 0.0)
 
 
 def fit(robot: Crocodile, wave: BodyWave, *, name: str = "wave", most: float = 0.25) -> Fit:
@@ -157,7 +54,7 @@ def fit(robot: Crocodile, wave: BodyWave, *, name: str = "wave", most: float = 0
         raise InvalidDesign(f"the wave's period is {wave.period} s; a positive one is needed.")
     outline = Outline(robot)
     time = wave.period * np.arange(_TIMES) / _TIMES
-    heading, x, y = _along(wave, outline.s, time)
+    heading, x, y = along(wave, outline.s, time)
     turning = np.exp(-2j * np.pi * time / wave.period)
     harmonic = 2.0 * turning @ heading / _TIMES
     basis = np.column_stack([np.ones_like(outline.s), outline.bending_at(outline.s)])
@@ -191,20 +88,6 @@ def head_base(fitted: Fit, time: Float[np.ndarray, "*b"]) -> Base:
     angle = fitted.head * np.exp(1j * rate * time)
     zero = np.zeros_like(time)
     return Base(zero, zero, angle.real, zero, zero, (1j * rate * angle).real)
-
-
-def _along(wave: BodyWave, s: np.ndarray, time: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return heading and place of a wave at equal arc lengths, each of shape (time, station)."""
-    x = np.linspace(0.0, s[-1], _FINE)
-    step = x[1] - x[0]
-    heading, across, along = (np.empty((len(time), len(s))) for _ in range(3))
-    for i, t in enumerate(time):
-        stretch = np.sqrt(1.0 + wave.slope(x, t) ** 2)
-        arc = np.concatenate([[0.0], np.cumsum(0.5 * step * (stretch[1:] + stretch[:-1]))])
-        along[i] = np.interp(s, arc, x)  # arc lengths grow faster than x, so that s ends within
-        heading[i] = np.arctan(wave.slope(along[i], t))
-        across[i] = wave.displacement(along[i], t)
-    return heading, along, across
 
 
 def _misfit(outline: Outline, swim: Swim, head: complex, time: np.ndarray, x: np.ndarray, y: np.ndarray) -> float:

@@ -3,12 +3,12 @@
 import numpy as np
 
 from suchus import flow
-from suchus.motion import Swim, bends
-from suchus.water.outline import Base, Outline
+from suchus.water.outline import Outline
+from suchus.water.undulation import Motion, undulation
 
 
 def immersed(
-    outline: Outline, motion: Swim, *, sway: complex = 0j, turn: complex = 0j, grow: float = 0.0
+    outline: Outline, motion: Motion, *, sway: complex = 0j, turn: complex = 0j, grow: float = 0.0
 ) -> flow.Midline:
     """Return the robot as a bending body of ``suchus.flow``, head at the origin, tail towards +x, y to its right.
 
@@ -21,29 +21,11 @@ def immersed(
         turn: harmonic of the head's direction [rad].
         grow: time over which the motion grows from nothing [s].
     """
-    rate = 2j * np.pi * motion.frequency
+    bent = undulation(outline, motion).held(sway, turn)
     half_width = outline.silhouette.half_width
 
     def spine(time: float) -> flow.Spine:
-        share, share_rate = _grown(time, grow)
-        now = bends(motion, np.asarray(time))
-        at, to = sway * np.exp(rate * time), turn * np.exp(rate * time)
-        values = (
-            0.0,
-            share * at.real,
-            share * to.real,
-            0.0,
-            (share * rate * at + share_rate * at).real,
-            (share * rate * to + share_rate * to).real,
-        )
-        base = Base._make(np.asarray(value) for value in values)
-        scaled = type(now)(
-            share * now.yaw,
-            share * now.tail,
-            share * now.yaw_rate + share_rate * now.yaw,
-            share * now.tail_rate + share_rate * now.tail,
-        )
-        curve = outline.curve(scaled, base)
+        curve = bent.curve(np.asarray(time), *_grown(time, grow))
         return flow.Spine(**curve._asdict(), half_width=half_width)
 
     return flow.Midline(spine=spine)

@@ -173,15 +173,16 @@ class Outline:
         step = self.robot.length / (self.stations - 1)
         at_stations = self.bending_at(self.s)
         return Curve(
-            _summed(base.x, step * np.cos(middle)),
-            _summed(base.y, step * np.sin(middle)),
+            summed(base.x, step * np.cos(middle)),
+            summed(base.y, step * np.sin(middle)),
             angles @ at_stations.T + base.heading[..., None],
-            _summed(base.x_rate, -step * np.sin(middle) * spin),
-            _summed(base.y_rate, step * np.cos(middle) * spin),
+            summed(base.x_rate, -step * np.sin(middle) * spin),
+            summed(base.y_rate, step * np.cos(middle) * spin),
             rates @ at_stations.T + base.heading_rate[..., None],
         )
 
 
-def _summed(first: Float[np.ndarray, "*b"], steps: Float[np.ndarray, "*b step"]) -> Float[np.ndarray, "*b station"]:
+def summed(first: Float[np.ndarray, "*b"], steps: Float[np.ndarray, "*b step"]) -> Float[np.ndarray, "*b station"]:
+    """Return where steps lead from a start."""
     start = np.asarray(first)[..., None]
     return np.concatenate([start, start + np.cumsum(steps, axis=-1)], axis=-1)

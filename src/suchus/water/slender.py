@@ -15,8 +15,8 @@ from scipy.optimize import brentq
 
 from suchus.design.checks import Checks
 from suchus.errors import NotConverged
-from suchus.motion import Swim, bends
-from suchus.water.outline import Base, Curve, Outline
+from suchus.water.outline import Curve, Outline, summed
+from suchus.water.undulation import Motion, undulation
 
 _TIMES = 96
 """Instants of a cycle [-]."""
@@ -119,7 +119,7 @@ def reactive(outline: Outline, curve: Curve, speed: float, water: Water) -> Effo
     return Effort(thrust - drag, wake + thrust * speed)
 
 
-def recoil(outline: Outline, swim: Swim, speed: float, water: Water) -> tuple[complex, complex]:
+def recoil(outline: Outline, motion: Motion, speed: float, water: Water) -> tuple[complex, complex]:
     """Return how the snout sways and the head turns when nothing holds the body.
 
     Small lateral motions: body and the water beside it exchange no net lateral momentum and no moment about the
@@ -127,20 +127,17 @@ def recoil(outline: Outline, swim: Swim, speed: float, water: Water) -> tuple[co
 
     Args:
         outline: of the robot.
-        swim: its motion.
+        motion: its motion.
         speed: forward [m/s].
         water: density.
 
     Returns:
         Harmonics of the snout's way to the right [m] and of the head's direction [rad]: ``Re(h exp(2 pi i f t))``.
     """
-    omega = 2 * np.pi * swim.frequency
-    late = np.array([*swim.yaw_late, swim.tail_late])
-    angles = np.array([*swim.yaw, swim.tail]) * np.exp(-2j * np.pi * late)
+    bent = undulation(outline, motion)
+    omega = 2 * np.pi * bent.frequency
     s, (wide, high) = outline.s, outline.silhouette
-    step = s[1] - s[0]
-    slope = outline.bending_at(s) @ angles
-    shape = np.concatenate([[0.0], np.cumsum(step * (outline.bending @ angles))])
+    slope, shape = bent.stations[1], summed(bent.sway[1], (s[1] - s[0]) * bent.middles[1])
     mass, added = water.density * np.pi * wide * high, water.density * np.pi * high**2
 
     def balance(y: np.ndarray, dy: np.ndarray) -> np.ndarray:
@@ -154,14 +151,10 @@ def recoil(outline: Outline, swim: Swim, speed: float, water: Water) -> tuple[co
     return complex(sway), complex(turn)
 
 
-def cycle(outline: Outline, swim: Swim, sway: complex = 0j, turn: complex = 0j) -> Curve:
+def cycle(outline: Outline, motion: Motion, sway: complex = 0j, turn: complex = 0j) -> Curve:
     """Return the midline over one cycle, shape (time, station), its snout swaying and its head turning as given."""
-    time = np.arange(_TIMES) / _TIMES / swim.frequency
-    rate = 2j * np.pi * swim.frequency
-    at, to = sway * np.exp(rate * time), turn * np.exp(rate * time)
-    zero = np.zeros_like(time)
-    base = Base(zero, at.real, to.real, zero, (rate * at).real, (rate * to).real)
-    return outline.curve(bends(swim, time), base)
+    bent = undulation(outline, motion)
+    return bent.held(sway, turn).curve(np.arange(_TIMES) / _TIMES / bent.frequency)
 
 
 class Cruise(NamedTuple):
@@ -177,29 +170,28 @@ class Cruise(NamedTuple):
     """Harmonic of the head's direction [rad]."""
 
 
-def cruise(outline: Outline, swim: Swim, model: Model, water: Water) -> Cruise:
+def cruise(outline: Outline, motion: Motion, model: Model, water: Water) -> Cruise:
     """Return the speed at which a model's thrust vanishes.
 
     Raises:
         NotConverged: no speed up to three wave speeds balances the forces.
     """
-    most = 3.0 * swim.frequency * outline.robot.length
+    bent = undulation(outline, motion)
+    most = 3.0 * bent.frequency * outline.robot.length
 
-    def thrust(speed: float) -> float:
-        return model(outline, cycle(outline, swim, *recoil(outline, swim, speed, water)), speed, water).thrust
+    def effort(speed: float) -> Effort:
+        return model(outline, cycle(outline, bent, *recoil(outline, bent, speed, water)), speed, water)
 
-    held = model(outline, cycle(outline, swim, *recoil(outline, swim, 0.0, water)), 0.0, water)
-    at_rest = held.thrust
-    if abs(at_rest) <= _NOTHING * held.power / most:
-        return Cruise(0.0, held.power, *recoil(outline, swim, 0.0, water))
+    held = effort(0.0)
+    if abs(held.thrust) <= _NOTHING * held.power / most:
+        return Cruise(0.0, held.power, *recoil(outline, bent, 0.0, water))
     for share in np.geomspace(0.01, 1.0, 25):
-        end = float(np.copysign(share * most, at_rest))
-        if thrust(end) * at_rest <= 0:
-            speed = float(brentq(thrust, 0.0, end, xtol=1e-6))
-            sway, turn = recoil(outline, swim, speed, water)
-            return Cruise(speed, model(outline, cycle(outline, swim, sway, turn), speed, water).power, sway, turn)
+        end = float(np.copysign(share * most, held.thrust))
+        if effort(end).thrust * held.thrust <= 0:
+            speed = float(brentq(lambda some: effort(some).thrust, 0.0, end, xtol=1e-6))
+            return Cruise(speed, effort(speed).power, *recoil(outline, bent, speed, water))
     raise NotConverged(
-        f"no speed up to {most:.3g} m/s balances thrust and drag of {swim.name!r}; raise cross_drag or thickening."
+        f"no speed up to {most:.3g} m/s balances thrust and drag of {bent.name!r}; raise cross_drag or thickening."
     )
 
 

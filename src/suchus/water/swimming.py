@@ -8,12 +8,13 @@ from suchus.kinematics.mass import GRAVITY
 from suchus.motion import Swim, check_swim
 from suchus.water.outline import Curve, Outline
 from suchus.water.slender import Model, Water, cruise, cycle, reactive, recoil, resistive
+from suchus.water.undulation import Motion, undulation
 
 MODELS: dict[str, Model] = {"resistive": resistive, "reactive": reactive}
 """The models by name."""
 
 
-def swim(robot: Crocodile, motion: Swim, *, water: Water | None = None, stations: int = 257) -> xr.Dataset:
+def swim(robot: Crocodile, motion: Motion, *, water: Water | None = None, stations: int = 257) -> xr.Dataset:
     """Return how a robot swims by the resistive and the reactive model.
 
     ``thrust_held`` is the mean force on a body that is kept from moving on but free to sway and turn; everything else
@@ -22,7 +23,7 @@ def swim(robot: Crocodile, motion: Swim, *, water: Water | None = None, stations
 
     Args:
         robot: who swims.
-        motion: how.
+        motion: of its joints; or a wave that the midline follows exactly, joints or not.
         water: density, viscosity and coefficients; fresh water if None.
         stations: points along the midline.
 
@@ -34,14 +35,16 @@ def swim(robot: Crocodile, motion: Swim, *, water: Water | None = None, stations
         OutsideLimits: the joints or servos cannot follow the motion.
         NotConverged: thrust and drag never balance.
     """
-    check_swim(robot, motion)
+    if isinstance(motion, Swim):
+        check_swim(robot, motion)
     outline, still = Outline(robot, stations), water or Water()
-    held = cycle(outline, motion, *recoil(outline, motion, 0.0, still))
+    bent = undulation(outline, motion)
+    held = cycle(outline, bent, *recoil(outline, bent, 0.0, still))
     per_model: dict[str, list[float]] = {name: [] for name in _PER_MODEL}
     curves = []
     for model in MODELS.values():
-        free = cruise(outline, motion, model, still)
-        curve = cycle(outline, motion, free.sway, free.turn)
+        free = cruise(outline, bent, model, still)
+        curve = cycle(outline, bent, free.sway, free.turn)
         curves.append(curve)
         values = _numbers(robot, motion, outline, curve, free.speed, free.power)
         for name, value in {"thrust_held": model(outline, held, 0.0, still).thrust, **values}.items():
@@ -62,7 +65,7 @@ _PER_MODEL = {
 
 
 def _numbers(
-    robot: Crocodile, motion: Swim, outline: Outline, curve: Curve, speed: float, power: float
+    robot: Crocodile, motion: Motion, outline: Outline, curve: Curve, speed: float, power: float
 ) -> dict[str, float]:
     swing = float(np.ptp(curve.y[:, -1]))
     weight = GRAVITY * displaced(outline)
@@ -84,7 +87,7 @@ def displaced(outline: Outline, density: float = 1000.0) -> float:
     return float(density * np.pi * np.trapezoid(wide * high, outline.s))
 
 
-def wave_speed(outline: Outline, motion: Swim, curve: Curve) -> float:
+def wave_speed(outline: Outline, motion: Motion, curve: Curve) -> float:
     """Return the speed of the body wave towards the tail, negative if it runs to the head [m/s].
 
     The phase of the sideways motion along the body is fitted with a straight line, each place weighted with the square
@@ -103,7 +106,7 @@ def wave_speed(outline: Outline, motion: Swim, curve: Curve) -> float:
 
 
 def _record(
-    outline: Outline, motion: Swim, water: Water, curves: list[Curve], per_model: dict[str, list[float]]
+    outline: Outline, motion: Motion, water: Water, curves: list[Curve], per_model: dict[str, list[float]]
 ) -> xr.Dataset:
     count = len(curves[0].x)
     data = xr.Dataset(

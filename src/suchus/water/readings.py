@@ -1,0 +1,38 @@
+"""Every reading of (20) on one robot: what its joints can make of it, or why they cannot."""
+
+from typing import NamedTuple
+
+from suchus.design import Crocodile
+from suchus.errors import OutsideLimits
+from suchus.kinematics.wave import READINGS
+from suchus.water.fit import Fit, fit
+from suchus.water.waves import printed_wave
+
+
+class Attempt(NamedTuple):
+    """A reading that was tried."""
+
+    letter: str
+    """Of ``kinematics.wave.READINGS``."""
+    fitted: Fit | None
+    """The nearest motion of the joints, None if they cannot make the wave."""
+    refusal: str
+    """Why not: the joint and by how much."""
+
+
+def attempts(robot: Crocodile, *, frequency: float, sign: int = -1) -> list[Attempt]:
+    """Return what a robot's joints make of (20) in each of its readings.
+
+    Args:
+        robot: whose joints.
+        frequency: which the article does not give [Hz].
+        sign: -1 runs from head to tail; 1 as printed.
+    """
+    found = []
+    for letter in READINGS:
+        wave = printed_wave(robot, letter, frequency=frequency, sign=sign)
+        try:
+            found.append(Attempt(letter, fit(robot, wave, name=f"(20), reading {letter}"), ""))
+        except OutsideLimits as refused:
+            found.append(Attempt(letter, None, str(refused)))
+    return found

@@ -1,0 +1,146 @@
+"""How a midline bends over time: as its joints bend it, or exactly as a wave prescribes.
+
+Both are the same thing to the flow and to the models: tangent angles along the body, each a sum of harmonics in time.
+Places and velocities follow by summing tangents from the snout, so that the midline keeps its length whatever the wave,
+and velocities are exact derivatives.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Complex, Float
+
+from suchus.errors import InvalidDesign
+from suchus.motion import Swim
+from suchus.water.outline import Curve, Outline, summed
+from suchus.water.waves import BodyWave, along
+
+_INSTANTS = 96
+"""Instants of a cycle from which a wave's harmonics are found [-]; the last harmonic of (20) is 1e-9 of the first."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExactWave:
+    """A wave that the midline follows exactly, joints or not: a body that bends anywhere."""
+
+    name: str
+    """How it is called."""
+    wave: BodyWave
+    """What it follows."""
+
+    def __post_init__(self) -> None:
+        if not (np.isfinite(self.wave.period) and self.wave.period > 0):
+            raise InvalidDesign(f"the period of {self.name!r} is {self.wave.period} s; a positive one is needed.")
+
+    @property
+    def frequency(self) -> float:
+        """Of the wave [Hz]."""
+        return 1.0 / self.wave.period
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Undulation:
+    """A periodic midline. Harmonic k of a value is ``Re(h[k] exp(2 pi i k f t))``, k from 0 on."""
+
+    name: str
+    """How it is called."""
+    frequency: float
+    """f [Hz]."""
+    outline: Outline
+    """Whose midline."""
+    middles: Complex[np.ndarray, "harmonic middle"]
+    """Tangent angle halfway between the stations [rad]."""
+    stations: Complex[np.ndarray, "harmonic station"]
+    """Tangent angle at the stations [rad]."""
+    sway: Complex[np.ndarray, " harmonic"]
+    """Way of the snout to the right [m]."""
+
+    def held(self, sway: complex = 0j, turn: complex = 0j) -> "Undulation":
+        """Return the same with a first harmonic added to the snout's way [m] and to the head's direction [rad]."""
+        middles, stations, snout = self.middles.copy(), self.stations.copy(), self.sway.copy()
+        middles[1] += turn
+        stations[1] += turn
+        snout[1] += sway
+        return replace(self, middles=middles, stations=stations, sway=snout)
+
+    def curve(self, time: Float[np.ndarray, "*b"], grown: float = 1.0, growing: float = 0.0) -> Curve:
+        """Return the midline at times.
+
+        Args:
+            time: [s].
+            grown: share of the motion that has grown [-].
+            growing: rate of that share [1/s].
+        """
+        turning, spinning = self._phases(time)
+        mixed = grown * spinning + growing * turning
+        turning = grown * turning
+
+        def at(harmonics: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+            return (turning @ harmonics).real, (mixed @ harmonics).real
+
+        (middle, spin), (heading, rate), (y, y_rate) = at(self.middles), at(self.stations), at(self.sway[:, None])
+        step = self.outline.robot.length / (self.outline.stations - 1)
+        zero = np.zeros_like(y[..., 0])
+        return Curve(
+            summed(zero, step * np.cos(middle)),
+            summed(y[..., 0], step * np.sin(middle)),
+            heading,
+            summed(zero, -step * np.sin(middle) * spin),
+            summed(y_rate[..., 0], step * np.cos(middle) * spin),
+            rate,
+        )
+
+    def _phases(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        rates = 2j * np.pi * self.frequency * np.arange(len(self.sway))
+        turning = np.exp(np.asarray(time)[..., None] * rates)
+        return turning, turning * rates
+
+
+Motion = Swim | ExactWave | Undulation
+"""What a body can be asked to do: bend its joints, follow a wave, or bend as was worked out before."""
+
+
+def undulation(outline: Outline, motion: Motion) -> Undulation:
+    """Return how the midline bends in a motion; the head of a ``Swim`` stays straight and in place.
+
+    Args:
+        outline: of the robot.
+        motion: of its joints, or a wave that is followed exactly.
+    """
+    if isinstance(motion, Undulation):
+        return motion
+    if isinstance(motion, ExactWave):
+        return _of_wave(outline, motion)
+    late = np.array([*motion.yaw_late, motion.tail_late])
+    angles = np.array([*motion.yaw, motion.tail]) * np.exp(-2j * np.pi * late)
+    middles, stations = outline.bending @ angles, outline.bending_at(outline.s) @ angles
+    return Undulation(
+        name=motion.name,
+        frequency=motion.frequency,
+        outline=outline,
+        middles=np.stack([np.zeros_like(middles), middles]),
+        stations=np.stack([np.zeros_like(stations), stations]),
+        sway=np.zeros(2, complex),
+    )
+
+
+def _of_wave(outline: Outline, motion: ExactWave) -> Undulation:
+    time = motion.wave.period * np.arange(_INSTANTS) / _INSTANTS
+    both = np.sort(np.concatenate([outline.s, 0.5 * (outline.s[1:] + outline.s[:-1])]))
+    heading, _, across = along(motion.wave, both, time)
+    harmonics = _harmonics(heading)
+    return Undulation(
+        name=motion.name,
+        frequency=motion.frequency,
+        outline=outline,
+        middles=harmonics[:, 1::2],
+        stations=harmonics[:, ::2],
+        sway=_harmonics(across[:, :1])[:, 0],
+    )
+
+
+def _harmonics(values: np.ndarray) -> np.ndarray:
+    """Return the harmonics of values over one cycle, shape (time, ...), as ``Undulation`` wants them."""
+    found = 2.0 * np.fft.rfft(values, axis=0)[: len(values) // 2] / len(values)
+    found[0] *= 0.5
+    return np.asarray(found)

@@ -1,0 +1,62 @@
+import numpy as np
+import pytest
+
+from suchus.errors import InvalidDesign
+from suchus.motion import Swim, bends
+from suchus.water import EelWave, ExactWave, Outline, cycle, fit, printed_wave, undulation
+
+TIME = np.linspace(0.0, 1.0, 17)
+WAVES = {
+    "I": printed_wave,
+    "I as printed": lambda robot: printed_wave(robot, sign=1),
+    "A": lambda robot: printed_wave(robot, "A"),
+    "G": lambda robot: printed_wave(robot, "G"),
+    "eel": lambda robot: EelWave(length=robot.length, frequency=1.0),
+}
+
+
+@pytest.mark.parametrize("name", WAVES)
+def test_the_midline_lies_on_its_wave(robot, name):
+    wave = WAVES[name](robot)
+    curve = undulation(Outline(robot, 513), ExactWave(name=name, wave=wave)).curve(TIME)
+    away = [curve.y[i] - wave.displacement(curve.x[i], t) for i, t in enumerate(TIME)]
+    assert np.abs(away).max() < 1e-4 * robot.length
+
+
+@pytest.mark.parametrize("name", WAVES)
+def test_the_midline_keeps_its_length(robot, name):
+    curve = undulation(Outline(robot, 65), ExactWave(name=name, wave=WAVES[name](robot))).curve(TIME)
+    length = np.hypot(np.diff(curve.x), np.diff(curve.y)).sum(axis=-1)
+    np.testing.assert_allclose(length, robot.length, rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize("name", WAVES)
+def test_velocities_are_the_derivatives_of_positions(robot, name):
+    bent, h = undulation(Outline(robot, 65), ExactWave(name=name, wave=WAVES[name](robot))), 1e-5
+    for grown, growing in ((1.0, 0.0), (0.4, 0.7)):
+        now = bent.curve(TIME, grown, growing)
+        before, after = (bent.curve(TIME + step, grown + step * growing, growing) for step in (-h, h))
+        for what in ("x", "y", "heading"):
+            difference = (getattr(after, what) - getattr(before, what)) / (2 * h)
+            np.testing.assert_allclose(getattr(now, f"{what}_rate"), difference, atol=2e-6)
+
+
+def test_joints_bend_the_midline_as_the_outline_says(robot):
+    swim = Swim(name="w", frequency=0.8, yaw=(0.5, 0.4, 0.2), yaw_late=(0.3, 0.1, 0.0), tail=1.1, tail_late=0.6)
+    outline = Outline(robot)
+    ours, theirs = undulation(outline, swim).curve(TIME), outline.curve(bends(swim, TIME))
+    for mine, other in zip(ours, theirs, strict=True):
+        np.testing.assert_allclose(mine, other, atol=1e-12)
+
+
+def test_a_head_that_is_turned_turns_every_section(robot):
+    outline, wave = Outline(robot, 65), printed_wave(robot)
+    found = fit(robot, wave)
+    still, turned = (cycle(outline, found.swim, 0.01, turn) for turn in (0.0, found.head))
+    np.testing.assert_allclose((turned.heading - still.heading).std(axis=1), 0.0, atol=1e-12)
+    assert turned.y[:, 0].max() == pytest.approx(0.01)
+
+
+def test_a_wave_without_a_period_is_refused(robot):
+    with pytest.raises(InvalidDesign, match="period"):
+        ExactWave(name="slow", wave=EelWave(length=robot.length, frequency=-1.0))
