@@ -44,5 +44,9 @@ validate: .venv/.dev
 bench: .venv/.dev
 	@for f in bench/bench_*.py; do echo; echo "== $$f"; $(PY) "$$f" || exit 1; done
 
+docs: .venv/.dev
+	NO_MKDOCS_2_WARNING=1 $(PY) -m mkdocs build --strict
+	@echo site/index.html
+
 clean:
 	rm -rf .venv out build dist site

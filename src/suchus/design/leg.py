@@ -11,6 +11,8 @@ class Leg:
     """One girdle's left leg; the right one is its mirror image.
 
     The D-H base frame stands on the midline: x outward, y forward, z down.
+
+    Paper: Figs 3, 6.
     """
 
     hip_offset: float

@@ -13,7 +13,10 @@ from suchus.design.trunk import Head, Pelvis, Thorax
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Crocodile:
-    """A crocodile-like robot: four legs, a spine of five joints, a cable-driven tail."""
+    """A crocodile-like robot: four legs, a spine of five joints, a cable-driven tail.
+
+    Paper: Fig. 2.
+    """
 
     name: str
     """How it is called."""

@@ -11,6 +11,8 @@ class Spine:
     """From the pelvis forward: yaw, pitch, yaw, pitch, yaw; +yaw bends left, +pitch bends down.
 
     The D-H base frame is the pelvis: x forward, y left, z up.
+
+    Paper: Figs 4, 8.
     """
 
     base: float

@@ -11,6 +11,8 @@ class Tail:
     """From the pelvis backward: pitch joint, root, ``joints`` cable joints, ``fin_segments`` passive ones.
 
     The frame of the cable section: x backward, y right, z up; a positive bend turns the tip to the right.
+
+    Paper: Figs 5, 9.
     """
 
     offset: float

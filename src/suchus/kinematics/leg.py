@@ -44,7 +44,7 @@ def forward(leg: LegLinks, angles: Float[np.ndarray, "*batch 3"]) -> Float[np.nd
 def knee_point(leg: LegLinks, angles: Float[np.ndarray, "*batch 3"]) -> Float[np.ndarray, "*batch 3"]:
     """Return where the knee is, in the leg's base frame [m]; ``angles`` as for ``forward``.
 
-    Paper: Eqs (2) to (4).
+    Paper: Eqs (2), (3).
     """
     yaw, pitch, _ = np.moveaxis(angles, -1, 0)
     reach = leg.femur * np.cos(pitch)
@@ -73,7 +73,7 @@ def inverse(
         Unreachable: a point is nearer or farther than the leg can reach, or is not a number.
         InvalidDesign: ``knee`` or ``side`` is neither 1 nor -1.
 
-    Paper: Eq. (14).
+    Paper: Eqs (8) to (14), Fig. 7.
     """
     for name, sign in (("knee", knee), ("side", side)):
         if sign not in (1, -1):

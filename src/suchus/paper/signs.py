@@ -21,7 +21,10 @@ Angle = TypeVar("Angle", bound=Signed)
 
 
 class BendAngles(NamedTuple):
-    """The angles of Figs 11 and 12 in the article's signs."""
+    """The angles of Figs 11 and 12 in the article's signs.
+
+    Paper: Figs 11, 12.
+    """
 
     spine_lateral: Any
     """theta_q1, right positive [rad]."""

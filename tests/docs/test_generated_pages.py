@@ -1,0 +1,93 @@
+"""The pages that are made of the code say what the code says."""
+
+import pytest
+
+pytest.importorskip("latex2mathml")
+
+from pages import article, gallery, questions, reference
+from pages.code import exported, papers, rooms
+from pages.mathml import Formulas
+from pages.references import named
+
+import suchus
+from suchus.experiments import EXPERIMENTS
+from suchus.paper import CLAIMS, ERRATA
+
+
+@pytest.mark.parametrize(
+    ("text", "keys"),
+    [
+        ("Eq. (14).", ("eq 14",)),
+        ("Eqs (2) to (4), Fig. 7", ("eq 2", "eq 3", "eq 4", "fig 7")),
+        ("III.A, eqs (9)-(11)", ("eq 9", "eq 10", "eq 11")),
+        ("II.B, III.C, Figs 5, 9", ("fig 5", "fig 9")),
+        ("IV.B, Fig. 17b, c", ("fig 17",)),
+        ("Figs 22 to 24", ("fig 22", "fig 23", "fig 24")),
+        ("eqs (9), (14)", ("eq 9", "eq 14")),
+        ("Section III.A: Table I, eqs (1) to (2)", ("eq 1", "eq 2", "table I")),
+        ("Tables I and II", ("table I", "table II")),
+        ("Section IV.D", ()),
+    ],
+)
+def test_references_are_understood(text, keys):
+    assert named(text) == keys
+
+
+def test_every_table_equation_and_figure_leads_to_code_or_to_a_command():
+    code, shown = article.code_of(papers()), article.questions_of(EXPERIMENTS)
+    assert [key for key in article.items() if not code[key] and not shown[key]] == []
+
+
+def test_every_equation_stands_in_a_function():
+    code = article.code_of(papers())
+    assert [key for key in article.items() if key.startswith("eq") and not code[key]] == []
+
+
+def test_no_docstring_names_what_the_article_does_not_have():
+    for told in papers():
+        assert set(named(told.paper)) <= set(article.items()), told
+
+
+def test_the_map_holds_every_claim_and_every_experiment_that_judges_one():
+    page = article.paper_map()
+    assert page.count("\n| ") > len(CLAIMS) + 46
+    assert all(f"questions.md#{name}" in page for name, one in EXPERIMENTS.items() if one.claims)
+
+
+def test_every_misprint_has_its_place():
+    page = article.misprints()
+    assert all(f"{{#{key}}}" in page for key in ERRATA)
+
+
+def test_every_experiment_is_a_question_of_its_own():
+    page = questions.page()
+    assert all(f"{{#{name}}}" in page and one.title in page for name, one in EXPERIMENTS.items())
+
+
+def test_what_a_room_exports_is_what_its_reference_names():
+    for room in rooms():
+        found = {name.rpartition(".")[2] for name in reference.names(room)}
+        assert set(exported(room)) <= found, room
+
+
+def test_every_name_of_the_package_has_a_home():
+    assert set(reference.top()) == set(suchus.__all__) - {"__version__"}
+
+
+def test_every_example_is_shown_with_its_code():
+    for one in gallery.examples():
+        page = gallery.pages()[f"examples/{one.stem}.md"]
+        assert one.title in page
+        assert one.code in page
+        assert "Usage:" not in page
+
+
+def test_formulas_become_mathml_and_nothing_else_changes():
+    formulas = Formulas()
+    left = formulas.take("So $`a_0`$ and $5:\n\n```math\n\\frac{a}{b}\n```\n\n`x_1`\n")
+    assert "frac" not in left
+    assert "$5" in left
+    html = formulas.put("<p>" + left.replace("\n\n", "</p>\n<p>") + "</p>")
+    assert html.count("<math ") == 2
+    assert "<mfrac>" in html
+    assert 'alttext="\\frac{a}{b}"' in html

@@ -1,0 +1,1 @@
+"""Pages of the documentation that are made at build: nothing of them is committed, so nothing grows old."""

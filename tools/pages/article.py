@@ -1,0 +1,204 @@
+"""The article and the code, side by side: the paper map, the claims and the misprints."""
+
+import re
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from pages.code import Told, papers
+from pages.references import named
+from suchus.experiment import Experiment
+from suchus.experiments import EXPERIMENTS
+from suchus.paper import CLAIMS, ERRATA, Claim
+
+EQUATIONS = {
+    1: "transform between neighbouring links",
+    2: "leg, link 1",
+    3: "leg, link 2",
+    4: "leg, link 3",
+    5: "leg, link 4",
+    6: "product of the leg's transforms",
+    7: "foot and its orientation",
+    8: "foot in the plane of the leg",
+    9: "leg yaw",
+    10: "angle at the knee",
+    11: "knee",
+    12: "angle at the hip between the shank's end and the vertical",
+    13: "leg pitch",
+    14: "inverse kinematics of the leg",
+    15: "end of the spine",
+    16: "lengths of the tail's cords, exact",
+    17: "lengths of the tail's cords, without the small term",
+    18: "angle of the tail's servo",
+    19: "places of the tail's joints",
+    20: "body wave in water",
+}
+FIGURES = {
+    1: "skeleton of an alligator (a drawing of the animal, nothing to compute)",
+    2: "the whole robot",
+    3: "the two leg structures",
+    4: "trunk",
+    5: "tail",
+    6: "D-H frames of the hind leg",
+    7: "hind leg in its plane",
+    8: "D-H frames of the trunk",
+    9: "plates and cords of the tail",
+    10: "controllers and what they share",
+    11: "angles of spine and tail, with their signs",
+    12: "limb phases, spine and tail over two cycles",
+    13: "the crawl in pictures",
+    14: "stability at three instants",
+    15: "height of the centre of mass",
+    16: "displacement with and without spine and tail",
+    17: "pressure around the swimming robot",
+    18: "displacement, front yaw joint lost",
+    19: "displacement, hind yaw joint lost",
+    20: "displacement, front pitch joint lost",
+    21: "displacement, hind pitch joint lost",
+    22: "spine and tail while it stands up",
+    23: "crawling and standing, from the side",
+    24: "height reached while it stands up",
+}
+_HEAD = "| article | what it is | in the code | shown by | misprints |"
+TABLES = {"I": "D-H table of the hind leg", "II": "D-H table of the trunk"}
+
+
+def items() -> dict[str, str]:
+    """Return every table, equation and figure of the article by key, with what it shows."""
+    return (
+        {f"table {n}": text for n, text in TABLES.items()}
+        | {f"eq {n}": text for n, text in EQUATIONS.items()}
+        | {f"fig {n}": text for n, text in FIGURES.items()}
+    )
+
+
+def code_of(told: Iterable[Told]) -> dict[str, list[Told]]:
+    """Return the docstrings that name an item, by item."""
+    found: dict[str, list[Told]] = {key: [] for key in items()}
+    for one in told:
+        for key in named(one.paper):
+            found[key].append(one)
+    return found
+
+
+def questions_of(shelf: Mapping[str, Experiment]) -> dict[str, list[str]]:
+    """Return the experiments that answer for an item: those that say so, and those that judge a claim made there."""
+    found: dict[str, list[str]] = {key: [] for key in items()}
+    for name, experiment in shelf.items():
+        where = [experiment.shows, *(CLAIMS[key].where for key in experiment.claims)]
+        for key in dict.fromkeys(key for text in where for key in named(text)):
+            found[key].append(name)
+    return found
+
+
+def paper_map() -> str:
+    """Return the page that leads from the article to the code."""
+    code, questions, flaws = code_of(papers()), questions_of(EXPERIMENTS), misprints_of()
+    lines = [
+        "---",
+        "hide: [toc]",
+        "---",
+        "",
+        "# Paper map",
+        "",
+        "Where each table, equation and figure of the article lives here, and the command that shows it. The page is",
+        "made at every build from the docstrings that say `Paper: ...`, from the experiments and from `suchus.paper`.",
+        "",
+    ]
+    for title, kind in (("Tables", "table"), ("Equations", "eq"), ("Figures", "fig")):
+        lines += [f"## {title}", "", _HEAD, "|---|---|---|---|---|"]
+        for key, text in items().items():
+            if key.startswith(f"{kind} "):
+                cells = (_code(code[key]), _commands(questions[key]), _flaws(flaws[key]))
+                lines.append(f"| {_label(key)} | {text} | {' | '.join(cells)} |")
+        lines.append("")
+    return "\n".join([*lines, *_claims(questions_by_claim()), ""])
+
+
+def misprints_of() -> dict[str, list[str]]:
+    """Return the keys of the misprints that concern an item."""
+    return {item: [key for key, one in ERRATA.items() if item in named(one.where)] for item in items()}
+
+
+def questions_by_claim() -> dict[str, list[str]]:
+    """Return the experiments that judge a claim."""
+    return {key: [name for name, one in EXPERIMENTS.items() if key in one.claims] for key in CLAIMS}
+
+
+def misprints() -> str:
+    """Return the page of the misprints."""
+    lines = [
+        "# Misprints",
+        "",
+        f"{len(ERRATA)} places where the article says something else than it means, defines too little, or",
+        "contradicts itself. The printed formulas can be run: they stand in",
+        "[`suchus.kinematics.printed`][suchus.kinematics.printed], and a test sets each beside ours.",
+        "From Python: `suchus.paper.ERRATA`.",
+        "",
+    ]
+    for one in ERRATA.values():
+        lines += [
+            f"### {_sentence(one.where)} {{#{one.key}}}",
+            "",
+            '<div class="misprint" markdown>',
+            "",
+            f"**Printed:** {_plain(one.printed)}",
+            "",
+            f"**Ours:** {_plain(one.ours)}",
+            "",
+            f"{_plain(one.shows)}",
+            "",
+            "</div>",
+            "",
+        ]
+    return "\n".join(lines)
+
+
+def _claims(judged: Mapping[str, list[str]]) -> list[str]:
+    lines = [
+        "## Statements",
+        "",
+        f"{len(CLAIMS)} statements of the article, in its order, and the experiment that judges each. What came out is",
+        "in the report that `suchus reproduce` writes.",
+        "",
+        "| where | statement | printed | judged by |",
+        "|---|---|---|---|",
+    ]
+    return lines + [
+        f"| {claim.where} | {_plain(claim.sense)} | {_value(claim)} | {_commands(judged[key])} |"
+        for key, claim in CLAIMS.items()
+    ]
+
+
+def _value(claim: Claim) -> str:
+    if claim.value is None:
+        return ""
+    unit = "" if claim.unit == "-" else f" {claim.unit}"
+    return f"{claim.value:.3g}{unit}".replace("-", "−")
+
+
+def _label(key: str) -> str:
+    kind, number = key.split()
+    shown = {"table": f"Table {number}", "eq": f"({number})", "fig": f"Fig. {number}"}[kind]
+    return shown.replace(" ", "\N{NO-BREAK SPACE}")
+
+
+def _code(told: Iterable[Told]) -> str:
+    return ", ".join(f"[`{one.shown}`][{one.name}]" for one in told)
+
+
+def _commands(names: Iterable[str]) -> str:
+    return ", ".join(f"[`{name}`](questions.md#{name})" for name in names)
+
+
+def _flaws(keys: Iterable[str]) -> str:
+    found = list(keys)
+    return ", ".join(f"[{i + 1}](misprints.md#{key})" for i, key in enumerate(found))
+
+
+def _sentence(text: str) -> str:
+    return text[:1].upper() + text[1:]
+
+
+def _plain(text: Any) -> str:
+    """A text in which nothing is Markdown by accident, with its line breaks and bars taken out."""
+    return re.sub(r"([*_`|<\[\]])", r"\\\1", " ".join(str(text).split()))

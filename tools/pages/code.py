@@ -1,0 +1,125 @@
+"""The code as its text tells it: rooms, public names, and which part of the article a docstring names.
+
+Everything is read, nothing is imported, so that a page can be made of rooms whose extras are not installed.
+"""
+
+import ast
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+SOURCE = Path(__file__).parents[2] / "src" / "suchus"
+BY_MODULE = ("figures", "experiments", "robots", "gaits", "skin", "replay", "viewer", "envs")
+"""Rooms whose modules are used under their own names, beside what the room itself exports."""
+
+
+@dataclass(frozen=True, slots=True)
+class Told:
+    """A docstring that names a part of the article."""
+
+    name: str
+    """Dotted name of the function, class or module."""
+    shown: str
+    """The name as people call it, without ``suchus``."""
+    paper: str
+    """What stands after ``Paper:``."""
+
+
+@cache
+def rooms() -> list[str]:
+    """Return the names of all rooms, and of the modules that stand alone."""
+    folders = [p.parent.name for p in SOURCE.glob("*/__init__.py")]
+    alone = [p.stem for p in SOURCE.glob("*.py") if not p.stem.startswith("_")]
+    return sorted([*folders, *alone])
+
+
+def about(room: str) -> str:
+    """Return the first line of a room's docstring."""
+    return (ast.get_docstring(_tree(_file(room))) or "").partition("\n")[0]
+
+
+def exported(room: str) -> list[str]:
+    """Return the names that a room exports."""
+    for node in _tree(_file(room)).body:
+        match node:
+            case ast.Assign(targets=[ast.Name(id="__all__")], value=ast.List(elts=names)):
+                return [str(ast.literal_eval(name)) for name in names]
+            case _:
+                continue
+    return []
+
+
+def modules(room: str) -> list[str]:
+    """Return the modules of a room that a user names: those it exports, or all that declare something public."""
+    folder = SOURCE / room
+    if not folder.is_dir():
+        return []
+    wanted = {p.stem for p in folder.glob("*.py") if not p.stem.startswith("_")}
+    wanted |= {p.parent.name for p in folder.glob("*/__init__.py")}
+    return sorted(wanted if room in BY_MODULE else wanted & (set(exported(room)) - _defined(room)))
+
+
+def public(module: str) -> list[str]:
+    """Return the public functions, classes and constants of a module, given by its dotted name."""
+    path = SOURCE.joinpath(*module.split(".")[1:])
+    tree = _tree(path / "__init__.py" if path.is_dir() else path.with_suffix(".py"))
+    names = []
+    for node in tree.body:
+        if isinstance(node, ast.FunctionDef | ast.ClassDef):
+            names.append(node.name)
+        elif isinstance(node, ast.Assign | ast.AnnAssign):
+            targets = node.targets if isinstance(node, ast.Assign) else [node.target]
+            names += [t.id for t in targets if isinstance(t, ast.Name)]
+    return [name for name in names if not name.startswith("_")]
+
+
+def papers() -> Iterator[Told]:
+    """Yield every docstring that says ``Paper: ...``."""
+    for file in sorted(SOURCE.rglob("*.py")):
+        module = ".".join(["suchus", *file.relative_to(SOURCE).with_suffix("").parts]).removesuffix(".__init__")
+        yield from _papers(_tree(file), module)
+
+
+def _papers(node: ast.AST, name: str) -> Iterator[Told]:
+    if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef):
+        found = re.search(r"Paper: (.*?)(?:\n\n|\Z)", ast.get_docstring(node) or "", re.S)
+        if found:
+            yield Told(_at_home(name), name.removeprefix("suchus."), " ".join(found[1].split()).rstrip("."))
+        for child in node.body:
+            if isinstance(child, ast.ClassDef | ast.FunctionDef) and not child.name.startswith("_"):
+                yield from _papers(child, f"{name}.{child.name}")
+
+
+def home(room: str, name: str) -> str:
+    """Return the dotted name under which the reference has what a room exports.
+
+    That is the room's own page, unless a module hides the name of what it declares, as in ``suchus.water.fit``.
+    """
+    hidden = (SOURCE / room / f"{name}.py").is_file() and name in _defined(room)
+    return f"suchus.{room}.{name}.{name}" if hidden else f"suchus.{room}.{name}"
+
+
+def _at_home(name: str) -> str:
+    _, room, *_, last = name.split(".")
+    return home(room, last) if (SOURCE / room).is_dir() and last in exported(room) else name
+
+
+def _defined(room: str) -> set[str]:
+    """Names that a room imports from its modules: they are functions or classes even if a module is called alike."""
+    return {
+        alias.asname or alias.name
+        for node in _tree(_file(room)).body
+        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith(f"suchus.{room}.")
+        for alias in node.names
+    }
+
+
+def _file(room: str) -> Path:
+    return SOURCE / room / "__init__.py" if (SOURCE / room).is_dir() else SOURCE / f"{room}.py"
+
+
+@cache
+def _tree(file: Path) -> ast.Module:
+    return ast.parse(file.read_text(encoding="utf-8"))

@@ -1,0 +1,74 @@
+"""The numbered scripts as pages: what they say of themselves, their code, their pictures."""
+
+import ast
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+PICTURES = ROOT / "docs" / "pictures"
+
+
+@dataclass(frozen=True, slots=True)
+class Example:
+    """One numbered script."""
+
+    stem: str
+    """Its file's name without the ending."""
+    title: str
+    """First line of its docstring."""
+    text: str
+    """What else the docstring says."""
+    code: str
+    """What follows the docstring."""
+    pictures: tuple[str, ...]
+    """File names of its pictures."""
+
+    @property
+    def short(self) -> str:
+        """Its name in the menu."""
+        number, _, words = self.stem.partition("_")
+        return f"{number} {words.replace('_', ' ')}"
+
+
+def examples() -> list[Example]:
+    """Return the scripts in the order of their numbers."""
+    return [_read(path) for path in sorted((ROOT / "examples").glob("[0-9][0-9]_*.py"))]
+
+
+def pages() -> dict[str, str]:
+    """Return every page of the gallery by its path."""
+    found = {f"examples/{one.stem}.md": _page(one) for one in examples()}
+    return {"examples/index.md": _index(), **found}
+
+
+def _read(path: Path) -> Example:
+    source = path.read_text(encoding="utf-8")
+    tree = ast.parse(source)
+    told = ast.get_docstring(tree) or path.stem
+    title, _, text = told.partition("\n")
+    code = "\n".join(source.splitlines()[tree.body[0].end_lineno :]).strip()
+    text = re.sub(r"^Usage: (.*)$", r"```sh\n\1\n```", text.strip(), flags=re.M)
+    pictures = tuple(p.name for p in sorted(PICTURES.glob(f"example_{path.stem[:2]}*.png")))
+    return Example(stem=path.stem, title=title.rstrip("."), text=text, code=code, pictures=pictures)
+
+
+def _page(one: Example) -> str:
+    shown = [f"![What the script draws: {one.title}](../pictures/{name})" for name in one.pictures]
+    code = f'```python title="examples/{one.stem}.py"\n{one.code}\n```'
+    return "\n\n".join([f"# {one.title}", one.text, code, *shown, ""])
+
+
+def _index() -> str:
+    lines = [
+        "# Examples",
+        "",
+        "Short scripts; the tests run each of them as it stands. Their pictures are made by",
+        "`python tools/example_pictures.py`.",
+        "",
+        '<div class="gallery" markdown>',
+    ]
+    for one in examples():
+        picture = f"![](../pictures/{one.pictures[0]})" if one.pictures else ""
+        lines += ["", f"<div markdown>\n\n{picture}\n\n[{one.title}]({one.stem}.md)\n\n</div>"]
+    return "\n".join([*lines, "", "</div>", ""])

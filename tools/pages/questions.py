@@ -1,0 +1,27 @@
+"""The shelf of experiments as a page: one section per question."""
+
+from suchus.experiments import EXPERIMENTS
+from suchus.paper import CLAIMS
+
+
+def page() -> str:
+    """Return the page of all experiments."""
+    lines = [
+        "# Questions",
+        "",
+        "Each experiment is a question with parameters. `suchus run NAME` answers one, `suchus reproduce` all of them;",
+        "`suchus run NAME --help` tells what can be changed.",
+        "",
+        "| experiment | question | article |",
+        "|---|---|---|",
+    ]
+    lines += [f"| [`{name}`](#{name}) | {one.title} | {one.shows} |" for name, one in EXPERIMENTS.items()]
+    for name, one in EXPERIMENTS.items():
+        lines += ["", f"## {one.title} {{#{name}}}", "", f"{one.shows}. Code: [`suchus.experiments.{name}`][]", ""]
+        lines += ["```sh", f"suchus run {name}", "```", ""]
+        if one.decides:
+            lines += [" ".join(one.decides.split()), ""]
+        if one.claims:
+            lines += ['??? note "Statements of the article that it judges"', ""]
+            lines += [f"    * {CLAIMS[key].sense} *({CLAIMS[key].where})*" for key in one.claims]
+    return "\n".join([*lines, ""])
