@@ -44,7 +44,13 @@ COMMANDS = (
         "read a gait from tracked keypoints",
         "suchus.cli.capture:capture",
     ),
-    Command("study", "FILE.toml [--out DIR]", "run many variants, resumable", "suchus.cli.study:study"),
+    Command("study", "claims|FILE.toml [--out DIR]", "run many variants, resumable", "suchus.cli.study:study"),
+    Command(
+        "optimise",
+        "crawl|FILE.toml [--out DIR]",
+        "search for a better gait or body, resumable",
+        "suchus.cli.optimise:optimise",
+    ),
     Command(
         "export",
         "[--format mjcf|urdf] [--robot ROBOT]",

@@ -1,5 +1,6 @@
 """Many runs: what varies, what is measured, and a store that a kill cannot spoil."""
 
+from suchus.study.arm import Arm
 from suchus.study.chunk import run_chunk
 from suchus.study.cluster import NoCluster, connected
 from suchus.study.conduct import Told, conduct
@@ -11,6 +12,7 @@ from suchus.study.study import Study, Vary
 
 __all__ = [
     "MEASURES",
+    "Arm",
     "NoCluster",
     "Plan",
     "Store",

@@ -27,8 +27,8 @@ def run_chunk(study: Study, number: int, progress: Progress | None = None) -> xr
         progress: called with the share that is done.
 
     Returns:
-        A table along ``sample``: a column for each field that varies, one or more for each measure, ``seed``,
-        ``error``.
+        A table along ``sample``: a column for each field that varies, one or more for each measure, ``seed``, ``arm``
+        where there are arms, ``error``.
     """
     plan = Plan(study)
     samples = plan.chunk(number)
@@ -53,7 +53,13 @@ def _walk(
     if not runs:
         return
     try:
-        record = simulate(list(runs.values()), duration=study.duration, timestep=study.timestep, progress=progress)
+        record = simulate(
+            list(runs.values()),
+            duration=study.duration,
+            timestep=study.timestep,
+            every=study.every,
+            progress=progress,
+        )
     except SuchusError as error:
         if len(runs) == 1:
             errors[next(iter(runs))] = _say(error)
@@ -62,15 +68,27 @@ def _walk(
         _walk(study, dict(items[:middle]), rows, errors, progress)
         _walk(study, dict(items[middle:]), rows, errors, progress)
         return
+    sound = np.flatnonzero(record.cause.values == "")
     for i, sample in enumerate(runs):
-        one = record.isel(run=i)
-        if one.cause.item():
+        if i not in sound:
+            one = record.isel(run=i)
             errors[sample] = f"Diverged: the physics came apart at {float(one.ended):.2f} s: {one.cause.item()}"
-            continue
-        try:
-            rows[sample] = measured(one, study.measure)  # alone: a measure may look at all runs that it is given
-        except SuchusError as error:
-            errors[sample] = _say(error)
+    if len(sound):
+        _measure(study, record.isel(run=sound), [list(runs)[i] for i in sound], rows, errors)
+
+
+def _measure(
+    study: Study, record: xr.Dataset, samples: Sequence[int], rows: dict[int, dict[str, float]], errors: dict[int, str]
+) -> None:
+    """Measure runs together; every measure gives a run the same bytes in company as alone."""
+    try:
+        rows |= dict(zip(samples, measured(record, study.measure), strict=True))
+    except SuchusError as error:
+        if len(samples) == 1:
+            errors[samples[0]] = _say(error)
+            return
+        for i, sample in enumerate(samples):
+            _measure(study, record.isel(run=[i]), [sample], rows, errors)
 
 
 def _table(
@@ -85,6 +103,8 @@ def _table(
         values = [point.values[vary.field] for point in points]
         table[vary.field] = ("sample", _column(values, vary.ends))
     table["seed"] = ("sample", np.array([point.seed for point in points], dtype=np.int64))
+    if study.arms:
+        table["arm"] = ("sample", np.array([point.arm.name for point in points]))
     columns = list(dict.fromkeys(name for row in rows.values() for name in row))
     for column in columns:
         name = max((m for m in study.measure if column == m or column.startswith(f"{m}_")), key=len)

@@ -1,7 +1,7 @@
 """The batches of a study on many machines, through Dask; the extra ``cluster`` installs it."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from typing import Any
 
 import xarray as xr
@@ -35,7 +35,7 @@ def connected(address: str, patience: float = _PATIENCE) -> Iterator[Any]:
     except ImportError as error:
         raise NoCluster("a cluster needs dask.distributed; install it with: pip install 'suchus[cluster]'.") from error
     try:
-        client = Client(address, timeout=patience)
+        client = Client(address, timeout=patience, set_as_default=False)
     except (OSError, ValueError, TimeoutError) as error:
         raise NoCluster(
             f"no scheduler answers at {address} within {patience:g} s; start one with `dask scheduler`."
@@ -44,6 +44,19 @@ def connected(address: str, patience: float = _PATIENCE) -> Iterator[Any]:
         yield client
     finally:
         client.close()
+
+
+def here(client: Any) -> AbstractContextManager[Any]:
+    """Return a context in which files are written by this process alone, whatever client is Dask's default.
+
+    With a default client xarray asks the scheduler for a lock on every file, which a busy one may have forgotten.
+    """
+    if client is None:
+        return nullcontext()
+    import dask  # noqa: PLC0415  whoever has a client has it
+
+    context: AbstractContextManager[Any] = dask.config.set(scheduler="threads")
+    return context
 
 
 def spread(
@@ -70,7 +83,7 @@ def spread(
         futures = client.map(
             _batch, numbers, study=study, wanted=deciding(), pure=False, retries=_RETRIES, key=f"suchus-{study.name}"
         )
-        for future in as_completed(futures):
+        for future in as_completed(futures, loop=client.loop):
             yield future.result()
             future.release()
     except (CancelledError, KilledWorker, OSError, TimeoutError) as error:

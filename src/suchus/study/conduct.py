@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import xarray as xr
 
 from suchus.study.chunk import run_chunk
-from suchus.study.cluster import spread
+from suchus.study.cluster import here, spread
 from suchus.study.plan import Plan
 from suchus.study.store import Store
 from suchus.study.study import Study
@@ -62,11 +62,11 @@ def conduct(study: Study, folder: Path, *, progress: Progress | None = None, cli
         NoCluster: the cluster was lost.
     """
     plan = Plan(study)
-    with Store(folder, study).opened() as store:
+    with Store(folder, study).opened() as store, here(client):
         missing = [number for number in range(plan.chunks) if not store.has(number)]
         counter = _Counter(store, plan, missing, progress or _silent)
-        here = ((number, run_chunk(study, number, counter.within(number))) for number in missing)
-        for number, table in here if client is None else spread(study, missing, client):
+        one_by_one = ((number, run_chunk(study, number, counter.within(number))) for number in missing)
+        for number, table in one_by_one if client is None else spread(study, missing, client):
             store.put(number, table)
             counter.finished(number, table)
         return store.gather(plan.chunks)

@@ -32,24 +32,26 @@ MEASURES: Mapping[str, Metric] = MappingProxyType(
 """By name."""
 
 
-def measured(record: xr.Dataset, names: tuple[str, ...]) -> dict[str, float]:
-    """Return the numbers of one run by column: ``slip``, ``displacement_x``, ``peak_torque_LF_yaw``.
+def measured(record: xr.Dataset, names: tuple[str, ...]) -> list[dict[str, float]]:
+    """Return the numbers of each run by column: ``slip``, ``displacement_x``, ``peak_torque_LF_yaw``.
 
     Args:
-        record: of one run.
+        record: of runs that came to their end.
         names: of ``MEASURES``.
 
     Raises:
         IncompatibleRecord: the record is too short to be measured.
     """
-    columns: dict[str, float] = {}
+    rows: list[dict[str, float]] = [{} for _ in range(record.sizes["run"])]
     for name in names:
-        array = MEASURES[name](record)
-        dims = [str(d) for d in array.dims]
-        for index in np.ndindex(*array.shape):
+        array = MEASURES[name](record).transpose("run", ...)
+        dims = [str(d) for d in array.dims[1:]]
+        for index in np.ndindex(*array.shape[1:]):
             labels = [str(array[dim].values[i]) for dim, i in zip(dims, index, strict=True)]
-            columns["_".join([name, *labels])] = float(array.values[index])
-    return columns
+            column = "_".join([name, *labels])
+            for row, values in zip(rows, array.values, strict=True):
+                row[column] = float(values[index])
+    return rows
 
 
 def unit_of(name: str) -> str:

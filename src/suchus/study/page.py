@@ -13,6 +13,7 @@ from suchus.gaits import GAITS
 from suchus.land import Deaf, Fault, Ground, Limp, Locked, Run, Weak
 from suchus.motion import Gait
 from suchus.robots import ROBOTS
+from suchus.study.arm import Arm
 from suchus.study.study import Design, Study, Vary
 
 
@@ -82,6 +83,10 @@ class Page:
     """Of the physics [s]."""
     chunk: int = 32
     """How many runs are simulated together [-]."""
+    arms: tuple[Arm, ...] = ()
+    """Sides of a comparison."""
+    every: int = 1
+    """Measures look at one sample of so many control periods [-]."""
     reasons: tuple[str, ...] = ()
     """Why these fields and ranges."""
 
@@ -105,8 +110,8 @@ def read_study(path: Path) -> Study:
     """
     page = blueprint.read(path, Page, {EXAMPLE.name: EXAMPLE})
     run = Run(
-        robot=_find(page.robot, path.parent, Crocodile, ROBOTS),
-        gait=_find(page.gait, path.parent, Gait, GAITS),
+        robot=find(page.robot, path.parent, Crocodile, ROBOTS),
+        gait=find(page.gait, path.parent, Gait, GAITS),
         ground=page.ground,
         faults=tuple(line.fault() for line in page.faults),
         noise=page.noise,
@@ -125,9 +130,9 @@ def _resolved(vary: Vary, place: Path) -> Vary:
     values: list[Any] = []
     for value in vary.values:
         if vary.field == "robot" and isinstance(value, str):
-            values.append(_find(value, place, Crocodile, ROBOTS))
+            values.append(find(value, place, Crocodile, ROBOTS))
         elif vary.field == "gait" and isinstance(value, str):
-            values.append(_find(value, place, Gait, GAITS))
+            values.append(find(value, place, Gait, GAITS))
         elif vary.field == "faults":
             values.append(_faults(value))
         else:
@@ -151,5 +156,12 @@ def _faults(value: Any) -> tuple[Fault, ...]:
     return tuple(FaultLine(**item).fault() for item in value)
 
 
-def _find(name: str, place: Path, kind: type, shelf: Catalog[Any]) -> Any:
+def find(name: str, place: Path, kind: type, shelf: Catalog[Any]) -> Any:
+    """Return what a file names: something on a shelf, or described by a TOML file beside it.
+
+    Raises:
+        UnknownName: it is not on the shelf.
+        UnreadableFile: there is no such file, or it is no TOML.
+        MistakenFile: the file describes nothing that can be.
+    """
     return blueprint.read(place / name, kind, shelf) if name.endswith(".toml") else shelf[name]

@@ -11,6 +11,7 @@ from scipy.stats import qmc
 from suchus.design import with_values
 from suchus.errors import InvalidDesign
 from suchus.land import Run
+from suchus.study.arm import Arm
 from suchus.study.study import Study, Vary
 
 _MOST = 10_000_000
@@ -23,10 +24,12 @@ class Point(NamedTuple):
     """By field."""
     seed: int
     """Of the run."""
+    arm: Arm | None = None
+    """Of the comparison, where there is one."""
 
 
 class Plan(Sequence[Point]):
-    """Every run of a study in order: the samples, within each the combinations, within each the seeds.
+    """Every run of a study in order: the samples, in each the arms, in each the combinations, in each the seeds.
 
     Args:
         study: the study.
@@ -43,7 +46,8 @@ class Plan(Sequence[Point]):
         self._levels = [levels(v) for v in self._each]
         self._combinations = int(np.prod([len(v) for v in self._levels], dtype=float)) if self._levels else 1
         count = (study.samples or 1) if self._sampled else 1
-        self._length = count * self._combinations * study.seeds
+        self._arms = study.arms or (None,)
+        self._length = count * len(self._arms) * self._combinations * study.seeds
         if self._length > _MOST:
             raise InvalidDesign(f"study {study.name!r} has {self._length} runs; up to {_MOST} are allowed.")
         self._shares = _shares(study.design, count, len(self._sampled), study.seed)
@@ -57,14 +61,15 @@ class Plan(Sequence[Point]):
         if not 0 <= index < len(self):
             raise IndexError(index)
         rest, repeat = divmod(index, self.study.seeds)
-        sample, combination = divmod(rest, self._combinations)
+        rest, combination = divmod(rest, self._combinations)
+        sample, arm = divmod(rest, len(self._arms))
         chosen: dict[str, Any] = {}
         for vary, levels_ in zip(reversed(self._each), reversed(self._levels), strict=True):
             combination, level = divmod(combination, len(levels_))
             chosen[vary.field] = levels_[level]
         for vary, share in zip(self._sampled, self._shares[sample], strict=True):
             chosen[vary.field] = value_of(vary, float(share))
-        return Point({v.field: chosen[v.field] for v in self.study.vary}, self.study.seed + repeat)
+        return Point({v.field: chosen[v.field] for v in self.study.vary}, self.study.seed + repeat, self._arms[arm])
 
     @property
     def chunks(self) -> int:
@@ -86,7 +91,7 @@ class Plan(Sequence[Point]):
         run = with_values(self.study.run, {"seed": point.seed, "label": str(index)})
         for depth in sorted({_depth(path) for path in point.values}):  # a whole gait first, then its fields
             run = with_values(run, {path: v for path, v in point.values.items() if _depth(path) == depth})
-        return run
+        return run if point.arm is None else with_values(run, point.arm.values)
 
 
 def _depth(path: str) -> int:

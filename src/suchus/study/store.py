@@ -4,17 +4,17 @@ import fcntl
 import hashlib
 import json
 import shutil
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import fields
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import xarray as xr
 
 from suchus.errors import IncompatibleRecord, UnreadableFile, Unwritable
 from suchus.record import check_writable, load, new_file, save, versions
-from suchus.study.study import Study
 
 MARK = "study.json"
 RESULTS, TABLE = "results.nc", "results.csv"
@@ -22,17 +22,30 @@ _FORMAT = 1
 _DECIDING = ("suchus", "python", "mujoco", "numpy", "scipy", "xarray", "h5netcdf")
 
 
+class Asked(Protocol):
+    """A frozen value that says all that decides what the parts hold: a study, a search."""
+
+    @property
+    def name(self) -> str:
+        """How it is called."""
+
+
 class Store:
-    """The parts of a study on disk.
+    """The parts of a study, or of a search, on disk.
 
     Args:
         folder: where they are, or shall be.
-        study: whose they are.
+        study: whose they are, a dataclass.
+        kind: what it is called in messages; also the name of the file that says what the store holds.
+        libraries: further packages whose versions decide the bytes.
     """
 
-    def __init__(self, folder: Path, study: Study) -> None:
+    def __init__(self, folder: Path, study: Asked, *, kind: str = "study", libraries: Sequence[str] = ()) -> None:
         self.folder = folder
         self.study = study
+        self.kind = kind
+        self._mark = f"{kind}.json"
+        self._libraries = tuple(libraries)
 
     @contextmanager
     def opened(self) -> Iterator["Store"]:
@@ -43,11 +56,11 @@ class Store:
             IncompatibleRecord: it holds another study, or was written by another version; it stays as it is.
         """
         check_writable(self.folder)
-        mark = self.folder / MARK
+        mark = self.folder / self._mark
         if mark.is_file():
             self._check(mark)
         elif self.folder.exists() and (not self.folder.is_dir() or any(self._foreign())):
-            raise Unwritable(f"{self.folder} exists and holds no study; choose another place or move it away.")
+            raise Unwritable(f"{self.folder} exists and holds no {self.kind}; choose another place or move it away.")
         else:
             with new_file(mark) as draft:
                 draft.write_text(json.dumps(self._origin(), indent=1, sort_keys=True) + "\n", encoding="utf-8")
@@ -95,7 +108,7 @@ class Store:
         for number in range(parts):
             if not self.part(number).is_file():
                 raise UnreadableFile(
-                    f"{self.folder} lacks part {number} of {parts}; start the study again to finish it."
+                    f"{self.folder} lacks part {number} of {parts}; start the {self.kind} again to finish it."
                 )
             tables.append(load(self.part(number)))
         columns = {str(name): v.attrs for table in tables for name, v in table.data_vars.items() if name != "error"}
@@ -111,13 +124,13 @@ class Store:
         return whole
 
     def _origin(self) -> dict[str, Any]:
-        held = {f.name: repr(getattr(self.study, f.name)) for f in fields(self.study)}
+        held = {f.name: repr(getattr(self.study, f.name)) for f in fields(self.study)}  # type: ignore[arg-type]
         return {
             "format": _FORMAT,
             "name": self.study.name,
             "hash": hashlib.sha256(repr(self.study).encode()).hexdigest(),
             "fields": held,
-            "versions": deciding(),
+            "versions": deciding(self._libraries),
         }
 
     def _check(self, mark: Path) -> None:
@@ -126,13 +139,13 @@ class Store:
             there = json.loads(mark.read_text(encoding="utf-8"))
             name, held, theirs = there["name"], there["fields"], there["versions"]
         except (OSError, ValueError, KeyError, TypeError) as error:
-            raise IncompatibleRecord(f"{mark} is no description of a study; choose another place.") from error
+            raise IncompatibleRecord(f"{mark} is no description of a {self.kind}; choose another place.") from error
         ours = self._origin()
         if held != ours["fields"]:
             other = [key for key in ours["fields"] if held.get(key) != ours["fields"][key]]
             raise IncompatibleRecord(
-                f"{self.folder} holds study {name!r}, which differs from {self.study.name!r} in {', '.join(other)}; "
-                "choose another place, or finish that one with its own file."
+                f"{self.folder} holds {self.kind} {name!r}, which differs from {self.study.name!r} in "
+                f"{', '.join(other)}; choose another place, or finish that one with its own file."
             )
         changed = [
             f"{key} {theirs.get(key)} (here {value})"
@@ -148,7 +161,7 @@ class Store:
 
     def _foreign(self) -> Iterator[Path]:
         """Everything in the folder but drafts that a kill left behind before the study was described."""
-        return (entry for entry in self.folder.iterdir() if not entry.name.startswith(f".{MARK}-"))
+        return (entry for entry in self.folder.iterdir() if not entry.name.startswith(f".{self._mark}-"))
 
     def _sweep(self) -> None:
         """Take away drafts that a kill left behind."""
@@ -158,7 +171,13 @@ class Store:
                     shutil.rmtree(draft, ignore_errors=True)
 
 
-def deciding() -> dict[str, str]:
-    """Return the versions of what makes a study's bytes."""
+def deciding(libraries: Sequence[str] = ()) -> dict[str, str]:
+    """Return the versions of what makes a study's bytes, and of further libraries."""
     found = versions()
-    return {name: found.get(name, "not installed") for name in _DECIDING}
+    told = {name: found.get(name, "not installed") for name in _DECIDING}
+    for name in libraries:
+        try:
+            told[name] = version(name)
+        except PackageNotFoundError:
+            told[name] = "not installed"
+    return told

@@ -8,6 +8,7 @@ from suchus.design import value_at, with_values
 from suchus.design.checks import Checks, InvalidFields
 from suchus.errors import InvalidDesign, UnknownName
 from suchus.land import Run
+from suchus.study.arm import Arm
 from suchus.study.measures import MEASURES
 
 Design = Literal["factorial", "sobol", "latin"]
@@ -99,6 +100,10 @@ class Study:
     """Of the physics [s]; up to 5 ms the crawl's displacement was measured to stay the same within 0.1 %."""
     chunk: int = 32
     """How many runs are simulated together, and lost when the study is killed [-]; about 3 MB of memory for each."""
+    arms: tuple[Arm, ...] = ()
+    """Sides of a comparison; every run is made in each of them."""
+    every: int = 1
+    """Measures look at one sample of so many control periods of 10 ms [-]; memory shrinks with it."""
     reasons: tuple[str, ...] = field(default=())
     """Why these fields and ranges, for whoever reads the results."""
 
@@ -107,6 +112,7 @@ class Study:
             check.whole("seed", 0, 2**32 - 1)
             check.whole("seeds", 1, 100_000)
             check.whole("chunk", 1, 10_000)
+            check.whole("every", 1, 10_000)
             check.number("duration", 0.01, 86400.0, "s")
             check.number("timestep", 1e-5, 0.01, "s")
             check.that(len(self.vary) > 0, "study.vary is empty; name at least one field")
@@ -119,6 +125,8 @@ class Study:
                 check.that(self.samples is not None, f"study.samples is missing; a {self.design} design needs it")
             if self.samples is not None:
                 check.whole("samples", 1, 10_000_000)
+            names = [arm.name for arm in self.arms]
+            check.that(len(set(names)) == len(names), f"study.arms are called {', '.join(names)}; each once")
         self._check_measures()
         self._check_fields()
 
@@ -148,3 +156,5 @@ class Study:
                         raise InvalidDesign(f"study {self.name!r} varies {vary.field}, but {error}") from error
                 except InvalidDesign:
                     continue  # wrong together with what the run has now; it may be right together with what varies
+        for arm in self.arms:
+            with_values(self.run, arm.values)

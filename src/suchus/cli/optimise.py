@@ -1,0 +1,92 @@
+"""``suchus optimise NAME|FILE.toml``: the search for a better gait or body, resumable."""
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields, replace
+from pathlib import Path
+from typing import Annotated
+
+import tyro
+
+from suchus.cli.commands import BadCommand
+from suchus.cli.options import parse
+from suchus.cli.terminal import Bars, working
+from suchus.errors import UnknownName
+from suchus.optimise import AIMS, READY, Optimisation, Told, read_optimisation, write_results
+from suchus.optimise import optimise as conduct
+from suchus.record import check_writable
+
+_EVERY = 10.0  # [s]; between lines where there is no terminal for a bar
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Options:
+    """What can be said after ``suchus optimise``."""
+
+    what: Annotated[str, tyro.conf.Positional]
+    """A ready-made search, or a TOML file; see docs/optimise.md."""
+    out: Path | None = None
+    """Where it goes; by default out/optimise/NAME. A search that began there goes on."""
+    evaluations: int | None = None
+    """How many candidates each arm may try; more than before continues an earlier search."""
+    seed: int | None = None
+    """Of the search."""
+
+
+def optimise(words: Sequence[str]) -> int:
+    """Search, or finish a search, say what came of it, and return 0.
+
+    Raises:
+        SuchusError: the words or the file make no sense, or nothing can be written.
+    """
+    ready = "; ".join(f"{name}: {made.__doc__}" for name, made in READY.items())
+    about = f"Search for a better gait or body. Started again it goes on where it stopped. Ready-made: {ready}"
+    options: Options = parse(Options, "suchus optimise", words, about, [f.name for f in fields(Options)])
+    spec = _asked(options)
+    folder = options.out or Path("out") / "optimise" / spec.name
+    check_writable(folder)
+    cpu = time.process_time()
+    with working() as bars:
+        found = conduct(spec, folder, progress=_shown(bars, spec))
+        bars.say("the best are run again, drawn and packed for replay")
+        result = write_results(spec, found, folder)
+    for one in found:
+        for name, i in zip(one.names, one.chosen, strict=True):
+            aims = ", ".join(
+                f"{aim.name} {float(one.history[f'aim_{aim.name}'][0]):.3g} to "
+                f"{float(one.history[f'aim_{aim.name}'][i]):.3g} {AIMS[aim.name].unit}"
+                for aim in spec.aims
+            )
+            print(f"{name}: {aims}; {result / name}.toml")
+    print(f"{time.process_time() - cpu:.0f} s of processor time; the page is {result / 'index.html'}")
+    return 0
+
+
+def _asked(options: Options) -> Optimisation:
+    """Return the search that is asked for."""
+    if options.what in READY:
+        spec = READY[options.what]()
+    elif options.what.endswith(".toml") or Path(options.what).exists():
+        spec = read_optimisation(Path(options.what))
+    else:
+        raise UnknownName("search", options.what, READY)
+    if options.out is None and any(c in spec.name for c in "/\\\0"):
+        raise BadCommand(f"the search is named {spec.name!r}, which makes no folder; say --out DIR.")
+    if options.evaluations is not None:
+        spec = replace(spec, evaluations=options.evaluations)
+    return spec if options.seed is None else replace(spec, seed=options.seed)
+
+
+def _shown(bars: Bars, spec: Optimisation) -> Callable[[Told], None]:
+    """Return what moves a bar for each arm, or says a line now and then where there is no terminal."""
+    moves = {arm.name: bars.task(f"{spec.name} {arm.name}") for arm in spec.arms}
+    last = time.monotonic()
+
+    def show(told: Told) -> None:
+        nonlocal last
+        moves[told.arm](str(told), min(told.done / told.budget, 1.0))
+        if not bars.seen and time.monotonic() - last > _EVERY:
+            last = time.monotonic()
+            bars.say(f"{spec.name} {told.arm}: {told}")
+
+    return show

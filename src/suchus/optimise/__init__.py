@@ -1,0 +1,27 @@
+"""The search for better gaits and bodies: CMA-ES on the land simulation, a generation in one batch."""
+
+from suchus.optimise.aims import AIMS, LIMITS
+from suchus.optimise.clearance import clearance
+from suchus.optimise.conduct import Told, optimise
+from suchus.optimise.found import Found
+from suchus.optimise.page import read_optimisation
+from suchus.optimise.ready import READY
+from suchus.optimise.results import write_results
+from suchus.optimise.search import NoOptimiser
+from suchus.optimise.spec import Aim, Limit, Optimisation
+
+__all__ = [
+    "AIMS",
+    "LIMITS",
+    "READY",
+    "Aim",
+    "Found",
+    "Limit",
+    "NoOptimiser",
+    "Optimisation",
+    "Told",
+    "clearance",
+    "optimise",
+    "read_optimisation",
+    "write_results",
+]

@@ -1,0 +1,103 @@
+"""One generation: its candidates in one batch, what each reaches, what each breaks."""
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from suchus.design import with_values
+from suchus.errors import SuchusError
+from suchus.land import Run, simulate
+from suchus.motion import check_limits
+from suchus.optimise.aims import AIMS, LIMITS, Kind
+from suchus.optimise.excess import excess
+from suchus.optimise.spec import Optimisation
+
+WALKED, REFUSED, APART = "walked", "refused", "came apart"
+_EVERY = 2  # control periods; 50 looks a second
+Progress = Callable[[float], None]
+
+
+def evaluate(
+    spec: Optimisation, shares: np.ndarray, progress: Progress | None = None, *, timestep: float | None = None
+) -> xr.Dataset:
+    """Try candidates, all that can be built in one batch.
+
+    Args:
+        spec: the search, of one arm.
+        shares: where each candidate's fields lie in their ranges, shape (candidate, field), 0 to 1.
+        progress: called with the share that is done.
+        timestep: of the physics [s]; that of the search if None.
+
+    Returns:
+        A table along ``candidate``: ``share`` over ``field``; ``aim_...`` and ``limit_...``, NaN where it did not walk;
+        ``status``; ``beyond``, see ``excess``, infinite for a candidate that cannot be at all.
+    """
+    count = len(shares)
+    status, beyond = np.full(count, REFUSED, dtype="U16"), np.zeros(count)
+    runs: dict[int, Run] = {}
+    for i, point in enumerate(shares):
+        try:
+            run = spec.candidate({v.field: float(s) for v, s in zip(spec.vary, point, strict=True)})
+            beyond[i] = excess(run.robot, run.gait)
+            if beyond[i] == 0.0:
+                check_limits(run.robot, run.gait)
+                runs[i] = run
+        except SuchusError:
+            beyond[i] = np.inf
+    table = {name: np.full(count, np.nan) for name in columns(spec)}
+    for i, found in _walked(spec, runs, progress, timestep or spec.timestep).items():
+        status[i] = APART if found is None else WALKED
+        for name, value in (found or {}).items():
+            table[name][i] = value
+    return xr.Dataset(
+        {
+            "share": (("candidate", "field"), np.asarray(shares, dtype=float)),
+            "beyond": ("candidate", beyond),
+            "status": ("candidate", status),
+            **{name: ("candidate", values) for name, values in table.items()},
+        },
+        coords={"field": [v.field for v in spec.vary]},
+    )
+
+
+def columns(spec: Optimisation) -> dict[str, Kind]:
+    """Return what is measured, by column: ``aim_displacement``, ``limit_slip``."""
+    return {f"aim_{aim.name}": AIMS[aim.name] for aim in spec.aims} | {
+        f"limit_{limit.name}": LIMITS[limit.name] for limit in spec.limits
+    }
+
+
+def _walked(
+    spec: Optimisation, runs: Mapping[int, Run], progress: Progress | None, timestep: float
+) -> dict[int, dict[str, float] | None]:
+    """Return what each candidate reached, None for one that came apart; on every ground, the worst limit counts."""
+    if not runs:
+        return {}
+    laid = [with_values(run, {"ground.grip": grip}) for run in runs.values() for grip in spec.grips]
+    record = simulate(laid, duration=spec.duration, timestep=timestep, every=_EVERY, progress=progress)
+    measured = measure(spec, laid, record)
+    broken = (record.cause.values != "").reshape(len(runs), -1).any(axis=1)
+    found: dict[int, dict[str, float] | None] = {}
+    for row, i in enumerate(runs):
+        at = slice(row * len(spec.grips), (row + 1) * len(spec.grips))
+        found[i] = None if broken[row] else {name: _joined(name, values[at]) for name, values in measured.items()}
+    return found
+
+
+def measure(spec: Optimisation, runs: Sequence[Run], record: xr.Dataset) -> dict[str, np.ndarray]:
+    """Return every aim and limit of some runs by column."""
+    known: dict[Any, np.ndarray] = {}
+    for kind in columns(spec).values():
+        if kind.measure not in known:
+            known[kind.measure] = kind.measure(runs, record)
+    return {name: known[kind.measure] for name, kind in columns(spec).items()}
+
+
+def _joined(name: str, values: np.ndarray) -> float:
+    """Return what a candidate has over all grounds: the mean of an aim, the worst of a limit."""
+    if name.startswith("aim_"):
+        return float(values.mean())
+    worst = values.min if LIMITS[name.removeprefix("limit_")].good == "more" else values.max
+    return float(worst())

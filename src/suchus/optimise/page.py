@@ -1,0 +1,100 @@
+"""A search as a TOML file that people write."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+from types import MappingProxyType
+from typing import Literal
+
+from suchus import blueprint
+from suchus.control import Control, OpenLoop, Standing, Walking
+from suchus.design import Crocodile
+from suchus.gaits import GAITS
+from suchus.land import Ground, Run
+from suchus.motion import Gait
+from suchus.optimise.spec import WHOLE, Aim, Limit, Optimisation
+from suchus.robots import ROBOTS
+from suchus.study import Arm, Vary
+from suchus.study.page import find
+
+Task = Literal["crawl", "turn", "stand"]
+TASKS: Mapping[str, Control] = MappingProxyType(
+    {
+        "crawl": OpenLoop(),
+        "turn": Walking(bend=0.4, asymmetry=0.5),
+        "stand": Standing(at=1.1, hold=3.0),
+    }
+)
+"""How the gait is carried out: as it is; with a lasting bend and unequal strokes, ``control.bend`` and
+``control.asymmetry``; standing up after it, for ``control.hold``."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Page:
+    """What the file of a search can say; see ``Optimisation``."""
+
+    name: str
+    """How it is called."""
+    vary: tuple[Vary, ...]
+    """What may change, each with ``low`` and ``high``."""
+    aims: tuple[Aim, ...]
+    """What is made better."""
+    limits: tuple[Limit, ...] = ()
+    """What is allowed."""
+    robot: str = "caiman"
+    """Name on the shelf, or path of a TOML file beside this one."""
+    gait: str = "belly_crawl"
+    """Name on the shelf, or path of a TOML file beside this one."""
+    task: Task = "crawl"
+    """What it does: ``crawl``, ``turn`` or ``stand``."""
+    ground: Ground = field(default_factory=Ground)
+    """On what."""
+    arms: tuple[Arm, ...] = (WHOLE,)
+    """Searched one after the other with the same budget."""
+    pareto: bool = False
+    """Whether two aims make a front."""
+    evaluations: int = 1200
+    """How many candidates each arm may try [-]."""
+    population: int = 16
+    """Candidates of a generation [-]."""
+    points: int = 6
+    """Of the front that are pushed forward together [-]."""
+    sigma: float = 0.25
+    """First standard deviation of the candidates, as a part of each range [-]."""
+    grips: tuple[float, ...] = (1.0,)
+    """Factors on the ground's friction [-]."""
+    seed: int = 0
+    """Of the search."""
+    duration: float = 9.0
+    """Of each run [s]."""
+    timestep: float = 0.005
+    """Of the physics in the search [s]."""
+    reasons: tuple[str, ...] = ()
+    """Why these fields, ranges and limits."""
+
+
+EXAMPLE = Page(
+    name="example",
+    vary=(Vary(field="gait.stroke", low=0.0, high=0.08),),
+    aims=(Aim(name="displacement"),),
+)
+"""What a file's mistakes are mended with while the others are looked for."""
+
+
+def read_optimisation(path: Path) -> Optimisation:
+    """Read a search from a TOML file.
+
+    Raises:
+        UnreadableFile: the file is missing or no TOML.
+        MistakenFile: values are missing, unknown, of the wrong kind or impossible; it names all of them.
+        UnknownName: a field, an aim, a limit, a robot or a gait that does not exist.
+        InvalidDesign: a range that cannot be, or that the start is not in.
+    """
+    page = blueprint.read(path, Page, {EXAMPLE.name: EXAMPLE})
+    run = Run(
+        robot=find(page.robot, path.parent, Crocodile, ROBOTS),
+        gait=find(page.gait, path.parent, Gait, GAITS),
+        ground=page.ground,
+        control=TASKS[page.task],
+    )
+    return Optimisation(run=run, **{f.name: getattr(page, f.name) for f in fields(Optimisation) if f.name != "run"})

@@ -1,0 +1,178 @@
+"""Pictures of a search: how it converged, the front, the best gaits, what lies around them."""
+
+from collections.abc import Sequence
+from math import ceil
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from suchus.design import value_at
+from suchus.design.meaning import meanings, unit
+from suchus.figures import COLOURS, captioned, panels, styled
+from suchus.figures.posture import draw_strip
+from suchus.land import Run
+from suchus.motion import START
+from suchus.optimise.aims import AIMS, Kind
+from suchus.optimise.found import Found
+from suchus.optimise.score import allowed
+from suchus.optimise.spec import at_share
+
+_ROLES = ("coordinated", "limbs_only", "tail_drag", "spine_only", "tail", "water")
+_APART = 0.45  # [m]; between two robots on one picture
+_MM = {"m": (1000.0, "mm"), "rad": (180 / np.pi, "deg")}
+
+
+def role(number: int) -> str:
+    """Return the role of ``figures.COLOURS`` of an arm."""
+    return _ROLES[number % len(_ROLES)]
+
+
+def label(name: str) -> str:
+    """Return how a field or a limit is called on a page."""
+    return name.rpartition("gait.")[2].removeprefix("robot.").replace("_", " ").replace(".", ", ")
+
+
+def draw_convergence(found: Sequence[Found]) -> Figure:
+    """Draw the first aim of the best so far of every arm over the candidates tried."""
+    kind, name = AIMS[found[0].spec.aims[0].name], label(found[0].spec.aims[0].name)
+    with styled():
+        figure, axes = panels(1, 1, height=4.0)
+        ax = axes[0, 0]
+        for i, one in enumerate(found):
+            colour, values = COLOURS[role(i)], one.history[f"aim_{one.spec.aims[0].name}"].values
+            kept = allowed(one.spec, one.history)
+            ax.plot(np.flatnonzero(kept), values[kept], ".", color=colour, markersize=3, alpha=0.35)
+            ax.plot(one.best_so_far(), color=colour, drawstyle="steps-post", label=label(one.arm))
+            ax.plot(0, float(one.start[f"aim_{one.spec.aims[0].name}"][0]), "D", color=colour, markeredgecolor="black")
+        _limit_axis(ax, found)
+        ax.set_xlabel("candidates tried [-]")
+        ax.set_ylabel(f"{name} [{kind.unit}]")
+        ax.legend(loc="lower right" if kind.good == "more" else "upper right")
+    return captioned(
+        figure,
+        f"How the search converged: {kind.tells}. Lines: best so far among candidates that keep all limits; dots: each "
+        "such candidate; diamonds: where the search started.",
+    )
+
+
+def _limit_axis(ax: Axes, found: Sequence[Found]) -> None:
+    """Leave wild candidates out of the picture."""
+    shown = np.concatenate([one.best_so_far() for one in found])
+    shown = shown[np.isfinite(shown)]
+    if shown.size:
+        low, high = float(shown.min()), float(shown.max())
+        pad = max(0.15 * (high - low), 0.02 * abs(high), 1e-6)
+        ax.set_ylim(low - pad, high + pad)
+
+
+def draw_front(found: Found) -> Figure:
+    """Draw the two aims of every candidate that keeps all limits, and the front."""
+    first, second = (f"aim_{aim.name}" for aim in found.spec.aims)
+    kinds = [AIMS[aim.name] for aim in found.spec.aims]
+    kept, table, front, chosen = allowed(found.spec, found.history), found.history, found.front, found.chosen
+    with styled():
+        figure, axes = panels(1, 2, width=10.5, height=4.2, width_ratios=[1.4, 1])
+        ax = axes[0, 0]
+        x, y = table[first].values, table[second].values
+        ax.plot(x[kept], y[kept], ".", color=COLOURS["neutral"], markersize=4, alpha=0.4, label="keeps all limits")
+        ax.plot(x[front], y[front], "o-", color=COLOURS["ours"], markersize=4, linewidth=1.2, label="front")
+        ax.plot(x[chosen], y[chosen], "o", color=COLOURS["alarm"], markersize=9, label="gait files")
+        ax.plot(x[0], y[0], "D", color="white", markeredgecolor="black", markersize=8, label="start")
+        if front:
+            spread = np.ptp(y[front]) + 0.1 * abs(y[front]).max()
+            ax.set_ylim(y[front].min() - 0.3 * spread, max(y[front].max() + spread, y[0] + 0.2 * spread))
+        for i, name in zip(chosen, found.names, strict=True):
+            ax.annotate(name.rpartition("_")[2], (x[i], y[i]), (7, 5), textcoords="offset points")
+        for axis, aim, kind in zip((ax.set_xlabel, ax.set_ylabel), found.spec.aims, kinds, strict=True):
+            axis(f"{label(aim.name)} [{kind.unit}], {kind.good} is better")
+        ax.legend(loc="best", fontsize=10)
+        areas = found.covered()
+        axes[0, 1].plot(areas, color=COLOURS["ours"])
+        axes[0, 1].set_xlabel("generation [-]")
+        axes[0, 1].set_ylabel("area that the front covers [-]")
+    return captioned(
+        figure,
+        "Left: both aims of every candidate that keeps all limits; no other betters those of the front in both. Right: "
+        "the area that the front covers, in parts of what the start has.",
+    )
+
+
+def draw_gaits(runs: Sequence[Run], record: xr.Dataset) -> Figure:
+    """Draw every run from above at its beginning, half of its way and at its end."""
+    end = float(record.time[-1])
+    times = [START, (START + end) / 2, end]
+    way = record.centre_of_mass.sel(xyz="x")
+    with styled(axes__grid=False):
+        figure, axes = panels(1, 1, width=10.5, height=1.0 + 2.1 * len(runs))
+        ax = axes[0, 0]
+        for i, run in enumerate(runs):
+            one, aside, hue = record.isel(run=i), -_APART * i, _shade(run.label, i)
+            draw_strip(ax, run.robot, one, times, role=hue, aside=aside)
+            start, stop = (float(way.isel(run=i).sel(time=t, method="nearest")) for t in (START, end))
+            ax.text(
+                max(stop, start) + 0.42,
+                aside,
+                f"{label(run.label)}\n{stop - start:.2f} m",
+                color=COLOURS[hue],
+                va="center",
+                fontsize=13,
+            )
+        ax.set_xlim(right=float(way.max()) + 0.75)
+        ax.set_axis_off()
+    return captioned(
+        figure,
+        f"From above at {times[0]:g}, {times[1]:g} and {times[2]:g} s, with the track of the centre of mass and the "
+        "way forward. Filled feet stand.",
+    )
+
+
+def _shade(name: str, number: int) -> str:
+    return "neutral" if name == "start" else role(number - 1)
+
+
+def draw_around(found: Found) -> Figure:
+    """Draw the first aim as each field alone moves to both sides of the best; crosses break a limit."""
+    near = found.near
+    assert near is not None
+    aim = found.spec.aims[0].name
+    kind: Kind = AIMS[aim]
+    fields, columns = found.fields, 4
+    rows = ceil(len(fields) / columns)
+    values, best = near[f"aim_{aim}"].values, float(near[f"aim_{aim}"].sel(step=0.0)[0])
+    with styled(axes__labelsize=10, xtick__labelsize=9, ytick__labelsize=9):
+        figure, axes = panels(rows, columns, width=10.5, height=0.7 + 1.9 * rows, sharey=True)
+        for i, vary in enumerate(found.spec.vary):
+            ax = axes.flat[i]
+            scale, shown = scaled(found.spec.run, vary.field)
+            at = np.array([at_share(vary, float(share)) for share in near["at"].values[i]]) * scale
+            kept = _kept(found, near, i)
+            ax.plot(at, values[i], color=COLOURS["ours"], linewidth=1.2)
+            ax.plot(at[kept], values[i][kept], "o", color=COLOURS["ours"], markersize=5)
+            ax.plot(at[~kept], values[i][~kept], "x", color=COLOURS["alarm"], markersize=6, markeredgewidth=1.6)
+            ax.axhline(best, color=COLOURS["neutral"], linewidth=0.8, linestyle=(0, (2, 2)))
+            ax.set_xlabel(f"{label(vary.field)}{f' [{shown}]' if shown else ''}")
+        for ax in axes.flat[len(fields) :]:
+            ax.set_axis_off()
+        for ax in axes[:, 0]:
+            ax.set_ylabel(f"{label(aim)} [{kind.unit}]")
+    return captioned(
+        figure,
+        f"Around the best of {label(found.arm)}: each field alone moves by a twentieth and a tenth of its range. "
+        "Crosses break a limit; what is missing could not be walked.",
+    )
+
+
+def _kept(found: Found, near: xr.Dataset, row: int) -> np.ndarray:
+    """Tell which of the points beside the best keep all limits."""
+    part = near.isel(moved=row).rename(step="candidate")
+    return allowed(found.spec, part)
+
+
+def scaled(run: Run, field: str) -> tuple[float, str]:
+    """Return the factor and the unit in which people read a field: millimetres, degrees."""
+    above, _, name = field.rpartition(".")
+    told = meanings(type(value_at(run, above))).get(name.partition("[")[0], "")
+    held = unit(told)
+    return _MM.get(held, (1.0, "" if held == "-" else held))

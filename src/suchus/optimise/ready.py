@@ -1,0 +1,130 @@
+"""Ready-made searches, by name."""
+
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
+
+from suchus.control import Standing, Walking
+from suchus.design import value_at
+from suchus.gaits import GAITS
+from suchus.land import Run
+from suchus.optimise.spec import Aim, Limit, Optimisation
+from suchus.robots import ROBOTS
+from suchus.study import Arm, Vary
+
+_LEGS = (
+    ("duty_factor", 0.5, 0.8),
+    ("stroke", 0.0, 0.12),
+    ("lift", 0.01, 0.05),
+    ("front_reach", 0.02, 0.13),
+    ("hind_reach", 0.02, 0.14),
+    ("front_ahead", -0.06, 0.06),
+    ("hind_ahead", -0.06, 0.06),
+    ("hip_height", 0.06, 0.13),
+)
+_BODY = (
+    ("trunk_bend", 0.0, 2.3),
+    ("spine_phase", -0.2, 0.2),
+    ("tail_bend", 0.0, 1.5),
+    ("tail_phase", -0.5, 0.5),
+    ("tail_pitch", -0.3, 0.4),
+)
+_LIMITS = (
+    Limit(name="torque", value=0.65),
+    Limit(name="slip", value=0.5),
+    Limit(name="clearance", value=0.005),
+    Limit(name="sideways", value=0.25),
+)
+_WHY = (
+    "The cycle stays at the article's four seconds, so that two cycles compare with its 0.73 m; feet stand at least "
+    "half of it, so that it is a walk. Legs and trunk may go as far as joints and reach let them.",
+    "Torque and slip may be a little more than in the article's crawl on this robot (0.60 and 0.46); parts of the "
+    "body, whose contacts the physics does not know, stay 5 mm apart; it walks straight within 0.25 m.",
+    "Both arms have the same legs, ranges, limits, population and budget; limbs_only holds trunk and tail straight "
+    "and the tail off the ground.",
+)
+
+
+def _vary(rows: tuple[tuple[str, float, float], ...]) -> tuple[Vary, ...]:
+    return tuple(Vary(field=f"gait.{name}", low=low, high=high) for name, low, high in rows)
+
+
+def _limbs_only() -> Arm:
+    limbs = GAITS["limbs_only"]
+    return Arm(name="limbs_only", values={f"gait.{name}": value_at(limbs, name) for name, _, _ in _BODY})
+
+
+def crawl() -> Optimisation:
+    """The farthest two cycles with spine and tail, and the farthest with limbs only, on the same budget."""
+    return Optimisation(
+        name="crawl",
+        run=Run(robot=ROBOTS["caiman"], gait=GAITS["belly_crawl"]),
+        vary=_vary((*_LEGS, *_BODY)),
+        aims=(Aim(name="displacement"),),
+        limits=_LIMITS,
+        arms=(Arm(name="coordinated"), _limbs_only()),
+        evaluations=960,
+        seed=1,
+        reasons=_WHY,
+    )
+
+
+def thrift() -> Optimisation:
+    """The front between way and cost of transport, with spine and tail."""
+    return Optimisation(
+        name="thrift",
+        run=Run(robot=ROBOTS["caiman"], gait=GAITS["belly_crawl"]),
+        vary=_vary((*_LEGS, *_BODY)),
+        aims=(Aim(name="displacement"), Aim(name="cost_of_transport")),
+        limits=_LIMITS,
+        pareto=True,
+        evaluations=1200,
+        population=10,
+        seed=1,
+        reasons=_WHY[:2],
+    )
+
+
+def turn() -> Optimisation:
+    """The greatest change of heading in two cycles of the low crawl."""
+    return Optimisation(
+        name="turn",
+        run=Run(robot=ROBOTS["caiman"], gait=GAITS["low_crawl"], control=Walking(bend=0.4, asymmetry=0.5)),
+        vary=(
+            Vary(field="control.bend", low=0.0, high=1.2),
+            Vary(field="control.asymmetry", low=0.0, high=1.5),
+            *_vary((("stroke", 0.01, 0.08), ("trunk_bend", 0.0, 1.5), ("duty_factor", 0.5, 0.8))),
+        ),
+        aims=(Aim(name="turning"),),
+        limits=(Limit(name="torque", value=0.65), Limit(name="clearance", value=0.005)),
+        evaluations=240,
+        population=12,
+        duration=5.0,
+        seed=1,
+    )
+
+
+def stand() -> Optimisation:
+    """The greatest height that it reaches standing, with other lengths of hind legs and spine."""
+    return Optimisation(
+        name="stand",
+        run=Run(robot=ROBOTS["caiman"], gait=GAITS["limbs_only"], control=Standing(at=1.1, hold=3.0)),
+        vary=(
+            Vary(field="robot.hind_leg.femur", low=0.08, high=0.095),
+            Vary(field="robot.hind_leg.tibia", low=0.08, high=0.098),
+            Vary(field="robot.spine.link", low=0.055, high=0.067),
+            Vary(field="robot.pelvis.mass", low=0.45, high=0.9),
+            Vary(field="robot.spine.pitch_servo.torque", low=2.5, high=5.0),
+        ),
+        aims=(Aim(name="standing_reach"),),
+        limits=(Limit(name="torque", value=0.9),),
+        evaluations=120,
+        population=10,
+        duration=14.0,
+        seed=1,
+    )
+
+
+READY: Mapping[str, Callable[[], Optimisation]] = MappingProxyType(
+    {made.__name__: made for made in (crawl, thrift, turn, stand)}
+)
+"""What makes each; its docstring says what it is."""

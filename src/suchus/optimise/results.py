@@ -1,0 +1,247 @@
+"""What a search leaves: gait files, numbers, a record of the best, a page."""
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from suchus import record as records
+from suchus.land import Run, simulate
+from suchus.optimise.aims import AIMS, LIMITS
+from suchus.optimise.checks import FINE
+from suchus.optimise.conduct import write_runs
+from suchus.optimise.found import Found
+from suchus.optimise.pictures import draw_around, draw_convergence, draw_front, draw_gaits, label, scaled
+from suchus.optimise.spec import Optimisation
+from suchus.replay import replay
+from suchus.study.sheet import Section, Table, write_sheet
+
+RESULT, OUTCOME, RECORD = "result", "outcome.json", "record.nc"
+_TOLD = 5  # fields that the sentence names
+
+
+def write_results(spec: Optimisation, found: Sequence[Found], folder: Path) -> Path:
+    """Write everything into ``folder/result``, which appears complete or not at all, and return that folder.
+
+    Args:
+        spec: the search.
+        found: of each arm.
+        folder: of the search.
+
+    Raises:
+        Unwritable: the place cannot be written to.
+    """
+    runs = [run for one in found for run in one.runs]
+    shown = [_start(spec), *runs]
+    record = simulate(shown, duration=spec.duration, timestep=FINE)
+    told = outcome(spec, found)
+    with records.new_folder(folder / RESULT, mark=OUTCOME) as draft:
+        for one in found:
+            write_runs(one.spec, one.runs, draft)
+        records.save(record, draft / RECORD)
+        for i, run in enumerate(shown):
+            if i:
+                _write_replay(shown, record, i, draft / f"{run.label}_replay.html")
+        pictures = _pictures(found, shown, record)
+        write_sheet(draft, f"Optimised: {spec.name}", _lead(found), _sections(spec, found, told, pictures), pictures)
+        text = json.dumps(told, indent=2, ensure_ascii=False, allow_nan=False)
+        (draft / OUTCOME).write_text(text + "\n", encoding="utf-8")
+    return folder / RESULT
+
+
+def _start(spec: Optimisation) -> Run:
+    return replace(spec.run, label="start")
+
+
+def _write_replay(shown: Sequence[Run], record: xr.Dataset, i: int, path: Path) -> None:
+    run, same = shown[i], shown[i].robot == shown[0].robot
+    page = replay(
+        record.isel(run=i),
+        run.robot,
+        ghost=record.isel(run=0) if same else None,
+        labels=(label(run.label), "start"),
+        title=f"{run.gait.name.replace('_', ' ')}, as found",
+    )
+    path.write_text(page, encoding="utf-8")
+
+
+def outcome(spec: Optimisation, found: Sequence[Found]) -> dict[str, Any]:
+    """Return every number of a search as JSON holds it; what is not finite becomes null."""
+    return {
+        "optimisation": spec.name,
+        "aims": {aim.name: {"unit": AIMS[aim.name].unit, "better": AIMS[aim.name].good} for aim in spec.aims},
+        "reasons": list(spec.reasons),
+        "seed": spec.seed,
+        "population": spec.population,
+        "duration": spec.duration,
+        "timestep": spec.timestep,
+        "arms": {one.arm: _told(one) for one in found},
+        "versions": records.versions(),
+    }
+
+
+def _told(one: Found) -> dict[str, Any]:
+    return {
+        "tried": one.history.sizes["candidate"] - 1,
+        "walked": int((one.history.status == "walked").sum()),
+        "start": {aim.name: _finite(one.start[f"aim_{aim.name}"][0]) for aim in one.spec.aims},
+        "best": {name: _best(one, i) for i, name in enumerate(one.names)},
+        "front": [
+            [_finite(one.history[f"aim_{aim.name}"][i]) for aim in one.spec.aims]
+            for i in (one.front if one.spec.pareto else ())
+        ],
+    }
+
+
+def _best(one: Found, which: int) -> dict[str, Any]:
+    assert one.checks is not None
+    candidate, ranges = one.chosen[which], {v.field: (v.low, v.high) for v in one.spec.vary}
+    return {
+        "sentence": sentence(one, which),
+        "aims": {aim.name: _finite(one.history[f"aim_{aim.name}"][candidate]) for aim in one.spec.aims},
+        "fields": {
+            name: {"start": start, "best": best, "low": ranges[name][0], "high": ranges[name][1]}
+            for name, (start, best) in one.values(which).items()
+        },
+        "limits": {
+            name: {"limit": limit, "has": has, "active": active, "unit": LIMITS[name].unit}
+            for name, (limit, has, active) in one.active(which).items()
+        },
+        "checks": {
+            str(condition): {
+                str(name): _finite(one.checks[name].sel(condition=condition).isel(run=which))
+                for name in one.checks.data_vars
+            }
+            for condition in one.checks.condition.values
+        },
+    }
+
+
+def _finite(value: Any) -> float | None:
+    number = float(value)
+    return number if np.isfinite(number) else None
+
+
+def sentence(one: Found, which: int) -> str:
+    """Say what a chosen gait does otherwise than the start: the fields that moved farthest in their ranges."""
+    ranges = {v.field: float(v.high - v.low) for v in one.spec.vary if v.low is not None and v.high is not None}
+    changes = sorted(one.values(which).items(), key=lambda item: -abs(item[1][1] - item[1][0]) / ranges[item[0]])
+    said = []
+    for field, (start, best) in changes[:_TOLD]:
+        factor, unit = scaled(one.spec.run, field)
+        shown = f" {unit}" if unit else ""
+        said.append(f"{label(field)} {_round(best * factor)}{shown} instead of {_round(start * factor)}")
+    stops = [label(name) for name, (_, _, active) in one.active(which).items() if active]
+    stopped = f" What stops it: {', '.join(stops)}." if stops else " No limit stops it."
+    return f"It takes {'; '.join(said)}.{stopped}"
+
+
+def _round(value: float) -> str:
+    return f"{value:.3g}"
+
+
+def _pictures(found: Sequence[Found], shown: Sequence[Run], record: xr.Dataset) -> dict[str, Figure]:
+    pictures = {"gaits": draw_gaits(shown, record), "convergence": draw_convergence(found)}
+    for one in found:
+        if one.spec.pareto:
+            pictures[f"front_{one.arm}"] = draw_front(one)
+        pictures[f"around_{one.arm}"] = draw_around(one)
+    return pictures
+
+
+def _lead(found: Sequence[Found]) -> str:
+    said = []
+    for one in found:
+        aim = one.spec.aims[0].name
+        kind = AIMS[aim]
+        start, best = (float(one.history[f"aim_{aim}"][i]) for i in (0, one.chosen[0]))
+        said.append(f"{label(one.arm)}: {label(aim)} {start:.3g} to {best:.3g} {kind.unit}".replace(" -", ""))
+    return f"{'; '.join(said)}; {found[0].history.sizes['candidate'] - 1} candidates each."
+
+
+def _sections(
+    spec: Optimisation, found: Sequence[Found], told: Mapping[str, Any], pictures: Mapping[str, Figure]
+) -> list[Section]:
+    links = [
+        (f"{name}_replay.html", f"Replay of {label(name)} beside the start") for one in found for name in one.names
+    ]
+    links += [(f"{name}.toml", f"{name}.toml: the gait as a file") for one in found for name in one.names]
+    return [
+        Section(title="What it found", texts=[f"{label(n)}. {b['sentence']}" for n, b in _all_best(told)], links=links,
+                figures=("gaits",)),
+        Section(title="How it converged", texts=spec.reasons,
+                figures=("convergence", *(name for name in pictures if name.startswith("front_")))),
+        Section(title="The numbers", tables=[_fields(one, i) for one in found for i in range(len(one.chosen))]
+                + [_limits(one, i) for one in found for i in range(len(one.chosen)) if one.spec.limits]),
+        Section(
+            title="Is it an optimum?",
+            texts=(
+                f"The search ran with {1000 * spec.timestep:g} ms; here the best is run again with 2 ms, on other "
+                "ground, with noise on its servos, and begun elsewhere in its cycle, beside the start.",
+            ),
+            figures=tuple(f"around_{one.arm}" for one in found),
+            tables=[_checks(one) for one in found],
+        ),
+    ]  # fmt: skip
+
+
+def _all_best(told: Mapping[str, Any]) -> list[tuple[str, Mapping[str, Any]]]:
+    return [(name, best) for arm in told["arms"].values() for name, best in arm["best"].items()]
+
+
+def _fields(one: Found, which: int) -> Table:
+    rows = []
+    ends = {v.field: (v.low, v.high) for v in one.spec.vary}
+    for name, (start, best) in one.values(which).items():
+        factor, unit = scaled(one.spec.run, name)
+        low, high = (float(e or 0.0) for e in ends[name])
+        at = "at its end" if min(best - low, high - best) < 0.02 * (high - low) else ""
+        words = (label(name), unit, *(_round(factor * x) for x in (start, best)),
+                 f"{_round(factor * low)} to {_round(factor * high)}", at)  # fmt: skip
+        rows.append(words)
+    return Table(
+        caption=f"{label(one.names[which])}: what the search changed",
+        heads=("field", "unit", "start", "best", "range", ""),
+        rows=rows,
+        words=(0, 1, 5),
+    )
+
+
+def _limits(one: Found, which: int) -> Table:
+    rows = [
+        (
+            label(name),
+            LIMITS[name].tells,
+            LIMITS[name].unit,
+            f"{'at least' if LIMITS[name].good == 'more' else 'at most'} {limit:.3g}",
+            f"{has:.3g}",
+            "active" if active else "",
+        )
+        for name, (limit, has, active) in one.active(which).items()
+    ]
+    return Table(
+        caption=f"{label(one.names[which])}: limits; joint limits, reach and servo speeds hold besides",
+        heads=("limit", "what it is", "unit", "allowed", "has", ""),
+        rows=rows,
+        words=(0, 1, 2, 5),
+    )
+
+
+def _checks(one: Found) -> Table:
+    assert one.checks is not None
+    checks, names = one.checks, [str(run) for run in one.checks.run.values]
+    columns = [(f"aim_{aim.name}", AIMS[aim.name]) for aim in one.spec.aims]
+    columns += [(f"limit_{limit.name}", LIMITS[limit.name]) for limit in one.spec.limits]
+    rows = []
+    for i, who in enumerate(names):
+        for condition in checks.condition.values:
+            cells = [checks[name].sel(condition=condition).isel(run=i) for name, _ in columns]
+            numbers = [f"{float(cell):.3g}" if np.isfinite(cell) else "came apart" for cell in cells]
+            rows.append((f"{label(who)}, {condition}", *numbers))
+    heads = [f"{label(name.partition('_')[2])} [{kind.unit}]" for name, kind in columns]
+    return Table(caption=f"{label(one.arm)}: under other conditions", heads=("condition", *heads), rows=rows)
