@@ -51,6 +51,16 @@ class Verdict:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Replay:
+    """A run to look at: a page of its own that plays in a browser."""
+
+    caption: str
+    """What there is to see."""
+    html: str
+    """The page; it needs nothing else. See ``suchus.replay``."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Outcome:
     """What came out: numbers, verdicts, and the record they were read from."""
 
@@ -68,6 +78,8 @@ class Outcome:
     """Further text files to stand beside the figures, by file name."""
     films: Mapping[str, bytes] = field(default_factory=dict)
     """Moving pictures to stand beside the figures: a GIF by file name; see ``figures.film``."""
+    replays: Mapping[str, Replay] = field(default_factory=dict)
+    """Runs to look at, to stand beside the figures, by file name ending in .html."""
     seconds: float = 0.0
     """How long the run took [s]."""
 

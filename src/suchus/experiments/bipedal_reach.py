@@ -13,7 +13,7 @@ from suchus.control.standing import BALANCE, Balance, Standing
 from suchus.design import Crocodile, with_values
 from suchus.design.checks import Checks
 from suchus.errors import OutsideLimits
-from suchus.experiment import Experiment, Measure, Outcome, Progress, Verdict, judge, silent, staged, stopwatch
+from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Verdict, judge, silent, staged, stopwatch
 from suchus.figures.standing import (
     draw_angles,
     draw_ceiling,
@@ -31,6 +31,7 @@ from suchus.motion import START, Gait
 from suchus.motion.posture import plan
 from suchus.motion.rising import LEAD, stand_up, stretched, tallest
 from suchus.paper import CLAIMS
+from suchus.replay import replay
 from suchus.robots import ROBOTS
 
 _COARSE = 0.005  # [s]; time step of sweeps; reach and limits agree with those at 2 ms
@@ -152,8 +153,14 @@ class BipedalReach(Experiment):
                 verdicts=self._verdicts(measures),
                 record=record,
                 settings=self.settings(),
+                replays=self._replays(record),
                 seconds=seconds(),
             )
+
+    def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
+        caption = "From the crawl up on hind legs and tail, and down again into the crawl."
+        html = replay(record, self.robot, labels=("standing up",), title="Standing up", caption=caption)
+        return {"standing_replay.html": Replay(caption=caption, html=html)}
 
     def _story(self, standing: Standing, progress: Any) -> xr.Dataset:
         """Return the run of the figures, and the heights of its repeats."""

@@ -10,7 +10,7 @@ import xarray as xr
 
 from suchus.design import Crocodile
 from suchus.design.checks import Checks
-from suchus.experiment import Experiment, Measure, Outcome, Progress, judge, silent, staged, stopwatch
+from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, judge, silent, staged, stopwatch
 from suchus.figures import LINES, captioned, panels, styled
 from suchus.figures.crawls import draw_crawls
 from suchus.figures.maps import draw_map
@@ -21,6 +21,7 @@ from suchus.metrics import cost_of_transport, heading_change, slip
 from suchus.metrics import displacement as displacement_of
 from suchus.motion import START, Gait
 from suchus.paper import CLAIMS, CYCLES
+from suchus.replay import replay
 from suchus.robots import ROBOTS
 
 _ARMS = ("coordinated", "limbs_only")
@@ -98,8 +99,21 @@ class Displacement(Experiment):
                 verdicts=self._verdicts(record),
                 record=record,
                 settings=self.settings(),
+                replays=self._replays(record),
                 seconds=seconds(),
             )
+
+    def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
+        caption = "The same legs twice: with spine and tail, and, half transparent, with limbs only."
+        html = replay(
+            record.isel(run=0),
+            self.robot,
+            ghost=record.isel(run=1),
+            labels=("spine and tail", "limbs only"),
+            title="Crawling with spine and tail, and without",
+            caption=caption,
+        )
+        return {"crawl_replay.html": Replay(caption=caption, html=html)}
 
     def _pair(self) -> list[Run]:
         return [Run(robot=self.robot, gait=gait, label=arm) for arm, gait in zip(_ARMS, self._gaits(), strict=True)]

@@ -11,7 +11,7 @@ from scipy.stats import qmc
 
 from suchus.control import Coordinated, HeadingRule
 from suchus.design import Chosen, Crocodile, meaning, value_at, with_values
-from suchus.experiment import Experiment, Measure, Outcome, Progress, judge, silent, staged, stopwatch
+from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, judge, silent, staged, stopwatch
 from suchus.figures.faults import draw_held, draw_losses, draw_over_time, draw_tracks
 from suchus.gaits import GAITS
 from suchus.land import KINDS, LEGS_LOST, LOST, Ground, Limp, Locked, Run, angle_at, lost, simulate
@@ -29,6 +29,7 @@ from suchus.metrics import (
 )
 from suchus.motion import START, Gait
 from suchus.paper import CLAIMS, CYCLES
+from suchus.replay import replay
 from suchus.robots import ROBOTS
 
 _ARMS = ("coordinated", "limbs_only")
@@ -104,7 +105,8 @@ class JointFaults(Experiment):
         with stopwatch() as seconds:
             record = self._campaign(staged(progress, "campaign", 0.0, 0.8))
             record = record.merge(self._held(staged(progress, "places of locking", 0.8, 0.9)))
-            record = record.merge(self._support(staged(progress, "support", 0.9, 0.92)))
+            lost_pitch = self._lost_pitch(staged(progress, "support", 0.9, 0.92))
+            record = record.merge(_support(lost_pitch))
             record = record.merge(self._steered(staged(progress, "steered", 0.92, 1.0)))
             return Outcome(
                 experiment=self.name(),
@@ -113,6 +115,7 @@ class JointFaults(Experiment):
                 record=record,
                 settings=self.settings(),
                 tables={"faults.csv": _table(record)},
+                replays=self._replays(lost_pitch),
                 seconds=seconds(),
             )
 
@@ -196,26 +199,26 @@ class JointFaults(Experiment):
         data = xr.Dataset({"held_forward": (("arm", "joint", "hold"), way, {"units": "m"})})
         return data.assign_coords(arm=list(_ARMS), joint=list(LOST), hold=list(self.holds))
 
-    def _support(self, progress: Any) -> xr.Dataset:
-        """Lose the right hind pitch joint and see what carries the body while that leg is meant to swing."""
+    def _lost_pitch(self, progress: Any) -> xr.Dataset:
+        """Run the gait as given intact, with the right hind pitch joint limp, and with it locked."""
         angle = angle_at(self.robot, self.gait, "RH_pitch", self.hold)
         runs = [
             Run(robot=self.robot, gait=self.gait, faults=faults)
             for faults in ((), (Limp("RH_pitch"),), (Locked("RH_pitch", angle=angle),))
         ]
-        record = whole(simulate(runs, duration=self._duration, timestep=self.timestep, progress=progress))
-        loads = swing_loads(record, "RH").transpose("run", "part")
-        return xr.Dataset(
-            {
-                "support": (("state", "part"), loads.values, {"units": "N", "long_name": "mean load while RH swings"}),
-                "lifted": (
-                    "state",
-                    swing_lift(record, "RH").values,
-                    {"units": "m", "long_name": "rise of the RH foot"},
-                ),
-            },
-            coords={"state": ["intact", *KINDS], "part": [str(name) for name in loads.part.values]},
+        return whole(simulate(runs, duration=self._duration, timestep=self.timestep, progress=progress))
+
+    def _replays(self, lost_pitch: xr.Dataset) -> Mapping[str, Replay]:
+        caption = "The crawl with the right hind pitch joint limp from the start, and, half transparent, intact."
+        html = replay(
+            lost_pitch.isel(run=1),
+            self.robot,
+            ghost=lost_pitch.isel(run=0),
+            labels=("right hind pitch joint limp", "intact"),
+            title="One limp leg",
+            caption=caption,
         )
+        return {"fault_replay.html": Replay(caption=caption, html=html)}
 
     def _steered(self, progress: Any) -> xr.Dataset:
         """Run the judged reading of every joint once more with all feedback rules and the heading loop."""
@@ -343,6 +346,19 @@ def _lay(data: xr.Dataset, name: str, values: np.ndarray, more: tuple[str, ...],
     data[f"intact_{name}"] = (("variation", "arm", *more), values[:, :, 0], about)
     shape = (*values.shape[:2], len(LOST), len(KINDS), len(LEGS_LOST), *values.shape[3:])
     data[name] = (("variation", "arm", "joint", "kind", "legs", *more), values[:, :, 1:].reshape(shape), about)
+
+
+def _support(lost_pitch: xr.Dataset) -> xr.Dataset:
+    """Return what carries the body while the right hind leg is meant to swing."""
+    loads = swing_loads(lost_pitch, "RH").transpose("run", "part")
+    lifted = swing_lift(lost_pitch, "RH").values
+    return xr.Dataset(
+        {
+            "support": (("state", "part"), loads.values, {"units": "N", "long_name": "mean load while RH swings"}),
+            "lifted": ("state", lifted, {"units": "m", "long_name": "rise of the RH foot"}),
+        },
+        coords={"state": ["intact", *KINDS], "part": [str(name) for name in loads.part.values]},
+    )
 
 
 def _changes(record: xr.Dataset) -> dict[str, xr.DataArray]:

@@ -11,7 +11,7 @@ import xarray as xr
 from suchus.control import AttitudeRule, Change, Control, SwitchRule, Walking
 from suchus.design import Crocodile
 from suchus.design.relief import Bumps, Relief, Step, profile
-from suchus.experiment import Experiment, Measure, Outcome, Progress, judge, silent, staged, stopwatch
+from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, judge, silent, staged, stopwatch
 from suchus.figures import captioned, panels, styled
 from suchus.figures.posture import draw_posture
 from suchus.figures.terrain import GAIT_LINES, draw_ground, draw_rough
@@ -20,6 +20,7 @@ from suchus.land import Ground, Run, simulate
 from suchus.land.arenas import BEFORE, STONE
 from suchus.metrics import between, cost_of_transport, displacement, heading_change, tilt
 from suchus.motion import START, Gait
+from suchus.replay import replay
 from suchus.robots import ROBOTS
 
 _FALLEN = np.radians(60)  # of roll or pitch: beyond this nothing on the robot brings it back
@@ -94,8 +95,26 @@ class Terrain(Experiment):
                 verdicts=self._verdicts(record),
                 record=record,
                 settings=self.settings(),
+                replays=self._replays(record),
                 seconds=seconds(),
             )
+
+    def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
+        caption = "Semi-erect with the IMU, and, half transparent, crawling low, over one field of 40 mm bumps."
+        html = replay(
+            record.isel(run=1),
+            self.robot,
+            ghost=record.isel(run=0),
+            labels=("semi-erect", "low crawl"),
+            title="Over bumps, semi-erect and low",
+            caption=caption,
+            relief=self._shown_relief(),
+            overlaid=True,
+        )
+        return {"terrain_replay.html": Replay(caption=caption, html=html)}
+
+    def _shown_relief(self) -> Bumps:
+        return Bumps(height=0.04, correlation=self.correlations[-1], start=BEFORE, seed=2)
 
     def arms(self) -> Mapping[str, tuple[Gait, Control]]:
         """Return gait and control of every arm."""
@@ -184,7 +203,7 @@ class Terrain(Experiment):
     def _example(self, progress: Any) -> xr.Dataset:
         """Return three robots on one field of bumps, for the figure."""
         arms = self.arms()
-        relief = Bumps(height=0.04, correlation=self.correlations[-1], start=BEFORE, seed=2)
+        relief = self._shown_relief()
         runs = [
             Run(robot=self.robot, gait=arms[arm][0], control=arms[arm][1], ground=Ground(relief=relief), label=arm)
             for arm in ("low_crawl", "semi_erect", "high_walk_level")

@@ -61,8 +61,8 @@ def checked(record: xr.Dataset, robot: Crocodile) -> xr.Dataset:
     if list(record.leg.values) != list(LEGS):
         raise IncompatibleRecord(f"the record's legs are {', '.join(map(str, record.leg.values))}, not LF, RF, LH, RH.")
     kept = record[list(_NEEDED)]
-    finite = [np.isfinite(kept[name]).all([d for d in kept[name].dims if d != "time"]).values for name in _NEEDED]
-    count = int(np.logical_and.accumulate(np.all(finite, axis=0)).sum())
+    values = np.concatenate([_rows(kept[name]) for name in _NEEDED], axis=1)
+    count = int(np.logical_and.accumulate(np.isfinite(values).all(axis=1)).sum())
     if count == 0:
         raise IncompatibleRecord("the record has no frame to show: run for longer than one sample.")
     return kept.isel(time=slice(0, count))
@@ -94,3 +94,9 @@ def frames(record: xr.Dataset, robot: Crocodile, rate: float | None = None) -> F
         feet=values["foot_position"],
         forces=values["foot_force"],
     )
+
+
+def _rows(variable: xr.DataArray) -> np.ndarray:
+    """Return the numbers of a variable, one row for each time."""
+    values = np.asarray(variable.transpose("time", ...).values, dtype=float)
+    return values.reshape(len(values), int(np.prod(values.shape[1:])))

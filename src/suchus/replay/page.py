@@ -37,6 +37,7 @@ def replay(
     title: str = "",
     caption: str = "",
     relief: Relief | None = None,
+    overlaid: bool = False,
 ) -> str:
     """Return a run as an HTML page that plays offline and needs nothing else.
 
@@ -48,6 +49,7 @@ def replay(
         title: heading; by default robot and gait.
         caption: one or two sentences: what there is to see.
         relief: what stood up from the ground.
+        overlaid: whether the two begin in the same place, which suits relief, or side by side.
 
     Raises:
         IncompatibleRecord: a record is no run on land, several runs, of another robot, or without a frame.
@@ -64,6 +66,7 @@ def replay(
         "length": robot.length,
         "aside": _BESIDE * robot.length,
         "loaded": LOADED,
+        "overlaid": overlaid,
         "metres_per_newton": _ARROW * robot.length / (robot.mass * GRAVITY),
         "marks": [max(floor(x.min()) - 1, -50), min(ceil(x.max()) + 1, 50)],
         "mark_side": -0.4 * robot.length,
@@ -81,6 +84,7 @@ def replay(
         still=Markup(still[0]),
         still_time=still[1],
         ghost=labels[1] if ghost is not None else "",
+        overlaid=overlaid,
         keys={"force": _FORCE, "support": _SUPPORT, "mass": _MASS, "legs": [(leg, COLOURS[leg]) for leg in LEGS]},
         arrow=f"{100 * _ARROW * robot.length:.0f} cm",
         version=versions()["suchus"],

@@ -48,6 +48,8 @@ def save_outcome(
             (draft / name).write_text(text, encoding="utf-8")
         for name, film in outcome.films.items():
             (draft / name).write_bytes(film)
+        for name, replay in outcome.replays.items():
+            (draft / name).write_text(replay.html, encoding="utf-8")
         record.save(outcome.record, draft / RECORD)
         captions = {name: pictures.caption(figure) for name, figure in figures.items()}
         told = describe(outcome, experiment, captions, command)
@@ -70,6 +72,7 @@ def describe(outcome: Outcome, experiment: Experiment, captions: Mapping[str, st
         "figures": [{"name": name, "caption": text} for name, text in captions.items()],
         "tables": list(outcome.tables),
         "films": [{"name": name, "caption": pictures.film_caption(film)} for name, film in outcome.films.items()],
+        "replays": [{"name": name, "caption": replay.caption} for name, replay in outcome.replays.items()],
         "provenance": record.provenance(outcome.settings, seconds=outcome.seconds),
     }
 

@@ -169,7 +169,7 @@
   const calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
   const asked = new URLSearchParams(location.hash.slice(1));
   const state = { time: 0, playing: !calm && !asked.has("t"), speed: 1, forces: true, support: true, tracks: true,
-    follow: true, compare: meta.actors.length > 1 ? "beside" : "hidden", dark: matchMedia("(prefers-color-scheme: dark)").matches };
+    follow: true, compare: meta.actors.length < 2 ? "hidden" : meta.overlaid ? "over" : "beside", dark: matchMedia("(prefers-color-scheme: dark)").matches };
   const camera = { azimuth: -0.95, elevation: 0.36, distance: 2.2 * meta.length, target: [0, 0, 0.06], moved: [0, 0, 0] };
   let dirty = true, last = 0, shown = null;
 
