@@ -1,5 +1,6 @@
 """What is written for other tools is the same robot."""
 
+import sys
 import warnings
 from dataclasses import replace
 from xml.etree import ElementTree
@@ -10,10 +11,11 @@ import pytest
 
 from suchus import blueprint
 from suchus.design import Crocodile, joint_names
-from suchus.errors import InvalidDesign, Unwritable
+from suchus.errors import InvalidDesign, UnknownName, Unwritable
 from suchus.model import SITES, compile_model, joint_addresses
-from suchus.model.export import MARK, ball, export, unsaid
+from suchus.model.export import MARK, NoUsd, ball, export, unsaid, unsaid_in_usd
 from suchus.model.export.urdf import _roll_pitch_yaw
+from suchus.model.export.usd import prim_name
 from suchus.robots import ROBOTS
 
 NOT_PHYSICS = ("key", "name", "tex", "mat", "skin", "vis", "nnames", "nbuffer", "nkey", "ntex", "signature")
@@ -201,17 +203,24 @@ def test_the_ball_is_closed_round_and_faces_outward():
     assert volume == pytest.approx(4 * np.pi / 3, rel=0.01)
 
 
-@pytest.mark.parametrize("kind", ["mjcf", "urdf"])
+@pytest.mark.parametrize("kind", ["mjcf", "urdf", "usd"])
 def test_a_folder_says_whose_it_is_and_what_is_missing(kind, robot, crawl_gait, tmp_path):
+    if kind == "usd":
+        pytest.importorskip("pxr")
     folder = export(robot, crawl_gait, tmp_path / "it", kind)
     assert blueprint.read(folder / "robot.toml", Crocodile, ROBOTS) == robot
     readme = (folder / "README.md").read_text()
     for file in folder.rglob("*"):
         if file.is_file() and file.name != "README.md":
             assert f"`{file.relative_to(folder)}`" in readme
-    if kind == "urdf":
-        assert all(text in readme for text in unsaid(robot))
-    for word in {"mjcf": ["gait", "pulley"], "urdf": ["tendon", "Springs", "PID", "friction", "armature"]}[kind]:
+    if kind != "mjcf":
+        assert all(text in readme for text in {"urdf": unsaid, "usd": unsaid_in_usd}[kind](robot))
+    words = {
+        "mjcf": ["gait", "pulley"],
+        "urdf": ["tendon", "Springs", "PID", "friction", "armature"],
+        "usd": ["tendon", "Springs", "integral", "friction", "armature"],
+    }
+    for word in words[kind]:
         assert word in readme.partition("does not say")[2]
     assert (folder / "LICENSE").is_file()
 
@@ -260,3 +269,121 @@ def test_yourdfpy_agrees_on_the_feet_and_finds_the_meshes(robot, crawl_gait, tmp
         theirs.update_cfg(angles)
         for site, place in sites.items():
             np.testing.assert_allclose(theirs.get_transform(site, "pelvis")[:3, 3], place, atol=1e-9)
+
+
+def usd_stage(folder, name):
+    pxr = pytest.importorskip("pxr", reason="usd-core is not installed: pip install suchus[usd]")
+    from pxr import Usd, UsdGeom, UsdPhysics, UsdShade  # noqa: F401, PLC0415  they load on import
+
+    return pxr, pxr.Usd.Stage.Open(str(folder / name))
+
+
+def usd_places(pxr, stage, root, angles):
+    """Return the place of every body at some joint angles, from the stage's transforms and the joints' frames."""
+    cache = pxr.UsdGeom.XformCache()
+
+    def at(path):  # USD's rows are our columns
+        return np.array(cache.GetLocalToWorldTransform(stage.GetPrimAtPath(path))).T
+
+    def frame(quat):
+        turn = np.empty(9)
+        mujoco.mju_quat2Mat(turn, np.array([quat.GetReal(), *quat.GetImaginary()], dtype=float))
+        return turn.reshape(3, 3)
+
+    places = {f"{root}/pelvis": np.eye(4)}
+    joints = [pxr.UsdPhysics.RevoluteJoint(p) for p in stage.GetPrimAtPath(f"{root}/joints").GetChildren()]
+    for joint in joints:
+        (parent,), (child,) = (str(p) for p in joint.GetBody0Rel().GetTargets()), joint.GetBody1Rel().GetTargets()
+        step = np.linalg.inv(at(parent)) @ at(child)
+        axis = np.eye(3)["XYZ".index(joint.GetAxisAttr().Get())]
+        before, after = (frame(a.Get()) for a in (joint.GetLocalRot0Attr(), joint.GetLocalRot1Attr()))
+        step[:3, :3] = before @ about(axis, angles[joint.GetPrim().GetName()]) @ after.T
+        assert tuple(joint.GetLocalPos1Attr().Get()) == (0, 0, 0)
+        np.testing.assert_allclose(joint.GetLocalPos0Attr().Get(), step[:3, 3], atol=1e-8)
+        places[str(child)] = places[parent] @ step
+    return {path: (place, np.linalg.inv(at(path))) for path, place in places.items()}, at
+
+
+def test_the_usd_has_the_same_points_in_every_posture(any_robot, crawl_gait, tmp_path):
+    folder = export(any_robot, crawl_gait, tmp_path / "u", "usd")
+    pxr, stage = usd_stage(folder, f"{any_robot.name}.usda")
+    root = str(stage.GetDefaultPrim().GetPath())
+    bodies = {
+        site: next(
+            str(body.GetPath())
+            for body in stage.GetDefaultPrim().GetChildren()
+            if stage.GetPrimAtPath(body.GetPath().AppendChild(site))
+        )
+        for site in (*SITES, "imu")
+    }
+    for angles, sites in poses(compile_model(any_robot), any_robot):
+        places, at = usd_places(pxr, stage, root, angles)
+        for site, place in sites.items():
+            body, back = places[bodies[site]]
+            found = body @ back @ at(f"{bodies[site]}/{site}")
+            np.testing.assert_allclose(found[:3, 3], place, atol=1e-12, err_msg=site)
+
+
+def test_the_usd_has_the_masses_limits_drives_and_shapes_of_the_model(any_robot, crawl_gait, tmp_path):
+    folder = export(any_robot, crawl_gait, tmp_path / "u", "usd")
+    pxr, stage = usd_stage(folder, f"{any_robot.name}.usda")
+    model, root = compile_model(any_robot), stage.GetDefaultPrim()
+    masses = {p.GetName(): pxr.UsdPhysics.MassAPI(p) for p in root.GetChildren() if p.HasAPI(pxr.UsdPhysics.MassAPI)}
+    for body in range(1, model.nbody):
+        held = masses.pop(model.body(body).name)
+        assert held.GetMassAttr().Get() == np.float32(model.body_mass[body])
+        np.testing.assert_array_equal(held.GetDiagonalInertiaAttr().Get(), model.body_inertia[body].astype(np.float32))
+        np.testing.assert_array_equal(held.GetCenterOfMassAttr().Get(), model.body_ipos[body].astype(np.float32))
+        quat = held.GetPrincipalAxesAttr().Get()
+        np.testing.assert_array_equal([quat.GetReal(), *quat.GetImaginary()], model.body_iquat[body].astype(np.float32))
+    assert all(name.endswith("_link") and mass.GetMassAttr().Get() < 2e-6 for name, mass in masses.items())
+    joints = {p.GetName(): p for p in stage.GetPrimAtPath(f"{root.GetPath()}/joints").GetChildren()}
+    assert set(joints) == set(joint_names(any_robot))
+    for name, prim in joints.items():
+        joint, drive = pxr.UsdPhysics.RevoluteJoint(prim), pxr.UsdPhysics.DriveAPI(prim, "angular")
+        limits = np.radians([joint.GetLowerLimitAttr().Get(), joint.GetUpperLimitAttr().Get()])
+        np.testing.assert_allclose(limits, model.joint(name).range, rtol=1e-6)
+        stiffness = np.degrees(drive.GetStiffnessAttr().Get())
+        spring = float(np.ravel(model.joint(name).stiffness)[0])
+        assert stiffness == pytest.approx(spring or any_robot.servo(name).kp, rel=1e-6)
+    assert pxr.UsdPhysics.DriveAPI(joints["LH_yaw"], "angular").GetMaxForceAttr().Get() == np.float32(
+        any_robot.hind_leg.servo.torque
+    )
+    solid = [p for p in stage.Traverse() if p.HasAPI(pxr.UsdPhysics.CollisionAPI)]
+    assert len(solid) == model.ngeom - 1
+    for prim in solid:
+        material, _ = pxr.UsdShade.MaterialBindingAPI(prim).ComputeBoundMaterial("physics")
+        rough = pxr.UsdPhysics.MaterialAPI(material.GetPrim()).GetDynamicFrictionAttr().Get()
+        geom = prim.GetName().removesuffix("_shape").removesuffix("_hull")
+        assert rough == np.float32(model.geom(geom).friction[0])
+
+
+def test_the_usd_scene_opens_in_metres_with_the_robot_on_its_ground(any_robot, crawl_gait, tmp_path):
+    folder = export(any_robot, crawl_gait, tmp_path / "u", "usd")
+    pxr, stage = usd_stage(folder, "scene.usda")
+    assert pxr.UsdGeom.GetStageMetersPerUnit(stage) == 1.0
+    assert pxr.UsdGeom.GetStageUpAxis(stage) == "Z"
+    assert stage.GetPrimAtPath("/World/physics").GetTypeName() == "PhysicsScene"
+    robots = [p for p in stage.Traverse() if p.HasAPI(pxr.UsdPhysics.ArticulationRootAPI)]
+    assert len(robots) == 1
+    box = pxr.UsdGeom.BBoxCache(pxr.Usd.TimeCode.Default(), ["default"])
+    reach = box.ComputeWorldBound(robots[0]).ComputeAlignedRange()
+    assert reach.GetMin()[2] == pytest.approx(0.0, abs=1e-3)
+    assert reach.GetMax()[0] - reach.GetMin()[0] == pytest.approx(any_robot.length, rel=0.02)
+
+
+def test_usd_without_its_library_says_what_to_install(robot, crawl_gait, tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "pxr", None)
+    with pytest.raises(NoUsd, match=r"pip install 'suchus\[usd\]'"):
+        export(robot, crawl_gait, tmp_path / "u", "usd")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_robot_s_name_becomes_one_that_usd_allows(robot):
+    assert prim_name(replace(robot, name="odd one")) == "odd_one"
+    assert prim_name(replace(robot, name="2nd")) == "_2nd"
+
+
+def test_an_unknown_format_is_told_with_those_near_it(robot, crawl_gait, tmp_path):
+    with pytest.raises(UnknownName, match="Did you mean 'urdf'"):
+        export(robot, crawl_gait, tmp_path / "x", "udrf")

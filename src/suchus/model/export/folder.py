@@ -11,10 +11,11 @@ from suchus.errors import InvalidDesign, UnknownName
 from suchus.model.build import TIMESTEP
 from suchus.model.export.mjcf import mjcf
 from suchus.model.export.urdf import BALL, ball, unsaid, urdf
+from suchus.model.export.usd import scene, unsaid_in_usd, usd
 from suchus.motion import Gait, check_limits
 from suchus.record import digest, new_folder, versions
 
-Format = Literal["mjcf", "urdf"]
+Format = Literal["mjcf", "urdf", "usd"]
 MARK = "suchus_export.json"
 """The file by which an export is known; a folder without it is never replaced."""
 _LICENCE = """This model was written by suchus (https://pypi.org/project/suchus) and carries its licence, Apache-2.0:
@@ -38,13 +39,14 @@ def export(robot: Crocodile, gait: Gait, folder: Path, kind: Format, *, timestep
         InvalidDesign: the robot's name makes no file name.
         OutsideLimits: the robot cannot take the home posture.
         Unwritable: the place cannot be written to, or is taken.
+        NoUsd: USD without usd-core.
     """
     if kind not in get_args(Format):
         raise UnknownName("format", kind, get_args(Format))
     if not robot.name or robot.name.startswith(".") or any(c in robot.name for c in "/\\\0"):
         raise InvalidDesign(f"the robot is named {robot.name!r}, which makes no file name; give it another name.")
     check_limits(robot, gait)
-    texts = _mjcf(robot, gait, timestep) if kind == "mjcf" else _urdf(robot)
+    texts = _texts(robot, gait, kind, timestep)
     origin = {"format": kind, "robot": digest({"robot": robot}), "home": digest({"gait": gait}), "versions": versions()}
     texts |= {
         "robot.toml": blueprint.render(robot),
@@ -56,6 +58,12 @@ def export(robot: Crocodile, gait: Gait, folder: Path, kind: Format, *, timestep
             (draft / name).parent.mkdir(exist_ok=True)
             (draft / name).write_text(text, encoding="utf-8")
     return folder
+
+
+def _texts(robot: Crocodile, gait: Gait, kind: Format, timestep: float) -> dict[str, str]:
+    if kind == "mjcf":
+        return _mjcf(robot, gait, timestep)
+    return _urdf(robot) if kind == "urdf" else _usd(robot, gait)
 
 
 def _mjcf(robot: Crocodile, gait: Gait, timestep: float) -> dict[str, str]:
@@ -89,6 +97,21 @@ def _urdf(robot: Crocodile) -> dict[str, str]:
     )
     text = _readme(robot, files, f"yourdfpy {_quoted(robot.name + '.urdf')}", about, unsaid(robot))
     return {f"{robot.name}.urdf": urdf(robot), BALL: ball(), "README.md": text}
+
+
+def _usd(robot: Crocodile, gait: Gait) -> dict[str, str]:
+    name = f"{robot.name}.usda"
+    files = {
+        name: "the robot: bodies, joints with limits and drives, shapes, frames",
+        "scene.usda": "the robot on level ground, with gravity and a light",
+    }
+    about = (
+        "UsdPhysics, in metres and kilograms, z up, x forward; angles are degrees, as the schema has them. All joints "
+        f"are at zero; their drives lead to the mid-stance of {gait.name}. Bodies, joints (below `joints`) and frames "
+        "(feet, snout, tail_tip, imu, below their bodies) carry the names that suchus gives them."
+    )
+    text = _readme(robot, files, f"usdview {_quoted('scene.usda')}", about, unsaid_in_usd(robot))
+    return {name: usd(robot, gait), "scene.usda": scene(robot), "README.md": text}
 
 
 def _readme(robot: Crocodile, files: Mapping[str, str], look: str, about: str, left_out: tuple[str, ...]) -> str:

@@ -1,0 +1,34 @@
+"""Robots as Gymnasium environments; importing this room registers them. The extra ``gym`` installs gymnasium."""
+
+from suchus.envs.spaces import action_space, observation_space  # isort: skip  # says what is missing, if it is
+from suchus.envs.policies import Anything, Follow, Played, Policy, play, still
+from suchus.envs.registering import IDS, STEPS, register
+from suchus.envs.senses import SENSES, part
+from suchus.envs.single import CrocodileEnv
+from suchus.envs.task import TASKS, Breaks, Rewards, Shoves, Task
+from suchus.envs.vector import CrocodileVectorEnv
+
+register()
+
+__all__ = [
+    "IDS",
+    "SENSES",
+    "STEPS",
+    "TASKS",
+    "Anything",
+    "Breaks",
+    "CrocodileEnv",
+    "CrocodileVectorEnv",
+    "Follow",
+    "Played",
+    "Policy",
+    "Rewards",
+    "Shoves",
+    "Task",
+    "action_space",
+    "observation_space",
+    "part",
+    "play",
+    "register",
+    "still",
+]

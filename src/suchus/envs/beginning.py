@@ -1,0 +1,74 @@
+"""Where an episode begins: lying in a gait's mid-stance, or standing on hind legs and tail."""
+
+from functools import lru_cache
+from math import ceil
+
+import numpy as np
+
+from suchus.control import Standing
+from suchus.design import Crocodile
+from suchus.envs.task import Task
+from suchus.errors import Diverged
+from suchus.gaits import GAITS
+from suchus.land import CONTROL_PERIOD, Ground, Run
+from suchus.land.bench import Bench
+from suchus.land.readings import Readings
+from suchus.land.restarting import Beginning
+from suchus.model import activations, compile_model, standing
+from suchus.model.export import home
+
+STILL = 3.0
+"""How long a robot has stood before an episode of standing begins [s]; it has settled after two."""
+_SOON = 0.2  # [s]; when standing up begins, where no crawl is needed
+_STRAIGHT = "limbs_only"  # the trunk is straight in its first posture
+
+
+def begin(task: Task) -> Beginning:
+    """Return how episodes of a task begin, before anything is left to chance.
+
+    Raises:
+        OutsideLimits: the robot cannot take the posture.
+        Diverged: it does not stand up.
+    """
+    if task.start == "upright":
+        return _upright(task.robot, task.ground, task.timestep)
+    model = compile_model(task.robot, task.timestep)
+    qpos, servos = home(model, task.robot, task.gait)
+    return Beginning(qpos, np.zeros(model.nv), activations(model, servos), servos)
+
+
+def off_by(task: Task, at: Beginning, jitter: np.ndarray) -> Beginning:
+    """Return a beginning with its servos off their places, shape (19,) [rad]; they are told their places all the same.
+
+    A lying robot is put on the ground again. One that stands keeps its tail, whose bend is no joint's alone.
+    """
+    model = compile_model(task.robot, task.timestep)
+    if task.start == "lying":
+        return at._replace(qpos=standing(model, task.robot, task.gait.hip_height, at.told + jitter))
+    qpos = at.qpos.copy()
+    qpos[model.jnt_qposadr[model.actuator_trnid[:-1, 0]]] += jitter[:-1]
+    return at._replace(qpos=qpos)
+
+
+@lru_cache(maxsize=16)
+def _upright(robot: Crocodile, ground: Ground, timestep: float) -> Beginning:
+    """Let a robot stand up once, as the shelf does it, and return the state in which it stands still."""
+    gait = GAITS[_STRAIGHT]
+    control = Standing(at=_SOON, hold=STILL)
+    run = Run(robot=robot, gait=gait, ground=ground, control=control)
+    ticks = ceil((control.upright_from(robot) + STILL) / CONTROL_PERIOD)
+    bench = Bench([run], timestep)
+    readings = Readings(bench, [run], 1)
+    controller = control.start([robot], [gait], [0], ticks, CONTROL_PERIOD)
+    bench.place([run], controller.rest())
+    targets = controller.rest()
+    for tick in range(ticks):
+        targets = controller.command(tick, readings.sensed(tick * CONTROL_PERIOD)).targets
+        bench.advance(targets, round(CONTROL_PERIOD / timestep), tick * CONTROL_PERIOD)
+    if not bench.alive.all():
+        raise Diverged(
+            f"robot {robot.name!r} does not stand up: {bench.cause[0]}; an upright start needs one that does.",
+            time=float(bench.ended[0]),
+        )
+    qpos, qvel, act = (np.array(part[0]) for part in (bench.qpos, bench.qvel, bench.batch.bind("act")))
+    return Beginning(qpos, qvel, act, np.array(targets[0]))

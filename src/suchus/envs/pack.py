@@ -1,0 +1,212 @@
+"""A pack: many robots at one task, each in an episode of its own, one batch of physics."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+from jaxtyping import Bool, Float
+
+from suchus.control import Sensed
+from suchus.design import servo_names
+from suchus.envs.beginning import begin, off_by
+from suchus.envs.reward import Terms
+from suchus.envs.senses import SERVOS, level_axes, observations
+from suchus.envs.task import Task
+from suchus.errors import UnknownName
+from suchus.land import CONTROL_PERIOD, Limp, Run
+from suchus.land.bench import Bench
+from suchus.land.readings import Readings
+from suchus.land.restarting import restart
+from suchus.model import compile_model
+from suchus.motion.targets import check_limits, servo_range
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Chance:
+    """What was drawn for one episode."""
+
+    phase: float = 0.0
+    """Of the clock at the beginning [cycle]."""
+    servo: int = -1
+    """Which servo breaks; -1: none."""
+    kind: str = ""
+    """How."""
+    breaks: int = -1
+    """In which control period; -1: never."""
+    force: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """Of the push [N]."""
+    pushed: int = -1
+    """In which control period it begins; -1: never."""
+
+    @property
+    def fault(self) -> str:
+        """In words; empty if nothing breaks."""
+        if self.servo < 0:
+            return ""
+        return f"{servo_names()[self.servo]} {self.kind} from {self.breaks * CONTROL_PERIOD:.2f} s"
+
+
+class Pack:
+    """Some robots at one task. What becomes of one does not depend on how many others there are.
+
+    Args:
+        task: the task.
+        count: how many robots.
+    """
+
+    def __init__(self, task: Task, count: int) -> None:
+        self.task, self.count = task, count
+        check_limits(task.robot, task.gait)
+        self._begin = begin(task)
+        self._low, self._high = np.array([servo_range(task.robot, name) for name in servo_names()]).T
+        self._runs = [Run(robot=task.robot, gait=task.gait, ground=task.ground)] * count
+        self._bench = Bench(self._runs, task.timestep)
+        self._readings = Readings(self._bench, self._runs, 1)
+        self._steps = round(CONTROL_PERIOD / task.timestep)
+        self._check_body()
+        self._told = np.tile(self._begin.told, (count, 1))
+        self._held = np.full((count, SERVOS), np.nan)
+        self._tick = np.zeros(count, dtype=int)
+        self.chances = [Chance()] * count
+        self.causes = [""] * count
+
+    @property
+    def centre(self) -> Float[np.ndarray, "19"]:
+        """Servo angles of an action of zero [rad]."""
+        return self._begin.told
+
+    @property
+    def time(self) -> Float[np.ndarray, " run"]:
+        """Since the beginning of each episode [s]."""
+        return self._tick * CONTROL_PERIOD
+
+    @property
+    def phase(self) -> Float[np.ndarray, " run"]:
+        """Of each robot's clock [cycle]."""
+        return np.array([chance.phase for chance in self.chances]) + self.time / self.task.gait.period
+
+    def restart(self, robots: Sequence[int], chances: Sequence[np.random.Generator]) -> None:
+        """Begin new episodes.
+
+        Args:
+            robots: whose.
+            chances: for each of them, what leaves its episode to chance.
+        """
+        for i, random in zip(robots, chances, strict=True):
+            jitter = self.task.jitter * random.uniform(-1.0, 1.0, SERVOS)
+            restart(self._bench, i, off_by(self.task, self._begin, jitter))
+            self._told[i], self._held[i], self._tick[i] = self._begin.told, np.nan, 0
+            self.chances[i], self.causes[i] = draw(self.task, random), ""
+
+    def feel(self) -> Float[np.ndarray, "run n"]:
+        """Return what each robot feels, see ``senses``."""
+        told = (self._told - self.centre) / self.task.span
+        return observations(self.task.robot, self._sensed(), self.phase, told)
+
+    def act(self, actions: Float[np.ndarray, "run 19"], who: Bool[np.ndarray, " run"]) -> Terms:
+        """Let some robots act for one step; the terms of the others mean nothing.
+
+        Args:
+            actions: -1 to 1; what is beyond counts as the end that it is beyond [-].
+            who: which robots.
+        """
+        span = self.task.span * np.clip(np.asarray(actions, dtype=float), -1.0, 1.0)
+        goal = np.where(who[:, None], np.clip(self.centre + span, self._low, self._high), self._told)
+        before, work = self._read("centre_of_mass"), np.zeros(self.count)
+        self._bench.alive[:] = who
+        periods = round(self.task.decision / CONTROL_PERIOD)
+        for k in range(periods):
+            self._happen(who)
+            targets = self._told + (k + 1) / periods * (goal - self._told)
+            targets = np.where(np.isnan(self._held), targets, self._held)
+            self._bench.advance(targets, self._steps, 0.0)
+            work += self._power() * CONTROL_PERIOD
+            self._tick[who] += 1
+        haste = ((goal - self._told) ** 2).sum(axis=1)
+        self._told = goal
+        return self._terms(who, before, work, haste)
+
+    def record(self, robot: int) -> xr.Dataset:
+        """Return one robot as it is now, as a record of one sample."""
+        self._bench.alive[:] = True
+        self._readings.store(0, self.phase[:, None] + np.array(self.task.gait.limb_phases), self._told)
+        return self._readings.record(np.zeros(1)).isel(run=robot).copy(deep=True)
+
+    def _terms(self, who: np.ndarray, before: np.ndarray, work: np.ndarray, haste: np.ndarray) -> Terms:
+        after, apart = self._read("centre_of_mass"), who & ~self._bench.alive
+        way = np.where(apart[:, None], 0.0, after - before)
+        aside = np.where(apart, 0.0, np.abs(after[:, 1]) - np.abs(before[:, 1]))
+        height, level = self._read("snout_position")[:, 2], level_axes(self._read("imu_orientation"))[0][:, 2]
+        fell = (height < self.task.least_height) | (level < self.task.least_level)
+        for i in np.flatnonzero(who & (fell | apart)):
+            self.causes[i] = self._why(int(i), bool(apart[i]), float(height[i]), float(level[i]))
+        return Terms(
+            forward=way[:, 0],
+            astray=aside,
+            upright=np.where(fell | apart, 0.0, self.task.decision),
+            work=np.where(apart, 0.0, work),
+            haste=haste,
+            fall=fell | apart,
+        )
+
+    def _why(self, robot: int, apart: bool, height: float, level: float) -> str:
+        when = f"at {self.time[robot]:.2f} s"
+        if apart:
+            return f"the physics came apart {when}: {self._bench.cause[robot]}"
+        if height < self.task.least_height:
+            return f"it fell {when}: the snout is at {height:.3f} m, below {self.task.least_height:g} m"
+        tilt, most = (float(np.degrees(np.arccos(np.clip(c, -1, 1)))) for c in (level, self.task.least_level))
+        return f"it rolled over {when}: the pelvis is tilted by {tilt:.0f} degrees, beyond {most:.0f}"
+
+    def _happen(self, who: np.ndarray) -> None:
+        """Break and push those whose time has come."""
+        for i in np.flatnonzero(who):
+            chance, tick = self.chances[i], self._tick[i]
+            if tick == chance.breaks:
+                if chance.kind == "limp":
+                    self._bench.break_servo(int(i), Limp(servo_names()[chance.servo]))
+                else:
+                    self._held[i, chance.servo] = self._bench.sensors[i, chance.servo]
+            if chance.pushed >= 0 and self.task.shoves is not None:
+                lasting = round(self.task.shoves.lasting / CONTROL_PERIOD)
+                if tick in (chance.pushed, chance.pushed + lasting):
+                    force = np.array(chance.force) * (tick == chance.pushed)
+                    self._bench.push(int(i), self.task.shoves.body, force)
+
+    def _sensed(self) -> Sensed:
+        return self._readings.sensed(0.0)
+
+    def _power(self) -> Float[np.ndarray, " run"]:
+        """Return torque times speed, summed over the servos [W]."""
+        read = self._bench.readings
+        return np.abs(read[:, SERVOS : 2 * SERVOS] * read[:, 2 * SERVOS : 3 * SERVOS]).sum(axis=1)
+
+    def _read(self, sensor: str) -> np.ndarray:
+        where = self._bench.model.sensor(sensor)
+        first = int(where.adr[0])
+        return np.array(self._bench.readings[:, first : first + int(where.dim[0])])
+
+    def _check_body(self) -> None:
+        if self.task.shoves is None:
+            return
+        model = compile_model(self.task.robot, self.task.timestep)
+        bodies = [model.body(i).name for i in range(1, model.nbody)]
+        if self.task.shoves.body not in bodies:
+            raise UnknownName("body", self.task.shoves.body, bodies)
+
+
+def draw(task: Task, random: np.random.Generator) -> Chance:
+    """Leave an episode to chance: the clock's phase, what breaks and who pushes."""
+    chance = {"phase": float(random.uniform())}
+    fault, push = task.breaks, task.shoves
+    told: dict[str, object] = {}
+    if fault is not None:
+        told["servo"] = servo_names().index(fault.joints[int(random.integers(len(fault.joints)))])
+        told["kind"] = fault.kinds[int(random.integers(len(fault.kinds)))]
+        told["breaks"] = int(np.ceil(random.uniform(fault.earliest, fault.latest) / CONTROL_PERIOD))
+    if push is not None:
+        told["pushed"] = int(np.ceil(random.uniform(push.earliest, push.latest) / CONTROL_PERIOD))
+        way, force = random.uniform(-np.pi, np.pi), random.uniform(0.0, push.most)
+        told["force"] = (float(force * np.cos(way)), float(force * np.sin(way)), 0.0)
+    return Chance(**chance, **told)  # type: ignore[arg-type]

@@ -1,0 +1,41 @@
+"""A robot at its task as a picture, drawn as the figures draw it: no OpenGL, and no screen."""
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from jaxtyping import UInt8
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+from suchus.design import Crocodile
+from suchus.figures import new, styled
+from suchus.figures.posture import draw_posture
+
+WIDTH, HEIGHT = 640, 480
+"""Of a picture [pixel]."""
+_DPI = 100
+_SPAN, _WIDE, _TALL = 1.6, 0.5, 0.75  # [m]; what is seen: along the walk, across it, and up
+
+
+def picture(robot: Crocodile, record: xr.Dataset, text: str) -> UInt8[np.ndarray, "height width 3"]:
+    """Return a robot from above and from its right side, with its centre of mass, as red, green and blue.
+
+    Args:
+        robot: whose record it is.
+        record: of one run, one sample.
+        text: what is written above.
+    """
+    with styled(font__size=9, axes__titlesize=10, xtick__labelsize=8, ytick__labelsize=8, axes__labelsize=9):
+        figure = new(width=WIDTH / _DPI, height=HEIGHT / _DPI)
+        figure.set_dpi(_DPI)
+        above, side = figure.subplots(2, 1, height_ratios=(_WIDE, _TALL), sharex=True)
+        draw_posture(above, robot, record, 0.0)
+        draw_posture(side, robot, record, 0.0, view="side")
+        x, y = record.centre_of_mass.values[0, :2].tolist()
+        above.set(
+            xlim=(x - _SPAN / 2, x + _SPAN / 2), ylim=(y - _WIDE / 2, y + _WIDE / 2), ylabel="left [m]", title=text
+        )
+        side.set(xlim=(x - _SPAN / 2, x + _SPAN / 2), ylim=(-0.03, _TALL), xlabel="forward [m]", ylabel="up [m]")
+        canvas: Any = FigureCanvasAgg(figure)
+        canvas.draw()
+    return np.array(canvas.buffer_rgba())[..., :3]

@@ -1,0 +1,33 @@
+"""What a step is worth: quantities in SI units, and their weighted sum."""
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from suchus.envs.task import Rewards
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Terms:
+    """What came of one step, for each robot; the weights of the same names are in ``Rewards``."""
+
+    forward: Float[np.ndarray, " run"]
+    """Way of the centre of mass along the world's x axis [m]."""
+    astray: Float[np.ndarray, " run"]
+    """By how much the centre of mass went away from that axis, to whichever side [m]."""
+    upright: Float[np.ndarray, " run"]
+    """Time with the snout high enough at the end of the step: the whole step or nothing [s]."""
+    work: Float[np.ndarray, " run"]
+    """Sum of torque times speed over all servos, braking counted as much as driving [J]."""
+    haste: Float[np.ndarray, " run"]
+    """Sum of the squares of the changes of all commanded angles [rad2]."""
+    fall: Bool[np.ndarray, " run"]
+    """Whether it fell, or the physics came apart [-]."""
+
+    def reward(self, weights: Rewards) -> Float[np.ndarray, " run"]:
+        """Return the weighted sum [-]."""
+        total = np.zeros(len(self.fall))
+        for f in fields(self):
+            total = total + getattr(weights, f.name) * getattr(self, f.name)
+        return total

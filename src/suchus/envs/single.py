@@ -1,0 +1,97 @@
+"""One robot as a ``gymnasium.Env``."""
+
+from dataclasses import fields
+from typing import Any
+
+import gymnasium
+import numpy as np
+
+from suchus.envs.pack import Pack
+from suchus.envs.picture import picture
+from suchus.envs.reward import Terms
+from suchus.envs.spaces import RENDER_MODES, action_space, check_render_mode, checked, observation_space
+from suchus.envs.task import Task, chosen
+
+
+class CrocodileEnv(gymnasium.Env):  # type: ignore[misc]  # gymnasium is not read by mypy
+    """A robot at a task: a pack of one, see ``Pack``.
+
+    Args:
+        task: the task, or its name.
+        render_mode: None or ``rgb_array``.
+        **changes: fields of the task to change; ``robot`` and ``gait`` also by name.
+
+    Raises:
+        UnknownName: no such task, field or render mode.
+        InvalidDesign: a value that makes no sense.
+    """
+
+    metadata: dict[str, Any] = {"render_modes": list(RENDER_MODES)}  # noqa: RUF012  gymnasium reads it off the class
+
+    def __init__(self, task: Task | str = "Crawl", render_mode: str | None = None, **changes: Any) -> None:
+        check_render_mode(render_mode)
+        self.task = chosen(task, changes)
+        self.pack = Pack(self.task, 1)
+        self.action_space, self.observation_space = action_space(), observation_space()
+        self.render_mode = render_mode
+        self.metadata = metadata(self.task)
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[np.ndarray, dict[str, Any]]:
+        """Begin an episode; equal seeds give equal episodes.
+
+        Args:
+            seed: of everything that is left to chance; None goes on with the last one.
+            options: none are known.
+
+        Returns:
+            The observation, and ``time`` and ``fault``.
+        """
+        super().reset(seed=seed)
+        del options
+        self.pack.restart([0], [self.np_random])
+        return self.pack.feel()[0], {"time": 0.0, "fault": self.pack.chances[0].fault}
+
+    def step(self, action: Any) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
+        """Act once.
+
+        Args:
+            action: one number of -1 to 1 for each servo; what is beyond counts as -1 or 1.
+
+        Returns:
+            Observation; reward; whether it fell; False, since time limits are a wrapper's; and the terms of the
+            reward, ``time``, ``fault`` and ``cause``, the sentence that says why the episode ended.
+
+        Raises:
+            OutsideLimits: an action of another shape, or not finite.
+        """
+        terms = self.pack.act(checked(action, self.action_space.shape)[None], np.ones(1, dtype=bool))
+        info = {name: values.tolist()[0] for name, values in told(self.pack, terms).items()}
+        return self.pack.feel()[0], float(terms.reward(self.task.rewards)[0]), bool(terms.fall[0]), False, info
+
+    def render(self) -> np.ndarray | None:
+        """Return a picture of (480, 640, 3) for ``rgb_array``, else None."""
+        return portrait(self.pack, 0) if self.render_mode == "rgb_array" else None
+
+
+def told(pack: Pack, terms: Terms) -> dict[str, np.ndarray]:
+    """Return what is said about a step besides its reward, one entry for each robot."""
+    said = {f.name: np.array(getattr(terms, f.name)) for f in fields(Terms) if f.name != "fall"}
+    return {
+        **said,
+        "time": np.array(pack.time),
+        "fault": np.array([chance.fault for chance in pack.chances], dtype=object),
+        "cause": np.array(pack.causes, dtype=object),
+    }
+
+
+def portrait(pack: Pack, robot: int) -> np.ndarray:
+    """Return a picture of one robot of a pack."""
+    text = f"{pack.time[robot]:.2f} s  {pack.chances[robot].fault}"
+    return picture(pack.task.robot, pack.record(robot), text)
+
+
+def metadata(task: Task) -> dict[str, Any]:
+    """Return what gymnasium wants to know about rendering."""
+    return {"render_modes": list(RENDER_MODES), "render_fps": round(1.0 / task.decision)}

@@ -1,0 +1,227 @@
+"""What is to be learned: a frozen value that says who acts, on what ground, what goes wrong and what is rewarded."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields, replace
+from types import MappingProxyType
+from typing import Any, Literal, get_args
+
+from suchus.design import Crocodile, leg_joints, servo_names
+from suchus.design.checks import Checks
+from suchus.errors import InvalidDesign, UnknownName
+from suchus.gaits import GAITS
+from suchus.land import CONTROL_PERIOD, Ground
+from suchus.motion import Gait
+from suchus.robots import ROBOTS
+
+Kind = Literal["limp", "locked"]
+Start = Literal["lying", "upright"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Rewards:
+    """Weights of the terms of the reward; each term is a quantity of one step in SI units, see ``envs.reward``.
+
+    None of them is from the article. They were chosen so that a whole episode of the shelf's own motion is worth about
+    ten, almost all of it from the one term that the task is about.
+    """
+
+    forward: float
+    """Per way of the centre of mass along the world's x axis, whereto the robot faces at first [1/m]."""
+    astray: float
+    """Per change of the centre of mass's distance from that axis; negative, since away is bad [1/m]."""
+    upright: float
+    """Per time with the snout above ``Task.least_height`` [1/s]."""
+    work: float
+    """Per work of all servos, braking counted as much as driving; negative [1/J]."""
+    haste: float
+    """Per square of the change of every commanded angle from one step to the next; negative [1/rad2]."""
+    fall: float
+    """Once, when the episode ends by a fall or because the physics came apart; negative [-]."""
+
+    def __post_init__(self) -> None:
+        with Checks("rewards", self) as check:
+            for f in fields(self):
+                check.number(f.name, -1e4, 1e4, "")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Breaks:
+    """One servo of every episode that breaks, drawn anew each time."""
+
+    joints: tuple[str, ...] = leg_joints()
+    """Servos among which it is drawn; those of the legs, since the article breaks no others."""
+    kinds: tuple[Kind, ...] = ("limp", "locked")
+    """How it breaks: without torque, or holding the angle that it has at that time."""
+    earliest: float = 0.0
+    """From when on it may happen [s]."""
+    latest: float = 4.0
+    """Until when [s]; half of the episode remains to do without it."""
+
+    def __post_init__(self) -> None:
+        unknown = [name for name in self.joints if name not in servo_names()]
+        if unknown:
+            raise UnknownName("servo", unknown[0], servo_names())
+        with Checks("breaks", self) as check:
+            check.that(len(self.joints) > 0, "breaks.joints is empty; name one servo at least")
+            allowed = get_args(Kind)
+            check.that(
+                len(self.kinds) > 0 and all(kind in allowed for kind in self.kinds),
+                f"breaks.kinds is {self.kinds!r}; {' and '.join(allowed)} are allowed, one at least",
+            )
+            check.number("earliest", 0.0, 3600.0, "s")
+            check.number("latest", 0.0, 3600.0, "s")
+            check.that(
+                self.earliest <= self.latest,
+                f"breaks.earliest is {self.earliest} s and breaks.latest {self.latest} s; they must not decrease",
+            )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Shoves:
+    """One push of every episode, level, from anywhere, drawn anew each time."""
+
+    most: float = 15.0
+    """Greatest force [N]; it is drawn evenly from zero, and four episodes of ten knock over who holds still."""
+    earliest: float = 1.0
+    """From when on it may begin [s]."""
+    latest: float = 4.0
+    """Until when [s]; a fall takes less than 2 s, so that it still shows."""
+    lasting: float = 0.2
+    """How long it lasts [s], as in the experiments on standing."""
+    body: str = "thorax"
+    """What is pushed."""
+
+    def __post_init__(self) -> None:
+        with Checks("shoves", self) as check:
+            check.number("most", 0.0, 1e3, "N")
+            check.number("earliest", 0.0, 3600.0, "s")
+            check.number("latest", 0.0, 3600.0, "s")
+            check.number("lasting", CONTROL_PERIOD, 60.0, "s")
+            check.that(
+                self.earliest <= self.latest,
+                f"shoves.earliest is {self.earliest} s and shoves.latest {self.latest} s; they must not decrease",
+            )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Task:
+    """What is to be learned.
+
+    An action is one number of -1 to 1 for each servo: it is told the angle ``centre + span action``, within its range.
+    Angles of servos were chosen rather than changes to a gait, because with these the shelf's gait would be the action
+    zero, and nothing would be left to learn; ``span`` keeps even random actions near a posture that carries the robot.
+    """
+
+    robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
+    """Who acts."""
+    gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
+    """Gait whose mid-stance is the centre of the actions of a lying robot, and whose period the clock tells."""
+    ground: Ground = field(default_factory=Ground)
+    """On what."""
+    start: Start = "lying"
+    """How an episode begins: in the gait's mid-stance, or standing as the shelf's way up leaves the robot."""
+    span: float = 0.8
+    """How far an action of one turns a servo from its centre [rad]; the shelf's crawl asks for 0.78 at its pulley."""
+    decision: float = 0.05
+    """Time from one action to the next [s]; a tenth of a fast walk's stance, and ten times what a servo's bus takes.
+
+    Meanwhile the commanded angles go in a straight line from the old to the new, one control period after another.
+    """
+    timestep: float = 0.005
+    """Of the physics [s]; displacements agree with those at 2 ms within 1 %."""
+    jitter: float = 0.05
+    """Joints begin off their places by up to so much [rad], so that no two episodes are alike."""
+    least_level: float = 0.3
+    """Cosine of the pelvis's tilt below which a robot has fallen [-]; -1: it cannot fall. A crawl stays above 0.9."""
+    least_height: float = 0.0
+    """Height of the snout below which a robot has fallen [m]; 0: it cannot fall."""
+    rewards: Rewards = field(
+        default_factory=lambda: Rewards(forward=10.0, astray=-5.0, upright=0.0, work=-0.01, haste=-0.002, fall=-5.0)
+    )
+    """What is good and what is bad."""
+    breaks: Breaks | None = None
+    """What breaks; None: nothing."""
+    shoves: Shoves | None = None
+    """Who pushes; None: nobody."""
+
+    def __post_init__(self) -> None:
+        with Checks("task", self) as check:
+            check.that(
+                self.start in get_args(Start),
+                f"task.start is {self.start!r}; {' or '.join(get_args(Start))} is allowed",
+            )
+            check.number("span", 0.01, 3.2, "rad")
+            check.number("decision", CONTROL_PERIOD, 1.0, "s")
+            check.number("timestep", 1e-4, CONTROL_PERIOD, "s")
+            check.number("jitter", 0.0, 0.5, "rad")
+            check.number("least_level", -1.0, 1.0, "")
+            check.number("least_height", 0.0, 10.0, "m")
+            for name, whole, part in (
+                ("decision", self.decision, CONTROL_PERIOD),
+                ("timestep", CONTROL_PERIOD, self.timestep),
+            ):
+                share = whole / part if part > 0 else 0.0
+                check.that(
+                    abs(share - round(share)) < 1e-6,
+                    f"task.{name} is {getattr(self, name)} s; it must fit the control period of {CONTROL_PERIOD} s "
+                    "a whole number of times",
+                )
+
+
+STANDING_SPAN = 0.3
+"""Of the actions in the task Stand [rad]: a hop, not another posture."""
+_CRAWL = Task()
+TASKS: Mapping[str, Task] = MappingProxyType(
+    {
+        "Crawl": _CRAWL,
+        "Stand": replace(
+            _CRAWL,
+            start="upright",
+            span=STANDING_SPAN,
+            jitter=0.01,
+            least_level=-1.0,
+            least_height=0.45,
+            rewards=Rewards(forward=0.0, astray=0.0, upright=1.0, work=-0.01, haste=-0.002, fall=-5.0),
+            shoves=Shoves(),
+        ),
+        "Fault": replace(_CRAWL, breaks=Breaks()),
+    }
+)
+"""The tasks by name; vary one with ``dataclasses.replace``, or by naming its fields to ``gymnasium.make``."""
+
+
+def chosen(task: Task | str, changes: Mapping[str, Any]) -> Task:
+    """Return a task, given itself or by its name, with some fields changed.
+
+    A robot or a gait may be given by its name on the shelf.
+
+    Raises:
+        UnknownName: there is no such task, or no such field; the message lists those that are.
+        InvalidDesign: a value makes no sense.
+    """
+    if isinstance(task, str):
+        if task not in TASKS:
+            raise UnknownName("task", task, TASKS)
+        task = TASKS[task]
+    names = [f.name for f in fields(Task)]
+    for name in changes:
+        if name not in names:
+            raise UnknownName("field of a task", name, names)
+    shelves: Mapping[str, Mapping[str, Any]] = {"robot": ROBOTS, "gait": GAITS}
+    found = {
+        name: shelves[name][value] if name in shelves and isinstance(value, str) else value
+        for name, value in changes.items()
+    }
+    kinds: Mapping[str, tuple[type, ...]] = {
+        "robot": (Crocodile,),
+        "gait": (Gait,),
+        "ground": (Ground,),
+        "rewards": (Rewards,),
+        "breaks": (Breaks, type(None)),
+        "shoves": (Shoves, type(None)),
+    }
+    for name, value in found.items():
+        if name in kinds and not isinstance(value, kinds[name]):
+            wanted = " or ".join("None" if kind is type(None) else kind.__name__ for kind in kinds[name])
+            raise InvalidDesign(f"task.{name} is {value!r}; a {wanted} is needed.")
+    return replace(task, **found)

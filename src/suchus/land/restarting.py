@@ -1,0 +1,46 @@
+"""Robots of a running batch put back to a beginning, one by one: what learning in many episodes needs."""
+
+from typing import NamedTuple
+
+import mujoco
+import numpy as np
+from jaxtyping import Float
+
+from suchus.land.bench import Bench
+
+_MENDED = {"opt.disableactuator": "disableactuator", "actuator_forcerange": "actuator_forcerange"}
+
+
+class Beginning(NamedTuple):
+    """How a robot begins."""
+
+    qpos: Float[np.ndarray, " q"]
+    """Generalised positions [m], [rad]."""
+    qvel: Float[np.ndarray, " v"]
+    """Generalised velocities [m/s], [rad/s]."""
+    act: Float[np.ndarray, " a"]
+    """Inner states of the servos: slew-limited targets and integrals."""
+    told: Float[np.ndarray, "19"]
+    """What the servos were told last [rad]."""
+
+
+def restart(bench: Bench, sim: int, begin: Beginning) -> None:
+    """Put one robot of a batch into a state, healthy and not pushed, whatever became of it before.
+
+    The others stay as they are. From then on it moves as a robot of a fresh batch does, to the last bit.
+
+    Args:
+        bench: the batch; its runs must be of one robot on one relief.
+        sim: which.
+        begin: the state.
+    """
+    batch, who = bench.batch, np.array([sim])
+    for name, plain in _MENDED.items():
+        if batch.expanded(name) is not None:
+            batch.expand(name)[sim] = getattr(bench.model.opt if name.startswith("opt.") else bench.model, plain)
+    batch.reset(who, stage=mujoco.mjtStage.mjSTAGE_NONE)
+    bench.qpos[sim], bench.qvel[sim], bench.ctrl[sim] = begin.qpos, begin.qvel, begin.told
+    batch.bind("act")[sim] = begin.act
+    batch.forward(who)
+    bench.readings[sim] = bench.sensors[sim]
+    bench.alive[sim], bench.ended[sim], bench.cause[sim] = True, np.inf, ""

@@ -1,0 +1,355 @@
+"""The environments keep gymnasium's contract, and their numbers do not depend on who else is in the batch."""
+
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+gymnasium = pytest.importorskip("gymnasium", reason="gymnasium is not installed: pip install suchus[gym]")
+
+from gymnasium.utils.env_checker import check_env  # noqa: E402
+from gymnasium.vector import AutoresetMode  # noqa: E402
+
+from suchus import envs  # noqa: E402
+from suchus.design import servo_names  # noqa: E402
+from suchus.envs.pack import Pack, draw  # noqa: E402
+from suchus.envs.reward import Terms  # noqa: E402
+from suchus.errors import InvalidDesign, OutsideLimits, UnknownName  # noqa: E402
+from suchus.gaits import GAITS  # noqa: E402
+from suchus.motion import limb_phase, servo_targets  # noqa: E402
+
+CRAWL, STAND, FAULT = envs.TASKS.values()
+DOCS = Path(__file__).parents[2] / "docs" / "environments.md"
+
+
+def acting(env, steps, seed=0):
+    """Step an environment with random actions and yield what it answers."""
+    random = np.random.default_rng(seed)
+    for _ in range(steps):
+        yield env.step(random.uniform(-1, 1, env.action_space.shape).astype(np.float32))
+
+
+@pytest.mark.parametrize("name", envs.IDS)
+def test_an_environment_passes_gymnasium_s_own_check_without_a_warning(name):
+    pictures = name == envs.IDS[0]  # they are drawn the same way for all
+    check_env(gymnasium.make(name).unwrapped, skip_render_check=not pictures)  # pytest turns warnings into errors
+    assert gymnasium.spec(name).max_episode_steps == envs.STEPS
+
+
+@pytest.mark.parametrize("mode", [AutoresetMode.NEXT_STEP, AutoresetMode.SAME_STEP])
+def test_many_robots_in_one_batch_are_as_many_single_environments_to_the_byte(mode):
+    count, short = 3, 12
+    breaks = replace(FAULT.breaks, latest=0.4)
+    one = gymnasium.make_vec(
+        "suchus/Fault-v0",
+        num_envs=count,
+        vectorization_mode="vector_entry_point",
+        autoreset_mode=mode,
+        max_episode_steps=short,
+        breaks=breaks,
+    )
+    many = gymnasium.vector.SyncVectorEnv(
+        [lambda: gymnasium.make("suchus/Fault-v0", max_episode_steps=short, breaks=breaks)] * count,
+        autoreset_mode=mode,
+    )
+    assert one.observation_space == many.observation_space
+    assert one.action_space == many.action_space
+    (a, said), (b, told) = one.reset(seed=5), many.reset(seed=5)
+    np.testing.assert_array_equal(a, b)
+    same(said, told)
+    ended = 0
+    for ours, theirs in zip(acting(one, 2 * short + 3), acting(many, 2 * short + 3), strict=True):
+        for a, b in zip(ours[:4], theirs[:4], strict=True):
+            np.testing.assert_array_equal(a, b)
+            assert a.dtype == b.dtype
+        same(ours[4], theirs[4])
+        ended += (ours[2] | ours[3]).sum()
+    assert ended >= 2 * count
+
+
+def same(ours, theirs):
+    assert set(ours) == set(theirs)
+    for key, value in ours.items():
+        if isinstance(value, dict):
+            same(value, theirs[key])
+        elif key == "final_obs":
+            for a, b in zip(value, theirs[key], strict=True):
+                np.testing.assert_array_equal(a, b)
+        else:
+            np.testing.assert_array_equal(value, theirs[key], err_msg=key)
+
+
+def test_equal_seeds_give_equal_episodes_and_others_do_not():
+    env = gymnasium.make("suchus/Stand-v0").unwrapped
+    runs = []
+    for seed in (3, 3, 4):
+        first = env.reset(seed=seed)[0]
+        runs.append(np.array([first, *(step[0] for step in acting(env, 5))]))
+    np.testing.assert_array_equal(runs[0], runs[1])
+    assert not np.array_equal(runs[0], runs[2])
+
+
+def test_a_robot_that_broke_begins_anew_as_if_nothing_had_happened():
+    breaks = envs.Breaks(joints=("LF_pitch",), kinds=("limp",), latest=0.0)
+    used, fresh = (Pack(replace(FAULT, breaks=breaks), 2) for _ in range(2))
+    used.restart([0, 1], [np.random.default_rng(1), np.random.default_rng(2)])
+    used.act(np.ones((2, 19)), np.ones(2, dtype=bool))
+    assert (used._bench.batch.expanded("opt.disableactuator") != 0).all()
+    for pack in (used, fresh):
+        pack.restart([1], [np.random.default_rng(7)])
+        pack.chances[1] = replace(pack.chances[1], breaks=-1)
+        for _ in range(4):
+            pack.act(np.full((2, 19), 0.3), np.array([False, True]))
+    np.testing.assert_array_equal(used.feel()[1], fresh.feel()[1])
+    np.testing.assert_array_equal(used._bench.qpos[1], fresh._bench.qpos[1])
+
+
+def test_the_shelf_s_gait_fits_into_the_actions_and_comes_out_of_them():
+    env = envs.CrocodileVectorEnv(1, CRAWL)
+    gait = CRAWL.gait
+    follow = envs.Follow(task=CRAWL, centre=tuple(env.pack.centre), gait=gait)
+    clock = np.linspace(0.0, 1.0, 50, endpoint=False)
+    seen = np.zeros((50, env.single_observation_space.shape[0]))
+    envs.part(seen, "clock")[:] = np.column_stack([np.sin(2 * np.pi * clock), np.cos(2 * np.pi * clock)])
+    actions = follow(seen)
+    assert np.abs(actions).max() < 1.0
+    ahead = 1.0 + gait.period * clock + CRAWL.decision
+    expected = servo_targets(CRAWL.robot, gait, limb_phase(gait, ahead))
+    np.testing.assert_allclose(env.pack.centre + CRAWL.span * actions, expected, atol=1e-12)
+
+
+def test_an_action_is_what_the_servos_are_told():
+    env = envs.CrocodileVectorEnv(1, replace(CRAWL, jitter=0.0))
+    env.reset(seed=0)
+    action = np.linspace(-0.5, 0.5, 19)[None]
+    for _ in range(12):
+        seen, *_ = env.step(action)
+    np.testing.assert_allclose(envs.part(seen, "told"), action, atol=1e-6)
+    low, high = env.pack._low, env.pack._high
+    angles = np.pi * envs.part(seen, "servo_position")[0]
+    told = np.clip(env.pack.centre + CRAWL.span * action[0], low, high)
+    arms = np.array(["yaw" in name for name in servo_names()])  # these carry no weight
+    np.testing.assert_allclose(angles[arms], told[arms], atol=0.03)
+
+
+def test_what_presses_on_the_ground_is_the_weight():
+    env = envs.CrocodileVectorEnv(1, CRAWL)
+    env.reset(seed=0)
+    pressed = []
+    for _ in range(40):
+        seen, *_ = env.step(np.zeros((1, 19)))
+        pressed.append(sum(envs.part(seen, f"{where}_pressure").sum() for where in ("foot", "belly", "tail")))
+    assert np.mean(pressed[10:]) == pytest.approx(1.0, abs=0.01)
+    np.testing.assert_allclose(envs.part(seen, "upward")[0], [0, 0, 1], atol=0.1)
+    np.testing.assert_allclose(envs.part(seen, "acceleration")[0], np.array([0, 0, 0.25]), atol=0.03)
+
+
+def test_readings_off_their_scale_are_cut_and_lost_ones_are_zero():
+    env = envs.CrocodileVectorEnv(2, CRAWL)
+    env.reset(seed=0)
+    env.pack._bench.readings[0, :19] = np.nan
+    env.pack._bench.readings[1, :19] = -7.0
+    seen = env.pack.feel()
+    np.testing.assert_array_equal(envs.part(seen, "servo_position"), np.repeat([[0.0], [-1.0]], 19, axis=1))
+
+
+def test_the_reward_is_the_weighted_sum_of_what_happened():
+    terms = Terms(
+        forward=np.array([0.5]),
+        astray=np.array([0.25]),
+        upright=np.array([0.05]),
+        work=np.array([2.0]),
+        haste=np.array([4.0]),
+        fall=np.array([True]),
+    )
+    weights = envs.Rewards(forward=1.0, astray=2.0, upright=20.0, work=-0.5, haste=-1.0, fall=-8.0)
+    assert terms.reward(weights).tolist() == [0.5 + 0.5 + 1.0 - 1.0 - 4.0 - 8.0]
+
+
+def test_the_terms_add_up_over_an_episode():
+    env = gymnasium.make("suchus/Crawl-v0").unwrapped
+    env.reset(seed=2)
+    begin = env.pack.record(0).centre_of_mass.values
+    forward = astray = total = weighted = 0.0
+    for _, reward, fell, _, info in acting(env, 4):
+        assert not fell
+        forward, astray, total = forward + info["forward"], astray + info["astray"], total + reward
+        weighted += sum(getattr(CRAWL.rewards, name) * info[name] for name in ("forward", "astray", "work", "haste"))
+    end = env.pack.record(0).centre_of_mass.values
+    assert forward == pytest.approx(end[0, 0] - begin[0, 0], abs=1e-12)
+    assert astray == pytest.approx(abs(end[0, 1]) - abs(begin[0, 1]), abs=1e-12)
+    assert total == pytest.approx(weighted, abs=1e-12)
+
+
+@pytest.mark.parametrize("kind", ["limp", "locked"])
+def test_the_joint_that_was_drawn_breaks_when_it_was_drawn(kind):
+    breaks = envs.Breaks(joints=("RH_yaw",), kinds=(kind,), earliest=0.3, latest=0.3)
+    env = gymnasium.make("suchus/Fault-v0", breaks=breaks).unwrapped
+    assert env.reset(seed=0)[1]["fault"] == f"RH_yaw {kind} from 0.30 s"
+    yaw = servo_names().index("RH_yaw")
+    wave = [np.eye(19)[yaw] * np.sin(0.9 * i) for i in range(14)]
+    seen = np.array([env.step(action)[0] for action in wave])
+    torque, angle = envs.part(seen, "servo_torque")[:, yaw], np.pi * envs.part(seen, "servo_position")[:, yaw]
+    assert np.abs(torque[:6]).min() > 0
+    if kind == "limp":
+        assert (torque[6:] == 0).all()
+    else:
+        np.testing.assert_allclose(angle[9:], angle[5], atol=0.06)
+    assert np.ptp(angle[:6]) > 0.3
+
+
+def test_faults_are_drawn_from_all_that_are_named():
+    random = np.random.default_rng(0)
+    drawn = [draw(FAULT, random) for _ in range(300)]
+    assert {servo_names()[chance.servo] for chance in drawn} == set(FAULT.breaks.joints)
+    assert {chance.kind for chance in drawn} == {"limp", "locked"}
+    assert max(chance.breaks for chance in drawn) <= 400
+
+
+def test_a_standing_robot_stays_up_unless_it_is_pushed_too_hard():
+    pushed = envs.Shoves(most=40.0, earliest=0.2, latest=0.2)
+    calm = envs.play(replace(STAND, shoves=None), envs.still, episodes=1, steps=60)
+    assert calm.lasted.tolist() == pytest.approx([3.0])
+    assert calm.returns[0] > 2.5
+    env = gymnasium.make("suchus/Stand-v0", shoves=pushed).unwrapped
+    env.reset(seed=1)
+    for _ in range(60):
+        _, reward, fell, _, info = env.step(np.zeros(19))
+        if fell:
+            break
+    assert fell
+    assert reward < -4
+    assert "the snout is at" in info["cause"]
+    assert info["cause"].endswith("m, below 0.45 m")
+
+
+def test_a_robot_that_comes_apart_ends_its_episode_with_a_sentence_and_the_others_go_on():
+    env, alone = (envs.CrocodileVectorEnv(n, CRAWL) for n in (2, 1))
+    env.reset(seed=[8, 9])
+    alone.reset(seed=[9])
+    env.pack._bench.qvel[0, 7] = 1e9
+    zero = np.zeros((2, 19))
+    seen, rewards, fell, _, infos = env.step(zero)
+    theirs, *_ = alone.step(zero[:1])
+    assert fell.tolist() == [True, False]
+    assert "the physics came apart at 0.05 s" in infos["cause"][0]
+    assert infos["cause"][1] == ""
+    assert np.isfinite(seen).all()
+    assert rewards[0] == pytest.approx(CRAWL.rewards.fall)
+    np.testing.assert_array_equal(seen[1], theirs[0])
+    seen, *_ = env.step(zero)
+    assert np.isfinite(seen).all()
+    assert env.pack.time.tolist() == [0.0, 0.1]
+
+
+def test_a_robot_on_its_back_has_fallen():
+    env = gymnasium.make("suchus/Crawl-v0").unwrapped
+    env.reset(seed=0)
+    env.pack._bench.qpos[0, 2] += 0.1
+    env.pack._bench.qpos[0, 3:7] = [0, 1, 0, 0]
+    _, _, fell, _, info = env.step(np.zeros(19))
+    assert fell
+    assert "it rolled over" in info["cause"]
+
+
+def test_the_gait_beats_standing_still_and_standing_still_beats_anything():
+    centre = tuple(Pack(CRAWL, 1).centre)
+    follow = envs.Follow(task=CRAWL, centre=centre, gait=CRAWL.gait)
+    returns = [
+        envs.play(CRAWL, policy, episodes=4, steps=90).returns.mean()
+        for policy in (follow, envs.still, envs.Anything(np.random.default_rng(0)))
+    ]
+    assert returns[0] > 2 > returns[1] > -0.5 > returns[2]
+
+
+def test_a_picture_shows_the_robot():
+    env = gymnasium.make("suchus/Crawl-v0", render_mode="rgb_array")
+    env.reset(seed=0)
+    picture = env.render()
+    assert picture.shape == (480, 640, 3)
+    assert (picture < 200).mean() > 0.02
+    assert gymnasium.make("suchus/Crawl-v0").unwrapped.render() is None
+
+
+def test_some_robots_begin_anew_by_a_mask_and_none_by_itself_when_that_is_disabled():
+    env = envs.CrocodileVectorEnv(2, CRAWL, max_episode_steps=1, autoreset_mode="Disabled")
+    env.reset(seed=0)
+    env.step(np.zeros((2, 19)))
+    with pytest.raises(gymnasium.error.ResetNeeded, match=r"robots \[0, 1\]"):
+        env.step(np.zeros((2, 19)))
+    _, infos = env.reset(options={"reset_mask": np.array([True, False])})
+    assert infos["_time"].tolist() == [True, False]
+    with pytest.raises(gymnasium.error.ResetNeeded, match=r"robots \[1\]"):
+        env.step(np.zeros((2, 19)))
+
+
+def test_tasks_are_varied_by_naming_their_fields():
+    env = gymnasium.make("suchus/Crawl-v0", robot="long_tail", gait="low_crawl", span=0.5).unwrapped
+    assert (env.task.robot.name, env.task.gait, env.task.span) == ("long_tail", GAITS["low_crawl"], 0.5)
+
+
+@pytest.mark.parametrize(
+    ("changes", "error", "text"),
+    [
+        ({"spam": 1}, UnknownName, "Did you mean 'span'?"),
+        ({"task": "Crwl"}, UnknownName, "Did you mean 'Crawl'?"),
+        ({"robot": "caimen"}, UnknownName, "Did you mean 'caiman'?"),
+        ({"gait": 3}, InvalidDesign, "task.gait is 3; a Gait is needed"),
+        ({"breaks": "limp"}, InvalidDesign, "a Breaks or None is needed"),
+        ({"span": -1.0}, InvalidDesign, "0.01 to 3.2 rad is allowed"),
+        ({"decision": 0.025}, InvalidDesign, "must fit the control period of 0.01 s"),
+        ({"timestep": 0.003}, InvalidDesign, "must fit the control period of 0.01 s"),
+        ({"start": "flying"}, InvalidDesign, "lying or upright is allowed"),
+        ({"render_mode": "human"}, UnknownName, "there is rgb_array"),
+        ({"shoves": envs.Shoves(body="nose")}, UnknownName, "there is no body named 'nose'"),
+    ],
+)
+def test_what_cannot_be_is_said_in_a_sentence(changes, error, text):
+    with pytest.raises(error) as told:
+        envs.CrocodileEnv(**changes)
+    assert text in str(told.value)
+
+
+def test_bad_breaks_and_shoves_are_refused():
+    with pytest.raises(UnknownName, match="Did you mean 'LF_yaw'"):
+        envs.Breaks(joints=("LF_yav",))
+    with pytest.raises(InvalidDesign, match="limp and locked are allowed"):
+        envs.Breaks(kinds=("weak",))
+    with pytest.raises(InvalidDesign, match="must not decrease"):
+        envs.Breaks(earliest=5.0, latest=1.0)
+    with pytest.raises(InvalidDesign, match="must not decrease"):
+        envs.Shoves(earliest=5.0, latest=1.0)
+
+
+def test_bad_actions_seeds_and_sizes_are_refused():
+    env = envs.CrocodileVectorEnv(2, CRAWL)
+    env.reset(seed=0)
+    with pytest.raises(OutsideLimits, match=r"\(2, 19\) is needed"):
+        env.step(np.zeros((2, 18)))
+    with pytest.raises(OutsideLimits, match="not a finite number"):
+        env.step(np.full((2, 19), np.nan))
+    with pytest.raises(InvalidDesign, match="3 seeds for 2 robots"):
+        env.reset(seed=[1, 2, 3])
+    with pytest.raises(InvalidDesign, match="2 booleans are needed"):
+        env.reset(options={"reset_mask": np.array([True])})
+    with pytest.raises(InvalidDesign, match="num_envs is 0"):
+        envs.CrocodileVectorEnv(0)
+    with pytest.raises(InvalidDesign, match="'NextStep', 'SameStep', 'Disabled'"):
+        envs.CrocodileVectorEnv(1, autoreset_mode="later")
+
+
+def test_without_gymnasium_the_sentence_says_what_to_install():
+    code = "import sys; sys.modules['gymnasium'] = None; import suchus.envs"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.returncode
+    assert done.stderr.strip().splitlines()[-1].endswith("install it with: pip install 'suchus[gym]'.")
+
+
+def test_the_page_lists_every_sense_as_it_is():
+    page = DOCS.read_text()
+    for sense in envs.SENSES:
+        row = f"| `{sense.name}` | {sense.columns.start} to {sense.columns.stop - 1} | {sense.scale} | {sense.what} |"
+        assert row in page
