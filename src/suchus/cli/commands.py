@@ -44,6 +44,18 @@ COMMANDS = (
         "read a gait from tracked keypoints",
         "suchus.cli.capture:capture",
     ),
+    Command(
+        "view",
+        "[ROBOT] [GAIT] | RECORD.nc",
+        "see it walk in the browser, live or played back",
+        "suchus.cli.view:view",
+    ),
+    Command(
+        "replay",
+        "RECORD.nc [--out FILE.html]",
+        "make a page of a stored run that plays offline",
+        "suchus.cli.replay:make_replay",
+    ),
     Command("study", "claims|FILE.toml [--out DIR]", "run many variants, resumable", "suchus.cli.study:study"),
     Command(
         "optimise",

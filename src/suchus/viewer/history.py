@@ -45,10 +45,15 @@ class History:
         return {name: rows[:, i] for i, name in enumerate(COLUMNS)}
 
 
-def table_of(record: xr.Dataset) -> dict[str, np.ndarray]:
-    """Return the same columns of a whole record of one run, the way counted from its first sample."""
+def table_of(record: xr.Dataset, origin: np.ndarray) -> dict[str, np.ndarray]:
+    """Return the same columns of a whole record of one run.
+
+    Args:
+        record: of one run.
+        origin: from where the way is counted, (3,) [m].
+    """
     com, feet = record.centre_of_mass.values, record.foot_force.sel(xyz="z").values
-    way = com - com[0]
+    way = com - origin
     columns = [record.time.values, com[:, 2], way[:, 0], way[:, 1], *feet.T]
     columns += [record.belly_force.sel(xyz="z").sum("segment").values, record.tail_force.sel(xyz="z").values]
     return dict(zip(COLUMNS, (np.asarray(column, dtype=float) for column in columns), strict=True))

@@ -119,8 +119,8 @@ DIRECTION = Knob(
 
 
 def shown(gait: Gait, name: str) -> float:
-    """Return a field of a gait in the unit of its knob, rounded away from binary noise."""
-    return float(f"{getattr(gait, name) / GAIT_KNOBS[name].scale:.9g}")
+    """Return a field of a gait in the unit of its knob, to four digits."""
+    return float(f"{getattr(gait, name) / GAIT_KNOBS[name].scale:.4g}")
 
 
 def tuned(robot: Crocodile, gait: Gait, name: str, value: object) -> tuple[Gait, str]:

@@ -1,0 +1,170 @@
+"""``suchus view``: a walk live, or a record played back, in the browser."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, fields
+from itertools import takewhile
+from pathlib import Path
+from typing import Annotated, Any
+
+import tyro
+
+from suchus.cli.commands import BadCommand
+from suchus.cli.options import parse
+from suchus.design import Crocodile
+from suchus.design.checks import require
+from suchus.gaits import GAITS
+from suchus.motion import Gait
+from suchus.robots import ROBOTS
+from suchus.viewer import Session
+from suchus.viewer.replay import takes
+from suchus.viewer.swim import films
+
+_LOOPBACK = ("127.0.0.1", "localhost", "::1")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Where:
+    """On which address people find it."""
+
+    host: str = "127.0.0.1"
+    """Address to listen on; by default only this computer can look."""
+    port: int = 8080
+    """Port to listen on; 0 for any that is free."""
+    most: int = 4
+    """How many browsers are served at once, each with a walk or a player of its own."""
+
+    def __post_init__(self) -> None:
+        require("view", "port", self.port, 0, 65535, "")
+        require("view", "most", self.most, 1, 64, "browsers")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Walking(Where):
+    """What can be said after ``suchus view`` to see a walk."""
+
+    robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
+    """Who walks."""
+    gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
+    """How, at the beginning."""
+    timestep: float = 0.005
+    """Of the physics [s]; a whole part of 0.01 s."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Replaying(Where):
+    """What can be said after ``suchus view`` to see a record."""
+
+    record: Annotated[Path, tyro.conf.Positional]
+    """The record.nc of an experiment on land."""
+    ghost: Path | None = None
+    """Another record, or the same one, shown pale beside it."""
+    robot: Crocodile | None = None
+    """Who walks in it; by default the robot of the shelf that the record names."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Swimming(Where):
+    """What can be said after ``suchus view swim``."""
+
+    record: Annotated[Path, tyro.conf.Positional]
+    """The record.nc of the experiment swimming."""
+
+
+def view(words: Sequence[str]) -> int:
+    """Serve until interrupted, and return 0.
+
+    Raises:
+        SuchusError: the words or a file make no sense, the viewer is not installed, or the port is taken.
+    """
+    if words[:1] in (["-h"], ["--help"]):
+        print(_HELP)
+        return 0
+    if words[:1] == ["swim"]:
+        return _swim(words[1:])
+    if words and not words[0].startswith("-") and _is_record(words[0]):
+        return _replay(words)
+    return _walk(words)
+
+
+def _is_record(word: str) -> bool:
+    return word.endswith(".nc") or (Path(word).is_file() and not word.endswith(".toml") and word not in ROBOTS)
+
+
+def _walk(words: Sequence[str]) -> int:
+    about = "A robot walks live in the browser: turn its gait, break its joints, push it."
+    first = list(takewhile(lambda word: not word.startswith("-"), words[:2]))
+    named = [part for option, word in zip(("--robot", "--gait"), first, strict=False) for part in (option, word)]
+    told = [*named, *words[len(first) :]]
+    options: Walking = parse(Walking, "suchus view", told, about, [f.name for f in fields(Walking)])
+    Session(options.robot, options.gait, timestep=options.timestep)  # refuses what cannot be walked, before a browser
+    pages = _pages()
+
+    def page(client: Any) -> Any:
+        return pages.LivePage(client, Session(options.robot, options.gait, timestep=options.timestep))
+
+    return _serve(page, options, f"{options.robot.name}, {options.gait.name}")
+
+
+def _replay(words: Sequence[str]) -> int:
+    about = "A record played back in the browser."
+    options: Replaying = parse(Replaying, "suchus view", words, about, [f.name for f in fields(Replaying)])
+    runs = takes(options.record, options.robot)
+    ghosts = takes(options.ghost, options.robot) if options.ghost else ()
+    pages = _pages()
+    return _serve(lambda client: pages.ReplayPage(client, runs, ghosts), options, options.record.name)
+
+
+def _swim(words: Sequence[str]) -> int:
+    about = "A swim played back in the browser, with vorticity and pressure of the water."
+    options: Swimming = parse(Swimming, "suchus view swim", words, about, [f.name for f in fields(Swimming)])
+    swims, curves = films(options.record)
+    pages = _pages()
+    return _serve(
+        lambda client: pages.SwimPage(client, swims, curves), options, options.record.name, camera=pages.FROM_ABOVE
+    )
+
+
+def _pages() -> Any:
+    """Return what needs viser, or say that it is missing."""
+    try:
+        from suchus.viewer import pages  # noqa: PLC0415  an optional extra, needed here only
+    except ModuleNotFoundError as error:
+        if (error.name or "").partition(".")[0] not in ("viser", "mjviser", "trimesh"):
+            raise
+        raise BadCommand(
+            f"suchus view needs the package {error.name}, which is not installed: pip install 'suchus[viewer]'."
+        ) from error
+    return pages
+
+
+def _serve(page: Callable[[Any], Any], where: Where, title: str, **settings: Any) -> int:
+    pages = _pages()
+    viewer = pages.Viewer(page, host=where.host, port=where.port, most=where.most, title=title, **settings)
+    try:
+        print(f"{title}: open {viewer.url} in a browser; Ctrl-C ends it.", flush=True)
+        if where.host not in _LOOPBACK:
+            print(f"Everybody who reaches {where.host} can look and meddle: there is no password.", flush=True)
+        viewer.wait()
+    except KeyboardInterrupt:
+        print("ended.")
+    finally:
+        viewer.stop()
+    return 0
+
+
+_HELP = """usage: suchus view [ROBOT] [GAIT] [--host HOST] [--port PORT]
+       suchus view RECORD.nc [--ghost RECORD2.nc]
+       suchus view swim RECORD.nc
+
+In the browser: a robot that walks live, a record played back, a swim with the water around it.
+
+  ROBOT, GAIT      names on the shelves, or TOML files; the caiman and its belly_crawl by default
+  RECORD.nc        the record of an experiment, as out/displacement/record.nc
+  --ghost FILE     another record, or the same one, shown pale beside it
+  --robot ROBOT    who walks in a record, where that robot is not on the shelf
+  --timestep S     of the physics of a live walk; 0.005 by default
+  --host HOST      address to listen on; 127.0.0.1 by default: only this computer can look
+  --port PORT      port to listen on; 8080 by default, 0 for any that is free
+  --most N         browsers served at once; 4 by default
+
+Each browser has a walk of its own; several do not disturb each other."""

@@ -1,0 +1,120 @@
+"""Where everything of a robot is in a posture, and the skin cut into pieces of one colour."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import mujoco
+import numpy as np
+from scipy.cluster.vq import kmeans2
+
+from suchus.design import Crocodile, joint_names
+from suchus.design.relief import Relief
+from suchus.model import compile_model, joint_addresses
+from suchus.skin import skin
+
+_COLOURS = 7  # into which the skin is cut; more look smoother and move slower
+
+
+class Posture:
+    """The bodies of a robot, set by an instant of a record.
+
+    Args:
+        robot: whose bodies.
+        relief: what it stands on, for its shape.
+    """
+
+    def __init__(self, robot: Crocodile, relief: Relief | None = None) -> None:
+        self.robot = robot
+        self.model = compile_model(robot, relief=relief)
+        self._data = mujoco.MjData(self.model)
+        self._joints = joint_addresses(self.model, joint_names(robot))
+
+    def put(self, now: Mapping[str, np.ndarray]) -> None:
+        """Take the posture of an instant, by the names of ``record.VARIABLES``."""
+        self._data.qpos[:3], self._data.qpos[3:7] = now["position"], now["orientation"]
+        self._data.qpos[self._joints] = now["joint_angle"]
+        mujoco.mj_kinematics(self.model, self._data)
+
+    def geoms(self) -> list[int]:
+        """Return the numbers of the geoms that belong to the robot."""
+        return [i for i in range(self.model.ngeom) if self.model.geom_bodyid[i] > 0]
+
+    def geom(self, number: int) -> tuple[np.ndarray, np.ndarray]:
+        """Return position [m] and orientation wxyz of a geom."""
+        turned = np.empty(4)
+        mujoco.mju_mat2Quat(turned, self._data.geom_xmat[number])
+        return np.array(self._data.geom_xpos[number]), turned
+
+    def body(self, name: str) -> tuple[np.ndarray, np.ndarray]:
+        """Return position [m] and orientation wxyz of a body."""
+        body: Any = self._data.body(name)
+        return np.array(body.xpos), np.array(body.xquat)
+
+    def joint(self, servo: str) -> np.ndarray:
+        """Return where the joint of a servo is [m]; for the cable, where its first joint is."""
+        number = self.model.joint("tail_yaw_1" if servo == "tail_cable" else servo).id
+        return np.array(self._data.xanchor[number])
+
+
+@dataclass(frozen=True, slots=True)
+class Piece:
+    """A part of the skin in one colour, with the bones that move it."""
+
+    vertices: np.ndarray
+    """(n, 3) [m]."""
+    faces: np.ndarray
+    """(m, 3)."""
+    weights: np.ndarray
+    """(n, bone) [-]."""
+    bones: tuple[str, ...]
+    """Names of the bones, which are bodies."""
+    rest: np.ndarray
+    """Origins of the bones at rest, (bone, 3) [m]."""
+    colour: tuple[int, int, int]
+    """Red, green, blue of 255."""
+
+
+@lru_cache(maxsize=8)
+def pieces(robot: Crocodile) -> tuple[Piece, ...]:
+    """Return the skin of a robot cut by colour, since a browser's skinned mesh has but one."""
+    whole = skin(robot)
+    of_faces = whole.colours[whole.faces].astype(float).mean(axis=1)
+    centres, group = kmeans2(of_faces, _COLOURS, minit="++", seed=0)
+    dense = np.zeros((len(whole.vertices), len(whole.bones)))
+    np.add.at(dense, (np.arange(len(dense))[:, None], whole.indices), whole.weights)
+    found = []
+    for number, centre in enumerate(centres):
+        mine = whole.faces[group == number]
+        if len(mine) == 0:
+            continue
+        kept, faces = np.unique(mine, return_inverse=True)
+        used = np.flatnonzero(dense[kept].any(axis=0))
+        red, green, blue = (round(float(value)) for value in centre)
+        found.append(
+            Piece(
+                vertices=whole.vertices[kept],
+                faces=faces.reshape(-1, 3),
+                weights=dense[np.ix_(kept, used)],
+                bones=tuple(whole.bones[bone] for bone in used),
+                rest=whole.rest[used],
+                colour=(red, green, blue),
+            )
+        )
+    return tuple(found)
+
+
+def support(feet: np.ndarray, loaded: np.ndarray) -> np.ndarray:
+    """Return the corners of the support of the loaded feet in order, (corner, 3) [m].
+
+    Args:
+        feet: places on the ground in the order of ``LEGS``, (4, 3) [m].
+        loaded: which stand, (4,).
+    """
+    corners = feet[loaded]
+    if len(corners) < 3:
+        return np.asarray(corners)
+    middle = corners.mean(axis=0)
+    order = np.argsort(np.arctan2(corners[:, 1] - middle[1], corners[:, 0] - middle[0]))
+    return np.asarray(corners[order])

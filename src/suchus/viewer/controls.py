@@ -1,0 +1,159 @@
+"""The controls of a live walk: what people turn, press and switch in the browser, passed on to the session."""
+
+from collections.abc import Callable
+from typing import Any
+
+from suchus.design import servo_names
+from suchus.gaits import GAITS
+from suchus.motion import Gait
+from suchus.viewer.knobs import BUMPS, DIRECTION, FORCE, GAIT_KNOBS, LASTING, SIDE_SLOPE, SLOPE, SPEED, Knob, shown
+from suchus.viewer.session import Session, Switch
+
+Say = Callable[[str], None]
+"""Tells people a sentence; an empty one is not told."""
+
+_SWITCHES: tuple[tuple[Switch, str, str], ...] = (
+    ("spine", "spine bends", "Off: the trunk is straight, as in the article's control group."),
+    ("tail", "tail swings on the ground", "Off: the tail is straight and lifted."),
+    ("coordination", "feedback: three rules", "Limbs feel their loads, trunk and tail what they lack."),
+    (
+        "heading",
+        "feedback: heading loop",
+        "Keeps the direction it has when switched on, by longer strokes on one side.",
+    ),
+)
+
+
+class Controls:
+    """The panel of controls.
+
+    Args:
+        gui: viser's interface of one browser.
+        session: the walk.
+        say: tells people a sentence.
+    """
+
+    def __init__(self, gui: Any, session: Session, say: Say) -> None:
+        self._gui, self._session, self._say = gui, session, say
+        self.touched = 0
+        self._switches: dict[str, Any] = {}
+        self._sliders: dict[str, Any] = {}
+        self._playback()
+        with gui.add_folder("Arms and feedback"):
+            for switch, label, hint in _SWITCHES:
+                self._add_switch(switch, label, hint)
+        with gui.add_folder("Gait"):
+            self._gaits()
+            for name, knob in GAIT_KNOBS.items():
+                self._add_gait_slider(name, knob)
+        with gui.add_folder("Break a joint"):
+            self._faults()
+        with gui.add_folder("Push"):
+            for name, knob in (("force", FORCE), ("direction", DIRECTION), ("lasting", LASTING)):
+                self._add_slider(name, knob)
+            self._on(gui.add_button("push the trunk", color="orange"), lambda _: session.push())
+        with gui.add_folder("Ground"):
+            for name, knob in (("uphill", SLOPE), ("sideways", SIDE_SLOPE), ("bumps", BUMPS)):
+                self._add_slider(name, knob)
+
+    @property
+    def paused(self) -> bool:
+        """Whether the walk stands still."""
+        return bool(self._pause.value)
+
+    def pause(self, on: bool) -> None:
+        """Let the walk stand still, or go on."""
+        self._pause.value = on
+
+    def _on(self, handle: Any, act: Callable[[Any], object]) -> None:
+        """Let a control act, when a person moves it; what ``act`` returns is told where it is a sentence."""
+
+        def moved(event: Any) -> None:
+            if event.client is None:  # set by ourselves
+                return
+            self.touched += 1
+            answer = act(handle.value)
+            if isinstance(answer, str):
+                self._say(answer)
+
+        (handle.on_click if hasattr(handle, "on_click") else handle.on_update)(moved)
+
+    def _playback(self) -> None:
+        gui = self._gui
+        with gui.add_folder("Walk"):
+            self._pause = gui.add_checkbox("pause", initial_value=False)
+            self._on(self._pause, lambda _: None)
+            self._on(gui.add_button("reset", hint="Begin anew with everything as it is set."), self._reset)
+            self._add_slider("speed", SPEED)
+
+    def _reset(self, _: object) -> None:
+        self._session.reset()
+        self._pause.value = False
+
+    def _add_switch(self, name: Switch, label: str, hint: str) -> None:
+        box = self._gui.add_checkbox(label, initial_value=getattr(self._session.settings, name), hint=hint)
+
+        def act(on: object) -> str:
+            notice = self._session.switch(name, bool(on))
+            box.value = getattr(self._session.settings, name)
+            return notice
+
+        self._on(box, act)
+        self._switches[name] = box
+
+    def _gaits(self) -> None:
+        names = list(GAITS)
+        mine = self._session.settings.gait
+        shelf: dict[str, Gait] = {name: GAITS[name] for name in names}
+        if shelf.get(mine.name) != mine:
+            shelf = {mine.name: mine, **shelf}
+        menu = self._gui.add_dropdown("from the shelf", tuple(shelf), initial_value=mine.name)
+
+        def act(name: Any) -> str:
+            notice = self._session.adopt(shelf[name])
+            for field in GAIT_KNOBS:
+                self._sliders[field].value = shown(self._session.settings.gait, field)
+            return notice
+
+        self._on(menu, act)
+
+    def _add_gait_slider(self, name: str, knob: Knob) -> None:
+        now = shown(self._session.settings.gait, name)
+        slider = self._slider(knob, now)
+
+        def act(value: object) -> str:
+            notice = self._session.tune(name, value)
+            slider.value = shown(self._session.settings.gait, name)
+            return notice
+
+        self._on(slider, act)
+        self._sliders[name] = slider
+
+    def _add_slider(self, name: str, knob: Knob) -> None:
+        slider = self._slider(knob, round(getattr(self._session.settings, name) / knob.scale, 9))
+
+        def act(value: object) -> str:
+            notice = self._session.put(name, value)
+            slider.value = round(getattr(self._session.settings, name) / knob.scale, 9)
+            return notice
+
+        self._on(slider, act)
+        self._sliders[name] = slider
+
+    def _slider(self, knob: Knob, now: float) -> Any:
+        return self._gui.add_slider(
+            str(knob),
+            min=min(knob.low, now),
+            max=max(knob.high, now),
+            step=knob.step,
+            initial_value=now,
+            hint=knob.hint,
+        )
+
+    def _faults(self) -> None:
+        gui, session = self._gui, self._session
+        joint = gui.add_dropdown("joint", servo_names(), initial_value="LF_yaw")
+        self._on(gui.add_button("make it limp", color="red"), lambda _: session.lose(joint.value, "limp"))
+        self._on(gui.add_button("lock it", color="dark"), lambda _: session.lose(joint.value, "locked"))
+        self._on(gui.add_button("repair it", color="green"), lambda _: session.mend(joint.value))
+        self._on(gui.add_button("repair all", color="gray"), lambda _: session.mend())

@@ -1,0 +1,105 @@
+"""A robot in a browser's scene: its skin or its collision geoms, moved from instant to instant."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any, Literal
+
+import numpy as np
+from mjviser.conversions import create_primitive_mesh
+
+from suchus.design import Crocodile
+from suchus.viewer.bodies import Posture, pieces
+
+Look = Literal["skin", "collision geoms"]
+LIMP, LOCKED = (225, 60, 45), (40, 40, 45)
+"""Colours of the marks on joints that are lost."""
+GHOST = (120, 140, 200)
+"""Colour of a robot that is there for comparison."""
+
+
+class DrawnRobot:
+    """A robot in the scene of one browser.
+
+    Args:
+        scene: viser's scene of that browser.
+        root: the node under which it stands.
+        robot: who.
+        ghost: whether it is there for comparison: pale, one colour.
+    """
+
+    def __init__(self, scene: Any, root: str, robot: Crocodile, *, ghost: bool = False) -> None:
+        self._scene, self._root, self._ghost = scene, root, ghost
+        self.posture = Posture(robot)
+        self._marks: dict[str, Any] = {}
+        self._lost: tuple[tuple[str, str], ...] = ()
+        self._look: Look = "skin"
+        self._geoms = {number: self._geom(number) for number in self.posture.geoms()}
+        self._skin = [(piece, self._piece(i, piece)) for i, piece in enumerate(pieces(robot))]
+
+    def _geom(self, number: int) -> Any:
+        mesh = create_primitive_mesh(self.posture.model, number)
+        colour = tuple(int(255 * part) for part in self.posture.model.geom_rgba[number][:3])
+        return self._scene.add_mesh_simple(
+            f"{self._root}/geom_{number}",
+            np.asarray(mesh.vertices),
+            np.asarray(mesh.faces),
+            color=GHOST if self._ghost else colour,
+            opacity=0.35 if self._ghost else None,
+            visible=False,
+        )
+
+    def _piece(self, number: int, piece: Any) -> Any:
+        still = np.tile([1.0, 0.0, 0.0, 0.0], (len(piece.bones), 1))
+        return self._scene.add_mesh_skinned(
+            f"{self._root}/skin_{number}",
+            piece.vertices,
+            piece.faces,
+            bone_wxyzs=still,
+            bone_positions=piece.rest,
+            skin_weights=piece.weights,
+            color=GHOST if self._ghost else piece.colour,
+            opacity=0.35 if self._ghost else None,
+        )
+
+    def look(self, look: Look) -> None:
+        """Show the skin or the collision geoms."""
+        self._look = look
+        for handle in self._geoms.values():
+            handle.visible = look != "skin"
+        for _, handle in self._skin:
+            handle.visible = look == "skin"
+
+    def show(self, now: Mapping[str, np.ndarray]) -> None:
+        """Move to an instant, by the names of ``record.VARIABLES``."""
+        self.posture.put(now)
+        if self._look == "skin":
+            at = np.array([now["position"][0], now["position"][1], 0.0])  # so that the browser knows where it is
+            for piece, handle in self._skin:
+                handle.position = at
+                for bone, name in zip(handle.bones, piece.bones, strict=True):
+                    position, turned = self.posture.body(name)
+                    bone.position, bone.wxyz = position - at, turned
+        else:
+            for number, handle in self._geoms.items():
+                handle.position, handle.wxyz = self.posture.geom(number)
+        for joint, (ball, label) in self._marks.items():
+            ball.position = self.posture.joint(joint)
+            label.position = ball.position + np.array([0.0, 0.0, 0.035])
+
+    def mark(self, lost: Sequence[tuple[str, str]]) -> None:
+        """Mark the joints that are lost, each with how: ``limp`` or ``locked``."""
+        if tuple(lost) == self._lost:
+            return
+        self._lost = tuple(lost)
+        for handles in self._marks.values():
+            for handle in handles:
+                handle.remove()
+        self._marks = {joint: self._mark(joint, kind) for joint, kind in lost}
+
+    def _mark(self, joint: str, kind: str) -> tuple[Any, Any]:
+        place = self.posture.joint(joint)
+        ball = self._scene.add_icosphere(
+            f"{self._root}/lost_{joint}", 0.026, color=LIMP if kind == "limp" else LOCKED, position=place, opacity=0.85
+        )
+        text = f"{joint.replace('_', ' ')} {kind}"
+        label = self._scene.add_label(f"{self._root}/word_{joint}", text, position=place, anchor="bottom-center")
+        return ball, label

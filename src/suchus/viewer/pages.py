@@ -1,0 +1,9 @@
+"""What needs viser: the server and its pages. Importing this fails where the extra ``viewer`` is not installed."""
+
+from suchus.viewer.live_page import LivePage
+from suchus.viewer.replay_page import ReplayPage
+from suchus.viewer.server import CannotServe, Viewer
+from suchus.viewer.swim_page import CAMERA as FROM_ABOVE
+from suchus.viewer.swim_page import SwimPage
+
+__all__ = ["FROM_ABOVE", "CannotServe", "LivePage", "ReplayPage", "SwimPage", "Viewer"]

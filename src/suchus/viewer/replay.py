@@ -1,0 +1,134 @@
+"""A record played back: which instant is seen when. It knows nothing of browsers."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from threading import RLock
+
+import numpy as np
+import xarray as xr
+
+from suchus.design import Crocodile, joint_names
+from suchus.errors import IncompatibleRecord, UnknownName
+from suchus.motion import START
+from suchus.record import VARIABLES, load
+from suchus.robots import ROBOTS
+from suchus.viewer.history import table_of
+
+_NEEDED = ("position", "orientation", "joint_angle", "centre_of_mass", "foot_position", "foot_force", "belly_force",
+           "tail_force")  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class Take:
+    """One run of a record, ready to be shown."""
+
+    label: str
+    """What it is called."""
+    robot: Crocodile
+    """Who walks in it."""
+    record: xr.Dataset
+    """The run, without the dimension ``run``."""
+
+    @property
+    def origin(self) -> np.ndarray:
+        """Where the centre of mass was when the walk began, (3,) [m]."""
+        first = int(np.searchsorted(self.record.time.values, START - 1e-9))
+        com = self.record.centre_of_mass.values
+        return np.asarray(com[first if first < len(com) else 0])
+
+    @property
+    def end(self) -> float:
+        """Time of the last valid sample [s]."""
+        return float(self.record.time[-1])
+
+    def at(self, time: float) -> dict[str, np.ndarray]:
+        """Return the sample nearest to a time, by the names of ``record.VARIABLES``."""
+        times = self.record.time.values
+        sample = int(np.clip(np.searchsorted(times, time), 0, len(times) - 1))
+        if sample > 0 and time - times[sample - 1] < times[sample] - time:
+            sample -= 1
+        return {name: self.record[name].values[sample] for name in _NEEDED}
+
+    def table(self) -> dict[str, np.ndarray]:
+        """Return the columns for plots, see ``history.COLUMNS``."""
+        return table_of(self.record, self.origin)
+
+
+def takes(path: Path, robot: Crocodile | None = None) -> tuple[Take, ...]:
+    """Return the runs of a record on land.
+
+    Args:
+        path: of the file.
+        robot: who walks in it; by default the robot of the shelf that the record names.
+
+    Raises:
+        UnreadableFile: there is no such file.
+        IncompatibleRecord: it is no record of a run on land, or of another robot.
+    """
+    record = load(path)
+    missing = [name for name in _NEEDED if name not in record]
+    if missing or "time" not in record.coords:
+        hint = " View it with suchus view swim." if any("midline_x" in str(name) for name in record) else ""
+        raise IncompatibleRecord(
+            f"{path} is no record of a run on land: it lacks {', '.join(missing) or 'time'}.{hint}"
+        )
+    whole = record[[name for name in (*VARIABLES, "cause", "ended", "mass", "period") if name in record]]
+    runs = [whole] if "run" not in whole.dims else [whole.isel(run=i) for i in range(whole.sizes["run"])]
+    return tuple(_take(path, run, i, robot) for i, run in enumerate(runs))
+
+
+def _take(path: Path, run: xr.Dataset, number: int, robot: Crocodile | None) -> Take:
+    who = robot or _robot(path, str(run.coords["robot"].item()) if "robot" in run.coords else "caiman")
+    if tuple(run.joint.values) != joint_names(who):
+        raise IncompatibleRecord(
+            f"{path} holds {run.sizes['joint']} joints and robot {who.name!r} has {len(joint_names(who))}: "
+            "name the robot that walked with --robot."
+        )
+    valid = np.isfinite(run.position.values).all(axis=-1)
+    if valid.sum() < 2:
+        raise IncompatibleRecord(f"run {number} of {path} has fewer than two valid samples.")
+    label = str(run.coords["label"].item()) if "label" in run.coords else f"run {number}"
+    return Take(label=f"{number}: {label}", robot=who, record=run.isel(time=valid).load())
+
+
+def _robot(path: Path, name: str) -> Crocodile:
+    try:
+        return ROBOTS[name]
+    except UnknownName as error:
+        raise IncompatibleRecord(
+            f"{path} was walked by robot {name!r}, which is not on the shelf: give its file with --robot FILE.toml."
+        ) from error
+
+
+class Player:
+    """The clock of a replay; all methods may be called from any thread.
+
+    Args:
+        start: first time [s].
+        end: last time [s].
+    """
+
+    def __init__(self, start: float, end: float) -> None:
+        self._start, self._end = start, max(end, start)
+        self._lock = RLock()
+        self.time = start
+        self.speed = 1.0
+        self.playing = True
+
+    def advance(self, seconds: float) -> None:
+        """Let real time pass; at the end the replay begins again [s]."""
+        with self._lock:
+            if self.playing:
+                self.time += self.speed * seconds
+                if self.time > self._end:
+                    self.time = self._start
+
+    def seek(self, time: object) -> None:
+        """Jump to a time, as near as there is one; what is no number changes nothing [s]."""
+        try:
+            asked = float(time)  # type: ignore[arg-type]
+        except (TypeError, ValueError):
+            return
+        with self._lock:
+            if np.isfinite(asked):
+                self.time = min(max(asked, self._start), self._end)

@@ -1,0 +1,137 @@
+"""One browser that watches a record: a time slider, a robot, perhaps a ghost beside it."""
+
+from collections.abc import Sequence
+from html import escape
+from threading import Event
+from time import monotonic
+from typing import Any
+
+import numpy as np
+from viser import uplot
+
+from suchus.viewer.knobs import SPEED
+from suchus.viewer.live_page import DRAWN, FRAME, PLOT
+from suchus.viewer.plots import Plots
+from suchus.viewer.replay import Player, Take
+from suchus.viewer.stage import Stage
+
+
+class ReplayPage:
+    """A browser and its own player of a record.
+
+    Args:
+        client: viser's handle of the browser.
+        takes: the runs of the record.
+        ghosts: the runs of the record for comparison; may be none.
+    """
+
+    def __init__(self, client: Any, takes: Sequence[Take], ghosts: Sequence[Take] = ()) -> None:
+        self._client, self._closed = client, Event()
+        self._takes = {take.label: take for take in takes}
+        self._ghosts = {take.label: take for take in ghosts}
+        end = max(take.end for take in (*takes, *ghosts))
+        self._player = Player(float(takes[0].record.time[0]), end)
+        gui = client.gui
+        self._status = gui.add_html("")
+        with gui.add_folder("Replay"):
+            self._play(gui, end)
+        with gui.add_folder("Record"):
+            self._run = gui.add_dropdown("run", tuple(self._takes))
+            self._ghost = (
+                gui.add_dropdown("ghost", tuple(self._ghosts), initial_value=_fellow(takes, ghosts)) if ghosts else None
+            )
+        with gui.add_folder("Look"):
+            skin = gui.add_checkbox("skin", initial_value=True, hint="Off: the shapes that touch the ground.")
+            self._follow = gui.add_checkbox("camera follows", initial_value=True)
+        gui.main_panel.dock_right()
+        gui.main_panel.set_width(330)
+        self._plots = Plots(gui, uplot, compared=bool(ghosts))
+        self._stage = Stage(client.scene, takes[0].robot)
+        if ghosts:
+            self._stage.compare(ghosts[0].robot)
+        self._stage.look("skin")
+        skin.on_update(lambda _: self._stage.look("skin" if skin.value else "collision geoms"))
+
+    def _play(self, gui: Any, end: float) -> None:
+        player = self._player
+        self._slider = gui.add_slider("time [s]", min=player.time, max=end, step=0.01, initial_value=player.time)
+        paused = gui.add_checkbox("pause", initial_value=False)
+        speed = gui.add_slider(str(SPEED), SPEED.low, SPEED.high, SPEED.step, 1.0)
+
+        def seek(event: Any) -> None:
+            if event.client is not None:
+                player.seek(self._slider.value)
+
+        def faster(_: Any) -> None:
+            player.speed, _ = SPEED.within(speed.value, player.speed)
+
+        def pause(_: Any) -> None:
+            player.playing = not paused.value
+
+        self._slider.on_update(seek)
+        speed.on_update(faster)
+        paused.on_update(pause)
+
+    def close(self) -> None:
+        """End the replay."""
+        self._closed.set()
+
+    def run(self) -> None:
+        """Play until closed."""
+        before = plotted = monotonic()
+        shown: tuple[str, str] = ("", "")
+        picture = 0
+        while not self._closed.is_set():
+            start, picture = monotonic(), picture + 1
+            self._player.advance(start - before)
+            before = start
+            take = self._takes[self._run.value]
+            ghost = self._ghosts[self._ghost.value] if self._ghost is not None else None
+            now = (take.label, ghost.label if ghost else "")
+            if now != shown:
+                shown, plotted = now, 0.0
+                self._tables = take.table(), ghost.table() if ghost else None
+                com = take.record.centre_of_mass.values[::5]
+                self._stage.draw_way(com * np.array([1.0, 1.0, 0.0]) + np.array([0.0, 0.0, 0.003]))
+            self._show(take, ghost, everything=picture % DRAWN == 1)
+            if start - plotted > PLOT:
+                plotted = start
+                self._plots.draw(*self._tables, now=self._player.time)
+            self._closed.wait(max(0.005, FRAME - (monotonic() - start)))
+
+    def _show(self, take: Take, ghost: Take | None, *, everything: bool) -> None:
+        time = self._player.time
+        with self._client.atomic():
+            now = take.at(time)
+            self._stage.place(now, (0.0, 0.0), follow=bool(self._follow.value))
+            self._stage.robot.show(now)
+            if ghost is not None and self._stage.ghost is not None:
+                self._stage.ghost.show(ghost.at(time))
+            if everything:
+                self._stage.draw(now)
+                self._slider.value = round(time, 2)
+                self._status.content = told(take, ghost, time)
+
+
+def told(take: Take, ghost: Take | None, time: float) -> str:
+    """Return the head of the page as HTML: who is where at this time."""
+    rows = []
+    for name, one in (("", take), ("ghost", ghost)):
+        if one is not None:
+            way = one.at(time)["centre_of_mass"] - one.origin
+            rows.append(
+                f'<tr><td style="padding-right:14px">{escape(f"{name} {one.label}".strip())}</td>'
+                f'<td style="padding-right:14px;font-weight:600" data-suchus="forward">{way[0]:+.3f} m</td>'
+                f'<td style="font-weight:600">{way[1]:+.3f} m</td></tr>'
+            )
+    return (
+        '<div style="padding:4px 12px;font:13px sans-serif"><table><tr style="color:#666;font-size:11px">'
+        f'<td data-suchus="time">at {time:.2f} s</td><td>forward</td><td>to the left</td></tr>{"".join(rows)}'
+        "</table></div>"
+    )
+
+
+def _fellow(takes: Sequence[Take], ghosts: Sequence[Take]) -> str:
+    """Return the ghost to begin with: of one file with itself, the second run."""
+    same = takes[0].label == ghosts[0].label and len(ghosts) > 1 and takes[0].record.equals(ghosts[0].record)
+    return ghosts[1 if same else 0].label

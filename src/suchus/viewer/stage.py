@@ -1,0 +1,200 @@
+"""The scene of one browser: ground, robot, forces, support, way; the camera may follow."""
+
+from collections.abc import Mapping, Sequence
+from math import cos, sin
+from typing import Any
+
+import numpy as np
+from mjviser.conversions import create_primitive_mesh
+
+from suchus.design import LEGS, Crocodile
+from suchus.design.relief import Relief
+from suchus.figures import COLOURS
+from suchus.metrics.gait import LOADED
+from suchus.model import compile_model
+from suchus.viewer.bodies import support
+from suchus.viewer.drawn import DrawnRobot, Look
+
+CAMERA = (0.78, -0.98, 0.62)
+"""Where the camera is at first [m]."""
+LOOKS_AT = (0.03, 0.0, 0.02)
+"""Where it looks at first [m]."""
+_PER_NEWTON = 0.008  # [m]; the robot's weight is then as long as its trunk
+_ABOVE = 0.003  # [m]; what is painted on the ground lies so far above it
+_WORLD = "/world"
+_STEPS = 400  # pieces of the way that are kept
+
+
+def rgb(colour: str) -> tuple[int, int, int]:
+    """Return a colour written as #rrggbb."""
+    return int(colour[1:3], 16), int(colour[3:5], 16), int(colour[5:7], 16)
+
+
+def slope(uphill: float, sideways: float) -> np.ndarray:
+    """Return the orientation wxyz in which a ground with these slopes is seen, gravity pointing down.
+
+    Args:
+        uphill: along the walk, up positive [rad].
+        sideways: left side up positive [rad].
+    """
+    a, b = -uphill / 2, sideways / 2  # first about x by the slope to the side, then about y
+    return np.array([cos(a) * cos(b), cos(a) * sin(b), sin(a) * cos(b), -sin(a) * sin(b)])
+
+
+def light(scene: Any) -> None:
+    """Light a scene by the sky and one sun, so that colours come out as they are meant."""
+    scene.configure_environment_map(None)
+    scene.configure_default_lights(enabled=False)
+    scene.add_light_hemisphere("/sky", sky_color=(255, 255, 255), ground_color=(190, 180, 165), intensity=1.7)
+    scene.add_light_directional("/sun", color=(255, 250, 240), intensity=2.0, position=(1.2, -0.9, 2.4))
+
+
+class Stage:
+    """Everything that is seen in one browser.
+
+    Args:
+        scene: viser's scene of that browser.
+        robot: who walks.
+    """
+
+    def __init__(self, scene: Any, robot: Crocodile) -> None:
+        self._scene = scene
+        light(scene)
+        self._world = scene.add_frame(_WORLD, show_axes=False)
+        self._relief: Any = None
+        self._grid: Any = None
+        self.lay(robot, None)
+        self.robot = DrawnRobot(scene, f"{_WORLD}/robot", robot)
+        self.ghost: DrawnRobot | None = None
+        self._forces = [self._arrow(f"force_{leg}", rgb(COLOURS[leg])) for leg in LEGS]
+        self._push = self._arrow("push", rgb(COLOURS["alarm"]), thick=1.5)
+        self._support = self._lines("support", rgb(COLOURS["spine"]), 0.008)
+        self._com = scene.add_icosphere(f"{_WORLD}/centre_of_mass", 0.014, color=rgb(COLOURS["tail"]))
+        self._plumb = self._lines("plumb", rgb(COLOURS["tail"]), 0.003)
+        self._way = self._lines("way", rgb(COLOURS["neutral"]), 0.004)
+        self._path: list[np.ndarray] = []
+        self.shown = {"forces": True, "support": True, "way": True}
+
+    def _arrow(self, name: str, colour: tuple[int, int, int], thick: float = 1.0) -> Any:
+        return self._scene.add_arrows(
+            f"{_WORLD}/{name}",
+            np.array([[[0.0, 0.0, 0.0], [0.0, 0.0, 0.1]]]),
+            colour,
+            shaft_radius=0.006 * thick,
+            head_radius=0.014 * thick,
+            head_length=0.028 * thick,
+            visible=False,
+        )
+
+    def _lines(self, name: str, colour: tuple[int, int, int], thickness: float) -> Any:
+        return self._scene.add_line_segments(
+            f"{_WORLD}/{name}", np.zeros((1, 2, 3)), colour, thickness=thickness, visible=False
+        )
+
+    def lay(self, robot: Crocodile, relief: Relief | None) -> None:
+        """Lay the ground, even or with what stands up from it."""
+        for handle in (self._relief, self._grid):
+            if handle is not None:
+                handle.remove()
+        model = compile_model(robot, relief=relief)
+        self._grid = self._scene.add_grid(
+            f"{_WORLD}/grid",
+            infinite_grid=True,
+            cell_size=0.1,
+            section_size=0.5,
+            cell_color=(205, 200, 190),
+            section_color=(165, 158, 146),
+            plane_color=(236, 232, 224),
+            plane_opacity=1.0,
+            fade_distance=9.0,
+            shadow_opacity=0.3,
+            position=(0.0, 0.0, float(model.geom("ground").pos[2])),
+        )
+        self._relief = None
+        if relief is not None:
+            geom = model.geom("relief")
+            mesh = create_primitive_mesh(model, geom.id)
+            self._relief = self._scene.add_mesh_simple(
+                f"{_WORLD}/relief",
+                np.asarray(mesh.vertices),
+                np.asarray(mesh.faces),
+                color=(214, 205, 186),
+                side="double",
+                position=np.array(geom.pos),
+            )
+
+    def compare(self, robot: Crocodile) -> None:
+        """Add a ghost for comparison."""
+        self.ghost = DrawnRobot(self._scene, f"{_WORLD}/ghost", robot, ghost=True)
+
+    def look(self, look: Look) -> None:
+        """Show skins or collision geoms."""
+        for drawn in (self.robot, self.ghost):
+            if drawn is not None:
+                drawn.look(look)
+
+    def place(self, now: Mapping[str, np.ndarray], tilt: tuple[float, float], *, follow: bool) -> None:
+        """Turn the world as its slope says, and move it so that a camera that follows keeps the robot in view."""
+        turned = slope(*tilt)
+        self._world.wxyz = turned
+        at = np.array([*now["centre_of_mass"][:2], 0.0]) if follow else np.zeros(3)
+        self._world.position = -_rotated(turned, at)
+
+    def draw(self, now: Mapping[str, np.ndarray], pushed: tuple[float, float, float] | None = None) -> None:
+        """Draw forces, support and a push that lasts; browsers take this less often than a robot that moves."""
+        feet, forces, com = now["foot_position"], now["foot_force"], now["centre_of_mass"]
+        ground = feet - np.array([0.0, 0.0, 1.0]) * self._radii()[:, None]
+        for arrow, foot, force in zip(self._forces, ground, forces, strict=True):
+            arrow.visible = bool(self.shown["forces"] and force[2] > LOADED)
+            if arrow.visible:
+                arrow.points = np.array([[foot, foot + _PER_NEWTON * force]], dtype=np.float32)
+        self._push.visible = pushed is not None
+        if pushed is not None:
+            tip, _ = self.robot.posture.body("thorax")
+            tip = tip + np.array([0.0, 0.0, 0.05])
+            way = np.array(pushed)
+            self._push.points = np.array([[tip - _PER_NEWTON * way, tip]], dtype=np.float32)
+        self._stand(ground, forces[:, 2] > LOADED, com)
+
+    def _radii(self) -> np.ndarray:
+        return np.array([self.robot.posture.robot.leg(leg).foot_radius for leg in LEGS])
+
+    def _stand(self, feet: np.ndarray, loaded: np.ndarray, com: np.ndarray) -> None:
+        corners = support(feet, loaded) + np.array([0.0, 0.0, _ABOVE])
+        self._support.visible = bool(self.shown["support"] and len(corners) > 1)
+        if len(corners) > 1:
+            ends = np.stack([corners, np.roll(corners, -1, axis=0)], axis=1)
+            self._support.points = ends.astype(np.float32)
+        floor = float(feet[loaded, 2].mean()) if loaded.any() else 0.0
+        below = np.array([com[0], com[1], floor + _ABOVE])
+        self._com.visible = self._plumb.visible = bool(self.shown["support"])
+        self._com.position = below
+        self._plumb.points = np.array([[below, com]], dtype=np.float32)
+
+    def go(self, com: np.ndarray) -> None:
+        """Lengthen the way on the ground to where the centre of mass is now."""
+        here = np.array([com[0], com[1], _ABOVE])
+        if self._path and np.linalg.norm(here - self._path[-1]) < 0.005:
+            return
+        self._path = [*self._path, here][-_STEPS:]
+        self.draw_way(np.array(self._path))
+
+    def draw_way(self, path: np.ndarray) -> None:
+        """Draw a way on the ground, (point, 3) [m]."""
+        self._way.visible = bool(self.shown["way"] and len(path) > 1)
+        if len(path) > 1:
+            self._way.points = np.stack([path[:-1], path[1:]], axis=1).astype(np.float32)
+
+    def forget(self) -> None:
+        """Forget the way."""
+        self._path = []
+        self._way.visible = False
+
+    def mark(self, lost: Sequence[tuple[str, str]]) -> None:
+        """Mark the joints that are lost."""
+        self.robot.mark(lost)
+
+
+def _rotated(turned: np.ndarray, vector: np.ndarray) -> np.ndarray:
+    w, axis = turned[0], turned[1:]
+    return np.asarray(vector + 2 * np.cross(axis, np.cross(axis, vector) + w * vector))

@@ -1,0 +1,131 @@
+"""What a record of swimming shows over time: fields of the water and the outline of the body, without a browser."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import matplotlib as mpl
+import numpy as np
+import xarray as xr
+
+from suchus.errors import IncompatibleRecord
+from suchus.record import load
+
+_FIELDS = ("vorticity", "pressure")
+_MAPS = {"vorticity": "RdBu_r", "pressure": "PuOr"}
+_CLIPPED = 0.985  # share of the values that the colours tell apart; a few at the tail's tip are far beyond
+_TITLES = {"held": "held at the snout", "free": "free, from rest", "printed": "the wave as printed"}
+
+
+def colours(name: str, shares: np.ndarray) -> np.ndarray:
+    """Return the colours of a field, (..., 3) uint8, for its values as shares of the limit, -1 to 1."""
+    return np.asarray(mpl.colormaps[_MAPS[name]](np.clip(0.5 + 0.5 * shares, 0.0, 1.0), bytes=True)[..., :3])
+
+
+@dataclass(frozen=True, slots=True)
+class Film:
+    """One swim of a record, frame by frame."""
+
+    title: str
+    """What it is called."""
+    phase: np.ndarray
+    """Of each frame, (frame,) [cycle]."""
+    x: np.ndarray
+    """Of the points of the fields, along the body (x,) [m]."""
+    y: np.ndarray
+    """Across it, (y,) [m]."""
+    fields: Mapping[str, np.ndarray]
+    """By name, (frame, y, x)."""
+    units: Mapping[str, str]
+    """Of the fields."""
+    sides: np.ndarray
+    """Left and right side of the body, (frame, 2, station, 2) [m]."""
+
+    def limit(self, name: str) -> float:
+        """Return the value at which the colours of a field end; they are symmetric about zero."""
+        return float(np.quantile(np.abs(self.fields[name]), _CLIPPED)) or 1.0
+
+    def picture(self, name: str, frame: int) -> np.ndarray:
+        """Return a field as colours, (y, x, 3) uint8, the first row at the least y."""
+        limit = self.limit(name)
+        return colours(name, self.fields[name][frame] / limit)
+
+
+@dataclass(frozen=True, slots=True)
+class Curve:
+    """A measured course for a plot."""
+
+    title: str
+    """With the unit."""
+    x: np.ndarray
+    """(n,)."""
+    lines: Mapping[str, np.ndarray]
+    """By name, each (n,)."""
+
+
+def films(path: Path) -> tuple[tuple[Film, ...], tuple[Curve, ...]]:
+    """Return what a record of swimming shows.
+
+    Args:
+        path: of the file.
+
+    Raises:
+        UnreadableFile: there is no such file.
+        IncompatibleRecord: it is no record of swimming in the resolved flow.
+    """
+    record = load(path)
+    prefixes = [str(name).removesuffix("midline_x") for name in record if str(name).endswith("midline_x")]
+    found = [film for prefix in prefixes if (film := _film(record, prefix)) is not None]
+    if not found:
+        raise IncompatibleRecord(
+            f"{path} holds no fields of water: only records of swimming in the resolved flow do, as the record.nc of "
+            "suchus run swimming."
+        )
+    return tuple(found), _curves(record)
+
+
+def _film(record: xr.Dataset, prefix: str) -> Film | None:
+    names = [name for name in _FIELDS if f"{prefix}{name}" in record and record[f"{prefix}{name}"].ndim in (2, 3)]
+    if not names:
+        return None
+    first = record[f"{prefix}{names[0]}"]
+    across, along = str(first.dims[-2]), str(first.dims[-1])
+    alike = [name for name in names if record[f"{prefix}{name}"].dims == first.dims]
+    fields = {name: _stacked(record[f"{prefix}{name}"].values) for name in alike}
+    count = len(fields[names[0]])
+    frame = str(first.dims[0]) if first.ndim == 3 else ""
+    phase = record[frame].values if frame in record.coords else np.arange(1, count + 1) / count
+    line = {part: _lines(record[f"{prefix}midline_{part}"].values) for part in ("x", "y", "heading", "half_width")}
+    across_body = np.stack([-np.sin(line["heading"]), np.cos(line["heading"])], axis=-1) * line["half_width"][..., None]
+    middle = np.stack([line["x"], line["y"]], axis=-1)
+    title = _TITLES.get(prefix.rstrip("_"), prefix.rstrip("_") or "swim")
+    return Film(
+        title=title,
+        phase=np.asarray(phase, dtype=float),
+        x=record[along].values,
+        y=record[across].values,
+        fields=fields,
+        units={name: str(record[f"{prefix}{name}"].attrs.get("units", "")) for name in alike},
+        sides=np.stack([middle + across_body, middle - across_body], axis=1)[-count:],
+    )
+
+
+def _stacked(values: np.ndarray) -> np.ndarray:
+    return values[None] if values.ndim == 2 else values
+
+
+def _lines(values: np.ndarray) -> np.ndarray:
+    return values[None] if values.ndim == 1 else values
+
+
+def _curves(record: xr.Dataset) -> tuple[Curve, ...]:
+    curves = []
+    for prefix, said in _TITLES.items():
+        parts = {"forward": f"{prefix}_thrust", "to the side": f"{prefix}_aside"}
+        if all(name in record for name in parts.values()):
+            phase = record[f"{prefix}_phase"].values
+            curves.append(Curve(f"force [N/m], {said}", phase, {k: record[v].values for k, v in parts.items()}))
+    if "arm_speed" in record:
+        lines = {str(arm): record.arm_speed.sel(arm=arm).values for arm in record.arm.values[:3]}
+        curves.append(Curve("speed of each cycle [m/s]", np.arange(1.0, record.sizes["cycle"] + 1), lines))
+    return tuple(curves)
