@@ -67,6 +67,7 @@ def replay(
         "aside": _BESIDE * robot.length,
         "loaded": LOADED,
         "overlaid": overlaid,
+        "floor": float(field(relief).min()) if isinstance(relief, Bumps) else 0.0,  # as deep as the field, as in model
         "metres_per_newton": _ARROW * robot.length / (robot.mass * GRAVITY),
         "marks": [max(floor(x.min()) - 1, -50), min(ceil(x.max()) + 1, 50)],
         "mark_side": -0.4 * robot.length,

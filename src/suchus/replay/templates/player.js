@@ -56,6 +56,13 @@
       c += 0.16 * pow(max(dot(n, H), 0.0), 28.0) + 0.10 * pow(1.0 - max(dot(n, V), 0.0), 3.0) * sky;
       return c * mix(1.0, 0.86, uNight);
     }`;
+  const lines = `
+    float line(vec2 at, float each, float wide) {
+      vec2 from = abs(fract(at / each - 0.5) - 0.5) * each, w = fwidth(at);
+      vec2 hit = 1.0 - smoothstep(vec2(wide * 0.5), vec2(wide * 0.5) + 1.2 * w, from);
+      return max(hit.x, hit.y) * clamp(each / (6.0 * max(w.x, w.y)), 0.0, 1.0);
+    }
+    float lines(vec2 at) { return max(0.22 * line(at, 0.1, 0.0006), 0.70 * line(at, 1.0, 0.002)); }`;
   const skinned = program(`
     layout(location=0) in vec3 aAt; layout(location=1) in vec3 aNormal; layout(location=2) in vec3 aColour;
     layout(location=3) in uvec2 aBone; layout(location=4) in float aWeight;
@@ -80,24 +87,19 @@
     layout(location=0) in vec3 aAt; layout(location=1) in vec3 aNormal; layout(location=2) in vec4 aColour;
     uniform mat4 uView; out vec3 vAt, vNormal; out vec4 vColour;
     void main() { vAt = aAt; vNormal = aNormal; vColour = aColour; gl_Position = uView * vec4(aAt, 1.0); }`, `
-    in vec3 vAt, vNormal; in vec4 vColour; out vec4 colour; ${lit}
+    in vec3 vAt, vNormal; in vec4 vColour; uniform float uLined; out vec4 colour; ${lit} ${lines}
     void main() {
       bool flat_ = dot(vNormal, vNormal) < 0.01;
-      colour = vec4(flat_ ? vColour.rgb : lit(vColour.rgb, normalize(vNormal), vAt), vColour.a);
+      vec3 own = mix(vColour.rgb, vec3(0.45, 0.43, 0.38), uLined * lines(vAt.xy));
+      colour = vec4(flat_ ? own : lit(own, normalize(vNormal), vAt), vColour.a);
     }`);
   const floor = program(`
-    layout(location=0) in vec3 aAt; uniform mat4 uView; uniform vec3 uEye; out vec2 vAt;
-    void main() { vAt = aAt.xy * 14.0 + uEye.xy; gl_Position = uView * vec4(vAt, 0.0, 1.0); }`, `
-    in vec2 vAt; uniform vec3 uEye, uBack, uLine; out vec4 colour;
-    float line(vec2 at, float each, float wide) {
-      vec2 from = abs(fract(at / each - 0.5) - 0.5) * each, w = fwidth(at);
-      vec2 hit = 1.0 - smoothstep(vec2(wide * 0.5), vec2(wide * 0.5) + 1.2 * w, from);
-      return max(hit.x, hit.y) * clamp(each / (6.0 * max(w.x, w.y)), 0.0, 1.0);
-    }
+    layout(location=0) in vec3 aAt; uniform mat4 uView; uniform vec3 uEye; uniform float uLevel; out vec2 vAt;
+    void main() { vAt = aAt.xy * 14.0 + uEye.xy; gl_Position = uView * vec4(vAt, uLevel, 1.0); }`, `
+    in vec2 vAt; uniform vec3 uEye, uBack, uLine; out vec4 colour; ${lines}
     void main() {
-      float far = length(vAt - uEye.xy), fade = 1.0 - smoothstep(2.0, 9.0, far);
-      float k = max(0.22 * line(vAt, 0.1, 0.0006), 0.70 * line(vAt, 1.0, 0.002));
-      colour = vec4(mix(uBack, uLine, k * fade), 1.0);
+      float fade = 1.0 - smoothstep(2.0, 9.0, length(vAt - uEye.xy));
+      colour = vec4(mix(uBack, uLine, lines(vAt) * fade), 1.0);
     }`);
 
   const buffer = (data, target = gl.ARRAY_BUFFER) => {
@@ -150,10 +152,9 @@
     const colour = [...meta.colours.relief, 1];
     if (piece.heights) {
       const z = take(piece.heights), [rows, columns] = piece.shape;
-      const at = (i, j) => [piece.x0 + j * piece.cell, piece.y0 + i * piece.cell, piece.scale * z[i * columns + j] + 0.0004];
+      const at = (i, j) => [piece.x0 + j * piece.cell, piece.y0 + i * piece.cell, piece.scale * z[i * columns + j]];
       for (let i = 0; i + 1 < rows; i++) for (let j = 0; j + 1 < columns; j++) {
         const [a, b, c, d] = [at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)];
-        if (Math.max(a[2], b[2], c[2], d[2]) - Math.min(a[2], b[2], c[2], d[2]) < 1e-5) continue;
         push(to, a, b, c, colour); push(to, a, c, d, colour);
       }
       return;
@@ -247,7 +248,8 @@
       return [...kept, c]; }, []).slice(0, -1);
     return p.length < 3 ? p : [...half(p), ...half(p.reverse())];
   }
-  const under = (foot, radius, lift) => [foot[0], foot[1], Math.max(foot[2] - radius, 0) + lift];
+  const rough = meta.relief.length > 0;
+  const under = (foot, radius, lift) => [foot[0], foot[1], Math.max(foot[2] - radius, rough ? meta.floor : 0) + lift];
 
   function tracks(to, actor, faint) {
     const until = Math.min(Math.floor((state.time - meta.start) * meta.rate), actor.frames - 1), step = 2;
@@ -258,6 +260,7 @@
       for (let i = 0; i + step <= until; i += step) {
         const stands = actor.forces[12 * i + 3 * leg + 2] > meta.loaded;
         const a = at(i), b = at(i + step);
+        if (!stands && rough) continue; // where the ground lies under a swinging foot is not recorded
         if (!stands) a[2] = b[2] = 0.0011;
         ribbon(to, a, b, stands ? 0.008 : 0.0025, colour);
       }
@@ -359,13 +362,16 @@
     gl.uniformMatrix4fv(floor.uniforms.uView, false, seen.matrix);
     gl.uniform3fv(floor.uniforms.uEye, seen.eye);
     gl.uniform3fv(floor.uniforms.uBack, back);
+    gl.uniform1f(floor.uniforms.uLevel, meta.floor);
     gl.uniform3fv(floor.uniforms.uLine, state.dark ? [0.42, 0.46, 0.48] : [0.60, 0.60, 0.57]);
     gl.bindVertexArray(quad);
     gl.drawArrays(gl.TRIANGLE_STRIP, 0, 4);
     if (relief) {
       usePlain(seen);
+      gl.uniform1f(plain.uniforms.uLined, 1);
       gl.bindVertexArray(relief.array);
       gl.drawArrays(gl.TRIANGLES, 0, relief.count);
+      gl.uniform1f(plain.uniforms.uLined, 0);
     } else seenActors.forEach((actor, i) => shadow(actor, now[i], seen, (state.dark ? 0.45 : 0.22) / (i + 1)));
     const flat = [], solids = [];
     seenActors.forEach((actor, i) => {

@@ -1,0 +1,80 @@
+"""``suchus replay RECORD.nc``: a stored run as one HTML file that plays offline."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+from typing import Annotated
+
+import tyro
+import xarray as xr
+
+from suchus import record
+from suchus.cli.commands import BadCommand
+from suchus.cli.options import parse
+from suchus.design import Crocodile
+from suchus.replay import replay, save
+from suchus.robots import ROBOTS
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Options:
+    """What can be said after ``suchus replay``."""
+
+    file: Annotated[Path, tyro.conf.Positional]
+    """The record of a run on land, a NetCDF file, such as out/displacement/record.nc."""
+    run: str | None = None
+    """Which run of the record, by its label or its number from 0; needed where it holds several."""
+    ghost: str | None = None
+    """Another run of the record, for comparison, by its label or its number."""
+    robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
+    """Whose it is; by default the robot of the shelf that the record names."""
+    title: str = ""
+    """Heading of the page; by default robot and gait."""
+    out: Path | None = None
+    """The page; by default the record's name with .html instead of .nc."""
+
+
+def make_replay(words: Sequence[str]) -> int:
+    """Write the page, say where it is, and return 0.
+
+    Raises:
+        SuchusError: the words or the record make no sense, or the place cannot be written to.
+    """
+    about = "Turn a stored run on land into one HTML file: three-dimensional, plays offline, can be mailed."
+    options: Options = parse(Options, "suchus replay", words, about, [f.name for f in fields(Options)])
+    out = options.out or options.file.with_suffix(".html")
+    if out.suffix.lower() not in (".html", ".htm"):
+        raise BadCommand(f"the page would be {out}; say --out FILE.html.")
+    stored = record.load(options.file)
+    shown = _chosen(stored, options.run, "--run")
+    ghost = None if options.ghost is None else _chosen(stored, options.ghost, "--ghost")
+    said = any(word.partition("=")[0] == "--robot" for word in words)
+    robot = options.robot if said or "robot" not in shown.coords else ROBOTS[str(shown.robot.item())]
+    labels = [_label(one) for one in (shown, ghost) if one is not None]
+    save(replay(shown, robot, ghost=ghost, labels=labels, title=options.title), out)
+    print(f"{robot.name}, {' and '.join(labels)}: {out}, {out.stat().st_size / 1e6:.1f} MB")
+    return 0
+
+
+def _chosen(stored: xr.Dataset, name: str | None, option: str) -> xr.Dataset:
+    """Return one run of a record."""
+    if "run" not in stored.dims:
+        if name is not None and name not in ("0", _label(stored)):
+            raise BadCommand(f"{option} asks for {name!r}, but the record holds one run only: leave it out.")
+        return stored
+    labels = [_label(stored.isel(run=i)) for i in range(stored.sizes["run"])]
+    if name is None and len(labels) == 1:
+        return stored.isel(run=0)
+    told = ", ".join(f"{i} {label}" for i, label in enumerate(labels))
+    if name is None:
+        raise BadCommand(f"the record holds {len(labels)} runs ({told}); choose one with {option}.")
+    if name in labels:
+        return stored.isel(run=labels.index(name))
+    if name.isdecimal() and int(name) < len(labels):
+        return stored.isel(run=int(name))
+    raise BadCommand(f"{option} asks for {name!r}, but the record's runs are {told}.")
+
+
+def _label(one: xr.Dataset) -> str:
+    found = one.coords.get("label", one.coords.get("gait"))
+    return "this run" if found is None else str(found.values)
