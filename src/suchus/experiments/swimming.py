@@ -192,9 +192,8 @@ class Swimming(Experiment):
         speeds = np.full((len(_ARMS), self.free_cycles), np.nan)
         speeds[0] = both.speed
         for i, motion in enumerate(motions):
-            cycles = self.free_cycles if _ARMS[i + 1] == "as printed" else self.arm_cycles
-            swum = self._free(_ARMS[i + 1], motion, _part(progress, i, len(motions)), cycles)
-            speeds[i + 1, :cycles] = swum.speed.values[: self.free_cycles]
+            swum = self._free(_ARMS[i + 1], motion, _part(progress, i, len(motions)), self.arm_cycles)
+            speeds[i + 1, : self.arm_cycles] = swum.speed.values[: self.free_cycles]
         data = xr.Dataset({"arm_speed": (("arm", "cycle"), speeds, {"units": "m/s"})})
         return data.assign_coords(arm=list(_ARMS), cycle=np.arange(1, self.free_cycles + 1))
 

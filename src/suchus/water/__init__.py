@@ -6,8 +6,10 @@ from suchus.water.held import tether, towed
 from suchus.water.immersed import immersed
 from suchus.water.measures import Quarters, Swum, convex_higher, crossings, efficiency, level
 from suchus.water.outline import Base, Curve, Outline, Silhouette, silhouette
+from suchus.water.passive import sprung
 from suchus.water.readings import Attempt, attempts
 from suchus.water.slender import Cruise, Effort, Water, cruise, cycle, reactive, recoil, resistive
+from suchus.water.sweep import scaled, survey
 from suchus.water.swimming import MODELS, displaced, swim, wave_speed
 from suchus.water.tank import Tether
 from suchus.water.undulation import ExactWave, Motion, Undulation, undulation
@@ -49,7 +51,10 @@ __all__ = [
     "reactive",
     "recoil",
     "resistive",
+    "scaled",
     "silhouette",
+    "sprung",
+    "survey",
     "swim",
     "tether",
     "towed",

@@ -1,0 +1,180 @@
+"""How fast and how well does it swim at other frequencies, amplitudes and wavelengths?"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from suchus.design import Crocodile
+from suchus.design.checks import Checks
+from suchus.experiment import Experiment, Measure, Outcome, Progress, silent, staged, stopwatch
+from suchus.figures.swim_sweep import draw_check, draw_maps
+from suchus.motion import Swim
+from suchus.robots import ROBOTS
+from suchus.water import Swum, Tether, fit, free_swim, printed_wave, scaled, survey
+
+_PEERS = (
+    ("C. porosus, 0.3 to 1.1 m", "sustained speed rises with size, in body lengths it falls", "Elsworth et al. 2003"),
+    ("Crocodilians", "speed is set by the frequency, not by the wave's speed", "abstract on I. lesueurii"),
+    ("Crocodilians", "amplitude grows to the tail's tip; slip below 1", "Fish 2021, Integr. Comp. Biol."),
+    ("Salamandra", "0.9 to 1.3 Hz swimming, 0.39 to 0.52 rad per joint", "simulation_parameters.py of its CPG"),
+    ("Pleurobot", "0.8 rad per joint, a tenth of a cycle later each: one wave per body", "its published configuration"),
+)  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SwimSweep(Experiment):
+    """(20) fitted to the joints, every angle multiplied, at other frequencies and wavelengths.
+
+    The whole map by the two cheap models of the round body; some points in the resolved flow as a check, from rest,
+    their last cycle measured. In the resolved flow the frequency is no parameter of its own: at one Reynolds number
+    f L^2 / nu, speeds are proportional to it. ``efficiency`` is the power that towing the straight body takes over that
+    of the joints. What joints or servos cannot follow is hatched.
+    """
+
+    title = "How fast and how well does it swim at other frequencies, amplitudes and wavelengths?"
+    shows = "Section IV.B, eq. (20); beyond the article"
+    decides = (
+        "Frequency and amplitude set the speed, nearly in proportion, until the cable's servo can no longer follow; "
+        "a longer wave is faster by the reactive model and slower by the resistive one. The resolved flow is about twice "
+        "as fast as both, since a slice of unlimited depth holds more water than a round body does, and sides with the "
+        "cheap models on which of two motions is the faster one."
+    )
+
+    robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
+    """Who swims."""
+    reading: str = "I"
+    """Of (20); only this one has a wavelength to change."""
+    frequencies: tuple[float, ...] = (0.25, 0.5, 0.75, 1.0, 1.25, 1.5)
+    """Of the map [Hz]."""
+    amplitudes: tuple[float, ...] = (0.4, 0.7, 1.0, 1.3, 1.6)
+    """Factors of every angle [-]."""
+    waves: tuple[float, ...] = (0.6, 0.8, 1.0, 1.2, 1.4)
+    """Waves per body; more than 1.4 ask the trunk for more than it has [-]."""
+    points: tuple[tuple[float, float], ...] = ((0.6, 1.0), (1.0, 1.0), (1.4, 1.0), (1.0, 1.3))
+    """Amplitude and waves per body of the points in the resolved flow [-]."""
+    reynolds: float = 3000.0
+    """Frequency times length squared over viscosity of these [-]."""
+    cells: int = 48
+    """Cells per body length of these [-]."""
+    cycles: int = 5
+    """Of these; the last is measured [-]."""
+
+    def __post_init__(self) -> None:
+        with Checks("swim_sweep", self) as check:
+            check.number("reynolds", 10.0, 2e4, "")
+            check.whole("cells", 32, 1024)
+            check.whole("cycles", 2, 100)
+
+    def quick(self) -> "SwimSweep":
+        """Few points, a coarse grid, a thick water."""
+        return replace(
+            self, frequencies=(0.5, 1.0), amplitudes=(0.6, 1.0), waves=(0.8, 1.0), points=((1.0, 1.0),),
+            reynolds=1000.0, cells=32, cycles=2,
+        )  # fmt: skip
+
+    def run(self, progress: Progress = silent) -> Outcome:
+        """Swim."""
+        with stopwatch() as seconds:
+            told = staged(progress, "cheap models", 0.0, 0.3)
+            by_frequency = self._map("frequency", self.frequencies, lambda a, f: scaled(self._fit(1.0), a, f))
+            told(0.5)
+            by_waves = self._map("waves", self.waves, lambda a, w: scaled(self._fit(w), a, 1.0))
+            told(1.0)
+            points = self._points(staged(progress, "resolved flow", 0.3, 1.0))
+            record = xr.merge([by_frequency, by_waves, points], join="exact")
+            return Outcome(
+                experiment=self.name(),
+                measures=self._measures(record),
+                verdicts=(),
+                record=record,
+                settings=self.settings(),
+                tables={"peers.md": self._peers(record)},
+                seconds=seconds(),
+            )
+
+    def _fit(self, waves: float) -> Swim:
+        wave = printed_wave(self.robot, self.reading, waves_per_body=waves)
+        return fit(self.robot, wave, name=f"(20), {waves:.2g} waves per body").swim
+
+    def _map(self, axis: str, values: tuple[float, ...], motion: Callable[[float, float], Swim]) -> xr.Dataset:
+        """Return what the cheap models say on a grid of amplitude and another quantity."""
+        motions = [motion(amplitude, value) for amplitude in self.amplitudes for value in values]
+        flat = survey(self.robot, motions)
+        shape = (len(self.amplitudes), len(values))
+        data = {}
+        for name, found in flat.data_vars.items():
+            dims = ("model", "amplitude", axis) if "model" in found.dims else ("amplitude", axis)
+            sizes = (*found.shape[:-1], *shape)
+            data[f"{name}_by_{axis}"] = (dims, found.values.reshape(sizes), found.attrs)
+        units = {"frequency": "Hz", "waves": "1"}
+        coords = {
+            "model": flat.model.values.tolist(),
+            "amplitude": ("amplitude", list(self.amplitudes), {"units": "1"}),
+            axis: (axis, list(values), {"units": units[axis]}),
+        }
+        return xr.Dataset(data, coords=coords)
+
+    def _points(self, progress: Callable[[float], None]) -> xr.Dataset:
+        """Return the points in the resolved flow, at 1 Hz, and what the cheap models say of them."""
+        motions = [scaled(self._fit(waves), amplitude, 1.0) for amplitude, waves in self.points]
+        setting = Tether(cells=self.cells, viscosity=self.robot.length**2 / self.reynolds, cycles=self.cycles, frames=1)
+        swum = []
+        for i, motion in enumerate(motions):
+            free = free_swim(self.robot, motion, setting, progress=_part(progress, i, len(motions)))
+            swum.append(Swum.of(free, 1.0))
+        cheap = survey(self.robot, motions)
+        data: dict[str, Any] = {
+            "point_speed": ("point", [one.speed for one in swum], {"units": "m/s"}),
+            "point_gain": ("point", [one.gain for one in swum], {"units": "1"}),
+            "point_strouhal": ("point", [one.strouhal for one in swum], {"units": "1"}),
+            "point_slip": ("point", [one.slip for one in swum], {"units": "1"}),
+            "point_model_speed": (("model", "point"), cheap.speed.values, {"units": "m/s"}),
+            "point_amplitude": ("point", [amplitude for amplitude, _ in self.points], {"units": "1"}),
+            "point_waves": ("point", [waves for _, waves in self.points], {"units": "1"}),
+        }
+        return xr.Dataset(data)
+
+    def _measures(self, record: xr.Dataset) -> Mapping[str, Measure]:
+        found = {}
+        possible = record.possible_by_frequency
+        for model in record.model.values:
+            speed = record.speed_by_frequency.sel(model=model).where(possible)
+            best = record.efficiency_by_waves.sel(model=model).where(record.possible_by_waves)
+            found[f"speed_most_{model}"] = Measure(float(speed.max()), "m/s")
+            found[f"efficiency_most_{model}"] = Measure(float(best.max()), "-")
+            apart = record.point_model_speed.sel(model=model) / record.point_speed - 1
+            found[f"error_mean_{model}"] = Measure(float(apart.mean()), "-")
+            found[f"error_worst_{model}"] = Measure(float(apart[int(np.argmax(np.abs(apart.values)))]), "-")
+        for i, (amplitude, waves) in enumerate(self.points):
+            name = f"{amplitude:.1f}_waves_{waves:.1f}".replace(".", "_")
+            found[f"speed_amplitude_{name}"] = Measure(float(record.point_speed[i]), "m/s")
+        return found
+
+    def _peers(self, record: xr.Dataset) -> str:
+        """Return a table of what is known of crocodilians and robots beside ours."""
+        motion = self._fit(1.0)
+        slips = record.point_slip.values
+        ours = (
+            f"1 Hz; trunk {motion.yaw[0]:.2f}, {motion.yaw[1]:.2f}, {motion.yaw[2]:.2f} rad per yaw joint, tail "
+            f"{motion.tail / self.robot.tail.joints:.2f} rad per cable joint; one wave per body; slip "
+            f"{slips.min():.2f} to {slips.max():.2f}"
+        )
+        rows = [(self.robot.name, ours, "this run"), *_PEERS]
+        lines = ["| who | what | source |", "|---|---|---|", *(f"| {a} | {b} | {c} |" for a, b, c in rows)]
+        return "\n".join(lines) + "\n"
+
+    def draw(self, outcome: Outcome) -> Mapping[str, Any]:
+        """Draw the maps of each model, and the check."""
+        record = outcome.record
+        maps = {f"swim_sweep_{model}": draw_maps(record, str(model)) for model in record.model.values}
+        return {**maps, "swim_sweep_check": draw_check(record)}
+
+
+def _part(progress: Callable[[float], None], number: int, count: int) -> Callable[[float], None]:
+    return lambda share: progress((number + share) / count)
+
+
+experiment = SwimSweep()

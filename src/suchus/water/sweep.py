@@ -1,0 +1,75 @@
+"""Many swimming motions by the cheap models: speed, efficiency, Strouhal number and slip of each."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import xarray as xr
+
+from suchus.design import Crocodile
+from suchus.errors import OutsideLimits
+from suchus.motion import Swim, check_swim
+from suchus.water.measures import efficiency
+from suchus.water.outline import Outline
+from suchus.water.slender import Model, Water, cruise, cycle
+from suchus.water.swimming import MODELS, wave_speed
+from suchus.water.undulation import undulation
+
+VALUES = {"speed": "m/s", "efficiency": "1", "strouhal": "1", "slip": "1"}
+"""What is found of each motion, with units."""
+_STILL = Swim(name="still", frequency=1.0, yaw=(0, 0, 0), yaw_late=(0, 0, 0), tail=0.0, tail_late=0.0)
+
+
+def scaled(motion: Swim, amplitude: float, frequency: float) -> Swim:
+    """Return a motion with its angles multiplied, at another frequency.
+
+    Args:
+        motion: to be changed.
+        amplitude: factor of every angle [-].
+        frequency: [Hz].
+    """
+    first, second, third = (amplitude * angle for angle in motion.yaw)
+    return replace(motion, yaw=(first, second, third), tail=amplitude * motion.tail, frequency=frequency)
+
+
+def survey(robot: Crocodile, motions: Sequence[Swim], *, water: Water | None = None, stations: int = 65) -> xr.Dataset:
+    """Return what both cheap models say of motions, and which of them the robot can follow.
+
+    Args:
+        robot: who swims.
+        motions: how.
+        water: fresh water if None.
+        stations: points along the midline; 65 change the speed by less than 1 % from 257.
+
+    Returns:
+        ``VALUES`` along ``model`` and ``motion``, and ``possible`` along ``motion``: joints and servos can follow it.
+    """
+    outline, still = Outline(robot, stations), water or Water()
+    found = np.array([[_one(outline, motion, model, still) for motion in motions] for model in MODELS.values()])
+    data = {name: (("model", "motion"), found[:, :, i], {"units": VALUES[name]}) for i, name in enumerate(VALUES)}
+    possible = [_possible(robot, motion) for motion in motions]
+    return xr.Dataset({**data, "possible": ("motion", possible, {"units": "1"})}, coords={"model": list(MODELS)})
+
+
+def _one(outline: Outline, motion: Swim, model: Model, water: Water) -> tuple[float, float, float, float]:
+    free = cruise(outline, motion, model, water)
+    if free.speed == 0.0:
+        return 0.0, 0.0, float("nan"), 0.0
+    curve = cycle(outline, motion, free.sway, free.turn)
+    straight = undulation(outline, replace(_STILL, frequency=motion.frequency))
+    drag = -model(outline, cycle(outline, straight), free.speed, water).thrust * float(np.sign(free.speed))
+    swing = float(np.ptp(curve.y[:, -1]))
+    return (
+        free.speed,
+        efficiency(drag, free.speed, free.power),
+        motion.frequency * swing / abs(free.speed),
+        free.speed / wave_speed(outline, motion, curve),
+    )
+
+
+def _possible(robot: Crocodile, motion: Swim) -> bool:
+    try:
+        check_swim(robot, motion)
+    except OutsideLimits:
+        return False
+    return True
