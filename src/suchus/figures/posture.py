@@ -6,19 +6,21 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.collections import LineCollection
+from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.colors import to_hex, to_rgb
 from matplotlib.patches import Circle, Polygon
-from scipy.interpolate import CubicSpline, PchipInterpolator
 
 from suchus.design import LEGS, Crocodile
+from suchus.figures.silhouette import Silhouette, silhouette
 from suchus.figures.style import COLOURS
 from suchus.kinematics import body, spine
 from suchus.kinematics import leg as leg_kinematics
 from suchus.kinematics.links import LegLinks
 from suchus.metrics import loaded, support_polygon
+from suchus.skin import poses, skin
 
 View = Literal["above", "side"]
-_BODY, _EDGE = "#C9DCCB", "#4D6B57"
+_BODY, _EDGE, _FAR, _PALE, _PLATE = "#C9DCCB", "#4D6B57", "#E3EBE3", "#E6EEE2", "#A8C6AE"
 
 
 class Skeleton(NamedTuple):
@@ -57,6 +59,12 @@ def skeleton(robot: Crocodile, record: xr.Dataset, time: float) -> Skeleton:
             legs[i, j] = shoulder + T[:3, :3] @ points if name.endswith("F") else points
     tail = body.tail_points(robot, angles[17:])
     return Skeleton(*(at + points @ R.T for points in (trunk, tail, legs)))
+
+
+def _silhouette(robot: Crocodile, record: xr.Dataset, time: float, axes: tuple[int, int]) -> Silhouette:
+    now = record.sel(time=time, method="nearest")
+    at = (now[name].values.astype(float) for name in ("position", "orientation", "joint_angle"))
+    return silhouette(robot, skin(robot).posed(*poses(robot, *at)), axes)
 
 
 def _front(robot: Crocodile, angles: np.ndarray) -> np.ndarray:
@@ -106,6 +114,7 @@ def draw_posture(
     view: View = "above",
     support: bool = True,
     ground: bool = True,
+    strength: float = 1.0,
 ) -> None:
     """Draw a posture, feet that stand filled, the support polygon and the centre of mass projected.
 
@@ -117,6 +126,7 @@ def draw_posture(
         view: from above (x to the right, y up) or from the robot's left side is seen from its right (x right, z up).
         support: whether to draw support and centre of mass.
         ground: whether to draw even ground in a view from the side.
+        strength: of the colours; below one they fade to white, and the scutes are left out.
     """
     rows = [0, 1] if view == "above" else [0, 2]
     bones = skeleton(robot, record, time)
@@ -126,15 +136,22 @@ def draw_posture(
     if support and view == "above":
         _support(ax, record, time)
     for name, points, standing in zip(LEGS, bones.legs[..., rows], stands, strict=True):
-        near = view == "above" or name.startswith("R")
-        colour = _EDGE if near else "#A9BBAE"
-        ax.plot(*points.T, color=colour, linewidth=3.2, solid_capstyle="round", solid_joinstyle="round", zorder=1)
-        foot = Circle(
-            tuple(points[-1]), robot.leg(name).foot_radius, facecolor=_EDGE if standing else "white", edgecolor=_EDGE
-        )
-        foot.set_zorder(4)
+        far = view == "side" and name.startswith("L")
+        edge, radius = _paler(_EDGE, strength), robot.leg(name).foot_radius
+        foot = Circle(tuple(points[-1]), radius, facecolor=edge if standing else "white", edgecolor=edge)
+        foot.set_zorder(0.9 if far else 4)
         ax.add_patch(foot)
-    _flesh(ax, robot, bones, rows)
+    _flesh(ax, _silhouette(robot, record, time, (rows[0], rows[1])), view, strength)
+    joints = bones.trunk[2:7, rows]
+    ax.plot(
+        *joints.T,
+        "o",
+        markersize=3.2,
+        markerfacecolor="white",
+        markeredgecolor=_paler(_EDGE, strength),
+        markeredgewidth=0.9,
+        zorder=3,
+    )
     if support:
         com = record.centre_of_mass.sel(time=time, method="nearest").values.astype(float)[rows]
         _mark_mass(ax, com, view)
@@ -159,10 +176,9 @@ def draw_strip(
     )
     for i, time in enumerate(times):
         before = set(ax.get_children())
-        draw_posture(ax, robot, moved, time, support=False)
-        fade = 0.18 + 0.82 * (i / max(len(times) - 1, 1)) ** 3
+        fade = 0.25 + 0.75 * (i / max(len(times) - 1, 1)) ** 3 if len(times) > 1 else 1.0
+        draw_posture(ax, robot, moved, time, support=False, strength=fade)
         for artist in set(ax.get_children()) - before:
-            artist.set_alpha(fade)
             artist.set_zorder(artist.get_zorder() + 10 * i)
     part = moved.centre_of_mass.sel(time=slice(times[0], times[-1]))
     x, y = (part.sel(xyz=axis).values for axis in "xy")
@@ -174,33 +190,28 @@ def _aside(record: xr.Dataset, aside: float) -> xr.DataArray:
     return xr.DataArray([0.0, aside, 0.0], dims="xyz", coords={"xyz": record.xyz})
 
 
-def _flesh(ax: Axes, robot: Crocodile, bones: Skeleton, rows: list[int]) -> None:
-    tail = bones.tail[:, rows]
-    share = np.linspace(0.0, 1.0, len(tail))
-    radii = robot.tail.radius_root + share * (robot.tail.radius_tip - robot.tail.radius_root)
-    _hull(ax, tail, radii)
-    width = robot.head.width / 2
-    trunk = np.array([0.9, 1.3, 1.15, 1.05, 1.0, 1.05, 1.15, 1.3]) * robot.spine.radius
-    neck, snout = bones.trunk[-2, rows], bones.trunk[-1, rows]
-    head = [neck + share * (snout - neck) for share in (0.3, 0.5, 0.8, 1.0)]
-    points = np.vstack([bones.trunk[:-1, rows], *head])
-    _hull(ax, points, np.array([*trunk, 0.75 * width, 0.95 * width, 0.5 * width, 0.38 * width]))
-    joints = bones.trunk[2:7, rows]
-    ax.plot(
-        *joints.T, "o", markersize=3.2, markerfacecolor="white", markeredgecolor=_EDGE, markeredgewidth=0.9, zorder=3
-    )
+def _flesh(ax: Axes, seen: Silhouette, view: View, strength: float) -> None:
+    """Draw the skin: from the side the far legs lie behind the body and the near ones, the right, before it."""
+    edge, body, far_leg, pale, plate = (_paler(c, strength) for c in (_EDGE, _BODY, _FAR, _PALE, _PLATE))
+    for name, pieces in zip(LEGS, seen.legs, strict=True):
+        near = view == "side" and name.startswith("R")
+        far = view == "side" and not near
+        face, order = (far_leg, 0.8) if far else (body, 2.6) if near else (body, 1.0)
+        # strokes of all pieces first, then their fillings: what is left is the outline of them all
+        ax.add_collection(PolyCollection(pieces, facecolors=edge, edgecolors=edge, linewidths=1.8, zorder=order))
+        ax.add_collection(PolyCollection(pieces, facecolors=face, edgecolors=face, linewidths=0.2, zorder=order + 0.01))
+    for piece, face, order in ((seen.jaw, pale, 1.9), (seen.body, body, 2.0)):
+        ax.add_patch(Polygon(piece, facecolor=face, edgecolor=edge, linewidth=0.9, joinstyle="round", zorder=order))
+    for eye in seen.eyes if view == "above" else seen.eyes[1:]:
+        ax.add_patch(Polygon(eye, facecolor=edge, edgecolor="none", zorder=2.4))
+    if strength == 1.0:
+        plates = PolyCollection(seen.scutes, facecolors=plate, edgecolors=edge, linewidths=0.35, zorder=2.2)
+        ax.add_collection(plates)
 
 
-def _hull(ax: Axes, points: np.ndarray, radii: np.ndarray) -> None:
-    """Draw a chain of points as a smooth body with its half width at each."""
-    steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
-    along = np.concatenate([[0.0], np.cumsum(np.maximum(steps, 1e-6))])
-    fine = np.linspace(0.0, along[-1], 60)
-    middle, half = CubicSpline(along, points)(fine), PchipInterpolator(along, radii)(fine)
-    ahead = np.gradient(middle, axis=0)
-    across = np.column_stack([-ahead[:, 1], ahead[:, 0]]) / np.maximum(np.linalg.norm(ahead, axis=1), 1e-9)[:, None]
-    outline = np.vstack([middle + half[:, None] * across, (middle - half[:, None] * across)[::-1]])
-    ax.add_patch(Polygon(outline, facecolor=_BODY, edgecolor=_EDGE, linewidth=1.0, joinstyle="round", zorder=2))
+def _paler(colour: str, strength: float) -> str:
+    red, green, blue = (1.0 - strength * (1.0 - part) for part in to_rgb(colour))
+    return to_hex((red, green, blue))
 
 
 def _support(ax: Axes, record: xr.Dataset, time: float) -> None:

@@ -9,6 +9,8 @@ from suchus.skin.look import Look
 from suchus.skin.mesh import Mesh, curve, ellipsoid, loft, ring, spike
 from suchus.skin.paint import EYE, PUPIL, TOOTH, brow, jaw_paint
 
+JAW_AROUND = 20
+"""Points around the lower jaw [-]."""
 Knot = tuple[float, float, float, float]
 """x, half width, height above the axis, depth below it [m]."""
 
@@ -72,7 +74,7 @@ def jaw(robot: Crocodile, look: Look) -> Mesh:
     """Return the lower jaw, a little open."""
     f = frame(robot, look)
     u = np.concatenate([[-0.06], np.linspace(0.0, 0.94, 24), [0.965, 0.98, 0.988]])
-    c, s = ring(20, 2.3)
+    c, s = ring(JAW_AROUND, 2.3)
     top, deep = -f.h * _JAW_TOP(u), -f.h * _JAW_DEPTH(u)
     z = (top + deep)[:, None] / 2 + (top - deep)[:, None] / 2 * s
     x = np.broadcast_to((f.reach * u)[:, None], z.shape)

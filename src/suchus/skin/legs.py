@@ -8,6 +8,9 @@ from suchus.design import Crocodile, Leg
 from suchus.skin.mesh import Mesh, curve, ellipsoid, loft, ring, spike
 from suchus.skin.paint import CLAW, SOLE, mixed, shaded, smooth
 
+LEG_AROUND = 16
+"""Points around a leg, a multiple of four [-]."""
+
 
 def left_leg(robot: Crocodile, girdle: str) -> list[Mesh]:
     """Return the left leg of a girdle, its foot and claws.
@@ -40,12 +43,12 @@ def _limb(robot: Crocodile, leg: Leg, front: bool, ahead: float) -> Mesh:
     width = curve([(a, b * k) for a, b, _, k in kept])
     height = curve([(a, b * k) for a, _, b, k in kept])
     y = np.linspace(kept[0][0], kept[-1][0], 34)
-    c, s = ring(16, 2.1)
+    c, s = ring(LEG_AROUND, 2.1)
     points = np.stack(
-        [ahead + width(y)[:, None] * s, np.broadcast_to(y[:, None], (34, 16)), height(y)[:, None] * c], axis=-1
+        [ahead + width(y)[:, None] * s, np.broadcast_to(y[:, None], (34, LEG_AROUND)), height(y)[:, None] * c], axis=-1
     )
     mesh = loft(points)
-    level = np.concatenate([np.broadcast_to(c, (34, 16)).ravel(), [0.0, 0.0]])
+    level = np.concatenate([np.broadcast_to(c, (34, LEG_AROUND)).ravel(), [0.0, 0.0]])
     length = robot.length
 
     def paint(points: np.ndarray) -> np.ndarray:
