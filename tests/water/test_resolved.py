@@ -6,7 +6,7 @@ import pytest
 import suchus
 from suchus.errors import InvalidDesign, OutsideLimits
 from suchus.motion import Swim
-from suchus.water import Outline, Tether, free_swim, immersed, tether
+from suchus.water import ExactWave, Outline, Tether, free_swim, immersed, tether, towed
 
 MOTION = Swim(name="wave", frequency=1.0, yaw=(0.35, 0.15, 0.1), yaw_late=(0.1, -0.1, -0.3), tail=0.75, tail_late=-0.1)
 COARSE = Tether(cells=32, viscosity=1e-3, cycles=1)
@@ -44,6 +44,50 @@ def test_a_mirrored_start_gives_a_mirrored_track(robot):
     assert float(here.speed[-1]) == pytest.approx(float(there.speed[-1]), abs=1e-4)
     np.testing.assert_allclose(here.snout_y, -there.snout_y, atol=1e-4)
     assert float(abs(here.snout_y).max()) > 1e-3
+
+
+class _Flat:
+    """A wave of even amplitude, so that head and tail differ by the body's outline alone."""
+
+    period = 1.0
+
+    def __init__(self, length, sign):
+        self.length, self.rate, self.number = length, sign * 2 * np.pi, 2 * np.pi / length
+
+    def displacement(self, x, time):
+        return 0.05 * self.length * np.sin(self.number * x + self.rate * time)
+
+    def slope(self, x, time):
+        return 0.05 * self.length * self.number * np.cos(self.number * x + self.rate * time)
+
+
+def test_a_reversed_wave_gives_a_reversed_thrust(robot):
+    setting = replace(COARSE, cycles=2)
+    to_tail, to_head = (
+        float(tether(robot, ExactWave(name="flat", wave=_Flat(robot.length, sign)), setting).thrust.mean())
+        for sign in (-1, 1)
+    )
+    assert to_tail > 0 > to_head
+
+
+def test_a_towed_body_is_dragged_more_than_a_plate_and_less_than_a_wall(robot):
+    speed, setting = 0.1, replace(COARSE, cells=40)
+    drag = towed(robot, speed, setting, lengths=3.0)
+    plate = 2 * 0.664 * 1000.0 * speed**2 * robot.length / np.sqrt(speed * robot.length / setting.viscosity)
+    assert plate < drag < 0.5 * 1000.0 * speed**2 * robot.length
+
+
+def test_a_longer_box_holds_the_same_body(robot):
+    record = free_swim(robot, MOTION, replace(COARSE, box=(3.0, 1.5)))
+    assert float(abs(record.speed[-1])) > 0
+
+
+@pytest.mark.parametrize(
+    ("box", "said"), [((0.9, 2.0), "0.9 body lengths long"), ((3.0, 0.4), "0.4 body lengths wide")]
+)
+def test_a_box_too_small_for_the_body_is_refused(box, said):
+    with pytest.raises(InvalidDesign, match=said):
+        replace(COARSE, box=box)
 
 
 def test_impossible_swims_are_refused(robot):

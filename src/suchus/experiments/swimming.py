@@ -12,7 +12,6 @@ from suchus.design import Crocodile
 from suchus.design.checks import Checks
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Verdict, judge, silent, staged, stopwatch
 from suchus.figures.swimming import draw_forces, draw_free, draw_quarters, draw_sides, film_pressure, film_vorticity
-from suchus.kinematics.wave import READINGS
 from suchus.robots import ROBOTS
 from suchus.water import (
     ExactWave,
@@ -29,6 +28,7 @@ from suchus.water import (
     free_swim,
     level,
     printed_wave,
+    readings_table,
     swim,
     tether,
     towed,
@@ -203,17 +203,14 @@ class Swimming(Experiment):
         setting, thrust = self._setting(self.readings_cells, self.cycles, self.readings_reynolds), []
         for i, letter in enumerate(self.readings):
             fitted, part = tried[letter].fitted, _part(progress, i, len(self.readings))
-            swum = None if fitted is None else tether(self.robot, fitted.swim, setting, turn=fitted.head, progress=part)
-            thrust.append(float("nan") if swum is None else float(swum.thrust.mean()))
-        lines = ["| reading of (20) | units | misfit | joints | thrust |", "|---|---|---|---|---|"]
-        for letter, one in tried.items():
-            misfit = "" if one.fitted is None else f"{100 * one.fitted.misfit:.1f} %"
-            joints = one.refusal or READINGS[letter].verdict
-            at = self.readings.index(letter) if letter in self.readings else None
-            force = "" if at is None else f"{thrust[at]:.1f} N/m at Re {self.readings_reynolds:.0f}"
-            lines.append(f"| {letter} | {READINGS[letter].meaning} | {misfit} | {joints} | {force} |")
+            held = None if fitted is None else tether(self.robot, fitted.swim, setting, turn=fitted.head, progress=part)
+            thrust.append(float("nan") if held is None else float(held.thrust.mean()))
+        told = {
+            letter: f"{value:.1f} N/m at Re {self.readings_reynolds:.0f}"
+            for letter, value in zip(self.readings, thrust, strict=True)
+        }
         data = xr.Dataset({"reading_thrust": ("reading", thrust, {"units": "N/m"})})
-        return data.assign_coords(reading=list(self.readings)), "\n".join(lines) + "\n"
+        return data.assign_coords(reading=list(self.readings)), readings_table(tried.values(), told)
 
     def _drag(self, speed: float, progress: Callable[[float], None]) -> float:
         progress(0.0)

@@ -7,7 +7,7 @@ from suchus.water.immersed import immersed
 from suchus.water.measures import Quarters, Swum, convex_higher, crossings, efficiency, level
 from suchus.water.outline import Base, Curve, Outline, Silhouette, silhouette
 from suchus.water.passive import sprung
-from suchus.water.readings import Attempt, attempts
+from suchus.water.readings import Attempt, attempts, readings_table
 from suchus.water.slender import Cruise, Effort, Water, cruise, cycle, reactive, recoil, resistive
 from suchus.water.sweep import scaled, survey
 from suchus.water.swimming import MODELS, displaced, swim, wave_speed
@@ -49,6 +49,7 @@ __all__ = [
     "level",
     "printed_wave",
     "reactive",
+    "readings_table",
     "recoil",
     "resistive",
     "scaled",

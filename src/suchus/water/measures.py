@@ -69,9 +69,12 @@ def convex_higher(held: xr.Dataset) -> float:
 
 
 def level(track: np.ndarray) -> np.ndarray:
-    """Return a track less its mean line."""
-    count = np.arange(track.size)
-    return np.asarray(track - np.polyval(np.polyfit(count, track, 1), count))
+    """Return a track over whole cycles, first and last instant included, less its mean line.
+
+    The line's slope is the way from the first to the last instant: a line of least squares would lean with a sine.
+    """
+    drift = (track[-1] - track[0]) * np.linspace(-0.5, 0.5, track.size)
+    return np.asarray(track - drift - np.mean(track[:-1] - drift[:-1]))
 
 
 def crossings(free: xr.Dataset) -> int:

@@ -1,5 +1,6 @@
 """Every reading of (20) on one robot: what its joints can make of it, or why they cannot."""
 
+from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
 from suchus.design import Crocodile
@@ -36,3 +37,18 @@ def attempts(robot: Crocodile, *, frequency: float, sign: int = -1) -> list[Atte
         except OutsideLimits as refused:
             found.append(Attempt(letter, None, str(refused)))
     return found
+
+
+def readings_table(tried: Iterable[Attempt], thrust: Mapping[str, str]) -> str:
+    """Return a Markdown table of readings: units, misfit, what the joints make of it, thrust.
+
+    Args:
+        tried: the readings.
+        thrust: what was measured of some of them, by letter.
+    """
+    lines = ["| reading of (20) | units | misfit | joints | thrust |", "|---|---|---|---|---|"]
+    for letter, fitted, refusal in tried:
+        misfit = "" if fitted is None else f"{100 * fitted.misfit:.1f} %"
+        joints = refusal or READINGS[letter].verdict
+        lines.append(f"| {letter} | {READINGS[letter].meaning} | {misfit} | {joints} | {thrust.get(letter, '')} |")
+    return "\n".join(lines) + "\n"
