@@ -1,26 +1,32 @@
-"""Results become one HTML page that needs nothing else: no network, no script, no file beside it."""
+"""Results become one HTML page that needs no network and no script; films and replays stand beside it."""
 
+import os
+import re
 import tempfile
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
+from urllib.parse import quote
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 from suchus import figures
+from suchus.design import Crocodile
 from suchus.gaits import GAITS
 from suchus.paper import CLAIMS, ERRATA
 from suchus.record import new_file, versions
+from suchus.report.beside import beside
+from suchus.report.embedding import embedded
 from suchus.report.numbers import quantity, tied
-from suchus.report.result import Failure, Result, data_uri
+from suchus.report.result import Failure, Result
+from suchus.report.robot import robot_of
 from suchus.report.tables import choices, parts
 from suchus.robots import ROBOTS
 
-ROBOT = "caiman"
-"""The article's robot."""
-
+_ENOUGH = 60
+"""Letters that say something [-]."""
 _MARKS = {"reproduced": "●", "same sense": "◐", "contradicted": "✕", "not testable": "○"}
 
 
@@ -30,18 +36,19 @@ def write_page(results: Sequence[Result], failures: Sequence[Failure], path: Pat
     Raises:
         Unwritable: the place cannot be written to.
     """
-    text = render_page(results, failures)
+    text = render_page(results, failures, path.parent)
     with new_file(path) as draft:
         draft.write_text(text, encoding="utf-8")
     return path
 
 
-def render_page(results: Sequence[Result], failures: Sequence[Failure]) -> str:
+def render_page(results: Sequence[Result], failures: Sequence[Failure], place: Path | None = None) -> str:
     """Return the page as text.
 
     Args:
         results: what came out, in the order of the page.
         failures: what did not.
+        place: the folder of the page, from which it links films and replays; None: the one that holds the results.
     """
     environment = Environment(
         loader=PackageLoader("suchus.report"),
@@ -50,9 +57,24 @@ def render_page(results: Sequence[Result], failures: Sequence[Failure]) -> str:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters |= {"quantity": quantity, "tied": tied}
+    environment.filters |= {"quantity": quantity, "tied": tied, "gist": _gist, "link": lambda file: _link(file, place)}
     style = Markup(environment.get_template("style.css").render())
     return environment.get_template("page.html").render(style=style, **_content(results, failures)) + "\n"
+
+
+def _link(file: Path, place: Path | None) -> str:
+    start = file.parent.parent if place is None else place
+    return quote(Path(os.path.relpath(file, start)).as_posix())
+
+
+def _gist(text: str) -> str:
+    """Return the first sentences of a text, as many as it takes to say something."""
+    told = ""
+    for sentence in re.split(r"(?<=[.:;]) ", text):
+        told = f"{told} {sentence}".strip()
+        if len(told) > _ENOUGH and told.endswith("."):
+            break
+    return told
 
 
 def _short(result: Result) -> bool:
@@ -69,24 +91,35 @@ def _content(results: Sequence[Result], failures: Sequence[Failure]) -> dict[str
         for verdict in result.told["verdicts"]
     ]
     verdicts.sort(key=lambda verdict: order.get(verdict["claim"], len(order)))
-    count = Counter(str(verdict["verdict"]) for verdict in verdicts)
-    robot = ROBOTS[ROBOT]
+    robot, others = robot_of(results)
+    named = ROBOTS.beside(robot.name, "chosen", ()) if robot.name in ROBOTS else ()
     return {
         "results": results,
         "short": {result.name: _short(result) for result in results},
         "failures": failures,
         "verdicts": verdicts,
+        "departures": [verdict for verdict in verdicts if verdict["verdict"] == "contradicted"],
+        "own": {name: [v for v in verdicts if v["experiment"] == name] for name in (r.name for r in results)},
         "marks": _MARKS,
-        "counts": {word: count[word] for word in _MARKS},
+        "counts": _counts(verdicts),
+        "tally": {result.name: _counts(result.told["verdicts"]) for result in results},
         "untouched": [c for c in CLAIMS.values() if c.key not in {v["claim"] for v in verdicts}],
+        "beside": beside(robot, {result.name: result for result in results}),
+        "shown": next((result for result in results if result.replays), None),
         "robot": robot,
-        "drawing": _drawing(),
+        "others": others,
+        "drawing": _drawing(robot),
         "parts": parts(robot),
-        "chosen": {ROBOT: choices(robot, ROBOTS.beside(ROBOT, "chosen", ()))}
+        "chosen": {robot.name: choices(robot, named)}
         | {name: choices(gait, GAITS.beside(name, "chosen", ())) for name, gait in GAITS.items()},
         "misprints": tuple(ERRATA.values()),
         "versions": versions(),
     }
+
+
+def _counts(verdicts: Sequence[Mapping[str, Any]]) -> dict[str, int]:
+    count = Counter(str(verdict["verdict"]) for verdict in verdicts)
+    return {word: count[word] for word in _MARKS}
 
 
 def _place(result: Result, order: Mapping[str, int]) -> int:
@@ -94,8 +127,8 @@ def _place(result: Result, order: Mapping[str, int]) -> int:
     return max((order.get(v["claim"], len(order)) for v in result.told["verdicts"]), default=len(order))
 
 
-def _drawing() -> dict[str, str]:
-    figure = figures.dimension_drawing(ROBOTS[ROBOT])
+def _drawing(robot: Crocodile) -> dict[str, str]:
+    figure = figures.dimension_drawing(robot)
     with tempfile.TemporaryDirectory() as folder:
-        svg, _ = figures.save(figure, Path(folder), "robot")
-        return {"source": data_uri(svg), "caption": figures.caption(figure)}
+        svg, png = figures.save(figure, Path(folder), "robot")
+        return {"source": embedded(svg, png), "caption": figures.caption(figure)}

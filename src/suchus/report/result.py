@@ -1,16 +1,16 @@
 """A saved outcome, read back for the page: the page is made of files and simulates nothing."""
 
-import base64
 import json
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from suchus.errors import IncompatibleRecord, UnreadableFile
-from suchus.report.saving import OUTCOME
+from markupsafe import Markup
 
-_HEAVY = 400_000  # bytes of SVG beyond which the PNG is shown, if that is lighter
+from suchus.errors import IncompatibleRecord, UnreadableFile
+from suchus.report.embedding import embedded
+from suchus.report.saving import OUTCOME
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -21,20 +21,36 @@ class Picture:
     """Its file's name without the ending."""
     caption: str
     """What it shows."""
-    source: str
+    source: Markup
     """The picture itself as a data URI."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Moving:
+    """A film or a replay that stands beside the page: it is linked, since it is too heavy to travel inside."""
+
+    file: Path
+    """Where it is."""
+    caption: str
+    """What it shows."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Result:
     """What a folder of results holds."""
 
+    folder: Path
+    """The folder."""
     told: Mapping[str, Any]
     """What ``outcome.json`` says."""
     pictures: tuple[Picture, ...]
     """The figures."""
     tables: Mapping[str, str]
     """Further texts by file name."""
+    films: tuple[Moving, ...] = field(default=())
+    """Moving pictures, those whose files are there."""
+    replays: tuple[Moving, ...] = field(default=())
+    """Runs to look at, those whose files are there."""
 
     @property
     def name(self) -> str:
@@ -65,26 +81,34 @@ def load_result(folder: Path) -> Result:
     try:
         told = json.loads(file.read_text(encoding="utf-8"))
         pictures = tuple(
-            Picture(name=f["name"], caption=f["caption"], source=_picture(folder, f["name"])) for f in told["figures"]
+            Picture(
+                name=f["name"],
+                caption=f["caption"],
+                source=embedded(_inside(folder, f"{f['name']}.svg"), _inside(folder, f"{f['name']}.png")),
+            )
+            for f in told["figures"]
         )
-        tables = {name: (folder / name).read_text(encoding="utf-8") for name in told["tables"]}
+        tables = {name: _inside(folder, name).read_text(encoding="utf-8") for name in told["tables"]}
+        films = _moving(folder, told.get("films", ()))
+        replays = _moving(folder, told.get("replays", ()))
         wanted = ("experiment", "title", "shows", "decides", "command", "measures", "verdicts", "provenance")
         missing = [key for key in wanted if key not in told]
     except OSError as error:
         raise UnreadableFile(f"{error.filename} cannot be read: {(error.strerror or '').lower()}.") from error
-    except (ValueError, KeyError, TypeError) as error:
+    except (ValueError, KeyError, TypeError, AttributeError) as error:
         raise IncompatibleRecord(f"{file} is no outcome of suchus: {error}.") from error
     if missing:
         raise IncompatibleRecord(f"{file} lacks {', '.join(missing)}.")
-    return Result(told=told, pictures=pictures, tables=tables)
+    return Result(folder=folder, told=told, pictures=pictures, tables=tables, films=films, replays=replays)
 
 
-def data_uri(file: Path) -> str:
-    """Return an SVG or PNG file as a data URI."""
-    kind = {".svg": "image/svg+xml", ".png": "image/png"}[file.suffix]
-    return f"data:{kind};base64,{base64.b64encode(file.read_bytes()).decode()}"
+def _moving(folder: Path, told: Iterable[Mapping[str, str]]) -> tuple[Moving, ...]:
+    found = (Moving(file=_inside(folder, one["name"]), caption=one["caption"]) for one in told)
+    return tuple(one for one in found if one.file.is_file())
 
 
-def _picture(folder: Path, name: str) -> str:
-    svg, png = folder / f"{name}.svg", folder / f"{name}.png"
-    return data_uri(png if svg.stat().st_size > max(_HEAVY, png.stat().st_size) else svg)
+def _inside(folder: Path, name: str) -> Path:
+    """A file of the folder itself; a name that leads elsewhere is refused."""
+    if Path(name).name != name:
+        raise ValueError(f"{name!r} is no file of its folder")
+    return folder / name

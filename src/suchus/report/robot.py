@@ -1,0 +1,36 @@
+"""Which robot a page is about: the one that its results were made with."""
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from pydantic import TypeAdapter, ValidationError
+
+from suchus.design import Crocodile
+from suchus.errors import SuchusError
+from suchus.report.result import Result
+from suchus.robots import ROBOTS
+
+ARTICLES = "caiman"
+"""The article's robot, shown where no result names one."""
+_ADAPTER = TypeAdapter(Crocodile)
+
+
+def robot_of(results: Sequence[Result]) -> tuple[Crocodile, dict[str, int]]:
+    """Return the robot of most results, and how many results each other robot has, by name.
+
+    A robot that this version of suchus cannot build any more does not count.
+    """
+    found = [robot for result in results if (robot := _robot(result.told.get("settings", {}))) is not None]
+    if not found:
+        return ROBOTS[ARTICLES], {}
+    (most, _), *others = Counter(found).most_common()
+    return most, {robot.name: count for robot, count in others}
+
+
+def _robot(settings: Any) -> Crocodile | None:
+    told = settings.get("robot") if isinstance(settings, Mapping) else None
+    try:
+        return _ADAPTER.validate_python(told) if isinstance(told, Mapping) else None
+    except (ValidationError, SuchusError):
+        return None

@@ -1,0 +1,130 @@
+"""Films and replays stand beside the page; the robot shown is the one that was run; the animal stands beside ours."""
+
+import json
+from dataclasses import replace
+
+import pytest
+
+from suchus.figures import captioned, panels, save
+from suchus.record import plain
+from suchus.report import load_result, render_page, write_page
+from suchus.report.animals import ANIMALS
+from suchus.report.beside import beside
+from suchus.report.robot import robot_of
+from suchus.robots import ROBOTS
+
+CAIMAN = ROBOTS["caiman"]
+OUTCOME = {
+    "title": "How?",
+    "shows": "Fig. 16",
+    "decides": "This. That decides it all, and it takes quite a while to say why it does. More.",
+    "command": "suchus run displacement",
+    "measures": {
+        "forward_coordinated": {"value": 0.8, "unit": "m"},
+        "forward_limbs_only": {"value": 0.2, "unit": "m"},
+    },
+    "verdicts": [],
+    "tables": [],
+    "provenance": {"seconds": 1.0, "config_hash": "0" * 64, "seed": 1},
+}
+
+
+@pytest.fixture
+def make(tmp_path):
+    def make(name, robot=CAIMAN, **more):
+        folder = tmp_path / "out" / name
+        folder.mkdir(parents=True)
+        save(captioned(panels()[0], "A drawing of it."), folder, "still")
+        told = OUTCOME | {"experiment": name, "figures": [{"name": "still", "caption": "A drawing of it."}], **more}
+        told["settings"] = {} if robot is None else {"robot": plain(robot)}
+        (folder / "outcome.json").write_text(json.dumps(told))
+        return folder
+
+    return make
+
+
+def test_a_replay_is_embedded_once_and_linked_and_a_film_is_linked(make, tmp_path):
+    clips = {
+        "films": [{"name": "swim 1.gif", "caption": "It swims."}],
+        "replays": [{"name": "a.html", "caption": "It goes."}],
+    }
+    folders = [make(name, **clips) for name in ("displacement", "turning")]
+    for folder in folders:
+        (folder / "a.html").write_text("<p>replay</p>")
+        (folder / "swim 1.gif").write_bytes(b"GIF89a")
+    page = write_page([load_result(folder) for folder in folders], [], tmp_path / "out" / "report.html").read_text()
+    assert page.count("<iframe") == 1
+    assert '<iframe src="displacement/a.html" title="It goes." loading="lazy">' in page
+    for name in ("displacement", "turning"):
+        assert f'href="{name}/a.html"' in page
+        assert f'href="{name}/swim%201.gif"' in page
+
+
+def test_links_lead_from_the_page_wherever_it_stands(make, tmp_path):
+    folder = make("displacement", replays=[{"name": "a.html", "caption": "It goes."}])
+    (folder / "a.html").write_text("<p>replay</p>")
+    elsewhere = tmp_path / "pages" / "deep"
+    elsewhere.mkdir(parents=True)
+    page = write_page([load_result(folder)], [], elsewhere / "page.html").read_text()
+    assert 'href="../../out/displacement/a.html"' in page
+    assert (elsewhere / "../../out/displacement/a.html").exists()
+
+
+def test_what_is_not_there_is_not_linked_and_a_picture_stands_for_it(make):
+    result = load_result(make("displacement", replays=[{"name": "gone.html", "caption": "It goes."}]))
+    page = render_page([result], [])
+    assert "gone.html" not in page
+    assert "<iframe" not in page
+    assert page.count("A drawing of it.") == 2  # its text and its caption
+
+
+def test_a_replay_cannot_point_out_of_its_folder(make):
+    with pytest.raises(Exception, match="no file of its folder"):
+        load_result(make("displacement", replays=[{"name": "../../x.html", "caption": "It goes."}]))
+
+
+def test_the_page_shows_the_robot_that_was_run(make):
+    other = replace(CAIMAN, name="strider", head=replace(CAIMAN.head, snout=0.4))
+    results = [load_result(make(name, robot)) for name, robot in zip("abc", (other, CAIMAN, other), strict=True)]
+    robot, others = robot_of(results)
+    assert robot == other
+    assert others == {"caiman": 1}
+    page = render_page(results, [])
+    assert "The robot strider from above" in page
+    assert "caiman (1)" in page
+
+
+@pytest.mark.parametrize("robot", [None, "caiman", {"name": "of another version"}])
+def test_without_a_robot_that_can_be_built_the_articles_is_shown(make, robot):
+    folder = make("displacement", None)
+    told = json.loads((folder / "outcome.json").read_text())
+    told["settings"] = {"robot": robot}
+    (folder / "outcome.json").write_text(json.dumps(told))
+    assert robot_of([load_result(folder)]) == (CAIMAN, {})
+
+
+def test_article_ours_and_animal_stand_side_by_side(make):
+    results = {"displacement": load_result(make("displacement"))}
+    rows = {row.animal.key: row for row in beside(CAIMAN, results)}
+    assert set(rows) == {"tail_length", "tail_mass", "mass", "speed", "stride_share"}
+    assert (rows["speed"].ours, rows["speed"].article, rows["speed"].seen) == (
+        "0.1 m/s",
+        "0.091 m/s",
+        "0.15 to 4.35 m/s",
+    )
+    assert rows["stride_share"].ours == "0.75"
+    assert rows["tail_mass"].article == ""
+    page = render_page(list(results.values()), [])
+    for row in rows.values():
+        assert row.animal.source.split("&")[0] in page
+
+
+def test_every_number_of_an_animal_has_a_source_and_a_range():
+    for animal in ANIMALS:
+        assert animal.low <= animal.high
+        assert any(char.isdigit() for char in animal.source)
+
+
+def test_the_summary_says_enough_of_what_decides(make):
+    page = render_page([load_result(make("displacement"))], [])
+    assert '<td class="why">This. That decides it all, and it takes quite a while to say why it does.</td>' in page
