@@ -14,7 +14,8 @@ from suchus.design.relief import Relief
 from suchus.model import compile_model, joint_addresses
 from suchus.skin import skin
 
-_COLOURS = 7  # into which the skin is cut; more look smoother and move slower
+COLOURS = 7
+"""Into how many colours the skin is cut; more look smoother and move slower [-]."""
 
 
 class Posture:
@@ -77,11 +78,16 @@ class Piece:
 
 
 @lru_cache(maxsize=8)
-def pieces(robot: Crocodile) -> tuple[Piece, ...]:
-    """Return the skin of a robot cut by colour, since a browser's skinned mesh has but one."""
+def pieces(robot: Crocodile, count: int = COLOURS) -> tuple[Piece, ...]:
+    """Return the skin of a robot cut by colour, since a browser's skinned mesh has but one.
+
+    Args:
+        robot: whose skin.
+        count: of colours.
+    """
     whole = skin(robot)
     of_faces = whole.colours[whole.faces].astype(float).mean(axis=1)
-    centres, group = kmeans2(of_faces, _COLOURS, minit="++", seed=0)
+    centres, group = kmeans2(of_faces, count, minit="++", seed=0)
     dense = np.zeros((len(whole.vertices), len(whole.bones)))
     np.add.at(dense, (np.arange(len(dense))[:, None], whole.indices), whole.weights)
     found = []

@@ -32,8 +32,9 @@ class DrawnRobot:
         self._marks: dict[str, Any] = {}
         self._lost: tuple[tuple[str, str], ...] = ()
         self._look: Look = "skin"
-        self._geoms = {number: self._geom(number) for number in self.posture.geoms()}
-        self._skin = [(piece, self._piece(i, piece)) for i, piece in enumerate(pieces(robot))]
+        self._geoms: dict[int, Any] = {}
+        cut = pieces(robot, 1) if ghost else pieces(robot)
+        self._skin = [(piece, self._piece(i, piece)) for i, piece in enumerate(cut)]
 
     def _geom(self, number: int) -> Any:
         mesh = create_primitive_mesh(self.posture.model, number)
@@ -44,7 +45,6 @@ class DrawnRobot:
             np.asarray(mesh.faces),
             color=GHOST if self._ghost else colour,
             opacity=0.35 if self._ghost else None,
-            visible=False,
         )
 
     def _piece(self, number: int, piece: Any) -> Any:
@@ -62,6 +62,8 @@ class DrawnRobot:
 
     def look(self, look: Look) -> None:
         """Show the skin or the collision geoms."""
+        if look != "skin" and not self._geoms:
+            self._geoms = {number: self._geom(number) for number in self.posture.geoms()}
         self._look = look
         for handle in self._geoms.values():
             handle.visible = look != "skin"

@@ -9,7 +9,7 @@ from viser import uplot
 
 from suchus.viewer.controls import Controls
 from suchus.viewer.plots import Plots
-from suchus.viewer.session import Instant, Session
+from suchus.viewer.session import Instant, Session, Settings
 from suchus.viewer.stage import Stage
 
 FRAME = 1 / 20
@@ -97,7 +97,9 @@ class LivePage:
             if everything:
                 self._stage.draw(instant.now, instant.pushed)
                 self._stage.go(instant.now["centre_of_mass"])
-                self._status.content = status(instant, settings.speed, rate, self._notice, paused=self._controls.paused)
+                self._status.content = status(
+                    instant, settings, rate=rate, notice=self._notice, paused=self._controls.paused
+                )
 
     def _say(self, sentence: str) -> None:
         self._notice = sentence
@@ -112,18 +114,18 @@ _SHOWN = (
 )
 
 
-def status(instant: Instant, asked: float, rate: float, notice: str, *, paused: bool) -> str:
-    """Return the head of the page as HTML: numbers, then trouble or a notice.
+def status(instant: Instant, settings: Settings, *, rate: float, notice: str, paused: bool) -> str:
+    """Return the head of the page as HTML: numbers, what is lost, then trouble or a notice.
 
     Args:
         instant: what is seen.
-        asked: playback speed [-].
-        rate: that is reached [-].
+        settings: what was chosen.
+        rate: playback speed that is reached [-].
         notice: a sentence; may be empty.
         paused: whether the walk stands still.
     """
     state = "paused" if paused else "settling" if instant.time < 1.0 else "walking"
-    if not paused and rate < 0.9 * asked:
+    if not paused and rate < 0.9 * settings.speed:
         state += f" at {rate:.2f} x real time, as fast as this machine can"
     cells = "".join(
         f'<td style="padding:0 14px 0 0"><div style="font-size:11px;color:#666">{label}</div>'
@@ -135,9 +137,11 @@ def status(instant: Instant, asked: float, rate: float, notice: str, *, paused: 
         )
     )
     said = _box(instant.trouble, "#fdecea", "#a1261b") if instant.trouble else _box(notice, "#fff6dc", "#6b5200")
+    lost = ", ".join(f"{joint.replace('_', ' ')} {kind}" for joint, kind in settings.broken)
     return (
         f'<div style="padding:4px 12px;font-family:sans-serif"><table><tr>{cells}</tr></table>'
-        f'<div style="font-size:12px;color:#444" data-suchus="state">{escape(state)}</div>{said}</div>'
+        f'<div style="font-size:12px;color:#444" data-suchus="state">{escape(state)}</div>'
+        f'<div style="font-size:12px;color:#a1261b" data-suchus="lost">{escape(lost)}</div>{said}</div>'
     )
 
 

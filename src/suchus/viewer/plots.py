@@ -13,7 +13,8 @@ from suchus.metrics.gait import LOADED
 
 _POINTS = 400  # of a line; more are not seen
 _PALE = "#c9ccd1"
-_AXIS = {"stroke": "#555555", "grid": {"stroke": "#e6e6e6", "width": 1}, "ticks": {"stroke": "#cccccc", "width": 1}}
+AXIS = {"stroke": "#555555", "grid": {"stroke": "#e6e6e6", "width": 1}, "ticks": {"stroke": "#cccccc", "width": 1}}
+"""How axes are drawn, as uPlot has it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,8 +91,9 @@ class Chart:
             series=tuple(drawn),
             title=plan.title,
             scales={"x": uplot.Scale(time=False, auto=True), "y": uplot.Scale(auto=True)},
-            axes=(uplot.Axis(**_AXIS, size=26), uplot.Axis(**_AXIS, size=44)),
+            axes=(uplot.Axis(**AXIS, size=26), uplot.Axis(**AXIS, size=46)),
             legend=uplot.Legend(show=False),
+            padding=(10, 16, 0, 0),
             height=150 if len(plan.lines) < 4 else 185,
         )
         if len(plan.lines) > 1:

@@ -2,6 +2,7 @@
 
 import io
 import socket
+import warnings
 from collections.abc import Callable
 from contextlib import redirect_stdout
 from threading import Event, Lock
@@ -63,6 +64,7 @@ class Viewer:
         camera: tuple[tuple[float, float, float], tuple[float, float, float]] = (CAMERA, LOOKS_AT),
     ) -> None:
         _check_free(host, port)
+        warnings.filterwarnings("ignore", message="Queued a .* on a closed connection")  # a browser left in mid-frame
         self._open, self._most = open_page, most
         self._pages: dict[int, Page | None] = {}
         self._lock = Lock()

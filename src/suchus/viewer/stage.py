@@ -15,9 +15,9 @@ from suchus.model import compile_model
 from suchus.viewer.bodies import support
 from suchus.viewer.drawn import DrawnRobot, Look
 
-CAMERA = (0.78, -0.98, 0.62)
+CAMERA = (0.74, -1.16, 0.68)
 """Where the camera is at first [m]."""
-LOOKS_AT = (0.03, 0.0, 0.02)
+LOOKS_AT = (-0.06, 0.0, 0.02)
 """Where it looks at first [m]."""
 _PER_NEWTON = 0.008  # [m]; the robot's weight is then as long as its trunk
 _ABOVE = 0.003  # [m]; what is painted on the ground lies so far above it
@@ -146,30 +146,30 @@ class Stage:
         ground = feet - np.array([0.0, 0.0, 1.0]) * self._radii()[:, None]
         for arrow, foot, force in zip(self._forces, ground, forces, strict=True):
             arrow.visible = bool(self.shown["forces"] and force[2] > LOADED)
-            if arrow.visible:
-                arrow.points = np.array([[foot, foot + _PER_NEWTON * force]], dtype=np.float32)
+            if arrow.visible:  # a slow browser moves a node at once, and draws its shape anew when it can
+                arrow.position = foot
+                arrow.points = np.array([[np.zeros(3), _PER_NEWTON * force]], dtype=np.float32)
         self._push.visible = pushed is not None
         if pushed is not None:
-            tip, _ = self.robot.posture.body("thorax")
-            tip = tip + np.array([0.0, 0.0, 0.05])
-            way = np.array(pushed)
-            self._push.points = np.array([[tip - _PER_NEWTON * way, tip]], dtype=np.float32)
+            trunk, _ = self.robot.posture.body("thorax")
+            self._push.position = trunk + np.array([0.0, 0.0, 0.06])
+            self._push.points = np.array([[-_PER_NEWTON * np.array(pushed), np.zeros(3)]], dtype=np.float32)
         self._stand(ground, forces[:, 2] > LOADED, com)
 
     def _radii(self) -> np.ndarray:
         return np.array([self.robot.posture.robot.leg(leg).foot_radius for leg in LEGS])
 
     def _stand(self, feet: np.ndarray, loaded: np.ndarray, com: np.ndarray) -> None:
-        corners = support(feet, loaded) + np.array([0.0, 0.0, _ABOVE])
+        floor = float(feet[loaded, 2].mean()) if loaded.any() else 0.0
+        below = np.array([com[0], com[1], floor + _ABOVE])
+        corners = support(feet, loaded) + np.array([0.0, 0.0, _ABOVE]) - below
+        self._support.position = self._com.position = self._plumb.position = below
         self._support.visible = bool(self.shown["support"] and len(corners) > 1)
         if len(corners) > 1:
             ends = np.stack([corners, np.roll(corners, -1, axis=0)], axis=1)
             self._support.points = ends.astype(np.float32)
-        floor = float(feet[loaded, 2].mean()) if loaded.any() else 0.0
-        below = np.array([com[0], com[1], floor + _ABOVE])
         self._com.visible = self._plumb.visible = bool(self.shown["support"])
-        self._com.position = below
-        self._plumb.points = np.array([[below, com]], dtype=np.float32)
+        self._plumb.points = np.array([[np.zeros(3), com - below]], dtype=np.float32)
 
     def go(self, com: np.ndarray) -> None:
         """Lengthen the way on the ground to where the centre of mass is now."""

@@ -124,8 +124,10 @@ def _curves(record: xr.Dataset) -> tuple[Curve, ...]:
         parts = {"forward": f"{prefix}_thrust", "to the side": f"{prefix}_aside"}
         if all(name in record for name in parts.values()):
             phase = record[f"{prefix}_phase"].values
-            curves.append(Curve(f"force [N/m], {said}", phase, {k: record[v].values for k, v in parts.items()}))
+            curves.append(
+                Curve(f"force [N/m] over the phase, {said}", phase, {k: record[v].values for k, v in parts.items()})
+            )
     if "arm_speed" in record:
         lines = {str(arm): record.arm_speed.sel(arm=arm).values for arm in record.arm.values[:3]}
-        curves.append(Curve("speed of each cycle [m/s]", np.arange(1.0, record.sizes["cycle"] + 1), lines))
+        curves.append(Curve("speed [m/s] of each cycle", np.arange(1.0, record.sizes["cycle"] + 1), lines))
     return tuple(curves)

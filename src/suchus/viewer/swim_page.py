@@ -10,11 +10,11 @@ import numpy as np
 from viser import uplot
 
 from suchus.figures import COLOURS
-from suchus.viewer.plots import Line, legend, series
+from suchus.viewer.plots import AXIS, Line, legend, series
 from suchus.viewer.stage import rgb
 from suchus.viewer.swim import Curve, Film, colours
 
-CAMERA = ((0.62, -0.05, 2.35), (0.62, 0.0, 0.0))
+CAMERA = ((0.75, -0.05, 3.3), (0.75, 0.0, 0.0))
 """Where the camera is at first and where it looks [m]."""
 _SKIN, _EDGE = "#C9DCCB", "#2F4737"
 _INKS = (COLOURS["ours"], COLOURS["limbs_only"], COLOURS["tail"])
@@ -153,7 +153,9 @@ def _draw(gui: Any, curve: Curve) -> None:
         series=(uplot.Series(label="x"), *(series(uplot, line) for line in lines)),
         title=curve.title,
         scales={"x": uplot.Scale(time=False, auto=True), "y": uplot.Scale(auto=True)},
+        axes=(uplot.Axis(**AXIS, size=26), uplot.Axis(**AXIS, size=52)),
         legend=uplot.Legend(show=False),
-        height=170,
+        padding=(10, 16, 0, 0),
+        height=165,
     )  # fmt: skip
     gui.add_html(legend(lines))
