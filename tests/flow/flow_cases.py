@@ -3,8 +3,10 @@
 from dataclasses import replace
 
 import numpy as np
+from scipy.special import kv
 
 from suchus import flow
+from suchus.flow import signals
 from suchus.flow.compiled import PAD
 
 
@@ -53,6 +55,11 @@ def cylinder(
     return sim, record, 2 * record.force()
 
 
+def middle(record):
+    """Times that the forces of a record belong to: they are means over the steps [s]."""
+    return record.time - record.step / 2
+
+
 def wake_length(sim):
     """Length of the recirculation behind a cylinder of diameter 1 at the origin, from its rear [m]."""
     u = sim.water.u[PAD:-PAD, PAD:-PAD]
@@ -82,8 +89,120 @@ def oscillating(cells, *, keulegan, stokes, periods, width, height, courant=0.8)
     body = flow.Body(shape=flow.Cylinder(diameter=1.0), motion=flow.Oscillation(frequency=1.0, heave=(-amplitude, 0.0)))
     sim = flow.Simulation(flow.Setup(grid=grid, viscosity=1 / stokes, density=1.0, bodies=(body,), courant=courant))
     record = sim.run(float(periods), progress=False).after(periods - 1.0)
-    middle = record.time - record.step / 2
-    return flow.morison(middle, record.force()[:, 0], frequency=1.0, speed=speed, diameter=1.0, density=1.0), sim
+    got = flow.morison(middle(record), record.force()[:, 0], frequency=1.0, speed=speed, diameter=1.0, density=1.0)
+    return got, sim
+
+
+def turning(cells, *, viscosity=0.05, swing=0.2, periods=1.0, width=3.0):
+    """A cylinder that turns to and fro in still water, against the exact solution far from other walls.
+
+    Returns:
+        rms error of the torque over its amplitude, in the last half period; rms error of the velocity over the
+        wall's speed, within 0.25 diameters of the wall and outside the kernel, at the end.
+
+    Source: the diffusion equation for a swirl, v = Re[V K1(k r) / K1(k a) exp(i w t)], k^2 = i w / viscosity.
+    """
+    grid = flow.Grid.covering((-width / 2, width / 2), (-width / 2, width / 2), cell=1 / cells)
+    shape, motion = flow.Cylinder(diameter=1.0), flow.Oscillation(frequency=1.0, pitch=swing, pitch_phase=-np.pi / 2)
+    sim = flow.Simulation(
+        flow.Setup(grid=grid, viscosity=viscosity, density=1.0, bodies=(flow.Body(shape=shape, motion=motion),))
+    )
+    a, rate, speed = 0.5, 2 * np.pi, np.pi * swing
+    k = np.sqrt(1j * rate / viscosity)
+    n = sim.water.u.shape[0]
+    faces, mids = grid.faces(0, n, 0), grid.centres(0, n, 0)
+
+    def swirl(x, y, along, time):
+        r = np.maximum(np.hypot(x, y), a)
+        return speed * (kv(1, k * r) / kv(1, k * a) * np.exp(1j * (rate * time - np.pi / 2))).real * along / r
+
+    def exact(time):
+        x, y = np.meshgrid(faces, mids)
+        u = swirl(x, y, -y, time)
+        return u, -u.T
+
+    sim.water.u[:], sim.water.v[:] = exact(0.0)
+    late = sim.run(periods, progress=False).after(periods / 2)
+    slope = -k * kv(0, k * a) / kv(1, k * a) - 2 / a  # of v at the wall, less v / a, over v
+    scale = 2 * np.pi * a**2 * viscosity * speed * slope
+    wanted = (scale * np.exp(1j * (rate * middle(late) - np.pi / 2))).real
+    torque = np.sqrt(np.mean((late.column("torque") - wanted) ** 2)) / np.abs(scale)
+    squares = []
+    for got, right, x, y in zip((sim.water.u, sim.water.v), exact(periods), (faces, mids), (mids, faces), strict=True):
+        r = np.hypot(x[None, :], y[:, None])
+        near = (r > a + 1.5 / cells) & (r < a + 0.25)
+        squares.append(((got - right) / speed)[near] ** 2)
+    return float(torque), float(np.sqrt(np.mean(np.concatenate(squares))))
+
+
+def energy(sim, speed):
+    """Kinetic energy of the water around a rigid body of area pi/4 that moves with ``speed``, and its dissipation."""
+    h, nu = sim.setup.grid.cell, sim.setup.viscosity
+    u, v = (f.astype(float) for f in (sim.water.u, sim.water.v))
+    a, b = PAD, -PAD
+    kinetic = 0.5 * h * h * ((u[a:b, a:b] ** 2).sum() + (v[a:b, a:b] ** 2).sum()) - np.pi / 8 * speed**2
+    stretch = u[a:b, a + 1 : u.shape[1] + b + 1] - u[a:b, a:b], v[a + 1 : v.shape[0] + b + 1, a:b] - v[a:b, a:b]
+    shear = u[a : b + 1, a : b + 1] - u[a - 1 : b, a : b + 1] + v[a : b + 1, a : b + 1] - v[a : b + 1, a - 1 : b]
+    return kinetic, nu * (2 * (stretch[0] ** 2).sum() + 2 * (stretch[1] ** 2).sum() + (shear**2).sum())
+
+
+def energy_budget(cells, *, keulegan=1.0, stokes=10.0):
+    """Work of a cylinder that oscillates in a closed box over one period, and what the water made of it [J/m]."""
+    speed = keulegan
+    grid = flow.Grid.covering((-3.0, 3.0), (-3.0, 3.0), cell=1 / cells)
+    motion = flow.Oscillation(frequency=1.0, heave=(keulegan / (2 * np.pi), 0.0), phase=-np.pi / 2)
+    body = flow.Body(shape=flow.Cylinder(diameter=1.0), motion=motion)
+    sim = flow.Simulation(
+        flow.Setup(grid=grid, viscosity=1 / stokes, density=1.0, bodies=(body,), sides=flow.Sides.box())
+    )
+    seen = []
+
+    def watch(now):
+        seen.append((now.time, *energy(now, speed * np.sin(2 * np.pi * now.time))))
+
+    record = sim.run(1.0, watch=watch, progress=False)
+    time, kinetic, lost = np.array(seen).T
+    work = float((record.column("power") * record.step).sum())
+    return work, float(kinetic[-1]), float(np.trapezoid(np.append(0.0, lost), np.append(0.0, time)))
+
+
+def shaken_in_a_stream(cells, ratio, until, *, x=(-6.0, 10.0), y=(-6.0, 6.0), strouhal=0.195):
+    """Cylinder at Re 185 that oscillates across the stream with 0.2 D at ``ratio`` times its own shedding frequency."""
+    grid = flow.Grid.covering(x, y, cell=1 / cells)
+    motion = flow.Oscillation(frequency=ratio * strouhal, heave=(0.0, 0.2))
+    body = flow.Body(shape=flow.Cylinder(diameter=1.0), motion=motion if ratio else flow.Pose(position=(0.0, 0.05)))
+    sim = flow.Simulation(flow.Setup(grid=grid, viscosity=1 / 185, density=1.0, stream=(1.0, 0.0), bodies=(body,)))
+    record = sim.run(until, progress=False)
+    return record, 2 * record.force()
+
+
+def wavy_foil(cells, speed, cycles):
+    """Held NACA 0012 in a stream of 1 with a wave that runs to the tail at ``speed``; forces as coefficients.
+
+    Envelope 0.02 - 0.0825 x + 0.1625 x^2 and one wave a chord; Reynolds number 5000.
+    """
+    base = flow.foil(1.0, thickness=0.12, stations=2 * cells + 1).spine(0.0)
+    x, k = base.x, 2 * np.pi
+    amplitude, slope = 0.02 - 0.0825 * x + 0.1625 * x**2, -0.0825 + 0.325 * x
+
+    def spine(time):
+        sin, cos = np.sin(k * (x - speed * time)), np.cos(k * (x - speed * time))
+        tangent = slope * sin + amplitude * k * cos
+        rate = speed * k * (-slope * cos + amplitude * k * sin)
+        return replace(
+            base, y=amplitude * sin, y_rate=-speed * k * amplitude * cos, heading=np.arctan(tangent),
+            heading_rate=rate / (1 + tangent**2),
+        )  # fmt: skip
+
+    def blunt(time):
+        return spine(time).blunted(1.75 / cells)
+
+    grid = flow.Grid.covering((-0.75, 2.25), (-0.75, 0.75), cell=1 / cells)
+    body = flow.Body(shape=flow.Midline(spine=blunt))
+    sim = flow.Simulation(flow.Setup(grid=grid, viscosity=1 / 5000, density=1.0, stream=(1.0, 0.0), bodies=(body,)))
+    period = 1 / speed
+    record = sim.run(cycles * period, progress=False).after((cycles - 1) * period)
+    return 2 * signals.mean(record.time, record.force()[:, 0]), 2 * signals.mean(record.time, record.column("power"))
 
 
 def cavity(n, reynolds, until):
@@ -126,18 +245,14 @@ def pressure_drop(sim):
     return float(np.interp(np.pi, turn, p) - np.interp(0.0, turn, p))
 
 
-def swimming_eel(cells, cycles, *, size=(4.0, 2.0), tolerance=1e-5, angle=0.0, frames=None):
-    """The free eel of the IBAMR example, length and period 1; the grid follows it."""
+def swimming_eel(cells, cycles, *, size=(4.0, 2.0), tolerance=1e-5, least=0.0, frames=None):
+    """The free eel of the IBAMR example, length and period 1, nowhere thinner than ``2 least`` cells."""
     w, hgt = size
     grid = flow.Grid.covering((-0.3 * w, 0.7 * w), (-hgt / 2, hgt / 2), cell=1 / cells)
-    body = flow.FreeBody(shape=flow.eel(1.0, stations=2 * cells + 1), start=(0.0, 0.0), angle=angle, name="eel")
+    sharp = flow.eel(1.0, stations=2 * cells + 1)
+    shape = sharp if not least else flow.Midline(spine=lambda t: sharp.spine(t).blunted(least / cells))
+    body = flow.FreeBody(shape=shape, start=(0.0, 0.0), name="eel")
     sim = flow.Simulation(
         flow.Setup(grid=grid, viscosity=1.4e-4, density=1.0, bodies=(body,), follow="eel", tolerance=tolerance)
     )
     return sim, sim.run(float(cycles), progress=False, watch=frames, every=None if frames is None else 0.05)
-
-
-def blunted(spine, least):
-    """The same midline, behind its head nowhere thinner than ``2 least`` [m]."""
-    behind = spine.arc > 0.04 * spine.arc[-1]
-    return replace(spine, half_width=np.where(behind, np.maximum(spine.half_width, least), spine.half_width))

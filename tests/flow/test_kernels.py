@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from suchus.flow import multigrid, poisson
+from suchus.flow import multigrid, poisson, stencil
 from suchus.flow.advect import limited_quick, median
 from suchus.flow.compiled import PAD
 from suchus.flow.immerse import moment0, moment1, wall_offset
@@ -74,7 +74,7 @@ def test_the_pressure_solver_solves(thin):
     inner = np.s_[PAD:-PAD, PAD:-PAD]
     b[inner] = u[inner] - u[PAD:-PAD, PAD + 1 : -PAD + 1] + v[inner] - v[PAD + 1 : -PAD + 1, PAD:-PAD]
     for row in b:
-        multigrid.seal_row(row, False)
+        stencil.seal_row(row, False)
     wanted = b[inner].copy()
     x, d, q = (np.zeros(b.shape) for _ in range(3))
     sums = np.zeros((ny + 2 * PAD, 3))
@@ -82,5 +82,5 @@ def test_the_pressure_solver_solves(thin):
     assert cycles < (12 if thin is None else 30)
     out = np.empty(nx)
     for j in range(ny):  # the answer is checked with the operator, not with the solver's own residual
-        multigrid.apply_row(out, x, cx, cy, layout[0], j + PAD)
+        stencil.apply_row(out, x, cx, cy, layout[0], j + PAD)
         assert np.abs(out - wanted[j]).max() < 1e-7

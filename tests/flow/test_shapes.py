@@ -99,6 +99,17 @@ def test_a_turned_midline_is_the_turned_field(angle, px, py):
     assert n.velocity_y == pytest.approx(vy + cy, abs=1e-9)
 
 
+def test_a_blunted_eel_keeps_its_head_and_gets_a_round_tail():
+    sharp = _eel(0.3)
+    blunt = sharp.blunted(0.01)
+    assert (blunt.half_width[:100] == sharp.half_width[:100]).all()
+    left = sharp.arc[-1] - sharp.arc
+    assert blunt.half_width[(left > 0.01) & (sharp.arc > 0.5) & (sharp.half_width < 0.01)] == pytest.approx(0.01)
+    end = left < 0.01
+    assert np.hypot(blunt.half_width, 0.01 - left)[end] == pytest.approx(0.01)
+    assert (blunt.half_width >= sharp.half_width).all()
+
+
 def test_naca_0012_is_twelve_percent_thick():
     _, thickness = flow.foil(1.0, thickness=0.12).thickness(0.0)
     assert thickness.max() == pytest.approx(0.12, rel=1e-3)

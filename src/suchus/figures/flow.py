@@ -84,7 +84,7 @@ def _draw_started(rows: list[dict[str, Any]]) -> Figure:
         axes = figure.add_subplot(1, 2, k + 1)
         curves = _curves(rows, "impulsively started cylinder", f"Re {reynolds}")
         if curves:
-            axes.plot(curves["t"], curves["cd"], label="surface")
+            axes.plot(curves["t"], curves["cd"], label="momentum exchanged")
             axes.plot(curves["t"], curves["box"], linestyle="--", linewidth=1, label="momentum box")
             axes.plot(curves["data_t"], curves["data_cd"], "k.", label="Koumoutsakos and Leonard 1995")
             late = [c for t, c in zip(curves["t"], curves["cd"], strict=True) if t > 0.3]
@@ -113,23 +113,41 @@ def _draw_cavity(rows: list[dict[str, Any]]) -> Figure:
     return figure
 
 
+def _slope(axes: Axes, size: np.ndarray, error: np.ndarray, order: int, label: str) -> None:
+    axes.loglog(size, 0.7 * error[-1] * (size[-1] / size) ** order, "k--" if order == 2 else "k:", lw=0.8, label=label)
+
+
 def _draw_convergence(rows: list[dict[str, Any]]) -> Figure:
-    figure = Figure(figsize=(8.0, 2.9), layout="constrained", dpi=100)
-    left, right = figure.subplots(1, 2)
-    curves = _curves(rows, "Taylor-Green", "order")
-    if curves:
-        size, error = np.array(curves["size"]), np.array(curves["error"])
-        left.loglog(size, error, "o-", label="rms error")
-        left.loglog(size, error[-1] * (size[-1] / size) ** 2, "k--", linewidth=0.8, label="second order")
-        left.set_xticks(size, [str(n) for n in size])
-        left.minorticks_off()
-    left.set(xlabel="cells along a side", ylabel="error (m/s)", title="Taylor-Green vortices")
-    left.legend(frameon=False)
-    curves = _curves(rows, "free eel", "mean speed")
-    if curves:
-        right.plot(curves["cells"], curves["speed"], "o-")
-        right.set_ylim(0, 1.15 * max(curves["speed"]))
-    right.set(xlabel="cells along the body", ylabel="speed (L/T)", title="free eel, cycle 6")
+    figure = Figure(figsize=(9.6, 3.1), layout="constrained", dpi=100)
+    fields, forces, swim = figure.subplots(1, 3)
+    for case, part, label in (
+        ("Taylor-Green", "order", "Taylor-Green, whole field"),
+        ("turning cylinder", "order", "turning cylinder, near the wall"),
+    ):
+        curves = _curves(rows, case, part)
+        if curves:
+            fields.loglog(curves["size"], curves["error"], "o-", ms=4, label=label)
+            _slope(fields, np.array(curves["size"]), np.array(curves["error"]), 2, "")
+    fields.set(xlabel="cells a side, a diameter", ylabel="rms error of the velocity", title="fields; dashed: order 2")
+    for case, part, sizes, values, exact, label in (
+        ("DFG 2D-1", "Cd", "rows", "cd", 5.57953523384, "Cd, DFG 2D-1"),
+        ("turning cylinder", "order", "size", "torque", 0.0, "torque, turning cylinder"),
+    ):
+        curves = _curves(rows, case, part)
+        if curves:
+            size, value = np.array(curves[sizes]) / (4.1 if sizes == "rows" else 1.0), np.array(curves[values])
+            error = np.abs(value / exact - 1) if exact else value
+            forces.loglog(size, error, "o-", ms=4, label=label)
+            _slope(forces, size, error, 1, "")
+    forces.set(xlabel="cells a diameter", ylabel="relative error", title="force; dotted: order 1")
+    for case in sorted({r["case"] for r in rows if r["case"].startswith("free eel")}):
+        curves = _curves(rows, case, "mean speed")
+        if curves:
+            swim.plot(curves["cells"], curves["speed"], "o-", ms=4, label=case.removeprefix("free eel, "))
+    swim.set(xlabel="cells along the body", ylabel="speed (L/T)", title="free eel, cycle 6")
+    swim.set_ylim(bottom=0)
+    for axes in (fields, forces, swim):
+        axes.legend(frameon=False, fontsize="small")
     return figure
 
 

@@ -73,14 +73,18 @@ def unite(windows: list[Window]) -> Window:
     )  # fmt: skip
 
 
-def measure_all(bodies: list[AnyBody], poses: list[Pose], x: np.ndarray, y: np.ndarray, time: float, h: float) -> Field:
-    """Return the field of all bodies on a window: at every point, that of the nearest body."""
+def measure_all(
+    bodies: list[AnyBody], poses: list[Pose], x: np.ndarray, y: np.ndarray, time: float, h: float
+) -> tuple[Field, np.ndarray]:
+    """Return the field of all bodies on a window, at every point that of the nearest body, and which one it is."""
     first = bodies[0].shape.measure(x, y, time, poses[0], (REACH + 1) * h)
-    for body, pose in zip(bodies[1:], poses[1:], strict=True):
+    owner = np.zeros(first.distance.shape, np.int8)
+    for k, (body, pose) in enumerate(zip(bodies[1:], poses[1:], strict=True), start=1):
         other = body.shape.measure(x, y, time, pose, (REACH + 1) * h)
         nearer = other.distance < first.distance
         first = Field(*(np.where(nearer, getattr(other, f.name), getattr(first, f.name)) for f in fields(Field)))
-    return first
+        owner[nearer] = k
+    return first, owner
 
 
 def thin_share(body: AnyBody, grid: Grid, time: float) -> float:

@@ -4,25 +4,38 @@ from dataclasses import fields
 from hashlib import sha256
 from pathlib import Path
 from time import monotonic
-from typing import TYPE_CHECKING
+from typing import Protocol
 from zipfile import BadZipFile
 
 import numpy as np
 
 from suchus.errors import UnreadableFile, Unwritable
+from suchus.flow.setup import Setup
 
-if TYPE_CHECKING:
-    from suchus.flow.simulation import Simulation
-
-VERSION = 1
+VERSION = 2
 """Layout of the file; rises with every change of it."""
 
-_SWIMMER = ("place", "rate", "push", "load", "steady", "added")
+State = dict[str, np.ndarray]
+"""What a simulation needs to go on, by name."""
 
 
-def fingerprint(sim: "Simulation") -> str:
+class Resumable(Protocol):
+    """What can be saved and go on from what was saved."""
+
+    @property
+    def setup(self) -> Setup:
+        """What is simulated."""
+
+    def state(self) -> State:
+        """Return all that changes."""
+
+    def resume(self, state: State) -> None:
+        """Set all that changes."""
+
+
+def fingerprint(setup: Setup) -> str:
     """Return what two simulations must share for one to go on from the other's checkpoint."""
-    s = sim.setup
+    s = setup
     numbers = (
         s.grid, s.viscosity, s.density, s.follow, s.follow_axes, s.courant, s.step, s.tolerance, s.precision,
         tuple(type(getattr(s.sides, f.name)).__name__ for f in fields(s.sides)),
@@ -32,26 +45,13 @@ def fingerprint(sim: "Simulation") -> str:
     return sha256(repr(numbers).encode()).hexdigest()
 
 
-def save(sim: "Simulation", path: Path) -> None:
+def save(sim: Resumable, path: Path) -> None:
     """Write the state to a file; a kill in between leaves the old file whole.
 
     Raises:
         Unwritable: naming the place.
     """
-    water = sim.water
-    state = {
-        "version": np.array(VERSION), "setup": np.array(fingerprint(sim)), "time": np.array(sim.time),
-        "last": np.array(sim._last), "speed": np.array(sim._speed), "peak": np.array(sim._peak),
-        "offset": np.array(water.offset), "reference": np.array(sim._reference), "frame": sim.frame,
-        "u": water.u, "v": water.v, "p": water.p, "stream": np.array(water.border.stream),
-        "rows": np.array(sim._rows).reshape(len(sim._rows), -1),
-    }  # fmt: skip
-    for k, edge in enumerate(water.border.edges):
-        state[f"edge{k}"] = edge.prescribed
-    for name, swimmer in sim.swimmers.items():
-        for key in _SWIMMER:
-            state[f"{name}.{key}"] = getattr(swimmer, key)
-        state[f"{name}.steps"] = np.array(swimmer.steps)
+    state = {"version": np.array(VERSION), "setup": np.array(fingerprint(sim.setup)), **sim.state()}
     part = path.with_name(path.name + ".part")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -62,7 +62,7 @@ def save(sim: "Simulation", path: Path) -> None:
         raise Unwritable(f"the checkpoint {path} cannot be written: {error.strerror}; choose another place.") from error
 
 
-def load(sim: "Simulation", path: Path) -> None:
+def load(sim: Resumable, path: Path) -> None:
     """Set the simulation to the state in a file.
 
     Raises:
@@ -75,28 +75,9 @@ def load(sim: "Simulation", path: Path) -> None:
         raise UnreadableFile(f"{path} is not a checkpoint ({error}); delete it to start anew.") from error
     if "version" not in state or int(state["version"]) != VERSION:
         raise UnreadableFile(f"{path} is not a checkpoint of version {VERSION}; delete it to start anew.")
-    if str(state["setup"]) != fingerprint(sim):
+    if str(state["setup"]) != fingerprint(sim.setup):
         raise UnreadableFile(f"{path} was written by another setup; give that setup, or another file.")
-    _restore(sim, state)
-
-
-def _restore(sim: "Simulation", state: dict[str, np.ndarray]) -> None:
-    water = sim.water
-    sim.time, sim._last, sim._speed, sim._peak = (float(state[k]) for k in ("time", "last", "speed", "peak"))
-    sim._reference = float(state["reference"])
-    water.offset = float(state["offset"])
-    sim.frame = state["frame"]
-    sim._rows = list(state["rows"])
-    sim._placed = False
-    water.u[:], water.v[:], water.p[:] = state["u"], state["v"], state["p"]
-    sim._fastest = water.fastest()
-    water.border.stream = (float(state["stream"][0]), float(state["stream"][1]))
-    for k, edge in enumerate(water.border.edges):
-        edge.prescribed[:] = state[f"edge{k}"]
-    for name, swimmer in sim.swimmers.items():
-        for key in _SWIMMER:
-            setattr(swimmer, key, state[f"{name}.{key}"])
-        swimmer.steps = int(state[f"{name}.steps"])
+    sim.resume(state)
 
 
 class Saver:
@@ -105,7 +86,7 @@ class Saver:
     def __init__(self, path: Path | None, every: float) -> None:
         self._path, self._every, self._saved = path, every, monotonic()
 
-    def save(self, sim: "Simulation", *, now: bool = False) -> None:
+    def save(self, sim: Resumable, *, now: bool = False) -> None:
         """Save if a path was given and it is time, or ``now``."""
         if self._path is not None and (now or monotonic() - self._saved >= self._every):
             save(sim, self._path)

@@ -47,6 +47,9 @@ class FreeBody:
         return False
 
 
+_CHANGING = ("place", "rate", "push", "load", "steady", "added", "steps")
+
+
 @dataclass(slots=True)
 class Swimmer:
     """A free body under way. Vectors are (x, y, turning)."""
@@ -84,6 +87,21 @@ class Swimmer:
             position=(self.place[0] - rx, self.place[1] - ry), angle=angle,
             velocity=(self.rate[0] - ux + spin * ry, self.rate[1] - uy - spin * rx), spin=spin,
         )  # fmt: skip
+
+    @property
+    def place_and_rate(self) -> Pose:
+        """Centre of mass and angle, with the velocities that the water's forces change."""
+        (x, y, angle), (u, v, spin) = self.place.tolist(), self.rate.tolist()
+        return Pose(position=(x, y), angle=angle, velocity=(u, v), spin=spin)
+
+    def state(self) -> dict[str, np.ndarray]:
+        """Return all that changes, by name."""
+        return {key: np.array(getattr(self, key)) for key in _CHANGING}
+
+    def resume(self, state: dict[str, np.ndarray]) -> None:
+        """Set all that changes."""
+        for key in _CHANGING:
+            setattr(self, key, int(state[key]) if key == "steps" else state[key])
 
     def advance(self, time: float, dt: float, water_density: float) -> None:
         """Move on by ``dt`` [s] under the water's forces of the last two steps."""

@@ -14,12 +14,10 @@ import numpy as np
 from numba import prange
 
 from suchus.flow.compiled import BLOCK, PAD, SERIAL_BELOW, compiled, threaded
+from suchus.flow.stencil import FIRST, SECOND, apply_row, presmooth, seal_ends, seal_row, smooth, smooth_window
 
 X, Y, B, CX, CY, DINV = range(6)
 """What ``store[kind]`` holds: solution, its second copy, right side, face coefficients, inverse diagonal."""
-
-FIRST, SECOND = 0.5617, 1.3896
-"""Jacobi weights: Chebyshev roots for the eigenvalues 0.5 to 2 of the scaled operator [-]."""
 
 EXTRA = 3
 """Pairs of extra smoothing steps in the body's window, where the coefficients vary [-]."""
@@ -33,155 +31,6 @@ def level(store, layout, kind, k):
     """Return the array of one kind on level ``k``; layout rows are (offset, ny, nx, window j0, j1, i0, i1)."""
     start, ny, nx = layout[k, 0], layout[k, 1] + 2 * PAD, layout[k, 2] + 2 * PAD
     return store[kind, start : start + ny * nx].reshape(ny, nx)
-
-
-@compiled
-def seal_row(row, periodic):
-    """Fill the two cells beside a row's ends that the stencil reads."""
-    n = row.size
-    if periodic:
-        row[PAD - 1] = row[n - PAD - 1]
-        row[n - PAD] = row[PAD]
-    else:
-        row[PAD - 1] = row[PAD]
-        row[n - PAD] = row[n - PAD - 1]
-
-
-@compiled
-def seal_ends(x, periodic):
-    """Fill the row below the first and the row above the last."""
-    n = x.shape[0]
-    if periodic:
-        x[PAD - 1] = x[n - PAD - 1]
-        x[n - PAD] = x[PAD]
-    else:
-        x[PAD - 1] = x[PAD]
-        x[n - PAD] = x[n - PAD - 1]
-
-
-@compiled
-def _apply_plain(out, mid, left, right, low, high):
-    """Write the operator times x along a row where all coefficients are 1."""
-    four = out.dtype.type(4.0)
-    for k in range(out.size):
-        out[k] = four * mid[k] - ((left[k] + right[k]) + (low[k] + high[k]))
-
-
-@compiled
-def _apply_body(out, mid, left, right, low, high, c_left, c_right, c_low, c_high):
-    """Write the operator times x along a row with coefficients."""
-    for k in range(out.size):
-        m = mid[k]
-        out[k] = (c_left[k] * (m - left[k]) + c_right[k] * (m - right[k])) + (
-            c_low[k] * (m - low[k]) + c_high[k] * (m - high[k])
-        )
-
-
-@compiled
-def apply_row(out, x, cx, cy, place, j):
-    """Write the operator times ``x`` along row ``j`` to ``out``, which has the width of the domain."""
-    s, e = PAD, PAD + out.size
-    m, a, b = x[j], x[j - 1], x[j + 1]
-    _apply_plain(out, m[s:e], m[s - 1 : e - 1], m[s + 1 : e + 1], a[s:e], b[s:e])
-    if place[3] <= j < place[4]:
-        s, e = place[5], place[6]
-        _apply_body(
-            out[s - PAD : e - PAD],
-            m[s:e],
-            m[s - 1 : e - 1],
-            m[s + 1 : e + 1],
-            a[s:e],
-            b[s:e],
-            cx[j, s:e],
-            cx[j, s + 1 : e + 1],
-            cy[j, s:e],
-            cy[j + 1, s:e],
-        )
-
-
-@compiled
-def _first_row(out, b, left, right, low, high, w1, w2):
-    """Write two smoothing steps that start from nothing, where all coefficients are 1."""
-    once = b.dtype.type(0.25) * w1
-    own = once + w2 * b.dtype.type(0.25) - w2 * once
-    near = w2 * b.dtype.type(0.25) * once
-    for k in range(out.size):
-        out[k] = own * b[k] + near * ((left[k] + right[k]) + (low[k] + high[k]))
-
-
-@compiled
-def _presmooth(x, b, cx, cy, dinv, place, j0, j1, periodic):
-    w1, w2 = x.dtype.type(FIRST), x.dtype.type(SECOND)
-    s, e = PAD, x.shape[1] - PAD
-    for j in range(j0, j1):
-        m = b[j]
-        _first_row(x[j, s:e], m[s:e], m[s - 1 : e - 1], m[s + 1 : e + 1], b[j - 1, s:e], b[j + 1, s:e], w1, w2)
-        if place[3] <= j < place[4]:
-            for i in range(place[5], place[6]):
-                y = w1 * dinv[j, i] * b[j, i]
-                a = (
-                    cx[j, i] * (y - w1 * dinv[j, i - 1] * b[j, i - 1])
-                    + cx[j, i + 1] * (y - w1 * dinv[j, i + 1] * b[j, i + 1])
-                    + cy[j, i] * (y - w1 * dinv[j - 1, i] * b[j - 1, i])
-                    + cy[j + 1, i] * (y - w1 * dinv[j + 1, i] * b[j + 1, i])
-                )
-                x[j, i] = y + w2 * dinv[j, i] * (b[j, i] - a)
-        seal_row(x[j], periodic)
-
-
-@compiled
-def _relax_plain(out, b, mid, left, right, low, high, weight):
-    """Write one Jacobi step along a row where all coefficients are 1."""
-    quarter = weight * out.dtype.type(0.25)
-    stay = out.dtype.type(1.0) - weight
-    for k in range(out.size):
-        out[k] = stay * mid[k] + quarter * (b[k] + ((left[k] + right[k]) + (low[k] + high[k])))
-
-
-@compiled
-def _relax_body(out, b, dinv, mid, ax, weight):
-    for k in range(out.size):
-        out[k] = mid[k] + weight * dinv[k] * (b[k] - ax[k])
-
-
-@compiled
-def _smooth(out, x, b, cx, cy, dinv, place, j0, j1, weight, periodic):
-    s, e = PAD, x.shape[1] - PAD
-    ax = np.empty(place[6] - place[5], x.dtype)
-    for j in range(j0, j1):
-        m = x[j]
-        _relax_plain(
-            out[j, s:e], b[j, s:e], m[s:e], m[s - 1 : e - 1], m[s + 1 : e + 1], x[j - 1, s:e], x[j + 1, s:e], weight
-        )
-        if place[3] <= j < place[4]:
-            f, t = place[5], place[6]
-            _apply_body(
-                ax,
-                m[f:t],
-                m[f - 1 : t - 1],
-                m[f + 1 : t + 1],
-                x[j - 1, f:t],
-                x[j + 1, f:t],
-                cx[j, f:t],
-                cx[j, f + 1 : t + 1],
-                cy[j, f:t],
-                cy[j + 1, f:t],
-            )
-            _relax_body(out[j, f:t], b[j, f:t], dinv[j, f:t], m[f:t], ax, weight)
-        seal_row(out[j], periodic)
-
-
-@compiled
-def _smooth_window(out, x, b, cx, cy, dinv, place, weight):
-    f, t = place[5], place[6]
-    ax = np.empty(t - f, x.dtype)
-    for j in range(place[3], place[4]):
-        m = x[j]
-        _apply_body(
-            ax, m[f:t], m[f - 1 : t - 1], m[f + 1 : t + 1], x[j - 1, f:t], x[j + 1, f:t],
-            cx[j, f:t], cx[j, f + 1 : t + 1], cy[j, f:t], cy[j + 1, f:t],
-        )  # fmt: skip
-        _relax_body(out[j, f:t], b[j, f:t], dinv[j, f:t], m[f:t], ax, weight)
 
 
 @compiled
@@ -231,7 +80,7 @@ def _presmooth_threaded(x, b, cx, cy, dinv, place, periodic):
     end = x.shape[0] - PAD
     for k in prange((end - PAD + BLOCK - 1) // BLOCK):
         j0 = PAD + k * BLOCK
-        _presmooth(x, b, cx, cy, dinv, place, j0, min(j0 + BLOCK, end), periodic)
+        presmooth(x, b, cx, cy, dinv, place, j0, min(j0 + BLOCK, end), periodic)
 
 
 @threaded
@@ -239,7 +88,7 @@ def _smooth_threaded(out, x, b, cx, cy, dinv, place, weight, periodic):
     end = x.shape[0] - PAD
     for k in prange((end - PAD + BLOCK - 1) // BLOCK):
         j0 = PAD + k * BLOCK
-        _smooth(out, x, b, cx, cy, dinv, place, j0, min(j0 + BLOCK, end), weight, periodic)
+        smooth(out, x, b, cx, cy, dinv, place, j0, min(j0 + BLOCK, end), weight, periodic)
 
 
 @threaded
@@ -274,7 +123,7 @@ def _solve_coarsest(x, y, b, cx, cy, dinv, place, periodic):
             b[j, i] -= mean
     for k in range(2 * max(end, wide)):
         weight = x.dtype.type(FIRST if k % 2 == 0 else SECOND)
-        _smooth(y, x, b, cx, cy, dinv, place, PAD, end, weight, periodic[0])
+        smooth(y, x, b, cx, cy, dinv, place, PAD, end, weight, periodic[0])
         seal_ends(y, periodic[1])
         x, y = y, x
 
@@ -292,7 +141,7 @@ def cycle(store, layout, periodic):
         place = layout[k]
         seal_ends(b, py)
         if place[1] * place[2] < SERIAL_BELOW:
-            _presmooth(x, b, cx, cy, dinv, place, PAD, x.shape[0] - PAD, px)
+            presmooth(x, b, cx, cy, dinv, place, PAD, x.shape[0] - PAD, px)
             seal_ends(x, py)
             _restrict(coarse, x, b, cx, cy, place, PAD, coarse.shape[0] - PAD, px)
         else:
@@ -317,9 +166,9 @@ def cycle(store, layout, periodic):
         if place[1] * place[2] < SERIAL_BELOW:
             _prolong(x, coarse, PAD, x.shape[0] - PAD, px)
             seal_ends(x, py)
-            _smooth(y, x, b, cx, cy, dinv, place, PAD, x.shape[0] - PAD, real(SECOND), px)
+            smooth(y, x, b, cx, cy, dinv, place, PAD, x.shape[0] - PAD, real(SECOND), px)
             seal_ends(y, py)
-            _smooth(x, y, b, cx, cy, dinv, place, PAD, x.shape[0] - PAD, real(FIRST), px)
+            smooth(x, y, b, cx, cy, dinv, place, PAD, x.shape[0] - PAD, real(FIRST), px)
         else:
             _prolong_threaded(x, coarse, px)
             seal_ends(x, py)
@@ -328,8 +177,8 @@ def cycle(store, layout, periodic):
             _smooth_threaded(x, y, b, cx, cy, dinv, place, real(FIRST), px)
         seal_ends(x, py)
         for _ in range(EXTRA):
-            _smooth_window(y, x, b, cx, cy, dinv, place, real(SECOND))
-            _smooth_window(x, y, b, cx, cy, dinv, place, real(FIRST))
+            smooth_window(y, x, b, cx, cy, dinv, place, real(SECOND))
+            smooth_window(x, y, b, cx, cy, dinv, place, real(FIRST))
 
 
 @compiled

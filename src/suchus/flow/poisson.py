@@ -8,11 +8,14 @@ new direction is made orthogonal to the last one explicitly (flexible conjugate 
 Sci. Comput. 22, 1444-1460).
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 from numba import prange
 
 from suchus.flow.compiled import BLOCK, PAD, compiled, threaded
-from suchus.flow.multigrid import CX, CY, DINV, B, X, apply_row, cycle, level, seal_ends, seal_row
+from suchus.flow.multigrid import CX, CY, DINV, B, X, cycle, level
+from suchus.flow.stencil import apply_row, seal_ends, seal_row
 
 STALLED = 3
 """Cycles without progress after which rounding, not the residual, is what is left [-]."""
@@ -147,6 +150,18 @@ def solve(x, d, q, store, layout, periodic, sums, mean_limit, max_limit, most):
             break
     seal_ends(x, periodic[1])
     return k + 1, mean, largest
+
+
+@dataclass(slots=True)
+class Solve:
+    """How one pressure solve went."""
+
+    cycles: int
+    """Iterations [-]."""
+    mean: float
+    """Mean divergence left over [m/s per cell]."""
+    largest: float
+    """Largest divergence left over [m/s per cell]."""
 
 
 def levels(ny: int, nx: int) -> np.ndarray:

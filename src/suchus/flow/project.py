@@ -6,7 +6,7 @@ import numpy as np
 from numba import prange
 
 from suchus.flow.compiled import BLOCK, PAD, compiled, threaded
-from suchus.flow.multigrid import seal_row
+from suchus.flow.stencil import seal_row
 
 
 @compiled

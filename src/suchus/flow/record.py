@@ -6,9 +6,12 @@ import numpy as np
 
 COLUMNS = (
     "pressure_x", "pressure_y", "shear_x", "shear_y", "torque", "power", "x", "y", "angle", "velocity_x", "velocity_y",
-    "spin",
+    "spin", "force_x", "force_y",
 )  # fmt: skip
 """Values kept of each body at each step, in the order of the last axis of ``Record.bodies``."""
+
+HEAD = 5
+"""Numbers at the start of a row: time, step, two counts of cycles, divergence [-]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -34,7 +37,11 @@ class Record:
         return self.bodies[:, k, COLUMNS.index(name)]
 
     def force(self, body: str | int = 0) -> np.ndarray:
-        """Return the force on a body, pressure and friction together, shape (step, 2) [N/m]."""
+        """Return the force on a body, mean over each step, from the momentum it exchanges, shape (step, 2) [N/m]."""
+        return np.stack([self.column(f"force_{a}", body) for a in ("x", "y")], axis=1)
+
+    def surface_force(self, body: str | int = 0) -> np.ndarray:
+        """Return pressure and friction integrated over a body's outline at each step's end, shape (step, 2) [N/m]."""
         return np.stack(
             [self.column(f"pressure_{a}", body) + self.column(f"shear_{a}", body) for a in ("x", "y")], axis=1
         )

@@ -11,7 +11,7 @@ from suchus.errors import InvalidDesign
 from suchus.flow.body import Body, thin_share, window_of
 from suchus.flow.free import FreeBody, Swimmer
 from suchus.flow.grid import Grid
-from suchus.flow.pose import Pose
+from suchus.flow.shape import Markers
 from suchus.flow.sides import Sides
 
 LAYER_CELLS = 0.7
@@ -95,20 +95,32 @@ class Setup:
             pose = body.pose(0.0) if isinstance(body, Body) else Swimmer.of(body).pose(body.shape.mass(0.0))
             window_of(body, pose, self.grid, 0.0)
             thin[body.name] = thin_share(body, self.grid, 0.0)
-            self._check_layer(body, pose)
+            self.check_layer(body, body.shape.markers(0.0, pose, self.grid.cell), self.far(0.0), 0.0)
         return thin
 
-    def _check_layer(self, body: Body | FreeBody, pose: Pose) -> None:
-        x0, x1, y0, y1 = body.shape.bounds(0.0, pose)
-        length = max(x1 - x0, y1 - y0)
-        markers = body.shape.markers(0.0, pose, self.grid.cell)
-        sx, sy = self.far(0.0)
-        speed = float(np.hypot(markers.velocity_x - sx, markers.velocity_y - sy).max())
+    def check_layer(
+        self, body: Body | FreeBody, markers: Markers, stream: tuple[float, float], time: float, *, slack: float = 1.0
+    ) -> None:
+        """Refuse a body so fast that the grid does not carry its boundary layer.
+
+        Args:
+            body: the body.
+            markers: its outline at that time.
+            stream: velocity of the far water, in the frame of the markers [m/s].
+            time: when [s].
+            slack: factor on the speed that is let through [-].
+
+        Raises:
+            InvalidDesign: naming the cell that would carry it.
+        """
+        length = max(float(np.ptp(markers.x)), float(np.ptp(markers.y)))
+        speed = float(np.hypot(markers.velocity_x - stream[0], markers.velocity_y - stream[1]).max())
         reynolds = speed * length / self.viscosity
-        if reynolds > 1 and length / sqrt(reynolds) < LAYER_CELLS * self.grid.cell and not self.coarse:
-            raise InvalidDesign(
-                f"at Reynolds number {reynolds:.4g} the boundary layer of {body.name} is {length / sqrt(reynolds):.3g} "
-                f"m thin, and a cell is {self.grid.cell:.3g} m; take cells of at most "
-                f"{length / sqrt(reynolds) / LAYER_CELLS:.3g} m, a lower Reynolds number, "
-                f"or coarse=True to go on anyway."
-            )
+        if self.coarse or reynolds < 1 or length / sqrt(reynolds / slack) >= LAYER_CELLS * self.grid.cell:
+            return
+        layer = length / sqrt(reynolds)
+        raise InvalidDesign(
+            f"at t = {time:.4g} s and Reynolds number {reynolds:.4g} the boundary layer of {body.name} is {layer:.3g} "
+            f"m thin, and a cell is {self.grid.cell:.3g} m; take cells of at most {layer / LAYER_CELLS:.3g} m, a lower "
+            f"Reynolds number, or coarse=True to go on anyway."
+        )

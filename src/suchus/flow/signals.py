@@ -71,11 +71,20 @@ def morison(
 
 
 def noise(time: np.ndarray, value: np.ndarray, *, window: float) -> float:
-    """Return the rms distance from a cubic fitted over each ``window`` [s], over the series' own rms change [-]."""
+    """Return the rms distance from a cubic fitted over each ``window`` [s], over the series' own rms change [-].
+
+    Raises:
+        NotConverged: no window holds enough samples for a cubic, or the series never changes.
+    """
     rest = []
-    for start in np.arange(time[0], time[-1] - window, window / 2):
+    for start in np.arange(time[0], time[-1] - window, window / 2) if value.size else ():
         k = (time >= start) & (time < start + window)
         if k.sum() > 6:
             t = (time[k] - start) / window
             rest.append(value[k] - np.polyval(np.polyfit(t, value[k], 3), t))
+    if not rest or not np.ptp(value) > 0:
+        raise NotConverged(
+            f"a series of {value.size} samples has no noise to tell in windows of {window:.3g} s; give a changing "
+            f"series of at least two windows with 7 samples each."
+        )
     return float(np.sqrt(np.mean(np.concatenate(rest) ** 2)) / np.std(value))

@@ -7,17 +7,20 @@ import numba
 import numpy as np
 
 from suchus import threads
-from suchus.errors import Diverged, OutsideLimits
+from suchus.errors import OutsideLimits
 from suchus.flow import checkpoint as store
 from suchus.flow.added import added_mass
 from suchus.flow.body import Body
 from suchus.flow.compiled import PAD
-from suchus.flow.force import ControlVolume, Surface, edge_mean, sample
+from suchus.flow.fields import Fields
+from suchus.flow.force import ControlVolume, Surface, sample
 from suchus.flow.free import FreeBody, Swimmer
 from suchus.flow.immerse import wall_offset
+from suchus.flow.log import Log, columns
+from suchus.flow.pace import due_after, even
 from suchus.flow.pose import Pose
 from suchus.flow.progress import Bar
-from suchus.flow.record import COLUMNS, Record
+from suchus.flow.record import Record
 from suchus.flow.setup import Setup
 from suchus.flow.shape import Markers
 from suchus.flow.water import Water
@@ -25,8 +28,8 @@ from suchus.flow.water import Water
 ADDED_EVERY = 8
 """Steps after which a free body's added mass is computed anew [-]."""
 
-FASTEST = 100.0
-"""Speed, over that of stream and bodies, above which a simulation counts as diverged [-]."""
+SLACK = 1.5
+"""Factor on the speed that a grid carries, from which a moving body stops a run [-]."""
 
 
 def _fastest_marker(markers: Markers) -> float:
@@ -34,17 +37,10 @@ def _fastest_marker(markers: Markers) -> float:
     return float(np.hypot(markers.velocity_x, markers.velocity_y).max())
 
 
-LANDING = 16
-"""Steps before the end of a run over which the time step is evened out, so that the last one is no jolt [-]."""
+_CHANGING = ("time", "_last", "_speed", "_peak", "_reference")
 
 
-def _even(dt: float, left: float) -> float:
-    """Return the step that arrives in whole steps, once the end is near [s]."""
-    count = np.ceil(left / dt * (1 - 1e-9))
-    return float(left / count) if count <= LANDING else dt
-
-
-class Simulation:
+class Simulation(Fields):
     """A flow that starts with the water moving like the far stream and goes on step by step.
 
     Attributes:
@@ -62,9 +58,7 @@ class Simulation:
         self.frame = np.zeros((2, 2))  # position and velocity of the grid
         self.swimmers = {b.name: Swimmer.of(b) for b in setup.bodies if isinstance(b, FreeBody)}
         self._threads = threads.count() if thread_count is None else thread_count
-        self._rows: list[np.ndarray] = []
-        self._controls: list[ControlVolume] = []
-        self._control_rows: list[tuple[float, float]] = []
+        self._log = Log(setup)
         self._last = 0.0
         self._frame_velocity_at(0.0)
         stream = self._stream(0.0)
@@ -76,6 +70,8 @@ class Simulation:
         self._fastest = 0.0  # fastest water after the last step
         self._reference = 0.0  # fastest stream, body or wall so far
         self._peak = 2 * self._speed  # fastest water so far; beside a bluff body, twice the stream
+        self.water.place(list(setup.bodies), [self._in_frame(self.pose(b.name)) for b in setup.bodies], 0.0)
+        self._log.hold(self.water, outlines)
 
     # --- state -------------------------------------------------------------------------------------------------
 
@@ -112,7 +108,7 @@ class Simulation:
         Raises:
             OutsideLimits: a fixed step is asked for and carries water over more than a cell.
         """
-        fastest = max(self._fastest if self._rows else self.water.fastest(), self._speed)
+        fastest = max(self._fastest if self._log.rows else self.water.fastest(), self._speed)
         limit = self.setup.grid.cell / (fastest + 4 * float(self.water.nu))
         if self.setup.step is None:
             return self.setup.courant * limit
@@ -131,8 +127,9 @@ class Simulation:
             Diverged: the fields are no longer finite or far too fast; the record's fields are the last good ones.
         """
         numba.set_num_threads(min(self._threads, numba.config.NUMBA_NUM_THREADS))
-        if not self._rows:
-            self._speed = max(self._speed, self.water.fastest(), self.setup.sides.fastest(self.setup.grid))
+        if not self._log.rows:
+            self._reference = self.water.fastest()
+            self._speed = max(self._speed, self._reference, self.setup.sides.fastest(self.setup.grid))
         dt = self.next_step() if dt is None else dt
         for swimmer in self.swimmers.values():
             swimmer.advance(self.time, dt, self.setup.density)
@@ -150,53 +147,78 @@ class Simulation:
         markers = [
             b.shape.markers(time, p, self.setup.grid.cell) for b, p in zip(self.setup.bodies, poses, strict=True)
         ]
+        for body, outline in zip(self.setup.bodies, markers, strict=True):
+            if not body.still:
+                self.setup.check_layer(body, outline, self._stream(time), time, slack=SLACK)
         ahead = float(np.hypot(*self._stream(time)))
         self._speed = max([self._speed, ahead] + [_fastest_marker(m) for m in markers])  # it may just start to move
         push = tuple(-(self.frame[1] - old_frame[1]) / dt)
         limits = (self.setup.tolerance * self._speed, 10 * self.setup.tolerance * self._speed)
         self.water.step(dt, self._stream(time), (float(push[0]), float(push[1])), limits)
         self.time, self._last = time, dt
-        self._note(dt, poses, markers, push)
+        self._note(dt, poses, markers, push, 0.5 * (old_frame[1] + self.frame[1]))
 
-    def _note(self, dt: float, poses: list[Pose], outlines: list[Markers], push: tuple[float, ...]) -> None:
+    def _about(self, name: str, pose: Pose) -> tuple[float, float]:
+        """Return the point that a body's torque is about, in the frame of the grid [m]."""
+        if name not in self.swimmers:
+            return pose.position
+        x, y = self.swimmers[name].place[:2] - self.frame[0]
+        return float(x), float(y)
+
+    def _note(
+        self, dt: float, poses: list[Pose], outlines: list[Markers], push: tuple[float, ...], drift: np.ndarray
+    ) -> None:
         water, setup = self.water, self.setup
         fastest = self._fastest = water.fastest()
-        row = np.zeros(5 + len(setup.bodies) * len(COLUMNS))
-        body_speed = 0.0
-        for k, (body, pose, markers) in enumerate(zip(setup.bodies, poses, outlines, strict=True)):
-            surface = sample(water, markers, setup.density)
+        shift = push[0], push[1]
+        about = [self._about(b.name, p) for b, p in zip(setup.bodies, poses, strict=True)]
+        values, body_speed = [], 0.0
+        acts = self._log.reactions(water, outlines, about, dt, shift)
+        for k, (body, markers, point, act) in enumerate(zip(setup.bodies, outlines, about, acts, strict=True)):
+            load, place = sample(water, markers, setup.density).load(point), self.pose(body.name)
             swimmer = self.swimmers.get(body.name)
-            about = pose.position if swimmer is None else tuple(swimmer.place[:2] - self.frame[0])
-            load = surface.load((float(about[0]), float(about[1])))
-            world = self.pose(body.name)
-            row[5 + k * len(COLUMNS) : 5 + (k + 1) * len(COLUMNS)] = [
-                *load.pressure, *load.shear, load.torque, load.power + float(self.frame[1] @ -np.array(load.force)),
-                *world.position, world.angle, *world.velocity, world.spin,
-            ]  # fmt: skip
             if swimmer is not None:
-                row[5 + k * len(COLUMNS) + 6 : 5 + (k + 1) * len(COLUMNS)] = [*swimmer.place, *swimmer.rate]
-                swimmer.load = np.array([*load.force, load.torque])
+                place = swimmer.place_and_rate
+                swimmer.load = np.array([*act.force, act.torque])
                 if swimmer.steps % ADDED_EVERY == 1:
-                    swimmer.added = added_mass(water, markers, (float(about[0]), float(about[1])), setup.density)
+                    swimmer.added = added_mass(water, markers, point, setup.density, k)
+            values += columns(load, act, drift, place)
             body_speed = max(body_speed, _fastest_marker(markers))
         self._peak = max(self._peak, fastest)
         self._speed = max(float(np.hypot(*water.border.stream)), body_speed, min(fastest, 10 * self._speed), 1e-12)
-        solves = water.solves
-        row[:5] = [self.time, dt, solves[0].cycles, solves[1].cycles, solves[1].largest / self._speed]
-        for control in self._controls:
-            self._control_rows.append(control.force(water, dt, (push[0], push[1]), setup.density))
-        self._reference = reference = max(
+        self._reference = max(
             self._reference, float(np.hypot(*water.border.stream)), body_speed, setup.sides.fastest(setup.grid)
         )
-        if not np.isfinite(fastest) or not np.isfinite(row).all() or (reference > 0 and fastest > FASTEST * reference):
-            good = {"u": water._u2.copy(), "v": water._v2.copy()}
-            raise Diverged(
-                f"at t = {self.time:.4g} s the fastest water moves with {fastest:.3g} m/s, where stream and bodies "
-                f"have {reference:.3g} m/s; take a smaller courant (now {setup.courant}), a finer grid or a lower "
-                f"Reynolds number. The last good velocities are in the error's record['u'] and ['v'].",
-                time=self.time - dt, record={**good, "record": self.record},
-            )  # fmt: skip
-        self._rows.append(row)
+        solves = water.solves
+        row = np.array(
+            [self.time, dt, solves[0].cycles, solves[1].cycles, solves[1].largest / self._speed, *values]
+        )  # fmt: skip
+        good = {"u": water._u2, "v": water._v2}
+        self._log.refuse_nonsense(fastest, self._reference, row, good)
+        self._log.control(water, dt, shift)
+        self._log.rows.append(row)
+
+    def state(self) -> store.State:
+        """Return all that changes, for a checkpoint."""
+        numbers = {key: np.array(getattr(self, key)) for key in _CHANGING}
+        rows = np.array(self._log.rows).reshape(len(self._log.rows), -1)
+        swimmers = {f"{n}.{key}": value for n, s in self.swimmers.items() for key, value in s.state().items()}
+        return {
+            **numbers, **self.water.state(), **swimmers, "frame": self.frame, "rows": rows, "held": self._log.held
+        }  # fmt: skip
+
+    def resume(self, state: store.State) -> None:
+        """Go on from the state of a checkpoint."""
+        for key in _CHANGING:
+            setattr(self, key, float(state[key]))
+        self.frame, self._placed = state["frame"], False
+        self._log.rows, self._log.held = list(state["rows"]), state["held"]
+        self.water.resume(state)
+        self._fastest = self.water.fastest()
+        for name, swimmer in self.swimmers.items():
+            swimmer.resume({key.removeprefix(f"{name}."): state[key] for key in state if key.startswith(f"{name}.")})
+        poses = [self._in_frame(self.pose(b.name)) for b in self.setup.bodies]
+        self.water.place(list(self.setup.bodies), poses, self.time)
 
     # --- a run -------------------------------------------------------------------------------------------------
 
@@ -229,25 +251,22 @@ class Simulation:
         if path is not None and path.exists():
             store.load(self, path)
         cells = self.setup.grid.cells[0] * self.setup.grid.cells[1]
-        due = self._due(every)
+        due = due_after(self.time, every)
         saver = store.Saver(path, checkpoint_every)
         with Bar(self.time, until, cells, show=progress) as bar:
             try:
                 while self.time < until * (1 - 1e-12):
-                    self.advance(_even(self.next_step(), until - self.time))
+                    self.advance(even(self.next_step(), until - self.time))
                     if until - self.time < 1e-6 * self._last:  # rounding must not leave a tiny last step
                         self.time = until
                     bar.move(self.time)
                     if watch is not None and (self.time >= due or self.time == until):
                         watch(self)
-                        due = self._due(every)
+                        due = due_after(self.time, every)
                     saver.save(self)
             finally:
                 saver.save(self, now=True)
         return self.record
-
-    def _due(self, every: float | None) -> float:
-        return 0.0 if every is None else (np.floor(self.time / every * (1 + 1e-12)) + 1) * every * (1 - 1e-12)
 
     def control(self, margin: float) -> None:
         """Follow the momentum through a box ``margin`` [m] around the bodies; see ``control_forces``."""
@@ -258,61 +277,22 @@ class Simulation:
         k = round(margin / self.setup.grid.cell)
         nx, ny = self.setup.grid.cells
         box = (max(j0 - k, PAD + 2), min(j1 + k, PAD + ny - 2), max(i0 - k, PAD + 2), min(i1 + k, PAD + nx - 2))
-        self._controls = [ControlVolume(box)]
+        self._log.controls = [ControlVolume(box)]
 
     @property
     def control_forces(self) -> np.ndarray:
         """Force on all bodies from the momentum through the box, one row per step since ``control`` [N/m]."""
-        return np.array(self._control_rows).reshape(-1, 2)
+        return np.array(self._log.control_rows).reshape(-1, 2)
 
     # --- what there is to see ----------------------------------------------------------------------------------
 
     @property
     def record(self) -> Record:
         """The time series so far."""
-        n = len(self.setup.bodies)
-        rows = np.array(self._rows).reshape(len(self._rows), 5 + n * len(COLUMNS))
-        return Record(
-            names=tuple(b.name for b in self.setup.bodies), time=rows[:, 0], step=rows[:, 1],
-            cycles=rows[:, 2:4].astype(int), divergence=rows[:, 4],
-            bodies=rows[:, 5:].reshape(len(rows), n, len(COLUMNS)),
-        )  # fmt: skip
+        return self._log.record
 
     def surface(self, name: str | None = None) -> Surface:
         """Return pressure and friction along a body's outline, positions in the frame of the grid."""
         body = next(b for b in self.setup.bodies if name in (None, b.name))
         pose = self._in_frame(self.pose(body.name))
         return sample(self.water, body.shape.markers(self.time, pose, self.setup.grid.cell), self.setup.density)
-
-    @property
-    def velocity(self) -> tuple[np.ndarray, np.ndarray]:
-        """Velocity relative to the grid at the cell centres, two arrays of shape (ny, nx) [m/s]."""
-        u, v = self.water.u, self.water.v
-        inner = np.s_[PAD:-PAD, PAD:-PAD]
-        return (
-            0.5 * (u[inner] + u[PAD:-PAD, PAD + 1 : u.shape[1] - PAD + 1]),
-            0.5 * (v[inner] + v[PAD + 1 : v.shape[0] - PAD + 1, PAD:-PAD]),
-        )
-
-    @property
-    def pressure(self) -> np.ndarray:
-        """Pressure at the cell centres, zero on the average along the sides, shape (ny, nx) [Pa]."""
-        p = self.water.p
-        return self.setup.density * (p[PAD:-PAD, PAD:-PAD] - self.water.dtype(edge_mean(p)))
-
-    @property
-    def vorticity(self) -> np.ndarray:
-        """Vorticity at the inner corners of the cells, shape (ny - 1, nx - 1) [1/s]."""
-        u, v = self.water.u, self.water.v
-        a, b = PAD + 1, -PAD
-        return ((v[a:b, a:b] - v[a:b, a - 1 : b - 1]) - (u[a:b, a:b] - u[a - 1 : b - 1, a:b])) / self.setup.grid.cell
-
-    @property
-    def fluid_share(self) -> np.ndarray:
-        """Share of the fluid at the cell centres, 0 inside the bodies and 1 outside, shape (ny, nx) [-]."""
-        mu0_u, mu0_v = self.water.mu0
-        a, b = PAD, -PAD
-        return 0.25 * (
-            mu0_u[a:b, a:b] + mu0_u[a:b, a + 1 : mu0_u.shape[1] + b + 1]
-            + mu0_v[a:b, a:b] + mu0_v[a + 1 : mu0_v.shape[0] + b + 1, a:b]
-        )  # fmt: skip

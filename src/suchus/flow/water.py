@@ -4,8 +4,6 @@ All arrays have the padded shape (ny + 2 PAD, nx + 2 PAD), rows contiguous. Insi
 step is ``dt / cell``, a viscosity ``viscosity / cell``, a pressure that over the density [m^2/s^2].
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from suchus.errors import NotConverged
@@ -14,29 +12,19 @@ from suchus.flow.advect import advance
 from suchus.flow.body import AnyBody, Window, measure_all, unite, window_of
 from suchus.flow.border import Border
 from suchus.flow.compiled import PAD
+from suchus.flow.exchange import CONTENTS, SUMS, collect, contents, swelling
 from suchus.flow.grid import Grid
 from suchus.flow.immerse import fill, fill_source, immerse
 from suchus.flow.pose import Pose
 from suchus.flow.project import correct, fastest, level_out, residual
 from suchus.flow.sides import Sides
+from suchus.flow.stencil import seal_ends
 
 MOST_CYCLES = 60
 """Iterations of the pressure solver before it counts as stuck [-]."""
 
 STUCK = 1000.0
 """Residual over its limit above which a solve has failed; below, rounding stopped it short [-]."""
-
-
-@dataclass(slots=True)
-class Solve:
-    """How one pressure solve went."""
-
-    cycles: int
-    """Iterations [-]."""
-    mean: float
-    """Mean divergence left over [m/s per cell]."""
-    largest: float
-    """Largest divergence left over [m/s per cell]."""
 
 
 def _fields(count: int, shape: tuple[int, int], dtype: type) -> list[np.ndarray]:
@@ -50,6 +38,8 @@ class Water:
         u, v: velocity on the left and lower faces [m/s].
         p: pressure over density at the cell centres [m^2/s^2].
         window: padded cell indices around the bodies.
+        owners: on the window's u and v points, which body is nearest.
+        given: what the immersion gave to the water in the last step, per body; see ``exchange.collect``.
         solves: how the last two pressure solves went.
     """
 
@@ -71,7 +61,26 @@ class Water:
         self._sums = np.zeros((shape[0], 3))
         self.window: Window = (PAD, PAD, PAD, PAD)
         self.offset = 0.0
-        self.solves: list[Solve] = []
+        self.solves: list[poisson.Solve] = []
+        self.given = np.zeros((0, SUMS))
+        self._mean: list[np.ndarray] = [np.zeros((0, 0), dtype)] * 2
+        self.owners = [np.zeros((0, 0), np.int8)] * 2
+
+    def state(self) -> dict[str, np.ndarray]:
+        """Return what changes and cannot be placed anew, by name."""
+        edges = {f"edge{k}": edge.prescribed for k, edge in enumerate(self.border.edges)}
+        return {
+            "u": self.u, "v": self.v, "p": self.p, "offset": np.array(self.offset),
+            "stream": np.array(self.border.stream), **edges,
+        }  # fmt: skip
+
+    def resume(self, state: dict[str, np.ndarray]) -> None:
+        """Set what changes."""
+        self.u[:], self.v[:], self.p[:] = state["u"], state["v"], state["p"]
+        self.offset = float(state["offset"])
+        self.border.stream = (float(state["stream"][0]), float(state["stream"][1]))
+        for k, edge in enumerate(self.border.edges):
+            edge.prescribed[:] = state[f"edge{k}"]
 
     def _part(self, kind: int) -> np.ndarray:
         return multigrid.level(self._store, self._layout, kind, 0)
@@ -95,11 +104,15 @@ class Water:
         """
         old = self.window
         new = unite([window_of(b, p, self.grid, time) for b, p in zip(bodies, poses, strict=True)])
+        here = np.s_[new[0] : new[1] + 1, new[2] : new[3] + 1]
+        before = [b[here].copy() for b in (self.bu, self.bv)]
         self._clear(old)
         self.window = new
         poisson.place_window(self._layout, unite([w for w in (old, new) if w[1] > w[0]]))
+        self.given = np.zeros((len(bodies), SUMS))
         if new[1] > new[0]:
             self._measure(bodies, poses, time)
+            self._mean = [0.5 * (was + b[here]) for was, b in zip(before, (self.bu, self.bv), strict=True)]
         multigrid.coarsen(self._store, self._layout)
         poisson.place_window(self._layout, new)
 
@@ -118,7 +131,7 @@ class Water:
         x_face, y_face = grid.faces(i0, i1 + 1, 0), grid.faces(j0, j1 + 1, 1)
         x_mid, y_mid = grid.centres(i0, i1 + 1, 0), grid.centres(j0, j1 + 1, 1)
         mu0_u, mu0_v = self.mu0
-        f = measure_all(bodies, poses, x_face, y_mid, time, h)
+        f, self.owners[0] = measure_all(bodies, poses, x_face, y_mid, time, h)
         fill(
             f.distance / h - self.offset,
             f.normal_x,
@@ -129,7 +142,7 @@ class Water:
             self._mu1xy[here],
         )
         self.bu[here] = f.velocity_x
-        f = measure_all(bodies, poses, x_mid, y_face, time, h)
+        f, self.owners[1] = measure_all(bodies, poses, x_mid, y_face, time, h)
         fill(
             f.distance / h - self.offset,
             f.normal_x,
@@ -165,11 +178,14 @@ class Water:
         force = (real(push[0] * h), real(push[1] * h))
         self.border.prepare(self.u, self.v, float(step), stream)
         self.solves = []
+        self.given[:] = 0
         now, one, two = (self.u, self.v), (self._u1, self._v1), (self._u2, self._v2)
         self._advance(one, now, now, now, step, force, real(0))
         self._project(one, step, limits)
+        self._collect(one, now, step, real(0))
         self._advance(two, one, now, one, step, force, real(0.5))
         self._project(two, real(0.5) * step, limits)
+        self._collect(two, one, step, real(0.5))
         (self.u, self.v), (self._u2, self._v2) = two, now
 
     def _advance(self, out, blend, base, rate, dt, push, keep) -> None:  # type: ignore[no-untyped-def]
@@ -188,13 +204,41 @@ class Water:
             )
         self.border.fill(*out)
 
+    def _collect(self, out, blend, dt, keep) -> None:  # type: ignore[no-untyped-def]
+        """Add half of what the immersion gave in this stage: the step is the mean of its two stages."""
+        window = np.array(self.window)
+        if window[1] <= window[0]:
+            return
+        mu0_u, mu0_v = self.mu0
+        dt, keep = float(dt), float(keep)
+        sums = np.zeros_like(self.given)
+        for k, (raw, mu0, mu1_x, mu1_y) in enumerate(
+            ((self._raw_u, mu0_u, self._mu1xx, self._mu1xy), (self._raw_v, mu0_v, self._mu1yx, self._mu1yy))
+        ):
+            collect(
+                sums, out[k], blend[k], raw, self._mean[k], mu0, mu1_x, mu1_y, self.p, self.owners[k], k, window, dt,
+                keep,
+            )  # fmt: skip
+        swelling(sums, self.p, self._source, self.owners[0], window, dt)
+        self.given += 0.5 * sums
+
+    def contents(self) -> np.ndarray:
+        """Return what the region of each placed body holds, shape (body, 7); see ``exchange.contents``."""
+        sums = np.zeros((len(self.given), CONTENTS))
+        window = np.array(self.window)
+        if window[1] > window[0]:
+            mu0_u, mu0_v = self.mu0
+            contents(sums, self.bu, mu0_u, self.owners[0], 0, window)
+            contents(sums, self.bv, mu0_v, self.owners[1], 1, window)
+        return sums
+
     def _project(self, velocity: tuple[np.ndarray, np.ndarray], dt: float, limits: tuple[float, float]) -> None:
         window = np.array(self.window)
         r = self._part(multigrid.B)
         residual(r, *velocity, self._source, self._part(multigrid.DINV), window, self.sides.repeats, self._sums)
         sums = self._sums[PAD:-PAD]
         cells = self.grid.cells[0] * self.grid.cells[1]
-        went = Solve(0, float(sums[:, 1].sum()) / cells, float(sums[:, 2].max()))
+        went = poisson.Solve(0, float(sums[:, 1].sum()) / cells, float(sums[:, 2].max()))
         if went.mean > limits[0] or went.largest > limits[1]:
             mean = float(sums[:, 0].sum()) / cells
             if abs(mean) > 1e-3 * limits[0]:
@@ -203,7 +247,7 @@ class Water:
             gain = self.dtype(1 / dt)
             correct(*velocity, self.p, self._x, *self.mu0, window, gain)
             for seal, axis in ((self.p, 0), (self.p.T, 1)):
-                multigrid.seal_ends(seal, self.sides.repeats[1 - axis])
+                seal_ends(seal, self.sides.repeats[1 - axis])
             self.border.fill(*velocity)
         self.solves.append(went)
 
@@ -223,8 +267,8 @@ class Water:
         self._solve((limit, 10 * limit))
         return self._x
 
-    def _solve(self, limits: tuple[float, float]) -> Solve:
-        went = Solve(
+    def _solve(self, limits: tuple[float, float]) -> poisson.Solve:
+        went = poisson.Solve(
             *poisson.solve(
                 self._x,
                 self._d,
