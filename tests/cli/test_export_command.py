@@ -1,3 +1,5 @@
+import sys
+
 import pytest
 
 from suchus.cli import main
@@ -11,8 +13,18 @@ def test_export_writes_a_folder_named_after_robot_and_format(tmp_path, monkeypat
     assert (tmp_path / "export" / "caiman_urdf" / MARK).is_file()
 
 
+def test_usd_without_its_library_is_one_sentence(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setitem(sys.modules, "pxr", None)
+    assert main(["export", "--format", "usd"]) == 2
+    assert capsys.readouterr().err == "suchus: USD needs usd-core; install it with: pip install 'suchus[usd]'.\n"
+    assert list(tmp_path.iterdir()) == []
+
+
 BAD = {
-    "--format usd": "'usd'",
+    "--format udrf": "Did you mean 'urdf'?",
+    "--format=usdz": "Did you mean 'usd'?",
+    "--format": "missing value",
     "--robot kaiman": "Did you mean 'caiman'?",
     "--out /dev/null/here": "cannot be written",
     "--out .": "was not written by suchus",

@@ -226,7 +226,8 @@ def test_a_standing_robot_stays_up_unless_it_is_pushed_too_hard():
     assert info["cause"].endswith("m, below 0.45 m")
 
 
-def test_a_robot_that_comes_apart_ends_its_episode_with_a_sentence_and_the_others_go_on():
+def test_a_robot_that_comes_apart_ends_its_episode_with_a_sentence_and_the_others_go_on(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)  # where MuJoCo writes its log
     env, alone = (envs.CrocodileVectorEnv(n, CRAWL) for n in (2, 1))
     env.reset(seed=[8, 9])
     alone.reset(seed=[9])

@@ -2,13 +2,15 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields
+from itertools import pairwise
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, get_args
 
 import tyro
 
 from suchus.cli.options import parse
 from suchus.design import Crocodile
+from suchus.errors import UnknownName
 from suchus.gaits import GAITS
 from suchus.model.export import Format, export
 from suchus.motion import Gait
@@ -21,7 +23,7 @@ class Options:
     """What can be said after ``suchus export``."""
 
     format: Format = "mjcf"
-    """MJCF for MuJoCo, URDF for nearly everything else."""
+    """MJCF for MuJoCo, USD for Isaac, Newton and Omniverse (extra usd), URDF for nearly everything else."""
     robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
     """Which robot."""
     home: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
@@ -39,9 +41,19 @@ def export_robot(words: Sequence[str]) -> int:
         SuchusError: the words make no sense, or the place cannot be written to.
     """
     about = "Write a robot for other tools: model, scene, home posture, and a README of what the format leaves out."
+    _check_format(words)
     options: Options = parse(Options, "suchus export", words, about, [f.name for f in fields(Options)])
     folder = options.out or Path("export") / f"{options.robot.name}_{options.format}"
     check_writable(folder.parent)
     export(options.robot, options.home, folder, options.format, timestep=options.timestep)
     print(f"{options.robot.name} as {options.format.upper()}: {folder}")
     return 0
+
+
+def _check_format(words: Sequence[str]) -> None:
+    """Refuse a format that is not there with those near it; the parser only lists all."""
+    given = [word.partition("=")[2] for word in words if word.startswith("--format=")]
+    given += [after for word, after in pairwise(words) if word == "--format"]
+    for word in given:
+        if word not in get_args(Format):
+            raise UnknownName("format", word, get_args(Format))

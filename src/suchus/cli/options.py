@@ -27,6 +27,13 @@ QUICK = Annotated[
     tyro.conf.arg(help="Start from the quick form, small enough for a test."),
 ]
 OUT = Annotated[Path, tyro.conf.arg(help="Folder for results; each experiment gets a folder of its own in it.")]
+TABLES = "csv"
+"""Folder of a record as CSV files, beside the record."""
+CSV = Annotated[
+    bool,
+    tyro.conf.FlagCreatePairsOff,
+    tyro.conf.arg(help="Write the record as CSV files too, into the folder csv beside it."),
+]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,6 +46,8 @@ class Choice:
     """Whether it started from its quick form."""
     out: Path
     """The folder for results."""
+    csv: bool
+    """Whether the record is wanted as CSV too."""
 
 
 def choose(experiment: Experiment, name: str, words: Sequence[str]) -> Choice:
@@ -56,12 +65,13 @@ def choose(experiment: Experiment, name: str, words: Sequence[str]) -> Choice:
         [
             ("quick", QUICK, field(default=False)),
             ("out", OUT, field(default=Path("out"))),
+            ("csv", CSV, field(default=False)),
             ("experiment", Annotated[type(start), tyro.conf.arg(name="")], field(default=start)),
         ],
     )
-    names = ["quick", "out", *(f.name for f in fields(start))]  # type: ignore[arg-type]
+    names = ["quick", "out", "csv", *(f.name for f in fields(start))]  # type: ignore[arg-type]
     chosen = parse(options, prog, words, f"{start.title}\n\nAnswers: {start.shows}", names)
-    return Choice(experiment=chosen.experiment, quick=quick, out=chosen.out)
+    return Choice(experiment=chosen.experiment, quick=quick, out=chosen.out, csv=chosen.csv)
 
 
 def parse(options: type, prog: str, words: Sequence[str], description: str, names: Sequence[str]) -> Any:

@@ -4,12 +4,12 @@ import shlex
 from collections.abc import Sequence
 
 from suchus.cli.commands import BadCommand
-from suchus.cli.options import choose
+from suchus.cli.options import TABLES, choose
 from suchus.cli.perform import perform
 from suchus.cli.shelves import entry, titles
 from suchus.cli.terminal import show_outcome, working
 from suchus.experiments import EXPERIMENTS
-from suchus.record import check_writable
+from suchus.record import check_writable, write_tables
 
 
 def run(words: Sequence[str]) -> int:
@@ -30,6 +30,8 @@ def run(words: Sequence[str]) -> int:
     with working() as bar:
         done = perform(choice.experiment, name, choice.out, bar.task(name), shlex.join(["suchus", "run", *words]))
     show_outcome(choice.experiment, done)
+    if choice.csv:
+        print(f"the record as CSV: {write_tables(done.outcome.record, done.folder / TABLES)}")
     return 0
 
 
@@ -38,7 +40,7 @@ def _help() -> str:
     width = max((len(name) for name in shelf), default=0)
     return "\n".join(
         (
-            "usage: suchus run NAME [--quick] [--out DIR] [--FIELD VALUE ...]",
+            "usage: suchus run NAME [--quick] [--out DIR] [--csv] [--FIELD VALUE ...]",
             "",
             "Run one experiment. Its numbers, verdicts, figures and record go into DIR/NAME.",
             "",

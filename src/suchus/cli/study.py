@@ -3,18 +3,20 @@
 import time
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Annotated, Any
 
 import tyro
 
 from suchus.cli.commands import BadCommand
-from suchus.cli.options import parse
+from suchus.cli.options import CSV, TABLES, parse
 from suchus.cli.terminal import Bars, working
-from suchus.study import Told, conduct, connected, read_study
+from suchus.record import write_tables
+from suchus.study import Claims, Told, conduct, conduct_claims, connected, read_study, write_claims
 from suchus.study.store import RESULTS, TABLE
 
+CLAIMS = "claims"
 _EVERY = 10.0  # [s]; between lines where there is no terminal for a bar
 
 
@@ -23,11 +25,15 @@ class Options:
     """What can be said after ``suchus study``."""
 
     file: Annotated[Path, tyro.conf.Positional]
-    """The study, a TOML file; see docs/studies.md."""
+    """The study, a TOML file, or ``claims``, the article's claims over plausible designs; see docs/studies.md."""
     scheduler: str | None = None
     """Address of a Dask scheduler whose workers run it, as tcp://127.0.0.1:8786; the same bytes."""
+    samples: int | None = None
+    """How many points a sampled study has; other than before is another study."""
     out: Path | None = None
     """The store; by default out/studies/NAME. One that this study began is finished, anything else is refused."""
+    csv: CSV = False
+    """Write the results as CSV files with units in the header too, into the folder csv in the store."""
 
 
 def study(words: Sequence[str]) -> int:
@@ -38,17 +44,45 @@ def study(words: Sequence[str]) -> int:
     """
     about = "Run many variants of one run, and keep what is measured. Started again it goes on where it stopped."
     options: Options = parse(Options, "suchus study", words, about, [f.name for f in fields(Options)])
+    if str(options.file) == CLAIMS and not options.file.exists():
+        return _claims(options)
     asked = read_study(options.file)
+    if options.samples is not None:
+        asked = replace(asked, samples=options.samples)
     if options.out is None and any(c in asked.name for c in "/\\\0"):
         raise BadCommand(f"the study is named {asked.name!r}, which makes no folder; say --out DIR.")
     folder = options.out or Path("out") / "studies" / asked.name
-    cluster: AbstractContextManager[Any] = nullcontext() if options.scheduler is None else connected(options.scheduler)
-    with cluster as client, working() as bars:
+    with _cluster(options) as client, working() as bars:
         results = conduct(asked, folder, progress=_shown(bars, asked.name), client=client)
     failed = {sample: str(error) for sample, error in enumerate(results.error.values) if error}
     print(f"{results.sizes['sample']} runs, {len(failed)} failed: {folder / RESULTS}, {folder / TABLE}")
+    if options.csv:
+        print(f"the results as CSV with units: {write_tables(results, folder / TABLES)}")
     for sample, error in list(failed.items())[:1]:
         print(f"the first that failed is sample {sample}: {error}")
+    return 0
+
+
+def _cluster(options: Options) -> AbstractContextManager[Any]:
+    return nullcontext() if options.scheduler is None else connected(options.scheduler)
+
+
+def _claims(options: Options) -> int:
+    """Conduct the ready-made study of the claims, or finish it."""
+    asked = Claims() if options.samples is None else Claims(samples=options.samples)
+    folder = options.out or Path("out") / "studies" / CLAIMS
+    with _cluster(options) as client, working() as bars:
+        shown: dict[str, Callable[[Told], None]] = {}
+
+        def show(place: str, told: Told) -> None:
+            if place not in shown:
+                shown[place] = _shown(bars, f"{CLAIMS} {place.replace('_', ' ')}")
+            shown[place](told)
+
+        record = conduct_claims(asked, folder, progress=show, client=client)
+        result = write_claims(record, folder / "result")
+    walked = int((record.status == "walked").sum())
+    print(f"{record.sizes['sample']} designs and gaits, {walked} walked; the page is {result / 'index.html'}")
     return 0
 
 

@@ -5,6 +5,7 @@ from suchus.record.place import check_replaceable, check_writable, new_file, new
 from suchus.record.provenance import digest, plain, provenance, versions
 from suchus.record.schema import PER_RUN, VARIABLES, dataset
 from suchus.record.store import load, save
+from suchus.record.tables import write_tables
 
 __all__ = [
     "PER_RUN",
@@ -22,4 +23,5 @@ __all__ = [
     "provenance",
     "save",
     "versions",
+    "write_tables",
 ]
