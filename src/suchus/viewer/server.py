@@ -1,6 +1,7 @@
 """The server: one page per browser, each with a walk or a player of its own."""
 
 import io
+import logging
 import socket
 import warnings
 from collections.abc import Callable
@@ -65,6 +66,7 @@ class Viewer:
     ) -> None:
         _check_free(host, port)
         warnings.filterwarnings("ignore", message="Queued a .* on a closed connection")  # a browser left in mid-frame
+        logging.getLogger("websockets.server").setLevel(logging.CRITICAL)  # a browser that leaves early is no error
         self._open, self._most = open_page, most
         self._pages: dict[int, Page | None] = {}
         self._lock = Lock()

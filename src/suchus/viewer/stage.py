@@ -15,9 +15,9 @@ from suchus.model import compile_model
 from suchus.viewer.bodies import support
 from suchus.viewer.drawn import DrawnRobot, Look
 
-CAMERA = (0.74, -1.16, 0.68)
+CAMERA = (0.8, -1.4, 0.8)
 """Where the camera is at first [m]."""
-LOOKS_AT = (-0.06, 0.0, 0.02)
+LOOKS_AT = (-0.1, 0.0, 0.0)
 """Where it looks at first [m]."""
 _PER_NEWTON = 0.008  # [m]; the robot's weight is then as long as its trunk
 _ABOVE = 0.003  # [m]; what is painted on the ground lies so far above it
@@ -67,7 +67,7 @@ class Stage:
         self.robot = DrawnRobot(scene, f"{_WORLD}/robot", robot)
         self.ghost: DrawnRobot | None = None
         self._forces = [self._arrow(f"force_{leg}", rgb(COLOURS[leg])) for leg in LEGS]
-        self._push = self._arrow("push", rgb(COLOURS["alarm"]), thick=1.5)
+        self._push = self._arrow("push", rgb(COLOURS["printed"]), thick=1.5)
         self._support = self._lines("support", rgb(COLOURS["spine"]), 0.008)
         self._com = scene.add_icosphere(f"{_WORLD}/centre_of_mass", 0.014, color=rgb(COLOURS["tail"]))
         self._plumb = self._lines("plumb", rgb(COLOURS["tail"]), 0.003)

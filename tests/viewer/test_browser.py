@@ -1,0 +1,184 @@
+"""The viewer in a real browser. One server, one browser, several pages: starting either is what takes time."""
+
+import re
+import shutil
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
+from time import monotonic, sleep
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from suchus.gaits import GAITS
+from suchus.land import Run, simulate
+from suchus.record import save
+from suchus.robots import ROBOTS
+from suchus.viewer import Session
+from suchus.viewer.replay import takes
+from suchus.viewer.swim import films
+
+pages = pytest.importorskip("suchus.viewer.pages", reason="the extra viewer is not installed")
+playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
+
+BROWSER = next(
+    (path for name in ("chromium", "chromium-browser", "google-chrome") if (path := shutil.which(name))), None
+)
+pytestmark = [
+    pytest.mark.skipif(BROWSER is None, reason="no browser (chromium) on this machine"),
+    pytest.mark.filterwarnings("default"),  # viser's threads outlive its server for a moment
+]
+SOFTWARE = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+PATIENCE = 120.0  # [s]; a busy machine without a graphics card draws a picture every few seconds
+
+
+class Watched:
+    """A server of live walks, and the sessions that it opened."""
+
+    def __init__(self) -> None:
+        self.sessions: list[Session] = []
+
+        def page(client: Any) -> Any:
+            self.sessions.append(Session(ROBOTS["caiman"], replace(GAITS["belly_crawl"], period=1.0)))
+            return pages.LivePage(client, self.sessions[-1])
+
+        self.viewer = pages.Viewer(page, port=0, most=2)
+
+
+@pytest.fixture(scope="module")
+def watched() -> Iterator[Watched]:
+    found = Watched()
+    yield found
+    found.viewer.stop()
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    with playwright.sync_playwright() as driver:
+        found = driver.chromium.launch(executable_path=BROWSER, args=SOFTWARE)
+        yield found
+        found.close()
+
+
+def wait_for(condition: Callable[[], object]) -> None:
+    end = monotonic() + PATIENCE
+    while not condition():
+        assert monotonic() < end, "it never came to that"
+        sleep(0.05)
+
+
+def opened(browser: Any, url: str, *, wide: int = 700, high: int = 500) -> Any:
+    page = browser.new_page(viewport={"width": wide, "height": high})
+    page.set_default_timeout(1000 * PATIENCE)
+    page.goto(url, wait_until="commit")
+    return page
+
+
+def press(page: Any, name: str) -> None:
+    """Press a button by its label; scrolling to it would wait for the picture to be drawn."""
+    page.get_by_role("button", name=name, exact=True).first.evaluate("button => button.click()")
+
+
+def fill(page: Any, now: str, then: str) -> None:
+    """Type a number into the box of a slider, found by what it holds."""
+    box = page.locator(f"input.mantine-NumberInput-input[value='{now}']").first
+    box.evaluate("box => box.focus()")
+    page.keyboard.press("Control+A")
+    page.keyboard.type(then)
+    page.keyboard.press("Enter")
+
+
+def shown(page: Any, what: str) -> str:
+    return str(page.locator(f'[data-suchus="{what}"]').first.text_content())
+
+
+def test_a_walk_is_watched_steered_and_broken_in_two_browsers_that_do_not_disturb_each_other(
+    browser, watched, tmp_path
+):
+    first = opened(browser, watched.viewer.url)
+    first.locator('[data-suchus="forward"]').wait_for(state="attached")
+    mine = watched.sessions[0]
+    fill(first, "27", "41")  # leg stroke [mm]
+    wait_for(lambda: mine.settings.gait.stroke == pytest.approx(0.041))
+
+    fill(first, "90", "170")  # hip height [mm]
+    wait_for(lambda: "cannot follow 170 mm" in first.content())
+    assert 0.09 < mine.settings.gait.hip_height < 0.17
+    fill(first, f"{1000 * mine.settings.gait.hip_height:.4g}", "90")
+    wait_for(lambda: mine.settings.gait.hip_height == pytest.approx(0.09))
+
+    press(first, "make it limp")
+    wait_for(lambda: mine.settings.broken == (("LF_yaw", "limp"),))
+    wait_for(lambda: shown(first, "lost") == "LF yaw limp")
+
+    second = opened(browser, watched.viewer.url)
+    second.locator('[data-suchus="forward"]').wait_for(state="attached")
+    other = watched.sessions[1]
+    assert other.settings.gait.stroke == pytest.approx(0.027)
+    assert other.settings.broken == ()
+
+    for session in (mine, other):
+        session.put("speed", 2.0)
+    mine.reset()
+    for session in (mine, other):
+        wait_for(lambda session=session: session.look().time > 4.0)
+    lame, sound = (look.forward / (look.time - 1.0) for look in (mine.look(), other.look()))
+    assert lame < 0.9 * sound
+    told = re.fullmatch(r"([+-]\d\.\d{3}) m", shown(first, "forward"))
+    assert told is not None
+    assert abs(float(told[1]) - mine.look().forward) < 0.5
+
+    third = opened(browser, watched.viewer.url)
+    third.get_by_text("All 2 places are taken.").wait_for(state="attached")
+    third.close()
+    second.close()
+    wait_for(lambda: watched.viewer.watching == 1)
+    stood = other.look().time
+    sleep(0.3)
+    assert other.look().time - stood < 0.2  # the browser is gone, and its walk with it
+    first.screenshot(path=tmp_path / "viewer.png")
+    assert (tmp_path / "viewer.png").stat().st_size > 20_000
+    first.close()
+    wait_for(lambda: watched.viewer.watching == 0)
+
+
+def test_a_record_and_a_swim_are_played_back(browser, tmp_path):
+    runs = [Run(robot=ROBOTS["caiman"], gait=GAITS[name], label=name) for name in ("belly_crawl", "limbs_only")]
+    walk = takes(save(simulate(runs, duration=1.5, timestep=0.005, every=5), tmp_path / "walk.nc"))
+    swim, curves = films(save(swimming(), tmp_path / "swim.nc"))
+    made = iter(
+        [lambda client: pages.ReplayPage(client, walk, walk), lambda client: pages.SwimPage(client, swim, curves)]
+    )
+    viewer = pages.Viewer(lambda client: next(made)(client), port=0)  # noqa: PLW0108  the next one for each
+    try:
+        page = opened(browser, viewer.url)
+        page.get_by_text("ghost 1: limbs_only").wait_for(state="attached")
+        page.close()
+        page = opened(browser, viewer.url)
+        page.get_by_text("of the last cycle").wait_for(state="attached")
+        page.close()
+    finally:
+        viewer.stop()
+
+
+def swimming() -> xr.Dataset:
+    line = np.linspace(0.0, 1.0, 9)
+    data = {"free_vorticity": (("free_frame", "free_y", "free_x"), np.random.default_rng(0).normal(size=(3, 8, 20)))}
+    for name, values in (("x", line), ("y", 0 * line), ("heading", 0 * line), ("half_width", 0.05 + 0 * line)):
+        data[f"free_midline_{name}"] = (("free_frame", "free_station"), np.tile(values, (3, 1)))
+    coords = {"free_x": np.linspace(-0.3, 2.0, 20), "free_y": np.linspace(-0.5, 0.5, 8), "free_frame": [0.3, 0.6, 1.0]}
+    return xr.Dataset(data, coords=coords)
+
+
+def test_a_taken_port_is_told_in_a_sentence(watched):
+    port = int(watched.viewer.url.rsplit(":", 1)[1])
+    with pytest.raises(pages.CannotServe, match="take another --port"):
+        pages.Viewer(lambda client: None, port=port)
+
+
+def test_only_this_computer_can_look(watched):
+    assert watched.viewer._server.get_host() == "127.0.0.1"
+    assert watched.viewer._server.request_share_url() is None
+    assert Path(BROWSER or "").exists()

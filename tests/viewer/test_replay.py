@@ -1,0 +1,122 @@
+import numpy as np
+import pytest
+import xarray as xr
+
+from suchus.errors import IncompatibleRecord, UnreadableFile
+from suchus.gaits import GAITS
+from suchus.land import Run, simulate
+from suchus.record import save
+from suchus.robots import ROBOTS
+from suchus.viewer.bodies import Posture, pieces, support
+from suchus.viewer.history import COLUMNS
+from suchus.viewer.plots import gait_bars
+from suchus.viewer.replay import Player, takes
+from suchus.viewer.swim import films
+
+stage = pytest.importorskip("suchus.viewer.stage", reason="the extra viewer is not installed")
+
+
+@pytest.fixture(scope="module")
+def walk(tmp_path_factory):
+    runs = [Run(robot=ROBOTS["caiman"], gait=GAITS[name], label=name) for name in ("belly_crawl", "limbs_only")]
+    return save(simulate(runs, duration=1.5, timestep=0.005, every=5), tmp_path_factory.mktemp("record") / "walk.nc")
+
+
+def test_a_record_gives_a_take_for_every_run(walk):
+    found = takes(walk)
+    assert [take.label for take in found] == ["0: belly_crawl", "1: limbs_only"]
+    assert found[0].end == pytest.approx(1.5)
+    record = found[0].record
+    np.testing.assert_array_equal(found[0].at(0.71)["position"], record.position.sel(time=0.7, method="nearest"))
+    np.testing.assert_array_equal(found[0].at(99.0)["position"], record.position.isel(time=-1))
+    assert set(found[0].table()) == set(COLUMNS)
+    assert found[0].table()["forward"][20] == pytest.approx(0.0, abs=1e-9)  # at one second the walk begins
+
+
+def test_bodies_stand_where_the_record_says(walk):
+    take = takes(walk)[0]
+    posture = Posture(take.robot)
+    for time in (0.0, 1.2):
+        now = take.at(time)
+        posture.put(now)
+        np.testing.assert_allclose(posture.body("pelvis")[0], now["position"], atol=1e-12)
+        feet = [number for number in posture.geoms() if posture.model.geom(number).name.endswith("_foot")]
+        found = {posture.model.geom(number).name: posture.geom(number)[0] for number in feet}
+        np.testing.assert_allclose(found["LF_foot"], now["foot_position"][0], atol=1e-9)
+
+
+def test_a_record_of_another_robot_is_refused(walk):
+    with pytest.raises(IncompatibleRecord, match="--robot"):
+        takes(walk, ROBOTS["long_tail"])
+
+
+def test_files_that_are_no_records_are_told_in_a_sentence(tmp_path, walk):
+    with pytest.raises(UnreadableFile):
+        takes(tmp_path / "none.nc")
+    other = save(xr.Dataset({"free_midline_x": ("s", [1.0])}), tmp_path / "other.nc")
+    with pytest.raises(IncompatibleRecord, match="suchus view swim"):
+        takes(other)
+    with pytest.raises(IncompatibleRecord, match="no fields of water"):
+        films(walk)
+
+
+@pytest.mark.parametrize(("asked", "found"), [(2.0, 2.0), (-1.0, 0.0), (9.0, 4.0), ("x", 1.0), (float("nan"), 1.0)])
+def test_a_player_jumps_to_what_there_is(asked, found):
+    player = Player(0.0, 4.0)
+    player.advance(1.0)
+    player.seek(asked)
+    assert player.time == found
+
+
+def test_a_player_begins_again_at_the_end_and_stands_when_paused():
+    player = Player(0.0, 4.0)
+    player.speed = 3.0
+    player.advance(1.5)
+    assert player.time == 0.0
+    player.playing = False
+    player.advance(1.0)
+    assert player.time == 0.0
+
+
+def test_the_pieces_of_the_skin_are_the_whole_skin():
+    robot = ROBOTS["caiman"]
+    cut, whole = pieces(robot), pieces(robot, 1)[0]
+    assert sum(len(piece.faces) for piece in cut) == len(whole.faces)
+    for piece in cut:
+        np.testing.assert_allclose(piece.weights.sum(axis=1), 1.0)
+        assert piece.faces.max() == len(piece.vertices) - 1
+
+
+def test_a_ground_seen_uphill_rises_ahead_and_gravity_points_down():
+    turned = stage.slope(0.2, 0.1)
+    down = np.array([-np.sin(0.2), -np.cos(0.2) * np.sin(0.1), -np.cos(0.2) * np.cos(0.1)])  # as the simulation has it
+    np.testing.assert_allclose(stage._rotated(turned, down), [0.0, 0.0, -1.0], atol=1e-12)
+    assert stage._rotated(turned, np.array([1.0, 0.0, 0.0]))[2] == pytest.approx(np.sin(0.2))
+
+
+def test_the_support_of_four_feet_goes_round():
+    feet = np.array([[1.0, 1.0, 0.0], [1.0, -1.0, 0.0], [-1.0, 1.0, 0.0], [-1.0, -1.0, 0.0]])
+    corners = support(feet, np.ones(4, dtype=bool))
+    sides = np.linalg.norm(np.roll(corners, -1, axis=0) - corners, axis=1)
+    np.testing.assert_allclose(sides, 2.0)
+    assert len(support(feet, np.array([True, False, False, True]))) == 2
+
+
+def test_gait_bars_show_every_stance_of_every_foot():
+    time = np.linspace(0.0, 4.0, 401)
+    table = {name: np.where(np.sin(2 * np.pi * time) > 0, 5.0, 0.0) for name in COLUMNS} | {"time": time}
+    assert gait_bars(table).count('height="15" fill="#0072B2"') == 4  # the left front foot, four times
+
+
+def test_a_film_of_a_swim_has_a_frame_for_every_instant(tmp_path):
+    line = np.linspace(0.0, 1.0, 9)
+    data = {"free_vorticity": (("free_frame", "free_y", "free_x"), np.arange(3 * 8 * 20.0).reshape(3, 8, 20) - 240)}
+    for name, values in (("x", line), ("y", 0 * line), ("heading", 0 * line), ("half_width", 0.05 + 0 * line)):
+        data[f"free_midline_{name}"] = (("free_frame", "free_station"), np.tile(values, (3, 1)))
+    coords = {"free_x": np.linspace(-0.3, 2.0, 20), "free_y": np.linspace(-0.5, 0.5, 8), "free_frame": [0.3, 0.6, 1.0]}
+    (film,), curves = films(save(xr.Dataset(data, coords=coords), tmp_path / "swim.nc"))
+    assert curves == ()
+    assert film.title == "free, from rest"
+    assert film.picture("vorticity", 2).shape == (8, 20, 3)
+    np.testing.assert_allclose(film.sides[1, 0, :, 1], 0.05)
+    np.testing.assert_allclose(film.sides[1, 1, :, 1], -0.05)
