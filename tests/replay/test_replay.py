@@ -12,8 +12,10 @@ from suchus.design import LEGS
 from suchus.design.relief import Bumps, Step, Stone, field
 from suchus.errors import IncompatibleRecord
 from suchus.replay import replay, save
+from suchus.replay.ankles import NEAR, REACH, ankles, footed
 from suchus.replay.frames import MOST, frames
 from suchus.skin import poses, skin
+from suchus.skin.bones import rotate
 
 
 def opened(page):
@@ -35,7 +37,8 @@ def test_positions_are_those_of_the_bodies_to_a_tenth_of_a_millimetre(robot, cra
     for i in (0, actor["frames"] // 2, actor["frames"] - 1):
         now = crawled.sel(time=meta["start"] + i / meta["rate"], method="nearest")
         at = poses(robot, now.position.values, now.orientation.values, now.joint_angle.values)
-        assert np.allclose(at.positions, shown[i], atol=1e-4)
+        assert np.allclose(at.positions, shown[i, :-4], atol=1e-4)
+        assert np.allclose(now.foot_position.values, shown[i, -4:], atol=1e-4)
     turns = read(raw, actor["arrays"]["turns"]).reshape(actor["frames"], -1, 4) / 32767
     assert np.allclose(np.linalg.norm(turns, axis=-1), 1.0, atol=1e-4)
 
@@ -51,6 +54,40 @@ def test_feet_of_the_bones_are_the_recorded_feet(robot, crawled):
         out = np.stack([2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)], axis=-1)
         foot = shown.bones.positions[:, bone] + side * links.tibia * out
         assert np.allclose(shown.feet[:, i], foot, atol=1e-6)
+
+
+def test_standing_feet_lie_flat_and_balls_stay(robot, crawled):
+    """The soles of feet near the ground face down, as far as an ankle turns; in the air they follow the shank."""
+    shown, surface = frames(crawled, robot), skin(robot)
+    for lift, reach in ((0.0, None), (1.0, 0.0)):
+        feet = shown.feet + np.array([0.0, 0.0, lift])
+        bones = ankles(robot, surface, shown.bones, feet)
+        assert np.array_equal(feet, bones.positions[:, -4:])
+        assert np.allclose(np.linalg.norm(bones.quaternions, axis=-1), 1.0)
+        for i, leg in enumerate(LEGS):
+            out = np.array([0.0, 1.0 if leg.startswith("L") else -1.0, 0.0])
+            shank = rotate(shown.bones.quaternions[:, surface.bones.index(f"{leg}_tibia")], out)
+            sole = rotate(bones.quaternions[:, -4 + i], out)
+            turned = np.arccos(np.clip(np.sum(shank * sole, axis=-1), -1.0, 1.0))
+            leaned = np.arccos(np.clip(-shank[:, 2], -1.0, 1.0))
+            assert (turned <= REACH + 1e-6).all()
+            if reach == 0.0:
+                assert np.allclose(turned, 0.0, atol=1e-6)
+            else:
+                flat = feet[:, i, 2] < robot.leg(leg).foot_radius + NEAR[0]
+                assert np.allclose(turned[flat], np.minimum(leaned[flat], REACH), atol=1e-4)
+
+
+def test_feet_hang_on_ankles_and_nothing_else_does(robot):
+    surface = skin(robot)
+    indices, rest = footed(robot, surface)
+    on_foot = indices[:, 0] >= len(surface.bones)
+    away = surface.vertices - rest[indices[:, 0]]
+    for i, leg in enumerate(LEGS):
+        radius = robot.leg(leg).foot_radius
+        assert np.linalg.norm(away[indices[:, 0] == len(surface.bones) + i], axis=1).max() < 6 * radius
+    assert 0.1 < on_foot.mean() < 0.3
+    assert (surface.weights[on_foot, 0] > 0.999).all()
 
 
 def test_skin_comes_through(robot, crawled):

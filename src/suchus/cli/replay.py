@@ -50,7 +50,7 @@ def make_replay(words: Sequence[str]) -> int:
     ghost = None if options.ghost is None else _chosen(stored, options.ghost, "--ghost")
     said = any(word.partition("=")[0] == "--robot" for word in words)
     robot = options.robot if said or "robot" not in shown.coords else ROBOTS[str(shown.robot.item())]
-    labels = [_label(one) for one in (shown, ghost) if one is not None]
+    labels = [_label(one).replace("_", " ") for one in (shown, ghost) if one is not None]
     save(replay(shown, robot, ghost=ghost, labels=labels, title=options.title), out)
     print(f"{robot.name}, {' and '.join(labels)}: {out}, {out.stat().st_size / 1e6:.1f} MB")
     return 0

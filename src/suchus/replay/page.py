@@ -1,6 +1,7 @@
 """The page: skins, frames and ground packed into one HTML file with its player."""
 
 import json
+import re
 from collections.abc import Sequence
 from io import StringIO
 from math import ceil, floor
@@ -19,6 +20,7 @@ from suchus.figures.posture import draw_posture
 from suchus.kinematics.mass import GRAVITY
 from suchus.metrics.gait import LOADED
 from suchus.record import new_file, versions
+from suchus.replay.ankles import ankles, footed
 from suchus.replay.frames import Frames, checked, frames
 from suchus.replay.pack import Pack, quantised
 from suchus.skin import Skin, skin
@@ -62,7 +64,7 @@ def replay(
     meta = {
         "start": first.start,
         "rate": first.rate,
-        "bones": len(surface.bones),
+        "bones": len(surface.bones) + len(LEGS),
         "length": robot.length,
         "aside": _BESIDE * robot.length,
         "loaded": LOADED,
@@ -72,7 +74,7 @@ def replay(
         "marks": [max(floor(x.min()) - 1, -50), min(ceil(x.max()) + 1, 50)],
         "mark_side": -0.4 * robot.length,
         "colours": _colours(),
-        "skins": [_packed_skin(surface, pack)],
+        "skins": [_packed_skin(robot, surface, pack)],
         "actors": [_packed(one, name, robot, pack) for one, name in zip(moving, labels, strict=False)],
         "relief": [] if relief is None else [_packed_relief(relief, pack)],
     }
@@ -120,23 +122,25 @@ def _environment() -> Environment:
     return environment
 
 
-def _packed_skin(surface: Skin, pack: Pack) -> dict[str, Any]:
+def _packed_skin(robot: Crocodile, surface: Skin, pack: Pack) -> dict[str, Any]:
     vertices, scale = quantised(surface.vertices, np.int16)
+    indices, rest = footed(robot, surface)
     assert (surface.weights[:, 2:] == 0).all()  # joints are so far apart that no vertex hangs on three bones
     return {
         "scale": scale,
-        "rest": np.round(surface.rest, 7).tolist(),
+        "rest": np.round(rest, 7).tolist(),
         "vertices": pack.add(vertices),
         "normals": pack.add(np.round(127 * surface.normals).astype(np.int8)),
         "colours": pack.add(surface.colours),
-        "bones": pack.add(surface.indices[:, :2].astype(np.uint8)),
+        "bones": pack.add(indices.astype(np.uint8)),
         "weights": pack.add(np.round(255 * surface.weights[:, 0]).astype(np.uint8)),
         "faces": pack.add(surface.faces.astype(np.uint16)),
     }
 
 
 def _packed(one: Frames, label: str, robot: Crocodile, pack: Pack) -> dict[str, Any]:
-    places = one.bones.positions
+    bones = ankles(robot, skin(robot), one.bones, one.feet)
+    places = bones.positions
     origin = (places.max(axis=(0, 1)) + places.min(axis=(0, 1))) / 2
     whole, reach = quantised(places - origin, np.int16)
     return {
@@ -148,7 +152,7 @@ def _packed(one: Frames, label: str, robot: Crocodile, pack: Pack) -> dict[str, 
         "radii": [robot.leg(leg).foot_radius for leg in LEGS],
         "arrays": {
             "places": pack.add(whole),
-            "turns": pack.add(np.round(32767 * one.bones.quaternions).astype(np.int16)),
+            "turns": pack.add(np.round(32767 * bones.quaternions).astype(np.int16)),
             "mass": pack.add(one.mass.astype(np.float32)),
             "feet": pack.add(one.feet.astype(np.float32)),
             "forces": pack.add(one.forces.astype(np.float32)),
@@ -205,7 +209,7 @@ def _still(robot: Crocodile, record: xr.Dataset) -> tuple[str, str]:
         axes[1, 0].set_xlabel("x [m]")
         text = StringIO()
         figure.savefig(text, format="svg", metadata={"Date": None, "Creator": None})
-    svg = text.getvalue()
+    svg = re.sub(r"(\d\.\d\d)\d+", r"\1", text.getvalue())  # a hundredth of a point is fine enough
     label = f'<svg role="img" aria-label="The robot at {time:.1f} s, from above and from the side" '
     return label + svg[svg.index("<svg") + 5 :], f"{time:.1f} s"
 

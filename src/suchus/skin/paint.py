@@ -40,8 +40,8 @@ def shaded(level: np.ndarray, along: np.ndarray, aside: np.ndarray) -> np.ndarra
     colour = mixed(colour, BACK, smooth(level, 0.10, 0.85))
     wave = np.sin(2 * np.pi * 19 * along + 0.8 * np.sin(41 * along) + 3.0 * level)
     colour = mixed(colour, BAND, 0.62 * smooth(wave, 0.15, 0.75) * smooth(level, -0.35, 0.15))
-    spots = np.sin(173 * along) * np.sin(311 * aside + 1.7) + 0.6 * np.sin(229 * along + 263 * aside)
-    return np.clip(colour * (1 + 0.075 * spots[:, None]), 0.0, 1.0)
+    spots = np.sin(173 * along) * np.cos(191 * aside) + 0.6 * np.sin(117 * along + 143 * aside)
+    return np.clip(colour * (1 + 0.055 * spots[:, None]), 0.0, 1.0)
 
 
 def hide(level: np.ndarray, length: float) -> Callable[[np.ndarray], np.ndarray]:

@@ -52,7 +52,7 @@
     vec3 lit(vec3 colour, vec3 n, vec3 at) {
       vec3 L = normalize(vec3(${LIGHT})), V = normalize(uEye - at), H = normalize(L + V);
       float sky = 0.5 + 0.5 * n.z;
-      vec3 c = colour * (mix(vec3(0.42, 0.39, 0.35), vec3(0.55, 0.58, 0.62), sky) + 0.72 * max(dot(n, L), 0.0));
+      vec3 c = colour * (mix(vec3(0.42, 0.39, 0.35), vec3(0.55, 0.58, 0.62), sky) + 0.66 * max(dot(n, L), 0.0) + 0.24 * max(dot(n, V), 0.0));
       c += 0.16 * pow(max(dot(n, H), 0.0), 28.0) + 0.10 * pow(1.0 - max(dot(n, V), 0.0), 3.0) * sky;
       return c * mix(1.0, 0.86, uNight);
     }`;
