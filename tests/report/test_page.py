@@ -45,9 +45,9 @@ class Question(Experiment):
         return self
 
 
-@pytest.fixture
-def result(tmp_path):
-    question = Question()
+@pytest.fixture(scope="module")
+def result(tmp_path_factory):
+    question, tmp_path = Question(), tmp_path_factory.mktemp("results")
     outcome = question.run()
     folder = save_outcome(
         outcome, question.draw(outcome), question, tmp_path / "question", command="suchus run question"
@@ -72,7 +72,7 @@ class Page(HTMLParser):
         return [attrs for tag, attrs in self.tags if tag in names]
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def page(result):
     failure = Failure(name="other_question", sentence="It <broke>.", trace="Traceback ...")
     return Page(render_page([result], [failure]))

@@ -1,0 +1,121 @@
+"""The page can be read by everybody: contrast, headings, texts; axe-core where a browser and axe are at hand."""
+
+import os
+import re
+import shutil
+from html.parser import HTMLParser
+from importlib.resources import files
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+import xarray as xr
+
+from suchus.experiment import Experiment, Measure, Outcome, judge, silent
+from suchus.figures import captioned, panels
+from suchus.report import Failure, load_result, render_page, save_outcome
+
+AXE = Path(os.environ.get("SUCHUS_AXE", Path(__file__).parents[2] / "node_modules" / "axe-core" / "axe.min.js"))
+BROWSER = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+PAIRS = [
+    *((ink, ground) for ink in ("ink", "soft", "accent") for ground in ("paper", "card", "tint")),
+    *((word, f"{word}-tint") for word in ("good", "near", "bad", "none")),
+]
+
+
+class Question(Experiment):
+    title = "How far?"
+    shows = "Fig. 16"
+    decides = "The stroke decides."
+
+    def run(self, progress=silent):
+        return Outcome(
+            experiment="displacement",
+            measures={
+                "forward_coordinated": Measure(0.5, "m"),
+                "forward_limbs_only": Measure(0.1, "m"),
+            },
+            verdicts=(judge("displacement_coordinated", 0.5, "So."), judge("height_standing", None, "Not tried.")),
+            record=xr.Dataset({"x": ("time", [0.0, 1.0])}),
+            settings={},
+            tables={"rows.txt": "a\n"},
+        )
+
+    def draw(self, outcome):
+        return {"first": captioned(panels()[0], "A figure of nothing much.")}
+
+    def quick(self):
+        return self
+
+
+@pytest.fixture(scope="module")
+def page(tmp_path_factory):
+    question, folder = Question(), tmp_path_factory.mktemp("page") / "displacement"
+    outcome = question.run()
+    save_outcome(outcome, question.draw(outcome), question, folder, command="suchus run displacement")
+    return render_page([load_result(folder)], [Failure(name="other", sentence="It broke.", trace="Traceback")])
+
+
+def colours(scheme):
+    style = files("suchus.report").joinpath("templates/style.css").read_text()
+    light, dark = re.findall(r":root \{(.*?)\}", style, re.S)[:2]
+    return dict(re.findall(r"--([\w-]+): (#[0-9a-f]{6});", light if scheme == "light" else dark))
+
+
+def luminance(colour):
+    parts = [int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)]
+    r, g, b = (c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in parts)
+    return 0.2126 * r + 0.7152 * g + 0.0722 * b
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize(("ink", "ground"), PAIRS)
+def test_every_text_stands_out_from_its_ground(scheme, ink, ground):
+    shades = colours(scheme)
+    dark, light = sorted((luminance(shades[ink]), luminance(shades[ground])))
+    assert (light + 0.05) / (dark + 0.05) >= 4.5  # WCAG 2.2, level AA
+
+
+class Outline(HTMLParser):
+    def __init__(self, text):
+        super().__init__()
+        self.tags = []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.append((tag, dict(attrs)))
+
+
+def test_headings_go_down_one_step_at_a_time(page):
+    levels = [int(tag[1]) for tag, _ in Outline(page).tags if re.fullmatch(r"h[1-6]", tag)]
+    assert levels[0] == 1
+    assert all(after <= before + 1 for before, after in pairwise(levels))
+
+
+def test_every_region_has_a_name_of_its_own(page):
+    labels = [attrs["aria-label"] for _, attrs in Outline(page).tags if "aria-label" in attrs]
+    assert len(labels) == len(set(labels))
+    assert not {label for label in labels if f">{label}</h2>" in page}
+
+
+def test_every_picture_has_a_text(page):
+    assert all(len(attrs.get("alt", "")) > 10 for tag, attrs in Outline(page).tags if tag == "img")
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("width", [1280, 390])
+def test_axe_finds_nothing(page, tmp_path, scheme, width):
+    sync = pytest.importorskip("playwright.sync_api")
+    if BROWSER is None or not AXE.is_file():
+        pytest.skip("no chromium, or no axe-core: npm install --no-save axe-core, or SUCHUS_AXE=axe.min.js")
+    (tmp_path / "page.html").write_text(page)
+    with sync.sync_playwright() as play:
+        browser = play.chromium.launch(executable_path=BROWSER, args=["--no-sandbox", "--disable-gpu"])
+        view = browser.new_page(color_scheme=scheme, viewport={"width": width, "height": 800})
+        view.goto((tmp_path / "page.html").as_uri())
+        view.add_script_tag(path=AXE)
+        found = view.evaluate("axe.run().then(result => result.violations.map(v => v.id + ': ' + v.nodes[0].html))")
+        wide = view.evaluate("document.documentElement.scrollWidth")
+        browser.close()
+    assert found == []
+    assert wide <= width
