@@ -4,7 +4,7 @@
   const $ = (id) => document.getElementById(id);
   const meta = JSON.parse($("meta").textContent);
   const canvas = $("scene");
-  const gl = canvas.getContext("webgl2", { antialias: true, stencil: true, alpha: false });
+  const gl = canvas.getContext("webgl2", { antialias: true, stencil: true, alpha: false, preserveDrawingBuffer: true });
   if (!gl) return;
 
   // ---- what was recorded -------------------------------------------------------------------------------------
@@ -168,8 +168,9 @@
 
   // ---- state ---------------------------------------------------------------------------------------------------
   const calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
+  const framed = self !== top; // in a report: at rest until asked
   const asked = new URLSearchParams(location.hash.slice(1));
-  const state = { time: 0, playing: !calm && !asked.has("t"), speed: 1, forces: true, support: true, tracks: true,
+  const state = { time: 0, playing: !calm && !asked.has("t") && !framed, speed: 1, forces: true, support: true, tracks: true,
     follow: true, compare: meta.actors.length < 2 ? "hidden" : meta.overlaid ? "over" : "beside", dark: matchMedia("(prefers-color-scheme: dark)").matches };
   const camera = { azimuth: -0.95, elevation: 0.36, distance: 2.2 * meta.length, target: [0, 0, 0.06], moved: [0, 0, 0] };
   let dirty = true, last = 0, shown = null;
@@ -439,7 +440,10 @@
     $("play").textContent = on ? "Pause" : "Play"; redraw(); };
   const views = { corner: [-0.95, 0.36], left: [Math.PI / 2, 0.06], right: [-Math.PI / 2, 0.06], front: [0, 0.12], above: [-Math.PI / 2, 1.55] };
   const look = (name) => { [camera.azimuth, camera.elevation] = views[name]; camera.moved = [0, 0, 0]; camera.distance = fitted(); redraw(); };
-  const fitted = () => meta.length * (state.compare === "beside" ? 2.0 : 1.6) * Math.max(1, 1.15 * canvas.clientHeight / canvas.clientWidth);
+  const fitted = () => { // farther on narrow pictures, nearer on wide ones
+    const aspect = canvas.clientWidth / Math.max(canvas.clientHeight, 1);
+    return meta.length * (state.compare === "beside" ? 2.0 : 1.6) * Math.max(0.78, Math.min(1, 1.7 / aspect), 1.15 / aspect);
+  };
   const theme = (dark) => { state.dark = dark; document.documentElement.dataset.theme = dark ? "dark" : "light";
     $("theme").textContent = dark ? "Light" : "Dark"; redraw(); };
   $("time").min = meta.start; $("time").max = end; $("time").step = 1 / meta.rate;
@@ -499,6 +503,7 @@
   if (asked.has("view") && views[asked.get("view")]) { $("view").value = asked.get("view"); look(asked.get("view")); }
   camera.distance = fitted();
   if (asked.has("t")) seek(+asked.get("t"));
+  else if (framed) seek(meta.start + 0.4 * (end - meta.start));
   $("play").textContent = state.playing ? "Pause" : "Play";
   window.suchus = { state, camera, seek, play, mass: () => shown && shown.map((one) => one.mass) };
   dirty = true;
