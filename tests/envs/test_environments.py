@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 gymnasium = pytest.importorskip("gymnasium", reason="gymnasium is not installed: pip install suchus[gym]")
 
@@ -17,6 +18,7 @@ from suchus import envs  # noqa: E402
 from suchus.design import servo_names  # noqa: E402
 from suchus.envs.pack import Pack, draw  # noqa: E402
 from suchus.envs.reward import Terms  # noqa: E402
+from suchus.envs.senses import level_axes  # noqa: E402
 from suchus.errors import InvalidDesign, OutsideLimits, UnknownName  # noqa: E402
 from suchus.gaits import GAITS  # noqa: E402
 from suchus.motion import limb_phase, servo_targets  # noqa: E402
@@ -92,12 +94,14 @@ def test_equal_seeds_give_equal_episodes_and_others_do_not():
     assert not np.array_equal(runs[0], runs[2])
 
 
-def test_a_robot_that_broke_begins_anew_as_if_nothing_had_happened():
-    breaks = envs.Breaks(joints=("LF_pitch",), kinds=("limp",), latest=0.0)
+@pytest.mark.parametrize("kind", ["limp", "locked"])
+def test_a_robot_that_broke_begins_anew_as_if_nothing_had_happened(kind):
+    breaks = envs.Breaks(joints=("LF_pitch",), kinds=(kind,), latest=0.0)
     used, fresh = (Pack(replace(FAULT, breaks=breaks), 2) for _ in range(2))
     used.restart([0, 1], [np.random.default_rng(1), np.random.default_rng(2)])
     used.act(np.ones((2, 19)), np.ones(2, dtype=bool))
-    assert (used._bench.batch.expanded("opt.disableactuator") != 0).all()
+    limp = used._bench.batch.expanded("opt.disableactuator")
+    assert (limp != 0).all() if kind == "limp" else np.isfinite(used._held).sum() == 2
     for pack in (used, fresh):
         pack.restart([1], [np.random.default_rng(7)])
         pack.chances[1] = replace(pack.chances[1], breaks=-1)
@@ -145,6 +149,13 @@ def test_what_presses_on_the_ground_is_the_weight():
     assert np.mean(pressed[10:]) == pytest.approx(1.0, abs=0.01)
     np.testing.assert_allclose(envs.part(seen, "upward")[0], [0, 0, 1], atol=0.1)
     np.testing.assert_allclose(envs.part(seen, "acceleration")[0], np.array([0, 0, 0.25]), atol=0.03)
+
+
+def test_the_world_s_axes_are_felt_as_the_pelvis_turns():
+    turns = Rotation.random(20, random_state=3)
+    upward, ahead = level_axes(turns.as_quat(scalar_first=True))
+    np.testing.assert_allclose(upward, turns.inv().apply([0, 0, 1]), atol=1e-12)
+    np.testing.assert_allclose(ahead, turns.inv().apply([1, 0, 0]), atol=1e-12)
 
 
 def test_readings_off_their_scale_are_cut_and_lost_ones_are_zero():

@@ -45,17 +45,18 @@ def test_every_number_reads_back_to_the_same_bits(walk, tmp_path):
 def test_what_is_missing_is_empty_and_orders_of_dimensions_do_not_split_a_file(tmp_path):
     record = xr.Dataset(
         {
-            "a": (("x", "y"), [[1.5, np.nan]], {"units": "m"}),
-            "b": (("y", "x"), [["p"], ['q, "r"']]),
+            "a": (("x", "y"), [[1.5, np.nan], [2.5, 3.5]], {"units": "m"}),
+            "b": (("y", "x"), [["p", "r"], ['q, "r"', "s"]]),
             "one": ((), 0.1 + 0.2, {"units": "s"}),
-            "yes": ("x", [True]),
+            "yes": ("x", [True, False]),
         },
         coords={"y": ["left", "right"]},
     )
     folder = write_tables(record, tmp_path / "csv")
-    assert (folder / "x_y.csv").read_text() == 'x,y,a [m],b\n0,left,1.5,p\n0,right,,"q, ""r"""\n'
+    lines = ["x,y,a [m],b", "0,left,1.5,p", '0,right,,"q, ""r"""', "1,left,2.5,r", "1,right,3.5,s"]
+    assert (folder / "x_y.csv").read_text().splitlines() == lines
     assert (folder / "single.csv").read_text() == "one [s]\n0.30000000000000004\n"
-    assert (folder / "x.csv").read_text() == "x,yes\n0,True\n"
+    assert (folder / "x.csv").read_text() == "x,yes\n0,True\n1,False\n"
 
 
 def test_more_rows_than_are_written_at_a_time(tmp_path, monkeypatch):
