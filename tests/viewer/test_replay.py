@@ -7,6 +7,7 @@ from suchus.gaits import GAITS
 from suchus.land import Run, simulate
 from suchus.record import save
 from suchus.robots import ROBOTS
+from suchus.viewer import rods
 from suchus.viewer.bodies import Posture, pieces, support
 from suchus.viewer.history import COLUMNS
 from suchus.viewer.plots import gait_bars
@@ -120,3 +121,19 @@ def test_a_film_of_a_swim_has_a_frame_for_every_instant(tmp_path):
     assert film.picture("vorticity", 2).shape == (8, 20, 3)
     np.testing.assert_allclose(film.sides[1, 0, :, 1], 0.05)
     np.testing.assert_allclose(film.sides[1, 1, :, 1], -0.05)
+
+
+@pytest.mark.parametrize("way", [(0.0, 0.0, 1.0), (0.0, 0.0, -1.0), (0.6, 0.0, 0.8), (0.0, -1.0, 0.0)])
+def test_a_rod_points_where_it_should(way):
+    np.testing.assert_allclose(stage._rotated(rods.upright(np.array(way)), np.array([0.0, 0.0, 1.0])), way, atol=1e-12)
+
+
+def test_a_rod_is_closed():
+    for shape in (rods.Shape(radius=0.1), rods.Shape(radius=0.1, head=0.3, head_radius=0.2)):
+        _, faces, weights = rods.rod(shape)
+        edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+        ahead, back = {tuple(edge) for edge in edges.tolist()}, {tuple(edge) for edge in edges[:, ::-1].tolist()}
+        assert len(ahead) == len(edges)
+        lone = {point for edge in ahead - back for point in edge}
+        assert lone <= set(range(12, 24))  # the shaft's end stands open inside the head
+        np.testing.assert_array_equal(weights.sum(axis=1), 1.0)

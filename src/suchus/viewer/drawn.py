@@ -74,12 +74,10 @@ class DrawnRobot:
         """Move to an instant, by the names of ``record.VARIABLES``."""
         self.posture.put(now)
         if self._look == "skin":
-            at = np.array([now["position"][0], now["position"][1], 0.0])  # so that the browser knows where it is
             for piece, handle in self._skin:
-                handle.position = at
                 for bone, name in zip(handle.bones, piece.bones, strict=True):
                     position, turned = self.posture.body(name)
-                    bone.position, bone.wxyz = position - at, turned
+                    bone.position, bone.wxyz = position, turned
         else:
             for number, handle in self._geoms.items():
                 handle.position, handle.wxyz = self.posture.geom(number)

@@ -15,7 +15,7 @@ from suchus.viewer.stage import Stage
 FRAME = 1 / 20
 """Between two pictures [s]."""
 DRAWN = 3
-"""Pictures for one drawing of forces and support, which are dearer to a browser than what merely moves."""
+"""Pictures for one renewal of numbers and way, which are dearer to a browser than what merely moves."""
 PLOT = 0.3
 """Between two redraws of the plots [s]."""
 IDLE = 900.0
@@ -93,9 +93,8 @@ class LivePage:
             self._stage.mark(settings.broken)
             if not instant.trouble:
                 self._stage.place(instant.now, (settings.uphill, settings.sideways), follow=bool(self._follow.value))
-                self._stage.robot.show(instant.now)
+                self._stage.show(instant.now, instant.pushed)
             if everything:
-                self._stage.draw(instant.now, instant.pushed)
                 self._stage.go(instant.now["centre_of_mass"])
                 self._status.content = status(
                     instant, settings, rate=rate, notice=self._notice, paused=self._controls.paused

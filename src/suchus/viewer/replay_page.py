@@ -104,11 +104,10 @@ class ReplayPage:
         with self._client.atomic():
             now = take.at(time)
             self._stage.place(now, (0.0, 0.0), follow=bool(self._follow.value))
-            self._stage.robot.show(now)
+            self._stage.show(now)
             if ghost is not None and self._stage.ghost is not None:
                 self._stage.ghost.show(ghost.at(time))
             if everything:
-                self._stage.draw(now)
                 self._slider.value = round(time, 2)
                 self._status.content = told(take, ghost, time)
 

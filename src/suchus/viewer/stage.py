@@ -14,6 +14,7 @@ from suchus.metrics.gait import LOADED
 from suchus.model import compile_model
 from suchus.viewer.bodies import support
 from suchus.viewer.drawn import DrawnRobot, Look
+from suchus.viewer.rods import Rod, Shape
 
 CAMERA = (0.8, -1.4, 0.8)
 """Where the camera is at first [m]."""
@@ -22,6 +23,10 @@ LOOKS_AT = (-0.1, 0.0, 0.0)
 _PER_NEWTON = 0.008  # [m]; the robot's weight is then as long as its trunk
 _ABOVE = 0.003  # [m]; what is painted on the ground lies so far above it
 _WORLD = "/world"
+_ARROW = Shape(radius=0.006, head=0.028, head_radius=0.014)
+_PUSH = Shape(radius=0.010, head=0.042, head_radius=0.021)
+_EDGE = Shape(radius=0.0035)
+_PLUMB = Shape(radius=0.0018)
 _STEPS = 400  # pieces of the way that are kept
 
 
@@ -46,7 +51,9 @@ def light(scene: Any) -> None:
     scene.configure_environment_map(None)
     scene.configure_default_lights(enabled=False)
     scene.add_light_hemisphere("/sky", sky_color=(255, 255, 255), ground_color=(190, 180, 165), intensity=1.7)
-    scene.add_light_directional("/sun", color=(255, 250, 240), intensity=2.0, position=(1.2, -0.9, 2.4))
+    scene.add_light_directional(
+        "/sun", color=(255, 250, 240), intensity=2.0, position=(1.2, -0.9, 2.4), cast_shadow=True
+    )
 
 
 class Stage:
@@ -66,30 +73,19 @@ class Stage:
         self.lay(robot, None)
         self.robot = DrawnRobot(scene, f"{_WORLD}/robot", robot)
         self.ghost: DrawnRobot | None = None
-        self._forces = [self._arrow(f"force_{leg}", rgb(COLOURS[leg])) for leg in LEGS]
-        self._push = self._arrow("push", rgb(COLOURS["printed"]), thick=1.5)
-        self._support = self._lines("support", rgb(COLOURS["spine"]), 0.008)
+        self._forces = [self._rod(f"force_{leg}", _ARROW, COLOURS[leg]) for leg in LEGS]
+        self._push = self._rod("push", _PUSH, COLOURS["printed"])
+        self._support = [self._rod(f"support_{i}", _EDGE, COLOURS["spine"]) for i in range(4)]
         self._com = scene.add_icosphere(f"{_WORLD}/centre_of_mass", 0.014, color=rgb(COLOURS["tail"]))
-        self._plumb = self._lines("plumb", rgb(COLOURS["tail"]), 0.003)
-        self._way = self._lines("way", rgb(COLOURS["neutral"]), 0.004)
+        self._plumb = self._rod("plumb", _PLUMB, COLOURS["tail"])
+        self._way = scene.add_line_segments(
+            f"{_WORLD}/way", np.zeros((1, 2, 3)), rgb(COLOURS["neutral"]), thickness=0.004, visible=False
+        )
         self._path: list[np.ndarray] = []
         self.shown = {"forces": True, "support": True, "way": True}
 
-    def _arrow(self, name: str, colour: tuple[int, int, int], thick: float = 1.0) -> Any:
-        return self._scene.add_arrows(
-            f"{_WORLD}/{name}",
-            np.array([[[0.0, 0.0, 0.0], [0.0, 0.0, 0.1]]]),
-            colour,
-            shaft_radius=0.006 * thick,
-            head_radius=0.014 * thick,
-            head_length=0.028 * thick,
-            visible=False,
-        )
-
-    def _lines(self, name: str, colour: tuple[int, int, int], thickness: float) -> Any:
-        return self._scene.add_line_segments(
-            f"{_WORLD}/{name}", np.zeros((1, 2, 3)), colour, thickness=thickness, visible=False
-        )
+    def _rod(self, name: str, shape: Shape, colour: str) -> Rod:
+        return Rod(self._scene, f"{_WORLD}/{name}", shape, rgb(colour))
 
     def lay(self, robot: Crocodile, relief: Relief | None) -> None:
         """Lay the ground, even or with what stands up from it."""
@@ -140,36 +136,43 @@ class Stage:
         at = np.array([*now["centre_of_mass"][:2], 0.0]) if follow else np.zeros(3)
         self._world.position = -_rotated(turned, at)
 
-    def draw(self, now: Mapping[str, np.ndarray], pushed: tuple[float, float, float] | None = None) -> None:
-        """Draw forces, support and a push that lasts; browsers take this less often than a robot that moves."""
+    def show(self, now: Mapping[str, np.ndarray], pushed: tuple[float, float, float] | None = None) -> None:
+        """Show an instant, by the names of ``record.VARIABLES``, and a push that lasts."""
+        self.robot.show(now)
         feet, forces, com = now["foot_position"], now["foot_force"], now["centre_of_mass"]
         ground = feet - np.array([0.0, 0.0, 1.0]) * self._radii()[:, None]
-        for arrow, foot, force in zip(self._forces, ground, forces, strict=True):
-            arrow.visible = bool(self.shown["forces"] and force[2] > LOADED)
-            if arrow.visible:  # a slow browser moves a node at once, and draws its shape anew when it can
-                arrow.position = foot
-                arrow.points = np.array([[np.zeros(3), _PER_NEWTON * force]], dtype=np.float32)
-        self._push.visible = pushed is not None
-        if pushed is not None:
-            trunk, _ = self.robot.posture.body("thorax")
-            self._push.position = trunk + np.array([0.0, 0.0, 0.06])
-            self._push.points = np.array([[-_PER_NEWTON * np.array(pushed), np.zeros(3)]], dtype=np.float32)
-        self._stand(ground, forces[:, 2] > LOADED, com)
+        loaded = forces[:, 2] > LOADED
+        for arrow, foot, force, stands in zip(self._forces, ground, forces, loaded, strict=True):
+            if self.shown["forces"] and stands:
+                arrow.put(foot, foot + _PER_NEWTON * force)
+            else:
+                arrow.hide()
+        if pushed is None:
+            self._push.hide()
+        else:
+            tip = self.robot.posture.body("thorax")[0] + np.array([0.0, 0.0, 0.06])
+            self._push.put(tip - _PER_NEWTON * np.array(pushed), tip)
+        self._stand(ground, loaded, com)
 
     def _radii(self) -> np.ndarray:
         return np.array([self.robot.posture.robot.leg(leg).foot_radius for leg in LEGS])
 
     def _stand(self, feet: np.ndarray, loaded: np.ndarray, com: np.ndarray) -> None:
+        corners = support(feet, loaded) + np.array([0.0, 0.0, _ABOVE])
         floor = float(feet[loaded, 2].mean()) if loaded.any() else 0.0
         below = np.array([com[0], com[1], floor + _ABOVE])
-        corners = support(feet, loaded) + np.array([0.0, 0.0, _ABOVE]) - below
-        self._support.position = self._com.position = self._plumb.position = below
-        self._support.visible = bool(self.shown["support"] and len(corners) > 1)
-        if len(corners) > 1:
-            ends = np.stack([corners, np.roll(corners, -1, axis=0)], axis=1)
-            self._support.points = ends.astype(np.float32)
-        self._com.visible = self._plumb.visible = bool(self.shown["support"])
-        self._plumb.points = np.array([[np.zeros(3), com - below]], dtype=np.float32)
+        sides = len(corners) if len(corners) > 2 else len(corners) - 1
+        for i, edge in enumerate(self._support):
+            if self.shown["support"] and i < sides:
+                edge.put(corners[i], corners[(i + 1) % len(corners)])
+            else:
+                edge.hide()
+        self._com.visible = bool(self.shown["support"])
+        self._com.position = below
+        if self.shown["support"]:
+            self._plumb.put(below, com)
+        else:
+            self._plumb.hide()
 
     def go(self, com: np.ndarray) -> None:
         """Lengthen the way on the ground to where the centre of mass is now."""
