@@ -54,7 +54,8 @@ def free_swim(
     outline = Outline(robot, setting.cells + 1)
     check_motion(outline, motion, setting, *recoil(outline, motion, 0.0, Water()))
     grid = setting.grid(length, _BOX)
-    body = flow.FreeBody(shape=immersed(outline, motion, grow=GROWS * period), start=(0.5 * length, 0.0))
+    shape = immersed(outline, motion, grow=GROWS * period, least=setting.least(length))
+    body = flow.FreeBody(shape=shape, start=(0.5 * length, 0.0))
     sim = flow.Simulation(
         flow.Setup(grid=grid, viscosity=setting.viscosity, density=DENSITY, bodies=(body,), follow="body")
     )

@@ -58,7 +58,7 @@ def tether(
     length, period = robot.length, 1.0 / motion.frequency
     outline = Outline(robot, setting.cells + 1)
     check_motion(outline, motion, setting, 0j, turn)
-    shape = immersed(outline, motion, turn=turn, grow=GROWS * period)
+    shape = immersed(outline, motion, turn=turn, grow=GROWS * period, least=setting.least(length))
     grid, body = setting.grid(length, _BOX), flow.Body(shape=shape)
     sim = flow.Simulation(flow.Setup(grid=grid, viscosity=setting.viscosity, density=DENSITY, bodies=(body,)))
     seen = _Held(outline, View(grid, length, 1.9, 0.6), (setting.cycles - 1) * period, period)
@@ -220,7 +220,7 @@ def towed(robot: Crocodile, speed: float, setting: Tether, *, lengths: float = 4
         part = min(time / over, 1.0)
         return speed * part * part * (3 - 2 * part), 0.0
 
-    body = flow.Body(shape=replace(immersed(outline, still), deforms=False))
+    body = flow.Body(shape=replace(immersed(outline, still, least=setting.least(length)), deforms=False))
     grid = setting.grid(length, _BOX)
     sim = flow.Simulation(
         flow.Setup(grid=grid, viscosity=setting.viscosity, density=DENSITY, bodies=(body,), stream=stream)

@@ -8,7 +8,7 @@ from suchus.water.undulation import Motion, undulation
 
 
 def immersed(
-    outline: Outline, motion: Motion, *, sway: complex = 0j, turn: complex = 0j, grow: float = 0.0
+    outline: Outline, motion: Motion, *, sway: complex = 0j, turn: complex = 0j, grow: float = 0.0, least: float = 0.0
 ) -> flow.Midline:
     """Return the robot as a bending body of ``suchus.flow``, head at the origin, tail towards +x, y to its right.
 
@@ -20,13 +20,15 @@ def immersed(
         sway: harmonic of the snout's way to the right [m]; zero for a free body, which finds it by itself.
         turn: harmonic of the head's direction [rad].
         grow: time over which the motion grows from nothing [s].
+        least: half-width below which the body is thickened, its ends made round [m].
     """
     bent = undulation(outline, motion).held(sway, turn)
     half_width = outline.silhouette.half_width
 
     def spine(time: float) -> flow.Spine:
         curve = bent.curve(np.asarray(time), *_grown(time, grow))
-        return flow.Spine(**curve._asdict(), half_width=half_width)
+        bare = flow.Spine(**curve._asdict(), half_width=half_width)
+        return bare.blunted(least) if least > 0.0 else bare
 
     return flow.Midline(spine=spine)
 

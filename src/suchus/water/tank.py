@@ -31,6 +31,9 @@ class Tether:
     """Kinematic viscosity of the water [m2/s]."""
     cycles: int
     """How many cycles are simulated; the last is measured [-]."""
+    blunt: float = 0.0
+    """Least half-width: where the body is thinner it is thickened, its ends made round [cell]. 1.75 cells hold all
+    water back; with 0 the body stays as it is, and water leaks through where it is thinner."""
     frames: int = 24
     """Instants of a free body's last cycle at which the fields are kept, for films [-]."""
     box: tuple[float, float] | None = None
@@ -41,6 +44,7 @@ class Tether:
             check.whole("cells", 32, 4096)
             check.whole("cycles", 1, 1000)
             check.whole("frames", 1, 1000)
+            check.number("blunt", 0.0, 5.0, "cells")
             check.number("viscosity", 1e-7, 10.0, "m2/s")
         if self.box is None:
             return
@@ -50,6 +54,10 @@ class Tether:
                     f"tether.box is {value} body lengths {what}; the body itself is 1 long and swings to both sides: "
                     f"give at least {least}."
                 )
+
+    def least(self, length: float) -> float:
+        """Return the half-width below which a body of a length [m] is thickened [m]."""
+        return self.blunt * length / self.cells
 
     def grid(self, length: float, box: tuple[float, float]) -> flow.Grid:
         """Return the cells around a body whose snout is near the origin, most of the water behind it.
