@@ -387,3 +387,15 @@ def test_a_robot_s_name_becomes_one_that_usd_allows(robot):
 def test_an_unknown_format_is_told_with_those_near_it(robot, crawl_gait, tmp_path):
     with pytest.raises(UnknownName, match="Did you mean 'urdf'"):
         export(robot, crawl_gait, tmp_path / "x", "udrf")
+
+
+@pytest.mark.parametrize("file", ["caiman.usda", "scene.usda"])
+def test_usd_s_own_validators_find_nothing_wrong(file, robot, crawl_gait, tmp_path):
+    pytest.importorskip("pxr", reason="usd-core is not installed: pip install suchus[usd]")
+    validation = pytest.importorskip("pxr.UsdValidation")
+    folder = export(robot, crawl_gait, tmp_path / "u", "usd")
+    _, stage = usd_stage(folder, file)
+    validators = validation.ValidationRegistry().GetOrLoadAllValidators()
+    assert any("Physics" in v.GetMetadata().name for v in validators)
+    errors = validation.ValidationContext(validators).Validate(stage)
+    assert [f"{e.GetName()}: {e.GetMessage()}" for e in errors] == []
