@@ -6,9 +6,10 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.collections import LineCollection
 from matplotlib.colors import to_hex, to_rgb
-from matplotlib.patches import Circle, Polygon
+from matplotlib.patches import Circle, PathPatch, Polygon
+from matplotlib.path import Path
 
 from suchus.design import LEGS, Crocodile
 from suchus.figures.silhouette import Silhouette, silhouette
@@ -198,15 +199,21 @@ def _flesh(ax: Axes, seen: Silhouette, view: View, strength: float) -> None:
         far = view == "side" and not near
         face, order = (far_leg, 0.8) if far else (body, 2.6) if near else (body, 1.0)
         # strokes of all pieces first, then their fillings: what is left is the outline of them all
-        ax.add_collection(PolyCollection(pieces, facecolors=edge, edgecolors=edge, linewidths=1.8, zorder=order))
-        ax.add_collection(PolyCollection(pieces, facecolors=face, edgecolors=face, linewidths=0.2, zorder=order + 0.01))
+        whole = _united(pieces)
+        ax.add_patch(PathPatch(whole, facecolor=edge, edgecolor=edge, linewidth=1.8, joinstyle="round", zorder=order))
+        ax.add_patch(PathPatch(whole, facecolor=face, edgecolor=face, linewidth=0.2, zorder=order + 0.01))
     for piece, face, order in ((seen.jaw, pale, 1.9), (seen.body, body, 2.0)):
         ax.add_patch(Polygon(piece, facecolor=face, edgecolor=edge, linewidth=0.9, joinstyle="round", zorder=order))
     for eye in seen.eyes if view == "above" else seen.eyes[1:]:
         ax.add_patch(Polygon(eye, facecolor=edge, edgecolor="none", zorder=2.4))
     if strength == 1.0:
-        plates = PolyCollection(seen.scutes, facecolors=plate, edgecolors=edge, linewidths=0.35, zorder=2.2)
-        ax.add_collection(plates)
+        plates = _united(seen.scutes)
+        ax.add_patch(PathPatch(plates, facecolor=plate, edgecolor=edge, linewidth=0.35, zorder=2.2))
+
+
+def _united(pieces: Sequence[np.ndarray]) -> Path:
+    """Return polygons as one path: a single element of a vector file, a third of the size."""
+    return Path.make_compound_path(*(Path(np.vstack([piece, piece[:1]]), closed=True) for piece in pieces))
 
 
 def _paler(colour: str, strength: float) -> str:
