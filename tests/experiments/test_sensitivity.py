@@ -15,6 +15,7 @@ from suchus.land import LOST, lost, simulate
 from suchus.metrics import displacement
 from suchus.paper import CLAIMS
 from suchus.robots import ROBOTS
+from suchus.study.answers import quantities
 
 FULL = EXPERIMENTS["sensitivity"]
 # four samples, of which some cannot walk, in two parts, and one of them again
@@ -165,7 +166,7 @@ def made_up(ways):
 
 
 def numbers(ways, least=0.05):
-    found = sensitivity._quantities(*made_up(ways), least)
+    found = quantities(*made_up(ways), least)
     return {key: (float(number[0]), bool(holds[0])) for key, (number, holds) in found.items()}
 
 

@@ -20,20 +20,18 @@ from suchus.figures.sensitivity import draw_claim
 from suchus.gaits import GAITS
 from suchus.land import LOST, Run, lost, simulate
 from suchus.land.lost import Kind, Legs
-from suchus.metrics import border, displacement, height_std, loss, rank_correlation, says
+from suchus.metrics import displacement, height_std
 from suchus.motion import START, Gait, check_limits
 from suchus.paper import CLAIMS, CYCLES
 from suchus.record import Parts, check_writable
 from suchus.robots import ROBOTS
+from suchus.study.answers import ARMS, STATES, answers
+from suchus.study.claims import TRUNK
 
-_ARMS = ("coordinated", "limbs_only")
-_STATES = ("intact", *LOST)
-_TRUNK = ("trunk_bend", "spine_phase", "tail_bend", "tail_phase", "tail_pitch")  # the rest of a gait is its legs
-_LEAST_RATIO = 0.02  # a way with limbs only below this part of the way with spine and tail makes a ratio of 50
-_STANDS = 0.01  # [m]; an intact robot that gets no farther has nothing to keep when a joint is lost
 _MADE_BY = (
     *("design", "robots", "gaits", "kinematics", "motion", "control", "model", "land", "metrics", "record"),
     "experiments/sensitivity.py",
+    "study/answers.py",
 )
 
 
@@ -99,7 +97,7 @@ class Sensitivity(Experiment):
         """Sweep."""
         with stopwatch() as seconds:
             record = self._swept(progress)
-            record = record.merge(_answers(record, self.least))
+            record = record.merge(answers(record, self.least))
             return Outcome(
                 experiment=self.name(),
                 measures=_measures(record),
@@ -161,7 +159,7 @@ class Sensitivity(Experiment):
                 status.append("outside limits")
             except InvalidDesign:
                 status.append("impossible")
-        forward, std = (np.full((len(points), len(_ARMS), len(_STATES)), np.nan) for _ in range(2))
+        forward, std = (np.full((len(points), len(ARMS), len(STATES)), np.nan) for _ in range(2))
         if runs:
             duration = START + self.cycles * self.gait.period
             record = simulate(runs, duration=duration, timestep=timestep, every=10, progress=progress)
@@ -178,7 +176,7 @@ class Sensitivity(Experiment):
                 "std": (("sample", "arm", "state"), std, {"units": "m", "long_name": "of the height of the mass"}),
                 "status": ("sample", np.array(status), {"units": "1", "long_name": "what became of it"}),
             },
-            coords={"arm": list(_ARMS), "state": list(_STATES)},
+            coords={"arm": list(ARMS), "state": list(STATES)},
         )
 
     def _runs(self, point: np.ndarray) -> list[Run]:
@@ -192,7 +190,7 @@ class Sensitivity(Experiment):
         values = [float(value) for value in point]
         robot = with_values(self.robot, {one.field: v for one, v in zip(of_robot, values, strict=False)})
         gait = with_values(self.gait, {one.field: v for one, v in zip(of_gait, values[len(of_robot) :], strict=True)})
-        limbs = replace(gait, name=self.control.name, **{name: getattr(self.control, name) for name in _TRUNK})
+        limbs = replace(gait, name=self.control.name, **{name: getattr(self.control, name) for name in TRUNK})
         for each in (gait, limbs):
             check_limits(robot, each)
         return [
@@ -215,63 +213,6 @@ def _unit(design: Crocodile | Gait, path: str) -> str:
     above, _, name = path.rpartition(".")
     told = meaning.meanings(type(value_at(design, above) if above else design))
     return meaning.unit(told[name]) or "-"
-
-
-def _quantities(forward: xr.DataArray, std: xr.DataArray, least: float) -> dict[str, tuple[xr.DataArray, xr.DataArray]]:
-    """Return for each claim its number in every sample, and whether its sentence is true there; NaN: cannot be told."""
-    intact, height = forward.sel(state="intact"), std.sel(state="intact")
-    ours, bare = (intact.sel(arm=arm, drop=True) for arm in _ARMS)
-    able = ours.where(ours > least)
-    ratio = able / bare.clip(min=_LEAST_RATIO * able)
-    calm = height.sel(arm="coordinated", drop=True) / height.sel(arm="limbs_only", drop=True)
-    found = {
-        "displacement_coordinated": (ours, ours > 0),
-        "displacement_limbs_only": (bare, bare > 0),
-        "displacement_ratio": (ratio, ratio > 1),
-        "com_fluctuation": (calm, calm < 1),
-    }
-    kept = []
-    for joint in LOST:
-        for arm in _ARMS:
-            way, key = forward.sel(state=joint, arm=arm, drop=True), f"fault_{joint}_{arm}"
-            change = loss(way, able)
-            found[key] = (change, change.copy(data=says(key, change.values)))
-            whole = intact.sel(arm=arm, drop=True)
-            kept.append((way / whole.where(whole > _STANDS)).clip(min=0.0))
-    pairs = [(a > b).where(np.isfinite(a) & np.isfinite(b)) for a, b in zip(kept[::2], kept[1::2], strict=True)]
-    better = xr.concat(pairs, "joint").mean("joint", skipna=False)
-    found["fault_tolerance"] = (better, better > 0.5)
-    return found
-
-
-def _answers(record: xr.Dataset, least: float) -> xr.Dataset:
-    """Return number and truth of each claim in every sample, and what decides."""
-    found = _quantities(record.forward, record["std"], least)
-    claims, parameters = list(found), record.value.values
-    told = np.array([quantity.values for quantity, _ in found.values()])
-    holds = np.array([truth.values for _, truth in found.values()])
-    there = np.isfinite(told)
-    follows = [rank_correlation(parameters, each) for each in told]
-    borders = [border(parameters[there[i]], holds[i][there[i]]) for i in range(len(claims))]
-    one = {"units": "1"}
-    data = xr.Dataset(
-        {
-            "number": (("claim", "sample"), told, one | {"long_name": "number of the claim"}),
-            "holds": (("claim", "sample"), holds & there, one | {"long_name": "whether its sentence is true"}),
-            "correlation": (("claim", "parameter"), np.array([rho for rho, _ in follows]), one),
-            "chance": (("claim", "parameter"), np.array([p for _, p in follows]), one),
-            "border_of": ("claim", np.array([b.parameter if b else -1 for b in borders]), one),
-            "border_at": ("claim", np.array([b.at if b else np.nan for b in borders]), one),
-            "border_above": ("claim", np.array([bool(b and b.above) for b in borders]), one),
-            "border_separation": ("claim", np.array([b.separation if b else np.nan for b in borders]), one),
-        },
-        coords={"claim": claims},
-    )
-    if "fine_forward" in record:
-        fine = _quantities(record.fine_forward, record.fine_std, least)
-        data["fine_number"] = (("claim", "repeated"), np.array([q.values for q, _ in fine.values()]), one)
-        data["fine_holds"] = (("claim", "repeated"), np.array([h.values for _, h in fine.values()]), one)
-    return data
 
 
 def _measures(record: xr.Dataset) -> Mapping[str, Measure]:

@@ -21,12 +21,11 @@ def excess(robot: Crocodile, gait: Gait) -> float:
     targets = servo_targets(robot, gait, phase, clip=True)
     ranges = np.array([servo_range(robot, name) for name in servo_names()])
     beyond = np.maximum(np.maximum(ranges[:, 0] - targets, targets - ranges[:, 1]), 0.0).max(axis=0)
-    bent = max(gait.tail_bend - robot.tail.bend_limit, 0.0)
     turned = np.abs(np.diff(targets, axis=0, append=targets[:1])).max(axis=0) * PHASES / gait.period
     fast = np.array([robot.servo(name).speed for name in servo_names()])
     return float(
         _out_of_reach(robot, gait, phase) / _LENGTH
-        + (beyond.sum() + bent) / _ANGLE
+        + beyond.sum() / _ANGLE
         + np.maximum(turned - fast, 0.0).sum() / _SPEED
     )
 

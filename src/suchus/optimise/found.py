@@ -2,14 +2,13 @@
 
 from dataclasses import dataclass, replace
 
-import moarchiving
 import numpy as np
 import xarray as xr
 
 from suchus.design import value_at
 from suchus.land import Run
 from suchus.optimise.score import ACTIVE, allowed, losses, over, units
-from suchus.optimise.search import reference_of
+from suchus.optimise.search import library, reference_of
 from suchus.optimise.spec import Optimisation
 
 _SHOWN = 3  # points of a front whose gaits are written and checked: both ends and the middle
@@ -99,7 +98,7 @@ class Found:
         """Return after each generation the area that the front covers, in parts of the start's aims."""
         table, parts = self.history, units(self.spec, self.start)
         loss, kept = losses(self.spec, table, parts), allowed(self.spec, table)
-        archive, areas = moarchiving.get_mo_archive([], reference_point=reference_of(self.spec), n_obj=2), []
+        archive, areas = library("moarchiving").get_mo_archive([], reference_point=reference_of(self.spec), n_obj=2), []
         for number in range(int(table.generation.max()) + 1):
             for i in np.flatnonzero((table.generation.values == number) & kept):
                 archive.add(loss[i].tolist())
@@ -125,5 +124,7 @@ def front_of(spec: Optimisation, table: xr.Dataset, parts: np.ndarray) -> list[i
     if not kept or len(spec.aims) != 2:
         return []
     points = losses(spec, table, parts)[kept]
-    archive = moarchiving.get_mo_archive(points.tolist(), reference_point=reference_of(spec), infos=kept, n_obj=2)
+    archive = library("moarchiving").get_mo_archive(
+        points.tolist(), reference_point=reference_of(spec), infos=kept, n_obj=2
+    )
     return [int(i) for i in archive.infos]

@@ -39,7 +39,7 @@ class Single:
     """CMA-ES; when it has converged it starts again from where it began, with twice as many candidates."""
 
     def __init__(self, spec: Optimisation) -> None:
-        self._cma = _library("cma")
+        self._cma = library("cma")
         self._spec = spec
         self._randoms = np.random.default_rng(spec.seed)
         self._population = spec.population
@@ -47,7 +47,9 @@ class Single:
 
     def _begun(self) -> Any:
         return self._cma.CMAEvolutionStrategy(
-            np.clip(self._spec.start, _EDGE, 1 - _EDGE), self._spec.sigma, _options(self._population, self._randoms)
+            np.clip(self._spec.start, _EDGE, 1 - _EDGE),
+            self._spec.sigma,
+            _options(self._spec, self._population, self._randoms),
         )
 
     def ask(self) -> np.ndarray:
@@ -74,14 +76,14 @@ class Front:
     """What no front reaches: nothing of an aim where more is better, twice the start's where less is [-]."""
 
     def __init__(self, spec: Optimisation) -> None:
-        como = _library("comocma")
+        como = library("comocma")
         randoms = np.random.default_rng(spec.seed)
         first = np.clip(spec.start, _EDGE, 1 - _EDGE)
         spread = np.clip(
             first + 0.5 * spec.sigma * randoms.standard_normal((spec.points, len(first))), _EDGE, 1 - _EDGE
         )
         spread[0] = first
-        kernels = como.get_cmas([list(x) for x in spread], spec.sigma, _options(spec.population, randoms))
+        kernels = como.get_cmas([list(x) for x in spread], spec.sigma, _options(spec, spec.population, randoms))
         self._search = como.Sofomore(kernels, reference_of(spec), {"update_order": _in_order, "archive": False})
 
     def ask(self) -> np.ndarray:
@@ -103,9 +105,10 @@ def _in_order(kernel: int) -> int:
     return kernel
 
 
-def _options(population: int, randoms: np.random.Generator) -> dict[str, Any]:
+def _options(spec: Optimisation, population: int, randoms: np.random.Generator) -> dict[str, Any]:
     """Return settings of CMA-ES: within the cube, silent, and drawing from a generator of our own."""
-    return {
+    alone = {"maxstd": np.inf} if len(spec.vary) == 1 else {}  # cma 4.5 cannot bound the spread of a single field
+    return alone | {
         "bounds": [0.0, 1.0],
         "popsize": population,
         "randn": lambda *shape: randoms.standard_normal(shape),
@@ -116,8 +119,8 @@ def _options(population: int, randoms: np.random.Generator) -> dict[str, Any]:
     }
 
 
-def _library(name: str) -> Any:
-    """Return an optional library.
+def library(name: str) -> Any:
+    """Return a library of the extra ``optimise``.
 
     Raises:
         NoOptimiser: it is not installed.

@@ -2,6 +2,8 @@
 
 from suchus.study.arm import Arm
 from suchus.study.chunk import run_chunk
+from suchus.study.claims import Claims, conduct_claims
+from suchus.study.claims_page import write_claims
 from suchus.study.cluster import NoCluster, connected
 from suchus.study.conduct import Told, conduct
 from suchus.study.measures import MEASURES
@@ -13,6 +15,7 @@ from suchus.study.study import Study, Vary
 __all__ = [
     "MEASURES",
     "Arm",
+    "Claims",
     "NoCluster",
     "Plan",
     "Store",
@@ -20,7 +23,9 @@ __all__ = [
     "Told",
     "Vary",
     "conduct",
+    "conduct_claims",
     "connected",
     "read_study",
     "run_chunk",
+    "write_claims",
 ]

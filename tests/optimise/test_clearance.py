@@ -1,0 +1,60 @@
+"""Distances between parts, exact where they can be."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from suchus.design import joint_names
+from suchus.optimise.clearance import between_parts, segments_apart
+
+POINT = st.tuples(*[st.floats(-1.0, 1.0, allow_subnormal=False)] * 3).map(np.array)
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "apart"),
+    [
+        (((0, 0, 0), (1, 0, 0)), ((0, 2, 0), (1, 2, 0)), 2.0),  # side by side
+        (((0, 0, 0), (1, 0, 0)), ((3, 0, 0), (4, 0, 0)), 2.0),  # in one line
+        (((-1, 0, 0), (1, 0, 0)), ((0, -1, 0.5), (0, 1, 0.5)), 0.5),  # crossing above
+        (((0, 0, 0), (1, 0, 0)), ((2, 1, 0), (3, 5, 0)), 2**0.5),  # end to end
+        (((0, 0, 0), (0, 0, 0)), ((1, -1, 0), (1, 1, 0)), 1.0),  # a point
+    ],
+)
+def test_segments_are_as_far_apart_as_geometry_says(one, other, apart):
+    p, p_end, q, q_end = (np.array(x, dtype=float) for x in (*one, *other))
+    assert segments_apart(p, p_end, q, q_end) == pytest.approx(apart, abs=1e-12)
+    assert segments_apart(q_end, q, p, p_end) == pytest.approx(apart, abs=1e-12)
+
+
+@given(POINT, POINT, POINT, POINT)
+def test_no_two_points_of_two_segments_are_nearer(p, p_end, q, q_end):
+    apart = float(segments_apart(p, p_end, q, q_end))
+    share = np.linspace(0.0, 1.0, 41)[:, None]
+    one, other = p + share * (p_end - p), q + share * (q_end - q)
+    nearest = np.linalg.norm(one[:, None] - other[None], axis=-1).min()
+    step = (np.linalg.norm(p_end - p) + np.linalg.norm(q_end - q)) / 80
+    assert apart <= nearest + 1e-9
+    assert apart >= nearest - step - 1e-9
+
+
+def posture(robot, **angles):
+    names = list(joint_names(robot))
+    held = np.zeros(len(names))
+    for name, angle in angles.items():
+        held[names.index(name)] = angle
+    return held
+
+
+def test_a_straight_robot_is_clear_and_one_that_folds_is_not(robot):
+    assert between_parts(robot, posture(robot)) > 0.015
+    bent = {f"spine_yaw_{i}": 0.78 for i in (1, 2, 3)}
+    forward, back = {"LH_yaw": 1.0}, {"LF_yaw": -1.0}
+    assert between_parts(robot, posture(robot, **bent, **forward, **back)) < 0.0
+
+
+def test_a_mirrored_posture_is_as_clear(robot):
+    left = posture(robot, spine_yaw_1=0.5, spine_yaw_3=0.3, LF_yaw=-0.4, RH_pitch=0.5, tail_yaw_1=0.2)
+    right = posture(robot, spine_yaw_1=-0.5, spine_yaw_3=-0.3, RF_yaw=-0.4, LH_pitch=0.5, tail_yaw_1=-0.2)
+    both = between_parts(robot, np.array([left, right]))
+    assert both[0] == pytest.approx(both[1], abs=1e-12)

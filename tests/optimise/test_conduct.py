@@ -1,0 +1,188 @@
+"""A search ends with the same bytes, whatever happens on the way, and its files do what they say."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from suchus import blueprint
+from suchus.cli import main
+from suchus.errors import IncompatibleRecord, NotConverged, Unwritable
+from suchus.gaits import GAITS
+from suchus.land import Run, simulate
+from suchus.metrics import displacement, slip
+from suchus.motion import Gait
+from suchus.optimise import Limit, evaluate, optimise, read_optimisation
+from suchus.optimise.aims import LIMITS
+from suchus.study import Arm
+
+PAGE = """
+name = "small"
+population = 4
+evaluations = 12
+duration = 1.3
+timestep = 0.01
+[[vary]]
+field = "gait.stroke"
+low = 0.0
+high = 0.12
+[[vary]]
+field = "gait.trunk_bend"
+low = 0.0
+high = 2.3
+[[aims]]
+name = "displacement"
+[[limits]]
+name = "clearance"
+value = 0.005
+[[arms]]
+name = "free"
+[[arms]]
+name = "straight"
+values = {"gait.trunk_bend" = 0.0}
+"""
+ALONE = "import sys; from pathlib import Path; from suchus.optimise import optimise, read_optimisation; "
+ALONE += "optimise(read_optimisation(Path(sys.argv[1])), Path(sys.argv[2]))"
+
+
+def contents(folder):
+    return {str(p.relative_to(folder)): p.read_bytes() for p in sorted(folder.rglob("*")) if p.is_file()}
+
+
+@pytest.fixture
+def page(tmp_path):
+    path = tmp_path / "small.toml"
+    path.write_text(PAGE)
+    return path
+
+
+def test_a_killed_search_loses_at_most_a_generation_and_ends_with_the_same_bytes(page, tmp_path):
+    store = tmp_path / "killed"
+    with subprocess.Popen([sys.executable, "-c", ALONE, str(page), str(store)]) as process:
+        while len(list((store / "free" / "parts").glob("*.nc"))) < 3 and process.poll() is None:
+            time.sleep(0.002)
+        os.kill(process.pid, signal.SIGKILL)
+    kept = {p: (p.read_bytes(), p.stat().st_mtime_ns) for p in store.rglob("*.nc") if not p.parent.name.startswith(".")}
+    assert len(kept) >= 3
+    optimise(read_optimisation(page), store)
+    for path, (held, when) in kept.items():
+        assert path.read_bytes() == held
+        assert path.stat().st_mtime_ns == when  # not run again
+    optimise(read_optimisation(page), tmp_path / "whole")
+    assert contents(store) == contents(tmp_path / "whole")
+
+
+def test_an_interrupt_keeps_the_best_so_far_and_a_greater_budget_goes_on(small, tmp_path):
+    spec, told = replace(small, limits=()), []
+
+    def stop(now):
+        told.append(now)
+        if now.done >= 8 and len(told) > 4:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        optimise(spec, tmp_path / "s", progress=stop)
+    best = blueprint.read(tmp_path / "s" / "best.toml", Gait, GAITS)
+    record = simulate([replace(spec.run, gait=best)], duration=spec.duration, timestep=spec.timestep, every=2)
+    assert float(displacement(record).sel(xyz="x")[0]) == pytest.approx(told[-1].best, abs=1e-12)
+    (first,) = optimise(spec, tmp_path / "s")
+    (longer,) = optimise(replace(spec, evaluations=16), tmp_path / "s")
+    assert longer.history.sizes["candidate"] == 17
+    np.testing.assert_array_equal(longer.history.share[:13], first.history.share)
+    assert "12 of 12 tried" in str(told[-1]._replace(done=12))
+
+
+def test_another_search_is_named_and_left_alone(small, tmp_path):
+    spec = replace(small, limits=(), evaluations=4)
+    optimise(spec, tmp_path / "s")
+    before = contents(tmp_path / "s")
+    with pytest.raises(IncompatibleRecord, match=r"holds optimisation 'small', which differs from 'small' in seed"):
+        optimise(replace(spec, seed=5), tmp_path / "s")
+    mark = tmp_path / "s" / "best" / "optimisation.json"
+    origin = json.loads(mark.read_text())
+    origin["versions"]["cma"] = "1.0"
+    mark.write_text(json.dumps(origin))
+    with pytest.raises(IncompatibleRecord, match=r"written by cma 1\.0 \(here [\d.]+\)"):
+        optimise(spec, tmp_path / "s")
+    assert {k: v for k, v in contents(tmp_path / "s").items() if "json" not in k} == {
+        k: v for k, v in before.items() if "json" not in k
+    }
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "best").mkdir()
+    (tmp_path / "mine" / "best" / "thesis.txt").write_text("x")
+    with pytest.raises(Unwritable, match="holds no optimisation"):
+        optimise(spec, tmp_path / "mine")
+
+
+def test_limits_that_nothing_keeps_are_a_sentence(small, tmp_path):
+    with pytest.raises(NotConverged, match="nothing of 5 candidates of best keeps all limits"):
+        optimise(replace(small, limits=(Limit(name="displacement", value=5.0),), evaluations=4), tmp_path / "s")
+
+
+def test_a_generation_says_what_each_candidate_does_alone(small):
+    spec = replace(small, limits=(Limit(name="slip", value=0.5), Limit(name="torque", value=0.6)), grips=(0.7, 1.0))
+    shares = np.array([spec.start, [0.9, 1.0], [0.2, 0.9]])
+    told = evaluate.evaluate(spec, shares)
+    assert told.status.values.tolist() == ["walked", "refused", "walked"] or told.beyond.values[1] == 0.0
+    runs = [replace(spec.run, ground=replace(spec.run.ground, grip=grip)) for grip in spec.grips]
+    record = simulate(runs, duration=spec.duration, timestep=spec.timestep, every=2)
+    assert told.aim_displacement.values[0] == pytest.approx(displacement(record).sel(xyz="x").values.mean(), abs=1e-12)
+    assert told.limit_slip.values[0] == pytest.approx(slip(record).values.max(), abs=1e-12)
+
+
+def test_one_that_comes_apart_or_cannot_be_does_not_spoil_the_rest(small, monkeypatch):
+    def apart(runs, **options):
+        record = simulate(runs, **options)
+        record.cause[1] = "a speed of 2e3 was reached"
+        return record
+
+    monkeypatch.setattr(evaluate, "simulate", apart)
+    told = evaluate.evaluate(small, np.array([small.start, small.start, small.start]))
+    assert told.status.values.tolist() == ["walked", "came apart", "walked"]
+    assert np.isfinite(told.aim_displacement.values).tolist() == [True, False, True]
+
+
+def test_torque_is_that_of_the_servo_that_works_hardest_over_its_own_limit(robot, crawl_gait):
+    record = simulate([Run(robot=robot, gait=crawl_gait)], duration=1.3, timestep=0.01)
+    record["servo_torque"] = xr.zeros_like(record.servo_torque)
+    record.servo_torque.loc[{"servo": "LF_yaw"}] = 1.5  # of 3.0
+    record.servo_torque.loc[{"servo": "spine_yaw_2"}] = -1.5  # of 2.5
+    assert LIMITS["torque"].measure([Run(robot=robot, gait=crawl_gait)], record)[0] == pytest.approx(0.6)
+
+
+def test_the_command_leaves_gaits_numbers_and_a_page(page, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(["optimise", "small.toml", "--evaluations", "4"]) == 0
+    out, _ = capsys.readouterr()
+    result = tmp_path / "out" / "optimise" / "small" / "result"
+    assert "free: displacement" in out
+    assert str(result.relative_to(tmp_path) / "index.html") in out
+    told = json.loads((result / "outcome.json").read_text())
+    assert list(told["arms"]) == ["free", "straight"]
+    for name, arm in told["arms"].items():
+        gait = blueprint.read(result / f"{name}.toml", Gait, GAITS)
+        assert gait.name == f"small_{name}"
+        assert gait.stroke == arm["best"][name]["fields"]["gait.stroke"]["best"]
+        assert set(arm["best"][name]["limits"]) == {"clearance"}
+        record = simulate([Run(robot=read_optimisation(page).run.robot, gait=gait)], duration=1.3)
+        fine = arm["best"][name]["checks"]["2 ms"]["aim_displacement"]
+        assert fine == pytest.approx(float(displacement(record).sel(xyz="x")[0]), rel=1e-6)
+    text = (result / "index.html").read_text()
+    for word in ("Is it an optimum?", "free_replay.html", "under other conditions", "data:image/svg+xml"):
+        assert word in text
+    before = contents(result)
+    assert main(["optimise", "small.toml", "--evaluations", "4"]) == 0
+    assert contents(result) == before
+
+
+def test_arms_of_one_have_no_comparison(small):
+    assert [arm.name for arm in small.arms] == ["best"]
+    assert small.of(small.arms[0]) is small
+    assert small.of(Arm(name="other")).arms == (Arm(name="other"),)

@@ -1,0 +1,124 @@
+"""What cannot be searched is refused before anything runs, in a sentence."""
+
+from dataclasses import replace
+
+import pytest
+
+from suchus.cli import main
+from suchus.design import value_at
+from suchus.errors import SuchusError
+from suchus.optimise import AIMS, LIMITS, READY, Aim, Limit
+from suchus.study import Arm, Vary
+
+STROKE = Vary(field="gait.stroke", low=0.0, high=0.12)
+BAD = [
+    ({"vary": (Vary(field="gait.strok", low=0.0, high=0.1),)}, "Did you mean 'stroke'"),
+    ({"vary": (Vary(field="gait.stroke", low=0.05, high=0.1),)}, r"0\.027, outside its range of 0\.05 to 0\.1"),
+    ({"vary": (Vary(field="gait.stroke", low=0.0, high=0.9),)}, r"stroke is 0\.9 m; -0\.3 to 0\.3 m is allowed"),
+    ({"vary": (Vary(field="gait.stroke", values=(0.0, 0.1)),)}, "needs low and high"),
+    ({"vary": (Vary(field="gait", low=0.0, high=0.1),)}, "no number"),
+    ({"vary": (STROKE, STROKE)}, "twice"),
+    ({"vary": ()}, "name at least one field"),
+    ({"aims": ()}, "name at least one aim"),
+    ({"pareto": True}, "a front needs two"),
+    ({"population": 2}, "4 to"),
+    ({"grips": (50.0,)}, r"0\.01 to 10"),
+    ({"arms": (Arm(name="a"), Arm(name="a"))}, "each once"),
+    ({"arms": (Arm(name="a", values={"gait.strok": 0.1}),)}, "Did you mean 'stroke'"),
+    ({"arms": (Arm(name="a", values={"gait.stroke": 0.1, "gait.trunk_bend": 0.0}),)}, "sets every field"),
+]
+
+
+@pytest.mark.parametrize(("change", "said"), BAD)
+def test_what_cannot_be_searched_is_a_sentence(change, said, small):
+    with pytest.raises(SuchusError, match=said):
+        replace(small, **change)
+
+
+def test_names_of_aims_limits_and_arms_are_checked():
+    with pytest.raises(SuchusError, match="Did you mean 'displacement'"):
+        Aim(name="displacment")
+    with pytest.raises(SuchusError, match="Did you mean 'slip'"):
+        Limit(name="slipp", value=1.0)
+    with pytest.raises(SuchusError, match="letters, digits"):
+        Arm(name="a/b")
+
+
+def test_shares_and_values_are_the_same_thing(small):
+    assert small.candidate({v.field: s for v, s in zip(small.vary, small.start, strict=True)}) == small.run
+    log = replace(small, vary=(Vary(field="ground.grip", low=0.1, high=10.0, scale="log"),))
+    assert log.start == pytest.approx([0.5])
+    assert log.candidate({"ground.grip": 0.25}).ground.grip == pytest.approx(10**-0.5)
+
+
+def test_what_an_arm_sets_does_not_vary_in_it(small):
+    arm = Arm(name="straight", values={"gait.trunk_bend": 0.0})
+    alone = small.of(arm)
+    assert [v.field for v in alone.vary] == ["gait.stroke"]
+    assert alone.run.gait.trunk_bend == 0.0
+    assert alone.arms == (Arm(name="straight"),)
+    assert alone.of(alone.arms[0]) == alone
+
+
+@pytest.mark.parametrize("name", READY)
+def test_ready_made_searches_can_be_and_start_within_their_ranges(name):
+    spec = READY[name]()
+    assert spec.name == name
+    assert all(0.0 <= share <= 1.0 for share in spec.start)
+    assert READY[name].__doc__
+
+
+def test_the_crawls_arms_have_the_same_legs_ranges_and_budget():
+    spec = READY["crawl"]()
+    free, bare = (spec.of(arm) for arm in spec.arms)
+    legs = [v for v in free.vary if v in bare.vary]
+    assert legs == list(bare.vary)
+    assert len(legs) == 8
+    assert (free.evaluations, free.population, free.limits) == (bare.evaluations, bare.population, bare.limits)
+    assert bare.run.gait.trunk_bend == bare.run.gait.tail_bend == 0.0
+    assert value_at(free.run, "gait.period") == 4.0
+
+
+def test_every_quantity_says_what_it_is():
+    for kind in (*AIMS.values(), *LIMITS.values()):
+        assert kind.tells
+        assert kind.unit
+
+
+PAGE = """
+name = "mine"
+population = 4
+evaluations = 4
+[[vary]]
+field = "gait.stroke"
+low = 0.0
+high = 0.1
+[[aims]]
+name = "displacement"
+"""
+WRONG = {
+    ("gait.stroke", "gait.stroek"): "Did you mean 'stroke'?",
+    ("displacement", "displacment"): "displacement",
+    ("high = 0.1", "high = 0.01"): "outside its range",
+    ("population = 4", "poplation = 4"): "population",
+    ("population = 4", 'task = "fly"'): "crawl",
+    ('name = "mine"', 'name = "a/b"'): "say --out DIR",
+    ("[[aims]]", "[[aims]"): "is not valid TOML",
+}
+
+
+@pytest.mark.parametrize("change", WRONG)
+def test_a_bad_file_is_one_sentence_and_leaves_nothing(change, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "mine.toml").write_text(PAGE.replace(*change, 1))
+    assert main(["optimise", "mine.toml"]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.count("\n") == 1
+    assert WRONG[change] in err
+    assert [p.name for p in tmp_path.iterdir()] == ["mine.toml"]
+
+
+def test_a_search_that_is_not_there_is_one_sentence(capsys):
+    assert main(["optimise", "crwal"]) == 2
+    assert "Did you mean 'crawl'?" in capsys.readouterr().err
