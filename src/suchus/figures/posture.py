@@ -200,15 +200,17 @@ def _flesh(ax: Axes, seen: Silhouette, view: View, strength: float) -> None:
         face, order = (far_leg, 0.8) if far else (body, 2.6) if near else (body, 1.0)
         # strokes of all pieces first, then their fillings: what is left is the outline of them all
         whole = _united(pieces)
-        ax.add_patch(PathPatch(whole, facecolor=edge, edgecolor=edge, linewidth=1.8, joinstyle="round", zorder=order))
-        ax.add_patch(PathPatch(whole, facecolor=face, edgecolor=face, linewidth=0.2, zorder=order + 0.01))
+        ax.add_artist(PathPatch(whole, facecolor=edge, edgecolor=edge, linewidth=1.8, joinstyle="round", zorder=order))
+        ax.add_artist(PathPatch(whole, facecolor=face, edgecolor=face, linewidth=0.2, zorder=order + 0.01))
+        ax.update_datalim(whole.vertices)  # add_patch would look for the extremes of every edge, which takes long
     for piece, face, order in ((seen.jaw, pale, 1.9), (seen.body, body, 2.0)):
         ax.add_patch(Polygon(piece, facecolor=face, edgecolor=edge, linewidth=0.9, joinstyle="round", zorder=order))
     for eye in seen.eyes if view == "above" else seen.eyes[1:]:
         ax.add_patch(Polygon(eye, facecolor=edge, edgecolor="none", zorder=2.4))
     if strength == 1.0:
         plates = _united(seen.scutes)
-        ax.add_patch(PathPatch(plates, facecolor=plate, edgecolor=edge, linewidth=0.35, zorder=2.2))
+        ax.add_artist(PathPatch(plates, facecolor=plate, edgecolor=edge, linewidth=0.35, zorder=2.2))
+        ax.update_datalim(plates.vertices)
 
 
 def _united(pieces: Sequence[np.ndarray]) -> Path:
