@@ -1,5 +1,6 @@
 """What mkdocs does besides: pages made of the code, formulas as MathML, and a place in the menu for every page."""
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -33,9 +34,10 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
 
 
 def on_page_markdown(markdown: str, page: Page, **_: Any) -> str:
-    """Keep the formulas of a page aside."""
+    """Keep the formulas of a page aside, and lead links to scripts to the pages that show them."""
     _formulas[page.file.src_uri] = Formulas()
-    return _formulas[page.file.src_uri].take(markdown)
+    linked = re.sub(r"\]\(\.\./examples/(\w+)\.py\)", r"](examples/\1.md)", markdown)
+    return _formulas[page.file.src_uri].take(linked)
 
 
 def on_page_content(html: str, page: Page, **_: Any) -> str:
@@ -44,7 +46,7 @@ def on_page_content(html: str, page: Page, **_: Any) -> str:
 
 
 def on_post_page(output: str, page: Page, **_: Any) -> str:
-    """Let the page bring its own worker for reading from a folder, instead of fetching one from the network.
+    """Let the page bring its own worker for reading from a folder, and tell what its search box is.
 
     Raises:
         LookupError: the theme no longer fetches it this way, or fetches something else.
@@ -52,7 +54,10 @@ def on_post_page(output: str, page: Page, **_: Any) -> str:
     if output.count(_FETCHED) != 1:
         raise LookupError(f"the theme's pages no longer have {_FETCHED}; see what they fetch now.")
     up = "../" * page.file.dest_uri.count("/")
-    return output.replace(_FETCHED, f'<script src="{up}worker_from_file.js"></script>')
+    named = output.replace(
+        'data-md-component="search" role="dialog"', 'data-md-component="search" role="dialog" aria-label="Search"'
+    )
+    return named.replace(_FETCHED, f'<script src="{up}worker_from_file.js"></script>')
 
 
 def on_post_template(output: str, **_: Any) -> str:

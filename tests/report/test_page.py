@@ -148,7 +148,7 @@ def test_verdicts_of_a_quick_form_say_so(result, tmp_path):
         question.draw(outcome),
         question,
         tmp_path / "again" / "question",
-        command="suchus run question --quick",
+        command="suchus run question --quick --out there",
     )
     short = render_page([load_result(tmp_path / "again" / "question")], [])
     assert short.count("<em>Quick form.</em>") == 1 + 2 * len(outcome.verdicts)

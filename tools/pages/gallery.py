@@ -7,6 +7,13 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 PICTURES = ROOT / "docs" / "pictures"
+_SHARED = {
+    "01_crawl": ("crawling.png",),
+    "05_cylinder_wake": ("flow_wake.png",),
+    "06_eel": ("flow_eel.png",),
+    "09_replay": ("replay.png",),
+}
+"""Pictures that other pages show too."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,12 +56,13 @@ def _read(path: Path) -> Example:
     title, _, text = told.partition("\n")
     code = "\n".join(source.splitlines()[tree.body[0].end_lineno :]).strip()
     text = re.sub(r"^Usage: (.*)$", r"```sh\n\1\n```", text.strip(), flags=re.M)
-    pictures = tuple(p.name for p in sorted(PICTURES.glob(f"example_{path.stem[:2]}*.png")))
+    shared = [PICTURES / name for name in _SHARED.get(path.stem, ())]
+    pictures = tuple(p.name for p in [*shared, *sorted(PICTURES.glob(f"example_{path.stem[:2]}*.png"))])
     return Example(stem=path.stem, title=title.rstrip("."), text=text, code=code, pictures=pictures)
 
 
 def _page(one: Example) -> str:
-    shown = [f"![What the script draws: {one.title}](../pictures/{name})" for name in one.pictures]
+    shown = [f"![{one.title}](../pictures/{name})" for name in one.pictures]
     code = f'```python title="examples/{one.stem}.py"\n{one.code}\n```'
     return "\n\n".join([f"# {one.title}", one.text, code, *shown, ""])
 

@@ -79,7 +79,7 @@ def _gist(text: str) -> str:
 
 def _short(result: Result) -> bool:
     """Tell whether a result comes from the quick form of its question."""
-    return str(result.told["command"]).endswith("--quick")
+    return "--quick" in str(result.told["command"]).split()
 
 
 def _content(results: Sequence[Result], failures: Sequence[Failure]) -> dict[str, Any]:
