@@ -10,7 +10,7 @@ from scipy.stats import qmc
 
 from suchus.design import Crocodile
 from suchus.design.checks import Checks
-from suchus.experiment import Experiment, Measure, Outcome, Progress, Verdict, judge, silent, staged, stopwatch
+from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Verdict, judge, silent, staged, stopwatch
 from suchus.figures.stability import draw_heights, draw_snapshots, draw_variations
 from suchus.gaits import GAITS
 from suchus.land import Ground, Run, simulate
@@ -25,6 +25,7 @@ from suchus.metrics import (
 )
 from suchus.motion import START, Gait, longest_stroke
 from suchus.paper import CYCLES, SNAPSHOT_TIMES
+from suchus.replay import replay
 from suchus.robots import ROBOTS
 
 ARMS = ("coordinated", "tail_drag", "spine_only", "limbs_only")
@@ -103,8 +104,21 @@ class CrawlStability(Experiment):
                 verdicts=self._verdicts(measures),
                 record=record,
                 settings=self.settings(),
+                replays=self._replays(record),
                 seconds=seconds(),
             )
+
+    def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
+        caption = "With spine and tail, and, half transparent, with longer strokes of the legs alone, just as far."
+        html = replay(
+            record.isel(run=0),
+            self.robot,
+            ghost=record.isel(run=-1),
+            labels=("spine and tail", "legs alone, as far"),
+            title="Two ways to get as far",
+            caption=caption,
+        )
+        return {"stability_replay.html": Replay(caption=caption, html=html)}
 
     def _equal_stroke(self, record: xr.Dataset, end: float, progress: Any) -> float:
         """Return the stroke with which the legs alone get as far as the coordinated crawl [m]."""
