@@ -246,11 +246,11 @@ def pressure_drop(sim):
 
 
 def swimming_eel(cells, cycles, *, size=(4.0, 2.0), tolerance=1e-5, least=0.0, frames=None):
-    """The free eel of the IBAMR example, length and period 1, nowhere thinner than ``2 least`` cells."""
+    """The free eel of the IBAMR example, length and period 1, nowhere thinner than ``2 least``."""
     w, hgt = size
     grid = flow.Grid.covering((-0.3 * w, 0.7 * w), (-hgt / 2, hgt / 2), cell=1 / cells)
     sharp = flow.eel(1.0, stations=2 * cells + 1)
-    shape = sharp if not least else flow.Midline(spine=lambda t: sharp.spine(t).blunted(least / cells))
+    shape = sharp if not least else flow.Midline(spine=lambda t: sharp.spine(t).blunted(least))
     body = flow.FreeBody(shape=shape, start=(0.0, 0.0), name="eel")
     sim = flow.Simulation(
         flow.Setup(grid=grid, viscosity=1.4e-4, density=1.0, bodies=(body,), follow="eel", tolerance=tolerance)

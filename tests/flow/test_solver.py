@@ -123,14 +123,30 @@ def test_the_power_of_a_rigid_body_is_force_times_speed():
         assert record.column("power") == pytest.approx(work, abs=2e-3 * np.abs(work).max())
 
 
-def test_a_free_body_gains_the_momentum_that_the_water_gives():
+def momentum_defect(record, mass):
+    """What a free body has got of the momentum that the water gave since t = 0.45, less what was given."""
+    given = np.cumsum(record.force() * record.step[:, None], axis=0)
+    got = mass * record.bodies[:, 0, 9:11]
+    late = record.time > 0.45
+    return ((got - given) - (got - given)[late][0])[late], got[late]
+
+
+def test_a_free_cylinder_gets_the_momentum_that_the_water_gives():
     body = flow.FreeBody(shape=flow.Cylinder(diameter=1.0), density=2.0)
-    record = flow.Simulation(still_setup(bodies=(body,), stream=(1.0, 0.0), viscosity=0.05)).run(1.0, progress=False)
-    given = np.cumsum(record.force() * record.step[:, None], axis=0)[:, 0]
-    gained = 2.0 * np.pi / 4 * record.column("velocity_x")
-    lag = 2 * np.abs(record.force()[3:, 0]).max() * record.step.max()  # the force is that of the last two steps
-    assert np.abs(gained - (given - given[2]) - gained[2])[3:].max() < lag
-    assert gained[-1] > 5 * lag
+    record = flow.Simulation(still_setup(bodies=(body,), stream=(1.0, 0.0), viscosity=0.05)).run(1.5, progress=False)
+    defect, got = momentum_defect(record, 2.0 * np.pi / 4)
+    assert np.ptp(got[:, 0]) > 0.15
+    assert np.abs(defect[:, 0]).max() < 0.01 * np.ptp(got[:, 0])
+
+
+def test_a_free_eel_gets_the_momentum_that_the_water_gives():
+    """Its added mass aside is ten times its own: forces that come a step late would sway it far too much.
+
+    With nothing repaid the defect is 90 % of the momentum that goes to and fro, on this coarse grid.
+    """
+    record = flow.Simulation(eel_setup()).run(1.2, progress=False)
+    defect, got = momentum_defect(record, flow.eel(1.0).mass(0.0).area)
+    assert np.abs(defect[-1]).max() < 0.45 * np.ptp(got[:, 1])
 
 
 def test_channel_flow_keeps_its_parabola():
@@ -236,7 +252,8 @@ def test_a_light_free_cylinder_is_stable_and_drifts_with_the_stream():
     sim = flow.Simulation(still_setup(bodies=(body,), stream=(1.0, 0.0), follow="body", viscosity=0.05))
     record = sim.run(1.5, progress=False)
     u = record.column("velocity_x")
-    assert 0.7 < u[-1] < 1.05
+    assert u.max() < 1.67  # thrown ahead by the start: (1 + 1) / (0.2 + 1) of the stream in water without end
+    assert 0.9 < u[-1] < 1.1
     assert np.abs(np.diff(u[5:])).max() < 0.05
 
 

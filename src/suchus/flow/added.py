@@ -28,16 +28,15 @@ def added_mass(water: Water, markers: Markers, about: tuple[float, float], densi
     modes = ((np.ones(shape), np.zeros(shape)), (np.zeros(shape), np.ones(shape)), (arm_u, arm_v))
     share_u, share_v = ((1 - m[here].astype(np.float64)) * mine for m, mine in zip(water.mu0, own, strict=True))
     rx, ry, skin = markers.x - about[0], markers.y - about[1], water.offset * h * markers.length
-    one, none = np.ones(rx.size), np.zeros(rx.size)
-    rims = ((one, none), (none, one), (-ry, rx))
+    rims = np.array([[skin, 0 * skin, -ry * skin], [0 * skin, skin, rx * skin]])  # component, mode, marker
     out = np.empty((3, 3))
-    for k, ((au, av), (rim_u, rim_v)) in enumerate(zip(modes, rims, strict=True)):
+    for k, (au, av) in enumerate(modes):
         scale = max(float(np.abs(au).max()), float(np.abs(av).max()))
         potential = water.potential(share_u * au / scale, share_v * av / scale, _LIMIT).astype(np.float64)
         rise_u = share_u * scale * (potential[here] - potential[j0 : j1 + 1, i0 - 1 : i1])
         rise_v = share_v * scale * (potential[here] - potential[j0 - 1 : j1, i0 : i1 + 1])
-        out[0, k] = h * h * rise_u.sum() + (skin * rim_u).sum()
-        out[1, k] = h * h * rise_v.sum() + (skin * rim_v).sum()
+        out[0, k] = h * h * rise_u.sum() + rims[0, k].sum()
+        out[1, k] = h * h * rise_v.sum() + rims[1, k].sum()
         turning = (arm_u * rise_u).sum() + (arm_v * rise_v).sum()
-        out[2, k] = h * h * turning + (skin * (rx * rim_v - ry * rim_u)).sum()
+        out[2, k] = h * h * turning + (rx * rims[1, k] - ry * rims[0, k]).sum()
     return density * out

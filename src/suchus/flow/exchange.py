@@ -5,7 +5,9 @@
 In each step the immersion changes the momentum of the cells in and around a body by a known amount. What of it does
 not go into the momentum of the region that the body fills is what the body gives to the water: the balance of the
 discrete equations is exact, whatever the wall looks like between the nodes. Angular momentum gives the torque and
-energy the power in the same way.
+energy the power in the same way. The immersion holds a skin ``wall_offset`` thick with the body; it counts as water.
+With it as a part of the body the torque of a turning cylinder is 6 % off at 32 cells a diameter, without 0.8 %. (The
+inertia of a translating one, whose skin also keeps the water away, comes out 2 to 3 % too large.)
 """
 
 from dataclasses import dataclass
@@ -80,10 +82,8 @@ def skin(markers: Markers, offset: float, origin: tuple[float, float], h: float)
     w = offset * markers.length / h
     x, y = (markers.x - origin[0]) / h, (markers.y - origin[1]) / h
     u, v = markers.velocity_x, markers.velocity_y
-    return np.array(
-        [(w * u).sum(), (w * v).sum(), (w * (x * v - y * u)).sum(), 0.5 * (w * (u**2 + v**2)).sum(), w.sum(),
-         (w * x).sum(), (w * y).sum()]
-    )  # fmt: skip
+    columns = (u, v, x * v - y * u, 0.5 * (u**2 + v**2), np.ones(w.size), x, y)
+    return np.array([(w * column).sum() for column in columns])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

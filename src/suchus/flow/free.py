@@ -47,7 +47,13 @@ class FreeBody:
         return False
 
 
-_CHANGING = ("place", "rate", "push", "load", "steady", "added", "steps")
+_CHANGING = ("place", "rate", "push", "load", "added", "momentum", "owed", "span", "steps")
+
+SETTLED = 4
+"""Steps after which the jolt of the start is over [-]."""
+
+REPAID = 0.25
+"""Share of the momentum still owed that a step repays [-]."""
 
 
 @dataclass(slots=True)
@@ -64,10 +70,14 @@ class Swimmer:
     """Acceleration in the last step, shape (3,) [m/s^2, rad/s^2]."""
     load: np.ndarray = field(default_factory=lambda: np.zeros(3))
     """Force and torque of the water in the last step [N/m, N]."""
-    steady: np.ndarray = field(default_factory=lambda: np.zeros((2, 3)))
-    """Load without its added-mass part, in the last step and the one before [N/m, N]."""
     added: np.ndarray = field(default_factory=lambda: np.zeros((3, 3)))
     """Added mass [kg/m, kg, kg m]."""
+    momentum: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    """Momentum and angular momentum before the last step [kg/s, kg m/s]."""
+    owed: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    """Momentum that the water gave and the body has not got yet [kg/s, kg m/s]."""
+    span: float = 0.0
+    """Length of the last step [s]."""
     steps: int = 0
     """Steps taken so far [-]."""
 
@@ -101,18 +111,24 @@ class Swimmer:
     def resume(self, state: dict[str, np.ndarray]) -> None:
         """Set all that changes."""
         for key in _CHANGING:
-            setattr(self, key, int(state[key]) if key == "steps" else state[key])
+            setattr(self, key, state[key] if state[key].ndim else state[key].item())
 
     def advance(self, time: float, dt: float, water_density: float) -> None:
-        """Move on by ``dt`` [s] under the water's forces of the last two steps."""
+        """Move on by ``dt`` [s] under the water's forces of the last step."""
         shape = self.body.shape
         density = water_density if self.body.density is None else self.body.density
         now, then = shape.mass(time), shape.mass(time + dt)
         inertia = np.diag([density * then.area, density * then.area, density * then.moment])
+        momentum = density * np.array([now.area, now.area, now.moment]) * self.rate
         steady = self.load + self.added @ self.push
-        # The mean of two steps: extrapolating instead feeds every ripple of the force back into the motion.
-        guess = 0.5 * (steady + self.steady[0]) if self.steps > 3 else steady
-        self.steady = np.stack([steady, self.steady[0]])
+        guess = steady
+        if self.steps >= SETTLED:
+            # Extrapolating instead feeds every ripple of the force back into the motion. The last step's force comes
+            # a step late; what the body therefore did not get, it gets little by little. Without that an eel, whose
+            # added mass aside is ten times its own, sways several times too much.
+            self.owed = self.owed + self.span * self.load - (momentum - self.momentum)
+            guess = steady + REPAID * self.owed / dt
+        self.momentum, self.span = momentum, dt
         guess = guess - np.array([0, 0, density * (then.moment - now.moment) / dt * self.rate[2]])
         go = np.array(self.body.free)
         push = np.zeros(3)
