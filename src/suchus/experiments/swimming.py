@@ -94,7 +94,7 @@ class Swimming(Experiment):
     """Further readings of (20) whose thrust is measured [-]; the joints cannot make the others."""
     readings_reynolds: float = 1000.0
     """Reynolds number of these [-]; their tails are up to four times as fast and would need a finer grid."""
-    readings_cells: int = 40
+    readings_cells: int = 32
     """Cells per body length of these [-]."""
     frames: int = 20
     """Of the films, over one cycle [-]."""
@@ -123,8 +123,8 @@ class Swimming(Experiment):
         """Swim."""
         with stopwatch() as seconds:
             ours, printed = (self._fit(sign) for sign in (-1, 1))
-            held = self._held(ours, self.cells, staged(progress, "held", 0.0, 0.15))
-            back = self._held(printed, self.coarse_cells, staged(progress, "as printed", 0.15, 0.2))
+            held = self._held("ours", ours, self.cells, staged(progress, "held", 0.0, 0.15))
+            back = self._held("as printed", printed, self.coarse_cells, staged(progress, "as printed", 0.15, 0.2))
             free = self._free("trunk and tail", ours.swim, staged(progress, "free", 0.2, 0.4))
             arms = self._arms(ours, printed, free, staged(progress, "trunk and tail apart", 0.4, 0.9))
             readings, table = self._readings(staged(progress, "readings of (20)", 0.9, 0.95))
@@ -173,11 +173,9 @@ class Swimming(Experiment):
         for path in Path(self.keep).glob("*.npz*") if self.keep else ():
             path.unlink()
 
-    def _held(self, fitted: Fit, cells: int, progress: Callable[[float], None]) -> xr.Dataset:
-        checkpoint, setting = self._kept(f"held at {cells}"), self._setting(cells, self.cycles)
-        return tether(
-            self.robot, fitted.swim, setting, turn=fitted.head, checkpoint=checkpoint, progress=progress
-        )  # fmt: skip
+    def _held(self, name: str, fitted: Fit, cells: int, progress: Callable[[float], None]) -> xr.Dataset:
+        kept, setting = self._kept(f"held {name}"), self._setting(cells, self.cycles)
+        return tether(self.robot, fitted.swim, setting, turn=fitted.head, checkpoint=kept, progress=progress)
 
     def _free(self, arm: str, motion: Motion, progress: Callable[[float], None], cycles: int = 0) -> xr.Dataset:
         setting = self._setting(self.coarse_cells, cycles or self.free_cycles)
