@@ -366,7 +366,9 @@
     gl.uniform1f(floor.uniforms.uLevel, meta.floor);
     gl.uniform3fv(floor.uniforms.uLine, state.dark ? [0.42, 0.46, 0.48] : [0.60, 0.60, 0.57]);
     gl.bindVertexArray(quad);
+    gl.depthMask(false); // drawn first and under everything: what lies on it cannot flicker against it
     gl.drawArrays(gl.TRIANGLE_STRIP, 0, 4);
+    gl.depthMask(true);
     if (relief) {
       usePlain(seen);
       gl.uniform1f(plain.uniforms.uLined, 1);
