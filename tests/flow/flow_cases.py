@@ -256,3 +256,25 @@ def swimming_eel(cells, cycles, *, size=(4.0, 2.0), tolerance=1e-5, least=0.0, f
         flow.Setup(grid=grid, viscosity=1.4e-4, density=1.0, bodies=(body,), follow="eel", tolerance=tolerance)
     )
     return sim, sim.run(float(cycles), progress=False, watch=frames, every=None if frames is None else 0.05)
+
+
+def still_setup(**changes):
+    settings = {
+        "grid": flow.Grid(cells=(64, 64), cell=1 / 16, origin=(-2.0, -2.0)),
+        "viscosity": 0.01,
+        "density": 1.0,
+        "bodies": (flow.Body(shape=flow.Cylinder(diameter=1.0)),),
+    }
+    return flow.Setup(**{**settings, **changes})
+
+
+def eel_setup(**changes):
+    shape = flow.eel(1.0, stations=97)
+    settings = {
+        "grid": flow.Grid.covering((-1.2, 2.0), (-0.8, 0.8), cell=1 / 48),
+        "viscosity": 1e-3,
+        "density": 1.0,
+        "bodies": (flow.FreeBody(shape=shape, name="eel"),),
+        "follow": "eel",
+    }
+    return flow.Setup(**{**settings, **changes})
