@@ -7,6 +7,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 PICTURES = ROOT / "docs" / "pictures"
+_WIDE = "---\nhide: [toc]\n---"
 _SHARED = {
     "01_crawl": ("crawling.png",),
     "05_cylinder_wake": ("flow_wake.png",),
@@ -64,7 +65,7 @@ def _read(path: Path) -> Example:
 def _page(one: Example) -> str:
     shown = [f"![{one.title}](../pictures/{name})" for name in one.pictures]
     code = f'```python title="examples/{one.stem}.py"\n{one.code}\n```'
-    return "\n\n".join([f"# {one.title}", one.text, code, *shown, ""])
+    return "\n\n".join([_WIDE, f"# {one.title}", one.text, code, *shown, ""])
 
 
 def _index() -> str:
