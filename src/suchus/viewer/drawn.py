@@ -45,6 +45,7 @@ class DrawnRobot:
             np.asarray(mesh.faces),
             color=GHOST if self._ghost else colour,
             opacity=0.35 if self._ghost else None,
+            receive_shadow=False,  # of itself: the scutes would drown in it
         )
 
     def _piece(self, number: int, piece: Any) -> Any:
@@ -58,6 +59,7 @@ class DrawnRobot:
             skin_weights=piece.weights,
             color=GHOST if self._ghost else piece.colour,
             opacity=0.35 if self._ghost else None,
+            receive_shadow=False,  # of itself: the scutes would drown in it
         )
 
     def look(self, look: Look) -> None:
