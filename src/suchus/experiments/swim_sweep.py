@@ -40,9 +40,8 @@ class SwimSweep(Experiment):
     decides = (
         "Frequency and amplitude set the speed, nearly in proportion, until the cable's servo can no longer follow: at "
         "1.5 Hz with the amplitude of (20). The number of waves matters little between 0.8 and 1.4. The resolved flow "
-        "is slower than both cheap models, least where the amplitude is large, and puts the amplitudes in the same "
-        "order. The two models part over the efficiency: drag across the body, which only the resistive one counts, "
-        "takes most of the power."
+        "puts the motions in the same order as the cheap models; they flatter small amplitudes. The two models part "
+        "over the efficiency: drag across the body, which only the resistive one counts, takes most of the power."
     )
 
     robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])

@@ -67,10 +67,10 @@ class Swimming(Experiment):
         "The tail. It alone swims a little faster than trunk and tail together, and the trunk alone hardly at all. Run "
         "as printed, from tail to head, the wave itself gets nearly nowhere: drag along the body pulls it tail first, "
         "and the growing swing of the tail, which sheds its wake behind it either way, pushes it head first. The few "
-        "joints make most of the wave a flapping of the tail, so that the robot still goes head first, more slowly. The "
+        "joints make most of the wave a flapping of the tail, so the robot still goes head first, more slowly. The "
         "article's pressures do not come out in water that stays around the held body. The tail is thin for the grid, "
-        "and finer grids swim faster. The Reynolds number is that of the flow literature's eel, and the flow is a slice "
-        "of unlimited depth: forces exceed a round body's."
+        "and finer grids swim faster. The Reynolds number is that of the flow literature's eel, the flow a slice of "
+        "unlimited depth: forces exceed a round body's."
     )
 
     robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
