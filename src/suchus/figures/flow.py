@@ -90,10 +90,10 @@ def _draw_started(rows: list[dict[str, Any]]) -> Figure:
             late = [c for t, c in zip(curves["t"], curves["cd"], strict=True) if t > 0.3]
             axes.set_ylim(0.8 * min(late), 1.15 * max(late))
             axes.set_xlim(0, max(curves["t"]))
+            axes.legend(frameon=False, fontsize="small")
         axes.set_title(f"impulsively started cylinder, Re {reynolds}", fontsize="medium")
         axes.set_xlabel("t U / R")
         axes.set_ylabel("drag coefficient")
-        axes.legend(frameon=False, fontsize="small")
     return figure
 
 
@@ -128,6 +128,7 @@ def _draw_convergence(rows: list[dict[str, Any]]) -> Figure:
         if curves:
             fields.loglog(curves["size"], curves["error"], "o-", ms=4, label=label)
             _slope(fields, np.array(curves["size"]), np.array(curves["error"]), 2, "")
+    fields.set_ylim(bottom=6e-6)
     fields.set(xlabel="cells a side, a diameter", ylabel="rms error of the velocity", title="fields; dashed: order 2")
     for case, part, sizes, values, exact, label in (
         ("DFG 2D-1", "Cd", "rows", "cd", 5.57953523384, "Cd, DFG 2D-1"),
@@ -139,6 +140,7 @@ def _draw_convergence(rows: list[dict[str, Any]]) -> Figure:
             error = np.abs(value / exact - 1) if exact else value
             forces.loglog(size, error, "o-", ms=4, label=label)
             _slope(forces, size, error, 1, "")
+    forces.set_ylim(bottom=4e-4)
     forces.set(xlabel="cells a diameter", ylabel="relative error", title="force; dotted: order 1")
     for case in sorted({r["case"] for r in rows if r["case"].startswith("free eel")}):
         curves = _curves(rows, case, "mean speed")
@@ -146,8 +148,11 @@ def _draw_convergence(rows: list[dict[str, Any]]) -> Figure:
             swim.plot(curves["cells"], curves["speed"], "o-", ms=4, label=case.removeprefix("free eel, "))
     swim.set(xlabel="cells along the body", ylabel="speed (L/T)", title="free eel, cycle 6")
     swim.set_ylim(bottom=0)
-    for axes in (fields, forces, swim):
-        axes.legend(frameon=False, fontsize="small")
+    for axes, ticks in ((fields, (16, 32, 64, 128)), (forces, (8, 16, 32, 64, 128)), (swim, (64, 80, 96))):
+        axes.set_xticks(ticks, [str(n) for n in ticks])
+        axes.tick_params(axis="x", which="minor", bottom=False, labelbottom=False)
+        if axes.lines:
+            axes.legend(frameon=False, fontsize="small", loc="lower left")
     return figure
 
 
