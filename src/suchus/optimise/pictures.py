@@ -20,7 +20,7 @@ from suchus.optimise.score import allowed
 from suchus.optimise.spec import at_share
 
 _ROLES = ("coordinated", "limbs_only", "tail_drag", "spine_only", "tail", "water")
-_APART = 0.45  # [m]; between two robots on one picture
+_APART = 0.6  # [m]; between two robots on one picture
 _MM = {"m": (1000.0, "mm"), "rad": (180 / np.pi, "deg")}
 
 
@@ -105,7 +105,7 @@ def draw_gaits(runs: Sequence[Run], record: xr.Dataset) -> Figure:
     times = [START, (START + end) / 2, end]
     way = record.centre_of_mass.sel(xyz="x")
     with styled(axes__grid=False):
-        figure, axes = panels(1, 1, width=10.5, height=1.0 + 2.1 * len(runs))
+        figure, axes = panels(1, 1, width=10.5, height=1.0 + 2.3 * len(runs))
         ax = axes[0, 0]
         for i, run in enumerate(runs):
             one, aside, hue = record.isel(run=i), -_APART * i, _shade(run.label, i)

@@ -1,0 +1,38 @@
+"""Search for a longer stride.
+
+A small search: two fields of the gait, a few generations; the best is a gait like any other.
+
+Usage: python examples/10_optimise.py
+"""
+
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import suchus
+from suchus.land import Run
+from suchus.optimise import Aim, Limit, Optimisation, optimise
+from suchus.study import Vary
+
+search = Optimisation(
+    name="stride",
+    run=Run(robot=suchus.ROBOTS["caiman"], gait=suchus.GAITS["belly_crawl"]),
+    vary=(
+        Vary(field="gait.stroke", low=0.0, high=0.08),
+        Vary(field="gait.spine_phase", low=-0.2, high=0.2),
+    ),
+    aims=(Aim(name="displacement"),),
+    limits=(Limit(name="clearance", value=0.005),),
+    evaluations=12,
+    population=6,
+    duration=3.0,
+    timestep=0.01,
+)
+with TemporaryDirectory() as folder:
+    (found,) = optimise(search, Path(folder))
+
+for field, (start, best) in found.values(0).items():
+    print(f"{field}: {start:.3f} to {best:.3f}")
+ways = found.checks.aim_displacement
+for condition in ways.condition.values:
+    before, after = (float(ways.sel(run=run, condition=condition)) for run in ("start", "best"))
+    print(f"{condition}: {before:.3f} to {after:.3f} m")
