@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from suchus.land import Deaf as Deaf
     from suchus.land import Ground as Ground
     from suchus.land import Limp as Limp
+    from suchus.land import Live as Live
     from suchus.land import Locked as Locked
     from suchus.land import Push as Push
     from suchus.land import Run as Run
@@ -65,7 +66,9 @@ _HOMES = {
     "Gait": "suchus.motion",
     "Swim": "suchus.motion",
     "swim": "suchus.water",
-    **dict.fromkeys(("Deaf", "Ground", "Limp", "Locked", "Push", "Run", "Weak", "crawl", "simulate"), "suchus.land"),
+    **dict.fromkeys(
+        ("Deaf", "Ground", "Limp", "Live", "Locked", "Push", "Run", "Weak", "crawl", "simulate"), "suchus.land"
+    ),
 }
 __all__ = ["__version__", *_HOMES]  # noqa: PLE0604 - the names are strings
 
