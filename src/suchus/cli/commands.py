@@ -65,7 +65,7 @@ COMMANDS = (
     ),
     Command(
         "export",
-        "[--format mjcf|urdf] [--robot ROBOT]",
+        "[--format mjcf|urdf|usd] [--robot ROBOT]",
         "write a robot for other tools",
         "suchus.cli.export:export_robot",
     ),
