@@ -3,6 +3,7 @@
 import ast
 import re
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
@@ -39,6 +40,7 @@ class Example:
         return f"{number} {words.replace('_', ' ')}"
 
 
+@cache
 def examples() -> list[Example]:
     """Return the scripts in the order of their numbers."""
     return [_read(path) for path in sorted((ROOT / "examples").glob("[0-9][0-9]_*.py"))]
