@@ -7,6 +7,7 @@ from typing import Any
 from mkdocs.config.defaults import MkDocsConfig
 from mkdocs.structure.files import File, Files
 from mkdocs.structure.pages import Page
+
 from pages import article, gallery, questions, reference
 from pages.code import rooms as rooms_of_code
 from pages.mathml import Formulas
