@@ -8,9 +8,10 @@ import os
 from suchus.errors import OutsideLimits
 
 os.environ.setdefault("OMP_WAIT_POLICY", "passive")  # threads that spin on and on starve their neighbours
-# ... but sleep costs 40 to 80 us at every parallel loop, as much as a small loop's work; about 20 us of spinning first
-# brings it down to 1 us, and two threads of the flow solver from 1.3 to 1.7 times one
-os.environ.setdefault("GOMP_SPINCOUNT", "20000")
+# ... but to fall asleep and be woken costs 40 to 80 us at every parallel loop, as much as a small loop's own work. A
+# short spin first makes it 2 us, and two threads of the flow solver 1.7 instead of 1.3 times one; a longer one (20 000,
+# about 1 ms) gains nothing and burns the time of others where more threads want to run than there are cores.
+os.environ.setdefault("GOMP_SPINCOUNT", "1000")
 
 
 def count() -> int:

@@ -4,12 +4,11 @@ import pytest
 
 pytest.importorskip("latex2mathml")
 
+import suchus
 from pages import article, gallery, questions, reference
 from pages.code import exported, papers, rooms
 from pages.mathml import Formulas
 from pages.references import named
-
-import suchus
 from suchus.experiments import EXPERIMENTS
 from suchus.paper import CLAIMS, ERRATA
 

@@ -5,6 +5,7 @@ import sys
 from pathlib import Path
 
 import pytest
+
 from pages.blocks import Block, WrongOutput, blocks, filled, follow
 
 ROOT = Path(__file__).parents[2]
