@@ -1,5 +1,6 @@
 """What all tests share: hypothesis without deadlines, the same examples every time."""
 
+import os
 from dataclasses import replace
 
 import pytest
@@ -10,6 +11,8 @@ from suchus.gaits import GAITS
 from suchus.motion import Gait
 from suchus.robots import ROBOTS
 
+if "PYTEST_XDIST_WORKER" in os.environ:  # there are as many workers as cores
+    os.environ.setdefault("SUCHUS_THREADS", "1")
 settings.register_profile("suchus", deadline=None, derandomize=True)
 settings.load_profile("suchus")
 
