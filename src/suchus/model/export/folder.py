@@ -18,7 +18,7 @@ from suchus.record import digest, new_folder, versions
 Format = Literal["mjcf", "urdf", "usd"]
 MARK = "suchus_export.json"
 """The file by which an export is known; a folder without it is never replaced."""
-_LICENCE = """This model was written by suchus (https://pypi.org/project/suchus) and carries its licence, Apache-2.0:
+_LICENCE = """This model was written by suchus and carries its licence, Apache-2.0:
 https://www.apache.org/licenses/LICENSE-2.0
 Its numbers come from robot.toml; keep this note with copies.
 """
