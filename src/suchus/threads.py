@@ -8,10 +8,11 @@ import os
 from suchus.errors import OutsideLimits
 
 os.environ.setdefault("OMP_WAIT_POLICY", "passive")  # threads that spin on and on starve their neighbours
-# ... but to fall asleep and be woken costs 40 to 80 us at every parallel loop, as much as a small loop's own work. A
-# short spin first makes it 2 us, and two threads of the flow solver 1.7 instead of 1.3 times one; a longer one (20 000,
-# about 1 ms) gains nothing and burns the time of others where more threads want to run than there are cores.
-os.environ.setdefault("GOMP_SPINCOUNT", "1000")
+# ... but to fall asleep and be woken costs 40 to 80 us at every parallel loop, as much as a small loop's own work. So a
+# thread spins for about a millisecond first, which bridges what the flow solver does alone between its loops: two
+# threads are 1.4 to 1.7 times one at 1024 x 512 cells, and 1.0 to 1.4 with 1000. Where more threads want to run than
+# there are cores that spin is waste: set SUCHUS_THREADS=1 there.
+os.environ.setdefault("GOMP_SPINCOUNT", "20000")
 
 
 def count() -> int:
