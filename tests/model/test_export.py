@@ -12,6 +12,7 @@ import pytest
 from suchus import blueprint
 from suchus.design import Crocodile, joint_names
 from suchus.errors import InvalidDesign, UnknownName, Unwritable
+from suchus.kinematics.mass import GRAVITY
 from suchus.model import SITES, compile_model, joint_addresses
 from suchus.model.export import MARK, NoUsd, ball, export, unsaid, unsaid_in_usd
 from suchus.model.export.urdf import _roll_pitch_yaw
@@ -214,7 +215,10 @@ def test_a_folder_says_whose_it_is_and_what_is_missing(kind, robot, crawl_gait, 
         if file.is_file() and file.name != "README.md":
             assert f"`{file.relative_to(folder)}`" in readme
     if kind != "mjcf":
-        assert all(text in readme for text in {"urdf": unsaid, "usd": unsaid_in_usd}[kind](robot))
+        left_out = {"urdf": unsaid, "usd": unsaid_in_usd}[kind]
+        assert all(text in readme for text in left_out(robot))
+        stiffer = replace(robot, tail=replace(robot.tail, joint_stiffness=0.123))
+        assert "0.123 N m/rad" in "".join(left_out(stiffer))
     words = {
         "mjcf": ["gait", "pulley"],
         "urdf": ["tendon", "Springs", "PID", "friction", "armature"],
@@ -363,7 +367,9 @@ def test_the_usd_scene_opens_in_metres_with_the_robot_on_its_ground(any_robot, c
     pxr, stage = usd_stage(folder, "scene.usda")
     assert pxr.UsdGeom.GetStageMetersPerUnit(stage) == 1.0
     assert pxr.UsdGeom.GetStageUpAxis(stage) == "Z"
-    assert stage.GetPrimAtPath("/World/physics").GetTypeName() == "PhysicsScene"
+    physics = stage.GetPrimAtPath("/World/physics")
+    assert physics.GetTypeName() == "PhysicsScene"
+    assert physics.GetAttribute("physics:gravityMagnitude").Get() == pytest.approx(GRAVITY)
     robots = [p for p in stage.Traverse() if p.HasAPI(pxr.UsdPhysics.ArticulationRootAPI)]
     assert len(robots) == 1
     box = pxr.UsdGeom.BBoxCache(pxr.Usd.TimeCode.Default(), ["default"])

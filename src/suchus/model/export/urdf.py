@@ -10,6 +10,7 @@ from scipy.spatial.transform import Rotation
 from suchus.design import Crocodile, cable_joints, fin_joints
 from suchus.model.build import compile_model, servo_of
 from suchus.model.export.mjcf import numbers
+from suchus.model.export.unsaid import told
 from suchus.model.names import SITES
 
 BALL = "meshes/ball.obj"
@@ -59,20 +60,7 @@ def urdf(robot: Crocodile) -> str:
 
 def unsaid(robot: Crocodile) -> tuple[str, ...]:
     """Return what the URDF of a robot leaves out, and what to do about it."""
-    tail = robot.tail
-    values = {
-        "cables": tail.joints,
-        "first": cable_joints(robot)[0],
-        "last": cable_joints(robot)[-1],
-        "stiffness": tail.joint_stiffness,
-        "fins": ", ".join(fin_joints(robot)),
-        "lateral": tail.fin_stiffness_lateral,
-        "vertical": tail.fin_stiffness_vertical,
-        "foot": robot.contact.foot_friction,
-        "skin": robot.contact.skin_friction,
-        "faceted": 100 * (1 - np.cos(np.pi / _SECTORS)),
-    }
-    return tuple(text.format(**values) for text in UNSAID)
+    return told(UNSAID, robot, faceted=100 * (1 - np.cos(np.pi / _SECTORS)))
 
 
 def ball() -> str:

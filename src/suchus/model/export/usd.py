@@ -6,10 +6,12 @@ import mujoco
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from suchus.design import Crocodile, cable_joints, fin_joints, servo_names
+from suchus.design import Crocodile, servo_names
 from suchus.errors import SuchusError
+from suchus.kinematics.mass import GRAVITY
 from suchus.model.build import compile_model, servo_of
 from suchus.model.export.mjcf import home
+from suchus.model.export.unsaid import told
 from suchus.model.export.urdf import ball
 from suchus.model.names import SITES
 from suchus.model.standing import standing
@@ -98,7 +100,7 @@ def Xform "World"
     def PhysicsScene "physics"
     {{
         vector3f physics:gravityDirection = (0, 0, -1)
-        float physics:gravityMagnitude = 9.81
+        float physics:gravityMagnitude = {GRAVITY:g}
     }}
 
     def DistantLight "sun"
@@ -129,19 +131,8 @@ def Xform "World"
 
 def unsaid_in_usd(robot: Crocodile) -> tuple[str, ...]:
     """Return what the USD of a robot leaves out, and what to do about it."""
-    tail = robot.tail
-    values = {
-        "cables": tail.joints,
-        "first": cable_joints(robot)[0],
-        "last": cable_joints(robot)[-1],
-        "stiffness": tail.joint_stiffness,
-        "fins": ", ".join(fin_joints(robot)),
-        "lateral": tail.fin_stiffness_lateral,
-        "vertical": tail.fin_stiffness_vertical,
-        "speeds": " or ".join(f"{v:g}" for v in sorted({servo_of(robot, name).speed for name in servo_names()})),
-        "link": LINK_MASS,
-    }
-    return tuple(text.format(**values) for text in UNSAID)
+    speeds = sorted({servo_of(robot, name).speed for name in servo_names()})
+    return told(UNSAID, robot, speeds=" or ".join(f"{v:g}" for v in speeds), link=LINK_MASS)
 
 
 def prim_name(robot: Crocodile) -> str:
