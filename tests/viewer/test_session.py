@@ -12,7 +12,7 @@ from suchus.land import simulate
 from suchus.motion import Gait, check_limits
 from suchus.robots import ROBOTS
 from suchus.viewer import Session
-from suchus.viewer.knobs import GAIT_KNOBS, shown, tuned
+from suchus.viewer.knobs import FORCE, GAIT_KNOBS, force_on, shown, tuned
 from suchus.viewer.session import _PLAIN
 
 ROBOT, CRAWL = ROBOTS["caiman"], GAITS["belly_crawl"]
@@ -134,6 +134,12 @@ def test_repaired_joints_are_no_longer_listed():
     session.mend()
     assert session.settings.broken == ()
     assert "LF_wrist" in session.lose("LF_wrist", "limp")
+
+
+def test_the_force_of_a_push_is_told_beside_the_weight_of_whom_it_pushes():
+    heavy = replace(ROBOT, name="heavy", pelvis=replace(ROBOT.pelvis, mass=ROBOT.pelvis.mass + 10.0))
+    assert force_on(heavy).hint == f"heavy weighs {(ROBOT.mass + 10.0) * 9.81:.0f} N."
+    assert replace(force_on(heavy), hint="") == FORCE
 
 
 def test_a_push_lasts_as_long_as_it_says():

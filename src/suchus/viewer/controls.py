@@ -6,7 +6,18 @@ from typing import Any
 from suchus.design import servo_names
 from suchus.gaits import GAITS
 from suchus.motion import Gait
-from suchus.viewer.knobs import BUMPS, DIRECTION, FORCE, GAIT_KNOBS, LASTING, SIDE_SLOPE, SLOPE, SPEED, Knob, shown
+from suchus.viewer.knobs import (
+    BUMPS,
+    DIRECTION,
+    GAIT_KNOBS,
+    LASTING,
+    SIDE_SLOPE,
+    SLOPE,
+    SPEED,
+    Knob,
+    force_on,
+    shown,
+)
 from suchus.viewer.session import Session, Switch
 
 Say = Callable[[str], None]
@@ -49,7 +60,7 @@ class Controls:
         with gui.add_folder("Break a joint"):
             self._faults()
         with gui.add_folder("Push"):
-            for name, knob in (("force", FORCE), ("direction", DIRECTION), ("lasting", LASTING)):
+            for name, knob in (("force", force_on(session.robot)), ("direction", DIRECTION), ("lasting", LASTING)):
                 self._add_slider(name, knob)
             self._on(gui.add_button("push the trunk", color="orange"), lambda _: session.push())
         with gui.add_folder("Ground"):

@@ -8,6 +8,7 @@ from typing import Any
 
 from suchus.design import Crocodile
 from suchus.errors import OutsideLimits
+from suchus.kinematics.mass import GRAVITY
 from suchus.motion import Gait, check_limits
 
 _HALVINGS = 14  # of the way to a value that the robot cannot reach: a ten-thousandth of it
@@ -110,12 +111,17 @@ BUMPS = Knob(
     hint="Height of a field of random bumps ahead; the walk begins anew on them.",
 )  # fmt: skip
 SPEED = Knob(label="playback speed", unit="x", low=0.05, high=4.0, step=0.05, hint="1 is real time.")
-FORCE = Knob(label="force", unit="N", low=0.0, high=60.0, step=1.0, hint="The robot weighs about 30 N.")
+FORCE = Knob(label="force", unit="N", low=0.0, high=60.0, step=1.0)
 LASTING = Knob(label="lasting", unit="s", low=0.02, high=2.0, step=0.02, hint="Duration of the push.")
 DIRECTION = Knob(
     label="direction", unit="deg", low=-180.0, high=180.0, step=15.0, scale=_DEGREE,
     hint="0 pushes forward, 90 to the left, 180 backward.",
 )  # fmt: skip
+
+
+def force_on(robot: Crocodile) -> Knob:
+    """Return the knob of a push's force, with the weight of whom it pushes."""
+    return replace(FORCE, hint=f"{robot.name} weighs {robot.mass * GRAVITY:.0f} N.")
 
 
 def shown(gait: Gait, name: str) -> float:
