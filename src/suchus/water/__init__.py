@@ -2,7 +2,7 @@
 
 from suchus.water.fit import Fit, fit, head_base
 from suchus.water.free import free_swim
-from suchus.water.held import tether, towed
+from suchus.water.held import tether
 from suchus.water.immersed import immersed
 from suchus.water.measures import Quarters, Swum, convex_higher, crossings, efficiency, level
 from suchus.water.outline import Base, Curve, Outline, Silhouette, silhouette
@@ -12,6 +12,7 @@ from suchus.water.slender import Cruise, Effort, Water, cruise, cycle, reactive,
 from suchus.water.sweep import scaled, survey
 from suchus.water.swimming import MODELS, displaced, swim, wave_speed
 from suchus.water.tank import Tether
+from suchus.water.towed import towed
 from suchus.water.undulation import ExactWave, Motion, Undulation, undulation
 from suchus.water.waves import BodyWave, EelWave, PrintedWave, printed_wave
 

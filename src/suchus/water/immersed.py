@@ -1,5 +1,7 @@
 """The robot as a body of the flow solver: a slice through it, as deep as the flow is."""
 
+from functools import lru_cache
+
 import numpy as np
 
 from suchus import flow
@@ -25,6 +27,7 @@ def immersed(
     bent = undulation(outline, motion).held(sway, turn)
     half_width = outline.silhouette.half_width
 
+    @lru_cache(maxsize=2)  # the flow asks up to ten times for the same two instants of a step
     def spine(time: float) -> flow.Spine:
         curve = bent.curve(np.asarray(time), *_grown(time, grow))
         bare = flow.Spine(**curve._asdict(), half_width=half_width)

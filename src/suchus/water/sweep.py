@@ -13,11 +13,10 @@ from suchus.water.measures import efficiency
 from suchus.water.outline import Outline
 from suchus.water.slender import Model, Water, cruise, cycle
 from suchus.water.swimming import MODELS, wave_speed
-from suchus.water.undulation import undulation
+from suchus.water.undulation import STILL, undulation
 
 VALUES = {"speed": "m/s", "efficiency": "1", "strouhal": "1", "slip": "1"}
 """What is found of each motion, with units."""
-_STILL = Swim(name="still", frequency=1.0, yaw=(0, 0, 0), yaw_late=(0, 0, 0), tail=0.0, tail_late=0.0)
 
 
 def scaled(motion: Swim, amplitude: float, frequency: float) -> Swim:
@@ -56,7 +55,7 @@ def _one(outline: Outline, motion: Swim, model: Model, water: Water) -> tuple[fl
     if free.speed == 0.0:
         return 0.0, 0.0, float("nan"), 0.0
     curve = cycle(outline, motion, free.sway, free.turn)
-    straight = undulation(outline, replace(_STILL, frequency=motion.frequency))
+    straight = undulation(outline, replace(STILL, frequency=motion.frequency))
     drag = -model(outline, cycle(outline, straight), free.speed, water).thrust * float(np.sign(free.speed))
     swing = float(np.ptp(curve.y[:, -1]))
     return (

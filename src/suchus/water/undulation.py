@@ -99,6 +99,9 @@ class Undulation:
 Motion = Swim | ExactWave | Undulation
 """What a body can be asked to do: bend its joints, follow a wave, or bend as was worked out before."""
 
+STILL = Swim(name="still", frequency=1.0, yaw=(0.0, 0.0, 0.0), yaw_late=(0.0, 0.0, 0.0), tail=0.0, tail_late=0.0)
+"""A motion that is none."""
+
 
 def undulation(outline: Outline, motion: Motion) -> Undulation:
     """Return how the midline bends in a motion; the head of a ``Swim`` stays straight and in place.
