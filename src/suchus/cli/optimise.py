@@ -16,8 +16,6 @@ from suchus.optimise import AIMS, READY, Optimisation, Told, read_optimisation, 
 from suchus.optimise import optimise as conduct
 from suchus.record import check_writable
 
-_EVERY = 10.0  # [s]; between lines where there is no terminal for a bar
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Options:
@@ -78,15 +76,6 @@ def _asked(options: Options) -> Optimisation:
 
 
 def _shown(bars: Bars, spec: Optimisation) -> Callable[[Told], None]:
-    """Return what moves a bar for each arm, or says a line now and then where there is no terminal."""
-    moves = {arm.name: bars.task(f"{spec.name} {arm.name}") for arm in spec.arms}
-    last = time.monotonic()
-
-    def show(told: Told) -> None:
-        nonlocal last
-        moves[told.arm](str(told), min(told.done / told.budget, 1.0))
-        if not bars.seen and time.monotonic() - last > _EVERY:
-            last = time.monotonic()
-            bars.say(f"{spec.name} {told.arm}: {told}")
-
-    return show
+    """Return what moves a bar for each arm."""
+    tells = {arm.name: bars.told(f"{spec.name} {arm.name}") for arm in spec.arms}
+    return lambda told: tells[told.arm](told, min(told.done / told.budget, 1.0))

@@ -1,6 +1,5 @@
 """``suchus study FILE.toml``: many runs, their results into a folder that a kill cannot spoil."""
 
-import time
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, fields, replace
@@ -11,13 +10,12 @@ import tyro
 
 from suchus.cli.commands import BadCommand
 from suchus.cli.options import CSV, TABLES, parse
-from suchus.cli.terminal import Bars, working
+from suchus.cli.terminal import working
 from suchus.record import write_tables
 from suchus.study import Claims, Told, conduct, conduct_claims, connected, read_study, write_claims
 from suchus.study.store import RESULTS, TABLE
 
 CLAIMS = "claims"
-_EVERY = 10.0  # [s]; between lines where there is no terminal for a bar
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -53,7 +51,8 @@ def study(words: Sequence[str]) -> int:
         raise BadCommand(f"the study is named {asked.name!r}, which makes no folder; say --out DIR.")
     folder = options.out or Path("out") / "studies" / asked.name
     with _cluster(options) as client, working() as bars:
-        results = conduct(asked, folder, progress=_shown(bars, asked.name), client=client)
+        tell = bars.told(asked.name)
+        results = conduct(asked, folder, progress=lambda told: tell(told, told.done / told.total), client=client)
     failed = {sample: str(error) for sample, error in enumerate(results.error.values) if error}
     print(f"{results.sizes['sample']} runs, {len(failed)} failed: {folder / RESULTS}, {folder / TABLE}")
     if options.csv:
@@ -72,30 +71,15 @@ def _claims(options: Options) -> int:
     asked = Claims() if options.samples is None else Claims(samples=options.samples)
     folder = options.out or Path("out") / "studies" / CLAIMS
     with _cluster(options) as client, working() as bars:
-        shown: dict[str, Callable[[Told], None]] = {}
+        shown: dict[str, Callable[[object, float], None]] = {}
 
         def show(place: str, told: Told) -> None:
             if place not in shown:
-                shown[place] = _shown(bars, f"{CLAIMS} {place.replace('_', ' ')}")
-            shown[place](told)
+                shown[place] = bars.told(f"{CLAIMS} {place.replace('_', ' ')}")
+            shown[place](told, told.done / told.total)
 
         record = conduct_claims(asked, folder, progress=show, client=client)
         result = write_claims(record, folder / "result")
     walked = int((record.status == "walked").sum())
     print(f"{record.sizes['sample']} designs and gaits, {walked} walked; the page is {result / 'index.html'}")
     return 0
-
-
-def _shown(bars: Bars, name: str) -> Callable[[Told], None]:
-    """Return what moves a bar, or says a line now and then where there is no terminal."""
-    move = bars.task(name)
-    last = time.monotonic()
-
-    def show(told: Told) -> None:
-        nonlocal last
-        move(str(told), told.done / told.total)
-        if not bars.seen and time.monotonic() - last > _EVERY:
-            last = time.monotonic()
-            bars.say(f"{name}: {told}")
-
-    return show

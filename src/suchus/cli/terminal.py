@@ -1,6 +1,7 @@
 """What people see in the terminal: bars while it works, then a table of verdicts."""
 
-from collections.abc import Iterator
+import time
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 
@@ -13,6 +14,7 @@ from suchus import experiment as contract
 from suchus.cli.perform import Done
 from suchus.report import quantity
 
+_EVERY = 10.0  # [s]; between lines where there is no terminal for a bar
 _COLOURS = {"reproduced": "green", "same sense": "yellow", "contradicted": "red", "not testable": "dim"}
 
 
@@ -35,6 +37,22 @@ class Bars:
     def seen(self) -> bool:
         """Whether there is a terminal to show them on."""
         return self._progress.console.is_terminal
+
+    def told(self, name: str) -> Callable[[object, float], None]:
+        """Add a bar and return what moves it, or says a line now and then where there is no terminal.
+
+        What it returns takes what to show, which becomes text only where it is shown, and the share that is done.
+        """
+        move, last = self.task(name), time.monotonic()
+
+        def tell(what: object, share: float) -> None:
+            nonlocal last
+            move(str(what), share)
+            if not self.seen and time.monotonic() - last > _EVERY:
+                last = time.monotonic()
+                self.say(f"{name}: {what}")
+
+        return tell
 
     def say(self, text: str) -> None:
         """Print a line above the bars."""

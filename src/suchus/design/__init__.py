@@ -1,6 +1,6 @@
 """What a robot is: frozen values in SI units, without defaults and without physics."""
 
-from suchus.design.chosen import Chosen, value_at, with_values
+from suchus.design.chosen import Chosen, unit_at, value_at, with_values
 from suchus.design.contact import Contact
 from suchus.design.joints import (
     LEGS,
@@ -38,6 +38,7 @@ __all__ = [
     "leg_joints",
     "servo_names",
     "spine_joints",
+    "unit_at",
     "value_at",
     "with_values",
 ]

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields, is_dataclass, replace
 from typing import Any, TypeVar
 
+from suchus.design.meaning import meanings, unit
 from suchus.errors import UnknownName
 
 T = TypeVar("T")
@@ -62,6 +63,22 @@ def with_values(design: T, values: Mapping[str, Any]) -> T:
     if isinstance(design, tuple):
         return type(design)(changed.get(i, item) for i, item in enumerate(design))
     return replace(design, **{str(step): value for step, value in changed.items()})  # type: ignore[type-var]
+
+
+def unit_at(design: Any, path: str) -> str:
+    """Return the unit in which a field holds its numbers, ``-`` where it has none.
+
+    Args:
+        design: the robot, the gait, or a part.
+        path: of the field, see ``value_at``.
+
+    Raises:
+        UnknownName: there is no such field.
+    """
+    value_at(design, path)
+    above, _, name = path.rpartition(".")
+    told = meanings(type(value_at(design, above)))
+    return unit(told.get(name.partition("[")[0], "")) or "-"
 
 
 def _steps(path: str) -> list[str | int]:

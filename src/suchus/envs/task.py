@@ -68,12 +68,7 @@ class Breaks:
                 len(self.kinds) > 0 and all(kind in allowed for kind in self.kinds),
                 f"breaks.kinds is {self.kinds!r}; {' and '.join(allowed)} are allowed, one at least",
             )
-            check.number("earliest", 0.0, 3600.0, "s")
-            check.number("latest", 0.0, 3600.0, "s")
-            check.that(
-                self.earliest <= self.latest,
-                f"breaks.earliest is {self.earliest} s and breaks.latest {self.latest} s; they must not decrease",
-            )
+            _check_when(check, "breaks", self.earliest, self.latest)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -94,13 +89,17 @@ class Shoves:
     def __post_init__(self) -> None:
         with Checks("shoves", self) as check:
             check.number("most", 0.0, 1e3, "N")
-            check.number("earliest", 0.0, 3600.0, "s")
-            check.number("latest", 0.0, 3600.0, "s")
             check.number("lasting", CONTROL_PERIOD, 60.0, "s")
-            check.that(
-                self.earliest <= self.latest,
-                f"shoves.earliest is {self.earliest} s and shoves.latest {self.latest} s; they must not decrease",
-            )
+            _check_when(check, "shoves", self.earliest, self.latest)
+
+
+def _check_when(check: Checks, owner: str, earliest: float, latest: float) -> None:
+    """Refuse times between which nothing can happen."""
+    check.number("earliest", 0.0, 3600.0, "s")
+    check.number("latest", 0.0, 3600.0, "s")
+    check.that(
+        earliest <= latest, f"{owner}.earliest is {earliest} s and {owner}.latest {latest} s; they must not decrease"
+    )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 from scipy.stats import qmc
 
-from suchus.design import Chosen, Crocodile, meaning, value_at, with_values
+from suchus.design import Chosen, Crocodile, unit_at, with_values
 from suchus.design.checks import require
 from suchus.errors import InvalidDesign, OutsideLimits
 from suchus.experiment import Experiment, Measure, Outcome, Progress, silent, staged, stopwatch
@@ -144,7 +144,8 @@ class Sensitivity(Experiment):
             record = record.merge(again.rename(fine))
         record["value"] = (("sample", "parameter"), points, {"units": "1", "long_name": "each in its own unit"})
         names = [f"robot.{one.field}" for one in of_robot] + [f"gait.{one.field}" for one in of_gait]
-        units = [_unit(self.robot, one.field) for one in of_robot] + [_unit(self.gait, one.field) for one in of_gait]
+        units = [unit_at(self.robot, one.field) for one in of_robot]
+        units += [unit_at(self.gait, one.field) for one in of_gait]
         return record.assign_coords(parameter=names, parameter_unit=("parameter", units))
 
     def _walked(self, points: np.ndarray, timestep: float, progress: Callable[[float], None]) -> xr.Dataset:
@@ -206,13 +207,6 @@ class Sensitivity(Experiment):
 
 def _spans(whole: int, part: int) -> list[slice]:
     return [slice(start, min(start + part, whole)) for start in range(0, whole, part)]
-
-
-def _unit(design: Crocodile | Gait, path: str) -> str:
-    """Return the unit of a field."""
-    above, _, name = path.rpartition(".")
-    told = meaning.meanings(type(value_at(design, above) if above else design))
-    return meaning.unit(told[name]) or "-"
 
 
 def _measures(record: xr.Dataset) -> Mapping[str, Measure]:

@@ -12,9 +12,9 @@ from suchus.design import Crocodile
 from suchus.gaits import GAITS
 from suchus.land import Ground, Run
 from suchus.motion import Gait
-from suchus.optimise.spec import WHOLE, Aim, Limit, Optimisation
+from suchus.optimise.spec import Aim, Optimisation, Search
 from suchus.robots import ROBOTS
-from suchus.study import Arm, Vary
+from suchus.study import Vary
 from suchus.study.page import find
 
 Task = Literal["crawl", "turn", "stand"]
@@ -30,17 +30,9 @@ TASKS: Mapping[str, Control] = MappingProxyType(
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Page:
-    """What the file of a search can say; see ``Optimisation``."""
+class Page(Search):
+    """What the file of a search can say."""
 
-    name: str
-    """How it is called."""
-    vary: tuple[Vary, ...]
-    """What may change, each with ``low`` and ``high``."""
-    aims: tuple[Aim, ...]
-    """What is made better."""
-    limits: tuple[Limit, ...] = ()
-    """What is allowed."""
     robot: str = "caiman"
     """Name on the shelf, or path of a TOML file beside this one."""
     gait: str = "belly_crawl"
@@ -49,28 +41,6 @@ class Page:
     """What it does: ``crawl``, ``turn`` or ``stand``."""
     ground: Ground = field(default_factory=Ground)
     """On what."""
-    arms: tuple[Arm, ...] = (WHOLE,)
-    """Searched one after the other with the same budget."""
-    pareto: bool = False
-    """Whether two aims make a front."""
-    evaluations: int = 1200
-    """How many candidates each arm may try [-]."""
-    population: int = 16
-    """Candidates of a generation [-]."""
-    points: int = 6
-    """Of the front that are pushed forward together [-]."""
-    sigma: float = 0.25
-    """First standard deviation of the candidates, as a part of each range [-]."""
-    grips: tuple[float, ...] = (1.0,)
-    """Factors on the ground's friction [-]."""
-    seed: int = 0
-    """Of the search."""
-    duration: float = 9.0
-    """Of each run [s]."""
-    timestep: float = 0.005
-    """Of the physics in the search [s]."""
-    reasons: tuple[str, ...] = ()
-    """Why these fields, ranges and limits."""
 
 
 EXAMPLE = Page(
@@ -97,4 +67,4 @@ def read_optimisation(path: Path) -> Optimisation:
         ground=page.ground,
         control=TASKS[page.task],
     )
-    return Optimisation(run=run, **{f.name: getattr(page, f.name) for f in fields(Optimisation) if f.name != "run"})
+    return Optimisation(run=run, **{f.name: getattr(page, f.name) for f in fields(Search)})

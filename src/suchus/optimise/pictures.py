@@ -8,8 +8,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from suchus.design import value_at
-from suchus.design.meaning import meanings, unit
+from suchus.design import unit_at
 from suchus.figures import COLOURS, captioned, panels, styled
 from suchus.figures.posture import draw_strip
 from suchus.land import Run
@@ -172,7 +171,5 @@ def _kept(found: Found, near: xr.Dataset, row: int) -> np.ndarray:
 
 def scaled(run: Run, field: str) -> tuple[float, str]:
     """Return the factor and the unit in which people read a field: millimetres, degrees."""
-    above, _, name = field.rpartition(".")
-    told = meanings(type(value_at(run, above))).get(name.partition("[")[0], "")
-    held = unit(told)
+    held = unit_at(run, field)
     return _MM.get(held, (1.0, "" if held == "-" else held))

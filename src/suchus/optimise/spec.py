@@ -1,7 +1,7 @@
 """What is searched: fields of robot and gait, what is aimed at, what is allowed."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from math import log
 from typing import Any
 
@@ -49,13 +49,11 @@ class Limit:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Optimisation:
-    """A search for the best among the runs that differ from one in some fields."""
+class Search:
+    """What a search is besides where it starts; a file says the same."""
 
     name: str
     """How it is called."""
-    run: Run
-    """Where the search starts."""
     vary: tuple[Vary, ...]
     """What may change, each with ``low`` and ``high``."""
     aims: tuple[Aim, ...]
@@ -82,8 +80,16 @@ class Optimisation:
     """Of each run [s]: two cycles of four seconds after the first second, in which the robot settles."""
     timestep: float = 0.005
     """Of the physics in the search [s]; the best are run again with 2 ms."""
-    reasons: tuple[str, ...] = field(default=())
+    reasons: tuple[str, ...] = ()
     """Why these fields, ranges and limits, for whoever reads the results."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Optimisation(Search):
+    """A search for the best among the runs that differ from one in some fields."""
+
+    run: Run
+    """Where the search starts."""
 
     def __post_init__(self) -> None:
         with Checks("optimisation", self) as check:

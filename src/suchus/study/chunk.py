@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from suchus.design import unit_at
 from suchus.errors import SuchusError
 from suchus.land import Run, simulate
 from suchus.motion import check_limits
@@ -100,18 +101,22 @@ def _table(
 ) -> xr.Dataset:
     table = xr.Dataset(coords={"sample": np.asarray(samples, dtype=np.int64)})
     for vary in study.vary:
-        values = [point.values[vary.field] for point in points]
-        table[vary.field] = ("sample", _column(values, vary.ends))
-    table["seed"] = ("sample", np.array([point.seed for point in points], dtype=np.int64))
+        column = _column([point.values[vary.field] for point in points], vary.ends)
+        table[vary.field] = ("sample", column, _units(unit_at(study.run, vary.field)) if column.dtype == float else {})
+    table["seed"] = ("sample", np.array([point.seed for point in points], dtype=np.int64), _units("-"))
     if study.arms:
         table["arm"] = ("sample", np.array([point.arm.name for point in points]))
-    columns = list(dict.fromkeys(name for row in rows.values() for name in row))
-    for column in columns:
-        name = max((m for m in study.measure if column == m or column.startswith(f"{m}_")), key=len)
-        numbers = np.array([rows.get(s, {}).get(column, np.nan) for s in samples])
-        table[column] = ("sample", numbers, {"units": unit_of(name)})
+    for told in dict.fromkeys(name for row in rows.values() for name in row):
+        measure = max((m for m in study.measure if told == m or told.startswith(f"{m}_")), key=len)
+        numbers = np.array([rows.get(s, {}).get(told, np.nan) for s in samples])
+        table[told] = ("sample", numbers, _units(unit_of(measure)))
     table["error"] = ("sample", np.array([errors.get(s, "") for s in samples]))
     return table
+
+
+def _units(unit: str) -> dict[str, str]:
+    """Return a unit as records hold it, which write 1 where there is none."""
+    return {"units": "1" if unit == "-" else unit}
 
 
 def _column(values: Sequence[Any], possible: Sequence[Any]) -> np.ndarray:

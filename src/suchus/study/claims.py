@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from suchus.design import Crocodile, meaning, value_at
+from suchus.design import Crocodile, unit_at, value_at
 from suchus.design.checks import Checks
 from suchus.gaits import GAITS
 from suchus.land import LOST, Run, lost
@@ -114,7 +114,7 @@ class Claims:
                 "arm": list(ARMS),
                 "state": list(STATES),
                 "parameter": names,
-                "parameter_unit": ("parameter", [_unit(study.run, name) for name in names]),
+                "parameter_unit": ("parameter", [unit_at(study.run, name) for name in names]),
             },
         )
         return told.merge(answers(told, self.least))
@@ -164,9 +164,3 @@ def _status(errors: np.ndarray) -> str:
     if kinds - {"Diverged"}:
         return "impossible"
     return "came apart" if kinds else "walked"
-
-
-def _unit(run: Run, path: str) -> str:
-    above, _, name = path.rpartition(".")
-    told = meaning.meanings(type(value_at(run, above)))
-    return meaning.unit(told.get(name.partition("[")[0], "")) or "-"
