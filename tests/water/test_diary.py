@@ -9,7 +9,7 @@ from suchus.water import Tether, free_swim, tether
 from suchus.water.diary import Diary
 
 MOTION = Swim(name="wave", frequency=1.0, yaw=(0.35, 0.15, 0.1), yaw_late=(0.1, -0.1, -0.3), tail=0.75, tail_late=-0.1)
-SETTING = Tether(cells=32, viscosity=1e-3, cycles=2, frames=6)
+SETTING = Tether(cells=32, viscosity=1e-3, cycles=1, frames=6)
 
 
 class _Killed(BaseException):
@@ -30,7 +30,7 @@ def test_a_killed_swim_goes_on_and_ends_with_the_same_numbers(robot, tmp_path, s
     with pytest.raises(_Killed):
         swim(robot, MOTION, SETTING, checkpoint=file, progress=_killed_at(0.7))
     again = swim(robot, MOTION, SETTING, checkpoint=file, progress=later.append)
-    assert min(later) > 0.6, "it began anew"
+    assert min(later) > 0.5, "it began anew"
     assert again.identical(swim(robot, MOTION, SETTING, progress=lambda _: None))
     assert swim(robot, MOTION, SETTING, checkpoint=file, progress=later.append).identical(again)
 

@@ -2,6 +2,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from suchus.errors import OutsideLimits
+from suchus.motion import check_swim
 from suchus.water import (
     Quarters,
     Swum,
@@ -10,6 +12,7 @@ from suchus.water import (
     crossings,
     efficiency,
     fit,
+    greatest,
     printed_wave,
     readings_table,
     scaled,
@@ -93,3 +96,15 @@ def test_a_survey_follows_frequency_and_amplitude(robot):
     assert np.all(speed[:, 2] < 0.6 * speed[:, 1])
     assert found.possible.values.tolist() == [True, True, True, False]
     assert np.all((found.efficiency > 0) & (found.efficiency < 1))
+    assert np.all(found.cost_of_transport > 0)
+
+
+def test_the_greatest_amplitude_is_the_last_that_can_be_followed(robot):
+    motion = fit(robot, printed_wave(robot)).swim
+    for frequency, joint in ((1.5, "tail_cable at"), (0.25, "bends tail_cable")):
+        slow = scaled(motion, 1.0, frequency)
+        most = greatest(robot, slow)
+        check_swim(robot, scaled(motion, most, frequency))
+        with pytest.raises(OutsideLimits, match=joint):
+            check_swim(robot, scaled(motion, most + 2e-4, frequency))
+    assert greatest(robot, scaled(motion, 1e-3, 0.1), most=2.0) == 2.0

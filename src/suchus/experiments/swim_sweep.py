@@ -13,7 +13,7 @@ from suchus.experiment import Experiment, Measure, Outcome, Progress, silent, st
 from suchus.figures.swim_sweep import draw_check, draw_maps
 from suchus.motion import Swim
 from suchus.robots import ROBOTS
-from suchus.water import Swum, Tether, fit, free_swim, printed_wave, scaled, survey
+from suchus.water import Swum, Tether, fit, free_swim, greatest, portion, printed_wave, scaled, survey
 
 _PEERS = (
     ("C. porosus, 0.3 to 1.1 m", "sustained speed rises with size, in body lengths it falls", "Elsworth et al. 2003"),
@@ -31,7 +31,8 @@ class SwimSweep(Experiment):
     The whole map by the two cheap models of the round body; some points in the resolved flow as a check, from rest,
     their last cycle measured. In the resolved flow the frequency is no parameter of its own: at one Reynolds number
     f L^2 / nu, speeds are proportional to it. ``efficiency`` is the power that towing the straight body takes over that
-    of the joints. What joints or servos cannot follow is hatched.
+    of the joints, ``cost_of_transport`` that of the joints over displaced weight and speed. What joints or servos
+    cannot follow is hatched.
     """
 
     title = "How fast and how well does it swim at other frequencies, amplitudes and wavelengths?"
@@ -72,9 +73,8 @@ class SwimSweep(Experiment):
     def quick(self) -> "SwimSweep":
         """Few points, a coarse grid, a thick water."""
         return replace(
-            self, frequencies=(0.5, 0.9, 1.3), amplitudes=(0.6, 1.0, 1.4), waves=(0.7, 1.0, 1.3),
-            points=((1.0, 1.0),),
-            reynolds=1000.0, cells=32, cycles=2,
+            self, frequencies=(0.4, 0.8, 1.2, 1.6), amplitudes=(0.5, 0.9, 1.3, 1.7), waves=(0.6, 0.9, 1.2, 1.4),
+            points=((1.0, 1.0), (1.4, 1.0)), reynolds=1000.0, cells=32, cycles=2,
         )  # fmt: skip
 
     def run(self, progress: Progress = silent) -> Outcome:
@@ -86,7 +86,7 @@ class SwimSweep(Experiment):
             by_waves = self._map("waves", self.waves, lambda a, w: scaled(self._fit(w), a, 1.0))
             told(1.0)
             points = self._points(staged(progress, "resolved flow", 0.3, 1.0))
-            record = xr.merge([by_frequency, by_waves, points], join="exact")
+            record = xr.merge([by_frequency, by_waves, points], join="exact", combine_attrs="no_conflicts")
             return Outcome(
                 experiment=self.name(),
                 measures=self._measures(record),
@@ -106,11 +106,13 @@ class SwimSweep(Experiment):
         motions = [motion(amplitude, value) for amplitude in self.amplitudes for value in values]
         flat = survey(self.robot, motions)
         shape = (len(self.amplitudes), len(values))
-        data = {}
+        data: dict[str, Any] = {}
         for name, found in flat.data_vars.items():
             dims = ("model", "amplitude", axis) if "model" in found.dims else ("amplitude", axis)
             sizes = (*found.shape[:-1], *shape)
             data[f"{name}_by_{axis}"] = (dims, found.values.reshape(sizes), found.attrs)
+        most = [greatest(self.robot, motion(1.0, value)) for value in values]
+        data[f"most_amplitude_by_{axis}"] = (axis, most, {"units": "1"})
         units = {"frequency": "Hz", "waves": "1"}
         coords = {
             "model": flat.model.values.tolist(),
@@ -125,11 +127,12 @@ class SwimSweep(Experiment):
         setting = Tether(cells=self.cells, viscosity=self.robot.length**2 / self.reynolds, cycles=self.cycles, frames=1)
         swum = []
         for i, motion in enumerate(motions):
-            free = free_swim(self.robot, motion, setting, progress=_part(progress, i, len(motions)))
+            free = free_swim(self.robot, motion, setting, progress=portion(progress, i, len(motions)))
             swum.append(Swum.of(free, 1.0))
         cheap = survey(self.robot, motions)
         data: dict[str, Any] = {
             "point_speed": ("point", [one.speed for one in swum], {"units": "m/s"}),
+            "point_cost_of_transport": ("point", [one.cost_of_transport for one in swum], {"units": "1"}),
             "point_gain": ("point", [one.gain for one in swum], {"units": "1"}),
             "point_strouhal": ("point", [one.strouhal for one in swum], {"units": "1"}),
             "point_slip": ("point", [one.slip for one in swum], {"units": "1"}),
@@ -137,16 +140,18 @@ class SwimSweep(Experiment):
             "point_amplitude": ("point", [amplitude for amplitude, _ in self.points], {"units": "1"}),
             "point_waves": ("point", [waves for _, waves in self.points], {"units": "1"}),
         }
-        return xr.Dataset(data)
+        return xr.Dataset(data, attrs={"cells": self.cells, "cycles": self.cycles, "reynolds": self.reynolds})
 
     def _measures(self, record: xr.Dataset) -> Mapping[str, Measure]:
         found = {}
         possible = record.possible_by_frequency
         for model in record.model.values:
             speed = record.speed_by_frequency.sel(model=model).where(possible)
-            best = record.efficiency_by_waves.sel(model=model).where(record.possible_by_waves)
+            by_waves = record.sel(model=model).where(record.possible_by_waves)
             found[f"speed_most_{model}"] = Measure(float(speed.max()), "m/s")
-            found[f"efficiency_most_{model}"] = Measure(float(best.max()), "-")
+            found[f"efficiency_most_{model}"] = Measure(float(by_waves.efficiency_by_waves.max()), "-")
+            cheapest = float(by_waves.cost_of_transport_by_waves.min())
+            found[f"cost_of_transport_least_{model}"] = Measure(cheapest, "-")
             apart = record.point_model_speed.sel(model=model) / record.point_speed - 1
             found[f"error_mean_{model}"] = Measure(float(apart.mean()), "-")
             found[f"error_worst_{model}"] = Measure(float(apart[int(np.argmax(np.abs(apart.values)))]), "-")
@@ -173,10 +178,6 @@ class SwimSweep(Experiment):
         record = outcome.record
         maps = {f"swim_sweep_{model}": draw_maps(record, str(model)) for model in record.model.values}
         return {**maps, "swim_sweep_check": draw_check(record)}
-
-
-def _part(progress: Callable[[float], None], number: int, count: int) -> Callable[[float], None]:
-    return lambda share: progress((number + share) / count)
 
 
 experiment = SwimSweep()

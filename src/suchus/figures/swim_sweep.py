@@ -8,14 +8,23 @@ from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
+from scipy.interpolate import RectBivariateSpline
 
 from suchus.figures.style import COLOURS, SEQUENTIAL, captioned, panels, styled
 
-_SALAMANDRA = (0.9, 1.3)  # frequencies at which its CPG swims [Hz]
+_SALAMANDRA = (0.9, 1.3)
+"""Frequencies between which its CPG swims [Hz]."""
+_AXES = ("frequency", "waves")
+_ROWS: tuple[tuple[str, str, str | None], ...] = (
+    ("speed", "speed [m/s]", "strouhal"),
+    ("efficiency", "efficiency", "slip"),
+    ("cost_of_transport", "cost of transport", None),
+)
+"""Rows of the maps: quantity, label, and whose lines are drawn over it."""
 
 
 def draw_maps(record: xr.Dataset, model: str) -> Figure:
-    """Draw speed and efficiency over frequency and amplitude, and over wavelength and amplitude.
+    """Draw speed, efficiency and cost over frequency and amplitude, and over wavelength and amplitude.
 
     Args:
         record: of the experiment ``swim_sweep``.
@@ -23,47 +32,69 @@ def draw_maps(record: xr.Dataset, model: str) -> Figure:
     """
     chosen = record.sel(model=model)
     with styled(axes__grid=False):
-        figure, axes = panels(2, 2, width=10.5, height=8.0, sharey=True)
-        for row, (name, label) in zip(axes, (("speed", "speed [m/s]"), ("efficiency", "efficiency")), strict=True):
-            values = [chosen[f"{name}_by_{axis}"].values for axis in ("frequency", "waves")]
-            low, high = min(v.min() for v in values), max(v.max() for v in values)
-            levels = MaxNLocator(10).tick_values(low, high)
-            for ax, axis in zip(row, ("frequency", "waves"), strict=True):
+        figure, axes = panels(len(_ROWS), 2, width=10.5, height=10.2, sharex="col", sharey=True)
+        for row, (name, label, lines) in zip(axes, _ROWS, strict=True):
+            levels = _levels(chosen, name)
+            for ax, axis in zip(row, _AXES, strict=True):
                 drawn = _map(ax, chosen, name, axis, levels)
+                _lines(ax, chosen, axis, lines)
             figure.colorbar(drawn, ax=row, label=label, shrink=0.9)
             row[0].set_ylabel("amplitude over that of (20)")
-        for ax, text in zip(axes[1], ("frequency [Hz]", "waves per body"), strict=True):
+        for ax, text in zip(axes[-1], ("frequency [Hz]", "waves per body"), strict=True):
             ax.set_xlabel(text)
         axes[0, 0].set_title("one wave per body")
-        axes[0, 1].set_title("1 Hz; dots: checked in the resolved flow")
+        axes[0, 1].set_title("1 Hz; circles: checked in the resolved flow")
     return captioned(
         figure,
-        f"Free swimming by the {model} model, left over the frequency, right over the wavelength; white lines of equal "
-        "Strouhal number, dashed ones of equal slip. Hatched: joints or servos cannot follow. Between the dotted lines "
-        "swims Salamandra.",
+        f"Free swimming by the {model} model, left over the frequency, right over the wavelength. Small dots are the "
+        "motions that were worked out, colours between them are interpolated. White lines: equal Strouhal number "
+        "above, equal slip in the middle. Hatched: joints or servos cannot follow. Between the dotted lines swims "
+        "Salamandra.",
     )
+
+
+def _levels(record: xr.Dataset, name: str) -> Sequence[float]:
+    """Return even steps of colour over what the robot can do in both maps of a quantity."""
+    values = np.concatenate(
+        [record[f"{name}_by_{axis}"].where(record[f"possible_by_{axis}"]).values.ravel() for axis in _AXES]
+    )
+    return list(MaxNLocator(9).tick_values(np.nanmin(values), np.nanmax(values)))
 
 
 def _map(ax: Axes, record: xr.Dataset, name: str, axis: str, levels: Sequence[float]) -> ScalarMappable:
     x, y = record[axis].values, record.amplitude.values
-    ax.grid(visible=False)
-    drawn = ax.contourf(x, y, record[f"{name}_by_{axis}"].values, levels=levels, cmap=SEQUENTIAL)
-    possible = record[f"possible_by_{axis}"].values.astype(float)
-    if possible.min() < 0.5:
-        hatched = ax.contourf(x, y, possible, levels=[-1.0, 0.5], colors="none", hatches=["////"])
-        hatched.set_edgecolor("#FFFFFF")
-    for what, dashes in (("strouhal", "solid"), ("slip", "dashed")):
-        values = record[f"{what}_by_{axis}"].values
-        if np.isfinite(values).all() and np.ptp(values) > 1e-9:
-            lines = ax.contour(x, y, values, levels=4, colors="white", linewidths=0.9, linestyles=dashes)
-            ax.clabel(lines, fontsize=9, fmt=f"{'St' if what == 'strouhal' else 'slip'} %.2g")
+    drawn = ax.contourf(*_fine(x, y, record[f"{name}_by_{axis}"].values), levels=levels, cmap=SEQUENTIAL, extend="both")
+    most = np.minimum(record[f"most_amplitude_by_{axis}"].values, y[-1])
+    ax.fill_between(x, most, y[-1], facecolor="#EDEDED", edgecolor="#B5B5B5", hatch="////", linewidth=0.0, zorder=4)
+    ax.plot(x, most, color="#555555", linewidth=1.2, zorder=4)
+    ax.plot(*(side.ravel() for side in np.meshgrid(x, y)), ".", color="#111111", markersize=2.5, zorder=5)
     if axis == "frequency":
         for edge in _SALAMANDRA:
             if x[0] <= edge <= x[-1]:
-                ax.axvline(edge, color="white", linewidth=1.4, linestyle=(0, (1, 1.5)))
+                ax.axvline(edge, color="white", linewidth=1.4, linestyle=(0, (1, 1.5)), zorder=4)
     else:
-        ax.plot(record.point_waves, record.point_amplitude, "o", color="white", markeredgecolor="black", clip_on=False)
+        ax.plot(record.point_waves, record.point_amplitude, "o", color="white", markeredgecolor="black", zorder=5)
     return drawn
+
+
+def _lines(ax: Axes, record: xr.Dataset, axis: str, what: str | None) -> None:
+    """Draw a few lines of equal Strouhal number or slip, where they exist everywhere."""
+    values = record[f"{what}_by_{axis}"].values if what else np.array([np.nan])
+    if not np.isfinite(values).all() or np.ptp(values) < 1e-9:
+        return
+    x, y, fine = _fine(record[axis].values, record.amplitude.values, values)
+    most = np.interp(x, record[axis].values, record[f"most_amplitude_by_{axis}"].values)
+    lines = ax.contour(x, y, np.ma.array(fine, mask=y[:, None] > most), levels=3, colors="white", linewidths=0.9)
+    ax.clabel(lines, fontsize=9, fmt=f"{'St' if what == 'strouhal' else 'slip'} %.2g")
+
+
+def _fine(x: np.ndarray, y: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return a map on a fine grid, through every sample; as it is where some have no value."""
+    if not np.isfinite(values).all():
+        return x, y, np.ma.masked_invalid(values)
+    kx, ky = (min(2, side.size - 1) for side in (x, y))
+    fine = np.linspace(x[0], x[-1], 81), np.linspace(y[0], y[-1], 81)
+    return *fine, RectBivariateSpline(y, x, values, kx=ky, ky=kx)(fine[1], fine[0])
 
 
 def draw_check(record: xr.Dataset) -> Figure:
@@ -93,5 +124,7 @@ def draw_check(record: xr.Dataset) -> Figure:
         ax.legend(loc="upper left", fontsize=10)
     return captioned(
         figure,
-        "Speed of the checked points: the resolved two-dimensional flow beside the two models of the round body.",
+        f"Speed of the checked points: the resolved two-dimensional flow, {record.attrs['cells']} cells a length at Re "
+        f"{record.attrs['reynolds']:.0f}, in cycle {record.attrs['cycles']} from rest, beside what the two models of "
+        "the round body reach in the end.",
     )

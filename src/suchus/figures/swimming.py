@@ -3,6 +3,7 @@
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from suchus.figures.fields import (
     PRESSURE,
@@ -92,13 +93,13 @@ def draw_sides(record: xr.Dataset) -> Figure:
 
 
 def draw_forces(record: xr.Dataset) -> Figure:
-    """Draw forces over the last cycle, ours and as printed, and what the joints carry.
+    """Draw forces over the last cycle, ours and as printed, and what the servos carry.
 
     Args:
         record: of the experiment ``swimming``.
     """
     with styled():
-        figure, axes = panels(1, 2, width=10.5, height=4.2)
+        figure, axes = panels(1, 2, width=10.5, height=4.4)
         ax = axes[0, 0]
         ax.axhline(0.0, color="#999999", linewidth=0.8)
         for name, label, colour in (
@@ -106,26 +107,28 @@ def draw_forces(record: xr.Dataset) -> Figure:
             ("printed", "as printed, tail to head", COLOURS["limbs_only"]),
         ):
             thrust = record[f"{name}_thrust"]
-            ax.plot(record[f"{name}_phase"], thrust, color=colour, label=label)
+            ax.plot(record[f"{name}_phase"], thrust, color=colour, label=f"{label}: {float(thrust.mean()):+.1f}")
             ax.axhline(float(thrust.mean()), color=colour, linestyle=(0, (4, 2)), linewidth=1.2)
-        ax.set_xlabel("phase of the last cycle [T]")
         ax.set_ylabel("force forward [N/m]")
-        _room_above(ax)
-        ax.legend(loc="upper left", fontsize=10)
         ax = axes[0, 1]
-        labels = ("yaw 1, at the pelvis", "yaw 2", "yaw 3, at the neck", "tail root")
-        for label, joint in zip(labels, record.joint.values, strict=True):
-            ax.plot(record.held_phase, record.held_joint_torque.sel(joint=joint), label=label)
-        ax.set_xlabel("phase of the last cycle [T]")
-        ax.set_ylabel("moment of the water [N m/m]")
-        _room_above(ax)
-        ax.legend(loc="upper left", ncols=2, fontsize=10)
+        for limit in (-1.0, 1.0):
+            ax.axhline(limit, color=COLOURS["alarm"], linewidth=1.2, linestyle=(0, (4, 2)))
+        labels = ("yaw 1, at the pelvis", "yaw 2", "yaw 3, at the neck", "the tail's cable")
+        for label, servo in zip(labels, record.held_servo.values, strict=True):
+            share = record.held_servo_torque.sel(held_servo=servo) / record.servo_limit.sel(held_servo=servo)
+            ax.plot(record.held_phase, share, label=label)
+        ax.set_ylabel("torque of the water / servo's limit")
         for ax in axes[0]:
+            ax.set_xlabel("phase of the last cycle [T]")
+            _room_above(ax)
+            ax.legend(loc="upper left", ncols=2, fontsize=9.5)
             ax.set_xlim(0.0, 1.0)
     return captioned(
         figure,
-        "Left: force along the body over the last cycle, dashed its mean, for the wave from head to tail and as "
-        "printed. Right: moment about each joint of what the water does to the part beyond it. All per metre of depth.",
+        "Held at the snout. Left: force along the body over the last cycle per metre of depth, for the wave from head "
+        "to tail and as printed; dashed and in numbers the means. Right: what the water asks of the servos at their "
+        "shafts, every section as high as the robot there, over each servo's limit (red); a flow that cannot pass over "
+        "and under the body overstates it.",
     )
 
 
@@ -152,9 +155,12 @@ def draw_free(record: xr.Dataset) -> Figure:
             ax.plot(
                 record.cycle, record.arm_speed.sel(arm=arm), color=colour, marker=marker, linestyle=dashes, label=label
             )
+        cycles = range(1, record.sizes["free_cycle"] + 1)
+        ax.plot(cycles, record.free_speed, color="#333333", linewidth=2.4, label="trunk and tail, finer grid")
         for model, dots in zip(record.model.values, ((0, (1, 1.5)), (0, (3, 1, 1, 1))), strict=True):
             speed = float(record.model_speed.sel(model=model))
             ax.axhline(speed, color=COLOURS["neutral"], linestyle=dots, label=f"{model} model, round body")
+        ax.xaxis.set_major_locator(MaxNLocator(integer=True))
         ax.set_xlabel("cycle")
         ax.set_ylabel("mean speed [m/s]")
         ax.axhline(0.0, color="#999999", linewidth=0.8)

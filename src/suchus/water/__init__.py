@@ -1,5 +1,6 @@
 """The robot in water: its outline, waves fitted to its joints, and the models a designer calculates with."""
 
+from suchus.water.diary import portion
 from suchus.water.fit import Fit, fit, head_base
 from suchus.water.free import free_swim
 from suchus.water.held import tether
@@ -9,7 +10,7 @@ from suchus.water.outline import Base, Curve, Outline, Silhouette, silhouette
 from suchus.water.passive import sprung
 from suchus.water.readings import Attempt, attempts, readings_table
 from suchus.water.slender import Cruise, Effort, Water, cruise, cycle, reactive, recoil, resistive
-from suchus.water.sweep import scaled, survey
+from suchus.water.sweep import greatest, scaled, survey
 from suchus.water.swimming import MODELS, displaced, swim, wave_speed
 from suchus.water.tank import Tether
 from suchus.water.towed import towed
@@ -45,9 +46,11 @@ __all__ = [
     "efficiency",
     "fit",
     "free_swim",
+    "greatest",
     "head_base",
     "immersed",
     "level",
+    "portion",
     "printed_wave",
     "reactive",
     "readings_table",

@@ -22,6 +22,11 @@ Progress = Callable[[float], None]
 """Called with the share that is done."""
 
 
+def portion(progress: Progress, number: int, count: int) -> Progress:
+    """Return the progress of one run of several, counted from 0."""
+    return lambda share: progress((number + share) / count)
+
+
 class Diary:
     """Notes of a run: on each page a time and named values, one line after the other."""
 

@@ -10,7 +10,15 @@ from suchus.design import Crocodile
 from suchus.motion.swim import YAWS
 from suchus.water.diary import Diary, Progress
 from suchus.water.pool import SLACK, Pool
-from suchus.water.skin import PLACES, bend, convex_less_concave, joint_torques, place_of_difference, tail_sides
+from suchus.water.skin import (
+    PLACES,
+    bend,
+    convex_less_concave,
+    joint_torques,
+    place_of_difference,
+    servo_torques,
+    tail_sides,
+)
 from suchus.water.tank import Tether
 from suchus.water.undulation import Motion
 from suchus.water.view import View, kept
@@ -75,6 +83,7 @@ class _Held:
             bend=bend(self._outline, midline),
             place=place_of_difference(sides),
             torque=joint_torques(self._outline, surface, midline),
+            servo=servo_torques(self._outline, surface, midline),
         )
         if phase > 0.25 * (diary.count("quarters") + 1) - SLACK:
             fields = self._view.fields(sim)
@@ -85,7 +94,10 @@ class _Held:
         phase = np.arange(1, SAMPLES + 1) / SAMPLES
         seen = (steps["time"] - self._start) / self._period
         force, when = series.force(), (series.time - 0.5 * series.step - self._start) / self._period
-        torques = np.column_stack([np.interp(phase, seen, column) for column in steps["torque"].T])
+        torques, servos = (
+            np.column_stack([np.interp(phase, seen, column) for column in steps[name].T])
+            for name in ("torque", "servo")
+        )
         shown = self._view.dataset(quarters, "instant")
         data = xr.Dataset(
             {
@@ -93,6 +105,7 @@ class _Held:
                 "aside": ("phase", np.interp(phase, when, force[:, 1]), {"units": "N/m"}),
                 "power": ("phase", np.interp(phase, when, series.column("power")), {"units": "W/m"}),
                 "joint_torque": (("phase", "joint"), torques, {"units": "N m/m"}),
+                "servo_torque": (("phase", "servo"), servos, {"units": "N m"}),
                 "difference": ("phase", np.interp(phase, seen, steps["difference"]), {"units": "Pa"}),
                 "bend": ("phase", np.interp(phase, seen, steps["bend"]), {"units": "rad"}),
                 "place": ("phase", np.interp(phase, seen, steps["place"]), {"units": "1"}),
@@ -106,6 +119,7 @@ class _Held:
                 "side": ["left", "right"],
                 "tail": ("tail", np.linspace(0.0, 1.0, PLACES), {"units": "1"}),
                 "joint": [*YAWS, "tail_yaw_1"],
+                "servo": [*YAWS, "tail_cable"],
             },
         )
         return data.merge(shown)

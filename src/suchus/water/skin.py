@@ -4,6 +4,7 @@ import numpy as np
 from jaxtyping import Float
 
 from suchus import flow
+from suchus.design import cable_joints
 from suchus.water.outline import Outline
 
 PLACES = 33
@@ -20,10 +21,35 @@ def joint_torques(outline: Outline, surface: flow.Surface, midline: flow.Spine) 
         surface: pressure and friction along the skin.
         midline: where the joints are now.
     """
+    return _moments(outline, surface, midline, outline.places[:4], np.ones(surface.markers.station.size))
+
+
+def servo_torques(outline: Outline, surface: flow.Surface, midline: flow.Spine) -> Float[np.ndarray, " 4"]:
+    """Return what the water asks of the yaw servos and of the cable's servo, each at its own shaft [N m].
+
+    Every section is as high as the robot is there and feels the pressures of the flow, which knows no height: water
+    that goes over and under the body would ask for less. The cable bends its joints alike, so that its servo takes the
+    mean of their moments, over the ratio of half the cords' distance to the pulley.
+
+    Args:
+        outline: of the robot.
+        surface: pressure and friction along the skin.
+        midline: where the joints are now.
+    """
+    tail, last = outline.robot.tail, 3 + len(cable_joints(outline.robot))
+    high = 2.0 * np.interp(surface.markers.station, outline.s, outline.silhouette.half_height)
+    moments = _moments(outline, surface, midline, outline.places[:last], high)
+    return np.array([*moments[:3], moments[3:].mean() * tail.pulley / (0.5 * tail.cord_spacing)])
+
+
+def _moments(
+    outline: Outline, surface: flow.Surface, midline: flow.Spine, places: np.ndarray, high: np.ndarray
+) -> np.ndarray:
+    """Return the moment about joints of what the water does beyond them, markers being so high."""
     m = surface.markers
-    fx, fy = surface.traction * m.length
+    fx, fy = surface.traction * m.length * high
     found = []
-    for i, place in enumerate(outline.places[:4]):
+    for i, place in enumerate(places):
         x, y = np.interp(place, outline.s, midline.x), np.interp(place, outline.s, midline.y)
         beyond = m.station < place if i < 3 else m.station > place
         found.append(float(np.sum(((m.x - x) * fy - (m.y - y) * fx)[beyond])))

@@ -185,11 +185,13 @@ def cruise(outline: Outline, motion: Motion, model: Model, water: Water) -> Crui
     held = effort(0.0)
     if abs(held.thrust) <= _NOTHING * held.power / most:
         return Cruise(0.0, held.power, *recoil(outline, bent, 0.0, water))
-    for share in np.geomspace(0.01, 1.0, 25):
+    start = 0.0
+    for share in np.geomspace(0.01, 1.0, 9):
         end = float(np.copysign(share * most, held.thrust))
         if effort(end).thrust * held.thrust <= 0:
-            speed = float(brentq(lambda some: effort(some).thrust, 0.0, end, xtol=1e-6))
+            speed = float(brentq(lambda some: effort(some).thrust, start, end, xtol=1e-6))
             return Cruise(speed, effort(speed).power, *recoil(outline, bent, speed, water))
+        start = end
     raise NotConverged(
         f"no speed up to {most:.3g} m/s balances thrust and drag of {bent.name!r}; raise cross_drag or thickening."
     )

@@ -8,14 +8,15 @@ import xarray as xr
 
 from suchus.design import Crocodile
 from suchus.errors import OutsideLimits
+from suchus.kinematics.mass import GRAVITY
 from suchus.motion import Swim, check_swim
 from suchus.water.measures import efficiency
 from suchus.water.outline import Outline
 from suchus.water.slender import Model, Water, cruise, cycle
-from suchus.water.swimming import MODELS, wave_speed
+from suchus.water.swimming import MODELS, displaced, wave_speed
 from suchus.water.undulation import STILL, undulation
 
-VALUES = {"speed": "m/s", "efficiency": "1", "strouhal": "1", "slip": "1"}
+VALUES = {"speed": "m/s", "efficiency": "1", "cost_of_transport": "1", "strouhal": "1", "slip": "1"}
 """What is found of each motion, with units."""
 
 
@@ -50,10 +51,32 @@ def survey(robot: Crocodile, motions: Sequence[Swim], *, water: Water | None = N
     return xr.Dataset({**data, "possible": ("motion", possible, {"units": "1"})}, coords={"model": list(MODELS)})
 
 
-def _one(outline: Outline, motion: Swim, model: Model, water: Water) -> tuple[float, float, float, float]:
+def greatest(robot: Crocodile, motion: Swim, *, most: float = 4.0) -> float:
+    """Return the greatest factor of every angle at which joints and servos still follow a motion, to 1e-4 [-].
+
+    Args:
+        robot: who swims.
+        motion: how.
+        most: factor that is not gone beyond [-].
+    """
+    largest = max(*motion.yaw, motion.tail)
+    low, high = 0.0, min(most, np.pi / largest) if largest > 0 else most  # no angle beyond half a turn
+    if _possible(robot, scaled(motion, high, motion.frequency)):
+        return high
+    while high - low > 1e-4:
+        middle = 0.5 * (low + high)
+        if _possible(robot, scaled(motion, middle, motion.frequency)):
+            low = middle
+        else:
+            high = middle
+    return low
+
+
+def _one(outline: Outline, motion: Swim, model: Model, water: Water) -> tuple[float, ...]:
+    """Return ``VALUES`` of one motion by one model."""
     free = cruise(outline, motion, model, water)
     if free.speed == 0.0:
-        return 0.0, 0.0, float("nan"), 0.0
+        return 0.0, 0.0, float("nan"), float("nan"), 0.0
     curve = cycle(outline, motion, free.sway, free.turn)
     straight = undulation(outline, replace(STILL, frequency=motion.frequency))
     drag = -model(outline, cycle(outline, straight), free.speed, water).thrust * float(np.sign(free.speed))
@@ -61,6 +84,7 @@ def _one(outline: Outline, motion: Swim, model: Model, water: Water) -> tuple[fl
     return (
         free.speed,
         efficiency(drag, free.speed, free.power),
+        free.power / (GRAVITY * displaced(outline, water.density) * abs(free.speed)),
         motion.frequency * swing / abs(free.speed),
         free.speed / wave_speed(outline, motion, curve),
     )
