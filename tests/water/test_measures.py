@@ -17,6 +17,7 @@ from suchus.water import (
     readings_table,
     scaled,
     survey,
+    swing,
 )
 
 PHASE = np.arange(1, 121) / 120
@@ -74,6 +75,14 @@ def test_a_swim_in_numbers():
     assert swum.head_yaw == pytest.approx(0.2)
     assert crossings(free) >= 3
     assert efficiency(5.0, 0.4, 8.0) == pytest.approx(0.25)
+
+
+def test_a_swing_is_as_much_of_a_sine_as_it_is():
+    t, drift = np.arange(241) / 120, 0.3 * np.arange(241) / 240
+    pure, zigzag, twice = np.sin(2 * np.pi * t), 2 * np.abs(2 * (t % 1) - 1) - 1, np.sin(4 * np.pi * t)
+    amplitude, share = swing(np.column_stack([0.2 * pure + drift, zigzag, pure + twice, 0 * t]))
+    np.testing.assert_allclose(amplitude, [0.2, 8 / np.pi**2, 1.0, 0.0], atol=1e-3)
+    np.testing.assert_allclose(share, [1.0, 96 / np.pi**4, 0.5, 0.0], atol=1e-3)
 
 
 def test_every_reading_is_tried_and_the_table_says_why_not(robot):

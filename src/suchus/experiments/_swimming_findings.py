@@ -9,6 +9,9 @@ from suchus.design import Crocodile
 from suchus.experiment import Measure, Verdict, judge
 from suchus.water import Quarters, Swum, convex_higher, crossings, efficiency, level
 
+SINE = 0.95
+"""Share of its variance that a swing has in the sine of one cycle to be called one [-]; a zigzag has 0.986, a square
+wave 0.81."""
 ARMS = ("trunk and tail", "trunk only", "tail only", "as printed", "exact wave", "exact wave as printed")
 """Motions that are compared swimming freely."""
 
@@ -69,6 +72,8 @@ def _free(record: xr.Dataset, free: xr.Dataset, robot: Crocodile, frequency: flo
     yield "strouhal", Measure(swum.strouhal, "-")
     yield "efficiency", Measure(efficiency(float(record.towed_drag), swum.speed, float(free.power[-1])), "-")
     yield "cost_of_transport", Measure(swum.cost_of_transport, "-")
+    yield "tail_sine_share", Measure(float(free.sine_share[-1]), "-")
+    yield "envelope_growth", Measure(float(free.swing[-1] / free.swing.min()), "-")
     yield "head_yaw", Measure(swum.head_yaw, "rad")
     for arm, speed in _compared(record).items():
         yield f"speed_{_name(arm)}", Measure(speed, "m/s")
@@ -90,7 +95,29 @@ def verdicts(record: xr.Dataset) -> tuple[Verdict, ...]:
     Args:
         record: what happened.
     """
-    return (*_fig_17(part(record, "held")), _track(part(record, "free")), _main_thrust(record))
+    free = part(record, "free")
+    return (*_wave(free), *_fig_17(part(record, "held")), _track(free), _main_thrust(record))
+
+
+def _wave(free: xr.Dataset) -> Iterator[Verdict]:
+    share, swings, s = free.sine_share.values, free.swing.values, np.linspace(0.0, 1.0, free.swing.size)
+    yield judge(
+        "swim_tail_sine",
+        float(share[-1]),
+        f"Swimming freely, {100 * share[-1]:.1f} % of the variance of the tip's way to the side is the sine of one "
+        f"cycle; {100 * SINE:.0f} % would do.",
+        holds=bool(share[-1] >= SINE),
+    )
+    least, whole = int(swings.argmin()), float(np.average(share, weights=swings**2))
+    grows = bool(np.all(np.diff(swings[least:]) > 0))
+    yield judge(
+        "swim_body_wave",
+        float(swings[-1] / swings[least]),
+        f"Swimming freely, the midline swings least at {s[least]:.2f} of its length from the snout, "
+        f"{1000 * swings[least]:.0f} mm, and {1000 * swings[-1]:.0f} mm at the tip, {'' if grows else 'not '}growing "
+        f"all the way; {100 * whole:.1f} % of it is the sine of one cycle. The least swing must lie in the front half.",
+        holds=grows and s[least] < 0.5 and whole >= SINE,
+    )
 
 
 def _fig_17(held: xr.Dataset) -> Iterator[Verdict]:

@@ -43,6 +43,8 @@ class Swimming(Experiment):
     less than 15 % of the greater part of the force (``thrust_asymmetry``). Free: from rest, in a grid that travels
     along; the speed is the mean of the last cycle, ``efficiency`` the power that towing the straight body at that speed
     takes over the power of the joints. An S-shaped track crosses its mean line at least three times in two cycles.
+    A swing is a sine if 95 % of its variance over two cycles is; the envelope grows if it does so from a place in the
+    front half to the tip.
     Trunk, tail, the printed direction, and the wave that the midline follows exactly are compared on a coarser grid.
     Other readings of (20) are held in a thicker water, at ``readings_reynolds``. Everything is per metre of depth but
     ``servo_load_peak``, the torque at a servo's shaft over its limit: there every section is as high as the robot's and
@@ -52,6 +54,8 @@ class Swimming(Experiment):
     title = "How does it swim?"
     shows = "Section IV.B, eq. (20), Fig. 17"
     claims = (
+        "swim_tail_sine",
+        "swim_body_wave",
         "swim_pressure_convex",
         "swim_diagonal_force",
         "swim_pressure_falls",

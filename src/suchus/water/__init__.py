@@ -5,7 +5,7 @@ from suchus.water.fit import Fit, fit, head_base
 from suchus.water.free import free_swim
 from suchus.water.held import tether
 from suchus.water.immersed import immersed
-from suchus.water.measures import Quarters, Swum, convex_higher, crossings, efficiency, level
+from suchus.water.measures import Quarters, Swum, convex_higher, crossings, efficiency, level, swing
 from suchus.water.outline import Base, Curve, Outline, Silhouette, silhouette
 from suchus.water.passive import sprung
 from suchus.water.readings import Attempt, attempts, readings_table
@@ -61,6 +61,7 @@ __all__ = [
     "sprung",
     "survey",
     "swim",
+    "swing",
     "tether",
     "towed",
     "undulation",

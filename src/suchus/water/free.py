@@ -10,6 +10,7 @@ from suchus.design import Crocodile
 from suchus.kinematics.mass import GRAVITY
 from suchus.water.diary import Diary, Progress
 from suchus.water.held import SAMPLES
+from suchus.water.measures import swing
 from suchus.water.pool import SLACK, Pool
 from suchus.water.slender import cycle
 from suchus.water.swimming import wave_speed
@@ -50,8 +51,8 @@ class _Free:
         if left > 2.0 + SLACK:
             return
         spine, (position, _) = midline(sim), sim.frame
-        ends = (spine.x[0] + position[0], spine.y[0] + position[1], spine.heading[0], spine.y[-1] + position[1])
-        diary.note("track", sim.time, ends=np.array(ends))
+        snout = np.array([spine.x[0] + position[0], spine.heading[0]])
+        diary.note("track", sim.time, snout=snout, across=spine.y + position[1])
         if left < 1.0 - (diary.count("frames") + 1) / self._frames + SLACK:
             fields = self._view.fields(sim)
             diary.note("frames", sim.time, **{n: fields[n] for n in ("vorticity", "pressure")}, **kept(spine))
@@ -61,15 +62,21 @@ class _Free:
         speed, power = _means(sim.record, period, self._pool.setting.cycles)
         track = diary.page("track")
         even = self._end + period * (np.arange(2 * SAMPLES + 1) / SAMPLES - 2.0)
-        ends = np.column_stack([np.interp(even, track["time"], column) for column in track["ends"].T])
+        snout, across = (
+            np.column_stack([np.interp(even, track["time"], column) for column in track[name].T])
+            for name in ("snout", "across")
+        )
+        amplitude, share = swing(across)
         data = xr.Dataset(
             {
                 "speed": ("cycle", speed, {"units": "m/s"}),
                 "power": ("cycle", power, {"units": "W/m"}),
-                "snout_x": ("sample", ends[:, 0], {"units": "m"}),
-                "snout_y": ("sample", ends[:, 1], {"units": "m"}),
-                "heading": ("sample", ends[:, 2], {"units": "rad"}),
-                "tail_y": ("sample", ends[:, 3], {"units": "m"}),
+                "snout_x": ("sample", snout[:, 0], {"units": "m"}),
+                "snout_y": ("sample", across[:, 0], {"units": "m"}),
+                "heading": ("sample", snout[:, 1], {"units": "rad"}),
+                "tail_y": ("sample", across[:, -1], {"units": "m"}),
+                "swing": ("station", amplitude, {"units": "m"}),
+                "sine_share": ("station", share, {"units": "1"}),
                 "weight": ((), DENSITY * GRAVITY * self._pool.shape.mass(sim.time).area, {"units": "N/m"}),
                 "wave_speed": ((), wave_speed(outline, motion, cycle(outline, motion)), {"units": "m/s"}),
                 "thin": ((), sim.thin["body"], {"units": "1"}),

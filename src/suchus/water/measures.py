@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
+from jaxtyping import Float
 
 SYMMETRIC = 0.15
 """Forces half a cycle apart count as mirrored if they differ by less than this part of the force at T/4 [-]."""
@@ -80,6 +81,21 @@ def level(track: np.ndarray) -> np.ndarray:
 def crossings(free: xr.Dataset) -> int:
     """Return how often the snout crosses its own mean line in the last two cycles: an S does so at least thrice."""
     return int(np.sum(np.diff(np.sign(level(free.snout_y.values))) != 0))
+
+
+def swing(across: Float[np.ndarray, "sample station"]) -> tuple[np.ndarray, np.ndarray]:
+    """Return how far each station swings to either side as a sine, and which share of its swing that sine is.
+
+    Args:
+        across: places to the side over two whole cycles, first and last instant included [m].
+
+    Returns:
+        Amplitude of the sine of one cycle, shape (station,) [m], and its share of the variance about the mean line [-].
+    """
+    swung = np.column_stack([level(track) for track in across.T])[:-1]
+    harmonic = 2.0 * np.fft.rfft(swung, axis=0)[2] / len(swung)
+    variance = np.maximum(np.mean(swung**2, axis=0), np.finfo(float).tiny)
+    return np.abs(harmonic), 0.5 * np.abs(harmonic) ** 2 / variance
 
 
 class Swum(NamedTuple):
