@@ -5,15 +5,12 @@ from dataclasses import dataclass, field, fields
 import numpy as np
 
 from suchus.errors import InvalidDesign
-from suchus.flow.compiled import PAD
+from suchus.flow.compiled import PAD, Window
 from suchus.flow.free import FreeBody
 from suchus.flow.grid import Grid
 from suchus.flow.immerse import REACH, THINNEST
 from suchus.flow.pose import Motion, Pose
 from suchus.flow.shape import Field, Shape
-
-Window = tuple[int, int, int, int]
-"""Padded cell indices j0, j1, i0, i1 around the bodies."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -12,7 +12,7 @@ import numpy as np
 from suchus.errors import UnreadableFile, Unwritable
 from suchus.flow.setup import Setup
 
-VERSION = 2
+VERSION = 3
 """Layout of the file; rises with every change of it."""
 
 State = dict[str, np.ndarray]
@@ -38,7 +38,7 @@ def fingerprint(setup: Setup) -> str:
     s = setup
     numbers = (
         s.grid, s.viscosity, s.density, s.follow, s.follow_axes, s.courant, s.step, s.tolerance, s.precision,
-        tuple(type(getattr(s.sides, f.name)).__name__ for f in fields(s.sides)),
+        tuple(type(getattr(s.sides, f.name)).__name__ for f in fields(s.sides)), s.sides.endless,
         tuple((type(b).__name__, type(b.shape).__name__, b.name) for b in s.bodies),
         None if callable(s.stream) else s.stream,
     )  # fmt: skip

@@ -23,6 +23,9 @@ SERIAL_BELOW = 4_096
 PAD = 2
 """Rows and columns around the domain, for the boundary values [-]."""
 
+Window = tuple[int, int, int, int]
+"""Padded cell indices j0, j1, i0, i1 around the bodies."""
+
 # No "nnan" and no "ninf": a NaN must stay visible.
 _FAST = {"contract", "reassoc", "nsz", "arcp"}
 

@@ -13,6 +13,10 @@ from suchus.flow.grid import Grid
 class Stream:
     """Open water that moves with the far stream; where the stream leaves, the wake is carried out."""
 
+    endless: bool = True
+    """Whether, if all four sides are such, they also move as the flow in the domain makes water without end move
+    (``openwater``); False holds the stream itself, which the body's displacement then cannot widen."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Slip:
@@ -82,6 +86,11 @@ class Sides:
     def periodic(cls) -> "Sides":
         """Return a domain that repeats itself along both axes."""
         return cls(left=Periodic(), right=Periodic(), bottom=Periodic(), top=Periodic())
+
+    @property
+    def endless(self) -> bool:
+        """Whether water without end is all around."""
+        return all(isinstance(s, Stream) and s.endless for s in (self.left, self.right, self.bottom, self.top))
 
     @property
     def repeats(self) -> tuple[bool, bool]:

@@ -9,9 +9,9 @@ import numpy as np
 from suchus.errors import NotConverged
 from suchus.flow import multigrid, poisson
 from suchus.flow.advect import advance
-from suchus.flow.body import AnyBody, Window, measure_all, unite, window_of
+from suchus.flow.body import AnyBody, measure_all, unite, window_of
 from suchus.flow.border import Border
-from suchus.flow.compiled import PAD
+from suchus.flow.compiled import PAD, Window
 from suchus.flow.exchange import CONTENTS, SUMS, collect, contents, swelling
 from suchus.flow.grid import Grid
 from suchus.flow.immerse import fill, fill_source, immerse
@@ -22,6 +22,9 @@ from suchus.flow.stencil import seal_ends
 
 MOST_CYCLES = 60
 """Iterations of the pressure solver before it counts as stuck [-]."""
+
+MOST_ROUNDS = 12
+"""Rounds in which the first step and the water around the domain come to terms [-]."""
 
 STUCK = 1000.0
 """Residual over its limit above which a solve has failed; below, rounding stopped it short [-]."""
@@ -68,19 +71,13 @@ class Water:
 
     def state(self) -> dict[str, np.ndarray]:
         """Return what changes and cannot be placed anew, by name."""
-        edges = {f"edge{k}": edge.prescribed for k, edge in enumerate(self.border.edges)}
-        return {
-            "u": self.u, "v": self.v, "p": self.p, "offset": np.array(self.offset),
-            "stream": np.array(self.border.stream), **edges,
-        }  # fmt: skip
+        return {"u": self.u, "v": self.v, "p": self.p, "offset": np.array(self.offset), **self.border.state()}
 
     def resume(self, state: dict[str, np.ndarray]) -> None:
         """Set what changes."""
         self.u[:], self.v[:], self.p[:] = state["u"], state["v"], state["p"]
         self.offset = float(state["offset"])
-        self.border.stream = (float(state["stream"][0]), float(state["stream"][1]))
-        for k, edge in enumerate(self.border.edges):
-            edge.prescribed[:] = state[f"edge{k}"]
+        self.border.resume(state)
 
     def _part(self, kind: int) -> np.ndarray:
         return multigrid.level(self._store, self._layout, kind, 0)
@@ -176,17 +173,31 @@ class Water:
         real, h = self.dtype, self.grid.cell
         step = real(dt / h)
         force = (real(push[0] * h), real(push[1] * h))
-        self.border.prepare(self.u, self.v, float(step), stream)
+        first = self.border.steps == 0 and self.border.water is not None
+        start = self.p.copy() if first else self.p
+        self.border.prepare(self.u, self.v, self.window, float(step), stream)
+        self._stages(step, force, limits)
+        if first:  # a body that starts at once moves the far water at once
+            for _ in range(MOST_ROUNDS):
+                if self.border.settle(self._u2, self._v2, self.window) <= limits[1]:
+                    break
+                self.p[:] = start
+                self._stages(step, force, limits)
+        (self.u, self.v), (self._u2, self._v2) = (self._u2, self._v2), (self.u, self.v)
+
+    def _stages(self, step, force, limits) -> None:  # type: ignore[no-untyped-def]
+        """Write the velocity at the end of the step to the second pair of fields."""
         self.solves = []
         self.given[:] = 0
         now, one, two = (self.u, self.v), (self._u1, self._v1), (self._u2, self._v2)
+        real = self.dtype
         self._advance(one, now, now, now, step, force, real(0))
         self._project(one, step, limits)
         self._collect(one, now, step, real(0))
+        self.border.settle(*one, self.window)
         self._advance(two, one, now, one, step, force, real(0.5))
         self._project(two, real(0.5) * step, limits)
         self._collect(two, one, step, real(0.5))
-        (self.u, self.v), (self._u2, self._v2) = two, now
 
     def _advance(self, out, blend, base, rate, dt, push, keep) -> None:  # type: ignore[no-untyped-def]
         window = np.array(self.window)

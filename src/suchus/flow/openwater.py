@@ -1,0 +1,216 @@
+# mypy: disable-error-code="no-untyped-def, var-annotated"
+# (the kernels get their types from numba, once per precision)
+"""Sides that move as they would in water without end: what the vorticity in the domain induces there.
+
+By Biot and Savart the velocity anywhere is the far stream's plus what all vorticity, and all divergence of the bodies'
+own motion, induces. Both are gathered to square blocks with their first moments and summed up at every eighth face of
+the sides, with a cubic spline between. In complex form, with strengths ``c = source - i vortex`` and moments ``m``
+about the middle of a block, ``u - i v = (c / z + m / z^2) / (2 pi)``.
+
+**The wake that has left.** A wake goes on behind the domain. In front of a side that carries it out its vorticity is
+faded to nothing, over a quarter of the domain; what is missing from there on acts far away like a source with the
+strength of the wake's defect, ``integral of (U - u) dy``, and is put in as that. It is the source of strength
+``D / (rho U)`` that a body with drag D is from afar. A street of vortices is so replaced by its mean.
+
+Sources: Batchelor 1967, An Introduction to Fluid Dynamics, sections 2.4 and 5.12 (induced velocity, source of a wake);
+Weymouth and Lauber 2024, arXiv:2404.09034 (induced velocities as boundary values on a grid).
+"""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numba import prange
+from scipy.interpolate import CubicSpline
+
+from suchus.flow.compiled import PAD, compiled, threaded
+from suchus.flow.grid import Grid
+
+SIDE = 8
+"""Cells along a block, and faces between two points of a side where the induced velocity is summed up [-]."""
+
+FAINT = 1e-6
+"""Strength over the largest one below which a block is left out: single precision has no more [-]."""
+
+FADE = 0.25
+"""Share of the domain's length over which a wake is faded before it leaves: about a wavelength of a street [-]."""
+
+
+@compiled
+def _spin_row(total, moment, v, v_left, u, u_low, arm):
+    for k in range(total.size):
+        w = np.float64((v[k] - v_left[k]) - (u[k] - u_low[k]))
+        total[k] += w
+        moment[k] += arm * w
+
+
+@compiled
+def _spread_row(block, row, b, window):
+    """Add the divergence of one row of cells in the window to the blocks of row ``b``; ``row`` is (u, v, v above)."""
+    u, v, v_high, arm = row
+    for i in range(window[2], window[3]):
+        spread = np.float64((u[i + 1] - u[i]) + (v_high[i] - v[i]))
+        k = (i - PAD) // SIDE
+        across = (i - PAD) + 0.5 - (SIDE * k + 0.5 * (SIDE - 1))
+        block[0, b, k] += spread
+        block[2, b, k] += spread * across
+        block[3, b, k] += spread * arm
+
+
+@threaded
+def gather(u, v, window, block):
+    """Write the strengths of the blocks (4, row, column): source, vortex, and the moment's two parts.
+
+    Corners belong to a block by their number, so its middle lies at ``SIDE b + (SIDE - 1) / 2`` cells. Strengths are
+    in m/s per cell times cells squared. Divergence is counted in the bodies' window only.
+    """
+    ny, nx = u.shape[0] - 2 * PAD, u.shape[1] - 2 * PAD
+    for b in prange(block.shape[1]):
+        middle = SIDE * b + 0.5 * (SIDE - 1)
+        total, moment = np.zeros(nx), np.zeros(nx)
+        for c in range(max(SIDE * b, 1), min(SIDE * b + SIDE, ny)):
+            j, s, e = c + PAD, PAD + 1, PAD + nx
+            _spin_row(
+                total[1:], moment[1:], v[j, s:e], v[j, s - 1 : e - 1], u[j, s:e], u[j - 1, s:e], c - middle
+            )  # fmt: skip
+        for k in range(block.shape[2]):
+            vortex, up, along = 0.0, 0.0, 0.0
+            for i in range(SIDE * k, min(SIDE * k + SIDE, nx)):
+                vortex += total[i]
+                up += moment[i]
+                along += (i - (SIDE * k + 0.5 * (SIDE - 1))) * total[i]
+            block[0, b, k], block[1, b, k], block[2, b, k], block[3, b, k] = 0.0, vortex, up, -along
+        for j in range(max(SIDE * b + PAD, window[0]), min(SIDE * b + SIDE + PAD, window[1])):
+            _spread_row(block, (u[j], v[j], v[j + 1], j - PAD + 0.5 - middle), b, window)
+
+
+@compiled
+def _induced_at(x, y, place, strength, least):
+    """Return the velocity that blocks at ``place`` (2, block) with ``strength`` (4, block) induce at a point."""
+    u, v = 0.0, 0.0
+    cx, cy = place[0], place[1]
+    source, vortex, m_real, m_imag = strength[0], strength[1], strength[2], strength[3]
+    for k in range(cx.size):
+        dx, dy = x - cx[k], y - cy[k]
+        square = dx * dx + dy * dy
+        square = square if square > least else least
+        a, b = dx / square, -dy / square
+        c, d = a * a - b * b, 2.0 * a * b
+        u += source[k] * a + vortex[k] * b + m_real[k] * c - m_imag[k] * d
+        v -= source[k] * b - vortex[k] * a + m_real[k] * d + m_imag[k] * c
+    return u / (2.0 * np.pi), v / (2.0 * np.pi)
+
+
+@threaded
+def induce(points, place, strength, out):
+    """Write the velocity at ``points`` (2, point) to ``out``; all lengths in cells."""
+    least = 0.25 * SIDE**2
+    for t in prange(points.shape[1]):
+        out[0, t], out[1, t] = _induced_at(points[0, t], points[1, t], place, strength, least)
+
+
+@dataclass(frozen=True, slots=True)
+class Fading:
+    """How a wake is faded towards one side."""
+
+    axis: int
+    """Axis of the side's normal: 0 is x, 1 is y."""
+    low: bool
+    """Whether the side is at the smallest coordinate."""
+    share: float
+    """Share of the vorticity that is faded out [-]."""
+
+
+@dataclass(slots=True)
+class OpenWater:
+    """Open water around a grid, all four sides of it."""
+
+    cells: tuple[int, int]
+    """Cells along x and y."""
+    points: np.ndarray = field(init=False)
+    """Where the sides are summed up, side after side, shape (2, point) [cells]."""
+    between: list[np.ndarray] = field(init=False)
+    """From the points of a side to its faces, per side, shape (face, point) [-]."""
+    blocks: np.ndarray = field(init=False)
+    """Strengths of the blocks, shape (4, row, column)."""
+
+    def __post_init__(self) -> None:
+        nx, ny = self.cells
+        self.blocks = np.zeros((4, -(-ny // SIDE), -(-nx // SIDE)))
+        points, self.between = [], []
+        for axis, at in ((0, 0), (0, nx), (1, 0), (1, ny)):
+            along = self.cells[1 - axis]
+            knots = np.linspace(0.5, along - 0.5, max(-(-along // SIDE), 3) + 1)
+            pair = np.full(knots.size, float(at)), knots
+            points.append(np.array(pair if axis == 0 else pair[::-1]))
+            self.between.append(CubicSpline(knots, np.eye(knots.size))(np.arange(along) + 0.5))
+        self.points = np.concatenate(points, axis=1)
+
+    @classmethod
+    def around(cls, grid: Grid) -> "OpenWater":
+        """Return the open water around a grid."""
+        return cls(grid.cells)
+
+    def inward(
+        self, u: np.ndarray, v: np.ndarray, window: tuple[int, int, int, int], fadings: list[Fading]
+    ) -> list[np.ndarray]:
+        """Return the velocity into the domain that the fields induce on the faces of each side [m/s].
+
+        Args:
+            u: velocity on the left faces, padded [m/s].
+            v: velocity on the lower faces, padded [m/s].
+            window: padded cell indices around the bodies.
+            fadings: the sides that carry a wake out.
+
+        The order is left, right, bottom, top. The sum over all faces is zero but for the sources of wakes.
+        """
+        gather(u, v, np.array(window), self.blocks)
+        rows, columns = self.blocks.shape[1:]
+        middle = 0.5 * (SIDE - 1)
+        x, y = np.meshgrid(SIDE * np.arange(columns) + middle, SIDE * np.arange(rows) + middle)
+        strength, extra = self.blocks, []
+        for fading in fadings:
+            strength, sources = self._fade(strength, x, y, fading, window)
+            extra.append(sources)
+        size = np.abs(strength).max(axis=0)
+        kept = size > FAINT * size.max()
+        place = np.concatenate([np.stack([x[kept], y[kept]]), *(e[:2] for e in extra)], axis=1)
+        values = np.concatenate([strength[:, kept], *(e[2:] for e in extra)], axis=1)
+        out = np.zeros(self.points.shape)
+        induce(self.points, place, values, out)
+        return self._on_faces(out)
+
+    def _on_faces(self, out: np.ndarray) -> list[np.ndarray]:
+        sides, start = [], 0
+        for matrix, axis, sign in zip(self.between, (0, 0, 1, 1), (1, -1, 1, -1), strict=True):
+            end = start + matrix.shape[1]
+            sides.append(sign * np.einsum("fp,p->f", matrix, out[axis, start:end]))  # not BLAS: same bytes everywhere
+            start = end
+        return sides
+
+    def _fade(
+        self, strength: np.ndarray, x: np.ndarray, y: np.ndarray, fading: Fading, window: tuple[int, int, int, int]
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return faded strengths, and the sources in place of what they lack: x, y and strength, shape (6, source)."""
+        axis, cells = fading.axis, self.cells[fading.axis]
+        along, across = (x, y) if axis == 0 else (y, x)
+        first, last = (window[2], window[3]) if axis == 0 else (window[0], window[1])
+        room = (first if fading.low else cells + 2 * PAD - last) - PAD if last > first else cells
+        length = max(min(FADE * cells, room), SIDE)
+
+        def weight(place: np.ndarray) -> np.ndarray:
+            share = np.clip((place if fading.low else cells - place) / length, 0.0, 1.0)
+            out: np.ndarray = 1 - fading.share * (1 - share**2 * (3 - 2 * share))
+            return out
+
+        middle = along[0] if axis == 0 else along[:, 0]
+        lost = np.abs(weight(middle + SIDE / 2) - weight(middle - SIDE / 2))  # per column of blocks
+        vortex, moment = strength[1], strength[2] if axis == 0 else -strength[3]
+        size = np.abs(vortex) * (lost if axis == 0 else lost[:, None])
+        centre = float((size * across).sum() / size.sum()) if size.sum() > 0 else 0.0
+        defect = -(vortex * (across - centre) + moment).sum(axis=axis) / SIDE
+        turn = 1 if (axis == 0) != fading.low else -1
+        source = turn * lost * defect
+        here = np.stack([middle, np.full(middle.size, centre)])[:: 1 if axis == 0 else -1]
+        none = np.zeros(middle.size)
+        some = source != 0
+        return strength * weight(along), np.stack([*here, source, none, none, none])[:, some]
