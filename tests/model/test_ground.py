@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from suchus.design.relief import ASIDE, CELL, REACH, Bumps, Step, Stone, field, profile
+from suchus.design.relief import ASIDE, CELL, REACH, Bumps, Step, Stone, field, heights, profile
 from suchus.errors import InvalidDesign
 from suchus.model import compile_model
 
@@ -13,20 +13,28 @@ STONE = Stone(at=0.75, aside=0.0, height=0.05, length=0.06, width=0.05)
 BUMPS = Bumps(height=0.04, correlation=0.06, start=0.42, seed=3)
 
 
-def heights_in_mujoco(robot, relief, xs):
-    """What a ray from above meets; a little aside, since a ray along an edge of the height field slips through."""
+def heights_in_mujoco(robot, relief, xs, ys):
+    """What a ray from above meets."""
     model = compile_model(robot, 0.002, relief)
     data = mujoco.MjData(model)
     data.qpos[2] = 50.0  # out of the way
     mujoco.mj_kinematics(model, data)
     down, geom = np.array([0.0, 0.0, -1.0]), np.zeros(1, dtype=np.int32)
-    return np.array([5.0 - mujoco.mj_ray(model, data, np.array([x, 2e-4, 5.0]), down, None, 1, -1, geom) for x in xs])
+    return np.array(
+        [
+            5.0 - mujoco.mj_ray(model, data, np.array([x, y, 5.0]), down, None, 1, -1, geom)
+            for x, y in zip(xs, ys, strict=True)
+        ]
+    )
 
 
 @pytest.mark.parametrize("relief", [None, STEP, STONE, BUMPS])
 def test_the_ground_of_the_model_is_the_ground_of_the_design(robot, relief):
+    """A little aside of the points of a height field: a ray along one of its edges slips through."""
     xs = REACH[0] + CELL * np.arange(1, 160) + 1e-4
-    assert heights_in_mujoco(robot, relief, xs) == pytest.approx(profile(relief, xs), abs=3e-4)
+    assert heights_in_mujoco(robot, relief, xs, np.full(159, 2e-4)) == pytest.approx(profile(relief, xs), abs=3e-4)
+    ys = CELL * np.random.default_rng(0).integers(-60, 60, 159) + 2e-4  # beyond the relief too
+    assert heights_in_mujoco(robot, relief, xs, ys) == pytest.approx(heights(relief, xs, ys), abs=3e-4)
 
 
 @settings(max_examples=10)

@@ -9,12 +9,14 @@ import numpy as np
 import pytest
 
 from suchus.design import LEGS
+from suchus.design.ground import Ground
 from suchus.design.relief import Bumps, Step, Stone, field
 from suchus.errors import IncompatibleRecord
+from suchus.record import ground_text
 from suchus.replay import replay, save
-from suchus.replay.ankles import NEAR, REACH, ankles, footed
 from suchus.replay.frames import MOST, frames
-from suchus.skin import poses, skin
+from suchus.skin import ankles, footed, poses, skin
+from suchus.skin.ankles import NEAR, REACH
 from suchus.skin.bones import rotate
 
 
@@ -61,7 +63,7 @@ def test_standing_feet_lie_flat_and_balls_stay(robot, crawled):
     shown, surface = frames(crawled, robot), skin(robot)
     for lift, reach in ((0.0, None), (1.0, 0.0)):
         feet = shown.feet + np.array([0.0, 0.0, lift])
-        bones = ankles(robot, surface, shown.bones, feet)
+        bones = ankles(robot, shown.bones, feet)
         assert np.array_equal(feet, bones.positions[:, -4:])
         assert np.allclose(np.linalg.norm(bones.quaternions, axis=-1), 1.0)
         for i, leg in enumerate(LEGS):
@@ -79,20 +81,19 @@ def test_standing_feet_lie_flat_and_balls_stay(robot, crawled):
 
 
 def test_feet_hang_on_ankles_and_nothing_else_does(robot):
-    surface = skin(robot)
-    indices, rest = footed(robot, surface)
-    on_foot = indices[:, 0] >= len(surface.bones)
-    away = surface.vertices - rest[indices[:, 0]]
+    surface, bodies = footed(robot), len(skin(robot).bones)
+    on_foot = surface.indices[:, 0] >= bodies
+    away = surface.vertices - surface.rest[surface.indices[:, 0]]
     for i, leg in enumerate(LEGS):
         radius = robot.leg(leg).foot_radius
-        assert np.linalg.norm(away[indices[:, 0] == len(surface.bones) + i], axis=1).max() < 6 * radius
+        assert np.linalg.norm(away[surface.indices[:, 0] == bodies + i], axis=1).max() < 6 * radius
     assert 0.1 < on_foot.mean() < 0.3
     assert (surface.weights[on_foot, 0] > 0.999).all()
 
 
 def test_skin_comes_through(robot, crawled):
     meta, raw = opened(replay(crawled, robot))
-    told, surface = meta["skins"][0], skin(robot)
+    told, surface = meta["skin"], skin(robot)
     vertices = read(raw, told["vertices"]).reshape(-1, 3) / 32767 * told["scale"]
     assert np.allclose(surface.vertices, vertices, atol=5e-5)
     assert np.array_equal(surface.faces.ravel(), read(raw, told["faces"]))
@@ -139,6 +140,35 @@ def frames_of(page):
     return read(raw, meta["actors"][0]["arrays"]["mass"]).reshape(-1, 3)
 
 
+def on(record, ground):
+    """Return a record that tells another ground."""
+    return record.assign(stands_on=((), ground_text(ground)))
+
+
+def test_a_slope_is_told_in_words_and_leans_the_picture(robot, crawled):
+    ground = Ground(uphill=np.radians(10), sideways=np.radians(-5))
+    page = replay(on(crawled, ground), robot, ghost=on(crawled, replace(ground, grip=0.5)))
+    meta, _ = opened(page)
+    assert "The ground rises by 10° ahead and falls by 5° to the left." in page
+    assert "other ground" not in page
+    ahead = rotate(np.array(meta["slope"]), np.array([1.0, 0.0, 0.0]))
+    assert ahead[2] == pytest.approx(np.sin(ground.uphill))
+    assert meta["relief"] is None
+
+
+def test_a_record_of_before_grounds_were_kept_is_shown_on_level_ground(robot, crawled):
+    assert replay(crawled.drop_vars("stands_on"), robot) == replay(crawled, robot)
+
+
+def test_a_foot_on_a_step_lies_as_flat_as_on_even_ground(robot, crawled):
+    shown = frames(crawled, robot)
+    step = Step(at=-0.9, height=0.1)
+    raised = shown.feet + np.array([0.0, 0.0, step.height])
+    level, high = ankles(robot, shown.bones, shown.feet), ankles(robot, shown.bones, raised, step)
+    assert np.allclose(level.quaternions, high.quaternions)
+    assert not np.allclose(level.quaternions, ankles(robot, shown.bones, raised).quaternions, atol=0.01)
+
+
 @pytest.mark.parametrize(
     "relief",
     [
@@ -148,9 +178,13 @@ def frames_of(page):
     ],
     ids=lambda relief: type(relief).__name__,
 )
-def test_relief_is_told(robot, crawled, relief):
-    meta, raw = opened(replay(crawled, robot, relief=relief))
-    (piece,) = meta["relief"]
+def test_relief_is_told_and_no_robot_stands_beside_it(robot, crawled, relief):
+    page = replay(on(crawled, Ground(relief=relief)), robot, ghost=crawled)
+    meta, raw = opened(page)
+    assert meta["overlaid"]
+    assert 'value="beside"' not in page
+    assert "other ground, which is not shown" in page
+    piece = meta["relief"]
     if isinstance(relief, Bumps):
         heights = piece["scale"] * read(raw, piece["heights"]).reshape(piece["shape"])
         assert np.allclose(field(relief), heights, atol=1e-5)

@@ -2,16 +2,19 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from suchus.design.ground import Ground, slope
+from suchus.design.relief import Bumps, heights
 from suchus.errors import IncompatibleRecord, UnreadableFile
 from suchus.gaits import GAITS
 from suchus.land import Run, simulate
 from suchus.record import save
 from suchus.robots import ROBOTS
+from suchus.skin.bones import rotate
 from suchus.viewer import rods
 from suchus.viewer.bodies import Posture, pieces, support
 from suchus.viewer.history import COLUMNS
 from suchus.viewer.plots import gait_bars
-from suchus.viewer.replay import Player, takes
+from suchus.viewer.replay import _NEEDED, Player, takes
 from suchus.viewer.swim import films
 
 stage = pytest.importorskip("suchus.viewer.stage", reason="the extra viewer is not installed")
@@ -44,6 +47,32 @@ def test_bodies_stand_where_the_record_says(walk):
         feet = [number for number in posture.geoms() if posture.model.geom(number).name.endswith("_foot")]
         found = {posture.model.geom(number).name: posture.geom(number)[0] for number in feet}
         np.testing.assert_allclose(found["LF_foot"], now["foot_position"][0], atol=1e-9)
+
+
+def test_a_take_knows_the_ground_it_was_walked_on(tmp_path):
+    ground = Ground(uphill=0.1, relief=Bumps(height=0.03, correlation=0.06, start=0.4, seed=1))
+    runs = [Run(robot=ROBOTS["caiman"], gait=GAITS["belly_crawl"], ground=g) for g in (ground, Ground())]
+    record = simulate(runs, duration=0.05, timestep=0.01)
+    assert [take.ground for take in takes(save(record, tmp_path / "new.nc"))] == [ground, Ground()]
+    old = save(record.isel(run=1).drop_vars("stands_on"), tmp_path / "old.nc")
+    assert [take.ground for take in takes(old)] == [Ground()]
+
+
+@pytest.mark.parametrize("relief", [None, Bumps(height=0.03, correlation=0.1, start=-1.0, seed=1)])
+def test_feet_that_stand_do_not_dip_into_the_ground(relief):
+    """The toes of an erect leg would, without ankles: 16 mm."""
+    robot, gait = ROBOTS["caiman"], GAITS["high_walk"]
+    record = simulate([Run(robot=robot, gait=gait, ground=Ground(relief=relief))], duration=1.5, timestep=0.005)
+    posture = Posture(robot)
+    (piece,) = pieces(robot, 1)
+    feet = piece.weights[:, [name.endswith("ankle") for name in piece.bones]].sum(axis=1) > 0.5
+    for sample in (100, 120, 140):
+        posture.put({name: values.values[0, sample] for name, values in record[list(_NEEDED)].items()})
+        at = np.zeros_like(piece.vertices)
+        for i, (place, turn) in enumerate(posture.bones(relief)[name] for name in piece.bones):
+            at += piece.weights[:, i : i + 1] * (place + rotate(turn, piece.vertices - piece.rest[i]))
+        dip = heights(relief, at[:, 0], at[:, 1]) - at[:, 2]
+        assert -0.003 < dip[feet].max() < 0.005
 
 
 def test_a_record_of_another_robot_is_refused(walk):
@@ -89,7 +118,7 @@ def test_the_pieces_of_the_skin_are_the_whole_skin():
 
 
 def test_a_ground_seen_uphill_rises_ahead_and_gravity_points_down():
-    turned = stage.slope(0.2, 0.1)
+    turned = slope(0.2, 0.1)
     down = np.array([-np.sin(0.2), -np.cos(0.2) * np.sin(0.1), -np.cos(0.2) * np.cos(0.1)])  # as the simulation has it
     np.testing.assert_allclose(stage._rotated(turned, down), [0.0, 0.0, -1.0], atol=1e-12)
     assert stage._rotated(turned, np.array([1.0, 0.0, 0.0]))[2] == pytest.approx(np.sin(0.2))

@@ -5,7 +5,7 @@ from functools import lru_cache
 
 import numpy as np
 from jaxtyping import Float
-from scipy.ndimage import gaussian_filter
+from scipy.ndimage import gaussian_filter, map_coordinates
 
 from suchus.design.checks import Checks
 
@@ -99,6 +99,26 @@ def field(bumps: Bumps) -> Float[np.ndarray, "across along"]:
     return heights
 
 
+def heights(relief: Relief | None, x: Float[np.ndarray, "*b"], y: Float[np.ndarray, "*b"]) -> Float[np.ndarray, "*b"]:
+    """Return the height of the ground anywhere [m].
+
+    Args:
+        relief: None for even ground.
+        x: ahead of the hips at the start [m].
+        y: to the left of them [m].
+    """
+    if isinstance(relief, Step):
+        return np.where((x >= relief.at) & (x <= REACH[1]) & (np.abs(y) <= ASIDE), relief.height, 0.0)
+    if isinstance(relief, Stone):
+        inside = (np.abs(x - relief.at) <= relief.length / 2) & (np.abs(y - relief.aside) <= relief.width / 2)
+        return np.where(inside, relief.height, 0.0)
+    if isinstance(relief, Bumps):
+        grid = field(relief)
+        at = np.stack([(y + ASIDE) / CELL, (x - REACH[0]) / CELL])
+        return np.asarray(map_coordinates(grid, at, order=1, cval=float(grid.min())))
+    return np.zeros_like(x)
+
+
 def profile(relief: Relief | None, x: Float[np.ndarray, "*b"]) -> Float[np.ndarray, "*b"]:
     """Return the height of the ground along the line on which a robot starts [m].
 
@@ -106,13 +126,4 @@ def profile(relief: Relief | None, x: Float[np.ndarray, "*b"]) -> Float[np.ndarr
         relief: None for even ground.
         x: ahead of the hips at the start [m].
     """
-    if isinstance(relief, Step):
-        return np.where(x >= relief.at, relief.height, 0.0)
-    if isinstance(relief, Stone):
-        inside = (np.abs(x - relief.at) <= relief.length / 2) & (abs(relief.aside) <= relief.width / 2)
-        return np.where(inside, relief.height, 0.0)
-    if isinstance(relief, Bumps):
-        heights = field(relief)
-        along = REACH[0] + CELL * np.arange(heights.shape[1])
-        return np.asarray(np.interp(x, along, heights[heights.shape[0] // 2]))
-    return np.zeros_like(x)
+    return heights(relief, x, np.zeros_like(x))

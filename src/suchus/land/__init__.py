@@ -1,5 +1,6 @@
 """Simulation on land: a batch of runs from the start; one crawl is a batch of one."""
 
+from suchus.design.ground import Ground
 from suchus.land.arenas import ARENAS
 from suchus.land.crawling import crawl
 from suchus.land.faults import Deaf, Fault, Limp, Locked, Weak
@@ -7,7 +8,7 @@ from suchus.land.live import Live
 from suchus.land.loop import CONTROL_PERIOD
 from suchus.land.lost import KINDS, LEGS_LOST, LOST, angle_at, lost
 from suchus.land.push import Push
-from suchus.land.run import VACUUM, WATER, Afloat, Ground, Run
+from suchus.land.run import VACUUM, WATER, Afloat, Run
 from suchus.land.simulation import simulate
 from suchus.land.toppling import smallest_pushes
 

@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from math import radians
 from types import MappingProxyType
 
+from suchus.design.ground import Ground
 from suchus.design.relief import Bumps, Step, Stone
-from suchus.land.run import Ground
 
 BEFORE = 0.42
 """Where bumps begin, ahead of the hips at the start [m]: just ahead of the front feet."""

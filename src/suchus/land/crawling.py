@@ -6,10 +6,11 @@ import xarray as xr
 
 from suchus.control import Control, OpenLoop
 from suchus.design import Crocodile
+from suchus.design.ground import Ground
 from suchus.errors import Diverged
 from suchus.land.faults import Fault
 from suchus.land.push import Push
-from suchus.land.run import Ground, Run
+from suchus.land.run import Run
 from suchus.land.simulation import simulate
 from suchus.motion import Gait
 

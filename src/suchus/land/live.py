@@ -7,11 +7,12 @@ import numpy as np
 
 from suchus.control import Coordinated
 from suchus.control.coordinated import Coordinator
+from suchus.design.ground import Ground
 from suchus.errors import Diverged, InvalidDesign
 from suchus.land.faults import Fault, check_faults
 from suchus.land.loop import CONTROL_PERIOD, Loop, physics_steps, start
 from suchus.land.push import Push, check_pushes
-from suchus.land.run import Ground, Run
+from suchus.land.run import Run
 from suchus.motion import START, Gait, check_limits
 
 _START = round(START / CONTROL_PERIOD)  # [control period]

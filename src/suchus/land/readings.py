@@ -10,7 +10,7 @@ from suchus.design import LEGS, joint_names, servo_names
 from suchus.land.bench import Bench
 from suchus.land.run import Run
 from suchus.model import TRUNK_BODIES, joint_addresses, sensor_names
-from suchus.record import dataset
+from suchus.record import dataset, ground_text
 
 
 class Readings:
@@ -70,6 +70,7 @@ class Readings:
             "duty_factor": np.array([run.gait.duty_factor for run in self._runs]),
             "ended": last,
             "cause": np.array(self._bench.cause),
+            "stands_on": np.array([ground_text(None if run.afloat else run.ground) for run in self._runs]),
         }
         coordinates: dict[str, Sequence[object] | np.ndarray] = {
             "run": np.arange(len(robots)),

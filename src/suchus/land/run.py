@@ -5,29 +5,10 @@ from dataclasses import dataclass, field
 from suchus.control import Control, OpenLoop
 from suchus.design import Crocodile
 from suchus.design.checks import require
-from suchus.design.relief import Relief
+from suchus.design.ground import Ground
 from suchus.land.faults import Fault
 from suchus.land.push import Push
 from suchus.motion import Gait
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Ground:
-    """Ground: even or with relief, possibly tilted."""
-
-    grip: float = 1.0
-    """Factor on the friction of all the robot's surfaces [-]."""
-    uphill: float = 0.0
-    """Slope along the walk, up positive [rad]."""
-    sideways: float = 0.0
-    """Slope across the walk, left side up positive [rad]."""
-    relief: Relief | None = None
-    """What stands up from it; None where it is even."""
-
-    def __post_init__(self) -> None:
-        require("ground", "grip", self.grip, 0.01, 10.0, "")
-        require("ground", "uphill", self.uphill, -1.0, 1.0, "rad")
-        require("ground", "sideways", self.sideways, -1.0, 1.0, "rad")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

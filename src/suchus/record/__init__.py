@@ -1,5 +1,6 @@
 """What happened: the schema of a run, its place on disk and where it comes from."""
 
+from suchus.record.ground import ground_of, ground_text
 from suchus.record.parts import Parts, code_digest
 from suchus.record.place import check_replaceable, check_writable, new_file, new_folder
 from suchus.record.provenance import digest, plain, provenance, versions
@@ -16,6 +17,8 @@ __all__ = [
     "code_digest",
     "dataset",
     "digest",
+    "ground_of",
+    "ground_text",
     "load",
     "new_file",
     "new_folder",

@@ -38,6 +38,7 @@ PER_RUN: Mapping[str, tuple[str, str]] = {
     "duty_factor": ("1", "of the gait"),
     "ended": ("s", "time of the last valid sample"),
     "cause": ("1", "why the run ended early; empty if it did not"),
+    "stands_on": ("1", "the ground as JSON, slopes [rad], lengths [m]; empty if the robot floats; see ``ground_of``"),
 }
 
 

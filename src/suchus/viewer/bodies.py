@@ -9,10 +9,10 @@ import mujoco
 import numpy as np
 from scipy.cluster.vq import kmeans2
 
-from suchus.design import Crocodile, joint_names
+from suchus.design import LEGS, Crocodile, joint_names
 from suchus.design.relief import Relief
 from suchus.model import compile_model, joint_addresses
-from suchus.skin import skin
+from suchus.skin import ANKLES, Poses, ankles, bone_names, footed
 
 COLOURS = 7
 """Into how many colours the skin is cut; more look smoother and move slower [-]."""
@@ -23,12 +23,12 @@ class Posture:
 
     Args:
         robot: whose bodies.
-        relief: what it stands on, for its shape.
     """
 
-    def __init__(self, robot: Crocodile, relief: Relief | None = None) -> None:
+    def __init__(self, robot: Crocodile) -> None:
         self.robot = robot
-        self.model = compile_model(robot, relief=relief)
+        self.model = compile_model(robot)
+        self._feet = np.zeros((len(LEGS), 3))
         self._data = mujoco.MjData(self.model)
         self._joints = joint_addresses(self.model, joint_names(robot))
 
@@ -36,7 +36,19 @@ class Posture:
         """Take the posture of an instant, by the names of ``record.VARIABLES``."""
         self._data.qpos[:3], self._data.qpos[3:7] = now["position"], now["orientation"]
         self._data.qpos[self._joints] = now["joint_angle"]
+        self._feet = np.asarray(now["foot_position"])
         mujoco.mj_kinematics(self.model, self._data)
+
+    def bones(self, relief: Relief | None) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+        """Return position [m] and orientation wxyz of every bone of the skin, whose feet lie flat on the ground.
+
+        Args:
+            relief: what stands up from the ground; None where it is even.
+        """
+        names = bone_names(self.robot)
+        places, turns = zip(*map(self.body, names), strict=True)
+        found = ankles(self.robot, Poses(np.array([places]), np.array([turns])), self._feet[None], relief)
+        return dict(zip((*names, *ANKLES), zip(found.positions[0], found.quaternions[0], strict=True), strict=True))
 
     def geoms(self) -> list[int]:
         """Return the numbers of the geoms that belong to the robot."""
@@ -70,7 +82,7 @@ class Piece:
     weights: np.ndarray
     """(n, bone) [-]."""
     bones: tuple[str, ...]
-    """Names of the bones, which are bodies."""
+    """Names of the bones, which are bodies and ankles."""
     rest: np.ndarray
     """Origins of the bones at rest, (bone, 3) [m]."""
     colour: tuple[int, int, int]
@@ -85,7 +97,7 @@ def pieces(robot: Crocodile, count: int = COLOURS) -> tuple[Piece, ...]:
         robot: whose skin.
         count: of colours.
     """
-    whole = skin(robot)
+    whole = footed(robot)
     of_faces = whole.colours[whole.faces].astype(float).mean(axis=1)
     centres, group = kmeans2(of_faces, count, minit="++", seed=0)
     dense = np.zeros((len(whole.vertices), len(whole.bones)))

@@ -7,6 +7,7 @@ import numpy as np
 from mjviser.conversions import create_primitive_mesh
 
 from suchus.design import Crocodile
+from suchus.design.relief import Relief
 from suchus.viewer.bodies import Posture, pieces
 
 Look = Literal["skin", "collision geoms"]
@@ -29,6 +30,7 @@ class DrawnRobot:
     def __init__(self, scene: Any, root: str, robot: Crocodile, *, ghost: bool = False) -> None:
         self._scene, self._root, self._ghost = scene, root, ghost
         self.posture = Posture(robot)
+        self.relief: Relief | None = None
         self._marks: dict[str, Any] = {}
         self._lost: tuple[tuple[str, str], ...] = ()
         self._look: Look = "skin"
@@ -76,10 +78,10 @@ class DrawnRobot:
         """Move to an instant, by the names of ``record.VARIABLES``."""
         self.posture.put(now)
         if self._look == "skin":
+            at = self.posture.bones(self.relief)
             for piece, handle in self._skin:
                 for bone, name in zip(handle.bones, piece.bones, strict=True):
-                    position, turned = self.posture.body(name)
-                    bone.position, bone.wxyz = position, turned
+                    bone.position, bone.wxyz = at[name]
         else:
             for number, handle in self._geoms.items():
                 handle.position, handle.wxyz = self.posture.geom(number)

@@ -73,7 +73,7 @@ class LivePage:
                 self._stage.forget()
                 if settings.bumps != bumps:
                     bumps = settings.bumps
-                    self._stage.lay(self._session.robot, settings.ground.relief)
+                    self._stage.lay(settings.ground.relief)
             self._draw(self._session.look(), rate, everything=picture % DRAWN == 1)
             if start - plotted > PLOT:
                 plotted = start

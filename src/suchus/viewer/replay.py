@@ -8,9 +8,10 @@ import numpy as np
 import xarray as xr
 
 from suchus.design import Crocodile, joint_names
+from suchus.design.ground import Ground
 from suchus.errors import IncompatibleRecord, UnknownName
 from suchus.motion import START
-from suchus.record import VARIABLES, load
+from suchus.record import VARIABLES, ground_of, load
 from suchus.robots import ROBOTS
 from suchus.viewer.history import table_of
 
@@ -28,6 +29,8 @@ class Take:
     """Who walks in it."""
     record: xr.Dataset
     """The run, without the dimension ``run``."""
+    ground: Ground
+    """On what; level and even where the record does not tell."""
 
     @property
     def origin(self) -> np.ndarray:
@@ -72,7 +75,7 @@ def takes(path: Path, robot: Crocodile | None = None) -> tuple[Take, ...]:
         raise IncompatibleRecord(
             f"{path} is no record of a run on land: it lacks {', '.join(missing) or 'time'}.{hint}"
         )
-    whole = record[[name for name in (*VARIABLES, "cause", "ended", "mass", "period") if name in record]]
+    whole = record[[name for name in (*VARIABLES, "cause", "ended", "mass", "period", "stands_on") if name in record]]
     runs = [whole] if "run" not in whole.dims else [whole.isel(run=i) for i in range(whole.sizes["run"])]
     return tuple(_take(path, run, i, robot) for i, run in enumerate(runs))
 
@@ -87,8 +90,9 @@ def _take(path: Path, run: xr.Dataset, number: int, robot: Crocodile | None) -> 
     valid = np.isfinite(run.position.values).all(axis=-1)
     if valid.sum() < 2:
         raise IncompatibleRecord(f"run {number} of {path} has fewer than two valid samples.")
+    ground = ground_of(run) or Ground()
     label = str(run.coords["label"].item()) if "label" in run.coords else f"run {number}"
-    return Take(label=f"{number}: {label}", robot=who, record=run.isel(time=valid).load())
+    return Take(label=f"{number}: {label}", robot=who, record=run.isel(time=valid).load(), ground=ground)
 
 
 def _robot(path: Path, name: str) -> Crocodile:

@@ -6,7 +6,6 @@ from threading import Event
 from time import monotonic
 from typing import Any
 
-import numpy as np
 from viser import uplot
 
 from suchus.viewer.knobs import SPEED
@@ -91,8 +90,8 @@ class ReplayPage:
             if now != shown:
                 shown, plotted = now, 0.0
                 self._tables = take.table(), ghost.table() if ghost else None
-                com = take.record.centre_of_mass.values[::5]
-                self._stage.draw_way(com * np.array([1.0, 1.0, 0.0]) + np.array([0.0, 0.0, 0.003]))
+                self._stage.lay(take.ground.relief)
+                self._stage.draw_way(take.record.centre_of_mass.values[::5])
             self._show(take, ghost, everything=picture % DRAWN == 1)
             if start - plotted > PLOT:
                 plotted = start
@@ -103,7 +102,7 @@ class ReplayPage:
         time = self._player.time
         with self._client.atomic():
             now = take.at(time)
-            self._stage.place(now, (0.0, 0.0), follow=bool(self._follow.value))
+            self._stage.place(now, (take.ground.uphill, take.ground.sideways), follow=bool(self._follow.value))
             self._stage.show(now)
             if ghost is not None and self._stage.ghost is not None:
                 self._stage.ghost.show(ghost.at(time))
@@ -123,10 +122,12 @@ def told(take: Take, ghost: Take | None, time: float) -> str:
                 f'<td style="padding-right:14px;font-weight:600" data-suchus="forward">{way[0]:+.3f} m</td>'
                 f'<td style="font-weight:600">{way[1]:+.3f} m</td></tr>'
             )
+    other = ghost is not None and not ghost.ground.looks_like(take.ground)
+    note = "<div>The ghost went on other ground, which is not shown.</div>" if other else ""
     return (
         '<div style="padding:4px 12px;font:13px sans-serif"><table><tr style="color:#666;font-size:11px">'
         f'<td data-suchus="time">at {time:.2f} s</td><td>forward</td><td>to the left</td></tr>{"".join(rows)}'
-        "</table></div>"
+        f"</table>{note}</div>"
     )
 
 

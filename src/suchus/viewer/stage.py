@@ -1,14 +1,14 @@
 """The scene of one browser: ground, robot, forces, support, way; the camera may follow."""
 
 from collections.abc import Mapping, Sequence
-from math import cos, sin
 from typing import Any
 
 import numpy as np
 from mjviser.conversions import create_primitive_mesh
 
 from suchus.design import LEGS, Crocodile
-from suchus.design.relief import Relief
+from suchus.design.ground import slope
+from suchus.design.relief import Relief, heights
 from suchus.figures import COLOURS
 from suchus.metrics.gait import LOADED
 from suchus.model import compile_model
@@ -35,17 +35,6 @@ def rgb(colour: str) -> tuple[int, int, int]:
     return int(colour[1:3], 16), int(colour[3:5], 16), int(colour[5:7], 16)
 
 
-def slope(uphill: float, sideways: float) -> np.ndarray:
-    """Return the orientation wxyz in which a ground with these slopes is seen, gravity pointing down.
-
-    Args:
-        uphill: along the walk, up positive [rad].
-        sideways: left side up positive [rad].
-    """
-    a, b = -uphill / 2, sideways / 2  # first about x by the slope to the side, then about y
-    return np.array([cos(a) * cos(b), cos(a) * sin(b), sin(a) * cos(b), -sin(a) * sin(b)])
-
-
 def light(scene: Any) -> None:
     """Light a scene by the sky and one sun, so that colours come out as they are meant."""
     scene.configure_environment_map(None)
@@ -68,11 +57,11 @@ class Stage:
         self._scene = scene
         light(scene)
         self._world = scene.add_frame(_WORLD, show_axes=False)
-        self._relief: Any = None
-        self._grid: Any = None
-        self.lay(robot, None)
         self.robot = DrawnRobot(scene, f"{_WORLD}/robot", robot)
         self.ghost: DrawnRobot | None = None
+        self._relief: Any = None
+        self._grid: Any = None
+        self.lay(None)
         self._forces = [self._rod(f"force_{leg}", _ARROW, COLOURS[leg]) for leg in LEGS]
         self._push = self._rod("push", _PUSH, COLOURS["printed"])
         self._support = [self._rod(f"support_{i}", _EDGE, COLOURS["spine"]) for i in range(4)]
@@ -87,12 +76,15 @@ class Stage:
     def _rod(self, name: str, shape: Shape, colour: str) -> Rod:
         return Rod(self._scene, f"{_WORLD}/{name}", shape, rgb(colour))
 
-    def lay(self, robot: Crocodile, relief: Relief | None) -> None:
+    def lay(self, relief: Relief | None) -> None:
         """Lay the ground, even or with what stands up from it."""
+        for drawn in (self.robot, self.ghost):
+            if drawn is not None:
+                drawn.relief = relief
         for handle in (self._relief, self._grid):
             if handle is not None:
                 handle.remove()
-        model = compile_model(robot, relief=relief)
+        model = compile_model(self.robot.posture.robot, relief=relief)
         self._grid = self._scene.add_grid(
             f"{_WORLD}/grid",
             infinite_grid=True,
@@ -122,6 +114,7 @@ class Stage:
     def compare(self, robot: Crocodile) -> None:
         """Add a ghost for comparison."""
         self.ghost = DrawnRobot(self._scene, f"{_WORLD}/ghost", robot, ghost=True)
+        self.ghost.relief = self.robot.relief
 
     def look(self, look: Look) -> None:
         """Show skins or collision geoms."""
@@ -176,16 +169,18 @@ class Stage:
 
     def go(self, com: np.ndarray) -> None:
         """Lengthen the way on the ground to where the centre of mass is now."""
-        here = np.array([com[0], com[1], _ABOVE])
+        here = np.array([com[0], com[1], 0.0])
         if self._path and np.linalg.norm(here - self._path[-1]) < 0.005:
             return
         self._path = [*self._path, here][-_STEPS:]
         self.draw_way(np.array(self._path))
 
     def draw_way(self, path: np.ndarray) -> None:
-        """Draw a way on the ground, (point, 3) [m]."""
+        """Draw a way on the ground, (point, 3) [m], at whatever height its points are."""
         self._way.visible = bool(self.shown["way"] and len(path) > 1)
         if len(path) > 1:
+            level = heights(self.robot.relief, path[:, 0], path[:, 1]) + _ABOVE
+            path = np.column_stack([path[:, :2], level])
             self._way.points = np.stack([path[:-1], path[1:]], axis=1).astype(np.float32)
 
     def forget(self) -> None:

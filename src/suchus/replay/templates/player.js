@@ -112,17 +112,14 @@
     gl.enableVertexAttribArray(at);
     gl.vertexAttribPointer(at, size, kind, normalised, 0, 0);
   };
-  const skins = meta.skins.map((skin) => {
-    const array = gl.createVertexArray();
-    gl.bindVertexArray(array);
-    buffer(take(skin.vertices)); attribute(0, 3, gl.SHORT, true);
-    buffer(take(skin.normals)); attribute(1, 3, gl.BYTE, true);
-    buffer(take(skin.colours)); attribute(2, 3, gl.UNSIGNED_BYTE, true);
-    buffer(take(skin.bones)); gl.enableVertexAttribArray(3); gl.vertexAttribIPointer(3, 2, gl.UNSIGNED_BYTE, 0, 0);
-    buffer(take(skin.weights)); attribute(4, 1, gl.UNSIGNED_BYTE, true);
-    buffer(take(skin.faces), gl.ELEMENT_ARRAY_BUFFER);
-    return { array, count: skin.faces.count, scale: skin.scale, rest: skin.rest };
-  });
+  const skin = { ...meta.skin, array: gl.createVertexArray() };
+  gl.bindVertexArray(skin.array);
+  buffer(take(skin.vertices)); attribute(0, 3, gl.SHORT, true);
+  buffer(take(skin.normals)); attribute(1, 3, gl.BYTE, true);
+  buffer(take(skin.colours)); attribute(2, 3, gl.UNSIGNED_BYTE, true);
+  buffer(take(skin.bones)); gl.enableVertexAttribArray(3); gl.vertexAttribIPointer(3, 2, gl.UNSIGNED_BYTE, 0, 0);
+  buffer(take(skin.weights)); attribute(4, 1, gl.UNSIGNED_BYTE, true);
+  buffer(take(skin.faces), gl.ELEMENT_ARRAY_BUFFER);
   const quad = gl.createVertexArray();
   gl.bindVertexArray(quad);
   buffer(new Float32Array([-1, -1, 0, 1, -1, 0, -1, 1, 0, 1, 1, 0])); attribute(0, 3, gl.FLOAT, false);
@@ -135,9 +132,9 @@
     gl.enableVertexAttribArray(at); gl.vertexAttribPointer(at, size, gl.FLOAT, false, 40, start); } };
   lay();
   let relief = null;
-  if (meta.relief.length) {
+  if (meta.relief) {
     const made = [];
-    for (const piece of meta.relief) solid(piece, made);
+    solid(meta.relief, made);
     relief = { array: gl.createVertexArray(), count: made.length / 10 };
     gl.bindVertexArray(relief.array);
     buffer(new Float32Array(made)); lay();
@@ -177,12 +174,12 @@
 
   const actors = meta.actors.map((actor) => {
     const read = Object.fromEntries(Object.entries(actor.arrays).map(([name, ref]) => [name, take(ref)]));
-    return { ...actor, ...read, skin: skins[actor.skin], side: 0 };
+    return { ...actor, ...read, side: 0 };
   });
 
   function frame(actor, time) { // bones, feet, forces and centre of mass between two samples
     const f = Math.min(Math.max((time - meta.start) * meta.rate, 0), actor.frames - 1);
-    const i = Math.min(Math.floor(f), Math.max(actor.frames - 2, 0)), s = actor.frames > 1 ? f - i : 0, n = actor.skin.rest.length;
+    const i = Math.min(Math.floor(f), Math.max(actor.frames - 2, 0)), s = actor.frames > 1 ? f - i : 0, n = skin.rest.length;
     const j = Math.min(i + 1, actor.frames - 1);
     const turns = new Float32Array(4 * meta.bones), shifts = new Float32Array(4 * meta.bones);
     for (let b = 0; b < n; b++) {
@@ -196,7 +193,7 @@
         ((1 - s) * actor.places[3 * (i * n + b) + k] + s * actor.places[3 * (j * n + b) + k]) / 32767);
       at[1] += actor.side;
       turns.set(q, 4 * b);
-      shifts.set(sub(at, turn(q, actor.skin.rest[b])), 4 * b);
+      shifts.set(sub(at, turn(q, skin.rest[b])), 4 * b);
     }
     const mix = (array, size, k, o) => (1 - s) * array[size * i + k] + s * array[size * j + k] + o;
     const three = (array, size, k, o = 0) => [mix(array, size, k, 0), mix(array, size, k + 1, o), mix(array, size, k + 2, 0)];
@@ -249,7 +246,7 @@
       return [...kept, c]; }, []).slice(0, -1);
     return p.length < 3 ? p : [...half(p), ...half(p.reverse())];
   }
-  const rough = meta.relief.length > 0;
+  const rough = meta.relief !== null;
   const under = (foot, radius, lift) => [foot[0], foot[1], Math.max(foot[2] - radius, rough ? meta.floor : 0) + lift];
 
   function tracks(to, actor, faint) {
@@ -257,7 +254,7 @@
     for (let leg = 0; leg < 4; leg++) {
       const colour = [...meta.colours.legs[leg], faint ? 0.35 : 0.85];
       const at = (i) => { const k = 12 * i + 3 * leg;
-        return under([actor.feet[k], actor.feet[k + 1] + actor.side, actor.feet[k + 2]], actor.radii[leg], 0.0011); };
+        return under([actor.feet[k], actor.feet[k + 1] + actor.side, actor.feet[k + 2]], meta.radii[leg], 0.0011); };
       for (let i = 0; i + step <= until; i += step) {
         const stands = actor.forces[12 * i + 3 * leg + 2] > meta.loaded;
         const a = at(i), b = at(i + step);
@@ -270,7 +267,7 @@
     for (let i = 0; i + step <= until; i += step) ribbon(to, mass(i), mass(i + step), 0.003, [...meta.colours.mass, faint ? 0.3 : 0.8]);
   }
   function support(to, actor, now) {
-    const standing = now.feet.map((foot, leg) => [under(foot, actor.radii[leg], 0.0014), now.forces[leg][2] > meta.loaded])
+    const standing = now.feet.map((foot, leg) => [under(foot, meta.radii[leg], 0.0014), now.forces[leg][2] > meta.loaded])
       .filter(([, stands]) => stands).map(([at]) => at);
     const corners = hull(standing), colour = meta.colours.support;
     for (let i = 1; i + 1 < corners.length; i++) push(to, corners[0], corners[i], corners[i + 1], [...colour, 0.40], [0, 0, 0]);
@@ -281,12 +278,13 @@
   }
 
   // ---- drawing -------------------------------------------------------------------------------------------------
+  const aground = (v) => turn([meta.slope[0], ...meta.slope.slice(1).map((c) => -c)], v); // all is drawn as if it were level
   function view() {
     const { azimuth, elevation, distance } = camera, e = Math.cos(elevation);
     const target = add(camera.target, camera.moved);
-    const away = [e * Math.cos(azimuth), e * Math.sin(azimuth), Math.sin(elevation)];
+    const away = aground([e * Math.cos(azimuth), e * Math.sin(azimuth), Math.sin(elevation)]);
     const eye = add(target, away, distance);
-    const right = unit(cross([0, 0, 1], away)), up = cross(away, right);
+    const right = unit(cross(aground([0, 0, 1]), away)), up = cross(away, right);
     const look = new Float32Array([right[0], up[0], away[0], 0, right[1], up[1], away[1], 0, right[2], up[2], away[2], 0,
       -dot(right, eye), -dot(up, eye), -dot(away, eye), 1]);
     const aspect = canvas.width / canvas.height, f = 1 / Math.tan(0.30 * Math.max(1, 0.75 / aspect)), near = 0.02, far = 60;
@@ -309,36 +307,36 @@
     gl.drawArrays(gl.TRIANGLES, 0, made.length / 10);
     gl.depthMask(true);
   }
-  function robot(actor, now, seen, { flat = 0, alpha = 1, tint = [0, 0, 0, 0] } = {}) {
+  function robot(now, seen, { flat = 0, alpha = 1, tint = [0, 0, 0, 0] } = {}) {
     const u = skinned.uniforms;
     gl.useProgram(skinned.made);
     gl.uniformMatrix4fv(u.uView, false, seen.matrix);
     gl.uniform3fv(u.uEye, seen.eye);
     gl.uniform1f(u.uNight, +state.dark);
-    gl.uniform1f(u.uScale, actor.skin.scale);
+    gl.uniform1f(u.uScale, skin.scale);
     gl.uniform4fv(u.uTurn, now.turns);
     gl.uniform4fv(u.uShift, now.shifts);
     gl.uniform4fv(u.uTint, tint);
     gl.uniform4f(u.uFlat, LIGHT[0] / LIGHT[2], LIGHT[1] / LIGHT[2], alpha, flat);
-    gl.bindVertexArray(actor.skin.array);
-    gl.drawElements(gl.TRIANGLES, actor.skin.count, gl.UNSIGNED_SHORT, 0);
+    gl.bindVertexArray(skin.array);
+    gl.drawElements(gl.TRIANGLES, skin.faces.count, gl.UNSIGNED_SHORT, 0);
   }
-  function shadow(actor, now, seen, alpha) {
+  function shadow(now, seen, alpha) {
     gl.enable(gl.STENCIL_TEST);
     gl.clear(gl.STENCIL_BUFFER_BIT);
     gl.stencilFunc(gl.EQUAL, 0, 255);
     gl.stencilOp(gl.KEEP, gl.KEEP, gl.INCR);
     gl.depthMask(false);
-    robot(actor, now, seen, { flat: 1, alpha });
+    robot(now, seen, { flat: 1, alpha });
     gl.depthMask(true);
     gl.disable(gl.STENCIL_TEST);
   }
-  function through(actor, now, seen) { // a ghost: its nearest surface only, half transparent
+  function through(now, seen) { // a ghost: its nearest surface only, half transparent
     gl.colorMask(false, false, false, false);
-    robot(actor, now, seen);
+    robot(now, seen);
     gl.colorMask(true, true, true, true);
     gl.depthFunc(gl.EQUAL);
-    robot(actor, now, seen, { alpha: 0.5, tint: [...meta.colours.ghost, 0.6] });
+    robot(now, seen, { alpha: 0.5, tint: [...meta.colours.ghost, 0.6] });
     gl.depthFunc(gl.LESS);
   }
 
@@ -375,22 +373,22 @@
       gl.bindVertexArray(relief.array);
       gl.drawArrays(gl.TRIANGLES, 0, relief.count);
       gl.uniform1f(plain.uniforms.uLined, 0);
-    } else seenActors.forEach((actor, i) => shadow(actor, now[i], seen, (state.dark ? 0.45 : 0.22) / (i + 1)));
+    } else now.forEach((one, i) => shadow(one, seen, (state.dark ? 0.45 : 0.22) / (i + 1)));
     const flat = [], solids = [];
     seenActors.forEach((actor, i) => {
       if (state.tracks) tracks(flat, actor, i > 0);
       if (state.support && !i) support(flat, actor, now[i]);
       if (state.forces) now[i].forces.forEach((force, leg) =>
-        arrow(solids, under(now[i].feet[leg], actor.radii[leg], 0), force.map((f) => f * meta.metres_per_newton), [...meta.colours.force, 1]));
+        arrow(solids, under(now[i].feet[leg], meta.radii[leg], 0), force.map((f) => f * meta.metres_per_newton), [...meta.colours.force, 1]));
       if (state.support && !i) ball(solids, now[i].mass, 0.009, [...meta.colours.mass, 1]);
     });
     gl.enable(gl.POLYGON_OFFSET_FILL);
     gl.polygonOffset(-1, -4);
     triangles(flat, seen, false);
     gl.disable(gl.POLYGON_OFFSET_FILL);
-    robot(actors[0], now[0], seen);
+    robot(now[0], seen);
     triangles(solids, seen, true);
-    if (seenActors.length > 1) through(actors[1], now[1], seen);
+    if (now.length > 1) through(now[1], seen);
     if (state.support) { gl.disable(gl.DEPTH_TEST); const mark = []; hoop(mark, now[0].mass, seen); triangles(mark, seen, false); gl.enable(gl.DEPTH_TEST); }
     labels(seen);
     readout(now);

@@ -1,0 +1,44 @@
+"""Ground: how it tilts, what stands up from it, how it grips."""
+
+from dataclasses import dataclass
+from math import cos, sin
+
+import numpy as np
+from jaxtyping import Float
+
+from suchus.design.checks import require
+from suchus.design.relief import Relief
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Ground:
+    """Ground: even or with relief, possibly tilted."""
+
+    grip: float = 1.0
+    """Factor on the friction of all the robot's surfaces [-]."""
+    uphill: float = 0.0
+    """Slope along the walk, up positive [rad]."""
+    sideways: float = 0.0
+    """Slope across the walk, left side up positive [rad]."""
+    relief: Relief | None = None
+    """What stands up from it; None where it is even."""
+
+    def __post_init__(self) -> None:
+        require("ground", "grip", self.grip, 0.01, 10.0, "")
+        require("ground", "uphill", self.uphill, -1.0, 1.0, "rad")
+        require("ground", "sideways", self.sideways, -1.0, 1.0, "rad")
+
+    def looks_like(self, other: "Ground") -> bool:
+        """Tell whether another ground has the same slopes and relief, however it grips."""
+        return (self.uphill, self.sideways, self.relief) == (other.uphill, other.sideways, other.relief)
+
+
+def slope(uphill: float, sideways: float) -> Float[np.ndarray, "4"]:
+    """Return the orientation wxyz in which a ground with these slopes is seen, gravity pointing down.
+
+    Args:
+        uphill: along the walk, up positive [rad].
+        sideways: left side up positive [rad].
+    """
+    a, b = -uphill / 2, sideways / 2  # first about x by the slope to the side, then about y
+    return np.array([cos(a) * cos(b), cos(a) * sin(b), sin(a) * cos(b), -sin(a) * sin(b)])

@@ -1,0 +1,45 @@
+"""The ground of a run, as its record holds it: JSON text, since every kind of relief has numbers of its own."""
+
+import json
+from dataclasses import asdict
+from typing import Any
+
+import xarray as xr
+
+from suchus.design.ground import Ground
+from suchus.design.relief import Bumps, Step, Stone
+from suchus.errors import IncompatibleRecord, SuchusError
+
+NAME = "stands_on"
+"""Of the variable along ``run`` that holds it; empty text where a run floats."""
+_RELIEFS = {"step": Step, "stone": Stone, "bumps": Bumps}
+
+
+def ground_text(ground: Ground | None) -> str:
+    """Return a ground as text; the empty one stands for none."""
+    if ground is None:
+        return ""
+    told = asdict(ground)
+    if ground.relief is not None:
+        told["relief"] = {"kind": type(ground.relief).__name__.lower(), **asdict(ground.relief)}
+    return json.dumps(told, sort_keys=True)
+
+
+def ground_of(record: xr.Dataset) -> Ground | None:
+    """Return what a run stood on; None where it floats, or where the record is of before grounds were kept.
+
+    Args:
+        record: of one run, with or without the dimension ``run``.
+
+    Raises:
+        IncompatibleRecord: what the record tells is no ground.
+    """
+    text = str(record[NAME].values.ravel()[0]) if NAME in record else ""
+    if not text:
+        return None
+    try:
+        told: dict[str, Any] = json.loads(text)
+        relief = told.pop("relief")
+        return Ground(**told, relief=None if relief is None else _RELIEFS[relief.pop("kind")](**relief))
+    except (ValueError, KeyError, TypeError, AttributeError, SuchusError) as error:
+        raise IncompatibleRecord(f"the record tells no ground that this suchus knows: {text[:120]!r}.") from error

@@ -1,0 +1,117 @@
+"""What the player is told: skin, frames and ground, as JSON and one block of bytes."""
+
+from collections.abc import Sequence
+from math import ceil, floor
+from typing import Any
+
+import numpy as np
+
+from suchus.design import LEGS, Crocodile
+from suchus.design.ground import Ground, slope
+from suchus.design.relief import ASIDE, CELL, REACH, Bumps, Relief, Step, field
+from suchus.figures import COLOURS
+from suchus.kinematics.mass import GRAVITY
+from suchus.metrics.gait import LOADED
+from suchus.replay.frames import Frames
+from suchus.replay.pack import Pack, quantised
+from suchus.skin import Skin, ankles, footed
+
+ARROW = 0.35
+"""Length of an arrow that stands for the whole weight, over the robot's length [-]."""
+KEYS = {"force": "#D98200", "mass": COLOURS["alarm"], "support": "#B8860B", "ghost": "#6F9DC4", "relief": "#B9AE98"}
+"""Colours of what is not the robot."""
+_BESIDE = 0.62  # how far a second robot walks beside the first, over the robot's length
+
+
+def scene(
+    robot: Crocodile, moving: Sequence[Frames], labels: Sequence[str], ground: Ground, *, overlaid: bool
+) -> tuple[dict[str, Any], str]:
+    """Return what there is to be shown, and its arrays as base64.
+
+    Args:
+        robot: who moves.
+        moving: one run, or two; the second is the ghost.
+        labels: what the runs are called.
+        ground: on what.
+        overlaid: whether two runs begin in the same place.
+    """
+    pack, surface, relief = Pack(), footed(robot), ground.relief
+    x = np.concatenate([one.mass[:, 0] for one in moving])
+    meta = {
+        "start": moving[0].start,
+        "rate": moving[0].rate,
+        "bones": len(surface.bones),
+        "length": robot.length,
+        "aside": _BESIDE * robot.length,
+        "radii": [robot.leg(leg).foot_radius for leg in LEGS],
+        "loaded": LOADED,
+        "overlaid": overlaid,
+        "slope": np.round(slope(ground.uphill, ground.sideways), 9).tolist(),
+        "floor": float(field(relief).min()) if isinstance(relief, Bumps) else 0.0,  # as deep as the field, as in model
+        "metres_per_newton": ARROW * robot.length / (robot.mass * GRAVITY),
+        "marks": [max(floor(x.min()) - 1, -50), min(ceil(x.max()) + 1, 50)],
+        "mark_side": -0.4 * robot.length,
+        "colours": {name: _rgb(text) for name, text in KEYS.items()} | {"legs": [_rgb(COLOURS[leg]) for leg in LEGS]},
+        "skin": _packed_skin(surface, pack),
+        "actors": [_packed(robot, one, name, relief, pack) for one, name in zip(moving, labels, strict=False)],
+        "relief": None if relief is None else _packed_relief(relief, pack),
+    }
+    return meta, pack.text()
+
+
+def _packed_skin(surface: Skin, pack: Pack) -> dict[str, Any]:
+    vertices, scale = quantised(surface.vertices, np.int16)
+    assert (surface.weights[:, 2:] == 0).all()  # joints are so far apart that no vertex hangs on three bones
+    return {
+        "scale": scale,
+        "rest": np.round(surface.rest, 7).tolist(),
+        "vertices": pack.add(vertices),
+        "normals": pack.add(np.round(127 * surface.normals).astype(np.int8)),
+        "colours": pack.add(surface.colours),
+        "bones": pack.add(surface.indices[:, :2].astype(np.uint8)),
+        "weights": pack.add(np.round(255 * surface.weights[:, 0]).astype(np.uint8)),
+        "faces": pack.add(surface.faces.astype(np.uint16)),
+    }
+
+
+def _packed(robot: Crocodile, one: Frames, label: str, relief: Relief | None, pack: Pack) -> dict[str, Any]:
+    bones = ankles(robot, one.bones, one.feet, relief)
+    places = bones.positions
+    origin = (places.max(axis=(0, 1)) + places.min(axis=(0, 1))) / 2
+    whole, reach = quantised(places - origin, np.int16)
+    return {
+        "label": label,
+        "frames": len(one.mass),
+        "origin": np.round(origin, 6).tolist(),
+        "reach": reach,
+        "arrays": {
+            "places": pack.add(whole),
+            "turns": pack.add(np.round(32767 * bones.quaternions).astype(np.int16)),
+            "mass": pack.add(one.mass.astype(np.float32)),
+            "feet": pack.add(one.feet.astype(np.float32)),
+            "forces": pack.add(one.forces.astype(np.float32)),
+        },
+    }
+
+
+def _packed_relief(relief: Relief, pack: Pack) -> dict[str, Any]:
+    if isinstance(relief, Bumps):
+        heights = field(relief)
+        whole, largest = quantised(heights, np.int16)
+        return {
+            "heights": pack.add(whole),
+            "shape": list(heights.shape),
+            "scale": largest / np.iinfo(np.int16).max,
+            "x0": REACH[0],
+            "y0": -ASIDE,
+            "cell": CELL,
+        }
+    if isinstance(relief, Step):
+        return {"block": [relief.at, REACH[1], -ASIDE, ASIDE, relief.height]}
+    half, wide = relief.length / 2, relief.width / 2
+    x, y = (relief.at - half, relief.at + half), (relief.aside - wide, relief.aside + wide)
+    return {"block": [*x, *y, relief.height]}
+
+
+def _rgb(text: str) -> list[float]:
+    return [round(int(text[i : i + 2], 16) / 255, 4) for i in (1, 3, 5)]
