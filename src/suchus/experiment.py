@@ -56,8 +56,13 @@ class Replay:
 
     caption: str
     """What there is to see."""
-    html: str
-    """The page; it needs nothing else. See ``suchus.replay``."""
+    make: Callable[[], str]
+    """Makes the page, when it is wanted. See ``suchus.replay``."""
+
+    @property
+    def html(self) -> str:
+        """The page; it needs nothing else."""
+        return self.make()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

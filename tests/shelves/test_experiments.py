@@ -12,6 +12,17 @@ from suchus.experiments import EXPERIMENTS
 from suchus.figures import caption
 from suchus.paper import CLAIMS
 
+WALKED = (
+    "bipedal_reach",
+    "crawl_stability",
+    "displacement",
+    "feedback",
+    "gait_diagram",
+    "joint_faults",
+    "speed_range",
+    "terrain",
+    "turning",
+)
 GOLDEN = Path(__file__).parent.parent / "golden"
 
 
@@ -63,6 +74,18 @@ def test_its_figures_have_captions(quick):
     for name, figure in figures.items():
         assert name.isidentifier()
         assert len(caption(figure)) > 20, name
+
+
+def test_what_walked_can_be_seen_as_a_page_that_can_be_mailed(quick):
+    experiment, outcome = quick
+    if experiment.name() in WALKED:
+        assert outcome.replays
+    for name, replay in outcome.replays.items():
+        page = replay.html
+        assert name.endswith("_replay.html")
+        assert replay.caption in page
+        assert "<canvas" in page
+        assert len(page.encode()) < 5_000_000
 
 
 def test_it_answers_the_same_twice_to_the_byte(quick):

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from operator import attrgetter
 from typing import Any
 
@@ -159,8 +160,8 @@ class BipedalReach(Experiment):
 
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
         caption = "From the crawl up on hind legs and tail, and down again into the crawl."
-        html = replay(record, self.robot, labels=("standing up",), title="Standing up", caption=caption)
-        return {"standing_replay.html": Replay(caption=caption, html=html)}
+        page = partial(replay, record, self.robot, labels=("standing up",), title="Standing up", caption=caption)
+        return {"standing_replay.html": Replay(caption=caption, make=page)}
 
     def _story(self, standing: Standing, progress: Any) -> xr.Dataset:
         """Return the run of the figures, and the heights of its repeats."""

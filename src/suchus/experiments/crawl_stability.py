@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -110,7 +111,8 @@ class CrawlStability(Experiment):
 
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
         caption = "With spine and tail, and, half transparent, with longer strokes of the legs alone, just as far."
-        html = replay(
+        page = partial(
+            replay,
             record.isel(run=0),
             self.robot,
             ghost=record.isel(run=-1),
@@ -118,7 +120,7 @@ class CrawlStability(Experiment):
             title="Two ways to get as far",
             caption=caption,
         )
-        return {"stability_replay.html": Replay(caption=caption, html=html)}
+        return {"stability_replay.html": Replay(caption=caption, make=page)}
 
     def _equal_stroke(self, record: xr.Dataset, end: float, progress: Any) -> float:
         """Return the stroke with which the legs alone get as far as the coordinated crawl [m]."""

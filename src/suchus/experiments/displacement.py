@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import partial
 from math import degrees
 from typing import Any
 
@@ -105,7 +106,8 @@ class Displacement(Experiment):
 
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
         caption = "The same legs twice: with spine and tail, and, half transparent, with limbs only."
-        html = replay(
+        page = partial(
+            replay,
             record.isel(run=0),
             self.robot,
             ghost=record.isel(run=1),
@@ -113,7 +115,7 @@ class Displacement(Experiment):
             title="Crawling with spine and tail, and without",
             caption=caption,
         )
-        return {"crawl_replay.html": Replay(caption=caption, html=html)}
+        return {"crawl_replay.html": Replay(caption=caption, make=page)}
 
     def _pair(self) -> list[Run]:
         return [Run(robot=self.robot, gait=gait, label=arm) for arm, gait in zip(_ARMS, self._gaits(), strict=True)]

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import partial
 from math import degrees, radians
 from typing import Any
 
@@ -10,13 +11,14 @@ import xarray as xr
 
 from suchus.control import LAWS, Coordinated, HeadingRule, Kick
 from suchus.design import Crocodile
-from suchus.experiment import Experiment, Measure, Outcome, Progress, Verdict, judge, silent, staged, stopwatch
+from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Verdict, judge, silent, staged, stopwatch
 from suchus.figures.feedback import draw_fans, draw_gain, draw_onset, draw_tracks
 from suchus.gaits import GAITS
 from suchus.land import Ground, Limp, Locked, Push, Run, simulate
 from suchus.metrics import heading
 from suchus.metrics.coordination import WITHIN, cycles_until, phase_error
 from suchus.motion import START, Gait
+from suchus.replay import replay
 from suchus.robots import ROBOTS
 
 _COARSE = 0.005  # [s]; time step, measured to agree with 2 ms within 0.1 %
@@ -104,9 +106,10 @@ class Feedback(Experiment):
     def run(self, progress: Progress = silent) -> Outcome:
         """Disturb it."""
         with stopwatch() as seconds:
+            starts, pair = self._starts(staged(progress, "random starts", 0.0, 0.7))
             record = xr.merge(
                 [
-                    self._starts(staged(progress, "random starts", 0.0, 0.7)),
+                    starts,
                     self._disturbed(staged(progress, "disturbances", 0.7, 1.0)),
                 ]
             )
@@ -117,16 +120,33 @@ class Feedback(Experiment):
                 verdicts=_verdicts(measures),
                 record=record,
                 settings=self.settings(),
+                replays=self._replays(pair),
                 seconds=seconds(),
             )
+
+    def _replays(self, pair: xr.Dataset) -> Mapping[str, Replay]:
+        caption = (
+            "From limbs out of step: loads felt across the body bring them into the gait, and, half transparent, "
+            "without feedback they stay as they are."
+        )
+        page = partial(
+            replay,
+            pair.isel(run=0),
+            self.robot,
+            ghost=pair.isel(run=1),
+            labels=("feeling its loads", "without feedback"),
+            title="Finding the gait",
+            caption=caption,
+        )
+        return {"feedback_replay.html": Replay(caption=caption, make=page)}
 
     @property
     def _at(self) -> float:
         """When the disturbance comes [s]."""
         return START + self.gait.period
 
-    def _starts(self, progress: Any) -> xr.Dataset:
-        """Return limb phases and way over time for every law and start."""
+    def _starts(self, progress: Any) -> tuple[xr.Dataset, xr.Dataset]:
+        """Return limb phases and way over time for every law and start, and one start as a record under two laws."""
         runs = [
             Run(robot=self.robot, gait=self.gait, control=control, seed=self.seed + i)
             for control in STARTS.values()
@@ -138,7 +158,8 @@ class Feedback(Experiment):
         dims = ("law", "start", "start_time")
         phase = record.limb_phase.transpose("run", "time", "leg").values.reshape(*shape, 4)
         way = record.centre_of_mass.sel(xyz="x").transpose("run", "time").values.reshape(shape)
-        return xr.Dataset(
+        pair = record.isel(run=[self.starts * list(STARTS).index(law) for law in ("cross_load", "off")])
+        data = xr.Dataset(
             {
                 "start_phase": ((*dims, "leg"), phase, {"units": "1", "long_name": "phase of each limb [cycle]"}),
                 "start_way": (dims, way, {"units": "m", "long_name": "way of the centre of mass along x"}),
@@ -149,6 +170,7 @@ class Feedback(Experiment):
                 "leg": record.leg.values,
             },
         )
+        return data, pair
 
     def _disturbed(self, progress: Any) -> xr.Dataset:
         """Return track, direction, limb phases and tail pitch over time for every disturbance and arm."""

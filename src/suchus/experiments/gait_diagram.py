@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,7 @@ import xarray as xr
 
 from suchus.design import LEGS, Crocodile
 from suchus.design.checks import Checks
-from suchus.experiment import Experiment, Measure, Outcome, Progress, Verdict, judge, silent, staged, stopwatch
+from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Verdict, judge, silent, staged, stopwatch
 from suchus.figures import captioned
 from suchus.figures.gait_diagram import GaitTrack, gait_diagram
 from suchus.gaits import GAITS
@@ -18,9 +19,11 @@ from suchus.metrics import between, duty_factor, loaded, sensed_phase
 from suchus.motion import START, Gait
 from suchus.paper import CYCLES
 from suchus.paper.signs import spine_lateral
+from suchus.replay import replay
 from suchus.robots import ROBOTS
 
 _TOGETHER = 0.125  # [cycle]; Hildebrand calls a symmetrical gait a trot within an eighth of a cycle
+_CAPTION = "The crawl of the gait diagram: thick tracks are feet that stand."
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -63,12 +66,14 @@ class GaitDiagram(Experiment):
                 [Run(robot=self.robot, gait=self.gait)], duration=end, progress=staged(progress, "crawl", 0.0, 1.0)
             ).isel(run=0)
             measures = self._measures(record)
+            page = partial(replay, record, self.robot, caption=_CAPTION)
             return Outcome(
                 experiment=self.name(),
                 measures=measures,
                 verdicts=self._verdicts(record, measures),
                 record=record,
                 settings=self.settings(),
+                replays={"gait_replay.html": Replay(caption=_CAPTION, make=page)},
                 seconds=seconds(),
             )
 

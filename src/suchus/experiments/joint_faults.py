@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import partial
 from itertools import product
 from typing import Any
 
@@ -210,7 +211,8 @@ class JointFaults(Experiment):
 
     def _replays(self, lost_pitch: xr.Dataset) -> Mapping[str, Replay]:
         caption = "The crawl with the right hind pitch joint limp from the start, and, half transparent, intact."
-        html = replay(
+        page = partial(
+            replay,
             lost_pitch.isel(run=1),
             self.robot,
             ghost=lost_pitch.isel(run=0),
@@ -218,7 +220,7 @@ class JointFaults(Experiment):
             title="One limp leg",
             caption=caption,
         )
-        return {"fault_replay.html": Replay(caption=caption, html=html)}
+        return {"fault_replay.html": Replay(caption=caption, make=page)}
 
     def _steered(self, progress: Any) -> xr.Dataset:
         """Run the judged reading of every joint once more with all feedback rules and the heading loop."""

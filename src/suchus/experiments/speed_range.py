@@ -1,14 +1,15 @@
 """How fast is each gait, and what does speed cost?"""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from suchus.design import Crocodile
-from suchus.experiment import Experiment, Measure, Outcome, Progress, judge, silent, staged, stopwatch
+from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, judge, silent, staged, stopwatch
 from suchus.figures.terrain import GAIT_LINES, draw_speed_range
 from suchus.gaits import GAITS
 from suchus.kinematics.body import tail_points
@@ -16,6 +17,7 @@ from suchus.kinematics.mass import GRAVITY
 from suchus.land import Run, simulate
 from suchus.metrics import between, cost_of_transport, displacement, duty_factor, roll_peak_to_peak
 from suchus.motion import START, Gait
+from suchus.replay import replay
 from suchus.robots import ROBOTS
 
 _TOUCHES = 0.005  # [m]; a tail this close to the ground lies on it
@@ -62,19 +64,30 @@ class SpeedRange(Experiment):
     def run(self, progress: Progress = silent) -> Outcome:
         """Walk."""
         with stopwatch() as seconds:
-            record = self._walk(progress)
+            record, fastest = self._walk(progress)
             return Outcome(
                 experiment=self.name(),
                 measures=self._measures(record),
                 verdicts=self._verdicts(record),
                 record=record,
                 settings=self.settings(),
+                replays=self._replays(fastest),
                 seconds=seconds(),
             )
 
-    def _walk(self, progress: Progress) -> xr.Dataset:
+    def _replays(self, fastest: Sequence[xr.Dataset]) -> Mapping[str, Replay]:
+        """Return the replay of the first gait and the last."""
+        until = min(float(one.time[-1]) for one in fastest)
+        pair = [one.sel(time=slice(None, until)) for one in (fastest[0], fastest[-1])]
+        names = [str(one.gait.item()).replace("_", " ") for one in pair]
+        caption = f"At the shortest cycle that was tried: {names[0]}, and, half transparent, {names[1]}."
+        page = partial(replay, pair[0], self.robot, ghost=pair[1], labels=names, title="In a hurry", caption=caption)
+        return {"speed_replay.html": Replay(caption=caption, make=page)}
+
+    def _walk(self, progress: Progress) -> tuple[xr.Dataset, list[xr.Dataset]]:
+        """Return what was measured, and the fastest walk of each gait as a record."""
         robots = (self.robot, _limited(self.robot))
-        rows = []
+        rows, fastest = [], []
         for i, gait in enumerate(self.gaits):
             runs = [
                 Run(robot=robot, gait=replace(gait, period=gait.period * slower))
@@ -84,8 +97,9 @@ class SpeedRange(Experiment):
             longest = START + (self.cycles + 1) * gait.period * max(self.slower)
             stage = staged(progress, gait.name, i / len(self.gaits), (i + 1) / len(self.gaits))
             walked = simulate(runs, duration=np.ceil(longest * 100) / 100, timestep=self.timestep, progress=stage)
+            fastest.append(walked.isel(run=int(np.argmin(self.slower))))
             rows.append([self._look(walked.isel(run=j), run) for j, run in enumerate(runs)])
-        return self._table(np.array(rows).reshape(len(self.gaits), 2, len(self.slower), len(_UNITS)))
+        return self._table(np.array(rows).reshape(len(self.gaits), 2, len(self.slower), len(_UNITS))), fastest
 
     def _look(self, one: xr.Dataset, run: Run) -> list[float]:
         start, end = START + run.gait.period, START + (self.cycles + 1) * run.gait.period

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from itertools import permutations
 from typing import Any, Literal
 
@@ -101,17 +102,16 @@ class Terrain(Experiment):
 
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
         caption = "Semi-erect with the IMU, and, half transparent, crawling low, over one field of 40 mm bumps."
-        html = replay(
+        page = partial(
+            replay,
             record.isel(run=1),
             self.robot,
             ghost=record.isel(run=0),
             labels=("semi-erect", "low crawl"),
             title="Over bumps, semi-erect and low",
             caption=caption,
-            relief=self._shown_relief(),
-            overlaid=True,
         )
-        return {"terrain_replay.html": Replay(caption=caption, html=html)}
+        return {"terrain_replay.html": Replay(caption=caption, make=page)}
 
     def _shown_relief(self) -> Bumps:
         return Bumps(height=0.04, correlation=self.correlations[-1], start=BEFORE, seed=2)

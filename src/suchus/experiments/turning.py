@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -9,12 +10,13 @@ import xarray as xr
 
 from suchus.control import TurningCurve, Walking, turn
 from suchus.design import Crocodile
-from suchus.experiment import Experiment, Measure, Outcome, Progress, silent, staged, stopwatch
+from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, silent, staged, stopwatch
 from suchus.figures.terrain import GAIT_LINES, draw_turning
 from suchus.gaits import GAITS
 from suchus.land import Run, simulate
 from suchus.metrics import between, heading_change
 from suchus.motion import START, Gait
+from suchus.replay import replay
 from suchus.robots import ROBOTS
 
 _STRAIGHT = 1e-3  # [1/m]; no radius beyond a kilometre
@@ -71,10 +73,12 @@ class Turning(Experiment):
     def run(self, progress: Progress = silent) -> Outcome:
         """Turn."""
         with stopwatch() as seconds:
-            rows = []
+            rows, shown = [], []
             for i, gait in enumerate(self.gaits):
                 share = i / len(self.gaits), (i + 1) / len(self.gaits)
-                rows.append(self._of(gait, staged(progress, gait.name, *share)))
+                row, pair = self._of(gait, staged(progress, gait.name, *share))
+                rows.append(row)
+                shown.append(pair)
             record = xr.concat(rows, "gait").assign_coords(gait=[gait.name for gait in self.gaits])
             return Outcome(
                 experiment=self.name(),
@@ -82,19 +86,39 @@ class Turning(Experiment):
                 verdicts=(),
                 record=record,
                 settings=self.settings(),
+                replays=self._replays(shown[int(record.curvature_mixture.max("mixture").argmax())]),
                 seconds=seconds(),
             )
 
-    def _of(self, gait: Gait, progress: Any) -> xr.Dataset:
+    def _replays(self, pair: tuple[xr.Dataset, xr.Dataset]) -> Mapping[str, Replay]:
+        """Return the replay of the gait that turns tightest, and of its first circle."""
+        asked = f"on a circle of {self.asked[0]:g} m, or the tightest it can walk on command"
+        caption = f"Turning as tightly as it can, and, half transparent, {asked}."
+        page = partial(
+            replay,
+            pair[0],
+            self.robot,
+            ghost=pair[1],
+            labels=("as tightly as it can", "on a circle"),
+            title=f"Turning, {str(pair[0].gait.item()).replace('_', ' ')}",
+            caption=caption,
+            overlaid=True,
+        )
+        return {"turning_replay.html": Replay(caption=caption, make=page)}
+
+    def _of(self, gait: Gait, progress: Any) -> tuple[xr.Dataset, tuple[xr.Dataset, xr.Dataset]]:
+        """Return the curvatures of one gait, and its tightest turn and first circle as records."""
         bent = [Walking(bend=bend) for bend in self.bends]
         uneven = [Walking(asymmetry=share) for share in self.asymmetries]
         most = self.bends[-1], self.asymmetries[-1] if gait.legs == "sprawled" else 0.0
         mixed = [Walking(bend=m * most[0], asymmetry=m * most[1]) for m in self.mixtures]
-        found = self._curvatures(gait, [*bent, *uneven, *mixed], lambda share: progress(0.7 * share))
+        record = self._walk(gait, [*bent, *uneven, *mixed], lambda share: progress(0.7 * share))
+        found = self._curvatures(gait, record)
         a, b = len(bent), len(bent) + len(uneven)
         curve = _curve(most, self.mixtures, found[b:])
         circles = [turn(curve, max(radius, 1.001 * curve.tightest)) for radius in self.asked]
-        walked = self._curvatures(gait, circles, lambda share: progress(0.7 + 0.3 * share))
+        circled = self._walk(gait, circles, lambda share: progress(0.7 + 0.3 * share))
+        walked = self._curvatures(gait, circled)
         data = xr.Dataset(
             {
                 "curvature_bend": ("bend", found[:a], {"units": "1/m"}),
@@ -115,13 +139,18 @@ class Turning(Experiment):
         )
         for name, unit in (("bend", "rad"), ("asymmetry", "1"), ("mixture", "1"), ("asked", "m")):
             data[name].attrs["units"] = unit
-        return data
+        return data, (record.isel(run=b + int(found[b:].argmax())), circled.isel(run=0))
 
-    def _curvatures(self, gait: Gait, controls: Sequence[Walking], progress: Any) -> np.ndarray:
-        """Return the curvature of the way with each control [1/m]."""
+    def _end(self, gait: Gait) -> float:
+        return START + (self.cycles + 1) * gait.period
+
+    def _walk(self, gait: Gait, controls: Sequence[Walking], progress: Any) -> xr.Dataset:
         runs = [Run(robot=self.robot, gait=gait, control=control) for control in controls]
-        end = START + (self.cycles + 1) * gait.period
-        record = simulate(runs, duration=end, timestep=self.timestep, progress=progress)
+        return simulate(runs, duration=self._end(gait), timestep=self.timestep, progress=progress)
+
+    def _curvatures(self, gait: Gait, record: xr.Dataset) -> np.ndarray:
+        """Return the curvature of each way [1/m]."""
+        end = self._end(gait)
         part = between(record, START + gait.period, end)
         every = round(gait.period / float(part.time[1] - part.time[0]))
         points = part.centre_of_mass.sel(xyz=["x", "y"]).isel(time=slice(None, None, every))
