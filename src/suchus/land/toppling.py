@@ -2,10 +2,11 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
 from suchus.errors import InvalidDesign
 from suchus.land.push import Push
@@ -53,31 +54,46 @@ def smallest_pushes(
     scan = np.array([0.0, *levels])
     if len(scan) < 2 or np.any(np.diff(scan) <= 0):
         raise InvalidDesign(f"levels are {tuple(levels)}; increasing forces above 0 N are needed.")
+    topples = _Trial(
+        runs, directions, Push(force=(0.0, 0.0, 0.0), at=at, duration=lasting, body=body), fell, wait, timestep
+    )
+    forces = np.broadcast_to(scan[1:], (len(runs), len(directions), len(levels)))
+    coarse = topples(forces, lambda share: progress(0.6 * share))
+    first = np.where(coarse.any(axis=-1), coarse.argmax(axis=-1), len(levels))
+    low, found = scan[first], np.append(scan[1:], np.inf)[first]
+    if finer:
+        gap = np.where(np.isfinite(found), found - low, 1.0)  # of those that never fall any will do: it is not used
+        between = low[..., None] + gap[..., None] * (np.arange(1, finer + 1) / (finer + 1))
+        fine = topples(between, lambda share: progress(0.6 + 0.4 * share))
+        nearer = np.take_along_axis(between, fine.argmax(axis=-1)[..., None], axis=-1)[..., 0]
+        found = np.where(fine.any(axis=-1) & np.isfinite(found), nearer, found)
+    progress(1.0)
+    return found
 
-    def topples(forces: np.ndarray, report: Callable[[float], None]) -> np.ndarray:
-        """Tell which of the forces, shape (run, direction, force) [N], topple."""
+
+class _Trial(NamedTuple):
+    """Runs to be pushed."""
+
+    runs: Sequence[Run]
+    directions: Sequence[tuple[float, float, float]]
+    push: Push
+    fell: Callable[[xr.Dataset], xr.DataArray]
+    wait: float
+    timestep: float
+
+    def __call__(
+        self, forces: Float[np.ndarray, "run direction force"], progress: Callable[[float], None]
+    ) -> Bool[np.ndarray, "run direction force"]:
+        """Tell which of the forces topple [N]."""
         batch = [
-            replace(run, pushes=(Push(force=_along(way, force), at=at, duration=lasting, body=body),))
-            for run, ways in zip(runs, forces, strict=True)
-            for way, some in zip(directions, ways, strict=True)
+            replace(run, pushes=(replace(self.push, force=_along(way, force)),))
+            for run, ways in zip(self.runs, forces, strict=True)
+            for way, some in zip(self.directions, ways, strict=True)
             for force in some
         ]
-        record = simulate(batch, duration=at + lasting + wait, timestep=timestep, every=10, progress=report)
-        return np.asarray(fell(record).values, dtype=bool).reshape(forces.shape)
-
-    shape = len(runs), len(directions)
-    coarse = topples(np.broadcast_to(scan[1:], (*shape, len(levels))), lambda share: progress(0.6 * share))
-    first = np.where(coarse.any(axis=-1), coarse.argmax(axis=-1), len(levels))
-    low, high = scan[first], np.append(scan[1:], np.inf)[first]
-    steps = np.arange(1, finer + 1) / (finer + 1)
-    between = low[..., None] + steps * (np.where(np.isfinite(high), high, low + 1.0) - low)[..., None]
-    within = high
-    if finer:
-        fine = topples(between, lambda share: progress(0.6 + 0.4 * share))
-        found = np.take_along_axis(between, fine.argmax(axis=-1)[..., None], axis=-1)[..., 0]
-        within = np.where(fine.any(axis=-1), found, high)
-    progress(1.0)
-    return np.where(np.isfinite(high), within, np.inf)
+        end = self.push.at + self.push.duration + self.wait
+        record = simulate(batch, duration=end, timestep=self.timestep, every=10, progress=progress)
+        return np.asarray(self.fell(record).values, dtype=bool).reshape(forces.shape)
 
 
 def _along(direction: tuple[float, float, float], force: float) -> tuple[float, float, float]:

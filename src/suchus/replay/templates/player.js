@@ -420,7 +420,7 @@
   }
   function labels(seen) {
     for (const { mark, at } of marks) put(mark, at, seen);
-    actors.forEach((actor, i) => put(names[i], add(frame(actor, state.time).mass, [0, 0, 0.16]), seen, i === 0 || state.compare !== "hidden"));
+    actors.forEach((actor, i) => put(names[i], add(frame(actor, state.time).mass, [0, 0, i && state.compare === "over" ? 0.22 : 0.16]), seen, i === 0 || state.compare !== "hidden"));
   }
   const metres = (v) => `${v.toFixed(2).replace("-", "−")} m`;
   function readout(now) {
