@@ -29,14 +29,43 @@ def added_mass(water: Water, markers: Markers, about: tuple[float, float], densi
     share_u, share_v = ((1 - m[here].astype(np.float64)) * mine for m, mine in zip(water.mu0, own, strict=True))
     rx, ry, skin = markers.x - about[0], markers.y - about[1], water.offset * h * markers.length
     rims = np.array([[skin, 0 * skin, -ry * skin], [0 * skin, skin, rx * skin]])  # component, mode, marker
-    out = np.empty((3, 3))
+    held, rim = np.empty((3, 3)), np.empty((3, 3))
+    rises, shores, inward = [], [], []
     for k, (au, av) in enumerate(modes):
         scale = max(float(np.abs(au).max()), float(np.abs(av).max()))
-        potential = water.potential(share_u * au / scale, share_v * av / scale, _LIMIT).astype(np.float64)
-        rise_u = share_u * scale * (potential[here] - potential[j0 : j1 + 1, i0 - 1 : i1])
-        rise_v = share_v * scale * (potential[here] - potential[j0 - 1 : j1, i0 : i1 + 1])
-        out[0, k] = h * h * rise_u.sum() + rims[0, k].sum()
-        out[1, k] = h * h * rise_v.sum() + rims[1, k].sum()
-        turning = (arm_u * rise_u).sum() + (arm_v * rise_v).sum()
-        out[2, k] = h * h * turning + (rx * rims[1, k] - ry * rims[0, k]).sum()
-    return density * out
+        potential = water.potential(share_u * au / scale, share_v * av / scale, _LIMIT)
+        shores.append([scale * line.astype(np.float64) for line in water.along_sides(potential)])
+        near = potential[j0 - 1 : j1 + 1, i0 - 1 : i1 + 1].astype(np.float64)
+        rises.append((scale * (near[1:, 1:] - near[1:, :-1]), scale * (near[1:, 1:] - near[:-1, 1:])))
+        inward.append([scale * side for side in water.answer(share_u * au / scale, share_v * av / scale)])
+        rim[:2, k] = rims[:, k].sum(axis=1)
+        rim[2, k] = (rx * rims[1, k] - ry * rims[0, k]).sum()
+    own_mass = np.empty((3, 3))
+    for k, (au, av) in enumerate(modes):
+        for m in range(3):
+            held[k, m] = h * h * ((au * share_u * rises[m][0]).sum() + (av * share_v * rises[m][1]).sum())
+            own_mass[k, m] = h * h * ((au * share_u * modes[m][0]).sum() + (av * share_v * modes[m][1]).sum())
+    return density * (_in_open_water(held, own_mass, shores, inward, h) + rim)
+
+
+def _in_open_water(
+    held: np.ndarray, own: np.ndarray, shores: list[list[np.ndarray]], inward: list[list[np.ndarray]], h: float
+) -> np.ndarray:
+    """Return the added mass in open water from that with the sides held.
+
+    The sides move as the water and the body together, ``held + own``, make them. What that does to the body needs no
+    further solve: by Green's theorem it is the potential along the sides times their velocity.
+
+    Args:
+        held: added mass with the sides held, over the density, shape (3, 3).
+        own: mass of the body's region, over the density, shape (3, 3).
+        shores: potential along each side, per mode [m/s^2 cells].
+        inward: velocity that each mode induces on each side, per mode; empty in other water [m/s^2].
+        h: cell [m].
+    """
+    if not inward[0]:
+        return held
+    gain = np.array([[sum(float((p * q).sum()) for p, q in zip(a, b, strict=True)) for b in inward] for a in shores])
+    answer = np.linalg.solve((held + own).T, h * h * gain.T).T  # per momentum of the mode
+    open_water: np.ndarray = np.linalg.solve(np.eye(3) - answer, held + answer @ own)
+    return open_water

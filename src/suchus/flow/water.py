@@ -278,6 +278,27 @@ class Water:
         self._solve((limit, 10 * limit))
         return self._x
 
+    def along_sides(self, x: np.ndarray) -> list[np.ndarray]:
+        """Return the values of the cells along each side: left, right, bottom, top."""
+        a, b = PAD, -PAD
+        return [x[a:b, a], x[a:b, b - 1], x[a, a:b], x[b - 1, a:b]]
+
+    def answer(self, u: np.ndarray, v: np.ndarray) -> list[np.ndarray]:
+        """Return the acceleration into the domain that ``potential``'s last answer induces on each side [m/s^2].
+
+        Takes what ``potential`` took. Empty if the domain is not in water without end.
+        """
+        if self.border.water is None:
+            return []
+        j0, j1, i0, i1 = self.window
+        here, x = np.s_[j0 : j1 + 1, i0 : i1 + 1], self._x
+        for work, mu0, given, axis in ((self._raw_u, self.mu0[0], u, 1), (self._raw_v, self.mu0[1], v, 0)):
+            work[(np.s_[:], np.s_[1:])[:: axis * 2 - 1]] = -np.diff(x, axis=axis)
+            work[here] = given + mu0[here] * work[here]
+        sides = self.border.water.inward(self._raw_u, self._raw_v, self.window, [])
+        level = sum(float(s.sum()) for s in sides) / sum(s.size for s in sides)
+        return [s - level for s in sides]
+
     def _solve(self, limits: tuple[float, float]) -> poisson.Solve:
         went = poisson.Solve(
             *poisson.solve(
