@@ -5,7 +5,8 @@ import pytest
 
 from suchus.errors import InvalidDesign
 from suchus.experiments import EXPERIMENTS
-from suchus.figures.standing import draw_limits, draw_side_views
+from suchus.figures.reach import draw_limits
+from suchus.figures.standing import draw_side_views
 from suchus.kinematics.mass import cantilever_torque
 from suchus.motion.rising import stretched
 from suchus.robots import ROBOTS

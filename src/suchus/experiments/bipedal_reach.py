@@ -3,7 +3,6 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
-from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -11,39 +10,26 @@ import xarray as xr
 
 from suchus.control import OpenLoop
 from suchus.control.standing import BALANCE, Balance, Standing
-from suchus.design import Crocodile, with_values
+from suchus.design import Crocodile
 from suchus.design.checks import Checks
-from suchus.errors import OutsideLimits
-from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Verdict, judge, silent, staged, stopwatch
-from suchus.figures.standing import (
-    draw_angles,
-    draw_ceiling,
-    draw_heights,
-    draw_limits,
-    draw_pushes,
-    draw_side_views,
-)
+from suchus.experiment import Experiment, Outcome, Progress, Replay, silent, staged, stopwatch
+from suchus.experiments import _standing_findings as findings
+from suchus.experiments._standing_variants import PARTS, fitted, heavier, length, lengthened, stand_soon, up_at
+from suchus.figures.reach import draw_ceiling, draw_heights, draw_limits, draw_pushes
+from suchus.figures.standing import draw_angles, draw_side_views
 from suchus.gaits import GAITS
 from suchus.kinematics.mass import cantilever_torque
 from suchus.land import Run, simulate
 from suchus.land.toppling import smallest_pushes
-from suchus.metrics import held, lead, peak_torque, reach, static_margin
+from suchus.metrics import lead, reach, static_margin
 from suchus.motion import START, Gait
-from suchus.motion.posture import plan
-from suchus.motion.rising import LEAD, stand_up, stretched, tallest
-from suchus.paper import CLAIMS
+from suchus.motion.rising import LEAD, stretched, tallest
 from suchus.replay import replay
 from suchus.robots import ROBOTS
 
 _COARSE = 0.005  # [s]; time step of sweeps; reach and limits agree with those at 2 ms
-_SOON = 0.2  # [s]; when standing up begins in sweeps, where no crawl is needed
 _UP = 0.6  # of the stretched length: who reaches less has not stood up, or has fallen
 _WAYS = {"fore": (1.0, 0.0, 0.0), "aft": (-1.0, 0.0, 0.0), "lateral": (0.0, 1.0, 0.0)}
-_PARTS = {
-    "leg": ("hind_leg.femur", "hind_leg.tibia", "front_leg.femur", "front_leg.tibia"),
-    "spine": ("spine.base", "spine.link"),
-    "head": ("head.snout",),
-}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -147,11 +133,11 @@ class BipedalReach(Experiment):
             ):
                 record = record.merge(study(staged(progress, stage, start, end)))
             record = record.merge(self._ceiling())
-            measures = self._measures(record)
+            measures = findings.measures(record, self.robot, self.least)
             return Outcome(
                 experiment=self.name(),
                 measures=measures,
-                verdicts=self._verdicts(measures),
+                verdicts=findings.verdicts(measures, self.robot, self.gait, self.least, self.hold),
                 record=record,
                 settings=self.settings(),
                 replays=self._replays(record),
@@ -188,7 +174,7 @@ class BipedalReach(Experiment):
 
     def _settled(self, robots: Sequence[Crocodile], leads: Sequence[float], progress: Any) -> xr.Dataset:
         """Return reach and lead of robots that stood up; zero where the postures are out of reach."""
-        controls = [_stand_soon(robot, some, self.balance) for robot, some in zip(robots, leads, strict=True)]
+        controls = [stand_soon(robot, some, self.balance) for robot, some in zip(robots, leads, strict=True)]
         able = [control is not None for control in controls]
         found = {name: np.zeros(len(able)) for name in ("reach", "lead")}
         runs = [
@@ -198,7 +184,7 @@ class BipedalReach(Experiment):
         ]
         if not runs:
             return xr.Dataset({name: ("case", values, {"units": "m"}) for name, values in found.items()})
-        duration = max(_up_at(run.robot) for run in runs) + self.wait
+        duration = max(up_at(run.robot) for run in runs) + self.wait
         record = simulate(runs, duration=duration, timestep=_COARSE, every=10, progress=progress)
         last = record.sel(time=slice(duration - 0.5, None))
         for i, case in enumerate(np.flatnonzero(able)):
@@ -209,10 +195,10 @@ class BipedalReach(Experiment):
 
     def _limits(self, progress: Any) -> xr.Dataset:
         """Return what robots with other trunk servos and other forebodies reach."""
-        cells = [_heavier(self.robot, mass, torque) for torque in self.torques for mass in self.forebodies]
+        cells = [heavier(self.robot, mass, torque) for torque in self.torques for mass in self.forebodies]
         found = self._settled(cells, [LEAD] * len(cells), progress)
         shape = len(self.torques), len(self.forebodies)
-        cantilever = [cantilever_torque(_heavier(self.robot, mass, 1.0)) for mass in self.forebodies]
+        cantilever = [cantilever_torque(heavier(self.robot, mass, 1.0)) for mass in self.forebodies]
         data = xr.Dataset(
             {
                 "map_reach": (("torque", "forebody"), found.reach.values.reshape(shape), {"units": "m"}),
@@ -230,14 +216,14 @@ class BipedalReach(Experiment):
         balances = {"on": self.balance, "off": None}
         stood = self._settled([self.robot] * len(leads), leads, lambda share: progress(0.1 * share))
         runs = [
-            Run(robot=self.robot, gait=self.straight, control=_stand_soon(self.robot, some, balance) or OpenLoop())
+            Run(robot=self.robot, gait=self.straight, control=stand_soon(self.robot, some, balance) or OpenLoop())
             for balance in balances.values()
             for some in leads
         ]
         forces = smallest_pushes(
             runs,
             list(_WAYS.values()),
-            at=round(_up_at(self.robot) + self.wait, 2),
+            at=round(up_at(self.robot) + self.wait, 2),
             levels=self.pushes,
             finer=self.finer,
             wait=self.wait,
@@ -257,10 +243,10 @@ class BipedalReach(Experiment):
 
     def _lengths(self, progress: Any) -> xr.Dataset:
         """Return how crawling and standing reach change with the lengths of legs, spine and head."""
-        robots = [self.robot, *(_lengthened(self.robot, part, 1 + self.longer) for part in _PARTS)]
+        robots = [self.robot, *(lengthened(self.robot, part, 1 + self.longer) for part in PARTS)]
         stood = self._settled(robots, [LEAD] * len(robots), lambda share: progress(0.5 * share))
         crawls = [(self.robot, replace(self.gait, hip_height=hips)) for hips in self.hips]
-        crawls += [(robot, _fitted(self.gait, robot, self.robot)) for robot in robots]
+        crawls += [(robot, fitted(self.gait, robot, self.robot)) for robot in robots]
         runs = [Run(robot=robot, gait=gait) for robot, gait in crawls]
         record = simulate(
             runs,
@@ -272,7 +258,7 @@ class BipedalReach(Experiment):
         heights = np.array([float(reach(robot, record.isel(run=i)).max()) for i, (robot, _) in enumerate(crawls)])
         walking = heights[len(self.hips) :]
         longer = np.array(
-            [_length(robot, part) - _length(self.robot, part) for robot, part in zip(robots[1:], _PARTS, strict=True)]
+            [length(robot, part) - length(self.robot, part) for robot, part in zip(robots[1:], PARTS, strict=True)]
         )
         changes = np.stack([walking[1:] - walking[0], stood.reach.values[1:] - stood.reach.values[0]], axis=-1)
         way = record.centre_of_mass.sel(xyz="x")
@@ -286,7 +272,7 @@ class BipedalReach(Experiment):
                 ),
                 "gain": (("part", "pose"), changes / longer[:, None], {"units": "1"}),
             },
-            coords={"hip_height": list(self.hips), "part": list(_PARTS), "pose": ["crawling", "standing"]},
+            coords={"hip_height": list(self.hips), "part": list(PARTS), "pose": ["crawling", "standing"]},
         )
 
     def _ceiling(self) -> xr.Dataset:
@@ -295,92 +281,6 @@ class BipedalReach(Experiment):
         return xr.Dataset(
             {"ceiling": ("behind", tallest(self.robot, behind), {"units": "m"})},
             coords={"behind": ("behind", behind, {"units": "m"})},
-        )
-
-    def _measures(self, record: xr.Dataset) -> dict[str, Measure]:
-        start, at, up, leave, down, _ = record.attrs["stages"]
-        height, margin = record.reach.isel(run=0), record.margin.isel(run=0)
-        crawling, upright = height.sel(time=slice(start, at)), height.sel(time=slice(up, leave))
-        after = height.sel(time=slice(down, None))
-        crawl, stand = float(crawling.max()), float(upright.min())
-        measures = {
-            "reach_crawl": Measure(crawl, "m"),
-            "reach_standing": Measure(stand, "m"),
-            "reach_ratio": Measure(stand / crawl, "-"),
-            "held": Measure(float(held(height, self.least)), "s"),
-            "margin_standing": Measure(float(margin.sel(time=slice(up, leave)).min()), "m"),
-            "margin_rising": Measure(float(record.lead.isel(run=0).sel(time=slice(_lifts(height, at), up)).min()), "m"),
-            "reach_after": Measure(float(after.max()), "m"),
-            "way_after": Measure(
-                float(
-                    record.centre_of_mass.isel(run=0).sel(xyz="x").sel(time=slice(down, None))[[0, -1]].diff("time")[0]
-                ),
-                "m",
-            ),
-            "stretched_length": Measure(stretched(self.robot), "m"),
-            "ceiling": Measure(float(record.ceiling.max()), "m"),
-            "reach_crawl_high": Measure(float(record.crawl_reach.max()), "m"),
-            "hips_at_printed_height": Measure(_hips_at(record, CLAIMS["height_crawl"].value or 0.0), "m"),
-            "cantilever_torque": Measure(cantilever_torque(self.robot), "N m"),
-        }
-        for name, torque in zip(record.servo.values, peak_torque(record.isel(run=0), at, leave).values, strict=True):
-            measures[f"torque_rising_{name}"] = Measure(float(torque), "N m")
-        for feedback in ("on", "off"):
-            stays = (record.repeat_reach.sel(feedback=feedback, repeat_time=slice(up, leave)) > self.least).all(
-                "repeat_time"
-            )
-            measures[f"stays_up_{feedback}"] = Measure(float(stays.mean()), "-")
-            for way in _WAYS:
-                measures[f"push_{way}_{feedback}"] = Measure(
-                    float(record.push.sel(feedback=feedback, commanded=LEAD, way=way)), "N"
-                )
-        for part in _PARTS:
-            for pose in ("crawling", "standing"):
-                measures[f"gain_{part}_{pose}"] = Measure(float(record.gain.sel(part=part, pose=pose)), "-")
-        return measures
-
-    def _verdicts(self, measures: Mapping[str, Measure]) -> tuple[Verdict, ...]:
-        m = {name: measure.value for name, measure in measures.items()}
-        hips, longest = 1000 * self.gait.hip_height, m["stretched_length"]
-        gains = {pose: [m[f"gain_{part}_{pose}"] for part in _PARTS] for pose in ("crawling", "standing")}
-        return (
-            judge(
-                "height_crawl",
-                m["reach_crawl"],
-                f"The top of the back, with the hips at {hips:.0f} mm; the article says neither what it measured nor "
-                f"how high the hips are. The printed height takes hips at {1000 * m['hips_at_printed_height']:.0f} mm.",
-            ),
-            judge(
-                "height_standing",
-                m["reach_standing"],
-                f"The snout, above {self.least:g} m for {m['held']:.0f} s, with trunk servos of "
-                f"{self.robot.spine.pitch_servo.torque:g} N m; the level forebody asks for "
-                f"{m['cantilever_torque']:.2f} N m. "
-                f"Hind leg, spine and head in one line are {longest:.3f} m.",
-                holds=m["reach_standing"] > 2 * m["reach_crawl"] and m["held"] >= 0.99 * self.hold,
-            ),
-            judge(
-                "height_ratio",
-                m["reach_ratio"],
-                "The crawl shown is lower than the printed one, the stand almost as high; against a crawl that reaches "
-                f"the printed height the ratio is {m['reach_standing'] / (CLAIMS['height_crawl'].value or 1.0):.2f}.",
-                holds=m["reach_ratio"] > 2,
-            ),
-            judge(
-                "height_from_legs",
-                gains["crawling"][0],
-                "Per millimetre of longer legs, with the gait's heights in proportion, the crawl reaches "
-                f"{gains['crawling'][0]:.2f} mm higher; per millimetre of spine {gains['crawling'][1]:.2f}, of head "
-                f"{gains['crawling'][2]:.2f} mm.",
-                holds=gains["crawling"][0] > 0.25 and max(map(abs, gains["crawling"][1:])) < 0.1,
-            ),
-            judge(
-                "height_from_spine_head_legs",
-                min(gains["standing"]),
-                "Per millimetre of hind leg, spine and head the stand reaches "
-                f"{gains['standing'][0]:.2f}, {gains['standing'][1]:.2f} and {gains['standing'][2]:.2f} mm higher.",
-                holds=min(gains["standing"]) > 0.5,
-            ),
         )
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
@@ -394,64 +294,6 @@ class BipedalReach(Experiment):
             "ceiling": draw_ceiling(self.robot, record),
             "pushes": draw_pushes(record, LEAD),
         }
-
-
-def _stand_soon(robot: Crocodile, some: float, balance: Balance | None) -> Standing | None:
-    """Return a control that stands up at once and stays, or None for a robot that cannot take the postures."""
-    try:
-        rise = stand_up(robot, lead=some)
-        plan(robot, rise, np.linspace(0.0, rise.duration, 200))
-    except OutsideLimits:
-        return None
-    return Standing(at=_SOON, hold=86400.0, balance=balance, rise=rise)
-
-
-def _up_at(robot: Crocodile) -> float:
-    return Standing(at=_SOON, hold=0.0).upright_from(robot)
-
-
-def _lifts(height: xr.DataArray, since: float) -> float:
-    """Return when the front has left the ground for good: the reach passes a quarter of a metre [s]."""
-    late = height.sel(time=slice(since, None))
-    return float(late.time[np.argmax(late.values > 0.25)])
-
-
-def _hips_at(record: xr.Dataset, height: float) -> float:
-    """Return the height of the hips at which a crawl reaches a height [m], by a line through those tried."""
-    line = np.polyfit(record.crawl_reach.values, record.hip_height.values, 1)
-    return float(np.polyval(line, height))
-
-
-def _heavier(robot: Crocodile, mass: float, torque: float) -> Crocodile:
-    """Return the robot with another forebody, the pelvis taking the rest, and other pitch servos in the trunk."""
-    own = robot.thorax.mass + robot.head.mass
-    return with_values(
-        robot,
-        {
-            "thorax.mass": robot.thorax.mass * mass / own,
-            "head.mass": robot.head.mass * mass / own,
-            "pelvis.mass": max(robot.pelvis.mass + own - mass, 0.02),
-            "spine.pitch_servo.torque": torque,
-        },
-    )
-
-
-def _lengthened(robot: Crocodile, part: str, factor: float) -> Crocodile:
-    """Return the robot with longer legs, a longer spine, or a longer head; masses stay."""
-    return with_values(robot, {path: factor * attrgetter(path)(robot) for path in _PARTS[part]})
-
-
-def _length(robot: Crocodile, part: str) -> float:
-    """Return the length of a part, of the hind leg for the legs [m]."""
-    leg = robot.hind_leg
-    return {"leg": leg.femur + leg.tibia, "spine": robot.spine.length, "head": robot.head.snout}[part]
-
-
-def _fitted(gait: Gait, robot: Crocodile, original: Crocodile) -> Gait:
-    """Return the gait with its heights and reaches in proportion to a robot's legs."""
-    factor = _length(robot, "leg") / _length(original, "leg")
-    sizes = {name: factor * getattr(gait, name) for name in ("hip_height", "front_reach", "hind_reach")}
-    return replace(gait, **sizes)
 
 
 experiment = BipedalReach()

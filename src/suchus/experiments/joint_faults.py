@@ -12,7 +12,9 @@ from scipy.stats import qmc
 
 from suchus.control import Coordinated, HeadingRule
 from suchus.design import Chosen, Crocodile, meaning, value_at, with_values
-from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, judge, silent, staged, stopwatch
+from suchus.experiment import Experiment, Outcome, Progress, Replay, silent, staged, stopwatch
+from suchus.experiments import _fault_findings as findings
+from suchus.experiments._fault_findings import ARMS
 from suchus.figures.faults import draw_held, draw_losses, draw_over_time, draw_tracks
 from suchus.gaits import GAITS
 from suchus.land import KINDS, LEGS_LOST, LOST, Ground, Limp, Locked, Run, angle_at, lost, simulate
@@ -21,22 +23,17 @@ from suchus.metrics import (
     between,
     displacement,
     heading_change,
-    loss,
     path_length,
-    says,
     swing_lift,
     swing_loads,
     whole,
 )
 from suchus.motion import START, Gait
-from suchus.paper import CLAIMS, CYCLES
+from suchus.paper import CYCLES
 from suchus.replay import replay
 from suchus.robots import ROBOTS
 
-_ARMS = ("coordinated", "limbs_only")
-_CELLS = ("joint", "kind", "legs", "arm")
 _TRUNK = ("trunk_bend", "spine_phase", "tail_bend", "tail_phase", "tail_pitch")  # the rest of a gait is its legs
-_CARRIERS = ("tail", "RF", "LH")  # what the article says carries the body while the damaged RH swings
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,7 +48,7 @@ class JointFaults(Experiment):
 
     title = "How far does it still crawl when joints of its legs are lost?"
     shows = "Section IV.C, Figs 18 to 21"
-    claims = (*(f"fault_{joint}_{arm}" for joint in LOST for arm in _ARMS), "fault_support", "fault_tolerance")
+    claims = (*(f"fault_{joint}_{arm}" for joint in LOST for arm in ARMS), "fault_support", "fault_tolerance")
     decides = (
         "What 'lost' means decides more than which joint is lost, and the article does not say. A limp pitch joint "
         "drops its corner of the body and ends the walk; the same joint locked in mid-range costs little. A limp yaw "
@@ -111,11 +108,11 @@ class JointFaults(Experiment):
             record = record.merge(self._steered(staged(progress, "steered", 0.92, 1.0)))
             return Outcome(
                 experiment=self.name(),
-                measures=self._measures(record),
-                verdicts=self._verdicts(record),
+                measures=findings.measures(record, self.kind, self.legs),
+                verdicts=findings.verdicts(record, self.kind, self.legs),
                 record=record,
                 settings=self.settings(),
-                tables={"faults.csv": _table(record)},
+                tables={"faults.csv": findings.table(record)},
                 replays=self._replays(lost_pitch),
                 seconds=seconds(),
             )
@@ -158,7 +155,7 @@ class JointFaults(Experiment):
                 seed=self.seed + i,
             )
             for i, (gaits, grip) in enumerate(varied)
-            for arm in _ARMS
+            for arm in ARMS
             for faults in ((), *(lost(self.robot, gaits[arm], *cell, hold=self.hold) for cell in cells))
         ]
         record = whole(simulate(runs, duration=self._duration, timestep=self.timestep, every=10, progress=progress))
@@ -171,8 +168,8 @@ class JointFaults(Experiment):
         }
         way = between(record).centre_of_mass.sel(xyz=["x", "y"])
         tracks = (way - way.isel(time=0)).transpose("run", "time", "xyz").values
-        shape = (len(varied), len(_ARMS), 1 + len(cells))
-        data = xr.Dataset(coords={"variation": range(shape[0]), "arm": list(_ARMS), "time": way.time.values})
+        shape = (len(varied), len(ARMS), 1 + len(cells))
+        data = xr.Dataset(coords={"variation": range(shape[0]), "arm": list(ARMS), "time": way.time.values})
         data = data.assign_coords(joint=list(LOST), kind=list(KINDS), legs=list(LEGS_LOST), on_ground=["x", "y"])
         for name, (some, unit, what) in numbers.items():
             _lay(data, name, some.values.reshape(shape), (), unit, what)
@@ -189,16 +186,16 @@ class JointFaults(Experiment):
     def _held(self, progress: Any) -> xr.Dataset:
         """Lock one leg's joint at several places of its range, in the gait as given."""
         gaits, _ = self._varied()[0]
-        points = list(product(_ARMS, LOST, self.holds))
+        points = list(product(ARMS, LOST, self.holds))
         runs = [
             Run(robot=self.robot, gait=gaits[a], faults=lost(self.robot, gaits[a], j, "locked", hold=h))
             for a, j, h in points
         ]
         record = whole(simulate(runs, duration=self._duration, timestep=0.005, every=100, progress=progress))
-        shape = (len(_ARMS), len(LOST), len(self.holds))
+        shape = (len(ARMS), len(LOST), len(self.holds))
         way = displacement(record).sel(xyz="x").values.reshape(shape)
         data = xr.Dataset({"held_forward": (("arm", "joint", "hold"), way, {"units": "m"})})
-        return data.assign_coords(arm=list(_ARMS), joint=list(LOST), hold=list(self.holds))
+        return data.assign_coords(arm=list(ARMS), joint=list(LOST), hold=list(self.holds))
 
     def _lost_pitch(self, progress: Any) -> xr.Dataset:
         """Run the gait as given intact, with the right hind pitch joint limp, and with it locked."""
@@ -250,86 +247,6 @@ class JointFaults(Experiment):
             coords={"joint": list(LOST)},
         )
 
-    def _measures(self, record: xr.Dataset) -> Mapping[str, Measure]:
-        change, measures = _changes(record), {}
-        for arm in _ARMS:
-            measures[f"forward_{arm}"] = Measure(float(record.intact_forward.sel(arm=arm)[0]), "m")
-        bare = loss(record.intact_forward.sel(arm="limbs_only"), record.intact_forward.sel(arm="coordinated"))
-        measures |= _ranged("loss_intact_limbs_only", bare, "-")
-        for cell in product(LOST, KINDS, LEGS_LOST, _ARMS):
-            at, name = dict(zip(_CELLS, cell, strict=True)), "_".join(cell)
-            measures |= _ranged(f"loss_{name}", change["forward"].sel(at), "-")
-            measures[f"net_loss_{name}"] = Measure(float(change["net"].sel(at).median()), "-")
-            measures[f"path_loss_{name}"] = Measure(float(change["path"].sel(at).median()), "-")
-            measures[f"turn_{name}"] = Measure(float(record.turn.sel(at).median()), "rad")
-        kept = loss(record.steered_forward, record.intact_forward.sel(arm="coordinated", drop=True))
-        for joint in LOST:
-            name = f"{joint}_{self.kind}_{self.legs}_steered"
-            measures |= _ranged(f"loss_{name}", kept.sel(joint=joint), "-")
-            measures[f"turn_{name}"] = Measure(float(record.steered_turn.sel(joint=joint).median()), "rad")
-        better, beyond = _bears_better(record), _kept(record).sel(arm="limbs_only")
-        measures["share_spine_and_tail_bear_better"] = Measure(float(better.mean()), "-")
-        measures["share_limbs_only_beyond_intact"] = Measure(float((beyond > 1.0).mean()), "-")
-        measures["greatest_limbs_only_over_intact"] = Measure(float(beyond.median("variation").max()), "-")
-        for state in record.state.values:
-            measures[f"support_share_{state}"] = Measure(_carried(record, str(state)), "-")
-            measures[f"foot_lift_{state}"] = Measure(float(record.lifted.sel(state=state)), "m")
-        return measures
-
-    def _verdicts(self, record: xr.Dataset) -> tuple[Any, ...]:
-        change = _changes(record)["forward"].median("variation")
-        judged = []
-        for joint, arm in product(LOST, _ARMS):
-            key, cells = f"fault_{joint}_{arm}", change.sel(joint=joint, arm=arm)
-            value = float(cells.sel(kind=self.kind, legs=self.legs))
-            judged.append(judge(key, value, self._why(record, cells, arm), holds=bool(says(key, np.array(value)))))
-        better = _bears_better(record)
-        by_joint = ", ".join(f"{j.replace('_', ' ')} {100 * float(better.sel(joint=j).mean()):.0f} %" for j in LOST)
-        ahead = (record.forward.sel(arm="coordinated") > record.forward.sel(arm="limbs_only")).mean()
-        carried = {str(state): _carried(record, str(state)) for state in record.state.values}
-        return (
-            *judged,
-            judge(
-                "fault_support",
-                carried[self.kind],
-                f"While the damaged right hind leg is meant to swing, tail, right front and left hind foot carry "
-                f"{100 * carried[self.kind]:.0f} % of the weight with its pitch joint {self.kind}, "
-                f"{100 * carried['intact']:.0f} % intact; the tail's own part is {_tail(record, self.kind):.1f} N. The "
-                f"foot rises {1000 * float(record.lifted.sel(state=self.kind)):.0f} mm "
-                f"(intact {1000 * float(record.lifted.sel(state='intact')):.0f} mm).",
-                holds=carried[self.kind] > 0.5 and float(record.lifted.sel(state=self.kind)) > 0.002,
-            ),
-            judge(
-                "fault_tolerance",
-                float(better.mean()),
-                "Part of all faults and variations in which more of its own intact displacement is kept with spine "
-                f"and tail than with limbs only: {by_joint}. In metres it is ahead in {100 * float(ahead):.0f} %.",
-                holds=float(better.mean()) > 0.5,
-            ),
-        )
-
-    def _why(self, record: xr.Dataset, cells: xr.DataArray, arm: str) -> str:
-        """Return what each reading of the fault gives, and how far the intact robot of the arm is behind."""
-        told = "; ".join(
-            f"{kind}, {legs} {100 * float(cells.sel(kind=kind, legs=legs)):+.0f} %"
-            for kind, legs in product(KINDS, LEGS_LOST)
-        )
-        text = f"Medians over {self.variations} gaits and frictions: {told}; judged is {self.kind}, {self.legs}."
-        if arm == "coordinated":
-            return text
-        bare = loss(record.intact_forward.sel(arm="limbs_only"), record.intact_forward.sel(arm="coordinated"))
-        key = str(cells.joint.values)
-        printed = CLAIMS[f"fault_{key}_limbs_only"].value or 0.0
-        ways = {a: CLAIMS[f"displacement_{a}"].value or 0.0 for a in _ARMS}
-        left = ways["coordinated"] * (1.0 + printed)
-        text += f" The intact robot of limbs alone is already at {100 * float(bare.median()):+.0f} %."
-        if left > ways["limbs_only"]:
-            text += (
-                f" The article's {100 * printed:+.0f} % leave {left:.2f} m, more than its own intact "
-                f"{ways['limbs_only']:.2f} m."
-            )
-        return text
-
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw the losses, the way over time for both kinds of fault, the tracks, and the places of locking."""
         record = outcome.record
@@ -361,66 +278,6 @@ def _support(lost_pitch: xr.Dataset) -> xr.Dataset:
         },
         coords={"state": ["intact", *KINDS], "part": [str(name) for name in loads.part.values]},
     )
-
-
-def _changes(record: xr.Dataset) -> dict[str, xr.DataArray]:
-    """Return the changes against the intact run with spine and tail."""
-    return {
-        name: loss(record[name], record[f"intact_{name}"].sel(arm="coordinated", drop=True))
-        for name in ("forward", "net", "path")
-    }
-
-
-def _kept(record: xr.Dataset) -> xr.DataArray:
-    """Return the part of its own intact displacement that each arm keeps; going backwards is keeping nothing [-]."""
-    return (record.forward / record.intact_forward).clip(min=0.0)
-
-
-def _bears_better(record: xr.Dataset) -> xr.DataArray:
-    """Tell where the robot keeps more of its own with spine and tail than with limbs only."""
-    kept = _kept(record)
-    return kept.sel(arm="coordinated") > kept.sel(arm="limbs_only")
-
-
-def _ranged(name: str, values: xr.DataArray, unit: str) -> dict[str, Measure]:
-    return {
-        name: Measure(float(values.median()), unit),
-        f"{name}_low": Measure(float(values.min()), unit),
-        f"{name}_high": Measure(float(values.max()), unit),
-    }
-
-
-def _carried(record: xr.Dataset, state: str) -> float:
-    load = record.support.sel(state=state)
-    return float(load.sel(part=list(_CARRIERS)).sum() / load.sum())
-
-
-def _tail(record: xr.Dataset, state: str) -> float:
-    return float(record.support.sel(state=state, part="tail"))
-
-
-def _table(record: xr.Dataset) -> str:
-    """Return one row per fault and arm: medians over the variations, with ranges where a paper needs them."""
-    change, own = _changes(record), loss(record.forward, record.intact_forward)
-    head = "joint,kind,legs,arm,forward_m,change,change_low,change_high,change_of_own_intact,net_change,path_change,"
-    rows = [head + "turn_deg,printed_change"]
-    for cell in product(LOST, KINDS, LEGS_LOST, _ARMS):
-        at = dict(zip(_CELLS, cell, strict=True))
-        forward = change["forward"].sel(at)
-        numbers = (
-            record.forward.sel(at).median(),
-            forward.median(),
-            forward.min(),
-            forward.max(),
-            own.sel(at).median(),
-            change["net"].sel(at).median(),
-            change["path"].sel(at).median(),
-        )
-        told = [f"{float(number):.3f}" for number in numbers]
-        turned = f"{float(np.degrees(record.turn.sel(at).median())):.1f}"
-        printed = f"{CLAIMS[f'fault_{cell[0]}_{cell[3]}'].value:.2f}"
-        rows.append(",".join((*cell, *told, turned, printed)))
-    return "\n".join(rows) + "\n"
 
 
 experiment = JointFaults()

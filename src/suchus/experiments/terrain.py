@@ -12,10 +12,10 @@ import xarray as xr
 from suchus.control import AttitudeRule, Change, Control, SwitchRule, Walking
 from suchus.design import Crocodile
 from suchus.design.relief import Bumps, Relief, Step, profile
-from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, judge, silent, staged, stopwatch
-from suchus.figures import captioned, panels, styled
-from suchus.figures.posture import draw_posture
-from suchus.figures.terrain import GAIT_LINES, draw_ground, draw_rough
+from suchus.experiment import Experiment, Outcome, Progress, Replay, silent, staged, stopwatch
+from suchus.experiments import _terrain_findings as findings
+from suchus.experiments._terrain_findings import FALLEN
+from suchus.figures.terrain import GAIT_LINES, draw_on_bumps, draw_rough
 from suchus.gaits import GAITS
 from suchus.land import Ground, Run, simulate
 from suchus.land.arenas import BEFORE, STONE
@@ -24,9 +24,7 @@ from suchus.motion import START, Gait
 from suchus.replay import replay
 from suchus.robots import ROBOTS
 
-_FALLEN = np.radians(60)  # of roll or pitch: beyond this nothing on the robot brings it back
 _TOUCH = 0.5  # [N]; on the belly
-_SINGLE = ("low_crawl", "semi_erect", "high_walk", "high_walk_level")
 Surface = Literal["even", "bumps"]
 
 
@@ -92,8 +90,8 @@ class Terrain(Experiment):
             record = self._example(staged(progress, "example", 0.97, 1.0)).merge(rough).merge(changed)
             return Outcome(
                 experiment=self.name(),
-                measures=self._measures(record),
-                verdicts=self._verdicts(record),
+                measures=findings.measures(record),
+                verdicts=findings.verdicts(record),
                 record=record,
                 settings=self.settings(),
                 replays=self._replays(record),
@@ -216,94 +214,10 @@ class Terrain(Experiment):
         shown.along.attrs["units"] = "m"
         return record.merge(shown)
 
-    def _measures(self, record: xr.Dataset) -> Mapping[str, Measure]:
-        measures: dict[str, Measure] = {}
-        for arm in record.arm.values:
-            one = record.sel(arm=arm)
-            flat = one.isel(ground=0, seed=0)
-            measures |= {
-                f"flat_forward_{arm}": Measure(float(flat.forward), "m"),
-                f"flat_cost_{arm}": Measure(float(flat.cost), "-"),
-                f"falls_{arm}": Measure(float(one.fell.sum()), "-"),
-                f"belly_{arm}": Measure(float(one.belly.mean()), "-"),
-                f"aside_{arm}": Measure(float(abs(one.aside).mean()), "m"),
-            }
-            for kind in dict.fromkeys(record.kind.values):
-                rough = one.isel(ground=np.flatnonzero((record.kind.values == kind) & (record.height.values > 0)))
-                measures[f"kept_{kind}_{arm}"] = Measure(float(rough.forward.mean() / flat.forward), "-")
-        low = record.isel(ground=np.flatnonzero(record.height.values <= 0.04))
-        share = _share_of_best(record)
-        worst = int(share.argmin("ground"))
-        return measures | {
-            "switching_share_of_best_worst": Measure(float(share.min()), "-"),
-            "switching_worst_height": Measure(float(record.height[worst]), "m"),
-            "switching_grounds_within_5_percent": Measure(float((share >= 0.95).sum()), "-"),
-            "grounds": Measure(float(record.sizes["ground"]), "-"),
-            "switching_falls_up_to_40_mm": Measure(float(low.fell.sel(arm="switching").sum()), "-"),
-            **{
-                f"transition_tilt_{surface}": Measure(float(record.change_tilt.sel(surface=surface).max()), "rad")
-                for surface in record.surface.values
-            },
-        }
-
-    def _verdicts(self, record: xr.Dataset) -> tuple[Any, ...]:
-        flat = record.isel(ground=0, seed=0)
-        cost = float(flat.cost.sel(arm="low_crawl") / flat.cost.sel(arm="high_walk"))
-        rough = record.isel(ground=np.flatnonzero(record.height.values >= 0.03))
-        way, fell = rough.forward.mean("seed"), rough.fell.sum(["ground", "seed"])
-        crawl, erect = way.sel(arm="low_crawl").values, way.sel(arm="high_walk").values
-        level, semi = way.sel(arm="high_walk_level").values, way.sel(arm="semi_erect").values
-        ahead, n, runs = float((level > crawl).mean()), len(crawl), rough.sizes["ground"] * rough.sizes["seed"]
-        upright = float((record.change_tilt < _FALLEN).mean())
-        return (
-            judge(
-                "crawl_structure_flat",
-                cost,
-                f"On even ground the crawl costs {cost:.2f} of the high walk's work per way, at about its speed.",
-                holds=cost < 1.0,
-            ),
-            judge(
-                "erect_structure_rough",
-                ahead,
-                f"With the IMU. Of {n} grounds 30 mm and rougher the erect walk that answers the IMU gets farther "
-                f"than the crawl on {int((level > crawl).sum())}, falling {int(fell.sel(arm='high_walk_level'))} times "
-                f"in {runs} runs; open loop on {int((erect > crawl).sum())}, falling {int(fell.sel(arm='high_walk'))} "
-                f"times. Semi-erect legs beat both structures on {int((semi > np.maximum(level, crawl)).sum())}.",
-                holds=bool(ahead > 0.5 and fell.sel(arm="high_walk_level") <= fell.sel(arm="low_crawl")),
-            ),
-            judge(
-                "switches_structure",
-                upright,
-                f"{record.change_tilt.size} transitions out of one walk into another, 3.5 s each, on even ground and "
-                f"bumps of 30 mm: {100 * upright:.0f} % upright, with tilts up to "
-                f"{np.degrees(float(record.change_tilt.max())):.0f} degrees.",
-                holds=upright == 1.0,
-            ),
-        )
-
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw the postures on bumps, and the way on every ground."""
         record = outcome.record
-        return {"postures": self._postures(record), "rough_ground": draw_rough(record, GAIT_LINES)}
-
-    def _postures(self, record: xr.Dataset) -> Any:
-        with styled(axes__grid=False):
-            figure, axes = panels(3, 1, width=8.6, height=6.6)
-            for ax, run in zip(axes[:, 0], record.run.values, strict=True):
-                one = record.sel(run=run)
-                draw_posture(ax, self.robot, one, float(one.time[-1]), view="side", support=False, ground=False)
-                draw_ground(ax, record.along.values, record.ground_height.values)
-                ax.set_title(str(GAIT_LINES[str(one.label.item())]["label"]))
-                middle = float(one.centre_of_mass.sel(xyz="x")[-1])
-                ax.set_xlim(middle - 0.68, middle + 0.62)
-                ax.set_ylim(-0.06, 0.26)
-                ax.set_ylabel("[m]")
-            axes[-1, 0].set_xlabel("along the path [m]")
-        return captioned(
-            figure,
-            "Three postures on the same bumps of 40 mm, halfway through the walk: the sprawled crawl, semi-erect legs, "
-            "and erect legs with elbows behind and knees ahead. Filled feet stand.",
-        )
+        return {"postures": draw_on_bumps(self.robot, record), "rough_ground": draw_rough(record, GAIT_LINES)}
 
 
 _UNITS = {"forward": "m", "aside": "m", "turned": "rad", "fell": "1", "cost": "1", "belly": "1"}
@@ -316,7 +230,7 @@ def _look(record: xr.Dataset) -> np.ndarray:
         way.sel(xyz="x"),
         way.sel(xyz="y"),
         heading_change(record),
-        _most_tilt(record) > _FALLEN,
+        _most_tilt(record) > FALLEN,
         cost_of_transport(record),
         (part.belly_force.sel(xyz="z").sum("segment") > _TOUCH).mean("time"),
     )
@@ -326,12 +240,6 @@ def _look(record: xr.Dataset) -> np.ndarray:
 def _most_tilt(record: xr.Dataset) -> np.ndarray:
     angles = tilt(between(record))
     return np.maximum(abs(angles["roll"]).max("time").values, abs(angles["pitch"]).max("time").values)
-
-
-def _share_of_best(record: xr.Dataset) -> xr.DataArray:
-    """Return the way of the switching robot over that of the best single posture, by ground [-]."""
-    way = record.forward.mean("seed")
-    return way.sel(arm="switching", drop=True) / way.sel(arm=list(_SINGLE)).max("arm")
 
 
 experiment = Terrain()

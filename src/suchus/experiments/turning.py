@@ -86,7 +86,7 @@ class Turning(Experiment):
                 verdicts=(),
                 record=record,
                 settings=self.settings(),
-                replays=self._replays(shown[int(record.curvature_mixture.max("mixture").argmax())]),
+                replays=self._replays(shown[int(record.curvature_mixture.max("mixture").values.argmax())]),
                 seconds=seconds(),
             )
 

@@ -9,6 +9,8 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from suchus.design import Crocodile
+from suchus.figures.posture import draw_posture
 from suchus.figures.style import COLOURS, captioned, panels, styled
 
 GAIT_LINES: Mapping[str, Mapping[str, Any]] = MappingProxyType(
@@ -133,3 +135,29 @@ def draw_ground(ax: Axes, x: np.ndarray, height: Sequence[float] | np.ndarray) -
     """Draw the profile of the ground, filled."""
     ax.fill_between(x, height, -0.06, color="#D9CDB8", zorder=0.2, linewidth=0)
     ax.plot(x, height, color=COLOURS["ground"], linewidth=1.4, zorder=0.3)
+
+
+def draw_on_bumps(robot: Crocodile, record: xr.Dataset) -> Figure:
+    """Draw every run of a record from the side at its end, on the ground under it.
+
+    Args:
+        robot: who walked.
+        record: of the experiment.
+    """
+    with styled(axes__grid=False):
+        figure, axes = panels(3, 1, width=8.6, height=6.6)
+        for ax, run in zip(axes[:, 0], record.run.values, strict=True):
+            one = record.sel(run=run)
+            draw_posture(ax, robot, one, float(one.time[-1]), view="side", support=False, ground=False)
+            draw_ground(ax, record.along.values, record.ground_height.values)
+            ax.set_title(str(GAIT_LINES[str(one.label.item())]["label"]))
+            middle = float(one.centre_of_mass.sel(xyz="x")[-1])
+            ax.set_xlim(middle - 0.68, middle + 0.62)
+            ax.set_ylim(-0.06, 0.26)
+            ax.set_ylabel("[m]")
+        axes[-1, 0].set_xlabel("along the path [m]")
+    return captioned(
+        figure,
+        "Three postures on the same bumps of 40 mm, halfway through the walk: the sprawled crawl, semi-erect legs, "
+        "and erect legs with elbows behind and knees ahead. Filled feet stand.",
+    )

@@ -1,0 +1,69 @@
+"""Who else stands up: robots with another forebody, other servos, longer parts; and how, at once and for good."""
+
+from dataclasses import replace
+from operator import attrgetter
+
+import numpy as np
+
+from suchus.control.standing import Balance, Standing
+from suchus.design import Crocodile, with_values
+from suchus.errors import OutsideLimits
+from suchus.motion import Gait
+from suchus.motion.posture import plan
+from suchus.motion.rising import stand_up
+
+SOON = 0.2
+"""When standing up begins where no crawl is needed [s]."""
+PARTS = {
+    "leg": ("hind_leg.femur", "hind_leg.tibia", "front_leg.femur", "front_leg.tibia"),
+    "spine": ("spine.base", "spine.link"),
+    "head": ("head.snout",),
+}
+"""Names of the numbers that make up the length of a part."""
+
+
+def heavier(robot: Crocodile, mass: float, torque: float) -> Crocodile:
+    """Return the robot with another forebody, the pelvis taking the rest, and other pitch servos in the trunk."""
+    own = robot.thorax.mass + robot.head.mass
+    return with_values(
+        robot,
+        {
+            "thorax.mass": robot.thorax.mass * mass / own,
+            "head.mass": robot.head.mass * mass / own,
+            "pelvis.mass": max(robot.pelvis.mass + own - mass, 0.02),
+            "spine.pitch_servo.torque": torque,
+        },
+    )
+
+
+def lengthened(robot: Crocodile, part: str, factor: float) -> Crocodile:
+    """Return the robot with longer legs, a longer spine, or a longer head; masses stay."""
+    return with_values(robot, {path: factor * attrgetter(path)(robot) for path in PARTS[part]})
+
+
+def length(robot: Crocodile, part: str) -> float:
+    """Return the length of a part, of the hind leg for the legs [m]."""
+    leg = robot.hind_leg
+    return {"leg": leg.femur + leg.tibia, "spine": robot.spine.length, "head": robot.head.snout}[part]
+
+
+def fitted(gait: Gait, robot: Crocodile, original: Crocodile) -> Gait:
+    """Return the gait with its heights and reaches in proportion to a robot's legs."""
+    factor = length(robot, "leg") / length(original, "leg")
+    sizes = {name: factor * getattr(gait, name) for name in ("hip_height", "front_reach", "hind_reach")}
+    return replace(gait, **sizes)
+
+
+def stand_soon(robot: Crocodile, some: float, balance: Balance | None) -> Standing | None:
+    """Return a control that stands up at once and stays, or None for a robot that cannot take the postures."""
+    try:
+        rise = stand_up(robot, lead=some)
+        plan(robot, rise, np.linspace(0.0, rise.duration, 200))
+    except OutsideLimits:
+        return None
+    return Standing(at=SOON, hold=86400.0, balance=balance, rise=rise)
+
+
+def up_at(robot: Crocodile) -> float:
+    """Return when a robot that stands up at once is upright [s]."""
+    return Standing(at=SOON, hold=0.0).upright_from(robot)
