@@ -1,18 +1,24 @@
-"""Draw the pictures of the example pages that no script draws by itself, into docs/pictures.
+"""Draw the pictures of the documentation that no example draws by itself, into docs/pictures.
 
-Usage: python tools/example_pictures.py [NUMBER ...]
+Usage: python tools/example_pictures.py [NAME ...]
 """
 
+import re
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
 import suchus
+from suchus import envs
 from suchus.figures import COLOURS, dimension_drawing, panels, styled
+from suchus.figures.crawls import draw_crawls
+from suchus.figures.standing import draw_side_views
+from suchus.land import Run, simulate
 
 PICTURES = Path(__file__).parents[1] / "docs" / "pictures"
 CAIMAN, CRAWL = suchus.ROBOTS["caiman"], suchus.GAITS["belly_crawl"]
@@ -56,13 +62,68 @@ def gait() -> Figure:
     return question.draw(question.run())["gait_diagram"]
 
 
+def policies() -> Figure:
+    """Draw how far each policy of the eleventh example gets in every episode."""
+    task = envs.TASKS["Crawl"]
+    centre = tuple(envs.CrocodileVectorEnv(1, task).pack.centre)
+    players = {
+        "holding still": envs.still,
+        "anything": envs.Anything(np.random.default_rng(0)),
+        "the shelf's crawl": envs.Follow(task=task, centre=centre, gait=task.gait),
+    }
+    return _bars({name: envs.play(task, player, episodes=8).forward.tolist() for name, player in players.items()})
+
+
+def learned() -> Figure:
+    """Draw what the twelfth example learned, as the page on environments tells it: training takes minutes."""
+    table = (PICTURES.parent / "environments.md").read_text(encoding="utf-8").partition("had learned then")[2]
+    rows = re.findall(r"^\| ([^|]+?) \|[^|]+\| ([+-]?[0-9.]+) m \|", table, re.M)[:6]
+    return _bars({name: [float(way)] for name, way in rows})
+
+
+def crawling() -> Figure:
+    """Draw the two crawls of the article from above."""
+    arms = ("coordinated", "limbs_only")
+    gaits = (CRAWL, suchus.GAITS["limbs_only"])
+    return draw_crawls(CAIMAN, simulate([Run(robot=CAIMAN, gait=gait) for gait in gaits], duration=9.0), arms)
+
+
+def standing() -> Figure:
+    """Draw the robot standing up."""
+    question = suchus.EXPERIMENTS["bipedal_reach"].quick()
+    return draw_side_views(CAIMAN, question.run().record)
+
+
 DRAWN: Mapping[str, Callable[[], Figure]] = {
-    "02": broken_joints,
-    "03": longer_tail,
-    "04": workspace,
-    "07": heading,
-    "08": gait,
+    "crawling": crawling,
+    "standing": standing,
+    "example_02": broken_joints,
+    "example_03": longer_tail,
+    "example_04": workspace,
+    "example_07": heading,
+    "example_08": gait,
+    "example_11": policies,
+    "example_12": learned,
 }
+
+
+def _bars(ways: Mapping[str, Sequence[float]]) -> Figure:
+    """Draw how far each got: the mean as a bar, every episode as a dot."""
+    with styled(axes__grid=False):
+        figure, axes = panels(1, 1, width=8.0, height=0.9 + 0.5 * len(ways))
+        ax = axes[0, 0]
+        for row, far in enumerate(ways.values()):
+            ax.barh(row, np.mean(far), height=0.6, color=COLOURS["coordinated"], alpha=0.75)
+            if len(far) > 1:
+                ax.plot(far, [row] * len(far), "o", color=COLOURS["limbs_only"], markersize=4)
+            right = max(0.0, *far)
+            ax.annotate(f"{np.mean(far):+.2f} m", (right, row), (6, 0), textcoords="offset points", va="center")
+        ax.axvline(0.0, color="black", linewidth=1.0)
+        ax.set_yticks(range(len(ways)), list(ways))
+        ax.invert_yaxis()
+        ax.margins(x=0.12)
+        ax.set_xlabel("forward in an episode, mean [m]")
+    return figure
 
 
 def _ways(records: Mapping[str, xr.Dataset]) -> Figure:
@@ -81,8 +142,8 @@ def _ways(records: Mapping[str, xr.Dataset]) -> Figure:
 
 
 if __name__ == "__main__":
-    for number in sys.argv[1:] or DRAWN:
+    for name in sys.argv[1:] or DRAWN:
         with styled():
-            path = PICTURES / f"example_{number}.png"
-            DRAWN[number]().savefig(path, dpi=100, metadata={"Software": None})
+            path = PICTURES / f"{name}.png"
+            DRAWN[name]().savefig(path, dpi=130, metadata={"Software": None})
         print(path)

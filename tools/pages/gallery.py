@@ -14,6 +14,7 @@ _SHARED = {
     "05_cylinder_wake": ("flow_wake.png",),
     "06_eel": ("flow_eel.png",),
     "09_replay": ("replay.png",),
+    "10_optimise": ("optimised_crawl.png",),
 }
 """Pictures that other pages show too."""
 
