@@ -166,7 +166,7 @@ def energy_budget(cells, *, keulegan=1.0, stokes=10.0):
     return work, float(kinetic[-1]), float(np.trapezoid(np.append(0.0, lost), np.append(0.0, time)))
 
 
-def shaken_in_a_stream(cells, ratio, until, *, x=(-6.0, 10.0), y=(-6.0, 6.0), strouhal=0.195):
+def shaken_in_a_stream(cells, ratio, until, *, x=(-4.0, 10.0), y=(-4.0, 4.0), strouhal=0.195):
     """Cylinder at Re 185 that oscillates across the stream with 0.2 D at ``ratio`` times its own shedding frequency."""
     grid = flow.Grid.covering(x, y, cell=1 / cells)
     motion = flow.Oscillation(frequency=ratio * strouhal, heave=(0.0, 0.2))
