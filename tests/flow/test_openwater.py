@@ -1,0 +1,152 @@
+"""Sides in water without end, against vortices, sources and bodies whose far field is known."""
+
+import flow_cases as cases
+import numpy as np
+import pytest
+
+from suchus import flow
+from suchus.flow.compiled import PAD
+from suchus.flow.openwater import SIDE, Fading, OpenWater
+
+NO_BODY = (PAD, PAD, PAD, PAD)
+
+
+def swirl(x, y, at, circulation, radius):
+    """Velocity (u, v) of a vortex with a Gaussian core."""
+    dx, dy = x - at[0], y - at[1]
+    square = np.maximum(dx**2 + dy**2, 1e-12)
+    turn = circulation / (2 * np.pi * square) * (1 - np.exp(-square / radius**2))
+    return -turn * dy, turn * dx
+
+
+def fields(nx, ny, velocity):
+    """Velocity ``velocity(x, y)`` in cells from the corner, on the padded faces."""
+    faces_x, faces_y = np.arange(nx + 2 * PAD) - PAD, np.arange(ny + 2 * PAD) - PAD
+    u = velocity(*np.meshgrid(faces_x, faces_y + 0.5))[0]
+    v = velocity(*np.meshgrid(faces_x + 0.5, faces_y))[1]
+    return u.astype(np.float32), v.astype(np.float32)  # the solver's own type, or the kernels are compiled twice
+
+
+def inward(nx, ny, velocity):
+    """The same into the domain on the faces of the four sides."""
+    x, y = np.arange(nx) + 0.5, np.arange(ny) + 0.5
+    return [
+        velocity(np.zeros(ny), y)[0], -velocity(np.full(ny, nx), y)[0],
+        velocity(x, np.zeros(nx))[1], -velocity(x, np.full(nx, ny))[1],
+    ]  # fmt: skip
+
+
+def test_what_a_vortex_induces_on_the_sides():
+    nx, ny = 96, 64
+
+    def velocity(x, y):
+        return swirl(x, y, (37.3, 29.1), 5.0, 4.0)
+
+    got = OpenWater((nx, ny)).inward(*fields(nx, ny, velocity), NO_BODY, [])
+    for ours, exact in zip(got, inward(nx, ny, velocity), strict=True):
+        assert ours == pytest.approx(exact, abs=2e-4)  # of up to 0.03
+
+
+def test_what_swells_pushes_the_sides_out():
+    """A jet from one cell into the next is a source, a sink and vortices beside them, which cancel afar."""
+    nx, ny, cell = 64, 64, (26, 41)
+    u, v = np.zeros((2, ny + 2 * PAD, nx + 2 * PAD), np.float32)
+    u[PAD + cell[1], PAD + cell[0] + 1] = 0.3
+    got = OpenWater((nx, ny)).inward(u, v, (PAD, PAD + ny, PAD, PAD + nx), [])
+    assert max(np.abs(side).max() for side in got) < 1e-4
+
+
+def test_a_wake_that_leaves_acts_like_a_source():
+    """A uniform wake behind x = 40, carried out on the right: afar it is a source of its defect's flow."""
+    nx, ny, depth, width = 256, 128, 0.1, 6.0
+
+    def wake(x, y):
+        return -depth * np.exp(-(((y - 64.0) / width) ** 2)) / (1 + np.exp(-(x - 40.0))), 0 * x
+
+    defect = depth * width * np.pi**0.5
+
+    def source(x, y):
+        square = (x - 40.0) ** 2 + (y - 64.0) ** 2
+        return defect * (x - 40.0) / (2 * np.pi * square), defect * (y - 64.0) / (2 * np.pi * square)
+
+    u, v = fields(nx, ny, wake)
+    got = OpenWater((nx, ny)).inward(u, v, NO_BODY, [Fading(0, False, 1.0)])
+    exact = inward(nx, ny, source)
+    assert got[0] == pytest.approx(exact[0], abs=0.02 * np.abs(exact[0]).max())
+    assert got[3][:160] == pytest.approx(exact[3][:160], abs=0.05 * np.abs(exact[3]).max())
+    turned = OpenWater((ny, nx)).inward(v.T.copy(), u.T.copy(), NO_BODY, [Fading(1, False, 1.0)])
+    assert turned[2] == pytest.approx(exact[0], abs=0.05 * np.abs(exact[0]).max())
+
+
+def test_a_vortex_pair_travels_as_in_water_without_end():
+    """Close to the sides of a small box: half its speed would be the images' if the sides were held."""
+    n, gap, circulation = 96, 0.5, 1.0
+    grid = flow.Grid(cells=(n, n), cell=2 / n, origin=(-1.0, -1.0))
+    travelled = []
+    for endless in (True, False):
+        side = flow.Stream(endless=endless)
+        sides = flow.Sides(left=side, right=side, bottom=side, top=side)
+        sim = flow.Simulation(flow.Setup(grid=grid, viscosity=1e-4, sides=sides, courant=0.5))
+
+        def velocity(x, y):
+            h, parts = 2 / n, []
+            for place, sign in ((-gap / 2, 1), (gap / 2, -1)):
+                parts.append(swirl(x * h - 1, y * h - 1, (place, 0.0), sign * circulation, 0.12))
+            return parts[0][0] + parts[1][0], parts[0][1] + parts[1][1]
+
+        sim.water.u[:], sim.water.v[:] = fields(n, n, velocity)
+        sim.run(0.6, progress=False)
+        spin = np.maximum(sim.vorticity[:, : n // 2], 0)
+        travelled.append((spin.sum(axis=1) * grid.faces(PAD + 1, PAD + n, 1)).sum() / spin.sum())
+    expected = 0.6 * circulation / (2 * np.pi * gap)
+    assert travelled[0] == pytest.approx(expected, rel=0.04)
+    assert abs(travelled[1] / expected - 1) > 0.1
+
+
+@pytest.mark.parametrize("half", [1.5, 3.0])
+def test_added_mass_does_not_hang_on_the_domain(half):
+    circle = cases.added(flow.Cylinder(diameter=1.0), 32, half=half)
+    assert np.diag(circle)[:2] == pytest.approx([np.pi / 4, np.pi / 4], rel=0.01)
+    ellipse = cases.added(flow.Ellipse(length=2.0, width=1.0), 32, half=half)
+    assert np.diag(ellipse) == pytest.approx([np.pi / 4, np.pi, np.pi / 8 * 0.75**2], rel=0.01)
+
+
+def started(half, endless, **changes):
+    side = flow.Stream(endless=endless)
+    grid = flow.Grid.covering((-half, half), (-half, half), cell=1 / 32)
+    settings = {"viscosity": 1e-6, "coarse": True, "stream": (1.0, 0.0), "tolerance": 1e-6, **changes}
+    sim = flow.Simulation(
+        flow.Setup(
+            grid=grid, density=1.0, bodies=(flow.Body(shape=flow.Cylinder(diameter=1.0)),),
+            sides=flow.Sides(left=side, right=side, bottom=side, top=side), **settings,
+        )
+    )  # fmt: skip
+    sim.advance(1e-4)
+    return sim
+
+
+def test_a_body_that_starts_at_once_moves_the_far_water_as_a_dipole():
+    sim = started(1.5, True)
+    impulse = sim.record.force()[0, 0] * 1e-4
+    assert impulse == pytest.approx(np.pi / 2, rel=0.01)  # its own area and the added mass
+    left = sim.water.border.edges[0].prescribed
+    y = sim.setup.grid.y
+    exact = 1 - 0.25 * (1.5**2 - y**2) / (1.5**2 + y**2) ** 2
+    assert left == pytest.approx(exact, abs=2e-3)
+    held = started(1.5, False)
+    assert held.record.force()[0, 0] * 1e-4 > 1.1 * np.pi / 2
+    assert np.array_equal(held.water.border.edges[0].prescribed, np.ones(y.size, np.float32))
+
+
+def test_a_symmetric_flow_stays_symmetric():
+    sim, record, force = cases.cylinder(16, 40, x=(-2, 4), y=(-2, 2), until=1.5)
+    assert np.abs(force[20:, 1]).max() < 1e-3 * np.abs(force[-1, 0])
+    assert np.abs(sim.vorticity + sim.vorticity[::-1]).max() < 2e-3 * np.abs(sim.vorticity).max()
+    assert SIDE * OpenWater.around(sim.setup.grid).blocks.shape[2] >= sim.setup.grid.cells[0]
+
+
+def test_the_started_cylinder_drags_the_same_in_any_domain():
+    drags = [
+        cases.cylinder(16, 40, x=(-half, half + 2), y=(-half, half), until=1.0)[2][-1, 0] for half in (2.0, 3.5)
+    ]  # fmt: skip
+    assert drags[0] == pytest.approx(drags[1], rel=3e-3)
