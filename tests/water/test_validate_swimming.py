@@ -1,6 +1,8 @@
 """The swim on three grids: `make validate`. Prints the table that stands in docs/water.md.
 
-Bounds are those that hold, so that nothing can get worse unseen.
+Asked are speeds within 2 % and a force noise below 1 %; the free speed of a thin body at Re 7000 misses the first, a
+tail that tapers to nothing the second. Bounds marked so were set after the fact, a little wider than what was measured,
+so that nothing gets worse unseen.
 """
 
 from itertools import pairwise
@@ -13,8 +15,9 @@ from suchus.water import Swum, Tether, fit, free_swim, printed_wave, tether
 
 pytestmark = pytest.mark.validate
 
-CELLS = (56, 80, 112)
+CELLS = (96, 128, 192)
 REYNOLDS = 7000.0
+CYCLES = 8
 
 
 @pytest.fixture(scope="module")
@@ -23,15 +26,16 @@ def grids():
     fitted, viscosity = fit(robot, printed_wave(robot)), robot.length**2 / REYNOLDS
     rows = {}
     for cells in CELLS:
-        free = free_swim(robot, fitted.swim, Tether(cells=cells, viscosity=viscosity, cycles=6, frames=1))
-        held = tether(robot, fitted.swim, Tether(cells=cells, viscosity=viscosity, cycles=2), turn=fitted.head)
+        held = tether(robot, fitted.swim, Tether(cells=cells, viscosity=viscosity, cycles=3), turn=fitted.head)
+        free = free_swim(robot, fitted.swim, Tether(cells=cells, viscosity=viscosity, cycles=CYCLES, frames=1))
         swum = Swum.of(free, 1.0)
         rows[cells] = {
             "speed": swum.speed,
+            "gain": swum.gain,
             "power": float(free.power[-1]),
             "strouhal": swum.strouhal,
-            "thrust": float(held.thrust.mean()),
-            "power held": float(held.power.mean()),
+            "thrust": float(held.cycle_thrust[1:].mean()),
+            "power held": float(held.cycle_power[1:].mean()),
             "noise": float(held.noise),
             "thin": float(held["thin"]),
         }
@@ -43,19 +47,30 @@ def _changes(rows, name):
     return [abs(rows[fine][name] / rows[coarse][name] - 1) for coarse, fine in pairwise(CELLS)]
 
 
-def test_the_speed_settles(grids):
-    first, second = _changes(grids, "speed")
-    assert second < first
-    assert second < 0.25  # 0.18: not settled, see docs/water.md
+def test_the_speed_grows_with_the_grid_and_ever_less(grids):
+    cells = np.array([1 / n for n in CELLS])
+    speed = np.array([grids[n]["speed"] for n in CELLS])
+    assert np.all(np.diff(speed) > 0)
+    at_once = speed[-1] + np.diff(speed) / -np.diff(cells) * cells[-1]
+    print("speed without end of refinement, first order, from each pair:", at_once)
+    assert _changes(grids, "speed")[1] < 0.12  # after the fact; 2 % asked
 
 
-def test_the_power_settles(grids):
-    assert _changes(grids, "power")[1] < 0.1
+def test_the_swim_is_nearly_steady_in_its_last_cycle(grids):
+    assert all(-0.01 < row["gain"] < 0.08 for row in grids.values())  # after the fact; 1 % asked
+
+
+def test_the_power_and_the_thrust_settle(grids):
+    assert _changes(grids, "power")[1] < 0.05
+    assert _changes(grids, "thrust")[1] < 0.1
 
 
 def test_less_of_the_body_is_thin_on_a_finer_grid(grids):
     assert np.all(np.diff([grids[cells]["thin"] for cells in CELLS]) < 0)
+    assert grids[CELLS[-1]]["thin"] < 0.01
 
 
 def test_forces_are_smooth(grids):
-    assert all(row["noise"] < 0.1 for row in grids.values())
+    noise = [grids[cells]["noise"] for cells in CELLS]
+    assert np.all(np.diff(noise) < 0)
+    assert max(noise) < 0.06  # after the fact; 1 % asked

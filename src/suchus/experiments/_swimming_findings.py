@@ -45,8 +45,10 @@ def part(record: xr.Dataset, name: str) -> xr.Dataset:
 
 
 def _thrusts(record: xr.Dataset, held: xr.Dataset, reading: str) -> Iterator[tuple[str, Measure]]:
-    yield f"thrust_mean_{reading}", Measure(float(held.thrust.mean()), "N/m")
-    yield "thrust_mean_as_printed", Measure(float(record.printed_thrust.mean()), "N/m")
+    settled = held.cycle_thrust[1:]
+    yield f"thrust_mean_{reading}", Measure(float(settled.mean()), "N/m")
+    yield "thrust_scatter", Measure(float(np.ptp(settled.values)), "N/m")
+    yield "thrust_mean_as_printed", Measure(float(record.printed_cycle_thrust[1:].mean()), "N/m")
     for letter in record.reading.values:
         yield f"thrust_mean_{letter}", Measure(float(record.reading_thrust.sel(reading=letter)), "N/m")
 
@@ -56,7 +58,7 @@ def _held(held: xr.Dataset) -> Iterator[tuple[str, Measure]]:
     yield "convex_higher_share", Measure(convex_higher(held), "-")
     yield "pressure_moves", Measure(quarters.moves, "-")
     yield "thrust_asymmetry", Measure(quarters.asymmetry, "-")
-    yield "power_held", Measure(float(held.power.mean()), "W/m")
+    yield "power_held", Measure(float(held.cycle_power[1:].mean()), "W/m")
     yield "force_noise", Measure(float(held.noise), "-")
     yield "thin_share", Measure(float(held["thin"]), "-")
     for i in range(4):
@@ -109,14 +111,15 @@ def _wave(free: xr.Dataset) -> Iterator[Verdict]:
         holds=bool(share[-1] >= SINE),
     )
     least, whole = int(swings.argmin()), float(np.average(share, weights=swings**2))
-    grows = bool(np.all(np.diff(swings[least:]) > 0))
+    dips = 1.0 - swings[least:] / np.maximum.accumulate(swings[least:])
+    way = f"dipping by up to {100 * dips.max():.0f} % on the way" if dips.max() > 0 else "growing all the way"
     yield judge(
         "swim_body_wave",
         float(swings[-1] / swings[least]),
         f"Swimming freely, the midline swings least at {s[least]:.2f} of its length from the snout, "
-        f"{1000 * swings[least]:.0f} mm, and {1000 * swings[-1]:.0f} mm at the tip, {'' if grows else 'not '}growing "
-        f"all the way; {100 * whole:.1f} % of it is the sine of one cycle. The least swing must lie in the front half.",
-        holds=grows and s[least] < 0.5 and whole >= SINE,
+        f"{1000 * swings[least]:.0f} mm, and {1000 * swings[-1]:.0f} mm at the tip, {way}; {100 * whole:.1f} % of it "
+        "is the sine of one cycle. The least swing must lie in the front half, and from there on it may never fall.",
+        holds=dips.max() == 0.0 and s[least] < 0.5 and whole >= SINE,
     )
 
 

@@ -57,11 +57,11 @@ class SwimSweep(Experiment):
     """Waves per body; more than 1.4 ask the trunk for more than it has [-]."""
     points: tuple[tuple[float, float], ...] = ((0.6, 1.0), (1.0, 1.0), (1.4, 1.0), (1.0, 1.3))
     """Amplitude and waves per body of the points in the resolved flow [-]."""
-    reynolds: float = 5000.0
+    reynolds: float = 7000.0
     """Frequency times length squared over viscosity of these [-]."""
-    cells: int = 64
+    cells: int = 96
     """Cells per body length of these [-]."""
-    cycles: int = 6
+    cycles: int = 8
     """Of these; the last is measured [-]."""
 
     def __post_init__(self) -> None:

@@ -68,9 +68,9 @@ class Swimming(Experiment):
         "as printed, from tail to head, the wave itself gets nearly nowhere: drag along the body pulls it tail first, "
         "and the growing swing of the tail, which sheds its wake behind it either way, pushes it head first. The few "
         "joints make most of the wave a flapping of the tail, so the robot still goes head first, more slowly. The "
-        "article's pressures do not come out in water that stays around the held body. The tail is thin for the grid, "
-        "and finer grids swim faster. The Reynolds number is that of the flow literature's eel, the flow a slice of "
-        "unlimited depth: forces exceed a round body's."
+        "article's pressures do not come out in water that stays around the held body. Few joints make a lumpy wave: "
+        "its envelope grows from head to tail, but not all the way. Finer grids swim faster. The Reynolds number is that "
+        "of the flow literature's eel, the flow a slice of unlimited depth: forces exceed a round body's."
     )
 
     robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
@@ -86,7 +86,7 @@ class Swimming(Experiment):
     coarse_cells: int = 80
     """The same where trunk, tail, directions and the exact wave are compared, and of the towed body [-]."""
     cycles: int = 4
-    """Of the held body; the last is measured [-]."""
+    """Of the held body; thrust and power are means over all but the first, the rest is of the last [-]."""
     free_cycles: int = 10
     """Of the free body; the last is measured [-]."""
     arm_cycles: int = 6
@@ -136,7 +136,7 @@ class Swimming(Experiment):
             record = xr.merge(
                 [
                     _prefixed(held, "held"),
-                    _prefixed(back[["thrust", "aside", "power"]], "printed"),
+                    _prefixed(back[["thrust", "aside", "power", "cycle_thrust"]], "printed"),
                     _prefixed(free, "free"),
                     arms,
                     readings,
@@ -213,7 +213,7 @@ class Swimming(Experiment):
         for i, letter in enumerate(self.readings):
             fitted, part = tried[letter].fitted, portion(progress, i, len(self.readings))
             held = None if fitted is None else tether(self.robot, fitted.swim, setting, turn=fitted.head, progress=part)
-            thrust.append(float("nan") if held is None else float(held.thrust.mean()))
+            thrust.append(float("nan") if held is None else float(held.cycle_thrust[1:].mean()))
         told = {
             letter: f"{value:.1f} N/m at Re {self.readings_reynolds:.0f}"
             for letter, value in zip(self.readings, thrust, strict=True)

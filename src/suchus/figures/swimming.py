@@ -107,8 +107,9 @@ def draw_forces(record: xr.Dataset) -> Figure:
             ("printed", "as printed, tail to head", COLOURS["limbs_only"]),
         ):
             thrust = record[f"{name}_thrust"]
-            ax.plot(record[f"{name}_phase"], thrust, color=colour, label=f"{label}: {float(thrust.mean()):+.1f}")
-            ax.axhline(float(thrust.mean()), color=colour, linestyle=(0, (4, 2)), linewidth=1.2)
+            mean = float(record[f"{name}_cycle_thrust"][1:].mean())
+            ax.plot(record[f"{name}_phase"], thrust, color=colour, label=f"{label}: {mean:+.1f}")
+            ax.axhline(mean, color=colour, linestyle=(0, (4, 2)), linewidth=1.2)
         ax.set_ylabel("force forward [N/m]")
         ax = axes[0, 1]
         for limit in (-1.0, 1.0):
@@ -126,9 +127,9 @@ def draw_forces(record: xr.Dataset) -> Figure:
     return captioned(
         figure,
         "Held at the snout. Left: force along the body over the last cycle per metre of depth, for the wave from head "
-        "to tail and as printed; dashed and in numbers the means. Right: what the water asks of the servos at their "
-        "shafts, every section as high as the robot there, over each servo's limit (red); a flow that cannot pass over "
-        "and under the body overstates it.",
+        "to tail and as printed; dashed and in numbers the means of all cycles but the first. Right: what the water "
+        "asks of the servos at their shafts, every section as high as the robot there, over each servo's limit (red); "
+        "a flow that cannot pass over and under the body overstates it.",
     )
 
 

@@ -11,7 +11,7 @@ from suchus.kinematics.mass import GRAVITY
 from suchus.water.diary import Diary, Progress
 from suchus.water.held import SAMPLES
 from suchus.water.measures import swing
-from suchus.water.pool import SLACK, Pool
+from suchus.water.pool import SLACK, Pool, cycle_means
 from suchus.water.slender import cycle
 from suchus.water.swimming import wave_speed
 from suchus.water.tank import DENSITY, Tether
@@ -59,7 +59,7 @@ class _Free:
 
     def record(self, sim: flow.Simulation, diary: Diary) -> xr.Dataset:
         period, outline, motion = self._period, self._pool.outline, self._pool.motion
-        speed, power = _means(sim.record, period, self._pool.setting.cycles)
+        speed, power = cycle_means(sim.record, period, self._pool.setting.cycles, ("velocity_x", "power"))
         track = diary.page("track")
         even = self._end + period * (np.arange(2 * SAMPLES + 1) / SAMPLES - 2.0)
         snout, across = (
@@ -69,7 +69,7 @@ class _Free:
         amplitude, share = swing(across)
         data = xr.Dataset(
             {
-                "speed": ("cycle", speed, {"units": "m/s"}),
+                "speed": ("cycle", -speed, {"units": "m/s"}),
                 "power": ("cycle", power, {"units": "W/m"}),
                 "snout_x": ("sample", snout[:, 0], {"units": "m"}),
                 "snout_y": ("sample", across[:, 0], {"units": "m"}),
@@ -86,13 +86,3 @@ class _Free:
         shown = self._view.dataset(frames, "frame")
         phase = (frames["time"] - self._end) / period + 1.0
         return data.merge(shown.assign_coords(frame=("frame", phase, {"units": "1"})))
-
-
-def _means(series: flow.Record, period: float, cycles: int) -> np.ndarray:
-    """Return speed forward and power of each cycle, shape (2, cycle)."""
-    out = np.empty((2, cycles))
-    for i in range(cycles):
-        part = (series.time > i * period * (1 + SLACK)) & (series.time <= (i + 1) * period * (1 + SLACK))
-        for row, values in enumerate((-series.column("velocity_x"), series.column("power"))):
-            out[row, i] = np.average(values[part], weights=series.step[part])
-    return out

@@ -9,7 +9,7 @@ from suchus import flow
 from suchus.design import Crocodile
 from suchus.motion.swim import YAWS
 from suchus.water.diary import Diary, Progress
-from suchus.water.pool import SLACK, Pool
+from suchus.water.pool import SLACK, Pool, cycle_means
 from suchus.water.skin import (
     PLACES,
     bend,
@@ -67,7 +67,7 @@ class _Held:
 
     def __init__(self, pool: Pool) -> None:
         self._outline, self._view = pool.outline, View(pool.grid, pool.robot.length, 1.9, 0.6)
-        self._start, self._period = pool.end - pool.period, pool.period
+        self._start, self._period, self._cycles = pool.end - pool.period, pool.period, pool.setting.cycles
 
     def look(self, sim: flow.Simulation, diary: Diary) -> None:
         phase = (sim.time - self._start) / self._period
@@ -99,8 +99,11 @@ class _Held:
             for name in ("torque", "servo")
         )
         shown = self._view.dataset(quarters, "instant")
+        ahead, power = cycle_means(sim.record, self._period, self._cycles, ("force_x", "power"))
         data = xr.Dataset(
             {
+                "cycle_thrust": ("cycle", -ahead, {"units": "N/m"}),
+                "cycle_power": ("cycle", power, {"units": "W/m"}),
                 "thrust": ("phase", np.interp(phase, when, -force[:, 0]), {"units": "N/m"}),
                 "aside": ("phase", np.interp(phase, when, force[:, 1]), {"units": "N/m"}),
                 "power": ("phase", np.interp(phase, when, series.column("power")), {"units": "W/m"}),

@@ -1,10 +1,13 @@
 """What a held and a free swim share: the robot's body in a box of water, and how a swim is run, noted and kept."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
+import numpy as np
 import xarray as xr
+from jaxtyping import Float
 
 from suchus import flow
 from suchus.design import Crocodile
@@ -124,3 +127,22 @@ class Pool:
 def _named(motion: Motion) -> object:
     """Return what tells a motion from others, in full."""
     return motion if not hasattr(motion, "middles") else (motion.name, motion.frequency, motion.middles.tobytes())
+
+
+def cycle_means(
+    series: flow.Record, period: float, cycles: int, names: Sequence[str]
+) -> Float[np.ndarray, "name cycle"]:
+    """Return the mean of each cycle, steps weighted with their length.
+
+    Args:
+        series: of a swim from its start.
+        period: of one cycle [s].
+        cycles: how many [-].
+        names: columns of the record.
+    """
+    out = np.empty((len(names), cycles))
+    for i in range(cycles):
+        part = (series.time > i * period * (1 + SLACK)) & (series.time <= (i + 1) * period * (1 + SLACK))
+        for row, name in enumerate(names):
+            out[row, i] = np.average(series.column(name)[part], weights=series.step[part])
+    return out
