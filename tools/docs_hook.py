@@ -47,7 +47,7 @@ def on_page_content(html: str, page: Page, **_: Any) -> str:
 
 
 def on_post_page(output: str, page: Page, **_: Any) -> str:
-    """Let the page bring its own worker for reading from a folder, and tell what its search box is.
+    """Let the page bring its own worker for reading from a folder, and name its search box and its menus.
 
     Raises:
         LookupError: the theme no longer fetches it this way, or fetches something else.
@@ -55,15 +55,21 @@ def on_post_page(output: str, page: Page, **_: Any) -> str:
     if output.count(_FETCHED) != 1:
         raise LookupError(f"the theme's pages no longer have {_FETCHED}; see what they fetch now.")
     up = "../" * page.file.dest_uri.count("/")
-    named = output.replace(
-        'data-md-component="search" role="dialog"', 'data-md-component="search" role="dialog" aria-label="Search"'
-    )
-    return named.replace(_FETCHED, f'<script src="{up}worker_from_file.js"></script>')
+    return _named(output).replace(_FETCHED, f'<script src="{up}worker_from_file.js"></script>')
 
 
 def on_post_template(output: str, **_: Any) -> str:
-    """Take the worker from the network out of the pages that are no pages, such as the one for a wrong address."""
-    return output.replace(_FETCHED, "")
+    """Do the same for what is no page, such as that for a wrong address, which needs no worker."""
+    return _named(output).replace(_FETCHED, "")
+
+
+def _named(output: str) -> str:
+    """Return a page whose search box and menus have names."""
+    search = 'data-md-component="search" role="dialog"'
+    output = output.replace(search, f'{search} aria-label="Search"')
+    # a menu whose section has a page of its own is labelled by an empty label; its title stands in it
+    output = re.sub(r'(<label class="md-nav__title" for="(__nav_[0-9_]+)")', r'\1 id="\2_title"', output)
+    return re.sub(r'aria-labelledby="(__nav_[0-9_]+)_label"', r'aria-labelledby="\1_title"', output)
 
 
 def _filled(entry: Any) -> Any:

@@ -47,6 +47,7 @@ def test_the_site_builds_strictly_and_is_whole(tmp_path):
     nothing_is_fetched_from_the_network(pages)
     every_link_arrives(site, pages)
     every_picture_has_a_text(pages)
+    every_menu_has_a_name_of_its_own(pages)
     no_markup_is_left_over(pages)
     every_public_name_has_an_entry(site)
 
@@ -79,6 +80,15 @@ def every_picture_has_a_text(pages):
     for name, page in pages.items():
         for tag, attrs in page.tags:
             assert tag != "img" or "alt" in attrs, (name, attrs)
+
+
+def every_menu_has_a_name_of_its_own(pages):
+    """Which of axe's rules is landmark-unique."""
+    for name, page in pages.items():
+        titles = [a["id"] for tag, a in page.tags if tag == "label" and a.get("class") == "md-nav__title" and "id" in a]
+        menus = [a["aria-labelledby"] for tag, a in page.tags if tag == "nav" and "aria-labelledby" in a]
+        assert titles == menus, name
+        assert len(set(titles)) == len(titles), name
 
 
 def no_markup_is_left_over(pages):
