@@ -91,9 +91,9 @@ def test_added_mass():
 
 def test_order_near_the_body():
     sizes = [32, 64, 128]
-    torques, errors = np.array([cases.turning(n, viscosity=0.02, swing=0.5) for n in sizes]).T
+    torques, errors = np.array([cases.turning(n, viscosity=0.02, swing=0.5, width=2.0) for n in sizes]).T
     order = float(np.log2(errors[0] / errors[-1]) / 2)
-    where = ("128 cells/D", "3 D x 3 D", "exact (swirl of a turning cylinder)")
+    where = ("128 cells/D", "2 D x 2 D", "exact (swirl of a turning cylinder)")
     note("turning cylinder", "order of the velocity near the wall", order, "at least 1.3", *where, size=sizes,
          error=errors, torque=torques)  # fmt: skip
     note("turning cylinder", "rms error of the velocity over the wall's", errors[-1], "0", *where)
@@ -144,7 +144,7 @@ def test_stokes_oscillating_cylinder():
     assert off_d < 0.03
 
 
-@pytest.mark.parametrize(("reynolds", "n", "until"), [(100, 64, 20.0), (1000, 128, 50.0)])
+@pytest.mark.parametrize(("reynolds", "n", "until"), [(100, 64, 20.0), (1000, 128, 40.0)])
 def test_lid_driven_cavity(reynolds, n, until):
     data = published("ghia1982_cavity.csv")
     y, u, x, v = cases.cavity(n, reynolds, until)
@@ -202,13 +202,11 @@ def test_cylinder_re100():
     assert 0.15 < st < 0.18
 
 
-@pytest.mark.parametrize(("reynolds", "cells", "until", "half"), [(40, 32, 2.5, 3.0), (550, 96, 2.5, 2.0)])
+@pytest.mark.parametrize(("reynolds", "cells", "until", "half"), [(40, 32, 2.5, 3.0), (550, 96, 1.75, 1.75)])
 def test_impulsively_started_cylinder(reynolds, cells, until, half):
     """Koumoutsakos and Leonard's own curve at Re 40 is up to 6 % low before t* = 1: ``polar`` and this code agree."""
     data, exact = published(f"koumoutsakos1995_cd_re{reynolds}.csv"), published(f"polar_cd_re{reynolds}.csv")
-    sim, record, f = cases.cylinder(
-        cells, reynolds, x=(-half, half + 2), y=(-half, half), until=until, control=min(1.0, half - 1.0)
-    )
+    sim, record, f = cases.cylinder(cells, reynolds, x=(-half, half + 2), y=(-half, half), until=until, control=0.6)
     star, size = 2 * cases.middle(record), f"{2 * half + 2:g} D x {2 * half:g} D"
     case, where = "impulsively started cylinder", (f"{cells} cells/D", size)
     offs = []
@@ -240,8 +238,8 @@ def test_dfg_channel_steady():
     source = "FeatFlow, DFG 2D-1; Schaefer and Turek 1996"
     rows, drags, lifts = (32, 64, 128), [], []
     for n in rows:
-        sim, record, f = cases.channel(n, 0.2, 8.0)
-        late = record.time > 7.5
+        sim, record, f = cases.channel(n, 0.2, 7.0)
+        late = record.time > 6.5
         drags.append(f[late, 0].mean())
         lifts.append(f[late, 1].mean())
     grid = ("31 cells/D", "22 D x 4.1 D")
@@ -324,7 +322,7 @@ def test_force_noise_of_a_held_eel():
 
 @pytest.mark.parametrize(
     ("sizes", "least", "name"),
-    [((64, 96, 128), 1.75 / 64, "half-width at least 0.027 L"), ((128, 192, 256), 0.0, "sharp tail, as in the source")],
+    [((64, 96, 128), 1.75 / 64, "half-width at least 0.027 L"), ((96, 128, 192), 0.0, "sharp tail, as in the source")],
 )
 def test_free_eel(sizes, least, name):
     speeds, cycles, case = [], 6, f"free eel, {name}"
