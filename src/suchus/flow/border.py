@@ -169,7 +169,7 @@ class Border:
         """Take what the fields, which are those of the step's end, induce; return the largest change [m/s].
 
         ``prepare`` could only carry on from the last steps. Without this a cylinder in a domain of 4 diameters that
-        shakes once in 20 steps has 10 % too little drag.
+        shakes once in 20 steps has 5 % less drag, and 23 % less with the last step's value alone.
         """
         change = 0.0
         if self.water is None:
