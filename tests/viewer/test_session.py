@@ -123,6 +123,14 @@ def test_rules_that_cannot_coordinate_a_gait_are_refused_with_a_sentence():
     assert not session.look().trouble
 
 
+@pytest.mark.parametrize(("name", "way"), [("uphill", "forward"), ("sideways", "aside")])
+def test_a_slope_takes_effect_at_once_and_is_slid_down(name, way, sound):
+    session = Session(ROBOT, GAIT)
+    assert session.put(name, 15.0) == ""
+    session.advance(3.0)
+    assert getattr(session.look(), way) < getattr(sound.look(), way) - 0.01
+
+
 def test_repaired_joints_are_no_longer_listed():
     session = Session(ROBOT, GAIT)
     session.lose("LF_yaw", "limp")

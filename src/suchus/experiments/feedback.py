@@ -9,7 +9,8 @@ from typing import Any
 import xarray as xr
 
 from suchus.control import LAWS, Coordinated, HeadingRule, Kick
-from suchus.design import Crocodile
+from suchus.design import LEGS, Crocodile
+from suchus.design.checks import Checks
 from suchus.experiment import Experiment, Outcome, Progress, Replay, silent, staged, stopwatch
 from suchus.experiments import _feedback_findings as findings
 from suchus.figures.feedback import draw_fans, draw_gain, draw_onset, draw_tracks
@@ -96,6 +97,18 @@ class Feedback(Experiment):
     """Standard deviation of the noise on what the feet feel, as a part of the load [-]."""
     seed: int = 0
     """Of the first start; the others follow."""
+
+    def __post_init__(self) -> None:
+        with Checks(self.name(), self) as check:
+            check.whole("starts", 1, 1000)
+            check.whole("cycles", 1, 1000)
+            check.number("hold", 0.1, 1000.0, "cycle")
+            check.whole("after", 1, 1000)
+            check.each("kick", LEGS, -1.0, 1.0, "cycle")
+            check.number("slope", 0.0, 0.5, "rad")
+            check.each("push", ("forward", "left", "up"), -1e3, 1e3, "N")
+            check.number("noise", 0.0, 10.0, "")
+            check.whole("seed", 0, 2**31)
 
     def quick(self) -> "Feedback":
         """Two starts, few and short cycles."""

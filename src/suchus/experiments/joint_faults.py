@@ -12,6 +12,7 @@ from scipy.stats import qmc
 
 from suchus.control import Coordinated, HeadingRule
 from suchus.design import Chosen, Crocodile, meaning, value_at, with_values
+from suchus.design.checks import Checks
 from suchus.experiment import Experiment, Outcome, Progress, Replay, silent, staged, stopwatch
 from suchus.experiments import _fault_findings as findings
 from suchus.experiments._fault_findings import ARMS
@@ -93,6 +94,18 @@ class JointFaults(Experiment):
     """Of the physics [s]; 2 ms were measured to move no median by more than three points of a hundred."""
     seed: int = 0
     """Of the variations and their noise."""
+
+    def __post_init__(self) -> None:
+        with Checks(self.name(), self) as check:
+            check.whole("cycles", 1, 1000)
+            check.whole("variations", 1, 10_000)
+            check.number("spread", 0.0, 1.0, "")
+            check.number("grip_spread", 0.0, 0.9, "")
+            check.number("noise", 0.0, 1.0, "rad")
+            check.number("hold", 0.0, 1.0, "")
+            check.rising("holds", 0.0, 1.0, "")
+            check.number("timestep", 1e-5, 0.01, "s")
+            check.whole("seed", 0, 2**31)
 
     def quick(self) -> "JointFaults":
         """One cycle, two variations, one place of locking."""

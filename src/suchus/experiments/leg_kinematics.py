@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from suchus.design import Crocodile, Leg, leg_joints, servo_names
-from suchus.errors import InvalidDesign
+from suchus.design.checks import Checks
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Verdict, judge, silent, stopwatch
 from suchus.figures import kinematics as pictures
 from suchus.kinematics import leg, printed
@@ -42,12 +42,14 @@ class LegKinematics(Experiment):
     seed: int = 0
     """Seed of the random points [-]."""
 
+    def __post_init__(self) -> None:
+        with Checks(self.name(), self) as check:
+            check.whole("points", 1, 10_000_000)
+            check.whole("grid", 2, 2000)
+            check.whole("seed", 0, 2**31)
+
     def run(self, progress: Progress = silent) -> Outcome:
         """Solve the inverse for random points on all branches, and as printed."""
-        if self.points < 1 or self.grid < 2:
-            raise InvalidDesign(
-                f"leg_kinematics has {self.points} points and a grid of {self.grid}; at least 1 and 2 are needed."
-            )
         with stopwatch() as seconds:
             hind = self.robot.hind_leg
             progress("random foot points", 0.0)

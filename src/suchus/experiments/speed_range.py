@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 
 from suchus.design import Crocodile
+from suchus.design.checks import Checks
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, judge, silent, staged, stopwatch
 from suchus.figures.terrain import GAIT_LINES, draw_speed_range
 from suchus.gaits import GAITS
@@ -56,6 +57,13 @@ class SpeedRange(Experiment):
     """How many cycles are measured, after one more [-]."""
     timestep: float = 0.005
     """Of the physics [s]; speeds at 2 ms are the same within 2 %."""
+
+    def __post_init__(self) -> None:
+        with Checks(self.name(), self) as check:
+            check.rising("slower", 0.1, 10.0, "")
+            check.whole("cycles", 1, 1000)
+            check.number("timestep", 1e-5, 0.01, "s")
+            check.that(len(self.gaits) > 0, f"{self.name()}.gaits is empty; one gait at least is needed")
 
     def quick(self) -> "SpeedRange":
         """Two gaits at two cycle times."""

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from suchus.design import Crocodile, Spine, spine_joints
-from suchus.errors import InvalidDesign
+from suchus.design.checks import Checks
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Verdict, judge, silent, stopwatch
 from suchus.figures import kinematics as pictures
 from suchus.kinematics import printed, spine
@@ -41,16 +41,18 @@ class SpineKinematics(Experiment):
     seed: int = 0
     """Seed of the random postures [-]."""
 
+    def __post_init__(self) -> None:
+        with Checks(self.name(), self) as check:
+            check.whole("postures", 1, 10_000_000)
+            check.whole("grid", 2, 2000)
+            check.whole("seed", 0, 2**31)
+
     def quick(self) -> "SpineKinematics":
         """Return it with few postures."""
         return replace(self, postures=500, grid=24)
 
     def run(self, progress: Progress = silent) -> Outcome:
         """Invert random postures, compare them with (15), and map the workspace."""
-        if self.postures < 1 or self.grid < 2:
-            raise InvalidDesign(
-                f"spine_kinematics has {self.postures} postures and a grid of {self.grid}; at least 1 and 2 are needed."
-            )
         with stopwatch() as seconds:
             back = self.robot.spine
             angles = _random(back, self.postures, self.seed)

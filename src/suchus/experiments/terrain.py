@@ -11,6 +11,7 @@ import xarray as xr
 
 from suchus.control import AttitudeRule, Change, Control, SwitchRule, Walking
 from suchus.design import Crocodile
+from suchus.design.checks import Checks
 from suchus.design.relief import Bumps, Relief, Step, profile
 from suchus.experiment import Experiment, Outcome, Progress, Replay, silent, staged, stopwatch
 from suchus.experiments import _terrain_findings as findings
@@ -75,6 +76,20 @@ class Terrain(Experiment):
     """How long each run walks [s]."""
     timestep: float = 0.005
     """Of the physics [s]."""
+
+    def __post_init__(self) -> None:
+        with Checks(self.name(), self) as check:
+            for heights in ("bumps", "steps", "stones"):
+                if getattr(self, heights):
+                    check.rising(heights, 0.001, 0.5, "m")
+            check.that(
+                len(self.correlations) > 0, f"{self.name()}.correlations is empty; one length at least is needed"
+            )
+            check.that(len(self.surfaces) > 0, f"{self.name()}.surfaces is empty; even or bumps is needed")
+            check.whole("transitions", 1, 6)
+            check.whole("seeds", 1, 1000)
+            check.number("walked", 0.5, 3600.0, "s")
+            check.number("timestep", 1e-5, 0.01, "s")
 
     def quick(self) -> "Terrain":
         """Three grounds, one seed, a short walk, two transitions on even ground."""

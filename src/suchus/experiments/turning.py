@@ -10,6 +10,7 @@ import xarray as xr
 
 from suchus.control import TurningCurve, Walking, turn
 from suchus.design import Crocodile
+from suchus.design.checks import Checks
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, silent, staged, stopwatch
 from suchus.figures.terrain import GAIT_LINES, draw_turning
 from suchus.gaits import GAITS
@@ -57,6 +58,16 @@ class Turning(Experiment):
     """How many cycles are measured, after one more [-]."""
     timestep: float = 0.005
     """Of the physics [s]."""
+
+    def __post_init__(self) -> None:
+        with Checks(self.name(), self) as check:
+            check.rising("bends", 0.0, 2.0, "rad")
+            check.rising("asymmetries", 0.0, 1.0, "")
+            check.rising("mixtures", 0.0, 1.0, "")
+            check.rising("asked", 0.05, 1000.0, "m")
+            check.whole("cycles", 1, 1000)
+            check.number("timestep", 1e-5, 0.01, "s")
+            check.that(len(self.gaits) > 0, f"{self.name()}.gaits is empty; one gait at least is needed")
 
     def quick(self) -> "Turning":
         """One gait, three mixtures, one circle."""
