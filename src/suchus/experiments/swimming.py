@@ -69,8 +69,8 @@ class Swimming(Experiment):
         "and the growing swing of the tail, which sheds its wake behind it either way, pushes it head first. The few "
         "joints make most of the wave a flapping of the tail, so the robot still goes head first, more slowly. The "
         "article's pressures do not come out in water that stays around the held body. Few joints make a lumpy wave: "
-        "its envelope grows from head to tail, but not all the way. Finer grids swim faster. The Reynolds number is that "
-        "of the flow literature's eel, the flow a slice of unlimited depth: forces exceed a round body's."
+        "its envelope grows from head to tail, but not all the way. Finer grids swim faster. The Reynolds number is "
+        "that of the flow literature's eel, the flow a slice of unlimited depth: forces exceed a round body's."
     )
 
     robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
