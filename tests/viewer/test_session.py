@@ -32,6 +32,11 @@ def sound() -> Session:
     return walked()
 
 
+@pytest.fixture(scope="module")
+def lame() -> Session:
+    return walked(lost="LF_yaw")
+
+
 @pytest.mark.parametrize("name", GAIT_KNOBS)
 @pytest.mark.parametrize("gait", [GAITS[name] for name in GAITS], ids=list(GAITS))
 def test_both_ends_of_every_slider_leave_a_gait_that_the_robot_can_walk(gait, name):
@@ -83,8 +88,7 @@ def test_a_watched_walk_is_the_walk_of_a_batch(sound):
     assert sound.look().forward == pytest.approx(float(way[-1] - way.sel(time=1.0)), abs=1e-6)
 
 
-def test_a_limp_joint_changes_the_displacement(sound):
-    lame = walked(lost="LF_yaw")
+def test_a_limp_joint_changes_the_displacement(sound, lame):
     assert abs(lame.look().forward - sound.look().forward) > 0.01
 
 
@@ -93,6 +97,29 @@ def test_mirrored_commands_give_a_mirrored_walk():
     right = walked(gait=GAIT.mirrored(), lost="RF_yaw", seconds=2.5).look()
     assert left.forward == pytest.approx(right.forward, abs=1e-4)
     assert left.aside == pytest.approx(-right.aside, abs=1e-4)
+
+
+def test_a_reset_keeps_what_is_broken(lame):
+    session = walked(lost="LF_yaw", seconds=0.1)
+    session.reset()
+    session.advance(3.0)
+    assert session.look().forward == pytest.approx(lame.look().forward, abs=2e-3)
+
+
+def test_what_is_left_of_a_control_period_passes_next_time():
+    session = Session(ROBOT, GAIT)
+    for _ in range(5):
+        session.advance(0.006)  # a control period is 0.01 s
+    assert session.look().time == pytest.approx(0.03)
+
+
+def test_the_heading_loop_answers_a_turn(lame):
+    session = Session(ROBOT, GAIT)
+    assert session.switch("heading", True) == ""
+    assert session.settings.control.heading is not None
+    session.lose("LF_yaw", "limp")
+    session.advance(3.0)
+    assert session.look().aside != pytest.approx(lame.look().aside, abs=1e-4)
 
 
 def test_sessions_do_not_disturb_each_other(sound):

@@ -4,6 +4,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 from scipy import stats
 
 from suchus.figures.style import COLOURS, captioned, panels, styled
@@ -58,6 +59,7 @@ def _numbers(ax: Axes, number: np.ndarray, holds: np.ndarray, claim: str) -> Non
         ax.axvline(printed, color=COLOURS["printed"], linestyle=(0, (4, 2)), label="as printed")
     ax.set_xlabel(f"{_short(claim)} [{unit}]")
     ax.set_ylabel("samples [-]")
+    ax.yaxis.set_major_locator(MaxNLocator(integer=True))
     ax.grid(False, axis="x")
     ax.set_title(f"the sentence is true in {100 * holds.mean():.0f} %" if holds.size else "nothing to tell")
     ax.legend(loc="best", fontsize=10)
@@ -110,8 +112,9 @@ def _plane(ax: Axes, told: xr.Dataset, there: np.ndarray, holds: np.ndarray) -> 
         first = order[0]
     second = next(i for i in order if i != first)
     x, y = (told.value.values[there][:, i] for i in (first, second))
+    size = float(np.clip(1600 / len(x), 16, 60))
     for some, colour, mark, label in ((holds, _TRUE, "o", "true"), (~holds, _FALSE, "X", "false")):
-        ax.scatter(x[some], y[some], s=16, color=colour, marker=mark, alpha=0.65, linewidth=0, label=label)
+        ax.scatter(x[some], y[some], s=size, color=colour, marker=mark, alpha=0.65, linewidth=0, label=label)
     if int(told.border_of) >= 0:
         at, edge = float(told.border_at), ax.get_xlim()
         ax.axvline(at, color="black", linewidth=1.4)
@@ -120,5 +123,6 @@ def _plane(ax: Axes, told: xr.Dataset, there: np.ndarray, holds: np.ndarray) -> 
         ax.set_title(f"border at {at:.3g}, separation {float(told.border_separation):.2f}")
     else:
         ax.set_title("no border within the ranges")
+    ax.xaxis.set_major_locator(MaxNLocator(4))
     for axis, i in ((ax.set_xlabel, first), (ax.set_ylabel, second)):
         axis(f"{_plain(str(told.parameter.values[i]))} [{told.parameter_unit.values[i]}]")

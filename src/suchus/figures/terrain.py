@@ -30,6 +30,7 @@ GAIT_LINES: Mapping[str, Mapping[str, Any]] = MappingProxyType(
     }
 )
 """Colour, marker, dashes and label of each gait or arm."""
+_KINDS = {"bumps": "random bumps", "step": "a step up", "stone": "a stone in the path"}
 _ANIMALS = (0.1, 0.7)  # [m/s]; Nile crocodiles of 1.5 to 7 kg in the high walk (Michel, SICB abstract 76-8)
 
 
@@ -104,8 +105,10 @@ def draw_turning(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]]) -> 
 
 
 def draw_rough(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]]) -> Figure:
-    """Draw the way on bumps, steps and stones over their height, falls as crosses."""
+    """Draw the way on bumps, steps and stones over their height, or as bars where they are few; falls as crosses."""
     kinds = [str(kind) for kind in dict.fromkeys(record.kind.values)]
+    if record.sizes["ground"] <= 1 + len(kinds):
+        return _rough_bars(record, lines)
     with styled():
         figure, axes = panels(1, len(kinds), width=11.5, height=4.6, sharey=True)
         for ax, kind in zip(axes[0], kinds, strict=True):
@@ -118,7 +121,7 @@ def draw_rough(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]]) -> Fi
                 ax.plot(x, y, **(dict(lines[str(arm)]) | {"markersize": 6}))
                 fell = one.fell.mean("seed").values
                 ax.plot(x[fell > 0], y[fell > 0], "x", color=COLOURS["alarm"], markersize=11, markeredgewidth=2)
-            ax.set_title({"bumps": "random bumps", "step": "a step up", "stone": "a stone in the path"}[kind])
+            ax.set_title(_KINDS[kind])
             ax.set_xlabel("height [mm]")
             ax.set_ylim(0.0, None)
         axes[0, 0].set_ylabel(f"way in {float(record.walked):g} s [m]")
@@ -129,6 +132,27 @@ def draw_rough(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]]) -> Fi
         "Way on rough ground, means over the seeds; crosses where some robots fell. Semi-erect legs get farthest on "
         "most ground; erect legs need the IMU on bumps and pass higher stones.",
     )
+
+
+def _rough_bars(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]]) -> Figure:
+    """Draw the way of every arm on every ground as a bar: one height of a kind makes no line."""
+    arms = [str(arm) for arm in record.arm.values]
+    with styled(axes__grid=False):
+        figure, axes = panels(1, record.sizes["ground"], width=11.5, height=3.6, sharex=True, sharey=True)
+        for ax, ground in zip(axes[0], range(record.sizes["ground"]), strict=True):
+            one = record.isel(ground=ground)
+            ways, height = one.forward.mean("seed").values, 1000 * float(one.height)
+            ax.barh(range(len(arms)), ways, color=[lines[arm]["color"] for arm in arms], height=0.65)
+            for row, (way, fell) in enumerate(zip(ways, one.fell.mean("seed").values, strict=True)):
+                ax.annotate(f"{way:.2f}", (max(way, 0.0), row), (4, 0), textcoords="offset points", va="center")
+                if fell > 0:
+                    ax.plot(way, row, "x", color=COLOURS["alarm"], markersize=11, markeredgewidth=2)
+            ax.set_title(f"{_KINDS[str(one.kind.item())]}, {height:.0f} mm" if height else "even ground")
+            ax.set_xlabel(f"way in {float(record.walked):g} s [m]")
+        axes[0, 0].set_yticks(range(len(arms)), [str(lines[arm]["label"]) for arm in arms])
+        axes[0, 0].invert_yaxis()
+        axes[0, 0].margins(x=0.18)
+    return captioned(figure, "Way on each ground that was tried, means over the seeds; a cross where some robots fell.")
 
 
 def draw_ground(ax: Axes, x: np.ndarray, height: Sequence[float] | np.ndarray) -> None:
