@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from suchus.errors import InvalidDesign
 from suchus.experiments import EXPERIMENTS
 from suchus.experiments._swimming_findings import ARMS
 from suchus.experiments.swimming import Swimming
@@ -38,3 +39,19 @@ def test_what_was_finished_is_kept_and_the_rest_goes_on(tmp_path, monkeypatch):
     assert list(tmp_path.iterdir()) == []
     assert outcome.films
     assert all(name.endswith(".gif") for name in outcome.films)
+
+
+@pytest.mark.parametrize(
+    ("name", "fields", "said"),
+    [
+        ("swimming", {"readings": ("A", "Z")}, "there is no Z"),
+        ("swimming", {"tow": 0.0}, "tow is 0 body lengths"),
+        ("swim_sweep", {"frequencies": (0.5,)}, "a map needs two"),
+        ("swim_sweep", {"waves": (1.0, 0.5)}, "increasing numbers within 0.1 to 1.4"),
+        ("swim_sweep", {"points": ((1.0, 3.0),)}, "points is"),
+        ("swim_sweep", {"points": ()}, "points is"),
+    ],
+)
+def test_impossible_settings_are_refused(name, fields, said):
+    with pytest.raises(InvalidDesign, match=said):
+        replace(EXPERIMENTS[name], **fields)

@@ -66,6 +66,17 @@ class SwimSweep(Experiment):
 
     def __post_init__(self) -> None:
         with Checks("swim_sweep", self) as check:
+            for name, least, most, unit in (
+                ("frequencies", 0.01, 20.0, "Hz"), ("amplitudes", 0.01, 4.0, ""), ("waves", 0.1, 1.4, ""),
+            ):  # fmt: skip
+                check.rising(name, least, most, unit)
+                check.that(len(getattr(self, name)) > 1, f"swim_sweep.{name} has one number; a map needs two")
+            right = [0.01 <= amplitude <= 4.0 and 0.1 <= waves <= 1.4 for amplitude, waves in self.points]
+            check.that(
+                all(right) and right != [],
+                f"swim_sweep.points is {self.points}; an amplitude of 0.01 to 4 and 0.1 to 1.4 waves are needed of each, "
+                "one point at least",
+            )
             check.number("reynolds", 10.0, 2e4, "")
             check.whole("cells", 32, 1024)
             check.whole("cycles", 2, 100)

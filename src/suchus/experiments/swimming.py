@@ -13,6 +13,7 @@ from suchus.design.checks import Checks
 from suchus.experiment import Experiment, Outcome, Progress, silent, staged, stopwatch
 from suchus.experiments._swimming_findings import ARMS, measures, verdicts
 from suchus.figures.swimming import draw_forces, draw_free, draw_quarters, draw_sides, film_pressure, film_vorticity
+from suchus.kinematics.wave import READINGS
 from suchus.robots import ROBOTS
 from suchus.water import (
     ExactWave,
@@ -109,6 +110,10 @@ class Swimming(Experiment):
             check.number("frequency", 0.01, 20.0, "Hz")
             check.number("reynolds", 10.0, 2e4, "")
             check.number("readings_reynolds", 10.0, 2e4, "")
+            unknown = [letter for letter in (self.reading, *self.readings) if letter not in READINGS]
+            check.that(
+                not unknown, f"swimming.readings of (20) are {', '.join(READINGS)}; there is no {', '.join(unknown)}"
+            )
             for name in ("cells", "coarse_cells", "readings_cells"):
                 check.whole(name, 32, 1024)
             check.number("tow", 1.5, 100.0, "body lengths")
