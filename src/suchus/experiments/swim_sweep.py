@@ -74,8 +74,8 @@ class SwimSweep(Experiment):
             right = [0.01 <= amplitude <= 4.0 and 0.1 <= waves <= 1.4 for amplitude, waves in self.points]
             check.that(
                 all(right) and right != [],
-                f"swim_sweep.points is {self.points}; an amplitude of 0.01 to 4 and 0.1 to 1.4 waves are needed of each, "
-                "one point at least",
+                f"swim_sweep.points is {self.points}; an amplitude of 0.01 to 4 and 0.1 to 1.4 waves are needed "
+                "of each, one point at least",
             )
             check.number("reynolds", 10.0, 2e4, "")
             check.whole("cells", 32, 1024)
