@@ -35,7 +35,7 @@ def test_the_force_is_the_momentum_through_a_box():
 
 
 def test_the_torque_of_a_turning_cylinder_is_the_exact_one():
-    (coarse, far), (fine, near) = cases.turning(16), cases.turning(32)
+    (coarse, far), (fine, near) = cases.turning(16, width=2.0), cases.turning(32)
     assert fine < 0.012
     assert fine < 0.55 * coarse
     assert near < 0.5 * far

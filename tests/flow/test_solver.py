@@ -15,7 +15,7 @@ def test_taylor_green_decays_at_second_order():
 
 
 def test_moving_body_in_still_water_equals_still_body_in_a_stream():
-    grid = flow.Grid.covering((-4.0, 6.0), (-3.0, 3.0), cell=1 / 16)
+    grid = flow.Grid.covering((-3.5, 3.0), (-2.0, 2.0), cell=1 / 16)
     settings = {"grid": grid, "viscosity": 0.025, "density": 1.0, "step": 0.01}
     still = flow.Simulation(
         flow.Setup(stream=(1.0, 0.0), bodies=(flow.Body(shape=flow.Cylinder(diameter=1.0)),), **settings)
@@ -39,7 +39,7 @@ def test_a_frame_that_follows_the_body_changes_nothing():
         "viscosity": 0.025,
         "density": 1.0,
         "step": 0.01,
-        "grid": flow.Grid.covering((-4.0, 6.0), (-3.0, 3.0), cell=1 / 16),
+        "grid": flow.Grid.covering((-2.0, 4.0), (-2.0, 2.0), cell=1 / 16),
     }
     still = flow.Simulation(
         flow.Setup(stream=(1.0, 0.0), bodies=(flow.Body(shape=flow.Cylinder(diameter=1.0)),), **settings)

@@ -169,6 +169,9 @@ def test_cylinder_re40():
     note("cylinder Re 40", "Cd", f[late, 0].mean(), 1.54, *grid, source)
     note("cylinder Re 40", "Cd, surface integral", 2 * record.surface_force()[late, 0].mean(), 1.54, *grid, source)
     note("cylinder Re 40", "wake length / D", cases.wake_length(sim), 2.30, *grid, source)
+    endless = "Gautier, Biau and Lamballais 2013, water without end (from memory, no bound)"
+    note("cylinder Re 40", "Cd, the same", f[late, 0].mean(), 1.49, *grid, endless)
+    note("cylinder Re 40", "wake length / D, the same", cases.wake_length(sim), 2.24, *grid, endless)
     assert f[late, 0].mean() == pytest.approx(box, rel=0.01)
 
 
@@ -222,7 +225,7 @@ def test_impulsively_started_cylinder(reynolds, cells, until, half):
              box=2 * sim.control_forces[4::4, 0], data_t=data["t_star"], data_cd=data["cd"],
              polar_t=exact["t_star"], polar_cd=exact["cd"])  # fmt: skip
     assert offs[1] < 0.03
-    assert offs[2] < 0.03
+    assert offs[2] < 0.015
 
 
 def test_duetsch_oscillating_cylinder():
