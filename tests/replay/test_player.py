@@ -3,9 +3,13 @@
 import shutil
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from suchus.design.ground import Ground, slope
+from suchus.record import ground_text
 from suchus.replay import replay, save
+from suchus.skin.bones import rotate
 
 playwright = pytest.importorskip("playwright.sync_api")
 BROWSER = shutil.which("chromium") or shutil.which("chromium-browser")
@@ -20,6 +24,7 @@ FLAGS = [
     "--disable-component-update",
     "--disable-sync",
 ]
+SLOPE = Ground(uphill=0.15, sideways=-0.1)
 pytestmark = pytest.mark.skipif(BROWSER is None, reason="no chromium is installed: the replay is not tried in one")
 
 
@@ -33,7 +38,8 @@ def browser():
 
 @pytest.fixture(scope="module")
 def address(robot, crawled, limped, tmp_path_factory):
-    page = replay(crawled, robot, ghost=limped, labels=("intact", "one limp leg"), title="A limp leg")
+    sloped = crawled.assign(stands_on=((), ground_text(SLOPE)))
+    page = replay(sloped, robot, ghost=limped, labels=("intact", "one limp leg"), title="A limp leg")
     return save(page, tmp_path_factory.mktemp("replay") / "run.html").as_uri()
 
 
@@ -80,6 +86,14 @@ def test_the_time_slider_moves_the_robot(page, crawled):
     assert after != before
     assert after == pytest.approx(expected, abs=1e-3)
     assert page.locator("main").screenshot() != picture
+
+
+def test_the_camera_stands_upright_beside_a_slope(page):
+    """In the frame of the ground, in which everything is drawn, what is up leans back."""
+    azimuth, elevation = page.evaluate("[window.suchus.camera.azimuth, window.suchus.camera.elevation]")
+    up = [-np.sin(elevation) * np.cos(azimuth), -np.sin(elevation) * np.sin(azimuth), np.cos(elevation)]
+    seen = rotate(slope(SLOPE.uphill, SLOPE.sideways), np.array(page.evaluate("window.suchus.up()")))
+    assert seen == pytest.approx(up, abs=1e-6)
 
 
 def test_controls_are_named_and_the_keyboard_works(page):

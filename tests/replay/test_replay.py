@@ -124,6 +124,12 @@ def test_frames_are_thirty_a_second_and_fewer_of_long_runs(robot, crawled):
     assert len(replay(long, robot).encode()) < 5_000_000
 
 
+def test_an_arrow_that_is_as_long_as_the_page_says_stands_for_the_weight(robot, crawled):
+    page = replay(crawled, robot)
+    length = opened(page)[0]["metres_per_newton"] * robot.mass * 9.81
+    assert f"{100 * length:.0f} cm is the robot's weight" in " ".join(page.split())
+
+
 def test_one_frame_is_a_still(robot, crawled):
     meta, _ = opened(replay(crawled.isel(time=slice(0, 1)), robot))
     assert meta["actors"][0]["frames"] == 1

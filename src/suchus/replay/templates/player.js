@@ -505,7 +505,7 @@
   if (asked.has("t")) seek(+asked.get("t"));
   else if (framed) seek(meta.start + 0.4 * (end - meta.start));
   $("play").textContent = state.playing ? "Pause" : "Play";
-  window.suchus = { state, camera, seek, play, mass: () => shown && shown.map((one) => one.mass) };
+  window.suchus = { state, camera, seek, play, up: () => view().up, mass: () => shown && shown.map((one) => one.mass) };
   dirty = true;
   requestAnimationFrame(tick);
 })();
