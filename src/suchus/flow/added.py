@@ -29,22 +29,19 @@ def added_mass(water: Water, markers: Markers, about: tuple[float, float], densi
     share_u, share_v = ((1 - m[here].astype(np.float64)) * mine for m, mine in zip(water.mu0, own, strict=True))
     rx, ry, skin = markers.x - about[0], markers.y - about[1], water.offset * h * markers.length
     rims = np.array([[skin, 0 * skin, -ry * skin], [0 * skin, skin, rx * skin]])  # component, mode, marker
-    held, rim = np.empty((3, 3)), np.empty((3, 3))
+    rim = np.array([*rims.sum(axis=2), (rx * rims[1] - ry * rims[0]).sum(axis=1)])
     rises, shores, inward = [], [], []
-    for k, (au, av) in enumerate(modes):
+    for au, av in modes:
         scale = max(float(np.abs(au).max()), float(np.abs(av).max()))
         potential = water.potential(share_u * au / scale, share_v * av / scale, _LIMIT)
         shores.append([scale * line.astype(np.float64) for line in water.along_sides(potential)])
         near = potential[j0 - 1 : j1 + 1, i0 - 1 : i1 + 1].astype(np.float64)
         rises.append((scale * (near[1:, 1:] - near[1:, :-1]), scale * (near[1:, 1:] - near[:-1, 1:])))
         inward.append([scale * side for side in water.answer(share_u * au / scale, share_v * av / scale)])
-        rim[:2, k] = rims[:, k].sum(axis=1)
-        rim[2, k] = (rx * rims[1, k] - ry * rims[0, k]).sum()
-    own_mass = np.empty((3, 3))
-    for k, (au, av) in enumerate(modes):
-        for m in range(3):
-            held[k, m] = h * h * ((au * share_u * rises[m][0]).sum() + (av * share_v * rises[m][1]).sum())
-            own_mass[k, m] = h * h * ((au * share_u * modes[m][0]).sum() + (av * share_v * modes[m][1]).sum())
+    held, own_mass = (
+        h * h * np.array([[(a * share_u * p).sum() + (b * share_v * q).sum() for p, q in what] for a, b in modes])
+        for what in (rises, modes)
+    )
     return density * (_in_open_water(held, own_mass, shores, inward, h) + rim)
 
 

@@ -132,28 +132,13 @@ class Water:
         x_face, y_face = grid.faces(i0, i1 + 1, 0), grid.faces(j0, j1 + 1, 1)
         x_mid, y_mid = grid.centres(i0, i1 + 1, 0), grid.centres(j0, j1 + 1, 1)
         mu0_u, mu0_v = self.mu0
-        f, self.owners[0] = measure_all(bodies, poses, x_face, y_mid, time, h)
-        fill(
-            f.distance / h - self.offset,
-            f.normal_x,
-            f.normal_y,
-            f.thickness / h + 2 * self.offset,
-            mu0_u[here],
-            self._mu1xx[here],
-            self._mu1xy[here],
-        )
-        self.bu[here] = f.velocity_x
-        f, self.owners[1] = measure_all(bodies, poses, x_mid, y_face, time, h)
-        fill(
-            f.distance / h - self.offset,
-            f.normal_x,
-            f.normal_y,
-            f.thickness / h + 2 * self.offset,
-            mu0_v[here],
-            self._mu1yx[here],
-            self._mu1yy[here],
-        )
-        self.bv[here] = f.velocity_y
+        for k, (x, y, mu0, mu1_x, mu1_y) in enumerate(
+            ((x_face, y_mid, mu0_u, self._mu1xx, self._mu1xy), (x_mid, y_face, mu0_v, self._mu1yx, self._mu1yy))
+        ):
+            f, self.owners[k] = measure_all(bodies, poses, x, y, time, h)
+            near, thickness = f.distance / h - self.offset, f.thickness / h + 2 * self.offset
+            fill(near, f.normal_x, f.normal_y, thickness, mu0[here], mu1_x[here], mu1_y[here])
+            (self.bu, self.bv)[k][here] = (f.velocity_x, f.velocity_y)[k]
         fill_source(self._source, self.bu, self.bv, mu0_u, mu0_v, np.array(self.window))
 
     def fastest(self) -> float:
@@ -306,17 +291,10 @@ class Water:
     def _solve(self, limits: tuple[float, float]) -> poisson.Solve:
         went = poisson.Solve(
             *poisson.solve(
-                self._x,
-                self._d,
-                self._q,
-                self._store,
-                self._layout,
-                self.sides.repeats,
-                self._sums,
-                *limits,
+                self._x, self._d, self._q, self._store, self._layout, self.sides.repeats, self._sums, *limits,
                 MOST_CYCLES,
             )
-        )
+        )  # fmt: skip
         if not (went.mean <= STUCK * limits[0] and went.largest <= STUCK * limits[1]):
             raise NotConverged(
                 f"the pressure solver stopped after {went.cycles} cycles with a divergence of {went.mean:.2g} m/s per "
