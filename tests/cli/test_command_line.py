@@ -39,6 +39,7 @@ def one_sentence(capsys):
 
 
 BAD = {
+    "--version x": "leave out 'x'",
     "walk": "there is reproduce, run",
     "run": "wave",
     "run --quick": "comes first",

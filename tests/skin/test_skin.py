@@ -14,6 +14,7 @@ from suchus.errors import InvalidDesign, SuchusError
 from suchus.model import compile_model, joint_addresses
 from suchus.robots import ROBOTS
 from suchus.skin import bone_names, poses, skin
+from suchus.skin.surface import _blended
 
 STILL = np.array([1.0, 0.0, 0.0, 0.0])
 
@@ -63,6 +64,15 @@ def test_weights_sum_to_one(shelf):
     assert found.weights.min() >= 0.0
     assert found.indices.min() >= 0
     assert found.indices.max() < len(found.bones)
+
+
+def test_a_joint_is_shared_half_and_half_and_left_half_a_segment_away():
+    """Between them a smooth step: 3 t^2 - 2 t^3, a quarter of the way 5/32."""
+    along = np.array([0.4, 0.5, 0.75, 1.0, 1.25, 1.5])
+    indices, weights = _blended(along, [1.0], np.array([1.0, 2.0]), [7, 3])
+    of_second = np.where(indices == 3, weights, 0.0).sum(axis=1)
+    assert of_second == pytest.approx([0.0, 0.0, 5 / 32, 0.5, 27 / 32, 1.0])
+    assert weights.sum(axis=1) == pytest.approx(1.0)
 
 
 def test_zero_posture_is_rest(shelf):

@@ -4,7 +4,7 @@ import os
 import sys
 from collections.abc import Sequence
 
-from suchus.cli.commands import COMMANDS
+from suchus.cli.commands import COMMANDS, BadCommand
 from suchus.errors import Diverged, NotConverged, SuchusError, UnknownName
 
 _EXAMPLES = (
@@ -40,6 +40,8 @@ def main(words: Sequence[str] | None = None) -> int:
 
 def _dispatch(words: list[str]) -> int:
     if words and words[0] in ("--version", "-V"):
+        if words[1:]:
+            raise BadCommand(f"{words[0]} stands alone; leave out {' '.join(words[1:])!r}.")
         from importlib.metadata import version  # noqa: PLC0415  half of the start-up time, needed here only
 
         print(f"suchus {version('suchus')}")
