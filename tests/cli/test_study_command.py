@@ -33,8 +33,10 @@ def test_a_study_says_where_its_results_are_and_what_failed(tmp_path, capsys):
     assert "the first that failed is sample 1: OutsideLimits: gait 'belly_crawl'" in out
     assert err == ""
     before = (tmp_path / "out" / "studies" / "grip" / "results.nc").stat().st_mtime_ns
-    assert main(["study", "grip.toml"]) == 0
+    assert main(["study", "grip.toml", "--csv"]) == 0
     assert (tmp_path / "out" / "studies" / "grip" / "results.csv").is_file()
+    header = (tmp_path / "out" / "studies" / "grip" / "csv" / "sample.csv").read_text().splitlines()[0].split(",")
+    assert header[:3] == ["sample", "ground.grip", "gait.hip_height [m]"]
     assert (tmp_path / "out" / "studies" / "grip" / "results.nc").stat().st_mtime_ns >= before
 
 

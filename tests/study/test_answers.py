@@ -51,13 +51,27 @@ def test_answers_that_differ_in_one_of_four_agree_in_three():
             "number": (("claim", "sample"), [[1.0, 2.0], [3.0, np.nan]]),
             "holds": (("claim", "sample"), [[True, True], [True, False]]),
             "forward": ("sample", [0.5, 0.6]),
-        }
+        },
+        coords={"claim": ["near", "far"]},
     )
     other = one.assign(holds=(("claim", "sample"), [[True, False], [True, True]]), forward=("sample", [0.5, 0.7]))
     told = agreement(one, other)
-    assert told["same"] == pytest.approx(2 / 3)  # the one that cannot be told does not count
-    assert told["way"] == pytest.approx(0.05)
-    assert told["shares"] == pytest.approx(0.5)
+    assert told.same == pytest.approx(2 / 3)  # the one that cannot be told does not count
+    assert told.way == pytest.approx(0.05)
+    assert (told.shares, told.claim) == (pytest.approx(0.5), "near")
+    assert told.chance == 1.0
+
+
+def test_a_claim_that_always_turns_the_same_way_is_no_chance():
+    number, never = np.ones((2, 12)), np.zeros((2, 12), dtype=bool)
+    one = xr.Dataset(
+        {"number": (("claim", "sample"), number), "holds": (("claim", "sample"), never)}, coords={"claim": ["a", "b"]}
+    ).assign(forward=("sample", np.zeros(12)))
+    often = never.copy()
+    often[1, :7] = True
+    told = agreement(one.assign(holds=(("claim", "sample"), often)), one)
+    assert told.chance == pytest.approx(2 * 2 / 2**7)  # seven of seven, either way, two claims
+    assert told.claim == "b"
 
 
 def test_every_measure_gives_a_run_the_same_bytes_in_company_as_alone(robot, crawl_gait):

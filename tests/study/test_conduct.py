@@ -10,13 +10,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from suchus.errors import IncompatibleRecord, Unwritable
 from suchus.land import Run, simulate
 from suchus.metrics import displacement
 from suchus.record import load
 from suchus.study import Plan, Study, Vary, conduct, read_study, run_chunk
-from suchus.study.store import MARK, RESULTS, TABLE
+from suchus.study.packing import packed, unpacked
+from suchus.study.store import MARK, RESULTS, TABLE, Store
 
 PAGE = """
 name = "strokes"
@@ -60,7 +62,8 @@ def test_results_are_what_the_simulation_and_the_metrics_say(asked, tmp_path):
     record = simulate([plan.run(i) for i in range(5)], duration=asked.duration, timestep=asked.timestep)
     np.testing.assert_array_equal(results.displacement_x, displacement(record).sel(xyz="x"))
     np.testing.assert_array_equal(results["gait.stroke"], [p.values["gait.stroke"] for p in plan])
-    assert results.displacement_x.attrs["units"] == "m"
+    units = {name: results[name].attrs["units"] for name in ("displacement_x", "gait.stroke", "slip", "seed")}
+    assert units == {"displacement_x": "m", "gait.stroke": "m", "slip": "1", "seed": "1"}
     assert set(results.error.values) == {""}
     stored = load(tmp_path / "s" / RESULTS)
     np.testing.assert_array_equal(stored.slip, results.slip)
@@ -215,3 +218,20 @@ def test_a_folder_of_something_else_or_a_busy_store_is_refused(asked, tmp_path):
 
     with pytest.raises(KeyboardInterrupt):
         conduct(asked, tmp_path / "s", progress=again)
+
+
+def test_a_table_comes_back_from_its_file_as_it_was(asked, tmp_path):
+    names = [f"number_{i}" for i in (3, 10, 1, 2)]
+    columns = {name: ("sample", np.array([i, np.nan]), {"units": f"u{i}"}) for i, name in enumerate(names)}
+    words = {"arm": ("sample", np.array(["a", "b"]))}
+    table = xr.Dataset(
+        {**columns, **words, "seed": ("sample", np.array([1, 2]))}, coords={"sample": np.arange(2)}, attrs={"part": 0}
+    )
+    xr.testing.assert_identical(unpacked(packed(table)), table)
+    assert len(packed(table).data_vars) == 3
+    store = Store(tmp_path / "s", asked)
+    store.put(0, table)
+    back = store.table(0)
+    xr.testing.assert_identical(back.drop_attrs(deep=False), table.drop_attrs(deep=False))
+    assert list(back.data_vars) == list(table.data_vars)
+    assert packed(words_alone := table[["arm"]]) is words_alone

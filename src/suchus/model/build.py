@@ -50,13 +50,18 @@ def build(robot: Crocodile, *, timestep: float = TIMESTEP, relief: Relief | None
     return spec
 
 
-@lru_cache(maxsize=64)
 def compile_model(robot: Crocodile, timestep: float = TIMESTEP, relief: Relief | None = None) -> Any:
     """Compile a robot on its ground; the same values give the same ``mujoco.MjModel`` again: copy it before an edit.
 
     Raises:
         InvalidDesign: MuJoCo cannot compile it.
     """
+    return _compiled(robot, timestep, relief)
+
+
+@lru_cache(maxsize=64)
+def _compiled(robot: Crocodile, timestep: float, relief: Relief | None) -> Any:
+    """Compile once, whether the caller named what is the default or not."""
     try:
         return build(robot, timestep=timestep, relief=relief).compile()
     except ValueError as error:

@@ -20,7 +20,6 @@ from suchus.optimise.found import Found, titled
 from suchus.optimise.score import allowed, losses, score, units
 from suchus.optimise.search import search
 from suchus.optimise.spec import Optimisation
-from suchus.record import load
 from suchus.study.store import Store
 
 LIBRARIES = ("cma", "comocma", "moarchiving")
@@ -172,7 +171,7 @@ def _kept(store: Store, number: int, make: Callable[[], xr.Dataset]) -> xr.Datas
     """Return a part, made and stored if it is not there yet."""
     if not store.has(number):
         store.put(number, make())
-    return load(store.part(number)).drop_attrs(deep=False)
+    return store.table(number).drop_attrs(deep=False)
 
 
 def write_runs(spec: Optimisation, runs: Sequence[Run], folder: Path) -> None:

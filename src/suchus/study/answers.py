@@ -1,6 +1,5 @@
 """From the ways of many designs, intact and with joints lost, to what becomes of each claim of the article."""
 
-from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -153,25 +152,46 @@ def share_interval(true: int, count: int) -> tuple[float, float]:
     return float(max(middle - half, 0.0)), float(min(middle + half, 1.0))
 
 
-def agreement(one: xr.Dataset, other: xr.Dataset) -> Mapping[str, float]:
+class Agreement(NamedTuple):
+    """How two answers about the same samples agree."""
+
+    same: float
+    """Share of the samples and claims that both can tell which they tell alike [-]."""
+    way: float
+    """Median difference of the way forward [m]."""
+    wide: float
+    """Its 95th percentile [m]."""
+    shares: float
+    """Greatest difference of a claim's share of truth [-]."""
+    claim: str
+    """Which claim's share that is."""
+    chance: float
+    """How likely chance alone turns one of the claims so much more often one way than the other [-]."""
+
+
+def agreement(one: xr.Dataset, other: xr.Dataset) -> Agreement:
     """Return how two answers about the same samples agree.
+
+    That a claim's share moves is judged by the exact sign test on the samples whose truth turns, the least chance
+    among the claims times their number (Bonferroni).
 
     Args:
         one: of ``answers``, merged with its record.
         other: the same, made otherwise.
-
-    Returns:
-        ``same``: share of samples and claims that both can tell and tell alike [-]; ``way``: median difference of the
-        way forward, ``wide``: its 95th percentile [m]; ``shares``: greatest difference of a claim's share of truth [-].
     """
     both = np.isfinite(one.number.values) & np.isfinite(other.number.values)
-    same = one.holds.values == other.holds.values
+    here, there = one.holds.values.astype(bool), other.holds.values.astype(bool)
     off = abs(one.forward.values - other.forward.values)
-    told = np.maximum(both.sum(axis=1), 1)
-    apart = abs((one.holds.values & both).sum(axis=1) - (other.holds.values & both).sum(axis=1)) / told
-    return {
-        "same": float(same[both].mean()) if both.any() else float("nan"),
-        "way": float(np.nanmedian(off)) if np.isfinite(off).any() else float("nan"),
-        "wide": float(np.nanquantile(off, 0.95)) if np.isfinite(off).any() else float("nan"),
-        "shares": float(apart.max()),
-    }
+    gained, lost = (here & ~there & both).sum(axis=1), (there & ~here & both).sum(axis=1)
+    apart = abs(gained - lost) / np.maximum(both.sum(axis=1), 1)
+    chances = [
+        float(stats.binomtest(int(g), int(g + n)).pvalue) if g + n else 1.0 for g, n in zip(gained, lost, strict=True)
+    ]
+    return Agreement(
+        same=float((here == there)[both].mean()) if both.any() else float("nan"),
+        way=float(np.nanmedian(off)) if np.isfinite(off).any() else float("nan"),
+        wide=float(np.nanquantile(off, 0.95)) if np.isfinite(off).any() else float("nan"),
+        shares=float(apart.max()),
+        claim=str(one.claim.values[apart.argmax()]),
+        chance=min(1.0, len(chances) * min(chances)),
+    )

@@ -11,14 +11,16 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any, Protocol
 
+import numpy as np
 import xarray as xr
 
 from suchus.errors import IncompatibleRecord, UnreadableFile, Unwritable
 from suchus.record import check_writable, load, new_file, save, versions
+from suchus.study.packing import packed, unpacked
 
 MARK = "study.json"
 RESULTS, TABLE = "results.nc", "results.csv"
-_FORMAT = 1
+_FORMAT = 2
 _DECIDING = ("suchus", "python", "mujoco", "numpy", "scipy", "xarray", "h5netcdf")
 
 
@@ -91,11 +93,15 @@ class Store:
         Raises:
             Unwritable: the disk is full, or gone.
         """
-        save(table.assign_attrs(part=number, study=self.study.name), self.part(number))
+        save(packed(table.assign_attrs(part=number, study=self.study.name)), self.part(number))
+
+    def table(self, number: int) -> xr.Dataset:
+        """Return the results of a finished batch."""
+        return unpacked(load(self.part(number)))
 
     def failures(self, numbers: Iterable[int]) -> int:
         """Return how many runs of some finished batches failed."""
-        return sum(int((load(self.part(number)).error != "").sum()) for number in numbers)
+        return sum(int((self.table(number).error != "").sum()) for number in numbers)
 
     def gather(self, parts: int) -> xr.Dataset:
         """Put all parts together, as ``results.nc`` and ``results.csv`` too, and return them.
@@ -110,14 +116,8 @@ class Store:
                 raise UnreadableFile(
                     f"{self.folder} lacks part {number} of {parts}; start the {self.kind} again to finish it."
                 )
-            tables.append(load(self.part(number)))
-        columns = {str(name): v.attrs for table in tables for name, v in table.data_vars.items() if name != "error"}
-        whole = xr.concat(
-            tables, "sample", join="outer", data_vars="all", combine_attrs="drop", fill_value=float("nan")
-        )
-        for name, attributes in columns.items():
-            whole[name].attrs = attributes
-        whole = whole[[*columns, "error"]].assign_attrs(study=self.study.name, settings=self._origin()["fields"])
+            tables.append(self.table(number))
+        whole = _together(tables).assign_attrs(study=self.study.name, settings=self._origin()["fields"])
         save(whole, self.folder / RESULTS)
         with new_file(self.folder / TABLE) as draft:
             whole.to_dataframe().to_csv(draft, lineterminator="\n")
@@ -169,6 +169,19 @@ class Store:
             for draft in place.glob(".*.*-*"):
                 if draft.is_dir():
                     shutil.rmtree(draft, ignore_errors=True)
+
+
+def _together(tables: Sequence[xr.Dataset]) -> xr.Dataset:
+    """Put tables one below the other; a column that one of them lacks is NaN there."""
+    columns = {str(name): v.attrs for table in tables for name, v in table.data_vars.items() if name != "error"}
+    rows = {
+        name: np.concatenate([t[name].values if name in t else np.full(t.sizes["sample"], np.nan) for t in tables])
+        for name in (*columns, "error")
+    }
+    return xr.Dataset(
+        {name: ("sample", values, columns.get(name, {})) for name, values in rows.items()},
+        coords={"sample": np.concatenate([table.sample.values for table in tables])},
+    )
 
 
 def deciding(libraries: Sequence[str] = ()) -> dict[str, str]:
