@@ -75,7 +75,7 @@ def _rows(folder: Path) -> list[dict[str, Any]]:
 
 def _curves(rows: list[dict[str, Any]], case: str, part: str) -> dict[str, Any] | None:
     found = [r["curves"] for r in rows if r["case"] == case and part in r["quantity"] and r["curves"]]
-    return found[0] if found else None
+    return max(found, key=lambda curves: len(next(iter(curves.values())))) if found else None  # the fullest
 
 
 def _draw_started(rows: list[dict[str, Any]]) -> Figure:
@@ -84,14 +84,15 @@ def _draw_started(rows: list[dict[str, Any]]) -> Figure:
         axes = figure.add_subplot(1, 2, k + 1)
         curves = _curves(rows, "impulsively started cylinder", f"Re {reynolds}")
         if curves:
-            axes.plot(curves["t"], curves["cd"], label="momentum exchanged")
-            axes.plot(curves["t"], curves["box"], linestyle="--", linewidth=1, label="momentum box")
+            axes.plot(curves["t"], curves["cd"], color="C0", alpha=0.5, linewidth=4, label="momentum exchanged")
+            axes.plot(curves["t"], curves["box"], "C1--", linewidth=1.2, label="momentum box")
             axes.plot(curves["polar_t"], curves["polar_cd"], "k-", linewidth=0.8, label="polar coordinates")
             axes.plot(curves["data_t"], curves["data_cd"], "k.", label="Koumoutsakos and Leonard 1995")
             late = [c for t, c in zip(curves["t"], curves["cd"], strict=True) if t > 0.3]
             axes.set_ylim(0.8 * min(late), 1.15 * max(late))
             axes.set_xlim(0, max(curves["t"]))
-            axes.legend(frameon=False, fontsize="small")
+            if k == 0:
+                axes.legend(frameon=False, fontsize="small")
         axes.set_title(f"impulsively started cylinder, Re {reynolds}", fontsize="medium")
         axes.set_xlabel("t U / R")
         axes.set_ylabel("drag coefficient")
@@ -148,7 +149,7 @@ def _draw_convergence(rows: list[dict[str, Any]]) -> Figure:
         if curves:
             swim.plot(curves["cells"], curves["speed"], "o-", ms=4, label=case.removeprefix("free eel, "))
     swim.set(xlabel="cells along the body", ylabel="speed (L/T)", title="free eel, cycle 6")
-    swim.set_ylim(bottom=0)
+    swim.set_ylim(0, 0.8)
     for axes, ticks in ((fields, (16, 32, 64, 128)), (forces, (8, 16, 32, 64, 128)), (swim, (64, 96, 128, 192, 256))):
         axes.set_xticks(ticks, [str(n) for n in ticks])
         axes.tick_params(axis="x", which="minor", bottom=False, labelbottom=False)
