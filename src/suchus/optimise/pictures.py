@@ -8,9 +8,10 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from suchus.control import Standing
 from suchus.design import unit_at
 from suchus.figures import COLOURS, captioned, panels, styled
-from suchus.figures.posture import draw_strip
+from suchus.figures.posture import draw_posture, draw_strip
 from suchus.land import Run
 from suchus.motion import START
 from suchus.optimise.aims import AIMS, Kind
@@ -19,7 +20,7 @@ from suchus.optimise.score import allowed
 from suchus.optimise.spec import at_share
 
 _ROLES = ("coordinated", "limbs_only", "tail_drag", "spine_only", "tail", "water")
-_APART = 0.6  # [m]; between two robots on one picture
+_APART, _GAP = 0.6, 0.06  # [m]; between two robots that stand, between two that walk
 _MM = {"m": (1000.0, "mm"), "rad": (180 / np.pi, "deg")}
 
 
@@ -30,7 +31,8 @@ def role(number: int) -> str:
 
 def label(name: str) -> str:
     """Return how a field or a limit is called on a page."""
-    return name.rpartition("gait.")[2].removeprefix("robot.").replace("_", " ").replace(".", ", ")
+    name = name.rpartition("gait.")[2].removeprefix("robot.").replace("_", " ").replace(".", ", ")
+    return f"{name.removeprefix('control, ')} (control)" if name.startswith("control, ") else name
 
 
 def draw_convergence(found: Sequence[Found]) -> Figure:
@@ -98,33 +100,80 @@ def draw_front(found: Found) -> Figure:
     )
 
 
-def draw_gaits(runs: Sequence[Run], record: xr.Dataset) -> Figure:
-    """Draw every run from above at its beginning, half of its way and at its end."""
+def draw_gaits(runs: Sequence[Run], record: xr.Dataset, told: Sequence[str]) -> Figure:
+    """Draw what every run does: from above at its beginning, half of its way and at its end; who stands from its side.
+
+    Args:
+        runs: the start, and the best.
+        record: of them.
+        told: what is written beside each.
+    """
+    if all(isinstance(run.control, Standing) for run in runs):
+        return _draw_standing(runs, record, told)
     end = float(record.time[-1])
     times = [START, (START + end) / 2, end]
-    way = record.centre_of_mass.sel(xyz="x")
+    aside, depth = _lanes(runs, record, times)
     with styled(axes__grid=False):
-        figure, axes = panels(1, 1, width=10.5, height=1.0 + 2.3 * len(runs))
+        figure, axes = panels(1, 1, width=10.5, height=1.0 + 3.8 * depth)
         ax = axes[0, 0]
         for i, run in enumerate(runs):
-            one, aside, hue = record.isel(run=i), -_APART * i, _shade(run.label, i)
-            draw_strip(ax, run.robot, one, times, role=hue, aside=aside)
-            start, stop = (float(way.isel(run=i).sel(time=t, method="nearest")) for t in (START, end))
+            one, hue = record.isel(run=i), _shade(run.label, i)
+            draw_strip(ax, run.robot, one, times, role=hue, aside=aside[i])
+            beside = float(one.centre_of_mass.sel(xyz="y").sel(time=end, method="nearest")) + aside[i]
+            right = float(_seen(one, times)[:, 0].max())
             ax.text(
-                max(stop, start) + 0.42,
-                aside,
-                f"{label(run.label)}\n{stop - start:.2f} m",
-                color=COLOURS[hue],
-                va="center",
-                fontsize=13,
+                right + _GAP, beside, f"{label(run.label)}\n{told[i]}", color=COLOURS[hue], va="center", fontsize=13
             )
-        ax.set_xlim(right=float(way.max()) + 0.75)
+        ax.set_xlim(right=float(_seen(record, times)[:, 0].max()) + 0.45)
         ax.set_axis_off()
     return captioned(
         figure,
-        f"From above at {times[0]:g}, {times[1]:g} and {times[2]:g} s, with the track of the centre of mass and the "
-        "way forward. Filled feet stand.",
+        f"From above at {times[0]:g}, {times[1]:g} and {times[2]:g} s, with the track of the centre of mass. Filled "
+        "feet stand.",
     )
+
+
+def _seen(record: xr.Dataset, times: Sequence[float]) -> np.ndarray:
+    """Return where feet, snout and tail tip are at some times, shape (point, 3) [m]."""
+    at = record.sel(time=list(times), method="nearest")
+    return np.concatenate([at[name].values.reshape(-1, 3) for name in ("foot_position", "snout", "tail_tip")])
+
+
+def _lanes(runs: Sequence[Run], record: xr.Dataset, times: Sequence[float]) -> tuple[list[float], float]:
+    """Return how far to the left each run is drawn so that none lies on another, and how deep all are together [m]."""
+    aside, top = [], 0.0
+    for i in range(len(runs)):
+        y = _seen(record.isel(run=i), times)[:, 1]
+        aside.append(top - float(y.max()))
+        top += float(y.min() - y.max()) - _GAP
+    return aside, -top
+
+
+def _draw_standing(runs: Sequence[Run], record: xr.Dataset, told: Sequence[str]) -> Figure:
+    """Draw every run from its right side, half of the time that it is meant to stand."""
+    with styled():
+        figure, axes = panels(1, 1, width=3.0 + 2.6 * len(runs), height=5.6)
+        ax = axes[0, 0]
+        for i, run in enumerate(runs):
+            assert isinstance(run.control, Standing)
+            one = record.isel(run=i)
+            time = (run.control.upright_from(run.robot) + run.control.upright_until(run.robot)) / 2
+            hips = float(one.position.sel(xyz="x").sel(time=time, method="nearest"))
+            moved = one.assign(
+                {name: one[name] + _beside(one, _APART * i - hips) for name in ("position", "centre_of_mass")}
+            )
+            draw_posture(ax, run.robot, moved, time, view="side", support=False)
+            ax.text(_APART * i, -0.05, f"{label(run.label)}\n{told[i]}", ha="center", va="top", fontsize=12,
+                    color=COLOURS[_shade(run.label, i)])  # fmt: skip
+        ax.set_ylim(bottom=-0.17)
+        ax.set_xticks([])
+        ax.spines["bottom"].set_visible(False)
+        ax.set_ylabel("height [m]")
+    return captioned(figure, "From the right side, half of the time that it is meant to stand.")
+
+
+def _beside(record: xr.Dataset, ahead: float) -> xr.DataArray:
+    return xr.DataArray([ahead, 0.0, 0.0], dims="xyz", coords={"xyz": record.xyz})
 
 
 def _shade(name: str, number: int) -> str:

@@ -23,6 +23,7 @@ from suchus.study.sheet import Section, Table, write_sheet
 
 RESULT, OUTCOME, RECORD = "result", "outcome.json", "record.nc"
 _TOLD = 5  # fields that the sentence names
+_END = 0.02  # of its range; a field that is nearer to an end is at it
 
 
 def write_results(spec: Optimisation, found: Sequence[Found], folder: Path) -> Path:
@@ -47,7 +48,7 @@ def write_results(spec: Optimisation, found: Sequence[Found], folder: Path) -> P
         for i, run in enumerate(shown):
             if i:
                 _write_replay(shown, record, i, draft / f"{run.label}_replay.html")
-        pictures = _pictures(found, shown, record)
+        pictures = _pictures(spec, found, shown, record)
         write_sheet(draft, f"Optimised: {spec.name}", _lead(found), _sections(spec, found, told, pictures), pictures)
         text = json.dumps(told, indent=2, ensure_ascii=False, allow_nan=False)
         (draft / OUTCOME).write_text(text + "\n", encoding="utf-8")
@@ -129,24 +130,44 @@ def _finite(value: Any) -> float | None:
 
 def sentence(one: Found, which: int) -> str:
     """Say what a chosen gait does otherwise than the start: the fields that moved farthest in their ranges."""
-    ranges = {v.field: float(v.high - v.low) for v in one.spec.vary if v.low is not None and v.high is not None}
-    changes = sorted(one.values(which).items(), key=lambda item: -abs(item[1][1] - item[1][0]) / ranges[item[0]])
+    ranges = {v.field: (float(v.low), float(v.high)) for v in one.spec.vary if v.low is not None and v.high is not None}
+
+    def moved(item: tuple[str, tuple[float, float]]) -> float:
+        low, high = ranges[item[0]]
+        return abs(item[1][1] - item[1][0]) / (high - low)
+
+    changes = sorted((item for item in one.values(which).items() if moved(item) > 0.0), key=moved, reverse=True)
     said = []
     for field, (start, best) in changes[:_TOLD]:
         factor, unit = scaled(one.spec.run, field)
         shown = f" {unit}" if unit else ""
         said.append(f"{label(field)} {_round(best * factor)}{shown} instead of {_round(start * factor)}")
     stops = [label(name) for name, (_, _, active) in one.active(which).items() if active]
-    stopped = f" What stops it: {', '.join(stops)}." if stops else " No limit stops it."
-    return f"It takes {'; '.join(said)}.{stopped}"
+    stopped = f" Limits that stop it: {', '.join(stops)}." if stops else " No limit stops it."
+    ends = [label(name) for name, (_, best) in one.values(which).items() if _at_end(best, *ranges[name])]
+    ended = f" At the end of its range: {', '.join(ends)}." if ends else ""
+    takes = f"It takes {'; '.join(said)}" if said else "It is the start itself"
+    return f"{takes}.{stopped}{ended}"
+
+
+def _at_end(best: float, low: float, high: float) -> bool:
+    return min(best - low, high - best) < _END * (high - low)
 
 
 def _round(value: float) -> str:
     return f"{value:.3g}"
 
 
-def _pictures(found: Sequence[Found], shown: Sequence[Run], record: xr.Dataset) -> dict[str, Figure]:
-    pictures = {"gaits": draw_gaits(shown, record), "convergence": draw_convergence(found)}
+def _pictures(
+    spec: Optimisation, found: Sequence[Found], shown: Sequence[Run], record: xr.Dataset
+) -> dict[str, Figure]:
+    values = [(AIMS[aim.name], AIMS[aim.name].measure(shown, record)) for aim in spec.aims]
+    reached = [
+        ", ".join(f"{value[i]:.3g} {kind.unit}".removesuffix(" -") for kind, value in values) for i in range(len(shown))
+    ]
+    pictures = {"gaits": draw_gaits(shown, record, reached)}
+    if not spec.pareto:
+        pictures["convergence"] = draw_convergence(found)
     for one in found:
         if one.spec.pareto:
             pictures[f"front_{one.arm}"] = draw_front(one)
@@ -157,11 +178,16 @@ def _pictures(found: Sequence[Found], shown: Sequence[Run], record: xr.Dataset) 
 def _lead(found: Sequence[Found]) -> str:
     said = []
     for one in found:
-        aim = one.spec.aims[0].name
-        kind = AIMS[aim]
-        start, best = (float(one.history[f"aim_{aim}"][i]) for i in (0, one.chosen[0]))
-        said.append(f"{label(one.arm)}: {label(aim)} {start:.3g} to {best:.3g} {kind.unit}".replace(" -", ""))
-    return f"{'; '.join(said)}; {found[0].history.sizes['candidate'] - 1} candidates each."
+        front = one.front if one.spec.pareto else []
+        told = []
+        for aim in one.spec.aims if front else one.spec.aims[:1]:
+            ends = (front[0], front[-1]) if front else (0, one.chosen[0])
+            first, last = (float(one.history[f"aim_{aim.name}"][i]) for i in ends)
+            told.append(f"{label(aim.name)} {first:.3g} to {last:.3g} {AIMS[aim.name].unit}".removesuffix(" -"))
+        what = f"a front of {len(front)}, " if front else ""
+        said.append(f"{label(one.arm)}: {what}{', '.join(told)}")
+    each = " each" if len(found) > 1 else ""
+    return f"{'; '.join(said)}; {found[0].history.sizes['candidate'] - 1} candidates{each}."
 
 
 def _sections(
@@ -171,11 +197,12 @@ def _sections(
         (f"{name}_replay.html", f"Replay of {label(name)} beside the start") for one in found for name in one.names
     ]
     links += [(f"{name}.toml", f"{name}.toml: the gait as a file") for one in found for name in one.names]
+    if any(vary.field.startswith("robot.") for vary in spec.vary):
+        links += [(f"{n}_robot.toml", f"{n}_robot.toml: the robot as a file") for one in found for n in one.names]
     return [
-        Section(title="What it found", texts=[f"{label(n)}. {b['sentence']}" for n, b in _all_best(told)], links=links,
-                figures=("gaits",)),
+        Section(title="What it found", texts=[*_best_said(told), *_beyond(spec)], links=links, figures=("gaits",)),
         Section(title="How it converged", texts=spec.reasons,
-                figures=("convergence", *(name for name in pictures if name.startswith("front_")))),
+                figures=[name for name in pictures if name == "convergence" or name.startswith("front_")]),
         Section(title="The numbers", tables=[_fields(one, i) for one in found for i in range(len(one.chosen))]
                 + [_limits(one, i) for one in found for i in range(len(one.chosen)) if one.spec.limits]),
         Section(
@@ -190,8 +217,16 @@ def _sections(
     ]  # fmt: skip
 
 
-def _all_best(told: Mapping[str, Any]) -> list[tuple[str, Mapping[str, Any]]]:
-    return [(name, best) for arm in told["arms"].values() for name, best in arm["best"].items()]
+def _beyond(spec: Optimisation) -> list[str]:
+    """Say what a gait file cannot hold."""
+    if not any(vary.field.startswith("control.") for vary in spec.vary):
+        return []
+    return ["What is the control's is in the table below: a gait file holds the gait alone."]
+
+
+def _best_said(told: Mapping[str, Any]) -> list[str]:
+    best = [item for arm in told["arms"].values() for item in arm["best"].items()]
+    return [f"{label(name).capitalize()}. {each['sentence']}" for name, each in best]
 
 
 def _fields(one: Found, which: int) -> Table:
@@ -200,7 +235,7 @@ def _fields(one: Found, which: int) -> Table:
     for name, (start, best) in one.values(which).items():
         factor, unit = scaled(one.spec.run, name)
         low, high = (float(e or 0.0) for e in ends[name])
-        at = "at its end" if min(best - low, high - best) < 0.02 * (high - low) else ""
+        at = "at its end" if _at_end(best, low, high) else ""
         words = (label(name), unit, *(_round(factor * x) for x in (start, best)),
                  f"{_round(factor * low)} to {_round(factor * high)}", at)  # fmt: skip
         rows.append(words)
