@@ -47,7 +47,7 @@ def _changes(rows, name):
     return [abs(rows[fine][name] / rows[coarse][name] - 1) for coarse, fine in pairwise(CELLS)]
 
 
-def test_the_speed_grows_with_the_grid_and_ever_less(grids):
+def test_the_speed_grows_with_the_grid_by_little(grids):
     cell = np.array([1 / n for n in CELLS])
     speed = np.array([grids[n]["speed"] for n in CELLS])
     assert np.all(np.diff(speed) > 0)
