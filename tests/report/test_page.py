@@ -1,5 +1,6 @@
 import re
 from html.parser import HTMLParser
+from types import SimpleNamespace
 
 import pytest
 import xarray as xr
@@ -10,6 +11,7 @@ from suchus.figures import captioned, panels, styled
 from suchus.gaits import GAITS
 from suchus.paper import ERRATA
 from suchus.report import Failure, load_result, number, quantity, render_page, save_outcome
+from suchus.report.page import _place
 from suchus.robots import ROBOTS
 
 
@@ -117,6 +119,12 @@ def test_the_verdicts_stand_first_and_in_the_order_of_the_article(page):
     assert places == sorted(places)
     for said in ("0.73 m", "0.5 m", "same sense", "reproduced", "not testable", "IV.B"):
         assert said in text
+
+
+@pytest.mark.parametrize(("claims", "place"), [(("a", "c"), 2), (("b",), 1), ((), 3)])
+def test_a_result_stands_where_the_article_comes_to_its_last_claim(claims, place):
+    result = SimpleNamespace(told={"verdicts": [{"claim": claim} for claim in claims]})
+    assert _place(result, {"a": 0, "b": 1, "c": 2}) == place
 
 
 def test_the_page_tells_everything_that_it_promises(page):
