@@ -23,7 +23,7 @@ def leg_inverse(record: xr.Dataset) -> Figure:
     """Return where the printed inverse (14) misses, and by how much, beside ours."""
     with styled(axes__grid=False):
         figure, axes = panels(1, 2, width=8.2, height=3.9, width_ratios=[1.25, 1])
-        figure.get_layout_engine().set(wspace=0.08)  # type: ignore[union-attr]
+        figure.set_layout_engine("constrained", wspace=0.08)
         left, right = axes[0]
         miss = record.printed_error.values
         x, z = _MM * record.outward, _MM * record.down
