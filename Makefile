@@ -5,7 +5,7 @@ PIP := $(PY) -m pip --disable-pip-version-check --quiet
 export OMP_WAIT_POLICY := passive
 export PIP_CONSTRAINT := constraints.txt
 
-.PHONY: reproduce test check lint types contract kernels tests validate bench docs clean
+.PHONY: reproduce test check single double lint types contract tests validate bench docs clean
 
 reproduce: .venv/.runtime
 	$(PY) -m suchus.cli reproduce --out out
@@ -14,7 +14,7 @@ test:
 	@$(MAKE) --no-print-directory -j2 -O check
 	@$(MAKE) --no-print-directory tests
 
-check: kernels types lint contract
+check: single double types lint contract
 
 lint: .venv/.dev
 	$(PY) -m ruff check .
@@ -26,8 +26,8 @@ types: .venv/.dev
 contract: .venv/.dev
 	$(PY) -c "from importlinter.cli import lint_imports_command; lint_imports_command()" --no-cache
 
-kernels: .venv/.dev # of the flow, compiled once; else every test worker would
-	SUCHUS_THREADS=1 $(PY) tools/compile_flow.py
+single double: .venv/.dev # the flow's kernels, compiled once; else every test worker would
+	SUCHUS_THREADS=1 $(PY) tools/compile_flow.py $@
 
 tests: .venv/.dev
 	$(PY) -m pytest -n auto --dist worksteal -m "not validate"

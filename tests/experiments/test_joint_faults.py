@@ -10,6 +10,7 @@ import xarray as xr
 from suchus.design import servo_names
 from suchus.errors import Diverged
 from suchus.experiments import EXPERIMENTS
+from suchus.experiments import _fault_findings as findings
 from suchus.gaits import GAITS
 from suchus.land import KINDS, LEGS_LOST, LOST, Limp, Locked, Run, angle_at, lost, simulate
 from suchus.metrics import displacement, loss, says, swing_lift, swing_loads, whole
@@ -148,7 +149,7 @@ def test_what_robust_physics_says_about_lost_joints(outcome):
 
 def test_reading_a_lost_joint_otherwise_changes_the_verdicts(campaign, outcome):
     def words(question, record):
-        return [(v.claim.key, v.measured) for v in question._verdicts(record)][:8]
+        return [(v.claim.key, v.measured) for v in findings.verdicts(record, question.kind, question.legs)][:8]
 
     locked = replace(campaign, kind="locked")
     assert words(campaign, outcome.record) != words(locked, outcome.record)
