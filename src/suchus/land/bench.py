@@ -13,6 +13,7 @@ from suchus.design import Crocodile, servo_names
 from suchus.design.ground import Ground
 from suchus.design.relief import Relief
 from suchus.kinematics.mass import GRAVITY
+from suchus.land.alike import Alike
 from suchus.land.faults import Fault, Limp, Weak
 from suchus.land.run import Afloat, Run
 from suchus.model import activations, compile_model, standing
@@ -131,15 +132,19 @@ class Bench:
             first: the servo angles at the start, shape (run, 19) [rad].
         """
         act = self.batch.bind("act")
+        found: dict[object, tuple[np.ndarray, np.ndarray]] = {}
         for sim, run in enumerate(runs):
-            model = compile_model(run.robot, self._timestep)  # every run begins on even ground
-            self.qpos[sim] = standing(model, run.robot, run.gait.hip_height, first[sim])
-            act[sim] = activations(model, first[sim])
+            key = (run.robot, run.gait.hip_height, first[sim].tobytes())
+            if key not in found:
+                model = compile_model(run.robot, self._timestep)  # every run begins on even ground
+                posture = standing(model, run.robot, run.gait.hip_height, first[sim])
+                found[key] = posture, activations(model, first[sim])
+            self.qpos[sim], act[sim] = found[key]
             self.ctrl[sim] = first[sim]
         self.batch.forward()
         self.readings[:] = self.sensors
 
-    def advance(self, targets: np.ndarray, steps: int, time: float) -> None:
+    def advance(self, targets: np.ndarray, steps: int, time: float, alike: Alike | None = None) -> None:
         """Command servo angles and advance the living by some steps; who diverges dies, with the time and the cause.
 
         On return ``readings`` holds what the sensors say: contact forces as their mean over the steps, as a pressure
@@ -149,12 +154,21 @@ class Bench:
             targets: shape (run, 19) [rad].
             steps: number of physics steps.
             time: at which they begin [s].
+            alike: runs of which one stands for all; None if there are none.
         """
+        if alike is not None and alike.others.size:
+            self._advance(targets, steps, time, alike.first)
+            self._copy(alike.others, alike.whom)
+        else:
+            self._advance(targets, steps, time, np.ones_like(self.alive))
+
+    def _advance(self, targets: np.ndarray, steps: int, time: float, who: np.ndarray) -> None:
         self.ctrl[self.alive] = targets[self.alive]
         pressed = np.zeros_like(self.readings[:, self._forces])
         for _ in range(steps):
             try:
-                self.batch.step(None if self.alive.all() else np.flatnonzero(self.alive), stage=_CURRENT)
+                going = self.alive & who
+                self.batch.step(None if going.all() else np.flatnonzero(going), stage=_CURRENT)
             except SimulationError as error:
                 for sim in error.ids:
                     self._end(int(sim), time, self.batch.error(int(sim)))
@@ -162,8 +176,16 @@ class Bench:
         self.readings[:] = self.sensors
         self.readings[:, self._forces] = pressed / steps
         fastest = np.abs(self.qvel).max(axis=1)
-        for sim in np.flatnonzero(self.alive & ~(fastest < _TOO_FAST)):  # a NaN is not below anything
+        for sim in np.flatnonzero(self.alive & who & ~(fastest < _TOO_FAST)):  # a NaN is not below anything
             self._end(int(sim), time, f"a speed of {fastest[sim]:.3g} was reached")
+
+    def _copy(self, sims: np.ndarray, whom: np.ndarray) -> None:
+        """Let runs be where others are, and feel and suffer the same."""
+        self.batch.state[sims] = self.batch.state[whom]
+        self.readings[sims] = self.readings[whom]
+        for sim, other in zip(sims, whom, strict=True):
+            if not self.alive[other]:
+                self._end(int(sim), float(self.ended[other]), self.cause[other])
 
     def _end(self, sim: int, time: float, cause: str) -> None:
         if self.alive[sim]:

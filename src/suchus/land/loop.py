@@ -7,6 +7,7 @@ import numpy as np
 from suchus.control import Command, Controller, Joinable
 from suchus.design.checks import require
 from suchus.errors import InvalidDesign
+from suchus.land.alike import Alike
 from suchus.land.bench import Bench
 from suchus.land.readings import Readings
 from suchus.land.run import Run
@@ -60,7 +61,9 @@ class Loop:
         self.bench = Bench(runs, timestep)
         self.feels = any(run.control.feels for run in runs)
         self.controller = start(runs, ticks)
-        self.bench.place(runs, self.controller.rest())
+        first = self.controller.rest()
+        self.bench.place(runs, first)
+        self._alike = Alike(runs, first, CONTROL_PERIOD)
         self.troubles = Troubles(runs, self.bench, ticks, CONTROL_PERIOD)
         self.readings = Readings(self.bench, runs, samples)
 
@@ -78,4 +81,5 @@ class Loop:
 
     def advance(self, tick: int, targets: np.ndarray) -> None:
         """Let one control period pass in which the servos are told these angles, shape (run, 19) [rad]."""
-        self.bench.advance(targets, self._steps, tick * CONTROL_PERIOD)
+        self._alike.part(tick, targets)
+        self.bench.advance(targets, self._steps, tick * CONTROL_PERIOD, self._alike)

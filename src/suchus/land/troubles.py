@@ -43,7 +43,7 @@ class Troubles:
         """Let a fault begin now."""
         if isinstance(fault, Locked):
             servo = servo_names().index(fault.joint)
-            now = self._bench.sensors[sim, servo]  # the first readings are the servos' angles
+            now = self._bench.readings[sim, servo]  # the first of them are the servos' angles
             self._held[sim, servo] = now if fault.angle is None else fault.angle
         elif isinstance(fault, Deaf):
             self._deaf.append((sim, fault.sensor))

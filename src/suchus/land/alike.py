@@ -1,0 +1,66 @@
+"""Runs that have gone exactly alike so far: one of them is simulated for all, until they part."""
+
+from collections.abc import Sequence
+from math import floor
+
+import numpy as np
+
+from suchus.land.run import Run
+
+_EARLY = 1e-6
+"""By how much too early rather than too late a trouble may be awaited [control period]."""
+
+
+class Alike:
+    """The runs of a batch in groups that differ in nothing that the physics has felt yet.
+
+    Such are the runs of one robot that is pushed in many ways, up to the push. Members of a group have the same robot,
+    ground and first posture, and were told the same servo angles to the last bit; who is told another angle, or is
+    about to break or be pushed, leaves.
+
+    Args:
+        runs: the runs.
+        first: the servo angles at the start, shape (run, 19) [rad].
+        period: of control [s].
+    """
+
+    def __init__(self, runs: Sequence[Run], first: np.ndarray, period: float) -> None:
+        groups: dict[object, list[int]] = {}
+        for sim, run in enumerate(runs):
+            key = (run.robot, run.ground, run.afloat, run.gait.hip_height, first[sim].tobytes())
+            groups.setdefault(key, []).append(sim)
+        self._groups = [members for members in groups.values() if len(members) > 1]
+        self._leaves: dict[int, set[int]] = {}
+        for sim, run in enumerate(runs):
+            times = [trouble.at for trouble in (*run.faults, *run.pushes)]
+            if times:
+                self._leaves.setdefault(max(floor(min(times) / period - _EARLY), 0), set()).add(sim)
+        self._count = len(runs)
+        self._number()
+
+    def part(self, tick: int, targets: np.ndarray) -> None:
+        """Let those leave whose first trouble is due, and those who are told something else than the others.
+
+        Args:
+            tick: number of the control period.
+            targets: what the servos are told in it, shape (run, 19) [rad].
+        """
+        if not self._groups:
+            return
+        leaving = self._leaves.get(tick, ())
+        parted: list[list[int]] = []
+        for members in self._groups:
+            told: dict[object, list[int]] = {}
+            for sim in members:
+                told.setdefault(sim if sim in leaving else targets[sim].tobytes(), []).append(sim)
+            parted += told.values()
+        if len(parted) > len(self._groups):
+            self._groups = [members for members in parted if len(members) > 1]
+            self._number()
+
+    def _number(self) -> None:
+        """Note who follows whom."""
+        self.first = np.ones(self._count, dtype=bool)
+        self.others = np.array([sim for members in self._groups for sim in members[1:]], dtype=int)
+        self.whom = np.array([members[0] for members in self._groups for _ in members[1:]], dtype=int)
+        self.first[self.others] = False
