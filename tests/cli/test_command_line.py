@@ -55,7 +55,8 @@ BAD = {
     "run wave stray": "one word too many",
     "run wave --out /dev/null/here": "cannot be written",
     "reproduce --out /dev/null/here": "cannot be written",
-    "reproduce --slow": "there is --out, --quick",
+    "reproduce --slow": "there is --out, --quick, --jobs",
+    "reproduce --jobs 0": "at least 1",
     "list everything": "takes no 'everything'",
 }
 

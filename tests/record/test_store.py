@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 from suchus.errors import IncompatibleRecord, UnreadableFile, Unwritable
-from suchus.record import check_writable, digest, load, new_folder, plain, provenance, save
+from suchus.record import check_writable, digest, load, new_folder, plain, provenance, save, sweep
 
 
 @pytest.fixture
@@ -156,3 +156,17 @@ def test_provenance_differs_in_seconds_only():
     first, second = (provenance({"seed": 1, "x": 2.0}, seconds=s) for s in (1.0, 2.0))
     assert first.pop("seconds") != second.pop("seconds")
     assert first == second
+
+
+def test_what_a_process_that_died_has_left_is_swept_and_the_older_result_comes_back(tmp_path):
+    place, shelter = tmp_path / "result", tmp_path / ".result-abc"
+    (shelter / "new").mkdir(parents=True)
+    (tmp_path / ".results-abc").mkdir()
+    (shelter / "old").mkdir()
+    (shelter / "old/m").write_text("an older one")
+    sweep(place)  # it died between the two renames
+    assert (place / "m").read_text() == "an older one"
+    (shelter / "old").mkdir(parents=True)
+    sweep(place)
+    assert (place / "m").read_text() == "an older one"
+    assert sorted(path.name for path in tmp_path.iterdir()) == [".results-abc", "result"]

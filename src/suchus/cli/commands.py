@@ -33,7 +33,7 @@ class Command:
 COMMANDS = (
     Command(
         "reproduce",
-        "[--out DIR]",
+        "[--out DIR] [--jobs N]",
         "run every experiment and write the report",
         "suchus.cli.reproduce:reproduce",
     ),

@@ -1,18 +1,26 @@
 """``suchus reproduce``: every experiment, then the page."""
 
-import traceback
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Annotated
 
+import tyro
+
+from suchus import threads
+from suchus.cli.attempt import Came, Task, attempt
 from suchus.cli.commands import BadCommand
+from suchus.cli.crew import side_by_side
 from suchus.cli.options import OUT, QUICK, parse
-from suchus.cli.perform import perform
 from suchus.cli.terminal import Bars, working
-from suchus.errors import SuchusError
 from suchus.experiments import EXPERIMENTS
 from suchus.record import check_writable
-from suchus.report import Failure, Result, check_place, load_result, write_page
+from suchus.report import Failure, Result, check_place, write_page
+
+_MOST = 4
+"""Experiments at a time unless more are asked for [-]; beyond, the longest one alone decides, and each takes memory."""
+_LONG = ("swimming", "feedback", "bipedal_reach", "joint_faults", "turning", "speed_range", "displacement")
+"""What takes longest is begun first, so that no process idles in the end."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -21,6 +29,9 @@ class Options:
 
     out: OUT = Path("out")
     quick: QUICK = False
+    jobs: Annotated[
+        int | None, tyro.conf.arg(help=f"Experiments at a time; by default one for each core, {_MOST} at most.")
+    ] = None
 
 
 def reproduce(words: Sequence[str]) -> int:
@@ -30,36 +41,36 @@ def reproduce(words: Sequence[str]) -> int:
         SuchusError: the words make no sense, or the results cannot be saved.
     """
     told = "Run every experiment and write one page with everything that came out, DIR/report.html."
-    options: Options = parse(Options, "suchus reproduce", words, told, ("out", "quick"))
-    if not len(EXPERIMENTS):
+    options: Options = parse(Options, "suchus reproduce", words, told, ("out", "quick", "jobs"))
+    tasks = [Task(name=name, out=options.out, quick=options.quick) for name in EXPERIMENTS]
+    if not tasks:
         raise BadCommand("there is no experiment on the shelf.")
+    if options.jobs is not None and options.jobs < 1:
+        raise BadCommand(f"--jobs is {options.jobs}; at least 1 experiment at a time is needed.")
     check_writable(options.out)
-    for name in EXPERIMENTS:
-        check_place(options.out / name)
+    for task in tasks:
+        check_place(options.out / task.name)
+    jobs = min(threads.count(), _MOST) if options.jobs is None else options.jobs
     with working() as bars:
-        came = [_attempt(name, options, bars) for name in EXPERIMENTS]
-        results = [one for one in came if isinstance(one, Result)]
-        failures = [one for one in came if isinstance(one, Failure)]
+        came = _came_of(tasks, min(jobs, len(tasks)), bars)
+        results = [one.result for one in came if isinstance(one.result, Result)]
+        failures = [one.result for one in came if isinstance(one.result, Failure)]
         page = write_page(results, failures, options.out / "report.html")
     print(page)
     return 1 if failures else 0
 
 
-def _attempt(name: str, options: Options, bars: Bars) -> Result | Failure:
-    """Run one experiment; whatever goes wrong in it must not stop the others."""
-    try:
-        experiment = EXPERIMENTS[name]
-        quick = options.quick or not experiment.in_reproduce
-        command = f"suchus run {name}{' --quick' * quick}"
-        done = perform(experiment.quick() if quick else experiment, name, options.out, bars.task(name), command)
-        result = load_result(done.folder)
-    except SuchusError as error:
-        bars.say(f"{name}: failed: {error}")
-        return Failure(name=name, sentence=str(error))
-    except Exception as error:
-        bars.say(f"{name}: failed: {type(error).__name__}: {error}")
-        return Failure(name=name, sentence=f"{type(error).__name__}: {error}", trace=traceback.format_exc())
-    words = [verdict["verdict"] for verdict in result.told["verdicts"]]
-    told = ", ".join(f"{words.count(word)} {word}" for word in dict.fromkeys(words)) or "no verdict"
-    bars.say(f"{name}: {told} ({done.seconds:.1f} s)")
-    return result
+def _came_of(tasks: Sequence[Task], jobs: int, bars: Bars) -> list[Came]:
+    """Return what came of each task, in their order."""
+    if jobs > 1:
+        came = side_by_side(sorted(tasks, key=_place), jobs, bars)
+        return [came[task.name] for task in tasks]
+    done = []
+    for task in tasks:
+        done.append(attempt(task, bars.task(task.name)))
+        bars.say(done[-1].told)
+    return done
+
+
+def _place(task: Task) -> int:
+    return _LONG.index(task.name) if task.name in _LONG else len(_LONG)

@@ -2,7 +2,7 @@
 
 from suchus.record.ground import ground_of, ground_text
 from suchus.record.parts import Parts, code_digest
-from suchus.record.place import check_replaceable, check_writable, new_file, new_folder
+from suchus.record.place import check_replaceable, check_writable, new_file, new_folder, sweep
 from suchus.record.provenance import digest, plain, provenance, versions
 from suchus.record.schema import PER_RUN, VARIABLES, dataset
 from suchus.record.store import load, save
@@ -25,6 +25,7 @@ __all__ = [
     "plain",
     "provenance",
     "save",
+    "sweep",
     "versions",
     "write_tables",
 ]

@@ -78,6 +78,15 @@ def check_replaceable(path: Path, *, mark: str) -> None:
     raise Unwritable(f"{path} exists and was not written by suchus; choose another place or move it away.")
 
 
+def sweep(path: Path) -> None:
+    """Remove what a process that died in ``new_folder`` has left beside ``path``; an older folder comes back."""
+    for shelter in path.parent.glob(f".{path.name}-*"):
+        old = shelter / "old"
+        if old.exists() and not path.exists():
+            old.rename(path)
+        shutil.rmtree(shelter, ignore_errors=True)
+
+
 def _swap(draft: Path, path: Path, old: Path) -> None:
     if path.exists():
         path.rename(old)

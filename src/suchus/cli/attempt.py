@@ -1,0 +1,66 @@
+"""One experiment of many: whatever goes wrong in it is told, and must not stop the others."""
+
+import traceback
+from dataclasses import dataclass
+from pathlib import Path
+
+from suchus.cli.perform import perform
+from suchus.errors import SuchusError
+from suchus.experiment import Progress
+from suchus.experiments import EXPERIMENTS
+from suchus.report import Failure, Result, load_result
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Task:
+    """An experiment that is to be run."""
+
+    name: str
+    """On the shelf."""
+    out: Path
+    """The folder for results."""
+    quick: bool
+    """Whether its quick form is asked for, whatever it is."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Came:
+    """What came of it."""
+
+    result: Result | Failure
+    """For the page."""
+    told: str
+    """The same in a line."""
+
+
+def attempt(task: Task, progress: Progress) -> Came:
+    """Run an experiment into its folder and read the result back.
+
+    Args:
+        task: which and where.
+        progress: told how far it has come.
+    """
+    try:
+        experiment = EXPERIMENTS[task.name]
+        quick = task.quick or not experiment.in_reproduce
+        command = f"suchus run {task.name}{' --quick' * quick}"
+        done = perform(experiment.quick() if quick else experiment, task.name, task.out, progress, command)
+        result = load_result(done.folder)
+    except SuchusError as error:
+        return failed(task.name, str(error))
+    except Exception as error:
+        return failed(task.name, f"{type(error).__name__}: {error}", traceback.format_exc())
+    words = [verdict["verdict"] for verdict in result.told["verdicts"]]
+    told = ", ".join(f"{words.count(word)} {word}" for word in dict.fromkeys(words)) or "no verdict"
+    return Came(result=result, told=f"{task.name}: {told} ({done.seconds:.1f} s)")
+
+
+def failed(name: str, sentence: str, trace: str = "") -> Came:
+    """Return what is told of an experiment that came to no result.
+
+    Args:
+        name: of the experiment.
+        sentence: what went wrong.
+        trace: where in the code, if it was none of our own errors.
+    """
+    return Came(result=Failure(name=name, sentence=sentence, trace=trace), told=f"{name}: failed: {sentence}")

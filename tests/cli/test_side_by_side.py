@@ -1,0 +1,110 @@
+"""Experiments in processes of their own: the same files, whoever breaks, dies or is stopped."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from suchus.cli import main
+
+FAKES = Path(__file__).parent / "fake_shelf"
+
+CRASHING = '''"""Does it crash?"""
+import os
+from dataclasses import dataclass
+import suchus.experiments.wave as wave
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Crashing(wave.Wave):
+    title = "Does it crash?"
+
+    def run(self, progress=None):
+        os._exit(7)
+
+experiment = Crashing()
+'''
+
+
+SLOW = '''"""Is it slow?"""
+import os, time
+from dataclasses import dataclass, replace
+from pathlib import Path
+import suchus.experiments.wave as wave
+from suchus.experiment import Replay
+
+def dawdle():
+    Path(os.environ["STARTED"]).write_text(str(os.getpid()))
+    time.sleep(60.0)
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Slow(wave.Wave):
+    title = "Is it slow?"
+
+    def run(self, progress=None):
+        return replace(wave.Wave.run(self), replays={"slow.html": Replay(caption="It dawdles.", make=dawdle)})
+
+experiment = Slow()
+'''
+DRIVER = """
+import sys, suchus.experiments
+suchus.experiments.__path__ = sys.argv.pop(1).split(":")
+from suchus.cli import main
+sys.exit(main())
+"""
+
+
+@pytest.fixture
+def crashing(broken, tmp_path):
+    """A third fake takes its process with it."""
+    (tmp_path / "broken_shelf/crashing.py").write_text(CRASHING)
+
+
+def files(folder: Path) -> dict[str, bytes | dict[str, object]]:
+    """What a folder holds; of an outcome all but how it was asked for and how long it took."""
+    found: dict[str, bytes | dict[str, object]] = {path.name: path.read_bytes() for path in folder.iterdir()}
+    found["outcome.json"] = json.loads(found["outcome.json"])
+    del found["outcome.json"]["provenance"]["seconds"], found["outcome.json"]["command"]
+    return found
+
+
+@pytest.mark.usefixtures("crashing")
+def test_who_breaks_or_dies_is_told_and_the_others_are_as_ever(capsys, tmp_path):
+    assert main(["reproduce", "--jobs", "2", "--out", str(tmp_path / "out")]) == 1
+    out, err = capsys.readouterr()
+    assert out == f"{tmp_path / 'out/report.html'}\n"
+    assert "broken: failed: RuntimeError: it broke, as it should" in err
+    assert "crashing: failed: its process ended with exit code 7" in err
+    page = (tmp_path / "out/report.html").read_text()
+    assert page.index("it broke, as it should") < page.index("exit code 7")
+    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["report.html", "wave"]
+    assert main(["run", "wave", "--out", str(tmp_path / "alone")]) == 0
+    assert files(tmp_path / "out/wave") == files(tmp_path / "alone/wave")
+
+
+def test_ctrl_c_while_one_is_saving_stops_all_and_leaves_nothing_half_written(tmp_path):
+    out, started = tmp_path / "out", tmp_path / "started"
+    (tmp_path / "slow.py").write_text(SLOW)
+    process = subprocess.Popen(
+        [sys.executable, "-c", DRIVER, f"{FAKES}:{tmp_path}", "reproduce", "--jobs", "2", "--out", str(out)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        env={**os.environ, "STARTED": str(started)},
+        start_new_session=True,
+    )
+    while not started.exists():
+        assert process.poll() is None
+        time.sleep(0.05)
+    os.killpg(process.pid, signal.SIGINT)  # as a terminal does, to all of them
+    told, complaint = process.communicate(timeout=30)
+    assert (process.returncode, told) == (130, "")
+    assert complaint.splitlines()[-1].startswith("suchus: stopped")
+    assert "Traceback" not in complaint
+    assert {path.name for path in out.iterdir()} <= {"wave"}
+    with pytest.raises(ProcessLookupError):
+        os.kill(int(started.read_text()), 0)
