@@ -4,6 +4,7 @@ import os
 from dataclasses import replace
 
 import pytest
+import xarray as xr
 from hypothesis import settings
 
 from suchus.design import Crocodile
@@ -13,6 +14,7 @@ from suchus.robots import ROBOTS
 
 if "PYTEST_XDIST_WORKER" in os.environ:  # there are as many workers as cores
     os.environ.setdefault("SUCHUS_THREADS", "1")
+xr.set_options(use_numbagg=False, use_bottleneck=False)  # as on the command line; numbagg compiles for half a minute
 settings.register_profile("suchus", deadline=None, derandomize=True)
 settings.load_profile("suchus")
 

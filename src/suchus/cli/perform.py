@@ -1,8 +1,11 @@
 """One experiment from question to folder."""
 
 import time
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
+
+import xarray as xr
 
 from suchus.experiment import Experiment, Outcome, Progress
 from suchus.figures import styled
@@ -36,10 +39,20 @@ def perform(experiment: Experiment, name: str, out: Path, progress: Progress, co
     """
     start = time.perf_counter()
     check_place(out / name)
-    outcome = experiment.run(progress)
-    progress("drawing", 1.0)
-    with styled():
-        figures = experiment.draw(outcome)
-    progress("saving", 1.0)
-    folder = save_outcome(outcome, figures, experiment, out / name, command=command)
+    with _plain_sums():
+        outcome = experiment.run(progress)
+        progress("drawing", 1.0)
+        with styled():
+            figures = experiment.draw(outcome)
+        progress("saving", 1.0)
+        folder = save_outcome(outcome, figures, experiment, out / name, command=command)
     return Done(outcome=outcome, folder=folder, seconds=time.perf_counter() - start)
+
+
+def _plain_sums() -> AbstractContextManager[object]:
+    """Let xarray take NumPy's sums and medians, whatever else is installed beside it.
+
+    Those of ``numbagg``, which comes with the extra ``capture``, round otherwise, so that equal runs would not give
+    equal bytes everywhere; and they compile for up to half a minute in every process.
+    """
+    return xr.set_options(use_numbagg=False, use_bottleneck=False)  # type: ignore[no-untyped-call]
