@@ -117,6 +117,7 @@ class Walker:
         self._attitude = Attitude([control.attitude for control in controls], robots, period)
         self._switcher = Switcher([control.switching for control in controls], gaits, period)
         self._lower = np.zeros((n, 4))
+        self._groups = _grouped(self._robots, self._gaits)
         self._last = self._walk(0.0)
 
     def rest(self) -> Float[np.ndarray, "run 19"]:
@@ -135,6 +136,7 @@ class Walker:
             self._script[run] = (time, way, self._last.targets[run].copy())
             self._cycles[run] += np.ceil((time - self._began[run]) / self._gaits[run].period)
             self._gaits[run] = asked
+            self._groups = _grouped(self._robots, self._gaits)
         for run, (begun, way, start) in self._script.items():
             now.targets[run] = way.at(time - begun, start)
             now.phase[run] = self._last.phase[run]
@@ -167,12 +169,9 @@ class Walker:
     def _walk(self, time: float) -> Command:
         """Return the intended posture of every run by its clock; those of runs that change their gait do not count."""
         targets, phases = np.zeros((len(self._robots), 19)), np.zeros((len(self._robots), 4))
-        groups: dict[tuple[Crocodile, Gait], list[int]] = {}
-        for run, pair in enumerate(zip(self._robots, self._gaits, strict=True)):
-            groups.setdefault(pair, []).append(run)
         since = np.maximum(time - self._began, 0.0)
         size = np.where(self._full > 0, np.clip(since / np.maximum(self._full, 1e-9), 0.0, 1.0), 1.0)
-        for (robot, gait), runs in groups.items():
+        for robot, gait, runs in self._groups:
             phase = (since[runs] / gait.period + self._cycles[runs])[:, None] + np.array(gait.limb_phases)
             phases[runs] = phase
             targets[runs] = servo_targets(
@@ -186,3 +185,11 @@ class Walker:
                 clip=True,
             )
         return Command(targets, phases)
+
+
+def _grouped(robots: Sequence[Crocodile], gaits: Sequence[Gait]) -> list[tuple[Crocodile, Gait, np.ndarray]]:
+    """Return who walks alike; to find it at every period takes as long as the walking."""
+    members: dict[tuple[Crocodile, Gait], list[int]] = {}
+    for run, pair in enumerate(zip(robots, gaits, strict=True)):
+        members.setdefault(pair, []).append(run)
+    return [(robot, gait, np.array(runs)) for (robot, gait), runs in members.items()]

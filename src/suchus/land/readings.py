@@ -24,6 +24,19 @@ class Readings:
             name: slice(int(model.sensor(name).adr[0]), int(model.sensor(name).adr[0] + model.sensor(name).dim[0]))
             for name in sensor_names()
         }
+        self._felt = {
+            "servo_position": self._span(servo_names(), "position"),
+            "servo_velocity": self._span(servo_names(), "velocity"),
+            "servo_torque": self._span(servo_names(), "torque"),
+            "orientation": self._at["imu_orientation"],
+            "angular_velocity": self._at["imu_gyroscope"],
+            "acceleration": self._at["imu_accelerometer"],
+        }
+        self._pressed = {
+            "foot_pressure": self._upward(LEGS),
+            "belly_pressure": self._upward(TRUNK_BODIES),
+            "tail_pressure": self._at["tail_force"].start + 2,
+        }
         self._joints = joint_addresses(model, joint_names(runs[0].robot))
         n = len(runs)
         self._sensors = np.full((n, samples, model.nsensordata), np.nan)
@@ -42,18 +55,9 @@ class Readings:
     def sensed(self, time: float) -> Sensed:
         """Return what the robots feel now."""
         read = self._bench.readings
-        return Sensed(
-            time=time,
-            servo_position=self._block(read, servo_names(), "position"),
-            servo_velocity=self._block(read, servo_names(), "velocity"),
-            servo_torque=self._block(read, servo_names(), "torque"),
-            foot_pressure=-self._block(read, LEGS, "force")[:, 2::3],
-            belly_pressure=-self._block(read, TRUNK_BODIES, "force")[:, 2::3],
-            tail_pressure=-read[:, self._at["tail_force"]][:, 2],
-            orientation=read[:, self._at["imu_orientation"]].copy(),
-            angular_velocity=read[:, self._at["imu_gyroscope"]].copy(),
-            acceleration=read[:, self._at["imu_accelerometer"]].copy(),
-        )
+        felt = {name: read[:, where].copy() for name, where in self._felt.items()}
+        pressed = {name: -read[:, where] for name, where in self._pressed.items()}
+        return Sensed(time=time, **felt, **pressed)
 
     def sample(self, run: int, sample: int) -> dict[str, np.ndarray]:
         """Return one stored sample of one run: the variables of ``record.VARIABLES`` without run and time."""
@@ -116,5 +120,13 @@ class Readings:
 
     def _block(self, read: np.ndarray, names: Sequence[str], suffix: str) -> np.ndarray:
         """Return neighbouring sensors as one array."""
-        first, last = self._at[f"{names[0]}_{suffix}"], self._at[f"{names[-1]}_{suffix}"]
-        return np.array(read[..., first.start : last.stop])
+        return np.array(read[..., self._span(names, suffix)])
+
+    def _span(self, names: Sequence[str], suffix: str) -> slice:
+        """Return where neighbouring sensors stand."""
+        return slice(self._at[f"{names[0]}_{suffix}"].start, self._at[f"{names[-1]}_{suffix}"].stop)
+
+    def _upward(self, names: Sequence[str]) -> slice:
+        """Return where the vertical parts of neighbouring forces stand."""
+        all_parts = self._span(names, "force")
+        return slice(all_parts.start + 2, all_parts.stop, 3)
