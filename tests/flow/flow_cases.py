@@ -135,45 +135,41 @@ def turning(cells, *, viscosity=0.05, swing=0.2, periods=1.0, width=3.0):
     return float(torque), float(np.sqrt(np.mean(np.concatenate(squares))))
 
 
-def energy(sim, speed):
-    """Kinetic energy of the water around a rigid body of area pi/4 that moves with ``speed``, and its dissipation."""
-    h, nu = sim.setup.grid.cell, sim.setup.viscosity
-    u, v = (f.astype(float) for f in (sim.water.u, sim.water.v))
-    a, b = PAD, -PAD
-    kinetic = 0.5 * h * h * ((u[a:b, a:b] ** 2).sum() + (v[a:b, a:b] ** 2).sum()) - np.pi / 8 * speed**2
-    stretch = u[a:b, a + 1 : u.shape[1] + b + 1] - u[a:b, a:b], v[a + 1 : v.shape[0] + b + 1, a:b] - v[a:b, a:b]
-    shear = u[a : b + 1, a : b + 1] - u[a - 1 : b, a : b + 1] + v[a : b + 1, a : b + 1] - v[a : b + 1, a - 1 : b]
-    return kinetic, nu * (2 * (stretch[0] ** 2).sum() + 2 * (stretch[1] ** 2).sum() + (shear**2).sum())
+def shaken_in_a_stream(held, ratio, until, *, strouhal):
+    """Go on from the wake of a held cylinder while it is shaken across the stream, with 0.2 D at ``ratio`` times its
+    own shedding frequency.
 
-
-def energy_budget(cells, *, keulegan=1.0, stokes=10.0):
-    """Work of a cylinder that oscillates in a closed box over one period, and what the water made of it [J/m]."""
-    speed = keulegan
-    grid = flow.Grid.covering((-3.0, 3.0), (-3.0, 3.0), cell=1 / cells)
-    motion = flow.Oscillation(frequency=1.0, heave=(keulegan / (2 * np.pi), 0.0), phase=-np.pi / 2)
-    body = flow.Body(shape=flow.Cylinder(diameter=1.0), motion=motion)
-    sim = flow.Simulation(
-        flow.Setup(grid=grid, viscosity=1 / stokes, density=1.0, bodies=(body,), sides=flow.Sides.box())
-    )
-    seen = []
-
-    def watch(now):
-        seen.append((now.time, *energy(now, speed * np.sin(2 * np.pi * now.time))))
-
-    record = sim.run(1.0, watch=watch, progress=False)
-    time, kinetic, lost = np.array(seen).T
-    work = float((record.column("power") * record.step).sum())
-    return work, float(kinetic[-1]), float(np.trapezoid(np.append(0.0, lost), np.append(0.0, time)))
-
-
-def shaken_in_a_stream(cells, ratio, until, *, x=(-4.0, 10.0), y=(-4.0, 4.0), strouhal=0.195):
-    """Cylinder at Re 185 that oscillates across the stream with 0.2 D at ``ratio`` times its own shedding frequency."""
-    grid = flow.Grid.covering(x, y, cell=1 / cells)
-    motion = flow.Oscillation(frequency=ratio * strouhal, heave=(0.0, 0.2))
-    body = flow.Body(shape=flow.Cylinder(diameter=1.0), motion=motion if ratio else flow.Pose(position=(0.0, 0.05)))
-    sim = flow.Simulation(flow.Setup(grid=grid, viscosity=1 / 185, density=1.0, stream=(1.0, 0.0), bodies=(body,)))
+    Returns:
+        mean drag, rms of the lift and angle by which the lift is ahead of the motion [deg], over the last five
+        periods; the drag's largest departure in one of them.
+    """
+    rate, period = 2 * np.pi * ratio * strouhal, 1 / (ratio * strouhal)
+    body = flow.Body(shape=flow.Cylinder(diameter=1.0), motion=flow.Oscillation(frequency=1 / period, heave=(0.0, 0.2)))
+    sim = flow.Simulation(replace(held.setup, bodies=(body,)))
+    for name in ("u", "v", "p"):
+        getattr(sim.water, name)[:] = getattr(held.water, name)
     record = sim.run(until, progress=False)
-    return record, 2 * record.force()
+    time, force = middle(record), 2 * record.force()
+    first = period * (np.floor(until / period) - 5)
+
+    def over(begin, count, values):
+        k = (time >= begin) & (time < begin + count * period)
+        return np.average(values[k], weights=record.step[k])
+
+    drag, lift = over(first, 5, force[:, 0]), force[:, 1] - over(first, 5, force[:, 1])
+    ahead = np.angle(1j * over(first, 5, lift * np.exp(-1j * rate * time)), deg=True)
+    spread = max(abs(over(first + k * period, 1, force[:, 0]) - drag) for k in range(5))
+    return float(drag), float(np.sqrt(over(first, 5, lift**2))), float(ahead), float(spread)
+
+
+def straight_foil(cells, reynolds, until):
+    """Drag coefficient of a NACA 0012 held straight along the stream, chord and speed 1, mean of the last second."""
+    spine = flow.foil(1.0, thickness=0.12, stations=2 * cells + 1).spine(0.0).blunted(1.75 / cells)
+    grid = flow.Grid.covering((-0.75, 2.25), (-0.75, 0.75), cell=1 / cells)
+    body = flow.Body(shape=flow.Midline(spine=lambda time: spine))
+    sim = flow.Simulation(flow.Setup(grid=grid, viscosity=1 / reynolds, density=1.0, stream=(1.0, 0.0), bodies=(body,)))
+    late = sim.run(until, progress=False).after(until - 1.0)
+    return 2 * signals.mean(late.time, late.force()[:, 0])
 
 
 def wavy_foil(cells, speed, cycles):

@@ -115,6 +115,50 @@ def _draw_cavity(rows: list[dict[str, Any]]) -> Figure:
     return figure
 
 
+def _draw_shaken(rows: list[dict[str, Any]]) -> Figure:
+    figure = Figure(figsize=(9.6, 3.0), layout="constrained", dpi=100)
+    panels = figure.subplots(1, 3)
+    curves = _curves(rows, "cylinder Re 185", "shaken")
+    labels = ("mean drag coefficient", "rms lift coefficient", "lift ahead of the motion (degrees)")
+    for axes, name, label in zip(panels, ("cd", "cl", "phase"), labels, strict=True):
+        if curves:
+            axes.plot(curves["ratio"], curves[name], "o-", ms=4)
+            if name != "phase":
+                axes.axhline(curves[f"held_{name}"], color="k", ls=":", lw=1, label="held")
+                axes.legend(frameon=False, fontsize="small")
+        axes.axvspan(1.1, 1.12, color="0.85", zorder=0)
+        axes.set(xlabel="frequency over that of the held one", ylabel=label)
+    panels[0].set_title("cylinder at Re 185, 0.2 D across", fontsize="medium", loc="left")
+    panels[1].set_title("grey: where vortices switch sides", fontsize="medium", loc="left")
+    return figure
+
+
+def _draw_oscillating(rows: list[dict[str, Any]]) -> Figure:
+    figure = Figure(figsize=(8.0, 3.0), layout="constrained", dpi=100)
+    force, energy = figure.subplots(1, 2)
+    curves = _curves(rows, "oscillating cylinder, Re 100, KC 5", "force")
+    if curves:
+        force.plot(curves["phase"], curves["force"], "C0", label="momentum exchanged")
+        force.plot(curves["data_phase"], curves["data_force"], "k.", label="Duetsch et al. 1998")
+        force.legend(frameon=False, fontsize="small", loc="upper left")
+    force.set(
+        xlabel="time over the period", ylabel="force / ($\\rho U^2 D$)", title="oscillating cylinder, Re 100, KC 5"
+    )
+    found = {r["quantity"]: r["curves"] for r in rows if r["case"] == "energy budget" and "share" in r["curves"]}
+    base: np.ndarray = np.zeros(1)
+    for quantity, part in found.items():
+        share, places = np.array(part["share"]), np.arange(len(part["share"]))
+        base = base if base.size == share.size else np.zeros(share.size)
+        energy.bar(places, share, 0.6, bottom=base, label=quantity.removeprefix("share of the work: "))
+        base = base + share
+        energy.set_xticks(places, [str(n) for n in part["cells"]])
+    energy.set(xlabel="cells a diameter", ylabel="share of the body's work", title="where its energy goes")
+    if found:
+        energy.set_xlim(-0.6, len(base) + 0.6)
+        energy.legend(frameon=False, fontsize="small", loc="center right", reverse=True)
+    return figure
+
+
 def _slope(axes: Axes, size: np.ndarray, error: np.ndarray, order: int, label: str) -> None:
     axes.loglog(size, 0.7 * error[-1] * (size[-1] / size) ** order, "k--" if order == 2 else "k:", lw=0.8, label=label)
 
@@ -158,8 +202,8 @@ def _draw_convergence(rows: list[dict[str, Any]]) -> Figure:
     return figure
 
 
-def write_table(folder: Path, docs: Path) -> None:
-    """Write ``validation.md`` to ``docs`` from the rows that the validation kept in ``folder``.
+def write_table(folder: Path, docs: Path, sources: tuple[str, ...] = ()) -> None:
+    """Write ``validation.md`` to ``docs`` from the rows that the validation kept in ``folder``, and the ``sources``.
 
     Raises:
         IncompatibleRecord: there are no rows.
@@ -179,6 +223,8 @@ def write_table(folder: Path, docs: Path) -> None:
             f"| {row['case']} | {row['quantity']} | {row['ours']:.4g} | {shown} | {off} | {row['grid']} "
             f"| {row['domain']} | {row['source']} |"
         )
+    if sources:
+        lines += ["", "## Sources", "", *(f"- {source}" for source in sources)]
     for name in _FIGURES:
         lines += ["", f"![{name}](pictures/flow_{name}.png)"]
     page = docs / "validation.md"
@@ -187,11 +233,14 @@ def write_table(folder: Path, docs: Path) -> None:
     part.replace(page)
 
 
-_FIGURES = {"started": _draw_started, "cavity": _draw_cavity, "convergence": _draw_convergence}
+_FIGURES = {
+    "started": _draw_started, "cavity": _draw_cavity, "shaken": _draw_shaken, "oscillating": _draw_oscillating,
+    "convergence": _draw_convergence,
+}  # fmt: skip
 
 
-def write_validation(folder: Path, docs: Path) -> None:
-    """Write ``validation.md`` and its figures to ``docs`` from the rows that the validation kept in ``folder``.
+def write_validation(folder: Path, docs: Path, sources: tuple[str, ...] = ()) -> None:
+    """Write ``validation.md``, with ``sources``, and its figures to ``docs`` from the rows kept in ``folder``.
 
     Raises:
         IncompatibleRecord: there are no rows.
@@ -201,4 +250,4 @@ def write_validation(folder: Path, docs: Path) -> None:
     pictures.mkdir(parents=True, exist_ok=True)
     for name, draw in _FIGURES.items():
         draw(rows).savefig(pictures / f"flow_{name}.png")
-    write_table(folder, docs)
+    write_table(folder, docs, sources)
