@@ -188,7 +188,6 @@ def test_stokes_oscillating_cylinder():
     off_d = note(case, "Cd", got[-1][0], float(exact[0]), *where, size=sizes, cd=[g[0] for g in got],
                  ci=[g[1] for g in got])  # fmt: skip
     off_i = note(case, "Ci", got[-1][1], float(exact[1]), *where)
-    note(case, "Ci, limit of 16, 32 and 64 cells/D", limit([g[1] for g in got])[0], float(exact[1]), *where)
     order = np.log(np.divide(*(abs(g[1] / exact[1] - 1) for g in (got[0], got[-1])))) / np.log(4)
     note(case, "Ci, order", order, "at least 1", *where)
     assert off_i < 0.01
@@ -354,8 +353,8 @@ def test_dfg_channel_periodic():
 
 
 def test_cylinder_held_and_shaken_in_a_stream():
-    """At Re 185, 0.2 D across the stream: lift and motion change their phase between 1.1 and 1.12 times the frequency
-    of the held cylinder."""
+    """At Re 185, 0.2 D across the stream. Others saw the vortices switch sides between 1.1 and 1.12 times the frequency
+    of the held cylinder; here, at 16 cells a diameter, the lift comes into phase with the motion from 0.9 to 1.1."""
     memory, wide = "Guilmineau and Queutey 2002 (from memory, no bound)", "20 D x 12 D"
     for cells in (24, 16):
         held, record, f = cases.cylinder(cells, 185, x=(-6, 14), y=(-6, 6), until=60.0, kick=1.0)
@@ -370,13 +369,16 @@ def test_cylinder_held_and_shaken_in_a_stream():
         assert off < 0.04
     ratios = (0.8, 0.9, 1.0, 1.1, 1.12, 1.2)
     means = np.array([cases.shaken_in_a_stream(held, ratio, 50.0, strouhal=st) for ratio in ratios])
-    drags, lifts, phases, _ = means.T
-    curves = {"ratio": ratios, "cd": drags, "cl": lifts, "phase": phases, "held_cd": cd, "held_cl": rms}
+    drags, lifts, phases, spreads = means.T
+    curves = {"ratio": ratios, "cd": drags, "cl": lifts, "phase": phases, "held_cd": cd, "held_cl": rms,
+              "spread": spreads}  # fmt: skip
     for k, ratio in enumerate(ratios):
         for quantity, values in (("mean Cd", drags), ("rms Cl", lifts), ("lift ahead of the motion [deg]", phases)):
             note("cylinder Re 185", f"shaken at {ratio} of its frequency: {quantity}", values[k], "-", *grid,
                  "no number found", **curves)  # fmt: skip
     assert drags.min() > 1.2
+    assert abs(phases[0]) > 150
+    assert np.abs(phases[-3:]).max() < 30
 
 
 @pytest.mark.parametrize(("reynolds", "remembered"), [(1000, 0.12), (5000, 0.055)])

@@ -129,7 +129,7 @@ def _draw_shaken(rows: list[dict[str, Any]]) -> Figure:
         axes.axvspan(1.1, 1.12, color="0.85", zorder=0)
         axes.set(xlabel="frequency over that of the held one", ylabel=label)
     panels[0].set_title("cylinder at Re 185, 0.2 D across", fontsize="medium", loc="left")
-    panels[1].set_title("grey: where vortices switch sides", fontsize="medium", loc="left")
+    panels[1].set_title("grey: where others saw vortices switch sides", fontsize="medium", loc="left")
     return figure
 
 
@@ -152,7 +152,7 @@ def _draw_oscillating(rows: list[dict[str, Any]]) -> Figure:
         energy.bar(places, share, 0.6, bottom=base, label=quantity.removeprefix("share of the work: "))
         base = base + share
         energy.set_xticks(places, [str(n) for n in part["cells"]])
-    energy.set(xlabel="cells a diameter", ylabel="share of the body's work", title="where its energy goes")
+    energy.set(xlabel="cells a diameter", ylabel="share of the body's work", title="work of one that shakes in a box")
     if found:
         energy.set_xlim(-0.6, len(base) + 0.6)
         energy.legend(frameon=False, fontsize="small", loc="center right", reverse=True)
