@@ -1,6 +1,7 @@
 """Pictures of flows: vorticity, pressure, time series; and the validation's table and figures."""
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -74,7 +75,8 @@ def _rows(folder: Path) -> list[dict[str, Any]]:
 
 
 def _curves(rows: list[dict[str, Any]], case: str, part: str) -> dict[str, Any] | None:
-    found = [r["curves"] for r in rows if r["case"] == case and part in r["quantity"] and r["curves"]]
+    whole = re.compile(re.escape(part) + r"(?!\d)")  # Re 100 is not Re 1000
+    found = [r["curves"] for r in rows if r["case"] == case and whole.search(r["quantity"]) and r["curves"]]
     return max(found, key=lambda curves: len(next(iter(curves.values())))) if found else None  # the fullest
 
 
