@@ -125,6 +125,8 @@ def _draw_shaken(rows: list[dict[str, Any]]) -> Figure:
     for axes, name, label in zip(panels, ("cd", "cl", "phase"), labels, strict=True):
         if curves:
             axes.plot(curves["ratio"], curves[name], "o-", ms=4)
+            low, high = np.transpose(curves[f"{name}_range"])
+            axes.vlines(curves["ratio"], low, high, color="C0", alpha=0.4, lw=3, label="from period to period")
             if name != "phase":
                 axes.axhline(curves[f"held_{name}"], color="k", ls=":", lw=1, label="held")
                 axes.legend(frameon=False, fontsize="small")
