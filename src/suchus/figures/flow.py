@@ -121,7 +121,7 @@ def _draw_shaken(rows: list[dict[str, Any]]) -> Figure:
     figure = Figure(figsize=(9.6, 3.0), layout="constrained", dpi=100)
     panels = figure.subplots(1, 3)
     curves = _curves(rows, "cylinder Re 185", "shaken")
-    labels = ("mean drag coefficient", "rms lift coefficient", "lift ahead of the motion (degrees)")
+    labels = ("mean drag coefficient", "rms lift coefficient", "lift ahead of the motion (deg)")
     for axes, name, label in zip(panels, ("cd", "cl", "phase"), labels, strict=True):
         if curves:
             axes.plot(curves["ratio"], curves[name], "o-", ms=4)
@@ -129,11 +129,12 @@ def _draw_shaken(rows: list[dict[str, Any]]) -> Figure:
             axes.vlines(curves["ratio"], low, high, color="C0", alpha=0.4, lw=3, label="from period to period")
             if name != "phase":
                 axes.axhline(curves[f"held_{name}"], color="k", ls=":", lw=1, label="held")
+            if name == "cl":
                 axes.legend(frameon=False, fontsize="small")
         axes.axvspan(1.1, 1.12, color="0.85", zorder=0)
         axes.set(xlabel="frequency over that of the held one", ylabel=label)
     panels[0].set_title("cylinder at Re 185, 0.2 D across", fontsize="medium", loc="left")
-    panels[1].set_title("grey: where others saw vortices switch sides", fontsize="medium", loc="left")
+    panels[1].set_title("grey: a jump is published here", fontsize="medium", loc="left")
     return figure
 
 
@@ -190,7 +191,7 @@ def _draw_convergence(rows: list[dict[str, Any]]) -> Figure:
             error = np.abs(value / exact - 1) if exact else value
             forces.loglog(size, error, "o-", ms=4, label=label)
             _slope(forces, size, error, 1, "")
-    forces.set_ylim(bottom=4e-4)
+    forces.set_ylim(bottom=1e-5)
     forces.set(xlabel="cells a diameter", ylabel="relative error", title="force; dotted: order 1")
     for case in sorted({r["case"] for r in rows if r["case"].startswith("free eel")}):
         curves = _curves(rows, case, "mean speed")
