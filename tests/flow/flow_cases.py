@@ -275,3 +275,28 @@ def eel_setup(**changes):
         "follow": "eel",
     }
     return flow.Setup(**{**settings, **changes})
+
+
+def heaving_plate(cells, thick, *, angle=0.3, amplitude=0.1):
+    """A plate of length 1 that moves to and fro across itself in still water, one period at Reynolds number 400 pi.
+
+    Returns:
+        added mass over that of a plate without thickness in potential flow, work done [J/m].
+    """
+    across, rate = np.array([-np.sin(angle), np.cos(angle)]), 2 * np.pi
+
+    def motion(time):
+        place, speed = -amplitude * np.cos(rate * time), amplitude * rate * np.sin(rate * time)
+        return flow.Pose(position=tuple(place * across), angle=angle, velocity=tuple(speed * across))
+
+    grid = flow.Grid.covering((-0.8, 0.8), (-0.8, 0.8), cell=1 / cells)
+    body = flow.Body(shape=flow.Plate(length=1.0, thick=thick), motion=motion)
+    sim = flow.Simulation(flow.Setup(grid=grid, viscosity=1 / 2000, density=1.0, bodies=(body,), coarse=True))
+    record = sim.run(1.0, progress=False).after(0.05)
+    phase = rate * middle(record)
+    pushed = np.pi / 4 * amplitude * rate**2 * np.cos(phase)
+    dragged = 0.5 * (amplitude * rate) ** 2 * np.sin(phase) * np.abs(np.sin(phase))
+    weight = np.sqrt(record.step)
+    terms = -np.stack([pushed, dragged], axis=1) * weight[:, None]
+    fitted = np.linalg.lstsq(terms, (record.force() @ across) * weight, rcond=None)[0]
+    return float(fitted[0]), float(record.column("power") @ record.step)

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from suchus.flow import multigrid, poisson, stencil
 from suchus.flow.advect import limited_quick, median
 from suchus.flow.compiled import PAD
-from suchus.flow.immerse import moment0, moment1, wall_offset
+from suchus.flow.immerse import close, moment0, moment1, wall_offset
 
 number = st.floats(-1e3, 1e3)
 
@@ -84,3 +84,32 @@ def test_the_pressure_solver_solves(thin):
     for j in range(ny):  # the answer is checked with the operator, not with the solver's own residual
         stencil.apply_row(out, x, cx, cy, layout[0], j + PAD)
         assert np.abs(out - wanted[j]).max() < 1e-7
+
+
+@given(st.lists(st.floats(0.1, 0.95), min_size=3, max_size=12), st.floats(0, 6))
+def test_no_path_from_cell_to_cell_crosses_a_closed_line(radii, turn):
+    """What is wet from the middle of a closed line stays inside it, however it lies on the grid."""
+    n, h = 24, 1 / 10
+    angle = turn + np.linspace(0, 2 * np.pi, len(radii) + 1)
+    r = np.array([*radii, radii[0]])
+    x, y = r * np.cos(angle) + 0.0137, r * np.sin(angle) + 0.0071  # or it may pass right through centres
+    centre = (np.arange(n) - n / 2 + 0.5) * h
+    across, along = np.ones((n, n + 1)), np.ones((n + 1, n))
+    close(across, x, y, centre[0] - h, centre[0], h)
+    close(along.T, y, x, centre[0] - h, centre[0], h)
+    wet = np.hypot(*np.meshgrid(centre, centre)) > 1.0
+    for _ in range(n * n):
+        more = wet.copy()
+        more[:, 1:] |= wet[:, :-1] & (across[:, 1:-1] == 1)
+        more[:, :-1] |= wet[:, 1:] & (across[:, 1:-1] == 1)
+        more[1:] |= wet[:-1] & (along[1:-1] == 1)
+        more[:-1] |= wet[1:] & (along[1:-1] == 1)
+        if (more == wet).all():
+            break
+        wet = more
+    inside = np.zeros((n, n), bool)
+    for ax, ay, bx, by in zip(x[:-1], y[:-1], x[1:], y[1:], strict=True):
+        with np.errstate(divide="ignore", invalid="ignore"):
+            cut = ax + (centre - ay) * (bx - ax) / (by - ay)
+        inside ^= (((ay <= centre) != (by <= centre))[:, None]) & (centre[None, :] < cut[:, None])
+    assert not (wet & inside).any()

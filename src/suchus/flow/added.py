@@ -26,7 +26,7 @@ def added_mass(water: Water, markers: Markers, about: tuple[float, float], densi
     shape = (j1 + 1 - j0, i1 + 1 - i0)
     arm_u, arm_v = np.broadcast_to(-y_mid[:, None], shape), np.broadcast_to(x_mid[None, :], shape)
     modes = ((np.ones(shape), np.zeros(shape)), (np.zeros(shape), np.ones(shape)), (arm_u, arm_v))
-    share_u, share_v = ((1 - m[here].astype(np.float64)) * mine for m, mine in zip(water.mu0, own, strict=True))
+    share_u, share_v = ((1 - m[here].astype(np.float64)) * mine for m, mine in zip(water.passage, own, strict=True))
     rx, ry, skin = markers.x - about[0], markers.y - about[1], water.offset * h * markers.length
     rims = np.array([[skin, 0 * skin, -ry * skin], [0 * skin, skin, rx * skin]])  # component, mode, marker
     rim = np.array([*rims.sum(axis=2), (rx * rims[1] - ry * rims[0]).sum(axis=1)])

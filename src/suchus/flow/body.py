@@ -8,7 +8,7 @@ from suchus.errors import InvalidDesign
 from suchus.flow.compiled import PAD, Window
 from suchus.flow.free import FreeBody
 from suchus.flow.grid import Grid
-from suchus.flow.immerse import REACH, THINNEST
+from suchus.flow.immerse import REACH, THINNEST, THINNEST_SHEET
 from suchus.flow.pose import Motion, Pose
 from suchus.flow.shape import Field, Shape
 
@@ -54,10 +54,10 @@ def window_of(body: AnyBody, pose: Pose, grid: Grid, time: float) -> Window:
             f"outside the domain x = {ox:.4g} to {ox + wide:.4g} m, y = {oy:.4g} to {oy + high:.4g} m "
             f"(less {margin:.2g} m on each side); enlarge the grid, or let the frame follow the body."
         )
-    h = grid.cell
+    h, (nx, ny) = grid.cell, grid.cells
     return (
-        int((y0 - margin - oy) / h) + PAD, int((y1 + margin - oy) / h) + PAD + 2,
-        int((x0 - margin - ox) / h) + PAD, int((x1 + margin - ox) / h) + PAD + 2,
+        int((y0 - margin - oy) / h) + PAD, min(int((y1 + margin - oy) / h) + 2, ny) + PAD,
+        int((x0 - margin - ox) / h) + PAD, min(int((x1 + margin - ox) / h) + 2, nx) + PAD,
     )  # fmt: skip
 
 
@@ -88,16 +88,17 @@ def thin_share(body: AnyBody, grid: Grid, time: float) -> float:
     """Return the share of the body's length that is thinner than ``THINNEST`` cells.
 
     Raises:
-        InvalidDesign: all of the body is.
+        InvalidDesign: the body is too thin everywhere.
     """
     station, thickness = body.shape.thickness(time)
     least, most = THINNEST * grid.cell, float(thickness.max())
-    if most < least:
+    needed = THINNEST if body.shape.sheet(time, Pose()) is None else THINNEST_SHEET
+    if most < needed * grid.cell:
         raise InvalidDesign(
-            f"{body.name} is {most:.4g} m thick at most, {most / grid.cell:.2g} cells of {grid.cell:.4g} m; the water "
-            f"leaks through less than {THINNEST:.2f} cells. Take cells of at most {most / THINNEST:.3g} m."
+            f"{body.name} is {most:.4g} m thick at most, {most / grid.cell:.2g} cells of {grid.cell:.4g} m; at least "
+            f"{needed:.2f} cells are needed. Take cells of at most {most / needed:.3g} m."
         )
     if station.size == 1:
-        return 0.0
+        return float(most < least)
     thin = 0.5 * ((thickness[1:] < least).astype(float) + (thickness[:-1] < least).astype(float))
     return float((thin * np.diff(station)).sum() / (station[-1] - station[0]))

@@ -12,7 +12,7 @@ import numpy as np
 from suchus.errors import UnreadableFile, Unwritable
 from suchus.flow.setup import Setup
 
-VERSION = 3
+VERSION = 4
 """Layout of the file; rises with every change of it."""
 
 State = dict[str, np.ndarray]

@@ -25,7 +25,7 @@ CONTENTS = SUMS + 3
 
 
 @compiled
-def collect(sums, out, blend, raw, mean, mu0, mu1_x, mu1_y, p, owner, along, window, dt, keep):
+def collect(sums, out, blend, raw, mean, passage, mu1_x, mu1_y, p, owner, along, window, dt, keep):
     """Add to ``sums`` (body, 4) what the immersion gave to one component of the velocity in one stage.
 
     ``mean`` is the body's velocity in the window, mean of the step's start and end: with that of the end alone the
@@ -34,7 +34,7 @@ def collect(sums, out, blend, raw, mean, mu0, mu1_x, mu1_y, p, owner, along, win
     """
     for j in range(window[0] + 1, window[1] - 1):
         for i in range(window[2] + 1, window[3] - 1):
-            if mu0[j, i] >= 1 and mu1_x[j, i] == 0 and mu1_y[j, i] == 0:
+            if passage[j, i] >= 1 and mu1_x[j, i] == 0 and mu1_y[j, i] == 0:
                 continue
             rise = np.float64(p[j, i]) - (p[j, i - 1] if along == 0 else p[j - 1, i])
             moved = (np.float64(out[j, i]) - keep * np.float64(blend[j, i])) / (1.0 - keep)

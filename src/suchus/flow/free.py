@@ -49,11 +49,8 @@ class FreeBody:
 
 _CHANGING = ("place", "rate", "push", "load", "added", "momentum", "owed", "span", "steps")
 
-SETTLED = 4
-"""Steps after which the jolt of the start is over [-]."""
-
-REPAID = 0.25
-"""Share of the momentum still owed that a step repays [-]."""
+REPAID = 0.5
+"""Share of the momentum still owed that a step repays [-]; all at once rings."""
 
 
 @dataclass(slots=True)
@@ -120,14 +117,14 @@ class Swimmer:
         now, then = shape.mass(time), shape.mass(time + dt)
         inertia = np.diag([density * then.area, density * then.area, density * then.moment])
         momentum = density * np.array([now.area, now.area, now.moment]) * self.rate
-        steady = self.load + self.added @ self.push
-        guess = steady
-        if self.steps >= SETTLED:
+        guess = self.load + self.added @ self.push
+        if self.steps:
+            self.owed = self.owed + self.span * self.load - (momentum - self.momentum)
+        if self.steps > 1:  # the second step itself repays the jolt of the start
             # Extrapolating instead feeds every ripple of the force back into the motion. The last step's force comes
             # a step late; what the body therefore did not get, it gets little by little. Without that an eel, whose
             # added mass aside is ten times its own, sways several times too much.
-            self.owed = self.owed + self.span * self.load - (momentum - self.momentum)
-            guess = steady + REPAID * self.owed / dt
+            guess = guess + REPAID * self.owed / dt
         self.momentum, self.span = momentum, dt
         guess = guess - np.array([0, 0, density * (then.moment - now.moment) / dt * self.rate[2]])
         go = np.array(self.body.free)

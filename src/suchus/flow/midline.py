@@ -71,8 +71,8 @@ class Spine:
     def blunted(self, least: float) -> "Spine":
         """Return the midline with half-widths of at least ``least`` [m] and round ends.
 
-        A tail that tapers to nothing is thinner than any grid; the water leaks through it and its force is noisy.
-        The solver never thickens a body by itself: this does, where it is asked to. 1.75 cells hold the water back.
+        A tail that tapers to nothing is thinner than any grid, and its force is noisy. The solver never thickens a
+        body by itself: this does, where it is asked to. With 1.75 cells the kernel fits between the two surfaces.
         """
         inward = np.minimum(self.arc, self.arc[-1] - self.arc)
         cap = np.sqrt(np.maximum(least**2 - np.maximum(least - inward, 0.0) ** 2, 0.0))
@@ -137,6 +137,11 @@ class Midline(Shape):
         return (
             float(outline[0].min()), float(outline[0].max()), float(outline[1].min()), float(outline[1].max())
         )  # fmt: skip
+
+    def sheet(self, time: float, pose: Pose) -> np.ndarray:
+        """Return the midline."""
+        placed = self.spine(time).placed(pose)
+        return np.stack([placed.x, placed.y])
 
     def mass(self, time: float) -> Mass:
         """Return area, centre and moments, section by section."""

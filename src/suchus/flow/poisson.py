@@ -20,6 +20,12 @@ from suchus.flow.stencil import apply_row, seal_ends, seal_row
 STALLED = 3
 """Cycles without progress after which rounding, not the residual, is what is left [-]."""
 
+NEARLY = 10.0
+"""Residual over its limit below which that many cycles count [-]; farther off, a body hinders the cycles, and ..."""
+
+PATIENCE = 15
+"""... so many may pass [-]."""
+
 
 @compiled
 def _dot(a, b):
@@ -146,7 +152,7 @@ def solve(x, d, q, store, layout, periodic, sums, mean_limit, max_limit, most):
         worst = max(mean / mean_limit, largest / max_limit)
         since = 0 if worst < 0.8 * best else since + 1
         best = min(best, worst)
-        if since == STALLED:
+        if since >= (STALLED if worst <= NEARLY else PATIENCE):
             break
     seal_ends(x, periodic[1])
     return k + 1, mean, largest

@@ -87,7 +87,7 @@ def _fastest(u, u_next, v, v_next):
 
 @threaded
 def correct(u, v, p, x, cx, cy, window, gain):
-    """Subtract ``mu0 grad x`` from the velocity and add ``gain x`` to the pressure.
+    """Subtract ``passage grad x`` from the velocity and add ``gain x`` to the pressure.
 
     Values on the domain's edges are corrected with a mirrored ``x``, that is, left as they are.
     """

@@ -85,6 +85,13 @@ class Shape(ABC):
     def mass(self, time: float) -> Mass:
         """Return area, centre and moments in the body's own frame."""
 
+    def sheet(self, time: float, pose: Pose) -> np.ndarray | None:
+        """Return the line in the middle of a thin body, which no water passes, shape (2, point) [m].
+
+        None for a body that is never thin.
+        """
+        return None
+
     @property
     def rigid(self) -> bool:
         """Whether the shape never changes."""
@@ -208,6 +215,11 @@ class Ellipse(Solid):
         turn = np.interp(np.linspace(0, arc[-1], count, endpoint=False), arc, fine)
         return self.length / 2 * np.cos(turn), self.width / 2 * np.sin(turn)
 
+    def sheet(self, time: float, pose: Pose) -> np.ndarray:
+        """Return the longer axis."""
+        tip = (self.length / 2, 0.0) if self.length > self.width else (0.0, self.width / 2)
+        return np.stack(pose.to_world(*np.outer(tip, [-1.0, 1.0])))
+
     def thickness(self, time: float) -> tuple[np.ndarray, np.ndarray]:
         """Return the smaller axis."""
         return np.zeros(1), np.full(1, min(self.length, self.width))
@@ -246,6 +258,10 @@ class Plate(Solid):
         angle = np.minimum(lap / r, np.pi) - np.pi / 2
         along = np.maximum(lap - turn, 0.0)
         return second * (half + r * np.cos(angle) - along), second * r * np.sin(angle)
+
+    def sheet(self, time: float, pose: Pose) -> np.ndarray:
+        """Return the line from end to end."""
+        return np.stack(pose.to_world(self.length / 2 * np.array([-1.0, 1.0]), np.zeros(2)))
 
     def thickness(self, time: float) -> tuple[np.ndarray, np.ndarray]:
         """Return the thickness."""

@@ -47,7 +47,8 @@ class Simulation(Fields):
         setup: what is simulated.
         time: how far it has come [s].
         water: velocity and pressure.
-        thin: per body, the share of its length that is too thin for the grid to hold the water back.
+        thin: per body, the share of its length that is thinner than the kernel: no water passes it, but its force is
+            noisy.
     """
 
     def __init__(self, setup: Setup, *, thread_count: int | None = None) -> None:

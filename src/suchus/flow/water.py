@@ -14,7 +14,7 @@ from suchus.flow.border import Border
 from suchus.flow.compiled import PAD, Window
 from suchus.flow.exchange import CONTENTS, SUMS, collect, contents, swelling
 from suchus.flow.grid import Grid
-from suchus.flow.immerse import fill, fill_source, immerse
+from suchus.flow.immerse import close, fill, fill_source, immerse
 from suchus.flow.pose import Pose
 from suchus.flow.project import correct, fastest, level_out, residual
 from suchus.flow.sides import Sides
@@ -44,6 +44,7 @@ class Water:
     Attributes:
         u, v: velocity on the left and lower faces [m/s].
         p: pressure over density at the cell centres [m^2/s^2].
+        mu0: share of the fluid on the left and lower faces [-].
         window: padded cell indices around the bodies.
         owners: on the window's u and v points, which body is nearest.
         given: what the immersion gave to the water in the last step, per body; see ``exchange.collect``.
@@ -61,6 +62,7 @@ class Water:
         # Body: its velocity, kernel moments, own divergence; and the fluid's bare update in its window
         self.bu, self.bv, self._mu1xx, self._mu1xy, self._mu1yx, self._mu1yy = _fields(6, shape, dtype)
         self._source, self._raw_u, self._raw_v = _fields(3, shape, dtype)
+        self.mu0 = np.ones(shape, dtype), np.ones(shape, dtype)
         # Pressure solver
         self._x, self._d, self._q = _fields(3, shape, dtype)
         self._layout = poisson.levels(ny, nx)
@@ -87,14 +89,14 @@ class Water:
         return multigrid.level(self._store, self._layout, kind, 0)
 
     @property
-    def mu0(self) -> tuple[np.ndarray, np.ndarray]:
-        """Share of the fluid on the left and lower faces [-]."""
+    def passage(self) -> tuple[np.ndarray, np.ndarray]:
+        """Share of the pressure's gradient that acts on the left and lower faces [-]."""
         return self._part(multigrid.CX), self._part(multigrid.CY)
 
     @property
     def arrays(self) -> float:
         """Memory of all fields in arrays of the padded grid [-]."""
-        own = [a for a in vars(self).values() if isinstance(a, np.ndarray) and a.dtype == self.dtype]
+        own = [a for a in (*vars(self).values(), *self.mu0) if isinstance(a, np.ndarray) and a.dtype == self.dtype]
         return sum(a.size for a in own) / self.u.size
 
     def place(self, bodies: list[AnyBody], poses: list[Pose], time: float) -> None:
@@ -120,8 +122,8 @@ class Water:
     def _clear(self, window: Window) -> None:
         j0, j1, i0, i1 = window
         here = np.s_[j0 : j1 + 1, i0 : i1 + 1]
-        for mu0 in self.mu0:
-            mu0[here] = 1
+        for share in (*self.mu0, *self.passage):
+            share[here] = 1
         for a in (self.bu, self.bv, self._mu1xx, self._mu1xy, self._mu1yx, self._mu1yy, self._source):
             a[here] = 0
 
@@ -139,6 +141,11 @@ class Water:
             near, thickness = f.distance / h - self.offset, f.thickness / h + 2 * self.offset
             fill(near, f.normal_x, f.normal_y, thickness, mu0[here], mu1_x[here], mu1_y[here])
             (self.bu, self.bv)[k][here] = (f.velocity_x, f.velocity_y)[k]
+            self.passage[k][here] = mu0[here]
+        for line in [b.shape.sheet(time, p) for b, p in zip(bodies, poses, strict=True)]:
+            if line is not None:
+                close(self.passage[0][here], *line, x_mid[0] - h, y_mid[0], h)
+                close(self.passage[1][here].T, *line[::-1], y_mid[0] - h, x_mid[0], h)
         fill_source(self._source, self.bu, self.bv, mu0_u, mu0_v, np.array(self.window))
 
     def fastest(self) -> float:
@@ -195,13 +202,11 @@ class Water:
             window, self.sides.repeats, dt, self.nu, push, keep,
         )  # fmt: skip
         if window[1] > window[0]:
-            mu0_u, mu0_v = self.mu0
-            immerse(
-                out[0], blend[0], self._raw_u, self.bu, mu0_u, self._mu1xx, self._mu1xy, self.p, 0, window, dt, keep
-            )
-            immerse(
-                out[1], blend[1], self._raw_v, self.bv, mu0_v, self._mu1yx, self._mu1yy, self.p, 1, window, dt, keep
-            )
+            kernels = (self.bu, self._mu1xx, self._mu1xy), (self.bv, self._mu1yx, self._mu1yy)
+            for k, (raw, (b, mu1_x, mu1_y)) in enumerate(zip((self._raw_u, self._raw_v), kernels, strict=True)):
+                immerse(
+                    out[k], blend[k], raw, b, self.mu0[k], self.passage[k], mu1_x, mu1_y, self.p, k, window, dt, keep
+                )
         self.border.fill(*out)
 
     def _collect(self, out, blend, dt, keep) -> None:  # type: ignore[no-untyped-def]
@@ -209,15 +214,17 @@ class Water:
         window = np.array(self.window)
         if window[1] <= window[0]:
             return
-        mu0_u, mu0_v = self.mu0
         dt, keep = float(dt), float(keep)
         sums = np.zeros_like(self.given)
-        for k, (raw, mu0, mu1_x, mu1_y) in enumerate(
-            ((self._raw_u, mu0_u, self._mu1xx, self._mu1xy), (self._raw_v, mu0_v, self._mu1yx, self._mu1yy))
+        for k, (raw, passage, mu1_x, mu1_y) in enumerate(
+            (
+                (self._raw_u, self.passage[0], self._mu1xx, self._mu1xy),
+                (self._raw_v, self.passage[1], self._mu1yx, self._mu1yy),
+            )
         ):
             collect(
-                sums, out[k], blend[k], raw, self._mean[k], mu0, mu1_x, mu1_y, self.p, self.owners[k], k, window, dt,
-                keep,
+                sums, out[k], blend[k], raw, self._mean[k], passage, mu1_x, mu1_y, self.p, self.owners[k], k, window,
+                dt, keep,
             )  # fmt: skip
         swelling(sums, self.p, self._source, self.owners[0], window, dt)
         self.given += 0.5 * sums
@@ -245,7 +252,7 @@ class Water:
                 level_out(r, self.dtype(mean), self.sides.repeats)
             went = self._solve(limits)
             gain = self.dtype(1 / dt)
-            correct(*velocity, self.p, self._x, *self.mu0, window, gain)
+            correct(*velocity, self.p, self._x, *self.passage, window, gain)
             for seal, axis in ((self.p, 0), (self.p.T, 1)):
                 seal_ends(seal, self.sides.repeats[1 - axis])
             self.border.fill(*velocity)
@@ -281,9 +288,9 @@ class Water:
             return []
         j0, j1, i0, i1 = self.window
         here, x = np.s_[j0 : j1 + 1, i0 : i1 + 1], self._x
-        for work, mu0, given, axis in ((self._raw_u, self.mu0[0], u, 1), (self._raw_v, self.mu0[1], v, 0)):
+        for work, passage, given, axis in ((self._raw_u, self.passage[0], u, 1), (self._raw_v, self.passage[1], v, 0)):
             work[(np.s_[:], np.s_[1:])[:: axis * 2 - 1]] = -np.diff(x, axis=axis)
-            work[here] = given + mu0[here] * work[here]
+            work[here] = given + passage[here] * work[here]
         sides = self.border.water.inward(self._raw_u, self._raw_v, self.window, [])
         level = sum(float(s.sum()) for s in sides) / sum(s.size for s in sides)
         return [s - level for s in sides]
