@@ -62,7 +62,7 @@ class Water:
         # Body: its velocity, kernel moments, own divergence; and the fluid's bare update in its window
         self.bu, self.bv, self._mu1xx, self._mu1xy, self._mu1yx, self._mu1yy = _fields(6, shape, dtype)
         self._source, self._raw_u, self._raw_v = _fields(3, shape, dtype)
-        self.mu0 = np.ones(shape, dtype), np.ones(shape, dtype)
+        self.mu0: tuple[np.ndarray, np.ndarray] = np.ones(shape, dtype), np.ones(shape, dtype)
         # Pressure solver
         self._x, self._d, self._q = _fields(3, shape, dtype)
         self._layout = poisson.levels(ny, nx)
@@ -142,10 +142,10 @@ class Water:
             fill(near, f.normal_x, f.normal_y, thickness, mu0[here], mu1_x[here], mu1_y[here])
             (self.bu, self.bv)[k][here] = (f.velocity_x, f.velocity_y)[k]
             self.passage[k][here] = mu0[here]
-        for line in [b.shape.sheet(time, p) for b, p in zip(bodies, poses, strict=True)]:
-            if line is not None:
-                close(self.passage[0][here], *line, x_mid[0] - h, y_mid[0], h)
-                close(self.passage[1][here].T, *line[::-1], y_mid[0] - h, x_mid[0], h)
+        for sheet in [b.shape.sheet(time, p) for b, p in zip(bodies, poses, strict=True)]:
+            if sheet is not None:
+                close(self.passage[0][here], sheet[0], sheet[1], x_mid[0] - h, y_mid[0], h)
+                close(self.passage[1][here].T, sheet[1], sheet[0], y_mid[0] - h, x_mid[0], h)
         fill_source(self._source, self.bu, self.bv, mu0_u, mu0_v, np.array(self.window))
 
     def fastest(self) -> float:
