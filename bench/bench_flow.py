@@ -1,12 +1,32 @@
-"""Speed of the flow solver, beside what this machine's memory gives in the same run. Ratios travel, times do not."""
+"""Speed of the flow solver, beside what this machine's memory and threads give in the same run.
+
+Ratios travel, times do not. ``--pieces`` says where the time goes, piece by piece.
+"""
 
 import argparse
+from collections import defaultdict
 from time import perf_counter
 
 import numba
 import numpy as np
 
 from suchus import flow
+from suchus.flow import border, log, midline, multigrid, openwater, patch, poisson, simulation, water
+
+PIECES = (
+    (water, "advance immerse collect swelling contents mean_residual residual correct fastest fill fill_source"),
+    (water.Water, "step place _measure _clear"),
+    (poisson, "solve"),
+    (multigrid, "coarsen spread"),
+    (midline, "paint sections"),
+    (midline.Midline, "markers"),
+    (openwater, "gather induce"),
+    (border.Border, "prepare settle fill"),
+    (log.Log, "reactions"),
+    (simulation, "sample"),
+    (simulation.Simulation, "advance _note"),
+)
+"""What ``--pieces`` tells apart: modules and classes, and names in them; a piece's time is without those inside it."""
 
 
 @numba.njit(fastmath=True)
@@ -19,6 +39,22 @@ def triad(a, b, c):
 def triad_threads(a, b, c):
     for k in numba.prange(a.size):
         a[k] = b[k] + np.float32(2) * c[k]
+
+
+@numba.njit(fastmath=True)
+def spin(x, rounds):
+    """Arithmetic that needs no memory: 512 numbers in the nearest cache."""
+    for _ in range(rounds):
+        for k in range(x.size):
+            y = x[k] * np.float32(0.999) + np.float32(0.001)
+            y = y * y * np.float32(0.5) + np.float32(0.2)
+            x[k] = y * y * np.float32(0.3) + np.float32(0.1)
+
+
+@numba.njit(fastmath=True, parallel=True)
+def spin_threads(x, rounds):
+    for t in numba.prange(x.shape[0]):
+        spin(x[t], rounds)
 
 
 def best(function, times=5):
@@ -39,6 +75,15 @@ def bandwidth(size, threads):
     return 12 * size / best(lambda: run(a, b, c), 15) / 1e9
 
 
+def gain_of_two():
+    """How much faster two threads are than one at arithmetic alone: what the machine's cores are worth."""
+    x, rounds = np.ones((2, 512), np.float32), 200_000
+    numba.set_num_threads(2)
+    both = best(lambda: spin_threads(x, rounds))
+    numba.set_num_threads(1)
+    return 2 * best(lambda: spin(x[0], rounds)) / both
+
+
 def eel(cells, threads):
     """A held eel in a stream, domain 4 x 2 lengths, default settings."""
     grid = flow.Grid(cells=(4 * cells, 2 * cells), cell=1 / cells, origin=(-1.0, -1.0))
@@ -50,35 +95,110 @@ def eel(cells, threads):
     return sim
 
 
+def tell_pieces(cells, threads, steps):
+    """Print what each piece of a step takes, the faster half of its calls counting, and those of a pressure solve."""
+    calls, inside, kept = defaultdict(list), [], []
+
+    def watched(function, label):
+        def call(*given, **named):
+            inside.append(0.0)
+            start = perf_counter()
+            answer = function(*given, **named)
+            spent = perf_counter() - start
+            calls[label].append(spent - inside.pop())
+            if inside:
+                inside[-1] += spent
+            return answer
+
+        return call
+
+    sim = eel(cells, threads)
+    for place, names in PIECES:
+        for name in names.split():
+            kept.append((place, name, getattr(place, name)))
+            setattr(place, name, watched(getattr(place, name), f"{place.__name__.split('.')[-1]}.{name}"))
+    try:
+        for _ in range(steps):
+            sim.advance()
+    finally:
+        for place, name, function in kept:
+            setattr(place, name, function)
+    nx, ny = sim.setup.grid.cells
+    per_cell = 1e9 / (nx * ny)
+    print(f"{nx} x {ny}, {threads} thread(s), ns per cell and step; calls a step")
+    for label, spent in sorted(calls.items(), key=lambda item: -sum(item[1])):
+        half = np.mean(np.sort(spent)[: max(len(spent) // 2, 1)])
+        print(f"  {per_cell * half * len(spent) / steps:7.2f}  {label} ({len(spent) / steps:.0f})")
+    tell_solve(sim.water, per_cell)
+
+
+def tell_solve(w, per_cell):
+    """Print what the pieces of one iteration of the pressure solver take."""
+    store, layout, room, patches, sides = w._store, w._layout, w._room, w._patches, w.sides.repeats
+    print("one iteration of the pressure solver, ns per cell of the finest level; best of 20")
+
+    def tell(label, function):
+        print(f"  {per_cell * best(function, 20):7.2f}  {label}")
+
+    for k in range(layout.shape[0]):
+        x, size = multigrid.level(store, layout, multigrid.X, k), tuple(int(n) for n in layout[k, 2:0:-1])
+        below, own = layout[k:].copy(), patches[k:].copy()
+        tell(f"cycle from level {k}, {size}", lambda: multigrid.cycle(x, store, below, room, own, sides))  # noqa: B023
+    fine = [multigrid.level(store, layout, kind, 0) for kind in range(5)]
+    x, b, cx, cy, dinv = fine
+    coarse_b, coarse_x = (multigrid.level(store, layout, kind, 1) for kind in (multigrid.B, multigrid.X))
+    zero, rect, place = w.dtype(0), patches[0], layout[0]
+    tell("down, finest level", lambda: multigrid._down_threaded(coarse_b, b, cx, cy, place, room, rect, sides))
+    tell("up, finest level", lambda: multigrid._up_threaded(x, b, coarse_x, cx, cy, dinv, place, room, rect, sides))
+    tell("patch, finest level, before", lambda: patch.start(room, rect, b))
+    tell("patch, finest level, after", lambda: patch.end(room, rect, x))
+    tell("dot products", lambda: poisson._measure(x, b, w._d, cx, cy, place, w._sums))
+    tell("first step", lambda: poisson._first_step(b, x, cx, cy, place, zero, sides[0], w._sums))
+    tell("second step", lambda: poisson._step(b, x, w._d, cx, cy, place, zero, zero, sides[0], w._sums))
+
+
 def main():
     options = argparse.ArgumentParser(description=__doc__)
     options.add_argument("--steps", type=int, default=30, help="steps per batch; the fastest of 5 batches counts")
-    steps = options.parse_args().steps
+    options.add_argument("--pieces", action="store_true", help="say where the time goes instead")
+    chosen = options.parse_args()
+    steps = chosen.steps
     many = min(2, numba.config.NUMBA_NUM_THREADS)
     for threads in sorted({1, many}):
         far, near = bandwidth(16_000_000, threads), bandwidth(500_000, threads)
         print(f"memory, {threads} thread(s): {far:.1f} GB/s far, {near:.1f} GB/s near")
+    if many > 1:
+        print(f"arithmetic alone: two threads over one {gain_of_two():.2f}")
     for cells in (128, 256):
-        rates = {}
-        for threads in sorted({1, many}):
-            sim = eel(cells, threads)
-            count = sim.setup.grid.cells[0] * sim.setup.grid.cells[1]
+        if chosen.pieces:
+            for threads in sorted({1, many}):
+                tell_pieces(cells, threads, steps)
+        else:
+            tell_speed(cells, steps, many)
 
-            def batch(sim=sim):
-                for _ in range(steps):
-                    sim.advance()
 
-            spent = best(batch) / steps
-            rates[threads] = count / spent / 1e6
-            cycle = spent / sim.record.step[-steps:].mean()
-            solves = sim.record.cycles[-steps:].mean()
-            print(
-                f"{4 * cells} x {2 * cells}, moving eel, single precision, tolerance {sim.setup.tolerance:g}, "
-                f"{threads} thread(s): {rates[threads]:.1f} M cells/s, {1e3 * spent:.1f} ms a step, "
-                f"{cycle:.2f} s a swim cycle, {solves:.1f} multigrid cycles a solve, {sim.water.arrays:.1f} arrays"
-            )
-        if many > 1:
-            print(f"{4 * cells} x {2 * cells}: two threads over one {rates[many] / rates[1]:.2f}")
+def tell_speed(cells, steps, many):
+    """Print cells a second on one thread and on ``many``."""
+    rates = {}
+    for threads in sorted({1, many}):
+        sim = eel(cells, threads)
+        count = sim.setup.grid.cells[0] * sim.setup.grid.cells[1]
+
+        def batch(sim=sim):
+            for _ in range(steps):
+                sim.advance()
+
+        spent = best(batch) / steps
+        rates[threads] = count / spent / 1e6
+        cycle = spent / sim.record.step[-steps:].mean()
+        solves = sim.record.cycles[-steps:].mean()
+        print(
+            f"{4 * cells} x {2 * cells}, moving eel, single precision, tolerance {sim.setup.tolerance:g}, "
+            f"{threads} thread(s): {rates[threads]:.1f} M cells/s, {1e3 * spent:.1f} ms a step, "
+            f"{cycle:.2f} s a swim cycle, {solves:.1f} multigrid cycles a solve, {sim.water.arrays:.1f} arrays"
+        )
+    if many > 1:
+        print(f"{4 * cells} x {2 * cells}: two threads over one {rates[many] / rates[1]:.2f}")
 
 
 if __name__ == "__main__":

@@ -13,7 +13,7 @@ universal limiter).
 import numpy as np
 from numba import prange
 
-from suchus.flow.compiled import BLOCK, PAD, compiled, threaded
+from suchus.flow.compiled import BLOCK, PAD, UNIT, compiled, threaded, unsigned
 
 
 @compiled
@@ -35,118 +35,54 @@ def limited_quick(upstream, centre, downstream):
 
 
 @compiled
-def flux_row(flux, speed_a, speed_b, far_below, below, above, far_above, viscosity):
-    """Write the flux through a row of faces that lie between ``below`` and ``above``.
+def _fluxes(flux, o, w, side, row, start, stop, dj, di, ej, ei, viscosity):
+    """Write the fluxes of ``w`` through the faces before the nodes of a row to row ``o`` of ``flux``.
 
-    The face moves with the mean of ``speed_a`` and ``speed_b``; ``viscosity`` in cells x m/s.
+    The next node is ``dj`` rows and ``di`` columns on. A face moves with the mean of ``side`` at the node and ``ej``
+    rows and ``ei`` columns before it; ``viscosity`` in cells x m/s.
     """
-    half = flux.dtype.type(0.5)
-    for k in range(flux.size):
-        a, b, c, d = far_below[k], below[k], above[k], far_above[k]  # loaded first: a choice of loads is a branch
-        speed = half * (speed_a[k] + speed_b[k])
-        forth = limited_quick(a, b, c)
-        back = limited_quick(d, c, b)
-        flux[k] = speed * (forth if speed > 0 else back) - viscosity * (c - b)
+    o, j, half = unsigned(o), unsigned(row), flux.dtype.type(0.5)
+    for k in range(unsigned(start), unsigned(stop)):
+        # loaded first: a choice of loads is a branch
+        a, b, c, d = w[j - dj - dj, k - di - di], w[j - dj, k - di], w[j, k], w[j + dj, k + di]
+        speed = half * (side[j - ej, k - ei] + side[j, k])
+        forth = speed > 0
+        face = limited_quick(a if forth else d, b if forth else c, c if forth else b)
+        flux[o, k] = speed * face - viscosity * (c - b)
 
 
 @compiled
-def _update_row(out, blend, base, left, right, low, high, p_here, p_before, dt, push, keep):
+def _update_row(out, blend, base, flux, low, high, p, row, start, stop, ej, ei, dt, push, keep):
     """Write ``keep * blend + (1 - keep) * (base + dt * (net flux + push - pressure gradient))``."""
-    take = out.dtype.type(1.0) - keep
-    for k in range(out.size):
-        rate = left[k] - right[k] + low[k] - high[k] + push - (p_here[k] - p_before[k])
-        out[k] = keep * blend[k] + take * (base[k] + dt * rate)
+    j, low, high, take = unsigned(row), unsigned(low), unsigned(high), out.dtype.type(1.0) - keep
+    for k in range(unsigned(start), unsigned(stop)):
+        net = flux[0, k] - flux[0, k + UNIT] + flux[low, k] - flux[high, k]
+        rate = net + push - (p[j, k] - p[j - ej, k - ei])
+        out[j, k] = keep * blend[j, k] + take * (base[j, k] + dt * rate)
 
 
 @compiled
-def _raw_row(raw, base, left, right, low, high, dt, push):
+def _raw_row(raw, base, flux, low, high, row, start, stop, dt, push):
     """Write ``base + dt * (net flux + push)``: what the body is then immersed in."""
-    for k in range(raw.size):
-        raw[k] = base[k] + dt * (left[k] - right[k] + low[k] - high[k] + push)
+    j, low, high = unsigned(row), unsigned(low), unsigned(high)
+    for k in range(unsigned(start), unsigned(stop)):
+        raw[j, k] = base[j, k] + dt * (flux[0, k] - flux[0, k + UNIT] + flux[low, k] - flux[high, k] + push)
 
 
 @compiled
-def _advance_u(out, blend, base, u, v, p, raw, window, j0, j1, s, e, dt, nu, push, keep):
-    n = e - s
-    across = np.empty(n + 1, u.dtype)
-    low = np.empty(n, u.dtype)
-    high = np.empty(n, u.dtype)
-    wj0, wj1, wi0, wi1 = window[0], window[1], window[2], window[3]
-    for j in range(j0, j1 + 1):
+def _advance(out, blend, base, w, u, v, p, raw, window, j0, j1, s, e, ej, ei, dt, nu, push, keep):
+    """Advance rows ``j0`` to ``j1``, columns ``s`` to ``e`` of one component ``w``, whose axis is (``ej``, ``ei``)."""
+    none = UNIT - UNIT
+    flux = np.empty((3, u.shape[1]), u.dtype)
+    low, high = 1, 2
+    _fluxes(flux, high, w, v, j0, s, e, UNIT, none, ej, ei, nu)
+    for j in range(j0, j1):
         low, high = high, low
-        flux_row(high, v[j, s - 1 : e - 1], v[j, s:e], u[j - 2, s:e], u[j - 1, s:e], u[j, s:e], u[j + 1, s:e], nu)
-        if j == j0:
-            continue
-        r = j - 1
-        a, b = s - 1, e
-        row = u[r]
-        flux_row(
-            across,
-            row[a:b],
-            row[a + 1 : b + 1],
-            row[a - 1 : b - 1],
-            row[a:b],
-            row[a + 1 : b + 1],
-            row[a + 2 : b + 2],
-            nu,
-        )
-        _update_row(
-            out[r, s:e],
-            blend[r, s:e],
-            base[r, s:e],
-            across[:n],
-            across[1:],
-            low,
-            high,
-            p[r, s:e],
-            p[r, s - 1 : e - 1],
-            dt,
-            push,
-            keep,
-        )
-        if wj0 <= r < wj1:
-            f, t = wi0 - s, wi1 - s
-            _raw_row(
-                raw[r, wi0:wi1], base[r, wi0:wi1], across[f:t], across[f + 1 : t + 1], low[f:t], high[f:t], dt, push
-            )
-
-
-@compiled
-def _advance_v(out, blend, base, u, v, p, raw, window, j0, j1, s, e, dt, nu, push, keep):
-    n = e - s
-    across = np.empty(n + 1, u.dtype)
-    low = np.empty(n, u.dtype)
-    high = np.empty(n, u.dtype)
-    wj0, wj1, wi0, wi1 = window[0], window[1], window[2], window[3]
-    for c in range(j0 - 1, j1):
-        low, high = high, low
-        flux_row(high, v[c, s:e], v[c + 1, s:e], v[c - 1, s:e], v[c, s:e], v[c + 1, s:e], v[c + 2, s:e], nu)
-        if c == j0 - 1:
-            continue
-        a, b = s, e + 1
-        row = v[c]
-        flux_row(
-            across, u[c - 1, a:b], u[c, a:b], row[a - 2 : b - 2], row[a - 1 : b - 1], row[a:b], row[a + 1 : b + 1], nu
-        )
-        _update_row(
-            out[c, s:e],
-            blend[c, s:e],
-            base[c, s:e],
-            across[:n],
-            across[1:],
-            low,
-            high,
-            p[c, s:e],
-            p[c - 1, s:e],
-            dt,
-            push,
-            keep,
-        )
-        if wj0 <= c < wj1:
-            f, t = wi0 - s, wi1 - s
-            _raw_row(
-                raw[c, wi0:wi1], base[c, wi0:wi1], across[f:t], across[f + 1 : t + 1], low[f:t], high[f:t], dt, push
-            )
+        _fluxes(flux, 0, w, u, j, s, e + 1, none, UNIT, ej, ei, nu)
+        _fluxes(flux, high, w, v, j + 1, s, e, UNIT, none, ej, ei, nu)
+        _update_row(out, blend, base, flux, low, high, p, j, s, e, ej, ei, dt, push, keep)
+        if window[0] <= j < window[1]:
+            _raw_row(raw, base, flux, low, high, j, window[2], window[3], dt, push)
 
 
 @threaded
@@ -159,14 +95,15 @@ def advance(
     ``base + dt * rate`` without the pressure goes to ``raw`` as well. ``periodic`` is (x, y), ``push`` a
     uniform acceleration (x, y).
     """
-    ny, nx = u.shape[0] - 2 * PAD, u.shape[1] - 2 * PAD
+    none = UNIT - UNIT
+    ny, end = u.shape[0] - 2 * PAD, u.shape[1] - PAD
     su = PAD if periodic[0] else PAD + 1
     sv = PAD if periodic[1] else PAD + 1
-    end = PAD + ny
     for block in prange((ny + BLOCK - 1) // BLOCK):
         j0 = PAD + block * BLOCK
-        j1 = min(j0 + BLOCK, end)
-        _advance_u(out_u, blend_u, base_u, u, v, p, raw_u, window, j0, j1, su, PAD + nx, dt, nu, push[0], keep)
-        _advance_v(
-            out_v, blend_v, base_v, u, v, p, raw_v, window, max(j0, sv), j1, PAD, PAD + nx, dt, nu, push[1], keep
-        )
+        j1 = min(j0 + BLOCK, PAD + ny)
+        _advance(out_u, blend_u, base_u, u, u, v, p, raw_u, window, j0, j1, su, end, none, UNIT, dt, nu, push[0], keep)
+        _advance(
+            out_v, blend_v, base_v, v, u, v, p, raw_v, window, max(j0, sv), j1, PAD, end, UNIT, none, dt, nu, push[1],
+            keep,
+        )  # fmt: skip

@@ -8,13 +8,43 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from suchus.flow.compiled import PAD, Window
+from suchus.flow.compiled import PAD, Window, compiled
 from suchus.flow.grid import Grid
 from suchus.flow.openwater import Fading, OpenWater
 from suchus.flow.sides import Inflow, Outflow, Periodic, Side, Sides, Slip, Stream, Wall
 
 _LEAVES = 0.2, 0.4
 """Shares of the stream's speed along the normal between which a Stream side begins to carry the wake out [-]."""
+
+
+_MIRRORED, _GIVEN, _FREE_OF_VORTICITY, _AS_INSIDE = range(4)
+"""What the velocity along a side is beyond it: mirrored about a value, that value, and so on."""
+
+
+@compiled
+def _fill_side(n, t, face, inner, step, prescribed, straight, how, value):  # type: ignore[no-untyped-def]
+    """Write the velocity on a side and in the two lines beyond it; ``step`` is 1 at the low end and -1 at the high one.
+
+    ``n`` is the velocity along the normal and ``t`` that along the side, normal index first; ``face`` and ``inner`` are
+    the lines of the side's faces and of the cells inside it.
+    """
+    two, sign, wide = n.dtype.type(2), n.dtype.type(step), n.shape[1]
+    for i in range(PAD, wide - PAD):
+        n[face, i] = sign * prescribed[i - PAD]
+    for k in range(1, 3 if step > 0 else 2):
+        for i in range(wide):
+            n[face - k * step, i] = two * n[face, i] - n[face + step, i] if straight else n[face, i]
+    for k in range(1, 3):
+        to, source = inner - k * step, inner - (k - 1) * step
+        for i in range(wide):
+            if how == _MIRRORED:
+                t[to, i] = two * value - t[source, i]
+            elif how == _GIVEN:
+                t[to, i] = value
+            elif how == _FREE_OF_VORTICITY and PAD < i < wide - PAD:
+                t[to, i] = t[source, i] - sign * (n[face, i] - n[face, i - 1])
+            else:
+                t[to, i] = t[source, i]
 
 
 @dataclass(slots=True)
@@ -65,7 +95,6 @@ class Edge:
         """Write this side's values to the cells and faces around the domain."""
         n, t, f, step = self.normal(u, v), self.tangent(u, v), self.face, self.sign
         inner = PAD if self.low else PAD + self.cells - 1
-        beyond = (f - 1, f - 2) if self.low else (f + 1,)
         if isinstance(self.side, Periodic):
             for k in range(1, PAD + 1):
                 if self.low:
@@ -73,22 +102,17 @@ class Edge:
                 else:
                     n[f + k - 1], t[f + k - 1] = n[f + k - 1 - self.cells], t[f + k - 1 - self.cells]
             return
-        n[f, PAD:-PAD] = step * self.prescribed
         straight = isinstance(self.side, Wall | Slip) or (self.endless and not self.leaves)
-        for k in beyond:
-            n[k] = 2 * n[f] - n[f + step] if straight else n[f]
-        for k in (1, 2):
-            if isinstance(self.side, Wall):
-                t[inner - k * step] = 2 * self.side.speed - t[inner + (k - 1) * step]
-            elif isinstance(self.side, Inflow):
-                t[inner - k * step] = -t[inner + (k - 1) * step]
-            elif self.endless and not self.leaves:  # free of vorticity
-                t[inner - k * step] = t[inner - (k - 1) * step]
-                t[inner - k * step, PAD + 1 : -PAD] -= step * np.diff(n[f, PAD:-PAD])
-            elif isinstance(self.side, Stream) and step * stream[self.axis] > 0:
-                t[inner - k * step] = stream[1 - self.axis]
-            else:
-                t[inner - k * step] = t[inner]
+        how, value = _AS_INSIDE, 0.0
+        if isinstance(self.side, Wall):
+            how, value = _MIRRORED, self.side.speed
+        elif isinstance(self.side, Inflow):
+            how = _MIRRORED
+        elif self.endless and not self.leaves:
+            how = _FREE_OF_VORTICITY
+        elif isinstance(self.side, Stream) and step * stream[self.axis] > 0:
+            how, value = _GIVEN, stream[1 - self.axis]
+        _fill_side(n, t, f, inner, step, self.prescribed, straight, how, n.dtype.type(value))
 
 
 @dataclass(slots=True)

@@ -63,7 +63,7 @@ def moment1(distance):
     return 0.25 - 0.25 * distance**2 - (distance * np.sin(turn) + (1.0 + np.cos(turn)) / np.pi) / (2.0 * np.pi)
 
 
-@compiled
+@threaded
 def fill(d, nx, ny, thickness, mu0, mu1_x, mu1_y):
     """Fill the moments of a window from signed distances, thicknesses [cells] and normals; mu1 is halved.
 
@@ -71,7 +71,7 @@ def fill(d, nx, ny, thickness, mu0, mu1_x, mu1_y):
     around it does not depend on how it lies between the nodes; with the nearer surface alone it does, and the force
     shakes as the tail sweeps over the grid (12 % of its rms, against 1 %).
     """
-    for j in range(d.shape[0]):
+    for j in prange(d.shape[0]):
         for i in range(d.shape[1]):
             near = d[j, i]
             far = -thickness[j, i] - near

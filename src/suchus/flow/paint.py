@@ -8,8 +8,12 @@ middle. (The velocity of the nearest outline point is not, and the force then ju
 """
 
 import numpy as np
+from numba import prange
 
-from suchus.flow.compiled import compiled
+from suchus.flow.compiled import compiled, threaded
+
+ROWS = 16
+"""Rows of points that one thread paints at a time [-]."""
 
 
 @compiled
@@ -26,13 +30,14 @@ def distance_to_edge(px, py, ax, ay, bx, by):
 
 
 @compiled
-def _paint_edge(square, edge, share, k, ax, ay, bx, by, x0, y0, h, reach):
-    """Keep edge ``k`` at the points that no other edge is nearer to."""
-    ny, nx = square.shape
+def _paint_edge(square, edge, share, rows, k, ax, ay, bx, by, x0, y0, h, reach):
+    """Keep edge ``k`` at the points of the rows (first, end) that no other edge is nearer to."""
+    j0 = max(int(np.ceil((min(ay, by) - reach - y0) / h)), rows[0])
+    j1 = min(int(np.floor((max(ay, by) + reach - y0) / h)), rows[1] - 1)
+    if j1 < j0:
+        return
     i0 = max(int(np.ceil((min(ax, bx) - reach - x0) / h)), 0)
-    i1 = min(int(np.floor((max(ax, bx) + reach - x0) / h)), nx - 1)
-    j0 = max(int(np.ceil((min(ay, by) - reach - y0) / h)), 0)
-    j1 = min(int(np.floor((max(ay, by) + reach - y0) / h)), ny - 1)
+    i1 = min(int(np.floor((max(ax, bx) + reach - x0) / h)), square.shape[1] - 1)
     for j in range(j0, j1 + 1):
         for i in range(i0, i1 + 1):
             d2, f = distance_to_edge(x0 + i * h, y0 + j * h, ax, ay, bx, by)
@@ -109,6 +114,38 @@ def ring(spine):
 
 
 @compiled
+def _paint_row(out, j, square, edge, share, winding, outline, spine, width_rate, tx, ty, x0, y0, h):
+    """Write what ``paint`` returns for one row of points, whose nearest edges are known."""
+    count, n = outline.shape[1], spine.shape[1]
+    wound, k = 0, 0
+    for i in range(square.shape[1]):
+        wound += winding[j, i]
+        e = edge[j, i]
+        sign = -1.0 if wound != 0 else 1.0
+        d = np.sqrt(square[j, i])
+        out[0, j, i] = sign * d
+        if e < 0 and wound == 0:
+            continue
+        px, py = x0 + i * h, y0 + j * h
+        if e >= 0:
+            m = (e + 1) % count
+            ex, ey = outline[0, m] - outline[0, e], outline[1, m] - outline[1, e]
+            if d > 1e-6 * h:
+                out[1, j, i] = sign * (px - outline[0, e] - share[j, i] * ex) / d
+                out[2, j, i] = sign * (py - outline[1, e] - share[j, i] * ey) / d
+            else:
+                size = np.sqrt(ex * ex + ey * ey)
+                out[1, j, i], out[2, j, i] = ey / size, -ex / size
+            k = e if e < n else 2 * n - 1 - e
+            qx = px - out[1, j, i] * (out[0, j, i] + h)
+            qy = py - out[2, j, i] * (out[0, j, i] + h)
+            m, f = find_section(qx, qy, min(k, n - 2), spine[0], spine[1], tx, ty)
+            out[5, j, i] = 2.0 * ((1.0 - f) * spine[3, m] + f * spine[3, m + 1])
+        k, f = find_section(px, py, min(k, n - 2), spine[0], spine[1], tx, ty)
+        out[3, j, i], out[4, j, i] = section_velocity(px, py, k, f, spine, width_rate)
+
+
+@threaded
 def paint(spine, width_rate, x0, y0, h, nx, ny, reach):
     """Return distance, normal (x, y), velocity (x, y) and thickness on the window, shape (6, ny, nx).
 
@@ -117,49 +154,26 @@ def paint(spine, width_rate, x0, y0, h, nx, ny, reach):
     """
     outline = ring(spine)
     count = outline.shape[1]
-    n = spine.shape[1]
     tx, ty = np.cos(spine[2]), np.sin(spine[2])
     square = np.full((ny, nx), reach * reach)
     edge = np.full((ny, nx), -1, np.int32)
     share = np.zeros((ny, nx))
     winding = np.zeros((ny, nx), np.int32)
-    for k in range(count):
-        m = (k + 1) % count
-        ax, ay, bx, by = outline[0, k], outline[1, k], outline[0, m], outline[1, m]
-        if ax == bx and ay == by:
-            continue
-        _paint_edge(square, edge, share, k, ax, ay, bx, by, x0, y0, h, reach)
-        if ay != by:
-            _wind_edge(winding, ax, ay, bx, by, x0, y0, h)
     out = np.zeros((6, ny, nx))
     out[5] = np.inf
-    for j in range(ny):
-        wound, k = 0, 0
-        for i in range(nx):
-            wound += winding[j, i]
-            e = edge[j, i]
-            sign = -1.0 if wound != 0 else 1.0
-            d = np.sqrt(square[j, i])
-            out[0, j, i] = sign * d
-            if e < 0 and wound == 0:
-                continue
-            px, py = x0 + i * h, y0 + j * h
-            if e >= 0:
-                m = (e + 1) % count
-                ex, ey = outline[0, m] - outline[0, e], outline[1, m] - outline[1, e]
-                if d > 1e-6 * h:
-                    out[1, j, i] = sign * (px - outline[0, e] - share[j, i] * ex) / d
-                    out[2, j, i] = sign * (py - outline[1, e] - share[j, i] * ey) / d
-                else:
-                    size = np.sqrt(ex * ex + ey * ey)
-                    out[1, j, i], out[2, j, i] = ey / size, -ex / size
-                k = e if e < n else 2 * n - 1 - e
-                qx = px - out[1, j, i] * (out[0, j, i] + h)
-                qy = py - out[2, j, i] * (out[0, j, i] + h)
-                m, f = find_section(qx, qy, min(k, n - 2), spine[0], spine[1], tx, ty)
-                out[5, j, i] = 2.0 * ((1.0 - f) * spine[3, m] + f * spine[3, m + 1])
-            k, f = find_section(px, py, min(k, n - 2), spine[0], spine[1], tx, ty)
-            out[3, j, i], out[4, j, i] = section_velocity(px, py, k, f, spine, width_rate)
+    for k in range(count):
+        m = (k + 1) % count
+        if outline[1, k] != outline[1, m]:
+            _wind_edge(winding, outline[0, k], outline[1, k], outline[0, m], outline[1, m], x0, y0, h)
+    for block in prange((ny + ROWS - 1) // ROWS):
+        rows = block * ROWS, min((block + 1) * ROWS, ny)
+        for k in range(count):
+            m = (k + 1) % count
+            ax, ay, bx, by = outline[0, k], outline[1, k], outline[0, m], outline[1, m]
+            if ax != bx or ay != by:
+                _paint_edge(square, edge, share, rows, k, ax, ay, bx, by, x0, y0, h, reach)
+        for j in range(rows[0], rows[1]):
+            _paint_row(out, j, square, edge, share, winding, outline, spine, width_rate, tx, ty, x0, y0, h)
     return out
 
 

@@ -13,9 +13,15 @@ from dataclasses import dataclass
 import numpy as np
 from numba import prange
 
-from suchus.flow.compiled import BLOCK, PAD, compiled, threaded
+from suchus.flow.compiled import BLOCK, PAD, compiled, threaded, unsigned
 from suchus.flow.multigrid import CX, CY, DINV, B, X, cycle, level
-from suchus.flow.stencil import apply_row, seal_ends, seal_row
+from suchus.flow.stencil import LANES, apply_rows, largest_size, seal_row
+
+PARALLEL = 1e-3
+"""Share of (z, A z) that must be left once z is orthogonal to the last direction: with less it stays as it is [-]."""
+
+WORSE = 3.0
+"""Growth of the residual over the smallest so far at which an iteration is dropped and the solve ends [-]."""
 
 STALLED = 3
 """Cycles without progress after which rounding, not the residual, is what is left [-]."""
@@ -28,134 +34,157 @@ PATIENCE = 15
 
 
 @compiled
-def _dot(a, b):
-    total = 0.0
-    for k in range(a.size):
-        total += np.float64(a[k]) * np.float64(b[k])
+def _dots(z, az, r, d, row):
+    """Return (z, A z), (d, A z), (r, z) and (r, d) of a row; the last is nearly nothing, so r's sums are double."""
+    zero, j = z.dtype.type(0.0), unsigned(row)
+    own, old, gain, left = zero, zero, 0.0, 0.0
+    for k in range(unsigned(PAD), unsigned(z.shape[1] - PAD)):
+        own += z[j, k] * az[0, k]
+        old += d[j, k] * az[0, k]
+        gain += np.float64(r[j, k]) * np.float64(z[j, k])
+        left += np.float64(r[j, k]) * np.float64(d[j, k])
+    return own, old, gain, left
+
+
+@threaded
+def _measure(z, r, d, cx, cy, place, sums):
+    """Write the row sums of (z, A z), (d, A z), (r, z) and (r, d)."""
+    end = z.shape[0] - PAD
+    for block in prange((end - PAD + BLOCK - 1) // BLOCK):
+        az = np.empty((1, z.shape[1]), z.dtype)
+        for j in range(PAD + block * BLOCK, min(PAD + (block + 1) * BLOCK, end)):
+            apply_rows(az, 0, z, j - 1, j, j + 1, cx, cy, place, j)
+            sums[j, 0], sums[j, 1], sums[j, 2], sums[j, 3] = _dots(z, az, r, d, j)
+
+
+@compiled
+def _mix(out, o, z, d, row, a, b):
+    o, j = unsigned(o), unsigned(row)
+    for k in range(unsigned(z.shape[1])):
+        out[o, k] = a * z[j, k] + b * d[j, k]
+
+
+@compiled
+def _rise(x, e, row, alpha):
+    j = unsigned(row)
+    for k in range(unsigned(x.shape[1])):
+        x[j, k] += alpha * e[j, k]
+
+
+@compiled
+def _lower(r, row, q, alpha):
+    """Subtract ``alpha`` times the one row of ``q`` from a row of ``r``; return its summed size."""
+    total, j = r.dtype.type(0.0), unsigned(row)
+    for k in range(unsigned(PAD), unsigned(r.shape[1] - PAD)):
+        r[j, k] -= alpha * q[0, k]
+        total += abs(r[j, k])
     return total
 
 
-@compiled
-def _aim(d, z, beta):
-    for k in range(d.size):
-        d[k] = z[k] + beta * d[k]
-
-
 @threaded
-def _direct(d, z, beta, periodic):
-    """Write ``d = z + beta d``."""
-    nx = d.shape[1] - 2 * PAD
-    end = d.shape[0] - PAD
-    for block in prange((end - PAD + BLOCK - 1) // BLOCK):
-        for j in range(PAD + block * BLOCK, min(PAD + (block + 1) * BLOCK, end)):
-            if beta == 0:
-                d[j, PAD : PAD + nx] = z[j, PAD : PAD + nx]
-            else:
-                _aim(d[j, PAD : PAD + nx], z[j, PAD : PAD + nx], beta)
-            seal_row(d[j], periodic)
-
-
-@threaded
-def _measure(q, d, r, cx, cy, place, sums):
-    """Write ``q = A d`` and the row sums of (d, q) and (r, d)."""
-    nx = d.shape[1] - 2 * PAD
-    end = d.shape[0] - PAD
-    for block in prange((end - PAD + BLOCK - 1) // BLOCK):
-        for j in range(PAD + block * BLOCK, min(PAD + (block + 1) * BLOCK, end)):
-            row = q[j, PAD : PAD + nx]
-            apply_row(row, d, cx, cy, place, j)
-            sums[j, 0] = _dot(d[j, PAD : PAD + nx], row)
-            sums[j, 1] = _dot(r[j, PAD : PAD + nx], d[j, PAD : PAD + nx])
-
-
-@compiled
-def _norms(r):
-    total = 0.0
-    largest = r.dtype.type(0)
-    for k in range(r.size):
-        size = abs(r[k])
-        total += np.float64(size)
-        largest = size if size > largest else largest
-    return total, largest
-
-
-@compiled
-def _step_row(x, r, d, q, alpha):
-    for k in range(x.size):
-        x[k] += alpha * d[k]
-        r[k] -= alpha * q[k]
-
-
-@threaded
-def _step(x, r, d, q, alpha, fresh, periodic, sums):
-    """Write ``x += alpha d``, ``r -= alpha q`` and the row sums of |r| and largest |r|."""
-    nx = d.shape[1] - 2 * PAD
-    end = d.shape[0] - PAD
-    for block in prange((end - PAD + BLOCK - 1) // BLOCK):
-        for j in range(PAD + block * BLOCK, min(PAD + (block + 1) * BLOCK, end)):
-            if fresh:
-                x[j] = 0
-            _step_row(x[j, PAD : PAD + nx], r[j, PAD : PAD + nx], d[j, PAD : PAD + nx], q[j, PAD : PAD + nx], alpha)
-            seal_row(x[j], periodic)
-            seal_row(r[j], periodic)
-            total, largest = _norms(r[j, PAD : PAD + nx])
-            sums[j, 0] = total
-            sums[j, 1] = largest
-
-
-@threaded
-def _project_dot(z, q, sums):
-    nx = z.shape[1] - 2 * PAD
+def _first_step(r, z, cx, cy, place, alpha, periodic, sums):
+    """Write ``r -= alpha A z`` and the row sums of |r| and largest |r|."""
     end = z.shape[0] - PAD
     for block in prange((end - PAD + BLOCK - 1) // BLOCK):
+        q, top = np.empty((1, z.shape[1]), z.dtype), np.empty(LANES, z.dtype)
         for j in range(PAD + block * BLOCK, min(PAD + (block + 1) * BLOCK, end)):
-            sums[j, 0] = _dot(z[j, PAD : PAD + nx], q[j, PAD : PAD + nx])
+            apply_rows(q, 0, z, j - 1, j, j + 1, cx, cy, place, j)
+            sums[j, 0] = _lower(r, j, q, alpha)
+            sums[j, 1] = largest_size(r, j, top)
+            seal_row(r, j, periodic)
+
+
+@threaded
+def _step(r, z, d, cx, cy, place, alpha, beta, periodic, sums):
+    """Write ``r -= alpha A (z + beta d)`` and the row sums of |r| and largest |r|."""
+    end, one = z.shape[0] - PAD, z.dtype.type(1.0)
+    for block in prange((end - PAD + BLOCK - 1) // BLOCK):
+        q, top = np.empty((1, z.shape[1]), z.dtype), np.empty(LANES, z.dtype)
+        rows = np.empty((3, z.shape[1]), z.dtype)
+        low, mid, high = 0, 1, 2
+        first, last = PAD + block * BLOCK, min(PAD + (block + 1) * BLOCK, end)
+        for j in range(first - 1, last + 1):
+            low, mid, high = mid, high, low
+            _mix(rows, high, z, d, j, one, beta)
+            if j > first:
+                c = j - 1
+                apply_rows(q, 0, rows, low, mid, high, cx, cy, place, c)
+                sums[c, 0] = _lower(r, c, q, alpha)
+                sums[c, 1] = largest_size(r, c, top)
+                seal_row(r, c, periodic)
+
+
+@threaded
+def _keep(x, e, z, d, alpha, beta, before):
+    """Write ``e = z + beta d`` and ``x = alpha e + before d``, or ``x += alpha e`` if ``before`` is 0."""
+    one = z.dtype.type(1.0)
+    for block in prange((x.shape[0] + BLOCK - 1) // BLOCK):
+        for j in range(block * BLOCK, min((block + 1) * BLOCK, x.shape[0])):
+            _mix(e, j, z, d, j, one, beta)
+            if before != 0:
+                _mix(x, j, z, d, j, alpha, alpha * beta + before)
+            else:
+                _rise(x, e, j, alpha)
 
 
 @compiled
-def solve(x, d, q, store, layout, periodic, sums, mean_limit, max_limit, most):
-    """Write the solution for the right side ``B`` of level 0 to ``x``.
+def solve(x, d, q, store, layout, room, rects, periodic, sums, mean_limit, max_limit, most):
+    """Solve for the right side ``B`` of level 0, in which the residual is left; ``x``, ``d`` and ``q`` are room.
 
-    On return ``B`` holds the residual.
+    One iteration or two are what a step of the flow takes, so what they add up to is left to who reads it.
 
     Returns:
-        iterations, mean residual, largest residual.
+        iterations, mean residual, largest residual, and the numbers ``a`` and ``b`` with which the solution is
+        ``a d + b X``, where ``X`` is that of level 0.
     """
     r, z = level(store, layout, B, 0), level(store, layout, X, 0)
     cx, cy = level(store, layout, CX, 0), level(store, layout, CY, 0)
     real = store.dtype.type
     place = layout[0]
     cells = layout[0, 1] * layout[0, 2]
-    s, e = PAD, x.shape[0] - PAD
-    last = 1.0
+    s, e = PAD, r.shape[0] - PAD
+    last, alpha, beta, before = 1.0, 0.0, 0.0, 0.0
+    begun, due, kept = d, False, False
     mean, largest, best, since = 0.0, 0.0, np.inf, 0
-    for k in range(most):
-        cycle(store, layout, periodic)
-        beta = 0.0
-        if k > 0:
-            _project_dot(z, q, sums)
-            beta = -sums[s:e, 0].sum() / last
-        _direct(d, z, real(beta), periodic[0])
-        seal_ends(d, periodic[1])
-        _measure(q, d, r, cx, cy, place, sums)
-        last = sums[s:e, 0].sum()
+    k = 0
+    while k < most and since < (STALLED if best <= NEARLY else PATIENCE):
+        if k >= 2:
+            _keep(x, q, z, d, real(alpha), real(beta), real(before))
+            d, q, before, due, kept = q, d, 0.0, False, True
+        cycle(d if k == 0 else z, store, layout, room, rects, periodic)
+        _measure(d if k == 0 else z, r, d, cx, cy, place, sums)
+        own, old, gain = sums[s:e, 0].sum(), sums[s:e, 1].sum(), sums[s:e, 2].sum()
+        turn = 0.0 if k == 0 else -old / last
+        last = own + turn * old
+        if last < PARALLEL * own:
+            turn, last = 0.0, own
         if not last > 0:
-            if k == 0:
-                x[:] = 0
-            return k, mean, largest
-        alpha = sums[s:e, 1].sum() / last
-        _step(x, r, d, q, real(alpha), k == 0, periodic[0], sums)
+            break
+        alpha, beta = (gain + turn * sums[s:e, 3].sum()) / last, turn
+        if k == 0:
+            _first_step(r, d, cx, cy, place, real(alpha), periodic[0], sums)
+            before = alpha
+        else:
+            _step(r, z, d, cx, cy, place, real(alpha), real(beta), periodic[0], sums)
+            due = True
+        k += 1
+        told = mean, largest
         mean, largest = sums[s:e, 0].sum() / cells, sums[s:e, 1].max()
         if mean <= mean_limit and largest <= max_limit:
-            seal_ends(x, periodic[1])
-            return k + 1, mean, largest
+            break
         worst = max(mean / mean_limit, largest / max_limit)
+        if k > 2 and worst > WORSE * best and best <= NEARLY:
+            mean, largest = told
+            due = False
+            break
         since = 0 if worst < 0.8 * best else since + 1
         best = min(best, worst)
-        if since >= (STALLED if worst <= NEARLY else PATIENCE):
-            break
-    seal_ends(x, periodic[1])
-    return k + 1, mean, largest
+    if not kept:
+        return k, mean, largest, before + due * alpha * beta, due * alpha
+    if due:
+        _keep(x, q, z, d, real(alpha), real(beta), real(before))
+    begun[:] = x
+    return k, mean, largest, 1.0, 0.0
 
 
 @dataclass(slots=True)
@@ -187,7 +216,7 @@ def levels(ny: int, nx: int) -> np.ndarray:
 def make_store(layout: np.ndarray, dtype: type) -> np.ndarray:
     """Return the store of a layout with all coefficients 1."""
     end = layout[-1, 0] + (layout[-1, 1] + 2 * PAD) * (layout[-1, 2] + 2 * PAD)
-    store = np.zeros((6, end), dtype)
+    store = np.zeros((5, end), dtype)
     store[CX] = store[CY] = 1
     store[DINV] = 0.25
     return store

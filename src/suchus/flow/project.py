@@ -5,115 +5,146 @@
 import numpy as np
 from numba import prange
 
-from suchus.flow.compiled import BLOCK, PAD, compiled, threaded
-from suchus.flow.stencil import seal_row
+from suchus.flow.compiled import BLOCK, PAD, UNIT, compiled, threaded, unsigned
+from suchus.flow.stencil import LANES, largest_size, seal_row
 
 
 @compiled
-def _divergence_row(r, u_left, u_right, v_low, v_high):
-    for k in range(r.size):
-        r[k] = (u_left[k] - u_right[k]) + (v_low[k] - v_high[k])
+def _divergence_row(r, u, v, row, mean):
+    """Write ``-div u - mean`` along a row."""
+    j = unsigned(row)
+    for k in range(unsigned(PAD), unsigned(r.shape[1] - PAD)):
+        r[j, k] = (u[j, k] - u[j, k + UNIT]) + (v[j, k] - v[j + UNIT, k]) - mean
 
 
 @compiled
-def _norms(r):
-    total, size = 0.0, 0.0
-    largest = r.dtype.type(0)
-    for k in range(r.size):
-        total += np.float64(r[k])
-        size += np.float64(abs(r[k]))
-        largest = abs(r[k]) if abs(r[k]) > largest else largest
-    return total, size, largest
+def _size(r, row):
+    total, j = r.dtype.type(0), unsigned(row)
+    for k in range(unsigned(PAD), unsigned(r.shape[1] - PAD)):
+        total += abs(r[j, k])
+    return total
 
 
 @threaded
-def residual(r, u, v, source, dinv, window, periodic, sums):
-    """Write ``source - div u`` to ``r``; ``sums`` (row, 3) gets its sum, summed size and largest size.
+def residual(r, u, v, source, dinv, window, mean, periodic, sums):
+    """Write ``source - div u - mean`` to ``r``; ``sums`` gets its summed size and largest size, row by row.
 
     Cells that lie wholly inside the body get 0: no pressure acts there.
     """
-    s, e = PAD, u.shape[1] - PAD
     end = u.shape[0] - PAD
     for block in prange((end - PAD + BLOCK - 1) // BLOCK):
+        top = np.empty(LANES, u.dtype)
         for j in range(PAD + block * BLOCK, min(PAD + (block + 1) * BLOCK, end)):
-            _divergence_row(r[j, s:e], u[j, s:e], u[j, s + 1 : e + 1], v[j, s:e], v[j + 1, s:e])
+            _divergence_row(r, u, v, j, mean)
             if window[0] <= j < window[1]:
-                for i in range(window[2], window[3]):
-                    r[j, i] = r[j, i] + source[j, i] if dinv[j, i] > 0 else 0
-            seal_row(r[j], periodic[0])
-            total, size, largest = _norms(r[j, s:e])
-            sums[j, 0] = total
-            sums[j, 1] = size
-            sums[j, 2] = largest
+                c = unsigned(j)
+                for i in range(unsigned(window[2]), unsigned(window[3])):
+                    r[c, i] = r[c, i] + source[c, i] if dinv[c, i] > 0 else 0
+            seal_row(r, j, periodic)
+            sums[j, 0] = _size(r, j)
+            sums[j, 1] = largest_size(r, j, top)
+
+
+@compiled
+def mean_residual(u, v, source, window):
+    """Return the mean of ``source - div u``: what flows in through the sides, and what the bodies push out."""
+    s, t, b = PAD, u.shape[0] - PAD, u.shape[1] - PAD
+    total = 0.0
+    for j in range(s, t):
+        total += np.float64(u[j, s]) - np.float64(u[j, b])
+    for i in range(s, b):
+        total += np.float64(v[s, i]) - np.float64(v[t, i])
+    for j in range(window[0], window[1]):
+        for i in range(window[2], window[3]):
+            total += source[j, i]
+    return total / ((t - s) * (b - s))
+
+
+@compiled
+def _add(out, o, d, z, row, a, b):
+    o, j = unsigned(o), unsigned(row)
+    if b == 0:
+        for k in range(unsigned(d.shape[1])):
+            out[o, k] = a * d[j, k]
+    else:
+        for k in range(unsigned(d.shape[1])):
+            out[o, k] = a * d[j, k] + b * z[j, k]
+
+
+@compiled
+def _correct_plain(u, v, p, row, x, low, mid, level, gain, start, stop):
+    j, low, mid = unsigned(row), unsigned(low), unsigned(mid)
+    for k in range(unsigned(start), unsigned(stop)):
+        m = x[mid, k]
+        u[j, k] -= m - x[mid, k - UNIT]
+        v[j, k] -= m - x[low, k]
+        p[j, k] += gain * (m - level)
+
+
+@compiled
+def _correct_body(u, v, p, row, x, low, mid, cx, cy, level, gain, start, stop):
+    j, low, mid = unsigned(row), unsigned(low), unsigned(mid)
+    for k in range(unsigned(start), unsigned(stop)):
+        m = x[mid, k]
+        u[j, k] -= cx[j, k] * (m - x[mid, k - UNIT])
+        v[j, k] -= cy[j, k] * (m - x[low, k])
+        p[j, k] += gain * (m - level)
+
+
+@compiled
+def _along_sides(x):
+    """Return the mean of the outermost cells of the domain."""
+    n, m = x.shape[0] - PAD - 1, x.shape[1] - PAD - 1
+    total = 0.0
+    for j in range(PAD, n + 1):
+        total += np.float64(x[j, PAD]) + np.float64(x[j, m])
+    for i in range(PAD, m + 1):
+        total += np.float64(x[PAD, i]) + np.float64(x[n, i])
+    return total / (2 * (n + m + 2 - 2 * PAD))
 
 
 @threaded
-def level_out(r, mean, periodic):
-    """Subtract ``mean`` from every cell: what the bodies swallow or push out, the domain takes up evenly."""
-    s, e = PAD, r.shape[1] - PAD
-    end = r.shape[0] - PAD
-    for block in prange((end - PAD + BLOCK - 1) // BLOCK):
-        for j in range(PAD + block * BLOCK, min(PAD + (block + 1) * BLOCK, end)):
-            r[j, s:e] -= mean
-            seal_row(r[j], periodic[0])
+def correct(u, v, p, d, z, a, b, cx, cy, window, gain):
+    """Subtract ``passage grad x`` from the velocity and add ``gain x`` to the pressure, where ``x = a d + b z``.
 
-
-@compiled
-def _correct_plain(u, v, p, x, x_left, x_low, gain):
-    for k in range(u.size):
-        u[k] -= x[k] - x_left[k]
-        v[k] -= x[k] - x_low[k]
-        p[k] += gain * x[k]
-
-
-@compiled
-def _correct_body(u, v, p, x, x_left, x_low, cx, cy, gain):
-    for k in range(u.size):
-        u[k] -= cx[k] * (x[k] - x_left[k])
-        v[k] -= cy[k] * (x[k] - x_low[k])
-        p[k] += gain * x[k]
-
-
-@compiled
-def _fastest(u, u_next, v, v_next):
-    top = u.dtype.type(0)
-    for k in range(u.size):
-        a, b = abs(u[k]), abs(u_next[k])
-        c, d = abs(v[k]), abs(v_next[k])
-        speed = (a if a > b else b) + (c if c > d else d)
-        top = speed if speed > top else top
-    return top
-
-
-@threaded
-def correct(u, v, p, x, cx, cy, window, gain):
-    """Subtract ``passage grad x`` from the velocity and add ``gain x`` to the pressure.
-
-    Values on the domain's edges are corrected with a mirrored ``x``, that is, left as they are.
+    The pressure is pinned: the mean of what is added is zero along the sides. Without that it drifts, and single
+    precision has less and less room for what matters. Values on the domain's edges are corrected with a mirrored ``x``,
+    that is, left as they are.
     """
     s, e = PAD, u.shape[1] - PAD
     end = u.shape[0] - PAD
+    level = u.dtype.type(a * _along_sides(d) + b * _along_sides(z))
     for block in prange((end - PAD + BLOCK - 1) // BLOCK):
-        for j in range(PAD + block * BLOCK, min(PAD + (block + 1) * BLOCK, end)):
+        x = np.empty((2, u.shape[1]), u.dtype)
+        low, mid = 0, 1
+        first = PAD + block * BLOCK
+        _add(x, mid, d, z, first - 1, a, b)
+        for j in range(first, min(first + BLOCK, end)):
+            low, mid = mid, low
+            _add(x, mid, d, z, j, a, b)
+            f = s
             if window[0] <= j < window[1]:
-                a, b = window[2], window[3]
-                _correct_plain(u[j, s:a], v[j, s:a], p[j, s:a], x[j, s:a], x[j, s - 1 : a - 1], x[j - 1, s:a], gain)
-                _correct_body(
-                    u[j, a:b], v[j, a:b], p[j, a:b], x[j, a:b], x[j, a - 1 : b - 1], x[j - 1, a:b],
-                    cx[j, a:b], cy[j, a:b], gain,
-                )  # fmt: skip
-                s_rest = b
-            else:
-                s_rest = s
-            a = s_rest
-            _correct_plain(u[j, a:e], v[j, a:e], p[j, a:e], x[j, a:e], x[j, a - 1 : e - 1], x[j - 1, a:e], gain)
+                _correct_plain(u, v, p, j, x, low, mid, level, gain, s, window[2])
+                _correct_body(u, v, p, j, x, low, mid, cx, cy, level, gain, window[2], window[3])
+                f = window[3]
+            _correct_plain(u, v, p, j, x, low, mid, level, gain, f, e)
+
+
+@compiled
+def _speeds(out, u, v, row):
+    j = unsigned(row)
+    for k in range(unsigned(PAD), unsigned(u.shape[1] - PAD)):
+        a, b = abs(u[j, k]), abs(u[j, k + UNIT])
+        c, d = abs(v[j, k]), abs(v[j + UNIT, k])
+        out[0, k] = (a if a > b else b) + (c if c > d else d)
 
 
 @threaded
 def fastest(u, v, sums):
     """Write the largest |u| + |v| of every row to ``sums[:, 0]``."""
-    s, e = PAD, u.shape[1] - PAD
     end = u.shape[0] - PAD
     for block in prange((end - PAD + BLOCK - 1) // BLOCK):
+        speed, top = np.empty((1, u.shape[1]), u.dtype), np.empty(LANES, u.dtype)
         for j in range(PAD + block * BLOCK, min(PAD + (block + 1) * BLOCK, end)):
-            sums[j, 0] = _fastest(u[j, s:e], u[j, s + 1 : e + 1], v[j, s:e], v[j + 1, s:e])
+            _speeds(speed, u, v, j)
+            sums[j, 0] = largest_size(speed, 0, top)

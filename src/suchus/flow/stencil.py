@@ -3,27 +3,29 @@
 """Rows of the pressure equation: the five-point operator and its smoothing steps.
 
 The coefficients differ from 1 only inside a window; everywhere else the plain stencil needs none from memory. A
-``place`` is a row of the multigrid's layout, whose last four numbers are that window.
+``place`` is a row of the multigrid's layout, whose last four numbers are that window. A row is named by an array and
+its number in it; ``low``, ``mid`` and ``high`` are the numbers of the row below, the row itself and the row above.
 """
 
-import numpy as np
-
-from suchus.flow.compiled import PAD, compiled
+from suchus.flow.compiled import PAD, UNIT, compiled, unsigned
 
 FIRST, SECOND = 0.5617, 1.3896
 """Jacobi weights: Chebyshev roots for the eigenvalues 0.5 to 2 of the scaled operator [-]."""
 
+LANES = 16
+"""Numbers that a largest is kept of side by side: one alone is not vectorised, as it could hide a NaN [-]."""
+
 
 @compiled
-def seal_row(row, periodic):
+def seal_row(a, row, periodic):
     """Fill the two cells beside a row's ends that the stencil reads."""
-    n = row.size
+    j, n = unsigned(row), a.shape[1]
     if periodic:
-        row[PAD - 1] = row[n - PAD - 1]
-        row[n - PAD] = row[PAD]
+        a[j, PAD - 1] = a[j, n - PAD - 1]
+        a[j, n - PAD] = a[j, PAD]
     else:
-        row[PAD - 1] = row[PAD]
-        row[n - PAD] = row[n - PAD - 1]
+        a[j, PAD - 1] = a[j, PAD]
+        a[j, n - PAD] = a[j, n - PAD - 1]
 
 
 @compiled
@@ -39,128 +41,91 @@ def seal_ends(x, periodic):
 
 
 @compiled
-def _apply_plain(out, mid, left, right, low, high):
-    """Write the operator times x along a row where all coefficients are 1."""
+def largest_size(a, row, top):
+    """Return the largest absolute value of a row inside the domain; ``top`` is room for ``LANES`` numbers."""
+    j, s, e = unsigned(row), unsigned(PAD), unsigned(a.shape[1] - PAD)
+    lanes = unsigned(LANES)
+    top[:] = 0
+    whole = s + (e - s) // lanes * lanes
+    for i in range(s, whole, lanes):
+        for k in range(lanes):
+            size = abs(a[j, i + k])
+            top[k] = size if size > top[k] else top[k]
+    for i in range(whole, e):
+        size = abs(a[j, i])
+        top[0] = size if size > top[0] else top[0]
+    return top.max()
+
+
+@compiled
+def _apply_body(x, low, mid, high, cx, cy, j, k):
+    m = x[mid, k]
+    return (cx[j, k] * (m - x[mid, k - UNIT]) + cx[j, k + UNIT] * (m - x[mid, k + UNIT])) + (
+        cy[j, k] * (m - x[low, k]) + cy[j + UNIT, k] * (m - x[high, k])
+    )
+
+
+@compiled
+def apply_rows(out, o, x, low, mid, high, cx, cy, place, row):
+    """Write the operator times row ``row`` of the level, which is ``mid`` in ``x``, to row ``o`` of ``out``."""
+    o, low, mid, high, j = unsigned(o), unsigned(low), unsigned(mid), unsigned(high), unsigned(row)
     four = out.dtype.type(4.0)
-    for k in range(out.size):
-        out[k] = four * mid[k] - ((left[k] + right[k]) + (low[k] + high[k]))
+    for k in range(unsigned(PAD), unsigned(x.shape[1] - PAD)):
+        out[o, k] = four * x[mid, k] - ((x[mid, k - UNIT] + x[mid, k + UNIT]) + (x[low, k] + x[high, k]))
+    if place[3] <= row < place[4]:
+        for k in range(unsigned(place[5]), unsigned(place[6])):
+            out[o, k] = _apply_body(x, low, mid, high, cx, cy, j, k)
 
 
 @compiled
-def _apply_body(out, mid, left, right, low, high, c_left, c_right, c_low, c_high):
-    """Write the operator times x along a row with coefficients."""
-    for k in range(out.size):
-        m = mid[k]
-        out[k] = (c_left[k] * (m - left[k]) + c_right[k] * (m - right[k])) + (
-            c_low[k] * (m - low[k]) + c_high[k] * (m - high[k])
-        )
+def first_row(out, o, shift, b, row, start, stop):
+    """Write two smoothing steps that start from nothing, where all coefficients are 1; ``b`` is the right side.
+
+    Columns ``start`` to ``stop`` of row ``row`` go to row ``o`` of ``out``, ``shift`` columns further left.
+    """
+    o, shift, j = unsigned(o), unsigned(shift), unsigned(row)
+    w1, w2 = out.dtype.type(FIRST), out.dtype.type(SECOND)
+    once = out.dtype.type(0.25) * w1
+    own = once + w2 * out.dtype.type(0.25) - w2 * once
+    near = w2 * out.dtype.type(0.25) * once
+    for k in range(unsigned(start), unsigned(stop)):
+        around = (b[j, k - UNIT] + b[j, k + UNIT]) + (b[j - UNIT, k] + b[j + UNIT, k])
+        out[o, k - shift] = own * b[j, k] + near * around
 
 
 @compiled
-def apply_row(out, x, cx, cy, place, j):
-    """Write the operator times ``x`` along row ``j`` to ``out``, which has the width of the domain."""
-    s, e = PAD, PAD + out.size
-    m, a, b = x[j], x[j - 1], x[j + 1]
-    _apply_plain(out, m[s:e], m[s - 1 : e - 1], m[s + 1 : e + 1], a[s:e], b[s:e])
-    if place[3] <= j < place[4]:
-        s, e = place[5], place[6]
-        _apply_body(
-            out[s - PAD : e - PAD],
-            m[s:e],
-            m[s - 1 : e - 1],
-            m[s + 1 : e + 1],
-            a[s:e],
-            b[s:e],
-            cx[j, s:e],
-            cx[j, s + 1 : e + 1],
-            cy[j, s:e],
-            cy[j + 1, s:e],
-        )
-
-
-@compiled
-def _first_row(out, b, left, right, low, high, w1, w2):
-    """Write two smoothing steps that start from nothing, where all coefficients are 1."""
-    once = b.dtype.type(0.25) * w1
-    own = once + w2 * b.dtype.type(0.25) - w2 * once
-    near = w2 * b.dtype.type(0.25) * once
-    for k in range(out.size):
-        out[k] = own * b[k] + near * ((left[k] + right[k]) + (low[k] + high[k]))
-
-
-@compiled
-def presmooth(x, b, cx, cy, dinv, place, j0, j1, periodic):
-    """Write two smoothing steps that start from nothing to rows ``j0`` to ``j1`` of ``x``."""
-    w1, w2 = x.dtype.type(FIRST), x.dtype.type(SECOND)
-    s, e = PAD, x.shape[1] - PAD
-    for j in range(j0, j1):
-        m = b[j]
-        _first_row(x[j, s:e], m[s:e], m[s - 1 : e - 1], m[s + 1 : e + 1], b[j - 1, s:e], b[j + 1, s:e], w1, w2)
-        if place[3] <= j < place[4]:
-            for i in range(place[5], place[6]):
-                y = w1 * dinv[j, i] * b[j, i]
-                a = (
-                    cx[j, i] * (y - w1 * dinv[j, i - 1] * b[j, i - 1])
-                    + cx[j, i + 1] * (y - w1 * dinv[j, i + 1] * b[j, i + 1])
-                    + cy[j, i] * (y - w1 * dinv[j - 1, i] * b[j - 1, i])
-                    + cy[j + 1, i] * (y - w1 * dinv[j + 1, i] * b[j + 1, i])
-                )
-                x[j, i] = y + w2 * dinv[j, i] * (b[j, i] - a)
-        seal_row(x[j], periodic)
-
-
-@compiled
-def _relax_plain(out, b, mid, left, right, low, high, weight):
-    """Write one Jacobi step along a row where all coefficients are 1."""
+def relax_rows(out, o, x, low, mid, high, b, cx, cy, dinv, place, row, weight, periodic):
+    """Write one Jacobi step of row ``row`` of the level, which is ``mid`` in ``x``, to row ``o`` of ``out``."""
+    o, low, mid, high, j = unsigned(o), unsigned(low), unsigned(mid), unsigned(high), unsigned(row)
     quarter = weight * out.dtype.type(0.25)
     stay = out.dtype.type(1.0) - weight
-    for k in range(out.size):
-        out[k] = stay * mid[k] + quarter * (b[k] + ((left[k] + right[k]) + (low[k] + high[k])))
+    for k in range(unsigned(PAD), unsigned(x.shape[1] - PAD)):
+        around = (x[mid, k - UNIT] + x[mid, k + UNIT]) + (x[low, k] + x[high, k])
+        out[o, k] = stay * x[mid, k] + quarter * (b[j, k] + around)
+    if place[3] <= row < place[4]:
+        for k in range(unsigned(place[5]), unsigned(place[6])):
+            rest = b[j, k] - _apply_body(x, low, mid, high, cx, cy, j, k)
+            out[o, k] = x[mid, k] + weight * dinv[j, k] * rest
+    seal_row(out, o, periodic)
 
 
 @compiled
-def _relax_body(out, b, dinv, mid, ax, weight):
-    for k in range(out.size):
-        out[k] = mid[k] + weight * dinv[k] * (b[k] - ax[k])
+def smooth(out, x, b, cx, cy, dinv, place, weight, periodic):
+    """Write one Jacobi step from ``x`` to ``out``."""
+    for j in range(PAD, x.shape[0] - PAD):
+        relax_rows(out, j, x, j - 1, j, j + 1, b, cx, cy, dinv, place, j, weight, periodic)
 
 
 @compiled
-def smooth(out, x, b, cx, cy, dinv, place, j0, j1, weight, periodic):
-    """Write one Jacobi step from ``x`` to rows ``j0`` to ``j1`` of ``out``."""
-    s, e = PAD, x.shape[1] - PAD
-    ax = np.empty(place[6] - place[5], x.dtype)
-    for j in range(j0, j1):
-        m = x[j]
-        _relax_plain(
-            out[j, s:e], b[j, s:e], m[s:e], m[s - 1 : e - 1], m[s + 1 : e + 1], x[j - 1, s:e], x[j + 1, s:e], weight
+def relax_patch(out, x, b, cx, cy, dinv, width, weight):
+    """Write one Jacobi step from ``x`` to ``out`` on a small array whose rows of ``width`` cells lie end to end.
+
+    The first and the last row stay as they are, and so does each cell whose ``dinv`` is 0.
+    """
+    wide = unsigned(width)
+    for k in range(wide, unsigned(x.size) - wide):
+        m = x[k]
+        ax = (cx[k] * (m - x[k - UNIT]) + cx[k + UNIT] * (m - x[k + UNIT])) + (
+            cy[k] * (m - x[k - wide]) + cy[k + wide] * (m - x[k + wide])
         )
-        if place[3] <= j < place[4]:
-            f, t = place[5], place[6]
-            _apply_body(
-                ax,
-                m[f:t],
-                m[f - 1 : t - 1],
-                m[f + 1 : t + 1],
-                x[j - 1, f:t],
-                x[j + 1, f:t],
-                cx[j, f:t],
-                cx[j, f + 1 : t + 1],
-                cy[j, f:t],
-                cy[j + 1, f:t],
-            )
-            _relax_body(out[j, f:t], b[j, f:t], dinv[j, f:t], m[f:t], ax, weight)
-        seal_row(out[j], periodic)
-
-
-@compiled
-def smooth_window(out, x, b, cx, cy, dinv, place, weight):
-    """Write one Jacobi step from ``x`` to ``out``, in the window only."""
-    f, t = place[5], place[6]
-    ax = np.empty(t - f, x.dtype)
-    for j in range(place[3], place[4]):
-        m = x[j]
-        _apply_body(
-            ax, m[f:t], m[f - 1 : t - 1], m[f + 1 : t + 1], x[j - 1, f:t], x[j + 1, f:t],
-            cx[j, f:t], cx[j, f + 1 : t + 1], cy[j, f:t], cy[j + 1, f:t],
-        )  # fmt: skip
-        _relax_body(out[j, f:t], b[j, f:t], dinv[j, f:t], m[f:t], ax, weight)
+        out[k] = m + weight * dinv[k] * (b[k] - ax)

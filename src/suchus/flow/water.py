@@ -7,7 +7,7 @@ step is ``dt / cell``, a viscosity ``viscosity / cell``, a pressure that over th
 import numpy as np
 
 from suchus.errors import NotConverged
-from suchus.flow import multigrid, poisson
+from suchus.flow import multigrid, patch, poisson
 from suchus.flow.advect import advance
 from suchus.flow.body import AnyBody, measure_all, unite, window_of
 from suchus.flow.border import Border
@@ -16,7 +16,7 @@ from suchus.flow.exchange import CONTENTS, SUMS, collect, contents, swelling
 from suchus.flow.grid import Grid
 from suchus.flow.immerse import close, fill, fill_source, immerse
 from suchus.flow.pose import Pose
-from suchus.flow.project import correct, fastest, level_out, residual
+from suchus.flow.project import correct, fastest, mean_residual, residual
 from suchus.flow.sides import Sides
 from suchus.flow.stencil import seal_ends
 
@@ -67,7 +67,9 @@ class Water:
         self._x, self._d, self._q = _fields(3, shape, dtype)
         self._layout = poisson.levels(ny, nx)
         self._store = poisson.make_store(self._layout, dtype)
-        self._sums = np.zeros((shape[0], 3))
+        self._patches = patch.rects(self._layout)
+        self._room: np.ndarray = np.zeros((6, 0), dtype)
+        self._sums = np.zeros((shape[0], 4))
         self.window: Window = (PAD, PAD, PAD, PAD)
         self.offset = 0.0
         self.solves: list[poisson.Solve] = []
@@ -118,6 +120,9 @@ class Water:
             self._mean = [0.5 * (was + b[here]) for was, b in zip(before, (self.bu, self.bv), strict=True)]
         multigrid.coarsen(self._store, self._layout)
         poisson.place_window(self._layout, new)
+        self._patches = patch.rects(self._layout)
+        self._room = patch.room_for(self._room, self._patches)
+        multigrid.spread(self._store, self._layout, self._room, self._patches)
 
     def _clear(self, window: Window) -> None:
         j0, j1, i0, i1 = window
@@ -242,17 +247,18 @@ class Water:
     def _project(self, velocity: tuple[np.ndarray, np.ndarray], dt: float, limits: tuple[float, float]) -> None:
         window = np.array(self.window)
         r = self._part(multigrid.B)
-        residual(r, *velocity, self._source, self._part(multigrid.DINV), window, self.sides.repeats, self._sums)
+        mean = mean_residual(*velocity, self._source, window)
+        residual(
+            r, *velocity, self._source, self._part(multigrid.DINV), window, self.dtype(mean), self.sides.repeats[0],
+            self._sums,
+        )  # fmt: skip
         sums = self._sums[PAD:-PAD]
         cells = self.grid.cells[0] * self.grid.cells[1]
-        went = poisson.Solve(0, float(sums[:, 1].sum()) / cells, float(sums[:, 2].max()))
+        went = poisson.Solve(0, float(sums[:, 0].sum()) / cells, float(sums[:, 1].max()))
         if went.mean > SKIPPED * limits[0] or went.largest > SKIPPED * limits[1]:
-            mean = float(sums[:, 0].sum()) / cells
-            if abs(mean) > 1e-3 * limits[0]:
-                level_out(r, self.dtype(mean), self.sides.repeats)
-            went = self._solve(limits)
-            gain = self.dtype(1 / dt)
-            correct(*velocity, self.p, self._x, *self.passage, window, gain)
+            went, parts = self._solve(limits)
+            x, gain = (self._d, self._part(multigrid.X)), self.dtype(1 / dt)
+            correct(*velocity, self.p, *x, *parts, *self.passage, window, gain)
             for seal, axis in ((self.p, 0), (self.p.T, 1)):
                 seal_ends(seal, self.sides.repeats[1 - axis])
             self.border.fill(*velocity)
@@ -271,7 +277,9 @@ class Water:
         r[:] = 0
         r[j0:j1, i0:i1] = (u[:-1, :-1] - u[:-1, 1:]) + (v[:-1, :-1] - v[1:, :-1])
         r[self._part(multigrid.DINV) == 0] = 0
-        self._solve((limit, 10 * limit))
+        _, (a, b) = self._solve((limit, 10 * limit))
+        np.multiply(self._d, a, out=self._x)
+        self._x += b * self._part(multigrid.X)
         return self._x
 
     def along_sides(self, x: np.ndarray) -> list[np.ndarray]:
@@ -295,17 +303,17 @@ class Water:
         level = sum(float(s.sum()) for s in sides) / sum(s.size for s in sides)
         return [s - level for s in sides]
 
-    def _solve(self, limits: tuple[float, float]) -> poisson.Solve:
-        went = poisson.Solve(
-            *poisson.solve(
-                self._x, self._d, self._q, self._store, self._layout, self.sides.repeats, self._sums, *limits,
-                MOST_CYCLES,
-            )
+    def _solve(self, limits: tuple[float, float]) -> tuple[poisson.Solve, tuple[float, float]]:
+        """Return how the solve went, and what the solution is made of; see ``poisson.solve``."""
+        *told, a, b = poisson.solve(
+            self._x, self._d, self._q, self._store, self._layout, self._room, self._patches, self.sides.repeats,
+            self._sums, *limits, MOST_CYCLES,
         )  # fmt: skip
+        went = poisson.Solve(*told)
         if not (went.mean <= STUCK * limits[0] and went.largest <= STUCK * limits[1]):
             raise NotConverged(
                 f"the pressure solver stopped after {went.cycles} cycles with a divergence of {went.mean:.2g} m/s per "
                 f"cell on the average and {went.largest:.2g} at most, where {limits[0]:.2g} and {limits[1]:.2g} are "
                 f"allowed; take a larger tolerance, or precision='double'."
             )
-        return went
+        return went, (self.dtype(a), self.dtype(b))
