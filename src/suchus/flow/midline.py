@@ -138,10 +138,14 @@ class Midline(Shape):
             float(outline[0].min()), float(outline[0].max()), float(outline[1].min()), float(outline[1].max())
         )  # fmt: skip
 
-    def sheet(self, time: float, pose: Pose) -> np.ndarray:
-        """Return the midline."""
+    def sheet(self, time: float, pose: Pose) -> np.ndarray | None:
+        """Return the midline, but for its ends where they are round: wider than the way to the tip is long."""
         placed = self.spine(time).placed(pose)
-        return np.stack([placed.x, placed.y])
+        to_tip = np.minimum(placed.arc, placed.arc[-1] - placed.arc)
+        slim = np.flatnonzero(placed.half_width < to_tip)
+        if slim.size < 2:
+            return None
+        return np.stack([placed.x, placed.y])[:, slim[0] : slim[-1] + 1]
 
     def mass(self, time: float) -> Mass:
         """Return area, centre and moments, section by section."""

@@ -216,8 +216,10 @@ class Ellipse(Solid):
         return self.length / 2 * np.cos(turn), self.width / 2 * np.sin(turn)
 
     def sheet(self, time: float, pose: Pose) -> np.ndarray:
-        """Return the longer axis."""
-        tip = (self.length / 2, 0.0) if self.length > self.width else (0.0, self.width / 2)
+        """Return the longer axis as far as the ellipse is less wide there than the way to its tip is long."""
+        a, b = self.length / 2, self.width / 2
+        reach = (a if a > b else b) * abs(a * a - b * b) / (a * a + b * b)
+        tip = (reach, 0.0) if a > b else (0.0, reach)
         return np.stack(pose.to_world(*np.outer(tip, [-1.0, 1.0])))
 
     def thickness(self, time: float) -> tuple[np.ndarray, np.ndarray]:
@@ -260,8 +262,8 @@ class Plate(Solid):
         return second * (half + r * np.cos(angle) - along), second * r * np.sin(angle)
 
     def sheet(self, time: float, pose: Pose) -> np.ndarray:
-        """Return the line from end to end."""
-        return np.stack(pose.to_world(self.length / 2 * np.array([-1.0, 1.0]), np.zeros(2)))
+        """Return the line between the middles of the round ends."""
+        return np.stack(pose.to_world((self.length - self.thick) / 2 * np.array([-1.0, 1.0]), np.zeros(2)))
 
     def thickness(self, time: float) -> tuple[np.ndarray, np.ndarray]:
         """Return the thickness."""
