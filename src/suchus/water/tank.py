@@ -32,8 +32,8 @@ class Tether:
     cycles: int
     """How many cycles are simulated; the last is measured [-]."""
     blunt: float = 0.0
-    """Least half-width: where the body is thinner it is thickened, its ends made round [cell]. 1.75 cells hold all
-    water back; with 0 the body stays as it is, and water leaks through where it is thinner."""
+    """Least half-width: where the body is thinner it is thickened, its ends made round [cell]. With 1.75 cells the
+    force has the least noise; with 0 the body stays as it is."""
     frames: int = 24
     """Instants of a free body's last cycle at which the fields are kept, for films [-]."""
     box: tuple[float, float] | None = None
