@@ -197,9 +197,9 @@ def _draw_convergence(rows: list[dict[str, Any]]) -> Figure:
         curves = _curves(rows, case, "mean speed")
         if curves:
             swim.plot(curves["cells"], curves["speed"], "o-", ms=4, label=case.removeprefix("free eel, "))
-    swim.set(xlabel="cells along the body", ylabel="speed (L/T)", title="free eel, cycle 6")
+    swim.set(xlabel="cells along the body", ylabel="speed (L/T)", title="free eel, last cycle")
     swim.set_ylim(0, 0.8)
-    for axes, ticks in ((fields, (16, 32, 64, 128)), (forces, (8, 16, 32, 64, 128)), (swim, (64, 96, 128, 192, 256))):
+    for axes, ticks in ((fields, (16, 32, 64, 128)), (forces, (8, 16, 32, 64, 128)), (swim, (128, 192, 288, 384))):
         axes.set_xticks(ticks, [str(n) for n in ticks])
         axes.tick_params(axis="x", which="minor", bottom=False, labelbottom=False)
         if axes.lines:
