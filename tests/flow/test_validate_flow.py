@@ -432,7 +432,8 @@ def test_force_noise_of_a_held_eel():
     ],
 )
 def test_free_eel(name, viscosity, sizes, cycles, between, gains):
-    """Neither the source nor another one that could be checked gives a speed."""
+    """Neither the source nor another one that could be checked gives a speed: ``between`` and ``gains`` are ours, set
+    after the result. The 2 % are asked."""
     speeds, case = [], f"free eel, {name}"
     for cells in sizes:
         record, means = cases.swimming_eel(cells, cycles, viscosity=viscosity)

@@ -21,7 +21,7 @@ PARALLEL = 1e-3
 """Share of (z, A z) that must be left once z is orthogonal to the last direction: with less it stays as it is [-]."""
 
 WORSE = 3.0
-"""Growth of the residual over the smallest so far at which an iteration is dropped and the solve ends [-]."""
+"""Growth of the residual over the smallest so far at which a solve that is ``NEARLY`` done drops the iteration [-]."""
 
 STALLED = 3
 """Cycles without progress after which rounding, not the residual, is what is left [-]."""
