@@ -117,7 +117,7 @@ class SpeedRange(Experiment):
         return [
             run.gait.period,
             speed,
-            float(duty_factor(part).mean()),
+            float(duty_factor(one, start, end).mean()),
             float(cost_of_transport(one, start, end)),
             speed**2 / (GRAVITY * run.gait.hip_height),
             float(roll_peak_to_peak(one, start, end)),

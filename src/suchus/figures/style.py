@@ -21,6 +21,8 @@ COLOURS: Final[Mapping[str, str]] = MappingProxyType(
         "limbs_only": "#D55E00",
         "tail_drag": "#009E73",
         "spine_only": "#B0558A",
+        "tail_still": "#56B4E9",
+        "limbs_tail_lifted": "#E69F00",
         "ours": "#0072B2",
         "printed": "#333333",
         "neutral": "#767676",
@@ -42,10 +44,12 @@ LINES: Final[Mapping[str, Mapping[str, Any]]] = MappingProxyType(
     {
         role: MappingProxyType({"color": COLOURS[role], "linestyle": dashes, "label": label})
         for role, dashes, label in (
-            ("coordinated", "-", "spine and tail take part"),
+            ("coordinated", "-", "spine and tail"),
             ("limbs_only", (0, (5, 2)), "limbs only"),
-            ("tail_drag", (0, (1, 1.2)), "tail drags"),
-            ("spine_only", (0, (5, 1.5, 1, 1.5)), "spine only"),
+            ("limbs_tail_lifted", (0, (3, 1.2)), "limbs only, tail lifted"),
+            ("tail_still", (0, (8, 1.5)), "spine, tail dragged still"),
+            ("spine_only", (0, (5, 1.5, 1, 1.5)), "spine only, tail lifted"),
+            ("tail_drag", (0, (1, 1.2)), "tail only, trunk straight"),
             ("ours", "-", "ours"),
             ("printed", (0, (4, 2)), "as printed"),
             ("neutral", "-", None),

@@ -2,7 +2,7 @@
 
 from suchus.metrics.decisive import Border, border, rank_correlation
 from suchus.metrics.energy import cost_of_transport, peak_torque, work
-from suchus.metrics.gait import duty_factor, loaded, sensed_phase
+from suchus.metrics.gait import duty_factor, foot_clearance, loaded, sensed_phase, two_feet_share
 from suchus.metrics.loads import swing_lift, swing_loads
 from suchus.metrics.loss import loss, says
 from suchus.metrics.progress import displacement, heading, heading_change, path_length, slip
@@ -26,6 +26,7 @@ __all__ = [
     "cost_of_transport",
     "displacement",
     "duty_factor",
+    "foot_clearance",
     "heading",
     "heading_change",
     "height_peak_to_peak",
@@ -51,6 +52,7 @@ __all__ = [
     "swing_lift",
     "swing_loads",
     "tilt",
+    "two_feet_share",
     "whole",
     "work",
 ]

@@ -11,7 +11,7 @@ def _constant(key: str, name: str, value: float, digit: float) -> Claim:
         quantity=f"{name} of the body wave",
         value=value,
         unit="-",  # none is printed
-        tolerance=digit / 2,  # half of the last printed digit
+        rounding=digit / 2,  # half of the last printed digit
         sense="The midline of the swimming robot is fitted by (20) with c1 = 0.027, c2 = 0.30, k = 0.023.",
         quote="c1 = 0.027, c2 = 0.30 and k = 0.023",
     )
