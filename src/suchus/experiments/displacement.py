@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from math import degrees
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import xarray as xr
@@ -16,7 +16,7 @@ from suchus.figures import COLOURS, LINES, captioned, panels, styled
 from suchus.figures.crawls import draw_crawls
 from suchus.figures.maps import draw_map
 from suchus.figures.timeseries import draw_band, draw_lines, mark_cycles, mark_printed
-from suchus.gaits import GAITS
+from suchus.gaits import CONDITIONS, GAITS, conditions
 from suchus.land import Ground, Run, simulate
 from suchus.metrics import cost_of_transport, duty_factor, foot_clearance, heading_change, slip, two_feet_share
 from suchus.metrics import displacement as displacement_of
@@ -26,10 +26,7 @@ from suchus.replay import replay
 from suchus.robots import ROBOTS
 from suchus.verdict import Reading
 
-ARMS = ("coordinated", "limbs_only", "limbs_tail_lifted", "tail_still", "spine_only", "tail_drag")
-"""The two groups; the control group with its tail in the air; the crawl without the tail's swing, with the tail in the
-air, and with a straight trunk."""
-_GROUPS = ARMS[:2]
+_GROUPS = CONDITIONS[:2]
 _COARSE = 0.005  # [s]; time step of repeats and map, measured to agree with 2 ms within 0.1 %
 _LEAST = 0.002  # [m]; below this displacement a ratio means nothing
 _HIND = ("LH", "RH")
@@ -47,7 +44,7 @@ class Displacement(Experiment):
     title = "How far does it crawl, with spine and tail and without?"
     shows = "Section IV.B, Fig. 16"
     judged_with = ("robot", "gait", "control", "cycles")
-    judged_from = {"repeats": 8}
+    judged_from: ClassVar[Mapping[str, float]] = {"repeats": 8}
 
     robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that crawls."""
@@ -95,7 +92,7 @@ class Displacement(Experiment):
     def simulate(self, progress: Progress = silent) -> Simulated:
         """Crawl in every condition, repeat with noise, and map what decides."""
         duration = START + self.cycles * self.gait.period
-        gaits = self._gaits()
+        gaits = conditions(self.gait, self.control)
         runs = [Run(robot=self.robot, gait=gait, label=arm) for arm, gait in gaits.items()]
         record = simulate(runs, duration=duration, progress=staged(progress, "conditions", 0.0, 0.1))
         told = staged(progress, "repeats", 0.1, 0.5)
@@ -116,18 +113,6 @@ class Displacement(Experiment):
             caption=caption,
         )
         return {"crawl_replay.html": Replay(caption=caption, make=page)}
-
-    def _gaits(self) -> dict[str, Gait]:
-        """Return the gait of each condition; each differs from another one in one thing."""
-        lifted = GAITS["limbs_tail_lifted"].tail_pitch
-        return {
-            "coordinated": self.gait,
-            "limbs_only": self.control,
-            "limbs_tail_lifted": replace(self.control, name="limbs_tail_lifted", tail_pitch=lifted),
-            "tail_still": replace(self.gait, name="tail_still", tail_bend=0.0),
-            "spine_only": replace(self.gait, name="spine_only", tail_bend=0.0, tail_pitch=lifted),
-            "tail_drag": replace(self.gait, name="tail_drag", trunk_bend=0.0),
-        }
 
     def _repeats(self, gaits: Mapping[str, Gait]) -> list[Run]:
         """Return the repeats of all conditions; the i-th has the same noise and friction in each."""
@@ -185,7 +170,7 @@ class Displacement(Experiment):
         cost, slid, aside = cost_of_transport(record), slip(record), displacement_of(record).sel(xyz="y")
         duty, clear, two = duty_factor(record), foot_clearance(record), two_feet_share(record)
         measures: dict[str, Measure] = {}
-        for i, arm in enumerate(ARMS):
+        for i, arm in enumerate(CONDITIONS):
             repeats, hind = record.spread_forward.sel(condition=arm), {"leg": list(_HIND)}
             measures |= {
                 **_ranged(f"forward_{arm}", float(forward[i]), repeats, "m"),
@@ -199,11 +184,11 @@ class Displacement(Experiment):
             }
         for name, one, other in _GAINS:
             of = {arm: record.spread_forward.sel(condition=arm, drop=True) for arm in (one, other)}
-            gain = float(forward[ARMS.index(one)] - forward[ARMS.index(other)])
+            gain = float(forward[CONDITIONS.index(one)] - forward[CONDITIONS.index(other)])
             measures |= _ranged(f"gain_{name}", gain, of[one] - of[other], "m")
         for name, control in (("forward_ratio", "limbs_only"), ("forward_ratio_tail_lifted", "limbs_tail_lifted")):
             apart = [record.spread_forward.sel(condition=arm, drop=True) for arm in ("coordinated", control)]
-            quotient = float(forward[0] / forward[ARMS.index(control)])
+            quotient = float(forward[0] / forward[CONDITIONS.index(control)])
             measures |= _ranged(name, quotient, apart[0] / apart[1], "-")
         ratio = _ratio(record)
         return measures | {
@@ -246,19 +231,20 @@ class Displacement(Experiment):
         with styled():
             figure, axes = panels(1, 1, height=4.0)
             ax = axes[0, 0]
-            for i, arm in enumerate(ARMS):
-                repeats, here = record.spread_forward.sel(condition=arm), len(ARMS) - i
+            for i, arm in enumerate(CONDITIONS):
+                repeats, here = record.spread_forward.sel(condition=arm), len(CONDITIONS) - i
                 ax.plot([float(repeats.min()), float(repeats.max())], [here, here], color=COLOURS[arm], linewidth=7,
                         alpha=0.35, solid_capstyle="butt")  # fmt: skip
                 ax.plot(float(forward[i]), here, "o", color=COLOURS[arm], markersize=9)
-                ax.annotate(f"{float(forward[i]):.2f} m", (float(forward[i]), here), (0, 10), textcoords="offset points",
-                            ha="center", fontsize=11)  # fmt: skip
+                ax.annotate(f"{float(forward[i]):.2f} m", (float(forward[i]), here), (0, 10), ha="center", fontsize=11,
+                            textcoords="offset points")  # fmt: skip
             for arm in _GROUPS:
                 printed = CLAIMS[f"displacement_{arm}"].value
-                ax.plot(printed, len(ARMS) - ARMS.index(arm), "D", markerfacecolor="none", markeredgecolor="black",
-                        markersize=11, label="article" if arm == "coordinated" else None)  # fmt: skip
-            ax.set_yticks(range(len(ARMS), 0, -1), [str(LINES[arm]["label"]) for arm in ARMS])
-            ax.set_ylim(0.4, len(ARMS) + 0.8)
+                label = "article" if arm == _GROUPS[0] else None
+                ax.plot(printed, len(CONDITIONS) - CONDITIONS.index(arm), "D", markersize=11, markerfacecolor="none",
+                        markeredgecolor="black", label=label)  # fmt: skip
+            ax.set_yticks(range(len(CONDITIONS), 0, -1), [str(LINES[arm]["label"]) for arm in CONDITIONS])
+            ax.set_ylim(0.4, len(CONDITIONS) + 0.8)
             ax.set_xlim(left=min(0.0, float(record.spread_forward.min())))
             ax.set_xlabel("displacement forward [m]")
             ax.legend(loc="lower right")
@@ -291,8 +277,8 @@ class Displacement(Experiment):
         diamonds = " Diamonds: the article's {coordinated:g} and {limbs_only:g} m.".format(**printed) if shown else ""
         return captioned(
             figure,
-            f"Displacement of the centre of mass over {cycles:.3g} cycles with identical leg commands.{diamonds} Bands: "
-            f"repeats with noise on the servos and {self.grip_spread:.0%} of spread in the friction.",
+            f"Displacement of the centre of mass over {cycles:.3g} cycles with identical leg commands.{diamonds} "
+            f"Bands: repeats with noise on the servos and {self.grip_spread:.0%} of spread in the friction.",
         )
 
     def _drawn_map(self, record: xr.Dataset) -> Any:
@@ -332,9 +318,9 @@ class Displacement(Experiment):
         return captioned(
             figure,
             "What decides. Left: the ratio of the displacements with spine and tail and with limbs only; the star is "
-            "the crawl of the other figures, the orange line the article's ratio. Middle: the steady pitch of the tail, "
-            "the dotted line that of the crawl. Right: the phase lag of the trunk's bend behind the legs, with spine "
-            "and tail.",
+            "the crawl of the other figures, the orange line the article's ratio. Middle: the steady pitch of the "
+            "tail, the dotted line that of the crawl. Right: the phase lag of the trunk's bend behind the legs, "
+            "with spine and tail.",
         )
 
 
@@ -346,13 +332,13 @@ def _renamed(spread: xr.Dataset, repeats: int) -> xr.Dataset:
     """Return the displacement over time of the repeats, by condition."""
     x = spread.centre_of_mass.sel(xyz="x", drop=True).transpose("run", "time")
     x = x - x.sel(time=START, method="nearest", drop=True)
-    dims, shape = ("condition", "repeat"), (len(ARMS), repeats)
+    dims, shape = ("condition", "repeat"), (len(CONDITIONS), repeats)
     data = xr.Dataset(
         {
             "spread_over_time": ((*dims, "spread_time"), x.values.reshape(*shape, -1), {"units": "m"}),
             "spread_forward": (dims, _forward(spread).values.reshape(shape), {"units": "m"}),
         },
-        coords={"condition": list(ARMS), "spread_time": spread.time.values},
+        coords={"condition": list(CONDITIONS), "spread_time": spread.time.values},
     )
     data.spread_time.attrs["units"] = "s"
     return data

@@ -1,9 +1,18 @@
 """From a record to numbers: pure, and along whatever dimensions the record has besides time."""
 
+from suchus.metrics.bends import (
+    lateral_bend,
+    spine_amplitude,
+    spine_sine_share,
+    spine_swings,
+    tail_amplitude,
+    tail_swing_least,
+    tail_swings,
+)
 from suchus.metrics.decisive import Border, border, rank_correlation
 from suchus.metrics.energy import cost_of_transport, peak_torque, work
-from suchus.metrics.gait import duty_factor, foot_clearance, loaded, sensed_phase, two_feet_share
-from suchus.metrics.loads import swing_lift, swing_loads
+from suchus.metrics.gait import diagonal_phase_error, duty_factor, foot_clearance, loaded, sensed_phase, two_feet_share
+from suchus.metrics.loads import swing_lift, swing_loads, tail_load_share
 from suchus.metrics.loss import loss, says
 from suchus.metrics.progress import displacement, heading, heading_change, path_length, slip
 from suchus.metrics.reach import held, lead, reach, static_margin
@@ -12,6 +21,7 @@ from suchus.metrics.stability import (
     height_peak_to_peak,
     height_std,
     line_distance,
+    line_distance_max,
     roll_peak_to_peak,
     support_distance,
     support_polygon,
@@ -24,6 +34,7 @@ __all__ = [
     "between",
     "border",
     "cost_of_transport",
+    "diagonal_phase_error",
     "displacement",
     "duty_factor",
     "foot_clearance",
@@ -32,8 +43,10 @@ __all__ = [
     "height_peak_to_peak",
     "height_std",
     "held",
+    "lateral_bend",
     "lead",
     "line_distance",
+    "line_distance_max",
     "loaded",
     "loss",
     "path_length",
@@ -46,11 +59,18 @@ __all__ = [
     "says",
     "sensed_phase",
     "slip",
+    "spine_amplitude",
+    "spine_sine_share",
+    "spine_swings",
     "static_margin",
     "support_distance",
     "support_polygon",
     "swing_lift",
     "swing_loads",
+    "tail_amplitude",
+    "tail_load_share",
+    "tail_swing_least",
+    "tail_swings",
     "tilt",
     "two_feet_share",
     "whole",

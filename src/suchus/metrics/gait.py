@@ -46,6 +46,14 @@ def sensed_phase(record: xr.Dataset, start: float = START, end: float | None = N
     return np.mod((angle - angle.sel(leg="LF", drop=True)) / (2 * np.pi), 1.0)
 
 
+def diagonal_phase_error(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
+    """Return how far apart in phase the stances of a diagonal pair are, of the pair that is farther [cycle]."""
+    phase = sensed_phase(record, start, end)
+    of = {leg: phase.sel(leg=leg, drop=True) for leg in ("RF", "LH", "RH")}
+    apart = [np.abs((difference + 0.5) % 1.0 - 0.5) for difference in (of["RH"], of["RF"] - of["LH"])]
+    return np.maximum(*apart)
+
+
 def _cycles(record: xr.Dataset, start: float, end: float | None) -> xr.Dataset:
     """Return the window without its last sample, which begins the next cycle."""
     return between(record, start, end).isel(time=slice(0, -1))

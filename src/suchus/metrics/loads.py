@@ -3,6 +3,7 @@
 import numpy as np
 import xarray as xr
 
+from suchus.kinematics.mass import GRAVITY
 from suchus.metrics.window import between
 from suchus.motion import START
 
@@ -29,6 +30,12 @@ def swing_lift(record: xr.Dataset, leg: str, start: float = START, end: float | 
     part = between(record, start, end)
     height = part.foot_position.sel(leg=leg, xyz="z", drop=True).where(_swings(part, leg))
     return (height.max("time") - height.min("time")).assign_attrs(units="m")
+
+
+def tail_load_share(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
+    """Return which share of the weight the tail carries, on average [-]."""
+    load = between(record, start, end).tail_force.sel(xyz="z", drop=True).mean("time")
+    return load / (record.mass * GRAVITY)
 
 
 def _swings(part: xr.Dataset, leg: str) -> xr.DataArray:

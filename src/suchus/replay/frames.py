@@ -13,7 +13,10 @@ RATE = 30.0
 """Frames kept for each second [1/s]; the player moves smoothly between them."""
 MOST = 2700
 """Frames kept at most [-]: a minute and a half at the full rate, 1 MB; longer runs get fewer per second."""
-_NEEDED = ("position", "orientation", "joint_angle", "centre_of_mass", "foot_position", "foot_force")
+_NEEDED = (
+    *("position", "orientation", "joint_angle", "centre_of_mass", "foot_position", "foot_force"),
+    *("tail_force", "tail_tip"),
+)
 
 
 class Frames(NamedTuple):

@@ -75,13 +75,20 @@ class Rule:
     kind: Kind = "measured"
     """What the claim rests on."""
     holds: tuple[Clause, ...] = ()
-    """The statement apart from its number: all of these; a claim without a number needs one at least."""
+    """The statement apart from its number: all of these. None only where a printed number alone is read back."""
     band: Band | None = None
     """How the measured number scatters; None where nothing was repeated."""
     why: str
     """What decided it, in a sentence or two with measures in braces: ``{forward_ratio:.2f}``, see ``reading``."""
     unswept: str = ""
     """Why no share of plausible designs is known; empty where ``suchus study claims`` answers the claim."""
+
+    @property
+    def needs(self) -> set[str]:
+        """Names of the measures that decide, those of the sentence not counted."""
+        needed = {self.measure, *(clause.measure for clause in self.holds)}
+        needed |= {clause.bound for clause in self.holds if isinstance(clause.bound, str)}
+        return needed if self.band is None else needed | {self.band.low, self.band.high}
 
     def reason(self, measures: Mapping[str, float]) -> str:
         """Return what decided it, with its numbers."""
