@@ -20,10 +20,12 @@ class Catalog(Mapping[str, T], Generic[T]):
         kind: the singular noun, also the name each module must declare (``robot``, ``gait``, ``experiment``).
         package: dotted name of the package whose modules stand on this shelf.
         declares: dotted name of the type of what is declared, as ``module:Class``.
+        classes: whether each module declares a class derived from that type, rather than a value of it.
     """
 
-    def __init__(self, kind: str, package: str, declares: str) -> None:
+    def __init__(self, kind: str, package: str, declares: str, *, classes: bool = False) -> None:
         self.kind = kind
+        self._classes = classes
         self._package = package
         self._declares = declares
 
@@ -44,11 +46,13 @@ class Catalog(Mapping[str, T], Generic[T]):
         thing: Any = getattr(module, self.kind, None)
         path, _, cls = self._declares.partition(":")
         wanted = getattr(import_module(path), cls)
-        if not isinstance(thing, wanted):
+        fits = isinstance(thing, type) and issubclass(thing, wanted) if self._classes else isinstance(thing, wanted)
+        if not fits:
             found = "nothing" if thing is None else f"a {type(thing).__name__}"
+            wanted_as = f"subclass of {cls}" if self._classes else cls
             file = Path(str(module.__file__)).name
             raise InvalidDesign(
-                f"{self._package.replace('.', '/')}/{file} must declare `{self.kind}`, a {cls}, "
+                f"{self._package.replace('.', '/')}/{file} must declare `{self.kind}`, a {wanted_as}, "
                 f"but declares {found}; add it or move the file off the shelf."
             )
         return thing

@@ -111,9 +111,12 @@ values = [[], [{kind = "limp", joint = "LF_yaw", at = 1.0}]]
 @pytest.mark.parametrize(
     ("fault", "said"),
     [
-        ('[{kind = "limpp", joint = "LF_yaw"}]', "limp, locked, weak or deaf"),
+        ('[{kind = "limpp", joint = "LF_yaw"}]', "Did you mean 'limp'"),
         ('["limp LF_yaw"]', "lists of tables"),
-        ('[{kind = "limp", joint = "LF_yaw", angle = 1.0}]', "it cannot have"),
+        (
+            '[{kind = "limp", joint = "LF_yaw", angle = 1.0}]',
+            "no field of the fault limp named 'angle'",
+        ),
     ],
 )
 def test_a_fault_that_is_none_is_refused(fault, said, tmp_path):

@@ -20,6 +20,7 @@ from suchus.envs.pack import Pack, draw  # noqa: E402
 from suchus.envs.reward import Terms  # noqa: E402
 from suchus.envs.senses import level_axes  # noqa: E402
 from suchus.errors import InvalidDesign, OutsideLimits, UnknownName  # noqa: E402
+from suchus.faults import Locked, Weak  # noqa: E402
 from suchus.gaits import GAITS  # noqa: E402
 from suchus.motion import limb_phase, servo_targets  # noqa: E402
 
@@ -101,7 +102,7 @@ def test_a_robot_that_broke_begins_anew_as_if_nothing_had_happened(kind):
     used.restart([0, 1], [np.random.default_rng(1), np.random.default_rng(2)])
     used.act(np.ones((2, 19)), np.ones(2, dtype=bool))
     limp = used._bench.batch.expanded("opt.disableactuator")
-    assert (limp != 0).all() if kind == "limp" else np.isfinite(used._held).sum() == 2
+    assert (limp != 0).all() if kind == "limp" else used._injector.broken(1) == (Locked("LF_pitch"),)
     for pack in (used, fresh):
         pack.restart([1], [np.random.default_rng(7)])
         pack.chances[1] = replace(pack.chances[1], breaks=-1)
@@ -215,8 +216,8 @@ def test_the_joint_that_was_drawn_breaks_when_it_was_drawn(kind):
 def test_faults_are_drawn_from_all_that_are_named():
     random = np.random.default_rng(0)
     drawn = [draw(FAULT, random) for _ in range(300)]
-    assert {servo_names()[chance.servo] for chance in drawn} == set(FAULT.breaks.joints)
-    assert {chance.kind for chance in drawn} == {"limp", "locked"}
+    assert {chance.broken.part for chance in drawn} == set(FAULT.breaks.joints)
+    assert {chance.broken.kind() for chance in drawn} == {"limp", "locked"}
     assert max(chance.breaks for chance in drawn) <= 400
 
 
@@ -328,8 +329,14 @@ def test_what_cannot_be_is_said_in_a_sentence(changes, error, text):
 def test_bad_breaks_and_shoves_are_refused():
     with pytest.raises(UnknownName, match="Did you mean 'LF_yaw'"):
         envs.Breaks(joints=("LF_yav",))
-    with pytest.raises(InvalidDesign, match="limp and locked are allowed"):
-        envs.Breaks(kinds=("weak",))
+    with pytest.raises(UnknownName, match="Did you mean 'weak'"):
+        envs.Breaks(kinds=("wek",))
+    with pytest.raises(UnknownName, match="there is no fault of a servo named 'deaf'"):
+        envs.Breaks(kinds=("deaf",))
+    with pytest.raises(InvalidDesign, match="kinds is empty"):
+        envs.Breaks(kinds=())
+    with pytest.raises(InvalidDesign, match="0 to 1 is allowed"):
+        envs.CrocodileEnv(breaks=envs.Breaks(faults=(Weak("LF_yaw", 1.5),)))
     with pytest.raises(InvalidDesign, match="must not decrease"):
         envs.Breaks(earliest=5.0, latest=1.0)
     with pytest.raises(InvalidDesign, match="must not decrease"):

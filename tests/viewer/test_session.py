@@ -7,6 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from suchus.errors import OutsideLimits
+from suchus.faults import Limp, Locked
 from suchus.gaits import GAITS
 from suchus.land import simulate
 from suchus.motion import Gait, check_limits
@@ -163,9 +164,9 @@ def test_repaired_joints_are_no_longer_listed():
     session.lose("LF_yaw", "limp")
     session.lose("LF_yaw", "locked")
     session.lose("RH_pitch", "limp")
-    assert session.settings.broken == (("LF_yaw", "locked"), ("RH_pitch", "limp"))
+    assert session.settings.broken == (Locked("LF_yaw"), Limp("RH_pitch"))
     session.mend("LF_yaw")
-    assert session.settings.broken == (("RH_pitch", "limp"),)
+    assert session.settings.broken == (Limp("RH_pitch"),)
     session.mend()
     assert session.settings.broken == ()
     assert "LF_wrist" in session.lose("LF_wrist", "limp")

@@ -14,8 +14,10 @@ from suchus.envs.reward import Terms
 from suchus.envs.senses import SERVOS, level_axes, observations
 from suchus.envs.task import Task
 from suchus.errors import UnknownName
-from suchus.land import CONTROL_PERIOD, Limp, Run
+from suchus.fault import Fault, check_faults
+from suchus.land import CONTROL_PERIOD, Run
 from suchus.land.bench import Bench
+from suchus.land.injector import Injector
 from suchus.land.readings import Readings
 from suchus.land.restarting import restart
 from suchus.model import compile_model
@@ -28,10 +30,8 @@ class Chance:
 
     phase: float = 0.0
     """Of the clock at the beginning [cycle]."""
-    servo: int = -1
-    """Which servo breaks; -1: none."""
-    kind: str = ""
-    """How."""
+    broken: Fault | None = None
+    """What breaks; None: nothing."""
     breaks: int = -1
     """In which control period; -1: never."""
     force: tuple[float, float, float] = (0.0, 0.0, 0.0)
@@ -42,9 +42,9 @@ class Chance:
     @property
     def fault(self) -> str:
         """In words; empty if nothing breaks."""
-        if self.servo < 0:
+        if self.broken is None:
             return ""
-        return f"{servo_names()[self.servo]} {self.kind} from {self.breaks * CONTROL_PERIOD:.2f} s"
+        return f"{self.broken.part} {self.broken.kind()} from {self.breaks * CONTROL_PERIOD:.2f} s"
 
 
 class Pack:
@@ -58,6 +58,8 @@ class Pack:
     def __init__(self, task: Task, count: int) -> None:
         self.task, self.count = task, count
         check_limits(task.robot, task.gait)
+        for fault in task.breaks.possible if task.breaks else ():
+            check_faults([fault], task.robot, np.inf)
         self._begin = begin(task)
         self._low, self._high = np.array([servo_range(task.robot, name) for name in servo_names()]).T
         self._runs = [Run(robot=task.robot, gait=task.gait, ground=task.ground)] * count
@@ -66,8 +68,9 @@ class Pack:
         self._steps = round(CONTROL_PERIOD / task.timestep)
         self._check_body()
         self._told = np.tile(self._begin.told, (count, 1))
-        self._held = np.full((count, SERVOS), np.nan)
+        self._injector = Injector(self._bench, CONTROL_PERIOD)
         self._tick = np.zeros(count, dtype=int)
+        self._periods = 0
         self.chances = [Chance()] * count
         self.causes = [""] * count
 
@@ -95,8 +98,9 @@ class Pack:
         """
         for i, random in zip(robots, chances, strict=True):
             jitter = self.task.jitter * random.uniform(-1.0, 1.0, SERVOS)
+            self._injector.mend(i)
             restart(self._bench, i, off_by(self.task, self._begin, jitter))
-            self._told[i], self._held[i], self._tick[i] = self._begin.told, np.nan, 0
+            self._told[i], self._tick[i] = self._begin.told, 0
             self.chances[i], self.causes[i] = draw(self.task, random), ""
 
     def feel(self) -> Float[np.ndarray, "run n"]:
@@ -119,8 +123,8 @@ class Pack:
         for k in range(periods):
             self._happen(who)
             targets = self._told + (k + 1) / periods * (goal - self._told)
-            targets = np.where(np.isnan(self._held), targets, self._held)
-            self._bench.advance(targets, self._steps, 0.0)
+            self._bench.advance(self._injector.command(self._periods, targets), self._steps, 0.0)
+            self._periods += 1
             work += self._power() * CONTROL_PERIOD
             self._tick[who] += 1
         haste = ((goal - self._told) ** 2).sum(axis=1)
@@ -163,11 +167,8 @@ class Pack:
         """Break and push those whose time has come."""
         for i in np.flatnonzero(who):
             chance, tick = self.chances[i], self._tick[i]
-            if tick == chance.breaks:
-                if chance.kind == "limp":
-                    self._bench.break_servo(int(i), Limp(servo_names()[chance.servo]))
-                else:
-                    self._held[i, chance.servo] = self._bench.sensors[i, chance.servo]
+            if tick == chance.breaks and chance.broken is not None:
+                self._injector.begin(int(i), chance.broken)
             if chance.pushed >= 0 and self.task.shoves is not None:
                 lasting = round(self.task.shoves.lasting / CONTROL_PERIOD)
                 if tick in (chance.pushed, chance.pushed + lasting):
@@ -175,7 +176,7 @@ class Pack:
                     self._bench.push(int(i), self.task.shoves.body, force)
 
     def _sensed(self) -> Sensed:
-        return self._readings.sensed(0.0)
+        return self._injector.sense(self._readings.sensed(0.0))
 
     def _power(self) -> Float[np.ndarray, " run"]:
         """Return torque times speed, summed over the servos [W]."""
@@ -202,9 +203,9 @@ def draw(task: Task, random: np.random.Generator) -> Chance:
     fault, push = task.breaks, task.shoves
     told: dict[str, object] = {}
     if fault is not None:
-        told["servo"] = servo_names().index(fault.joints[int(random.integers(len(fault.joints)))])
-        told["kind"] = fault.kinds[int(random.integers(len(fault.kinds)))]
+        broken = fault.draw(random)
         told["breaks"] = int(np.ceil(random.uniform(fault.earliest, fault.latest) / CONTROL_PERIOD))
+        told["broken"] = broken
     if push is not None:
         told["pushed"] = int(np.ceil(random.uniform(push.earliest, push.latest) / CONTROL_PERIOD))
         way, force = random.uniform(-np.pi, np.pi), random.uniform(0.0, push.most)

@@ -1,9 +1,10 @@
 """Simulation on land: a batch of runs from the start; one crawl is a batch of one."""
 
 from suchus.design.ground import Ground
+from suchus.fault import Fault
+from suchus.faults import Backlash, Deaf, Limp, Locked, LostFoot, Offset, Slow, Weak
 from suchus.land.arenas import ARENAS
 from suchus.land.crawling import crawl
-from suchus.land.faults import Deaf, Fault, Limp, Locked, Weak
 from suchus.land.live import Live
 from suchus.land.loop import CONTROL_PERIOD
 from suchus.land.lost import KINDS, LEGS_LOST, LOST, angle_at, lost
@@ -21,14 +22,18 @@ __all__ = [
     "VACUUM",
     "WATER",
     "Afloat",
+    "Backlash",
     "Deaf",
     "Fault",
     "Ground",
     "Limp",
     "Live",
     "Locked",
+    "LostFoot",
+    "Offset",
     "Push",
     "Run",
+    "Slow",
     "Weak",
     "angle_at",
     "crawl",

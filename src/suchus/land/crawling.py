@@ -8,7 +8,7 @@ from suchus.control import Control, OpenLoop
 from suchus.design import Crocodile
 from suchus.design.ground import Ground
 from suchus.errors import Diverged
-from suchus.land.faults import Fault
+from suchus.fault import Fault
 from suchus.land.push import Push
 from suchus.land.run import Run
 from suchus.land.simulation import simulate

@@ -5,7 +5,8 @@ from typing import Literal
 import numpy as np
 
 from suchus.design import Crocodile, servo_names
-from suchus.land.faults import Fault, Limp, Locked
+from suchus.fault import Fault
+from suchus.faults import Limp, Locked
 from suchus.motion import Gait, servo_targets
 
 Joint = Literal["front_yaw", "hind_yaw", "front_pitch", "hind_pitch"]

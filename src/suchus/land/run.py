@@ -6,7 +6,7 @@ from suchus.control import Control, OpenLoop
 from suchus.design import Crocodile
 from suchus.design.checks import require
 from suchus.design.ground import Ground
-from suchus.land.faults import Fault
+from suchus.fault import Fault
 from suchus.land.push import Push
 from suchus.motion import Gait
 

@@ -3,50 +3,20 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 from suchus import blueprint
 from suchus.catalog import Catalog
 from suchus.design import Crocodile
 from suchus.errors import InvalidDesign
+from suchus.fault import Fault
+from suchus.faults import from_table
 from suchus.gaits import GAITS
-from suchus.land import Deaf, Fault, Ground, Limp, Locked, Run, Weak
+from suchus.land import Ground, Run
 from suchus.motion import Gait
 from suchus.robots import ROBOTS
 from suchus.study.arm import Arm
 from suchus.study.study import Design, Study, Vary
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FaultLine:
-    """A fault as a table."""
-
-    kind: Literal["limp", "locked", "weak", "deaf"]
-    """What happens."""
-    joint: str
-    """Name of the servo, or of the group of sensors that goes deaf."""
-    at: float = 0.0
-    """When [s]."""
-    angle: float | None = None
-    """What a locked servo holds [rad]; the angle that it has at that time if left out."""
-    fraction: float | None = None
-    """What is left of a weak servo's torque [-]."""
-
-    def fault(self) -> Fault:
-        """Return the fault.
-
-        Raises:
-            InvalidDesign: a number that this kind does not have.
-        """
-        if (self.angle is not None and self.kind != "locked") or (self.fraction is not None and self.kind != "weak"):
-            raise InvalidDesign(f"the fault {self.kind} {self.joint} has an angle or a fraction that it cannot have.")
-        if self.kind == "limp":
-            return Limp(self.joint, self.at)
-        if self.kind == "locked":
-            return Locked(self.joint, self.at, self.angle)
-        if self.kind == "weak":
-            return Weak(self.joint, 0.5 if self.fraction is None else self.fraction, self.at)
-        return Deaf(self.joint, self.at)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -65,8 +35,8 @@ class Page:
     """Name on the shelf, or path of a TOML file beside this one."""
     ground: Ground = field(default_factory=Ground)
     """On what."""
-    faults: tuple[FaultLine, ...] = ()
-    """What breaks."""
+    faults: tuple[dict[str, Any], ...] = ()
+    """What breaks, see ``faults.from_table``."""
     noise: float = 0.0
     """Standard deviation of noise on every servo angle commanded [rad]."""
     design: Design = "factorial"
@@ -113,7 +83,7 @@ def read_study(path: Path) -> Study:
         robot=find(page.robot, path.parent, Crocodile, ROBOTS),
         gait=find(page.gait, path.parent, Gait, GAITS),
         ground=page.ground,
-        faults=tuple(line.fault() for line in page.faults),
+        faults=tuple(from_table(table) for table in page.faults),
         noise=page.noise,
     )
     return Study(
@@ -145,15 +115,7 @@ def _faults(value: Any) -> tuple[Fault, ...]:
         raise InvalidDesign(
             f"faults take lists of tables, as [[], [{{kind = 'limp', joint = 'LF_yaw'}}]]; one of them is {value!r}."
         )
-    known = [f.name for f in fields(FaultLine)]
-    for item in value:
-        wrong = [key for key in item if key not in known]
-        if wrong or item.get("kind") not in ("limp", "locked", "weak", "deaf") or "joint" not in item:
-            raise InvalidDesign(
-                f"a fault needs a kind (limp, locked, weak or deaf) and a joint, and may have at, angle and fraction; "
-                f"{dict(item)!r} is none."
-            )
-    return tuple(FaultLine(**item).fault() for item in value)
+    return tuple(from_table(item) for item in value)
 
 
 def find(name: str, place: Path, kind: type, shelf: Catalog[Any]) -> Any:

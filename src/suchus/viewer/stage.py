@@ -9,6 +9,7 @@ from mjviser.conversions import create_primitive_mesh
 from suchus.design import LEGS, Crocodile
 from suchus.design.ground import slope
 from suchus.design.relief import Relief, heights
+from suchus.fault import Fault
 from suchus.figures import COLOURS
 from suchus.metrics.gait import LOADED
 from suchus.model import compile_model
@@ -188,8 +189,8 @@ class Stage:
         self._path = []
         self._way.visible = False
 
-    def mark(self, lost: Sequence[tuple[str, str]]) -> None:
-        """Mark the joints that are lost."""
+    def mark(self, lost: Sequence[Fault]) -> None:
+        """Mark the joints and legs that are broken."""
         self.robot.mark(lost)
 
 
