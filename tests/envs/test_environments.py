@@ -14,11 +14,10 @@ gymnasium = pytest.importorskip("gymnasium", reason="gymnasium is not installed:
 from gymnasium.utils.env_checker import check_env  # noqa: E402
 from gymnasium.vector import AutoresetMode  # noqa: E402
 
-from suchus import envs  # noqa: E402
+from suchus import envs, rotation  # noqa: E402
 from suchus.design import servo_names  # noqa: E402
 from suchus.envs.pack import Pack, draw  # noqa: E402
 from suchus.envs.reward import Terms  # noqa: E402
-from suchus.envs.senses import level_axes  # noqa: E402
 from suchus.errors import InvalidDesign, OutsideLimits, UnknownName  # noqa: E402
 from suchus.faults import Locked, Weak  # noqa: E402
 from suchus.gaits import GAITS  # noqa: E402
@@ -154,7 +153,7 @@ def test_what_presses_on_the_ground_is_the_weight():
 
 def test_the_world_s_axes_are_felt_as_the_pelvis_turns():
     turns = Rotation.random(20, random_state=3)
-    upward, ahead = level_axes(turns.as_quat(scalar_first=True))
+    upward, ahead = (turn(turns.as_quat(scalar_first=True)) for turn in (rotation.upward, rotation.ahead))
     np.testing.assert_allclose(upward, turns.inv().apply([0, 0, 1]), atol=1e-12)
     np.testing.assert_allclose(ahead, turns.inv().apply([1, 0, 0]), atol=1e-12)
 

@@ -1,13 +1,13 @@
 """Ground: how it tilts, what stands up from it, how it grips."""
 
 from dataclasses import dataclass
-from math import cos, sin
 
 import numpy as np
 from jaxtyping import Float
 
 from suchus.design.checks import require
 from suchus.design.relief import Relief
+from suchus.rotation import about, multiply
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -40,5 +40,5 @@ def slope(uphill: float, sideways: float) -> Float[np.ndarray, "4"]:
         uphill: along the walk, up positive [rad].
         sideways: left side up positive [rad].
     """
-    a, b = -uphill / 2, sideways / 2  # first about x by the slope to the side, then about y
-    return np.array([cos(a) * cos(b), cos(a) * sin(b), sin(a) * cos(b), -sin(a) * sin(b)])
+    up, aside = about(np.array([0.0, 1.0, 0.0]), -uphill), about(np.array([1.0, 0.0, 0.0]), sideways)
+    return multiply(up, aside)

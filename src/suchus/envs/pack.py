@@ -7,11 +7,12 @@ import numpy as np
 import xarray as xr
 from jaxtyping import Bool, Float
 
+from suchus import rotation
 from suchus.control import Sensed
 from suchus.design import servo_names
 from suchus.envs.beginning import begin, off_by
 from suchus.envs.reward import Terms
-from suchus.envs.senses import SERVOS, level_axes, observations
+from suchus.envs.senses import SERVOS, observations
 from suchus.envs.task import Task
 from suchus.errors import UnknownName
 from suchus.fault import Fault, check_faults
@@ -141,7 +142,7 @@ class Pack:
         after, apart = self._read("centre_of_mass"), who & ~self._bench.alive
         way = np.where(apart[:, None], 0.0, after - before)
         aside = np.where(apart, 0.0, np.abs(after[:, 1]) - np.abs(before[:, 1]))
-        height, level = self._read("snout_position")[:, 2], level_axes(self._read("imu_orientation"))[0][:, 2]
+        height, level = self._read("snout_position")[:, 2], rotation.upward(self._read("imu_orientation"))[:, 2]
         fell = (height < self.task.least_height) | (level < self.task.least_level)
         for i in np.flatnonzero(who & (fell | apart)):
             self.causes[i] = self._why(int(i), bool(apart[i]), float(height[i]), float(level[i]))

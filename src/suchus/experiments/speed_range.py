@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from suchus import rotation
 from suchus.design import Crocodile
 from suchus.design.checks import Checks
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, judge, silent, staged, stopwatch
@@ -212,8 +213,7 @@ def _lying(robot: Crocodile, part: xr.Dataset) -> float:
     """Return the share of the tail's length that lies on the ground, on average [-]."""
     some = part.isel(time=slice(None, None, 5))
     points = np.array([tail_points(robot, angles[17:]) for angles in some.joint_angle.values])
-    w, x, y, z = some.orientation.values.T
-    up = np.stack([2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x**2 + y**2)], axis=-1)
+    up = rotation.upward(some.orientation.values)
     height = np.einsum("tk,tpk->tp", up, points) + some.position.sel(xyz="z").values[:, None]
     along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points[0], axis=0), axis=1))])
     share = along / along[-1]

@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Polygon
 from scipy.interpolate import CubicSpline, PchipInterpolator
 
+from suchus import rotation
 from suchus.design import LEGS, Crocodile
 from suchus.figures.posture import skeleton
 from suchus.figures.style import COLOURS, captioned, panels, styled
@@ -196,8 +197,7 @@ def _body(ax: Axes, robot: Crocodile, run: xr.Dataset, time: float) -> None:
     """Draw the body from its side, right of the page being ahead; y of the world points into the page."""
     bones = skeleton(robot, run, time)
     now = run.sel(time=time, method="nearest")
-    w, x, y, z = now.orientation.values
-    facing = -(2 * (y * z - w * x))  # of the pelvis's back, towards the viewer at -y
+    facing = -rotation.matrix(now.orientation.values)[1, 2]  # of the pelvis's back, towards the viewer at -y
     middle = bones.trunk.mean(axis=0)
     legs = sorted(zip(LEGS, bones.legs, strict=True), key=lambda pair: -pair[1][:, 1].mean())
     for name, points in legs:

@@ -11,6 +11,7 @@ from matplotlib.colors import to_hex, to_rgb
 from matplotlib.patches import Circle, PathPatch, Polygon
 from matplotlib.path import Path
 
+from suchus import rotation
 from suchus.design import LEGS, Crocodile
 from suchus.figures.silhouette import Silhouette, silhouette
 from suchus.figures.style import COLOURS
@@ -51,7 +52,7 @@ def skeleton(robot: Crocodile, record: xr.Dataset, time: float) -> Skeleton:
     """
     now = record.sel(time=time, method="nearest")
     angles = now.joint_angle.values.astype(float)
-    R, at = _rotation(now.orientation.values.astype(float)), now.position.values.astype(float)
+    R, at = rotation.matrix(now.orientation.values.astype(float)), now.position.values.astype(float)
     trunk, legs = _front(robot, angles), np.empty((4, 4, 3))
     T = spine.forward(robot.spine, angles[12:17])
     shoulder = T[:3, 3] + robot.thorax.shoulder * T[:3, 0]
@@ -93,17 +94,6 @@ def _leg(robot: Crocodile, name: str, angles: np.ndarray) -> list[np.ndarray]:
         leg,
     ]
     return [body.from_leg_frame(leg_kinematics.forward(bone, angles), name) for bone in bones]
-
-
-def _rotation(quaternion: np.ndarray) -> np.ndarray:
-    w, x, y, z = quaternion
-    return np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-        ]
-    )
 
 
 def draw_posture(

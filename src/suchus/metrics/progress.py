@@ -3,6 +3,7 @@
 import numpy as np
 import xarray as xr
 
+from suchus import rotation
 from suchus.kinematics.mass import GRAVITY
 from suchus.metrics.window import between
 from suchus.motion import START
@@ -16,8 +17,7 @@ def displacement(record: xr.Dataset, start: float = START, end: float | None = N
 
 def heading(record: xr.Dataset) -> xr.DataArray:
     """Return over time whereto the body faces: the mean of the two girdles' directions, left positive [rad]."""
-    w, x, y, z = (record.orientation.sel(wxyz=c) for c in "wxyz")
-    yaw = xr.apply_ufunc(np.arctan2, 2 * (w * z + x * y), 1 - 2 * (y**2 + z**2))
+    yaw = xr.apply_ufunc(rotation.yaw, record.orientation, input_core_dims=[["wxyz"]])
     trunk = sum(record.joint_angle.sel(joint=f"spine_yaw_{i}") for i in (1, 2, 3))
     return xr.apply_ufunc(lambda a: np.unwrap(a, axis=-1), yaw.transpose(..., "time")) + trunk / 2
 

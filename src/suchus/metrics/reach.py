@@ -4,6 +4,7 @@ import numpy as np
 import xarray as xr
 from jaxtyping import Float
 
+from suchus import rotation
 from suchus.design import Crocodile
 from suchus.kinematics import spine
 
@@ -32,7 +33,7 @@ def reach(robot: Crocodile, record: xr.Dataset) -> xr.DataArray:
 
 def _tops(robot: Crocodile, q: np.ndarray, position: np.ndarray, angles: np.ndarray) -> Float[np.ndarray, "*batch 7"]:
     """Return the highest point of pelvis, thorax, head and the trunk's four links [m]."""
-    up = _up(q)
+    up = rotation.upward(q)
     bends = angles[..., _TRUNK]
     T, joints = spine.forward(robot.spine, bends), spine.joints(robot.spine, bends)
     p5, ahead = T[..., :3, 3], T[..., :3, 0]
@@ -55,12 +56,6 @@ def _tops(robot: Crocodile, q: np.ndarray, position: np.ndarray, angles: np.ndar
     heights = np.einsum("...i,...ji->...j", up, joints)
     tops += [np.maximum(heights[..., i], heights[..., i + 1]) + robot.spine.radius for i in range(4)]
     return np.asarray(position[..., 2, None] + np.stack(tops, axis=-1))
-
-
-def _up(q: np.ndarray) -> np.ndarray:
-    """Return the world's upward direction in the frame of the pelvis."""
-    w, x, y, z = np.moveaxis(q, -1, 0)
-    return np.stack([2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)], axis=-1)
 
 
 def lead(record: xr.Dataset) -> xr.DataArray:

@@ -5,6 +5,7 @@ import xarray as xr
 from jaxtyping import Float
 from scipy.spatial import ConvexHull, QhullError
 
+from suchus import rotation
 from suchus.metrics.gait import LOADED, loaded
 from suchus.metrics.window import between
 from suchus.motion import START
@@ -23,9 +24,10 @@ def height_peak_to_peak(record: xr.Dataset, start: float = START, end: float | N
 
 def tilt(record: xr.Dataset) -> xr.Dataset:
     """Return over time the ``roll`` (left side up positive) and ``pitch`` (nose down positive) of the pelvis [rad]."""
-    w, x, y, z = (record.orientation.sel(wxyz=c) for c in "wxyz")
-    roll = xr.apply_ufunc(np.arctan2, 2 * (w * x + y * z), 1 - 2 * (x**2 + y**2))
-    pitch = xr.apply_ufunc(np.arcsin, (2 * (w * y - z * x)).clip(-1.0, 1.0))
+    roll, pitch = (
+        xr.apply_ufunc(angle, record.orientation, input_core_dims=[["wxyz"]])
+        for angle in (rotation.roll, rotation.pitch)
+    )
     return xr.Dataset({"roll": roll.assign_attrs(units="rad"), "pitch": pitch.assign_attrs(units="rad")})
 
 

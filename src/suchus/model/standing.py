@@ -7,6 +7,7 @@ import numpy as np
 
 from suchus.design import Crocodile, cable_joints, servo_names, spine_joints
 from suchus.model.build import joint_addresses
+from suchus.rotation import about
 
 
 def standing(model: Any, robot: Crocodile, hip_height: float, servos: np.ndarray) -> np.ndarray:
@@ -24,7 +25,7 @@ def standing(model: Any, robot: Crocodile, hip_height: float, servos: np.ndarray
     cable, pulley_per_bend = cable_joints(robot), robot.tail.cord_spacing / 2 / robot.tail.pulley
     data.qpos[2] = hip_height
     turn = -sum(servos[servo_names().index(name)] for name in spine_joints() if "yaw" in name) / 2
-    data.qpos[3:7] = np.cos(turn / 2), 0.0, 0.0, np.sin(turn / 2)
+    data.qpos[3:7] = about(np.array([0.0, 0.0, 1.0]), turn)
     data.qpos[joint_addresses(model, servo_names()[:-1])] = servos[:-1]
     data.qpos[joint_addresses(model, cable)] = servos[-1] / pulley_per_bend / len(cable)
     mujoco.mj_forward(model, data)
