@@ -143,6 +143,14 @@ def test_a_loaded_gear_with_play_hangs_at_the_end_of_its_gap_with_the_torque_of_
     assert torque[-1] == pytest.approx(servo.kp * np.sign(off) * (abs(off) - gap / 2), abs=0.01)
 
 
+def test_a_lifted_tail_falls_through_the_gap_without_torque():
+    record = turned("tail_pitch", [-0.6], Backlash("tail_pitch", gap=0.4, at=1.0), duration=1.05, afloat=None)
+    angle, torque = of(record, "tail_pitch")
+    assert abs(torque[100]) > 0.5  # until now it was carried
+    assert np.all(torque[101:] == 0.0)
+    assert 0.01 < angle[-1] - angle[100] < 0.2
+
+
 def test_a_leg_without_foot_stands_on_its_shank_and_its_sensor_reads_nothing():
     record = turned("LH_yaw", [0.0], LostFoot("LF", at=0.5), duration=2.0, afloat=None)
     force = record.foot_force.sel(xyz="z")
