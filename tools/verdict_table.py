@@ -1,7 +1,7 @@
 """Put what a full ``suchus reproduce`` found into the documentation.
 
-Usage: python tools/verdict_table.py OUT: reads OUT/NAME/outcome.json of every experiment, writes docs/verdicts.json, and
-the summary into the README.
+Usage: python tools/verdict_table.py OUT: reads OUT/NAME/outcome.json of every experiment, writes docs/verdicts.json,
+and the summary into the README.
 """
 
 import json

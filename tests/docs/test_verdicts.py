@@ -3,9 +3,9 @@
 import json
 
 import pytest
+
 import verdict_table
 from pages import verdicts
-
 from suchus.experiments import EXPERIMENTS
 from suchus.paper import CLAIMS
 from suchus.verdict import RULES

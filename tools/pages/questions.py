@@ -21,7 +21,5 @@ def page() -> str:
         lines += ["```sh", f"suchus run {name}", "```", ""]
         if one.claims:
             lines += ['??? note "Statements of the article that it judges"', ""]
-            lines += [
-                f"    * [{CLAIMS[key].sense}](verdicts.md#{key}) *({CLAIMS[key].where})*" for key in one.claims
-            ]
+            lines += [f"    * [{CLAIMS[key].sense}](verdicts.md#{key}) *({CLAIMS[key].where})*" for key in one.claims]
     return "\n".join([*lines, ""])

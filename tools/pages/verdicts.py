@@ -31,9 +31,9 @@ full `suchus reproduce`.
 *Fitted* and *by construction* are no evidence and are counted apart. A verdict is **fragile** if fewer than
 {ROBUST:.0%} of the plausible designs of [`suchus study claims`](studies.md) agree with it.
 
-A rule is data (`suchus.verdict.RULES`): a measure, clauses that all must hold, and for a printed number its rounding and
-the spread of repeats. The tests hold measures on each side of every clause, and `make mutate` breaks every rule in every
-way: clauses dropped, reversed, moved by a twentieth, kinds exchanged, roundings doubled. Each break must change a word.
+A rule is data (`suchus.verdict.RULES`): a measure, clauses that all must hold, and for a printed number its rounding
+and the spread of repeats. The tests hold measures on each side of every clause, and `make mutate` breaks every rule in
+every way: clauses dropped, reversed, moved by a twentieth, kinds exchanged, roundings doubled. Each break must change a word.
 A run that is too short to meet what is judged, or that is of another robot or gait, is not judged at all.
 """
 
@@ -70,6 +70,6 @@ def _swept(rule: Rule) -> str:
         return f"Not tried on other designs: {rule.unswept or 'the study has not answered it'}."
     turned = f"; best told by `{share.turned_by}`" if share.turned_by else ""
     return (
-        f"Holds in {share.share:.1%} ({share.low:.1%} to {share.high:.1%}) of {share.designs} plausible designs{turned}."
+        f"Holds in {share.share:.1%} ({share.low:.1%} to {share.high:.1%}) of {share.designs} plausible "
+        f"designs{turned}."
     )
-
