@@ -84,8 +84,10 @@ def told(walk: Walk) -> list[str]:
     """Return what was seen, in lines that people read."""
 
     def one(name: str, digits: int = 2, scale: float = 1.0) -> str:
-        value, spread, _ = walk.numbers[name]
-        apart = f" ± {scale * spread:.{digits}f}" if spread == spread else ""
+        if name not in walk.numbers:
+            return "(it does not bend)"
+        value, _, error, _ = walk.numbers[name]
+        apart = f" ± {scale * error:.{digits}f}" if error == error and error > 0.0 else ""
         return f"{scale * value:.{digits}f}{apart}"
 
     turn = degrees(1.0)

@@ -15,6 +15,7 @@ from suchus.design.joints import (
 from suchus.design.leg import Leg
 from suchus.design.robot import Crocodile
 from suchus.design.servo import Servo
+from suchus.design.speed_lines import with_speed_lines
 from suchus.design.spine import Spine
 from suchus.design.tail import Tail
 from suchus.design.trunk import Head, Pelvis, Thorax
@@ -40,5 +41,6 @@ __all__ = [
     "spine_joints",
     "unit_at",
     "value_at",
+    "with_speed_lines",
     "with_values",
 ]

@@ -63,7 +63,7 @@ class Pack:
             check_faults([fault], task.robot, np.inf)
         self._begin = begin(task)
         self._low, self._high = np.array([servo_range(task.robot, name) for name in servo_names()]).T
-        self._runs = [Run(robot=task.robot, gait=task.gait, ground=task.ground)] * count
+        self._runs = [Run(robot=task.body, gait=task.gait, ground=task.ground)] * count
         self._bench = Bench(self._runs, task.timestep)
         self._readings = Readings(self._bench, self._runs, 1)
         self._steps = round(CONTROL_PERIOD / task.timestep)
@@ -143,7 +143,8 @@ class Pack:
         way = np.where(apart[:, None], 0.0, after - before)
         aside = np.where(apart, 0.0, np.abs(after[:, 1]) - np.abs(before[:, 1]))
         height, level = self._read("snout_position")[:, 2], rotation.upward(self._read("imu_orientation"))[:, 2]
-        fell = (height < self.task.least_height) | (level < self.task.least_level)
+        low = (height < self.task.least_height) & (self.task.least_height > 0.0)
+        fell = low | (level < self.task.least_level)
         for i in np.flatnonzero(who & (fell | apart)):
             self.causes[i] = self._why(int(i), bool(apart[i]), float(height[i]), float(level[i]))
         return Terms(
@@ -159,7 +160,7 @@ class Pack:
         when = f"at {self.time[robot]:.2f} s"
         if apart:
             return f"the physics came apart {when}: {self._bench.cause[robot]}"
-        if height < self.task.least_height:
+        if 0.0 < self.task.least_height > height:
             return f"it fell {when}: the snout is at {height:.3f} m, below {self.task.least_height:g} m"
         tilt, most = (float(np.degrees(np.arccos(np.clip(c, -1, 1)))) for c in (level, self.task.least_level))
         return f"it rolled over {when}: the pelvis is tilted by {tilt:.0f} degrees, beyond {most:.0f}"
@@ -192,7 +193,7 @@ class Pack:
     def _check_body(self) -> None:
         if self.task.shoves is None:
             return
-        model = compile_model(self.task.robot, self.task.timestep)
+        model = compile_model(self.task.body, self.task.timestep)
         bodies = [model.body(i).name for i in range(1, model.nbody)]
         if self.task.shoves.body not in bodies:
             raise UnknownName("body", self.task.shoves.body, bodies)

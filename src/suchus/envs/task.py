@@ -7,7 +7,7 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 
-from suchus.design import Crocodile, leg_joints, servo_names
+from suchus.design import Crocodile, leg_joints, servo_names, with_speed_lines
 from suchus.design.checks import Checks
 from suchus.errors import InvalidDesign, UnknownName
 from suchus.fault import Fault
@@ -138,7 +138,13 @@ class Task:
     """
 
     robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
-    """Who acts."""
+    """Who acts; what its servos give while they turn is said by ``speed_lines``."""
+    speed_lines: bool = True
+    """Whether the torque of every servo falls linearly to nothing at its no-load speed, as that of a motor does.
+
+    Without these lines a servo gives its full torque at any speed, and what is learned lives on that: see
+    ``docs/environments.md``.
+    """
     gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
     """Gait whose mid-stance is the centre of the actions of a lying robot, and whose period the clock tells."""
     ground: Ground = field(default_factory=Ground)
@@ -169,8 +175,17 @@ class Task:
     shoves: Shoves | None = None
     """Who pushes; None: nobody."""
 
+    @property
+    def body(self) -> Crocodile:
+        """The robot as its physics has it: with the torque-speed lines if ``speed_lines`` is true."""
+        return with_speed_lines(self.robot) if self.speed_lines else self.robot
+
     def __post_init__(self) -> None:
         with Checks("task", self) as check:
+            check.that(
+                isinstance(self.speed_lines, bool),
+                f"task.speed_lines is {self.speed_lines!r}; true or false is allowed",
+            )
             check.that(
                 self.start in get_args(Start),
                 f"task.start is {self.start!r}; {' or '.join(get_args(Start))} is allowed",
