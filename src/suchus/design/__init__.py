@@ -15,7 +15,7 @@ from suchus.design.joints import (
 from suchus.design.leg import Leg
 from suchus.design.robot import Crocodile
 from suchus.design.servo import Servo
-from suchus.design.speed_lines import with_speed_lines
+from suchus.design.servos import with_servos, with_speed_lines
 from suchus.design.spine import Spine
 from suchus.design.tail import Tail
 from suchus.design.trunk import Head, Pelvis, Thorax
@@ -41,6 +41,7 @@ __all__ = [
     "spine_joints",
     "unit_at",
     "value_at",
+    "with_servos",
     "with_speed_lines",
     "with_values",
 ]
