@@ -257,6 +257,26 @@ def test_a_robot_that_comes_apart_ends_its_episode_with_a_sentence_and_the_other
     assert env.pack.time.tolist() == [0.0, 0.1]
 
 
+def test_servos_lose_torque_with_speed_unless_it_is_switched_off():
+    for lines, damping in ((True, 3.0 / 7.0), (False, 0.05)):
+        task = replace(CRAWL, speed_lines=lines)
+        assert task.body.servo("LF_yaw").damping == pytest.approx(damping)
+        model = Pack(task, 1)._bench.model
+        assert model.joint("LF_yaw").damping[0] == pytest.approx(damping)
+    assert CRAWL.speed_lines
+    assert CRAWL.body.servo("tail_cable").damping == pytest.approx(2.5 / 7.0)
+    with pytest.raises(InvalidDesign, match="task.speed_lines is 1; true or false"):
+        replace(CRAWL, speed_lines=1)
+
+
+@pytest.mark.parametrize(("least", "falls"), [(0.0, False), (0.2, True)])
+def test_a_snout_in_the_ground_is_a_fall_only_where_a_height_is_asked_for(least, falls):
+    env = envs.CrocodileVectorEnv(1, replace(CRAWL, jitter=0.0, least_height=least))
+    env.reset(seed=0)
+    fell = [env.step(np.linspace(-0.5, 0.5, 19)[None])[2][0] for _ in range(3)]
+    assert any(fell) == falls
+
+
 def test_a_robot_on_its_back_has_fallen():
     env = gymnasium.make("suchus/Crawl-v0").unwrapped
     env.reset(seed=0)
