@@ -265,7 +265,7 @@ def test_servos_lose_torque_with_speed_unless_it_is_switched_off():
         assert model.joint("LF_yaw").damping[0] == pytest.approx(damping)
     assert CRAWL.speed_lines
     assert CRAWL.body.servo("tail_cable").damping == pytest.approx(2.5 / 7.0)
-    with pytest.raises(InvalidDesign, match="task.speed_lines is 1; true or false"):
+    with pytest.raises(InvalidDesign, match=r"task\.speed_lines is 1; true or false"):
         replace(CRAWL, speed_lines=1)
 
 
