@@ -32,9 +32,10 @@ full `suchus reproduce`.
 {ROBUST:.0%} of the plausible designs of [`suchus study claims`](studies.md) agree with it.
 
 A rule is data (`suchus.verdict.RULES`): a measure, clauses that all must hold, and for a printed number its rounding
-and the spread of repeats. The tests hold measures on each side of every clause, and `make mutate` breaks every rule in
-every way: clauses dropped, reversed, moved by a twentieth, kinds exchanged, roundings doubled. Each break must change a word.
-A run that is too short to meet what is judged, or that is of another robot or gait, is not judged at all.
+and the spread of repeats. The tests hold measures on each side of every clause, and `make mutate` breaks every rule
+in every way: clauses dropped, reversed, moved by a twentieth, kinds exchanged, roundings doubled. Each break must
+change a word. A run that is too short to meet what is judged, or that is of another robot or gait, is not judged at
+all.
 """
 
 
