@@ -26,7 +26,13 @@ gait = Gait(
 )
 """A walking trot, each hind foot a little after its diagonal front foot."""
 
+_AFTER = "after its diagonal front foot, a trot within an eighth of a cycle: the body rolls 3 instead of 7 degrees"
 _ROWS: tuple[tuple[str, float, float, str], ...] = (
+    ("period", 0.6, 1.4, "0.27 m/s at 0.6 s, 0.11 m/s at 1.4 s; shorter ones ask joints for more than 8 rad/s"),
+    ("limb_phases[0]", 0.0, 0.0, "phases count from the left front foot"),
+    ("limb_phases[1]", 0.5, 0.5, "left and right alternate, as in the article's diagonal gait"),
+    ("limb_phases[2]", 0.375, 0.5, _AFTER),
+    ("limb_phases[3]", -0.125, 0.0, _AFTER),
     ("duty_factor", 0.65, 0.72, "below 0.65 the body rolls more than 9 degrees; longer stance asks for faster swings"),
     ("stroke", 0.033, 0.045, "longer ones ask the knee for more than 8 rad/s"),
     ("lift", 0.022, 0.045, "clears bumps of 40 mm on the way up and down; on even ground it costs power alone"),

@@ -113,7 +113,8 @@ NAMES = (
         where="II.A",
         printed='"On the other hand, sees crocodiles raising their legs"',
         ours="the High Walk sees crocodiles ...",
-        shows="The sentence has lost its subject; the High Walk is the only mode listed and not described.",
+        shows="The sentence has lost its subject; the modes are described in the order of their list, and the High "
+        "Walk follows the Belly Crawl.",
     ),
 )
 
