@@ -6,6 +6,7 @@ from suchus.gaits import GAITS
 from suchus.robots import ROBOTS
 
 CAIMAN = ROBOTS["caiman"]
+OTHERS = ("limbs_only", "limbs_tail_lifted", "spine_only", "tail_drag")
 
 
 @pytest.mark.parametrize("shelf", [ROBOTS, GAITS], ids=["robots", "gaits"])
