@@ -284,6 +284,13 @@ KINEMATICS = (
         "they share certain variables ... to ensure overall temporal and spatial coordination",
     ),
     said(
+        "joint_pid",
+        "III.D, Fig. 10",
+        "control of the joint angles",
+        "PID controllers close the loop of each joint's angle.",
+        "We employ PID controllers for closed-loop control of the joint angles",
+    ),
+    said(
         "gait_diagram",
         "III.D, Fig. 12",
         "limb phase, spine and tail angle over two cycles",

@@ -1,0 +1,24 @@
+"""When the claim on the joints' PID controllers counts as what (section III.D, Fig. 10)."""
+
+from math import radians
+
+from suchus.verdict.rule import Clause, Rule
+
+_DEAD = "the dead band of a digital hobby servo: 3 us of 2 000 us for 270 degrees"
+
+RULES = (
+    Rule(
+        claim="joint_pid",
+        experiment="joint_loops",
+        measure="step_error_pid",
+        holds=(
+            Clause("step_error_pid", "<=", radians(0.4), _DEAD),
+            Clause("ripple_pid", "<=", radians(0.4), f"a loop that still swings by more is not stable; {_DEAD}"),
+            Clause("droop_taken", ">=", 0.1, "an integral that takes less than a tenth of the droop away is none"),
+        ),
+        why="With the greatest integral gain tried a step ends {step_error_pid:deg.2f} degrees off its target, swings "
+        "by {ripple_pid:deg.2f} degrees at most in its last half second, and the integral takes {droop_taken:.0%} of "
+        "the droop under {load:.2f} N m away.",
+        unswept="one joint on a stand, loaded by one crawl; the designs of the study have no integral term",
+    ),
+)
