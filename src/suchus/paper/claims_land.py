@@ -288,6 +288,13 @@ HEIGHTS = (
         "The standing height follows the lengths of spine, head and hind legs together.",
         "determined by the length of the spine, the length of the head and the length of the hind legs",
     ),
+    said(
+        "working_space",
+        "IV.D",
+        "working space",
+        "Standing on hind legs and tail greatly enlarges the working space.",
+        "thus the working space of the crocodile robot can be greatly improved",
+    ),
 )
 
 LAND = (*STABILITY, *DISPLACEMENT, *SWING, *FAULTS, *HEIGHTS)

@@ -1,0 +1,20 @@
+"""When the claim on the working space counts as what (section IV.D)."""
+
+from suchus.verdict.rule import Band, Clause, Rule
+
+RULES = (
+    Rule(
+        claim="working_space",
+        experiment="working_space",
+        measure="volume_ratio",
+        holds=(
+            Clause("volume_ratio_low", ">=", 2.0, "less than twice as much is no great improvement"),
+            Clause("area_ratio_low", ">", 1.0, "larger from the side too, as Fig. 23 shows it"),
+        ),
+        band=Band(low="volume_ratio_low", high="volume_ratio_high", of="what counting cells leaves open"),
+        why="Standing, the snout reaches {volume_ratio:.0f} times the volume that it reaches on four feet "
+        "({volume_ratio_low:.0f} to {volume_ratio_high:.0f}), and {area_ratio:.1f} times the area seen from the side "
+        "({area_ratio_low:.1f} to {area_ratio_high:.1f}); joint ranges and balance are met, torques not looked at.",
+        unswept="kinematics alone, of one robot; the study walks",
+    ),
+)
