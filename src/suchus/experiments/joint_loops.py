@@ -115,7 +115,8 @@ class JointLoops(Experiment):
 
     def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
         """Return rise time, overshoot, droop and wind-up of each gain, and the errors of the crawl."""
-        step, last, measures = record.attrs["step"], len(record.ki) - 1, {}
+        step, last = record.attrs["step"], len(record.ki) - 1
+        measures: dict[str, Measure] = {}
         for i, ki in enumerate(record.ki.values):
             here, name = record.isel(ki=i), f"ki_{ki:g}".replace(".", "_")
             measures |= {

@@ -73,7 +73,8 @@ class WorkingSpace(Experiment):
 
     def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
         """Return volumes, areas and heights of both states with what the counting leaves open."""
-        cell, measures, rooms = record.attrs["cell"], {}, {}
+        cell, rooms = record.attrs["cell"], {}
+        measures: dict[str, Measure] = {}
         for state in STATES:
             snout = record[f"snout_{state}"].values
             both = np.concatenate([snout, snout * [1.0, -1.0, 1.0]])  # what a robot can do, its mirror image can

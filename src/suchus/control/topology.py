@@ -1,0 +1,105 @@
+"""Which controller feels, hears and writes what: watched while the code runs, not written down a second time."""
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from suchus.control.coordinated import Coordinated
+from suchus.control.heading import Heading, HeadingRule
+from suchus.control.limbs import Limbs
+from suchus.control.sensed import Sensed
+from suchus.control.shared import OWNERS, Shared, silence
+from suchus.control.spine import Spine
+from suchus.control.tail import Tail
+from suchus.design import Crocodile, servo_names
+from suchus.motion import Gait
+
+_PERIOD = 0.01  # [s]; of control
+
+
+class Part(NamedTuple):
+    """One controller of the topology."""
+
+    name: str
+    """``limbs``, ``spine``, ``tail`` or ``heading``."""
+    feels: frozenset[str]
+    """Sensors that it read: fields of ``Sensed``, the time aside."""
+    hears: frozenset[str]
+    """Shared variables that it read, its own ones included."""
+    writes: frozenset[str]
+    """Shared variables that it wrote."""
+
+
+def topology(robot: Crocodile, gait: Gait, control: Coordinated | None = None) -> tuple[Part, ...]:
+    """Return what each controller reads and writes when it takes a step, in the order in which they act.
+
+    Args:
+        robot: the design.
+        gait: which it walks.
+        control: the rules; by default the three of ``Coordinated`` and the heading loop.
+
+    Paper: Fig. 10.
+    """
+    if control is None:
+        control = Coordinated(heading=HeadingRule())
+    robots, gaits, by_gait = [robot], [gait], [(gait, np.array([0]))]
+    limbs = Limbs([control.limbs], robots, gaits, np.zeros((1, 4)), _PERIOD)
+    spine = Spine([control.spine], robots, by_gait, _PERIOD)
+    tail = Tail([control.tail], robots, gaits, by_gait, _PERIOD)
+    clock, targets = np.array([gait.limb_phases]), np.zeros((1, len(servo_names())))
+
+    def heading(_: Any, sensed: Any) -> None:
+        if control.heading is not None:
+            Heading([control.heading], robots, gaits, _PERIOD).step(sensed, walking=True)
+
+    def of_spine(shared: Any, sensed: Any) -> Shared:
+        spine.correct(targets.copy(), np.zeros(1), sensed)
+        return spine.step(shared)
+
+    def of_tail(shared: Any, sensed: Any) -> Shared:
+        tail.correct(targets.copy(), sensed)
+        return tail.step(shared)
+
+    steps: dict[str, Callable[[Any, Any], Shared | None]] = {
+        "limbs": lambda shared, sensed: limbs.step(shared, sensed, clock, walking=True),
+        "spine": of_spine,
+        "tail": of_tail,
+        "heading": heading,
+    }
+    return tuple(_watched(name, step) for name, step in steps.items())
+
+
+def _watched(name: str, step: Callable[[Any, Any], Shared | None]) -> Part:
+    """Return what one step read and wrote."""
+    before, heard, felt = silence(1), set[str](), set[str]()
+    after = step(_watching(before, heard), _watching(_quiet(), felt))
+    written = [] if after is None else [v for v in OWNERS if getattr(after, v) is not getattr(before, v)]
+    return Part(name, frozenset(felt) - {"time"}, frozenset(heard) & frozenset(OWNERS), frozenset(written))
+
+
+def _watching(value: object, read: set[str]) -> Any:
+    """Return what stands for a value, of its own type, and notes which of its attributes are read."""
+
+    def noted(_: object, name: str) -> Any:
+        read.add(name)
+        return getattr(value, name)
+
+    return object.__new__(type("Watched", (type(value),), {"__getattribute__": noted}))
+
+
+def _quiet() -> Sensed:
+    """Return the readings of one robot at rest."""
+    servos, none = np.zeros((1, len(servo_names()))), np.zeros(1)
+    return Sensed(
+        time=1.0,
+        servo_position=servos,
+        servo_velocity=servos,
+        servo_torque=servos,
+        foot_pressure=np.ones((1, 4)),
+        belly_pressure=np.zeros((1, 6)),
+        tail_pressure=none,
+        orientation=np.array([[1.0, 0.0, 0.0, 0.0]]),
+        angular_velocity=np.zeros((1, 3)),
+        acceleration=np.zeros((1, 3)),
+    )
