@@ -69,6 +69,15 @@ def test_a_robot_whose_trunk_is_stiff_reaches_less(robot):
     assert np.ptp(theirs[:, 1]) < 0.1 * np.ptp(ours[:, 1])
 
 
+def test_a_leg_keeps_to_a_narrow_range_and_the_trunk_off_the_ground(robot):
+    narrow = replace(robot, hind_leg=replace(robot.hind_leg, knee_range=(0.0, 1.0)))
+    for standing in (False, True):
+        some = reached(narrow, CRAWL, standing=standing, count=2**14)
+        assert some.angles[:, joint_names(robot).index("LH_knee")].max() <= 1.0
+        line, _ = outline(narrow, some.angles, some.pelvis)
+        assert line[:, -6:-1, 2].min() >= robot.spine.radius  # the trunk's joints come before the snout
+
+
 def test_the_outline_ends_at_snout_and_feet(found, robot):
     _, some = found
     line, legs = outline(robot, some.angles[:3], some.pelvis[:3])

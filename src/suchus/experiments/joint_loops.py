@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import partial
 from math import radians
 from typing import Any, ClassVar
 
@@ -70,7 +71,7 @@ class JointLoops(Experiment):
 
     def simulate(self, progress: Progress = silent) -> Simulated:
         """Crawl with every gain, then load the joint on the stand with what the crawl asks of it."""
-        robots = [with_servos(self.robot, lambda servo, ki=ki: replace(servo, ki=ki)) for ki in self.integrals]
+        robots = [with_servos(self.robot, partial(replace, ki=ki)) for ki in self.integrals]
         crawls = whole(xr.concat([self._crawled(i, robot, progress) for i, robot in enumerate(robots)], "run"))
         walk = between(crawls)
         load = float(np.sqrt((walk.servo_torque.isel(run=0).sel(servo=self.joint) ** 2).mean()))

@@ -45,7 +45,7 @@ def _cells(ax: Any, points: np.ndarray, cell: float, colour: str) -> None:
     if len(points) == 0:
         return
     edges = [np.arange(p.min(), p.max() + 2 * cell, cell) for p in points.T]
-    counts, *_ = np.histogram2d(*points.T, bins=edges)
+    counts, _ = np.histogramdd(points, bins=edges)
     there = np.ma.masked_equal(counts.T > 0, False)
     ax.pcolormesh(*edges, there, cmap=ListedColormap([colour]), alpha=0.38, antialiased=False, linewidth=0, zorder=1)
 

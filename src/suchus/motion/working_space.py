@@ -58,7 +58,8 @@ def reached(robot: Crocodile, gait: Gait, *, standing: bool, count: int, seed: i
     shares = qmc.Sobol(len(low), rng=seed).random_base2(max(count - 1, 1).bit_length())
     drawn = low + (high - low) * shares
     parts = [_kept(robot, gait, drawn[at : at + _CHUNK], standing) for at in range(0, len(drawn), _CHUNK)]
-    return Reached(*(np.concatenate(some) for some in zip(*parts, strict=True)), tried=len(drawn))
+    snout, angles, pelvis = (np.concatenate(some) for some in zip(*parts, strict=True))
+    return Reached(snout, angles, pelvis, len(drawn))
 
 
 def _box(robot: Crocodile, standing: bool) -> tuple[np.ndarray, np.ndarray]:
@@ -111,7 +112,7 @@ def _kept(robot: Crocodile, gait: Gait, drawn: np.ndarray, standing: bool) -> tu
 def _place(robot: Crocodile, angles: np.ndarray, good: np.ndarray, names: tuple[str, str], *feet: np.ndarray) -> None:
     """Write the angles of two legs whose feet, in the frame of their girdle, are given; note who cannot."""
     for name, foot in zip(names, feet, strict=True):
-        links, at = robot.leg(name), 3 * LEGS.index(name)  # type: ignore[arg-type]
+        links, at = robot.leg(name), 3 * LEGS.index(name)
         point = to_leg_frame(foot, name)
         good &= leg_kinematics.reachable(links, point)
         angles[good, at : at + 3] = leg_kinematics.inverse(links, point[good])
