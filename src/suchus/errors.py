@@ -52,6 +52,10 @@ class UnknownName(SuchusError, KeyError):
         return str(self.args[0])
 
 
+class Doubtful(UserWarning):
+    """A result that stands and may be farther off than usual; the message says by how much and what helps."""
+
+
 class Unreachable(SuchusError, ValueError):
     """Points that a limb or the spine cannot reach.
 
