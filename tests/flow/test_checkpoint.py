@@ -2,6 +2,7 @@
 
 import copy
 import dataclasses
+from functools import cached_property, lru_cache
 
 import numpy as np
 import pytest
@@ -127,6 +128,33 @@ def test_a_midline_is_what_its_stations_are():
 
     assert fingerprint(bodies(0.2)) == fingerprint(bodies(0.2))
     assert fingerprint(bodies(0.2)) != fingerprint(bodies(np.nextafter(0.2, 1)))
+
+
+class Heave:
+    """A motion with a memory of its own, as users write them."""
+
+    def __init__(self, amplitude):
+        self.amplitude = amplitude
+
+    @cached_property
+    def rate(self):
+        return 2.0 * self.amplitude
+
+    def __call__(self, time):
+        return flow.Pose(position=(0.0, self.rate * time))
+
+
+def test_what_a_motion_remembers_of_being_asked_is_no_part_of_it():
+    """Else a run that was killed would not know its own checkpoint."""
+
+    def bodies(motion):
+        return still_setup(bodies=(flow.Body(shape=flow.Cylinder(diameter=1.0), motion=motion),))
+
+    for make in (Heave, lambda a: lru_cache(maxsize=2)(Heave(a))):
+        asked, fresh = make(0.1), make(0.1)
+        asked(0.3)
+        assert fingerprint(bodies(asked)) == fingerprint(bodies(fresh))
+        assert fingerprint(bodies(asked)) != fingerprint(bodies(make(0.2)))
 
 
 @pytest.fixture(scope="module")

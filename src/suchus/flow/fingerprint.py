@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import fields, is_dataclass
-from functools import partial
+from functools import cached_property, partial
 from hashlib import sha256
 from numbers import Real
 from types import BuiltinFunctionType, CodeType, FunctionType, MethodType, ModuleType
@@ -82,7 +82,11 @@ class _Walk:
             self._word("named", f"{getattr(value, '__module__', '')}.{value.__name__}")
         else:
             own = {name: getattr(value, name) for name in getattr(type(value), "__slots__", ()) if hasattr(value, name)}
-            self._parts(type(value).__qualname__, {**own, **getattr(value, "__dict__", {})})
+            kept = {
+                name: part for name, part in getattr(value, "__dict__", {}).items()
+                if not isinstance(getattr(type(value), name, None), cached_property)  # filled in as it is asked for
+            }  # fmt: skip
+            self._parts(type(value).__qualname__, {**own, **kept})
 
     def _code(self, code: CodeType) -> None:
         self._word("code", code.co_code)
