@@ -165,7 +165,9 @@ def _paint(out, square, edge, share, winding, outline, spine, width_rate, tx, ty
             _paint_row(out, j, square, edge, share, winding, outline, spine, width_rate, tx, ty, x0, y0, h)
 
 
-def paint(spine, width_rate, x0, y0, h, nx, ny, reach):
+def paint(
+    spine: np.ndarray, width_rate: np.ndarray, x0: float, y0: float, h: float, nx: int, ny: int, reach: float
+) -> np.ndarray:
     """Return distance, normal (x, y), velocity (x, y) and thickness on the window, shape (6, ny, nx).
 
     The thickness is that of the cross-section one cell inside the nearest point of the outline: near the blunt
