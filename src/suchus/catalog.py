@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from importlib import import_module
 from pathlib import Path
 from pkgutil import iter_modules
-from typing import Any, Generic, TypeVar
+from typing import Any, Generic, TypeVar, get_args
 
 from suchus.errors import InvalidDesign, UnknownName
 
@@ -48,7 +48,7 @@ class Catalog(Mapping[str, T], Generic[T]):
             found = "nothing" if thing is None else f"a {type(thing).__name__}"
             file = Path(str(module.__file__)).name
             raise InvalidDesign(
-                f"{self._package.replace('.', '/')}/{file} must declare `{self.kind}`, a {cls}, "
+                f"{self._package.replace('.', '/')}/{file} must declare `{self.kind}`, a {_name(wanted)}, "
                 f"but declares {found}; add it or move the file off the shelf."
             )
         return thing
@@ -60,3 +60,8 @@ class Catalog(Mapping[str, T], Generic[T]):
 
     def __repr__(self) -> str:
         return f"Catalog({self.kind}: {', '.join(self)})"
+
+
+def _name(wanted: Any) -> str:
+    """Return the name of a type, or of each of a union."""
+    return " or ".join(one.__name__ for one in get_args(wanted) or (wanted,))

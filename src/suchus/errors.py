@@ -17,6 +17,10 @@ class OutsideLimits(SuchusError, ValueError):
     """A command that the robot's joints or servos cannot follow."""
 
 
+class UnsuitedRobot(SuchusError, ValueError):
+    """A robot that lacks what is needed of it."""
+
+
 class UnreadableFile(SuchusError, ValueError):
     """A file that is missing, broken, or says something else than it should."""
 

@@ -13,7 +13,8 @@ from suchus import blueprint
 from suchus.design import Crocodile, joint_names
 from suchus.errors import InvalidDesign, UnknownName, Unwritable
 from suchus.kinematics.mass import GRAVITY
-from suchus.model import SITES, compile_model, joint_addresses
+from suchus.model import compile_model, joint_addresses
+from suchus.model import sites as sensed
 from suchus.model.export import MARK, NoUsd, ball, export, unsaid, unsaid_in_usd
 from suchus.model.export.urdf import _roll_pitch_yaw
 from suchus.model.export.usd import prim_name
@@ -46,7 +47,7 @@ def poses(model, robot, count=5):
         data.qpos[joint_addresses(model, names)] = angles
         mujoco.mj_kinematics(model, data)
         turn = data.xmat[1].reshape(3, 3)
-        sites = {s: turn.T @ (data.site(s).xpos - data.xpos[1]) for s in (*SITES, "imu")}
+        sites = {s: turn.T @ (data.site(s).xpos - data.xpos[1]) for s in (*sensed(robot), "imu")}
         yield dict(zip(names, angles, strict=True)), sites
 
 
@@ -318,7 +319,7 @@ def test_the_usd_has_the_same_points_in_every_posture(any_robot, crawl_gait, tmp
             for body in stage.GetDefaultPrim().GetChildren()
             if stage.GetPrimAtPath(body.GetPath().AppendChild(site))
         )
-        for site in (*SITES, "imu")
+        for site in (*sensed(any_robot), "imu")
     }
     for angles, sites in poses(compile_model(any_robot), any_robot):
         places, at = usd_places(pxr, stage, root, angles)

@@ -93,7 +93,7 @@ def keypoints(robot: Crocodile, record: xr.Dataset) -> dict[str, np.ndarray]:
     angles = record.joint_angle.values.astype(float)
     legs, trunk = len(leg_joints()), len(leg_joints()) + len(spine_joints())
     points = _midline(robot, angles[:, legs:trunk]) | _tail(robot, angles[:, trunk:])
-    feet = body.feet(robot, angles[:, :trunk])
+    feet = body.feet(robot, angles)
     points |= {leg: feet[:, i] for i, leg in enumerate(LEGS)}
     R, at = _rotations(record.orientation.values.astype(float)), record.position.values.astype(float)
     return {name: at + np.einsum("tij,tj->ti", R, point) for name, point in points.items()}

@@ -14,11 +14,11 @@ from tyro.constructors import ConstructorRegistry, PrimitiveConstructorSpec, Pri
 from suchus import blueprint
 from suchus.catalog import Catalog
 from suchus.cli.commands import BadCommand
-from suchus.design import Crocodile
+from suchus.design import AnyRobot, Crocodile
 from suchus.errors import SuchusError, UnknownName
 from suchus.experiment import Experiment
 from suchus.gaits import GAITS
-from suchus.motion import Gait
+from suchus.motion import AnyGait, Gait
 from suchus.robots import ROBOTS
 
 QUICK = Annotated[
@@ -117,13 +117,15 @@ def parse(options: type, prog: str, words: Sequence[str], description: str, name
 def _registry() -> ConstructorRegistry:
     """Robots and gaits are named on the command line, or written in a file."""
     registry = ConstructorRegistry()
-    registry.primitive_rule(_shelf_rule(Crocodile, ROBOTS, "ROBOT"))
-    registry.primitive_rule(_shelf_rule(Gait, GAITS, "GAIT"))
+    for kind in (AnyRobot, Crocodile):
+        registry.primitive_rule(_shelf_rule(kind, ROBOTS, "ROBOT"))
+    for kind in (AnyGait, Gait):
+        registry.primitive_rule(_shelf_rule(kind, GAITS, "GAIT"))
     return registry
 
 
 def _shelf_rule(
-    kind: type, shelf: Catalog[Any], metavar: str
+    kind: Any, shelf: Catalog[Any], metavar: str
 ) -> Callable[[PrimitiveTypeInfo], PrimitiveConstructorSpec[Any] | None]:
     spec: PrimitiveConstructorSpec[Any] = PrimitiveConstructorSpec(
         nargs=1,
@@ -132,19 +134,30 @@ def _shelf_rule(
         is_instance=lambda value: isinstance(value, kind),
         str_from_instance=lambda value: [str(value.name)],
     )
-    return lambda info: spec if info.type is kind else None
+    return lambda info: spec if info.type == kind else None
 
 
-def _find(word: str, kind: type, shelf: Catalog[Any]) -> Any:
+def _find(word: str, kind: Any, shelf: Catalog[Any]) -> Any:
     """What a word stands for: a name on the shelf, or a file."""
     try:
         if word not in shelf and (word.endswith(".toml") or Path(word).exists()):
             return blueprint.read(Path(word), kind, shelf)
-        return shelf[word]
+        found = shelf[word]
+        if not isinstance(found, kind):
+            raise BadCommand(_unsuited(found, kind, shelf))
+        return found
     except UnknownName as error:
         raise BadCommand(f"{error} A path to a TOML file will do as well.") from error
     except SuchusError as error:  # some are ValueErrors, which tyro would take for its own
         raise BadCommand(str(error)) from error
+
+
+def _unsuited(found: Any, kind: Any, shelf: Catalog[Any]) -> str:
+    fit = [name for name, thing in shelf.items() if isinstance(thing, kind)]
+    return (
+        f"the {shelf.kind} {found.name!r} is a {type(found).__name__}, and this needs a {kind.__name__}: take "
+        f"{', '.join(fit)}, or a file that starts from one of them."
+    )
 
 
 def _sentence(box: str) -> str:

@@ -10,10 +10,9 @@ from jaxtyping import Float
 
 from suchus.control.sensed import TRUNK_YAW, Sensed, finite, keep
 from suchus.control.shared import Shared
-from suchus.design import Crocodile
+from suchus.design import GRAVITY, Crocodile
 from suchus.design.checks import Checks
 from suchus.errors import OutsideLimits
-from suchus.kinematics.mass import GRAVITY
 from suchus.motion import Gait
 
 SIDES = np.array([1.0, -1.0, -1.0, 1.0])

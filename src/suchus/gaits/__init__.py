@@ -1,8 +1,8 @@
 """The shelf of gaits: one file, one gait, declared as ``gait`` with its ``chosen`` numbers."""
 
 from suchus.catalog import Catalog
-from suchus.motion import Gait
+from suchus.motion import AnyGait
 
-GAITS: Catalog[Gait] = Catalog("gait", "suchus.gaits", "suchus.motion:Gait")
+GAITS: Catalog[AnyGait] = Catalog("gait", "suchus.gaits", "suchus.motion:AnyGait")
 
 __all__ = ["GAITS"]

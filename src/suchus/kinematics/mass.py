@@ -8,39 +8,22 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import LEGS, Crocodile, Tail, cable_joints, joint_names
+from suchus.design import GRAVITY, LEGS, Crocodile, cable_joints, crocodile, joint_names
+from suchus.design.leg import LEG_SHARES
+from suchus.design.tail import TailSegments, tail_segments
 from suchus.errors import InvalidDesign
 from suchus.kinematics import body, leg, spine
 
-LEG_SHARES = (0.60, 0.35, 0.05)
-"""How a leg's mass is spread over femur, tibia and foot [-]."""
-GRAVITY = 9.81
-"""[m/s2]."""
-
-
-class TailSegments(NamedTuple):
-    """The segments of a tail, the root first: plates between their joints, then the passive end."""
-
-    lengths: list[float]
-    """[m]."""
-    radii: list[float]
-    """[m]."""
-    masses: list[float]
-    """[kg]."""
-
-
-def tail_segments(tail: Tail) -> TailSegments:
-    """Return length, radius and mass of each segment; the mass is spread in proportion to volume."""
-    lengths = [
-        tail.root + tail.pitch / 2,
-        *([tail.pitch] * (tail.joints - 1)),
-        tail.pitch / 2,
-        *([tail.fin_length / tail.fin_segments] * tail.fin_segments),
-    ]
-    middles = np.cumsum(lengths) - 0.5 * np.array(lengths)
-    radii = np.interp(middles, [0.0, float(np.sum(lengths))], [tail.radius_root, tail.radius_tip])
-    volumes = radii**2 * lengths
-    return TailSegments(lengths, radii.tolist(), (tail.mass * volumes / volumes.sum()).tolist())
+__all__ = [
+    "GRAVITY",
+    "LEG_SHARES",
+    "Pieces",
+    "TailSegments",
+    "cantilever_torque",
+    "centre_of_mass",
+    "pieces",
+    "tail_segments",
+]
 
 
 class Pieces(NamedTuple):
@@ -67,6 +50,7 @@ def pieces(robot: Crocodile, angles: Float[np.ndarray, "*batch joint"]) -> Piece
         raise InvalidDesign(
             f"{angles.shape[-1]} angles were given; {robot.name} has {count} hinges: give one for each."
         )
+    crocodile(robot, "the mass of the trunk in closed form")
     masses = [robot.pelvis.mass, *4 * [robot.spine.link_mass], robot.thorax.mass, robot.head.mass]
     for name in LEGS:
         masses += [share * robot.leg(name).mass for share in LEG_SHARES]

@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float
 
 from suchus.errors import OutsideLimits
-from suchus.kinematics.links import Numbers, TailPlates
+from suchus.kinematics.links import Cords, Numbers, TailPlates
 
 
 def bend_limit(tail: TailPlates) -> float:
@@ -59,7 +59,7 @@ def slack(tail: TailPlates, bend: Numbers) -> Float[np.ndarray, "*batch"]:
     return np.asarray(-(toward + away))
 
 
-def servo_angle(tail: TailPlates, bend: Numbers) -> Float[np.ndarray, "*batch"]:
+def servo_angle(tail: Cords, bend: Numbers) -> Float[np.ndarray, "*batch"]:
     """Return how far the servo's wheel turns for a bend [rad].
 
     Args:
@@ -72,7 +72,7 @@ def servo_angle(tail: TailPlates, bend: Numbers) -> Float[np.ndarray, "*batch"]:
     return np.asarray(tail.joints * tail.cord_spacing * np.sin(half) / tail.pulley)
 
 
-def bend_of_servo(tail: TailPlates, angle: Numbers) -> Float[np.ndarray, "*batch"]:
+def bend_of_servo(tail: Cords, angle: Numbers) -> Float[np.ndarray, "*batch"]:
     """Return the bend that the servo's wheel makes [rad]: the inverse of ``servo_angle``.
 
     Args:

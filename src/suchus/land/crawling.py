@@ -5,19 +5,19 @@ from collections.abc import Sequence
 import xarray as xr
 
 from suchus.control import Control, OpenLoop
-from suchus.design import Crocodile
+from suchus.design import AnyRobot
 from suchus.design.ground import Ground
 from suchus.errors import Diverged
 from suchus.land.faults import Fault
 from suchus.land.push import Push
 from suchus.land.run import Run
 from suchus.land.simulation import simulate
-from suchus.motion import Gait
+from suchus.motion import AnyGait
 
 
 def crawl(
-    robot: Crocodile,
-    gait: Gait,
+    robot: AnyRobot,
+    gait: AnyGait,
     *,
     duration: float = 9.0,
     faults: Sequence[Fault] = (),
@@ -26,7 +26,7 @@ def crawl(
     control: Control | None = None,
     noise: float = 0.0,
     seed: int = 0,
-    timestep: float = 0.002,
+    timestep: float | None = None,
 ) -> xr.Dataset:
     """Let a robot walk.
 
@@ -40,7 +40,7 @@ def crawl(
         control: open loop if None.
         noise: standard deviation of noise on every servo angle commanded [rad].
         seed: of the noise.
-        timestep: of the physics [s].
+        timestep: of the physics [s]; that of the robot's size if None.
 
     Returns:
         The record, without the dimension ``run`` (see ``record.schema``).
@@ -64,7 +64,7 @@ def crawl(
         time = float(record.ended)
         raise Diverged(
             f"the crawl came apart at {time:.2f} s: {record.cause.item()}. "
-            f"A shorter timestep than {timestep} s may help.",
+            f"A shorter timestep than {record.timestep} s may help.",
             time=time,
             record=record.sel(time=slice(None, time + 1e-9)),
         )

@@ -96,7 +96,7 @@ def check_faults(faults: Sequence[Fault], robot: Crocodile, duration: float) -> 
         OutsideLimits: a joint held at an angle that it cannot reach.
     """
     for fault in faults:
-        names = servo_names() if fault.acts_on == "servo" else SENSORS
+        names = servo_names(robot) if fault.acts_on == "servo" else SENSORS
         if fault.joint not in names:
             raise UnknownName("joint" if fault.acts_on == "servo" else "sensor", fault.joint, names)
         if not (math.isfinite(fault.at) and 0.0 <= fault.at < duration):

@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from suchus.design import Crocodile
+from suchus.design import AnyRobot
 from suchus.design.checks import require
 from suchus.errors import InvalidDesign, UnknownName
 from suchus.model import compile_model
@@ -42,7 +42,7 @@ class Push:
         return max(overlap, 0.0) / (end - start)
 
 
-def check_pushes(pushes: Sequence[Push], robot: Crocodile, duration: float) -> None:
+def check_pushes(pushes: Sequence[Push], robot: AnyRobot, duration: float) -> None:
     """Refuse pushes that cannot happen.
 
     Raises:

@@ -3,12 +3,12 @@
 from dataclasses import dataclass, field
 
 from suchus.control import Control, OpenLoop
-from suchus.design import Crocodile
+from suchus.design import WATER_DENSITY, WATER_VISCOSITY, AnyRobot
 from suchus.design.checks import require
 from suchus.design.ground import Ground
 from suchus.land.faults import Fault
 from suchus.land.push import Push
-from suchus.motion import Gait
+from suchus.motion import AnyGait
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -32,7 +32,7 @@ class Afloat:
 
 VACUUM = Afloat(density=0.0, viscosity=0.0)
 """Where nothing acts from outside."""
-WATER = Afloat(density=1000.0, viscosity=1e-3)
+WATER = Afloat(density=WATER_DENSITY, viscosity=WATER_VISCOSITY)
 """Fresh water of 20 degrees Celsius."""
 
 
@@ -40,9 +40,9 @@ WATER = Afloat(density=1000.0, viscosity=1e-3)
 class Run:
     """One run of a batch."""
 
-    robot: Crocodile
+    robot: AnyRobot
     """Who walks."""
-    gait: Gait
+    gait: AnyGait
     """How."""
     ground: Ground = field(default_factory=Ground)
     """On what."""

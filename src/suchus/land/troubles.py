@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from suchus.control import Sensed
-from suchus.design import servo_names
+from suchus.design import layout
 from suchus.land.bench import Bench
 from suchus.land.faults import Deaf, Fault, Locked
 from suchus.land.push import Push
@@ -24,10 +24,11 @@ class Troubles:
         for sim, run in enumerate(runs):
             for fault in run.faults:
                 self._due.setdefault(int(np.ceil(fault.at / period - 1e-9)), []).append((sim, fault))
-        self._held = np.full((len(runs), len(servo_names())), np.nan)
+        self._servos = layout(runs[0].robot).servos
+        self._held = np.full((len(runs), len(self._servos)), np.nan)
         self._deaf: list[tuple[int, str]] = []
         self._noise = {
-            sim: run.noise * np.random.default_rng(run.seed).standard_normal((ticks, len(servo_names())))
+            sim: run.noise * np.random.default_rng(run.seed).standard_normal((ticks, len(self._servos)))
             for sim, run in enumerate(runs)
             if run.noise > 0
         }
@@ -42,7 +43,7 @@ class Troubles:
     def begin(self, sim: int, fault: Fault) -> None:
         """Let a fault begin now."""
         if isinstance(fault, Locked):
-            servo = servo_names().index(fault.joint)
+            servo = self._servos.index(fault.joint)
             now = self._bench.readings[sim, servo]  # the first of them are the servos' angles
             self._held[sim, servo] = now if fault.angle is None else fault.angle
         elif isinstance(fault, Deaf):
@@ -52,7 +53,7 @@ class Troubles:
 
     def mend(self, sim: int, joint: str) -> None:
         """Let a servo obey again; only where all runs share a model, as a lone run does."""
-        self._held[sim, servo_names().index(joint)] = np.nan
+        self._held[sim, self._servos.index(joint)] = np.nan
         self._bench.mend_servo(sim, joint)
 
     def push(self, sim: int, push: Push) -> None:
@@ -79,7 +80,7 @@ class Troubles:
         return replace(sensed, **heard)
 
     def disturb(self, tick: int, targets: np.ndarray) -> np.ndarray:
-        """Return the angles that the servos are told in the end, shape (run, 19) [rad]."""
+        """Return the angles that the servos are told in the end, shape (run, servo) [rad]."""
         if self._noise:
             targets = targets.copy()
             for sim, noise in self._noise.items():

@@ -6,11 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from suchus.design import LEGS, Crocodile
+from suchus.design import GRAVITY, LEGS, Crocodile
 from suchus.design.ground import Ground, slope
 from suchus.design.relief import ASIDE, CELL, REACH, Bumps, Relief, Step, field
 from suchus.figures import COLOURS
-from suchus.kinematics.mass import GRAVITY
 from suchus.metrics.gait import LOADED
 from suchus.replay.frames import Frames
 from suchus.replay.pack import Pack, quantised

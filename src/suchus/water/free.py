@@ -6,8 +6,7 @@ import numpy as np
 import xarray as xr
 
 from suchus import flow
-from suchus.design import Crocodile
-from suchus.kinematics.mass import GRAVITY
+from suchus.design import GRAVITY, Crocodile
 from suchus.water.diary import Diary, Progress
 from suchus.water.held import SAMPLES
 from suchus.water.measures import swing

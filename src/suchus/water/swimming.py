@@ -3,8 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from suchus.design import Crocodile
-from suchus.kinematics.mass import GRAVITY
+from suchus.design import GRAVITY, WATER_DENSITY, Crocodile
 from suchus.motion import Swim, check_swim
 from suchus.water.outline import Curve, Outline
 from suchus.water.slender import Model, Water, cruise, cycle, reactive, recoil, resistive
@@ -81,7 +80,7 @@ def _numbers(
     }
 
 
-def displaced(outline: Outline, density: float = 1000.0) -> float:
+def displaced(outline: Outline, density: float = WATER_DENSITY) -> float:
     """Return the mass of the water that the body displaces, its sections taken as ellipses [kg]."""
     wide, high = outline.silhouette
     return float(density * np.pi * np.trapezoid(wide * high, outline.s))
