@@ -66,24 +66,24 @@ def test_a_base_lends_what_the_file_does_not_say(tmp_path):
 def test_every_mistake_is_named_at_once_with_its_place(said):
     mistakes = said(
         'base = "caiman"\n'
-        "[hind_leg]\nfemur = -0.1\ntibia = 9\nyaw_range = [1, 0]\nfemurr = 1\n"
+        "[hind_leg]\nfemur = -0.1\ntibia = 90\nyaw_range = [1, 0]\nfemurr = 1\n"
         "[front_leg.servo]\nkp = nan\n"
         "[spine]\nyaw_range = [1, 2, 3]\nyaw_servo = 3\n"
         "[tail]\njoints = 2.5\n"
-        '[head]\nmass = "heavy"\nsnout = 5\n'
+        '[head]\nmass = "heavy"\nsnout = 50\n'
         "[trunk]\nmass = 1\n"
     )
     assert mistakes == {
-        "hind_leg.femur": "is -0.1 m; 0.01 to 1 m is allowed",
-        "hind_leg.tibia": "is 9 m; 0.01 to 1 m is allowed",
+        "hind_leg.femur": "is -0.1 m; 0.0001 to 10 m is allowed",
+        "hind_leg.tibia": "is 90 m; 0.0001 to 10 m is allowed",
         "hind_leg.yaw_range": "is (1.0, 0.0) rad; an increasing pair within -3.1416 to 3.1416 rad is allowed",
         "hind_leg.femurr": "is not known (did you mean hind_leg.femur?)",
-        "front_leg.servo.kp": "is nan N m/rad; 0.1 to 10000 N m/rad is allowed",
+        "front_leg.servo.kp": "is nan N m/rad; 1e-09 to 1e+07 N m/rad is allowed",
         "spine.yaw_range": "is [1, 2, 3]; 2 values are needed",
         "spine.yaw_servo": "is 3; a table is needed",
         "tail.joints": "is 2.5; a whole number is needed",
         "head.mass": "is 'heavy'; a number is needed",
-        "head.snout": "is 5 m; 0.02 to 2 m is allowed",
+        "head.snout": "is 50 m; 0.0001 to 20 m is allowed",
         "trunk": "is not known; there is name, hind_leg, front_leg, pelvis, spine, thorax, head, tail, contact",
     }
 

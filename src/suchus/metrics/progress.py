@@ -4,6 +4,7 @@ import numpy as np
 import xarray as xr
 
 from suchus.design import GRAVITY
+from suchus.design.body import TRUNK_YAW
 from suchus.metrics.window import between
 from suchus.motion import START
 
@@ -15,10 +16,11 @@ def displacement(record: xr.Dataset, start: float = START, end: float | None = N
 
 
 def heading(record: xr.Dataset) -> xr.DataArray:
-    """Return over time whereto the body faces: the mean of the two girdles' directions, left positive [rad]."""
+    """Return over time whereto the body faces: the mean of the directions at both ends of the trunk, left positive [rad]."""
     w, x, y, z = (record.orientation.sel(wxyz=c) for c in "wxyz")
     yaw = xr.apply_ufunc(np.arctan2, 2 * (w * z + x * y), 1 - 2 * (y**2 + z**2))
-    trunk = sum(record.joint_angle.sel(joint=f"spine_yaw_{i}") for i in (1, 2, 3))
+    names = [str(name) for name in record.joint.values if str(name).startswith(TRUNK_YAW)]
+    trunk = sum(record.joint_angle.sel(joint=name) for name in names)
     return xr.apply_ufunc(lambda a: np.unwrap(a, axis=-1), yaw.transpose(..., "time")) + trunk / 2
 
 

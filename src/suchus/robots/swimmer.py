@@ -1,0 +1,39 @@
+"""A swimmer without limbs: eleven equal segments and ten yaw joints, as AmphiBot and Envirobot."""
+
+from math import radians
+
+from suchus.design import Chosen, Hinge, Robot, Segment, Shell
+from suchus.design.physics import WATER_DENSITY
+from suchus.design.scale import contact_for, servo_for
+
+_COUNT, _SEGMENT, _HEIGHT, _WIDTH = 11, 0.095, 0.056, 0.040
+_LENGTH = _COUNT * _SEGMENT
+_HALF = (0.55 * _SEGMENT, _WIDTH / 2, _HEIGHT / 2)
+_SEGMENT_MASS = WATER_DENSITY * 4.18879 * _HALF[0] * _HALF[1] * _HALF[2]  # of the ellipsoid, 4 pi / 3: it hovers
+_ROOT = _COUNT // 2
+_servo = servo_for(_COUNT * _SEGMENT_MASS, _LENGTH)
+
+
+def _hinge(number: int) -> Hinge:
+    word, count = ("spine", _ROOT - number) if number < _ROOT else ("tail", number - _ROOT + 1)
+    return Hinge(name=f"{word}_yaw_{count}", turn="yaw", drive=_servo, range=(-radians(65), radians(65)))
+
+
+robot = Robot(
+    name="swimmer",
+    root=f"segment_{_ROOT + 1}",
+    axis=tuple(
+        Segment(
+            name=f"segment_{i + 1}",
+            front=_SEGMENT / 2,
+            rear=_SEGMENT / 2,
+            shapes=(Shell(name=f"segment_{i + 1}", at=(0.0, 0.0, 0.0), half=_HALF, mass=_SEGMENT_MASS),),
+            hinges=(_hinge(i),) if i < _COUNT - 1 else (),
+        )
+        for i in range(_COUNT)
+    ),
+    girdles=(),
+    cables=(),
+    contact=contact_for(_LENGTH, foot_friction=0.4, skin_friction=0.4),
+)
+"""A row of equal segments, neutrally buoyant."""
