@@ -15,6 +15,8 @@ import numpy as np
 from cycler import cycler
 from matplotlib.figure import Figure
 
+from suchus.design import LEGS, AnyRobot, layout
+
 COLOURS: Final[Mapping[str, str]] = MappingProxyType(
     {
         "coordinated": "#0072B2",
@@ -37,6 +39,16 @@ COLOURS: Final[Mapping[str, str]] = MappingProxyType(
     }
 )
 """Colour of each role: the four arms, ours and the article's, the legs, spine and tail."""
+
+_MORE: Final = ("#009E73", "#B0558A", "#56B4E9", "#E69F00", "#767676", "#333333")
+
+
+def limb_colours(robot: AnyRobot) -> list[tuple[str, str]]:
+    """Return each limb of a robot with its colour: those of the article's legs, then others in turn."""
+    names = layout(robot).limb_names
+    spare = iter(_MORE * (len(names) // len(_MORE) + 1))
+    return [(name, COLOURS[name] if name in LEGS else next(spare)) for name in names]
+
 
 LINES: Final[Mapping[str, Mapping[str, Any]]] = MappingProxyType(
     {

@@ -16,7 +16,7 @@ def displacement(record: xr.Dataset, start: float = START, end: float | None = N
 
 
 def heading(record: xr.Dataset) -> xr.DataArray:
-    """Return over time whereto the body faces: the mean of the directions at both ends of the trunk, left positive [rad]."""
+    """Return over time whereto the body faces: the mean of the directions of the trunk's ends, left positive [rad]."""
     w, x, y, z = (record.orientation.sel(wxyz=c) for c in "wxyz")
     yaw = xr.apply_ufunc(np.arctan2, 2 * (w * z + x * y), 1 - 2 * (y**2 + z**2))
     names = [str(name) for name in record.joint.values if str(name).startswith(TRUNK_YAW)]

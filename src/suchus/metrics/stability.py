@@ -6,7 +6,7 @@ from jaxtyping import Float
 from scipy.spatial import ConvexHull, QhullError
 
 from suchus.errors import IncompatibleRecord
-from suchus.metrics.gait import LOADED
+from suchus.metrics.gait import loaded
 from suchus.metrics.window import between
 from suchus.motion import START
 
@@ -36,16 +36,16 @@ def roll_peak_to_peak(record: xr.Dataset, start: float = START, end: float | Non
     return roll.max("time") - roll.min("time")
 
 
-def support_polygon(record: xr.Dataset, time: float, threshold: float = LOADED) -> Float[np.ndarray, "corner 2"]:
+def support_polygon(record: xr.Dataset, time: float, threshold: float | None = None) -> Float[np.ndarray, "corner 2"]:
     """Return the corners of the hull of the standing feet at one time, in order [m].
 
     Args:
         record: of one run.
         time: [s].
-        threshold: least normal force of a standing foot [N].
+        threshold: least normal force of a standing foot [N]; a share of the weight if None.
     """
     now = record.sel(time=time, method="nearest")
-    stands = (now.foot_force.sel(xyz="z") > threshold).values
+    stands = loaded(now, threshold).values
     feet = np.asarray(now.foot_position.sel(xyz=["x", "y"]).values[stands], dtype=float)
     if len(feet) < 3:
         return feet
@@ -55,7 +55,7 @@ def support_polygon(record: xr.Dataset, time: float, threshold: float = LOADED) 
         return feet
 
 
-def support_distance(record: xr.Dataset, time: float, threshold: float = LOADED) -> float:
+def support_distance(record: xr.Dataset, time: float, threshold: float | None = None) -> float:
     """Return how far the projected centre of mass lies outside the support [m].
 
     With two standing feet the support is the line between them; inside a polygon the distance is negative, to the
@@ -64,7 +64,7 @@ def support_distance(record: xr.Dataset, time: float, threshold: float = LOADED)
     Args:
         record: of one run.
         time: [s].
-        threshold: least normal force of a standing foot [N].
+        threshold: least normal force of a standing foot [N]; a share of the weight if None.
     """
     corners = support_polygon(record, time, threshold)
     com = record.centre_of_mass.sel(time=time, method="nearest").sel(xyz=["x", "y"]).values.astype(float)

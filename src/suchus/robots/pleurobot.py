@@ -2,7 +2,7 @@
 
 from math import radians
 
-from suchus.design import Chosen, Robot
+from suchus.design import Robot
 from suchus.design.scale import contact_for, servo_for
 from suchus.robots._plans import Joint, girdle, limb, row
 

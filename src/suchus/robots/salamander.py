@@ -1,5 +1,6 @@
 """A salamander, the animal: eight yaw joints, six passive pitch joints, four joints a limb; 0.1 m and 3 g."""
 
+from itertools import pairwise
 from math import radians
 
 from suchus.design import Robot
@@ -32,15 +33,13 @@ def _joints(number: int) -> list[Joint]:
     return found
 
 
-_limb = limb(
-    0.005, 0.006, radius=0.9e-3, masses=_LIMB_MASSES, foot=1.2e-3, servo=_servo, roll=True, limit=radians(110)
-)
+_limb = limb(0.005, 0.006, radius=0.9e-3, masses=_LIMB_MASSES, foot=1.2e-3, servo=_servo, roll=True, limit=radians(110))
 robot = Robot(
     name="salamander",
     root="waist",
     axis=row(
         _NAMES,
-        [b - a for a, b in zip(_ends, _ends[1:], strict=False)],
+        [b - a for a, b in pairwise(_ends)],
         _RADII,
         _MASSES,
         [_joints(i) for i in range(len(_JOINTS))],

@@ -3,7 +3,7 @@
 from dataclasses import replace
 from math import cos, radians, sin
 
-from suchus.design import Chosen, Crank, Foot, Hinge, Limb, Link, Robot
+from suchus.design import Crank, Foot, Hinge, Limb, Link, Robot
 from suchus.design.scale import contact_for, servo_for
 from suchus.robots._plans import Joint, girdle, row
 

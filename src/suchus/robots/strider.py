@@ -2,16 +2,14 @@
 
 from math import radians
 
-from suchus.design import Chosen, Robot
+from suchus.design import Robot
 from suchus.design.scale import contact_for, servo_for
 from suchus.robots._plans import girdle, limb, row
 
 _LENGTH, _MASS = 0.60, 3.0
 _LIMB_MASSES = (0.09, 0.05, 0.01)
 _servo = servo_for(_MASS, _LENGTH)
-_limb = limb(
-    0.080, 0.100, radius=0.010, masses=_LIMB_MASSES, foot=0.012, servo=_servo, roll=False, limit=radians(100)
-)
+_limb = limb(0.080, 0.100, radius=0.010, masses=_LIMB_MASSES, foot=0.012, servo=_servo, roll=False, limit=radians(100))
 _SEGMENT, _SEGMENT_MASS = _LENGTH / 3, (_MASS - 6 * sum(_LIMB_MASSES)) / 3
 
 robot = Robot(

@@ -2,7 +2,7 @@
 
 from math import radians
 
-from suchus.design import Chosen, Hinge, Robot, Segment, Shell
+from suchus.design import Hinge, Robot, Segment, Shell
 from suchus.design.physics import WATER_DENSITY
 from suchus.design.scale import contact_for, servo_for
 
