@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from suchus.capture.tracks import Tracks
-from suchus.design import LEGS, Crocodile, leg_joints, spine_joints
+from suchus.design import LEGS, Crocodile, crocodile, leg_joints, spine_joints
 from suchus.design.checks import Checks
 from suchus.kinematics import body, spine
 from suchus.motion import START
@@ -90,6 +90,7 @@ def keypoints(robot: Crocodile, record: xr.Dataset) -> dict[str, np.ndarray]:
         robot: whose record it is.
         record: of one run, without the dimension ``run``.
     """
+    robot = crocodile(robot, "a made-up film")
     angles = record.joint_angle.values.astype(float)
     legs, trunk = len(leg_joints()), len(leg_joints()) + len(spine_joints())
     points = _midline(robot, angles[:, legs:trunk]) | _tail(robot, angles[:, trunk:])

@@ -8,7 +8,7 @@ import numpy as np
 
 from suchus.capture.walk import Walk
 from suchus.capture.wave import STANDING
-from suchus.design import LEGS, Crocodile, servo_names
+from suchus.design import LEGS, Crocodile, crocodile, servo_names
 from suchus.errors import OutsideLimits
 from suchus.motion import Gait, check_limits, servo_targets, tail_bend, trunk_bend
 
@@ -51,6 +51,7 @@ def to_gait(walk: Walk, robot: Crocodile, base: Gait, *, name: str, duty: Duty =
     Raises:
         OutsideLimits: the robot cannot follow even with the base's posture and a small stroke.
     """
+    robot = crocodile(robot, "a captured walk")
     notes: list[str] = []
     gait = _timed(walk, replace(base, name=name), duty, notes)
     gait = _bent(walk, gait, notes)

@@ -15,9 +15,9 @@ from suchus.control.sensed import Sensed
 from suchus.control.shared import silence
 from suchus.control.spine import Spine, SpineRule
 from suchus.control.tail import Tail, TailRule
-from suchus.design import Crocodile
+from suchus.design import AnyRobot, layout
 from suchus.design.checks import Checks, require
-from suchus.errors import InvalidDesign
+from suchus.errors import InvalidDesign, UnsuitedRobot
 from suchus.motion import START, Gait, servo_targets
 
 _SLACK = 1e-9  # [s]; times are multiples of the control period up to rounding
@@ -77,7 +77,7 @@ class Coordinated:
 
     def start(
         self,
-        robots: Sequence[Crocodile],
+        robots: Sequence[AnyRobot],
         gaits: Sequence[Gait],
         seeds: Sequence[int],
         ticks: int,
@@ -89,7 +89,7 @@ class Coordinated:
     @staticmethod
     def start_together(
         controls: "Sequence[Coordinated]",
-        robots: Sequence[Crocodile],
+        robots: Sequence[AnyRobot],
         gaits: Sequence[Gait],
         seeds: Sequence[int],
         ticks: int,
@@ -100,7 +100,7 @@ class Coordinated:
 
 
 class _Group(NamedTuple):
-    robot: Crocodile
+    robot: AnyRobot
     gait: Gait
     runs: np.ndarray
 
@@ -111,12 +111,14 @@ class Coordinator:
     def __init__(
         self,
         controls: Sequence[Coordinated],
-        robots: Sequence[Crocodile],
+        robots: Sequence[AnyRobot],
         gaits: Sequence[Gait],
         seeds: Sequence[int],
         ticks: int,
         period: float,
     ) -> None:
+        for robot, gait in set(zip(robots, gaits, strict=True)):
+            _refuse_others(robot, gait)
         self._period = period
         self._table = OpenLoop().start(robots, gaits, seeds, ticks, period)
         self._groups = _grouped(robots, gaits)
@@ -149,7 +151,7 @@ class Coordinator:
         if self._heading is not None and before._heading is not None:
             self._heading.take_over(before._heading)
 
-    def rest(self) -> Float[np.ndarray, "run 19"]:
+    def rest(self) -> Float[np.ndarray, "run servo"]:
         """The posture of the first phases."""
         self._share(0, None, walking=False)
         return self._posture(0)
@@ -176,7 +178,7 @@ class Coordinator:
         heard = replace(limbs, limb_phase=np.where(self._hears, limbs.limb_phase, clock))
         self._shared = replace(self._tail.step(self._spine.step(heard)), limb_phase=limbs.limb_phase)
 
-    def _posture(self, tick: int) -> Float[np.ndarray, "run 19"]:
+    def _posture(self, tick: int) -> Float[np.ndarray, "run servo"]:
         """Return the servo angles; where nothing is ahead of the clock and nobody steers, those of the table."""
         targets = self._table.command(tick, None).targets
         moved = self._limbs.ahead.any(axis=1) | self._steering.any()
@@ -200,8 +202,22 @@ class Coordinator:
         return replace(sensed, foot_pressure=pressure)
 
 
-def _grouped(robots: Sequence[Crocodile], gaits: Sequence[Gait]) -> list[_Group]:
-    members: dict[tuple[Crocodile, Gait], list[int]] = {}
+def _refuse_others(robot: AnyRobot, gait: Gait) -> None:
+    if not isinstance(gait, Gait):
+        raise UnsuitedRobot(
+            f"the feedback rules coordinate gaits of four legs with a trunk and a tail, as 'belly_crawl'; gait "
+            f"{gait.name!r} is a pattern of any body: let robot {robot.name!r} walk it in open loop."
+        )
+    place = layout(robot)
+    if not (place.trunk_yaw and place.tail_pitch):
+        raise UnsuitedRobot(
+            f"the feedback rules need servos that bend the trunk sideways and pitch the tail; robot {robot.name!r} "
+            "lacks them: let it walk in open loop."
+        )
+
+
+def _grouped(robots: Sequence[AnyRobot], gaits: Sequence[Gait]) -> list[_Group]:
+    members: dict[tuple[AnyRobot, Gait], list[int]] = {}
     for i, pair in enumerate(zip(robots, gaits, strict=True)):
         members.setdefault(pair, []).append(i)
     return [_Group(robot, gait, np.array(runs)) for (robot, gait), runs in members.items()]

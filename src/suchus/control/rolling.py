@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from suchus.control.open_loop import Table
-from suchus.design import Crocodile
+from suchus.design import Crocodile, layout
 from suchus.motion import Gait, Roll, check_roll, roll_targets
 
 
@@ -55,7 +55,7 @@ class Rolling:
         pairs = [(control.roll, robot) for control, robot in zip(controls, robots, strict=True)]
         unique = {pair: i for i, pair in enumerate(dict.fromkeys(pairs))}
         time = np.arange(ticks) * period
-        targets = np.empty((len(unique), ticks, 19))
+        targets = np.empty((len(unique), ticks, len(layout(robots[0]).servos)))
         phase = np.empty((len(unique), ticks, 4))
         for (roll, robot), i in unique.items():
             check_roll(robot, roll)

@@ -9,13 +9,11 @@ from jaxtyping import Float
 
 from suchus.control.controller import Command
 from suchus.control.sensed import Sensed
-from suchus.design import Crocodile, Leg, servo_names
+from suchus.design import Crocodile, Leg, layout
 from suchus.design.checks import Checks
 from suchus.motion import Gait, limb_phase, servo_targets
 from suchus.motion.posture import Keyed, hind_leg, plan
 from suchus.motion.rising import stand_up
-
-_FIRST_PITCH = servo_names().index("spine_pitch_1")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -152,7 +150,9 @@ class Standing:
         courses = [control._course(robot, gait, time) for control, robot, gait in unique]
         course = Course(*(np.array(part) for part in zip(*courses, strict=True)))
         legs = [robot.hind_leg for robot in robots]
-        return Stander([c.balance for c in controls], course, np.array([unique[key] for key in keys]), legs, period)
+        rows = np.array([unique[key] for key in keys])
+        first_pitch = layout(robots[0]).trunk_pitch[0]
+        return Stander([c.balance for c in controls], course, rows, legs, first_pitch, period)
 
     def _course(self, robot: Crocodile, gait: Gait, time: np.ndarray) -> "Course":
         up, leave, end = self._rise(robot), self.upright_until(robot), self.down_from(robot)
@@ -175,7 +175,7 @@ class Standing:
 class Course(NamedTuple):
     """What is intended over time, one row per distinct robot and gait."""
 
-    targets: Float[np.ndarray, "*row tick 19"]
+    targets: Float[np.ndarray, "*row tick servo"]
     """Servo angles [rad]."""
     phase: Float[np.ndarray, "*row tick 4"]
     """Of the limbs [cycle]."""
@@ -196,18 +196,20 @@ class Stander:
         course: Course,
         row: np.ndarray,
         legs: Sequence[Leg],
+        first_pitch: int,
         period: float,
     ) -> None:
         self._gains = {f.name: np.array([getattr(b or BALANCE, f.name) for b in balances]) for f in fields(Balance)}
         self._answers = np.array([b is not None for b in balances])
         self._course = course
         self._row = row
+        self._first_pitch = first_pitch
         self._legs = [(leg, np.array([leg == other for other in legs])) for leg in dict.fromkeys(legs)]
         self._period = period
         self._mean = np.full(len(row), np.nan)  # of the pitch error [rad]
         self._crept = np.zeros(len(row))  # of the hips, for the tail's sake [m]
 
-    def rest(self) -> Float[np.ndarray, "run 19"]:
+    def rest(self) -> Float[np.ndarray, "run servo"]:
         """The posture of the gait."""
         return np.asarray(self._course.targets[self._row, 0])
 
@@ -224,7 +226,7 @@ class Stander:
             some = who & upright
             angles = hind_leg(leg, feet[some], now.pitch[some], clip=True)
             targets[some, 6:9] = targets[some, 9:12] = angles
-        targets[upright, _FIRST_PITCH] -= bend[upright]
+        targets[upright, self._first_pitch] -= bend[upright]
         return Command(targets, now.phase)
 
     def _answer(self, now: Course, sensed: Sensed, upright: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -10,7 +10,7 @@ from suchus.control.attitude import Attitude, AttitudeRule
 from suchus.control.controller import Command
 from suchus.control.sensed import Sensed
 from suchus.control.switching import Switcher, SwitchRule
-from suchus.design import Crocodile
+from suchus.design import Crocodile, layout
 from suchus.design.checks import Checks, require
 from suchus.errors import OutsideLimits
 from suchus.motion import START, Gait, servo_targets, tail_bend, trunk_bend
@@ -120,7 +120,7 @@ class Walker:
         self._groups = _grouped(self._robots, self._gaits)
         self._last = self._walk(0.0)
 
-    def rest(self) -> Float[np.ndarray, "run 19"]:
+    def rest(self) -> Float[np.ndarray, "run servo"]:
         """The posture of the first phases."""
         return self._last.targets
 
@@ -168,7 +168,8 @@ class Walker:
 
     def _walk(self, time: float) -> Command:
         """Return the intended posture of every run by its clock; those of runs that change their gait do not count."""
-        targets, phases = np.zeros((len(self._robots), 19)), np.zeros((len(self._robots), 4))
+        runs_of = len(self._robots)
+        targets, phases = np.zeros((runs_of, len(layout(self._robots[0]).servos))), np.zeros((runs_of, 4))
         since = np.maximum(time - self._began, 0.0)
         size = np.where(self._full > 0, np.clip(since / np.maximum(self._full, 1e-9), 0.0, 1.0), 1.0)
         for robot, gait, runs in self._groups:

@@ -95,6 +95,8 @@ class Layout:
     """For each of ``axial_yaw`` its place along the body, 0 at the snout, 1 at the tip of the tail [-]."""
     trunk_yaw: tuple[int, ...]
     """Servos that bend the trunk sideways, from the root to the foremost girdle; positive is left."""
+    trunk_pitch: tuple[int, ...]
+    """Servos that bend the trunk up and down, from the root to the foremost girdle; positive is down."""
     tail_yaw: tuple[int, ...]
     """Servos that bend the tail sideways directly, from the root; positive is right."""
     tail_pitch: tuple[int, ...]
@@ -177,6 +179,7 @@ def layout(robot: AnyRobot) -> Layout:
         axial_left=tuple(1.0 if servos[i] in front else -1.0 for i in yaws),
         axial_place=tuple(_place(body, servos[i]) for i in yaws),
         trunk_yaw=tuple(i for i in among(front, "yaw") if servos[i].startswith(TRUNK_YAW)),
+        trunk_pitch=among(_within(body, front), "pitch"),
         tail_yaw=among(back, "yaw"),
         tail_pitch=among(back, "pitch"),
         cables=tuple(range(len(servos) - len(body.cables), len(servos))),
@@ -265,6 +268,16 @@ def _limbs(robot: Robot, hinges: tuple[str, ...], servos: tuple[str, ...], tips:
             )
         )
     return tuple(found)
+
+
+def _within(robot: Robot, ahead: list[str]) -> list[str]:
+    """Return those of the hinges ahead of the root that lie behind the foremost girdle, or all without one."""
+    if not robot.girdles:
+        return ahead
+    names = [segment.name for segment in robot.axis]
+    beyond = robot.axis[: names.index(robot.girdles[0].segment)]
+    neck = {hinge.name for segment in beyond for hinge in segment.hinges}
+    return [name for name in ahead if name not in neck]
 
 
 def _place(robot: Robot, hinge: str) -> float:

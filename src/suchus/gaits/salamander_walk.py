@@ -2,6 +2,7 @@
 
 from math import radians
 
+from suchus.design.reasons import Reason, chosen_numbers
 from suchus.motion import AxialWave, FootPath, Pattern
 
 _PATH = FootPath(stroke=0.30, lift=0.20, outward=0.60, ahead=0.0, plane=0.0)
@@ -25,3 +26,18 @@ gait = Pattern(
         phase=0.0,
     ),
 )
+"""Diagonal limbs and a standing wave, as the animal walks."""
+
+_REASONS = (
+    Reason(
+        r"^wave\.",
+        0.5,
+        1.5,
+        "as a walking salamander: a standing wave with its nodes at the girdles, 15 to 20 degrees a joint in the trunk",
+    ),
+    Reason(r"^period$", 0.5, 2.0, "a slow walk, at which every posture is nearly static"),
+    Reason(r"^(duty_factor|limb_phases)", 0.8, 1.3, "opposite limbs in turn, a little more stance than swing"),
+    Reason(r"^girdles|^height$", 0.7, 1.4, "within what the limbs reach, the belly clear of the ground"),
+)
+chosen = chosen_numbers(gait, _REASONS)
+"""Every number with its plausible range and the reason."""

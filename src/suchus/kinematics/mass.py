@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import GRAVITY, LEGS, Crocodile, cable_joints, crocodile, joint_names
+from suchus.design import GRAVITY, LEGS, Crocodile, cable_joints, crocodile, joint_names, layout
 from suchus.design.leg import LEG_SHARES
 from suchus.design.tail import TailSegments, tail_segments
 from suchus.errors import InvalidDesign
@@ -85,7 +85,7 @@ def cantilever_torque(robot: Crocodile) -> float:
 
 
 def _trunk(robot: Crocodile, angles: np.ndarray) -> list[np.ndarray]:
-    bends = angles[..., 12:17]
+    bends = angles[..., layout(robot).ahead]
     joints = spine.joints(robot.spine, bends)
     T = spine.forward(robot.spine, bends)
     shoulder, snout = robot.thorax.shoulder, robot.head.snout
@@ -98,11 +98,11 @@ def _trunk(robot: Crocodile, angles: np.ndarray) -> list[np.ndarray]:
 
 
 def _legs(robot: Crocodile, angles: np.ndarray) -> list[np.ndarray]:
-    T = spine.forward(robot.spine, angles[..., 12:17])
+    T = spine.forward(robot.spine, angles[..., layout(robot).ahead])
     shoulder = T[..., :3, 3] + robot.thorax.shoulder * T[..., :3, 0]
     found = []
     for i, name in enumerate(LEGS):
-        links, bends = robot.leg(name), angles[..., 3 * i : 3 * i + 3]
+        links, bends = robot.leg(name), angles[..., layout(robot).limbs[i].hinges]
         knee, foot = leg.knee_point(links, bends), leg.forward(links, bends)
         hip = np.broadcast_to(np.array([links.hip_offset, 0.0, 0.0]), knee.shape)
         for point in ((hip + knee) / 2, (knee + foot) / 2, foot):
@@ -114,7 +114,7 @@ def _legs(robot: Crocodile, angles: np.ndarray) -> list[np.ndarray]:
 
 
 def _tail(robot: Crocodile, angles: np.ndarray) -> list[np.ndarray]:
-    points = body.tail_points(robot, angles[..., 17:])
+    points = body.tail_points(robot, angles[..., layout(robot).behind])
     cables = len(cable_joints(robot))
     # the middle of the last plate ends a segment, though no joint is there: the passive end begins
     assert points.shape[-2] == cables + 2 + robot.tail.fin_segments

@@ -4,6 +4,25 @@ from collections.abc import Sequence
 
 from suchus.design import Foot, Girdle, Hinge, Limb, Link, Rod, Segment, Servo, Spring
 from suchus.design.hinge import Turn
+from suchus.design.reasons import Reason
+
+BY_SIZE = (
+    Reason(
+        r"\.(drive|servo)\.",
+        0.5,
+        2.0,
+        "from mass and length by the rules of design.scale: the article's servo in this size; half and twice do too",
+    ),
+    Reason(
+        r"^contact\.(time_constant|torsion|rolling|depth)$",
+        0.5,
+        2.0,
+        "from the length by the rules of design.scale: the article's rubber sole in this size",
+    ),
+    Reason(r"^contact\.", 0.6, 1.4, "a rubber foot and a smooth skin on a floor"),
+    Reason(r"\.range\[", 0.7, 1.5, "clear of every angle that the gait asks for"),
+)
+"""Reasons for what follows from a body's size, and for ranges."""
 
 Joint = tuple[str, Turn, Servo | Spring, float]
 """Name, turn, drive and range to either side [rad] of a hinge of the axis."""

@@ -3,8 +3,9 @@
 from math import radians
 
 from suchus.design import Robot
+from suchus.design.reasons import Reason, chosen_numbers
 from suchus.design.scale import contact_for, servo_for
-from suchus.robots._plans import Joint, girdle, limb, row
+from suchus.robots._plans import BY_SIZE, Joint, girdle, limb, row
 
 _NAMES = ("head", "neck", "chest", "trunk_1", "trunk_2", "trunk_3", "pelvis", *(f"tail_{i}" for i in range(1, 6)))
 _LENGTHS = (0.140, 0.070, 0.110, 0.110, 0.110, 0.110, 0.110, 0.110, 0.110, 0.110, 0.110, 0.100)
@@ -49,3 +50,15 @@ robot = Robot(
     contact=contact_for(_LENGTH, foot_friction=0.8, skin_friction=0.4),
 )
 """The robot of Karakasiliotis et al. 2016: its bones and joints; the rest chosen."""
+
+_OWN = (
+    Reason(r"\.radius$", 0.7, 1.4, "room for the servos between the bones"),
+    Reason(r"\.mass$", 0.7, 1.4, "5.5 kg in all, spread by volume; a limb of 0.3 kg holds four servos"),
+    Reason(
+        r"^axis\[\d+\]\.(front|rear)$|\.(start|end)\[0\]$", 0.8, 1.2, "eleven joints over 1.3 m, the animal's trunk"
+    ),
+    Reason(r"^girdles\[\d\]\.(at|aside|above)$", 0.7, 1.3, "hips beside the girdles' servos"),
+)
+_PUBLISHED = (r"^girdles.*\.end\[1\]$",)
+chosen = chosen_numbers(robot, (*_OWN, *BY_SIZE), _PUBLISHED)
+"""Every number that the publication does not give, with its plausible range and the reason."""

@@ -4,8 +4,9 @@ from itertools import pairwise
 from math import radians
 
 from suchus.design import Robot
+from suchus.design.reasons import Reason, chosen_numbers
 from suchus.design.scale import contact_for, servo_for, spring_for
-from suchus.robots._plans import Joint, girdle, limb, row
+from suchus.robots._plans import BY_SIZE, Joint, girdle, limb, row
 
 _JOINTS = (0.0150, 0.0257, 0.0364, 0.0471, 0.0579, 0.0686, 0.0793, 0.0900)  # m from the snout
 _MASSES = (0.331e-3, 0.514e-3, 0.630e-3, 0.528e-3, 0.267e-3, 0.209e-3, 0.157e-3, 0.119e-3, 0.075e-3)  # kg
@@ -51,3 +52,20 @@ robot = Robot(
     cables=(),
     contact=contact_for(_LENGTH, foot_friction=0.7, skin_friction=0.4),
 )
+
+"""After the model of a Pleurodeles scaled to 0.10 m that is used with SalamandraSNN (MIT)."""
+
+_OWN = (
+    Reason(r"\.radius$", 0.7, 1.4, "the animal's outline; a belly that clears the ground by a fifth of the body"),
+    Reason(r"^girdles\[\d\]\.limb.*\.mass$", 0.5, 2.0, "a limb of 22 mg: 0.7 % of the body"),
+    Reason(r"^axis.*\.(start|end)\[0\]$", 0.8, 1.2, "a rod as long as its segment, its round ends in the joints"),
+)
+_PUBLISHED = (
+    r"^axis\[\d\]\.(front|rear)$",
+    r"^axis\[\d\]\.shapes\[0\]\.mass$",
+    r"^girdles\[\d\]\.(at|aside|above)$",
+    r"\.foot\.radius$",
+    r"^girdles.*\.end\[",
+)
+chosen = chosen_numbers(robot, (*_OWN, *BY_SIZE), _PUBLISHED)
+"""Every number that the model does not give, with its plausible range and the reason."""

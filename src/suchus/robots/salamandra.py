@@ -4,8 +4,9 @@ from dataclasses import replace
 from math import cos, radians, sin
 
 from suchus.design import Crank, Foot, Hinge, Limb, Link, Robot
+from suchus.design.reasons import Reason, chosen_numbers
 from suchus.design.scale import contact_for, servo_for
-from suchus.robots._plans import Joint, girdle, row
+from suchus.robots._plans import BY_SIZE, Joint, girdle, row
 
 _LENGTHS = (0.108, 0.066, 0.095, 0.095, 0.108, 0.095, 0.095, 0.095, 0.095)
 _LENGTH, _MASS = sum(_LENGTHS), 2.0
@@ -61,3 +62,17 @@ robot = Robot(
     contact=contact_for(_LENGTH, foot_friction=0.8, skin_friction=0.3),
 )
 """The robot of Ijspeert, Crespi, Ryczko and Cabelguen 2007 after the dimensions of its public model."""
+
+_OWN = (
+    Reason(r"\.radius$", 0.7, 1.3, "round segments of about the published height and width"),
+    Reason(r"\.mass$", 0.7, 1.4, "neutrally buoyant as a whole: 2 kg for the published outline; legs of 30 g"),
+    Reason(r"^axis.*\.(start|end)\[0\]$", 0.8, 1.2, "a rod as long as its segment, its round ends in the joints"),
+)
+_PUBLISHED = (
+    r"^axis\[\d\]\.(front|rear)$",
+    r"^girdles\[\d\]\.(at|aside|above)$",
+    r"\.foot\.radius$",
+    r"^girdles.*\.end\[",
+)
+chosen = chosen_numbers(robot, (*_OWN, *BY_SIZE), _PUBLISHED)
+"""Every number that the public model does not give, with its plausible range and the reason."""

@@ -3,8 +3,9 @@
 from math import radians
 
 from suchus.design import Robot
+from suchus.design.reasons import Reason, chosen_numbers
 from suchus.design.scale import contact_for, servo_for
-from suchus.robots._plans import girdle, limb, row
+from suchus.robots._plans import BY_SIZE, girdle, limb, row
 
 _LENGTH, _MASS = 0.60, 3.0
 _LIMB_MASSES = (0.09, 0.05, 0.01)
@@ -30,3 +31,17 @@ robot = Robot(
     contact=contact_for(_LENGTH, foot_friction=0.8, skin_friction=0.4),
 )
 """Proof that six limbs are no more than three girdles."""
+
+_OWN = (
+    Reason(r"\.radius$", 0.7, 1.4, "room for hobby servos"),
+    Reason(r"\.mass$", 0.7, 1.4, "3 kg in all; a limb of 0.15 kg holds three small servos"),
+    Reason(
+        r"^axis\[\d+\]\.(front|rear)$|\.(start|end)\[\d\]$",
+        0.7,
+        1.4,
+        "invented: three equal segments, legs that sprawl",
+    ),
+    Reason(r"^girdles\[\d\]\.(at|aside|above)$", 0.7, 1.4, "hips beside the body, in the middle of each segment"),
+)
+chosen = chosen_numbers(robot, (*_OWN, *BY_SIZE))
+"""Every number, with its plausible range and the reason: the robot is invented."""

@@ -4,7 +4,9 @@ from math import radians
 
 from suchus.design import Hinge, Robot, Segment, Shell
 from suchus.design.physics import WATER_DENSITY
+from suchus.design.reasons import Reason, chosen_numbers
 from suchus.design.scale import contact_for, servo_for
+from suchus.robots._plans import BY_SIZE
 
 _COUNT, _SEGMENT, _HEIGHT, _WIDTH = 11, 0.095, 0.056, 0.040
 _LENGTH = _COUNT * _SEGMENT
@@ -37,3 +39,11 @@ robot = Robot(
     contact=contact_for(_LENGTH, foot_friction=0.4, skin_friction=0.4),
 )
 """A row of equal segments, neutrally buoyant."""
+
+_OWN = (
+    Reason(r"\.half\[0\]$", 0.9, 1.1, "neighbouring shells overlap by a tenth, so that the outline closes"),
+    Reason(r"\.mass$", 0.9, 1.1, "each segment weighs the water that it displaces"),
+)
+_PUBLISHED = (r"^axis\[\d+\]\.(front|rear)$", r"\.half\[[12]\]$")
+chosen = chosen_numbers(robot, (*_OWN, *BY_SIZE), _PUBLISHED)
+"""Every number that the public models do not give, with its plausible range and the reason."""

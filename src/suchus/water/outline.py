@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import Crocodile, cable_joints
+from suchus.design import Crocodile, cable_joints, crocodile
 from suchus.errors import InvalidDesign
 from suchus.kinematics.mass import tail_segments
 from suchus.motion import Bends
@@ -36,6 +36,7 @@ def silhouette(robot: Crocodile, s: Float[np.ndarray, " station"]) -> Silhouette
         robot: the design.
         s: from the snout [m].
     """
+    robot = crocodile(robot, "the outline in the water")
     joint_5, girdle = robot.head.snout, robot.head.snout + robot.spine.length
     thorax, head = robot.thorax, robot.head
     length = head.snout - thorax.shoulder
