@@ -21,7 +21,7 @@ _INSIDE = 1e-6  # of the reach; how far inside it a clipped target stays
 STEPS = 60
 """Gauss-Newton steps at most [-]; along a gait 2 to 5 are needed."""
 _STEP, _DAMPING, _NEAR = 0.6, 0.01, 1e-10  # rad; most that damps; error in limb lengths that ends
-_SEEDS = 6
+_SEEDS = 40  # starts for those that get stuck, most of them on a joint limit near the hip
 
 
 class PlainLeg(NamedTuple):

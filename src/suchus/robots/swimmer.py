@@ -2,7 +2,7 @@
 
 from math import radians
 
-from suchus.design import Hinge, Robot, Segment, Shell
+from suchus.design import Hinge, Robot, Rod, Segment, Shell
 from suchus.design.physics import WATER_DENSITY
 from suchus.design.reasons import Reason, chosen_numbers
 from suchus.design.scale import contact_for, servo_for
@@ -21,6 +21,22 @@ def _hinge(number: int) -> Hinge:
     return Hinge(name=f"{word}_yaw_{count}", turn="yaw", drive=_servo, range=(-radians(65), radians(65)))
 
 
+def _shapes(name: str) -> tuple[Shell | Rod, ...]:
+    """Return an ellipsoid and the two edges of its flat belly, on which it stands."""
+    end, edge = 0.4 * _SEGMENT, 0.2 * _WIDTH
+    edges = tuple(
+        Rod(
+            name=f"{name}_{side}",
+            start=(-end, y, edge - _HEIGHT / 2),
+            end=(end, y, edge - _HEIGHT / 2),
+            radius=edge,
+            mass=0.05 * _SEGMENT_MASS,
+        )
+        for side, y in (("left", 0.3 * _WIDTH), ("right", -0.3 * _WIDTH))
+    )
+    return Shell(name=name, at=(0.0, 0.0, 0.0), half=_HALF, mass=0.9 * _SEGMENT_MASS), *edges
+
+
 robot = Robot(
     name="swimmer",
     root=f"segment_{_ROOT + 1}",
@@ -29,7 +45,7 @@ robot = Robot(
             name=f"segment_{i + 1}",
             front=_SEGMENT / 2,
             rear=_SEGMENT / 2,
-            shapes=(Shell(name=f"segment_{i + 1}", at=(0.0, 0.0, 0.0), half=_HALF, mass=_SEGMENT_MASS),),
+            shapes=_shapes(f"segment_{i + 1}"),
             hinges=(_hinge(i),) if i < _COUNT - 1 else (),
         )
         for i in range(_COUNT)
@@ -42,6 +58,7 @@ robot = Robot(
 
 _OWN = (
     Reason(r"\.half\[0\]$", 0.9, 1.1, "neighbouring shells overlap by a tenth, so that the outline closes"),
+    Reason(r"\.(start|end|radius)", 0.7, 1.3, "a flat belly, so that it does not roll to its side"),
     Reason(r"\.mass$", 0.9, 1.1, "each segment weighs the water that it displaces"),
 )
 _PUBLISHED = (r"^axis\[\d+\]\.(front|rear)$", r"\.half\[[12]\]$")

@@ -23,7 +23,12 @@ def axis_mesh(place: Layout) -> Mesh:
     knots: list[tuple[float, float, float]] = []
     for segment, start in zip(place.robot.axis, segment_places(place), strict=True):
         for shape in segment.shapes:
-            knots.append((start + shape.centre[0], *_section(shape)))
+            x, (wide, high) = start + shape.centre[0], _section(shape)
+            there = next((i for i, knot in enumerate(knots) if abs(knot[0] - x) < 1e-9), None)
+            if there is None:
+                knots.append((x, wide, high))
+            else:
+                knots[there] = x, max(wide, knots[there][1]), max(high, knots[there][2])
     front, back = ends(place)
     knots.sort()
     kept = [knots[0]] + [b for a, b in pairwise(knots) if b[0] - a[0] > 1e-4 * (front - back)]
