@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from suchus.capture.tracks import Tracks
-from suchus.design import LEGS, Crocodile, crocodile, leg_joints, spine_joints
+from suchus.design import LEGS, AnyRobot, Crocodile, crocodile, leg_joints, spine_joints
 from suchus.design.checks import Checks
 from suchus.kinematics import body, spine
 from suchus.motion import START
@@ -45,7 +45,7 @@ class Camera:
             check.whole("seed", 0, 2**32 - 1)
 
 
-def film(robot: Crocodile, record: xr.Dataset, camera: Camera, *, start: float = START) -> Tracks:
+def film(robot: AnyRobot, record: xr.Dataset, camera: Camera, *, start: float = START) -> Tracks:
     """Return the keypoints of a robot as a camera would have tracked them.
 
     Args:
@@ -83,7 +83,7 @@ def tracked(points: Mapping[str, np.ndarray], time: np.ndarray, camera: Camera, 
     )
 
 
-def keypoints(robot: Crocodile, record: xr.Dataset) -> dict[str, np.ndarray]:
+def keypoints(robot: AnyRobot, record: xr.Dataset) -> dict[str, np.ndarray]:
     """Return where the keypoints of a robot are in the world, each of shape (time, 3) [m].
 
     Args:

@@ -14,11 +14,12 @@ from suchus.control.open_loop import OpenLoop
 from suchus.control.sensed import Sensed
 from suchus.control.shared import silence
 from suchus.control.spine import Spine, SpineRule
+from suchus.control.suited import leg_gaits
 from suchus.control.tail import Tail, TailRule
 from suchus.design import AnyRobot, layout
 from suchus.design.checks import Checks, require
 from suchus.errors import InvalidDesign, UnsuitedRobot
-from suchus.motion import START, Gait, servo_targets
+from suchus.motion import START, AnyGait, Gait, servo_targets
 
 _SLACK = 1e-9  # [s]; times are multiples of the control period up to rounding
 
@@ -78,7 +79,7 @@ class Coordinated:
     def start(
         self,
         robots: Sequence[AnyRobot],
-        gaits: Sequence[Gait],
+        gaits: Sequence[AnyGait],
         seeds: Sequence[int],
         ticks: int,
         period: float,
@@ -90,7 +91,7 @@ class Coordinated:
     def start_together(
         controls: "Sequence[Coordinated]",
         robots: Sequence[AnyRobot],
-        gaits: Sequence[Gait],
+        gaits: Sequence[AnyGait],
         seeds: Sequence[int],
         ticks: int,
         period: float,
@@ -112,13 +113,14 @@ class Coordinator:
         self,
         controls: Sequence[Coordinated],
         robots: Sequence[AnyRobot],
-        gaits: Sequence[Gait],
+        gaits: Sequence[AnyGait],
         seeds: Sequence[int],
         ticks: int,
         period: float,
     ) -> None:
-        for robot, gait in set(zip(robots, gaits, strict=True)):
-            _refuse_others(robot, gait)
+        gaits = leg_gaits(gaits, "the closed loop")
+        for robot in set(robots):
+            _refuse_others(robot)
         self._period = period
         self._table = OpenLoop().start(robots, gaits, seeds, ticks, period)
         self._groups = _grouped(robots, gaits)
@@ -202,12 +204,7 @@ class Coordinator:
         return replace(sensed, foot_pressure=pressure)
 
 
-def _refuse_others(robot: AnyRobot, gait: Gait) -> None:
-    if not isinstance(gait, Gait):
-        raise UnsuitedRobot(
-            f"the feedback rules coordinate gaits of four legs with a trunk and a tail, as 'belly_crawl'; gait "
-            f"{gait.name!r} is a pattern of any body: let robot {robot.name!r} walk it in open loop."
-        )
+def _refuse_others(robot: AnyRobot) -> None:
     place = layout(robot)
     if not (place.trunk_yaw and place.tail_pitch):
         raise UnsuitedRobot(

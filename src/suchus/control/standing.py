@@ -9,9 +9,10 @@ from jaxtyping import Float
 
 from suchus.control.controller import Command
 from suchus.control.sensed import Sensed
-from suchus.design import Crocodile, Leg, layout
+from suchus.control.suited import crocodiles, leg_gaits
+from suchus.design import AnyRobot, Crocodile, Leg, layout
 from suchus.design.checks import Checks
-from suchus.motion import Gait, limb_phase, servo_targets
+from suchus.motion import AnyGait, Gait, limb_phase, servo_targets
 from suchus.motion.posture import Keyed, hind_leg, plan
 from suchus.motion.rising import stand_up
 
@@ -124,7 +125,7 @@ class Standing:
         return stand_up(robot) if self.rise is None else self.rise
 
     def start(
-        self, robots: Sequence[Crocodile], gaits: Sequence[Gait], seeds: Sequence[int], ticks: int, period: float
+        self, robots: Sequence[AnyRobot], gaits: Sequence[AnyGait], seeds: Sequence[int], ticks: int, period: float
     ) -> "Stander":
         """Plan the whole way of every distinct pair of robot and gait.
 
@@ -136,20 +137,21 @@ class Standing:
     @staticmethod
     def start_together(
         controls: Sequence["Standing"],
-        robots: Sequence[Crocodile],
-        gaits: Sequence[Gait],
+        robots: Sequence[AnyRobot],
+        gaits: Sequence[AnyGait],
         seeds: Sequence[int],
         ticks: int,
         period: float,
     ) -> "Stander":
         """Start runs that differ in when and how they stand; see ``start``."""
         del seeds
-        keys = [(replace(c, balance=None), r, g) for c, r, g in zip(controls, robots, gaits, strict=True)]
+        ours, theirs = crocodiles(robots, "standing up"), leg_gaits(gaits, "standing up")
+        keys = [(replace(c, balance=None), r, g) for c, r, g in zip(controls, ours, theirs, strict=True)]
         unique = {key: i for i, key in enumerate(dict.fromkeys(keys))}
         time = np.arange(ticks) * period
         courses = [control._course(robot, gait, time) for control, robot, gait in unique]
         course = Course(*(np.array(part) for part in zip(*courses, strict=True)))
-        legs = [robot.hind_leg for robot in robots]
+        legs = [robot.hind_leg for robot in ours]
         rows = np.array([unique[key] for key in keys])
         first_pitch = layout(robots[0]).trunk_pitch[0]
         return Stander([c.balance for c in controls], course, rows, legs, first_pitch, period)

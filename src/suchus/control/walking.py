@@ -9,11 +9,12 @@ from jaxtyping import Float
 from suchus.control.attitude import Attitude, AttitudeRule
 from suchus.control.controller import Command
 from suchus.control.sensed import Sensed
+from suchus.control.suited import crocodiles, leg_gaits
 from suchus.control.switching import Switcher, SwitchRule
-from suchus.design import Crocodile, layout
+from suchus.design import AnyRobot, Crocodile, layout
 from suchus.design.checks import Checks, require
 from suchus.errors import OutsideLimits
-from suchus.motion import START, Gait, servo_targets, tail_bend, trunk_bend
+from suchus.motion import START, AnyGait, Gait, servo_targets, tail_bend, trunk_bend
 from suchus.motion.transition import Transition, transition
 
 _LEFT = np.array([1.0, -1.0, 1.0, -1.0])
@@ -68,7 +69,7 @@ class Walking:
         return self.attitude is not None or self.switching is not None
 
     def start(
-        self, robots: Sequence[Crocodile], gaits: Sequence[Gait], seeds: Sequence[int], ticks: int, period: float
+        self, robots: Sequence[AnyRobot], gaits: Sequence[AnyGait], seeds: Sequence[int], ticks: int, period: float
     ) -> "Walker":
         """Start walking."""
         return self.start_together([self] * len(robots), robots, gaits, seeds, ticks, period)
@@ -76,8 +77,8 @@ class Walking:
     @staticmethod
     def start_together(
         controls: Sequence["Walking"],
-        robots: Sequence[Crocodile],
-        gaits: Sequence[Gait],
+        robots: Sequence[AnyRobot],
+        gaits: Sequence[AnyGait],
         seeds: Sequence[int],
         ticks: int,
         period: float,
@@ -88,7 +89,9 @@ class Walking:
             OutsideLimits: a robot whose trunk cannot bend as far as it is asked to.
         """
         del seeds, ticks
-        for control, robot, gait in zip(controls, robots, gaits, strict=True):
+        who = "a walk that is steered and changes its gait"
+        ours, theirs = crocodiles(robots, who), leg_gaits(gaits, who)
+        for control, robot, gait in zip(controls, ours, theirs, strict=True):
             most = 3 * min(abs(end) for end in robot.spine.yaw_range)
             if abs(control.bend) + gait.trunk_bend > most + 1e-9:
                 raise OutsideLimits(
@@ -96,7 +99,7 @@ class Walking:
                     f"{abs(control.bend):.3f} rad; robot {robot.name!r} allows {most:.3f} rad in all: "
                     "lower walking.bend."
                 )
-        return Walker(controls, robots, gaits, period)
+        return Walker(controls, ours, theirs, period)
 
 
 class Walker:

@@ -138,7 +138,7 @@ def scaled(design: T, *, length: float, mass: float | None = None) -> T:
     require("scaled", "length", length, 1e-4, 1e4, "")
     heavier = length**3 if mass is None else mass
     require("scaled", "mass", heavier, 1e-12, 1e12, "")
-    return _scaled(design, (heavier, length, sqrt(length)))  # type: ignore[no-any-return]
+    return _scaled(design, (heavier, length, sqrt(length)))
 
 
 def _scaled(design: Any, factors: tuple[float, float, float]) -> Any:

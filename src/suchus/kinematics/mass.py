@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import GRAVITY, LEGS, Crocodile, cable_joints, crocodile, joint_names, layout
+from suchus.design import GRAVITY, LEGS, AnyRobot, Crocodile, cable_joints, crocodile, joint_names, layout
 from suchus.design.leg import LEG_SHARES
 from suchus.design.tail import TailSegments, tail_segments
 from suchus.errors import InvalidDesign
@@ -35,7 +35,7 @@ class Pieces(NamedTuple):
     """Their centres of mass in the frame of the pelvis [m]."""
 
 
-def pieces(robot: Crocodile, angles: Float[np.ndarray, "*batch joint"]) -> Pieces:
+def pieces(robot: AnyRobot, angles: Float[np.ndarray, "*batch joint"]) -> Pieces:
     """Return every piece of the body.
 
     Args:
@@ -59,7 +59,7 @@ def pieces(robot: Crocodile, angles: Float[np.ndarray, "*batch joint"]) -> Piece
     return Pieces(np.array(masses), np.stack(centres, axis=-2))
 
 
-def centre_of_mass(robot: Crocodile, angles: Float[np.ndarray, "*batch joint"]) -> Float[np.ndarray, "*batch 3"]:
+def centre_of_mass(robot: AnyRobot, angles: Float[np.ndarray, "*batch joint"]) -> Float[np.ndarray, "*batch 3"]:
     """Return the centre of mass of a posture in the frame of the pelvis [m].
 
     Args:

@@ -6,7 +6,7 @@ from math import radians
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import Crocodile, crocodile, joint_names, layout
+from suchus.design import AnyRobot, Crocodile, crocodile, joint_names, layout
 from suchus.kinematics.body import landmarks
 from suchus.kinematics.mass import centre_of_mass
 from suchus.motion.posture import Keyed, Posture, hind_leg, mass_ahead
@@ -30,7 +30,7 @@ _ARMS_RAISED = {"arm_yaw": 0.2, "arm_pitch": -0.3, "arm_knee": 1.2}  # off the g
 
 
 def stand_up(
-    robot: Crocodile,
+    robot: AnyRobot,
     *,
     pelvis_pitch: float = PELVIS_PITCH,
     stretch: float = STRETCH,
@@ -111,7 +111,7 @@ def stretched(robot: Crocodile) -> float:
 
 
 def tallest(
-    robot: Crocodile, lead: Float[np.ndarray, "*batch"], *, stance: float = _STANCE
+    robot: AnyRobot, lead: Float[np.ndarray, "*batch"], *, stance: float = _STANCE
 ) -> Float[np.ndarray, "*batch"]:
     """Return how high the snout can be while the centre of mass lies ``lead`` behind the feet [m].
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import Crocodile, crocodile, layout
+from suchus.design import AnyRobot, crocodile, layout
 from suchus.design.checks import Checks, require
 from suchus.errors import InvalidDesign, OutsideLimits
 from suchus.kinematics import tail as tail_kinematics
@@ -91,7 +91,7 @@ def bends(swim: Swim, time: Float[np.ndarray, "*b"]) -> Bends:
     )
 
 
-def swim_targets(robot: Crocodile, swim: Swim, time: Float[np.ndarray, "*b"]) -> Float[np.ndarray, "*b servo"]:
+def swim_targets(robot: AnyRobot, swim: Swim, time: Float[np.ndarray, "*b"]) -> Float[np.ndarray, "*b servo"]:
     """Return the servo angles of a swimming motion, in the order of ``design.servo_names()`` [rad].
 
     Args:
@@ -109,7 +109,7 @@ def swim_targets(robot: Crocodile, swim: Swim, time: Float[np.ndarray, "*b"]) ->
     return targets
 
 
-def check_swim(robot: Crocodile, swim: Swim) -> None:
+def check_swim(robot: AnyRobot, swim: Swim) -> None:
     """Refuse a swimming motion that a robot's joints or servos cannot follow.
 
     Raises:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import Crocodile, crocodile, layout
+from suchus.design import AnyRobot, Crocodile, crocodile, layout
 from suchus.motion.gait import Gait
 from suchus.motion.targets import servo_range, servo_targets
 
@@ -44,7 +44,7 @@ class Transition(NamedTuple):
 
 
 @lru_cache(maxsize=64)
-def transition(robot: Crocodile, here: Gait, there: Gait, *, slower: float = 1.0) -> Transition:
+def transition(robot: AnyRobot, here: Gait, there: Gait, *, slower: float = 1.0) -> Transition:
     """Return the way from one gait's posture to another's: 3.5 s.
 
     The robot stops and goes to a height at which both postures can stand. Then LF and RH are lifted, take their new

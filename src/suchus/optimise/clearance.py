@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from suchus.design import LEGS, Crocodile, crocodile, layout
+from suchus.design import LEGS, AnyRobot, Crocodile, crocodile, layout
 from suchus.kinematics import body, spine
 from suchus.kinematics import leg as leg_kinematics
 from suchus.kinematics.links import LegLinks
@@ -45,7 +45,7 @@ def clearance(robot: Crocodile, record: xr.Dataset, *, every: int = 1) -> xr.Dat
     return xr.DataArray(least, dims=angles.dims[:-2], attrs={"units": "m", "long_name": "clearance between parts"})
 
 
-def between_parts(robot: Crocodile, angles: np.ndarray) -> np.ndarray:
+def between_parts(robot: AnyRobot, angles: np.ndarray) -> np.ndarray:
     """Return the least distance between parts for postures [m].
 
     Args:

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import Crocodile, cable_joints, crocodile
+from suchus.design import AnyRobot, Crocodile, cable_joints, crocodile
 from suchus.errors import InvalidDesign
 from suchus.kinematics.mass import tail_segments
 from suchus.motion import Bends
@@ -29,7 +29,7 @@ class Silhouette(NamedTuple):
     """Up and down [m]."""
 
 
-def silhouette(robot: Crocodile, s: Float[np.ndarray, " station"]) -> Silhouette:
+def silhouette(robot: AnyRobot, s: Float[np.ndarray, " station"]) -> Silhouette:
     """Return how far the straight robot reaches sideways and upwards, limbs left out.
 
     Args:
