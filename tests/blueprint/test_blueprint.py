@@ -5,10 +5,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from suchus.blueprint import MistakenFile, read, render, write
-from suchus.design import Crocodile
+from suchus.design import AnyRobot, Crocodile
 from suchus.errors import InvalidDesign, UnreadableFile
 from suchus.gaits import GAITS
-from suchus.motion import Gait
+from suchus.motion import AnyGait, Gait
 from suchus.robots import ROBOTS
 
 CAIMAN = ROBOTS["caiman"]
@@ -31,12 +31,24 @@ def said(tmp_path):
 
 @pytest.mark.parametrize("name", ROBOTS)
 def test_every_robot_reads_back_equal(name, tmp_path):
-    assert read(write(ROBOTS[name], tmp_path / "x.toml"), Crocodile, ROBOTS) == ROBOTS[name]
+    assert read(write(ROBOTS[name], tmp_path / "x.toml"), AnyRobot, ROBOTS) == ROBOTS[name]
 
 
 @pytest.mark.parametrize("name", GAITS)
 def test_every_gait_reads_back_equal(name, tmp_path):
-    assert read(write(GAITS[name], tmp_path / "x.toml"), Gait, GAITS) == GAITS[name]
+    assert read(write(GAITS[name], tmp_path / "x.toml"), AnyGait, GAITS) == GAITS[name]
+
+
+def test_a_body_of_its_own_can_start_from_the_shelf_and_its_mistakes_are_named(tmp_path):
+    file = tmp_path / "slippery.toml"
+    file.write_text('base = "strider"\n[contact]\nfoot_friction = 0.2\n')
+    robot = read(file, AnyRobot, ROBOTS)
+    assert (robot.name, robot.contact.foot_friction, robot.axis) == ("slippery", 0.2, ROBOTS["strider"].axis)
+    file.write_text('base = "strider"\nrot = "x"\n[contact]\nfoot_friction = 99\n')
+    with pytest.raises(MistakenFile, match=r"2 mistakes.*did you mean root.*foot_friction is 99; 0.01 to 3 is allowed"):
+        read(file, AnyRobot, ROBOTS)
+    with pytest.raises(UnreadableFile, match=r"starts from 'strider', which is a Robot; a Crocodile is needed here"):
+        read(file, Crocodile, ROBOTS)
 
 
 @given(

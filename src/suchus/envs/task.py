@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, fields, replace
 from types import MappingProxyType
 from typing import Any, Literal, get_args
 
-from suchus.design import Crocodile, leg_joints, servo_names
+from suchus.design import Crocodile, crocodile, leg_joints, servo_names
 from suchus.design.checks import Checks
 from suchus.errors import InvalidDesign, UnknownName
 from suchus.gaits import GAITS
@@ -144,6 +144,7 @@ class Task:
     """Who pushes; None: nobody."""
 
     def __post_init__(self) -> None:
+        crocodile(self.robot, "an environment")
         with Checks("task", self) as check:
             check.that(
                 self.start in get_args(Start),

@@ -9,6 +9,7 @@ from matplotlib.patches import Circle, Ellipse, FancyBboxPatch
 from suchus.design import AnyRobot, Layout, LimbPlace, Rod, layout
 from suchus.figures.style import COLOURS
 from suchus.skin import bone_rest
+from suchus.skin.plain import ends
 
 _BODY, _LIMB = "#C9DCCB", "#4D6B57"
 _EDGE: dict[str, Any] = {"edgecolor": _LIMB, "linewidth": 1.2}
@@ -41,10 +42,8 @@ def draw_plan(ax: Axes, robot: AnyRobot, *, from_the_side: bool) -> None:
         if body.hinges and body.name in segments:
             _joint(ax, at[0], 0.0)
     deepest = min(ax.dataLim.y0, -0.1 * robot.length)
-    ends = [at[0] + body.shift + sign * getattr(segments[name], end) for name, end, sign in
-            ((place.robot.axis[-1].name, "rear", -1), (place.robot.axis[0].name, "front", 1))
-            for body, at in zip(place.bodies, rest, strict=True) if body.name == name]  # fmt: skip
-    _measure(ax, *ends, deepest - 0.05 * robot.length)
+    front, back = ends(place)
+    _measure(ax, back, front, deepest - 0.05 * robot.length)
     ax.autoscale_view()
 
 

@@ -50,7 +50,7 @@ def pieces(robot: AnyRobot, angles: Float[np.ndarray, "*batch joint"]) -> Pieces
         raise InvalidDesign(
             f"{angles.shape[-1]} angles were given; {robot.name} has {count} hinges: give one for each."
         )
-    crocodile(robot, "the mass of the trunk in closed form")
+    robot = crocodile(robot, "the mass of the trunk in closed form")
     masses = [robot.pelvis.mass, *4 * [robot.spine.link_mass], robot.thorax.mass, robot.head.mass]
     for name in LEGS:
         masses += [share * robot.leg(name).mass for share in LEG_SHARES]
