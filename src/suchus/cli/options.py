@@ -117,10 +117,14 @@ def parse(options: type, prog: str, words: Sequence[str], description: str, name
 def _registry() -> ConstructorRegistry:
     """Robots and gaits are named on the command line, or written in a file."""
     registry = ConstructorRegistry()
-    for kind in (AnyRobot, Crocodile):
-        registry.primitive_rule(_shelf_rule(kind, ROBOTS, "ROBOT"))
-    for kind in (AnyGait, Gait):
-        registry.primitive_rule(_shelf_rule(kind, GAITS, "GAIT"))
+    shelves: tuple[tuple[Any, Catalog[Any], str], ...] = (
+        (AnyRobot, ROBOTS, "ROBOT"),
+        (Crocodile, ROBOTS, "ROBOT"),
+        (AnyGait, GAITS, "GAIT"),
+        (Gait, GAITS, "GAIT"),
+    )
+    for kind, shelf, metavar in shelves:
+        registry.primitive_rule(_shelf_rule(kind, shelf, metavar))
     return registry
 
 

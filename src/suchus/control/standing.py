@@ -10,7 +10,7 @@ from jaxtyping import Float
 from suchus.control.controller import Command
 from suchus.control.sensed import Sensed
 from suchus.control.suited import crocodiles, leg_gaits
-from suchus.design import AnyRobot, Crocodile, Leg, layout
+from suchus.design import AnyRobot, Crocodile, Leg, crocodile, layout
 from suchus.design.checks import Checks
 from suchus.motion import AnyGait, Gait, limb_phase, servo_targets
 from suchus.motion.posture import Keyed, hind_leg, plan
@@ -109,20 +109,20 @@ class Standing:
         """Whether anything is corrected."""
         return self.balance is not None
 
-    def upright_from(self, robot: Crocodile) -> float:
+    def upright_from(self, robot: AnyRobot) -> float:
         """Return when the way up ends [s]."""
         return self.at + self.blend + self._rise(robot).duration
 
-    def upright_until(self, robot: Crocodile) -> float:
+    def upright_until(self, robot: AnyRobot) -> float:
         """Return when the way down begins [s]."""
         return self.upright_from(robot) + self.hold
 
-    def down_from(self, robot: Crocodile) -> float:
+    def down_from(self, robot: AnyRobot) -> float:
         """Return when the robot crawls again [s]."""
         return self.upright_until(robot) + self.slower_down * self._rise(robot).duration + self.blend
 
-    def _rise(self, robot: Crocodile) -> Keyed:
-        return stand_up(robot) if self.rise is None else self.rise
+    def _rise(self, robot: AnyRobot) -> Keyed:
+        return stand_up(crocodile(robot, "standing up")) if self.rise is None else self.rise
 
     def start(
         self, robots: Sequence[AnyRobot], gaits: Sequence[AnyGait], seeds: Sequence[int], ticks: int, period: float

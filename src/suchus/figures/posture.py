@@ -55,8 +55,12 @@ def skeleton(robot: AnyRobot, record: xr.Dataset, time: float) -> Skeleton:
     shoulders = [leg[0] for leg in legs[:1]]
     trunk = np.array([*behind[:1], np.zeros(3), *ahead, *shoulders, marks.snout])
     tail = np.array([*behind, marks.tail])
-    moved = [at + points @ R.T for points in (trunk, ahead, tail)]
-    return Skeleton(*moved, tuple(at + points @ R.T for points in legs))
+    return Skeleton(
+        trunk=at + trunk @ R.T,
+        joints=at + ahead @ R.T,
+        tail=at + tail @ R.T,
+        legs=tuple(at + points @ R.T for points in legs),
+    )
 
 
 def _leg(place: Layout, limb: LimbPlace, found: Frames, foot: np.ndarray) -> np.ndarray:

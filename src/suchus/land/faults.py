@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
-from suchus.design import Crocodile, servo_names
+from suchus.design import AnyRobot, servo_names
 from suchus.errors import InvalidDesign, OutsideLimits, UnknownName
 from suchus.motion.targets import servo_range
 
@@ -82,7 +82,7 @@ class Deaf:
 Fault = Limp | Locked | Weak | Deaf
 
 
-def check_faults(faults: Sequence[Fault], robot: Crocodile, duration: float) -> None:
+def check_faults(faults: Sequence[Fault], robot: AnyRobot, duration: float) -> None:
     """Refuse faults that cannot happen.
 
     Args:

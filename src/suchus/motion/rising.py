@@ -104,8 +104,9 @@ def _feet_ahead(robot: Crocodile, level: Posture) -> float:
     return float(min(mass_ahead(robot, level, longest) + 0.17 * length, longest))
 
 
-def stretched(robot: Crocodile) -> float:
+def stretched(robot: AnyRobot) -> float:
     """Return hind leg, spine and head in one straight line [m]; no posture reaches higher over the feet's centres."""
+    robot = crocodile(robot, "standing up")
     leg = robot.hind_leg
     return leg.femur + leg.tibia + robot.spine.length + robot.head.snout
 

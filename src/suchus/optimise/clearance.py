@@ -28,7 +28,7 @@ class _Capsule(NamedTuple):
     radius: float
 
 
-def clearance(robot: Crocodile, record: xr.Dataset, *, every: int = 1) -> xr.DataArray:
+def clearance(robot: AnyRobot, record: xr.Dataset, *, every: int = 1) -> xr.DataArray:
     """Return the least distance between parts of the body that could touch each other, negative where they overlap [m].
 
     The parts are capsules: femur and shank of each leg, pelvis, links of the trunk, thorax, head, segments of the
