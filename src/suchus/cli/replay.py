@@ -11,7 +11,7 @@ import xarray as xr
 from suchus import record
 from suchus.cli.commands import BadCommand
 from suchus.cli.options import parse
-from suchus.design import Crocodile
+from suchus.design import AnyRobot
 from suchus.replay import replay, save
 from suchus.robots import ROBOTS
 
@@ -26,7 +26,7 @@ class Options:
     """Which run of the record, by its label or its number from 0; needed where it holds several."""
     ghost: str | None = None
     """Another run of the record, for comparison, by its label or its number."""
-    robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
+    robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
     """Whose it is; by default the robot of the shelf that the record names."""
     title: str = ""
     """Heading of the page; by default robot and gait."""
