@@ -2,8 +2,9 @@
 
 from suchus.record.ground import ground_of, ground_text
 from suchus.record.parts import Parts, code_digest
-from suchus.record.place import check_replaceable, check_writable, new_file, new_folder, sweep
+from suchus.record.place import check_name, check_replaceable, check_writable, new_file, new_folder, sweep
 from suchus.record.provenance import digest, plain, provenance, versions
+from suchus.record.reading import check_file, read_json, read_text, read_toml, there
 from suchus.record.schema import PER_RUN, VARIABLES, dataset
 from suchus.record.store import load, save
 from suchus.record.tables import write_tables
@@ -12,6 +13,8 @@ __all__ = [
     "PER_RUN",
     "VARIABLES",
     "Parts",
+    "check_file",
+    "check_name",
     "check_replaceable",
     "check_writable",
     "code_digest",
@@ -24,8 +27,12 @@ __all__ = [
     "new_folder",
     "plain",
     "provenance",
+    "read_json",
+    "read_text",
+    "read_toml",
     "save",
     "sweep",
+    "there",
     "versions",
     "write_tables",
 ]
