@@ -19,6 +19,7 @@ from suchus.errors import SuchusError, UnknownName
 from suchus.experiment import Experiment
 from suchus.gaits import GAITS
 from suchus.motion import Gait
+from suchus.record import there
 from suchus.robots import ROBOTS
 
 QUICK = Annotated[
@@ -138,7 +139,7 @@ def _shelf_rule(
 def _find(word: str, kind: type, shelf: Catalog[Any]) -> Any:
     """What a word stands for: a name on the shelf, or a file."""
     try:
-        if word not in shelf and (word.endswith(".toml") or Path(word).exists()):
+        if word not in shelf and (word.endswith(".toml") or there(Path(word))):
             return blueprint.read(Path(word), kind, shelf)
         return shelf[word]
     except UnknownName as error:
@@ -157,4 +158,19 @@ def _sentence(box: str) -> str:
         elif lines:
             break
     sentence = " ".join(lines).removeprefix("Error parsing ").rstrip(".")
+    for pattern, plain in _PLAIN:
+        sentence = re.sub(pattern, plain, sentence)
     return re.sub(r"^[A-Z]|\. [A-Z]", lambda start: start[0].lower().replace(".", ";"), sentence)
+
+
+_PLAIN = (
+    (r"invalid literal for int\(\) with base 10: (.*)", r"\1 is no whole number"),
+    (r"could not convert string to float: (.*)", r"\1 is no number"),
+    (r"Exceeds the limit .* value has (\d+) digits.*", r"a number of \1 digits is more than can be read"),
+    (
+        r"no type matching \{None\}\|(?:INT|FLOAT) could be instantiated from \[(.*)\]",
+        r"\1 is no number",
+    ),
+    (r"no type matching .* could be instantiated from \[(.*)\]", r"\1 is not what is needed"),
+)
+"""What Python says of its own functions, in words of those who type."""

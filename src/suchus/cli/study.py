@@ -8,10 +8,9 @@ from typing import Annotated, Any
 
 import tyro
 
-from suchus.cli.commands import BadCommand
 from suchus.cli.options import CSV, TABLES, parse
 from suchus.cli.terminal import working
-from suchus.record import write_tables
+from suchus.record import check_name, there, write_tables
 from suchus.study import Claims, Told, conduct, conduct_claims, connected, read_study, write_claims
 from suchus.study.store import RESULTS, TABLE
 
@@ -42,13 +41,13 @@ def study(words: Sequence[str]) -> int:
     """
     about = "Run many variants of one run, and keep what is measured. Started again it goes on where it stopped."
     options: Options = parse(Options, "suchus study", words, about, [f.name for f in fields(Options)])
-    if str(options.file) == CLAIMS and not options.file.exists():
+    if str(options.file) == CLAIMS and not there(options.file):
         return _claims(options)
     asked = read_study(options.file)
     if options.samples is not None:
         asked = replace(asked, samples=options.samples)
-    if options.out is None and any(c in asked.name for c in "/\\\0"):
-        raise BadCommand(f"the study is named {asked.name!r}, which makes no folder; say --out DIR.")
+    if options.out is None:
+        check_name(asked.name, "study")
     folder = options.out or Path("out") / "studies" / asked.name
     with _cluster(options) as client, working() as bars:
         tell = bars.told(asked.name)

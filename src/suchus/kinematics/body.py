@@ -10,8 +10,9 @@ import numpy as np
 from jaxtyping import Float
 
 from suchus.design import LEGS, Crocodile, cable_joints, fin_joints, joint_names, leg_joints, spine_joints
-from suchus.errors import InvalidDesign
+from suchus.errors import UnknownName
 from suchus.kinematics import leg, spine
+from suchus.kinematics.given import rows
 
 
 class Landmarks(NamedTuple):
@@ -35,11 +36,7 @@ def landmarks(robot: Crocodile, angles: Float[np.ndarray, "*batch joint"]) -> La
     Raises:
         InvalidDesign: the number of angles is not the robot's number of hinges.
     """
-    count = len(joint_names(robot))
-    if angles.shape[-1] != count:
-        raise InvalidDesign(
-            f"{angles.shape[-1]} angles were given; {robot.name} has {count} hinges: give one for each."
-        )
+    angles = rows(angles, len(joint_names(robot)), f"the posture of {robot.name}, an angle for each hinge,")
     legs, trunk = len(leg_joints()), len(leg_joints()) + len(spine_joints())
     T = spine.forward(robot.spine, angles[..., legs:trunk])
     return Landmarks(
@@ -56,6 +53,7 @@ def feet(robot: Crocodile, angles: Float[np.ndarray, "*batch 17"]) -> Float[np.n
         robot: the robot.
         angles: of the legs, then of the spine [rad].
     """
+    angles = rows(angles, len(leg_joints()) + len(spine_joints()), "the angles of legs and spine")
     T = spine.forward(robot.spine, angles[..., len(leg_joints()) :])
     shoulder = T[..., :3, 3] + robot.thorax.shoulder * T[..., :3, 0]
     found = np.empty((*angles.shape[:-1], len(LEGS), 3))
@@ -72,13 +70,13 @@ def from_leg_frame(point: Float[np.ndarray, "*batch 3"], name: str) -> Float[np.
 
     A right leg is the mirror image of a left one.
     """
-    left = 1.0 if name.startswith("L") else -1.0
+    left, point = _side(name), rows(point, 3, "the point")
     return np.stack([point[..., 1], left * point[..., 0], -point[..., 2]], axis=-1)
 
 
 def to_leg_frame(point: Float[np.ndarray, "*batch 3"], name: str) -> Float[np.ndarray, "*batch 3"]:
     """Return a point of a girdle's frame in the D-H base frame of a leg [m]; see ``from_leg_frame``."""
-    left = 1.0 if name.startswith("L") else -1.0
+    left, point = _side(name), rows(point, 3, "the point")
     return np.stack([left * point[..., 1], point[..., 0], -point[..., 2]], axis=-1)
 
 
@@ -91,6 +89,7 @@ def tail_points(robot: Crocodile, angles: Float[np.ndarray, "*batch joint"]) -> 
     """
     tail = robot.tail
     cables, segments = len(cable_joints(robot)), len(fin_joints(robot)) // 2
+    angles = rows(angles, 1 + cables + 2 * segments, f"the tail's angles of {robot.name}")
     x = np.broadcast_to(np.array([-1.0, 0.0, 0.0]), (*angles.shape[:-1], 3))  # along the straight tail
     points = [tail.offset * x]
     R = _pitched(angles[..., 0])
@@ -104,6 +103,12 @@ def tail_points(robot: Crocodile, angles: Float[np.ndarray, "*batch joint"]) -> 
         R = R @ _yawed(bend[..., 0]) @ _pitched(bend[..., 1])
         points.append(points[-1] + tail.fin_length / segments * -R[..., :, 0])
     return np.stack(points, axis=-2)
+
+
+def _side(name: str) -> float:
+    if name not in LEGS:
+        raise UnknownName("leg", name, LEGS)
+    return 1.0 if name.startswith("L") else -1.0
 
 
 def _yawed(angle: np.ndarray) -> np.ndarray:

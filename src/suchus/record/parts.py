@@ -1,17 +1,19 @@
 """Long work in parts: what was finished before an interruption is not done again."""
 
 import hashlib
+import logging
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import xarray as xr
 
-from suchus.errors import IncompatibleRecord
+from suchus.errors import IncompatibleRecord, UnreadableFile
 from suchus.record.provenance import digest, versions
 from suchus.record.store import load, save
 
 _PACKAGE = Path(__file__).parent.parent
+_LOG = logging.getLogger(__name__)
 
 
 def code_digest(rooms: Sequence[str]) -> str:
@@ -64,8 +66,8 @@ class Parts:
         file = self.folder / f"{name}.nc"
         if file.is_file():
             try:
-                return load(file)
-            except IncompatibleRecord:
-                pass  # damaged by something else than us: made again below
+                return load(file, whole=True)
+            except (IncompatibleRecord, UnreadableFile):
+                _LOG.warning("%s is damaged and is made again.", file)
         save(make(), file)
         return load(file)

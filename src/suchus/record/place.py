@@ -133,7 +133,9 @@ def _shelter(path: Path) -> Iterator[Path]:
             tempfile.TemporaryDirectory(dir=path.parent, prefix=f".{path.name}-", ignore_cleanup_errors=True) as folder,
             _locked(Path(folder)) as ours,
         ):
-            if ours is not False and Path(folder).exists():  # else another process took it for a dead one's before it was locked
+            if (
+                ours is not False and Path(folder).exists()
+            ):  # else another process took it for a dead one's before it was locked
                 yield Path(folder)
                 return
     raise Unwritable(f"{path} cannot be written: other processes keep taking away what is begun there.")
