@@ -88,8 +88,8 @@ class Grid:
         ends = (x, y, (0.0, cell))
         if not all(isinstance(end, (tuple, list)) and len(end) == 2 and all(map(_is_number, end)) for end in ends):
             raise InvalidDesign(
-                f"the rectangle is {show(x)} x {show(y)} m and the cell {show(cell)} m; two pairs of finite numbers and "
-                "one more are needed."
+                f"the rectangle is {show(x)} x {show(y)} m and the cell {show(cell)} m; two pairs of finite "
+                "numbers and one more are needed."
             )
         wide, high = x[1] - x[0], y[1] - y[0]
         if cell > 0 and max(wide, high) / MOST > cell:

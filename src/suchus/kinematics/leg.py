@@ -109,8 +109,8 @@ def jacobian(leg: LegLinks, angles: Float[np.ndarray, "*batch 3"]) -> Float[np.n
     z = leg.femur * np.sin(pitch) + down
     r = leg.femur * np.cos(pitch) + out
     zero = np.zeros_like(r)
-    rows = [[-s1 * r, -c1 * z, -c1 * down], [c1 * r, -s1 * z, -s1 * down], [zero, r, out]]
-    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+    partial = [[-s1 * r, -c1 * z, -c1 * down], [c1 * r, -s1 * z, -s1 * down], [zero, r, out]]
+    return np.stack([np.stack(row, axis=-1) for row in partial], axis=-2)
 
 
 def reachable(leg: LegLinks, foot: Float[np.ndarray, "*batch 3"]) -> Bool[np.ndarray, "*batch"]:

@@ -9,8 +9,8 @@ import numpy as np
 from jaxtyping import Float
 
 from suchus.design import LEGS, Crocodile, Tail, cable_joints, joint_names
-from suchus.errors import InvalidDesign
 from suchus.kinematics import body, leg, spine
+from suchus.kinematics.given import rows
 
 LEG_SHARES = (0.60, 0.35, 0.05)
 """How a leg's mass is spread over femur, tibia and foot [-]."""
@@ -62,11 +62,7 @@ def pieces(robot: Crocodile, angles: Float[np.ndarray, "*batch joint"]) -> Piece
     Raises:
         InvalidDesign: the number of angles is not the robot's number of hinges.
     """
-    count = len(joint_names(robot))
-    if angles.shape[-1] != count:
-        raise InvalidDesign(
-            f"{angles.shape[-1]} angles were given; {robot.name} has {count} hinges: give one for each."
-        )
+    angles = rows(angles, len(joint_names(robot)), f"the posture of {robot.name}, an angle for each hinge,")
     masses = [robot.pelvis.mass, *4 * [robot.spine.link_mass], robot.thorax.mass, robot.head.mass]
     for name in LEGS:
         masses += [share * robot.leg(name).mass for share in LEG_SHARES]

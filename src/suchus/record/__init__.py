@@ -5,7 +5,7 @@ from suchus.record.parts import Parts, code_digest
 from suchus.record.place import check_name, check_replaceable, check_writable, new_file, new_folder, sweep
 from suchus.record.provenance import digest, plain, provenance, versions
 from suchus.record.reading import check_file, read_json, read_text, read_toml, there
-from suchus.record.schema import PER_RUN, VARIABLES, dataset
+from suchus.record.schema import PER_RUN, VARIABLES, check_land, dataset
 from suchus.record.store import load, save
 from suchus.record.tables import write_tables
 
@@ -14,6 +14,7 @@ __all__ = [
     "VARIABLES",
     "Parts",
     "check_file",
+    "check_land",
     "check_name",
     "check_replaceable",
     "check_writable",

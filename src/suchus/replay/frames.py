@@ -5,8 +5,9 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from suchus.design import LEGS, Crocodile, joint_names
+from suchus.design import Crocodile, joint_names
 from suchus.errors import IncompatibleRecord
+from suchus.record import check_land
 from suchus.skin import Poses, poses
 
 RATE = 30.0
@@ -42,9 +43,7 @@ def checked(record: xr.Dataset, robot: Crocodile) -> xr.Dataset:
     Raises:
         IncompatibleRecord: it is no run on land, several runs, of another robot, or without a frame.
     """
-    missing = [name for name in _NEEDED if name not in record]
-    if missing:
-        raise IncompatibleRecord(f"the record has no {', '.join(missing)}; a replay is made from a run on land.")
+    check_land(record, _NEEDED, "what a replay is to be made from")
     if "run" in record.dims:
         count = record.sizes["run"]
         if count != 1:
@@ -61,8 +60,6 @@ def checked(record: xr.Dataset, robot: Crocodile) -> xr.Dataset:
             f"the record's {len(found)} joints are not the {len(expected)} of {robot.name!r}: {', '.join(odd[:4])} "
             f"{'is' if len(odd) == 1 else 'are'} not in both; give the robot that was recorded."
         )
-    if list(record.leg.values) != list(LEGS):
-        raise IncompatibleRecord(f"the record's legs are {', '.join(map(str, record.leg.values))}, not LF, RF, LH, RH.")
     kept = record[list(_NEEDED)]
     values = np.concatenate([_rows(kept[name]) for name in _NEEDED], axis=1)
     count = int(np.logical_and.accumulate(np.isfinite(values).all(axis=1)).sum())
