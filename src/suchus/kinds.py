@@ -22,7 +22,7 @@ def misfits(value: object) -> Iterator[tuple[str, str]]:
 
 def show(value: object) -> str:
     """Return a value as messages repeat it: as it is written, but not at length."""
-    text = repr(value)
+    text = value.__name__ if isinstance(value, type) else repr(value)
     return text if len(text) <= _SHOWN else f"{text[: _SHOWN - 3]}..."
 
 

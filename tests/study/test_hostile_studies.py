@@ -2,9 +2,10 @@
 
 import logging
 import socket
-import subprocess
-import sys
 import threading
+import time
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
@@ -51,7 +52,7 @@ def test_a_flipped_bit_in_a_part_has_it_made_again_and_told(asked, tmp_path, cap
     part = tmp_path / "s" / "parts" / "000001.nc"
     whole, rng = part.read_bytes(), np.random.default_rng(0)
     store = Store(tmp_path / "s", asked)
-    for at in rng.integers(0, len(whole), 60):
+    for at in rng.integers(0, len(whole), 24):
         part.write_bytes(whole[:at] + bytes([whole[at] ^ 1 << int(at) % 8]) + whole[at + 1 :])
         assert not store.has(1)
     caplog.clear()
@@ -61,22 +62,22 @@ def test_a_flipped_bit_in_a_part_has_it_made_again_and_told(asked, tmp_path, cap
     assert contents(tmp_path / "s") == before
 
 
-TOGETHER = "import sys; from suchus.cli import main; sys.stdin.readline(); sys.exit(main(sys.argv[1:]))"
+def test_of_studies_that_start_together_one_runs_and_the_others_hear_why_not(asked, tmp_path):
+    ready = threading.Barrier(8)
 
+    def start(_):
+        ready.wait()
+        try:
+            with Store(tmp_path / "s", asked).opened():
+                time.sleep(0.3)  # longer than it takes the others to look
+        except SuchusError as error:
+            return str(error)
+        return "ran"
 
-def test_of_studies_that_start_together_one_runs_and_the_others_hear_why_not(tmp_path):
-    (tmp_path / "s.toml").write_text(PAGE)
-    words = ["study", str(tmp_path / "s.toml"), "--out", str(tmp_path / "store")]
-    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
-    crowd = [subprocess.Popen([sys.executable, "-c", TOGETHER, *words], **pipes) for _ in range(3)]
-    for one in crowd:
-        one.stdin.write("\n")
-        one.stdin.flush()
-    told = [(one.communicate(timeout=120)[1], one.returncode) for one in crowd]
-    assert any(code == 0 for _, code in told)
-    for complaint, code in told:
-        assert code == 0 or "is being written by another process" in complaint
-    assert (tmp_path / "store" / "results.nc").is_file()
+    with ThreadPoolExecutor(8) as crowd:
+        told = list(crowd.map(start, range(8)))
+    assert told.count("ran") == 1
+    assert sum("is being written by another process" in one for one in told) == 7
 
 
 def test_a_store_is_held_from_the_first_look_at_it(asked, tmp_path):
@@ -99,7 +100,7 @@ AIMED = """
 name = "s"
 evaluations = 4
 [[aims]]
-name = "speed"
+name = "displacement"
 [[vary]]
 field = "gait.stroke"
 low = 0.0
@@ -127,7 +128,7 @@ def test_whole_numbers_of_a_range_are_whole_and_equally_frequent(asked):
     with pytest.raises(InvalidDesign, match=r"from 4\.5 to 8; give whole ends"):
         replace(asked, vary=(replace(vary, low=4.5),), design="sobol", samples=4)
     with pytest.raises(InvalidDesign, match="takes whole numbers; a search moves in real ones"):
-        Optimisation(name="x", run=asked.run, vary=(vary,), aims=(Aim(name="speed"),))
+        Optimisation(name="x", run=asked.run, vary=(vary,), aims=(Aim(name="displacement"),))
 
 
 def test_names_do_wherever_a_robot_or_a_gait_is_asked_for(asked, tmp_path, robot, limbs_gait, crawl_gait):
@@ -174,7 +175,7 @@ def test_where_nobody_listens_or_something_else_does_is_told_soon(caplog):
 
             def answer(other=other, said=said):
                 wire = other.accept()[0]
-                with wire:
+                with wire, suppress(OSError):
                     wire.sendall(said)
                     wire.recv(1)
 

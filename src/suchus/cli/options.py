@@ -102,6 +102,10 @@ def parse(options: type, prog: str, words: Sequence[str], description: str, name
                 registry=_registry(),
                 return_unknown_args=True,
             )
+    except _NoWordError:
+        odd = (word.partition("=")[0] for word in words if word.startswith("-"))
+        unknown = [word for word in odd if word.strip("-").replace("-", "_") not in names]
+        raise UnknownName("option", (unknown or ["-"])[0], [f"--{n.replace('_', '-')}" for n in names]) from None
     except SystemExit as error:
         if error.code:
             raise BadCommand(f"{_sentence(box.getvalue())}; see {prog} --help.") from None
@@ -129,11 +133,24 @@ def _shelf_rule(
     spec: PrimitiveConstructorSpec[Any] = PrimitiveConstructorSpec(
         nargs=1,
         metavar=f"{metavar}|FILE.toml",
-        instance_from_str=lambda words: _find(words[0], kind, shelf),
+        instance_from_str=lambda words: _find(_first(words), kind, shelf),
         is_instance=lambda value: isinstance(value, kind),
         str_from_instance=lambda value: [str(value.name)],
     )
     return lambda info: spec if info.type is kind else None
+
+
+class _NoWordError(Exception):
+    """Only an option that is not known stands where a name could stand."""
+
+
+def _first(words: Any) -> str:
+    """Return the first word; beside options that it does not know, tyro hands lists of lists over."""
+    while not isinstance(words, str):
+        if not words:
+            raise _NoWordError
+        words = words[0]
+    return words
 
 
 def _find(word: str, kind: type, shelf: Catalog[Any]) -> Any:

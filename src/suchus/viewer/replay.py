@@ -128,7 +128,7 @@ class Player:
         """Jump to a time, as near as there is one; what is no number changes nothing [s]."""
         try:
             asked = float(time)  # type: ignore[arg-type]
-        except (TypeError, ValueError):
+        except (TypeError, ValueError, OverflowError):
             return
         with self._lock:
             if np.isfinite(asked):
