@@ -57,7 +57,7 @@ class Catalog(Mapping[str, T], Generic[T]):
             )
         return thing
 
-    def resolve(self, value: object) -> T:
+    def resolve(self, value: Any) -> T:
         """Return what a value stands for: itself, or what carries its name on the shelf.
 
         Raises:
@@ -69,17 +69,16 @@ class Catalog(Mapping[str, T], Generic[T]):
         wanted = self._wanted()
         if not isinstance(value, wanted):
             raise InvalidDesign(f"{show(value)} is no {self.kind}; a {wanted.__name__} or a name of one is needed.")
-        found: T = value
-        return found
+        return value
 
     def beside(self, name: str, attribute: str, default: Any) -> Any:
         """Return what else a module declares, such as the reasons for its numbers, or ``default``."""
         self[name]
         return getattr(import_module(f"{self._package}.{name}"), attribute, default)
 
-    def _wanted(self) -> type:
+    def _wanted(self) -> type[Any]:
         path, _, cls = self._declares.partition(":")
-        wanted: type = getattr(import_module(path), cls)
+        wanted: type[Any] = getattr(import_module(path), cls)
         return wanted
 
     def __repr__(self) -> str:

@@ -13,7 +13,8 @@ _SHOWN = 60  # characters of a value in a message
 
 def misfits(value: object) -> Iterator[tuple[str, str]]:
     """Yield name and complaint of each field of a dataclass that holds another kind of thing than it declares."""
-    hints = _hints(type(value))
+    kind: Any = type(value)
+    hints = _hints(kind)
     for field in fields(value):  # type: ignore[arg-type]
         has, hint = getattr(value, field.name), hints[field.name]
         if not _fits(has, hint):
