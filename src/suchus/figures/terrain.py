@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from suchus.design import Crocodile
 from suchus.figures.posture import draw_posture
 from suchus.figures.style import COLOURS, captioned, panels, styled
+from suchus.paper.animals import ANIMAL
 
 GAIT_LINES: Mapping[str, Mapping[str, Any]] = MappingProxyType(
     {
@@ -31,7 +32,7 @@ GAIT_LINES: Mapping[str, Mapping[str, Any]] = MappingProxyType(
 )
 """Colour, marker, dashes and label of each gait or arm."""
 _KINDS = {"bumps": "random bumps", "step": "a step up", "stone": "a stone in the path"}
-_ANIMALS = (0.1, 0.7)  # [m/s]; Nile crocodiles of 1.5 to 7 kg in the high walk (Michel, SICB abstract 76-8)
+_WALKING = ANIMAL["high_walk_speed"]
 
 
 def draw_speed_range(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]]) -> Figure:
@@ -56,10 +57,8 @@ def draw_speed_range(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]])
             ax.set_xticks([0.5, 1, 2, 4], ["0.5", "1", "2", "4"])
             ax.minorticks_off()
             ax.set_ylabel(label)
-        axes[0, 0].axhspan(*_ANIMALS, color="#EFE3C8", zorder=0)
-        axes[0, 0].text(
-            0.98, 0.95, "Nile crocodiles, 1.5 to 7 kg", transform=axes[0, 0].transAxes, ha="right", va="top"
-        )
+        axes[0, 0].axhspan(_WALKING.low, _WALKING.high, color="#EFE3C8", zorder=0)
+        axes[0, 0].text(0.98, 0.95, f"{_WALKING.who}, high walk", transform=axes[0, 0].transAxes, ha="right", va="top")
         axes[0, 0].set_ylim(0.0, 0.75)
         axes[0, 1].set_ylim(0.0, None)
         axes[1, 1].set_yscale("log")
@@ -69,7 +68,7 @@ def draw_speed_range(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]])
     return captioned(
         figure,
         "Every gait over its cycle time. Thin: legs whose servos lose torque with speed, whose cost includes what the "
-        "motor loses. Band: animals of the robot's size.",
+        f"motor loses. Band: what {_WALKING.who} do in the high walk.",
     )
 
 
