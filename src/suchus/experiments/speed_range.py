@@ -81,20 +81,30 @@ class SpeedRange(Experiment):
 
     def _walk(self, progress: Progress) -> tuple[xr.Dataset, list[xr.Dataset]]:
         """Return what was measured, and the fastest walk of each gait as a record."""
-        robots = (self.robot, _limited(self.robot))
-        rows, fastest = [], []
+        rows, fastest, count = [], [], len(self.gaits)
+        parts = [
+            [s for s in self.slower if (s > 1.0) == slow] for slow in (False, True)
+        ]  # the long walks by themselves
         for i, gait in enumerate(self.gaits):
-            runs = [
-                Run(robot=robot, gait=replace(gait, period=gait.period * slower))
-                for robot in robots
-                for slower in self.slower
+            found = [
+                self._walked(
+                    gait, part, staged(progress, gait.name, (i + 0.5 * j) / count, (i + 0.5 * j + 0.5) / count)
+                )
+                for j, part in enumerate(parts)
+                if part
             ]
-            longest = START + (self.cycles + 1) * gait.period * max(self.slower)
-            stage = staged(progress, gait.name, i / len(self.gaits), (i + 1) / len(self.gaits))
-            walked = simulate(runs, duration=np.ceil(longest * 100) / 100, timestep=self.timestep, progress=stage)
-            fastest.append(walked.isel(run=int(np.argmin(self.slower))))
-            rows.append([self._look(walked.isel(run=j), run) for j, run in enumerate(runs)])
-        return self._table(np.array(rows).reshape(len(self.gaits), 2, len(self.slower), len(_UNITS))), fastest
+            rows.append(np.concatenate([values for values, _ in found], axis=1))
+            fastest.append(found[0][1])
+        return self._table(np.array(rows)), fastest
+
+    def _walked(self, gait: Gait, slower: Sequence[float], progress: Any) -> tuple[np.ndarray, xr.Dataset]:
+        """Return ``_UNITS`` at some cycle times of a gait, shape (servo_model, slower, unit), and its fastest walk."""
+        robots = (self.robot, _limited(self.robot))
+        runs = [Run(robot=robot, gait=replace(gait, period=gait.period * s)) for robot in robots for s in slower]
+        longest = START + (self.cycles + 1) * gait.period * max(slower)
+        walked = simulate(runs, duration=np.ceil(longest * 100) / 100, timestep=self.timestep, progress=progress)
+        looked = [self._look(walked.isel(run=j), run) for j, run in enumerate(runs)]
+        return np.array(looked).reshape(2, len(slower), len(_UNITS)), walked.isel(run=0)
 
     def _look(self, one: xr.Dataset, run: Run) -> list[float]:
         start, end = START + run.gait.period, START + (self.cycles + 1) * run.gait.period

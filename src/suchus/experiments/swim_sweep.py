@@ -53,9 +53,9 @@ class SwimSweep(Experiment):
     """Amplitude and waves per body of the points in the resolved flow [-]."""
     reynolds: float = 7000.0
     """Frequency times length squared over viscosity of these [-]."""
-    cells: int = 96
+    cells: int = 64
     """Cells per body length of these [-]."""
-    cycles: int = 8
+    cycles: int = 6
     """Cycles of these; the last is measured [-]."""
 
     def __post_init__(self) -> None:

@@ -37,8 +37,8 @@ class Terrain(Experiment):
     ``low_crawl`` and ``high_walk`` walk open loop, ``semi_erect`` and ``high_walk_level`` answer the IMU. ``switching``
     begins semi-erect and returns to it, ``thrifty``, where it walks too, begins crawling and returns to that; both go
     up when the belly touches. Each seed has its own bumps, the correlation lengths in turn, and its own place of step
-    or stone; on even ground all seeds but the first have noise on the servos instead. A run has fallen once it rolled or
-    pitched by more than 60 degrees. It has met an obstacle once a front foot came to the bumps or the edge of the
+    or stone; on even ground all seeds but the first have noise on the servos instead. A run has fallen once it rolled
+    or pitched by more than 60 degrees. It has met an obstacle once a front foot came to the bumps or the edge of the
     step, or the chest to the stone.
     """
 
