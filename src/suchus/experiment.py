@@ -188,6 +188,8 @@ class Experiment(ABC):
 
 def _called(value: Any) -> str:
     """Return a short name of a field's value: of a robot or gait its own, marked where it only shares it."""
+    if isinstance(value, tuple):
+        return ", ".join(_called(one) for one in value)[:80]
     return str(getattr(value, "name", value))[:80]
 
 

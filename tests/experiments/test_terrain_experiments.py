@@ -92,7 +92,7 @@ def test_every_seed_has_ground_of_its_own():
     grounds = EXPERIMENTS["terrain"].grounds()
     for _, height, reliefs in grounds:
         assert len(set(reliefs)) == (len(reliefs) if height else 1)
-    assert len(grounds) == 10
+    assert len(grounds) == 9
 
 
 def walked(front, snout, pressed):

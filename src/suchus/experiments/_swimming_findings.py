@@ -112,8 +112,9 @@ def _wave(free: xr.Dataset, robot: Crocodile) -> Iterator[tuple[str, Measure]]:
     yield "tail_sine_share_low", Measure(float(tip.min()), "-")
     yield "tail_sine_share_high", Measure(float(tip.max()), "-")
     least = int(swings.argmin())
-    dips = 1.0 - swings[least:] / np.maximum.accumulate(swings[least:])
-    yield "envelope_growth", Measure(float(swings[-1] / swings[least]), "-")
+    running = np.maximum.accumulate(np.maximum(swings[least:], np.finfo(float).tiny))
+    dips = 1.0 - np.maximum(swings[least:], np.finfo(float).tiny) / running
+    yield "envelope_growth", Measure(float(swings[-1] / running[0]), "-")
     yield "envelope_least_place", Measure(float(s[least]), "-")
     yield "envelope_dip", Measure(float(dips.max()), "-")
     linear, quadratic, waves, share = wave_form(s, swings, free.swing_late.values)

@@ -180,8 +180,9 @@ class SpeedRange(Experiment):
         )
         changed = max(abs(m[f"speed_{name}_speed_line"] / m[f"speed_{name}"] - 1.0) for name in names)
         return (
-            f"At its own cycle time walks {listed(told)}. Over all cycle times the {fastest} is the fastest and the "
-            f"{cheapest} the cheapest. A torque-speed line in the servos changes the speeds by at most {changed:.0%}. "
+            f"At its own cycle time walks {listed(told)}. Over all cycle times the {fastest} is the fastest and "
+            f"{'also' if cheapest == fastest else f'the {cheapest}'} the cheapest. A torque-speed line in the servos "
+            f"changes the speeds by at most {changed:.0%}. "
             f"{ANIMAL['high_walk_speed'].who} walk high at {m['animals_high_walk_slowest']:g} to "
             f"{m['animals_high_walk_fastest']:g} m/s."
         )

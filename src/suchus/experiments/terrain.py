@@ -46,7 +46,7 @@ class Terrain(Experiment):
     shows = "Section II.B, Fig. 3"
     judged_with = ("robot", "crawl", "semi_erect", "high_walk", "surfaces")
     judged_from: ClassVar[Mapping[str, float]] = {
-        "bumps": 3, "steps": 3, "stones": 3, "transitions": 6, "seeds": 4, "walked": 8.0,
+        "bumps": 2, "steps": 3, "stones": 3, "transitions": 6, "seeds": 4, "walked": 8.0,
     }  # fmt: skip
 
     robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
@@ -57,7 +57,7 @@ class Terrain(Experiment):
     """The gait between both."""
     high_walk: Gait = field(default_factory=lambda: GAITS["high_walk"])
     """The erect gait."""
-    bumps: tuple[float, ...] = (0.03, 0.04, 0.06)
+    bumps: tuple[float, ...] = (0.04, 0.06)
     """Heights of random bumps [m]."""
     steps: tuple[float, ...] = (0.03, 0.04, 0.05)
     """Heights of a step up [m]."""

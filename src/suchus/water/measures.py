@@ -7,9 +7,6 @@ import xarray as xr
 from jaxtyping import Float
 from scipy.optimize import least_squares
 
-DIAGONAL = 0.1
-"""A force is diagonal if neither of its parts is below this part of the other [-]."""
-
 
 class Quarters(NamedTuple):
     """What the article says of T/4, T/2, 3T/4 and T, in that order."""
