@@ -9,6 +9,8 @@ from suchus.experiments import EXPERIMENTS
 from suchus.experiments import _swimming_findings as findings
 from suchus.experiments._swimming_findings import ARMS
 from suchus.experiments.swimming import Swimming
+from suchus.paper import ERRATA
+from suchus.water import fit, printed_wave, swim
 
 
 def _no_arms(self, ours, printed, free, progress):
@@ -107,3 +109,9 @@ def test_a_wave_and_its_envelope_are_read_from_the_free_body(robot):
     assert found["wave_envelope_middle"] == pytest.approx(0.03, rel=0.05)
     assert found["envelope_dip"] == pytest.approx(0.5, abs=0.03)
     assert (found["tail_sine_share"], found["tail_sine_share_low"], found["tail_sine_share_high"]) == (0.98, 0.97, 0.99)
+
+
+def test_the_erratum_on_the_sign_says_what_the_resistive_model_does(robot):
+    printed = fit(robot, printed_wave(robot, "I", frequency=1.0, sign=1)).swim
+    assert float(swim(robot, printed).speed.sel(model="resistive")) == pytest.approx(-0.20, abs=0.005)
+    assert "tail first with it, by 0.20 m/s at 1 Hz" in ERRATA["eq_20_sign"].shows

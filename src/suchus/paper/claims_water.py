@@ -54,16 +54,14 @@ WATER = (
         "IV.B, Fig. 17a, c",
         "pressure difference at T/4 less that at 3T/4",
         "While body and tail move on towards the axis, from T/4 to 3T/4, the pressure difference falls.",
-        "continue their movement towards the head-to-tail axis, the pressure difference gradually decreases, as "
-        "demonstrated in Figure 17(c)",
+        "towards the head-to-tail axis, the pressure difference gradually decreases, as demonstrated in Figure 17(c)",
     ),
     said(
         "swim_thrust_symmetric",
         "IV.B, Fig. 17c",
         "forces at T/4 and 3T/4, mirrored",
         "At three quarters of the cycle the thrust is forward again and mirrors that at one quarter.",
-        "the pressure difference between the two sides of the flexible tail generates a symmetrical diagonal forward "
-        "thrust",
+        "the pressure difference ... generates a symmetrical diagonal forward thrust",
     ),
     said(
         "swim_s_shape",
