@@ -167,6 +167,7 @@ class Experiment(ABC):
         for name in self.judged_with:
             if hasattr(self, name) and getattr(self, name) != getattr(shelf, name):
                 here, there = (_called(getattr(one, name)) for one in (self, shelf))
+                here = f"another {here}" if here == there else here
                 return f"Not judged: {name} is {here}, and the article's claims are judged with {there}."
         for name, least in self.judged_from.items():
             value = getattr(self, name)

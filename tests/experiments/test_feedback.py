@@ -145,3 +145,11 @@ def test_a_loop_that_grows_or_drifts_is_seen(crawl_gait):
     found = {n: m.value for n, m in _loop_measures(loops(crawl_gait, grows=0.1, drifts=0.05), crawl_gait).items()}
     assert found["spine_lacking_growth"] == pytest.approx(1.45 / 1.05, rel=0.02)
     assert found["tail_pitch_drift"] == pytest.approx(0.05, abs=2e-3)
+
+
+def test_a_run_that_cannot_answer_says_why_it_is_not_judged(crawl_gait):
+    assert experiment.unjudged() == ""
+    faster = replace(experiment, gait=replace(crawl_gait, period=2.0))
+    assert faster.unjudged().startswith("Not judged: gait is another belly_crawl, and")
+    assert replace(experiment, starts=15).unjudged().startswith("Not judged: starts is 15, and 16 at least")
+    assert replace(experiment, starts=16).unjudged() == ""

@@ -165,3 +165,12 @@ def test_erect_legs_are_ahead_where_they_get_farther_and_told_only_if_all_met():
     assert "met 100% of the bumps, 50% of the steps" in _terrain_findings.explain(
         {n: m.value for n, m in missed.items()}
     )
+
+
+def test_terrain_and_speed_are_judged_only_by_runs_that_meet_what_is_judged():
+    terrain, speeds = EXPERIMENTS["terrain"], EXPERIMENTS["speed_range"]
+    assert terrain.unjudged() == speeds.unjudged() == ""
+    assert "surfaces is even, and" in replace(terrain, surfaces=("even",)).unjudged()
+    assert "walked is 7.9, and 8 at least" in replace(terrain, walked=7.9).unjudged()
+    assert "stones has 2 values, and 3 at least" in replace(terrain, stones=(0.04, 0.06)).unjudged()
+    assert "gaits is semi_erect, and" in replace(speeds, gaits=(GAITS["semi_erect"],)).unjudged()
