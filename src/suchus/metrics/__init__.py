@@ -27,6 +27,7 @@ from suchus.metrics.stability import (
     support_polygon,
     tilt,
 )
+from suchus.metrics.tail import tail_joint_spread_max
 from suchus.metrics.window import between, whole
 
 __all__ = [
@@ -68,6 +69,7 @@ __all__ = [
     "swing_lift",
     "swing_loads",
     "tail_amplitude",
+    "tail_joint_spread_max",
     "tail_load_share",
     "tail_swing_least",
     "tail_swings",
