@@ -73,6 +73,8 @@ def test_bad_places_are_one_sentence(tmp_path, capsys):
         ("none.toml", "there is no file none.toml"),
         ("grip.toml --out /dev/null/here", "cannot be written"),
         ("grip.toml --out .", "holds no study"),
+        ("grip.toml --finished", "--finished is for claims only"),
+        ("claims --finished --out nowhere", "nowhere/compared_2ms holds no study; start it first"),
     ):
         assert main(["study", *words.split()]) == 2
         err = capsys.readouterr().err

@@ -17,7 +17,7 @@ import numpy as np
 import xarray as xr
 
 from suchus.errors import IncompatibleRecord, UnreadableFile, Unwritable
-from suchus.record import check_writable, load, new_file, read_json, save, there, versions
+from suchus.record import check_writable, code_digest, load, new_file, read_json, save, there, versions
 from suchus.study.packing import packed, unpacked
 
 MARK = "study.json"
@@ -25,6 +25,12 @@ RESULTS, TABLE = "results.nc", "results.csv"
 _FORMAT = 3
 _LOG = logging.getLogger(__name__)
 _DECIDING = ("suchus", "python", "mujoco", "numpy", "scipy", "xarray", "h5netcdf")
+MADE_BY = (
+    *("catalog.py", "control", "design", "fault.py", "faults", "gaits", "kinematics", "land", "metrics", "model"),
+    *("motion", "paper", "record", "robots", "rotation.py"),
+    *(f"study/{module}.py" for module in ("arm", "chunk", "measures", "plan", "study")),
+)
+"""Whose code decides the numbers of a run."""
 
 
 class Asked(Protocol):
@@ -149,7 +155,7 @@ class Store:
                     f"{self.folder} lacks part {number} of {parts}; start the {self.kind} again to finish it."
                 )
             tables.append(self.table(number))
-        whole = _together(tables).assign_attrs(study=self.study.name, settings=self._origin()["fields"])
+        whole = together(tables).assign_attrs(study=self.study.name, settings=self._origin()["fields"])
         save(whole, self.folder / RESULTS)
         with new_file(self.folder / TABLE) as draft:
             whole.to_dataframe().to_csv(draft, lineterminator="\n")
@@ -204,7 +210,7 @@ class Store:
                     shutil.rmtree(draft, ignore_errors=True)
 
 
-def _together(tables: Sequence[xr.Dataset]) -> xr.Dataset:
+def together(tables: Sequence[xr.Dataset]) -> xr.Dataset:
     """Put tables one below the other; a column that one of them lacks is NaN there."""
     columns = {str(name): v.attrs for table in tables for name, v in table.data_vars.items() if name != "error"}
     rows = {
@@ -217,10 +223,23 @@ def _together(tables: Sequence[xr.Dataset]) -> xr.Dataset:
     )
 
 
+def made_by(folder: Path, *, key: str = "versions") -> dict[str, str]:
+    """Return what a store says of itself: the versions that made it, or with the key ``fields`` its study's fields.
+
+    Raises:
+        UnreadableFile: there is no store.
+    """
+    try:
+        return dict(json.loads((folder / MARK).read_text(encoding="utf-8"))[key])
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise UnreadableFile(f"{folder} holds no study; start it first.") from error
+
+
 def deciding(libraries: Sequence[str] = ()) -> dict[str, str]:
-    """Return the versions of what makes a study's bytes, and of further libraries."""
+    """Return the versions of what makes a study's bytes, of further libraries, and the digest of our own source."""
     found = versions()
     told = {name: found.get(name, "not installed") for name in _DECIDING}
+    told["source"] = code_digest(*MADE_BY)[:12]
     for name in libraries:
         try:
             told[name] = version(name)
