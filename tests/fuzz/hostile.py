@@ -32,7 +32,6 @@ from suchus.land import Deaf, Limp, Locked, Push, Run, Weak, simulate
 from suchus.motion import Gait, check_limits
 from suchus.optimise import read_optimisation
 from suchus.record import load, save
-from suchus.record.parts import Parts
 from suchus.replay.frames import checked
 from suchus.report import load_result
 from suchus.study import Plan, Study, Vary, read_study
@@ -513,17 +512,6 @@ def captures(self: Range, dice: Random) -> None:
         finite([np.array(number[0])])
 
 
-def kept_parts(self: Range, dice: Random) -> None:
-    """A damaged part of long work is made again."""
-    made = xr.Dataset({"x": ("t", np.arange(4.0))})
-    kept = Parts(self.place / "parts", {"a": 1}, ["errors.py"])
-    kept.get("p", lambda: made)
-    file = kept.folder / "p.nc"
-    file.write_bytes(damaged(file.read_bytes(), dice))
-    if not kept.get("p", lambda: made).x.equals(made.x):
-        raise Silent("a damaged part is taken for sound")
-
-
 KINDS = (
     robot_files,
     gait_files,
@@ -543,7 +531,6 @@ KINDS = (
     flows,
     players,
     captures,
-    kept_parts,
     commands,
     closed_forms,
     designs,

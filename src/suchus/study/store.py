@@ -26,7 +26,19 @@ _FORMAT = 3
 _LOG = logging.getLogger(__name__)
 _DECIDING = ("suchus", "python", "mujoco", "numpy", "scipy", "xarray", "h5netcdf")
 MADE_BY = (
-    *("catalog.py", "control", "design", "fault.py", "faults", "gaits", "kinematics", "land", "metrics", "model"),
+    *(
+        "catalog.py",
+        "control",
+        "design",
+        "fault.py",
+        "faults",
+        "gaits",
+        "kinds.py",
+        "kinematics",
+        "land",
+        "metrics",
+        "model",
+    ),
     *("motion", "paper", "record", "robots", "rotation.py"),
     *(f"study/{module}.py" for module in ("arm", "chunk", "measures", "plan", "study")),
 )
