@@ -12,7 +12,7 @@ from suchus.metrics.bends import (
 from suchus.metrics.decisive import Border, border, rank_correlation
 from suchus.metrics.energy import cost_of_transport, peak_torque, work
 from suchus.metrics.gait import diagonal_phase_error, duty_factor, foot_clearance, loaded, sensed_phase, two_feet_share
-from suchus.metrics.loads import swing_lift, swing_loads, tail_load_share
+from suchus.metrics.loads import swing_height, swing_lift, swing_loads, swing_unloaded, tail_load_share
 from suchus.metrics.loss import loss, says
 from suchus.metrics.progress import displacement, heading, heading_change, path_length, slip
 from suchus.metrics.reach import held, lead, reach, static_margin
@@ -27,7 +27,7 @@ from suchus.metrics.stability import (
     support_polygon,
     tilt,
 )
-from suchus.metrics.tail import tail_joint_spread_max
+from suchus.metrics.tail import tail_joint_spread, tail_joint_spread_max
 from suchus.metrics.window import between, whole
 
 __all__ = [
@@ -66,9 +66,12 @@ __all__ = [
     "static_margin",
     "support_distance",
     "support_polygon",
+    "swing_height",
     "swing_lift",
     "swing_loads",
+    "swing_unloaded",
     "tail_amplitude",
+    "tail_joint_spread",
     "tail_joint_spread_max",
     "tail_load_share",
     "tail_swing_least",

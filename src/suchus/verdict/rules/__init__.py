@@ -1,6 +1,18 @@
 """The rules, one module for each experiment; a new module is added to the tuple here."""
 
-from suchus.verdict.rules import crawl_stability, displacement, feedback, gait_diagram, speed_range, swimming, terrain
+from suchus.verdict.rules import (
+    crawl_stability,
+    displacement,
+    feedback,
+    gait_diagram,
+    joint_faults,
+    leg_kinematics,
+    spine_kinematics,
+    speed_range,
+    swimming,
+    tail_bending,
+    terrain,
+)
 
 EXPERIMENTS = (
     displacement.RULES,
@@ -10,5 +22,9 @@ EXPERIMENTS = (
     terrain.RULES,
     speed_range.RULES,
     swimming.RULES,
+    joint_faults.RULES,
+    leg_kinematics.RULES,
+    spine_kinematics.RULES,
+    tail_bending.RULES,
 )
 """In the order of the page."""
