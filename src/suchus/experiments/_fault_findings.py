@@ -124,16 +124,16 @@ def explained(measures: Mapping[str, float], kind: str, legs: str) -> str:
     """
     m = {name: Reading(value) for name, value in measures.items()}
     effects = {
-        "what 'lost' means, limp or locked,": m["effect_of_kind"],
+        "what 'lost' means (limp or locked)": m["effect_of_kind"],
         "which joint is lost": m["effect_of_joint"],
         "whether one leg or both lose it": m["effect_of_legs"],
     }
     most = max(effects, key=lambda name: effects[name])
-    sizes = listed([f"{name.rstrip(',')} by {100 * value:.0f}" for name, value in effects.items()])
+    sizes = listed([f"{100 * value:.0f} points for {name}" for name, value in effects.items()])
     knees = listed([f"{k.replace('_', ' ')} {m[f'loss_{k}_limp_one_coordinated']:+.0%}" for k in KNEES])
     return (
-        f"Most of the cost of a fault with spine and tail depends on {most} and the article does not say all of it: on "
-        f"average the change of displacement differs between {sizes} points of a hundred. Without the trunk the intact "
+        f"What a fault costs with spine and tail depends most on {most}: on average one choice differs from "
+        f"another by {sizes}. The article says only which joint. Without the trunk the intact "
         f"robot is already at {m['loss_intact_limbs_only']:+.0%} (with its tail in the air at "
         f"{m['loss_intact_limbs_tail_lifted']:+.0%}), against which the cost of the fault itself is to be held. "
         f"{_steering(m, kind, legs)} The knee, of which the article says nothing, costs, limp in one leg: {knees}."

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import product
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import xarray as xr
@@ -53,7 +53,7 @@ class JointFaults(Experiment):
     title = "How far does it still crawl when joints of its legs are lost?"
     shows = "Section IV.C, Figs 18 to 21"
     judged_with = ("robot", "gait", "control", "lifted", "cycles", "hold", "kind", "legs")
-    judged_from = {"variations": 8, "repeats": 4}
+    judged_from: ClassVar[Mapping[str, float]] = {"variations": 8, "repeats": 4}
 
     robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot whose joints are lost."""

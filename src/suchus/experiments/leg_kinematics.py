@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import xarray as xr
@@ -32,7 +32,7 @@ class LegKinematics(Experiment):
     title = "Does the printed leg kinematics find the joint angles for every point in reach?"
     shows = "Section III.A: Table I, eqs (1) to (14)"
     judged_with = ("robot", "gait", "other_gait")
-    judged_from = {"points": 10_000, "phases": 100}
+    judged_from: ClassVar[Mapping[str, float]] = {"points": 10_000, "phases": 100}
 
     robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot; its hind leg is examined."""

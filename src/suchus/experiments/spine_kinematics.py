@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from math import pi
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import xarray as xr
@@ -30,7 +30,7 @@ class SpineKinematics(Experiment):
     title = "Is the printed end of the spine where Table II puts it, and can the spine be inverted?"
     shows = "Section III.B: Table II, eq. (15)"
     judged_with = ("robot",)
-    judged_from = {"postures": 10_000}
+    judged_from: ClassVar[Mapping[str, float]] = {"postures": 10_000}
 
     robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot whose spine is examined."""
@@ -93,8 +93,8 @@ class SpineKinematics(Experiment):
         upward = "is right" if m["printed_error_upward_max"] <= EXACT * long else "is wrong too"
         term = "explains it all" if m["mended_error_max"] <= EXACT * long else "does not explain it all"
         return (
-            f"(15) as printed is {m['printed_error_mean']:mm.0f} mm off Table II on average; Pz {upward}. One lost term "
-            f"{term}: with 60.5 C4 where 0.5 stands in Px and Py the two differ by {m['mended_error_max']:.0e} m at "
+            f"(15) as printed is {m['printed_error_mean']:mm.0f} mm off Table II on average; Pz {upward}. One lost "
+            f"term {term}: with 60.5 C4 where 0.5 stands in Px and Py they differ by {m['mended_error_max']:.0e} m at "
             "most. The inverse is ours; position and azimuth leave one joint free, and the least bending fixes it: in "
             f"the median it saves {m['bending_saved_median']:.0%} of the squared angles. The straight spine can move "
             f"in {m['straight_jacobian_rank']:.0f} of five directions."

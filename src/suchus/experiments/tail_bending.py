@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from itertools import product
 from math import pi
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import xarray as xr
@@ -31,14 +31,14 @@ SHAPES = (0.0, pi / 2, pi)
 class TailBending(Experiment):
     """Follow cords, servo and joints of the tail from straight to a half turn, exactly and as printed.
 
-    That all joints turn alike, from which the formulas start, is tried in two crawls: the article's, and one whose trunk
-    is straight while the tail swings.
+    That all joints turn alike, from which the formulas start, is tried in two crawls: the article's, and one whose
+    trunk is straight while the tail swings.
     """
 
     title = "How good are the tail's formulas, from straight to bent by a half turn and in the crawl?"
     shows = "Section III.C: eqs (16) to (19)"
     judged_with = ("robot", "furthest", "gait", "cycles")
-    judged_from = {"steps": 91}
+    judged_from: ClassVar[Mapping[str, float]] = {"steps": 91}
 
     robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot whose tail is examined."""

@@ -12,7 +12,6 @@ from matplotlib.patches import Patch
 
 from suchus.figures.style import COLOURS, LINES, captioned, panels, styled
 from suchus.figures.timeseries import draw_band, mark_cycles
-from suchus.land import LOST
 from suchus.metrics import loss
 from suchus.motion import START
 from suchus.paper import CLAIMS
@@ -91,20 +90,20 @@ def draw_losses(record: xr.Dataset) -> Figure:
         figure,
         "What a lost joint costs, for every reading of 'lost': median and range over the variations of gait and "
         "friction. Dotted: as printed; of the knees the article says nothing. Orange line and band: the intact robot "
-        f"with limbs only.{_outwalked()} Yellow: limbs only with the tail in the air, in the judged reading.",
+        f"with limbs only.{_outwalked(record)} Yellow: limbs only with the tail in the air, in the judged reading.",
     )
 
 
-def _outwalked() -> str:
+def _outwalked(record: xr.Dataset) -> str:
     """Return which printed losses of limbs only leave more than the article's own intact robot with limbs only."""
     ours, bare = (CLAIMS[f"displacement_{arm}"].value or 0.0 for arm in _ARMS)
     intact = bare / ours - 1.0
-    less = [p for j in LOST if (p := _printed(j, "limbs_only")) is not None and p > intact]
+    less = [p for j in record.lost.values if (p := _printed(j, "limbs_only")) is not None and p > intact]
     if not less:
         return ""
     return (
-        f" The article's own intact robot with limbs only is at {intact:+.0%}; its {listed([f'{p:+.0%}' for p in less])} "
-        "with a joint lost let a damaged robot out-walk it."
+        f" The article's own intact robot with limbs only is at {intact:+.0%}; its "
+        f"{listed([f'{p:+.0%}' for p in less])} with a joint lost let a damaged robot out-walk it."
     )
 
 
@@ -124,9 +123,10 @@ def draw_over_time(record: xr.Dataset, kind: str, legs: str) -> Figure:
     """
     way, intact = record.track.sel(on_ground="x"), record.intact_track.sel(on_ground="x")
     end, period = float(record.time[-1]), float(record.period)
+    of = "one leg" if legs == "one" else "both legs"
     with styled():
         figure, axes = panels(2, 2, width=10.5, height=7.0, sharex=True, sharey=True)
-        for number, (ax, joint) in enumerate(zip(axes.flat, LOST, strict=True)):
+        for number, (ax, joint) in enumerate(zip(axes.flat, record.lost.values, strict=True)):
             for arm in _ARMS:
                 some = way.sel(joint=joint, kind=kind, legs=legs, arm=arm).rename(variation="run")
                 draw_band(ax, some, arm)
@@ -149,8 +149,8 @@ def draw_over_time(record: xr.Dataset, kind: str, legs: str) -> Figure:
         figure.legend(handles=_keys(), loc="outside upper center", ncols=4, frameon=False)
     return captioned(
         figure,
-        f"Displacement of the centre of mass with a {kind} joint in {'one leg' if legs == 'one' else 'both legs'} of a girdle: "
-        "medians and ranges over the variations of gait and friction. Dotted: the intact robots. Diamonds: what the "
+        f"Displacement of the centre of mass with a {kind} joint in {of} of a girdle: medians and ranges over the "
+        "variations of gait and friction. Dotted: the intact robots. Diamonds: what the "
         f"article's percentages make of its {CLAIMS['displacement_coordinated'].value:g} m.",
     )
 

@@ -37,6 +37,8 @@ def tail_load_share(record: xr.Dataset, start: float = START, end: float | None 
     """Return which share of the weight the tail carries, on average [-]."""
     load = between(record, start, end).tail_force.sel(xyz="z", drop=True).mean("time")
     return load / (record.mass * GRAVITY)
+
+
 def swing_height(record: xr.Dataset, leg: str, start: float = START, end: float | None = None) -> xr.DataArray:
     """Return the mean height of the centre of mass while a leg is meant to swing [m]."""
     part = between(record, start, end)

@@ -128,7 +128,7 @@ TAIL = (
     Misprint(
         key="eq_17_slack",
         where="III.C, eq. (17)",
-        printed="one cord shortens by what the other lengthens",
+        printed="both cords change by the same length: the quadratic term is left out",
         ours="a slack of 4 N h sin^2(theta / 4N) always appears; one cord needs a spring",
         shows="The two exact changes of (16) do not add up to zero: -1.5 mm at 90 deg for d = 50, h = 15 mm.",
     ),

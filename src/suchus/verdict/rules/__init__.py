@@ -1,6 +1,7 @@
 """The rules, one module for each experiment; a new module is added to the tuple here."""
 
 from suchus.verdict.rules import (
+    bipedal_reach,
     crawl_stability,
     displacement,
     feedback,
@@ -26,5 +27,6 @@ EXPERIMENTS = (
     leg_kinematics.RULES,
     spine_kinematics.RULES,
     tail_bending.RULES,
+    bipedal_reach.RULES,
 )
 """In the order of the page."""

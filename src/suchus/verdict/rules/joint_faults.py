@@ -52,9 +52,9 @@ def _fault(joint: str, arm: str, said: tuple[Clause, ...]) -> Rule:
 def _bare(joint: str) -> str:
     """Return what stands beside a loss without the trunk: that of the whole robot, and of one with its tail lifted."""
     text = (
-        " The intact robot with limbs only is already at {loss_intact_limbs_only:+.0%}. With its tail in the air it is "
-        f"at {{loss_intact_limbs_tail_lifted:+.0%}} intact and at {{loss_{joint}_limp_one_limbs_tail_lifted:+.0%}} with "
-        "the joint lost."
+        " The intact robot with limbs only is already at {loss_intact_limbs_only:+.0%}. With its tail in the air it "
+        f"is at {{loss_intact_limbs_tail_lifted:+.0%}} intact and at {{loss_{joint}_limp_one_limbs_tail_lifted:+.0%}} "
+        "with the joint lost."
     )
     printed = CLAIMS[f"fault_{joint}_limbs_only"].value or 0.0
     ours, bare = (CLAIMS[f"displacement_{arm}"].value or 0.0 for arm in ("coordinated", "limbs_only"))
@@ -80,9 +80,9 @@ RULES = (
         ),
         why="While the damaged right hind leg is meant to swing, tail, right front and left hind foot carry "
         "{support_share_limp:.0%} of the load with its pitch joint limp, {support_share_intact:.0%} intact; the tail's "
-        "own part is {tail_load_limp:.1f} N. The centre of mass is carried {com_rise_limp:mm+.1f} mm against intact. The "
-        "foot is off the ground for {foot_free_limp:.0%} of its swing (intact {foot_free_intact:.0%}) and rises by "
-        "{foot_lift_limp:mm.0f} mm (intact {foot_lift_intact:mm.0f} mm).",
+        "own part is {tail_load_limp:.1f} N. Against intact the height of the centre of mass is "
+        "{com_rise_limp:mm+.1f} mm. The foot is off the ground for {foot_free_limp:.0%} of its swing (intact "
+        "{foot_free_intact:.0%}) and rises by {foot_lift_limp:mm.0f} mm (intact {foot_lift_intact:mm.0f} mm).",
     ),
     Rule(
         claim="fault_tolerance",
@@ -97,8 +97,8 @@ RULES = (
                 "an exact sign test over the variations: once in twenty by chance at most",
             ),
         ),
-        why="Of all faults and variations the share in which more of its own intact displacement is kept with spine and "
-        "tail than with limbs only: front yaw {share_bear_better_front_yaw:.0%}, hind yaw "
+        why="Of all faults and variations the share in which more of its own intact displacement is kept with spine "
+        "and tail than with limbs only: front yaw {share_bear_better_front_yaw:.0%}, hind yaw "
         "{share_bear_better_hind_yaw:.0%}, front pitch {share_bear_better_front_pitch:.0%}, hind pitch "
         "{share_bear_better_hind_pitch:.0%}. By the mean over its faults that is so in "
         "{share_variations_bear_better:.0%} of the variations; chance alone gives as many with a probability of "

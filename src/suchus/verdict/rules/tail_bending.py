@@ -31,10 +31,10 @@ RULES = (
         claim="tail_cords_inextensible",
         experiment="tail_bending",
         measure="cords_opposed_share",
-        holds=(Clause("cords_opposed_share", ">=", 1.0, "one cord shorter and the other longer at every bend"),),
-        why="At {cords_opposed_share:.0%} of the bends the exact lengths of one cord shrink and of the other grow. Not by "
-        "the same: up to {slack_max:mm.1f} mm of cord hang loose, so one of them needs a spring. The article says no more "
-        "than that one is elongated and the other shortened; (17) makes both changes equal.",
+        holds=(Clause("cords_opposed_share", ">=", 1.0, "one cord is shorter and the other longer at every bend"),),
+        why="At {cords_opposed_share:.0%} of the bends one cord is shorter and the other longer. They do not change by "
+        "the same: up to {slack_max:mm.1f} mm of cord hang loose, so that one of them needs a spring. The article says "
+        "no more than that one is elongated and the other shortened; its (17) makes both changes equal.",
         unswept=_FORMULA,
     ),
     Rule(
