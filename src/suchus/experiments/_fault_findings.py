@@ -47,7 +47,7 @@ def measures(record: xr.Dataset) -> Mapping[str, Measure]:
         for arm in ARMS:
             some = loss(record.repeat_forward.sel(arm=arm), record.repeat_intact_forward.sel(arm="coordinated"))
             found |= _ends(f"{name}_{arm}_repeated", some.sel(lost=joint), "-")
-    return found | _effects(record) | _tolerance(record) | _support(record)
+    return found | _effects(record) | tolerance(record) | _support(record)
 
 
 def _readings(record: xr.Dataset) -> dict[str, Measure]:
@@ -73,7 +73,7 @@ def _effects(record: xr.Dataset) -> dict[str, Measure]:
     return found
 
 
-def _tolerance(record: xr.Dataset) -> dict[str, Measure]:
+def tolerance(record: xr.Dataset) -> dict[str, Measure]:
     """Return how much more of its own the robot keeps with spine and tail, and how probable that is by chance.
 
     The variations are independent of each other, the faults within one of them are not: the exact sign test counts

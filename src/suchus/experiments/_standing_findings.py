@@ -33,7 +33,7 @@ def measures(record: xr.Dataset) -> dict[str, Measure]:
         "held": Measure(stood, "s"),
         "held_share": Measure(stood / facts["hold"], "-"),
         "margin_standing": Measure(float(margin.sel(time=slice(up, leave)).min()), "m"),
-        "margin_rising": Measure(_least_lead(record), "m"),
+        "margin_rising": Measure(least_lead(record), "m"),
         "reach_after": Measure(float(height.sel(time=slice(down, None)).max()), "m"),
         "way_after": Measure(_distance(record.centre_of_mass.isel(run=0), down), "m"),
         "stretched_length": Measure(facts["stretched"], "m"),
@@ -104,14 +104,14 @@ def explained(measures: Mapping[str, float]) -> str:
         f"The first pitch joint of the trunk must lift the level forebody as a cantilever, which takes "
         f"{m['cantilever_torque']:.2f} N m; its servo gives {m['pitch_torque']:g} N m, {enough} it. That alone tells "
         f"for {m['map_told_by_cantilever']:.0%} of the robots on the map of torque and mass whether they stand up. "
-        f"From lifting the front to standing the centre of mass is at least {m['margin_rising']:mm.0f} mm behind the feet. "
-        f"Hind leg, spine and head in one line are {m['stretched_length']:.3f} m; the stand reaches "
+        f"From lifting the front to standing the centre of mass is at least {m['margin_rising']:mm.0f} mm behind the "
+        f"feet. Hind leg, spine and head in one line are {m['stretched_length']:.3f} m; the stand reaches "
         f"{m['reach_standing']:.3f} m, the crawl {m['reach_crawl']:.3f} m with the hips at {m['hip_height']:mm.0f} mm. "
         f"The smallest pushes that topple it: {listed(helped)}."
     )
 
 
-def _least_lead(record: xr.Dataset) -> float:
+def least_lead(record: xr.Dataset) -> float:
     """Return the least distance of the centre of mass behind the feet from lifting the front to standing [m].
 
     Not a number for a robot whose front does not leave the ground before it should stand.
