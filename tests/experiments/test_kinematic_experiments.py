@@ -180,7 +180,10 @@ def test_odd_robots_are_examined_too(femur, tibia, joints, gap, tmp_path):
     for experiment in MODULES.values():
         quick = replace(experiment.quick(), robot=odd)
         outcome = quick.run()
-        assert all(np.isfinite(m.value) for m in outcome.measures.values())
+        unknown = {name for name, measure in outcome.measures.items() if not np.isfinite(measure.value)}
+        lame = experiment is MODULES["tail_bending"] and femur + tibia < 0.1  # legs too short for the crawl
+        assert {name.startswith("tail_joint_spread") for name in unknown} == ({True} if lame else set())
+        assert ("cannot follow the crawl" in outcome.decides) == lame
         for stem, figure in quick.draw(outcome).items():
             save(figure, tmp_path, stem)
 
