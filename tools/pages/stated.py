@@ -89,7 +89,7 @@ def _borne(measures: Mapping[str, float]) -> str:
         f"{m['chance_spine_and_tail_bear_better']:.2f} (exact sign test).\n"
         f'* "Tail, right front leg and left hind leg" carry {m["support_share_limp"]:.0%} of the load while the damaged hind '
         f"leg swings,\n  {m['support_share_intact']:.0%} when nothing is broken; the tail itself "
-        f"{m['tail_load_limp']:.1f} N. The centre of mass is then\n  {abs(m['com_rise_limp']):mm.1f} mm {raised} than with "
+        f"{m['tail_load_limp']:.1f} N. The centre of mass is then\n  {Reading(abs(m['com_rise_limp'])):mm.1f} mm {raised} than with "
         f"the joint intact, and the damaged foot is off the ground for\n  {m['foot_free_limp']:.0%} of its swing (intact "
         f"{m['foot_free_intact']:.0%}).\n"
     )

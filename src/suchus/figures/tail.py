@@ -142,7 +142,7 @@ def tail_joints(record: xr.Dataset, alike: float) -> Figure:
             below.axhline(np.degrees(alike), color=COLOURS["neutral"], linewidth=1.2, linestyle=":")
             below.set_xlabel("time [s]")
         axes[0, 0].set_ylabel("angle of the joint [deg]")
-        axes[1, 0].set_ylabel("greatest difference [deg]")
+        axes[1, 0].set_ylabel("difference [deg]")
         axes[1, 0].set_ylim(bottom=0.0)
         if count <= 8:
             figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=count)
