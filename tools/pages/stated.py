@@ -7,6 +7,7 @@ A passage stands between ``<!-- stated: NAME -->`` and ``<!-- end -->``. The mea
 import re
 from collections.abc import Mapping
 from itertools import product
+from textwrap import fill
 
 from suchus.land import KINDS, KNEES, LEGS_LOST, LOST
 from suchus.paper import CLAIMS
@@ -81,18 +82,19 @@ def _borne(measures: Mapping[str, float]) -> str:
     m = {name: Reading(value) for name, value in measures.items()}
     joints = listed([f"{j.replace('_', ' ')} {m[f'share_bear_better_{j}']:.0%}" for j in LOST])
     raised = compared(m["com_rise_limp"], 0.0, less="lower", more="higher", same="as high")
-    return (
-        f'* "Spine and tail make the robot bear faults better" holds in metres in {m["share_spine_and_tail_ahead"]:.0%} of '
-        f"all faults and\n  variations. Measured against each arm's own intact displacement it holds in "
-        f"{m['share_spine_and_tail_bear_better']:.0%}\n  ({joints}), and by the mean over the faults in "
-        f"{m['share_variations_bear_better']:.0%} of the variations: chance\n  alone gives as many with a probability of "
-        f"{m['chance_spine_and_tail_bear_better']:.2f} (exact sign test).\n"
-        f'* "Tail, right front leg and left hind leg" carry {m["support_share_limp"]:.0%} of the load while the damaged hind '
-        f"leg swings,\n  {m['support_share_intact']:.0%} when nothing is broken; the tail itself "
-        f"{m['tail_load_limp']:.1f} N. The centre of mass is then\n  {Reading(abs(m['com_rise_limp'])):mm.1f} mm {raised} than with "
-        f"the joint intact, and the damaged foot is off the ground for\n  {m['foot_free_limp']:.0%} of its swing (intact "
-        f"{m['foot_free_intact']:.0%}).\n"
+    items = (
+        f'"Spine and tail make the robot bear faults better" holds in metres in {m["share_spine_and_tail_ahead"]:.0%} of '
+        "all faults and variations. Measured against each arm's own intact displacement it holds in "
+        f"{m['share_spine_and_tail_bear_better']:.0%} of them ({joints}), and by the mean over the faults in "
+        f"{m['share_variations_bear_better']:.0%} of the variations: chance alone gives as many with a probability of "
+        f"{m['chance_spine_and_tail_bear_better']:.2g} (exact sign test).",
+        f'"Tail, right front leg and left hind leg" carry {m["support_share_limp"]:.0%} of the load while the damaged '
+        f"hind leg swings, {m['support_share_intact']:.0%} when nothing is broken; the tail itself "
+        f"{m['tail_load_limp']:.1f} N. The centre of mass is then {Reading(abs(m['com_rise_limp'])):mm.1f} mm {raised} "
+        f"than with the joint intact, and the damaged foot is off the ground for {m['foot_free_limp']:.0%} of its swing "
+        f"(intact {m['foot_free_intact']:.0%}).",
     )
+    return "".join(fill(item, 118, initial_indent="* ", subsequent_indent="  ") + "\n" for item in items)
 
 
 PASSAGES = {"losses": _losses, "steered": _steered, "borne": _borne}

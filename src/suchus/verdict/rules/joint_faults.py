@@ -102,6 +102,6 @@ RULES = (
         "{share_bear_better_hind_yaw:.0%}, front pitch {share_bear_better_front_pitch:.0%}, hind pitch "
         "{share_bear_better_hind_pitch:.0%}. By the mean over its faults that is so in "
         "{share_variations_bear_better:.0%} of the variations; chance alone gives as many with a probability of "
-        "{chance_spine_and_tail_bear_better:.2f}. In metres it is ahead in {share_spine_and_tail_ahead:.0%}.",
+        "{chance_spine_and_tail_bear_better:.2g}. In metres it is ahead in {share_spine_and_tail_ahead:.0%}.",
     ),
 )
