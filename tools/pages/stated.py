@@ -83,16 +83,16 @@ def _borne(measures: Mapping[str, float]) -> str:
     joints = listed([f"{j.replace('_', ' ')} {m[f'share_bear_better_{j}']:.0%}" for j in LOST])
     raised = compared(m["com_rise_limp"], 0.0, less="lower", more="higher", same="as high")
     items = (
-        f'"Spine and tail make the robot bear faults better" holds in metres in {m["share_spine_and_tail_ahead"]:.0%} of '
-        "all faults and variations. Measured against each arm's own intact displacement it holds in "
-        f"{m['share_spine_and_tail_bear_better']:.0%} of them ({joints}), and by the mean over the faults in "
+        '"Spine and tail make the robot bear faults better" holds in metres in '
+        f"{m['share_spine_and_tail_ahead']:.0%} of all faults and variations. Measured against each arm's own "
+        f"intact displacement it holds in {m['share_spine_and_tail_bear_better']:.0%} of them ({joints}), and by the mean over the faults in "
         f"{m['share_variations_bear_better']:.0%} of the variations: chance alone gives as many with a probability of "
         f"{m['chance_spine_and_tail_bear_better']:.2g} (exact sign test).",
         f'"Tail, right front leg and left hind leg" carry {m["support_share_limp"]:.0%} of the load while the damaged '
         f"hind leg swings, {m['support_share_intact']:.0%} when nothing is broken; the tail itself "
         f"{m['tail_load_limp']:.1f} N. The centre of mass is then {Reading(abs(m['com_rise_limp'])):mm.1f} mm {raised} "
-        f"than with the joint intact, and the damaged foot is off the ground for {m['foot_free_limp']:.0%} of its swing "
-        f"(intact {m['foot_free_intact']:.0%}).",
+        f"than with the joint intact, and the damaged foot is off the ground for {m['foot_free_limp']:.0%} of its "
+        f"swing (intact {m['foot_free_intact']:.0%}).",
     )
     return "".join(fill(item, 118, initial_indent="* ", subsequent_indent="  ") + "\n" for item in items)
 

@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 from scipy.stats import qmc
 
-from suchus.control import Coordinated, HeadingRule
+from suchus.control import Control, Coordinated, HeadingRule, OpenLoop
 from suchus.design import Chosen, Crocodile, meaning, value_at, with_values
 from suchus.design.checks import Checks
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
@@ -282,15 +282,21 @@ class JointFaults(Experiment):
         control = Coordinated(heading=HeadingRule())
         varied, runs = self._varied(), []
         for i, (gaits, grip) in enumerate(varied):
-            common = {"ground": Ground(grip=grip), "noise": self.noise if i else 0.0, "seed": self.seed + i}
             ours, lifted = gaits["coordinated"], gaits["limbs_tail_lifted"]
+            cases: list[tuple[Gait, tuple[Fault, ...], Control]]
+            cases = [(ours, self._broken(ours, joint), control) for joint in LOST]
+            cases += [(lifted, (), OpenLoop()), *((lifted, self._broken(lifted, j), OpenLoop()) for j in LOST)]
             runs += [
-                Run(robot=self.robot, gait=ours, faults=self._broken(ours, joint), control=control, **common)
-                for joint in LOST
-            ]
-            runs += [
-                Run(robot=self.robot, gait=lifted, faults=faults, **common)
-                for faults in ((), *(self._broken(lifted, joint) for joint in LOST))
+                Run(
+                    robot=self.robot,
+                    gait=gait,
+                    ground=Ground(grip=grip),
+                    faults=faults,
+                    control=law,
+                    noise=self.noise if i else 0.0,
+                    seed=self.seed + i,
+                )
+                for gait, faults, law in cases
             ]
         record = whole(simulate(runs, duration=self._duration, timestep=self.timestep, every=10, progress=progress))
         shape, steered = (len(varied), 2 * len(LOST) + 1), slice(len(LOST))
