@@ -85,7 +85,8 @@ def _borne(measures: Mapping[str, float]) -> str:
     items = (
         '"Spine and tail make the robot bear faults better" holds in metres in '
         f"{m['share_spine_and_tail_ahead']:.0%} of all faults and variations. Measured against each arm's own "
-        f"intact displacement it holds in {m['share_spine_and_tail_bear_better']:.0%} of them ({joints}), and by the mean over the faults in "
+        f"intact displacement it holds in {m['share_spine_and_tail_bear_better']:.0%} of them "
+        f"({joints}), and by the mean over the faults in "
         f"{m['share_variations_bear_better']:.0%} of the variations: chance alone gives as many with a probability of "
         f"{m['chance_spine_and_tail_bear_better']:.2g} (exact sign test).",
         f'"Tail, right front leg and left hind leg" carry {m["support_share_limp"]:.0%} of the load while the damaged '
