@@ -13,7 +13,7 @@ from suchus.metrics.decisive import Border, border, rank_correlation
 from suchus.metrics.energy import cost_of_transport, peak_torque, work
 from suchus.metrics.gait import diagonal_phase_error, duty_factor, foot_clearance, loaded, sensed_phase, two_feet_share
 from suchus.metrics.loads import swing_height, swing_lift, swing_loads, swing_unloaded, tail_load_share
-from suchus.metrics.loss import loss, says
+from suchus.metrics.loss import loss
 from suchus.metrics.progress import displacement, heading, heading_change, path_length, slip
 from suchus.metrics.reach import held, lead, reach, static_margin
 from suchus.metrics.rolling import roll_angle, roll_rate
@@ -57,7 +57,6 @@ __all__ = [
     "roll_angle",
     "roll_peak_to_peak",
     "roll_rate",
-    "says",
     "sensed_phase",
     "slip",
     "spine_amplitude",
