@@ -139,7 +139,7 @@ def test_what_cannot_be_read_is_one_sentence(content, said, tmp_path):
         file.write_bytes(content)
     with pytest.raises(UnreadableFile, match=said):
         read(file, Crocodile, ROBOTS)
-    with pytest.raises(UnreadableFile, match="cannot be read"):
+    with pytest.raises(UnreadableFile, match="is a folder"):
         read(tmp_path, Crocodile, ROBOTS)
 
 

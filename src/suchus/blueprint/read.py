@@ -1,7 +1,6 @@
 """From a TOML file to a frozen value; what the file does not say can come from a shelf."""
 
 import json
-import tomllib
 from collections.abc import Mapping
 from copy import deepcopy
 from dataclasses import asdict, fields
@@ -13,6 +12,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from suchus.blueprint.mistakes import MistakenFile, Place, explain
 from suchus.errors import UnreadableFile
+from suchus.record import read_toml
 
 T = TypeVar("T")
 
@@ -41,7 +41,7 @@ def read(path: Path, kind: Any, shelf: Mapping[str, Any]) -> Any:
         UnreadableFile: the file is missing or no TOML.
         MistakenFile: values are missing, unknown, of the wrong kind or impossible; it names all of them.
     """
-    data = _parse(path)
+    data = read_toml(path)
     base = data.pop("base", None)
     known = base is None or (isinstance(base, str) and base in shelf)
     kinds = get_args(kind) or (kind,)
@@ -74,21 +74,6 @@ def _plain(value: Any) -> Any:
     if isinstance(value, dict):
         return {key: _plain(item) for key, item in value.items() if item is not None}
     return tuple(_plain(item) for item in value) if isinstance(value, (list, tuple)) else value
-
-
-def _parse(path: Path) -> dict[str, Any]:
-    try:
-        text = path.read_text(encoding="utf-8")
-    except FileNotFoundError:
-        raise UnreadableFile(f"there is no file {path}.") from None
-    except UnicodeDecodeError as error:
-        raise UnreadableFile(f"{path} is not a text file in UTF-8.") from error
-    except OSError as error:
-        raise UnreadableFile(f"{path} cannot be read: {(error.strerror or str(error)).lower()}.") from error
-    try:
-        return tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise UnreadableFile(f"{path} is not valid TOML: {error}.") from error
 
 
 def _validated(

@@ -6,7 +6,7 @@ from typing import Literal
 
 import numpy as np
 
-from suchus.capture.walk import Walk
+from suchus.capture.walk import UNSURE, Walk
 from suchus.capture.wave import STANDING
 from suchus.design import LEGS, AnyRobot, Crocodile, crocodile, servo_names
 from suchus.errors import OutsideLimits
@@ -58,7 +58,7 @@ def to_gait(walk: Walk, robot: AnyRobot, base: Gait, *, name: str, duty: Duty = 
     gait = _shaped(walk, robot, gait, base, notes)
     gait = _within_limits(robot, gait, base, notes)
     gait = _within_speed(robot, gait, notes)
-    return Captured(gait=gait, notes=(*notes, *_unheld(walk)))
+    return Captured(gait=gait, notes=(*walk.notes, *notes, *_unheld(walk)))
 
 
 def driven_share(robot: Crocodile) -> float:
@@ -71,7 +71,8 @@ def driven_share(robot: Crocodile) -> float:
 
 
 def _mean(walk: Walk, stem: str, legs: tuple[str, ...] = LEGS) -> float:
-    return float(np.mean([walk.value(f"{stem}_{leg}") for leg in legs]))
+    known = [leg for leg in legs if stem != "duty" or not walk.numbers[f"duty_{leg}"].error > UNSURE]
+    return float(np.mean([walk.value(f"{stem}_{leg}") for leg in known or legs]))
 
 
 def _timed(walk: Walk, gait: Gait, duty: Duty, notes: list[str]) -> Gait:

@@ -14,7 +14,7 @@ from suchus.errors import UnknownName
 from suchus.gaits import GAITS
 from suchus.model.export import Format, export
 from suchus.motion import AnyGait
-from suchus.record import check_writable
+from suchus.record import check_name, check_writable
 from suchus.robots import ROBOTS
 
 
@@ -43,6 +43,8 @@ def export_robot(words: Sequence[str]) -> int:
     about = "Write a robot for other tools: model, scene, home posture, and a README of what the format leaves out."
     _check_format(words)
     options: Options = parse(Options, "suchus export", words, about, [f.name for f in fields(Options)])
+    if options.out is None:
+        check_name(options.robot.name, "robot")
     folder = options.out or Path("export") / f"{options.robot.name}_{options.format}"
     check_writable(folder.parent)
     export(options.robot, options.home, folder, options.format, timestep=options.timestep)

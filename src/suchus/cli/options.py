@@ -19,6 +19,7 @@ from suchus.errors import SuchusError, UnknownName
 from suchus.experiment import Experiment
 from suchus.gaits import GAITS
 from suchus.motion import AnyGait, Gait
+from suchus.record import there
 from suchus.robots import ROBOTS
 
 QUICK = Annotated[
@@ -101,6 +102,10 @@ def parse(options: type, prog: str, words: Sequence[str], description: str, name
                 registry=_registry(),
                 return_unknown_args=True,
             )
+    except _NoWordError:
+        odd = (word.partition("=")[0] for word in words if word.startswith("-"))
+        unknown = [word for word in odd if word.strip("-").replace("-", "_") not in names]
+        raise UnknownName("option", (unknown or ["-"])[0], [f"--{n.replace('_', '-')}" for n in names]) from None
     except SystemExit as error:
         if error.code:
             raise BadCommand(f"{_sentence(box.getvalue())}; see {prog} --help.") from None
@@ -134,17 +139,30 @@ def _shelf_rule(
     spec: PrimitiveConstructorSpec[Any] = PrimitiveConstructorSpec(
         nargs=1,
         metavar=f"{metavar}|FILE.toml",
-        instance_from_str=lambda words: _find(words[0], kind, shelf),
+        instance_from_str=lambda words: _find(_first(words), kind, shelf),
         is_instance=lambda value: isinstance(value, kind),
         str_from_instance=lambda value: [str(value.name)],
     )
     return lambda info: spec if info.type == kind else None
 
 
+class _NoWordError(Exception):
+    """Only an option that is not known stands where a name could stand."""
+
+
+def _first(words: Any) -> str:
+    """Return the first word; beside options that it does not know, tyro hands lists of lists over."""
+    while not isinstance(words, str):
+        if not words:
+            raise _NoWordError
+        words = words[0]
+    return words
+
+
 def _find(word: str, kind: Any, shelf: Catalog[Any]) -> Any:
     """What a word stands for: a name on the shelf, or a file."""
     try:
-        if word not in shelf and (word.endswith(".toml") or Path(word).exists()):
+        if word not in shelf and (word.endswith(".toml") or there(Path(word))):
             return blueprint.read(Path(word), kind, shelf)
         found = shelf[word]
         if not isinstance(found, kind):
@@ -174,4 +192,19 @@ def _sentence(box: str) -> str:
         elif lines:
             break
     sentence = " ".join(lines).removeprefix("Error parsing ").rstrip(".")
+    for pattern, plain in _PLAIN:
+        sentence = re.sub(pattern, plain, sentence)
     return re.sub(r"^[A-Z]|\. [A-Z]", lambda start: start[0].lower().replace(".", ";"), sentence)
+
+
+_PLAIN = (
+    (r"invalid literal for int\(\) with base 10: (.*)", r"\1 is no whole number"),
+    (r"could not convert string to float: (.*)", r"\1 is no number"),
+    (r"Exceeds the limit .* value has (\d+) digits.*", r"a number of \1 digits is more than can be read"),
+    (
+        r"no type matching \{None\}\|(?:INT|FLOAT) could be instantiated from \[(.*)\]",
+        r"\1 is no number",
+    ),
+    (r"no type matching .* could be instantiated from \[(.*)\]", r"\1 is not what is needed"),
+)
+"""What Python says of its own functions, in words of those who type."""

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Bool, Float
 
+from suchus import rotation
 from suchus.control.sensed import Sensed, finite
 from suchus.design import AnyRobot, layout
 from suchus.design.checks import Checks
@@ -106,11 +107,8 @@ class Heading:
 
     def _error(self, sensed: Sensed) -> np.ndarray:
         """Return the error of the direction, averaged over the last cycle or what there is of it [rad]."""
-        w, x, y, z = finite(sensed.orientation).T
-        facing = (
-            np.arctan2(2 * (w * z + x * y), 1 - 2 * (y**2 + z**2))
-            + finite(sensed.servo_position[:, self._yaw]).sum(1) / 2
-        )
+        trunk = finite(sensed.servo_position[:, self._yaw]).sum(1)
+        facing = rotation.yaw(finite(sensed.orientation)) + trunk / 2
         if self._walks:
             self._turned = self._turned + (facing - self._last + pi) % (2 * pi) - pi
         self._walks, self._last = True, facing

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
+from suchus import rotation
 from suchus.control.controller import Command
 from suchus.control.sensed import Sensed
 from suchus.control.suited import crocodiles, leg_gaits
@@ -234,7 +235,7 @@ class Stander:
     def _answer(self, now: Course, sensed: Sensed, upright: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return how far the hips go back [m] and the trunk bends back [rad]."""
         g = self._gains
-        low = now.pitch - _pitch(sensed.orientation)
+        low = now.pitch + rotation.steep_pitch(sensed.orientation)  # the course counts upward, the angle downward
         self._mean = np.where(upright & np.isfinite(self._mean), self._mean, low)
         self._mean += self._period / g["washout"] * (low - self._mean)
         beyond = low - self._mean
@@ -247,9 +248,3 @@ class Stander:
         back = g["hips_per_pitch"] * beyond + g["hips_per_rate"] * rate + self._crept
         bend = g["trunk_per_pitch"] * beyond + g["trunk_per_rate"] * rate
         return np.clip(back, -hips, hips), np.clip(bend, -trunk, trunk)
-
-
-def _pitch(orientation: np.ndarray) -> np.ndarray:
-    """Return how far the front end points up [rad]."""
-    w, x, y, z = orientation.T
-    return np.asarray(np.arctan2(2 * (x * z - w * y), np.hypot(1 - 2 * (y * y + z * z), 2 * (x * y + w * z))))

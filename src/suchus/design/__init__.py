@@ -22,6 +22,7 @@ from suchus.design.physics import GRAVITY, WATER_DENSITY, WATER_VISCOSITY
 from suchus.design.robot import Crocodile
 from suchus.design.segment import Rod, Segment, Shell
 from suchus.design.servo import Servo
+from suchus.design.servos import with_servos, with_speed_lines
 from suchus.design.spine import Spine
 from suchus.design.suited import crocodile
 from suchus.design.tail import Tail
@@ -71,5 +72,7 @@ __all__ = [
     "spine_joints",
     "unit_at",
     "value_at",
+    "with_servos",
+    "with_speed_lines",
     "with_values",
 ]

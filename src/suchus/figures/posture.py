@@ -11,6 +11,7 @@ from matplotlib.colors import to_hex, to_rgb
 from matplotlib.patches import Circle, PathPatch, Polygon
 from matplotlib.path import Path
 
+from suchus import rotation
 from suchus.design import GRAVITY, AnyRobot, Layout, LimbPlace, layout
 from suchus.figures.silhouette import Silhouette, silhouette
 from suchus.figures.style import COLOURS
@@ -46,7 +47,7 @@ def skeleton(robot: AnyRobot, record: xr.Dataset, time: float) -> Skeleton:
     """
     now, place = record.sel(time=time, method="nearest"), layout(robot)
     angles = now.joint_angle.values.astype(float)
-    R, at = _rotation(now.orientation.values.astype(float)), now.position.values.astype(float)
+    R, at = rotation.matrix(now.orientation.values.astype(float)), now.position.values.astype(float)
     found, marks = frames(robot, angles), landmarks(robot, angles)
     names = [body.name for body in place.bodies]
     ahead = found.places[[names.index(name) for name in place.trunk[1:]]].reshape(-1, 3)
@@ -76,17 +77,6 @@ def _silhouette(robot: AnyRobot, record: xr.Dataset, time: float, axes: tuple[in
     now = record.sel(time=time, method="nearest")
     at = (now[name].values.astype(float) for name in ("position", "orientation", "joint_angle"))
     return silhouette(robot, skin(robot).posed(*poses(robot, *at)), axes)
-
-
-def _rotation(quaternion: np.ndarray) -> np.ndarray:
-    w, x, y, z = quaternion
-    return np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-        ]
-    )
 
 
 def draw_posture(

@@ -7,7 +7,9 @@ z up. Angles come in the order of ``suchus.design.joint_names``.
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import AnyRobot, Crocodile, cable_joints, fin_joints
+from suchus.design import LEGS, AnyRobot, Crocodile, cable_joints, fin_joints
+from suchus.errors import UnknownName
+from suchus.kinematics.given import rows
 from suchus.kinematics.tree import Landmarks, landmarks
 
 __all__ = ["Landmarks", "feet", "from_leg_frame", "landmarks", "tail_points", "to_leg_frame"]
@@ -28,13 +30,13 @@ def from_leg_frame(point: Float[np.ndarray, "*batch 3"], name: str) -> Float[np.
 
     A right leg is the mirror image of a left one.
     """
-    left = 1.0 if name.startswith("L") else -1.0
+    left, point = _side(name), rows(point, 3, "the point")
     return np.stack([point[..., 1], left * point[..., 0], -point[..., 2]], axis=-1)
 
 
 def to_leg_frame(point: Float[np.ndarray, "*batch 3"], name: str) -> Float[np.ndarray, "*batch 3"]:
     """Return a point of a girdle's frame in the D-H base frame of a leg [m]; see ``from_leg_frame``."""
-    left = 1.0 if name.startswith("L") else -1.0
+    left, point = _side(name), rows(point, 3, "the point")
     return np.stack([left * point[..., 1], point[..., 0], -point[..., 2]], axis=-1)
 
 
@@ -47,6 +49,7 @@ def tail_points(robot: Crocodile, angles: Float[np.ndarray, "*batch joint"]) -> 
     """
     tail = robot.tail
     cables, segments = len(cable_joints(robot)), len(fin_joints(robot)) // 2
+    angles = rows(angles, 1 + cables + 2 * segments, f"the tail's angles of {robot.name}")
     x = np.broadcast_to(np.array([-1.0, 0.0, 0.0]), (*angles.shape[:-1], 3))  # along the straight tail
     points = [tail.offset * x]
     R = _pitched(angles[..., 0])
@@ -60,6 +63,12 @@ def tail_points(robot: Crocodile, angles: Float[np.ndarray, "*batch joint"]) -> 
         R = R @ _yawed(bend[..., 0]) @ _pitched(bend[..., 1])
         points.append(points[-1] + tail.fin_length / segments * -R[..., :, 0])
     return np.stack(points, axis=-2)
+
+
+def _side(name: str) -> float:
+    if name not in LEGS:
+        raise UnknownName("leg", name, LEGS)
+    return 1.0 if name.startswith("L") else -1.0
 
 
 def _yawed(angle: np.ndarray) -> np.ndarray:

@@ -11,8 +11,8 @@ from jaxtyping import Float
 from suchus.design import GRAVITY, LEGS, AnyRobot, Crocodile, cable_joints, crocodile, joint_names, layout
 from suchus.design.leg import LEG_SHARES
 from suchus.design.tail import TailSegments, tail_segments
-from suchus.errors import InvalidDesign
 from suchus.kinematics import body, leg, spine
+from suchus.kinematics.given import rows
 
 __all__ = [
     "GRAVITY",
@@ -45,11 +45,7 @@ def pieces(robot: AnyRobot, angles: Float[np.ndarray, "*batch joint"]) -> Pieces
     Raises:
         InvalidDesign: the number of angles is not the robot's number of hinges.
     """
-    count = len(joint_names(robot))
-    if angles.shape[-1] != count:
-        raise InvalidDesign(
-            f"{angles.shape[-1]} angles were given; {robot.name} has {count} hinges: give one for each."
-        )
+    angles = rows(angles, len(joint_names(robot)), f"the posture of {robot.name}, an angle for each hinge,")
     robot = crocodile(robot, "the mass of the trunk in closed form")
     masses = [robot.pelvis.mass, *4 * [robot.spine.link_mass], robot.thorax.mass, robot.head.mass]
     for name in LEGS:

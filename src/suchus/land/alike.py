@@ -33,7 +33,7 @@ class Alike:
         self._groups = [members for members in groups.values() if len(members) > 1]
         self._leaves: dict[int, set[int]] = {}
         for sim, run in enumerate(runs):
-            times = [trouble.at for trouble in (*run.faults, *run.pushes)]
+            times = [*(fault.at for fault in run.faults), *(push.at for push in run.pushes)]
             if times:
                 self._leaves.setdefault(max(floor(min(times) / period - _EARLY), 0), set()).add(sim)
         self._count = len(runs)

@@ -13,7 +13,6 @@ from suchus.design import GRAVITY, AnyRobot, layout
 from suchus.design.ground import Ground
 from suchus.design.relief import Relief
 from suchus.land.alike import Alike
-from suchus.land.faults import Fault, Limp, Weak
 from suchus.land.run import Afloat, Run
 from suchus.model import activations, compile_model, force_sensors, standing
 from suchus.motion import hip_height
@@ -37,31 +36,41 @@ class Bench:
         self._single = len(models) == 1
         self._models: list[Any] = [] if self._single else [models[body] for body in bodies]
         self._owned: set[int] = set()
+        self._written = False
         self._timestep = timestep
         self.batch = Batch(shared, len(runs), nthread=min(threads.count(), len(runs)), persistent=True)
         self._lay_ground(runs)
         if self._models:
             self.batch.set_models(self._models)
+            self._written = False
         self.qpos, self.qvel, self.ctrl, self.sensors = (
             self.batch.bind(name) for name in ("qpos", "qvel", "ctrl", "sensordata")
         )
         self.readings = self.sensors.copy()
-        self._servos = layout(runs[0].robot).servos
         forces = force_sensors(runs[0].robot)
         self._forces = slice(int(shared.sensor(forces[0]).adr[0]), int(shared.sensor(forces[-1]).adr[0]) + 3)
+        servos = [shared.sensor(f"{name}_position") for name in layout(runs[0].robot).servos]
+        self._positions = slice(int(servos[0].adr[0]), int(servos[-1].adr[0]) + 1)
         self.alive = np.ones(len(runs), dtype=bool)
         self.ended = np.full(len(runs), np.inf)
         self.cause = [""] * len(runs)
 
-    def _field(self, name: str, sim: int) -> np.ndarray:
-        """Return a run's own values of a model field, for writing."""
+    def field(self, name: str, sim: int) -> np.ndarray:
+        """Return a run's own values of a model field, for writing; ``commit`` after it."""
         if self._single:
             values: np.ndarray = self.batch.expand(name)[sim]
             return values
+        self._written = True
         owner: Any = self._own(sim)
         for part in name.split("."):
             owner = getattr(owner, part)
         return np.asarray(owner)
+
+    def commit(self) -> None:
+        """Let the physics know of written model fields."""
+        if self._models and self._written:
+            self.batch.set_models(self._models)
+            self._written = False
 
     def _own(self, sim: int) -> Any:
         """Return a run's model, which it shares with no other from now on."""
@@ -73,14 +82,14 @@ class Bench:
     def _lay_ground(self, runs: Sequence[Run]) -> None:
         for sim, run in enumerate(runs):
             if run.ground.grip != 1.0:
-                self._field("geom_friction", sim)[1:, 0] *= run.ground.grip
+                self.field("geom_friction", sim)[1:, 0] *= run.ground.grip
             if run.ground.uphill or run.ground.sideways:
                 self.tilt(sim, run.ground)
             if run.afloat is not None:
                 self._cast_off(sim, run.afloat)
 
     def _cast_off(self, sim: int, afloat: Afloat) -> None:
-        self._field("opt.gravity", sim)[:] = 0.0
+        self.field("opt.gravity", sim)[:] = 0.0
         self._set_option("density", sim, afloat.density)
         self._set_option("viscosity", sim, afloat.viscosity)
         self._set_option("integrator", sim, int(mujoco.mjtIntegrator.mjINT_RK4))
@@ -92,29 +101,22 @@ class Bench:
             self.batch.expand(f"opt.{name}")[sim] = value
         else:
             setattr(self._own(sim).opt, name, value)
+            self._written = True
 
-    def break_servo(self, sim: int, fault: Fault) -> None:
-        """Let a servo go limp or weak from now on."""
-        servo = self._servos.index(fault.joint)
-        if isinstance(fault, Limp):
-            if self._single:
-                self.batch.expand("opt.disableactuator")[sim] |= 1 << servo
-            else:
-                self._own(sim).opt.disableactuator |= 1 << servo
-        elif isinstance(fault, Weak):
-            self._field("actuator_forcerange", sim)[servo] *= fault.fraction
-        if self._models:
-            self.batch.set_models(self._models)
+    def power(self, sim: int, servo: str, *, on: bool) -> None:
+        """Give a servo its torque, or take it away, from the next ``commit`` on."""
+        bit = 1 << int(self.model.actuator(servo).group[0])
+        now = self.batch.expand("opt.disableactuator")[sim] if self._single else self._own(sim).opt.disableactuator
+        self._set_option("disableactuator", sim, int(now) & ~bit if on else int(now) | bit)
 
-    def mend_servo(self, sim: int, joint: str) -> None:
-        """Give a servo its torque back from now on; only where all runs share a model, as a lone run does."""
-        servo = self._servos.index(joint)
-        self.batch.expand("opt.disableactuator")[sim] &= ~(1 << servo)
-        self.batch.expand("actuator_forcerange")[sim, servo] = self.model.actuator_forcerange[servo]
+    def angles(self, sim: int) -> np.ndarray:
+        """Return the angles of a run's joints at the servos' shafts as they are now, shape (servo,) [rad]."""
+        angles: np.ndarray = self.readings[sim, self._positions]
+        return angles
 
     def tilt(self, sim: int, ground: Ground) -> None:
         """Let a ground slope as it says from now on; its grip and relief are not looked at."""
-        self._field("opt.gravity", sim)[:] = _gravity(ground)
+        self.field("opt.gravity", sim)[:] = _gravity(ground)
 
     def push(self, sim: int, body: str, force: np.ndarray) -> None:
         """Let a force act on the centre of mass of a body from now on.

@@ -8,16 +8,18 @@ from suchus.control import Control, OpenLoop
 from suchus.design import AnyRobot
 from suchus.design.ground import Ground
 from suchus.errors import Diverged
-from suchus.land.faults import Fault
+from suchus.fault import Fault
+from suchus.gaits import GAITS
 from suchus.land.push import Push
 from suchus.land.run import Run
 from suchus.land.simulation import simulate
 from suchus.motion import AnyGait
+from suchus.robots import ROBOTS
 
 
 def crawl(
-    robot: AnyRobot,
-    gait: AnyGait,
+    robot: AnyRobot | str,
+    gait: AnyGait | str,
     *,
     duration: float = 9.0,
     faults: Sequence[Fault] = (),
@@ -31,8 +33,8 @@ def crawl(
     """Let a robot walk.
 
     Args:
-        robot: who walks.
-        gait: how.
+        robot: who walks, or its name on the shelf.
+        gait: how, or its name on the shelf.
         duration: including the first second, in which the robot settles [s].
         faults: what breaks, and when.
         pushes: forces from outside.
@@ -50,8 +52,8 @@ def crawl(
         OutsideLimits: the robot's joints cannot follow the gait.
     """
     run = Run(
-        robot=robot,
-        gait=gait,
+        robot=ROBOTS.resolve(robot),
+        gait=GAITS.resolve(gait),
         ground=ground or Ground(),
         faults=tuple(faults),
         pushes=tuple(pushes),

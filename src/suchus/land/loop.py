@@ -74,15 +74,19 @@ class Loop:
         self.readings = Readings(self.bench, runs, samples)
 
     def decide(self, tick: int, beat: int | None = None) -> Command:
-        """Let happen what is due and return what the servos are told in the end.
+        """Let happen what is due and return what the controller commands; ``disturb`` says what comes of it.
 
         Args:
             tick: number of the control period.
             beat: the one that the controller takes it for; the same if None.
         """
         self.troubles.happen(tick)
-        sensed = self.troubles.deafen(self.readings.sensed(tick * self._period)) if self.feels else None
-        command = self.controller.command(tick if beat is None else beat, sensed)
+        injector = self.troubles.injector
+        sensed = injector.sense(self.readings.sensed(tick * self._period)) if self.feels else None
+        return self.controller.command(tick if beat is None else beat, sensed)
+
+    def disturb(self, tick: int, command: Command) -> Command:
+        """Return what the servos are commanded in the end, with noise and faults."""
         return Command(self.troubles.disturb(tick, command.targets), command.phase)
 
     def advance(self, tick: int, targets: np.ndarray) -> None:

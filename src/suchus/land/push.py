@@ -1,6 +1,5 @@
 """A push: a force from outside, for a while."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -31,7 +30,7 @@ class Push:
 
     def __post_init__(self) -> None:
         parts = list(self.force)
-        if len(parts) != 3 or not all(math.isfinite(part) and abs(part) <= MOST for part in parts):
+        if len(parts) != 3 or not all(abs(part) <= MOST for part in parts):
             raise InvalidDesign(f"push.force is {self.force}; three numbers of {-MOST:g} to {MOST:g} N are allowed.")
         require("push", "at", self.at, 0.0, 86400.0, "s")
         require("push", "duration", self.duration, 1e-3, 86400.0, "s")

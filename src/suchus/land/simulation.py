@@ -9,7 +9,7 @@ from suchus.control import Joinable
 from suchus.design.checks import require
 from suchus.design.scale import check_step, control_period, physics_step
 from suchus.errors import InvalidDesign
-from suchus.land.faults import check_faults
+from suchus.fault import check_faults
 from suchus.land.loop import Loop, physics_steps
 from suchus.land.push import check_pushes
 from suchus.land.run import Run
@@ -117,7 +117,7 @@ def _simulate_group(
 ) -> xr.Dataset:
     loop = Loop(runs, ticks + 1, steps, timestep, samples=ticks // every + 1)
     for tick in range(ticks + 1):
-        command = loop.decide(tick)
+        command = loop.disturb(tick, loop.decide(tick))
         if tick % every == 0:
             loop.readings.store(tick // every, command.phase, command.targets)
         if tick < ticks:

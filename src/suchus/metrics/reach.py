@@ -4,6 +4,7 @@ import numpy as np
 import xarray as xr
 from jaxtyping import Float
 
+from suchus import rotation
 from suchus.design import AnyRobot, Rod, layout
 from suchus.kinematics.tree import frames
 
@@ -32,7 +33,7 @@ def _tops(
     robot: AnyRobot, q: np.ndarray, position: np.ndarray, angles: np.ndarray
 ) -> Float[np.ndarray, "*batch shape"]:
     """Return the highest point of every shape from the root forward [m]."""
-    place, found, up = layout(robot), frames(robot, angles), _up(q)
+    place, found, up = layout(robot), frames(robot, angles), rotation.upward(q)
     segments = {segment.name: segment for segment in place.robot.axis}
     tops = []
     for i, body in enumerate(place.bodies):
@@ -47,12 +48,6 @@ def _tops(
                 centre = np.array(shape.at) + shift
                 tops.append(base + over @ centre + np.linalg.norm(over * np.array(shape.half), axis=-1))
     return np.asarray(position[..., 2, None] + np.stack(tops, axis=-1))
-
-
-def _up(q: np.ndarray) -> np.ndarray:
-    """Return the world's upward direction in the frame of the pelvis."""
-    w, x, y, z = np.moveaxis(q, -1, 0)
-    return np.stack([2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)], axis=-1)
 
 
 def lead(record: xr.Dataset) -> xr.DataArray:

@@ -14,6 +14,8 @@ from suchus.model.ground import add_ground
 from suchus.model.names import sites
 
 TIMESTEP = 0.002  # [s]; of the article's robot; 0.5 to 8 ms were measured to give the same displacement within 1 %
+SLEW = 1
+"""Column of ``actuator_dynprm`` in which MuJoCo's pid keeps its slew limit."""
 _POSITION_INPUT = 1  # the servo takes an angle; the other inputs of MuJoCo's pid stay unused
 
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from suchus.design import AnyRobot, layout
 from suchus.model.build import joint_addresses
+from suchus.rotation import about
 
 
 def standing(model: Any, robot: AnyRobot, hip_height: float, servos: np.ndarray) -> np.ndarray:
@@ -24,7 +25,7 @@ def standing(model: Any, robot: AnyRobot, hip_height: float, servos: np.ndarray)
     place = layout(robot)
     data.qpos[2] = hip_height
     turn = -sum(servos[i] for i in place.trunk_yaw) / 2
-    data.qpos[3:7] = np.cos(turn / 2), 0.0, 0.0, np.sin(turn / 2)
+    data.qpos[3:7] = about(np.array([0.0, 0.0, 1.0]), turn)
     direct = len(place.servos) - len(place.cables)
     data.qpos[joint_addresses(model, place.servos[:direct])] = servos[:direct]
     for i in place.cables:

@@ -7,13 +7,17 @@ import xarray as xr
 
 from suchus.design import AnyRobot, joint_names, layout
 from suchus.errors import IncompatibleRecord
+from suchus.record import check_land
 from suchus.skin import Poses, poses
 
 RATE = 30.0
 """Frames kept for each second [1/s]; the player moves smoothly between them."""
 MOST = 2700
 """Frames kept at most [-]: a minute and a half at the full rate, 1 MB; longer runs get fewer per second."""
-_NEEDED = ("position", "orientation", "joint_angle", "centre_of_mass", "foot_position", "foot_force")
+_NEEDED = (
+    *("position", "orientation", "joint_angle", "centre_of_mass", "foot_position", "foot_force"),
+    *("tail_force", "tail_tip"),
+)
 
 
 class Frames(NamedTuple):
@@ -39,9 +43,7 @@ def checked(record: xr.Dataset, robot: AnyRobot) -> xr.Dataset:
     Raises:
         IncompatibleRecord: it is no run on land, several runs, of another robot, or without a frame.
     """
-    missing = [name for name in _NEEDED if name not in record]
-    if missing:
-        raise IncompatibleRecord(f"the record has no {', '.join(missing)}; a replay is made from a run on land.")
+    check_land(record, _NEEDED, "what a replay is to be made from")
     if "run" in record.dims:
         count = record.sizes["run"]
         if count != 1:

@@ -65,7 +65,7 @@ def replay(
         keys=KEYS | {"legs": limb_colours(robot)},
         arrow=f"{100 * ARROW * robot.length:.0f} cm",
         version=versions()["suchus"],
-        meta=Markup(json.dumps(meta, separators=(",", ":")).replace("</", "<\\/")),
+        meta=Markup(json.dumps(meta, separators=(",", ":")).replace("<", "\\u003c")),  # begins no tag, no comment
         data=data,
     )  # fmt: skip
 

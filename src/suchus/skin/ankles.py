@@ -11,7 +11,8 @@ import numpy as np
 
 from suchus.design import LEGS, AnyRobot, Crocodile
 from suchus.design.relief import Relief, heights
-from suchus.skin.bones import Poses, bone_names, multiply, rotate
+from suchus.rotation import about, multiply, rotate
+from suchus.skin.bones import Poses, bone_names
 from suchus.skin.surface import Skin, skin
 
 ANKLES = tuple(f"{leg}_ankle" for leg in LEGS)
@@ -74,4 +75,4 @@ def _downward(way: np.ndarray, share: np.ndarray) -> np.ndarray:
     sine = np.linalg.norm(axis, axis=-1, keepdims=True)
     angle = np.minimum(np.arctan2(sine[:, 0], -way[:, 2]), REACH) * share
     axis = np.divide(axis, sine, out=np.zeros_like(axis), where=sine > 1e-9)
-    return np.concatenate([np.cos(angle / 2)[:, None], np.sin(angle / 2)[:, None] * axis], axis=-1)
+    return about(axis, angle)

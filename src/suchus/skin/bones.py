@@ -10,6 +10,7 @@ import numpy as np
 
 from suchus.design import AnyRobot, joint_names, layout
 from suchus.errors import InvalidDesign
+from suchus.rotation import about, multiply, rotate
 
 
 class Poses(NamedTuple):
@@ -61,22 +62,3 @@ def poses(robot: AnyRobot, position: np.ndarray, orientation: np.ndarray, angles
             turn = multiply(turn, about(np.array(axis), angles[..., where[hinge]]))
         turned.append(turn)
     return Poses(np.stack(at, axis=-2), np.stack(turned, axis=-2))
-
-
-def about(axis: np.ndarray, angle: np.ndarray) -> np.ndarray:
-    """Return the quaternions of turns about one axis, (..., 4)."""
-    half = np.asarray(angle)[..., None] / 2
-    return np.concatenate([np.cos(half), np.sin(half) * axis], axis=-1)
-
-
-def multiply(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Return the products of quaternions wxyz, (..., 4)."""
-    w, v, s, u = a[..., :1], a[..., 1:], b[..., :1], b[..., 1:]
-    return np.concatenate([w * s - np.sum(v * u, -1, keepdims=True), w * u + s * v + np.cross(v, u)], axis=-1)
-
-
-def rotate(quaternion: np.ndarray, vector: np.ndarray) -> np.ndarray:
-    """Return vectors turned by unit quaternions, (..., 3)."""
-    w, v = quaternion[..., :1], quaternion[..., 1:]
-    twice = 2 * np.cross(v, vector)
-    return vector + w * twice + np.cross(v, twice)

@@ -8,8 +8,9 @@ import numpy as np
 
 from suchus.design import AnyRobot, Crocodile, Layout, layout
 from suchus.errors import InvalidDesign
+from suchus.rotation import rotate
 from suchus.skin.body import body, shape
-from suchus.skin.bones import bone_names, bone_rest, rotate
+from suchus.skin.bones import bone_names, bone_rest
 from suchus.skin.head import eyes, jaw, teeth
 from suchus.skin.legs import left_leg
 from suchus.skin.look import SKIN, Look

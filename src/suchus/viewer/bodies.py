@@ -65,9 +65,11 @@ class Posture:
         body: Any = self._data.body(name)
         return np.array(body.xpos), np.array(body.xquat)
 
-    def joint(self, servo: str) -> np.ndarray:
-        """Return where the joint of a servo is [m]; for the cable, where its first joint is."""
-        number = self.model.joint("tail_yaw_1" if servo == "tail_cable" else servo).id
+    def part(self, name: str) -> np.ndarray:
+        """Return where the joint of a servo, or the foot of a leg, is [m]; for the cable, where its first joint is."""
+        if name in LEGS:
+            return np.array(self._data.site(f"{name}_foot").xpos)
+        number = self.model.joint("tail_yaw_1" if name == "tail_cable" else name).id
         return np.array(self._data.xanchor[number])
 
 

@@ -5,6 +5,7 @@ import xarray as xr
 
 from suchus.design import GRAVITY, WATER_DENSITY, Crocodile
 from suchus.motion import Swim, check_swim
+from suchus.robots import ROBOTS
 from suchus.water.outline import Curve, Outline
 from suchus.water.slender import Model, Water, cruise, cycle, reactive, recoil, resistive
 from suchus.water.undulation import Motion, undulation
@@ -13,7 +14,7 @@ MODELS: dict[str, Model] = {"resistive": resistive, "reactive": reactive}
 """The models by name."""
 
 
-def swim(robot: Crocodile, motion: Motion, *, water: Water | None = None, stations: int = 257) -> xr.Dataset:
+def swim(robot: Crocodile | str, motion: Motion, *, water: Water | None = None, stations: int = 257) -> xr.Dataset:
     """Return how a robot swims by the resistive and the reactive model.
 
     ``thrust_held`` is the mean force on a body that is kept from moving on but free to sway and turn; everything else
@@ -21,7 +22,7 @@ def swim(robot: Crocodile, motion: Motion, *, water: Water | None = None, statio
     body as heavy as the water it displaces; limbs do nothing.
 
     Args:
-        robot: who swims.
+        robot: who swims, or its name on the shelf.
         motion: of its joints; or a wave that the midline follows exactly, joints or not.
         water: density, viscosity and coefficients; fresh water if None.
         stations: points along the midline.
@@ -34,6 +35,7 @@ def swim(robot: Crocodile, motion: Motion, *, water: Water | None = None, statio
         OutsideLimits: the joints or servos cannot follow the motion.
         NotConverged: thrust and drag never balance.
     """
+    robot = ROBOTS.resolve(robot)
     if isinstance(motion, Swim):
         check_swim(robot, motion)
     outline, still = Outline(robot, stations), water or Water()

@@ -7,6 +7,7 @@ from typing import Literal, get_args
 
 from suchus import blueprint
 from suchus.design import AnyRobot, Crocodile
+from suchus.design.checks import require
 from suchus.errors import InvalidDesign, UnknownName
 from suchus.model.build import TIMESTEP
 from suchus.model.export.mjcf import mjcf
@@ -45,6 +46,7 @@ def export(robot: AnyRobot, gait: AnyGait, folder: Path, kind: Format, *, timest
         raise UnknownName("format", kind, get_args(Format))
     if not robot.name or robot.name.startswith(".") or any(c in robot.name for c in "/\\\0"):
         raise InvalidDesign(f"the robot is named {robot.name!r}, which makes no file name; give it another name.")
+    require("export", "timestep", timestep, 1e-5, 0.1, "s")
     check_limits(robot, gait)
     texts = _texts(robot, gait, kind, timestep)
     origin = {"format": kind, "robot": digest({"robot": robot}), "home": digest({"gait": gait}), "versions": versions()}
