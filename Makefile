@@ -5,7 +5,7 @@ PIP := $(PY) -m pip --disable-pip-version-check --quiet
 export OMP_WAIT_POLICY := passive
 export PIP_CONSTRAINT := constraints.txt
 
-.PHONY: reproduce test check single double lint types contract tests validate bench docs clean
+.PHONY: reproduce test check single double lint types contract tests mutate validate bench docs clean
 
 reproduce: .venv/.runtime
 	$(PY) -m suchus.cli reproduce --out out
@@ -31,6 +31,9 @@ single double: .venv/.dev # the flow's kernels, compiled once; else every test w
 
 tests: .venv/.dev
 	$(PY) -m pytest -n auto --dist worksteal -m "not validate"
+
+mutate: .venv/.dev # every rule of a verdict broken in every way; also a part of the tests
+	$(PY) -m pytest tests/verdict/test_mutations.py -v -n0
 
 validate: .venv/.dev
 	$(PY) -m pytest -m validate -s

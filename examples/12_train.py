@@ -13,7 +13,6 @@ from typing import Any
 import numpy as np
 
 import suchus.envs as envs
-from suchus.design import Crocodile
 
 STEPS = int(sys.argv[1]) if len(sys.argv) > 1 else 100_000
 ROBOTS, SEED = 32, 0
@@ -107,7 +106,7 @@ def main() -> None:
         "the shelf's gait": (task, envs.Follow(task=task, centre=centre, gait=task.gait)),
         name: (task, learned),
         f"{name}, physics of 2 ms": (replace(task, timestep=0.002), learned),
-        f"{name}, weaker at speed": (replace(task, robot=with_speed_lines(task.robot)), learned),
+        f"{name}, full torque at any speed": (replace(task, speed_lines=False), learned),
     }
     for name, (where, policy) in shown.items():
         played = envs.play(where, policy, episodes=16, seed=1000)
@@ -116,23 +115,6 @@ def main() -> None:
             f"{name:44s} return {played.returns.mean():+7.2f} +- {played.returns.std():5.2f}, "
             f"forward {played.forward.mean():+6.2f} m in up to 10 s, {fell} of 16 fell"
         )
-
-
-def with_speed_lines(robot: Crocodile) -> Crocodile:
-    """Give every servo a torque that falls to nothing at its no-load speed, as a motor's does."""
-    front, hind = (replace(leg, servo=leg.servo.with_speed_line()) for leg in (robot.front_leg, robot.hind_leg))
-    spine, tail = robot.spine, robot.tail
-    return replace(
-        robot,
-        front_leg=front,
-        hind_leg=hind,
-        spine=replace(
-            spine, yaw_servo=spine.yaw_servo.with_speed_line(), pitch_servo=spine.pitch_servo.with_speed_line()
-        ),
-        tail=replace(
-            tail, pitch_servo=tail.pitch_servo.with_speed_line(), cable_servo=tail.cable_servo.with_speed_line()
-        ),
-    )
 
 
 if __name__ == "__main__":

@@ -45,6 +45,17 @@ def test_a_module_without_its_declaration_is_named(shelf, name, found):
         shelf[name]
 
 
+def test_a_shelf_of_classes_wants_classes_and_a_shelf_of_values_values(shelf, tmp_path):
+    package = tmp_path / "shelf_under_test"
+    (package / "a_class.py").write_text("thing = bool\n")
+    classes = Catalog("thing", "shelf_under_test", "builtins:int", classes=True)
+    assert classes["a_class"] is bool
+    with pytest.raises(InvalidDesign, match=r"good\.py must declare `thing`, a subclass of int, but declares a int"):
+        classes["good"]
+    with pytest.raises(InvalidDesign, match=r"a_class\.py must declare `thing`, a int, but declares a type"):
+        shelf["a_class"]
+
+
 def test_every_public_name_can_be_had():
     for name in suchus.__all__:
         assert getattr(suchus, name) is not None

@@ -8,7 +8,7 @@ from mkdocs.config.defaults import MkDocsConfig
 from mkdocs.structure.files import File, Files
 from mkdocs.structure.pages import Page
 
-from pages import article, gallery, questions, reference
+from pages import article, gallery, questions, reference, verdicts
 from pages.code import rooms as rooms_of_code
 from pages.mathml import Formulas
 
@@ -28,7 +28,12 @@ def on_config(config: MkDocsConfig) -> MkDocsConfig:
 
 def on_files(files: Files, config: MkDocsConfig) -> Files:
     """Add the pages that are made of the code."""
-    made = {"paper_map.md": article.paper_map(), "misprints.md": article.misprints(), "questions.md": questions.page()}
+    made = {
+        "paper_map.md": article.paper_map(),
+        "misprints.md": article.misprints(),
+        "questions.md": questions.page(),
+        "verdicts.md": verdicts.page(),
+    }
     for path, text in (made | reference.pages() | gallery.pages()).items():
         files.append(File.generated(config, path, content=text))
     return files

@@ -23,15 +23,21 @@ if TYPE_CHECKING:
     from suchus.experiment import Experiment as Experiment
     from suchus.experiment import Outcome as Outcome
     from suchus.experiments import EXPERIMENTS as EXPERIMENTS
+    from suchus.fault import Fault as Fault
+    from suchus.faults import FAULTS as FAULTS
+    from suchus.faults import Backlash as Backlash
+    from suchus.faults import Deaf as Deaf
+    from suchus.faults import Limp as Limp
+    from suchus.faults import Locked as Locked
+    from suchus.faults import LostFoot as LostFoot
+    from suchus.faults import Offset as Offset
+    from suchus.faults import Slow as Slow
+    from suchus.faults import Weak as Weak
     from suchus.gaits import GAITS as GAITS
-    from suchus.land import Deaf as Deaf
     from suchus.land import Ground as Ground
-    from suchus.land import Limp as Limp
     from suchus.land import Live as Live
-    from suchus.land import Locked as Locked
     from suchus.land import Push as Push
     from suchus.land import Run as Run
-    from suchus.land import Weak as Weak
     from suchus.land import crawl as crawl
     from suchus.land import simulate as simulate
     from suchus.motion import Gait as Gait
@@ -66,8 +72,10 @@ _HOMES = {
     "Gait": "suchus.motion",
     "Swim": "suchus.motion",
     "swim": "suchus.water",
+    **dict.fromkeys(("Ground", "Live", "Push", "Run", "crawl", "simulate"), "suchus.land"),
+    "Fault": "suchus.fault",
     **dict.fromkeys(
-        ("Deaf", "Ground", "Limp", "Live", "Locked", "Push", "Run", "Weak", "crawl", "simulate"), "suchus.land"
+        ("FAULTS", "Backlash", "Deaf", "Limp", "Locked", "LostFoot", "Offset", "Slow", "Weak"), "suchus.faults"
     ),
 }
 __all__ = ["__version__", *_HOMES]  # noqa: PLE0604 - the names are strings

@@ -5,14 +5,15 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar
 
 import xarray as xr
 
 from suchus.errors import UnknownName
-from suchus.paper import CLAIMS, Claim
+from suchus.paper import CLAIMS
+from suchus.verdict import Rule, Verdict, rules_of
+from suchus.verdict import judge as decide
 
-Word = Literal["reproduced", "same sense", "contradicted", "not testable"]
 Progress = Callable[[str, float], None]
 """Called with what is being done and the share of it that is done, 0 to 1."""
 
@@ -37,20 +38,6 @@ class Measure:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Verdict:
-    """What became of one claim of the article."""
-
-    claim: Claim
-    """What the article says."""
-    measured: float | None
-    """What was measured, in the claim's unit; None where nothing can be measured."""
-    verdict: Word
-    """The verdict in a word or two."""
-    why: str
-    """One or two sentences: what decided it."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class Replay:
     """A run to look at: a page of its own that plays in a browser."""
 
@@ -66,7 +53,21 @@ class Replay:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Outcome:
+class Simulated:
+    """What an experiment did, before anything is measured."""
+
+    record: xr.Dataset
+    """What happened; measures are read and figures are drawn from this alone."""
+    tables: Mapping[str, str] = field(default_factory=dict)
+    """Further text files to stand beside the figures, by file name."""
+    films: Mapping[str, bytes] = field(default_factory=dict)
+    """Moving pictures to stand beside the figures: a GIF by file name; see ``figures.film``."""
+    replays: Mapping[str, Replay] = field(default_factory=dict)
+    """Runs to look at, to stand beside the figures, by file name ending in .html."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Outcome(Simulated):
     """What came out: numbers, verdicts, and the record they were read from."""
 
     experiment: str
@@ -74,23 +75,23 @@ class Outcome:
     measures: Mapping[str, Measure]
     """Every number, by name."""
     verdicts: tuple[Verdict, ...]
-    """One for each claim that the experiment touches."""
-    record: xr.Dataset
-    """What happened; figures are drawn from this alone."""
+    """One for each claim that the experiment touches; none where ``unjudged`` says why."""
     settings: Mapping[str, Any]
     """The experiment's own fields, as plain values."""
-    tables: Mapping[str, str] = field(default_factory=dict)
-    """Further text files to stand beside the figures, by file name."""
-    films: Mapping[str, bytes] = field(default_factory=dict)
-    """Moving pictures to stand beside the figures: a GIF by file name; see ``figures.film``."""
-    replays: Mapping[str, Replay] = field(default_factory=dict)
-    """Runs to look at, to stand beside the figures, by file name ending in .html."""
+    decides: str = ""
+    """What decided the outcome: one paragraph for the report, made from the measures."""
+    unjudged: str = ""
+    """Why there are no verdicts, in a sentence; empty where the claims were judged."""
     seconds: float = 0.0
     """How long the run took [s]."""
 
 
 class Experiment(ABC):
-    """A question with parameters. Subclasses are frozen dataclasses; their fields are the parameters."""
+    """A question with parameters. Subclasses are frozen dataclasses; their fields are the parameters.
+
+    A run simulates, measures what was recorded, judges the article's claims by the rules of ``suchus.verdict``, and
+    says what decided. Subclasses fill in ``simulate``, ``measure``, ``explain`` and ``draw``.
+    """
 
     __slots__ = ()
 
@@ -98,16 +99,54 @@ class Experiment(ABC):
     """The question in one line, as a person would ask it."""
     shows: ClassVar[str]
     """Which sections, figures or equations of the article it answers."""
-    claims: ClassVar[tuple[str, ...]] = ()
-    """Keys of the article's claims that get a verdict."""
-    in_reproduce: ClassVar[bool] = True
-    """Whether ``suchus reproduce`` runs it in full (else in its quick form)."""
-    decides: ClassVar[str] = ""
-    """What decides the outcome: one paragraph for the report."""
+    in_reproduce: ClassVar[bool] = True  # TODO goes with the last quick form in reproduce
+    judged_with: ClassVar[tuple[str, ...]] = ("robot",)
+    """Fields that must be as on the shelf for a verdict: another robot is not judged by the article's metres."""
+    judged_from: ClassVar[Mapping[str, float]] = {}
+    """Fields, and the least number (of a tuple: the least length) with which a run can answer what is judged."""
 
-    @abstractmethod
+    @property
+    def claims(self) -> tuple[str, ...]:
+        """Keys of the article's claims that get a verdict."""
+        return tuple(rule.claim for rule in self.rules())
+
+    @classmethod
+    def rules(cls) -> tuple[Rule, ...]:
+        """Return what decides each verdict."""
+        return rules_of(cls.name())
+
     def run(self, progress: Progress = silent) -> Outcome:
         """Answer the question."""
+        with stopwatch() as seconds:
+            simulated = self.simulate(progress)
+            measures = self.measure(simulated.record)
+            numbers = {name: float(measure.value) for name, measure in measures.items()}
+            unjudged = self.unjudged()
+            return Outcome(
+                experiment=self.name(),
+                measures=measures,
+                verdicts=() if unjudged else tuple(decide(rule, numbers) for rule in self.rules()),
+                record=simulated.record,
+                settings=self.settings(),
+                tables=simulated.tables,
+                films=simulated.films,
+                replays=simulated.replays,
+                decides=" ".join(self.explain(numbers).split()),
+                unjudged=unjudged,
+                seconds=seconds(),
+            )
+
+    def simulate(self, progress: Progress = silent) -> Simulated:
+        """Do what is to be measured, and return the record of it."""
+        raise NotImplementedError
+
+    def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
+        """Return every number, read from the record alone."""
+        raise NotImplementedError
+
+    def explain(self, measures: Mapping[str, float]) -> str:
+        """Return what decided the outcome, in a paragraph whose every statement follows from the measures."""
+        raise NotImplementedError
 
     @abstractmethod
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
@@ -120,6 +159,24 @@ class Experiment(ABC):
     def quick(self) -> "Experiment":
         """Return the same question, small enough for a test."""
 
+    def unjudged(self) -> str:
+        """Return why a run with these settings gets no verdicts, in a sentence; empty if it does."""
+        if not self.rules():
+            return ""
+        shelf = type(self)()
+        for name in self.judged_with:
+            if hasattr(self, name) and getattr(self, name) != getattr(shelf, name):
+                here, there = (_called(getattr(one, name)) for one in (self, shelf))
+                here = f"another {here}" if here == there else here
+                return f"Not judged: {name} is {here}, and the article's claims are judged with {there}."
+        for name, least in self.judged_from.items():
+            value = getattr(self, name)
+            count = len(value) if isinstance(value, tuple) else value
+            if count < least:
+                what = f"{name} has {count} values" if isinstance(value, tuple) else f"{name} is {count:g}"
+                return f"Not judged: {what}, and {least:g} at least are needed to meet what is judged."
+        return ""
+
     def settings(self) -> dict[str, Any]:
         """Return the fields as plain values."""
         return asdict(self)  # type: ignore[call-overload]
@@ -130,42 +187,11 @@ class Experiment(ABC):
         return cls.__module__.rpartition(".")[2]
 
 
-def judge(
-    key: str, measured: float | None, why: str, *, tolerance: float | None = None, holds: bool | None = None
-) -> Verdict:
-    """Return the verdict on one claim.
-
-    ``reproduced``: the measured value lies within ``tolerance`` (in the claim's unit; the claim's own if None) of
-    the printed one. ``same sense``: it does not, but the statement still holds (``holds``, or, if that is None, the
-    measured value has the sign of the printed one). ``contradicted``: the statement does not hold. ``not testable``:
-    nothing was measured.
-
-    Args:
-        key: key of the claim.
-        measured: what was measured, or None.
-        why: what decided it.
-        tolerance: half-width of the band that counts as reproduced.
-        holds: whether the statement, apart from its number, holds.
-
-    Raises:
-        UnknownName: no claim has this key.
-    """
-    if key not in CLAIMS:
-        raise UnknownName("claim", key, CLAIMS)
-    claim = CLAIMS[key]
-    word: Word
-    if measured is None:
-        word = "not testable"
-    elif claim.value is None:
-        word = "reproduced" if holds else "contradicted"
-    else:
-        band = claim.tolerance if tolerance is None else tolerance
-        agrees = measured * claim.value > 0 if holds is None else holds
-        if abs(measured - claim.value) <= band and holds is not False:
-            word = "reproduced"
-        else:
-            word = "same sense" if agrees else "contradicted"
-    return Verdict(claim=claim, measured=measured, verdict=word, why=why)
+def _called(value: Any) -> str:
+    """Return a short name of a field's value: of a robot or gait its own, marked where it only shares it."""
+    if isinstance(value, tuple):
+        return ", ".join(_called(one) for one in value)[:80]
+    return str(getattr(value, "name", value))[:80]
 
 
 @contextmanager
@@ -173,3 +199,24 @@ def stopwatch() -> Iterator[Callable[[], float]]:
     """Yield a function that tells the seconds since the block was entered."""
     start = time.perf_counter()
     yield lambda: time.perf_counter() - start
+
+
+# TODO until every experiment has its rules as data
+def judge(
+    key: str, measured: float | None, why: str, *, tolerance: float | None = None, holds: bool | None = None
+) -> Verdict:
+    """Return a verdict of the former kind."""
+    if key not in CLAIMS:
+        raise UnknownName("claim", key, CLAIMS)
+    claim = CLAIMS[key]
+    if measured is None:
+        word = "not testable"
+    elif claim.value is None:
+        word = "reproduced" if holds else "contradicted"
+    else:
+        band = claim.rounding if tolerance is None else tolerance
+        agrees = measured * claim.value > 0 if holds is None else holds
+        word = "reproduced" if abs(measured - claim.value) <= band and holds is not False else "same sense"
+        word = word if agrees else "contradicted"
+    rule = Rule(claim=key, experiment="", measure="", why="")
+    return Verdict(claim=claim, rule=rule, measured=measured, low=None, high=None, verdict=word, why=why, share=None)  # type: ignore[arg-type]

@@ -45,8 +45,8 @@ def test_missing_keypoints_are_named(tracks):
 def test_a_snout_does_where_there_is_no_neck(tracks):
     points = tuple("snout" if name == "neck" else name for name in tracks.points)
     seen = observe(replace(tracks, points=points)).numbers
-    assert {name: value for name, (value, _, _) in seen.items()} == {
-        name: value for name, (value, _, _) in observe(tracks).numbers.items()
+    assert {name: one.value for name, one in seen.items()} == {
+        name: one.value for name, one in observe(tracks).numbers.items()
     }
 
 

@@ -39,10 +39,20 @@ def test_bad_words_are_one_sentence_and_leave_nothing(words, tmp_path, capsys):
     assert not list(tmp_path.iterdir())
 
 
-def test_a_gait_that_saturates_a_servo_is_refused_unless_it_is_allowed(tmp_path, capsys):
-    assert main(["export-commands", "belly_crawl"]) == 2
+def test_the_default_gait_is_exported_and_what_its_servos_lack_is_said(tmp_path, capsys):
+    assert main(["export-commands"]) == 0
+    out = capsys.readouterr().out
+    assert "warning: spine_yaw_1 is at its torque limit of 2.5 N m for 2" in out
+    assert "a servo of 30 kg cm (2.94 N m) would do." in out
+    table = (tmp_path / "export" / "belly_crawl_commands" / "loads.csv").read_text()
+    assert "spine_yaw_1,2.5000,2.5,0.2" in table
+    assert (tmp_path / "export" / "belly_crawl_commands" / "commands.csv").exists()
+
+
+def test_a_gait_that_no_servo_follows_is_refused_and_the_loads_are_written_all_the_same(tmp_path, capsys):
+    assert main(["export-commands", "belly_crawl", "--tracking", "0.1"]) == 2
     err = capsys.readouterr().err
-    assert "spine_yaw_1 for" in err
-    assert "2 % is allowed" in err
-    assert not list(tmp_path.iterdir())
-    assert main(["export-commands", "belly_crawl", "--at-limit", "0.4"]) == 0
+    assert "spine_yaw_1 is at its torque limit" in err
+    assert err.count("\n") == 1
+    folder = tmp_path / "export" / "belly_crawl_commands"
+    assert {file.name for file in folder.iterdir()} == {"loads.csv", "suchus_commands.json"}

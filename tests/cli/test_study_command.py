@@ -1,9 +1,12 @@
 import pytest
 
 from suchus.cli import main
+from suchus.design import unit_at
 from suchus.errors import SuchusError
-from suchus.land import Limp, Weak
+from suchus.land import Backlash, Limp, LostFoot, Offset, Slow, Weak
 from suchus.study import read_study
+from suchus.study.chunk import called
+from suchus.study.plan import Plan
 
 PAGE = """
 name = "grip"
@@ -45,7 +48,7 @@ BAD = {
     ("[0.5, 1.0]", "[0.5, 100.0]"): "varies ground.grip, but ground.grip is 100; 0.01 to 10 is allowed",
     ("[0.5, 1.0]", '["much"]'): "varies ground.grip, but ground.grip is 'much'",
     ("field =", "feild ="): "did you mean vary[0].field?",
-    ("duration = 1.1", "duration = -1.0"): "0.01 to 86400 s is allowed",
+    ("duration = 1.1", "duration = -1.0"): "1.1 to 86400 s is allowed",
     ('"displacement"', '"displacment"'): "Did you mean 'displacement'?",
     ('name = "grip"', 'robot = "kaiman"'): "Did you mean 'caiman'?",
     ('name = "grip"', 'design = "sobol"'): "samples is missing",
@@ -70,6 +73,8 @@ def test_bad_places_are_one_sentence(tmp_path, capsys):
         ("none.toml", "there is no file none.toml"),
         ("grip.toml --out /dev/null/here", "cannot be written"),
         ("grip.toml --out .", "holds no study"),
+        ("grip.toml --finished", "--finished is for claims only"),
+        ("claims --finished --out nowhere", "nowhere/compared_2ms holds no study; start it first"),
     ):
         assert main(["study", *words.split()]) == 2
         err = capsys.readouterr().err
@@ -108,12 +113,52 @@ values = [[], [{kind = "limp", joint = "LF_yaw", at = 1.0}]]
     assert read_study(tmp_path / "f.toml").vary[0].values == ((), (Limp("LF_yaw", 1.0),))
 
 
+def test_every_fault_of_the_shelf_can_stand_in_a_file_and_its_numbers_vary_with_their_units(tmp_path):
+    (tmp_path / "s.toml").write_text("""
+measure = ["slip"]
+[[faults]]
+kind = "slow"
+joint = "LH_knee"
+speed = 2
+[[faults]]
+kind = "lost_foot"
+limb = "LF"
+at = 1.0
+[[vary]]
+field = "faults[0].speed"
+low = 0.5
+high = 4.0
+steps = 2
+""")
+    asked = read_study(tmp_path / "s.toml")
+    assert asked.run.faults == (Slow("LH_knee", 2), LostFoot("LF", 1.0))
+    assert unit_at(asked.run, "faults[0].speed") == "rad/s"
+    assert Plan(asked).run(1).faults[0] == Slow("LH_knee", 4.0)
+    (tmp_path / "f.toml").write_text("""
+measure = ["slip"]
+[[vary]]
+field = "faults"
+values = [[], [{kind = "backlash", joint = "LF_yaw", gap = 0.2}, {kind = "offset", joint = "RF_yaw"}]]
+""")
+    varied = read_study(tmp_path / "f.toml").vary[0].values
+    assert varied == ((), (Backlash("LF_yaw", 0.2), Offset("RF_yaw")))
+    assert [called(value) for value in varied] == ["none", "backlash LF_yaw + offset RF_yaw"]
+    page = 'measure = ["slip"]\nfaults = [{kind = "%s"}]\n[[vary]]\nfield = "noise"\nvalues = [0.0]\n'
+    (tmp_path / "g.toml").write_text(page % ("x" * 9000))
+    with pytest.raises(SuchusError, match="there is no fault named 'xxx") as caught:
+        read_study(tmp_path / "g.toml")
+    assert len(str(caught.value)) < 400
+
+
 @pytest.mark.parametrize(
     ("fault", "said"),
     [
-        ('[{kind = "limpp", joint = "LF_yaw"}]', "limp, locked, weak or deaf"),
+        ('[{kind = "limpp", joint = "LF_yaw"}]', "Did you mean 'limp'"),
         ('["limp LF_yaw"]', "lists of tables"),
-        ('[{kind = "limp", joint = "LF_yaw", angle = 1.0}]', "it cannot have"),
+        (
+            '[{kind = "limp", joint = "LF_yaw", angle = 1.0}]',
+            "no field of the fault limp named 'angle'",
+        ),
     ],
 )
 def test_a_fault_that_is_none_is_refused(fault, said, tmp_path):

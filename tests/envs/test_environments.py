@@ -14,12 +14,12 @@ gymnasium = pytest.importorskip("gymnasium", reason="gymnasium is not installed:
 from gymnasium.utils.env_checker import check_env  # noqa: E402
 from gymnasium.vector import AutoresetMode  # noqa: E402
 
-from suchus import envs  # noqa: E402
+from suchus import envs, rotation  # noqa: E402
 from suchus.design import servo_names  # noqa: E402
 from suchus.envs.pack import Pack, draw  # noqa: E402
 from suchus.envs.reward import Terms  # noqa: E402
-from suchus.envs.senses import level_axes  # noqa: E402
 from suchus.errors import InvalidDesign, OutsideLimits, UnknownName  # noqa: E402
+from suchus.faults import Locked, Weak  # noqa: E402
 from suchus.gaits import GAITS  # noqa: E402
 from suchus.motion import limb_phase, servo_targets  # noqa: E402
 
@@ -101,7 +101,7 @@ def test_a_robot_that_broke_begins_anew_as_if_nothing_had_happened(kind):
     used.restart([0, 1], [np.random.default_rng(1), np.random.default_rng(2)])
     used.act(np.ones((2, 19)), np.ones(2, dtype=bool))
     limp = used._bench.batch.expanded("opt.disableactuator")
-    assert (limp != 0).all() if kind == "limp" else np.isfinite(used._held).sum() == 2
+    assert (limp != 0).all() if kind == "limp" else used._injector.broken(1) == (Locked("LF_pitch"),)
     for pack in (used, fresh):
         pack.restart([1], [np.random.default_rng(7)])
         pack.chances[1] = replace(pack.chances[1], breaks=-1)
@@ -153,7 +153,7 @@ def test_what_presses_on_the_ground_is_the_weight():
 
 def test_the_world_s_axes_are_felt_as_the_pelvis_turns():
     turns = Rotation.random(20, random_state=3)
-    upward, ahead = level_axes(turns.as_quat(scalar_first=True))
+    upward, ahead = (turn(turns.as_quat(scalar_first=True)) for turn in (rotation.upward, rotation.ahead))
     np.testing.assert_allclose(upward, turns.inv().apply([0, 0, 1]), atol=1e-12)
     np.testing.assert_allclose(ahead, turns.inv().apply([1, 0, 0]), atol=1e-12)
 
@@ -215,8 +215,8 @@ def test_the_joint_that_was_drawn_breaks_when_it_was_drawn(kind):
 def test_faults_are_drawn_from_all_that_are_named():
     random = np.random.default_rng(0)
     drawn = [draw(FAULT, random) for _ in range(300)]
-    assert {servo_names()[chance.servo] for chance in drawn} == set(FAULT.breaks.joints)
-    assert {chance.kind for chance in drawn} == {"limp", "locked"}
+    assert {chance.broken.part for chance in drawn} == set(FAULT.breaks.joints)
+    assert {chance.broken.kind() for chance in drawn} == {"limp", "locked"}
     assert max(chance.breaks for chance in drawn) <= 400
 
 
@@ -255,6 +255,26 @@ def test_a_robot_that_comes_apart_ends_its_episode_with_a_sentence_and_the_other
     seen, *_ = env.step(zero)
     assert np.isfinite(seen).all()
     assert env.pack.time.tolist() == [0.0, 0.1]
+
+
+def test_servos_lose_torque_with_speed_unless_it_is_switched_off():
+    for lines, damping in ((True, 3.0 / 7.0), (False, 0.05)):
+        task = replace(CRAWL, speed_lines=lines)
+        assert task.body.servo("LF_yaw").damping == pytest.approx(damping)
+        model = Pack(task, 1)._bench.model
+        assert model.joint("LF_yaw").damping[0] == pytest.approx(damping)
+    assert CRAWL.speed_lines
+    assert CRAWL.body.servo("tail_cable").damping == pytest.approx(2.5 / 7.0)
+    with pytest.raises(InvalidDesign, match=r"task\.speed_lines is 1; true or false"):
+        replace(CRAWL, speed_lines=1)
+
+
+@pytest.mark.parametrize(("least", "falls"), [(0.0, False), (0.2, True)])
+def test_a_snout_in_the_ground_is_a_fall_only_where_a_height_is_asked_for(least, falls):
+    env = envs.CrocodileVectorEnv(1, replace(CRAWL, jitter=0.0, least_height=least))
+    env.reset(seed=0)
+    fell = [env.step(np.linspace(-0.5, 0.5, 19)[None])[2][0] for _ in range(3)]
+    assert any(fell) == falls
 
 
 def test_a_robot_on_its_back_has_fallen():
@@ -328,8 +348,14 @@ def test_what_cannot_be_is_said_in_a_sentence(changes, error, text):
 def test_bad_breaks_and_shoves_are_refused():
     with pytest.raises(UnknownName, match="Did you mean 'LF_yaw'"):
         envs.Breaks(joints=("LF_yav",))
-    with pytest.raises(InvalidDesign, match="limp and locked are allowed"):
-        envs.Breaks(kinds=("weak",))
+    with pytest.raises(UnknownName, match="Did you mean 'weak'"):
+        envs.Breaks(kinds=("wek",))
+    with pytest.raises(UnknownName, match="there is no fault of a servo named 'deaf'"):
+        envs.Breaks(kinds=("deaf",))
+    with pytest.raises(InvalidDesign, match="kinds is empty"):
+        envs.Breaks(kinds=())
+    with pytest.raises(InvalidDesign, match="0 to 1 is allowed"):
+        envs.CrocodileEnv(breaks=envs.Breaks(faults=(Weak("LF_yaw", 1.5),)))
     with pytest.raises(InvalidDesign, match="must not decrease"):
         envs.Breaks(earliest=5.0, latest=1.0)
     with pytest.raises(InvalidDesign, match="must not decrease"):

@@ -5,12 +5,14 @@ import io
 import re
 from dataclasses import replace
 from math import pi
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from suchus.blueprint import MistakenFile
-from suchus.design import servo_names
+from suchus.design import cable_joints, servo_names
 from suchus.errors import InvalidDesign, OutsideLimits
 from suchus.hardware import (
     STRAIGHT,
@@ -20,10 +22,14 @@ from suchus.hardware import (
     commands,
     csv_text,
     loads,
+    overloaded,
     read_map,
+    share_at_limit,
     trajectory_text,
     write_map,
 )
+from suchus.kinematics.tail import servo_angle
+from suchus.model.export.urdf import urdf
 from suchus.motion import START, limb_phase, servo_targets
 
 
@@ -97,19 +103,63 @@ def test_a_servo_too_weak_for_the_walk_is_named_with_its_share(robot, limbs_gait
     quick = replace(limbs_gait, period=1.6)
     borne = loads(robot, quick, cycles=1)
     check_loads(robot, quick, borne)
+    assert overloaded(borne) == []
     assert 0.2 < borne["LH_pitch"].torque < robot.hind_leg.servo.torque
     weak = replace(robot, hind_leg=replace(robot.hind_leg, servo=replace(robot.hind_leg.servo, torque=0.5)))
     borne = loads(weak, quick, cycles=1)
-    assert borne["LH_pitch"].torque == pytest.approx(0.5)
-    with pytest.raises(OutsideLimits, match=r"torque limit: .*LH_pitch for \d+ % of the walk \(0\.5 N m"):
-        check_loads(weak, quick, borne)
+    load = borne["LH_pitch"]
+    assert load.torque == pytest.approx(0.5)
+    assert load.at_limit > 0.02
+    assert load.off > 0.02
+    assert load.needed > 0.5
+    (said,) = [sentence for sentence in overloaded(borne) if sentence.startswith("LH_pitch")]
+    assert f"torque limit of 0.5 N m for {100 * load.at_limit:.0f} % of the walk" in said
+    assert said.endswith(f"a servo of {load.stock} would do.")
+    with pytest.raises(OutsideLimits, match=r"cannot follow gait .*LH_pitch is at its torque limit of 0\.5 N m"):
+        check_loads(weak, quick, borne, tracking=0.01)
 
 
-def test_the_allowed_share_at_the_limit_is_a_threshold(robot, crawl_gait):
-    borne = {"LF_yaw": Load(torque=3.0, limit=3.0, at_limit=0.1, first=0.4)}
-    check_loads(robot, crawl_gait, borne, 0.1)
+def load(**changes):
+    return Load(**({"torque": 3.0, "limit": 3.0, "at_limit": 0.1, "first": 0.4, "off": 0.2, "needed": 3.2} | changes))
+
+
+def test_the_allowed_share_and_the_allowed_error_are_thresholds(robot, crawl_gait):
+    borne = {"LF_yaw": load()}
+    check_loads(robot, crawl_gait, borne, 0.1, 0.1)
+    check_loads(robot, crawl_gait, borne, 0.09, 0.2)
     with pytest.raises(OutsideLimits, match="10 % of the walk"):
-        check_loads(robot, crawl_gait, borne, 0.09)
+        check_loads(robot, crawl_gait, borne, 0.09, 0.19)
+    assert overloaded(borne, 0.1) == []
+    assert len(overloaded(borne, 0.09)) == 1
+
+
+@pytest.mark.parametrize(
+    ("needed", "limit", "stock"),
+    [(2.9, 2.5, "30 kg cm"), (2.95, 2.5, "35 kg cm"), (2.4, 2.5, "30 kg cm"), (90.0, 2.5, "none up to 14.7 N m")],
+)
+def test_the_weakest_stock_servo_that_does_is_named(needed, limit, stock):
+    assert load(needed=needed, limit=limit).stock.startswith(stock)
+
+
+def test_the_share_at_the_limit_counts_samples_of_each_servo(robot):
+    torque = np.zeros((2, 4, 19))
+    torque[0, 1, 0] = -robot.servo("LF_yaw").torque
+    torque[1, :3, 18] = robot.servo("tail_cable").torque
+    torque[1, 3, 18] = 0.99 * robot.servo("tail_cable").torque
+    record = xr.Dataset({"servo_torque": (("run", "time", "servo"), torque)}, coords={"servo": list(servo_names())})
+    share = share_at_limit(robot, record)
+    assert share.sizes == {"run": 2, "servo": 19}
+    assert share.sel(run=0, servo="LF_yaw") == 0.25
+    assert share.sel(run=1, servo="tail_cable") == 0.75
+    assert float(share.sum()) == 1.0
+
+
+def test_nineteen_servos_hang_on_two_boards_of_sixteen_channels():
+    places = [(line.board, line.channel) for line in STRAIGHT.servos]
+    assert places == [(0, i) for i in range(16)] + [(1, i) for i in range(3)]
+    assert replace(STRAIGHT.servos[0], board=1).board == 1
+    with pytest.raises(InvalidDesign, match="LF_yaw, spine_yaw_3 on channel 0 of board 0"):
+        remapped(spine_yaw_3={"board": 0, "channel": 0})
 
 
 def test_a_map_reads_back_equal_from_a_file_with_a_line_for_each_servo(tmp_path):
@@ -123,7 +173,7 @@ def test_a_map_reads_back_equal_from_a_file_with_a_line_for_each_servo(tmp_path)
     ("change", "said"),
     [
         (('name = "LF_yaw"', 'name = "LF_yam"'), r"lacks LF_yaw; it has unknown LF_yam"),
-        (("channel = 3,", "channel = 4,"), r"RF_yaw, RF_pitch on channel 4"),
+        (("channel = 3,", "channel = 4,"), r"RF_yaw, RF_pitch on channel 4 of board 0"),
         (("channel = 3, direction = 1", "channel = 3, direction = 2"), r"direction is 2; 1 or -1"),
         (("pulse_min = 500.0", "pulse_min = 2600.0"), r"must increase"),
         (("rate = 50.0", "rate = 0.0"), r"rate is 0"),
@@ -147,19 +197,33 @@ def test_the_table_holds_what_is_commanded(robot, crawl_gait):
         assert float(rows[7][f"{name}_us"]) == pytest.approx(told.pulses[7, i], abs=0.06)
 
 
-def test_the_trajectory_has_the_fields_of_the_ros_message(robot, crawl_gait):
+def test_the_trajectory_has_the_fields_of_the_ros_message_and_the_joints_of_the_urdf(robot, crawl_gait):
     told = commands(robot, crawl_gait, STRAIGHT)
-    text = trajectory_text(told)
+    text = trajectory_text(robot, told)
     assert text.startswith("header:\n  stamp: {sec: 0, nanosec: 0}\n  frame_id: ''\njoint_names: [LF_yaw, ")
+    names = re.search(r"joint_names: \[(.*)\]", text).group(1).split(", ")
+    hinges = {joint.get("name") for joint in ElementTree.fromstring(urdf(robot)).iter("joint")}
+    assert set(names) <= hinges
+    assert set(names) >= {*servo_names()[:-1], *cable_joints(robot)}
     times = [int(s) + 1e-9 * int(n) for s, n in re.findall(r"time_from_start: \{sec: (\d+), nanosec: (\d+)\}", text)]
     assert times == pytest.approx(told.time.tolist(), abs=1e-9)
     assert (np.diff(times) > 0).all()
-    for word, values in (("positions", told.angles), ("velocities", told.speeds)):
-        rows = [[float(v) for v in row.split(",")] for row in re.findall(rf"{word}: \[(.*)\]", text)]
-        np.testing.assert_allclose(rows, values, atol=1e-9)
+    places, speeds = (
+        np.array([[float(v) for v in row.split(",")] for row in re.findall(rf"{word}: \[(.*)\]", text)])
+        for word in ("positions", "velocities")
+    )
+    np.testing.assert_allclose(places[:, :18], told.angles[:, :18], atol=1e-9)
+    np.testing.assert_allclose(speeds[:, :18], told.speeds[:, :18], atol=1e-9)
+    bend = places[:, 18:].sum(axis=1)
+    np.testing.assert_allclose(bend.max(), crawl_gait.tail_bend, rtol=1e-3)
+    np.testing.assert_allclose(servo_angle(robot.tail, bend), told.angles[:, 18], atol=1e-8)
+    np.testing.assert_allclose(places[:, 18:], places[:, 18:19].repeat(robot.tail.joints, axis=1), atol=1e-12)
+    slope = (bend[2:] - bend[:-2]) / (told.time[2:] - told.time[:-2])
+    np.testing.assert_allclose(speeds[1:-1, 18:].sum(axis=1), slope, atol=2e-7)  # places are written to 1e-9 rad
+    np.testing.assert_allclose(speeds[0], speeds[-1], atol=1e-9)
     yaml = pytest.importorskip("yaml", reason="PyYAML is not installed; the text was read by hand above")
     message = yaml.safe_load(text)
     assert set(message) == {"header", "joint_names", "points"}
-    assert message["joint_names"] == list(servo_names())
+    assert message["joint_names"] == names
     keys = {"positions", "velocities", "accelerations", "effort", "time_from_start"}
     assert all(set(point) == keys for point in message["points"])

@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 from suchus.control import Coordinated
-from suchus.land import Ground, Limp, Locked, Push, Run, simulate
+from suchus.land import Backlash, Ground, Limp, Locked, LostFoot, Offset, Push, Run, simulate
 from suchus.land.alike import Alike
 
 COARSE = 0.01
@@ -29,6 +29,8 @@ def test_a_batch_of_runs_that_part_is_each_run_alone(run):
         replace(run, pushes=(Push(force=(0.0, -15.0, 0.0), at=0.3),)),
         replace(run, faults=(Limp("LF_yaw", at=0.425),)),
         replace(run, faults=(Locked("spine_yaw_2", at=0.4),)),
+        replace(run, faults=(Backlash("LF_pitch", at=0.3),)),
+        replace(run, faults=(LostFoot("RH", at=0.3), Offset("LF_yaw", at=0.2))),
         replace(run, noise=0.01, seed=7),
         replace(run, ground=Ground(uphill=0.1)),
         run,

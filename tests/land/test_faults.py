@@ -6,9 +6,9 @@ import pytest
 from suchus.control import Command, OpenLoop
 from suchus.design import servo_names
 from suchus.errors import InvalidDesign, OutsideLimits, UnknownName
+from suchus.fault import SENSORS
 from suchus.gaits import GAITS
 from suchus.land import Deaf, Limp, Locked, Run, Weak, simulate
-from suchus.land.faults import SENSORS
 from suchus.metrics import displacement
 from suchus.robots import ROBOTS
 

@@ -8,20 +8,31 @@ from suchus.errors import IncompatibleRecord
 from suchus.metrics import (
     between,
     cost_of_transport,
+    diagonal_phase_error,
     displacement,
     duty_factor,
+    foot_clearance,
     heading_change,
     height_peak_to_peak,
     height_std,
+    lateral_bend,
     line_distance,
+    line_distance_max,
     path_length,
     peak_torque,
     roll_peak_to_peak,
     sensed_phase,
     slip,
+    spine_sine_share,
+    spine_swings,
     support_distance,
     support_polygon,
+    tail_amplitude,
+    tail_load_share,
+    tail_swing_least,
+    tail_swings,
     tilt,
+    two_feet_share,
     work,
 )
 
@@ -40,6 +51,8 @@ def hand_made(**changes) -> xr.Dataset:
         "foot_position": (("time", "leg", "xyz"), np.tile(FEET, (n, 1, 1))),
         "foot_force": (("time", "leg", "xyz"), np.tile([0.0, 0.0, 5.0], (n, 4, 1))),
         "joint_angle": (("time", "joint"), np.zeros((n, 3))),
+        "tail_force": (("time", "xyz"), np.zeros((n, 3))),
+        "tail_tip": (("time", "xyz"), np.tile([-0.5, 0.0, 0.01], (n, 1))),
         "servo_torque": (("time", "servo"), np.zeros((n, 2))),
         "servo_velocity": (("time", "servo"), np.zeros((n, 2))),
         "limb_phase": (("time", "leg"), np.tile([0.0, 0.5, 0.5, 0.0], (n, 1))),
@@ -113,7 +126,7 @@ def test_duty_factor_and_phase_of_square_waves():
     force = np.zeros((len(TIME), 4, 3))
     for i, (phase, duty) in enumerate([(0.0, 0.5), (0.5, 0.5), (0.3, 0.5), (0.9, 0.5)]):
         force[:, i, 2] = 5.0 * (np.mod((TIME - 1) / 4 + phase, 1.0) < duty)
-    walk = between(hand_made(foot_force=force)).isel(time=slice(0, -1))
+    walk = hand_made(foot_force=force)
     assert duty_factor(walk).values == pytest.approx(0.5, abs=2e-3)
     assert np.mod(sensed_phase(walk).values + 1e-6, 1.0) == pytest.approx([0.0, 0.5, 0.3, 0.9], abs=5e-3)
 
@@ -150,10 +163,101 @@ def test_support_is_the_hull_of_the_standing_feet():
     assert support_distance(diagonal, 2.0) == pytest.approx(0.05 * np.cos(np.pi / 4), abs=1e-9)
 
 
-def test_line_of_the_supporting_pair():
-    assert line_distance(hand_made(), 2.0) == pytest.approx(0.05 / np.sqrt(2))  # RF and LH are meant to stand
-    with pytest.raises(IncompatibleRecord, match="a line needs two"):
-        line_distance(hand_made(limb_phase=np.full((len(TIME), 4), 0.9)), 2.0)
+def test_a_loaded_tail_is_a_third_support():
+    loads = standing(1, 2)  # RF and LH
+    lying = hand_made(foot_force=loads, tail_force=np.tile([0.0, 0.0, 1.0], (len(TIME), 1)))
+    assert len(support_polygon(lying, 2.0)) == 3
+    assert support_distance(lying, 2.0) == pytest.approx(-0.05 / np.sqrt(2))  # inside, the pair's line is nearest
+    ahead = hand_made(foot_force=loads, tail_force=lying.tail_force.values, centre_of_mass=moving(x=0.2, z=0.08))
+    assert support_distance(ahead, 2.0) == pytest.approx(0.05 / np.sqrt(2))
+    lifted = hand_made(foot_force=loads, tail_force=np.tile([0.0, 0.0, 0.49], (len(TIME), 1)))
+    assert len(support_polygon(lifted, 2.0)) == 2
+
+
+def test_line_of_the_standing_pair():
+    pair = hand_made(foot_force=standing(1, 2))
+    assert line_distance(pair).values == pytest.approx(0.05 / np.sqrt(2))
+    swept = hand_made(foot_force=standing(1, 2), centre_of_mass=moving(x=0.15 + 0.1 * np.sin(TIME)))
+    assert float(line_distance_max(swept)) == pytest.approx(0.1 / np.sqrt(2), rel=1e-3)
+    for feet in ((0, 1, 2), (1,), ()):
+        assert np.isnan(line_distance(hand_made(foot_force=standing(*feet)))).all()
+        assert np.isnan(line_distance_max(hand_made(foot_force=standing(*feet))))
+
+
+def test_two_feet_stand_for_a_share_of_the_time():
+    force = standing(1, 2)
+    half = TIME >= 5.0
+    force[half] = standing(0, 1, 2)[half]
+    assert float(two_feet_share(hand_made(foot_force=force))) == pytest.approx(0.5, abs=2e-3)
+    assert float(two_feet_share(hand_made())) == 0.0
+
+
+def test_a_foot_is_lifted_by_how_far_it_rises():
+    feet = np.tile(FEET, (len(TIME), 1, 1))
+    feet[:, 2, 2] = 0.03 * np.sin(np.pi * TIME / 4) ** 2
+    assert foot_clearance(hand_made(foot_position=feet)).values == pytest.approx([0.0, 0.0, 0.03, 0.0], abs=1e-6)
+
+
+def test_the_tail_carries_a_share_of_the_weight():
+    lying = hand_made(tail_force=np.tile([0.0, 0.0, 0.1 * 2.0 * 9.81], (len(TIME), 1)))
+    assert float(tail_load_share(lying)) == pytest.approx(0.1)
+
+
+def test_stances_of_a_diagonal_pair_that_come_apart():
+    def walking(*phases):
+        force = np.zeros((len(TIME), 4, 3))
+        for i, phase in enumerate(phases):
+            force[:, i, 2] = 5.0 * (np.mod((TIME - 1) / 4 + phase, 1.0) < 0.5)
+        return float(diagonal_phase_error(hand_made(foot_force=force)))
+
+    assert walking(0.0, 0.5, 0.5, 0.0) == pytest.approx(0.0, abs=5e-3)
+    assert walking(0.0, 0.5, 0.5, 0.2) == pytest.approx(0.2, abs=5e-3)
+    assert walking(0.0, 0.3, 0.5, 0.0) == pytest.approx(0.2, abs=5e-3)
+    assert walking(0.0, 0.5, 0.45, 0.95) == pytest.approx(0.05, abs=5e-3)
+
+
+def bending(tail) -> xr.Dataset:
+    """Return a record whose tail's two joints share a bend."""
+    record = hand_made().drop_vars(["joint_angle", "joint"])
+    names = [*JOINTS, "tail_yaw_1", "tail_yaw_2"]
+    angles = np.column_stack([np.full(len(TIME), -0.1)] * 3 + [0.75 * tail, 0.25 * tail])
+    return record.assign(joint_angle=(("time", "joint"), angles)).assign_coords(joint=names)
+
+
+def test_a_bend_is_the_sum_of_its_joints_to_the_right():
+    record = bending(0.4 * np.sin(2 * np.pi * (TIME - 1) / 4))
+    assert lateral_bend(record, "spine").values == pytest.approx(0.3)  # its yaw turns the front end left
+    assert float(tail_amplitude(record)) == pytest.approx(0.4, rel=1e-3)
+    assert float(tail_swing_least(record)) == pytest.approx(0.4, rel=1e-3)
+    assert float(tail_swings(record)) == pytest.approx(2.0)
+    assert float(spine_swings(record)) == 0.0
+
+
+def test_a_tail_that_never_gets_to_one_side_swings_less_than_nothing_there():
+    record = bending(0.3 + 0.1 * np.sin(2 * np.pi * (TIME - 1) / 4))
+    assert float(tail_swing_least(record)) == pytest.approx(-0.2, rel=1e-3)
+    assert float(tail_swings(record)) == 0.0
+
+
+def test_small_wiggles_are_no_swings_and_two_waves_a_cycle_are_four_changes():
+    turn = 2 * np.pi * (TIME - 1) / 4
+    assert float(tail_swings(bending(np.sin(turn) + 0.02 * np.sin(40 * turn)))) == pytest.approx(2.0)
+    assert float(tail_swings(bending(np.sin(2 * turn)))) == pytest.approx(4.0)
+
+
+def test_how_much_of_a_bend_is_a_sine():
+    turn = 2 * np.pi * (TIME - 1) / 4
+    for wave, share in ((np.sin(turn + 0.3), 1.0), (np.sign(np.sin(turn)), 8 / np.pi**2), (np.sin(2 * turn), 0.0)):
+        record = hand_made(joint_angle=np.column_stack([wave, wave, wave]))
+        assert float(spine_sine_share(record)) == pytest.approx(share, abs=5e-3)
+    assert float(spine_sine_share(hand_made())) == 0.0
+
+
+def standing(*feet) -> np.ndarray:
+    """Return forces under which the given feet stand."""
+    force = np.zeros((len(TIME), 4, 3))
+    force[:, list(feet), 2] = 5.0
+    return force
 
 
 def test_a_window_outside_the_record_is_a_sentence():

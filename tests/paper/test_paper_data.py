@@ -63,12 +63,12 @@ def test_claims_are_complete(key):
     assert claim.key == key
     assert re.fullmatch(r"[a-z0-9_]+", key)
     assert claim.unit in UNITS
-    assert claim.tolerance >= 0
+    assert claim.rounding >= 0
     assert claim.sense.endswith(".")
     assert claim.where.startswith(("I", "II", "III", "IV", "V"))
-    assert 0 < len(claim.quote) < 120
+    assert 0 < len(claim.quote) < 200
     if claim.value is None:
-        assert claim.tolerance == 0
+        assert claim.rounding == 0
     assert claim.quantity in str(claim)
 
 
@@ -103,7 +103,7 @@ def test_ratios_follow_from_their_parts():
 def test_no_claim_is_wider_than_its_number():
     for claim in CLAIMS.values():
         if claim.value:
-            assert claim.tolerance < 0.6 * abs(claim.value), claim.key
+            assert claim.rounding < 0.6 * abs(claim.value), claim.key
 
 
 def test_claims_and_errata_cannot_be_changed():

@@ -9,7 +9,7 @@ import pytest
 from suchus.design.ground import Ground, slope
 from suchus.record import ground_text
 from suchus.replay import replay, save
-from suchus.skin.bones import rotate
+from suchus.rotation import rotate
 
 playwright = pytest.importorskip("playwright.sync_api")
 BROWSER = shutil.which("chromium") or shutil.which("chromium-browser")

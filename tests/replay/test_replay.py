@@ -15,9 +15,9 @@ from suchus.errors import IncompatibleRecord
 from suchus.record import ground_text
 from suchus.replay import replay, save
 from suchus.replay.frames import MOST, frames
+from suchus.rotation import rotate
 from suchus.skin import ankles, footed, poses, skin
 from suchus.skin.ankles import NEAR, REACH
-from suchus.skin.bones import rotate
 
 
 def opened(page):

@@ -6,9 +6,9 @@ from dataclasses import replace
 import pytest
 
 from suchus.figures import captioned, panels, save
+from suchus.paper.animals import ANIMALS
 from suchus.record import plain
 from suchus.report import load_result, render_page, write_page
-from suchus.report.animals import ANIMALS
 from suchus.report.beside import beside
 from suchus.report.robot import robot_of
 from suchus.robots import ROBOTS

@@ -1,4 +1,5 @@
 import re
+from dataclasses import replace
 from html.parser import HTMLParser
 from types import SimpleNamespace
 
@@ -148,19 +149,16 @@ def test_the_page_tells_everything_that_it_promises(page):
         assert " ".join(said.split()) in text
 
 
-def test_verdicts_of_a_quick_form_say_so(result, tmp_path):
+def test_a_run_that_was_cut_short_says_so_and_has_no_verdicts(result, tmp_path):
     question = Question()
-    outcome = question.run()
-    save_outcome(
-        outcome,
-        question.draw(outcome),
-        question,
-        tmp_path / "again" / "question",
-        command="suchus run question --quick --out there",
-    )
-    short = render_page([load_result(tmp_path / "again" / "question")], [])
-    assert short.count("<em>Quick form.</em>") == 1 + 2 * len(outcome.verdicts)
-    assert "Quick form" not in render_page([result], [])
+    outcome = replace(question.run(), verdicts=(), unjudged="Not judged: repeats is 2, and 8 at least are needed.")
+    place = tmp_path / "again" / "question"
+    save_outcome(outcome, question.draw(outcome), question, place, command="suchus run question --quick")
+    short = render_page([load_result(place)], [])
+    assert short.count("Not judged: repeats is 2, and 8 at least are needed.") == 1
+    assert "not judged" in short
+    assert "0 verdicts" in short
+    assert "Not judged" not in render_page([result], [])
 
 
 def test_a_page_without_results_is_still_a_page():

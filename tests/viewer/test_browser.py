@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from suchus.faults import Limp
 from suchus.gaits import GAITS
 from suchus.land import Run, simulate
 from suchus.record import save
@@ -132,7 +133,7 @@ def test_a_walk_is_watched_steered_and_broken_in_two_browsers_that_do_not_distur
     turn(first, "hip height [mm]", 90, lambda: mine.settings.gait.hip_height == pytest.approx(0.09))
 
     press(first, "make it limp")
-    wait_for(lambda: mine.settings.broken == (("LF_yaw", "limp"),))
+    wait_for(lambda: mine.settings.broken == (Limp("LF_yaw"),))
     wait_for(lambda: shown(first, "lost") == "LF yaw limp")
 
     second = tabs(watched.viewer.url)

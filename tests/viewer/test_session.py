@@ -7,12 +7,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from suchus.errors import OutsideLimits
+from suchus.faults import Limp, Locked
 from suchus.gaits import GAITS
 from suchus.land import simulate
 from suchus.motion import Gait, check_limits
 from suchus.robots import ROBOTS
 from suchus.viewer import Session
 from suchus.viewer.knobs import FORCE, GAIT_KNOBS, force_on, shown, tuned
+from suchus.viewer.live_page import status
 from suchus.viewer.session import _PLAIN
 
 ROBOT, CRAWL = ROBOTS["caiman"], GAITS["belly_crawl"]
@@ -37,8 +39,11 @@ def lame() -> Session:
     return walked(lost="LF_yaw")
 
 
+LEGGED = [gait for gait in GAITS.values() if isinstance(gait, Gait)]
+
+
 @pytest.mark.parametrize("name", GAIT_KNOBS)
-@pytest.mark.parametrize("gait", [GAITS[name] for name in GAITS], ids=list(GAITS))
+@pytest.mark.parametrize("gait", LEGGED, ids=lambda gait: gait.name)
 def test_both_ends_of_every_slider_leave_a_gait_that_the_robot_can_walk(gait, name):
     for end in (GAIT_KNOBS[name].low, GAIT_KNOBS[name].high):
         found, notice = tuned(ROBOT, gait, name, end)
@@ -163,12 +168,27 @@ def test_repaired_joints_are_no_longer_listed():
     session.lose("LF_yaw", "limp")
     session.lose("LF_yaw", "locked")
     session.lose("RH_pitch", "limp")
-    assert session.settings.broken == (("LF_yaw", "locked"), ("RH_pitch", "limp"))
+    assert session.settings.broken == (Locked("LF_yaw"), Limp("RH_pitch"))
     session.mend("LF_yaw")
-    assert session.settings.broken == (("RH_pitch", "limp"),)
+    assert session.settings.broken == (Limp("RH_pitch"),)
     session.mend()
     assert session.settings.broken == ()
     assert "LF_wrist" in session.lose("LF_wrist", "limp")
+    assert "Did you mean 'slow'" in session.lose("LF_yaw", "slo")
+    assert "0.001 to 7 rad/s" in session.lose("LF_yaw", "slow", speed=9.0)
+    assert session.settings.broken == ()
+
+
+def test_every_fault_of_the_shelf_can_be_let_happen_and_is_there_after_a_reset():
+    session = Session(ROBOT, GAIT)
+    assert session.lose("LF_yaw", "slow", speed=0.5) == ""
+    assert session.lose("LF", "lost_foot") == ""
+    assert session.lose("foot_pressure", "deaf") == ""
+    session.reset()
+    session.advance(0.1)
+    assert [fault.name for fault in session.settings.broken] == ["slow LF_yaw", "lost_foot LF", "deaf foot_pressure"]
+    assert np.all(session.look().now["foot_force"][0] == 0.0)
+    assert "LF yaw slow, LF lost foot" in status(session.look(), session.settings, rate=1.0, notice="", paused=False)
 
 
 def test_the_force_of_a_push_is_told_beside_the_weight_of_whom_it_pushes():

@@ -9,7 +9,7 @@ from suchus.gaits import GAITS
 from suchus.land import Run, simulate
 from suchus.record import save
 from suchus.robots import ROBOTS
-from suchus.skin.bones import rotate
+from suchus.rotation import rotate
 from suchus.viewer import rods
 from suchus.viewer.bodies import Posture, pieces, support
 from suchus.viewer.history import COLUMNS
@@ -124,8 +124,8 @@ def test_the_pieces_of_the_skin_are_the_whole_skin():
 def test_a_ground_seen_uphill_rises_ahead_and_gravity_points_down():
     turned = slope(0.2, 0.1)
     down = np.array([-np.sin(0.2), -np.cos(0.2) * np.sin(0.1), -np.cos(0.2) * np.cos(0.1)])  # as the simulation has it
-    np.testing.assert_allclose(stage._rotated(turned, down), [0.0, 0.0, -1.0], atol=1e-12)
-    assert stage._rotated(turned, np.array([1.0, 0.0, 0.0]))[2] == pytest.approx(np.sin(0.2))
+    np.testing.assert_allclose(rotate(turned, down), [0.0, 0.0, -1.0], atol=1e-12)
+    assert rotate(turned, np.array([1.0, 0.0, 0.0]))[2] == pytest.approx(np.sin(0.2))
 
 
 def test_the_support_of_four_feet_goes_round():
@@ -158,7 +158,7 @@ def test_a_film_of_a_swim_has_a_frame_for_every_instant(tmp_path):
 
 @pytest.mark.parametrize("way", [(0.0, 0.0, 1.0), (0.0, 0.0, -1.0), (0.6, 0.0, 0.8), (0.0, -1.0, 0.0)])
 def test_a_rod_points_where_it_should(way):
-    np.testing.assert_allclose(stage._rotated(rods.upright(np.array(way)), np.array([0.0, 0.0, 1.0])), way, atol=1e-12)
+    np.testing.assert_allclose(rotate(rods.upright(np.array(way)), np.array([0.0, 0.0, 1.0])), way, atol=1e-12)
 
 
 def test_a_rod_is_closed():

@@ -19,9 +19,7 @@ def page() -> str:
     for name, one in EXPERIMENTS.items():
         lines += ["", f"## {one.title} {{#{name}}}", "", f"{one.shows}. Code: [`suchus.experiments.{name}`][]", ""]
         lines += ["```sh", f"suchus run {name}", "```", ""]
-        if one.decides:
-            lines += [" ".join(one.decides.split()), ""]
         if one.claims:
             lines += ['??? note "Statements of the article that it judges"', ""]
-            lines += [f"    * {CLAIMS[key].sense} *({CLAIMS[key].where})*" for key in one.claims]
+            lines += [f"    * [{CLAIMS[key].sense}](verdicts.md#{key}) *({CLAIMS[key].where})*" for key in one.claims]
     return "\n".join([*lines, ""])

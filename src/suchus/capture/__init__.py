@@ -1,5 +1,6 @@
 """Tracked keypoints of a walking body -> spine and tail angles, foot contacts, one mean cycle -> a gait."""
 
+from suchus.capture.angle_table import AngleCycle, read_angles
 from suchus.capture.animal import Animal, film_animal
 from suchus.capture.film import Camera, film, keypoints
 from suchus.capture.reading import Reading, read_tracks, told, write_gait
@@ -10,6 +11,7 @@ from suchus.capture.walk import Seen, Walk, observe
 from suchus.capture.wave import standing_index
 
 __all__ = [
+    "AngleCycle",
     "Animal",
     "Camera",
     "Captured",
@@ -23,6 +25,7 @@ __all__ = [
     "film_animal",
     "keypoints",
     "observe",
+    "read_angles",
     "read_tracks",
     "standing_index",
     "to_gait",

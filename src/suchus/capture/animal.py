@@ -1,14 +1,19 @@
 """A made-up animal whose every angle is known: what the extraction must find on a body that is not our robot."""
 
 from dataclasses import dataclass
+from typing import Literal, get_args
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from suchus.capture.film import Camera, tracked
 from suchus.capture.tracks import Tracks
 from suchus.design import LEGS
 from suchus.design.checks import Checks
 
+Swing = Literal["cosine", "jerk_free", "ramp", "hasty"]
+"""How far a foot has gone over the time of its swing: half a cosine, with the least jerk, at a constant speed that is
+reached in a quarter of the time, or fast at first."""
 _JOINTS = 3  # bends of the trunk, evenly along it
 _TAIL = 6  # segments of the tail
 
@@ -43,6 +48,8 @@ class Animal:
     """How late the tail's root bends against the trunk [cycle]."""
     tail_wave: float
     """How much later the tip bends than the root [cycle]; 0: a standing wave."""
+    swing: Swing = "cosine"
+    """How its feet move."""
 
     def __post_init__(self) -> None:
         with Checks("animal", self) as check:
@@ -55,18 +62,27 @@ class Animal:
                 check.number(field, 0.0, 3.0, "rad")
             for field in ("spine_rightmost", "tail_lag", "tail_wave"):
                 check.number(field, -2.0, 2.0, "cycle")
+            check.that(
+                self.swing in get_args(Swing),
+                f"animal.swing is {self.swing!r}; {', '.join(get_args(Swing))} are allowed",
+            )
 
 
-def film_animal(animal: Animal, camera: Camera, *, cycles: float) -> Tracks:
+def film_animal(animal: Animal, camera: Camera, *, cycles: float, pace: ArrayLike = (1.0,)) -> Tracks:
     """Return the tracks of an animal.
 
     Args:
         animal: who walks.
         camera: how it is seen.
         cycles: how many are filmed [-].
+        pace: how long one cycle after another lasts, in periods of the animal; the last one's pace goes on.
     """
-    time = np.arange(0.0, cycles * animal.period + 1e-9, 1.0 / camera.rate)
-    points = _midline(animal, time) | {leg: _foot(animal, leg, time) for leg in LEGS}
+    lasts = np.asarray(pace, dtype=float)
+    lasts = animal.period * np.pad(lasts, (0, int(cycles) + 2), mode="edge")[: int(cycles) + 2]
+    ends = np.concatenate([[0.0], np.cumsum(lasts)])
+    time = np.arange(0.0, np.interp(cycles, np.arange(len(ends)), ends) + 1e-9, 1.0 / camera.rate)
+    clock = animal.period * np.interp(time, ends, np.arange(len(ends)))
+    points = _midline(animal, clock) | {leg: _foot(animal, leg, clock) for leg in LEGS}
     return tracked(points, time, camera, source="the film of an animal")
 
 
@@ -101,9 +117,22 @@ def _foot(animal: Animal, leg: str, time: np.ndarray) -> np.ndarray:
     # in the middle of its stance a foot is beside its girdle
     middle = number - animal.duty_factor / 2 - animal.limb_phases[LEGS.index(leg)]
     girdle = animal.trunk if leg.endswith("F") else 0.0
-    x = girdle + animal.stride * (middle + (1 - np.cos(np.pi * swing)) / 2)
+    x = girdle + animal.stride * (middle + _gone(animal.swing, swing))
     y = np.full_like(time, animal.outward if leg.startswith("L") else -animal.outward)
     return np.stack([x, y, animal.lift * np.sin(np.pi * swing) ** 2], axis=1)
+
+
+def _gone(swing: Swing, share: np.ndarray) -> np.ndarray:
+    """Share of its way that a foot has gone after a share of its swing."""
+    if swing == "cosine":
+        return np.asarray((1 - np.cos(np.pi * share)) / 2)
+    if swing == "jerk_free":
+        return np.asarray(share**3 * (10 - 15 * share + 6 * share**2))
+    if swing == "hasty":
+        return np.asarray(share**2 * (6 - 8 * share + 3 * share**2))
+    edge, top = 0.25, 1 / 0.75
+    start, end = np.minimum(share, edge), np.maximum(share - (1 - edge), 0.0)
+    return np.asarray(top * (start**2 / (2 * edge) + np.maximum(share - edge, 0.0) - end**2 / (2 * edge)))
 
 
 def _direction(azimuth: np.ndarray) -> np.ndarray:

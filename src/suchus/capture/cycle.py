@@ -13,6 +13,8 @@ LEAST_CYCLES = 1.2
 LEAST_FRAMES = 12
 """Frames in one cycle below which steps cannot be told apart [-]."""
 _FASTEST = 12.0  # [1/s]; the stride frequency of the fastest small lizards
+_REPEATS = 0.15  # share of the movement that one harmonic explains; of noise alone it explains less
+_PIECE = 6.0  # [cycle]; a pace that varies by a tenth has not gone astray by then
 _ROUNDS = 3  # of leaving out points that jumped
 _JUMP = 8.0  # times the usual residual; what a body does in steps stays well below
 
@@ -131,12 +133,12 @@ def find_period(time: np.ndarray, signals: Float[np.ndarray, "signal frame"], so
     spread = np.nanstd(scaled, axis=1, keepdims=True)
     weight = np.isfinite(scaled)
     y = np.where(weight, scaled / np.where(spread > 0, spread, 1.0), 0.0)
-    explained = _explained(time - time[0], y, weight.astype(float), trials)
-    best = float(trials[np.argmax(explained)])
-    if explained.max() < 0.3:
+    best, most = _coarse(time - time[0], y, weight.astype(float), trials)
+    if most < _REPEATS:
         raise UnusableTracks(
-            f"nothing in {source} repeats: the best cycle explains {100 * explained.max():.0f} % of what trunk, tail "
-            "and feet do, at least 30 % is needed; cut out the part in which the animal walks, with --start and --end."
+            f"nothing in {source} repeats: the best cycle explains {100 * most:.0f} % of what trunk, tail and feet do, "
+            f"at least {100 * _REPEATS:.0f} % is needed; cut out the part in which the animal walks, with --start and "
+            "--end."
         )
 
     def missed(frequency: float) -> float:
@@ -161,6 +163,17 @@ def _check_period(period: float, duration: float, rate: float, source: str) -> N
             f"{source} shows {rate * period:.0f} frames in a cycle of {period:.2f} s; at least {LEAST_FRAMES} are "
             "needed: film faster."
         )
+
+
+def _coarse(time: np.ndarray, y: np.ndarray, weight: np.ndarray, trials: np.ndarray) -> tuple[float, float]:
+    """Return the frequency that explains most, and the share; a long film in pieces, since pace does not stay."""
+    explained = _explained(time, y, weight, trials)
+    pieces = int(time[-1] * trials[np.argmax(explained)] / _PIECE)
+    if pieces > 1:
+        parts = np.array_split(np.arange(len(time)), pieces)
+        shares = [_explained(time[part], y[:, part], weight[:, part], trials) for part in parts]
+        explained = np.mean(shares, axis=0)
+    return float(trials[np.argmax(explained)]), float(explained.max())
 
 
 def _explained(time: np.ndarray, y: np.ndarray, weight: np.ndarray, trials: np.ndarray) -> np.ndarray:

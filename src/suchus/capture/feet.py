@@ -1,30 +1,30 @@
 """When feet stand, from how fast they move over the ground, and how far legs swing in their girdle's frame."""
 
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Bool, Complex, Float
+from scipy.stats import t as student
 
 from suchus.capture.angles import azimuth
 from suchus.capture.cycle import fit, harmonics_for
+from suchus.capture.swings import Middles, middles, swing
 from suchus.capture.tracks import Tracks, UnusableTracks
 
 GRID = 400
 """Phases of a cycle at which a foot is looked at [-]."""
-MOVING = 0.15
-"""Share of its top speed from which a foot moves [-]; a foot that stands may creep."""
 _DUTIES = np.round(np.arange(0.30, 0.91, 0.01), 2)  # that a path is compared with
 _TOP = 14  # harmonics of a foot's way; enough for the jerk of lifting off
-_LOUD = 3.0  # times the uncertainty of the speed that a moving foot must exceed
-_RUN_UP = 0.025  # [cycle]; the rise to ``MOVING`` and to twice it lie no farther apart, or it is a slip before it
-_BLURRED = 0.45  # share of the top speed at which noise hides the steps
+_SURE = 1.96  # standard errors to either side that hold the truth in 95 of 100 cases
+_BINS, _RARE = 40, 0.2  # of the cycle; share of the frames of a bin in which a hidden foot may be seen
 
 
 class Contact(NamedTuple):
     """One foot over its mean cycle; phases count from time zero of the tracks [cycle]."""
 
     speed: Float[np.ndarray, " grid"]
-    """Over the ground [m/s or px/s]."""
+    """Over the ground in the mean cycle [m/s or px/s]."""
     stance: Bool[np.ndarray, " grid"]
     """Whether it stands."""
     lift_off: float
@@ -33,6 +33,14 @@ class Contact(NamedTuple):
     """Phase at which it begins to stand."""
     middle: float
     """Phase of the middle of its stance, half a cycle from the middle of its fast movement."""
+    middle_error: float
+    """Half the width of the interval that holds this phase in 95 of 100 walks [cycle]."""
+    duty_error: float
+    """The same of the share of the cycle in which it stands [-]."""
+    scatter: float
+    """Standard deviation of that share from stride to stride, without what noise adds [-]; NaN with one stride."""
+    hidden: float
+    """Share of the cycle in which it is hardly ever seen [-]."""
 
     @property
     def duty(self) -> float:
@@ -60,62 +68,72 @@ def grid() -> Float[np.ndarray, " grid"]:
     return np.arange(GRID) / GRID
 
 
-def contact(tracks: Tracks, leg: str, period: float) -> Contact:
-    """Return when a foot stands in the mean cycle.
+def forward_way(tracks: Tracks, leg: str) -> Float[np.ndarray, " frame"]:
+    """Return how far a foot is ahead of the hip along the trunk, NaN where it was not seen [m or px]."""
+    look = (tracks.at("shoulder") - tracks.at("hip"))[:, :2]
+    ahead = look / np.linalg.norm(look, axis=1, keepdims=True)
+    return np.asarray(((tracks.at(leg) - tracks.at("hip"))[:, :2] * ahead).sum(axis=1))
 
-    Its ways along x and y are fitted with drift and harmonics; it swings in the longest stretch in which the speed of
-    that fit exceeds twice ``MOVING`` of its maximum. Shorter stretches are slips. Either edge of the swing is where
-    the rise of the speed, drawn from that threshold and half of it, meets zero: right for a foot that starts smoothly
-    as well as for one that starts with a jerk.
+
+def steps(tracks: Tracks, leg: str, period: float) -> Middles:
+    """Return the middles of a foot's swings; the period need only be roughly right [s]."""
+    return middles(tracks.time, tracks.at(leg)[:, :2], forward_way(tracks, leg), period)
+
+
+def contact(tracks: Tracks, leg: str, period: float) -> Contact:
+    """Return when a foot stands in the mean cycle: see ``swings``.
 
     Args:
-        tracks: the keypoints.
+        tracks: the keypoints, by a clock that follows the animal's pace.
         leg: of ``LEGS``.
         period: of the cycle [s].
 
     Raises:
-        UnusableTracks: noise hides the steps.
+        UnusableTracks: none of its swings was filmed from stance to stance.
     """
-    place, time = tracks.at(leg)[:, :2], tracks.time
-    count = _harmonics(tracks, leg, period, _TOP)
-    fits = [fit(time, place[:, i], period, harmonics=count, drift=_drift(tracks, period)) for i in (0, 1)]
-    phase = grid()
-    velocity = [one.swing(phase * period, derivative=1) + one.drift[0] for one in fits]
-    speed = np.hypot(velocity[0], velocity[1])
-    top = float(speed.max())
-    w = 2 * np.pi / period
-    blur = float(np.hypot(fits[0].error, fits[1].error)) * w * np.sqrt(np.sum(np.arange(1, count + 1) ** 2) / 2)
-    moving = max(MOVING * top, _LOUD * blur)
-    if moving > _BLURRED * top:
+    found = swing(tracks.time, tracks.at(leg)[:, :2], forward_way(tracks, leg), period)
+    if found is None:
         raise UnusableTracks(
-            f"in {tracks.source} the noise of {leg} hides its steps: its speed is uncertain by "
-            f"{100 * blur / top:.0f} % of its maximum, at most {100 * _BLURRED / _LOUD:.0f} % may be; film more "
-            "cycles, faster, or nearer."
+            f"in {tracks.source} no step of {leg} can be seen from one stance to the next: film more cycles, track the "
+            "foot again, or film it nearer."
         )
-    start, length = _longest(speed > 2 * moving)
-    outward = np.arange(GRID // 2)
-    lift_off = (start - _edge(speed[(start - outward) % GRID], moving)) / GRID
-    last = start + length - 1
-    touch_down = (last + _edge(speed[(last + outward) % GRID], moving)) / GRID
-    stance = (phase - touch_down) % 1.0 < (lift_off - touch_down) % 1.0
-    fast = [_crossing(speed[at % GRID], 2 * moving) for at in (start - outward, last + outward)]
-    middle = (start + last + fast[1] - fast[0]) / 2 / GRID + 0.5  # noise moves these edges least
-    return Contact(speed, stance, lift_off % 1.0, touch_down % 1.0, middle % 1.0)
+    n = len(found.phase)
+    whole = np.angle(np.mean(np.exp(2j * np.pi * found.phase))) / (2 * np.pi)
+    apart = np.mod(found.phase - whole + 0.5, 1.0) - 0.5
+    times = float(student.ppf(0.975, n - 1)) if n > 1 else float("nan")
+    scatter = found.scatter if n > 1 else float("nan")
+    middle_error = np.hypot(_SURE * found.middle_error, times * np.std(apart, ddof=1) / np.sqrt(n)) if n > 1 else np.nan
+    phase, half = grid(), found.share / 2
+    lift_off, touch_down = (whole + found.skew - half) % 1.0, (whole + found.skew + half) % 1.0
+    return Contact(
+        speed=_speed(tracks, leg, period),
+        stance=(phase - touch_down) % 1.0 < (lift_off - touch_down) % 1.0,
+        lift_off=lift_off,
+        touch_down=touch_down,
+        middle=(whole + 0.5) % 1.0,
+        middle_error=float(middle_error),
+        duty_error=float(np.hypot(_SURE * found.share_error, times * scatter / np.sqrt(n))),
+        scatter=scatter,
+        hidden=_hidden(tracks, leg, period),
+    )
 
 
-def _edge(speed: np.ndarray, moving: float) -> float:
-    """Return where a falling speed, drawn through twice ``moving`` and ``moving``, meets zero [steps of the grid]."""
-    fast, slow = (_crossing(speed, level) for level in (2 * moving, moving))
-    return fast + 2 * min(slow - fast, _RUN_UP * GRID)
+def _speed(tracks: Tracks, leg: str, period: float) -> Float[np.ndarray, " grid"]:
+    """Return how fast a foot moves over the ground in the mean cycle [m/s or px/s]."""
+    count = _harmonics(tracks, leg, period, _TOP)
+    fits = [
+        fit(tracks.time, row, period, harmonics=count, drift=_drift(tracks, period)) for row in tracks.at(leg).T[:2]
+    ]
+    return np.asarray(np.hypot(*(one.swing(grid() * period, derivative=1) + one.drift[0] for one in fits)))
 
 
-def _crossing(speed: np.ndarray, level: float) -> float:
-    """Return where a speed first falls to a level [steps]; its end if it never does."""
-    below = speed <= level
-    if not below.any():
-        return float(len(speed))
-    i = int(np.argmax(below))
-    return i - float((level - speed[i]) / (speed[i - 1] - speed[i]))
+def _hidden(tracks: Tracks, point: str, period: float) -> float:
+    """Return the share of the cycle in which a point is seen in less than a fifth of the frames [-]."""
+    at = np.minimum((np.mod(tracks.time / period, 1.0) * _BINS).astype(int), _BINS - 1)
+    seen = np.isfinite(tracks.at(point)[:, 0])
+    filmed = np.bincount(at, minlength=_BINS)
+    share = np.bincount(at, weights=seen, minlength=_BINS) / np.maximum(filmed, 1)
+    return float(np.mean(share[filmed > 0] < _RARE))
 
 
 def sweep(tracks: Tracks, leg: str, period: float) -> Sweep:
@@ -154,15 +172,19 @@ def path_shape(duty: float) -> Float[np.ndarray, " grid"]:
 
 def _fitting_path(ahead: Float[np.ndarray, " grid"]) -> tuple[float, float]:
     """Return stroke and duty factor of the gait's path that comes nearest to a foot's, at whatever phase."""
+    shapes, power = _paths()
     seen = np.fft.rfft(ahead - ahead.mean())
-    best = (-np.inf, 0.0, 0.5)
-    for duty in _DUTIES:
-        shape = path_shape(duty)
-        shape = shape - shape.mean()
-        power = float(shape @ shape)
-        likeness = float(np.fft.irfft(seen * np.conj(np.fft.rfft(shape)), GRID).max())
-        best = max(best, (likeness**2 / power, likeness / power, float(duty)))
-    return best[1], best[2]
+    likeness = np.fft.irfft(seen * shapes, GRID).max(axis=1)
+    best = int(np.argmax(likeness**2 / power))
+    return float(likeness[best] / power[best]), float(_DUTIES[best])
+
+
+@cache
+def _paths() -> tuple[Complex[np.ndarray, "duty frequency"], Float[np.ndarray, " duty"]]:
+    """Return the paths of gaits of each duty factor, without their means, as conjugate spectra, and their power."""
+    shapes = np.array([path_shape(duty) for duty in _DUTIES])
+    shapes -= shapes.mean(axis=1, keepdims=True)
+    return np.conj(np.fft.rfft(shapes)), (shapes**2).sum(axis=1)
 
 
 def smooth_azimuth(tracks: Tracks, ahead: str, behind: str, period: float) -> Float[np.ndarray, " frame"]:
@@ -185,19 +207,7 @@ def _drift(tracks: Tracks, period: float) -> int:
 
 
 def _harmonics(tracks: Tracks, point: str, period: float, most: int) -> int:
+    """So many that none swings freely where the point is hidden in every cycle."""
     seen = int(np.isfinite(tracks.at(point)[:, 0]).sum())
-    return harmonics_for(seen, tracks.rate * period, most=most)
-
-
-def _longest(holds: np.ndarray) -> tuple[int, int]:
-    """Return start and length of the longest stretch on a ring."""
-    if holds.all():
-        return 0, len(holds)
-    first = int(np.argmin(holds))  # a place where it does not hold
-    ring = np.concatenate([np.roll(holds, -first).astype(int), [0]])
-    edges = np.diff(np.concatenate([[0], ring]))
-    starts, ends = np.flatnonzero(edges > 0), np.flatnonzero(edges < 0)
-    if len(starts) == 0:
-        return 0, 0
-    best = int(np.argmax(ends - starts))
-    return int(starts[best] + first) % len(holds), int(ends[best] - starts[best])
+    gap = _hidden(tracks, point, period)
+    return min(harmonics_for(seen, tracks.rate * period, most=most), max(2, int(1.0 / max(gap, 1e-3))))

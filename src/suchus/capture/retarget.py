@@ -6,9 +6,9 @@ from typing import Literal
 
 import numpy as np
 
-from suchus.capture.walk import Walk
+from suchus.capture.walk import UNSURE, Walk
 from suchus.capture.wave import STANDING
-from suchus.design import LEGS, Crocodile, servo_names
+from suchus.design import LEGS, AnyRobot, Crocodile, crocodile, servo_names
 from suchus.errors import OutsideLimits
 from suchus.motion import Gait, check_limits, servo_targets, tail_bend, trunk_bend
 
@@ -34,7 +34,7 @@ class Captured:
     """What was seen and the gait does not hold, what it holds and was not seen, and what was changed."""
 
 
-def to_gait(walk: Walk, robot: Crocodile, base: Gait, *, name: str, duty: Duty = "retraction") -> Captured:
+def to_gait(walk: Walk, robot: AnyRobot, base: Gait, *, name: str, duty: Duty = "retraction") -> Captured:
     """Return the gait by which a robot walks as was seen.
 
     Phases and angles are taken as they are, lengths in proportion to the trunk from hip to shoulder. The bends are
@@ -51,13 +51,14 @@ def to_gait(walk: Walk, robot: Crocodile, base: Gait, *, name: str, duty: Duty =
     Raises:
         OutsideLimits: the robot cannot follow even with the base's posture and a small stroke.
     """
+    robot = crocodile(robot, "a captured walk")
     notes: list[str] = []
     gait = _timed(walk, replace(base, name=name), duty, notes)
     gait = _bent(walk, gait, notes)
     gait = _shaped(walk, robot, gait, base, notes)
     gait = _within_limits(robot, gait, base, notes)
     gait = _within_speed(robot, gait, notes)
-    return Captured(gait=gait, notes=(*notes, *_unheld(walk)))
+    return Captured(gait=gait, notes=(*walk.notes, *notes, *_unheld(walk)))
 
 
 def driven_share(robot: Crocodile) -> float:
@@ -70,7 +71,8 @@ def driven_share(robot: Crocodile) -> float:
 
 
 def _mean(walk: Walk, stem: str, legs: tuple[str, ...] = LEGS) -> float:
-    return float(np.mean([walk.value(f"{stem}_{leg}") for leg in legs]))
+    known = [leg for leg in legs if stem != "duty" or not walk.numbers[f"duty_{leg}"].error > UNSURE]
+    return float(np.mean([walk.value(f"{stem}_{leg}") for leg in known or legs]))
 
 
 def _timed(walk: Walk, gait: Gait, duty: Duty, notes: list[str]) -> Gait:

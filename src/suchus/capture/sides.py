@@ -5,6 +5,8 @@ import numpy as np
 from suchus.capture.tracks import Tracks, UnusableTracks
 
 _ALWAYS = 0.9  # share of the frames that counts as always
+_IN_A_ROW = 0.5  # share of these frames that follow each other, below which it is noise
+_OFTEN = 0.1  # share of the frames in which noise may do so
 _SOMETIMES = 0.02  # share that a point's noise does not explain
 
 
@@ -31,11 +33,23 @@ def check_sides(tracks: Tracks) -> None:
             )
         if share > _SOMETIMES:
             frames = np.flatnonzero(crossed == 1)
+            if np.mean(np.diff(frames) == 1) < _IN_A_ROW:
+                _check_noise(tracks, left, right, share)
+                continue
             raise UnusableTracks(
                 f"in {tracks.source} {left} and {right} are swapped in {len(frames)} frames, first in frame "
                 f"{frames[0] + 1} at {tracks.time[frames[0]]:.2f} s and last in frame {frames[-1] + 1}: exchange "
                 "them there."
             )
+
+
+def _check_noise(tracks: Tracks, left: str, right: str, share: float) -> None:
+    """Refuse feet that change sides from frame to frame, if they do so often."""
+    if share > _OFTEN:
+        raise UnusableTracks(
+            f"in {tracks.source} {left} lies right of {right} in {100 * share:.0f} % of the frames, now here and now "
+            f"there; up to {100 * _OFTEN:.0f} % is allowed: noise hides the feet; track them again, or film nearer."
+        )
 
 
 def _crossed(tracks: Tracks, left: str, right: str, ahead: str, behind: str) -> np.ndarray:

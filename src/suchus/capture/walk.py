@@ -1,21 +1,28 @@
 """What was seen of a walk: its mean cycle, its numbers with their spread, and what kind of wave it is."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
+from scipy.stats import t as student
 
 from suchus.capture.angles import bend_angles, joint_bends, wrapped
+from suchus.capture.clock import Clock, paced
 from suchus.capture.cycle import Periodic, find_period, fit, harmonics_for
-from suchus.capture.feet import GRID, Contact, Sweep, contact, sweep
+from suchus.capture.feet import GRID, Contact, Sweep, contact, forward_way, steps, sweep
+from suchus.capture.jumps import without_jumps
 from suchus.capture.sides import check_sides
 from suchus.capture.tracks import Tracks, UnusableTracks, check_tracks
 from suchus.capture.wave import standing_index
 from suchus.design import LEGS
 from suchus.design.checks import require
 
+UNSURE = 0.1
+"""Half the width of the interval of a duty factor from which on a foot does not count for the gait's [-]."""
+_BLIND = 0.25  # the same from which on a walk is refused, if no foot is better
+_STRAIGHT = 1e-6  # [rad]; what bends less has no phase
 _BINS = 20  # of phase, for the spread
 _SHARP = 3.0  # a joint bends if its amplitude exceeds so many of its standard errors
 _TOGETHER = 0.25  # least share of frames in which all points of a signal are seen
@@ -29,6 +36,9 @@ class Seen(NamedTuple):
     """Over all cycles."""
     spread: float
     """Standard deviation from cycle to cycle; NaN if fewer than two were seen."""
+    error: float
+    """Half the width of the interval about the value that holds the truth in 95 of 100 walks; NaN if fewer than two
+    cycles were seen."""
     unit: str
     """SI unit, ``-`` for none, ``cycle``, or ``trunk`` for lengths of the trunk from hip to shoulder."""
 
@@ -54,6 +64,8 @@ class Walk:
     bends: Mapping[str, complex]
     """First harmonic of each of the four angles: the angle is its steady part and the real part of this times
     ``exp(2 pi i phase)`` [rad]."""
+    notes: tuple[str, ...]
+    """What the tracks cannot tell, a sentence each."""
     cycle: xr.Dataset
     """The mean cycle over ``phase`` and ``leg``: the four angles with ``<name>_spread``, ``foot_speed``, ``stance``.
     Phase 0 is where a gait of this footfall begins: LF starts to swing."""
@@ -67,11 +79,11 @@ class _Reading(NamedTuple):
     """What one stretch of time shows."""
 
     angles: dict[str, Periodic]
-    feet: dict[str, Contact]
     sweeps: dict[str, Sweep]
     advance: float  # of the body in one cycle [m or px]
     trunk: float  # [m or px]
     period: float
+    tail_share: float
 
 
 def observe(tracks: Tracks, *, tail_share: float = 1.0) -> Walk:
@@ -89,20 +101,22 @@ def observe(tracks: Tracks, *, tail_share: float = 1.0) -> Walk:
     """
     require("observe", "tail_share", tail_share, 0.05, 1.0, "")
     check_tracks(tracks)
+    tracks = without_jumps(tracks.ahead())
+    check_tracks(tracks)
     check_sides(tracks)
-    tracks = tracks.ahead()
     signals = _swinging(tracks)
     _check_signals(signals, tracks.source)
-    period = find_period(tracks.time, signals, tracks.source)
+    rough = find_period(tracks.time, signals, tracks.source)
+    clock = paced({leg: steps(tracks, leg, rough) for leg in LEGS}, rough)
+    tracks, period = replace(tracks, time=clock.read(tracks.time)), clock.period
     whole = _read(tracks, period, tail_share)
+    feet = {leg: contact(tracks, leg, period) for leg in LEGS}
     _check_advance(whole, tracks.source)
-    count = int((tracks.time[-1] - tracks.time[0]) / period + 0.05)
-    each = [_numbers(_read(_cycle(tracks, i, period), period, tail_share)) for i in range(count)] if count >= 2 else []
-    numbers = {name: Seen(value, _spread(name, value, each), _unit(name)) for name, value in _numbers(whole).items()}
-    numbers["period"] = Seen(period, float("nan"), "s")
+    _check_feet(feet, tracks.source)
+    zero = _zero(feet)
+    numbers = _seen(tracks, whole, feet, zero, clock)
     for name, chain in _chains(tracks).items():
-        numbers[f"standing_{name}"] = Seen(_index(tracks, chain, period), float("nan"), "-")
-    zero = _zero(whole)
+        numbers[f"standing_{name}"] = Seen(_index(tracks, chain, period), float("nan"), float("nan"), "-")
     return Walk(
         source=tracks.source,
         cycles=float((tracks.time[-1] - tracks.time[0]) / period),
@@ -110,17 +124,69 @@ def observe(tracks: Tracks, *, tail_share: float = 1.0) -> Walk:
         tail_share=tail_share,
         numbers=numbers,
         bends={name: complex(_first(whole.angles[name], zero)) for name in whole.angles},
-        cycle=_mean_cycle(tracks, whole, zero),
+        notes=_unknown(feet),
+        cycle=_mean_cycle(tracks, whole, feet, zero),
     )
+
+
+def _seen(tracks: Tracks, whole: _Reading, feet: Mapping[str, Contact], zero: float, clock: Clock) -> dict[str, Seen]:
+    """Return every number with its spread and its interval."""
+    count = int((tracks.time[-1] - tracks.time[0]) / whole.period + 0.05)
+    each = [
+        _numbers(_read(_cycle(tracks, i, whole.period), whole.period, whole.tail_share), zero) for i in range(count)
+    ]
+    each = each if count >= 2 else []
+    numbers = {}
+    for name, value in _numbers(whole, zero).items():
+        spread, n = _spread(name, value, each)
+        error = _times(n) * spread / np.sqrt(n) if n > 1 else float("nan")
+        if name == "spine_rightmost":  # its phase counts from a foot
+            duties = np.mean([foot.duty_error for foot in feet.values()]) / 2
+            error = float(np.linalg.norm([error, feet["LF"].middle_error, duties]))
+        numbers[name] = Seen(value, spread, error, _unit(name))
+    first = feet["LF"]
+    for leg, foot in feet.items():
+        numbers[f"duty_{leg}"] = Seen(foot.duty, foot.scatter, foot.duty_error, "-")
+        error = float(np.hypot(first.middle_error, foot.middle_error)) if leg != "LF" else 0.0
+        numbers[f"phase_{leg}"] = Seen((first.middle - foot.middle) % 1.0, float("nan"), error, "cycle")
+    lasts = np.diff(clock.seconds(tracks.time[0] / whole.period + np.arange(count + 1)))
+    spread = float(np.std(lasts, ddof=1)) if count >= 2 else float("nan")
+    error = _times(count) * spread / np.sqrt(count) if count >= 2 else float("nan")
+    numbers["period"] = Seen(whole.period, spread, error, "s")
+    return numbers
+
+
+def _times(n: int) -> float:
+    """Return how many standard errors of n cycles hold the truth in 95 of 100 cases."""
+    return float(student.ppf(0.975, n - 1))
+
+
+def _check_feet(feet: Mapping[str, Contact], source: str) -> None:
+    """Refuse feet of which none can be told to stand or to swing."""
+    known = {leg: foot.duty_error for leg, foot in feet.items() if np.isfinite(foot.duty_error)}
+    if known and min(known.values()) > _BLIND:
+        leg = min(known, key=lambda name: known[name])
+        raise UnusableTracks(
+            f"in {source} noise hides the steps: even the duty factor of {leg} is known to ±{known[leg]:.2f} only, at "
+            f"most ±{_BLIND:g} may be; film more cycles, faster, or nearer."
+        )
+
+
+def _unknown(feet: Mapping[str, Contact]) -> tuple[str, ...]:
+    """Say of which feet too little is seen."""
+    notes = []
+    for leg, foot in feet.items():
+        if foot.duty_error > UNSURE:
+            why = f"is hidden in {100 * foot.hidden:.0f} % of every cycle" if foot.hidden > 0.1 else "is seen too badly"
+            unsure = f"±{foot.duty_error:.2f} of the cycle"
+            notes.append(f"{leg} {why}: when it lifts off and touches down is known to {unsure} only")
+    return tuple(notes)
 
 
 def _swinging(tracks: Tracks) -> np.ndarray:
     """Signals that swing once a cycle: trunk and tail, and each foot along the body."""
     angles = bend_angles(tracks)
-    look = tracks.at("shoulder") - tracks.at("hip")
-    ahead = look[:, :2] / np.linalg.norm(look[:, :2], axis=1, keepdims=True)
-    feet = [((tracks.at(leg) - tracks.at("hip"))[:, :2] * ahead).sum(axis=1) for leg in LEGS]
-    return np.array([angles.spine_lateral, angles.tail_lateral, *feet])
+    return np.array([angles.spine_lateral, angles.tail_lateral, *(forward_way(tracks, leg) for leg in LEGS)])
 
 
 def _check_signals(signals: np.ndarray, source: str) -> None:
@@ -144,24 +210,19 @@ def _read(tracks: Tracks, period: float, tail_share: float) -> _Reading:
     way = [fit(tracks.time, tracks.at("hip")[:, i], period, harmonics=2, drift=1).drift[0] for i in (0, 1)]
     return _Reading(
         fits,
-        {leg: contact(tracks, leg, period) for leg in LEGS},
         {leg: sweep(tracks, leg, period) for leg in LEGS},
         float(np.hypot(*way)) * period,
         tracks.trunk_length(),
         period,
+        tail_share,
     )
 
 
-def _numbers(reading: _Reading) -> dict[str, float]:
-    zero = _zero(reading)
+def _numbers(reading: _Reading, zero: float) -> dict[str, float]:
     spine, tail = (_first(reading.angles[name], zero) for name in ("spine_lateral", "tail_lateral"))
     numbers = {"stride": reading.advance / reading.trunk}
-    first = reading.feet["LF"].middle
-    for leg in LEGS:
-        foot, path = reading.feet[leg], reading.sweeps[leg]
+    for leg, path in reading.sweeps.items():
         numbers |= {
-            f"duty_{leg}": foot.duty,
-            f"phase_{leg}": (first - foot.middle) % 1.0,
             f"retraction_{leg}": path.retraction,
             f"stroke_{leg}": path.stroke / reading.trunk,
             f"outward_{leg}": path.outward / reading.trunk,
@@ -171,15 +232,17 @@ def _numbers(reading: _Reading) -> dict[str, float]:
     for name, one in reading.angles.items():
         numbers |= {name: float(abs(one.harmonics[0])), f"{name}_steady": one.mean}
         numbers[f"{name}_overtones"] = float(np.linalg.norm(one.harmonics[1:]) / max(abs(one.harmonics[0]), 1e-12))
-    numbers["spine_rightmost"] = float(-np.angle(spine) / (2 * np.pi)) % 1.0
-    numbers["tail_lag"] = float(np.angle(spine / tail) / (2 * np.pi)) % 1.0
+    if abs(spine) > _STRAIGHT:
+        numbers["spine_rightmost"] = float(-np.angle(spine) / (2 * np.pi)) % 1.0
+        if abs(tail) > _STRAIGHT:
+            numbers["tail_lag"] = float(np.angle(spine / tail) / (2 * np.pi)) % 1.0
     return {name: value for name, value in numbers.items() if np.isfinite(value)}
 
 
-def _zero(reading: _Reading) -> float:
+def _zero(feet: Mapping[str, Contact]) -> float:
     """Phase of the tracks' clock at which the gait begins: LF's mid-stance, back by swing and half of stance."""
-    duty = float(np.mean([foot.duty for foot in reading.feet.values()]))
-    return reading.feet["LF"].middle - (1.0 - duty / 2)
+    duty = float(np.mean([foot.duty for foot in feet.values()]))
+    return feet["LF"].touch_down + feet["LF"].duty / 2 - (1.0 - duty / 2)
 
 
 def _first(one: Periodic, zero: float) -> complex:
@@ -191,14 +254,14 @@ def _cycle(tracks: Tracks, number: int, period: float) -> Tracks:
     return tracks.between(start, start + period)
 
 
-def _spread(name: str, value: float, each: list[dict[str, float]]) -> float:
+def _spread(name: str, value: float, each: list[dict[str, float]]) -> tuple[float, int]:
     found = np.array([one[name] for one in each if name in one])
     if len(found) < 2:
-        return float("nan")
+        return float("nan"), len(found)
     apart = found - value
     if _unit(name) == "cycle":
         apart = wrapped(2 * np.pi * apart) / (2 * np.pi)
-    return float(np.std(apart, ddof=1))
+    return float(np.std(apart, ddof=1)), len(found)
 
 
 def _unit(name: str) -> str:
@@ -237,7 +300,7 @@ def _check_advance(reading: _Reading, source: str) -> None:
         )
 
 
-def _mean_cycle(tracks: Tracks, reading: _Reading, zero: float) -> xr.Dataset:
+def _mean_cycle(tracks: Tracks, reading: _Reading, feet: Mapping[str, Contact], zero: float) -> xr.Dataset:
     phase = np.arange(GRID) / GRID
     time = (phase + zero) * reading.period
     data = xr.Dataset(coords={"phase": ("phase", phase, {"units": "1"}), "leg": list(LEGS)})
@@ -251,7 +314,7 @@ def _mean_cycle(tracks: Tracks, reading: _Reading, zero: float) -> xr.Dataset:
         )
     back = -round(zero * GRID)
     for name, field, unit in (("foot_speed", "speed", f"{tracks.unit}/s"), ("stance", "stance", "1")):
-        rows = [np.roll(getattr(reading.feet[leg], field), back) for leg in LEGS]
+        rows = [np.roll(getattr(feet[leg], field), back) for leg in LEGS]
         data[name] = (("leg", "phase"), np.array(rows), {"units": unit})
     return data
 

@@ -75,6 +75,6 @@ COMMANDS = (
         "write a gait as timed servo angles",
         "suchus.cli.export_commands:export_commands",
     ),
-    Command("list", "", "show the robots, the gaits and the experiments", "suchus.cli.shelves:show"),
+    Command("list", "", "show the robots, gaits, faults and experiments", "suchus.cli.shelves:show"),
 )
 """Every command, in the order of the help."""

@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Annotated
 
@@ -14,6 +14,7 @@ from suchus.cli.options import parse
 from suchus.cli.terminal import working
 from suchus.design import Crocodile
 from suchus.design.checks import require
+from suchus.errors import OutsideLimits
 from suchus.gaits import GAITS
 from suchus.hardware import (
     STRAIGHT,
@@ -23,13 +24,14 @@ from suchus.hardware import (
     commands,
     csv_text,
     loads,
+    overloaded,
     read_map,
     trajectory_text,
     write_map,
 )
-from suchus.hardware.limits import AT_LIMIT
+from suchus.hardware.limits import AT_LIMIT, TRACKING
 from suchus.motion import Gait
-from suchus.record import check_replaceable, check_writable, digest, new_folder, versions
+from suchus.record import check_name, check_replaceable, check_writable, digest, new_folder, versions
 from suchus.robots import ROBOTS
 
 MARK = "suchus_commands.json"
@@ -50,7 +52,9 @@ class Options:
     cycles: int = 1
     """How many cycles; one can be repeated, its last sample is its first."""
     at_limit: float = AT_LIMIT
-    """Share of the walk that a servo may spend at its torque limit."""
+    """Share of the walk from which on a servo counts as standing at its torque limit."""
+    tracking: float = TRACKING
+    """How far such a servo may be from its commanded angle [rad]; beyond, the gait is refused."""
     out: Path | None = None
     """The folder; by default export/GAIT_commands. An older one there is replaced, anything else is refused."""
 
@@ -62,31 +66,37 @@ def export_commands(words: Sequence[str]) -> int:
         SuchusError: the words make no sense, the servos cannot do it, or the place cannot be written to.
     """
     about = "Write a gait as timed servo angles: CSV with pulses, and a ROS trajectory_msgs/JointTrajectory."
-    options: Options = parse(Options, "suchus export-commands", words, about, [f.name for f in fields(Options)])
+    options: Options = parse(
+        Options, "suchus export-commands", _gait_first(words), about, [f.name for f in fields(Options)]
+    )
     if options.write_map is not None:
         print(f"servo map: {write_map(STRAIGHT, options.write_map)}")
         return 0
     require("export-commands", "at_limit", options.at_limit, 0.0, 1.0, "")
-    if any(c in options.gait.name for c in "/\\\0") and options.out is None:
-        raise BadCommand(f"the gait is named {options.gait.name!r}, which makes no folder; say --out DIR.")
+    require("export-commands", "tracking", options.tracking, 0.0, 7.0, "rad")
+    if options.out is None:
+        check_name(options.gait.name, "gait")
     folder = options.out or Path("export") / f"{options.gait.name}_commands"
     check_writable(folder.parent)
     check_replaceable(folder, mark=MARK)
     servo_map = STRAIGHT if options.map is None else read_map(options.map)
     told = commands(options.robot, options.gait, servo_map, options.cycles)
-    check_commands(options.robot, options.gait, servo_map, told)
     with working() as bars:
         move = bars.task(options.gait.name)
         borne = loads(options.robot, options.gait, progress=lambda share: move("walking", share))
-    check_loads(options.robot, options.gait, borne, options.at_limit)
-    origin = {"gait": digest({"gait": options.gait}), "robot": digest({"robot": options.robot}), "versions": versions()}
+    try:
+        check_commands(options.robot, options.gait, servo_map, told)
+        check_loads(options.robot, options.gait, borne, options.at_limit, options.tracking)
+    except OutsideLimits as error:
+        with new_folder(folder, mark=MARK) as draft:
+            _write_loads(options, borne, draft)
+        raise OutsideLimits(f"{error} What each servo bears stands in {folder / 'loads.csv'}.") from error
     with new_folder(folder, mark=MARK) as draft:
+        _write_loads(options, borne, draft)
         (draft / "commands.csv").write_text(csv_text(told), encoding="utf-8")
-        (draft / "trajectory.yaml").write_text(trajectory_text(told), encoding="utf-8")
-        (draft / "loads.csv").write_text(_loads_text(borne), encoding="utf-8")
+        (draft / "trajectory.yaml").write_text(trajectory_text(options.robot, told), encoding="utf-8")
         write_map(servo_map, draft / "servo_map.toml")
         (draft / "gait.toml").write_text(blueprint.render(options.gait), encoding="utf-8")
-        (draft / MARK).write_text(json.dumps(origin, indent=1, sort_keys=True) + "\n", encoding="utf-8")
     hardest = max(borne, key=lambda name: borne[name].torque / borne[name].limit)
     load = borne[hardest]
     print(f"{len(told.time)} samples over {told.time[-1]:g} s: {folder}")
@@ -94,12 +104,35 @@ def export_commands(words: Sequence[str]) -> int:
         f"hardest worked in simulation: {hardest}, {load.torque:.2f} of {load.limit:g} N m, "
         f"at the limit for {100 * load.at_limit:.1f} % of the walk"
     )
+    for sentence in overloaded(borne, options.at_limit):
+        print(f"warning: {sentence}")
     return 0
 
 
+def _write_loads(options: Options, borne: Mapping[str, Load], draft: Path) -> None:
+    """Write what the servos bear, and of which robot and gait."""
+    origin = {"gait": digest({"gait": options.gait}), "robot": digest({"robot": options.robot}), "versions": versions()}
+    (draft / "loads.csv").write_text(_loads_text(borne), encoding="utf-8")
+    (draft / MARK).write_text(json.dumps(origin, indent=1, sort_keys=True) + "\n", encoding="utf-8")
+
+
+def _gait_first(words: Sequence[str]) -> list[str]:
+    """Let the gait be named as an option too, as everywhere else."""
+    words = list(words)
+    for i, word in enumerate(words):
+        if word == "--gait":
+            if words[i + 1 : i + 2] == []:
+                raise BadCommand("--gait lacks its value: the name of a gait, or a TOML file.")
+            return [words[i + 1], *words[:i], *words[i + 2 :]]
+        if word.startswith("--gait="):
+            return [word.partition("=")[2], *words[:i], *words[i + 1 :]]
+    return words
+
+
 def _loads_text(borne: Mapping[str, Load]) -> str:
-    lines = ["servo,peak_torque_Nm,torque_limit_Nm,share_at_limit,first_at_s"]
+    lines = ["servo,peak_torque_Nm,torque_limit_Nm,share_at_limit,first_at_s,off_rad,needed_Nm"]
     for name, load in borne.items():
-        peak, limit, share, first = asdict(load).values()
-        lines.append(f"{name},{peak:.4f},{limit:g},{share:.4f},{'' if first != first else f'{first:.2f}'}")
+        first = "" if load.first != load.first else f"{load.first:.2f}"
+        told = f"{load.torque:.4f},{load.limit:g},{load.at_limit:.4f},{first},{load.off:.4f},{load.needed:.4f}"
+        lines.append(f"{name},{told}")
     return "\n".join(lines) + "\n"

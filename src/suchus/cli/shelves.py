@@ -12,9 +12,10 @@ from suchus.cli.commands import BadCommand
 _SHELVES = (
     ("robots", "suchus.robots"),
     ("gaits", "suchus.gaits"),
+    ("faults", "suchus.faults"),
     ("experiments", "suchus.experiments"),
 )
-_USAGE = "usage: suchus list\n\nShow the robots, the gaits and the experiments, each with its title."
+_USAGE = "usage: suchus list\n\nShow the robots, the gaits, the faults and the experiments, each with its title."
 
 
 def show(words: Sequence[str]) -> int:

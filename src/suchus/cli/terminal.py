@@ -15,7 +15,14 @@ from suchus.cli.perform import Done
 from suchus.report import quantity
 
 _EVERY = 10.0  # [s]; between lines where there is no terminal for a bar
-_COLOURS = {"reproduced": "green", "same sense": "yellow", "contradicted": "red", "not testable": "dim"}
+_COLOURS = {
+    "reproduced": "green",
+    "same sense": "yellow",
+    "contradicted": "red",
+    "not testable": "dim",
+    "by construction": "cyan",
+    "fitted": "cyan",
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,7 +99,9 @@ def show_outcome(question: contract.Experiment, done: Done) -> None:
                 escape(f"{claim.quantity} ({claim.where})"),
                 quantity(claim.value, claim.unit, 3),
                 quantity(verdict.measured, claim.unit, 3) if claim.value is not None else "",
-                f"[{_COLOURS[verdict.verdict]}]{verdict.verdict}[/]",
+                f"[{_COLOURS[verdict.verdict]}]{verdict.verdict}[/]{', fragile' if verdict.fragile else ''}",
             )
         console.print(table)
+    if done.outcome.unjudged:
+        console.print(escape(done.outcome.unjudged), soft_wrap=True)
     console.print(f"{done.seconds:.1f} s; everything is in {escape(str(done.folder))}", soft_wrap=True)

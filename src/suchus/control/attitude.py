@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
+from suchus import rotation
 from suchus.control.sensed import Sensed
 from suchus.design import Crocodile
 from suchus.design.checks import Checks
@@ -58,7 +59,7 @@ class Attitude:
 
     def lower(self, sensed: Sensed) -> Float[np.ndarray, "run 4"]:
         """Return how much lower each foot goes [m]."""
-        tilt = np.stack(roll_and_pitch(sensed.orientation))
+        tilt = np.stack([rotation.roll(sensed.orientation), rotation.pitch(sensed.orientation)])
         if not self._felt:
             self._mean, self._felt = tilt.copy(), True
         self._mean = tilt + self._keep * (self._mean - tilt)
@@ -71,13 +72,6 @@ class Attitude:
 
 
 _NONE = AttitudeRule(roll=0.0, roll_rate=0.0, pitch=0.0, pitch_rate=0.0)
-
-
-def roll_and_pitch(orientation: Float[np.ndarray, "run 4"]) -> tuple[np.ndarray, np.ndarray]:
-    """Return roll, left side up positive, and pitch, nose down positive, of each run [rad]."""
-    w, x, y, z = orientation.T
-    roll = np.arctan2(2 * (w * x + y * z), 1 - 2 * (x**2 + y**2))
-    return roll, np.arcsin(np.clip(2 * (w * y - z * x), -1.0, 1.0))
 
 
 def _halves(robot: Crocodile) -> np.ndarray:

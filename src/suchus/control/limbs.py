@@ -8,12 +8,11 @@ from types import MappingProxyType
 import numpy as np
 from jaxtyping import Float
 
-from suchus.control.sensed import TRUNK_YAW, Sensed, finite, keep
+from suchus.control.sensed import Sensed, finite, keep
 from suchus.control.shared import Shared
-from suchus.design import Crocodile
+from suchus.design import GRAVITY, AnyRobot, layout
 from suchus.design.checks import Checks
 from suchus.errors import OutsideLimits
-from suchus.kinematics.mass import GRAVITY
 from suchus.motion import Gait
 
 SIDES = np.array([1.0, -1.0, -1.0, 1.0])
@@ -96,7 +95,7 @@ class Limbs:
     def __init__(
         self,
         laws: Sequence[LimbLaw],
-        robots: Sequence[Crocodile],
+        robots: Sequence[AnyRobot],
         gaits: Sequence[Gait],
         ahead: Float[np.ndarray, "run 4"],
         period: float,
@@ -114,7 +113,8 @@ class Limbs:
         self._cycles_per_tick = period / np.array([gait.period for gait in gaits])[:, None]
         self._middle = np.array([gait.duty_factor / 2 - 0.25 for gait in gaits])[:, None]
         self._share = np.array([robot.mass * GRAVITY / 4 for robot in robots])[:, None]
-        self._torque = np.array([3 * robot.spine.yaw_servo.torque for robot in robots])[:, None]
+        self._torque = np.array([_trunk_torque(robot) for robot in robots])[:, None]
+        self._yaw = list(layout(robots[0]).trunk_yaw)
         self._load: np.ndarray | None = None
         self._twist: np.ndarray | None = None
 
@@ -147,7 +147,7 @@ class Limbs:
 
     def _filter(self, sensed: Sensed) -> tuple[np.ndarray, np.ndarray]:
         load = np.minimum(finite(sensed.foot_pressure) / self._share, self._clip)
-        twist = finite(sensed.servo_torque[:, TRUNK_YAW]).sum(axis=1, keepdims=True) / self._torque
+        twist = finite(sensed.servo_torque[:, self._yaw]).sum(axis=1, keepdims=True) / self._torque
         self._load = load if self._load is None else load + self._keep * (self._load - load)
         self._twist = twist if self._twist is None else twist + self._keep * (self._twist - twist)
         return self._load, self._twist
@@ -156,6 +156,12 @@ class Limbs:
         angle = 2 * pi * (phase + self._middle)
         heard = (self._weights * load[:, None, :]).sum(axis=-1)
         return np.cos(angle - self._shift) * heard + self._trunk * np.cos(angle) * SIDES * twist
+
+
+def _trunk_torque(robot: AnyRobot) -> float:
+    """Return the sum of what the trunk's yaw servos can give [N m]."""
+    place = layout(robot)
+    return sum(place.robot.servo(place.servos[i]).torque for i in place.trunk_yaw)
 
 
 def _refuse_others(gait: Gait) -> None:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from suchus.control.attitude import roll_and_pitch
+from suchus import rotation
 from suchus.control.sensed import Sensed
 from suchus.design.checks import Checks
 from suchus.errors import UnknownName
@@ -102,7 +102,7 @@ class Switcher:
         total = feet.sum(axis=1) + belly + np.nan_to_num(sensed.tail_pressure)
         duty = np.array([[gait.duty_factor] for gait in gaits])
         contradicts = (feet > _FOOT_LOADED) != (np.mod(phase, 1.0) >= 1.0 - duty)
-        tilt = np.nan_to_num(np.stack(roll_and_pitch(sensed.orientation)))
+        tilt = np.nan_to_num(np.stack([rotation.roll(sensed.orientation), rotation.pitch(sensed.orientation)]))
         self._mean = tilt if self._mean is None else self._mean + self._period / _WASHOUT * (tilt - self._mean)
         off = np.hypot(*(tilt - self._mean))
         for mean, now in (

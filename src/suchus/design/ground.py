@@ -1,13 +1,13 @@
 """Ground: how it tilts, what stands up from it, how it grips."""
 
 from dataclasses import dataclass
-from math import cos, sin
 
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design.checks import require
+from suchus.design.checks import Checks
 from suchus.design.relief import Relief
+from suchus.rotation import about, multiply
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -24,9 +24,10 @@ class Ground:
     """What stands up from it; None where it is even."""
 
     def __post_init__(self) -> None:
-        require("ground", "grip", self.grip, 0.01, 10.0, "")
-        require("ground", "uphill", self.uphill, -1.0, 1.0, "rad")
-        require("ground", "sideways", self.sideways, -1.0, 1.0, "rad")
+        with Checks("ground", self) as check:
+            check.number("grip", 0.01, 10.0, "")
+            check.number("uphill", -1.0, 1.0, "rad")
+            check.number("sideways", -1.0, 1.0, "rad")
 
     def looks_like(self, other: "Ground") -> bool:
         """Tell whether another ground has the same slopes and relief, however it grips."""
@@ -40,5 +41,5 @@ def slope(uphill: float, sideways: float) -> Float[np.ndarray, "4"]:
         uphill: along the walk, up positive [rad].
         sideways: left side up positive [rad].
     """
-    a, b = -uphill / 2, sideways / 2  # first about x by the slope to the side, then about y
-    return np.array([cos(a) * cos(b), cos(a) * sin(b), sin(a) * cos(b), -sin(a) * sin(b)])
+    up, aside = about(np.array([0.0, 1.0, 0.0]), -uphill), about(np.array([1.0, 0.0, 0.0]), sideways)
+    return multiply(up, aside)

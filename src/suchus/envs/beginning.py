@@ -31,9 +31,9 @@ def begin(task: Task) -> Beginning:
         Diverged: it does not stand up.
     """
     if task.start == "upright":
-        return _upright(task.robot, task.ground, task.timestep)
-    model = compile_model(task.robot, task.timestep)
-    qpos, servos = home(model, task.robot, task.gait)
+        return _upright(task.body, task.ground, task.timestep)
+    model = compile_model(task.body, task.timestep)
+    qpos, servos = home(model, task.body, task.gait)
     return Beginning(qpos, np.zeros(model.nv), activations(model, servos), servos)
 
 
@@ -42,7 +42,7 @@ def off_by(task: Task, at: Beginning, jitter: np.ndarray) -> Beginning:
 
     A lying robot is put on the ground again. One that stands keeps its tail, whose bend is no joint's alone.
     """
-    model = compile_model(task.robot, task.timestep)
+    model = compile_model(task.body, task.timestep)
     if task.start == "lying":
         return at._replace(qpos=standing(model, task.robot, task.gait.hip_height, at.told + jitter))
     qpos = at.qpos.copy()

@@ -7,15 +7,18 @@ import numpy as np
 import xarray as xr
 from jaxtyping import Bool, Float
 
+from suchus import rotation
 from suchus.control import Sensed
 from suchus.design import servo_names
 from suchus.envs.beginning import begin, off_by
 from suchus.envs.reward import Terms
-from suchus.envs.senses import SERVOS, level_axes, observations
+from suchus.envs.senses import SERVOS, observations
 from suchus.envs.task import Task
 from suchus.errors import UnknownName
-from suchus.land import CONTROL_PERIOD, Limp, Run
+from suchus.fault import Fault, check_faults
+from suchus.land import CONTROL_PERIOD, Run
 from suchus.land.bench import Bench
+from suchus.land.injector import Injector
 from suchus.land.readings import Readings
 from suchus.land.restarting import restart
 from suchus.model import compile_model
@@ -28,10 +31,8 @@ class Chance:
 
     phase: float = 0.0
     """Of the clock at the beginning [cycle]."""
-    servo: int = -1
-    """Which servo breaks; -1: none."""
-    kind: str = ""
-    """How."""
+    broken: Fault | None = None
+    """What breaks; None: nothing."""
     breaks: int = -1
     """In which control period; -1: never."""
     force: tuple[float, float, float] = (0.0, 0.0, 0.0)
@@ -42,9 +43,9 @@ class Chance:
     @property
     def fault(self) -> str:
         """In words; empty if nothing breaks."""
-        if self.servo < 0:
+        if self.broken is None:
             return ""
-        return f"{servo_names()[self.servo]} {self.kind} from {self.breaks * CONTROL_PERIOD:.2f} s"
+        return f"{self.broken.part} {self.broken.kind()} from {self.breaks * CONTROL_PERIOD:.2f} s"
 
 
 class Pack:
@@ -58,16 +59,19 @@ class Pack:
     def __init__(self, task: Task, count: int) -> None:
         self.task, self.count = task, count
         check_limits(task.robot, task.gait)
+        for fault in task.breaks.possible if task.breaks else ():
+            check_faults([fault], task.robot, np.inf)
         self._begin = begin(task)
         self._low, self._high = np.array([servo_range(task.robot, name) for name in servo_names()]).T
-        self._runs = [Run(robot=task.robot, gait=task.gait, ground=task.ground)] * count
+        self._runs = [Run(robot=task.body, gait=task.gait, ground=task.ground)] * count
         self._bench = Bench(self._runs, task.timestep)
         self._readings = Readings(self._bench, self._runs, 1)
         self._steps = round(CONTROL_PERIOD / task.timestep)
         self._check_body()
         self._told = np.tile(self._begin.told, (count, 1))
-        self._held = np.full((count, SERVOS), np.nan)
+        self._injector = Injector(self._bench, CONTROL_PERIOD, task.robot)
         self._tick = np.zeros(count, dtype=int)
+        self._periods = 0
         self.chances = [Chance()] * count
         self.causes = [""] * count
 
@@ -95,8 +99,9 @@ class Pack:
         """
         for i, random in zip(robots, chances, strict=True):
             jitter = self.task.jitter * random.uniform(-1.0, 1.0, SERVOS)
+            self._injector.mend(i)
             restart(self._bench, i, off_by(self.task, self._begin, jitter))
-            self._told[i], self._held[i], self._tick[i] = self._begin.told, np.nan, 0
+            self._told[i], self._tick[i] = self._begin.told, 0
             self.chances[i], self.causes[i] = draw(self.task, random), ""
 
     def feel(self) -> Float[np.ndarray, "run n"]:
@@ -119,8 +124,8 @@ class Pack:
         for k in range(periods):
             self._happen(who)
             targets = self._told + (k + 1) / periods * (goal - self._told)
-            targets = np.where(np.isnan(self._held), targets, self._held)
-            self._bench.advance(targets, self._steps, 0.0)
+            self._bench.advance(self._injector.command(self._periods, targets), self._steps, 0.0)
+            self._periods += 1
             work += self._power() * CONTROL_PERIOD
             self._tick[who] += 1
         haste = ((goal - self._told) ** 2).sum(axis=1)
@@ -137,8 +142,9 @@ class Pack:
         after, apart = self._read("centre_of_mass"), who & ~self._bench.alive
         way = np.where(apart[:, None], 0.0, after - before)
         aside = np.where(apart, 0.0, np.abs(after[:, 1]) - np.abs(before[:, 1]))
-        height, level = self._read("snout_position")[:, 2], level_axes(self._read("imu_orientation"))[0][:, 2]
-        fell = (height < self.task.least_height) | (level < self.task.least_level)
+        height, level = self._read("snout_position")[:, 2], rotation.upward(self._read("imu_orientation"))[:, 2]
+        low = (height < self.task.least_height) & (self.task.least_height > 0.0)
+        fell = low | (level < self.task.least_level)
         for i in np.flatnonzero(who & (fell | apart)):
             self.causes[i] = self._why(int(i), bool(apart[i]), float(height[i]), float(level[i]))
         return Terms(
@@ -154,7 +160,7 @@ class Pack:
         when = f"at {self.time[robot]:.2f} s"
         if apart:
             return f"the physics came apart {when}: {self._bench.cause[robot]}"
-        if height < self.task.least_height:
+        if 0.0 < self.task.least_height > height:
             return f"it fell {when}: the snout is at {height:.3f} m, below {self.task.least_height:g} m"
         tilt, most = (float(np.degrees(np.arccos(np.clip(c, -1, 1)))) for c in (level, self.task.least_level))
         return f"it rolled over {when}: the pelvis is tilted by {tilt:.0f} degrees, beyond {most:.0f}"
@@ -163,11 +169,8 @@ class Pack:
         """Break and push those whose time has come."""
         for i in np.flatnonzero(who):
             chance, tick = self.chances[i], self._tick[i]
-            if tick == chance.breaks:
-                if chance.kind == "limp":
-                    self._bench.break_servo(int(i), Limp(servo_names()[chance.servo]))
-                else:
-                    self._held[i, chance.servo] = self._bench.sensors[i, chance.servo]
+            if tick == chance.breaks and chance.broken is not None:
+                self._injector.begin(int(i), chance.broken)
             if chance.pushed >= 0 and self.task.shoves is not None:
                 lasting = round(self.task.shoves.lasting / CONTROL_PERIOD)
                 if tick in (chance.pushed, chance.pushed + lasting):
@@ -175,7 +178,7 @@ class Pack:
                     self._bench.push(int(i), self.task.shoves.body, force)
 
     def _sensed(self) -> Sensed:
-        return self._readings.sensed(0.0)
+        return self._injector.sense(self._readings.sensed(0.0))
 
     def _power(self) -> Float[np.ndarray, " run"]:
         """Return torque times speed, summed over the servos [W]."""
@@ -190,7 +193,7 @@ class Pack:
     def _check_body(self) -> None:
         if self.task.shoves is None:
             return
-        model = compile_model(self.task.robot, self.task.timestep)
+        model = compile_model(self.task.body, self.task.timestep)
         bodies = [model.body(i).name for i in range(1, model.nbody)]
         if self.task.shoves.body not in bodies:
             raise UnknownName("body", self.task.shoves.body, bodies)
@@ -202,9 +205,9 @@ def draw(task: Task, random: np.random.Generator) -> Chance:
     fault, push = task.breaks, task.shoves
     told: dict[str, object] = {}
     if fault is not None:
-        told["servo"] = servo_names().index(fault.joints[int(random.integers(len(fault.joints)))])
-        told["kind"] = fault.kinds[int(random.integers(len(fault.kinds)))]
+        broken = fault.draw(random)
         told["breaks"] = int(np.ceil(random.uniform(fault.earliest, fault.latest) / CONTROL_PERIOD))
+        told["broken"] = broken
     if push is not None:
         told["pushed"] = int(np.ceil(random.uniform(push.earliest, push.latest) / CONTROL_PERIOD))
         way, force = random.uniform(-np.pi, np.pi), random.uniform(0.0, push.most)

@@ -5,10 +5,9 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
+from suchus import rotation
 from suchus.control import Sensed
-from suchus.design import LEGS, Crocodile, servo_names
-from suchus.kinematics.mass import GRAVITY
-from suchus.model import TRUNK_BODIES
+from suchus.design import GRAVITY, LEGS, Crocodile, servo_names, spine_joints
 
 SERVOS = len(servo_names())
 ANGLE = float(np.pi)
@@ -39,7 +38,7 @@ _ROWS = (
     ("servo_velocity", SERVOS, f"{SPEED:g} rad/s", "speed of each servo"),
     ("servo_torque", SERVOS, "its limit, N m", "torque of each servo"),
     ("foot_pressure", len(LEGS), "weight, N", "normal force under each foot, the mean over a control period"),
-    ("belly_pressure", len(TRUNK_BODIES), "weight, N", "the same under each body of the trunk"),
+    ("belly_pressure", len(spine_joints()) + 1, "weight, N", "the same under each body of the trunk"),
     ("tail_pressure", 1, "weight, N", "the same under the tail"),
     ("upward", 3, "1", "the world's upward direction in the pelvis, from the IMU's orientation"),
     ("ahead", 3, "1", "the world's x direction in the pelvis, from the IMU's orientation"),
@@ -85,7 +84,7 @@ def observations(
     """
     limits = np.array([robot.servo(name).torque for name in servo_names()])
     weight = robot.mass * GRAVITY
-    upward, ahead = level_axes(sensed.orientation)
+    upward, ahead = rotation.upward(sensed.orientation), rotation.ahead(sensed.orientation)
     turn = 2 * np.pi * phase
     rows = np.concatenate(
         [
@@ -105,13 +104,3 @@ def observations(
         axis=1,
     )
     return np.clip(np.where(np.isfinite(rows), rows, 0.0), -1.0, 1.0).astype(np.float32)
-
-
-def level_axes(
-    orientation: Float[np.ndarray, "run 4"],
-) -> tuple[Float[np.ndarray, "run 3"], Float[np.ndarray, "run 3"]]:
-    """Return the world's upward and x directions in the frame of the pelvis [-]."""
-    w, x, y, z = orientation.T
-    upward = np.stack([2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)], axis=1)
-    ahead = np.stack([1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)], axis=1)
-    return upward, ahead

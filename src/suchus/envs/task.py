@@ -1,19 +1,22 @@
 """What is to be learned: a frozen value that says who acts, on what ground, what goes wrong and what is rewarded."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields, replace
 from types import MappingProxyType
 from typing import Any, Literal, get_args
 
-from suchus.design import Crocodile, leg_joints, servo_names
+import numpy as np
+
+from suchus.design import Crocodile, crocodile, leg_joints, servo_names, with_speed_lines
 from suchus.design.checks import Checks
 from suchus.errors import InvalidDesign, UnknownName
+from suchus.fault import Fault
+from suchus.faults import FAULTS
 from suchus.gaits import GAITS
 from suchus.land import CONTROL_PERIOD, Ground
 from suchus.motion import Gait
 from suchus.robots import ROBOTS
 
-Kind = Literal["limp", "locked"]
 Start = Literal["lying", "upright"]
 
 
@@ -50,8 +53,12 @@ class Breaks:
 
     joints: tuple[str, ...] = leg_joints()
     """Servos among which it is drawn; those of the legs, since the article breaks no others."""
-    kinds: tuple[Kind, ...] = ("limp", "locked")
-    """How it breaks: without torque, or holding the angle that it has at that time."""
+    kinds: tuple[str, ...] = ("limp", "locked")
+    """How it breaks, by names of faults of servos, each as it is on the shelf: ``limp``: without torque; ``locked``:
+    holding the angle that it has at that time."""
+    faults: tuple[Fault, ...] = ()
+    """Faults one of which is drawn instead, with all their numbers but the time; ``joints`` and ``kinds`` then do
+    nothing."""
     earliest: float = 0.0
     """From when on it may happen [s]."""
     latest: float = 4.0
@@ -63,12 +70,31 @@ class Breaks:
             raise UnknownName("servo", unknown[0], servo_names())
         with Checks("breaks", self) as check:
             check.that(len(self.joints) > 0, "breaks.joints is empty; name one servo at least")
-            allowed = get_args(Kind)
-            check.that(
-                len(self.kinds) > 0 and all(kind in allowed for kind in self.kinds),
-                f"breaks.kinds is {self.kinds!r}; {' and '.join(allowed)} are allowed, one at least",
-            )
+            check.that(len(self.kinds) > 0, "breaks.kinds is empty; name one fault at least")
             _check_when(check, "breaks", self.earliest, self.latest)
+        allowed = tuple(kind for kind in FAULTS if FAULTS[kind].acts_on == "servo")
+        for kind in self.kinds:
+            if kind not in allowed:
+                raise UnknownName("fault of a servo", str(kind)[:40], allowed)
+
+    @property
+    def possible(self) -> tuple[Fault, ...]:
+        """All faults that may be drawn, each from 0 s on."""
+        if self.faults:
+            return self.faults
+        return tuple(self._fault(kind, joint) for kind in self.kinds for joint in self.joints)
+
+    def draw(self, random: np.random.Generator) -> Fault:
+        """Draw one."""
+        if self.faults:
+            return self.faults[int(random.integers(len(self.faults)))]
+        joint = self.joints[int(random.integers(len(self.joints)))]
+        return self._fault(self.kinds[int(random.integers(len(self.kinds)))], joint)
+
+    @staticmethod
+    def _fault(kind: str, joint: str) -> Fault:
+        make: Callable[[str], Fault] = FAULTS[kind]
+        return make(joint)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -112,7 +138,13 @@ class Task:
     """
 
     robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
-    """Who acts."""
+    """Who acts; what its servos give while they turn is said by ``speed_lines``."""
+    speed_lines: bool = True
+    """Whether the torque of every servo falls linearly to nothing at its no-load speed, as that of a motor does.
+
+    Without these lines a servo gives its full torque at any speed, and what is learned lives on that: see
+    ``docs/environments.md``.
+    """
     gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
     """Gait whose mid-stance is the centre of the actions of a lying robot, and whose period the clock tells."""
     ground: Ground = field(default_factory=Ground)
@@ -143,8 +175,18 @@ class Task:
     shoves: Shoves | None = None
     """Who pushes; None: nobody."""
 
+    @property
+    def body(self) -> Crocodile:
+        """The robot as its physics has it: with the torque-speed lines if ``speed_lines`` is true."""
+        return with_speed_lines(self.robot) if self.speed_lines else self.robot
+
     def __post_init__(self) -> None:
+        crocodile(self.robot, "an environment")
         with Checks("task", self) as check:
+            check.that(
+                isinstance(self.speed_lines, bool),
+                f"task.speed_lines is {self.speed_lines!r}; true or false is allowed",
+            )
             check.that(
                 self.start in get_args(Start),
                 f"task.start is {self.start!r}; {' or '.join(get_args(Start))} is allowed",

@@ -10,26 +10,26 @@ from suchus.design import Crocodile
 from suchus.figures.posture import draw_posture
 from suchus.figures.style import COLOURS, LINES, captioned, panels, styled
 from suchus.figures.timeseries import draw_lines, mark_cycles
-from suchus.metrics import between
+from suchus.metrics import between, height_peak_to_peak
 from suchus.motion import START
 
 
-def draw_heights(record: xr.Dataset, arms: Sequence[str]) -> Figure:
+def draw_heights(record: xr.Dataset, names: Sequence[str]) -> Figure:
     """Draw the height of the centre of mass about its mean: at equal commands, then at equal displacement.
 
     Args:
-        record: of one run per arm, then the legs alone at equal displacement.
-        arms: roles of the first runs.
+        record: of one run per condition, then the legs alone at equal displacement.
+        names: of the conditions, roles of ``style.LINES``; with spine and tail first, limbs only second.
     """
     part = between(record)
     height = part.centre_of_mass.sel(xyz="z")
     height = height - height.mean("time")
     with styled():
-        figure, axes = panels(2, 1, height=6.4, sharex=True, sharey=True)
+        figure, axes = panels(2, 1, height=7.0, sharex=True, sharey=True)
         upper, lower = axes[:, 0]
-        draw_lines(upper, height.isel(run=slice(0, len(arms))), arms, scale=1000.0)
+        draw_lines(upper, height.isel(run=slice(0, len(names))), names, scale=1000.0)
         upper.set_title("equal commands to the legs")
-        draw_lines(lower, height.isel(run=[0, len(arms)]), (arms[0], arms[-1]), scale=1000.0)
+        draw_lines(lower, height.isel(run=[0, len(names)]), (names[0], names[1]), scale=1000.0)
         lower.set_title("equal displacement: longer strokes for the legs alone")
         for ax in (upper, lower):
             ax.set_ylabel("height − mean [mm]")
@@ -38,8 +38,36 @@ def draw_heights(record: xr.Dataset, arms: Sequence[str]) -> Figure:
         upper.legend(ncols=2, loc="upper center", bbox_to_anchor=(0.5, -0.02), frameon=False)
     return captioned(
         figure,
-        "Height of the centre of mass about its mean. Above: the four arms with identical leg commands. Below: the "
-        "legs alone with strokes long enough to get as far as spine and tail do. Dotted lines: beginnings of cycles.",
+        "Height of the centre of mass about its mean. Above: all conditions with identical leg commands. Below: the "
+        "legs alone with strokes long enough to get as far as spine and tail do, or with their longest. Dotted lines: "
+        "beginnings of cycles.",
+    )
+
+
+def draw_spreads(record: xr.Dataset, names: Sequence[str]) -> Figure:
+    """Draw the fluctuation of the height in every condition, with the range of its repeats.
+
+    Args:
+        record: of one run per condition, with the repeats' fluctuation.
+        names: of the conditions, roles of ``style.LINES``.
+    """
+    fluctuation = 1000 * height_peak_to_peak(record)
+    with styled():
+        figure, axes = panels(1, 1, height=4.0)
+        ax = axes[0, 0]
+        for i, name in enumerate(names):
+            repeats, here = 1000 * record.repeated_pp.sel(condition=name), len(names) - i
+            ax.plot([float(repeats.min()), float(repeats.max())], [here, here], color=COLOURS[name], linewidth=7,
+                    alpha=0.35, solid_capstyle="butt")  # fmt: skip
+            ax.plot(float(fluctuation[i]), here, "o", color=COLOURS[name], markersize=9)
+        ax.set_yticks(range(len(names), 0, -1), [str(LINES[name]["label"]) for name in names])
+        ax.set_ylim(0.4, len(names) + 0.6)
+        ax.set_xlim(left=0.0)
+        ax.set_xlabel("height of the centre of mass, highest − lowest [mm]")
+    return captioned(
+        figure,
+        "Fluctuation of the height of the centre of mass in every condition. Points: one run without noise; bars: the "
+        f"range of {record.sizes['repeat']} repeats with noise on the servos and another friction.",
     )
 
 
@@ -63,39 +91,6 @@ def draw_snapshots(robot: Crocodile, record: xr.Dataset, arms: Mapping[str, int]
                 ax.set_title(f"{time:g} s", color=COLOURS[role])
     return captioned(
         figure,
-        "Postures from above at the article's three times. Filled feet stand; the yellow line or area is what they "
-        "support, the red mark the centre of mass projected onto the ground.",
-    )
-
-
-def draw_variations(record: xr.Dataset) -> Figure:
-    """Draw the fluctuation of varied crawls against that of the legs alone."""
-    with styled():
-        figure, axes = panels(1, 1, width=5.6, height=5.0)
-        ax = axes[0, 0]
-        alone = 1000 * record.varied_std.sel(arm="limbs_only")
-        top = 1.08 * 1000 * float(record.varied_std.max())
-        ax.fill_between([0, top], [0, top], color="#F1F1F1", zorder=0)
-        ax.plot([0, top], [0, top], color=COLOURS["neutral"], linewidth=1.0)
-        for role, marker in (("coordinated", "o"), ("tail_drag", "s")):
-            ax.plot(
-                alone,
-                1000 * record.varied_std.sel(arm=role),
-                marker,
-                color=COLOURS[role],
-                markeredgecolor="white",
-                markersize=8,
-                label=LINES[role]["label"],
-            )
-        ax.set_xlim(0, top)
-        ax.set_ylim(0, top)
-        ax.set_aspect("equal")
-        ax.text(0.97 * top, 0.05 * top, "steadier than legs alone", ha="right", color=COLOURS["printed"])
-        ax.set_xlabel("std of height, limbs only [mm]")
-        ax.set_ylabel("std of height [mm]")
-        ax.legend(loc="upper left")
-    return captioned(
-        figure,
-        "Fluctuation of the centre of mass's height in crawls with other strokes, bends, lifts, duty factors and grip, "
-        "against that of the legs alone with the same legs on the same ground. Below the line is steadier.",
+        "Postures from above at the article's three times. Filled feet stand; the yellow line or area is the "
+        "support by feet and tail, the red mark the centre of mass projected onto the ground.",
     )

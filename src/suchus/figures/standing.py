@@ -7,6 +7,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from suchus import rotation
 from suchus.design import Crocodile, servo_names
 from suchus.figures.posture import draw_posture
 from suchus.figures.style import COLOURS, captioned, panels, styled
@@ -72,13 +73,13 @@ def _shift(record: xr.Dataset, x: float) -> xr.DataArray:
 
 def _facing_right(record: xr.Dataset) -> xr.Dataset:
     """Return a moment of a record turned about the vertical, so that the pelvis faces along x."""
-    w, x, y, z = record.orientation.isel(time=0).values.astype(float)
-    turn = -np.arctan2(2 * (w * z - x * y), 1 - 2 * (x * x + z * z))  # from the axis to the left: it stays level
+    now = record.orientation.isel(time=0).values.astype(float)
+    left = rotation.matrix(now)[:, 1]  # which stays level
+    turn = float(np.arctan2(left[0], left[1]))
     c, s = np.cos(turn), np.sin(turn)
     R = xr.DataArray([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]], dims=("to", "xyz"), coords={"xyz": record.xyz})
     turned = {n: (R * record[n]).sum("xyz").rename(to="xyz").assign_coords(xyz=record.xyz) for n in _PLACES}
-    half_c, half_s = np.cos(turn / 2), np.sin(turn / 2)
-    q = [half_c * w - half_s * z, half_c * x - half_s * y, half_c * y + half_s * x, half_c * z + half_s * w]
+    q = rotation.multiply(rotation.about(np.array([0.0, 0.0, 1.0]), turn), now)
     return record.assign(turned).assign(orientation=(("time", "wxyz"), [q]))
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from suchus.errors import InvalidDesign
 from suchus.flow.body import Body, thin_share, window_of
 from suchus.flow.free import FreeBody, Swimmer
-from suchus.flow.grid import Grid
+from suchus.flow.grid import Grid, check_kinds
 from suchus.flow.resolution import DOUBTED, REFUSED, cells_across, estimate, needed
 from suchus.flow.shape import Markers
 from suchus.flow.sides import Sides
@@ -55,13 +55,16 @@ class Setup:
     """Whether a Reynolds number that the grid cannot carry is let through, without a warning."""
 
     def __post_init__(self) -> None:
+        check_kinds(self)
         for name in ("viscosity", "density", "tolerance"):
             value = getattr(self, name)
             if not (isfinite(value) and value > 0):
                 raise InvalidDesign(f"{name} is {value}; a positive number is needed.")
         if not 0 < self.courant <= 1:
             raise InvalidDesign(f"courant is {self.courant}; above 1 the time stepping explodes. Give 0 to 1, say 0.8.")
-        if self.step is not None and not self.step > 0:
+        if not callable(self.stream) and not all(isfinite(part) for part in self.stream):
+            raise InvalidDesign(f"stream is {self.stream} m/s; two finite numbers are needed.")
+        if self.step is not None and not (isfinite(self.step) and self.step > 0):
             raise InvalidDesign(f"step is {self.step} s; a time step is positive. Give None to let the solver choose.")
         if self.precision not in ("single", "double"):
             raise InvalidDesign(f"precision is {self.precision!r}; there is 'single' and 'double'.")

@@ -2,7 +2,7 @@
 
 from suchus.hardware.commands import Commands, commands
 from suchus.hardware.files import csv_text, trajectory_text
-from suchus.hardware.limits import Load, check_commands, check_loads, loads
+from suchus.hardware.limits import Load, check_commands, check_loads, loads, overloaded, share_at_limit
 from suchus.hardware.servo_map import STRAIGHT, ServoLine, ServoMap, read_map, write_map
 
 __all__ = [
@@ -16,7 +16,9 @@ __all__ = [
     "commands",
     "csv_text",
     "loads",
+    "overloaded",
     "read_map",
+    "share_at_limit",
     "trajectory_text",
     "write_map",
 ]

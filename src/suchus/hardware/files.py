@@ -1,7 +1,10 @@
 """Commands as text: CSV for people and servo boards, a trajectory message for ROS."""
 
-from suchus.design import servo_names
+import numpy as np
+
+from suchus.design import Crocodile, cable_joints, servo_names
 from suchus.hardware.commands import Commands
+from suchus.kinematics.tail import bend_of_servo
 
 
 def csv_text(told: Commands) -> str:
@@ -15,20 +18,31 @@ def csv_text(told: Commands) -> str:
     return "\n".join(lines) + "\n"
 
 
-def trajectory_text(told: Commands) -> str:
-    """Return a ROS 2 ``trajectory_msgs/JointTrajectory`` as YAML; the joint ``tail_cable`` is the cable's pulley."""
+def trajectory_text(robot: Crocodile, told: Commands) -> str:
+    """Return a ROS 2 ``trajectory_msgs/JointTrajectory`` as YAML, for the joints of the exported URDF.
+
+    That has no cable: the bend that the pulley gives the tail is shared evenly by the hinges that the cable bends.
+
+    Paper: Eq. (18).
+    """
+    hinges = cable_joints(robot)
+    bend = bend_of_servo(robot.tail, told.angles[:, -1])
+    turned = np.gradient(bend, told.time) if len(bend) > 1 else np.zeros_like(bend)
+    turned[[0, -1]] = (bend[1] - bend[-2]) / (told.time[1] + told.time[-1] - told.time[-2])  # the last is the first
+    places = np.column_stack([told.angles[:, :-1], np.tile(bend[:, None] / len(hinges), len(hinges))])
+    speeds = np.column_stack([told.speeds[:, :-1], np.tile(turned[:, None] / len(hinges), len(hinges))])
     lines = [
         "header:",
         "  stamp: {sec: 0, nanosec: 0}",
         "  frame_id: ''",
-        f"joint_names: [{', '.join(servo_names())}]",
+        f"joint_names: [{', '.join((*servo_names()[:-1], *hinges))}]",
         "points:",
     ]
-    for time, angles, speeds in zip(told.time, told.angles, told.speeds, strict=True):
+    for time, angles, rates in zip(told.time, places, speeds, strict=True):
         nanoseconds = round(time * 1e9)
         lines += [
             f"- positions: [{', '.join(f'{a + 0.0:.9f}' for a in angles)}]",
-            f"  velocities: [{', '.join(f'{v + 0.0:.9f}' for v in speeds)}]",
+            f"  velocities: [{', '.join(f'{v + 0.0:.9f}' for v in rates)}]",
             "  accelerations: []",
             "  effort: []",
             f"  time_from_start: {{sec: {nanoseconds // 10**9}, nanosec: {nanoseconds % 10**9}}}",

@@ -1,11 +1,12 @@
 """Whether servos can do what a gait asks: pulses, speed, and torque from a simulated walk."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+import xarray as xr
 
-from suchus.design import Crocodile, servo_names
+from suchus.design import Crocodile, servo_names, with_servos
 from suchus.errors import OutsideLimits
 from suchus.hardware.commands import Commands
 from suchus.hardware.servo_map import ServoMap
@@ -16,7 +17,18 @@ from suchus.motion import START, Gait
 
 AT_LIMIT = 0.02
 """Share of a walk that a servo may spend at its torque limit [-]; chosen so that the peak of a footfall passes."""
+TRACKING = 0.35
+"""How far a servo at its limit may be from its commanded angle for all but 2 % of a walk [rad], 20 degrees.
+
+Chosen with the shelf's gaits in view: the crawl and ``spine_only`` leave 14 and 16 degrees at the first yaw joint and
+lose 1 and 3 % of their way against servos that reach their angles. A joint farther off makes another gait.
+"""
+CLASSES: Mapping[str, float] = {
+    f"{kg} kg cm": round(kg * 0.0980665, 3) for kg in (5, 10, 15, 20, 25, 30, 35, 40, 45, 60, 80, 100, 150)
+}
+"""Hobby servos as they are sold, by their stall torque [N m]; the first that does is named."""
 _FULL = 0.999
+_STRONG = 4.0  # times as strong are the servos whose torques show what a walk asks for
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -31,6 +43,16 @@ class Load:
     """Share of the walk that it spends at the limit [-]."""
     first: float
     """When it first gets there, from the beginning of the walk [s]; NaN if it does not."""
+    off: float
+    """How far it is from its commanded angle at most, but for the worst 2 % of the walk [rad]."""
+    needed: float
+    """Torque that a servo four times as strong stays below, but for the hardest 2 % of the same walk [N m]."""
+
+    @property
+    def stock(self) -> str:
+        """The weakest class of hobby servos that would do."""
+        found = [name for name, torque in CLASSES.items() if torque >= self.needed and torque > self.limit]
+        return f"{found[0]} ({CLASSES[found[0]]:.3g} N m)" if found else f"none up to {max(CLASSES.values()):.3g} N m"
 
 
 def check_commands(robot: Crocodile, gait: Gait, servo_map: ServoMap, told: Commands) -> None:
@@ -73,45 +95,66 @@ def loads(
         Diverged: the physics came apart.
         OutsideLimits: the joints cannot follow the gait.
     """
-    run = Run(robot=robot, gait=gait)
-    record = whole(simulate([run], duration=START + cycles * gait.period, progress=progress)).isel(run=0)
-    walk = between(record)
+    strong = with_servos(robot, lambda servo: replace(servo, torque=_STRONG * servo.torque))
+    runs = [Run(robot=one, gait=gait) for one in (robot, strong)]
+    walk = between(whole(simulate(runs, duration=START + cycles * gait.period, progress=progress)))
+    shares, first = share_at_limit(robot, walk.isel(run=0)), walk.time.values - START
+    torques, off = np.abs(walk.servo_torque), np.abs(walk.servo_target - walk.servo_angle).isel(run=0)
     borne = {}
     for name in servo_names():
-        limit = servo_of(robot, name).torque
-        torque = np.abs(walk.servo_torque.sel(servo=name).values)
-        full = torque >= _FULL * limit
+        own, limit = torques.sel(servo=name).values, servo_of(robot, name).torque
+        full = own[0] >= _FULL * limit
         borne[name] = Load(
-            torque=float(torque.max()),
+            torque=float(own[0].max()),
             limit=limit,
-            at_limit=float(full.mean()),
-            first=float(walk.time.values[np.argmax(full)]) - START if full.any() else float("nan"),
+            at_limit=float(shares.sel(servo=name)),
+            first=float(first[np.argmax(full)]) if full.any() else float("nan"),
+            off=float(np.quantile(off.sel(servo=name), 1.0 - AT_LIMIT)),
+            needed=float(np.quantile(own[1], 1.0 - AT_LIMIT)),
         )
     return borne
 
 
-def check_loads(robot: Crocodile, gait: Gait, borne: Mapping[str, Load], at_limit: float = AT_LIMIT) -> None:
-    """Refuse a gait that keeps a servo at its torque limit.
+def share_at_limit(robot: Crocodile, record: xr.Dataset) -> xr.DataArray:
+    """Return the share of the time that each servo spends at its torque limit [-], over whatever else a record has.
 
-    A servo cannot give more than its limit, in the simulation as on the table: how long it stands there tells whether
-    the gait asks too much.
+    Args:
+        robot: whose record it is.
+        record: of the time that counts, as ``metrics.between`` cuts it.
+    """
+    limits = xr.DataArray([servo_of(robot, str(name)).torque for name in record.servo.values], dims="servo")
+    return (np.abs(record.servo_torque) >= _FULL * limits).mean("time")
+
+
+def overloaded(borne: Mapping[str, Load], at_limit: float = AT_LIMIT) -> list[str]:
+    """Return a sentence for each servo that stands at its torque limit for more than a share of the walk."""
+    return [
+        f"{name} is at its torque limit of {load.limit:g} N m for {100 * load.at_limit:.0f} % of the walk, first at "
+        f"{load.first:.2f} s, and up to {np.degrees(load.off):.1f} degrees from its commanded angle; a servo of "
+        f"{load.stock} would do."
+        for name, load in borne.items()
+        if load.at_limit > at_limit
+    ]
+
+
+def check_loads(
+    robot: Crocodile, gait: Gait, borne: Mapping[str, Load], at_limit: float = AT_LIMIT, tracking: float = TRACKING
+) -> None:
+    """Refuse a gait that a servo cannot follow since it stands at its torque limit.
 
     Args:
         robot: who walks.
         gait: how.
         borne: from ``loads``.
-        at_limit: allowed share of the walk [-].
+        at_limit: share of the walk from which on a servo counts as standing at its limit [-].
+        tracking: how far such a servo may be from its commanded angle [rad].
 
     Raises:
-        OutsideLimits: the message names the servos and how long they stand at their limits.
+        OutsideLimits: the message names the servos, how long they stand at their limits, and what would do.
     """
-    over = {name: load for name, load in borne.items() if load.at_limit > at_limit}
-    if over:
-        said = ", ".join(
-            f"{name} for {100 * load.at_limit:.0f} % of the walk ({load.limit:g} N m, first at {load.first:.2f} s)"
-            for name, load in over.items()
-        )
+    weak = {name: load for name, load in borne.items() if load.at_limit > at_limit and load.off > tracking}
+    if weak:
         raise OutsideLimits(
-            f"gait {gait.name!r} holds servos of robot {robot.name!r} at their torque limit: {said}; "
-            f"{100 * at_limit:.3g} % is allowed: choose stronger servos or a gentler gait, or allow a greater share."
+            f"robot {robot.name!r} cannot follow gait {gait.name!r}: {' '.join(overloaded(weak, at_limit))} Up to "
+            f"{np.degrees(tracking):.3g} degrees is allowed: choose such a servo or a gentler gait, or allow more."
         )

@@ -11,6 +11,9 @@ from suchus.design.meaning import meanings
 from suchus.errors import InvalidDesign
 from suchus.record import new_file
 
+CHANNELS = 16
+"""Of the usual servo board [-]; 19 servos need two of them."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ServoLine:
@@ -19,7 +22,7 @@ class ServoLine:
     name: str
     """Name of the servo, as ``LF_yaw``; the angle of ``tail_cable`` is that of its pulley."""
     channel: int
-    """Of the servo board [-]."""
+    """Of the servo board, from 0 [-]."""
     direction: int
     """1 if longer pulses turn the joint in its positive sense, -1 if they turn it the other way [-]."""
     offset: float
@@ -32,10 +35,13 @@ class ServoLine:
     """Shortest allowed [us]."""
     pulse_max: float
     """Longest allowed [us]."""
+    board: int = 0
+    """Which servo board, from 0; the usual ones have 16 channels [-]."""
 
     def __post_init__(self) -> None:
         with Checks(f"servo {self.name!r}", self) as check:
             check.whole("channel", 0, 1023)
+            check.whole("board", 0, 61)
             check.that(self.direction in (-1, 1), f"direction is {self.direction!r}; 1 or -1 is allowed")
             check.number("offset", -2 * pi, 2 * pi, "rad")
             check.number("pulse_centre", 100.0, 10000.0, "us")
@@ -72,12 +78,14 @@ class ServoMap:
             raise InvalidDesign(
                 f"servo map {self.name!r} {text}; every servo is needed once: {', '.join(servo_names())}."
             )
-        channels = [line.channel for line in self.servos]
+        places = [(line.board, line.channel) for line in self.servos]
         for line in self.servos:
-            if channels.count(line.channel) > 1:
-                sharing = ", ".join(other.name for other in self.servos if other.channel == line.channel)
+            if places.count((line.board, line.channel)) > 1:
+                here = (line.board, line.channel)
+                sharing = ", ".join(other.name for other in self.servos if (other.board, other.channel) == here)
                 raise InvalidDesign(
-                    f"servo map {self.name!r} has {sharing} on channel {line.channel}; one each is allowed."
+                    f"servo map {self.name!r} has {sharing} on channel {line.channel} of board {line.board}; one each "
+                    "is allowed."
                 )
 
     def ordered(self) -> tuple[ServoLine, ...]:
@@ -92,18 +100,19 @@ STRAIGHT = ServoMap(
     servos=tuple(
         ServoLine(
             name=name,
-            channel=channel,
+            channel=place % CHANNELS,
             direction=1,
             offset=0.0,
             pulse_centre=1500.0,
             pulse_per_radian=round(2000.0 / (1.5 * pi), 3),
             pulse_min=500.0,
             pulse_max=2500.0,
+            board=place // CHANNELS,
         )
-        for channel, name in enumerate(servo_names())
+        for place, name in enumerate(servo_names())
     ),
 )
-"""Servos that turn 270 degrees over 500 to 2500 us, mounted in the middle, channels in order: a map to start from."""
+"""Servos that turn 270 degrees over 500 to 2500 us, mounted in the middle, on two boards of 16: a map to start from."""
 
 
 def read_map(path: Path) -> ServoMap:

@@ -1,12 +1,13 @@
 """Simulation on land: a batch of runs from the start; one crawl is a batch of one."""
 
 from suchus.design.ground import Ground
+from suchus.fault import Fault
+from suchus.faults import Backlash, Deaf, Limp, Locked, LostFoot, Offset, Slow, Weak
 from suchus.land.arenas import ARENAS
 from suchus.land.crawling import crawl
-from suchus.land.faults import Deaf, Fault, Limp, Locked, Weak
 from suchus.land.live import Live
 from suchus.land.loop import CONTROL_PERIOD
-from suchus.land.lost import KINDS, LEGS_LOST, LOST, angle_at, lost
+from suchus.land.lost import KINDS, KNEES, LEGS_LOST, LOST, angle_at, lost
 from suchus.land.push import Push
 from suchus.land.run import VACUUM, WATER, Afloat, Run
 from suchus.land.simulation import simulate
@@ -16,19 +17,24 @@ __all__ = [
     "ARENAS",
     "CONTROL_PERIOD",
     "KINDS",
+    "KNEES",
     "LEGS_LOST",
     "LOST",
     "VACUUM",
     "WATER",
     "Afloat",
+    "Backlash",
     "Deaf",
     "Fault",
     "Ground",
     "Limp",
     "Live",
     "Locked",
+    "LostFoot",
+    "Offset",
     "Push",
     "Run",
+    "Slow",
     "Weak",
     "angle_at",
     "crawl",

@@ -9,14 +9,13 @@ import numpy as np
 from mujoco.batch import Batch, SimulationError
 
 from suchus import threads
-from suchus.design import Crocodile, servo_names
+from suchus.design import GRAVITY, AnyRobot, layout
 from suchus.design.ground import Ground
 from suchus.design.relief import Relief
-from suchus.kinematics.mass import GRAVITY
 from suchus.land.alike import Alike
-from suchus.land.faults import Fault, Limp, Weak
 from suchus.land.run import Afloat, Run
-from suchus.model import activations, compile_model, standing
+from suchus.model import activations, compile_model, force_sensors, standing
+from suchus.motion import hip_height
 
 _TOO_FAST = 1e3  # [rad/s] or [m/s]; nothing on a robot moves so fast: the physics has come apart
 _CURRENT = mujoco.mjtStage.mjSTAGE_VEL  # after a step, positions and velocities describe the new state
@@ -37,29 +36,41 @@ class Bench:
         self._single = len(models) == 1
         self._models: list[Any] = [] if self._single else [models[body] for body in bodies]
         self._owned: set[int] = set()
+        self._written = False
         self._timestep = timestep
         self.batch = Batch(shared, len(runs), nthread=min(threads.count(), len(runs)), persistent=True)
         self._lay_ground(runs)
         if self._models:
             self.batch.set_models(self._models)
+            self._written = False
         self.qpos, self.qvel, self.ctrl, self.sensors = (
             self.batch.bind(name) for name in ("qpos", "qvel", "ctrl", "sensordata")
         )
         self.readings = self.sensors.copy()
-        self._forces = slice(int(shared.sensor("LF_force").adr[0]), int(shared.sensor("tail_force").adr[0]) + 3)
+        forces = force_sensors(runs[0].robot)
+        self._forces = slice(int(shared.sensor(forces[0]).adr[0]), int(shared.sensor(forces[-1]).adr[0]) + 3)
+        servos = [shared.sensor(f"{name}_position") for name in layout(runs[0].robot).servos]
+        self._positions = slice(int(servos[0].adr[0]), int(servos[-1].adr[0]) + 1)
         self.alive = np.ones(len(runs), dtype=bool)
         self.ended = np.full(len(runs), np.inf)
         self.cause = [""] * len(runs)
 
-    def _field(self, name: str, sim: int) -> np.ndarray:
-        """Return a run's own values of a model field, for writing."""
+    def field(self, name: str, sim: int) -> np.ndarray:
+        """Return a run's own values of a model field, for writing; ``commit`` after it."""
         if self._single:
             values: np.ndarray = self.batch.expand(name)[sim]
             return values
+        self._written = True
         owner: Any = self._own(sim)
         for part in name.split("."):
             owner = getattr(owner, part)
         return np.asarray(owner)
+
+    def commit(self) -> None:
+        """Let the physics know of written model fields."""
+        if self._models and self._written:
+            self.batch.set_models(self._models)
+            self._written = False
 
     def _own(self, sim: int) -> Any:
         """Return a run's model, which it shares with no other from now on."""
@@ -71,14 +82,14 @@ class Bench:
     def _lay_ground(self, runs: Sequence[Run]) -> None:
         for sim, run in enumerate(runs):
             if run.ground.grip != 1.0:
-                self._field("geom_friction", sim)[1:, 0] *= run.ground.grip
+                self.field("geom_friction", sim)[1:, 0] *= run.ground.grip
             if run.ground.uphill or run.ground.sideways:
                 self.tilt(sim, run.ground)
             if run.afloat is not None:
                 self._cast_off(sim, run.afloat)
 
     def _cast_off(self, sim: int, afloat: Afloat) -> None:
-        self._field("opt.gravity", sim)[:] = 0.0
+        self.field("opt.gravity", sim)[:] = 0.0
         self._set_option("density", sim, afloat.density)
         self._set_option("viscosity", sim, afloat.viscosity)
         self._set_option("integrator", sim, int(mujoco.mjtIntegrator.mjINT_RK4))
@@ -90,29 +101,22 @@ class Bench:
             self.batch.expand(f"opt.{name}")[sim] = value
         else:
             setattr(self._own(sim).opt, name, value)
+            self._written = True
 
-    def break_servo(self, sim: int, fault: Fault) -> None:
-        """Let a servo go limp or weak from now on."""
-        servo = servo_names().index(fault.joint)
-        if isinstance(fault, Limp):
-            if self._single:
-                self.batch.expand("opt.disableactuator")[sim] |= 1 << servo
-            else:
-                self._own(sim).opt.disableactuator |= 1 << servo
-        elif isinstance(fault, Weak):
-            self._field("actuator_forcerange", sim)[servo] *= fault.fraction
-        if self._models:
-            self.batch.set_models(self._models)
+    def power(self, sim: int, servo: str, *, on: bool) -> None:
+        """Give a servo its torque, or take it away, from the next ``commit`` on."""
+        bit = 1 << int(self.model.actuator(servo).group[0])
+        now = self.batch.expand("opt.disableactuator")[sim] if self._single else self._own(sim).opt.disableactuator
+        self._set_option("disableactuator", sim, int(now) & ~bit if on else int(now) | bit)
 
-    def mend_servo(self, sim: int, joint: str) -> None:
-        """Give a servo its torque back from now on; only where all runs share a model, as a lone run does."""
-        servo = servo_names().index(joint)
-        self.batch.expand("opt.disableactuator")[sim] &= ~(1 << servo)
-        self.batch.expand("actuator_forcerange")[sim, servo] = self.model.actuator_forcerange[servo]
+    def angles(self, sim: int) -> np.ndarray:
+        """Return the angles of a run's joints at the servos' shafts as they are now, shape (servo,) [rad]."""
+        angles: np.ndarray = self.readings[sim, self._positions]
+        return angles
 
     def tilt(self, sim: int, ground: Ground) -> None:
         """Let a ground slope as it says from now on; its grip and relief are not looked at."""
-        self._field("opt.gravity", sim)[:] = _gravity(ground)
+        self.field("opt.gravity", sim)[:] = _gravity(ground)
 
     def push(self, sim: int, body: str, force: np.ndarray) -> None:
         """Let a force act on the centre of mass of a body from now on.
@@ -129,15 +133,16 @@ class Bench:
 
         Args:
             runs: the runs.
-            first: the servo angles at the start, shape (run, 19) [rad].
+            first: the servo angles at the start, shape (run, servo) [rad].
         """
         act = self.batch.bind("act")
         found: dict[object, tuple[np.ndarray, np.ndarray]] = {}
         for sim, run in enumerate(runs):
-            key = (run.robot, run.gait.hip_height, first[sim].tobytes())
+            height = hip_height(run.robot, run.gait)
+            key = (run.robot, height, first[sim].tobytes())
             if key not in found:
                 model = compile_model(run.robot, self._timestep)  # every run begins on even ground
-                posture = standing(model, run.robot, run.gait.hip_height, first[sim])
+                posture = standing(model, run.robot, height, first[sim])
                 found[key] = posture, activations(model, first[sim])
             self.qpos[sim], act[sim] = found[key]
             self.ctrl[sim] = first[sim]
@@ -151,7 +156,7 @@ class Bench:
         sensor filters them, everything else as it is now.
 
         Args:
-            targets: shape (run, 19) [rad].
+            targets: shape (run, servo) [rad].
             steps: number of physics steps.
             time: at which they begin [s].
             alike: runs of which one stands for all; None if there are none.
@@ -192,7 +197,7 @@ class Bench:
             self.alive[sim], self.ended[sim], self.cause[sim] = False, time, cause
 
 
-def _model(robot: Crocodile, timestep: float, relief: Relief | None) -> Any:
+def _model(robot: AnyRobot, timestep: float, relief: Relief | None) -> Any:
     """Return a model of its own, which does not look for islands.
 
     A robot is one island, so that the bytes are the same, and a step takes a sixteenth less time.

@@ -9,7 +9,7 @@ from suchus.control import Coordinated
 from suchus.control.coordinated import Coordinator
 from suchus.design.ground import Ground
 from suchus.errors import Diverged, InvalidDesign
-from suchus.land.faults import Fault, check_faults
+from suchus.fault import Fault, check_faults
 from suchus.land.loop import CONTROL_PERIOD, Loop, physics_steps, start
 from suchus.land.push import Push, check_pushes
 from suchus.land.run import Run
@@ -92,20 +92,24 @@ class Live:
             self._beat = _START + round(share * _cycle(run)) % _cycle(run)
 
     def begin(self, fault: Fault) -> None:
-        """Let something break now; what was wrong with the same joint before is over.
+        """Let something break now; what was wrong with the same part before is over.
+
+        All goes as in a run whose fault happens at this time; only what the controller hears of it, it hears one
+        control period later.
 
         Raises:
-            UnknownName: no such joint or sensor.
+            UnknownName: no such part.
+            InvalidDesign: a number of the fault is outside its range.
             OutsideLimits: a joint held at an angle that it cannot reach.
         """
-        check_faults([replace(fault, at=0.0)], self.run.robot, inf)
-        if fault.acts_on == "servo":
-            self._loop.troubles.mend(0, fault.joint)
-        self._loop.troubles.begin(0, fault)
+        check_faults([replace(fault, at=0.0)], self.run.robot, inf)  # type: ignore[type-var]  # all are dataclasses
+        self._loop.troubles.injector.begin(0, fault)
+        self._read()
 
-    def mend(self, joint: str) -> None:
-        """Repair a joint."""
-        self._loop.troubles.mend(0, joint)
+    def mend(self, part: str) -> None:
+        """Repair a part."""
+        self._loop.troubles.injector.mend(0, part)
+        self._read()
 
     def push(self, push: Push) -> None:
         """Push at the push's time, which may be now.
@@ -121,8 +125,12 @@ class Live:
         self._loop.bench.tilt(0, ground)
 
     def _look(self) -> None:
-        """Decide what the servos are told next, and read everything."""
-        self._command = self._loop.decide(self._tick, self._beat)
+        """Decide what the servos are commanded next, and read everything."""
+        self._asked = self._loop.decide(self._tick, self._beat)
+        self._read()
+
+    def _read(self) -> None:
+        self._command = self._loop.disturb(self._tick, self._asked)
         self._loop.readings.store(0, self._command.phase, self._command.targets)
         self._now = self._loop.readings.sample(0, 0)
 

@@ -8,8 +8,6 @@ from jaxtyping import Float
 
 from suchus.land.bench import Bench
 
-_MENDED = {"opt.disableactuator": "disableactuator", "actuator_forcerange": "actuator_forcerange"}
-
 
 class Beginning(NamedTuple):
     """How a robot begins."""
@@ -25,7 +23,7 @@ class Beginning(NamedTuple):
 
 
 def restart(bench: Bench, sim: int, begin: Beginning) -> None:
-    """Put one robot of a batch into a state, healthy and not pushed, whatever became of it before.
+    """Put one robot of a batch into a state, not pushed, whatever became of it before; faults are the injector's.
 
     The others stay as they are. From then on it moves as a robot of a fresh batch does, to the last bit.
 
@@ -35,9 +33,6 @@ def restart(bench: Bench, sim: int, begin: Beginning) -> None:
         begin: the state.
     """
     batch, who = bench.batch, np.array([sim])
-    for name, plain in _MENDED.items():
-        if batch.expanded(name) is not None:
-            batch.expand(name)[sim] = getattr(bench.model.opt if name.startswith("opt.") else bench.model, plain)
     batch.reset(who, stage=mujoco.mjtStage.mjSTAGE_NONE)
     bench.qpos[sim], bench.qvel[sim], bench.ctrl[sim] = begin.qpos, begin.qvel, begin.told
     batch.bind("act")[sim] = begin.act

@@ -1,14 +1,13 @@
 """What goes wrong during a batch: faults and pushes when their time comes, and noise."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
-from suchus.control import Sensed
-from suchus.design import servo_names
+from suchus.design import layout
+from suchus.fault import Fault
 from suchus.land.bench import Bench
-from suchus.land.faults import Deaf, Fault, Locked
+from suchus.land.injector import Injector
 from suchus.land.push import Push
 from suchus.land.run import Run
 
@@ -24,10 +23,10 @@ class Troubles:
         for sim, run in enumerate(runs):
             for fault in run.faults:
                 self._due.setdefault(int(np.ceil(fault.at / period - 1e-9)), []).append((sim, fault))
-        self._held = np.full((len(runs), len(servo_names())), np.nan)
-        self._deaf: list[tuple[int, str]] = []
+        self._servos = layout(runs[0].robot).servos
+        self.injector = Injector(bench, period, runs[0].robot)
         self._noise = {
-            sim: run.noise * np.random.default_rng(run.seed).standard_normal((ticks, len(servo_names())))
+            sim: run.noise * np.random.default_rng(run.seed).standard_normal((ticks, len(self._servos)))
             for sim, run in enumerate(runs)
             if run.noise > 0
         }
@@ -37,23 +36,7 @@ class Troubles:
         if self._pushes:
             self._push(tick)
         for sim, fault in self._due.get(tick, ()):
-            self.begin(sim, fault)
-
-    def begin(self, sim: int, fault: Fault) -> None:
-        """Let a fault begin now."""
-        if isinstance(fault, Locked):
-            servo = servo_names().index(fault.joint)
-            now = self._bench.readings[sim, servo]  # the first of them are the servos' angles
-            self._held[sim, servo] = now if fault.angle is None else fault.angle
-        elif isinstance(fault, Deaf):
-            self._deaf.append((sim, fault.sensor))
-        else:
-            self._bench.break_servo(sim, fault)
-
-    def mend(self, sim: int, joint: str) -> None:
-        """Let a servo obey again; only where all runs share a model, as a lone run does."""
-        self._held[sim, servo_names().index(joint)] = np.nan
-        self._bench.mend_servo(sim, joint)
+            self.injector.begin(sim, fault)
 
     def push(self, sim: int, push: Push) -> None:
         """Add a push."""
@@ -69,19 +52,10 @@ class Troubles:
             self._bench.push(sim, body, force)
         self._pushes = [(sim, push) for sim, push in self._pushes if push.at + push.duration > tick * self._period]
 
-    def deafen(self, sensed: Sensed) -> Sensed:
-        """Return what is sensed by what still senses."""
-        if not self._deaf:
-            return sensed
-        heard = {name: getattr(sensed, name).copy() for _, name in self._deaf}
-        for sim, name in self._deaf:
-            heard[name][sim] = (1.0, 0.0, 0.0, 0.0) if name == "orientation" else 0.0
-        return replace(sensed, **heard)
-
     def disturb(self, tick: int, targets: np.ndarray) -> np.ndarray:
-        """Return the angles that the servos are told in the end, shape (run, 19) [rad]."""
+        """Return the angles that the servos are commanded in the end, a new array of shape (run, servo) [rad]."""
         if self._noise:
             targets = targets.copy()
             for sim, noise in self._noise.items():
                 targets[sim] += noise[tick]
-        return np.where(np.isnan(self._held), targets, self._held)
+        return self.injector.command(tick, targets)

@@ -1,10 +1,19 @@
 """From a record to numbers: pure, and along whatever dimensions the record has besides time."""
 
+from suchus.metrics.bends import (
+    lateral_bend,
+    spine_amplitude,
+    spine_sine_share,
+    spine_swings,
+    tail_amplitude,
+    tail_swing_least,
+    tail_swings,
+)
 from suchus.metrics.decisive import Border, border, rank_correlation
 from suchus.metrics.energy import cost_of_transport, peak_torque, work
-from suchus.metrics.gait import duty_factor, loaded, sensed_phase
-from suchus.metrics.loads import swing_lift, swing_loads
-from suchus.metrics.loss import loss, says
+from suchus.metrics.gait import diagonal_phase_error, duty_factor, foot_clearance, loaded, sensed_phase, two_feet_share
+from suchus.metrics.loads import swing_height, swing_lift, swing_loads, swing_unloaded, tail_load_share
+from suchus.metrics.loss import loss
 from suchus.metrics.progress import displacement, heading, heading_change, path_length, slip
 from suchus.metrics.reach import held, lead, reach, static_margin
 from suchus.metrics.rolling import roll_angle, roll_rate
@@ -12,11 +21,13 @@ from suchus.metrics.stability import (
     height_peak_to_peak,
     height_std,
     line_distance,
+    line_distance_max,
     roll_peak_to_peak,
     support_distance,
     support_polygon,
     tilt,
 )
+from suchus.metrics.tail import tail_joint_spread, tail_joint_spread_max
 from suchus.metrics.window import between, whole
 
 __all__ = [
@@ -24,15 +35,19 @@ __all__ = [
     "between",
     "border",
     "cost_of_transport",
+    "diagonal_phase_error",
     "displacement",
     "duty_factor",
+    "foot_clearance",
     "heading",
     "heading_change",
     "height_peak_to_peak",
     "height_std",
     "held",
+    "lateral_bend",
     "lead",
     "line_distance",
+    "line_distance_max",
     "loaded",
     "loss",
     "path_length",
@@ -42,15 +57,26 @@ __all__ = [
     "roll_angle",
     "roll_peak_to_peak",
     "roll_rate",
-    "says",
     "sensed_phase",
     "slip",
+    "spine_amplitude",
+    "spine_sine_share",
+    "spine_swings",
     "static_margin",
     "support_distance",
     "support_polygon",
+    "swing_height",
     "swing_lift",
     "swing_loads",
+    "swing_unloaded",
+    "tail_amplitude",
+    "tail_joint_spread",
+    "tail_joint_spread_max",
+    "tail_load_share",
+    "tail_swing_least",
+    "tail_swings",
     "tilt",
+    "two_feet_share",
     "whole",
     "work",
 ]

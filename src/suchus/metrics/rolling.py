@@ -2,8 +2,8 @@
 
 import numpy as np
 import xarray as xr
-from jaxtyping import Float
 
+from suchus import rotation
 from suchus.metrics.window import between
 
 
@@ -25,7 +25,7 @@ def roll_angle(record: xr.Dataset, start: float = 0.0, end: float | None = None)
     axis = axis / (axis**2).sum("xyz") ** 0.5
     now = part.orientation.transpose(..., "time", "wxyz").values
     first = now[..., :1, :] * np.array([1.0, -1.0, -1.0, -1.0])
-    since = _product(now, np.broadcast_to(first, now.shape))
+    since = rotation.multiply(now, first)
     about = np.einsum("...tx,...x->...t", since[..., 1:], axis.transpose(..., "xyz").values)
     half = np.unwrap(np.arctan2(about, since[..., 0]), axis=-1, period=np.pi)
     angle = part.orientation.isel(wxyz=0, drop=True).transpose(..., "time").copy(data=2 * half)
@@ -43,10 +43,3 @@ def roll_rate(record: xr.Dataset, start: float = 0.0, end: float | None = None) 
     """
     angle = roll_angle(record, start, end)
     return (angle.isel(time=-1, drop=True) - angle.isel(time=0, drop=True)) / float(angle.time[-1] - angle.time[0])
-
-
-def _product(p: Float[np.ndarray, "*b 4"], q: Float[np.ndarray, "*b 4"]) -> Float[np.ndarray, "*b 4"]:
-    """Return the product of quaternions wxyz."""
-    w = p[..., 0] * q[..., 0] - np.sum(p[..., 1:] * q[..., 1:], axis=-1)
-    xyz = p[..., :1] * q[..., 1:] + q[..., :1] * p[..., 1:] + np.cross(p[..., 1:], q[..., 1:])
-    return np.concatenate([w[..., None], xyz], axis=-1)

@@ -5,8 +5,8 @@ import xarray as xr
 from jaxtyping import Float
 from scipy.spatial import ConvexHull, QhullError
 
-from suchus.errors import IncompatibleRecord
-from suchus.metrics.gait import LOADED
+from suchus import rotation
+from suchus.metrics.gait import loaded, threshold_of
 from suchus.metrics.window import between
 from suchus.motion import START
 
@@ -24,9 +24,10 @@ def height_peak_to_peak(record: xr.Dataset, start: float = START, end: float | N
 
 def tilt(record: xr.Dataset) -> xr.Dataset:
     """Return over time the ``roll`` (left side up positive) and ``pitch`` (nose down positive) of the pelvis [rad]."""
-    w, x, y, z = (record.orientation.sel(wxyz=c) for c in "wxyz")
-    roll = xr.apply_ufunc(np.arctan2, 2 * (w * x + y * z), 1 - 2 * (x**2 + y**2))
-    pitch = xr.apply_ufunc(np.arcsin, (2 * (w * y - z * x)).clip(-1.0, 1.0))
+    roll, pitch = (
+        xr.apply_ufunc(angle, record.orientation, input_core_dims=[["wxyz"]])
+        for angle in (rotation.roll, rotation.pitch)
+    )
     return xr.Dataset({"roll": roll.assign_attrs(units="rad"), "pitch": pitch.assign_attrs(units="rad")})
 
 
@@ -36,35 +37,40 @@ def roll_peak_to_peak(record: xr.Dataset, start: float = START, end: float | Non
     return roll.max("time") - roll.min("time")
 
 
-def support_polygon(record: xr.Dataset, time: float, threshold: float = LOADED) -> Float[np.ndarray, "corner 2"]:
-    """Return the corners of the hull of the standing feet at one time, in order [m].
+def support_polygon(record: xr.Dataset, time: float, threshold: float | None = None) -> Float[np.ndarray, "corner 2"]:
+    """Return the corners of the hull of what carries the body at one time, in order [m].
+
+    Standing feet count, and the tail where it is loaded. A loaded tail stands for its tip, the farthest place where it
+    can touch: the support is never larger than that.
 
     Args:
         record: of one run.
         time: [s].
-        threshold: least normal force of a standing foot [N].
+        threshold: least normal force of what carries [N]; a share of the weight if None.
     """
     now = record.sel(time=time, method="nearest")
-    stands = (now.foot_force.sel(xyz="z") > threshold).values
-    feet = np.asarray(now.foot_position.sel(xyz=["x", "y"]).values[stands], dtype=float)
-    if len(feet) < 3:
-        return feet
+    stands = loaded(now, threshold).values
+    points = np.asarray(now.foot_position.sel(xyz=["x", "y"]).values[stands], dtype=float)
+    if float(now.tail_force.sel(xyz="z")) > float(threshold_of(record, threshold)):
+        points = np.vstack([points, now.tail_tip.sel(xyz=["x", "y"]).values.astype(float)])
+    if len(points) < 3:
+        return points
     try:
-        return np.asarray(feet[ConvexHull(feet).vertices])
-    except QhullError:  # the feet stand in a line
-        return feet
+        return np.asarray(points[ConvexHull(points).vertices])
+    except QhullError:  # all of them in a line
+        return points
 
 
-def support_distance(record: xr.Dataset, time: float, threshold: float = LOADED) -> float:
-    """Return how far the projected centre of mass lies outside the support [m].
+def support_distance(record: xr.Dataset, time: float, threshold: float | None = None) -> float:
+    """Return how far the projected centre of mass lies outside the support by feet and tail [m].
 
-    With two standing feet the support is the line between them; inside a polygon the distance is negative, to the
-    nearest side.
+    With two points the support is the line between them; inside a polygon the distance is negative, to the nearest
+    side.
 
     Args:
         record: of one run.
         time: [s].
-        threshold: least normal force of a standing foot [N].
+        threshold: least normal force of what carries [N]; a share of the weight if None.
     """
     corners = support_polygon(record, time, threshold)
     com = record.centre_of_mass.sel(time=time, method="nearest").sel(xyz=["x", "y"]).values.astype(float)
@@ -76,24 +82,27 @@ def support_distance(record: xr.Dataset, time: float, threshold: float = LOADED)
     return -nearest if len(corners) >= 3 and _inside(com, corners) else nearest
 
 
-def line_distance(record: xr.Dataset, time: float) -> float:
-    """Return how far the projected centre of mass is from the line through the two feet meant to stand [m].
+def line_distance(record: xr.Dataset) -> xr.DataArray:
+    """Return over time how far the projected centre of mass is from the line through the two feet that stand [m].
 
-    Args:
-        record: of one run whose gait has two feet standing at that time.
-        time: [s].
-
-    Raises:
-        IncompatibleRecord: not two feet are meant to stand.
+    Not a number at times at which fewer or more than two feet stand: there is no such line then.
     """
-    now = record.sel(time=time, method="nearest")
-    stands = (np.mod(now.limb_phase, 1.0) >= 1.0 - now.duty_factor).values
-    if stands.sum() != 2:
-        raise IncompatibleRecord(f"at {time} s {stands.sum()} feet are meant to stand; a line needs two.")
-    first, second = now.foot_position.sel(xyz=["x", "y"]).values[stands].astype(float)
-    along = (second - first) / np.linalg.norm(second - first)
-    to = now.centre_of_mass.sel(xyz=["x", "y"]).values.astype(float) - first
-    return float(abs(along[0] * to[1] - along[1] * to[0]))
+    stands = loaded(record).transpose(..., "leg")
+    feet = record.foot_position.sel(xyz=["x", "y"]).transpose(*stands.dims, "xyz").values.astype(float)
+    com = record.centre_of_mass.sel(xyz=["x", "y"]).transpose(*stands.dims[:-1], "xyz").values.astype(float)
+    first = stands.values.argmax(axis=-1)
+    second = stands.sizes["leg"] - 1 - stands.values[..., ::-1].argmax(axis=-1)
+    start, end = (np.take_along_axis(feet, i[..., None, None], axis=-2)[..., 0, :] for i in (first, second))
+    along, to = end - start, com - start
+    with np.errstate(invalid="ignore", divide="ignore"):
+        apart = abs(along[..., 0] * to[..., 1] - along[..., 1] * to[..., 0]) / np.linalg.norm(along, axis=-1)
+    two = stands.sum("leg") == 2
+    return two.copy(data=apart).where(two).assign_attrs(units="m")
+
+
+def line_distance_max(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
+    """Return the greatest distance of the projected centre of mass from the line of the two standing feet [m]."""
+    return line_distance(between(record, start, end)).max("time")
 
 
 def _to_segment(point: np.ndarray, start: np.ndarray, end: np.ndarray) -> float:

@@ -1,5 +1,6 @@
 """The article as data: its tables, claims, misprints and signs; imports the standard library only."""
 
+from suchus.paper.article import AUTHORS, TITLE
 from suchus.paper.claim import Claim
 from suchus.paper.claims import CLAIMS
 from suchus.paper.errata import ERRATA
@@ -20,6 +21,7 @@ from suchus.paper.tables import (
 from suchus.paper.timing import CRAWL_END, CRAWL_START, CYCLE_PERIOD, CYCLES, SNAPSHOT_TIMES
 
 __all__ = [
+    "AUTHORS",
     "CLAIMS",
     "CRAWL_END",
     "CRAWL_START",
@@ -37,6 +39,7 @@ __all__ = [
     "TABLE_II",
     "TAIL_JOINTS",
     "TIBIA",
+    "TITLE",
     "BendAngles",
     "Claim",
     "JointSums",

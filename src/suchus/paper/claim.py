@@ -17,15 +17,12 @@ class Claim:
     """The number in SI units; None where the article states no number."""
     unit: str
     """SI unit, ``-`` for none."""
-    tolerance: float
-    """Half-width of the band that counts as reproduced, in ``unit``.
-
-    Zero for whole numbers and for statements; elsewhere the reason stands beside the number in ``claims_*``.
-    """
+    rounding: float
+    """Half of the last printed digit, in ``unit``; zero for whole numbers and for statements."""
     sense: str
     """The statement in one plain sentence; it can hold where the number does not."""
     quote: str
-    """The article's own words, shortened with dots."""
+    """The article's own words, shortened with dots; in brackets ours, where it states a thing without words."""
 
     def __str__(self) -> str:
         if self.value is None:
@@ -36,4 +33,4 @@ class Claim:
 
 def said(key: str, where: str, quantity: str, sense: str, quote: str) -> Claim:
     """Return a claim without a number: a statement that holds or does not."""
-    return Claim(key=key, where=where, quantity=quantity, value=None, unit="-", tolerance=0.0, sense=sense, quote=quote)
+    return Claim(key=key, where=where, quantity=quantity, value=None, unit="-", rounding=0.0, sense=sense, quote=quote)

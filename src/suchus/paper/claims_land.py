@@ -6,13 +6,10 @@ from suchus.paper.timing import CYCLE_PERIOD, CYCLES, SNAPSHOT_TIMES
 DISPLACEMENT_COORDINATED = 0.73
 DISPLACEMENT_LIMBS_ONLY = 0.16
 
-FAULT_READING = 0.10
-"""For a percentage read from a curve whose baseline, faulted leg and kind of fault are not stated [-].
-
-Ten points of a hundred: our own spread over one or both legs, limp or locked, is as wide.
-"""
-HEIGHT_READING = 0.04
-"""For a height whose datum (back, head, snout) is not stated: half the height of the robot's head [m]."""
+CENTIMETRE = 0.005
+"""Half of the last digit of a length printed in hundredths of a metre [m]."""
+PERCENT = 0.005
+"""Half of the last digit of a share printed in whole percent [-]."""
 
 
 def _fault(key: str, figure: int, joint: str, trunk: bool, change: float, sense: str, quote: str) -> Claim:
@@ -22,7 +19,7 @@ def _fault(key: str, figure: int, joint: str, trunk: bool, change: float, sense:
         quantity=f"change of displacement, {joint} lost, trunk {'moving' if trunk else 'still'}",
         value=change,
         unit="-",
-        tolerance=FAULT_READING,
+        rounding=PERCENT,
         sense=sense,
         quote=quote,
     )
@@ -35,7 +32,7 @@ STABILITY = (
         quantity="duration of a crawling cycle",
         value=CYCLE_PERIOD,
         unit="s",
-        tolerance=0.1,  # one line width of a gait diagram
+        rounding=0.5,  # printed in whole seconds
         sense="A crawling cycle takes four seconds.",
         quote="1-5 seconds is the first crawling cycle and 5-9 seconds is the second crawling cycle",
     ),
@@ -45,7 +42,7 @@ STABILITY = (
         quantity="cycles in the experiment",
         value=float(CYCLES),
         unit="-",
-        tolerance=0.0,
+        rounding=0.0,
         sense="The experiment holds two cycles.",
         quote="The experiment contains two complete crawling cycles",
     ),
@@ -56,7 +53,7 @@ STABILITY = (
             quantity=f"time of snapshot {i + 1}",
             value=time,
             unit="s",
-            tolerance=0.05,  # half of the last digit
+            rounding=0.05,  # half of the last digit
             sense="The posture is shown at 1.2, 1.5 and 1.8 s.",
             quote="screenshots of the simulation experiments at 1.2s, 1.5s and 1.8s",
         )
@@ -106,7 +103,7 @@ DISPLACEMENT = (
         quantity="forward displacement with spine and tail",
         value=DISPLACEMENT_COORDINATED,
         unit="m",
-        tolerance=0.05,  # 7 %: contact and servo models alone move the result by as much
+        rounding=CENTIMETRE,
         sense="With spine and tail the robot moves forward.",
         quote="the robot achieves a displacement of 0.73 meters in the forward direction",
     ),
@@ -116,7 +113,7 @@ DISPLACEMENT = (
         quantity="forward displacement with limbs only",
         value=DISPLACEMENT_LIMBS_ONLY,
         unit="m",
-        tolerance=0.02,  # 12 %: slip decides a third of it
+        rounding=CENTIMETRE,
         sense="With limbs only the robot moves forward, but little.",
         quote="0.16 meters when the spine and tail are not engaged in the motion",
     ),
@@ -126,9 +123,34 @@ DISPLACEMENT = (
         quantity="displacement with spine and tail over displacement without",
         value=DISPLACEMENT_COORDINATED / DISPLACEMENT_LIMBS_ONLY,  # not printed; follows from the two
         unit="-",
-        tolerance=0.8,  # both displacements at the ends of their own bands
+        rounding=(DISPLACEMENT_COORDINATED + CENTIMETRE) / (DISPLACEMENT_LIMBS_ONLY - CENTIMETRE)
+        - DISPLACEMENT_COORDINATED / DISPLACEMENT_LIMBS_ONLY,  # both at the farther ends of their last digits
         sense="In the same time the robot gets farther with spine and tail than without.",
         quote="the robot attains a higher velocity, covering more distance in the same time",
+    ),
+)
+
+SWING = (
+    said(
+        "tail_swing",
+        "IV.B",
+        "displacement gained by the swing of the tail",
+        "The swing of the tail, not only its contact with the ground, adds to the displacement.",
+        "the swing of the tail and spine can improve the motion displacement",
+    ),
+    said(
+        "spine_swing",
+        "IV.B",
+        "displacement gained by the swing of the spine",
+        "The swing of the spine adds to the displacement.",
+        "the swing of the tail and spine can improve the motion displacement",
+    ),
+    said(
+        "wagging_balances",
+        "I, IV.A",
+        "steadiness gained by wagging the tail",
+        "Wagging the dragged tail makes the body steadier than dragging it still.",
+        "they achieve balance by wagging their tails",
     ),
 )
 
@@ -209,8 +231,10 @@ FAULTS = (
         "fault_support",
         "IV.C, Fig. 21",
         "support with a hind pitch joint lost",
-        "Tail, right front leg and left hind leg carry the body so that the damaged hind leg can swing.",
-        "through the support function of the tail, right front leg and left back leg",
+        "Tail, right front and left hind leg carry the body and raise its centre of gravity, so that the damaged hind "
+        "leg can be lifted and swing.",
+        "raises the center of gravity of the robot through the support function of the tail, right front leg and left "
+        "back leg, so that the hind legs can be lifted off the ground and swing",
     ),
     said(
         "fault_tolerance",
@@ -228,8 +252,8 @@ HEIGHTS = (
         quantity="reachable height when crawling",
         value=0.16,
         unit="m",
-        tolerance=HEIGHT_READING,
-        sense="Crawling, the robot reaches no higher than its legs let it.",
+        rounding=CENTIMETRE,
+        sense="Crawling, the robot can reach this height.",
         quote="can reach a height of 0.16m in the crawling state",
     ),
     Claim(
@@ -238,8 +262,8 @@ HEIGHTS = (
         quantity="reachable height when standing on hind legs and tail",
         value=0.68,
         unit="m",
-        tolerance=HEIGHT_READING,
-        sense="On hind legs and tail the robot stands up and reaches much higher.",
+        rounding=CENTIMETRE,
+        sense="On hind legs and tail the robot stands and reaches higher than when it crawls.",
         quote="and 0.68m in the bipedal standing state",
     ),
     Claim(
@@ -248,7 +272,7 @@ HEIGHTS = (
         quantity="reachable height standing over crawling",
         value=4.25,
         unit="-",
-        tolerance=0.5,  # 12 %: what HEIGHT_READING makes of the quotient at the taller end
+        rounding=0.005,
         sense="Standing, the robot reaches several times as high as crawling.",
         quote="The reachable height in the bipedal standing state is 4.25 times higher",
     ),
@@ -268,5 +292,5 @@ HEIGHTS = (
     ),
 )
 
-LAND = (*STABILITY, *DISPLACEMENT, *FAULTS, *HEIGHTS)
+LAND = (*STABILITY, *DISPLACEMENT, *SWING, *FAULTS, *HEIGHTS)
 """The claims of section IV about the land."""

@@ -11,7 +11,7 @@ def _constant(key: str, name: str, value: float, digit: float) -> Claim:
         quantity=f"{name} of the body wave",
         value=value,
         unit="-",  # none is printed
-        tolerance=digit / 2,  # half of the last printed digit
+        rounding=digit / 2,  # half of the last printed digit
         sense="The midline of the swimming robot is fitted by (20) with c1 = 0.027, c2 = 0.30, k = 0.023.",
         quote="c1 = 0.027, c2 = 0.30 and k = 0.023",
     )
@@ -22,15 +22,15 @@ WATER = (
         "swim_tail_sine",
         "II.A",
         "swing of the tail in water",
-        "The swimming tail swings like a sine wave.",
+        "A crocodile's swimming tail swings like a sine wave.",
         "The tail's swinging motion resembles a sine wave",
     ),
     said(
         "swim_body_wave",
-        "II.A, IV.B, eq. (20)",
-        "wave of the trunk in water",
-        "The midline of the swimming body is a sine wave under a growing envelope.",
-        "described in this paper as fish-like body waves",
+        "IV.B, eq. (20)",
+        "wave of the robot's midline in water",
+        "The midline of the swimming robot has the form (20): a sine under an envelope that grows to the tail.",
+        "the center line trajectory is drawn and modeled into the form of fish body wave function",
     ),
     _constant("wave_c1", "linear envelope coefficient c1", C1, 0.001),
     _constant("wave_c2", "quadratic envelope coefficient c2", C2, 0.01),
@@ -40,7 +40,7 @@ WATER = (
         "IV.B, Fig. 17a",
         "pressure on both sides of the tail at T/4",
         "At a quarter of the cycle the pressure on the convex side of the tail is above that on the concave side.",
-        "the pressure on the bending and convex side of the flexible tail is greater than ... concave",
+        "the pressure on the bending and convex side of the flexible tail is greater than that on the concave side",
     ),
     said(
         "swim_diagonal_force",
@@ -51,17 +51,17 @@ WATER = (
     ),
     said(
         "swim_pressure_falls",
-        "IV.B, Fig. 17b, c",
-        "pressure difference after T/4",
-        "As body and tail move back to the axis the pressure difference falls.",
-        "move towards the head-to-tail axis, the pressure difference gradually decreases",
+        "IV.B, Fig. 17a, c",
+        "pressure difference at T/4 less that at 3T/4",
+        "While body and tail move on towards the axis, from T/4 to 3T/4, the pressure difference falls.",
+        "towards the head-to-tail axis, the pressure difference gradually decreases, as demonstrated in Figure 17(c)",
     ),
     said(
         "swim_thrust_symmetric",
         "IV.B, Fig. 17c",
-        "thrust at 3T/4",
-        "At three quarters of the cycle the thrust mirrors that at one quarter.",
-        "generates a symmetrical diagonal forward thrust",
+        "forces at T/4 and 3T/4, mirrored",
+        "At three quarters of the cycle the thrust is forward again and mirrors that at one quarter.",
+        "the pressure difference ... generates a symmetrical diagonal forward thrust",
     ),
     said(
         "swim_s_shape",
@@ -72,9 +72,16 @@ WATER = (
     ),
     said(
         "swim_tail_thrust",
-        "II.A, IV.B",
-        "where thrust comes from",
-        "Tail and spine give the main thrust in water.",
+        "IV.B",
+        "speed that the swing of the tail adds in water",
+        "The swing of the tail gives the main thrust in water.",
+        "When moving through the water, the swing of the tail and spine provides the main thrust.",
+    ),
+    said(
+        "swim_spine_thrust",
+        "IV.B",
+        "speed that the swing of the spine adds in water",
+        "The swing of the spine gives thrust in water too.",
         "When moving through the water, the swing of the tail and spine provides the main thrust.",
     ),
 )

@@ -6,7 +6,7 @@ from types import MappingProxyType
 
 from suchus.design import LEGS, Crocodile
 from suchus.paper import CLAIMS, CRAWL_END, CRAWL_START
-from suchus.report.animals import ANIMALS, Animal
+from suchus.paper.animals import ANIMALS, Animal
 from suchus.report.numbers import number, quantity
 from suchus.report.result import Result
 
@@ -89,6 +89,11 @@ def _speed(_: Crocodile, results: Results) -> float | None:
     return found[0] / _DURATION if found else None
 
 
+def _high_walk_speed(_: Crocodile, results: Results) -> float | None:
+    found = _measured(results, "speed_range", "speed_high_walk")
+    return found[0] if found else None
+
+
 def _stride_share(_: Crocodile, results: Results) -> float | None:
     found = _measured(results, "displacement", "forward_coordinated", "forward_limbs_only")
     return 1.0 - found[1] / found[0] if found else None
@@ -111,6 +116,7 @@ _OURS: Mapping[str, tuple[str, _Measured, float | None]] = MappingProxyType(
         "tail_mass": ("", _tail_mass, None),
         "mass": ("", _mass, None),
         "speed": ("displacement", _speed, _COORDINATED / _DURATION if _COORDINATED else None),
+        "high_walk_speed": ("speed_range", _high_walk_speed, CLAIMS["high_walk_speed_low"].value),
         "stride_share": (
             "displacement",
             _stride_share,

@@ -15,11 +15,11 @@ from markupsafe import Markup
 from suchus import figures
 from suchus.design import Crocodile
 from suchus.gaits import GAITS
-from suchus.paper import CLAIMS, ERRATA
+from suchus.paper import AUTHORS, CLAIMS, ERRATA, TITLE
 from suchus.record import new_file, versions
 from suchus.report.beside import beside
 from suchus.report.embedding import embedded
-from suchus.report.numbers import quantity, tied
+from suchus.report.numbers import number, quantity, tied
 from suchus.report.result import Failure, Result
 from suchus.report.robot import robot_of
 from suchus.report.tables import choices, parts
@@ -27,7 +27,18 @@ from suchus.robots import ROBOTS
 
 _ENOUGH = 60
 """Letters that say something [-]."""
-_MARKS = {"reproduced": "●", "same sense": "◐", "contradicted": "✕", "not testable": "○"}
+_MARKS = {
+    "reproduced": "●",
+    "same sense": "◐",
+    "contradicted": "✕",
+    "not testable": "○",
+    "fitted": "◇",
+    "by construction": "□",
+}
+_LACKING: Mapping[str, Any] = {"fragile": False, "quote": "", "rule": ()}
+"""What outcomes of version 0.1 do not say of a verdict."""
+_TOLD = ("fitted", "by construction")
+"""Words for what is no evidence: it was put in. They are counted apart."""
 
 
 def write_page(results: Sequence[Result], failures: Sequence[Failure], path: Path) -> Path:
@@ -77,31 +88,55 @@ def _gist(text: str) -> str:
     return told
 
 
-def _short(result: Result) -> bool:
-    """Tell whether a result comes from the quick form of its question."""
-    return "--quick" in str(result.told["command"]).split()
+def _share(verdict: Mapping[str, Any]) -> str:
+    """Return in a sentence how many plausible designs agree."""
+    share = verdict.get("share")
+    if not share:
+        unswept = str(verdict.get("unswept", ""))
+        return f"Not tried on other designs: {unswept}." if unswept else ""
+    told = (
+        f"The statement holds in {share['share']:.0%} ({share['low']:.0%} to {share['high']:.0%}) of "
+        f"{share['designs']:,} plausible designs".replace(",", "\N{NO-BREAK SPACE}")
+    )
+    if share["turned_by"] and share["at"] is not None:
+        told += f"; best told by {share['turned_by']} {'above' if share['above'] else 'below'} {number(share['at'], 3)}"
+    return f"{told}."
+
+
+def _scatter(verdict: Mapping[str, Any]) -> str:
+    """Return the range of a measured number's repeats, empty if nothing was repeated."""
+    low, high = verdict.get("low"), verdict.get("high")
+    if low is None or high is None:
+        return ""
+    return f"{number(low, 3)} to {quantity(high, verdict['unit'], 3)} in {verdict.get('repeats', 'repeats')}"
 
 
 def _content(results: Sequence[Result], failures: Sequence[Failure]) -> dict[str, Any]:
     order = {key: place for place, key in enumerate(CLAIMS)}
     results = sorted(results, key=lambda result: _place(result, order))
     verdicts = [
-        {**verdict, "experiment": result.name, "short": _short(result)}
+        {**_LACKING, **verdict, "experiment": result.name, "told": _share(verdict), "scatter": _scatter(verdict)}
         for result in results
         for verdict in result.told["verdicts"]
     ]
     verdicts.sort(key=lambda verdict: order.get(verdict["claim"], len(order)))
+    counts = _counts(verdicts)
     robot, others = robot_of(results)
     named = ROBOTS.beside(robot.name, "chosen", ()) if robot.name in ROBOTS else ()
     return {
         "results": results,
-        "short": {result.name: _short(result) for result in results},
+        "unjudged": {result.name: result.told.get("unjudged", "") for result in results},
+        "title": TITLE,
+        "authors": AUTHORS,
         "failures": failures,
         "verdicts": verdicts,
         "departures": [verdict for verdict in verdicts if verdict["verdict"] == "contradicted"],
         "own": {name: [v for v in verdicts if v["experiment"] == name] for name in (r.name for r in results)},
         "marks": _MARKS,
-        "counts": _counts(verdicts),
+        "counts": {word: n for word, n in counts.items() if word not in _TOLD},
+        "put_in": {word: n for word, n in counts.items() if word in _TOLD},
+        "inputs": [verdict for verdict in verdicts if verdict["verdict"] in _TOLD],
+        "fragile": sum(bool(verdict["fragile"]) for verdict in verdicts),
         "tally": {result.name: _counts(result.told["verdicts"]) for result in results},
         "untouched": [c for c in CLAIMS.values() if c.key not in {v["claim"] for v in verdicts}],
         "beside": beside(robot, {result.name: result for result in results}),

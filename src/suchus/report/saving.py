@@ -3,6 +3,7 @@
 import json
 import math
 from collections.abc import Mapping
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +11,8 @@ from matplotlib.figure import Figure
 
 from suchus import figures as pictures
 from suchus import record
-from suchus.experiment import Experiment, Measure, Outcome, Verdict
+from suchus.experiment import Experiment, Measure, Outcome
+from suchus.verdict import Verdict
 
 OUTCOME = "outcome.json"
 RECORD = "record.nc"
@@ -64,7 +66,8 @@ def describe(outcome: Outcome, experiment: Experiment, captions: Mapping[str, st
         "experiment": outcome.experiment,
         "title": experiment.title,
         "shows": experiment.shows,
-        "decides": " ".join(experiment.decides.split()),
+        "decides": outcome.decides or " ".join(getattr(experiment, "decides", "").split()),
+        "unjudged": outcome.unjudged,
         "command": command,
         "settings": record.plain(outcome.settings),
         "measures": {name: _measure(measure) for name, measure in outcome.measures.items()},
@@ -82,16 +85,27 @@ def _measure(measure: Measure) -> dict[str, Any]:
 
 
 def _verdict(verdict: Verdict) -> dict[str, Any]:
-    claim = verdict.claim
+    claim, rule, share = verdict.claim, verdict.rule, verdict.share
     return {
         "claim": claim.key,
         "quantity": claim.quantity,
         "statement": claim.sense,
+        "quote": claim.quote,
         "where": claim.where,
         "printed": _finite(claim.value),
+        "rounding": _finite(claim.rounding),
+        "measure": rule.measure,
         "measured": _finite(verdict.measured),
+        "low": _finite(verdict.low),
+        "high": _finite(verdict.high),
+        "repeats": rule.band.of if rule.band else "",
         "unit": claim.unit,
+        "kind": rule.kind,
+        "rule": [str(clause) for clause in rule.holds],
         "verdict": verdict.verdict,
+        "fragile": verdict.fragile,
+        "share": None if share is None else record.plain(asdict(share)),
+        "unswept": rule.unswept,
         "why": " ".join(verdict.why.split()),
     }
 

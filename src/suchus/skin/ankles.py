@@ -9,9 +9,10 @@ from functools import lru_cache
 
 import numpy as np
 
-from suchus.design import LEGS, Crocodile
+from suchus.design import LEGS, AnyRobot, Crocodile
 from suchus.design.relief import Relief, heights
-from suchus.skin.bones import Poses, bone_names, multiply, rotate
+from suchus.rotation import about, multiply, rotate
+from suchus.skin.bones import Poses, bone_names
 from suchus.skin.surface import Skin, skin
 
 ANKLES = tuple(f"{leg}_ankle" for leg in LEGS)
@@ -23,9 +24,11 @@ NEAR = (0.012, 0.06)
 
 
 @lru_cache(maxsize=8)
-def footed(robot: Crocodile) -> Skin:
-    """Return the skin of a robot with its feet hung on ankles."""
+def footed(robot: AnyRobot) -> Skin:
+    """Return the skin of a robot with its feet hung on ankles; the round feet of a plain body have none."""
     surface = skin(robot)
+    if not isinstance(robot, Crocodile):
+        return surface
     indices, rest = surface.indices.copy(), [*surface.rest]
     starts = np.flatnonzero(np.diff(surface.part, prepend=-1))
     least = np.minimum.reduceat(surface.weights[:, 0], starts)
@@ -38,7 +41,7 @@ def footed(robot: Crocodile) -> Skin:
     return replace(surface, bones=(*surface.bones, *ANKLES), rest=np.array(rest), indices=indices)
 
 
-def ankles(robot: Crocodile, bones: Poses, feet: np.ndarray, relief: Relief | None = None) -> Poses:
+def ankles(robot: AnyRobot, bones: Poses, feet: np.ndarray, relief: Relief | None = None) -> Poses:
     """Return the bones of ``footed``: those of the bodies, and one more for each foot.
 
     Args:
@@ -47,6 +50,8 @@ def ankles(robot: Crocodile, bones: Poses, feet: np.ndarray, relief: Relief | No
         feet: centres of the feet, (frame, 4, 3) [m].
         relief: what stands up from the ground; None where it is even.
     """
+    if not isinstance(robot, Crocodile):
+        return bones
     names, turned = bone_names(robot), []
     above = feet[..., 2] - heights(relief, feet[..., 0], feet[..., 1])
     for i, leg in enumerate(LEGS):
@@ -70,4 +75,4 @@ def _downward(way: np.ndarray, share: np.ndarray) -> np.ndarray:
     sine = np.linalg.norm(axis, axis=-1, keepdims=True)
     angle = np.minimum(np.arctan2(sine[:, 0], -way[:, 2]), REACH) * share
     axis = np.divide(axis, sine, out=np.zeros_like(axis), where=sine > 1e-9)
-    return np.concatenate([np.cos(angle / 2)[:, None], np.sin(angle / 2)[:, None] * axis], axis=-1)
+    return about(axis, angle)

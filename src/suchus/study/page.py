@@ -3,50 +3,21 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 from suchus import blueprint
 from suchus.catalog import Catalog
 from suchus.design import Crocodile
 from suchus.errors import InvalidDesign
+from suchus.fault import Fault
+from suchus.faults import from_table
 from suchus.gaits import GAITS
-from suchus.land import Deaf, Fault, Ground, Limp, Locked, Run, Weak
+from suchus.kinds import show
+from suchus.land import Ground, Run
 from suchus.motion import Gait
 from suchus.robots import ROBOTS
 from suchus.study.arm import Arm
 from suchus.study.study import Design, Study, Vary
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FaultLine:
-    """A fault as a table."""
-
-    kind: Literal["limp", "locked", "weak", "deaf"]
-    """What happens."""
-    joint: str
-    """Name of the servo, or of the group of sensors that goes deaf."""
-    at: float = 0.0
-    """When [s]."""
-    angle: float | None = None
-    """What a locked servo holds [rad]; the angle that it has at that time if left out."""
-    fraction: float | None = None
-    """What is left of a weak servo's torque [-]."""
-
-    def fault(self) -> Fault:
-        """Return the fault.
-
-        Raises:
-            InvalidDesign: a number that this kind does not have.
-        """
-        if (self.angle is not None and self.kind != "locked") or (self.fraction is not None and self.kind != "weak"):
-            raise InvalidDesign(f"the fault {self.kind} {self.joint} has an angle or a fraction that it cannot have.")
-        if self.kind == "limp":
-            return Limp(self.joint, self.at)
-        if self.kind == "locked":
-            return Locked(self.joint, self.at, self.angle)
-        if self.kind == "weak":
-            return Weak(self.joint, 0.5 if self.fraction is None else self.fraction, self.at)
-        return Deaf(self.joint, self.at)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -65,8 +36,8 @@ class Page:
     """Name on the shelf, or path of a TOML file beside this one."""
     ground: Ground = field(default_factory=Ground)
     """On what."""
-    faults: tuple[FaultLine, ...] = ()
-    """What breaks."""
+    faults: tuple[dict[str, Any], ...] = ()
+    """What breaks, see ``faults.from_table``."""
     noise: float = 0.0
     """Standard deviation of noise on every servo angle commanded [rad]."""
     design: Design = "factorial"
@@ -113,47 +84,55 @@ def read_study(path: Path) -> Study:
         robot=find(page.robot, path.parent, Crocodile, ROBOTS),
         gait=find(page.gait, path.parent, Gait, GAITS),
         ground=page.ground,
-        faults=tuple(line.fault() for line in page.faults),
+        faults=tuple(from_table(table) for table in page.faults),
         noise=page.noise,
     )
     return Study(
         run=run,
         vary=tuple(_resolved(vary, path.parent) for vary in page.vary),
-        **{f.name: getattr(page, f.name) for f in fields(Study) if f.name not in ("run", "vary")},
+        arms=tuple(resolved_arm(arm, path.parent) for arm in page.arms),
+        **{f.name: getattr(page, f.name) for f in fields(Study) if f.name not in ("run", "vary", "arms")},
     )
+
+
+def resolved_arm(arm: Arm, place: Path) -> Arm:
+    """Return an arm with the robots, gaits and faults that its values name.
+
+    Args:
+        arm: as a file says it.
+        place: the folder of that file.
+
+    Raises:
+        SuchusError: it names nothing that is there.
+    """
+    return replace(arm, values={field: _meant(field, value, place) for field, value in arm.values.items()})
 
 
 def _resolved(vary: Vary, place: Path) -> Vary:
     """Return a field with the things that its values name."""
     if vary.values is None:
         return vary
-    values: list[Any] = []
-    for value in vary.values:
-        if vary.field == "robot" and isinstance(value, str):
-            values.append(find(value, place, Crocodile, ROBOTS))
-        elif vary.field == "gait" and isinstance(value, str):
-            values.append(find(value, place, Gait, GAITS))
-        elif vary.field == "faults":
-            values.append(_faults(value))
-        else:
-            values.append(tuple(value) if isinstance(value, list) else value)
-    return replace(vary, values=tuple(values))
+    return replace(vary, values=tuple(_meant(vary.field, value, place) for value in vary.values))
+
+
+def _meant(field: str, value: Any, place: Path) -> Any:
+    """Return what a value of a file stands for: robots and gaits have names, faults are tables, lists are tuples."""
+    if field == "robot" and isinstance(value, str):
+        return find(value, place, Crocodile, ROBOTS)
+    if field == "gait" and isinstance(value, str):
+        return find(value, place, Gait, GAITS)
+    if field == "faults":
+        return _faults(value)
+    return tuple(value) if isinstance(value, list) else value
 
 
 def _faults(value: Any) -> tuple[Fault, ...]:
     if not isinstance(value, list) or not all(isinstance(item, Mapping) for item in value):
         raise InvalidDesign(
-            f"faults take lists of tables, as [[], [{{kind = 'limp', joint = 'LF_yaw'}}]]; one of them is {value!r}."
+            "faults take lists of tables, as [[], [{kind = 'limp', joint = 'LF_yaw'}]]; one of them is "
+            f"{show(value)}."
         )
-    known = [f.name for f in fields(FaultLine)]
-    for item in value:
-        wrong = [key for key in item if key not in known]
-        if wrong or item.get("kind") not in ("limp", "locked", "weak", "deaf") or "joint" not in item:
-            raise InvalidDesign(
-                f"a fault needs a kind (limp, locked, weak or deaf) and a joint, and may have at, angle and fraction; "
-                f"{dict(item)!r} is none."
-            )
-    return tuple(FaultLine(**item).fault() for item in value)
+    return tuple(from_table(item) for item in value)
 
 
 def find(name: str, place: Path, kind: type, shelf: Catalog[Any]) -> Any:

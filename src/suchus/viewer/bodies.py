@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 from scipy.cluster.vq import kmeans2
 
-from suchus.design import LEGS, Crocodile, joint_names
+from suchus.design import LEGS, Crocodile, crocodile, joint_names
 from suchus.design.relief import Relief
 from suchus.model import compile_model, joint_addresses
 from suchus.skin import ANKLES, Poses, ankles, bone_names, footed
@@ -26,7 +26,7 @@ class Posture:
     """
 
     def __init__(self, robot: Crocodile) -> None:
-        self.robot = robot
+        self.robot = robot = crocodile(robot, "the viewer")
         self.model = compile_model(robot)
         self._feet = np.zeros((len(LEGS), 3))
         self._data = mujoco.MjData(self.model)
@@ -65,9 +65,11 @@ class Posture:
         body: Any = self._data.body(name)
         return np.array(body.xpos), np.array(body.xquat)
 
-    def joint(self, servo: str) -> np.ndarray:
-        """Return where the joint of a servo is [m]; for the cable, where its first joint is."""
-        number = self.model.joint("tail_yaw_1" if servo == "tail_cable" else servo).id
+    def part(self, name: str) -> np.ndarray:
+        """Return where the joint of a servo, or the foot of a leg, is [m]; for the cable, where its first joint is."""
+        if name in LEGS:
+            return np.array(self._data.site(f"{name}_foot").xpos)
+        number = self.model.joint("tail_yaw_1" if name == "tail_cable" else name).id
         return np.array(self._data.xanchor[number])
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import Any
 
-from suchus.design import servo_names
+from suchus.faults import FAULTS, Limp, numbers
 from suchus.gaits import GAITS
 from suchus.motion import Gait
 from suchus.viewer.knobs import (
@@ -113,7 +113,7 @@ class Controls:
         self._switches[name] = box
 
     def _gaits(self) -> None:
-        names = list(GAITS)
+        names = [name for name, gait in GAITS.items() if isinstance(gait, Gait)]
         mine = self._session.settings.gait
         shelf: dict[str, Gait] = {name: GAITS[name] for name in names}
         if shelf.get(mine.name) != mine:
@@ -163,8 +163,31 @@ class Controls:
 
     def _faults(self) -> None:
         gui, session = self._gui, self._session
-        joint = gui.add_dropdown("joint", servo_names(), initial_value="LF_yaw")
+        joint = gui.add_dropdown("joint", Limp.parts(session.robot), initial_value=Limp.parts(session.robot)[0])
         self._on(gui.add_button("make it limp", color="red"), lambda _: session.lose(joint.value, "limp"))
         self._on(gui.add_button("lock it", color="dark"), lambda _: session.lose(joint.value, "locked"))
         self._on(gui.add_button("repair it", color="green"), lambda _: session.mend(joint.value))
         self._on(gui.add_button("repair all", color="gray"), lambda _: session.mend())
+        with gui.add_folder("Other faults", expand_by_default=False):
+            self._other_faults()
+
+    def _other_faults(self) -> None:
+        """Offer every fault of the shelf, with its part and, where it has one, its number."""
+        gui, session = self._gui, self._session
+        kinds = tuple(name for name in FAULTS if name not in ("limp", "locked"))
+        kind = gui.add_dropdown("fault", kinds, initial_value=kinds[0])
+        part = gui.add_dropdown("part", FAULTS[kinds[0]].parts(session.robot))
+        much = gui.add_number("how much", 0.0, step=0.01, hint="In SI units; faults without a number ignore it.")
+
+        def choose(name: object) -> None:
+            part.options = FAULTS[str(name)].parts(session.robot)
+            much.value = next(iter(numbers(FAULTS[str(name)]).values()), 0.0)
+
+        def happen(_: object) -> str:
+            fields = list(numbers(FAULTS[kind.value]))[:1]
+            return session.lose(part.value, kind.value, **dict.fromkeys(fields, float(much.value)))
+
+        choose(kinds[0])
+        self._on(kind, choose)
+        self._on(gui.add_button("let it happen", color="red"), happen)
+        self._on(gui.add_button("repair this part", color="green"), lambda _: session.mend(part.value))

@@ -8,6 +8,7 @@ from mjviser.conversions import create_primitive_mesh
 
 from suchus.design import Crocodile
 from suchus.design.relief import Relief
+from suchus.fault import Fault
 from suchus.viewer.bodies import Posture, pieces
 
 Look = Literal["skin", "collision geoms"]
@@ -32,7 +33,7 @@ class DrawnRobot:
         self.posture = Posture(robot)
         self.relief: Relief | None = None
         self._marks: dict[str, Any] = {}
-        self._lost: tuple[tuple[str, str], ...] = ()
+        self._lost: tuple[Fault, ...] = ()
         self._look: Look = "skin"
         self._geoms: dict[int, Any] = {}
         cut = pieces(robot, 1) if ghost else pieces(robot)
@@ -85,25 +86,26 @@ class DrawnRobot:
         else:
             for number, handle in self._geoms.items():
                 handle.position, handle.wxyz = self.posture.geom(number)
-        for joint, (ball, label) in self._marks.items():
-            ball.position = self.posture.joint(joint)
+        for part, (ball, label) in self._marks.items():
+            ball.position = self.posture.part(part)
             label.position = ball.position + np.array([0.0, 0.0, 0.035])
 
-    def mark(self, lost: Sequence[tuple[str, str]]) -> None:
-        """Mark the joints that are lost, each with how: ``limp`` or ``locked``."""
+    def mark(self, lost: Sequence[Fault]) -> None:
+        """Mark the joints and legs that are broken, each with how."""
         if tuple(lost) == self._lost:
             return
         self._lost = tuple(lost)
         for handles in self._marks.values():
             for handle in handles:
                 handle.remove()
-        self._marks = {joint: self._mark(joint, kind) for joint, kind in lost}
+        self._marks = {fault.part: self._mark(fault) for fault in lost if fault.acts_on != "sensor"}
 
-    def _mark(self, joint: str, kind: str) -> tuple[Any, Any]:
-        place = self.posture.joint(joint)
+    def _mark(self, fault: Fault) -> tuple[Any, Any]:
+        part, kind = fault.part, fault.kind()
+        place = self.posture.part(part)
         ball = self._scene.add_icosphere(
-            f"{self._root}/lost_{joint}", 0.026, color=LIMP if kind == "limp" else LOCKED, position=place, opacity=0.85
+            f"{self._root}/lost_{part}", 0.026, color=LIMP if kind == "limp" else LOCKED, position=place, opacity=0.85
         )
-        text = f"{joint.replace('_', ' ')} {kind}"
-        label = self._scene.add_label(f"{self._root}/word_{joint}", text, position=place, anchor="bottom-center")
+        text = f"{part} {kind}".replace("_", " ")
+        label = self._scene.add_label(f"{self._root}/word_{part}", text, position=place, anchor="bottom-center")
         return ball, label

@@ -8,17 +8,18 @@ from typing import Any, Literal
 import numpy as np
 
 from suchus.control import LAWS, Coordinated, HeadingRule
-from suchus.design import Crocodile, servo_names
+from suchus.design import Crocodile
 from suchus.design.relief import Bumps
-from suchus.errors import Diverged, SuchusError, UnknownName
+from suchus.errors import Diverged, SuchusError
+from suchus.fault import Fault
+from suchus.faults import from_table
 from suchus.gaits.limbs_only import LIFTED
-from suchus.land import CONTROL_PERIOD, Ground, Limp, Live, Locked, Push, Run
+from suchus.land import CONTROL_PERIOD, Ground, Live, Push, Run
 from suchus.land.arenas import BEFORE
 from suchus.motion import START, Gait, check_limits
 from suchus.viewer.history import History
 from suchus.viewer.knobs import BUMPS, DIRECTION, FORCE, LASTING, SIDE_SLOPE, SLOPE, SPEED, Knob, tuned
 
-Kind = Literal["limp", "locked"]
 Switch = Literal["spine", "tail", "coordination", "heading"]
 
 _OPEN = Coordinated(limbs=LAWS["off"], spine=None, tail=None)
@@ -53,8 +54,8 @@ class Settings:
     """Of the next push, from forward to the left [rad]."""
     speed: float = 1.0
     """Simulated over real time [-]."""
-    broken: tuple[tuple[str, Kind], ...] = ()
-    """Which joints are lost, and how."""
+    broken: tuple[Fault, ...] = ()
+    """What is broken, each from the beginning of the next walk on."""
 
     @property
     def walked(self) -> Gait:
@@ -174,23 +175,31 @@ class Session:
                 self._live.tilt(self.settings.ground)
             return notice
 
-    def lose(self, joint: str, kind: Kind) -> str:
-        """Let a joint go limp, or lock it where it is; return a sentence if there is no such joint."""
+    def lose(self, part: str, kind: str, **numbers: object) -> str:
+        """Let a part break as it is now; return a sentence if that cannot be.
+
+        Args:
+            part: a joint, a leg or a group of sensors.
+            kind: name of a fault on the shelf.
+            **numbers: of that fault; those left out are as on the shelf.
+        """
         with self._lock:
-            if joint not in servo_names():
-                return str(UnknownName("joint", joint, servo_names()))
-            others = tuple(pair for pair in self.settings.broken if pair[0] != joint)
-            self.settings = replace(self.settings, broken=(*others, (joint, kind)))
-            self._live.begin(Limp(joint) if kind == "limp" else Locked(joint))
+            try:
+                fault = from_table({"kind": kind, "joint": part, **numbers})
+                self._live.begin(fault)
+            except SuchusError as error:
+                return str(error)
+            others = tuple(other for other in self.settings.broken if other.part != part)
+            self.settings = replace(self.settings, broken=(*others, fault))
             return ""
 
-    def mend(self, joint: str | None = None) -> None:
-        """Repair a joint, or all of them."""
+    def mend(self, part: str | None = None) -> None:
+        """Repair a part, or all of them."""
         with self._lock:
-            for name, _ in self.settings.broken:
-                if joint in (None, name):
-                    self._live.mend(name)
-            kept = () if joint is None else tuple(pair for pair in self.settings.broken if pair[0] != joint)
+            for fault in self.settings.broken:
+                if part in (None, fault.part):
+                    self._live.mend(fault.part)
+            kept = () if part is None else tuple(fault for fault in self.settings.broken if fault.part != part)
             self.settings = replace(self.settings, broken=kept)
 
     def push(self) -> None:
@@ -215,8 +224,7 @@ class Session:
     def _begin(self) -> None:
         s = self.settings
         # a locked joint holds the angle that it has as the walk begins
-        faults = tuple(Limp(joint) if kind == "limp" else Locked(joint) for joint, kind in s.broken)
-        run = Run(robot=self.robot, gait=s.walked, ground=s.ground, control=s.control, faults=faults)
+        run = Run(robot=self.robot, gait=s.walked, ground=s.ground, control=s.control, faults=s.broken)
         self._live = Live(run, timestep=self._timestep)
         self._history = History()
         self._push, self._due = None, 0.0

@@ -9,9 +9,11 @@ from mjviser.conversions import create_primitive_mesh
 from suchus.design import LEGS, Crocodile
 from suchus.design.ground import slope
 from suchus.design.relief import Relief, heights
+from suchus.fault import Fault
 from suchus.figures import COLOURS
 from suchus.metrics.gait import LOADED
 from suchus.model import compile_model
+from suchus.rotation import rotate
 from suchus.viewer.bodies import support
 from suchus.viewer.drawn import DrawnRobot, Look
 from suchus.viewer.rods import Rod, Shape
@@ -127,7 +129,7 @@ class Stage:
         turned = slope(*tilt)
         self._world.wxyz = turned
         at = np.array([*now["centre_of_mass"][:2], 0.0]) if follow else np.zeros(3)
-        self._world.position = -_rotated(turned, at)
+        self._world.position = -rotate(turned, at)
 
     def show(self, now: Mapping[str, np.ndarray], pushed: tuple[float, float, float] | None = None) -> None:
         """Show an instant, by the names of ``record.VARIABLES``, and a push that lasts."""
@@ -188,11 +190,6 @@ class Stage:
         self._path = []
         self._way.visible = False
 
-    def mark(self, lost: Sequence[tuple[str, str]]) -> None:
-        """Mark the joints that are lost."""
+    def mark(self, lost: Sequence[Fault]) -> None:
+        """Mark the joints and legs that are broken."""
         self.robot.mark(lost)
-
-
-def _rotated(turned: np.ndarray, vector: np.ndarray) -> np.ndarray:
-    w, axis = turned[0], turned[1:]
-    return np.asarray(vector + 2 * np.cross(axis, np.cross(axis, vector) + w * vector))

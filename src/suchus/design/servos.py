@@ -1,0 +1,32 @@
+"""A whole robot with other servos, wherever its parts hold one."""
+
+from collections.abc import Callable
+from dataclasses import fields, is_dataclass, replace
+from typing import Any
+
+from suchus.design.robot import Crocodile
+from suchus.design.servo import Servo
+
+
+def with_speed_lines(robot: Crocodile) -> Crocodile:
+    """Return a robot with ``Servo.with_speed_line`` in each of its servos."""
+    return with_servos(robot, Servo.with_speed_line)
+
+
+def with_servos(robot: Crocodile, change: Callable[[Servo], Servo]) -> Crocodile:
+    """Return a robot with each of its servos changed."""
+    return _changed(robot, change)  # type: ignore[no-any-return]
+
+
+def _changed(part: Any, change: Callable[[Servo], Servo]) -> Any:
+    if isinstance(part, Servo):
+        return change(part)
+    if isinstance(part, tuple):
+        ones = [_changed(one, change) for one in part]
+        return tuple(ones) if any(new is not old for new, old in zip(ones, part, strict=True)) else part
+    if is_dataclass(part) and not isinstance(part, type):
+        found = {f.name: getattr(part, f.name) for f in fields(part) if f.init}
+        changed = {name: _changed(value, change) for name, value in found.items()}
+        changed = {name: value for name, value in changed.items() if value is not found[name]}
+        return replace(part, **changed) if changed else part
+    return part

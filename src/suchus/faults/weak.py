@@ -1,0 +1,32 @@
+"""A servo with a part of its torque."""
+
+from dataclasses import dataclass
+
+from suchus.design import AnyRobot
+from suchus.errors import InvalidDesign
+from suchus.fault import Plant, ServoFault
+
+
+@dataclass(frozen=True, slots=True)
+class Weak(ServoFault):
+    """A servo with a part of its torque."""
+
+    joint: str
+    """Name of the servo."""
+    fraction: float = 0.5
+    """What is left of the torque limit [-]."""
+    at: float = 0.0
+    """When it happens [s]."""
+
+    def refuse(self, robot: AnyRobot) -> None:
+        """Refuse a fraction outside 0 to 1, too."""
+        ServoFault.refuse(self, robot)
+        if not 0.0 <= self.fraction <= 1.0:
+            raise InvalidDesign(f"{self} leaves {self.fraction} of the torque; 0 to 1 is allowed.")
+
+    def apply(self, plant: Plant) -> None:
+        """Lower the limit."""
+        plant.parameter("actuator_forcerange", self.joint)[:] *= self.fraction
+
+
+fault = Weak

@@ -1,0 +1,91 @@
+"""Rotations as unit quaternions wxyz, over ``scipy.spatial.transform.Rotation``, with one sign for every angle.
+
+A quaternion turns vectors of a body's frame (x forward, y left, z up) into the world's. Angles follow the right-hand
+rule about the body's axes: **yaw** is positive to the left, **pitch** with the nose down, **roll** with the left side
+up; as intrinsic rotations they follow each other in this order, yaw, pitch, roll.
+
+Where scipy is slower, the closed form stands here, once: scipy normalises each quaternion anew, which changes the last
+bit of angles on which records hang, and its product of two takes 138 us, the closed form 56 (of a hundred: 261
+and 72; but 20 000 vectors turned by one quaternion 0.9 ms, without scipy 2.1 ms; on a busy core). Tests hold each to
+scipy's.
+Zeros and NaN, as of sensors that are lost, go through all but ``matrix``.
+"""
+
+import numpy as np
+from jaxtyping import Float
+from scipy.spatial.transform import Rotation
+
+Quaternion = Float[np.ndarray, "*b 4"]
+Vector = Float[np.ndarray, "*c 3"]
+
+
+def roll(q: Quaternion) -> Float[np.ndarray, "*b"]:
+    """Return the roll, left side up positive [rad]."""
+    w, x, y, z = _parts(q)
+    return np.asarray(np.arctan2(2 * (w * x + y * z), 1 - 2 * (x**2 + y**2)))
+
+
+def pitch(q: Quaternion) -> Float[np.ndarray, "*b"]:
+    """Return the pitch, nose down positive, -pi/2 to pi/2 [rad]; near the ends see ``steep_pitch``."""
+    w, x, y, z = _parts(q)
+    return np.asarray(np.arcsin(np.clip(2 * (w * y - z * x), -1.0, 1.0)))
+
+
+def steep_pitch(q: Quaternion) -> Float[np.ndarray, "*b"]:
+    """Return the pitch, nose down positive, as exact for a body that stands upright as for one that lies [rad]."""
+    w, x, y, z = _parts(q)
+    return np.asarray(np.arctan2(2 * (w * y - x * z), np.hypot(1 - 2 * (y * y + z * z), 2 * (x * y + w * z))))
+
+
+def yaw(q: Quaternion) -> Float[np.ndarray, "*b"]:
+    """Return the yaw of the forward axis seen from above, left positive, -pi to pi [rad]."""
+    w, x, y, z = _parts(q)
+    return np.asarray(np.arctan2(2 * (w * z + x * y), 1 - 2 * (y**2 + z**2)))
+
+
+def upward(q: Quaternion) -> Float[np.ndarray, "*b 3"]:
+    """Return the world's upward direction in the frame of the body: the last row of the rotation matrix."""
+    w, x, y, z = _parts(q)
+    return np.stack([2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)], axis=-1)
+
+
+def ahead(q: Quaternion) -> Float[np.ndarray, "*b 3"]:
+    """Return the world's x direction in the frame of the body: the first row of the rotation matrix."""
+    w, x, y, z = _parts(q)
+    return np.stack([1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)], axis=-1)
+
+
+def about(axis: Vector, angle: Float[np.ndarray, "*b"] | float) -> Quaternion:
+    """Return the quaternions of turns about unit vectors, w positive for turns of less than half a turn.
+
+    Args:
+        axis: one, or one for each angle.
+        angle: [rad].
+    """
+    half = np.asarray(angle)[..., None] / 2
+    return np.concatenate([np.cos(half), np.sin(half) * axis + 0.0], axis=-1)  # no negative zeros in records
+
+
+def matrix(q: Quaternion) -> Float[np.ndarray, "*b 3 3"]:
+    """Return the rotation matrices, whose columns are the body's axes in the world."""
+    return np.asarray(Rotation.from_quat(q.reshape(-1, 4), scalar_first=True).as_matrix().reshape(*q.shape[:-1], 3, 3))
+
+
+def multiply(first: Float[np.ndarray, "*c 4"], second: Float[np.ndarray, "*d 4"]) -> Quaternion:
+    """Return the products of quaternions: the turn by the second, then by the first, both about the world's axes."""
+    w, v, s, u = first[..., :1], first[..., 1:], second[..., :1], second[..., 1:]
+    return np.concatenate([w * s - np.sum(v * u, -1, keepdims=True), w * u + s * v + np.cross(v, u)], axis=-1)
+
+
+def rotate(q: Quaternion, vector: Vector) -> Float[np.ndarray, "*d 3"]:
+    """Return vectors of the body's frame in the world's; one quaternion may turn many vectors, and the reverse."""
+    if q.ndim == 1 and vector.ndim > 1:
+        turned = Rotation.from_quat(q, scalar_first=True).apply(vector.reshape(-1, 3))
+        return np.asarray(turned.reshape(vector.shape))
+    w, v = q[..., :1], q[..., 1:]
+    twice = 2 * np.cross(v, vector)
+    return np.asarray(vector + w * twice + np.cross(v, twice))
+
+
+def _parts(q: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    return q[..., 0], q[..., 1], q[..., 2], q[..., 3]

@@ -1,0 +1,110 @@
+"""From a rule and measures to a verdict."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import isfinite
+from typing import Literal, get_args
+
+from suchus.errors import IncompatibleRecord
+from suchus.paper import CLAIMS, Claim
+from suchus.verdict.rule import Rule
+from suchus.verdict.shares import SHARES, Share
+
+Word = Literal["reproduced", "same sense", "contradicted", "not testable", "by construction", "fitted"]
+"""``reproduced``: it came out, within the printed digits and the spread of repeats. ``same sense``: another number, but
+the statement holds; or the robot does what is said of animals. ``contradicted``: the statement does not hold.
+``not testable``: nothing was measured that could tell. ``by construction``: an input, a count or a commanded shape that
+is read back. ``fitted``: a free number was chosen so that it comes out.
+"""
+WORDS: tuple[Word, ...] = get_args(Word)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Verdict:
+    """What became of one claim of the article."""
+
+    claim: Claim
+    """What the article says."""
+    rule: Rule
+    """What decided."""
+    measured: float | None
+    """What was measured, in the unit of ``unit``; None where nothing can be measured."""
+    low: float | None
+    """The least of its repeats; None where nothing was repeated."""
+    high: float | None
+    """The greatest of its repeats."""
+    verdict: Word
+    """The verdict in a word or two."""
+    why: str
+    """One or two sentences: what decided it."""
+    share: Share | None
+    """In how many plausible designs the statement holds; None where that is not known."""
+
+    @property
+    def held(self) -> bool:
+        """Whether the statement, apart from its number, was found to hold."""
+        return self.verdict not in ("contradicted", "not testable")
+
+    @property
+    def fragile(self) -> bool:
+        """Whether other plausible designs give another answer too often to rely on this one."""
+        judged = self.verdict in ("reproduced", "same sense", "contradicted", "fitted")
+        return judged and self.share is not None and not self.share.robust(self.held)
+
+
+def judge(rule: Rule, measures: Mapping[str, float], shares: Mapping[str, Share] = SHARES) -> Verdict:
+    """Return the verdict of a rule on measures.
+
+    Args:
+        rule: the claim's.
+        measures: of its experiment, by name, in SI units.
+        shares: in how many plausible designs each claim holds, by claim.
+
+    Raises:
+        IncompatibleRecord: a measure that the rule names is not there.
+    """
+    claim = CLAIMS[rule.claim]
+    value = _value(rule, measures)
+    low = high = None
+    if rule.band is not None:
+        low, high = rule.band.spread(value, measures)
+    return Verdict(
+        claim=claim,
+        rule=rule,
+        measured=value if isfinite(value) else None,
+        low=low,
+        high=high,
+        verdict=_word(rule, claim, value, measures),
+        why=rule.reason(measures),
+        share=shares.get(rule.claim),
+    )
+
+
+def _value(rule: Rule, measures: Mapping[str, float]) -> float:
+    needed = (
+        {rule.measure} | {c.measure for c in rule.holds} | {c.bound for c in rule.holds if isinstance(c.bound, str)}
+    )
+    if rule.band is not None:
+        needed |= {rule.band.low, rule.band.high}
+    missing = sorted(needed - set(measures))
+    if missing:
+        raise IncompatibleRecord(
+            f"the verdict on {rule.claim} needs {', '.join(missing)}, which {rule.experiment} did not measure."
+        )
+    return float(measures[rule.measure])
+
+
+def _word(rule: Rule, claim: Claim, value: float, measures: Mapping[str, float]) -> Word:
+    if not isfinite(value):
+        return "not testable"
+    held = rule.held(measures)
+    if rule.kind == "animals":  # a robot resembles an animal or not; it says nothing of the animal itself
+        return "same sense" if held else "not testable"
+    near = claim.value is None or rule.near(claim.value, claim.rounding, measures)
+    if not held:
+        return "contradicted"
+    if rule.kind == "construction":
+        return "by construction" if near else "contradicted"
+    if not near:
+        return "same sense"
+    return "fitted" if rule.kind == "fitted" else "reproduced"

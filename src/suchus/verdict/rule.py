@@ -1,0 +1,112 @@
+"""A rule: when a claim of the article counts as reproduced, as data that can be read, tested and mutated."""
+
+import operator
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from math import isfinite
+from types import MappingProxyType
+from typing import Literal
+
+from suchus.verdict.reading import Reading
+
+Kind = Literal["measured", "construction", "fitted", "animals"]
+"""What a claim's number or statement rests on.
+
+``measured``: it came out of a run or a calculation and could have come out otherwise. ``construction``: an input, a
+count or a commanded shape that is read back. ``fitted``: a free number was chosen so that it comes out. ``animals``:
+the article speaks of animals, which a robot can resemble but neither confirm nor contradict.
+"""
+Relation = Literal["<", "<=", ">", ">="]
+_RELATIONS: Mapping[str, Callable[[float, float], bool]] = MappingProxyType(
+    {"<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge}
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Clause:
+    """One comparison of a measure with a bound; a rule holds if all of its clauses do."""
+
+    measure: str
+    """Name of the measure."""
+    relation: Relation
+    """How it must stand to the bound."""
+    bound: float | str
+    """A number in the measure's unit, or the name of another measure."""
+    why: str
+    """Where the bound comes from: a reason that was there before the result."""
+
+    def holds(self, measures: Mapping[str, float]) -> bool:
+        """Return whether the comparison is true; a number that is not finite makes it false."""
+        bound = measures[self.bound] if isinstance(self.bound, str) else self.bound
+        value = measures[self.measure]
+        return isfinite(value) and isfinite(bound) and _RELATIONS[self.relation](value, bound)
+
+    def __str__(self) -> str:
+        bound = self.bound if isinstance(self.bound, str) else f"{self.bound:g}"
+        return f"{self.measure} {self.relation} {bound}: {self.why}"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Band:
+    """The spread of a measured number: least and greatest of its repeats."""
+
+    low: str
+    """Measure with the least value of the repeats."""
+    high: str
+    """Measure with the greatest value of the repeats."""
+    of: str
+    """What was repeated, for people."""
+
+    def spread(self, value: float, measures: Mapping[str, float]) -> tuple[float, float]:
+        """Return the least and greatest value that repeats gave, the measured value itself included."""
+        return min(value, measures[self.low]), max(value, measures[self.high])
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Rule:
+    """When a claim counts as what; it is applied by ``judge``."""
+
+    claim: str
+    """Key of the claim in ``paper.CLAIMS``; also the rule's name."""
+    experiment: str
+    """Name of the experiment whose measures it reads."""
+    measure: str
+    """Which measure stands beside the printed number, or tells most about the statement."""
+    kind: Kind = "measured"
+    """What the claim rests on."""
+    holds: tuple[Clause, ...] = ()
+    """The statement apart from its number: all of these. None only where a printed number alone is read back."""
+    band: Band | None = None
+    """How the measured number scatters; None where nothing was repeated."""
+    why: str
+    """What decided it, in a sentence or two with measures in braces: ``{forward_ratio:.2f}``, see ``reading``."""
+    unswept: str = ""
+    """Why no share of plausible designs is known; empty where ``suchus study claims`` answers the claim."""
+
+    @property
+    def needs(self) -> set[str]:
+        """Names of the measures that decide, those of the sentence not counted."""
+        needed = {self.measure, *(clause.measure for clause in self.holds)}
+        needed |= {clause.bound for clause in self.holds if isinstance(clause.bound, str)}
+        return needed if self.band is None else needed | {self.band.low, self.band.high}
+
+    def reason(self, measures: Mapping[str, float]) -> str:
+        """Return what decided it, with its numbers."""
+        return " ".join(self.why.format_map({name: Reading(value) for name, value in measures.items()}).split())
+
+    def near(self, printed: float, rounding: float, measures: Mapping[str, float]) -> bool:
+        """Return whether the printed number, as rounded, lies among the repeats of the measured one.
+
+        Args:
+            printed: the article's number.
+            rounding: half of its last digit, in the same unit.
+            measures: of the experiment.
+        """
+        value = measures[self.measure]
+        low, high = (value, value) if self.band is None else self.band.spread(value, measures)
+        slack = 1e-9 * max(1.0, abs(printed))  # a value on the edge of its own rounding is inside
+        return low - rounding - slack <= printed <= high + rounding + slack
+
+    def held(self, measures: Mapping[str, float]) -> bool:
+        """Return whether the statement, apart from its number, holds."""
+        return all(clause.holds(measures) for clause in self.holds)

@@ -1,0 +1,87 @@
+"""When the claims on a steady crawl count as what (section IV.A, Figs 13 to 15)."""
+
+from math import radians
+
+from suchus.verdict.rule import Band, Clause, Rule
+
+_REPEATS = "repeats with noise on the servos and a tenth of spread in the friction"
+_EACH = "in each of the repeats, not only in their mean"
+_SNAPSHOT = "one instant of one crawl; the designs of the study walk with other phases and would be judged at another"
+
+
+def _repeated(measure: str) -> Band:
+    return Band(low=f"{measure}_low", high=f"{measure}_high", of=_REPEATS)
+
+
+RULES = (
+    Rule(
+        claim="com_fluctuation",
+        experiment="crawl_stability",
+        measure="com_height_pp_change",
+        holds=(Clause("com_height_pp_change_high", "<", 0.0, _EACH),),
+        band=_repeated("com_height_pp_change"),
+        why="Highest less lowest height: {com_height_pp_coordinated:mm.1f} mm with spine and tail, "
+        "{com_height_pp_limbs_only:mm.1f} mm with limbs only and the tail lying still, a change of "
+        "{com_height_pp_change:+.0%} (repeats {com_height_pp_change_low:+.0%} to {com_height_pp_change_high:+.0%}); "
+        "{com_height_pp_limbs_tail_lifted:mm.1f} mm with the tail in the air, a change of "
+        "{com_height_pp_change_tail_lifted:+.0%}. The standard deviation changes by {com_height_std_change:+.0%}, the "
+        "roll by {roll_pp_change:+.0%}.",
+    ),
+    Rule(
+        claim="com_on_support_line",
+        experiment="crawl_stability",
+        measure="line_distance_max_limbs_only",
+        holds=(
+            Clause("line_distance_max_limbs_only", "<=", 0.024, "a foot is 24 mm wide: farther off is off the line"),
+        ),
+        why="Whenever two feet stand with limbs only, the projected centre of mass comes as far as "
+        "{line_distance_max_limbs_only:mm.0f} mm from their line, and the robot walks on: the dragged tail or a swing "
+        "foot is its third support.",
+    ),
+    Rule(
+        claim="tilt_limbs_only",
+        experiment="crawl_stability",
+        measure="lean_on_two_feet_limbs_only_1200_ms",
+        holds=(
+            Clause("lean_limbs_only_1200_ms", ">=", radians(1.0), "the least tilt that a screenshot shows"),
+            Clause("lean_limbs_only_1200_ms", ">", "lean_coordinated_1200_ms", "the article shows it of this group"),
+            Clause("line_distance_limbs_only_1200_ms", ">", 0.024, "a foot's width off the line"),
+        ),
+        why="At 1.2 s {standing_feet_limbs_only_1200_ms:.0f} feet stand with limbs only, and the pelvis leans by "
+        "{lean_limbs_only_1200_ms:deg.1f} degrees, against {lean_coordinated_1200_ms:deg.1f} with spine and tail and "
+        "{lean_limbs_tail_lifted_1200_ms:deg.1f} on {standing_feet_limbs_tail_lifted_1200_ms:.0f} feet with limbs only "
+        "and the tail in the air; a line of support needs two feet.",
+        unswept=_SNAPSHOT,
+    ),
+    Rule(
+        claim="tail_supports",
+        experiment="crawl_stability",
+        measure="tail_contact_pp_change",
+        holds=(
+            Clause("tail_load_share", ">=", 0.05, "what carries less than a twentieth of the weight supports nothing"),
+            Clause("tail_contact_pp_change_high", "<", 0.0, _EACH),
+        ),
+        band=_repeated("tail_contact_pp_change"),
+        why="On the ground the tail carries {tail_load_share:.0%} of the weight and changes the fluctuation by "
+        "{tail_contact_pp_change:+.0%} against the same crawl with the tail in the air (repeats "
+        "{tail_contact_pp_change_low:+.0%} to {tail_contact_pp_change_high:+.0%}), by "
+        "{tail_contact_pp_change_limbs_only:+.0%} with the trunk straight.",
+    ),
+    Rule(
+        claim="wagging_balances",
+        experiment="crawl_stability",
+        measure="wagging_pp_change",
+        holds=(Clause("wagging_pp_change_high", "<", 0.0, _EACH),),
+        band=_repeated("wagging_pp_change"),
+        why="Against a tail that is dragged without a swing wagging changes the fluctuation by "
+        "{wagging_pp_change:+.0%} (repeats {wagging_pp_change_low:+.0%} to {wagging_pp_change_high:+.0%}).",
+    ),
+    Rule(
+        claim="spine_sinusoidal",
+        experiment="crawl_stability",
+        measure="spine_sine_r2",
+        kind="construction",
+        holds=(Clause("spine_sine_r2", ">=", 0.95, "a triangle has 0.986 of its variance in a sine, a square 0.81"),),
+        why="A sine is commanded; {spine_sine_r2:.1%} of the variance of the joints' angles follow it.",
+    ),
+)

@@ -1,0 +1,51 @@
+"""What the documentation says of verdicts is what the experiments said."""
+
+import json
+
+import pytest
+
+import verdict_table
+from pages import verdicts
+from suchus.experiments import EXPERIMENTS
+from suchus.paper import CLAIMS
+from suchus.verdict import RULES
+from suchus.verdict.judging import WORDS
+
+TABLE = json.loads(verdict_table.TABLE.read_text(encoding="utf-8"))
+QUICKLY = ("gait_diagram", "leg_kinematics", "spine_kinematics", "tail_bending")
+"""Experiments whose whole form takes seconds."""
+
+
+def test_the_table_has_a_word_for_every_rule():
+    assert set(TABLE) == set(RULES)
+    assert {row["verdict"] for row in TABLE.values()} <= set(WORDS)
+
+
+def test_the_readme_counts_what_the_table_says():
+    readme = verdict_table.README.read_text(encoding="utf-8")
+    assert readme == verdict_table.written(readme, TABLE)
+    assert sum(row["verdict"] == "fitted" for row in TABLE.values()) > 0
+    changed = {**TABLE, "tail_swing": {**TABLE["tail_swing"], "verdict": "reproduced"}}
+    assert (verdict_table.written(readme, changed) == readme) == (TABLE["tail_swing"]["verdict"] == "reproduced")
+
+
+def test_the_page_gives_the_words_the_rule_and_the_verdict_of_every_claim():
+    page = verdicts.page()
+    for claim, rule in RULES.items():
+        entry = page.split(f"{{#{claim}}}")[1].split("\n###")[0]
+        assert CLAIMS[claim].quote in entry
+        assert f"**{TABLE[claim]['verdict']}" in entry
+        assert all(str(clause) in entry for clause in rule.holds)
+
+
+@pytest.mark.parametrize("name", QUICKLY)
+def test_what_runs_quickly_still_says_the_same(name):
+    for verdict in EXPERIMENTS[name].run().verdicts:
+        assert TABLE[verdict.claim.key]["verdict"] == verdict.verdict, verdict.why
+
+
+@pytest.mark.validate
+@pytest.mark.parametrize("name", [name for name, one in EXPERIMENTS.items() if one.claims and name not in QUICKLY])
+def test_what_runs_for_long_still_says_the_same(name):
+    for verdict in EXPERIMENTS[name].run().verdicts:
+        assert TABLE[verdict.claim.key]["verdict"] == verdict.verdict, verdict.why
