@@ -127,6 +127,7 @@ def test_an_episode_breaks_as_a_run_of_a_batch_does_to_the_byte(shelved):
     envs, pack = pytest.importorskip("suchus.envs", exc_type=ImportError), import_module("suchus.envs.pack")
     task = replace(
         envs.TASKS["Fault"],
+        speed_lines=False,
         gait=GAIT,
         jitter=0.0,
         breaks=envs.Breaks(faults=(made(shelved),), earliest=0.13, latest=0.13),

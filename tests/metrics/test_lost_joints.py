@@ -25,6 +25,7 @@ def crawl(height=0.08, load=5.0) -> xr.Dataset:
             "foot_position": (("time", "leg", "xyz"), np.zeros((n, 4, 3))),
             "foot_force": (("time", "leg", "xyz"), force),
             "limb_phase": (("time", "leg"), phase),
+            "mass": ((), 3.5),
             "duty_factor": ((), 0.5),
         },
         coords={"time": TIME, "xyz": list("xyz"), "leg": LEGS},
