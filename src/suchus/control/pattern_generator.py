@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from math import radians
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Float
@@ -54,14 +54,14 @@ class PatternGenerator:
     """Place along the body, 0 at the snout and 1 at the tip of the tail, and factor on the bends there [-]."""
     lesions: tuple[tuple[str, str], ...] = ()
     """Couplings cut, in both directions: ``("axis_3", "axis_4")`` cuts the axis through; see ``oscillators.cut``."""
-    initial: Literal["gait", "random"] | tuple[float, ...] = "gait"
+    initial: str | tuple[float, ...] = "gait"
     """Phases in which the oscillators begin.
 
     ``gait``: those of the gait, or of the wave along the axis where the limbs are silent. ``random``: by the run's
     seed. Or given, one for each oscillator: left side of the axis from the head, right side, limbs [cycle].
     """
-    silent: Literal["folded", "standing"] = "folded"
-    """What silent limbs do: they lie back along the body, or stand in the middle of their path."""
+    silent: str = "folded"
+    """What silent limbs do: ``folded`` back along the body, or ``standing`` in the middle of their path."""
     pace: float | None = None
     """How many times faster than published everything goes [-]; None: the gait's period at the drive in the middle."""
     limbs: LimbLaw = LAWS["off"]

@@ -86,7 +86,7 @@ class PatternPosture:
         self._owner = np.array(owner, dtype=int)
         middle = middle_stance(robot, gait)
         self._rest = (middle if standing else _folded(self._place, gait, middle))[self._limb_servos]
-        self._turns = np.array([_cranked(self._place, gait, limb) for limb in self._owner], dtype=bool)
+        self._turns = np.array([_cranked(self._place, gait, limb) for limb in owner], dtype=bool)
         self._low, self._high = servo_ranges(robot).T
         self._steady = middle if isinstance(gait, Gait) else np.zeros_like(middle)
         self._offset = 0.0 if isinstance(gait, Gait) else gait.wave.offset

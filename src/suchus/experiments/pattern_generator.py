@@ -129,16 +129,19 @@ class PatternGeneratorExperiment(Experiment):
         ]
         turns = abs(m["turn_steering"] - m["turn_straight"]), abs(m["turn_asymmetry"] - m["turn_straight"])
         steer = compared(*turns, less="less", more="more", same="as much", within=0.05)
+        walk, swim = (
+            f"{m[f'locked_share{end}']:.0%} of the starts lock {state}, after {m[f'lock_cycles{end}']:.1f} cycles on "
+            f"average and {m[f'lock_cycles{end}_most']:.1f} at most"
+            for end, state in (("", "while walking"), ("_swim", "with silent limbs"))
+        )
         return (
             f"Limbs saturate at a lower drive than the axis. As long as they are active they draw it along: {kinds[0]} "
             f"(index {m['standing_index_walk']:.2f}) at {m['frequency_walk']:.2f} Hz. Above, it is left to itself: "
             f"{kinds[1]} (index {m['standing_index_swim']:.2f}) with a lag of {m['lag_swim']:.3f} cycle from one "
-            f"segment to the next, and the frequency {jump} from {m['frequency_below']:.2f} to {m['frequency_above']:.2f} Hz where "
-            f"the limbs fall silent. From random phases {m['locked_share']:.0%} of the starts lock while walking, "
-            f"after {m['lock_cycles']:.1f} cycles on average and {m['lock_cycles_most']:.1f} at most; without limbs "
-            f"{m['locked_share_swim']:.0%}, after {m['lock_cycles_swim']:.1f} cycles. A steady bend of the trunk turns "
-            f"the walk by {m['turn_steering']:deg+.1f} degrees a cycle and an asymmetric drive by "
-            f"{m['turn_asymmetry']:deg+.1f} (straight: {m['turn_straight']:deg+.1f}): the bend turns {steer}."
+            f"segment to the next, and the frequency {jump} from {m['frequency_below']:.2f} to "
+            f"{m['frequency_above']:.2f} Hz where the limbs fall silent. From random phases {walk}; {swim}. A steady "
+            f"bend of the trunk turns the walk by {m['turn_steering']:deg+.1f} degrees a cycle and an asymmetric drive "
+            f"by {m['turn_asymmetry']:deg+.1f} (straight: {m['turn_straight']:deg+.1f}): the bend turns {steer}."
         )
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:

@@ -27,9 +27,9 @@ def draw_ramp(record: xr.Dataset, robot: AnyRobot) -> Any:
         top.plot(time, drive, color="black")
         top.set_ylabel("drive")
         out = record.ramp_amplitude * (1.0 + np.cos(2 * np.pi * record.ramp_phase))
-        for i, (limb, colour) in enumerate(limb_colours(robot)):
+        for i, (limb, colour) in enumerate(reversed(limb_colours(robot))):
             middle.fill_between(time, i, i + 0.85 * out.sel(oscillator=limb), color=colour, linewidth=0)
-        middle.set_yticks(np.arange(len(limbs)) + 0.3, limbs)
+        middle.set_yticks(np.arange(len(limbs)) + 0.3, limbs[::-1])
         middle.set_ylim(-0.15, len(limbs) + 0.1)
         middle.set_ylabel("limbs")
         _draw_waves(waves, record)
@@ -83,11 +83,14 @@ def draw_sweep(record: xr.Dataset, numbers: Oscillators) -> Any:
     fine = np.linspace(0.5, 5.5, 1001)
     with styled():
         figure, axes = panels(1, 3, width=12.5, height=4.0)
-        for name, law, colour in (("axis", numbers.axis, COLOURS["spine"]), ("limbs", numbers.limbs, COLOURS["RF"])):
+        for name, law, colour, size in (
+            ("axis", numbers.axis, COLOURS["spine"], 9),
+            ("limbs", numbers.limbs, COLOURS["RF"], 5),
+        ):
             for ax, line, found in zip(axes[0], law(fine), ("frequency", "amplitude"), strict=False):
                 own = line * (scale if found == "frequency" else 1.0)
                 ax.plot(fine, np.where(own > 0.0, own, np.nan), color=colour, linewidth=1.2, linestyle=(0, (1, 1.2)))
-                ax.plot(drive, record[f"{found}_{name}"], "o", color=colour, label=name)
+                ax.plot(drive, record[f"{found}_{name}"], "o", color=colour, label=name, markersize=size)
                 ax.set_xlabel("drive")
         axes[0, 0].set_ylabel("frequency [Hz]")
         axes[0, 1].set_ylabel("amplitude")
@@ -111,9 +114,15 @@ def draw_locks(record: xr.Dataset) -> Any:
     with styled():
         figure, axes = panels(1, 2, width=10.0, height=3.8, sharey=True)
         for ax, state in zip(axes[0], ("walk", "swim"), strict=True):
-            error = np.maximum(record[f"{state}_error"].values, 1e-4)
-            ax.semilogy(record[f"{state}_cycle"], error.T, color=COLOURS["ours"], alpha=0.35, linewidth=1.0)
+            ax.semilogy(
+                record[f"{state}_cycle"],
+                record[f"{state}_error"].values.T,
+                color=COLOURS["ours"],
+                alpha=0.35,
+                linewidth=1.0,
+            )
             ax.axhline(record.attrs["within"], color=COLOURS["RF"], linestyle=(0, (4, 2)), linewidth=1.3)
+            ax.set_ylim(1e-4, 4.0)
             ax.set_title(f"drive {record.attrs[state]:g}")
             ax.set_xlabel("time [cycle]")
         axes[0, 0].set_ylabel("greatest distance from its place [rad]")
