@@ -155,9 +155,9 @@ def couple(
             weight = stiff * numbers.limb_axis_weight if girdle == part.girdle else 0.0
             found.append((side * n + k, 2 * n + limb, weight, 2 * pi * part.late))
     found.sort()
-    receiver, sender, weight, bias = (np.array(column) for column in zip(*found, strict=True))
+    receiver, sender, weights, biases = (np.array(column) for column in zip(*found, strict=True))
     names = [f"axis_{k + 1}_{side}" for side in ("left", "right") for k in range(n)]
-    return Couplings((*names, *limbs), receiver, sender, weight.astype(float), bias.astype(float))
+    return Couplings((*names, *limbs), receiver, sender, weights.astype(float), biases.astype(float))
 
 
 def cut(whole: Couplings, lesions: Sequence[tuple[str, str]]) -> Couplings:

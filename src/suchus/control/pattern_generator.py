@@ -343,5 +343,10 @@ def oscillate(
             if progress is not None:
                 progress((tick - first) / max(ticks, 1))
     time, phase, amplitude, wave = zip(*found, strict=True)
-    stacked = (np.stack(one, axis=1) for one in (phase, amplitude, wave))
-    return Oscillation(np.array(time), *stacked, generator.couplings[0].names)
+    return Oscillation(
+        time=np.array(time),
+        phase=np.stack(phase, axis=1),
+        amplitude=np.stack(amplitude, axis=1),
+        wave=np.stack(wave, axis=1),
+        names=generator.couplings[0].names,
+    )

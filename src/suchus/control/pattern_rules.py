@@ -26,18 +26,18 @@ class Rules:
         period: float,
     ) -> None:
         self._yaw = list(layout(robots[0]).trunk_yaw)
-        self._spined = np.flatnonzero([one is not None for one in spines])
-        self._tailed = np.flatnonzero([one is not None for one in tails])
+        self._spined = [i for i, one in enumerate(spines) if one is not None]
+        self._tailed = [i for i, one in enumerate(tails) if one is not None]
         self._spine: Spine | None = None
         self._tail: Tail | None = None
-        if self._spined.size:
+        if self._spined:
             if not self._yaw:
                 raise UnsuitedRobot(
                     f"the rule spine to spine needs servos that bend the trunk sideways; robot {robots[0].name!r} "
                     "lacks them: leave spine out."
                 )
             self._spine = Spine([spines[i] for i in self._spined], [robots[i] for i in self._spined], [], period)
-        if self._tailed.size:
+        if self._tailed:
             self._tail = Tail(
                 [tails[i] for i in self._tailed],
                 [robots[i] for i in self._tailed],
@@ -66,6 +66,6 @@ def _with_tail(robot: AnyRobot, gait: AnyGait) -> Gait:
     return gait
 
 
-def _felt(sensed: Sensed, runs: np.ndarray) -> Sensed:
+def _felt(sensed: Sensed, runs: list[int]) -> Sensed:
     """Return the readings of some runs, as far as spine and tail read them."""
     return replace(sensed, servo_position=sensed.servo_position[runs], servo_torque=sensed.servo_torque[runs])
