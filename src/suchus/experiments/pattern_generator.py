@@ -321,7 +321,7 @@ def _locked(record: xr.Dataset, state: str, ending: str) -> dict[str, Measure]:
     """Return the share of starts that lock, and after how many cycles those do; NaN if none does."""
     error, cycle = record[f"{state}_error"], record[f"{state}_cycle"]
     step = float(cycle[1] - cycle[0])
-    since = (cycle.where(error > record.attrs["within"]).max(cycle.dims[0]) + step).fillna(0.0)
+    since = (cycle.where(error > record.attrs["within"]).max(str(cycle.dims[0])) + step).fillna(0.0)
     locked = since.values[since.values <= float(cycle[-1]) - record.attrs["hold"]]
     return {
         f"locked_share{ending}": Measure(len(locked) / len(since), "-"),
