@@ -21,6 +21,7 @@ WALKED = (
     "feedback",
     "gait_diagram",
     "joint_faults",
+    "pattern_generator",
     "speed_range",
     "terrain",
     "turning",

@@ -1,6 +1,15 @@
 """From time to intended posture: phases, foot paths, bends, servo targets."""
 
-from suchus.motion.any_body import AnyGait, Intended, check_limits, hip_height, intended, middle_stance, pattern_targets
+from suchus.motion.any_body import (
+    AnyGait,
+    Intended,
+    check_limits,
+    hip_height,
+    intended,
+    limb_targets,
+    middle_stance,
+    pattern_targets,
+)
 from suchus.motion.gait import Gait, Legs
 from suchus.motion.pattern import AxialWave, FootPath, Held, Pattern, Sweep
 from suchus.motion.phase import limb_phase, stance, tail_bend, trunk_bend
@@ -36,6 +45,7 @@ __all__ = [
     "hip_height",
     "intended",
     "limb_phase",
+    "limb_targets",
     "longest_stroke",
     "middle_stance",
     "pattern_targets",

@@ -139,16 +139,7 @@ def pattern_targets(
         OutsideLimits: a foot's path is out of reach.
     """
     place = layout(robot)
-    targets = np.zeros((*np.shape(clock), len(place.servos)))
-    phase = np.asarray(clock)[..., None] + np.array(gait.limb_phases)
-    for i, limb in enumerate(place.limbs):
-        does = gait.girdles[limb.number]
-        if isinstance(does, Held):
-            targets[..., limb.servos] = does.angles
-        elif isinstance(does, Sweep):
-            targets[..., limb.servos] = _crank(gait, does, phase[..., i])[..., None]
-        else:
-            targets[..., limb.servos] = _on_path(robot, gait, does, limb, phase[..., i])
+    targets = limb_targets(robot, gait, np.asarray(clock)[..., None] + np.array(gait.limb_phases))
     first = gait.limb_phases[0] if gait.limb_phases else 0.0
     since = np.asarray(clock) + first - (0.75 - gait.duty_factor / 2)
     for i, left, at in zip(place.axial_yaw, place.axial_left, place.axial_place, strict=True):
@@ -157,6 +148,35 @@ def pattern_targets(
         cable = place.cable(i)
         whole = sum((bend(gait, at, since) for at in place.cable_places(i)), np.zeros(()))
         targets[..., i] = tail_kinematics.servo_angle(cable, np.clip(-whole, -cable.bend_limit, cable.bend_limit))
+    return targets
+
+
+def limb_targets(
+    robot: AnyRobot, gait: AnyGait, phase: Float[np.ndarray, "*batch limb"]
+) -> Float[np.ndarray, "*batch servo"]:
+    """Return the servo angles of limbs at phases of their own; the axis is straight [rad].
+
+    Args:
+        robot: the design, whose limbs the movement is for.
+        gait: the movement.
+        phase: of the limbs, not wrapped [cycle].
+
+    Raises:
+        OutsideLimits: a foot's path is out of reach.
+    """
+    if isinstance(gait, Gait):
+        straight = np.zeros(phase.shape[:-1])
+        return servo_targets(robot, gait, phase, trunk=straight, tail=straight)
+    place = layout(robot)
+    targets = np.zeros((*phase.shape[:-1], len(place.servos)))
+    for i, limb in enumerate(place.limbs):
+        does = gait.girdles[limb.number]
+        if isinstance(does, Held):
+            targets[..., limb.servos] = does.angles
+        elif isinstance(does, Sweep):
+            targets[..., limb.servos] = _crank(gait, does, phase[..., i])[..., None]
+        else:
+            targets[..., limb.servos] = _on_path(robot, gait, does, limb, phase[..., i])
     return targets
 
 
