@@ -3,6 +3,7 @@
 from suchus.capture.angle_table import AngleCycle, read_angles
 from suchus.capture.animal import Animal, film_animal
 from suchus.capture.film import Camera, film, keypoints
+from suchus.capture.played import to_angle_table
 from suchus.capture.reading import Reading, read_tracks, told, write_gait
 from suchus.capture.retarget import Captured, driven_share, to_gait
 from suchus.capture.table import write_table
@@ -28,6 +29,7 @@ __all__ = [
     "read_angles",
     "read_tracks",
     "standing_index",
+    "to_angle_table",
     "to_gait",
     "told",
     "write_gait",
