@@ -1,6 +1,6 @@
 """Tracked keypoints of a walking body -> spine and tail angles, foot contacts, one mean cycle -> a gait."""
 
-from suchus.capture.angle_table import AngleCycle, read_angles
+from suchus.capture.angle_table import AngleCycle, is_angle_table, read_angles
 from suchus.capture.animal import Animal, film_animal
 from suchus.capture.film import Camera, film, keypoints
 from suchus.capture.played import to_angle_table
@@ -24,6 +24,7 @@ __all__ = [
     "driven_share",
     "film",
     "film_animal",
+    "is_angle_table",
     "keypoints",
     "observe",
     "read_angles",

@@ -94,14 +94,14 @@ class Salamander(Experiment):
         return Simulated(record=record, tables=told, replays=self._replays(record))
 
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
-        caption = "The animal's joint angles on its model, and, half transparent, with the axis held straight."
+        caption = "Joint angles of a walking salamander on its model, and, half transparent, with the axis held straight."
         page = partial(
             replay,
             record.isel(run=0),
             self.robot,
             ghost=record.isel(run=1),
             labels=(_WALK, _STRAIGHT),
-            title="A salamander's walk, played joint by joint",
+            title="The walk of a salamander, played joint by joint",
             caption=caption,
         )
         return {"animal_walk_replay.html": Replay(caption=caption, make=page)}
