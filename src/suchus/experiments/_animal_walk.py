@@ -165,9 +165,10 @@ def step(force: xr.DataArray, least: float) -> Step:
 
 def steps(record: xr.Dataset, when: Window, least: float) -> dict[str, Measure]:
     """Return the forces on fore and hind feet, the mean of left and right, and how far the feet slip."""
-    force, measures = stance_forces(record, when), {}
+    force = stance_forces(record, when)
+    measures: dict[str, Measure] = {}
     singles = each_cycle(record.foot_force, *when) / weight(record)
-    single = np.sqrt((singles**2).sum("xyz")).max("phase").mean("cycle")
+    single = ((singles**2).sum("xyz") ** 0.5).max("phase").mean("cycle")
     for pair in PAIRS:
         legs = list(record.attrs[pair])
         found = [step(force.sel(leg=leg), least) for leg in legs]

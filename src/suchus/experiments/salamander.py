@@ -94,7 +94,7 @@ class Salamander(Experiment):
         return Simulated(record=record, tables=told, replays=self._replays(record))
 
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
-        caption = "Joint angles of a walking salamander on its model, and, half transparent, with the axis held straight."
+        caption = "Joint angles of a walking salamander on its model; half transparent, with the axis held straight."
         page = partial(
             replay,
             record.isel(run=0),

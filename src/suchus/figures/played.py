@@ -12,7 +12,8 @@ from suchus.figures.style import COLOURS, captioned, panels, styled
 from suchus.metrics import mean_cycle
 
 _COLUMNS = 4
-_LEAST = np.radians(0.1)  # a servo that is moved by less is not drawn
+_LEAST = 0.1  # degrees; a servo that is moved by less is not drawn
+_DEGREES = 180.0 / np.pi
 _PARTS = (
     ("vertical", "-", "coordinated"),
     ("foreaft", (0, (5, 2)), "limbs_only"),
@@ -28,9 +29,9 @@ def draw_angles(record: xr.Dataset, when: tuple[float, float, int]) -> Figure:
         record: of one run.
         when: start of the first cycle [s], period [s] and number of cycles.
     """
-    commanded = np.degrees(mean_cycle(record.servo_target, *when))
-    achieved = np.degrees(mean_cycle(record.servo_angle, *when))
-    names = [str(one) for one in record.servo.values if np.ptp(commanded.sel(servo=one).values) > np.degrees(_LEAST)]
+    commanded = mean_cycle(record.servo_target, *when) * _DEGREES
+    achieved = mean_cycle(record.servo_angle, *when) * _DEGREES
+    names = [str(one) for one in record.servo.values if np.ptp(commanded.sel(servo=one).values) > _LEAST]
     rows = -(-len(names) // _COLUMNS) or 1
     with styled(axes__titlesize=10, xtick__labelsize=9, ytick__labelsize=9):
         figure, axes = panels(rows, _COLUMNS, width=10.0, height=0.8 + 1.5 * rows, sharex=True)
