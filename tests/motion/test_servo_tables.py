@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from suchus import blueprint
+from suchus.control.pattern_posture import PatternPosture
 from suchus.design import layout
 from suchus.errors import InvalidDesign, OutsideLimits, UnknownName
 from suchus.gaits import GAITS
@@ -97,3 +98,8 @@ def test_impossible_tables_are_refused(walk, change, message):
 def test_impossible_curves_are_refused(angles):
     with pytest.raises(InvalidDesign, match=r"allowed"):
         Curve(servo="a", angles=angles)
+
+
+def test_oscillators_refuse_a_table_in_a_sentence(walk):
+    with pytest.raises(OutsideLimits, match="'animal_walk' is a table of angles"):
+        PatternPosture(ROBOTS["salamander"], walk, standing=True)

@@ -109,11 +109,23 @@ def table_targets(
     return targets
 
 
+def table_limbs(
+    robot: AnyRobot, gait: AngleTable, phase: Float[np.ndarray, "*batch limb"]
+) -> Float[np.ndarray, "*batch servo"]:
+    """Return the servo angles of limbs at phases of their own; the axis is straight [rad].
+
+    Args:
+        robot: the design, for which the table is.
+        gait: the table.
+        phase: of the limbs, 0 where a swing begins [cycle].
+    """
+    place = layout(robot)
+    found = np.zeros((*phase.shape[:-1], len(place.servos)))
+    for i, limb in enumerate(place.limbs):
+        found[..., limb.servos] = table_targets(robot, gait, phase[..., i] - gait.limb_phases[i])[..., limb.servos]
+    return found
+
+
 def table_middle(robot: AnyRobot, gait: AngleTable) -> Float[np.ndarray, " servo"]:
     """Return the servo angles in the middle of each limb's stance, with a straight axis [rad]."""
-    place = layout(robot)
-    found = np.zeros(len(place.servos))
-    for limb, phase in zip(place.limbs, gait.limb_phases, strict=True):
-        clock = np.array(1.0 - gait.duty_factor / 2 - phase)
-        found[limb.servos] = table_targets(robot, gait, clock)[limb.servos]
-    return found
+    return table_limbs(robot, gait, np.full(len(gait.limb_phases), 1.0 - gait.duty_factor / 2))

@@ -10,7 +10,7 @@ from suchus.design import AnyRobot, Crank, LimbPlace, layout, servo_ranges
 from suchus.errors import OutsideLimits, Unreachable
 from suchus.kinematics import limb as limb_kinematics
 from suchus.kinematics import tail as tail_kinematics
-from suchus.motion.angle_table import AngleTable, check_table, table_middle, table_targets
+from suchus.motion.angle_table import AngleTable, check_table, table_limbs, table_middle, table_targets
 from suchus.motion.gait import Gait
 from suchus.motion.pattern import AxialWave, FootPath, Held, Pattern, Sweep
 from suchus.motion.phase import limb_phase
@@ -178,6 +178,8 @@ def limb_targets(
     if isinstance(gait, Gait):
         straight = np.zeros(phase.shape[:-1])
         return servo_targets(robot, gait, phase, trunk=straight, tail=straight)
+    if isinstance(gait, AngleTable):
+        return table_limbs(robot, gait, phase)
     place = layout(robot)
     targets = np.zeros((*phase.shape[:-1], len(place.servos)))
     for i, limb in enumerate(place.limbs):
