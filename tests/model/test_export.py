@@ -11,7 +11,7 @@ import pytest
 
 from suchus import blueprint
 from suchus.design import Crocodile, joint_names
-from suchus.errors import InvalidDesign, UnknownName, Unwritable
+from suchus.errors import InvalidDesign, OutsideLimits, UnknownName, Unwritable
 from suchus.gaits import GAITS
 from suchus.kinematics.mass import GRAVITY
 from suchus.model import compile_model, joint_addresses
@@ -19,6 +19,7 @@ from suchus.model import sites as sensed
 from suchus.model.export import MARK, NoUsd, ball, export, unsaid, unsaid_in_usd
 from suchus.model.export.urdf import _roll_pitch_yaw
 from suchus.model.export.usd import prim_name
+from suchus.motion import check_limits
 from suchus.robots import ROBOTS
 
 NOT_PHYSICS = ("key", "name", "tex", "mat", "skin", "vis", "nnames", "nbuffer", "nkey", "ntex", "signature")
@@ -447,3 +448,35 @@ def test_any_body_is_written_as_usd(name, tmp_path):
         if prim.HasAPI(pxr.UsdPhysics.MassAPI)
     )
     assert mass == pytest.approx(own.mass, rel=1e-4)
+
+
+@pytest.mark.parametrize("name", list(ROBOTS))
+def test_the_urdf_loads_in_mujoco_with_every_body_and_joint_where_it_is(name, tmp_path):
+    robot = ROBOTS[name]
+    gait = next(gait for gait in GAITS.values() if fits(robot, gait))
+    folder = export(robot, gait, tmp_path / name, "urdf")
+    ours, theirs = compile_model(robot), mujoco.MjModel.from_xml_path(str(folder / f"{name}.urdf"))
+    assert theirs.body(ours.body(1).name).parentid[0] == 0
+    assert theirs.njnt == ours.njnt - 1
+    assert theirs.body_mass.sum() == pytest.approx(ours.body_mass.sum(), rel=1e-6)
+    bodies = [ours.body(i).name for i in range(1, ours.nbody)]
+    hinges = [ours.joint(i).name for i in range(1, ours.njnt)]
+    one, two = mujoco.MjData(ours), mujoco.MjData(theirs)
+    rng = np.random.default_rng(1)
+    for _ in range(5):
+        angles = rng.uniform(-0.8, 0.8, len(hinges))
+        one.qpos[joint_addresses(ours, hinges)] = angles
+        two.qpos[joint_addresses(theirs, hinges)] = angles
+        mujoco.mj_kinematics(ours, one)
+        mujoco.mj_kinematics(theirs, two)
+        here = np.array([one.body(body).xpos - one.body(1).xpos for body in bodies])
+        there = np.array([two.body(body).xpos - two.body(bodies[0]).xpos for body in bodies])
+        assert there == pytest.approx(here, abs=1e-9)
+
+
+def fits(robot, gait):
+    try:
+        check_limits(robot, gait)
+    except (OutsideLimits, UnknownName):
+        return False
+    return True

@@ -1,5 +1,6 @@
 """What holds for every gait on the shelf."""
 
+import re
 from dataclasses import fields
 from importlib import import_module
 
@@ -13,6 +14,7 @@ from suchus.motion import check_limits, pattern_targets, servo_targets
 from suchus.robots import ROBOTS
 
 MADE_FOR = {
+    "animal_walk": "salamander",
     "pleurobot_walk": "pleurobot",
     "salamander_walk": "salamander",
     "salamandra_walk": "salamandra",
@@ -46,8 +48,9 @@ def test_a_pattern_is_named_by_its_file_and_followed_by_its_robot_and_repeats(pa
 
 def test_every_number_of_a_pattern_has_a_range_and_a_reason(pattern):
     gait, _ = pattern
-    chosen = {entry.field: entry for entry in import_module(f"suchus.gaits.{gait.name}").chosen}
-    values = dict(numbers(gait))
+    module = import_module(f"suchus.gaits.{gait.name}")
+    chosen, published = {entry.field: entry for entry in module.chosen}, getattr(module, "PUBLISHED", ())
+    values = {path: one for path, one in numbers(gait) if not any(re.search(pattern, path) for pattern in published)}
     assert set(chosen) == set(values)
     assert all(entry.low <= values[path] <= entry.high for path, entry in chosen.items())
 

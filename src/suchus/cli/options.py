@@ -18,7 +18,7 @@ from suchus.design import AnyRobot, Crocodile
 from suchus.errors import SuchusError, UnknownName
 from suchus.experiment import Experiment
 from suchus.gaits import GAITS
-from suchus.motion import AnyGait, Gait
+from suchus.motion import AngleTable, AnyGait, Gait
 from suchus.record import there
 from suchus.robots import ROBOTS
 
@@ -127,6 +127,7 @@ def _registry() -> ConstructorRegistry:
         (Crocodile, ROBOTS, "ROBOT"),
         (AnyGait, GAITS, "GAIT"),
         (Gait, GAITS, "GAIT"),
+        (AngleTable, GAITS, "GAIT"),
     )
     for kind, shelf, metavar in shelves:
         registry.primitive_rule(_shelf_rule(kind, shelf, metavar))

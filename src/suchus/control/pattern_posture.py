@@ -9,9 +9,9 @@ from jaxtyping import Float
 
 from suchus.control.oscillators import AxisPart
 from suchus.design import AnyRobot, Crank, Layout, layout, servo_ranges
-from suchus.errors import UnsuitedRobot
+from suchus.errors import OutsideLimits, UnsuitedRobot
 from suchus.kinematics import tail as tail_kinematics
-from suchus.motion import AnyGait, Gait, Held, Sweep, limb_targets, middle_stance
+from suchus.motion import AngleTable, AnyGait, Gait, Held, Sweep, limb_targets, middle_stance
 
 _FOLDED = radians(-85)  # yaw of a folded limb, backward along the body, as a swimming salamander holds them
 
@@ -77,6 +77,11 @@ class PatternPosture:
     """
 
     def __init__(self, robot: AnyRobot, gait: AnyGait, *, standing: bool) -> None:
+        if isinstance(gait, AngleTable):
+            raise OutsideLimits(
+                f"gait {gait.name!r} is a table of angles, whose axis has no wave for oscillators to follow: choose a "
+                "gait with bends, as 'salamander_walk'."
+            )
         self.segments = axis_segments(robot, gait)
         self.shift = 0.25 - gait.duty_factor / 2
         """What a limb's phase is ahead of its oscillator: a left oscillator bends the body to the left [cycle]."""

@@ -14,6 +14,7 @@ from suchus.metrics.energy import cost_of_transport, peak_torque, work
 from suchus.metrics.gait import diagonal_phase_error, duty_factor, foot_clearance, loaded, sensed_phase, two_feet_share
 from suchus.metrics.loads import swing_height, swing_lift, swing_loads, swing_unloaded, tail_load_share
 from suchus.metrics.loss import loss
+from suchus.metrics.mean_cycle import each_cycle, first_harmonic, mean_cycle
 from suchus.metrics.progress import displacement, heading, heading_change, path_length, slip
 from suchus.metrics.reach import held, lead, reach, static_margin
 from suchus.metrics.rolling import roll_angle, roll_rate
@@ -38,6 +39,8 @@ __all__ = [
     "diagonal_phase_error",
     "displacement",
     "duty_factor",
+    "each_cycle",
+    "first_harmonic",
     "foot_clearance",
     "heading",
     "heading_change",
@@ -50,6 +53,7 @@ __all__ = [
     "line_distance_max",
     "loaded",
     "loss",
+    "mean_cycle",
     "path_length",
     "peak_torque",
     "rank_correlation",

@@ -1,5 +1,6 @@
 """From time to intended posture: phases, foot paths, bends, servo targets."""
 
+from suchus.motion.angle_table import AngleTable, Curve
 from suchus.motion.any_body import (
     AnyGait,
     Intended,
@@ -22,9 +23,11 @@ from suchus.motion.timing import START
 
 __all__ = [
     "START",
+    "AngleTable",
     "AnyGait",
     "AxialWave",
     "Bends",
+    "Curve",
     "FootPath",
     "Gait",
     "Held",

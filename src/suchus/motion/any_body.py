@@ -10,6 +10,7 @@ from suchus.design import AnyRobot, Crank, LimbPlace, layout, servo_ranges
 from suchus.errors import OutsideLimits, Unreachable
 from suchus.kinematics import limb as limb_kinematics
 from suchus.kinematics import tail as tail_kinematics
+from suchus.motion.angle_table import AngleTable, check_table, table_limbs, table_middle, table_targets
 from suchus.motion.gait import Gait
 from suchus.motion.pattern import AxialWave, FootPath, Held, Pattern, Sweep
 from suchus.motion.phase import limb_phase
@@ -17,8 +18,8 @@ from suchus.motion.targets import check_limits as check_gait
 from suchus.motion.targets import servo_targets
 from suchus.motion.timing import START
 
-AnyGait = Gait | Pattern
-"""A periodic movement: the article's kind of gait, or one of any body."""
+AnyGait = Gait | Pattern | AngleTable
+"""A periodic movement: the article's kind of gait, one of any body, or a table of servo angles."""
 _SAMPLES = 128  # of a cycle, to check it
 
 
@@ -55,6 +56,8 @@ def hip_height(robot: AnyRobot, gait: AnyGait) -> float:
     """Return how high the root's axis is above the ground in a movement [m]."""
     if isinstance(gait, Gait):
         return gait.hip_height
+    if isinstance(gait, AngleTable):
+        return 0.0  # not said: it is put down as low as its feet and belly let it be
     girdles = layout(robot).robot.girdles
     return gait.height * girdles[-1].limb.reach - girdles[-1].above if girdles else 0.0
 
@@ -69,6 +72,8 @@ def middle_stance(robot: AnyRobot, gait: AnyGait) -> Float[np.ndarray, " servo"]
         phase = np.full((1, len(gait.limb_phases)), middle)
         return np.asarray(servo_targets(robot, gait, phase, trunk=np.zeros(1), tail=np.zeros(1))[0])
     check_limbs(robot, gait)
+    if isinstance(gait, AngleTable):
+        return table_middle(robot, gait)
     still = replace(
         gait,
         limb_phases=(middle,) * len(gait.limb_phases),
@@ -97,12 +102,16 @@ def check_limits(robot: AnyRobot, gait: AnyGait) -> None:
             )
 
 
-def check_limbs(robot: AnyRobot, gait: Pattern) -> None:
+def check_limbs(robot: AnyRobot, gait: Pattern | AngleTable) -> None:
     """Refuse a movement for other limbs than a robot has.
 
     Raises:
         OutsideLimits: another number of girdles, or limbs that cannot do what is asked of them.
+        UnknownName: a table moves a servo that the robot lacks.
     """
+    if isinstance(gait, AngleTable):
+        check_table(robot, gait)
+        return
     place = layout(robot)
     if len(gait.girdles) != len(place.robot.girdles):
         raise OutsideLimits(
@@ -126,7 +135,7 @@ def check_limbs(robot: AnyRobot, gait: Pattern) -> None:
 
 
 def pattern_targets(
-    robot: AnyRobot, gait: Pattern, clock: Float[np.ndarray, "*batch"]
+    robot: AnyRobot, gait: Pattern | AngleTable, clock: Float[np.ndarray, "*batch"]
 ) -> Float[np.ndarray, "*batch servo"]:
     """Return the servo angles of a movement [rad].
 
@@ -138,6 +147,8 @@ def pattern_targets(
     Raises:
         OutsideLimits: a foot's path is out of reach.
     """
+    if isinstance(gait, AngleTable):
+        return table_targets(robot, gait, clock)
     place = layout(robot)
     targets = limb_targets(robot, gait, np.asarray(clock)[..., None] + np.array(gait.limb_phases))
     first = gait.limb_phases[0] if gait.limb_phases else 0.0
@@ -167,6 +178,8 @@ def limb_targets(
     if isinstance(gait, Gait):
         straight = np.zeros(phase.shape[:-1])
         return servo_targets(robot, gait, phase, trunk=straight, tail=straight)
+    if isinstance(gait, AngleTable):
+        return table_limbs(robot, gait, phase)
     place = layout(robot)
     targets = np.zeros((*phase.shape[:-1], len(place.servos)))
     for i, limb in enumerate(place.limbs):

@@ -3,9 +3,10 @@
 from itertools import pairwise
 from math import radians
 
-from suchus.design import Robot
+from suchus.design import Robot, Spring
+from suchus.design.physics import GRAVITY
 from suchus.design.reasons import Reason, chosen_numbers
-from suchus.design.scale import contact_for, servo_for, spring_for
+from suchus.design.scale import contact_for, gravity_time, servo_for
 from suchus.robots._plans import BY_SIZE, Joint, girdle, limb, row
 
 _JOINTS = (0.0150, 0.0257, 0.0364, 0.0471, 0.0579, 0.0686, 0.0793, 0.0900)  # m from the snout
@@ -22,6 +23,16 @@ _NAMES = ("head", "chest", "trunk", "waist", "tail_1", "tail_2", "tail_3", "tail
 _HIPS = 3  # place of the segment that carries the hind limbs
 
 
+def _passive(stiffness: float) -> Spring:
+    """Return a passive joint of the source's model; stiffness in parts of the body's weight times its length [-]."""
+    torque = _MASS * GRAVITY * _LENGTH
+    return Spring(
+        stiffness=stiffness * torque,
+        damping=0.036 * torque * gravity_time(_LENGTH),
+        armature=2.8e-5 * _MASS * _LENGTH**2,
+    )
+
+
 def _joints(number: int) -> list[Joint]:
     """Return the joints behind a segment: a yaw joint, and perhaps a passive pitch joint."""
     ahead = number < _HIPS
@@ -29,8 +40,7 @@ def _joints(number: int) -> list[Joint]:
     count = 1 if number == 0 else abs(number - _HIPS) + (not ahead)
     found: list[Joint] = [(f"{word}_yaw_{count}", "yaw", _servo, radians(90))]
     if number + 1 in _PITCH_BESIDE:
-        share = max(_MASSES[number], _MASSES[number + 1]) / max(_MASSES)
-        found.append((f"{word}_pitch_{count}", "pitch", spring_for(_MASS, _LENGTH, share), radians(40)))
+        found.append((f"{word}_pitch_{count}", "pitch", _passive(0.11 if ahead else 0.036), radians(40)))
     return found
 
 
@@ -50,7 +60,7 @@ robot = Robot(
         girdle("H", "waist", _JOINTS[2] - _HIP_PLACE, 0.003, -0.002, _limb),
     ),
     cables=(),
-    contact=contact_for(_LENGTH, foot_friction=0.7, skin_friction=0.4),
+    contact=contact_for(_LENGTH, foot_friction=0.7, skin_friction=0.7),
 )
 
 """After the model of a Pleurodeles scaled to 0.10 m that is used with SalamandraSNN (MIT)."""

@@ -1,5 +1,6 @@
 """URDF: links, joints, limits and shapes; what it cannot say is listed in ``UNSAID``."""
 
+from collections.abc import Mapping
 from typing import Any
 from xml.etree import ElementTree
 
@@ -33,6 +34,14 @@ UNSAID = (
     + "), up to {faceted:.2g} % inside.",
     "Sensors, and the free joint: the root link is {root}.",
 )
+MUJOCO: Mapping[str, str] = {
+    "fusestatic": "false",
+    "strippath": "false",
+    "boundmass": "1e-10",
+    "boundinertia": "1e-14",
+}
+"""What MuJoCo needs to be told, others skip it: keep the root and the frames as bodies, and where the ball lies; links
+between joints in one point have no mass, and MuJoCo wants some [kg, kg m2]."""
 _RINGS, _SECTORS = 24, 48
 _FREE_SPEED = 100.0  # [rad/s]; a limit must be given; nothing on the robot turns so fast
 
@@ -45,6 +54,7 @@ def urdf(robot: AnyRobot) -> str:
     """
     model = compile_model(robot)
     root = ElementTree.Element("robot", name=robot.name)
+    ElementTree.SubElement(ElementTree.SubElement(root, "mujoco"), "compiler", dict(MUJOCO))
     for body in range(1, model.nbody):
         _add_body(root, model, body, robot)
     for site in (*sites(robot), IMU):
