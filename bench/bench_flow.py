@@ -12,6 +12,7 @@ import numpy as np
 
 from suchus import flow
 from suchus.flow import border, log, midline, multigrid, openwater, patch, poisson, simulation, water
+from suchus.flow.compiled import compiled, threaded
 
 PIECES = (
     (water, "advance immerse collect swelling contents mean_residual residual correct fastest fill fill_source"),
@@ -134,6 +135,13 @@ def tell_pieces(cells, threads, steps):
 
 def tell_solve(w, per_cell):
     """Print what the pieces of one iteration of the pressure solver take."""
+    cycle, start, end = (compiled(part.py_func) for part in (multigrid.cycle, patch.start, patch.end))
+    down, up, dots, first, second = (
+        threaded(part.py_func)
+        for part in (
+            multigrid._down_threaded, multigrid._up_threaded, poisson._measure, poisson._first_step, poisson._step
+        )
+    )  # fmt: skip
     store, layout, room, patches, sides = w._store, w._layout, w._room, w._patches, w.sides.repeats
     print("one iteration of the pressure solver, ns per cell of the finest level; best of 20")
 
@@ -143,18 +151,18 @@ def tell_solve(w, per_cell):
     for k in range(layout.shape[0]):
         x, size = multigrid.level(store, layout, multigrid.X, k), tuple(int(n) for n in layout[k, 2:0:-1])
         below, own = layout[k:].copy(), patches[k:].copy()
-        tell(f"cycle from level {k}, {size}", lambda: multigrid.cycle(x, store, below, room, own, sides))  # noqa: B023
+        tell(f"cycle from level {k}, {size}", lambda: cycle(x, store, below, room, own, sides))  # noqa: B023
     fine = [multigrid.level(store, layout, kind, 0) for kind in range(5)]
     x, b, cx, cy, dinv = fine
     coarse_b, coarse_x = (multigrid.level(store, layout, kind, 1) for kind in (multigrid.B, multigrid.X))
     zero, rect, place = w.dtype(0), patches[0], layout[0]
-    tell("down, finest level", lambda: multigrid._down_threaded(coarse_b, b, cx, cy, place, room, rect, sides))
-    tell("up, finest level", lambda: multigrid._up_threaded(x, b, coarse_x, cx, cy, dinv, place, room, rect, sides))
-    tell("patch, finest level, before", lambda: patch.start(room, rect, b))
-    tell("patch, finest level, after", lambda: patch.end(room, rect, x))
-    tell("dot products", lambda: poisson._measure(x, b, w._d, cx, cy, place, w._sums))
-    tell("first step", lambda: poisson._first_step(b, x, cx, cy, place, zero, sides[0], w._sums))
-    tell("second step", lambda: poisson._step(b, x, w._d, cx, cy, place, zero, zero, sides[0], w._sums))
+    tell("down, finest level", lambda: down(coarse_b, b, cx, cy, place, room, rect, sides))
+    tell("up, finest level", lambda: up(x, b, coarse_x, cx, cy, dinv, place, room, rect, sides))
+    tell("patch, finest level, before", lambda: start(room, rect, b))
+    tell("patch, finest level, after", lambda: end(room, rect, x))
+    tell("dot products", lambda: dots(x, b, w._d, cx, cy, place, w._sums))
+    tell("first step", lambda: first(b, x, cx, cy, place, zero, sides[0], w._sums))
+    tell("second step", lambda: second(b, x, w._d, cx, cy, place, zero, zero, sides[0], w._sums))
 
 
 def main():

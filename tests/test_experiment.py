@@ -1,37 +1,82 @@
-import pytest
+from dataclasses import dataclass, replace
+from typing import ClassVar
 
-from suchus.errors import UnknownName
-from suchus.experiment import judge, staged
+import pytest
+import xarray as xr
+
+from suchus.errors import IncompatibleRecord
+from suchus.experiment import Experiment, Measure, Simulated, silent, staged
+from suchus.verdict import Clause, Rule
+
+
+@dataclass(frozen=True)
+class Drop(Experiment):
+    title = "How far does it fall?"
+    shows = "Beyond the article"
+    judged_with = ("ground",)
+    judged_from: ClassVar = {"repeats": 4, "heights": 2}
+
+    ground: str = "floor"
+    repeats: int = 4
+    heights: tuple[float, ...] = (1.0, 2.0)
+    name_of_measure: str = "depth"
+
+    @classmethod
+    def rules(cls):
+        return (
+            Rule(
+                claim="tail_swing",
+                experiment="drop",
+                measure="depth",
+                holds=(Clause("depth", ">", 0.0, "down is down"),),
+                why="It fell by {depth:mm.0f} mm.",
+            ),
+        )
+
+    def simulate(self, progress=silent):
+        return Simulated(record=xr.Dataset({"y": ("time", [0.0, -1.0])}))
+
+    def measure(self, record):
+        return {self.name_of_measure: Measure(float(-record.y[-1]), "m")}
+
+    def explain(self, measures):
+        return f"Gravity: {sum(measures.values()):.1f}   m."
+
+    def draw(self, outcome):
+        return {}
+
+    def quick(self):
+        return replace(self, repeats=1)
+
+
+def test_a_run_measures_judges_and_explains_from_its_record():
+    outcome = Drop().run()
+    assert outcome.measures["depth"].value == 1.0
+    (verdict,) = outcome.verdicts
+    assert (verdict.verdict, verdict.why) == ("reproduced", "It fell by 1000 mm.")
+    assert outcome.decides == "Gravity: 1.0 m."
+    assert outcome.unjudged == ""
 
 
 @pytest.mark.parametrize(
-    ("measured", "holds", "word"),
+    ("fields", "sentence"),
     [
-        (0.73, None, "reproduced"),
-        (0.77, None, "reproduced"),  # within the claim's band of 0.05 m
-        (0.60, None, "same sense"),
-        (-0.60, None, "contradicted"),
-        (0.73, False, "contradicted"),  # the number is right but the statement is not
-        (0.60, False, "contradicted"),
-        (None, None, "not testable"),
+        ({"ground": "sea"}, "Not judged: ground is sea, and the article's claims are judged with floor."),
+        ({"repeats": 3}, "Not judged: repeats is 3, and 4 at least are needed to meet what is judged."),
+        ({"heights": (1.0,)}, "Not judged: heights has 1 values, and 2 at least are needed to meet what is judged."),
+        ({"repeats": 5, "heights": (1.0, 2.0, 3.0)}, ""),
     ],
 )
-def test_a_verdict_on_a_number(measured, holds, word):
-    assert judge("displacement_coordinated", measured, "because", holds=holds).verdict == word
+def test_what_cannot_answer_is_not_judged(fields, sentence):
+    outcome = replace(Drop(), **fields).run()
+    assert outcome.unjudged == sentence
+    assert bool(outcome.verdicts) == (sentence == "")
+    assert outcome.measures
 
 
-def test_a_verdict_on_a_statement_is_what_was_found():
-    assert judge("com_fluctuation", -0.1, "because", holds=True).verdict == "reproduced"
-    assert judge("com_fluctuation", 0.1, "because", holds=False).verdict == "contradicted"
-
-
-def test_another_tolerance_is_another_band():
-    assert judge("displacement_coordinated", 0.60, "because", tolerance=0.2).verdict == "reproduced"
-
-
-def test_an_unknown_claim_is_named():
-    with pytest.raises(UnknownName, match="no claim named 'displacment_ratio'"):
-        judge("displacment_ratio", 1.0, "because")
+def test_a_measure_that_a_rule_lacks_is_named():
+    with pytest.raises(IncompatibleRecord, match="tail_swing needs depth, which drop did not measure"):
+        Drop(name_of_measure="width").run()
 
 
 def test_progress_of_a_stage_fills_its_part():

@@ -4,9 +4,10 @@ from collections.abc import Iterator, Mapping
 from importlib import import_module
 from pathlib import Path
 from pkgutil import iter_modules
-from typing import Any, Generic, TypeVar
+from typing import Any, Generic, TypeVar, get_args
 
 from suchus.errors import InvalidDesign, UnknownName
+from suchus.kinds import show
 
 T = TypeVar("T")
 
@@ -44,12 +45,11 @@ class Catalog(Mapping[str, T], Generic[T]):
             raise UnknownName(self.kind, name, self)
         module = import_module(f"{self._package}.{name}")
         thing: Any = getattr(module, self.kind, None)
-        path, _, cls = self._declares.partition(":")
-        wanted = getattr(import_module(path), cls)
+        wanted = self._wanted()
         fits = isinstance(thing, type) and issubclass(thing, wanted) if self._classes else isinstance(thing, wanted)
         if not fits:
             found = "nothing" if thing is None else f"a {type(thing).__name__}"
-            wanted_as = f"subclass of {cls}" if self._classes else cls
+            wanted_as = f"subclass of {_name(wanted)}" if self._classes else _name(wanted)
             file = Path(str(module.__file__)).name
             raise InvalidDesign(
                 f"{self._package.replace('.', '/')}/{file} must declare `{self.kind}`, a {wanted_as}, "
@@ -57,10 +57,34 @@ class Catalog(Mapping[str, T], Generic[T]):
             )
         return thing
 
+    def resolve(self, value: Any) -> T:
+        """Return what a value stands for: itself, or what carries its name on the shelf.
+
+        Raises:
+            UnknownName: a name that is not on the shelf.
+            InvalidDesign: neither a name nor what stands on this shelf.
+        """
+        if isinstance(value, str):
+            return self[value]
+        wanted = self._wanted()
+        if not isinstance(value, wanted):
+            raise InvalidDesign(f"{show(value)} is no {self.kind}; a {_name(wanted)} or a name of one is needed.")
+        return value
+
     def beside(self, name: str, attribute: str, default: Any) -> Any:
         """Return what else a module declares, such as the reasons for its numbers, or ``default``."""
         self[name]
         return getattr(import_module(f"{self._package}.{name}"), attribute, default)
 
+    def _wanted(self) -> Any:
+        path, _, cls = self._declares.partition(":")
+        wanted: Any = getattr(import_module(path), cls)
+        return wanted
+
     def __repr__(self) -> str:
         return f"Catalog({self.kind}: {', '.join(self)})"
+
+
+def _name(wanted: Any) -> str:
+    """Return the name of a type, or of each of a union."""
+    return " or ".join(one.__name__ for one in get_args(wanted) or (wanted,))

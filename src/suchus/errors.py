@@ -1,12 +1,24 @@
 """What can go wrong, each a sentence: what, the value, what is allowed, the remedy."""
 
+import re
 from collections.abc import Iterable
 from difflib import get_close_matches
 from typing import Any
 
+_LONG_WORD, _LONG_TEXT = 300, 3000  # characters of a message; what is longer was given to us, and is known to the giver
+
+
+def shortened(text: str) -> str:
+    """Return a message without what is too long to be read: the middle of words and of the whole."""
+    text = re.sub(rf"\S{{{_LONG_WORD},}}", lambda word: f"{word[0][:160]}...{word[0][-60:]}", text)
+    return text if len(text) <= _LONG_TEXT else f"{text[: _LONG_TEXT - 500]} ... {text[-400:]}"
+
 
 class SuchusError(Exception):
-    """Base of every error that suchus raises on purpose."""
+    """Base of every error that suchus raises on purpose; its text never repeats pages of what was given."""
+
+    def __str__(self) -> str:
+        return shortened(str(self.args[0])) if self.args else ""
 
 
 class InvalidDesign(SuchusError, ValueError):
@@ -15,6 +27,10 @@ class InvalidDesign(SuchusError, ValueError):
 
 class OutsideLimits(SuchusError, ValueError):
     """A command that the robot's joints or servos cannot follow."""
+
+
+class UnsuitedRobot(SuchusError, ValueError):
+    """A robot that lacks what is needed of it."""
 
 
 class UnreadableFile(SuchusError, ValueError):
@@ -44,12 +60,13 @@ class UnknownName(SuchusError, KeyError):
     def __init__(self, kind: str, name: str, available: Iterable[str]) -> None:
         self.name = name
         self.available = tuple(available)
-        near = get_close_matches(name, self.available, n=1)
+        near = get_close_matches(str(name)[:_LONG_WORD], self.available, n=1)
         hint = f" Did you mean {near[0]!r}?" if near else ""
         super().__init__(f"there is no {kind} named {name!r}; there is {', '.join(self.available)}.{hint}")
 
-    def __str__(self) -> str:
-        return str(self.args[0])
+
+class Doubtful(UserWarning):
+    """A result that stands and may be farther off than usual; the message says by how much and what helps."""
 
 
 class Unreachable(SuchusError, ValueError):

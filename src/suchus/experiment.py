@@ -9,10 +9,7 @@ from typing import Any, ClassVar
 
 import xarray as xr
 
-from suchus.errors import UnknownName
-from suchus.paper import CLAIMS
-from suchus.verdict import Rule, Verdict, rules_of
-from suchus.verdict import judge as decide
+from suchus.verdict import Rule, Verdict, judge, rules_of
 
 Progress = Callable[[str, float], None]
 """Called with what is being done and the share of it that is done, 0 to 1."""
@@ -99,7 +96,6 @@ class Experiment(ABC):
     """The question in one line, as a person would ask it."""
     shows: ClassVar[str]
     """Which sections, figures or equations of the article it answers."""
-    in_reproduce: ClassVar[bool] = True  # TODO goes with the last quick form in reproduce
     judged_with: ClassVar[tuple[str, ...]] = ("robot",)
     """Fields that must be as on the shelf for a verdict: another robot is not judged by the article's metres."""
     judged_from: ClassVar[Mapping[str, float]] = {}
@@ -125,7 +121,7 @@ class Experiment(ABC):
             return Outcome(
                 experiment=self.name(),
                 measures=measures,
-                verdicts=() if unjudged else tuple(decide(rule, numbers) for rule in self.rules()),
+                verdicts=() if unjudged else tuple(judge(rule, numbers) for rule in self.rules()),
                 record=simulated.record,
                 settings=self.settings(),
                 tables=simulated.tables,
@@ -136,17 +132,17 @@ class Experiment(ABC):
                 seconds=seconds(),
             )
 
+    @abstractmethod
     def simulate(self, progress: Progress = silent) -> Simulated:
         """Do what is to be measured, and return the record of it."""
-        raise NotImplementedError
 
+    @abstractmethod
     def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
         """Return every number, read from the record alone."""
-        raise NotImplementedError
 
+    @abstractmethod
     def explain(self, measures: Mapping[str, float]) -> str:
         """Return what decided the outcome, in a paragraph whose every statement follows from the measures."""
-        raise NotImplementedError
 
     @abstractmethod
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
@@ -167,6 +163,7 @@ class Experiment(ABC):
         for name in self.judged_with:
             if hasattr(self, name) and getattr(self, name) != getattr(shelf, name):
                 here, there = (_called(getattr(one, name)) for one in (self, shelf))
+                here = f"another {here}" if here == there else here
                 return f"Not judged: {name} is {here}, and the article's claims are judged with {there}."
         for name, least in self.judged_from.items():
             value = getattr(self, name)
@@ -188,6 +185,8 @@ class Experiment(ABC):
 
 def _called(value: Any) -> str:
     """Return a short name of a field's value: of a robot or gait its own, marked where it only shares it."""
+    if isinstance(value, tuple):
+        return ", ".join(_called(one) for one in value)[:80]
     return str(getattr(value, "name", value))[:80]
 
 
@@ -196,24 +195,3 @@ def stopwatch() -> Iterator[Callable[[], float]]:
     """Yield a function that tells the seconds since the block was entered."""
     start = time.perf_counter()
     yield lambda: time.perf_counter() - start
-
-
-# TODO until every experiment has its rules as data
-def judge(
-    key: str, measured: float | None, why: str, *, tolerance: float | None = None, holds: bool | None = None
-) -> Verdict:
-    """Return a verdict of the former kind."""
-    if key not in CLAIMS:
-        raise UnknownName("claim", key, CLAIMS)
-    claim = CLAIMS[key]
-    if measured is None:
-        word = "not testable"
-    elif claim.value is None:
-        word = "reproduced" if holds else "contradicted"
-    else:
-        band = claim.rounding if tolerance is None else tolerance
-        agrees = measured * claim.value > 0 if holds is None else holds
-        word = "reproduced" if abs(measured - claim.value) <= band and holds is not False else "same sense"
-        word = word if agrees else "contradicted"
-    rule = Rule(claim=key, experiment="", measure="", why="")
-    return Verdict(claim=claim, rule=rule, measured=measured, low=None, high=None, verdict=word, why=why, share=None)  # type: ignore[arg-type]

@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Protocol
 
 import numpy as np
 
-from suchus.design import Crocodile, servo_names
+from suchus.design import AnyRobot, servo_names
 from suchus.errors import InvalidDesign, UnknownName
 
 SENSORS = (
@@ -90,7 +90,7 @@ class Fault(ABC):
 
     @classmethod
     @abstractmethod
-    def parts(cls, robot: Crocodile) -> tuple[str, ...]:
+    def parts(cls, robot: AnyRobot) -> tuple[str, ...]:
         """Return the names of the parts of a robot that this can befall."""
 
     @classmethod
@@ -103,7 +103,7 @@ class Fault(ABC):
         """What it is called in a table, as ``limp LF_yaw``."""
         return f"{self.kind()} {self.part}"
 
-    def refuse(self, robot: Crocodile) -> None:
+    def refuse(self, robot: AnyRobot) -> None:
         """Say in a sentence why a robot cannot have this fault, if it cannot.
 
         Raises:
@@ -143,13 +143,12 @@ class ServoFault(Fault):
         return self.joint
 
     @classmethod
-    def parts(cls, robot: Crocodile) -> tuple[str, ...]:
+    def parts(cls, robot: AnyRobot) -> tuple[str, ...]:
         """Return the names of the servos."""
-        del robot
-        return servo_names()
+        return servo_names(robot)
 
 
-def check_faults(faults: Sequence[Fault], robot: Crocodile, duration: float) -> None:
+def check_faults(faults: Sequence[Fault], robot: AnyRobot, duration: float) -> None:
     """Refuse faults that cannot happen.
 
     Args:

@@ -5,10 +5,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from suchus.blueprint import MistakenFile, read, render, write
-from suchus.design import Crocodile
+from suchus.design import AnyRobot, Crocodile
 from suchus.errors import InvalidDesign, UnreadableFile
 from suchus.gaits import GAITS
-from suchus.motion import Gait
+from suchus.motion import AnyGait, Gait
 from suchus.robots import ROBOTS
 
 CAIMAN = ROBOTS["caiman"]
@@ -31,12 +31,24 @@ def said(tmp_path):
 
 @pytest.mark.parametrize("name", ROBOTS)
 def test_every_robot_reads_back_equal(name, tmp_path):
-    assert read(write(ROBOTS[name], tmp_path / "x.toml"), Crocodile, ROBOTS) == ROBOTS[name]
+    assert read(write(ROBOTS[name], tmp_path / "x.toml"), AnyRobot, ROBOTS) == ROBOTS[name]
 
 
 @pytest.mark.parametrize("name", GAITS)
 def test_every_gait_reads_back_equal(name, tmp_path):
-    assert read(write(GAITS[name], tmp_path / "x.toml"), Gait, GAITS) == GAITS[name]
+    assert read(write(GAITS[name], tmp_path / "x.toml"), AnyGait, GAITS) == GAITS[name]
+
+
+def test_a_body_of_its_own_can_start_from_the_shelf_and_its_mistakes_are_named(tmp_path):
+    file = tmp_path / "slippery.toml"
+    file.write_text('base = "strider"\n[contact]\nfoot_friction = 0.2\n')
+    robot = read(file, AnyRobot, ROBOTS)
+    assert (robot.name, robot.contact.foot_friction, robot.axis) == ("slippery", 0.2, ROBOTS["strider"].axis)
+    file.write_text('base = "strider"\nrot = "x"\n[contact]\nfoot_friction = 99\n')
+    with pytest.raises(MistakenFile, match=r"2 mistakes.*foot_friction is 99; 0.01 to 3 is allowed.*did you mean root"):
+        read(file, AnyRobot, ROBOTS)
+    with pytest.raises(UnreadableFile, match=r"starts from 'strider', which is a Robot; a Crocodile is needed here"):
+        read(file, Crocodile, ROBOTS)
 
 
 @given(
@@ -66,24 +78,24 @@ def test_a_base_lends_what_the_file_does_not_say(tmp_path):
 def test_every_mistake_is_named_at_once_with_its_place(said):
     mistakes = said(
         'base = "caiman"\n'
-        "[hind_leg]\nfemur = -0.1\ntibia = 9\nyaw_range = [1, 0]\nfemurr = 1\n"
+        "[hind_leg]\nfemur = -0.1\ntibia = 90\nyaw_range = [1, 0]\nfemurr = 1\n"
         "[front_leg.servo]\nkp = nan\n"
         "[spine]\nyaw_range = [1, 2, 3]\nyaw_servo = 3\n"
         "[tail]\njoints = 2.5\n"
-        '[head]\nmass = "heavy"\nsnout = 5\n'
+        '[head]\nmass = "heavy"\nsnout = 50\n'
         "[trunk]\nmass = 1\n"
     )
     assert mistakes == {
-        "hind_leg.femur": "is -0.1 m; 0.01 to 1 m is allowed",
-        "hind_leg.tibia": "is 9 m; 0.01 to 1 m is allowed",
+        "hind_leg.femur": "is -0.1 m; 0.0001 to 10 m is allowed",
+        "hind_leg.tibia": "is 90 m; 0.0001 to 10 m is allowed",
         "hind_leg.yaw_range": "is (1.0, 0.0) rad; an increasing pair within -3.1416 to 3.1416 rad is allowed",
         "hind_leg.femurr": "is not known (did you mean hind_leg.femur?)",
-        "front_leg.servo.kp": "is nan N m/rad; 0.1 to 10000 N m/rad is allowed",
+        "front_leg.servo.kp": "is nan N m/rad; 1e-09 to 1e+07 N m/rad is allowed",
         "spine.yaw_range": "is [1, 2, 3]; 2 values are needed",
         "spine.yaw_servo": "is 3; a table is needed",
         "tail.joints": "is 2.5; a whole number is needed",
         "head.mass": "is 'heavy'; a number is needed",
-        "head.snout": "is 5 m; 0.02 to 2 m is allowed",
+        "head.snout": "is 50 m; 0.0001 to 20 m is allowed",
         "trunk": "is not known; there is name, hind_leg, front_leg, pelvis, spine, thorax, head, tail, contact",
     }
 
@@ -127,7 +139,7 @@ def test_what_cannot_be_read_is_one_sentence(content, said, tmp_path):
         file.write_bytes(content)
     with pytest.raises(UnreadableFile, match=said):
         read(file, Crocodile, ROBOTS)
-    with pytest.raises(UnreadableFile, match="cannot be read"):
+    with pytest.raises(UnreadableFile, match="is a folder"):
         read(tmp_path, Crocodile, ROBOTS)
 
 

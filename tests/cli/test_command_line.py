@@ -74,7 +74,7 @@ def test_every_mistake_in_a_robot_file_is_in_the_sentence(capsys, tmp_path):
     file.write_text('base = "caiman"\n[hind_leg]\nfemur = -1\n[tail]\nlenght = 2\n[head]\nmass = "heavy"\n')
     assert main(["run", "wave", "--robot", str(file), "--out", str(tmp_path / "out")]) == 2
     sentence = one_sentence(capsys)
-    for said in ("hind_leg.femur is -1 m; 0.01 to 1 m", "tail.lenght is not known", "head.mass is 'heavy'"):
+    for said in ("hind_leg.femur is -1 m; 0.0001 to 10 m", "tail.lenght is not known", "head.mass is 'heavy'"):
         assert said in sentence
     assert not (tmp_path / "out").exists()
 

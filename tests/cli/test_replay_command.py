@@ -43,7 +43,7 @@ BAD = {
     "one.nc --robot longtail": "Did you mean",
     "one.nc --out page.png": "page.png",
     "one.nc --out /dev/null/page.html": "cannot be written",
-    "other.nc --run 0": "made from a run on land",
+    "other.nc --run 0": "no record of a run on land",
 }
 
 

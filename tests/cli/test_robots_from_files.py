@@ -46,7 +46,7 @@ def test_the_commands_of_the_page_choose_its_robot_and_gait():
 @pytest.mark.usefixtures("desk")
 def test_the_python_of_the_page_runs(capsys):
     exec("\n".join(blocks("python")), {})
-    assert re.fullmatch(r"\d\.\d\d m, \d\.\d\d kg\n", capsys.readouterr().out)
+    assert re.fullmatch(r"\d\.\d\d m, \d\.\d\d kg\nTrue\n", capsys.readouterr().out)
     assert Path("caiman.toml").is_file()
 
 

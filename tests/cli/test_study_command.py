@@ -48,7 +48,7 @@ BAD = {
     ("[0.5, 1.0]", "[0.5, 100.0]"): "varies ground.grip, but ground.grip is 100; 0.01 to 10 is allowed",
     ("[0.5, 1.0]", '["much"]'): "varies ground.grip, but ground.grip is 'much'",
     ("field =", "feild ="): "did you mean vary[0].field?",
-    ("duration = 1.1", "duration = -1.0"): "0.01 to 86400 s is allowed",
+    ("duration = 1.1", "duration = -1.0"): "1.1 to 86400 s is allowed",
     ('"displacement"', '"displacment"'): "Did you mean 'displacement'?",
     ('name = "grip"', 'robot = "kaiman"'): "Did you mean 'caiman'?",
     ('name = "grip"', 'design = "sobol"'): "samples is missing",
@@ -73,6 +73,8 @@ def test_bad_places_are_one_sentence(tmp_path, capsys):
         ("none.toml", "there is no file none.toml"),
         ("grip.toml --out /dev/null/here", "cannot be written"),
         ("grip.toml --out .", "holds no study"),
+        ("grip.toml --finished", "--finished is for claims only"),
+        ("claims --finished --out nowhere", "nowhere/compared_2ms holds no study; start it first"),
     ):
         assert main(["study", *words.split()]) == 2
         err = capsys.readouterr().err

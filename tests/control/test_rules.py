@@ -8,13 +8,17 @@ from hypothesis import strategies as st
 
 from suchus.control import LAWS, OWNERS, Coordinated, HeadingRule, Kick, LimbLaw, OpenLoop, Sensed, SpineRule, TailRule
 from suchus.control.limbs import GRAVITY, Limbs
-from suchus.control.sensed import TRUNK_YAW
 from suchus.control.shared import silence
 from suchus.control.spine import Spine
-from suchus.control.tail import PITCH, Tail
+from suchus.control.tail import Tail
+from suchus.design import layout
 from suchus.errors import InvalidDesign, OutsideLimits
 from suchus.land import Run, simulate
 from suchus.motion import START, limb_phase, servo_targets, tail_bend, trunk_bend
+from suchus.robots import ROBOTS
+
+TRUNK_YAW = list(layout(ROBOTS["caiman"]).trunk_yaw)
+(PITCH,) = layout(ROBOTS["caiman"]).tail_pitch
 
 PERIOD = 0.01
 WALK = round(START / PERIOD)

@@ -11,7 +11,9 @@ from pages.blocks import Block, WrongOutput, blocks, filled, follow
 ROOT = Path(__file__).parents[2]
 
 
-@pytest.mark.parametrize("page", ["getting_started", "own_robot", "own_gait", "own_experiment", "own_fault"])
+@pytest.mark.parametrize(
+    "page", ["getting_started", "own_robot", "own_gait", "own_experiment", "own_fault", "own_controller"]
+)
 def test_following_the_page_gives_what_it_says(page, tmp_path):
     code = (
         "import sys; from pathlib import Path; sys.path.insert(0, sys.argv[1])\n"

@@ -2,9 +2,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from suchus.errors import InvalidDesign
 from suchus.experiments import EXPERIMENTS
+from suchus.experiments._standing_findings import least_lead
 from suchus.figures.reach import draw_limits
 from suchus.figures.standing import draw_side_views
 from suchus.kinematics.mass import cantilever_torque
@@ -75,6 +77,42 @@ def test_figures_are_drawn_from_the_record(outcome):
     limits = draw_limits(CAIMAN, outcome.record, 0.6 * stretched(CAIMAN))
     shown = [t.get_text() for t in limits.axes[0].texts]
     assert shown == [f"{v:.2f}" for v in outcome.record.map_reach.values.ravel()]
+
+
+def test_a_short_stand_is_not_judged_and_says_what_a_long_one_needs(outcome):
+    assert outcome.verdicts == ()
+    assert outcome.unjudged == "Not judged: hold is 1, and 10 at least are needed to meet what is judged."
+    full = EXPERIMENTS["bipedal_reach"]
+    assert full.unjudged() == ""
+    assert replace(full, robot=ROBOTS["long_tail"]).unjudged().startswith("Not judged: robot is long_tail")
+    for rule in full.rules():
+        assert rule.needs <= set(outcome.measures)
+        assert rule.reason({name: measure.value for name, measure in outcome.measures.items()})
+
+
+def story(reach, lead, stretched: float) -> xr.Dataset:
+    """Return the run of a robot that is told to stand up at 1 s and to be upright at 3 s."""
+    stages = [0.0, 1.0, 3.0, 4.0, 5.0, 6.0]
+    time = np.arange(0.0, 6.0, 0.5)
+    data = {"reach": (("run", "time"), [reach]), "lead": (("run", "time"), [lead])}
+    return xr.Dataset(data, coords={"time": time}, attrs={"stages": stages, "stretched": stretched})
+
+
+@pytest.mark.parametrize("size", [0.1, 1.0, 5.0])
+def test_the_front_lifts_at_the_same_part_of_a_robot_of_any_size(size):
+    heights = size * np.array([0.1, 0.1, 0.1, 0.1, 0.3, 0.5, 0.7, 0.7, 0.7, 0.7, 0.1, 0.1])
+    leads = size * np.array([0, 0, -0.2, -0.1, -0.05, 0.04, 0.03, 0.01, 0.01, 0, 0, 0])
+    assert least_lead(story(heights, leads, 0.7 * size)) == pytest.approx(-0.05 * size)  # not those while it lies
+
+
+def test_a_robot_whose_front_stays_down_has_no_lead():
+    assert np.isnan(least_lead(story(np.full(12, 0.1), np.zeros(12), 0.7)))
+
+
+def test_what_decides_follows_from_the_numbers(value):
+    explain = EXPERIMENTS["bipedal_reach"].explain
+    assert "enough for it" in explain(value)
+    assert "too little for it" in explain(value | {"pitch_torque": 2.0})
 
 
 @pytest.mark.parametrize(

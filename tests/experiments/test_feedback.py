@@ -2,8 +2,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from suchus.control import LAWS, Coordinated, HeadingRule, Kick, LimbLaw
+from suchus.experiments._feedback_findings import _loop_measures
 from suchus.experiments.feedback import ARMS, STARTS, experiment
 from suchus.land import Limp, Locked, Run, simulate
 from suchus.metrics import displacement, heading
@@ -112,3 +114,42 @@ def test_the_question_is_answered_with_every_measure_of_the_issue():
     # who feels no loads is not disturbed by noise on them
     assert measures["recovery_load_noise_open"] == measures["recovery_none_open"]
     assert measures["recovery_load_noise_closed"] != measures["recovery_none_closed"]
+
+
+def loops(crawl_gait, *, grows=0.0, drifts=0.0):
+    """Return five cycles after a disturbance: what spine and tail lack, growing and drifting by so much a cycle."""
+    time = 5.0 + np.arange(0.0, 20.0 + 1e-9, 0.05)
+    cycle = (time - 5.0) / crawl_gait.period
+    swing = np.sin(2 * np.pi * cycle)
+    zero = np.zeros_like(time)
+    of = {
+        "lacking": {"open": 0.5 * swing, "spine": 0.3 * (1.0 + grows * cycle) * swing, "tail": zero},
+        "tail_load": {"open": 0.4 + swing, "spine": zero, "tail": -0.1 + swing},
+        "tail_pitch": {"open": 0.2 + zero, "spine": zero, "tail": 0.1 + drifts * cycle + 0.01 * swing},
+    }
+    arms = list(of["lacking"])
+    data = {name: (("disturbance", "arm", "time"), [[rows[arm] for arm in arms]] * 2) for name, rows in of.items()}
+    return xr.Dataset(data, coords={"disturbance": ["locked_spine", "uphill"], "arm": arms, "time": time})
+
+
+def test_the_loops_of_spine_and_tail_are_measured_each_by_what_it_holds(crawl_gait):
+    found = {name: m.value for name, m in _loop_measures(loops(crawl_gait), crawl_gait).items()}
+    assert found["spine_lacking_open"] == pytest.approx(0.5 / np.sqrt(2), rel=0.01)
+    assert found["spine_lacking_spine"] == pytest.approx(0.3 / np.sqrt(2), rel=0.01)
+    assert found["spine_lacking_growth"] == pytest.approx(1.0, abs=0.01)
+    assert (found["tail_load_open"], found["tail_load_tail"]) == pytest.approx((0.4, 0.1), abs=0.01)
+    assert found["tail_pitch_drift"] == pytest.approx(0.0, abs=1e-3)
+
+
+def test_a_loop_that_grows_or_drifts_is_seen(crawl_gait):
+    found = {n: m.value for n, m in _loop_measures(loops(crawl_gait, grows=0.1, drifts=0.05), crawl_gait).items()}
+    assert found["spine_lacking_growth"] == pytest.approx(1.45 / 1.05, rel=0.02)
+    assert found["tail_pitch_drift"] == pytest.approx(0.05, abs=2e-3)
+
+
+def test_a_run_that_cannot_answer_says_why_it_is_not_judged(crawl_gait):
+    assert experiment.unjudged() == ""
+    faster = replace(experiment, gait=replace(crawl_gait, period=2.0))
+    assert faster.unjudged().startswith("Not judged: gait is another belly_crawl, and")
+    assert replace(experiment, starts=15).unjudged().startswith("Not judged: starts is 15, and 16 at least")
+    assert replace(experiment, starts=16).unjudged() == ""

@@ -6,8 +6,11 @@ import xarray as xr
 
 from suchus.errors import InvalidDesign
 from suchus.experiments import EXPERIMENTS
+from suchus.experiments import _swimming_findings as findings
 from suchus.experiments._swimming_findings import ARMS
 from suchus.experiments.swimming import Swimming
+from suchus.paper import ERRATA
+from suchus.water import fit, printed_wave, swim
 
 
 def _no_arms(self, ours, printed, free, progress):
@@ -55,3 +58,60 @@ def test_what_was_finished_is_kept_and_the_rest_goes_on(tmp_path, monkeypatch):
 def test_impossible_settings_are_refused(name, fields, said):
     with pytest.raises(InvalidDesign, match=said):
         replace(EXPERIMENTS[name], **fields)
+
+
+def test_what_tail_and_spine_add_is_what_is_missing_without_them():
+    speeds = [[0.1, 0.2, 0.3], [0.0, 0.05, 0.1], [0.0, 0.3, 0.25], *[[0.0, 0.1, 0.1]] * 3]
+    record = xr.Dataset({"arm_speed": (("arm", "cycle"), speeds)}, coords={"arm": list(ARMS)})
+    found = {name: measure.value for name, measure in findings._compared(record)}
+    assert found["speed_trunk_and_tail"] == 0.3
+    assert found["gain_tail_swim"] == pytest.approx(0.2)  # without the tail only the trunk is left
+    assert (found["gain_tail_swim_low"], found["gain_tail_swim_high"]) == pytest.approx((0.15, 0.2))
+    assert found["gain_spine_swim"] == pytest.approx(0.05)
+    assert found["gain_spine_swim_low"] == pytest.approx(-0.1)
+    assert found["gain_tail_swim_share_low"] == pytest.approx(2 / 3)
+
+
+def free_track(sway):
+    """Return the track of six cycles: in the last four the centre of mass sways by so much [m]."""
+    t = np.arange(6 * 40 + 1) / 40
+    y = np.where(t < 2.0, 0.2, sway) * np.sin(2 * np.pi * t) + 0.05 * t
+    return xr.Dataset(
+        {"centre_y": ("moment", y), "speed": ("cycle", np.ones(6)), "swing": ("station", [0.03, 0.01, 0.1])}
+    )
+
+
+def test_the_track_is_that_of_the_centre_of_mass_over_the_last_cycles(robot):
+    found = {name: m.value for name, m in findings._track(free_track(0.02), robot)}
+    assert found["track_cycles"] == 4
+    assert found["track_sway"] == pytest.approx(0.02 / robot.length, rel=1e-3)
+    assert found["track_noise"] < 1e-6
+    assert found["snout_sway"] == pytest.approx(0.03 / robot.length)
+    straight = {name: m.value for name, m in findings._track(free_track(0.0), robot)}
+    assert straight["track_sway"] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_a_wave_and_its_envelope_are_read_from_the_free_body(robot):
+    s = np.linspace(0.0, 1.0, 65)
+    swing = robot.length * (0.02 * s + 0.08 * s**2)
+    free = xr.Dataset(
+        {
+            "swing": ("station", np.where(np.isclose(s, 0.5), 0.5 * swing, swing)),
+            "swing_late": ("station", np.mod(1.1 * s, 1.0)),
+            "sine_share": ("station", np.full(65, 0.98)),
+            "tip_share": ("single", [0.97, 0.99]),
+        }
+    )
+    found = {name: m.value for name, m in findings._wave(free, robot)}
+    assert found["wave_waves_per_body"] == pytest.approx(1.1, rel=0.01)
+    assert found["wave_share"] == pytest.approx(0.98, abs=0.01)
+    assert found["wave_envelope_tip"] == pytest.approx(0.1, rel=0.02)
+    assert found["wave_envelope_middle"] == pytest.approx(0.03, rel=0.05)
+    assert found["envelope_dip"] == pytest.approx(0.5, abs=0.03)
+    assert (found["tail_sine_share"], found["tail_sine_share_low"], found["tail_sine_share_high"]) == (0.98, 0.97, 0.99)
+
+
+def test_the_erratum_on_the_sign_says_what_the_resistive_model_does(robot):
+    printed = fit(robot, printed_wave(robot, "I", frequency=1.0, sign=1)).swim
+    assert float(swim(robot, printed).speed.sel(model="resistive")) == pytest.approx(-0.20, abs=0.005)
+    assert "tail first with it, by 0.20 m/s at 1 Hz" in ERRATA["eq_20_sign"].shows

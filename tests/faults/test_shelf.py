@@ -127,6 +127,7 @@ def test_an_episode_breaks_as_a_run_of_a_batch_does_to_the_byte(shelved):
     envs, pack = pytest.importorskip("suchus.envs", exc_type=ImportError), import_module("suchus.envs.pack")
     task = replace(
         envs.TASKS["Fault"],
+        speed_lines=False,
         gait=GAIT,
         jitter=0.0,
         breaks=envs.Breaks(faults=(made(shelved),), earliest=0.13, latest=0.13),
@@ -166,7 +167,7 @@ def test_what_is_mended_at_once_was_never_broken(shelved):
 def test_mending_leaves_the_model_as_it_was_built_and_the_neighbour_alone(shelved, robots):
     bench = Bench([Run(robot=robot, gait=GAIT) for robot in robots], STEP)
     names = ("actuator_forcerange", "actuator_dynprm", "geom_conaffinity")
-    injector = Injector(bench, 0.01)
+    injector = Injector(bench, 0.01, robots[0])
     injector.begin(0, made(shelved))
     injector.command(0, np.zeros((2, len(servo_names()))))
     assert injector.broken(0) == (made(shelved),)
@@ -186,7 +187,7 @@ def test_mending_leaves_the_model_as_it_was_built_and_the_neighbour_alone(shelve
 @given(kinds=st.lists(st.sampled_from(list(FAULTS)), min_size=1, unique_by=acts_on), seed=st.integers(0, 99))
 def test_faults_of_different_parts_end_in_any_order(kinds, seed):
     bench = Bench([Run(robot=CAIMAN, gait=GAIT)], STEP)
-    injector, random = Injector(bench, 0.01), np.random.default_rng(seed)
+    injector, random = Injector(bench, 0.01, CAIMAN), np.random.default_rng(seed)
     faults = [made(FAULTS[kind]) for kind in kinds]
     for fault in faults:
         injector.begin(0, fault)

@@ -7,6 +7,8 @@ from suchus import flow
 from suchus.errors import Diverged, InvalidDesign, OutsideLimits, UnreadableFile
 from suchus.flow.body import window_of
 from suchus.flow.compiled import PAD
+from suchus.flow.setup import LAYER_CELLS
+from suchus.flow.simulation import SLACK
 
 
 def test_taylor_green_decays_at_second_order():
@@ -172,7 +174,7 @@ def test_a_pushed_body_keeps_its_momentum_with_the_water():
     sim = flow.Simulation(still_setup(bodies=(body,)))
     for _ in range(5):
         sim.advance(0.02)
-    assert np.abs(sim.record.bodies[:, 0, 9:]).max() < 1e-12
+    assert np.abs(sim.record.bodies[:, 0, 9:14]).max() < 1e-12
 
 
 @pytest.mark.parametrize("place", [(1.18, 0.0), (-1.18, 0.0), (0.0, 1.18), (0.0, -1.18)])
@@ -192,7 +194,8 @@ def test_a_motion_that_outgrows_the_grid_is_refused_when_it_does():
     sim = flow.Simulation(still_setup(bodies=(body,), viscosity=1 / 500))
     with pytest.raises(InvalidDesign, match=r"at t = 0\..* take cells of at most"):
         sim.run(0.6, progress=False)
-    assert 0.3 < sim.time < 0.6
+    reached = SLACK * 16**2 / (2000 * LAYER_CELLS**2)  # the Reynolds number is 2000 t, the layer 16 / sqrt(Re) cells
+    assert reached - 0.04 < sim.time < reached
 
 
 @pytest.mark.parametrize(

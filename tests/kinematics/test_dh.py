@@ -63,5 +63,5 @@ def test_frames_are_rigid():
 
 
 def test_a_chain_wants_one_angle_per_link():
-    with pytest.raises(InvalidDesign, match="4 links"):
+    with pytest.raises(InvalidDesign, match="4 numbers are needed"):
         dh.frames(LEG_CHAIN, np.zeros(3))

@@ -170,7 +170,7 @@ def test_a_loaded_tail_is_a_third_support():
     assert support_distance(lying, 2.0) == pytest.approx(-0.05 / np.sqrt(2))  # inside, the pair's line is nearest
     ahead = hand_made(foot_force=loads, tail_force=lying.tail_force.values, centre_of_mass=moving(x=0.2, z=0.08))
     assert support_distance(ahead, 2.0) == pytest.approx(0.05 / np.sqrt(2))
-    lifted = hand_made(foot_force=loads, tail_force=np.tile([0.0, 0.0, 0.49], (len(TIME), 1)))
+    lifted = hand_made(foot_force=loads, tail_force=np.tile([0.0, 0.0, 0.28], (len(TIME), 1)))
     assert len(support_polygon(lifted, 2.0)) == 2
 
 

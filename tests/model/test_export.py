@@ -11,12 +11,15 @@ import pytest
 
 from suchus import blueprint
 from suchus.design import Crocodile, joint_names
-from suchus.errors import InvalidDesign, UnknownName, Unwritable
+from suchus.errors import InvalidDesign, OutsideLimits, UnknownName, Unwritable
+from suchus.gaits import GAITS
 from suchus.kinematics.mass import GRAVITY
-from suchus.model import SITES, compile_model, joint_addresses
+from suchus.model import compile_model, joint_addresses
+from suchus.model import sites as sensed
 from suchus.model.export import MARK, NoUsd, ball, export, unsaid, unsaid_in_usd
 from suchus.model.export.urdf import _roll_pitch_yaw
 from suchus.model.export.usd import prim_name
+from suchus.motion import check_limits
 from suchus.robots import ROBOTS
 
 NOT_PHYSICS = ("key", "name", "tex", "mat", "skin", "vis", "nnames", "nbuffer", "nkey", "ntex", "signature")
@@ -46,7 +49,7 @@ def poses(model, robot, count=5):
         data.qpos[joint_addresses(model, names)] = angles
         mujoco.mj_kinematics(model, data)
         turn = data.xmat[1].reshape(3, 3)
-        sites = {s: turn.T @ (data.site(s).xpos - data.xpos[1]) for s in (*SITES, "imu")}
+        sites = {s: turn.T @ (data.site(s).xpos - data.xpos[1]) for s in (*sensed(robot), "imu")}
         yield dict(zip(names, angles, strict=True)), sites
 
 
@@ -318,7 +321,7 @@ def test_the_usd_has_the_same_points_in_every_posture(any_robot, crawl_gait, tmp
             for body in stage.GetDefaultPrim().GetChildren()
             if stage.GetPrimAtPath(body.GetPath().AppendChild(site))
         )
-        for site in (*SITES, "imu")
+        for site in (*sensed(any_robot), "imu")
     }
     for angles, sites in poses(compile_model(any_robot), any_robot):
         places, at = usd_places(pxr, stage, root, angles)
@@ -405,3 +408,75 @@ def test_usd_s_own_validators_find_nothing_wrong(file, robot, crawl_gait, tmp_pa
     assert any("Physics" in v.GetMetadata().name for v in validators)
     errors = validation.ValidationContext(validators).Validate(stage)
     assert [f"{e.GetName()}: {e.GetMessage()}" for e in errors] == []
+
+
+OWN = {"salamandra": "salamandra_walk", "strider": "tripod", "swimmer": "undulation"}
+"""Bodies with welded links and cranks, without a tail, and without limbs."""
+
+
+@pytest.mark.parametrize("name", OWN)
+def test_any_body_is_exported_with_its_frames(name, tmp_path):
+    own, gait = ROBOTS[name], GAITS[OWN[name]]
+    folder = export(own, gait, tmp_path / "m", "mjcf")
+    ours, theirs = compile_model(own), mujoco.MjModel.from_xml_path(str(folder / "scene.xml"))
+    np.testing.assert_array_equal(ours.body_mass, theirs.body_mass)
+    np.testing.assert_array_equal(ours.jnt_range, theirs.jnt_range)
+    assert theirs.key_qpos.shape == (1, ours.nq)
+    root = ElementTree.parse(export(own, gait, tmp_path / "u", "urdf") / f"{name}.urdf").getroot()
+    for angles, found in poses(ours, own):
+        for site, place in found.items():
+            np.testing.assert_allclose(placed(root, angles, site)[:3, 3], place, atol=1e-9, err_msg=site)
+    kinds = {joint.get("name"): joint.get("type") for joint in root.iter("joint")}
+    assert all((kind == "continuous") == label.endswith("_crank") for label, kind in kinds.items())
+    told = "".join(unsaid(own))
+    assert "The cable." not in told
+    assert "Springs" not in told
+
+
+@pytest.mark.parametrize("name", OWN)
+def test_any_body_is_written_as_usd(name, tmp_path):
+    pytest.importorskip("pxr")
+    own = ROBOTS[name]
+    folder = export(own, GAITS[OWN[name]], tmp_path / "u", "usd")
+    pxr, stage = usd_stage(folder, f"{name}.usda")
+    root = str(stage.GetDefaultPrim().GetPath())
+    names = {prim.GetName() for prim in stage.GetPrimAtPath(f"{root}/joints").GetChildren()}
+    assert set(joint_names(own)) <= names
+    mass = sum(
+        pxr.UsdPhysics.MassAPI(prim).GetMassAttr().Get() or 0.0
+        for prim in stage.GetDefaultPrim().GetChildren()
+        if prim.HasAPI(pxr.UsdPhysics.MassAPI)
+    )
+    assert mass == pytest.approx(own.mass, rel=1e-4)
+
+
+@pytest.mark.parametrize("name", list(ROBOTS))
+def test_the_urdf_loads_in_mujoco_with_every_body_and_joint_where_it_is(name, tmp_path):
+    robot = ROBOTS[name]
+    gait = next(gait for gait in GAITS.values() if fits(robot, gait))
+    folder = export(robot, gait, tmp_path / name, "urdf")
+    ours, theirs = compile_model(robot), mujoco.MjModel.from_xml_path(str(folder / f"{name}.urdf"))
+    assert theirs.body(ours.body(1).name).parentid[0] == 0
+    assert theirs.njnt == ours.njnt - 1
+    assert theirs.body_mass.sum() == pytest.approx(ours.body_mass.sum(), rel=1e-6)
+    bodies = [ours.body(i).name for i in range(1, ours.nbody)]
+    hinges = [ours.joint(i).name for i in range(1, ours.njnt)]
+    one, two = mujoco.MjData(ours), mujoco.MjData(theirs)
+    rng = np.random.default_rng(1)
+    for _ in range(5):
+        angles = rng.uniform(-0.8, 0.8, len(hinges))
+        one.qpos[joint_addresses(ours, hinges)] = angles
+        two.qpos[joint_addresses(theirs, hinges)] = angles
+        mujoco.mj_kinematics(ours, one)
+        mujoco.mj_kinematics(theirs, two)
+        here = np.array([one.body(body).xpos - one.body(1).xpos for body in bodies])
+        there = np.array([two.body(body).xpos - two.body(bodies[0]).xpos for body in bodies])
+        assert there == pytest.approx(here, abs=1e-9)
+
+
+def fits(robot, gait):
+    try:
+        check_limits(robot, gait)
+    except (OutsideLimits, UnknownName):
+        return False
+    return True

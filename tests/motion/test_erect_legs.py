@@ -110,4 +110,4 @@ def test_impossible_legs_are_refused(walk):
     with pytest.raises(InvalidDesign, match="sprawled or erect"):
         replace(walk, legs="upright")
     with pytest.raises(InvalidDesign, match="front_ahead"):
-        replace(walk, front_ahead=1.0)
+        replace(walk, front_ahead=11.0)

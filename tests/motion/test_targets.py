@@ -113,7 +113,7 @@ def test_a_joint_out_of_range_is_named_with_angle_and_range(robot, crawl_gait):
         ("duty_factor", 1.0),
         ("period", float("nan")),
         ("period", -4.0),
-        ("stroke", 1.0),
+        ("stroke", 11.0),
         ("limb_phases", (0.0, 0.5)),
         ("limb_phases", (0.0, 0.5, 0.5, float("inf"))),
     ],

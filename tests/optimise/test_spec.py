@@ -14,7 +14,7 @@ STROKE = Vary(field="gait.stroke", low=0.0, high=0.12)
 BAD = [
     ({"vary": (Vary(field="gait.strok", low=0.0, high=0.1),)}, "Did you mean 'stroke'"),
     ({"vary": (Vary(field="gait.stroke", low=0.05, high=0.1),)}, r"0\.027, outside its range of 0\.05 to 0\.1"),
-    ({"vary": (Vary(field="gait.stroke", low=0.0, high=0.9),)}, r"stroke is 0\.9 m; -0\.3 to 0\.3 m is allowed"),
+    ({"vary": (Vary(field="gait.stroke", low=0.0, high=90.0),)}, r"stroke is 90 m; -10 to 10 m is allowed"),
     ({"vary": (Vary(field="gait.stroke", values=(0.0, 0.1)),)}, "needs low and high"),
     ({"vary": (Vary(field="gait", low=0.0, high=0.1),)}, "no number"),
     ({"vary": (STROKE, STROKE)}, "twice"),

@@ -66,7 +66,7 @@ def test_claims_are_complete(key):
     assert claim.rounding >= 0
     assert claim.sense.endswith(".")
     assert claim.where.startswith(("I", "II", "III", "IV", "V"))
-    assert 0 < len(claim.quote) < 120
+    assert 0 < len(claim.quote) < 200
     if claim.value is None:
         assert claim.rounding == 0
     assert claim.quantity in str(claim)

@@ -11,9 +11,11 @@ from pathlib import Path
 import pytest
 import xarray as xr
 
-from suchus.experiment import Experiment, Measure, Outcome, judge, silent
+from suchus.experiment import Experiment, Measure, Outcome, silent
 from suchus.figures import captioned, panels
+from suchus.paper import CLAIMS
 from suchus.report import Failure, load_result, render_page, save_outcome
+from suchus.verdict import Rule, Verdict
 
 AXE = Path(os.environ.get("SUCHUS_AXE", Path(__file__).parents[2] / "node_modules" / "axe-core" / "axe.min.js"))
 BROWSER = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
@@ -23,10 +25,17 @@ PAIRS = [
 ]
 
 
+def said(key, measured, why, word):
+    """A verdict that was put in."""
+    rule = Rule(claim=key, experiment="question", measure="way", why=why)
+    return Verdict(
+        claim=CLAIMS[key], rule=rule, measured=measured, low=None, high=None, verdict=word, why=why, share=None
+    )
+
+
 class Question(Experiment):
     title = "How far?"
     shows = "Fig. 16"
-    decides = "The stroke decides."
 
     def run(self, progress=silent):
         return Outcome(
@@ -35,11 +44,20 @@ class Question(Experiment):
                 "forward_coordinated": Measure(0.5, "m"),
                 "forward_limbs_only": Measure(0.1, "m"),
             },
-            verdicts=(judge("displacement_coordinated", 0.5, "So."), judge("height_standing", None, "Not tried.")),
+            verdicts=(
+                said("displacement_coordinated", 0.5, "So.", "same sense"),
+                said("height_standing", None, "Not tried.", "not testable"),
+            ),
+            decides="The stroke decides.",
             record=xr.Dataset({"x": ("time", [0.0, 1.0])}),
             settings={},
             tables={"rows.txt": "a\n"},
         )
+
+    def simulate(self, progress=silent):
+        raise NotImplementedError  # its outcome is put in
+
+    measure = explain = simulate
 
     def draw(self, outcome):
         return {"first": captioned(panels()[0], "A figure of nothing much.")}

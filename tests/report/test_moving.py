@@ -6,9 +6,9 @@ from dataclasses import replace
 import pytest
 
 from suchus.figures import captioned, panels, save
+from suchus.paper.animals import ANIMALS
 from suchus.record import plain
 from suchus.report import load_result, render_page, write_page
-from suchus.report.animals import ANIMALS
 from suchus.report.beside import beside
 from suchus.report.robot import robot_of
 from suchus.robots import ROBOTS
@@ -84,13 +84,13 @@ def test_a_replay_cannot_point_out_of_its_folder(make):
 
 
 def test_the_page_shows_the_robot_that_was_run(make):
-    other = replace(CAIMAN, name="strider", head=replace(CAIMAN.head, snout=0.4))
+    other = replace(CAIMAN, name="stranger", head=replace(CAIMAN.head, snout=0.4))
     results = [load_result(make(name, robot)) for name, robot in zip("abc", (other, CAIMAN, other), strict=True)]
     robot, others = robot_of(results)
     assert robot == other
     assert others == {"caiman": 1}
     page = render_page(results, [])
-    assert "The robot strider from above" in page
+    assert "The robot stranger from above" in page
     assert "caiman (1)" in page
 
 

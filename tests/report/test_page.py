@@ -7,33 +7,47 @@ import pytest
 import xarray as xr
 
 from suchus.errors import IncompatibleRecord, UnreadableFile
-from suchus.experiment import Experiment, Measure, Outcome, judge, silent
+from suchus.experiment import Experiment, Measure, Outcome, silent
 from suchus.figures import captioned, panels, styled
 from suchus.gaits import GAITS
-from suchus.paper import ERRATA
+from suchus.paper import CLAIMS, ERRATA
 from suchus.report import Failure, load_result, number, quantity, render_page, save_outcome
 from suchus.report.page import _place
 from suchus.robots import ROBOTS
+from suchus.verdict import Rule, Verdict
+
+
+def said(key, measured, why, word):
+    """A verdict that was put in."""
+    rule = Rule(claim=key, experiment="question", measure="way", why=why)
+    return Verdict(
+        claim=CLAIMS[key], rule=rule, measured=measured, low=None, high=None, verdict=word, why=why, share=None
+    )
 
 
 class Question(Experiment):
     title = "Is <everything> escaped & told?"
     shows = "Fig. 16"
-    decides = "What is put in."
 
     def run(self, progress=silent):
         return Outcome(
             experiment="question",
             measures={"way": Measure(-0.5, "m"), "turn": Measure(1.0, "rad"), "ghost": Measure(float("inf"), "m")},
             verdicts=(
-                judge("displacement_coordinated", 0.5, 'It was "put in" <i>by hand</i>.'),
-                judge("cycle_count", 2, "Two."),
-                judge("com_fluctuation", None, "Nobody looked."),
+                said("displacement_coordinated", 0.5, 'It was "put in" <i>by hand</i>.', "same sense"),
+                said("cycle_count", 2, "Two.", "reproduced"),
+                said("com_fluctuation", None, "Nobody looked.", "not testable"),
             ),
+            decides="What is put in.",
             record=xr.Dataset({"x": ("time", [0.0, 1.0])}),
             settings={"seed": 1},
             tables={"rows.txt": "a < b\n"},
         )
+
+    def simulate(self, progress=silent):
+        raise NotImplementedError  # its outcome is put in
+
+    measure = explain = simulate
 
     def draw(self, outcome):
         figures = {}

@@ -12,6 +12,7 @@ from suchus.errors import InvalidDesign
 from suchus.experiments import EXPERIMENTS
 from suchus.figures import caption
 from suchus.paper import CLAIMS
+from suchus.verdict import judge
 
 WALKED = (
     "bipedal_reach",
@@ -20,6 +21,7 @@ WALKED = (
     "feedback",
     "gait_diagram",
     "joint_faults",
+    "pattern_generator",
     "speed_range",
     "terrain",
     "turning",
@@ -60,10 +62,10 @@ def test_impossible_settings_are_refused_before_anything_runs(name, fields, mess
 
 
 def test_it_says_what_it_asks_and_what_decides(quick):
-    experiment, _ = quick
+    experiment, outcome = quick
     assert experiment.title.endswith("?")
     assert experiment.shows
-    assert experiment.decides
+    assert len(outcome.decides) > 60
     assert all(field.name for field in fields(experiment))
 
 
@@ -77,14 +79,27 @@ def test_its_measures_are_numbers_with_units(quick):
         assert measure.unit, name
 
 
-def test_every_claim_gets_a_verdict_with_a_reason(quick):
+def test_every_claim_can_be_judged_by_its_measures_and_a_run_cut_short_is_not(quick):
     experiment, outcome = quick
-    assert sorted(experiment.claims) == sorted(verdict.claim.key for verdict in outcome.verdicts)
-    for verdict in outcome.verdicts:
-        assert verdict.claim == CLAIMS[verdict.claim.key]
+    measures = {name: float(measure.value) for name, measure in outcome.measures.items()}
+    for rule in experiment.rules():
+        verdict = judge(rule, measures)  # each measure that the rule and its sentence name is there
+        assert verdict.claim == CLAIMS[rule.claim]
         assert len(verdict.why) > 10
-        assert (verdict.measured is None) == (verdict.verdict == "not testable")
         assert verdict.measured is None or isfinite(verdict.measured)
+    if experiment == type(experiment)():
+        assert [verdict.rule for verdict in outcome.verdicts] == list(experiment.rules())
+        assert outcome.unjudged == ""
+    elif experiment.rules():
+        assert outcome.verdicts == ()
+        assert outcome.unjudged.startswith("Not judged: ")
+
+
+@pytest.mark.parametrize("name", [name for name, one in EXPERIMENTS.items() if hasattr(one, "robot") and one.claims])
+def test_another_robot_is_not_judged_by_the_articles_metres(name):
+    other = replace(EXPERIMENTS[name], robot=replace(EXPERIMENTS[name].robot, name="another"))
+    assert other.unjudged().startswith("Not judged: ")
+    assert EXPERIMENTS[name].unjudged() == ""
 
 
 def test_every_variable_of_its_record_has_a_unit(quick):

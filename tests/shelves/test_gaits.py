@@ -1,22 +1,63 @@
 """What holds for every gait on the shelf."""
 
+import re
 from dataclasses import fields, replace
 from importlib import import_module
 
 import numpy as np
 import pytest
 
+from suchus.design import layout
+from suchus.design.reasons import numbers
 from suchus.gaits import GAITS
-from suchus.motion import check_limits, servo_targets
+from suchus.motion import check_limits, pattern_targets, servo_targets
 from suchus.paper import CYCLE_PERIOD
+from suchus.robots import ROBOTS
 
+MADE_FOR = {
+    "animal_walk": "salamander",
+    "pleurobot_walk": "pleurobot",
+    "salamander_walk": "salamander",
+    "salamandra_walk": "salamandra",
+    "tripod": "strider",
+    "undulation": "swimmer",
+}
+"""The robots of the gaits that are not for the article's kind."""
 PHASES = np.arange(64)[:, None] / 64
 LEFT_RIGHT = [3, 4, 5, 0, 1, 2, 9, 10, 11, 6, 7, 8]
 
 
-@pytest.fixture(params=list(GAITS))
+@pytest.fixture(params=[name for name in GAITS if name not in MADE_FOR])
 def shelved(request):
     return GAITS[request.param]
+
+
+@pytest.fixture(params=list(MADE_FOR))
+def pattern(request):
+    return GAITS[request.param], ROBOTS[MADE_FOR[request.param]]
+
+
+def test_a_pattern_is_named_by_its_file_and_followed_by_its_robot_and_repeats(pattern):
+    gait, robot = pattern
+    assert GAITS[gait.name] is gait
+    check_limits(robot, gait)
+    clock = np.arange(64) / 64
+    cranks = [name.endswith("crank") for name in layout(robot).servos]
+    turned = pattern_targets(robot, gait, clock + 1.0) - pattern_targets(robot, gait, clock)
+    assert turned == pytest.approx(np.where(cranks, -2 * np.pi, 0.0) + np.zeros_like(turned), abs=1e-9)
+
+
+def test_every_number_of_a_pattern_has_a_range_and_a_reason(pattern):
+    gait, _ = pattern
+    module = import_module(f"suchus.gaits.{gait.name}")
+    chosen, published = {entry.field: entry for entry in module.chosen}, getattr(module, "PUBLISHED", ())
+    values = {path: one for path, one in numbers(gait) if not any(re.search(pattern, path) for pattern in published)}
+    assert set(chosen) == set(values)
+    assert all(entry.low <= values[path] <= entry.high for path, entry in chosen.items())
+
+
+def test_every_robot_of_the_shelf_has_a_gait():
+    assert set(MADE_FOR.values()) | {"caiman", "long_tail"} == set(ROBOTS)
 
 
 def test_it_is_called_by_its_file_name(shelved):

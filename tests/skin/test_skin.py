@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial import cKDTree
 
-from suchus.design import LEGS, joint_names
+from suchus.design import LEGS, Crocodile, joint_names, layout
 from suchus.errors import InvalidDesign, SuchusError
 from suchus.model import compile_model, joint_addresses
 from suchus.robots import ROBOTS
@@ -35,6 +35,12 @@ def volumes(found, vertices):
 
 @pytest.fixture(scope="module", params=sorted(ROBOTS))
 def shelf(request):
+    return ROBOTS[request.param]
+
+
+@pytest.fixture(scope="module", params=[name for name in sorted(ROBOTS) if isinstance(ROBOTS[name], Crocodile)])
+def animal(request):
+    """The robots that wear a crocodile's skin."""
     return ROBOTS[request.param]
 
 
@@ -110,21 +116,28 @@ def test_left_mirrors_right(shelf):
 def test_mirrored_posture_mirrors_the_skin(shelf):
     found, rng, names = skin(shelf), np.random.default_rng(1), joint_names(shelf)
     one = rng.uniform(-0.5, 0.5, len(names))
-    other = one.copy()
-    for i in range(3):
-        for left, right in ((0, 3), (6, 9)):
-            other[[left + i, right + i]] = one[[right + i, left + i]]
-    for i, name in enumerate(names):
-        if i >= 12 and "yaw" in name:
+    other, place = one.copy(), layout(shelf)
+    for limb in place.limbs:
+        other[limb.hinges] = one[place.limbs[limb.contralateral].hinges]
+    for i in range(place.ahead.start, len(names)):
+        if "yaw" in names[i]:
             other[i] = -one[i]
     a, b = (found.posed(*poses(shelf, np.zeros(3), STILL, angles)) for angles in (one, other))
     distance, _ = cKDTree(b).query(a * [1.0, -1.0, 1.0])
     assert distance.max() < 1e-9
 
 
-def test_the_volume_is_that_of_an_animal_of_this_mass(shelf):
-    litres = 1000 * volumes(skin(shelf), skin(shelf).vertices).sum()
-    assert 0.5 < shelf.mass / litres < 1.2  # [kg/l]; crocodilians float, our servos are not packed tight
+def test_the_volume_is_that_of_an_animal_of_this_mass(animal):
+    litres = 1000 * volumes(skin(animal), skin(animal).vertices).sum()
+    assert 0.5 < animal.mass / litres < 1.2  # [kg/l]; crocodilians float, our servos are not packed tight
+
+
+def test_a_plain_skin_encloses_axis_limbs_and_feet_within_the_bodys_length(shelf):
+    found, place = skin(shelf), layout(shelf)
+    span = np.ptp(found.vertices[found.part == 0, 0])
+    assert span == pytest.approx(shelf.length, rel=0.03)
+    hung = {found.bones[bone] for bone in np.unique(found.indices[found.weights > 0.5])}
+    assert {body.name for body in place.bodies} - hung <= {"neck"}  # a short segment may share all of its skin
 
 
 def standing_out(robot, found, vertices, data):
@@ -158,22 +171,22 @@ def standing_out(robot, found, vertices, data):
     return out
 
 
-def test_the_skin_encloses_the_shapes_beneath(shelf):
-    model, found = compile_model(shelf), skin(shelf)
+def test_the_skin_encloses_the_shapes_beneath(animal):
+    model, found = compile_model(animal), skin(animal)
     data = mujoco.MjData(model)
     data.qpos[:7] = 0, 0, 0, 1, 0, 0, 0
     mujoco.mj_kinematics(model, data)
-    out = standing_out(shelf, found, found.vertices, data)
+    out = standing_out(animal, found, found.vertices, data)
     head, end = out.pop("head"), out.pop([name for name in out if name.startswith("tail")][-1])
     assert max(out.values()) < 0.003
     assert head < 0.016  # a snout is narrower than the ellipsoid that stands for it
     assert end < 0.010  # the last capsule ends half a ball beyond the tail's tip
 
 
-def test_feet_touch_the_ground_where_the_soles_do(shelf):
-    found, names = skin(shelf), bone_names(shelf)
+def test_feet_touch_the_ground_where_the_soles_do(animal):
+    found, names = skin(animal), bone_names(animal)
     for leg in LEGS:
-        links = shelf.leg(leg)
+        links = animal.leg(leg)
         sole = links.hip_offset + links.femur + links.tibia + links.foot_radius
         hung = (found.indices[:, 0] == names.index(f"{leg}_tibia")) & (found.weights[:, 0] > 0.99)
         assert np.isclose(np.abs(found.vertices[hung, 1]).max(), sole, atol=0.15 * links.foot_radius)

@@ -127,7 +127,7 @@ BAD = [
     ([Vary(field="robot.tial.mass", low=0.1, high=1.0)], {}, "Did you mean 'tail'"),
     ([Vary(field="faults[0].fraction", low=0.1, high=1.0)], {}, "field"),
     ([Vary(field="gait.period", low=0.01, high=5.0)], {}, r"gait\.period is 0\.01 s; 0\.1 to 60 s"),
-    ([Vary(field="robot.tail.joints", low=4.0, high=8.0)], {}, r"tail\.joints"),
+    ([Vary(field="robot.tail.joints", low=4.5, high=8.0)], {}, r"tail\.joints, which takes whole numbers"),
     ([Vary(field="gait.stroke", low=0.0, high=0.1)], {"measure": ("displacment",)}, "Did you mean 'displacement'"),
     ([Vary(field="gait.stroke", low=0.0, high=0.1)], {"samples": None}, "samples is missing"),
     ([Vary(field="gait.stroke", low=0.0, high=0.1)], {"design": "factorial"}, "needs values or steps"),

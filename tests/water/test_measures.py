@@ -6,10 +6,10 @@ from suchus.errors import OutsideLimits
 from suchus.motion import check_swim
 from suchus.water import (
     Quarters,
+    Sway,
     Swum,
     attempts,
     convex_higher,
-    crossings,
     efficiency,
     fit,
     greatest,
@@ -18,39 +18,72 @@ from suchus.water import (
     scaled,
     survey,
     swing,
+    wave_form,
 )
 
 PHASE = np.arange(1, 121) / 120
 
 
 def _held(thrust, aside, difference):
-    at = 2 * np.pi * PHASE
-    data = {"thrust": thrust(at), "aside": aside(at), "difference": difference(at), "place": 0.2 + 0.6 * PHASE}
+    """Return a held swim of two measured cycles, the last as the functions of the angle say, the first twice that."""
+    at = 2 * np.pi * np.array([0.25, 0.5, 0.75, 1.0])
+    data = {"thrust": thrust(at), "aside": aside(at), "difference": difference(at), "place": 0.2 + 0.3 * at / np.pi}
     return xr.Dataset(
-        {name: ("phase", values) for name, values in data.items()},
-        coords={"phase": PHASE, "instant": [0.25, 0.5, 0.75, 1.0]},
+        {f"quarter_{name}": (("settled", "instant"), [2 * values, values]) for name, values in data.items()}
+        | {"difference": ("phase", difference(2 * np.pi * PHASE))},
+        coords={"phase": PHASE, "settled": [2, 3], "instant": [0.25, 0.5, 0.75, 1.0]},
     )
 
 
 def test_a_mirrored_stroke_is_what_the_article_says():
-    held = _held(lambda p: 3 - np.cos(2 * p), lambda p: 5 * np.sin(p), lambda p: 100 * np.sin(p))
-    said = Quarters.of(held)
-    assert said.convex
-    assert said.diagonal
-    assert said.falls
-    assert said.mirrored
-    assert said.moves == pytest.approx(0.15)
-    assert said.asymmetry == pytest.approx(0.0, abs=1e-12)
-    assert convex_higher(held) == pytest.approx(0.5, abs=0.01)
+    held = _held(lambda p: 3 - np.cos(2 * p), lambda p: 4 * np.sin(p), lambda p: 100 * np.sin(p) + 10)
+    first, last = Quarters.each(held)
+    assert last.difference == pytest.approx([110, 10, -90, 10])
+    assert last.fall == pytest.approx(20.0)
+    assert first.fall == pytest.approx(40.0)
+    assert last.moves == pytest.approx(0.3)
+    assert last.angle == pytest.approx(np.pi / 4)
+    assert last.asymmetry == pytest.approx(0.0, abs=1e-12)
+    assert convex_higher(held) == pytest.approx(0.5, abs=0.04)
 
 
 def test_a_lopsided_stroke_is_not():
-    held = _held(np.sin, lambda p: 5 * np.sin(p), lambda p: -100 * np.cos(p) - 1)
-    said = Quarters.of(held)
-    assert not said.convex
-    assert not said.falls
-    assert not said.mirrored
+    held = _held(np.sin, lambda p: 5 * np.sin(p), lambda p: -90 * np.sin(p) - 10)
+    said = Quarters.each(held)[-1]
+    assert said.difference[0] < 0.0
+    assert said.fall == pytest.approx(20.0)  # sizes of 100 and 80, whatever their sign
     assert said.asymmetry == pytest.approx(0.4)
+
+
+def test_a_force_backward_is_more_than_a_right_angle_from_ahead():
+    back = Quarters.each(_held(lambda p: -np.ones_like(p), np.ones_like, np.ones_like))[-1]
+    assert back.angle == pytest.approx(0.75 * np.pi)
+    assert back.fall == 0.0
+
+
+def test_a_sway_is_what_comes_once_a_cycle_and_its_noise_the_rest():
+    t = np.arange(161) / 40
+    once, twice = np.sin(2 * np.pi * t + 0.3), np.sin(4 * np.pi * t)
+    sway = Sway.of(0.02 * once + 0.005 * twice + 0.1 * t, 4)
+    assert sway.amplitude == pytest.approx(0.02)
+    assert sway.noise == pytest.approx(2 * 0.005 / np.sqrt(2), rel=1e-3)
+    assert (sway.low, sway.high) == pytest.approx((0.02, 0.02), rel=1e-3)
+    growing = Sway.of(0.01 * (1 + (t >= 2.0)) * once, 4)
+    assert (growing.low, growing.high) == pytest.approx((0.01, 0.02), rel=0.02)
+    assert growing.noise > 0.005
+    straight = Sway.of(0.3 * t, 4)
+    assert straight.amplitude == pytest.approx(0.0, abs=1e-12)
+    with pytest.raises(ValueError, match="no whole number"):
+        Sway.of(once[:-1], 4)
+
+
+def test_a_wave_of_the_form_is_found_and_another_is_not():
+    s = np.linspace(0.0, 1.0, 65)
+    linear, quadratic, waves, share = wave_form(s, 0.01 * s + 0.09 * s**2, 0.8 * s + 0.35)
+    assert (abs(linear), abs(quadratic), waves) == pytest.approx((0.01, 0.09, 0.8), rel=1e-3)
+    assert share == pytest.approx(1.0, abs=1e-9)
+    assert wave_form(s, 0.01 * s + 0.09 * s**2, -0.8 * s)[2] == pytest.approx(-0.8, rel=1e-3)  # from tail to head
+    assert wave_form(s, 0.1 * (1 - s) + 0.01, 0.8 * s)[3] < 0.8  # the head swings most
 
 
 def test_a_swim_in_numbers():
@@ -62,7 +95,6 @@ def test_a_swim_in_numbers():
             "wave_speed": 1.6,
             "weight": 100.0,
             "tail_y": ("sample", 0.1 * np.sin(2 * np.pi * t) + 0.02 * t),
-            "snout_y": ("sample", 0.05 * np.sin(2 * np.pi * t) - 0.3 * t),
             "heading": ("sample", 0.2 * np.cos(2 * np.pi * t)),
         }
     )
@@ -73,16 +105,16 @@ def test_a_swim_in_numbers():
     assert swum.strouhal == pytest.approx(2.0 * 0.2 / 0.4, rel=1e-6)
     assert swum.cost_of_transport == pytest.approx(0.2)
     assert swum.head_yaw == pytest.approx(0.2)
-    assert crossings(free) >= 3
     assert efficiency(5.0, 0.4, 8.0) == pytest.approx(0.25)
 
 
 def test_a_swing_is_as_much_of_a_sine_as_it_is():
     t, drift = np.arange(241) / 120, 0.3 * np.arange(241) / 240
     pure, zigzag, twice = np.sin(2 * np.pi * t), 2 * np.abs(2 * (t % 1) - 1) - 1, np.sin(4 * np.pi * t)
-    amplitude, share = swing(np.column_stack([0.2 * pure + drift, zigzag, pure + twice, 0 * t]))
-    np.testing.assert_allclose(amplitude, [0.2, 8 / np.pi**2, 1.0, 0.0], atol=1e-3)
-    np.testing.assert_allclose(share, [1.0, 96 / np.pi**4, 0.5, 0.0], atol=1e-3)
+    swung = swing(np.column_stack([0.2 * pure + drift, zigzag, pure + twice, 0 * t]))
+    np.testing.assert_allclose(swung.amplitude, [0.2, 8 / np.pi**2, 1.0, 0.0], atol=1e-3)
+    assert swung.late[0] == pytest.approx(0.25)  # a sine comes a quarter of a cycle after a cosine
+    np.testing.assert_allclose(swung.share, [1.0, 96 / np.pi**4, 0.5, 0.0], atol=1e-3)
 
 
 def test_every_reading_is_tried_and_the_table_says_why_not(robot):

@@ -20,6 +20,10 @@ _NEEDED: Mapping[str, str] = {
     "bool_type": "true or false is needed",
     "tuple_type": "a list in brackets is needed",
     "dataclass_type": "a table is needed",
+    "dict_type": "a table is needed",
+    "mapping_type": "a table is needed",
+    "int_parsing_size": "a smaller number is needed",
+    "recursion_loop": "less deep nesting is needed",
 }
 
 
@@ -73,7 +77,7 @@ def _needed(error: Mapping[str, Any], cause: Exception | None) -> str:
         return f"{context['expected']} is allowed"
     if cause is not None:
         return str(cause).rstrip(".")
-    return _NEEDED.get(error["type"], str(error["msg"]))
+    return _NEEDED.get(error["type"], "something else is needed")
 
 
 def _unknown(place: Place, kind: type) -> str:
@@ -81,7 +85,7 @@ def _unknown(place: Place, kind: type) -> str:
     near = get_close_matches(str(place[-1]), known, n=1, cutoff=0.5)
     if near:
         return f"is not known (did you mean {dotted((*place[:-1], near[0]))}?)"
-    return f"is not known; there is {', '.join(known)}"
+    return f"is not known; there is {', '.join(known)}" if known else "is not known"
 
 
 def _fields_at(place: Place, kind: Any) -> list[str]:

@@ -1,61 +1,79 @@
 """From a TOML file to a frozen value; what the file does not say can come from a shelf."""
 
 import json
-import tomllib
 from collections.abc import Mapping
 from copy import deepcopy
-from dataclasses import asdict
+from dataclasses import asdict, fields
 from pathlib import Path
-from typing import Any, TypeVar
+from types import UnionType
+from typing import Any, TypeVar, get_args, overload
 
 from pydantic import TypeAdapter, ValidationError
 
 from suchus.blueprint.mistakes import MistakenFile, Place, explain
 from suchus.errors import UnreadableFile
+from suchus.record import read_toml
 
 T = TypeVar("T")
 
 
-def read(path: Path, kind: type[T], shelf: Mapping[str, T]) -> T:
+@overload
+def read(path: Path, kind: type[T], shelf: Mapping[str, Any]) -> T: ...
+
+
+@overload
+def read(path: Path, kind: UnionType, shelf: Mapping[str, Any]) -> Any: ...
+
+
+def read(path: Path, kind: Any, shelf: Mapping[str, Any]) -> Any:
     """Read a robot or a gait from a TOML file.
 
     ``base = "caiman"`` at the top starts from that one of the shelf and overrides what the file says. A file
-    without a ``name`` lends its own.
+    without a ``name`` lends its own. Where ``kind`` is a union, a file without ``base`` is of the first kind that has
+    all the tables and values at its top.
 
     Args:
         path: the file.
-        kind: the frozen dataclass that it describes.
+        kind: the frozen dataclass that it describes, or a union of several.
         shelf: what ``base`` may name.
 
     Raises:
         UnreadableFile: the file is missing or no TOML.
         MistakenFile: values are missing, unknown, of the wrong kind or impossible; it names all of them.
     """
-    data = _parse(path)
+    data = read_toml(path)
     base = data.pop("base", None)
     known = base is None or (isinstance(base, str) and base in shelf)
-    spare = asdict(shelf[base if base and known else next(iter(shelf))])  # type: ignore[call-overload]
+    kinds = get_args(kind) or (kind,)
+    if base is not None and known:
+        model = shelf[base]
+    else:
+        meant = _meant(data, kinds)
+        model = next(thing for thing in shelf.values() if isinstance(thing, meant))
+    if not isinstance(model, kinds):
+        raise UnreadableFile(
+            f"{path.name} starts from {base!r}, which is a {type(model).__name__}; a "
+            f"{' or '.join(one.__name__ for one in kinds)} is needed here."
+        )
+    spare = _plain(asdict(model))
     mistakes: dict[Place, str] = {}
     if not known:
         mistakes["base",] = f"is {base!r}; there is {', '.join(shelf)}"
     if base is not None:
         data = _merge({**spare, "name": path.stem}, data)
-    return _validated({"name": path.stem, **data}, kind, spare, path.name, mistakes)
+    return _validated({"name": path.stem, **data}, type(model), spare, path.name, mistakes)
 
 
-def _parse(path: Path) -> dict[str, Any]:
-    try:
-        text = path.read_text(encoding="utf-8")
-    except FileNotFoundError:
-        raise UnreadableFile(f"there is no file {path}.") from None
-    except UnicodeDecodeError as error:
-        raise UnreadableFile(f"{path} is not a text file in UTF-8.") from error
-    except OSError as error:
-        raise UnreadableFile(f"{path} cannot be read: {(error.strerror or str(error)).lower()}.") from error
-    try:
-        return tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise UnreadableFile(f"{path} is not valid TOML: {error}.") from error
+def _meant(data: Mapping[str, Any], kinds: tuple[Any, ...]) -> Any:
+    """Return the kind whose fields the top of a file names best; the first of those alike."""
+    return max(kinds, key=lambda kind: len(set(data) & {field.name for field in fields(kind)}))
+
+
+def _plain(value: Any) -> Any:
+    """Return a value without the tables and fields that are None, which TOML does not have."""
+    if isinstance(value, dict):
+        return {key: _plain(item) for key, item in value.items() if item is not None}
+    return tuple(_plain(item) for item in value) if isinstance(value, (list, tuple)) else value
 
 
 def _validated(

@@ -27,15 +27,19 @@ def render(value: object) -> str:
     return "\n".join(_table(value, ())).strip() + "\n"
 
 
-def _table(value: Any, path: tuple[str, ...]) -> list[str]:
-    """A table's own values first, then the tables below it, as TOML wants it."""
+def _table(value: Any, path: tuple[str, ...], *, row: bool = False) -> list[str]:
+    """A table's own values first, then the tables below it, as TOML wants it; a row of tables has double brackets."""
     told = meanings(type(value))
     items = {f.name: getattr(value, f.name) for f in fields(value)}
-    lines = ["", f"[{'.'.join(path)}]"] if path else []
+    name = ".".join(path)
+    lines = ["", f"[[{name}]]" if row else f"[{name}]"] if path else []
     below: list[str] = []
     for name, item in items.items():
         if is_dataclass(item):
             below += _table(item, (*path, name))
+        elif isinstance(item, tuple) and item and all(is_dataclass(one) for one in item):
+            for one in item:
+                below += _table(one, (*path, name), row=True)
         elif item is not None:
             meaning = " ".join(told.get(name, "").split())
             lines.append(f"{name} = {_inline(item)}" + (f"  # {meaning}" if meaning else ""))

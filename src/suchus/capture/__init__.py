@@ -1,8 +1,9 @@
 """Tracked keypoints of a walking body -> spine and tail angles, foot contacts, one mean cycle -> a gait."""
 
-from suchus.capture.angle_table import AngleCycle, read_angles
+from suchus.capture.angle_table import AngleCycle, is_angle_table, read_angles
 from suchus.capture.animal import Animal, film_animal
 from suchus.capture.film import Camera, film, keypoints
+from suchus.capture.played import to_angle_table
 from suchus.capture.reading import Reading, read_tracks, told, write_gait
 from suchus.capture.retarget import Captured, driven_share, to_gait
 from suchus.capture.table import write_table
@@ -23,11 +24,13 @@ __all__ = [
     "driven_share",
     "film",
     "film_animal",
+    "is_angle_table",
     "keypoints",
     "observe",
     "read_angles",
     "read_tracks",
     "standing_index",
+    "to_angle_table",
     "to_gait",
     "told",
     "write_gait",

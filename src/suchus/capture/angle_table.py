@@ -34,6 +34,14 @@ class AngleCycle:
         return np.asarray((turn @ self.harmonics.T).real)
 
 
+def is_angle_table(path: Path) -> bool:
+    """Tell whether a file is a CSV table of joint angles: its first column is ``time``, a share, without a unit."""
+    if path.suffix.lower() != ".csv" or not path.is_file():
+        return False
+    with path.open("rb") as file:
+        return file.read(16).removeprefix(b"\xef\xbb\xbf").partition(b",")[0].strip() == b"time"
+
+
 def read_angles(path: Path, *, harmonics: int = MOST_HARMONICS) -> AngleCycle:
     """Read a table of one cycle: ``time`` as a share of it, then an angle in degrees for every joint.
 

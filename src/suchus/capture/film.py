@@ -8,7 +8,7 @@ import xarray as xr
 
 from suchus import rotation
 from suchus.capture.tracks import Tracks
-from suchus.design import LEGS, Crocodile, leg_joints, spine_joints
+from suchus.design import LEGS, AnyRobot, Crocodile, crocodile, leg_joints, spine_joints
 from suchus.design.checks import Checks
 from suchus.kinematics import body, spine
 from suchus.motion import START
@@ -46,7 +46,7 @@ class Camera:
             check.whole("seed", 0, 2**32 - 1)
 
 
-def film(robot: Crocodile, record: xr.Dataset, camera: Camera, *, start: float = START) -> Tracks:
+def film(robot: AnyRobot, record: xr.Dataset, camera: Camera, *, start: float = START) -> Tracks:
     """Return the keypoints of a robot as a camera would have tracked them.
 
     Args:
@@ -84,17 +84,18 @@ def tracked(points: Mapping[str, np.ndarray], time: np.ndarray, camera: Camera, 
     )
 
 
-def keypoints(robot: Crocodile, record: xr.Dataset) -> dict[str, np.ndarray]:
+def keypoints(robot: AnyRobot, record: xr.Dataset) -> dict[str, np.ndarray]:
     """Return where the keypoints of a robot are in the world, each of shape (time, 3) [m].
 
     Args:
         robot: whose record it is.
         record: of one run, without the dimension ``run``.
     """
+    robot = crocodile(robot, "a made-up film")
     angles = record.joint_angle.values.astype(float)
     legs, trunk = len(leg_joints()), len(leg_joints()) + len(spine_joints())
     points = _midline(robot, angles[:, legs:trunk]) | _tail(robot, angles[:, trunk:])
-    feet = body.feet(robot, angles[:, :trunk])
+    feet = body.feet(robot, angles)
     points |= {leg: feet[:, i] for i, leg in enumerate(LEGS)}
     R, at = rotation.matrix(record.orientation.values.astype(float)), record.position.values.astype(float)
     return {name: at + np.einsum("tij,tj->ti", R, point) for name, point in points.items()}

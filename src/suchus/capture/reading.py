@@ -13,7 +13,7 @@ from suchus.capture.tracks import Tracks
 from suchus.capture.walk import Walk
 from suchus.design import LEGS
 from suchus.errors import UnknownName, UnreadableFile
-from suchus.record import new_file
+from suchus.record import check_file, new_file
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -48,10 +48,7 @@ def read_tracks(path: Path, how: Reading | None = None) -> Tracks:
     how = how or Reading()
     if how.software is not None and how.software not in SOFTWARE:
         raise UnknownName("software", how.software, SOFTWARE)
-    if not path.exists():
-        raise UnreadableFile(f"there is no file {path}.")
-    if not path.is_file():
-        raise UnreadableFile(f"{path} is a folder; a file of tracks is needed.")
+    check_file(path)
     if path.stat().st_size == 0:
         raise UnreadableFile(f"{path} is empty; a header and one row per frame are needed.")
     if how.software is None and is_table(path):

@@ -8,7 +8,7 @@ import numpy as np
 
 from suchus.capture.walk import UNSURE, Walk
 from suchus.capture.wave import STANDING
-from suchus.design import LEGS, Crocodile, servo_names
+from suchus.design import LEGS, AnyRobot, Crocodile, crocodile, servo_names
 from suchus.errors import OutsideLimits
 from suchus.motion import Gait, check_limits, servo_targets, tail_bend, trunk_bend
 
@@ -34,7 +34,7 @@ class Captured:
     """What was seen and the gait does not hold, what it holds and was not seen, and what was changed."""
 
 
-def to_gait(walk: Walk, robot: Crocodile, base: Gait, *, name: str, duty: Duty = "retraction") -> Captured:
+def to_gait(walk: Walk, robot: AnyRobot, base: Gait, *, name: str, duty: Duty = "retraction") -> Captured:
     """Return the gait by which a robot walks as was seen.
 
     Phases and angles are taken as they are, lengths in proportion to the trunk from hip to shoulder. The bends are
@@ -51,6 +51,7 @@ def to_gait(walk: Walk, robot: Crocodile, base: Gait, *, name: str, duty: Duty =
     Raises:
         OutsideLimits: the robot cannot follow even with the base's posture and a small stroke.
     """
+    robot = crocodile(robot, "a captured walk")
     notes: list[str] = []
     gait = _timed(walk, replace(base, name=name), duty, notes)
     gait = _bent(walk, gait, notes)

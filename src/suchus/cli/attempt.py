@@ -42,9 +42,8 @@ def attempt(task: Task, progress: Progress) -> Came:
     """
     try:
         experiment = EXPERIMENTS[task.name]
-        quick = task.quick or not experiment.in_reproduce
-        command = f"suchus run {task.name}{' --quick' * quick}"
-        done = perform(experiment.quick() if quick else experiment, task.name, task.out, progress, command)
+        command = f"suchus run {task.name}{' --quick' * task.quick}"
+        done = perform(experiment.quick() if task.quick else experiment, task.name, task.out, progress, command)
         result = load_result(done.folder)
     except SuchusError as error:
         return failed(task.name, str(error))

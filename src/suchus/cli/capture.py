@@ -8,15 +8,29 @@ from typing import Annotated, Literal
 import numpy as np
 import tyro
 
-from suchus.capture import Reading, Walk, driven_share, observe, read_tracks, to_gait, told, write_gait
+from suchus import blueprint
+from suchus.capture import (
+    Reading,
+    Walk,
+    driven_share,
+    is_angle_table,
+    observe,
+    read_angles,
+    read_tracks,
+    to_angle_table,
+    to_gait,
+    told,
+    write_gait,
+)
 from suchus.cli.commands import BadCommand
 from suchus.cli.options import parse
 from suchus.cli.terminal import working
-from suchus.design import Crocodile
+from suchus.design import AnyRobot
+from suchus.design.suited import crocodile
 from suchus.figures import captioned, save
 from suchus.figures.gait_diagram import GaitTrack, gait_diagram
 from suchus.gaits import GAITS
-from suchus.motion import Gait
+from suchus.motion import Gait, check_limits
 from suchus.record import check_writable
 from suchus.robots import ROBOTS
 
@@ -26,13 +40,15 @@ class Options:
     """What can be said after ``suchus capture``."""
 
     tracks: Annotated[Path, tyro.conf.Positional]
-    """CSV table, or a file of DeepLabCut, SLEAP or LightningPose."""
+    """CSV table of keypoints or of joint angles, or a file of DeepLabCut, SLEAP or LightningPose."""
     out: Path = Path("captured.toml")
     """The gait file; its diagram is saved beside it."""
-    robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
+    robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
     """Who shall walk like that."""
     base: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
     """Gait that lends what was not seen."""
+    period: float = 1.0
+    """Of a table of joint angles, which is over one cycle: its duration [s]."""
     duty: Literal["retraction", "contact"] = "retraction"
     """What the duty factor is: the share in which feet go back along the body, or in which they rest on the ground."""
     tail_share: float | None = None
@@ -66,14 +82,17 @@ def capture(words: Sequence[str]) -> int:
     if options.out.suffix != ".toml":
         raise BadCommand(f"the gait goes into a .toml file; --out is {str(options.out)!r}.")
     check_writable(options.out.parent)
+    if is_angle_table(options.tracks):
+        return _play(options)
+    robot = crocodile(options.robot, "a gait from tracked keypoints")
     with working() as bars:
         move = bars.task(options.tracks.name)
         move("reading", 0.1)
         tracks = read_tracks(options.tracks, _how(options)).between(options.start, options.end)
         move("looking for the cycle", 0.3)
-        walk = observe(tracks, tail_share=_share(options))
+        walk = observe(tracks, tail_share=driven_share(robot) if options.tail_share is None else options.tail_share)
         move("writing", 0.8)
-        captured = to_gait(walk, options.robot, options.base, name=options.out.stem, duty=options.duty)
+        captured = to_gait(walk, robot, options.base, name=options.out.stem, duty=options.duty)
         write_gait(captured, walk, options.out)
         picture = _draw(walk, options.out)
     print(*told(walk), *(f"note: {note}" for note in captured.notes), sep="\n")
@@ -81,8 +100,17 @@ def capture(words: Sequence[str]) -> int:
     return 0
 
 
-def _share(options: Options) -> float:
-    return driven_share(options.robot) if options.tail_share is None else options.tail_share
+def _play(options: Options) -> int:
+    """Write the gait that plays a table of joint angles, say what it is, and return 0."""
+    cycle = read_angles(options.tracks)
+    gait = to_angle_table(cycle, options.robot, name=options.out.stem, period=options.period)
+    check_limits(options.robot, gait)
+    blueprint.write(gait, options.out)
+    left = max(zip(cycle.residual, cycle.joints, strict=True))
+    print(f"{len(gait.curves)} servos of {options.robot.name} play {options.tracks.name}; closing the cycle changed")
+    print(f"{left[1]} most, by {np.degrees(left[0]):.1f} degrees in the root mean square.")
+    print(f"gait: {options.out}\nrun it: suchus run salamander --robot {options.robot.name} --gait {options.out}")
+    return 0
 
 
 def _how(options: Options) -> Reading:

@@ -1,11 +1,11 @@
 """Where the command line begins and ends: words in, an exit code out."""
 
-import os
 import sys
 from collections.abc import Sequence
 
 from suchus.cli.commands import COMMANDS, BadCommand
-from suchus.errors import Diverged, NotConverged, SuchusError, UnknownName
+from suchus.cli.streams import drop_output, printable, settle
+from suchus.errors import Diverged, NotConverged, SuchusError, UnknownName, Unwritable
 
 _EXAMPLES = (
     ("suchus reproduce", "everything, into out/report.html"),
@@ -25,8 +25,9 @@ def main(words: Sequence[str] | None = None) -> int:
         words: what follows ``suchus``; by default those of this process.
     """
     words = list(sys.argv[1:] if words is None else words)
+    settle()
     try:
-        return _dispatch(words)
+        return _flushed(words)
     except (Diverged, NotConverged) as error:
         return _complain(str(error), 1)
     except SuchusError as error:
@@ -34,8 +35,29 @@ def main(words: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         return _complain("stopped; what was finished is kept, nothing half-written is left.", 130)
     except BrokenPipeError:  # the reader of our output has gone, as in `suchus list | head -1`
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        drop_output()
         return 0
+
+
+def _flushed(words: list[str]) -> int:
+    """Carry out a command line; what it printed is out when this returns.
+
+    Raises:
+        Unwritable: standard output takes nothing, or the system refused a file in a way that nobody foresaw.
+    """
+    try:
+        try:
+            return _dispatch(words)
+        finally:
+            sys.stdout.flush()
+    except BrokenPipeError:
+        raise
+    except OSError as error:
+        if isinstance(error, SuchusError):
+            raise
+        drop_output()
+        what = f"{error.filename} cannot be read or written" if error.filename else "what was to be printed is lost"
+        raise Unwritable(f"{what}: {(error.strerror or str(error)).lower()}.") from error
 
 
 def _dispatch(words: list[str]) -> int:
@@ -51,9 +73,7 @@ def _dispatch(words: list[str]) -> int:
         return 0
     for command in COMMANDS:
         if command.name == words[0]:
-            code = command(words[1:])
-            sys.stdout.flush()
-            return code
+            return command(words[1:])
     raise UnknownName("command", words[0], [command.name for command in COMMANDS])
 
 
@@ -77,5 +97,5 @@ def _help() -> str:
 
 
 def _complain(sentence: str, code: int) -> int:
-    print("suchus: " + " ".join(sentence.split()), file=sys.stderr)
+    print("suchus: " + printable(" ".join(sentence.split())), file=sys.stderr)
     return code

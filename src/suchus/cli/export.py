@@ -9,12 +9,12 @@ from typing import Annotated, get_args
 import tyro
 
 from suchus.cli.options import parse
-from suchus.design import Crocodile
+from suchus.design import AnyRobot
 from suchus.errors import UnknownName
 from suchus.gaits import GAITS
 from suchus.model.export import Format, export
-from suchus.motion import Gait
-from suchus.record import check_writable
+from suchus.motion import AnyGait
+from suchus.record import check_name, check_writable
 from suchus.robots import ROBOTS
 
 
@@ -24,9 +24,9 @@ class Options:
 
     format: Format = "mjcf"
     """MJCF for MuJoCo, USD for Isaac, Newton and Omniverse (extra usd), URDF for nearly everything else."""
-    robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
+    robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
     """Which robot."""
-    home: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
+    home: AnyGait = field(default_factory=lambda: GAITS["belly_crawl"])
     """Gait whose mid-stance is the home posture of the MJCF."""
     timestep: Annotated[float, tyro.conf.arg(metavar="SECONDS")] = 0.002
     """Of the physics in the MJCF."""
@@ -43,6 +43,8 @@ def export_robot(words: Sequence[str]) -> int:
     about = "Write a robot for other tools: model, scene, home posture, and a README of what the format leaves out."
     _check_format(words)
     options: Options = parse(Options, "suchus export", words, about, [f.name for f in fields(Options)])
+    if options.out is None:
+        check_name(options.robot.name, "robot")
     folder = options.out or Path("export") / f"{options.robot.name}_{options.format}"
     check_writable(folder.parent)
     export(options.robot, options.home, folder, options.format, timestep=options.timestep)

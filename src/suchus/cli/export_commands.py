@@ -31,7 +31,7 @@ from suchus.hardware import (
 )
 from suchus.hardware.limits import AT_LIMIT, TRACKING
 from suchus.motion import Gait
-from suchus.record import check_replaceable, check_writable, digest, new_folder, versions
+from suchus.record import check_name, check_replaceable, check_writable, digest, new_folder, versions
 from suchus.robots import ROBOTS
 
 MARK = "suchus_commands.json"
@@ -66,14 +66,16 @@ def export_commands(words: Sequence[str]) -> int:
         SuchusError: the words make no sense, the servos cannot do it, or the place cannot be written to.
     """
     about = "Write a gait as timed servo angles: CSV with pulses, and a ROS trajectory_msgs/JointTrajectory."
-    options: Options = parse(Options, "suchus export-commands", words, about, [f.name for f in fields(Options)])
+    options: Options = parse(
+        Options, "suchus export-commands", _gait_first(words), about, [f.name for f in fields(Options)]
+    )
     if options.write_map is not None:
         print(f"servo map: {write_map(STRAIGHT, options.write_map)}")
         return 0
     require("export-commands", "at_limit", options.at_limit, 0.0, 1.0, "")
     require("export-commands", "tracking", options.tracking, 0.0, 7.0, "rad")
-    if any(c in options.gait.name for c in "/\\\0") and options.out is None:
-        raise BadCommand(f"the gait is named {options.gait.name!r}, which makes no folder; say --out DIR.")
+    if options.out is None:
+        check_name(options.gait.name, "gait")
     folder = options.out or Path("export") / f"{options.gait.name}_commands"
     check_writable(folder.parent)
     check_replaceable(folder, mark=MARK)
@@ -112,6 +114,19 @@ def _write_loads(options: Options, borne: Mapping[str, Load], draft: Path) -> No
     origin = {"gait": digest({"gait": options.gait}), "robot": digest({"robot": options.robot}), "versions": versions()}
     (draft / "loads.csv").write_text(_loads_text(borne), encoding="utf-8")
     (draft / MARK).write_text(json.dumps(origin, indent=1, sort_keys=True) + "\n", encoding="utf-8")
+
+
+def _gait_first(words: Sequence[str]) -> list[str]:
+    """Let the gait be named as an option too, as everywhere else."""
+    words = list(words)
+    for i, word in enumerate(words):
+        if word == "--gait":
+            if words[i + 1 : i + 2] == []:
+                raise BadCommand("--gait lacks its value: the name of a gait, or a TOML file.")
+            return [words[i + 1], *words[:i], *words[i + 2 :]]
+        if word.startswith("--gait="):
+            return [word.partition("=")[2], *words[:i], *words[i + 1 :]]
+    return words
 
 
 def _loads_text(borne: Mapping[str, Load]) -> str:

@@ -8,13 +8,12 @@ from typing import Annotated
 
 import tyro
 
-from suchus.cli.commands import BadCommand
 from suchus.cli.options import parse
 from suchus.cli.terminal import Bars, working
 from suchus.errors import UnknownName
 from suchus.optimise import AIMS, READY, Optimisation, Told, read_optimisation, write_results
 from suchus.optimise import optimise as conduct
-from suchus.record import check_writable
+from suchus.record import check_name, check_writable, there
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -64,12 +63,12 @@ def _asked(options: Options) -> Optimisation:
     """Return the search that is asked for."""
     if options.what in READY:
         spec = READY[options.what]()
-    elif options.what.endswith(".toml") or Path(options.what).exists():
+    elif options.what.endswith(".toml") or there(Path(options.what)):
         spec = read_optimisation(Path(options.what))
     else:
         raise UnknownName("search", options.what, READY)
-    if options.out is None and any(c in spec.name for c in "/\\\0"):
-        raise BadCommand(f"the search is named {spec.name!r}, which makes no folder; say --out DIR.")
+    if options.out is None:
+        check_name(spec.name, "search")
     if options.evaluations is not None:
         spec = replace(spec, evaluations=options.evaluations)
     return spec if options.seed is None else replace(spec, seed=options.seed)

@@ -14,11 +14,12 @@ from tyro.constructors import ConstructorRegistry, PrimitiveConstructorSpec, Pri
 from suchus import blueprint
 from suchus.catalog import Catalog
 from suchus.cli.commands import BadCommand
-from suchus.design import Crocodile
+from suchus.design import AnyRobot, Crocodile
 from suchus.errors import SuchusError, UnknownName
 from suchus.experiment import Experiment
 from suchus.gaits import GAITS
-from suchus.motion import Gait
+from suchus.motion import AngleTable, AnyGait, Gait
+from suchus.record import there
 from suchus.robots import ROBOTS
 
 QUICK = Annotated[
@@ -101,6 +102,10 @@ def parse(options: type, prog: str, words: Sequence[str], description: str, name
                 registry=_registry(),
                 return_unknown_args=True,
             )
+    except _NoWordError:
+        odd = (word.partition("=")[0] for word in words if word.startswith("-"))
+        unknown = [word for word in odd if word.strip("-").replace("-", "_") not in names]
+        raise UnknownName("option", (unknown or ["-"])[0], [f"--{n.replace('_', '-')}" for n in names]) from None
     except SystemExit as error:
         if error.code:
             raise BadCommand(f"{_sentence(box.getvalue())}; see {prog} --help.") from None
@@ -117,34 +122,65 @@ def parse(options: type, prog: str, words: Sequence[str], description: str, name
 def _registry() -> ConstructorRegistry:
     """Robots and gaits are named on the command line, or written in a file."""
     registry = ConstructorRegistry()
-    registry.primitive_rule(_shelf_rule(Crocodile, ROBOTS, "ROBOT"))
-    registry.primitive_rule(_shelf_rule(Gait, GAITS, "GAIT"))
+    shelves: tuple[tuple[Any, Catalog[Any], str], ...] = (
+        (AnyRobot, ROBOTS, "ROBOT"),
+        (Crocodile, ROBOTS, "ROBOT"),
+        (AnyGait, GAITS, "GAIT"),
+        (Gait, GAITS, "GAIT"),
+        (AngleTable, GAITS, "GAIT"),
+    )
+    for kind, shelf, metavar in shelves:
+        registry.primitive_rule(_shelf_rule(kind, shelf, metavar))
     return registry
 
 
 def _shelf_rule(
-    kind: type, shelf: Catalog[Any], metavar: str
+    kind: Any, shelf: Catalog[Any], metavar: str
 ) -> Callable[[PrimitiveTypeInfo], PrimitiveConstructorSpec[Any] | None]:
     spec: PrimitiveConstructorSpec[Any] = PrimitiveConstructorSpec(
         nargs=1,
         metavar=f"{metavar}|FILE.toml",
-        instance_from_str=lambda words: _find(words[0], kind, shelf),
+        instance_from_str=lambda words: _find(_first(words), kind, shelf),
         is_instance=lambda value: isinstance(value, kind),
         str_from_instance=lambda value: [str(value.name)],
     )
-    return lambda info: spec if info.type is kind else None
+    return lambda info: spec if info.type == kind else None
 
 
-def _find(word: str, kind: type, shelf: Catalog[Any]) -> Any:
+class _NoWordError(Exception):
+    """Only an option that is not known stands where a name could stand."""
+
+
+def _first(words: Any) -> str:
+    """Return the first word; beside options that it does not know, tyro hands lists of lists over."""
+    while not isinstance(words, str):
+        if not words:
+            raise _NoWordError
+        words = words[0]
+    return words
+
+
+def _find(word: str, kind: Any, shelf: Catalog[Any]) -> Any:
     """What a word stands for: a name on the shelf, or a file."""
     try:
-        if word not in shelf and (word.endswith(".toml") or Path(word).exists()):
+        if word not in shelf and (word.endswith(".toml") or there(Path(word))):
             return blueprint.read(Path(word), kind, shelf)
-        return shelf[word]
+        found = shelf[word]
+        if not isinstance(found, kind):
+            raise BadCommand(_unsuited(found, kind, shelf))
+        return found
     except UnknownName as error:
         raise BadCommand(f"{error} A path to a TOML file will do as well.") from error
     except SuchusError as error:  # some are ValueErrors, which tyro would take for its own
         raise BadCommand(str(error)) from error
+
+
+def _unsuited(found: Any, kind: Any, shelf: Catalog[Any]) -> str:
+    fit = [name for name, thing in shelf.items() if isinstance(thing, kind)]
+    return (
+        f"the {shelf.kind} {found.name!r} is a {type(found).__name__}, and this needs a {kind.__name__}: take "
+        f"{', '.join(fit)}, or a file that starts from one of them."
+    )
 
 
 def _sentence(box: str) -> str:
@@ -157,4 +193,19 @@ def _sentence(box: str) -> str:
         elif lines:
             break
     sentence = " ".join(lines).removeprefix("Error parsing ").rstrip(".")
+    for pattern, plain in _PLAIN:
+        sentence = re.sub(pattern, plain, sentence)
     return re.sub(r"^[A-Z]|\. [A-Z]", lambda start: start[0].lower().replace(".", ";"), sentence)
+
+
+_PLAIN = (
+    (r"invalid literal for int\(\) with base 10: (.*)", r"\1 is no whole number"),
+    (r"could not convert string to float: (.*)", r"\1 is no number"),
+    (r"Exceeds the limit .* value has (\d+) digits.*", r"a number of \1 digits is more than can be read"),
+    (
+        r"no type matching \{None\}\|(?:INT|FLOAT) could be instantiated from \[(.*)\]",
+        r"\1 is no number",
+    ),
+    (r"no type matching .* could be instantiated from \[(.*)\]", r"\1 is not what is needed"),
+)
+"""What Python says of its own functions, in words of those who type."""

@@ -11,7 +11,8 @@ import xarray as xr
 from suchus import record
 from suchus.cli.commands import BadCommand
 from suchus.cli.options import parse
-from suchus.design import Crocodile
+from suchus.design import AnyRobot
+from suchus.record import check_file
 from suchus.replay import replay, save
 from suchus.robots import ROBOTS
 
@@ -26,7 +27,7 @@ class Options:
     """Which run of the record, by its label or its number from 0; needed where it holds several."""
     ghost: str | None = None
     """Another run of the record, for comparison, by its label or its number."""
-    robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
+    robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
     """Whose it is; by default the robot of the shelf that the record names."""
     title: str = ""
     """Heading of the page; by default robot and gait."""
@@ -42,6 +43,7 @@ def make_replay(words: Sequence[str]) -> int:
     """
     about = "Turn a stored run on land into one HTML file: three-dimensional, plays offline, can be mailed."
     options: Options = parse(Options, "suchus replay", words, about, [f.name for f in fields(Options)])
+    check_file(options.file)
     out = options.out or options.file.with_suffix(".html")
     if out.suffix.lower() not in (".html", ".htm"):
         raise BadCommand(f"the page would be {out}; say --out FILE.html.")
@@ -70,7 +72,7 @@ def _chosen(stored: xr.Dataset, name: str | None, option: str) -> xr.Dataset:
         raise BadCommand(f"the record holds {len(labels)} runs ({told}); choose one with {option}.")
     if name in labels:
         return stored.isel(run=labels.index(name))
-    if name.isdecimal() and int(name) < len(labels):
+    if name.isdecimal() and len(name) < 10 and int(name) < len(labels):
         return stored.isel(run=int(name))
     raise BadCommand(f"{option} asks for {name!r}, but the record's runs are {told}.")
 

@@ -7,12 +7,13 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import tyro
+import xarray as xr
 
 from suchus.cli.commands import BadCommand
 from suchus.cli.options import CSV, TABLES, parse
 from suchus.cli.terminal import working
-from suchus.record import write_tables
-from suchus.study import Claims, Told, conduct, conduct_claims, connected, read_study, write_claims
+from suchus.record import check_name, there, write_tables
+from suchus.study import Claims, Told, answer_finished, conduct, conduct_claims, connected, read_study, write_claims
 from suchus.study.store import RESULTS, TABLE
 
 CLAIMS = "claims"
@@ -30,6 +31,8 @@ class Options:
     """How many points a sampled study has; other than before is another study."""
     out: Path | None = None
     """The store; by default out/studies/NAME. One that this study began is finished, anything else is refused."""
+    finished: bool = False
+    """Only for ``claims``: run nothing, answer from what the store holds, of a power of two of samples."""
     csv: CSV = False
     """Write the results as CSV files with units in the header too, into the folder csv in the store."""
 
@@ -42,13 +45,15 @@ def study(words: Sequence[str]) -> int:
     """
     about = "Run many variants of one run, and keep what is measured. Started again it goes on where it stopped."
     options: Options = parse(Options, "suchus study", words, about, [f.name for f in fields(Options)])
-    if str(options.file) == CLAIMS and not options.file.exists():
+    if str(options.file) == CLAIMS and not there(options.file):
         return _claims(options)
     asked = read_study(options.file)
+    if options.finished:
+        raise BadCommand("--finished is for claims only; other studies write their results when they are complete.")
     if options.samples is not None:
         asked = replace(asked, samples=options.samples)
-    if options.out is None and any(c in asked.name for c in "/\\\0"):
-        raise BadCommand(f"the study is named {asked.name!r}, which makes no folder; say --out DIR.")
+    if options.out is None:
+        check_name(asked.name, "study")
     folder = options.out or Path("out") / "studies" / asked.name
     with _cluster(options) as client, working() as bars:
         tell = bars.told(asked.name)
@@ -70,6 +75,8 @@ def _claims(options: Options) -> int:
     """Conduct the ready-made study of the claims, or finish it."""
     asked = Claims() if options.samples is None else Claims(samples=options.samples)
     folder = options.out or Path("out") / "studies" / CLAIMS
+    if options.finished:
+        return _answered(answer_finished(asked, folder), folder)
     with _cluster(options) as client, working() as bars:
         shown: dict[str, Callable[[object, float], None]] = {}
 
@@ -79,7 +86,12 @@ def _claims(options: Options) -> int:
             shown[place](told, told.done / told.total)
 
         record = conduct_claims(asked, folder, progress=show, client=client)
-        result = write_claims(record, folder / "result")
+        return _answered(record, folder)
+
+
+def _answered(record: xr.Dataset, folder: Path) -> int:
+    """Write what became of the claims, say where, and return 0."""
+    result = write_claims(record, folder / "result")
     walked = int((record.status == "walked").sum())
     print(f"{record.sizes['sample']} designs and gaits, {walked} walked; the page is {result / 'index.html'}")
     return 0

@@ -14,6 +14,7 @@ from suchus.design import Crocodile
 from suchus.design.checks import require
 from suchus.gaits import GAITS
 from suchus.motion import Gait
+from suchus.record import there
 from suchus.robots import ROBOTS
 from suchus.viewer import Session
 from suchus.viewer.replay import takes
@@ -87,7 +88,7 @@ def view(words: Sequence[str]) -> int:
 
 
 def _is_record(word: str) -> bool:
-    return word.endswith(".nc") or (Path(word).is_file() and not word.endswith(".toml") and word not in ROBOTS)
+    return word.endswith(".nc") or (there(Path(word)) and not word.endswith(".toml") and word not in ROBOTS)
 
 
 def _walk(words: Sequence[str]) -> int:
@@ -143,7 +144,10 @@ def _serve(page: Callable[[Any], Any], where: Where, title: str, **settings: Any
     try:
         print(f"{title}: open {viewer.url} in a browser; Ctrl-C ends it.", flush=True)
         if where.host not in _LOOPBACK:
-            print(f"Everybody who reaches {where.host} can look and meddle: there is no password.", flush=True)
+            print(
+                f"Whoever reaches {where.host} and knows this address can look and meddle; nothing is encrypted.",
+                flush=True,
+            )
         viewer.wait()
     except KeyboardInterrupt:
         print("ended.")

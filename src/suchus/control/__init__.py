@@ -6,6 +6,8 @@ from suchus.control.coordinated import Coordinated, Kick
 from suchus.control.heading import HeadingRule
 from suchus.control.limbs import LAWS, LimbLaw
 from suchus.control.open_loop import OpenLoop
+from suchus.control.oscillators import Oscillators
+from suchus.control.pattern_generator import Generator, Oscillation, PatternGenerator, oscillate
 from suchus.control.rolling import Rolling
 from suchus.control.sensed import Sensed
 from suchus.control.shared import OWNERS, Shared
@@ -28,11 +30,15 @@ __all__ = [
     "Control",
     "Controller",
     "Coordinated",
+    "Generator",
     "HeadingRule",
     "Joinable",
     "Kick",
     "LimbLaw",
     "OpenLoop",
+    "Oscillation",
+    "Oscillators",
+    "PatternGenerator",
     "Rolling",
     "Sensed",
     "Shared",
@@ -42,5 +48,6 @@ __all__ = [
     "TailRule",
     "TurningCurve",
     "Walking",
+    "oscillate",
     "turn",
 ]

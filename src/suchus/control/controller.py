@@ -7,16 +7,16 @@ import numpy as np
 from jaxtyping import Float
 
 from suchus.control.sensed import Sensed
-from suchus.design import Crocodile
-from suchus.motion import Gait
+from suchus.design import AnyRobot
+from suchus.motion import AnyGait
 
 
 class Command(NamedTuple):
     """What a controller says for one control period."""
 
-    targets: Float[np.ndarray, "run 19"]
+    targets: Float[np.ndarray, "run servo"]
     """Servo angles [rad]."""
-    phase: Float[np.ndarray, "run 4"]
+    phase: Float[np.ndarray, "run limb"]
     """Phase of each limb, not wrapped [cycle]."""
 
 
@@ -24,7 +24,7 @@ class Command(NamedTuple):
 class Controller(Protocol):
     """A running controller of a batch; it may keep state."""
 
-    def rest(self) -> Float[np.ndarray, "run 19"]:
+    def rest(self) -> Float[np.ndarray, "run servo"]:
         """Return the servo angles in which the robots are put on the ground [rad]."""
 
     def command(self, tick: int, sensed: Sensed | None) -> Command:
@@ -41,8 +41,8 @@ class Control(Protocol):
 
     def start(
         self,
-        robots: Sequence[Crocodile],
-        gaits: Sequence[Gait],
+        robots: Sequence[AnyRobot],
+        gaits: Sequence[AnyGait],
         seeds: Sequence[int],
         ticks: int,
         period: float,
@@ -65,8 +65,8 @@ class Joinable(Control, Protocol):
     @staticmethod
     def start_together(
         controls: Sequence[Any],
-        robots: Sequence[Crocodile],
-        gaits: Sequence[Gait],
+        robots: Sequence[AnyRobot],
+        gaits: Sequence[AnyGait],
         seeds: Sequence[int],
         ticks: int,
         period: float,

@@ -14,11 +14,12 @@ from suchus.control.open_loop import OpenLoop
 from suchus.control.sensed import Sensed
 from suchus.control.shared import silence
 from suchus.control.spine import Spine, SpineRule
+from suchus.control.suited import leg_gaits
 from suchus.control.tail import Tail, TailRule
-from suchus.design import Crocodile
+from suchus.design import AnyRobot, layout
 from suchus.design.checks import Checks, require
-from suchus.errors import InvalidDesign
-from suchus.motion import START, Gait, servo_targets
+from suchus.errors import InvalidDesign, UnsuitedRobot
+from suchus.motion import START, AnyGait, Gait, servo_targets
 
 _SLACK = 1e-9  # [s]; times are multiples of the control period up to rounding
 
@@ -77,8 +78,8 @@ class Coordinated:
 
     def start(
         self,
-        robots: Sequence[Crocodile],
-        gaits: Sequence[Gait],
+        robots: Sequence[AnyRobot],
+        gaits: Sequence[AnyGait],
         seeds: Sequence[int],
         ticks: int,
         period: float,
@@ -89,8 +90,8 @@ class Coordinated:
     @staticmethod
     def start_together(
         controls: "Sequence[Coordinated]",
-        robots: Sequence[Crocodile],
-        gaits: Sequence[Gait],
+        robots: Sequence[AnyRobot],
+        gaits: Sequence[AnyGait],
         seeds: Sequence[int],
         ticks: int,
         period: float,
@@ -100,7 +101,7 @@ class Coordinated:
 
 
 class _Group(NamedTuple):
-    robot: Crocodile
+    robot: AnyRobot
     gait: Gait
     runs: np.ndarray
 
@@ -111,12 +112,15 @@ class Coordinator:
     def __init__(
         self,
         controls: Sequence[Coordinated],
-        robots: Sequence[Crocodile],
-        gaits: Sequence[Gait],
+        robots: Sequence[AnyRobot],
+        gaits: Sequence[AnyGait],
         seeds: Sequence[int],
         ticks: int,
         period: float,
     ) -> None:
+        gaits = leg_gaits(gaits, "the closed loop")
+        for robot in set(robots):
+            _refuse_others(robot)
         self._period = period
         self._table = OpenLoop().start(robots, gaits, seeds, ticks, period)
         self._groups = _grouped(robots, gaits)
@@ -149,7 +153,7 @@ class Coordinator:
         if self._heading is not None and before._heading is not None:
             self._heading.take_over(before._heading)
 
-    def rest(self) -> Float[np.ndarray, "run 19"]:
+    def rest(self) -> Float[np.ndarray, "run servo"]:
         """The posture of the first phases."""
         self._share(0, None, walking=False)
         return self._posture(0)
@@ -176,7 +180,7 @@ class Coordinator:
         heard = replace(limbs, limb_phase=np.where(self._hears, limbs.limb_phase, clock))
         self._shared = replace(self._tail.step(self._spine.step(heard)), limb_phase=limbs.limb_phase)
 
-    def _posture(self, tick: int) -> Float[np.ndarray, "run 19"]:
+    def _posture(self, tick: int) -> Float[np.ndarray, "run servo"]:
         """Return the servo angles; where nothing is ahead of the clock and nobody steers, those of the table."""
         targets = self._table.command(tick, None).targets
         moved = self._limbs.ahead.any(axis=1) | self._steering.any()
@@ -200,8 +204,17 @@ class Coordinator:
         return replace(sensed, foot_pressure=pressure)
 
 
-def _grouped(robots: Sequence[Crocodile], gaits: Sequence[Gait]) -> list[_Group]:
-    members: dict[tuple[Crocodile, Gait], list[int]] = {}
+def _refuse_others(robot: AnyRobot) -> None:
+    place = layout(robot)
+    if not (place.trunk_yaw and place.tail_pitch):
+        raise UnsuitedRobot(
+            f"the feedback rules need servos that bend the trunk sideways and pitch the tail; robot {robot.name!r} "
+            "lacks them: let it walk in open loop."
+        )
+
+
+def _grouped(robots: Sequence[AnyRobot], gaits: Sequence[Gait]) -> list[_Group]:
+    members: dict[tuple[AnyRobot, Gait], list[int]] = {}
     for i, pair in enumerate(zip(robots, gaits, strict=True)):
         members.setdefault(pair, []).append(i)
     return [_Group(robot, gait, np.array(runs)) for (robot, gait), runs in members.items()]

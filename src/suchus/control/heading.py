@@ -9,8 +9,8 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from suchus import rotation
-from suchus.control.sensed import TRUNK_YAW, Sensed, finite
-from suchus.design import Crocodile
+from suchus.control.sensed import Sensed, finite
+from suchus.design import AnyRobot, layout
 from suchus.design.checks import Checks
 from suchus.motion import Gait, longest_stroke
 
@@ -70,7 +70,7 @@ class Heading:
     def __init__(
         self,
         rules: Sequence[HeadingRule | None],
-        robots: Sequence[Crocodile],
+        robots: Sequence[AnyRobot],
         gaits: Sequence[Gait],
         period: float,
     ) -> None:
@@ -86,6 +86,7 @@ class Heading:
         self._summed = np.zeros((int(self._cycle.max()) + 1, len(gaits)))  # a ring, as long as the longest cycle
         self._count = 0
         self._walks = False
+        self._yaw = list(layout(robots[0]).trunk_yaw)
         self._lasting = np.zeros(len(gaits))
         self._last = np.zeros(len(gaits))
         self._turned = np.zeros(len(gaits))
@@ -106,7 +107,7 @@ class Heading:
 
     def _error(self, sensed: Sensed) -> np.ndarray:
         """Return the error of the direction, averaged over the last cycle or what there is of it [rad]."""
-        trunk = finite(sensed.servo_position[:, TRUNK_YAW]).sum(1)
+        trunk = finite(sensed.servo_position[:, self._yaw]).sum(1)
         facing = rotation.yaw(finite(sensed.orientation)) + trunk / 2
         if self._walks:
             self._turned = self._turned + (facing - self._last + pi) % (2 * pi) - pi
@@ -120,7 +121,7 @@ class Heading:
         return mean - self._direction
 
 
-def _most(rule: HeadingRule, robot: Crocodile, gait: Gait) -> float:
+def _most(rule: HeadingRule, robot: AnyRobot, gait: Gait) -> float:
     if gait.stroke == 0.0:
         return 0.0
     return min(rule.most, max(longest_stroke(robot, gait) / abs(gait.stroke) - 1.0, 0.0))

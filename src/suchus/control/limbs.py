@@ -8,16 +8,13 @@ from types import MappingProxyType
 import numpy as np
 from jaxtyping import Float
 
-from suchus.control.sensed import TRUNK_YAW, Sensed, finite, keep
+from suchus.control.sensed import Sensed, finite, keep
 from suchus.control.shared import Shared
-from suchus.design import Crocodile
+from suchus.design import GRAVITY, AnyRobot, Layout, layout
 from suchus.design.checks import Checks
 from suchus.errors import OutsideLimits
-from suchus.kinematics.mass import GRAVITY
-from suchus.motion import Gait
+from suchus.motion import AnyGait, Gait
 
-SIDES = np.array([1.0, -1.0, -1.0, 1.0])
-"""The diagonal pair of each limb: LF and RH 1, RF and LH -1."""
 _DIAGONAL = 0.02  # [cycle]; how far from diagonal pairs a gait may be that a law with pairs coordinates
 
 
@@ -90,13 +87,65 @@ another body). ``wrong_sign``: the cross-load law reversed, which must fail.
 """
 
 
+class Loads:
+    """What the feet and the trunk of a batch of equal bodies tell their limbs, of any number.
+
+    Args:
+        laws: one for each run.
+        robots: one for each run.
+        gaits: one for each run.
+        period: of control [s].
+    """
+
+    def __init__(
+        self, laws: Sequence[LimbLaw], robots: Sequence[AnyRobot], gaits: Sequence[AnyGait], period: float
+    ) -> None:
+        place = layout(robots[0])
+        self.felt = any(law.feels for law in laws)
+        self._weights = np.array([_weights(law, place) for law in laws])
+        self._trunk, self._shift, self._clip = (
+            np.array([getattr(law, name) for law in laws])[:, None] for name in ("trunk", "shift", "clip")
+        )
+        self._keep = np.array([keep(law.delay, period) for law in laws])[:, None]
+        self._middle = np.array([gait.duty_factor / 2 - 0.25 for gait in gaits])[:, None]
+        self._share = np.array([robot.mass * GRAVITY / max(len(place.limbs), 1) for robot in robots])[:, None]
+        self._torque = np.array([_trunk_torque(robot) for robot in robots])[:, None]
+        self._sides = np.array([limb.side * (-1.0) ** limb.number for limb in place.limbs])
+        self._yaw = list(place.trunk_yaw)
+        self._load: np.ndarray | None = None
+        self._twist: np.ndarray | None = None
+
+    def take_over(self, before: "Loads") -> None:
+        """Go on with the filtered loads of the same runs."""
+        self._load, self._twist = before._load, before._twist
+
+    def feel(self, sensed: Sensed) -> None:
+        """Pass what is sensed through the filters."""
+        load = np.minimum(finite(sensed.foot_pressure) / self._share, self._clip)
+        twist = finite(sensed.servo_torque[:, self._yaw]).sum(axis=1, keepdims=True) / self._torque
+        self._load = load if self._load is None else load + self._keep * (self._load - load)
+        self._twist = twist if self._twist is None else twist + self._keep * (self._twist - twist)
+
+    def brake(self, phase: Float[np.ndarray, "run limb"]) -> Float[np.ndarray, "run limb"]:
+        """Return by which part of its clock each limb is slowed; nothing before anything was felt [-].
+
+        Args:
+            phase: of the limbs [cycle].
+        """
+        if self._load is None or self._twist is None:
+            return np.zeros_like(phase)
+        angle = 2 * pi * (phase + self._middle)
+        heard = (self._weights * self._load[:, None, :]).sum(axis=-1)
+        return np.asarray(np.cos(angle - self._shift) * heard + self._trunk * np.cos(angle) * self._sides * self._twist)
+
+
 class Limbs:
     """The oscillators of a batch. Their state is how far each limb is ahead of the gait's clock."""
 
     def __init__(
         self,
         laws: Sequence[LimbLaw],
-        robots: Sequence[Crocodile],
+        robots: Sequence[AnyRobot],
         gaits: Sequence[Gait],
         ahead: Float[np.ndarray, "run 4"],
         period: float,
@@ -105,18 +154,8 @@ class Limbs:
             if law.pairs:
                 _refuse_others(gait)
         self.ahead = ahead
-        self._feels = any(law.feels for law in laws)
-        self._weights = np.array([_weights(law) for law in laws])
-        self._trunk, self._shift, self._clip = (
-            np.array([getattr(law, name) for law in laws])[:, None] for name in ("trunk", "shift", "clip")
-        )
-        self._keep = np.array([keep(law.delay, period) for law in laws])[:, None]
+        self._loads = Loads(laws, robots, gaits, period)
         self._cycles_per_tick = period / np.array([gait.period for gait in gaits])[:, None]
-        self._middle = np.array([gait.duty_factor / 2 - 0.25 for gait in gaits])[:, None]
-        self._share = np.array([robot.mass * GRAVITY / 4 for robot in robots])[:, None]
-        self._torque = np.array([3 * robot.spine.yaw_servo.torque for robot in robots])[:, None]
-        self._load: np.ndarray | None = None
-        self._twist: np.ndarray | None = None
 
     def step(
         self, shared: Shared, sensed: Sensed | None, clock: Float[np.ndarray, "run 4"], *, walking: bool
@@ -129,33 +168,28 @@ class Limbs:
             clock: phase of each limb by the gait's clock [cycle].
             walking: whether the walk has begun; before, the phases stand still.
         """
-        if self._feels and sensed is not None:
-            load, twist = self._filter(sensed)
+        if self._loads.felt and sensed is not None:
+            self._loads.feel(sensed)
             if walking:
-                self.ahead = self.ahead - self._cycles_per_tick * self._brake(shared.limb_phase, load, twist)
+                self.ahead = self.ahead - self._cycles_per_tick * self._loads.brake(shared.limb_phase)
         return shared.written_by("limbs", limb_phase=clock + self.ahead)
 
     def take_over(self, before: "Limbs") -> None:
         """Go on from where the oscillators of the same runs stand; limbs that nothing coordinates fall in step."""
-        if self._feels:
-            self.ahead, self._load, self._twist = before.ahead, before._load, before._twist
+        if self._loads.felt:
+            self.ahead = before.ahead
+            self._loads.take_over(before._loads)
 
     def kick(self, run: int, ahead: Float[np.ndarray, " 4"]) -> None:
         """Let the limbs of one run jump ahead [cycle]."""
         self.ahead = self.ahead.copy()
         self.ahead[run] += ahead
 
-    def _filter(self, sensed: Sensed) -> tuple[np.ndarray, np.ndarray]:
-        load = np.minimum(finite(sensed.foot_pressure) / self._share, self._clip)
-        twist = finite(sensed.servo_torque[:, TRUNK_YAW]).sum(axis=1, keepdims=True) / self._torque
-        self._load = load if self._load is None else load + self._keep * (self._load - load)
-        self._twist = twist if self._twist is None else twist + self._keep * (self._twist - twist)
-        return self._load, self._twist
 
-    def _brake(self, phase: np.ndarray, load: np.ndarray, twist: np.ndarray) -> np.ndarray:
-        angle = 2 * pi * (phase + self._middle)
-        heard = (self._weights * load[:, None, :]).sum(axis=-1)
-        return np.cos(angle - self._shift) * heard + self._trunk * np.cos(angle) * SIDES * twist
+def _trunk_torque(robot: AnyRobot) -> float:
+    """Return the sum of what the trunk's yaw servos can give, 1 of a robot without any [N m]."""
+    place = layout(robot)
+    return sum(place.robot.servo(place.servos[i]).torque for i in place.trunk_yaw) or 1.0
 
 
 def _refuse_others(gait: Gait) -> None:
@@ -168,12 +202,14 @@ def _refuse_others(gait: Gait) -> None:
         )
 
 
-def _weights(law: LimbLaw) -> list[list[float]]:
-    """Return how much each limb (row) listens to each foot (column)."""
-    own, diagonal, other, same = law.own, law.diagonal, law.contralateral, law.ipsilateral
-    return [
-        [own, other, same, diagonal],
-        [other, own, diagonal, same],
-        [same, diagonal, own, other],
-        [diagonal, same, other, own],
-    ]
+def _weights(law: LimbLaw, place: Layout) -> list[list[float]]:
+    """Return how much each limb (row) listens to each foot (column); limbs with two neighbours hear half of each."""
+    found = np.zeros((len(place.limbs), len(place.limbs)))
+    for i, limb in enumerate(place.limbs):
+        found[i, i] = law.own
+        found[i, limb.contralateral] = law.contralateral
+        for near, weight in ((limb.ipsilateral, law.ipsilateral), (limb.diagonal, law.diagonal)):
+            for other in near:
+                found[i, other] = weight / len(near)
+    rows: list[list[float]] = found.tolist()
+    return rows

@@ -8,8 +8,8 @@ from jaxtyping import Float
 
 from suchus.control.controller import Command
 from suchus.control.sensed import Sensed
-from suchus.design import Crocodile
-from suchus.motion import Gait, limb_phase, servo_targets
+from suchus.design import AnyRobot
+from suchus.motion import AnyGait, intended
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,8 +23,8 @@ class OpenLoop:
 
     def start(
         self,
-        robots: Sequence[Crocodile],
-        gaits: Sequence[Gait],
+        robots: Sequence[AnyRobot],
+        gaits: Sequence[AnyGait],
         seeds: Sequence[int],
         ticks: int,
         period: float,
@@ -34,11 +34,8 @@ class OpenLoop:
         pairs = list(zip(robots, gaits, strict=True))
         unique = {pair: i for i, pair in enumerate(dict.fromkeys(pairs))}
         time = np.arange(ticks) * period
-        phase = np.empty((len(unique), ticks, 4))
-        targets = np.empty((len(unique), ticks, 19))
-        for (robot, gait), i in unique.items():
-            phase[i] = limb_phase(gait, time)
-            targets[i] = servo_targets(robot, gait, phase[i])
+        found = [intended(robot, gait, time) for robot, gait in unique]
+        phase, targets = np.stack([one.phase for one in found]), np.stack([one.targets for one in found])
         return Table(targets, phase, np.array([unique[pair] for pair in pairs]))
 
 
@@ -47,15 +44,15 @@ class Table:
 
     def __init__(
         self,
-        targets: Float[np.ndarray, "gait tick 19"],
-        phase: Float[np.ndarray, "gait tick 4"],
+        targets: Float[np.ndarray, "gait tick servo"],
+        phase: Float[np.ndarray, "gait tick limb"],
         row: np.ndarray,
     ) -> None:
         self._targets = targets
         self._phase = phase
         self._row = row
 
-    def rest(self) -> Float[np.ndarray, "run 19"]:
+    def rest(self) -> Float[np.ndarray, "run servo"]:
         """The first row."""
         return self._targets[self._row, 0]
 

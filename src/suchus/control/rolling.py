@@ -6,8 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from suchus.control.open_loop import Table
-from suchus.design import Crocodile
-from suchus.motion import Gait, Roll, check_roll, roll_targets
+from suchus.control.suited import crocodiles
+from suchus.design import AnyRobot, layout
+from suchus.motion import AnyGait, Roll, check_roll, roll_targets
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,8 +25,8 @@ class Rolling:
 
     def start(
         self,
-        robots: Sequence[Crocodile],
-        gaits: Sequence[Gait],
+        robots: Sequence[AnyRobot],
+        gaits: Sequence[AnyGait],
         seeds: Sequence[int],
         ticks: int,
         period: float,
@@ -40,8 +41,8 @@ class Rolling:
     @staticmethod
     def start_together(
         controls: Sequence["Rolling"],
-        robots: Sequence[Crocodile],
-        gaits: Sequence[Gait],
+        robots: Sequence[AnyRobot],
+        gaits: Sequence[AnyGait],
         seeds: Sequence[int],
         ticks: int,
         period: float,
@@ -52,10 +53,11 @@ class Rolling:
             OutsideLimits: a robot cannot follow its roll.
         """
         del gaits, seeds
-        pairs = [(control.roll, robot) for control, robot in zip(controls, robots, strict=True)]
+        ours = crocodiles(robots, "a death roll")
+        pairs = [(control.roll, robot) for control, robot in zip(controls, ours, strict=True)]
         unique = {pair: i for i, pair in enumerate(dict.fromkeys(pairs))}
         time = np.arange(ticks) * period
-        targets = np.empty((len(unique), ticks, 19))
+        targets = np.empty((len(unique), ticks, len(layout(robots[0]).servos)))
         phase = np.empty((len(unique), ticks, 4))
         for (roll, robot), i in unique.items():
             check_roll(robot, roll)

@@ -6,11 +6,6 @@ from math import exp
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import servo_names
-
-TRUNK_YAW = [servo_names().index(f"spine_yaw_{i}") for i in (1, 2, 3)]
-"""Columns of the trunk's yaw servos."""
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Sensed:
@@ -18,20 +13,20 @@ class Sensed:
 
     time: float
     """Since the beginning of the run [s]."""
-    servo_position: Float[np.ndarray, "run 19"]
+    servo_position: Float[np.ndarray, "run servo"]
     """Servo angles [rad]."""
-    servo_velocity: Float[np.ndarray, "run 19"]
+    servo_velocity: Float[np.ndarray, "run servo"]
     """Servo speeds [rad/s]."""
-    servo_torque: Float[np.ndarray, "run 19"]
+    servo_torque: Float[np.ndarray, "run servo"]
     """Servo torques [N m]."""
-    foot_pressure: Float[np.ndarray, "run 4"]
+    foot_pressure: Float[np.ndarray, "run limb"]
     """Normal force under each foot [N]."""
-    belly_pressure: Float[np.ndarray, "run 6"]
+    belly_pressure: Float[np.ndarray, "run segment"]
     """Normal force under each body of the trunk, from the hind girdle forward [N]."""
     tail_pressure: Float[np.ndarray, " run"]
     """Normal force under the tail [N]."""
     orientation: Float[np.ndarray, "run 4"]
-    """Of the IMU in the pelvis, as a quaternion wxyz [-]."""
+    """Of the IMU in the root, as a quaternion wxyz [-]."""
     angular_velocity: Float[np.ndarray, "run 3"]
     """Of the IMU, in its own frame [rad/s]."""
     acceleration: Float[np.ndarray, "run 3"]

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from suchus.control.sensed import TRUNK_YAW, Sensed, finite, keep
+from suchus.control.sensed import Sensed, finite, keep
 from suchus.control.shared import Shared
-from suchus.design import Crocodile
+from suchus.design import AnyRobot, layout, servo_ranges
 from suchus.design.checks import Checks
 from suchus.motion import Gait, trunk_bend
 
@@ -38,7 +38,7 @@ class Spine:
     def __init__(
         self,
         rules: Sequence[SpineRule | None],
-        robots: Sequence[Crocodile],
+        robots: Sequence[AnyRobot],
         groups: Sequence[tuple[Gait, np.ndarray]],
         period: float,
     ) -> None:
@@ -46,8 +46,9 @@ class Spine:
         self._part = np.array([0.0 if rule is None else rule.share for rule in rules])[:, None]
         self._keep = np.array([0.0 if rule is None else keep(rule.delay, period) for rule in rules])
         self._groups = groups
-        low, high = np.array([robot.spine.yaw_range for robot in robots]).T
-        self._low, self._high = low[:, None], high[:, None]
+        self._yaw = list(layout(robots[0]).trunk_yaw)
+        ranges = np.array([servo_ranges(robot)[self._yaw] for robot in robots])
+        self._low, self._high = ranges[..., 0], ranges[..., 1]
         self._lacking = np.zeros(len(robots))
 
     def step(self, shared: Shared) -> Shared:
@@ -63,8 +64,8 @@ class Spine:
         self._lacking = before._lacking
 
     def correct(
-        self, targets: Float[np.ndarray, "run 19"], asked: Float[np.ndarray, " run"], sensed: Sensed
-    ) -> Float[np.ndarray, "run 19"]:
+        self, targets: Float[np.ndarray, "run servo"], asked: Float[np.ndarray, " run"], sensed: Sensed
+    ) -> Float[np.ndarray, "run servo"]:
         """Return the targets with the missing bend shared out.
 
         Args:
@@ -74,9 +75,9 @@ class Spine:
         """
         if not self._on.any():
             return targets
-        lacking = asked - finite(sensed.servo_position[:, TRUNK_YAW]).sum(axis=1)
+        lacking = asked - finite(sensed.servo_position[:, self._yaw]).sum(axis=1)
         self._lacking = lacking + self._keep * (self._lacking - lacking)
-        told = np.clip(targets[:, TRUNK_YAW] + self._part * self._lacking[:, None], self._low, self._high)
+        told = np.clip(targets[:, self._yaw] + self._part * self._lacking[:, None], self._low, self._high)
         corrected = targets.copy()
-        corrected[:, TRUNK_YAW] = np.where(self._on[:, None], told, targets[:, TRUNK_YAW])
+        corrected[:, self._yaw] = np.where(self._on[:, None], told, targets[:, self._yaw])
         return corrected

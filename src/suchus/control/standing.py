@@ -10,13 +10,12 @@ from jaxtyping import Float
 from suchus import rotation
 from suchus.control.controller import Command
 from suchus.control.sensed import Sensed
-from suchus.design import Crocodile, Leg, servo_names
+from suchus.control.suited import crocodiles, leg_gaits
+from suchus.design import AnyRobot, Crocodile, Leg, crocodile, layout
 from suchus.design.checks import Checks
-from suchus.motion import Gait, limb_phase, servo_targets
+from suchus.motion import AnyGait, Gait, limb_phase, servo_targets
 from suchus.motion.posture import Keyed, hind_leg, plan
 from suchus.motion.rising import stand_up
-
-_FIRST_PITCH = servo_names().index("spine_pitch_1")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -111,23 +110,23 @@ class Standing:
         """Whether anything is corrected."""
         return self.balance is not None
 
-    def upright_from(self, robot: Crocodile) -> float:
+    def upright_from(self, robot: AnyRobot) -> float:
         """Return when the way up ends [s]."""
         return self.at + self.blend + self._rise(robot).duration
 
-    def upright_until(self, robot: Crocodile) -> float:
+    def upright_until(self, robot: AnyRobot) -> float:
         """Return when the way down begins [s]."""
         return self.upright_from(robot) + self.hold
 
-    def down_from(self, robot: Crocodile) -> float:
+    def down_from(self, robot: AnyRobot) -> float:
         """Return when the robot crawls again [s]."""
         return self.upright_until(robot) + self.slower_down * self._rise(robot).duration + self.blend
 
-    def _rise(self, robot: Crocodile) -> Keyed:
-        return stand_up(robot) if self.rise is None else self.rise
+    def _rise(self, robot: AnyRobot) -> Keyed:
+        return stand_up(crocodile(robot, "standing up")) if self.rise is None else self.rise
 
     def start(
-        self, robots: Sequence[Crocodile], gaits: Sequence[Gait], seeds: Sequence[int], ticks: int, period: float
+        self, robots: Sequence[AnyRobot], gaits: Sequence[AnyGait], seeds: Sequence[int], ticks: int, period: float
     ) -> "Stander":
         """Plan the whole way of every distinct pair of robot and gait.
 
@@ -139,21 +138,24 @@ class Standing:
     @staticmethod
     def start_together(
         controls: Sequence["Standing"],
-        robots: Sequence[Crocodile],
-        gaits: Sequence[Gait],
+        robots: Sequence[AnyRobot],
+        gaits: Sequence[AnyGait],
         seeds: Sequence[int],
         ticks: int,
         period: float,
     ) -> "Stander":
         """Start runs that differ in when and how they stand; see ``start``."""
         del seeds
-        keys = [(replace(c, balance=None), r, g) for c, r, g in zip(controls, robots, gaits, strict=True)]
+        ours, theirs = crocodiles(robots, "standing up"), leg_gaits(gaits, "standing up")
+        keys = [(replace(c, balance=None), r, g) for c, r, g in zip(controls, ours, theirs, strict=True)]
         unique = {key: i for i, key in enumerate(dict.fromkeys(keys))}
         time = np.arange(ticks) * period
         courses = [control._course(robot, gait, time) for control, robot, gait in unique]
         course = Course(*(np.array(part) for part in zip(*courses, strict=True)))
-        legs = [robot.hind_leg for robot in robots]
-        return Stander([c.balance for c in controls], course, np.array([unique[key] for key in keys]), legs, period)
+        legs = [robot.hind_leg for robot in ours]
+        rows = np.array([unique[key] for key in keys])
+        first_pitch = layout(robots[0]).trunk_pitch[0]
+        return Stander([c.balance for c in controls], course, rows, legs, first_pitch, period)
 
     def _course(self, robot: Crocodile, gait: Gait, time: np.ndarray) -> "Course":
         up, leave, end = self._rise(robot), self.upright_until(robot), self.down_from(robot)
@@ -176,7 +178,7 @@ class Standing:
 class Course(NamedTuple):
     """What is intended over time, one row per distinct robot and gait."""
 
-    targets: Float[np.ndarray, "*row tick 19"]
+    targets: Float[np.ndarray, "*row tick servo"]
     """Servo angles [rad]."""
     phase: Float[np.ndarray, "*row tick 4"]
     """Of the limbs [cycle]."""
@@ -197,18 +199,20 @@ class Stander:
         course: Course,
         row: np.ndarray,
         legs: Sequence[Leg],
+        first_pitch: int,
         period: float,
     ) -> None:
         self._gains = {f.name: np.array([getattr(b or BALANCE, f.name) for b in balances]) for f in fields(Balance)}
         self._answers = np.array([b is not None for b in balances])
         self._course = course
         self._row = row
+        self._first_pitch = first_pitch
         self._legs = [(leg, np.array([leg == other for other in legs])) for leg in dict.fromkeys(legs)]
         self._period = period
         self._mean = np.full(len(row), np.nan)  # of the pitch error [rad]
         self._crept = np.zeros(len(row))  # of the hips, for the tail's sake [m]
 
-    def rest(self) -> Float[np.ndarray, "run 19"]:
+    def rest(self) -> Float[np.ndarray, "run servo"]:
         """The posture of the gait."""
         return np.asarray(self._course.targets[self._row, 0])
 
@@ -225,7 +229,7 @@ class Stander:
             some = who & upright
             angles = hind_leg(leg, feet[some], now.pitch[some], clip=True)
             targets[some, 6:9] = targets[some, 9:12] = angles
-        targets[upright, _FIRST_PITCH] -= bend[upright]
+        targets[upright, self._first_pitch] -= bend[upright]
         return Command(targets, now.phase)
 
     def _answer(self, now: Course, sensed: Sensed, upright: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

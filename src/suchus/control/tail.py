@@ -8,11 +8,10 @@ from jaxtyping import Float
 
 from suchus.control.sensed import Sensed, finite
 from suchus.control.shared import Shared
-from suchus.design import Crocodile, servo_names
+from suchus.design import AnyRobot, layout, servo_ranges
 from suchus.design.checks import Checks
 from suchus.motion import Gait, tail_bend
 
-PITCH = servo_names().index("tail_pitch")
 """Column of the tail's pitch servo."""
 
 
@@ -44,7 +43,7 @@ class Tail:
     def __init__(
         self,
         rules: Sequence[TailRule | None],
-        robots: Sequence[Crocodile],
+        robots: Sequence[AnyRobot],
         gaits: Sequence[Gait],
         groups: Sequence[tuple[Gait, np.ndarray]],
         period: float,
@@ -54,7 +53,8 @@ class Tail:
         self._pitch = self._asked
         self._on = np.array([rule is not None for rule in rules]) & (self._pitch >= 0.0)
         self._step = period * np.array([0.0 if rule is None else rule.rate for rule in rules])
-        low, high = np.array([robot.tail.pitch_range for robot in robots]).T
+        self._column = layout(robots[0]).tail_pitch[0]
+        low, high = np.array([servo_ranges(robot)[self._column] for robot in robots]).T
         for i, rule in enumerate(rules):
             if rule is not None:
                 low[i] = max(low[i], min(rule.highest, self._pitch[i]))
@@ -79,12 +79,12 @@ class Tail:
         """Go on from where the tails of the same runs stand, as far as the gait asks for the same pitch."""
         self._pitch = np.where(self._on & (self._asked == before._asked), before._pitch, self._asked)
 
-    def correct(self, targets: Float[np.ndarray, "run 19"], sensed: Sensed) -> Float[np.ndarray, "run 19"]:
+    def correct(self, targets: Float[np.ndarray, "run servo"], sensed: Sensed) -> Float[np.ndarray, "run servo"]:
         """Return the targets with the tail's pitch given way for one control period more."""
         if not self._on.any():
             return targets
-        gives = self._step * finite(sensed.servo_torque[:, PITCH])
+        gives = self._step * finite(sensed.servo_torque[:, self._column])
         self._pitch = np.clip(self._pitch - gives, self._low, self._high)
         corrected = targets.copy()
-        corrected[:, PITCH] = np.where(self._on, self._pitch, targets[:, PITCH])
+        corrected[:, self._column] = np.where(self._on, self._pitch, targets[:, self._column])
         return corrected

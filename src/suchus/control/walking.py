@@ -9,11 +9,12 @@ from jaxtyping import Float
 from suchus.control.attitude import Attitude, AttitudeRule
 from suchus.control.controller import Command
 from suchus.control.sensed import Sensed
+from suchus.control.suited import crocodiles, leg_gaits
 from suchus.control.switching import Switcher, SwitchRule
-from suchus.design import Crocodile
+from suchus.design import AnyRobot, Crocodile, layout
 from suchus.design.checks import Checks, require
 from suchus.errors import OutsideLimits
-from suchus.motion import START, Gait, servo_targets, tail_bend, trunk_bend
+from suchus.motion import START, AnyGait, Gait, servo_targets, tail_bend, trunk_bend
 from suchus.motion.transition import Transition, transition
 
 _LEFT = np.array([1.0, -1.0, 1.0, -1.0])
@@ -68,7 +69,7 @@ class Walking:
         return self.attitude is not None or self.switching is not None
 
     def start(
-        self, robots: Sequence[Crocodile], gaits: Sequence[Gait], seeds: Sequence[int], ticks: int, period: float
+        self, robots: Sequence[AnyRobot], gaits: Sequence[AnyGait], seeds: Sequence[int], ticks: int, period: float
     ) -> "Walker":
         """Start walking."""
         return self.start_together([self] * len(robots), robots, gaits, seeds, ticks, period)
@@ -76,8 +77,8 @@ class Walking:
     @staticmethod
     def start_together(
         controls: Sequence["Walking"],
-        robots: Sequence[Crocodile],
-        gaits: Sequence[Gait],
+        robots: Sequence[AnyRobot],
+        gaits: Sequence[AnyGait],
         seeds: Sequence[int],
         ticks: int,
         period: float,
@@ -88,7 +89,9 @@ class Walking:
             OutsideLimits: a robot whose trunk cannot bend as far as it is asked to.
         """
         del seeds, ticks
-        for control, robot, gait in zip(controls, robots, gaits, strict=True):
+        who = "a walk that is steered and changes its gait"
+        ours, theirs = crocodiles(robots, who), leg_gaits(gaits, who)
+        for control, robot, gait in zip(controls, ours, theirs, strict=True):
             most = 3 * min(abs(end) for end in robot.spine.yaw_range)
             if abs(control.bend) + gait.trunk_bend > most + 1e-9:
                 raise OutsideLimits(
@@ -96,7 +99,7 @@ class Walking:
                     f"{abs(control.bend):.3f} rad; robot {robot.name!r} allows {most:.3f} rad in all: "
                     "lower walking.bend."
                 )
-        return Walker(controls, robots, gaits, period)
+        return Walker(controls, ours, theirs, period)
 
 
 class Walker:
@@ -120,7 +123,7 @@ class Walker:
         self._groups = _grouped(self._robots, self._gaits)
         self._last = self._walk(0.0)
 
-    def rest(self) -> Float[np.ndarray, "run 19"]:
+    def rest(self) -> Float[np.ndarray, "run servo"]:
         """The posture of the first phases."""
         return self._last.targets
 
@@ -168,7 +171,8 @@ class Walker:
 
     def _walk(self, time: float) -> Command:
         """Return the intended posture of every run by its clock; those of runs that change their gait do not count."""
-        targets, phases = np.zeros((len(self._robots), 19)), np.zeros((len(self._robots), 4))
+        runs_of = len(self._robots)
+        targets, phases = np.zeros((runs_of, len(layout(self._robots[0]).servos))), np.zeros((runs_of, 4))
         since = np.maximum(time - self._began, 0.0)
         size = np.where(self._full > 0, np.clip(since / np.maximum(self._full, 1e-9), 0.0, 1.0), 1.0)
         for robot, gait, runs in self._groups:

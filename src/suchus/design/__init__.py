@@ -1,7 +1,10 @@
-"""What a robot is: frozen values in SI units, without defaults and without physics."""
+"""What a robot is: frozen values in SI units and without physics."""
 
+from suchus.design.body import Robot
 from suchus.design.chosen import Chosen, unit_at, value_at, with_values
 from suchus.design.contact import Contact
+from suchus.design.general import AnyRobot, general
+from suchus.design.hinge import Cable, Crank, Hinge, Spring, Turn
 from suchus.design.joints import (
     LEGS,
     LegName,
@@ -12,32 +15,60 @@ from suchus.design.joints import (
     servo_names,
     spine_joints,
 )
+from suchus.design.layout import Layout, LimbPlace, layout, servo_ranges
 from suchus.design.leg import Leg
+from suchus.design.limb import Foot, Girdle, Limb, Link
+from suchus.design.physics import GRAVITY, WATER_DENSITY, WATER_VISCOSITY
 from suchus.design.robot import Crocodile
+from suchus.design.segment import Rod, Segment, Shell
 from suchus.design.servo import Servo
 from suchus.design.servos import with_servos, with_speed_lines
 from suchus.design.spine import Spine
+from suchus.design.suited import crocodile
 from suchus.design.tail import Tail
 from suchus.design.trunk import Head, Pelvis, Thorax
 
 __all__ = [
+    "GRAVITY",
     "LEGS",
+    "WATER_DENSITY",
+    "WATER_VISCOSITY",
+    "AnyRobot",
+    "Cable",
     "Chosen",
     "Contact",
+    "Crank",
     "Crocodile",
+    "Foot",
+    "Girdle",
     "Head",
+    "Hinge",
+    "Layout",
     "Leg",
     "LegName",
+    "Limb",
+    "LimbPlace",
+    "Link",
     "Pelvis",
+    "Robot",
+    "Rod",
+    "Segment",
     "Servo",
+    "Shell",
     "Spine",
+    "Spring",
     "Tail",
     "Thorax",
+    "Turn",
     "cable_joints",
+    "crocodile",
     "fin_joints",
+    "general",
     "joint_names",
+    "layout",
     "leg_joints",
     "servo_names",
+    "servo_ranges",
     "spine_joints",
     "unit_at",
     "value_at",

@@ -1,6 +1,5 @@
 """How a design refuses impossible numbers: all that are wrong in one part, named at once."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -8,6 +7,7 @@ from types import TracebackType
 from typing import Any
 
 from suchus.errors import InvalidDesign
+from suchus.kinds import misfits, show
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,6 +35,8 @@ class InvalidFields(InvalidDesign):
 class Checks:
     """Collects what is wrong with a frozen value and raises once, on leaving the ``with`` block.
 
+    Fields that hold another kind of thing than they declare are complained of too, whatever else is checked.
+
     Args:
         owner: what the value is called, for the message.
         design: the value whose fields are checked.
@@ -54,8 +56,11 @@ class Checks:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        if error is None and self._complaints:
-            raise InvalidFields(self._owner, tuple(self._complaints))
+        if error is None or isinstance(error, (TypeError, ValueError, AttributeError)):
+            told = {complaint.field.partition("[")[0] for complaint in self._complaints}
+            self._complaints += [Complaint(*misfit) for misfit in misfits(self._design) if misfit[0] not in told]
+            if self._complaints:
+                raise InvalidFields(self._owner, tuple(self._complaints)) from error
 
     def number(self, field: str, low: float, high: float, unit: str) -> None:
         """Refuse what is not a finite number of ``low`` to ``high``."""
@@ -66,6 +71,8 @@ class Checks:
     def each(self, field: str, names: Sequence[str], low: float, high: float, unit: str) -> None:
         """Refuse a row that has not one finite number of ``low`` to ``high`` for each name."""
         row = getattr(self._design, field)
+        if not isinstance(row, (tuple, list)):
+            return  # told as a misfit
         if len(row) != len(names):
             self._complain(field, f"has {len(row)} numbers; {', '.join(names)} need one each")
             return
@@ -119,9 +126,9 @@ def require(owner: str, field: str, value: float, low: float, high: float, unit:
 
 def _within(value: Any, low: float, high: float) -> bool:
     number = isinstance(value, (int, float)) and not isinstance(value, bool)
-    return number and math.isfinite(value) and low <= value <= high
+    return number and low <= value <= high  # no comparison holds for what is not a number
 
 
 def _show(value: Any, unit: str = "") -> str:
-    plain = f"{value:g}" if isinstance(value, float) else repr(value)
+    plain = f"{value:g}" if isinstance(value, float) else show(value)
     return f"{plain} {unit}".rstrip()

@@ -82,7 +82,10 @@ def unit_at(design: Any, path: str) -> str:
 
 
 def _steps(path: str) -> list[str | int]:
-    return [int(index) if index else name for name, index in _STEP.findall(path)]
+    steps: list[str | int] = [int(index) if index else name for name, index in _STEP.findall(path)]
+    if not steps:
+        raise UnknownName("field", path, ())
+    return steps
 
 
 def _step(design: Any, step: str | int) -> Any:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design.checks import require
+from suchus.design.checks import Checks
 from suchus.design.relief import Relief
 from suchus.rotation import about, multiply
 
@@ -24,9 +24,10 @@ class Ground:
     """What stands up from it; None where it is even."""
 
     def __post_init__(self) -> None:
-        require("ground", "grip", self.grip, 0.01, 10.0, "")
-        require("ground", "uphill", self.uphill, -1.0, 1.0, "rad")
-        require("ground", "sideways", self.sideways, -1.0, 1.0, "rad")
+        with Checks("ground", self) as check:
+            check.number("grip", 0.01, 10.0, "")
+            check.number("uphill", -1.0, 1.0, "rad")
+            check.number("sideways", -1.0, 1.0, "rad")
 
     def looks_like(self, other: "Ground") -> bool:
         """Tell whether another ground has the same slopes and relief, however it grips."""

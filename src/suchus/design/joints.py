@@ -1,18 +1,14 @@
-"""The names of legs, joints and servos, and their order: spelled once, here.
-
-Servos: three per leg (yaw, pitch, knee) in the order of ``LEGS``, five along the spine from the pelvis
-forward, the tail's pitch, the tail's cable. Joints: the same without the cable, then the cable joints, then
-the passive ones. A positive angle turns a foot forward (yaw), down (pitch), a shank down (knee), the trunk's
-front end left (yaw) or down (pitch), the tail's tip down (pitch) or right (yaw).
-"""
+"""The names of legs, joints and servos of crocodile-like robots; ``design.layout`` has those of any robot."""
 
 from typing import Literal
 
+from suchus.design.general import AnyRobot, cable_names, fin_names
+from suchus.design.layout import layout
 from suchus.design.robot import Crocodile
 
 LegName = Literal["LF", "RF", "LH", "RH"]
 LEGS: tuple[LegName, ...] = ("LF", "RF", "LH", "RH")
-SPINE = ("spine_yaw_1", "spine_pitch_1", "spine_yaw_2", "spine_pitch_2", "spine_yaw_3")
+_SPINE = ("spine_yaw_1", "spine_pitch_1", "spine_yaw_2", "spine_pitch_2", "spine_yaw_3")
 
 
 def leg_joints() -> tuple[str, ...]:
@@ -21,25 +17,27 @@ def leg_joints() -> tuple[str, ...]:
 
 
 def spine_joints() -> tuple[str, ...]:
-    """Return the five spine joints from the pelvis forward."""
-    return SPINE
+    """Return the five spine joints of the article from the pelvis forward."""
+    return _SPINE
 
 
 def cable_joints(robot: Crocodile) -> tuple[str, ...]:
-    """Return the cable joints of the tail from root to tip."""
-    return tuple(f"tail_yaw_{i + 1}" for i in range(robot.tail.joints))
+    """Return the driven yaw joints of the tail from root to tip."""
+    return cable_names(robot.tail)
 
 
 def fin_joints(robot: Crocodile) -> tuple[str, ...]:
     """Return the passive joints of the tail from root to tip, yaw before pitch in each."""
-    return tuple(f"fin_{axis}_{i + 1}" for i in range(robot.tail.fin_segments) for axis in ("yaw", "pitch"))
+    return fin_names(robot.tail)
 
 
-def servo_names() -> tuple[str, ...]:
-    """Return the 19 servos, the same for every robot."""
-    return (*leg_joints(), *SPINE, "tail_pitch", "tail_cable")
+def servo_names(robot: AnyRobot | None = None) -> tuple[str, ...]:
+    """Return the servos of a robot; without one, those of the article's."""
+    if robot is not None:
+        return layout(robot).servos
+    return (*leg_joints(), *_SPINE, "tail_pitch", "tail_cable")
 
 
-def joint_names(robot: Crocodile) -> tuple[str, ...]:
-    """Return every hinge: the 18 that servos turn directly, the cable joints, the passive ones."""
-    return (*leg_joints(), *SPINE, "tail_pitch", *cable_joints(robot), *fin_joints(robot))
+def joint_names(robot: AnyRobot) -> tuple[str, ...]:
+    """Return every hinge of a robot."""
+    return layout(robot).hinges

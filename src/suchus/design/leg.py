@@ -5,6 +5,9 @@ from dataclasses import dataclass
 from suchus.design.checks import Checks
 from suchus.design.servo import Servo
 
+LEG_SHARES = (0.60, 0.35, 0.05)
+"""How a leg's mass is spread over femur, tibia and foot [-]."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Leg:
@@ -38,12 +41,12 @@ class Leg:
 
     def __post_init__(self) -> None:
         with Checks("leg", self) as check:
-            check.number("hip_offset", 0.005, 1.0, "m")
-            check.number("femur", 0.01, 1.0, "m")
-            check.number("tibia", 0.01, 1.0, "m")
-            check.number("foot_radius", 0.002, 0.1, "m")
-            check.number("radius", 0.002, 0.1, "m")
-            check.number("mass", 0.02, 20.0, "kg")
+            check.number("hip_offset", 1e-5, 10.0, "m")
+            check.number("femur", 1e-4, 10.0, "m")
+            check.number("tibia", 1e-4, 10.0, "m")
+            check.number("foot_radius", 1e-5, 1.0, "m")
+            check.number("radius", 1e-5, 1.0, "m")
+            check.number("mass", 1e-7, 1e4, "kg")
             for field in ("yaw_range", "pitch_range", "knee_range"):
                 check.range(field, -3.1416, 3.1416, "rad")
 

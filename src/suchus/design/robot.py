@@ -1,7 +1,8 @@
-"""A whole robot."""
+"""The article's kind of robot, by the measures of its own tables."""
 
 from dataclasses import dataclass
 
+from suchus.design.body import check_scale
 from suchus.design.checks import Checks
 from suchus.design.contact import Contact
 from suchus.design.leg import Leg
@@ -13,7 +14,7 @@ from suchus.design.trunk import Head, Pelvis, Thorax
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Crocodile:
-    """A crocodile-like robot: four legs, a spine of five joints, a cable-driven tail.
+    """A crocodile-like robot: four legs, a spine, a tail; ``design.general`` maps it to the form of any robot.
 
     Paper: Fig. 2.
     """
@@ -44,6 +45,7 @@ class Crocodile:
                 f"head.snout is {self.head.snout:g} m but thorax.shoulder is {self.thorax.shoulder:g} m: "
                 "the snout must lie ahead of the shoulders",
             )
+            check_scale(check, self.name, self._servos(), self.mass, self.length)
             belly = max(self.spine.radius, self.pelvis.height / 2, self.thorax.height / 2)
             for name, leg in (("front_leg", self.front_leg), ("hind_leg", self.hind_leg)):
                 depth = leg.reach[1] + leg.foot_radius
@@ -56,7 +58,7 @@ class Crocodile:
     @property
     def mass(self) -> float:
         """Of the whole robot [kg]."""
-        trunk = self.pelvis.mass + 4 * self.spine.link_mass + self.thorax.mass + self.head.mass
+        trunk = self.pelvis.mass + (self.spine.joints - 1) * self.spine.link_mass + self.thorax.mass + self.head.mass
         return trunk + 2 * (self.hind_leg.mass + self.front_leg.mass) + self.tail.mass
 
     @property
@@ -69,11 +71,17 @@ class Crocodile:
         return self.front_leg if name.endswith("F") else self.hind_leg
 
     def servo(self, name: str) -> Servo:
-        """Return the servo that carries a name of ``design.servo_names()``."""
+        """Return the servo that carries a name of ``design.servo_names(robot)``."""
         if name == "tail_pitch":
             return self.tail.pitch_servo
-        if name == "tail_cable":
+        if name.startswith("tail"):
             return self.tail.cable_servo
         if name.startswith("spine"):
             return self.spine.yaw_servo if "yaw" in name else self.spine.pitch_servo
         return self.leg(name[:2]).servo
+
+    def _servos(self) -> dict[str, Servo]:
+        return {
+            name: self.servo(name)
+            for name in ("LF_yaw", "LH_yaw", "spine_yaw_1", "spine_pitch_1", "tail_pitch", "tail_cable")
+        }

@@ -30,15 +30,15 @@ class Servo:
 
     def __post_init__(self) -> None:
         with Checks("servo", self) as check:
-            check.number("kp", 0.1, 1e4, "N m/rad")
-            check.number("ki", 0.0, 1e4, "N m/(rad s)")
-            check.number("kd", 0.0, 1e3, "N m s/rad")
-            check.number("integral_limit", 0.0, 1e3, "N m")
-            check.number("torque", 0.01, 1e3, "N m")
-            check.number("speed", 0.1, 100.0, "rad/s")
-            check.number("armature", 1e-4, 1.0, "kg m2")
-            check.number("friction", 0.0, 10.0, "N m")
-            check.number("damping", 0.0, 10.0, "N m s/rad")
+            check.number("kp", 1e-9, 1e7, "N m/rad")
+            check.number("ki", 0.0, 1e7, "N m/(rad s)")
+            check.number("kd", 0.0, 1e6, "N m s/rad")
+            check.number("integral_limit", 0.0, 1e6, "N m")
+            check.number("torque", 1e-9, 1e6, "N m")
+            check.number("speed", 0.01, 1e4, "rad/s")
+            check.number("armature", 1e-15, 100.0, "kg m2")
+            check.number("friction", 0.0, 1e4, "N m")
+            check.number("damping", 0.0, 1e4, "N m s/rad")
 
     def with_speed_line(self) -> "Servo":
         """Return the servo with a straight torque-speed line.

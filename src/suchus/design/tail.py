@@ -1,9 +1,15 @@
 """The tail: a pitch joint, plates bent sideways by one cable, and a flexible end."""
 
 from dataclasses import dataclass
+from typing import Literal, NamedTuple, get_args
+
+import numpy as np
 
 from suchus.design.checks import Checks
 from suchus.design.servo import Servo
+
+TailDrive = Literal["cable", "servos"]
+"""What bends the tail sideways: one cable over all of its driven joints, or a servo in each of them."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -56,29 +62,33 @@ class Tail:
     pitch_servo: Servo
     """The servo of the pitch joint."""
     cable_servo: Servo
-    """The servo that turns the pulley; torque and angle are those of its own shaft."""
+    """The servo that turns the pulley, or each driven joint; torque and angle are those of its own shaft."""
+    drive: TailDrive = "cable"
+    """``cable`` as in the article, or ``servos``, one in each driven joint."""
 
     def __post_init__(self) -> None:
         with Checks("tail", self) as check:
-            check.number("offset", 0.0, 1.0, "m")
-            check.number("root", 0.001, 1.0, "m")
-            check.number("plate", 0.001, 0.5, "m")
-            check.number("gap", 0.001, 0.5, "m")
-            check.number("cord_spacing", 0.001, 0.5, "m")
-            check.number("pulley", 0.001, 0.5, "m")
-            check.number("joint_stiffness", 0.0, 100.0, "N m/rad")
-            check.number("joint_damping", 0.0, 10.0, "N m s/rad")
-            check.number("fin_length", 0.01, 2.0, "m")
-            check.number("fin_stiffness_lateral", 0.001, 100.0, "N m/rad")
-            check.number("fin_stiffness_vertical", 0.001, 100.0, "N m/rad")
-            check.number("fin_damping", 0.0, 10.0, "N m s/rad")
-            check.number("radius_root", 0.002, 0.5, "m")
-            check.number("radius_tip", 0.002, 0.5, "m")
-            check.number("mass", 0.02, 20.0, "kg")
+            check.number("offset", 0.0, 10.0, "m")
+            check.number("root", 1e-4, 10.0, "m")
+            check.number("plate", 1e-5, 5.0, "m")
+            check.number("gap", 1e-5, 5.0, "m")
+            check.number("cord_spacing", 1e-5, 5.0, "m")
+            check.number("pulley", 1e-5, 5.0, "m")
+            check.number("joint_stiffness", 0.0, 1e5, "N m/rad")
+            check.number("joint_damping", 0.0, 1e4, "N m s/rad")
+            check.number("fin_length", 1e-4, 20.0, "m")
+            check.number("fin_stiffness_lateral", 1e-8, 1e5, "N m/rad")
+            check.number("fin_stiffness_vertical", 1e-8, 1e5, "N m/rad")
+            check.number("fin_damping", 0.0, 1e4, "N m s/rad")
+            check.number("radius_root", 1e-5, 5.0, "m")
+            check.number("radius_tip", 1e-5, 5.0, "m")
+            check.number("mass", 1e-7, 1e4, "kg")
             check.range("pitch_range", -3.1416, 3.1416, "rad")
             check.number("bend_limit", 0.01, 3.1416, "rad")
             check.whole("joints", 1, 30)
             check.whole("fin_segments", 1, 30)
+            known = self.drive in get_args(TailDrive)
+            check.that(known, f"tail.drive is {self.drive!r}; {' or '.join(get_args(TailDrive))} is allowed")
 
     @property
     def pitch(self) -> float:
@@ -89,3 +99,28 @@ class Tail:
     def length(self) -> float:
         """From the hind girdle's axis to the tip when straight [m]."""
         return self.offset + self.root + self.joints * self.pitch + self.fin_length
+
+
+class TailSegments(NamedTuple):
+    """The segments of a tail, the root first: plates between their joints, then the passive end."""
+
+    lengths: list[float]
+    """[m]."""
+    radii: list[float]
+    """[m]."""
+    masses: list[float]
+    """[kg]."""
+
+
+def tail_segments(tail: Tail) -> TailSegments:
+    """Return length, radius and mass of each segment; the mass is spread in proportion to volume."""
+    lengths = [
+        tail.root + tail.pitch / 2,
+        *([tail.pitch] * (tail.joints - 1)),
+        tail.pitch / 2,
+        *([tail.fin_length / tail.fin_segments] * tail.fin_segments),
+    ]
+    middles = np.cumsum(lengths) - 0.5 * np.array(lengths)
+    radii = np.interp(middles, [0.0, float(np.sum(lengths))], [tail.radius_root, tail.radius_tip])
+    volumes = radii**2 * lengths
+    return TailSegments(lengths, radii.tolist(), (tail.mass * volumes / volumes.sum()).tolist())

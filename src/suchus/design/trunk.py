@@ -20,30 +20,35 @@ class Pelvis:
 
     def __post_init__(self) -> None:
         with Checks("pelvis", self) as check:
-            check.number("mass", 0.02, 50.0, "kg")
+            check.number("mass", 1e-7, 1e5, "kg")
             for field in ("length", "width", "height"):
-                check.number(field, 0.005, 1.0, "m")
+                check.number(field, 1e-5, 10.0, "m")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Thorax:
-    """The front girdle, rigid with frame 5 of the spine."""
+    """The front girdle, rigid with the last frame of the spine."""
 
     mass: float
     """[kg]."""
     shoulder: float
-    """From the fifth spine joint forward to the front girdle's axis [m]."""
+    """From the last spine joint forward to the front girdle's axis [m]."""
     width: float
     """Across the body [m]."""
     height: float
     """[m]."""
 
+    @property
+    def half(self) -> tuple[float, float, float]:
+        """Half axes of its ellipsoid: length, width, height [m]; it reaches a little beyond joint and shoulders."""
+        return max(self.shoulder, 0.02) + 0.012, self.width / 2, self.height / 2
+
     def __post_init__(self) -> None:
         with Checks("thorax", self) as check:
-            check.number("mass", 0.02, 50.0, "kg")
-            check.number("shoulder", 0.0, 1.0, "m")
+            check.number("mass", 1e-7, 1e5, "kg")
+            check.number("shoulder", 0.0, 10.0, "m")
             for field in ("width", "height"):
-                check.number(field, 0.005, 1.0, "m")
+                check.number(field, 1e-5, 10.0, "m")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -53,7 +58,7 @@ class Head:
     mass: float
     """[kg]."""
     snout: float
-    """From the fifth spine joint forward to the tip of the snout [m]."""
+    """From the last spine joint forward to the tip of the snout [m]."""
     width: float
     """At the jaw joint [m]."""
     height: float
@@ -61,7 +66,7 @@ class Head:
 
     def __post_init__(self) -> None:
         with Checks("head", self) as check:
-            check.number("mass", 0.02, 50.0, "kg")
-            check.number("snout", 0.02, 2.0, "m")
+            check.number("mass", 1e-7, 1e5, "kg")
+            check.number("snout", 1e-4, 20.0, "m")
             for field in ("width", "height"):
-                check.number(field, 0.005, 1.0, "m")
+                check.number(field, 1e-5, 10.0, "m")

@@ -69,7 +69,7 @@ class Pack:
         self._steps = round(CONTROL_PERIOD / task.timestep)
         self._check_body()
         self._told = np.tile(self._begin.told, (count, 1))
-        self._injector = Injector(self._bench, CONTROL_PERIOD)
+        self._injector = Injector(self._bench, CONTROL_PERIOD, task.robot)
         self._tick = np.zeros(count, dtype=int)
         self._periods = 0
         self.chances = [Chance()] * count

@@ -7,9 +7,7 @@ from jaxtyping import Float
 
 from suchus import rotation
 from suchus.control import Sensed
-from suchus.design import LEGS, Crocodile, servo_names
-from suchus.kinematics.mass import GRAVITY
-from suchus.model import TRUNK_BODIES
+from suchus.design import GRAVITY, LEGS, Crocodile, servo_names, spine_joints
 
 SERVOS = len(servo_names())
 ANGLE = float(np.pi)
@@ -40,7 +38,7 @@ _ROWS = (
     ("servo_velocity", SERVOS, f"{SPEED:g} rad/s", "speed of each servo"),
     ("servo_torque", SERVOS, "its limit, N m", "torque of each servo"),
     ("foot_pressure", len(LEGS), "weight, N", "normal force under each foot, the mean over a control period"),
-    ("belly_pressure", len(TRUNK_BODIES), "weight, N", "the same under each body of the trunk"),
+    ("belly_pressure", len(spine_joints()) + 1, "weight, N", "the same under each body of the trunk"),
     ("tail_pressure", 1, "weight, N", "the same under the tail"),
     ("upward", 3, "1", "the world's upward direction in the pelvis, from the IMU's orientation"),
     ("ahead", 3, "1", "the world's x direction in the pelvis, from the IMU's orientation"),

@@ -7,7 +7,7 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 
-from suchus.design import Crocodile, leg_joints, servo_names, with_speed_lines
+from suchus.design import Crocodile, crocodile, leg_joints, servo_names, with_speed_lines
 from suchus.design.checks import Checks
 from suchus.errors import InvalidDesign, UnknownName
 from suchus.fault import Fault
@@ -181,6 +181,7 @@ class Task:
         return with_speed_lines(self.robot) if self.speed_lines else self.robot
 
     def __post_init__(self) -> None:
+        crocodile(self.robot, "an environment")
         with Checks("task", self) as check:
             check.that(
                 isinstance(self.speed_lines, bool),

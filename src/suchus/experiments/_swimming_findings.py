@@ -1,4 +1,4 @@
-"""What the experiment ``swimming`` reads from its record: every number, and a verdict on each claim."""
+"""What the experiment ``swimming`` reads from its record: every number, and what decided."""
 
 from collections.abc import Iterator, Mapping
 
@@ -6,14 +6,16 @@ import numpy as np
 import xarray as xr
 
 from suchus.design import Crocodile
-from suchus.experiment import Measure, Verdict, judge
-from suchus.water import Quarters, Swum, convex_higher, crossings, efficiency, level
+from suchus.experiment import Measure
+from suchus.verdict import Reading
+from suchus.water import Quarters, Sway, Swum, convex_higher, efficiency, wave_form
 
-SINE = 0.95
-"""Share of its variance that a swing has in the sine of one cycle to be called one [-]; a zigzag has 0.986, a square
-wave 0.81."""
 ARMS = ("trunk and tail", "trunk only", "tail only", "as printed", "exact wave", "exact wave as printed")
 """Motions that are compared swimming freely."""
+SETTLED = 4
+"""Last cycles of the free swim over which its track is measured, fewer where it has fewer after the first [-]."""
+_GAINS = {"tail": "trunk only", "spine": "tail only"}
+"""Whose swing is missing, by the arm without it."""
 
 
 def measures(record: xr.Dataset, robot: Crocodile, frequency: float, reading: str) -> Mapping[str, Measure]:
@@ -31,6 +33,9 @@ def measures(record: xr.Dataset, robot: Crocodile, frequency: float, reading: st
         **dict(_thrusts(record, held, reading)),
         **dict(_held(held)),
         **dict(_free(record, free, robot, frequency)),
+        **dict(_wave(free, robot)),
+        **dict(_track(free, robot)),
+        **dict(_compared(record)),
         **dict(_loads(held, robot)),
     }
 
@@ -44,6 +49,21 @@ def part(record: xr.Dataset, name: str) -> xr.Dataset:
     )
 
 
+def explain(measures: Mapping[str, float]) -> str:
+    """Return what decided the outcome, from its measures."""
+    m = {name: Reading(value) for name, value in measures.items()}
+    return (
+        f"Trunk and tail together swim {m['speed_trunk_and_tail']:.3f} m/s, the tail alone {m['speed_tail_only']:.3f} "
+        f"and the trunk alone {m['speed_trunk_only']:.3f} m/s: the swing of the tail {_adds(m['gain_tail_swim'])}, "
+        f"that of the trunk {_adds(m['gain_spine_swim'])}. Run as printed, from tail to head, the joints' motion swims "
+        f"{m['speed_as_printed']:+.3f} m/s and a midline that follows the wave exactly "
+        f"{m['speed_exact_wave_as_printed']:+.3f} m/s, head first positive; the resistive model of the round body says "
+        f"{m['speed_as_printed_resistive']:+.3f} m/s. The few joints come as near to (20) as {m['misfit']:.0%} of the "
+        f"tail's swing, and the swing of the free body falls back by up to {m['envelope_dip']:.0%} on its way to the "
+        "tip. The water is a slice of unlimited depth at a Reynolds number far below the robot's own."
+    )
+
+
 def _thrusts(record: xr.Dataset, held: xr.Dataset, reading: str) -> Iterator[tuple[str, Measure]]:
     settled = held.cycle_thrust[1:]
     yield f"thrust_mean_{reading}", Measure(float(settled.mean()), "N/m")
@@ -54,15 +74,20 @@ def _thrusts(record: xr.Dataset, held: xr.Dataset, reading: str) -> Iterator[tup
 
 
 def _held(held: xr.Dataset) -> Iterator[tuple[str, Measure]]:
-    quarters = Quarters.of(held)
+    each = Quarters.each(held)
     yield "convex_higher_share", Measure(convex_higher(held), "-")
-    yield "pressure_moves", Measure(quarters.moves, "-")
-    yield "thrust_asymmetry", Measure(quarters.asymmetry, "-")
     yield "power_held", Measure(float(held.cycle_power[1:].mean()), "W/m")
     yield "force_noise", Measure(float(held.noise), "-")
     yield "thin_share", Measure(float(held["thin"]), "-")
     for i in range(4):
-        yield f"pressure_difference_{i + 1}_quarter", Measure(quarters.difference[i], "Pa")
+        yield from _ranged(f"pressure_difference_{i + 1}_quarter", [one.difference[i] for one in each], "Pa")
+    for i in (0, 2):
+        yield from _ranged(f"thrust_{i + 1}_quarter", [one.thrust[i] for one in each], "N/m")
+        yield from _ranged(f"aside_{i + 1}_quarter", [one.aside[i] for one in each], "N/m")
+    yield from _ranged("force_angle_1_quarter", [one.angle for one in each], "rad")
+    yield from _ranged("pressure_fall", [one.fall for one in each], "Pa")
+    yield from _ranged("pressure_moves", [one.moves for one in each], "-")
+    yield from _ranged("thrust_asymmetry", [one.asymmetry for one in each], "-")
 
 
 def _free(record: xr.Dataset, free: xr.Dataset, robot: Crocodile, frequency: float) -> Iterator[tuple[str, Measure]]:
@@ -74,13 +99,54 @@ def _free(record: xr.Dataset, free: xr.Dataset, robot: Crocodile, frequency: flo
     yield "strouhal", Measure(swum.strouhal, "-")
     yield "efficiency", Measure(efficiency(float(record.towed_drag), swum.speed, float(free.power[-1])), "-")
     yield "cost_of_transport", Measure(swum.cost_of_transport, "-")
-    yield "tail_sine_share", Measure(float(free.sine_share[-1]), "-")
-    yield "envelope_growth", Measure(float(free.swing[-1] / free.swing.min()), "-")
     yield "head_yaw", Measure(swum.head_yaw, "rad")
-    for arm, speed in _compared(record).items():
-        yield f"speed_{_name(arm)}", Measure(speed, "m/s")
     for model in record.model.values:
         yield f"speed_{model}", Measure(float(record.model_speed.sel(model=model)), "m/s")
+        yield f"speed_as_printed_{model}", Measure(float(record.printed_model_speed.sel(model=model)), "m/s")
+
+
+def _wave(free: xr.Dataset, robot: Crocodile) -> Iterator[tuple[str, Measure]]:
+    """Return how much of a sine the tail's swing is, and how much of (20) the midline's."""
+    tip, swings, s = free.tip_share.values, free.swing.values, np.linspace(0.0, 1.0, free.swing.size)
+    yield "tail_sine_share", Measure(float(free.sine_share[-1]), "-")
+    yield "tail_sine_share_low", Measure(float(tip.min()), "-")
+    yield "tail_sine_share_high", Measure(float(tip.max()), "-")
+    least = int(swings.argmin())
+    running = np.maximum.accumulate(np.maximum(swings[least:], np.finfo(float).tiny))
+    dips = 1.0 - np.maximum(swings[least:], np.finfo(float).tiny) / running
+    yield "envelope_growth", Measure(float(swings[-1] / running[0]), "-")
+    yield "envelope_least_place", Measure(float(s[least]), "-")
+    yield "envelope_dip", Measure(float(dips.max()), "-")
+    linear, quadratic, waves, share = wave_form(s, swings, free.swing_late.values)
+    sine = float(np.average(free.sine_share.values, weights=swings**2))
+    yield "wave_share", Measure(sine * share, "-")
+    yield "wave_waves_per_body", Measure(waves, "-")
+    yield "wave_envelope_middle", Measure(abs(0.5 * linear + 0.25 * quadratic) / robot.length, "-")
+    yield "wave_envelope_tip", Measure(abs(linear + quadratic) / robot.length, "-")
+
+
+def _track(free: xr.Dataset, robot: Crocodile) -> Iterator[tuple[str, Measure]]:
+    """Return how far the centre of mass sways to the side over the last cycles."""
+    cycles = free.sizes["cycle"]
+    count, each = max(min(SETTLED, cycles - 1), 1), (free.sizes["moment"] - 1) // cycles
+    sway = Sway.of(free.centre_y.values[-(count * each + 1) :], count)
+    yield "track_sway", Measure(sway.amplitude / robot.length, "-")
+    yield "track_sway_low", Measure(sway.low / robot.length, "-")
+    yield "track_sway_high", Measure(sway.high / robot.length, "-")
+    yield "track_noise", Measure(sway.noise / robot.length, "-")
+    yield "track_cycles", Measure(float(count), "-")
+    yield "snout_sway", Measure(float(free.swing[0]) / robot.length, "-")
+
+
+def _compared(record: xr.Dataset) -> Iterator[tuple[str, Measure]]:
+    """Return the speed of each arm in its last cycle, and what the swing of tail and spine adds in the last two."""
+    last = {str(arm): record.arm_speed.sel(arm=arm).values[-2:] for arm in record.arm.values}
+    for arm, speeds in last.items():
+        yield f"speed_{arm.replace(' ', '_')}", Measure(float(speeds[-1]), "m/s")
+    both = last["trunk and tail"]
+    for name, without in _GAINS.items():
+        yield from _ranged(f"gain_{name}_swim", list(both - last[without]), "m/s")
+    yield from _ranged("gain_tail_swim_share", list((both - last["trunk only"]) / both), "-")
 
 
 def _loads(held: xr.Dataset, robot: Crocodile) -> Iterator[tuple[str, Measure]]:
@@ -91,95 +157,12 @@ def _loads(held: xr.Dataset, robot: Crocodile) -> Iterator[tuple[str, Measure]]:
         yield f"servo_load_peak_{servo}", Measure(peak / robot.servo(str(servo)).torque, "-")
 
 
-def verdicts(record: xr.Dataset) -> tuple[Verdict, ...]:
-    """Return what becomes of each claim.
-
-    Args:
-        record: what happened.
-    """
-    free = part(record, "free")
-    return (*_wave(free), *_fig_17(part(record, "held")), _track(free), _main_thrust(record))
+def _ranged(name: str, values: list[float], unit: str) -> Iterator[tuple[str, Measure]]:
+    """Return the value of the last cycle, with the least and the greatest of all cycles."""
+    yield name, Measure(float(values[-1]), unit)
+    yield f"{name}_low", Measure(float(min(values)), unit)
+    yield f"{name}_high", Measure(float(max(values)), unit)
 
 
-def _wave(free: xr.Dataset) -> Iterator[Verdict]:
-    share, swings, s = free.sine_share.values, free.swing.values, np.linspace(0.0, 1.0, free.swing.size)
-    yield judge(
-        "swim_tail_sine",
-        float(share[-1]),
-        f"Swimming freely, {100 * share[-1]:.1f} % of the variance of the tip's way to the side is the sine of one "
-        f"cycle; {100 * SINE:.0f} % would do.",
-        holds=bool(share[-1] >= SINE),
-    )
-    least, whole = int(swings.argmin()), float(np.average(share, weights=swings**2))
-    dips = 1.0 - swings[least:] / np.maximum.accumulate(swings[least:])
-    way = f"dipping by up to {100 * dips.max():.0f} % on the way" if dips.max() > 0 else "growing all the way"
-    yield judge(
-        "swim_body_wave",
-        float(swings[-1] / swings[least]),
-        f"Swimming freely, the midline swings least at {s[least]:.2f} of its length from the snout, "
-        f"{1000 * swings[least]:.0f} mm, and {1000 * swings[-1]:.0f} mm at the tip, {way}; {100 * whole:.1f} % of it "
-        "is the sine of one cycle. The least swing must lie in the front half, and from there on it may never fall.",
-        holds=dips.max() == 0.0 and s[least] < 0.5 and whole >= SINE,
-    )
-
-
-def _fig_17(held: xr.Dataset) -> Iterator[Verdict]:
-    said = Quarters.of(held)
-    yield judge(
-        "swim_pressure_convex",
-        said.difference[0],
-        "Mean pressure along the convex side of the tail less that along the concave side, at T/4 of (20); the "
-        f"convex side has the higher one in {100 * convex_higher(held):.0f} % of the cycle.",
-        holds=said.convex,
-    )
-    yield judge(
-        "swim_diagonal_force",
-        said.thrust[0],
-        f"At T/4 the force is {said.thrust[0]:.1f} N/m forward and {said.aside[0]:.1f} N/m to the side; diagonal is "
-        "where neither is below a tenth of the other.",
-        holds=said.diagonal,
-    )
-    yield judge(
-        "swim_pressure_falls",
-        said.difference[1] - said.difference[0],
-        f"Size of the pressure difference at T/2 against that at T/4: {abs(said.difference[1]):.0f} against "
-        f"{abs(said.difference[0]):.0f} Pa. Its place moves by {said.moves:+.2f} tail lengths to the tip.",
-        holds=said.falls,
-    )
-    yield judge(
-        "swim_thrust_symmetric",
-        said.thrust[2],
-        f"Half a cycle apart the forces forward are {said.thrust[0]:.1f} and {said.thrust[2]:.1f} N/m, to the side "
-        f"{said.aside[0]:.1f} and {said.aside[2]:.1f} N/m.",
-        holds=said.mirrored,
-    )
-
-
-def _track(free: xr.Dataset) -> Verdict:
-    crossed = crossings(free)
-    return judge(
-        "swim_s_shape",
-        float(np.ptp(level(free.snout_y.values))),
-        f"In the last two cycles the snout crosses its own mean line {crossed} times.",
-        holds=crossed >= 3,
-    )
-
-
-def _main_thrust(record: xr.Dataset) -> Verdict:
-    both, trunk, tail = list(_compared(record).values())[:3]
-    return judge(
-        "swim_tail_thrust",
-        tail / both,
-        f"With the limbs folded, trunk and tail together reach {both:.2f} m/s in {record.sizes['cycle']} cycles, the "
-        f"trunk alone {trunk:.2f} and the tail alone {tail:.2f} m/s.",
-        holds=both > 0 and tail > trunk,
-    )
-
-
-def _compared(record: xr.Dataset) -> dict[str, float]:
-    """Return the speed of each arm in its last cycle [m/s]."""
-    return {str(arm): float(record.arm_speed.sel(arm=arm)[-1]) for arm in record.arm.values}
-
-
-def _name(arm: object) -> str:
-    return str(arm).replace(" ", "_")
+def _adds(gain: float) -> str:
+    return f"{'adds' if gain > 0 else 'takes'} {abs(gain):.3f} m/s"

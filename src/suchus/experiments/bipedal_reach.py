@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import xarray as xr
@@ -12,7 +12,7 @@ from suchus.control import OpenLoop
 from suchus.control.standing import BALANCE, Balance, Standing
 from suchus.design import Crocodile
 from suchus.design.checks import Checks
-from suchus.experiment import Experiment, Outcome, Progress, Replay, silent, staged, stopwatch
+from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.experiments import _standing_findings as findings
 from suchus.experiments._standing_variants import PARTS, fitted, heavier, length, lengthened, stand_soon, up_at
 from suchus.figures.reach import draw_ceiling, draw_heights, draw_limits, draw_pushes
@@ -43,29 +43,17 @@ class BipedalReach(Experiment):
 
     title = "How high does it reach, crawling and standing on two legs?"
     shows = "Section IV.D, Figs 22 to 24"
-    claims = (
-        "height_crawl",
-        "height_standing",
-        "height_ratio",
-        "height_from_legs",
-        "height_from_spine_head_legs",
-    )
-    decides = (
-        "Three numbers decide. The first pitch joint of the trunk must lift the level forebody as a cantilever; with a "
-        "weaker servo or a heavier forebody nothing leaves the ground. The hind feet must get ahead of the centre of "
-        "mass before that, which asks for a battery near the hips. The farther the mass then stands behind the feet, "
-        "the harder the push that it bears; that costs little height, because the cosine of a small lean is near one. "
-        "The printed 0.68 m is hind leg, spine and head in one straight line; the sole adds its radius."
-    )
+    judged_with = ("robot", "gait", "balance", "least")
+    judged_from: ClassVar[Mapping[str, float]] = {"hold": 10.0, "repeats": 4, "hips": 3}
 
     robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
-    """Who stands up."""
+    """The robot that stands up."""
     gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
-    """How it crawls before and after."""
+    """The crawl before and after."""
     straight: Gait = field(default_factory=lambda: GAITS["limbs_only"])
     """From whose first posture it stands up in the sweeps: the trunk is straight, so that pushes come from ahead."""
     balance: Balance = BALANCE
-    """How it keeps its balance when it stands."""
+    """The feedback by which it keeps its balance when it stands."""
     hold: float = 60.0
     """How long it stands [s]."""
     least: float = 0.64
@@ -121,28 +109,40 @@ class BipedalReach(Experiment):
             timestep=_COARSE,
         )
 
-    def run(self, progress: Progress = silent) -> Outcome:
+    def simulate(self, progress: Progress = silent) -> Simulated:
         """Crawl, stand, sit, crawl; then what it takes and what it bears."""
-        with stopwatch() as seconds:
-            standing = Standing(at=START + self.gait.period, hold=self.hold, balance=self.balance)
-            record = self._story(standing, staged(progress, "standing", 0.0, 0.2))
-            for study, stage, start, end in (
-                (self._limits, "torque and mass", 0.2, 0.4),
-                (self._pushed, "pushes", 0.4, 0.85),
-                (self._lengths, "lengths", 0.85, 1.0),
-            ):
-                record = record.merge(study(staged(progress, stage, start, end)))
-            record = record.merge(self._ceiling())
-            measures = findings.measures(record, self.robot, self.least)
-            return Outcome(
-                experiment=self.name(),
-                measures=measures,
-                verdicts=findings.verdicts(measures, self.robot, self.gait, self.least, self.hold),
-                record=record,
-                settings=self.settings(),
-                replays=self._replays(record),
-                seconds=seconds(),
-            )
+        standing = Standing(at=START + self.gait.period, hold=self.hold, balance=self.balance)
+        record = self._story(standing, staged(progress, "standing", 0.0, 0.2))
+        for study, stage, start, end in (
+            (self._limits, "torque and mass", 0.2, 0.4),
+            (self._pushed, "pushes", 0.4, 0.85),
+            (self._lengths, "lengths", 0.85, 1.0),
+        ):
+            record = record.merge(study(staged(progress, stage, start, end)))
+        record = record.merge(self._ceiling()).assign_attrs(self._facts())
+        return Simulated(record=record, replays=self._replays(record))
+
+    def _facts(self) -> dict[str, float]:
+        """Return what the measures are held against: lengths [m], torques [N m] and times [s]."""
+        plausible = {one.field: one.high for one in GAITS.beside("belly_crawl", "chosen", ())}
+        return {
+            "least": self.least,
+            "hold": self.hold,
+            "stretched": stretched(self.robot),
+            "cantilever": cantilever_torque(self.robot),
+            "pitch_torque": self.robot.spine.pitch_servo.torque,
+            "hip_height": self.gait.hip_height,
+            "hip_height_plausible": plausible["hip_height"],
+            "up": _UP * stretched(self.robot),
+        }
+
+    def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
+        """Return heights with their spread, what the stand bears, what it takes, and what the heights follow."""
+        return findings.measures(record)
+
+    def explain(self, measures: Mapping[str, float]) -> str:
+        """Say what it takes to stand up, what it costs to stand safely, and what the heights follow."""
+        return findings.explained(measures)
 
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
         caption = "From the crawl up on hind legs and tail, and down again into the crawl."

@@ -11,13 +11,14 @@ import xarray as xr
 from suchus.control import Rolling
 from suchus.design import Crocodile
 from suchus.design.checks import Checks
-from suchus.experiment import Experiment, Measure, Outcome, Progress, silent, staged, stopwatch
+from suchus.experiment import Experiment, Measure, Outcome, Progress, Simulated, silent, staged
 from suchus.figures.death_roll import draw_cost, draw_rates, draw_roll
 from suchus.gaits import GAITS
 from suchus.land import VACUUM, WATER, Afloat, Run, simulate
 from suchus.metrics import between, peak_torque, roll_rate, whole
 from suchus.motion import Roll
 from suchus.robots import ROBOTS
+from suchus.verdict import Reading, compared
 
 _MEDIA = ("vacuum", "water")
 _ARMS = ("trunk", "tail", "c_shape", "s_shape", "lateral_only", "vertical_only", "reversed")
@@ -36,17 +37,11 @@ class DeathRoll(Experiment):
 
     title = "How fast does it roll about its long axis, and with what?"
     shows = "The roll that section I names; beyond the article"
-    decides = (
-        "One bend alone turns nothing; two bends turn the body if one comes later than the other, fastest a quarter of "
-        "a cycle later, and the other way if it comes earlier. Trunk and tail add if they bend to the same side, as a "
-        "C, and work against each other as an S. The rate grows with the bends and in proportion to their frequency; "
-        "the speed of the servos, not their torque, ends it."
-    )
 
     robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
-    """Who rolls."""
+    """The robot that rolls."""
     frequency: float = 1.0
-    """Of the bends [Hz]."""
+    """Frequency of the bends [Hz], 0.05 to 5."""
     trunk: float = radians(60)
     """Amplitude of both bends of the trunk [rad]."""
     tail_lateral: float = radians(60)
@@ -93,21 +88,12 @@ class DeathRoll(Experiment):
     def _duration(self) -> float:
         return self.cycles / self.frequency
 
-    def run(self, progress: Progress = silent) -> Outcome:
-        """Roll."""
-        with stopwatch() as seconds:
-            arms = self._simulate(self._arms(), self.timestep, staged(progress, "arms", 0.0, 0.55))
-            record = arms.assign(rate=(("run"), self._rates(arms, self.frequency), {"units": "Hz"}))
-            record = record.merge(self._curves(staged(progress, "curves", 0.55, 0.9)))
-            record = record.merge(self._steps(staged(progress, "time steps", 0.9, 1.0)))
-            return Outcome(
-                experiment=self.name(),
-                measures=self._measures(record),
-                verdicts=(),
-                record=record,
-                settings=self.settings(),
-                seconds=seconds(),
-            )
+    def simulate(self, progress: Progress = silent) -> Simulated:
+        """Roll in vacuum and in water, and over phase, amplitude, frequency and time step."""
+        arms = self._simulate(self._arms(), self.timestep, staged(progress, "arms", 0.0, 0.55))
+        record = arms.assign(rate=(("run"), self._rates(arms, self.frequency), {"units": "Hz"}))
+        record = record.merge(self._curves(staged(progress, "curves", 0.55, 0.9)))
+        return Simulated(record=record.merge(self._steps(staged(progress, "time steps", 0.9, 1.0))))
 
     def _roll(self, **changes: float) -> Roll:
         """Return the roll with the trunk alone, or with what is changed."""
@@ -203,7 +189,8 @@ class DeathRoll(Experiment):
         data.timestep.attrs["units"] = "s"
         return data
 
-    def _measures(self, record: xr.Dataset) -> Mapping[str, Measure]:
+    def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
+        """Return rate, power and loads of each roll, and what is left of the angular momentum."""
         start = self._window(self.frequency)
         torque, measured = peak_torque(record, start), between(record, start)
         power = (measured.servo_torque * measured.servo_velocity).clip(min=0.0).sum("servo").mean("time")
@@ -235,6 +222,30 @@ class DeathRoll(Experiment):
                 float(abs(record.rate_by_timestep[-1] / record.rate_by_timestep[-2] - 1.0)), "-"
             ),
         }
+
+    def explain(self, measures: Mapping[str, float]) -> str:
+        """Say what the phase of the bends, the shape and the water do to the rate, and what limits it."""
+        m = {name: Reading(value) for name, value in measures.items()}
+        speed, torque = self._load(measures, "speed"), self._load(measures, "torque")
+        nearer = compared(speed, torque, less="their torque is", more="their speed is", same="both are", within=0.01)
+        return (
+            f"In vacuum the sideways bend alone rolls the body {m['rate_lateral_only_vacuum']:.3f} times a second, "
+            f"the vertical bend alone {m['rate_vertical_only_vacuum']:.3f}, the vertical one a quarter of a cycle "
+            f"later {m['rate_trunk_vacuum']:.2f} and earlier {m['rate_reversed_vacuum']:.2f}. Trunk and tail bent to "
+            f"the same side, as a C, roll it {m['rate_c_shape_vacuum']:.2f} times a second, to opposite sides, as an "
+            f"S, {m['rate_s_shape_vacuum']:.2f}; in water {m['rate_c_shape_water']:.2f} and "
+            f"{m['rate_s_shape_water']:.2f}. As a C the servos reach {speed:.0%} of their greatest speed and "
+            f"{torque:.0%} of their torque: {nearer} nearer to the limit."
+        )
+
+    def _load(self, measures: Mapping[str, float], what: str) -> float:
+        """Return the greatest ``torque`` or ``speed`` of the roll as a C over what the servo can do [-]."""
+        servos = {group: f"{group}_1" if group.startswith("spine") else group for group in _GROUPS}
+        return max(
+            measures[f"{what}_peak_{group}_{medium}"] / float(getattr(self.robot.servo(servo), what))
+            for group, servo in servos.items()
+            for medium in _MEDIA
+        )
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw one roll, what decides its rate, and what it costs."""

@@ -4,21 +4,22 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from math import radians
-from typing import Any
+from typing import Any, ClassVar
 
 import xarray as xr
 
 from suchus.control import LAWS, Coordinated, HeadingRule, Kick
 from suchus.design import LEGS, Crocodile
 from suchus.design.checks import Checks
-from suchus.experiment import Experiment, Outcome, Progress, Replay, silent, staged, stopwatch
+from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.experiments import _feedback_findings as findings
 from suchus.figures.feedback import draw_fans, draw_gain, draw_onset, draw_tracks
 from suchus.gaits import GAITS
 from suchus.land import Ground, Limp, Locked, Push, Run, simulate
 from suchus.metrics import heading
 from suchus.metrics.coordination import WITHIN, phase_error
-from suchus.motion import START, Gait
+from suchus.motion import START, Gait, trunk_bend
+from suchus.motion.swim import YAWS
 from suchus.replay import replay
 from suchus.robots import ROBOTS
 
@@ -66,17 +67,11 @@ class Feedback(Experiment):
 
     title = "Do three feedback rules coordinate limbs, spine and tail, and what do they help against?"
     shows = "Sections II.B and III.D, Fig. 10"
-    claims = ("feedback_rules", "shared_variables")
-    decides = (
-        "Load decides. A limb that waits while its foot still carries finds its place against the others from any "
-        "start; told the loads of the other feet it does so four times faster and exactly. That mends what disturbs "
-        "phases and nothing else: a stuck spine joint is made up for by the other joints, a slope by a tail that the "
-        "ground carries, a push hardly and a limp leg by none of the three. Those turn the robot, and what turns must "
-        "be felt: with the direction from the IMU and longer strokes on one side it walks straight again."
-    )
+    judged_with = ("robot", "gait", "kick", "slope", "push", "noise")
+    judged_from: ClassVar[Mapping[str, float]] = {"starts": 16, "cycles": 12, "hold": 2.0, "after": 5}
 
     robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
-    """Who crawls."""
+    """The robot that crawls."""
     gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
     """How; its limbs must form diagonal pairs."""
     starts: int = 32
@@ -114,27 +109,21 @@ class Feedback(Experiment):
         """Two starts, few and short cycles."""
         return replace(self, gait=replace(self.gait, period=2.0), starts=2, cycles=2, hold=0.5, after=1)
 
-    def run(self, progress: Progress = silent) -> Outcome:
-        """Disturb it."""
-        with stopwatch() as seconds:
-            starts, pair = self._starts(staged(progress, "random starts", 0.0, 0.7))
-            record = xr.merge(
-                [
-                    starts,
-                    self._disturbed(staged(progress, "disturbances", 0.7, 1.0)),
-                ]
-            )
-            measures = findings.start_measures(record, self.gait, self.hold, self.cycles)
-            measures |= findings.disturbed_measures(record, self.gait, self.hold, self.after)
-            return Outcome(
-                experiment=self.name(),
-                measures=measures,
-                verdicts=findings.verdicts(measures),
-                record=record,
-                settings=self.settings(),
-                replays=self._replays(pair),
-                seconds=seconds(),
-            )
+    def simulate(self, progress: Progress = silent) -> Simulated:
+        """Crawl from random starts, then disturb a robot whose phases are right."""
+        starts, pair = self._starts(staged(progress, "random starts", 0.0, 0.7))
+        record = xr.merge([starts, self._disturbed(staged(progress, "disturbances", 0.7, 1.0))])
+        return Simulated(record=record, replays=self._replays(pair))
+
+    def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
+        """Return how many starts converge, and what each rule makes of each disturbance."""
+        return findings.start_measures(record, self.gait, self.hold, self.cycles) | findings.disturbed_measures(
+            record, self.gait, self.hold, self.after
+        )
+
+    def explain(self, measures: Mapping[str, float]) -> str:
+        """Say what each rule mends and what it does not."""
+        return findings.explain(measures)
 
     def _replays(self, pair: xr.Dataset) -> Mapping[str, Replay]:
         caption = (
@@ -194,12 +183,17 @@ class Feedback(Experiment):
         phase = record.limb_phase.transpose("run", "time", "leg").values
         pitch = record.servo_target.sel(servo="tail_pitch").transpose("run", "time").values
         facing = heading(record).transpose("run", "time").values
+        torque = record.servo_torque.sel(servo="tail_pitch").transpose("run", "time").values
+        bent = record.servo_angle.sel(servo=list(YAWS)).sum("servo").transpose("run", "time").values
+        lacking = trunk_bend(self.gait, phase) - bent
         return xr.Dataset(
             {
                 "x": (dims, track[..., 0].reshape(shape), {"units": "m", "long_name": "way forward"}),
                 "y": (dims, track[..., 1].reshape(shape), {"units": "m", "long_name": "way to the left"}),
                 "heading": (dims, facing.reshape(shape), {"units": "rad", "long_name": "direction of the body"}),
                 "tail_pitch": (dims, pitch.reshape(shape), {"units": "rad", "long_name": "commanded, down positive"}),
+                "tail_load": (dims, torque.reshape(shape), {"units": "N m", "long_name": "on the tail's pitch servo"}),
+                "lacking": (dims, lacking.reshape(shape), {"units": "rad", "long_name": "bend missing in the trunk"}),
                 "limb_phase": ((*dims, "leg"), phase.reshape(*shape, 4), {"units": "1", "long_name": "[cycle]"}),
             },
             coords={

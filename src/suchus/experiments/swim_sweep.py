@@ -9,11 +9,12 @@ import xarray as xr
 
 from suchus.design import Crocodile
 from suchus.design.checks import Checks
-from suchus.experiment import Experiment, Measure, Outcome, Progress, silent, staged, stopwatch
+from suchus.experiment import Experiment, Measure, Outcome, Progress, Simulated, silent, staged
 from suchus.figures.swim_sweep import draw_check, draw_maps
 from suchus.motion import Swim
 from suchus.robots import ROBOTS
-from suchus.water import Swum, Tether, fit, free_swim, greatest, portion, printed_wave, scaled, survey
+from suchus.verdict import Reading
+from suchus.water import MODELS, Swum, Tether, fit, free_swim, greatest, portion, printed_wave, scaled, survey
 
 _PEERS = (
     ("C. porosus, 0.3 to 1.1 m", "sustained speed rises with size, in body lengths it falls", "Elsworth et al. 2003"),
@@ -37,20 +38,13 @@ class SwimSweep(Experiment):
 
     title = "How fast and how well does it swim at other frequencies, amplitudes and wavelengths?"
     shows = "Section IV.B, eq. (20); beyond the article"
-    in_reproduce = False
-    decides = (
-        "Frequency and amplitude set the speed, nearly in proportion, until the cable's servo can no longer follow: at "
-        "1.5 Hz with the amplitude of (20). The number of waves matters little between 0.8 and 1.4. The resolved flow "
-        "puts the motions in the same order as the cheap models; they flatter small amplitudes. The two models part "
-        "over the efficiency: drag across the body, which only the resistive one counts, takes most of the power."
-    )
 
     robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
-    """Who swims."""
+    """The robot that swims."""
     reading: str = "I"
-    """Of (20); only this one has a wavelength to change."""
+    """Letter of the reading of (20); only this one has a wavelength to change."""
     frequencies: tuple[float, ...] = (0.25, 0.5, 0.75, 1.0, 1.25, 1.5)
-    """Of the map [Hz]."""
+    """Frequencies of the map [Hz], 0.01 to 20."""
     amplitudes: tuple[float, ...] = (0.4, 0.7, 1.0, 1.3, 1.6)
     """Factors of every angle [-]."""
     waves: tuple[float, ...] = (0.6, 0.8, 1.0, 1.2, 1.4)
@@ -59,10 +53,10 @@ class SwimSweep(Experiment):
     """Amplitude and waves per body of the points in the resolved flow [-]."""
     reynolds: float = 7000.0
     """Frequency times length squared over viscosity of these [-]."""
-    cells: int = 96
+    cells: int = 64
     """Cells per body length of these [-]."""
-    cycles: int = 8
-    """Of these; the last is measured [-]."""
+    cycles: int = 6
+    """Cycles of these; the last is measured [-]."""
 
     def __post_init__(self) -> None:
         with Checks("swim_sweep", self) as check:
@@ -88,26 +82,17 @@ class SwimSweep(Experiment):
             points=((1.0, 1.0), (1.4, 1.0)), reynolds=1000.0, cells=32, cycles=2,
         )  # fmt: skip
 
-    def run(self, progress: Progress = silent) -> Outcome:
-        """Swim."""
-        with stopwatch() as seconds:
-            told = staged(progress, "cheap models", 0.0, 0.3)
-            fitted = {waves: self._fit(waves) for waves in {1.0, *self.waves}}
-            by_frequency = self._map("frequency", self.frequencies, lambda a, f: scaled(fitted[1.0], a, f))
-            told(0.5)
-            by_waves = self._map("waves", self.waves, lambda a, w: scaled(fitted[w], a, 1.0))
-            told(1.0)
-            points = self._points(staged(progress, "resolved flow", 0.3, 1.0))
-            record = xr.merge([by_frequency, by_waves, points], join="exact", combine_attrs="no_conflicts")
-            return Outcome(
-                experiment=self.name(),
-                measures=self._measures(record),
-                verdicts=(),
-                record=record,
-                settings=self.settings(),
-                tables={"peers.md": self._peers(record)},
-                seconds=seconds(),
-            )
+    def simulate(self, progress: Progress = silent) -> Simulated:
+        """Work out the maps, and swim the points in the resolved flow."""
+        told = staged(progress, "cheap models", 0.0, 0.3)
+        fitted = {waves: self._fit(waves) for waves in {1.0, *self.waves}}
+        by_frequency = self._map("frequency", self.frequencies, lambda a, f: scaled(fitted[1.0], a, f))
+        told(0.5)
+        by_waves = self._map("waves", self.waves, lambda a, w: scaled(fitted[w], a, 1.0))
+        told(1.0)
+        points = self._points(staged(progress, "resolved flow", 0.3, 1.0))
+        record = xr.merge([by_frequency, by_waves, points], join="exact", combine_attrs="no_conflicts")
+        return Simulated(record=record, tables={"peers.md": self._peers(record)})
 
     def _fit(self, waves: float) -> Swim:
         wave = printed_wave(self.robot, self.reading, waves_per_body=waves)
@@ -154,23 +139,42 @@ class SwimSweep(Experiment):
         }
         return xr.Dataset(data, attrs={"cells": self.cells, "cycles": self.cycles, "reynolds": self.reynolds})
 
-    def _measures(self, record: xr.Dataset) -> Mapping[str, Measure]:
+    def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
+        """Return the best of the maps, how far the cheap models are off, and the speed of every point."""
         found = {}
         possible = record.possible_by_frequency
         for model in record.model.values:
             speed = record.speed_by_frequency.sel(model=model).where(possible)
             by_waves = record.sel(model=model).where(record.possible_by_waves)
             found[f"speed_most_{model}"] = Measure(float(speed.max()), "m/s")
+            along = speed.sel(amplitude=1.0, method="nearest")
+            found[f"speed_power_of_frequency_{model}"] = Measure(_power(record.frequency, along), "-")
+            found[f"speed_power_of_amplitude_{model}"] = Measure(_power(record.amplitude, speed.isel(frequency=0)), "-")
             found[f"efficiency_most_{model}"] = Measure(float(by_waves.efficiency_by_waves.max()), "-")
             cheapest = float(by_waves.cost_of_transport_by_waves.min())
             found[f"cost_of_transport_least_{model}"] = Measure(cheapest, "-")
             apart = record.point_model_speed.sel(model=model) / record.point_speed - 1
             found[f"error_mean_{model}"] = Measure(float(apart.mean()), "-")
             found[f"error_worst_{model}"] = Measure(float(apart[int(np.argmax(np.abs(apart.values)))]), "-")
+            found[f"order_agrees_{model}"] = Measure(_order(record, str(model)), "-")
         for i, (amplitude, waves) in enumerate(self.points):
             name = f"{amplitude:.1f}_waves_{waves:.1f}".replace(".", "_")
             found[f"speed_amplitude_{name}"] = Measure(float(record.point_speed[i]), "m/s")
         return found
+
+    def explain(self, measures: Mapping[str, float]) -> str:
+        """Say what the speed follows, and how far the cheap models stand from the resolved flow."""
+        m = {name: Reading(value) for name, value in measures.items()}
+        told = [
+            f"By the {model} model the speed grows as the frequency to the power of "
+            f"{m[f'speed_power_of_frequency_{model}']:.2f} and as the amplitude to that of "
+            f"{m[f'speed_power_of_amplitude_{model}']:.2f}; where joints and servos can follow it is "
+            f"{m[f'speed_most_{model}']:.2f} m/s at most, the efficiency {m[f'efficiency_most_{model}']:.2f}. It puts "
+            f"{m[f'order_agrees_{model}']:.0%} of the pairs of points in the order of the resolved flow, and its "
+            f"speeds are off by {m[f'error_mean_{model}']:+.0%} on the average."
+            for model in MODELS
+        ]
+        return " ".join(told)
 
     def _peers(self, record: xr.Dataset) -> str:
         """Return a table of what is known of crocodilians and robots beside ours."""
@@ -190,6 +194,24 @@ class SwimSweep(Experiment):
         record = outcome.record
         maps = {f"swim_sweep_{model}": draw_maps(record, str(model)) for model in record.model.values}
         return {**maps, "swim_sweep_check": draw_check(record)}
+
+
+def _power(along: xr.DataArray, speed: xr.DataArray) -> float:
+    """Return the power of a quantity with which the speed grows, from the first to the last possible motion [-]."""
+    good = np.flatnonzero(np.isfinite(speed.values) & (speed.values > 0.0))
+    if good.size < 2:
+        return float("nan")
+    ends = [good[0], good[-1]]
+    rise, run = np.diff(np.log(speed.values[ends])), np.diff(np.log(along.values[ends]))
+    return float((rise / run)[0])
+
+
+def _order(record: xr.Dataset, model: str) -> float:
+    """Return which share of the pairs of points a cheap model puts in the order of the resolved flow [-]."""
+    resolved, cheap = record.point_speed.values, record.point_model_speed.sel(model=model).values
+    pairs = [(i, j) for i in range(resolved.size) for j in range(i)]
+    agree = [(resolved[i] - resolved[j]) * (cheap[i] - cheap[j]) > 0.0 for i, j in pairs]
+    return float(np.mean(agree)) if agree else float("nan")
 
 
 experiment = SwimSweep()

@@ -3,15 +3,16 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import xarray as xr
 
 from suchus.design import Crocodile
 from suchus.design.checks import Checks
-from suchus.experiment import Experiment, Outcome, Progress, silent, staged, stopwatch
-from suchus.experiments._swimming_findings import ARMS, measures, verdicts
+from suchus.experiment import Experiment, Measure, Outcome, Progress, Simulated, silent, staged
+from suchus.experiments import _swimming_findings as findings
+from suchus.experiments._swimming_findings import ARMS
 from suchus.figures.swimming import draw_forces, draw_free, draw_quarters, draw_sides, film_pressure, film_vorticity
 from suchus.kinematics.wave import READINGS
 from suchus.robots import ROBOTS
@@ -36,16 +37,19 @@ from suchus.water import (
 class Swimming(Experiment):
     """The robot's own outline in a two-dimensional flow, its joints fitted to (20).
 
-    Held, as the article's Fig. 17: the snout stays and the last of some cycles is measured. ``pressure_difference`` is
-    the mean pressure along the convex side of the tail less that along the concave side; which side is convex follows
-    from the bend between the tail's root and its tip. The difference falls if its size at T/2 is below that at T/4; it
-    moves by ``pressure_moves`` tail lengths towards the tip, the place being the mean along the tail weighted with the
-    size of the difference. The thrust is symmetric if the forces at T/4 and 3T/4, left and right swapped, differ by
-    less than 15 % of the greater part of the force (``thrust_asymmetry``). Free: from rest, in a grid that travels
-    along; the speed is the mean of the last cycle, ``efficiency`` the power that towing the straight body at that speed
-    takes over the power of the joints. An S-shaped track crosses its mean line at least three times in two cycles.
-    A swing is a sine if 95 % of its variance over two cycles is; the envelope grows if it does so from a place in the
-    front half to the tip.
+    Held, as the article's Fig. 17: the snout stays, and every cycle but the first is measured. ``pressure_difference``
+    is the mean pressure along the convex side of the tail less that along the concave side; which side is convex
+    follows from the bend between the tail's root and its tip. ``pressure_fall`` is by how much its size is smaller at
+    3T/4 than at T/4, ``pressure_moves`` by how many tail lengths its place, the mean along the tail weighted with the
+    size of the difference, moves towards the tip meanwhile. ``force_angle_1_quarter`` lies between the force at T/4 and
+    the direction forward; ``thrust_asymmetry`` is by how much the forces at T/4 and 3T/4, left and right swapped,
+    differ, over the greater part of the force. Values are those of the last cycle, ``_low`` and ``_high`` of all of
+    them. Free: from rest, in a grid that travels along; the speed is the mean of the last cycle, ``efficiency`` the
+    power that towing the straight body at that speed takes over the power of the joints. ``track_sway`` is the
+    amplitude to the side of the centre of mass, ``track_noise`` twice the standard deviation of what is no sine of one
+    cycle, both over the last four cycles and in body lengths. ``wave_share`` is the part of the midline's mean square
+    swing that the nearest wave of the form (20) has. ``gain_tail_swim`` is the speed of trunk and tail less that of the
+    trunk alone, ``gain_spine_swim`` less that of the tail alone.
     Trunk, tail, the printed direction, and the wave that the midline follows exactly are compared on a coarser grid.
     Other readings of (20) are held in a thicker water, at ``readings_reynolds``. Everything is per metre of depth but
     ``servo_load_peak``, the torque at a servo's shaft over its limit: there every section is as high as the robot's and
@@ -54,32 +58,17 @@ class Swimming(Experiment):
 
     title = "How does it swim?"
     shows = "Section IV.B, eq. (20), Fig. 17"
-    claims = (
-        "swim_tail_sine",
-        "swim_body_wave",
-        "swim_pressure_convex",
-        "swim_diagonal_force",
-        "swim_pressure_falls",
-        "swim_thrust_symmetric",
-        "swim_s_shape",
-        "swim_tail_thrust",
-    )
-    decides = (
-        "The tail. It alone swims a little faster than trunk and tail together, and the trunk alone hardly at all. Run "
-        "as printed, from tail to head, the wave itself gets nearly nowhere: drag along the body pulls it tail first, "
-        "and the growing swing of the tail, which sheds its wake behind it either way, pushes it head first. The few "
-        "joints make most of the wave a flapping of the tail, so the robot still goes head first, more slowly. The "
-        "article's pressures do not come out in water that stays around the held body. Few joints make a lumpy wave: "
-        "its envelope grows from head to tail, but not all the way. Finer grids swim faster. The Reynolds number is "
-        "that of the flow literature's eel, the flow a slice of unlimited depth: forces exceed a round body's."
-    )
+    judged_with = ("robot", "reading", "frequency", "reynolds")
+    judged_from: ClassVar[Mapping[str, float]] = {
+        "cells": 128, "coarse_cells": 80, "cycles": 4, "free_cycles": 8, "arm_cycles": 6,
+    }  # fmt: skip
 
     robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
-    """Who swims."""
+    """The robot that swims."""
     reading: str = "I"
-    """Of (20), see ``kinematics.wave.READINGS``."""
+    """Letter of the reading of (20), see ``kinematics.wave.READINGS``."""
     frequency: float = 1.0
-    """Which the article does not give [Hz]."""
+    """Frequency of the wave, which the article does not give [Hz], 0.01 to 20."""
     reynolds: float = 7000.0
     """Frequency times length squared over viscosity [-]; the robot's own would be 1e6, beyond any affordable grid."""
     cells: int = 128
@@ -87,11 +76,11 @@ class Swimming(Experiment):
     coarse_cells: int = 80
     """The same where trunk, tail, directions and the exact wave are compared, and of the towed body [-]."""
     cycles: int = 4
-    """Of the held body; thrust and power are means over all but the first, the rest is of the last [-]."""
+    """Cycles of the held body; all but the first are measured, and fields shown of the last [-]."""
     free_cycles: int = 10
-    """Of the free body; the last is measured [-]."""
+    """Cycles of the free body; speeds are of the last, the track of the last four [-]."""
     arm_cycles: int = 6
-    """After which trunk, tail, directions and exact wave are compared [-]."""
+    """Cycles after which trunk, tail, directions and exact wave are compared [-]."""
     readings: tuple[str, ...] = ("A", "C", "F", "H", "K")
     """Further readings of (20) whose thrust is measured [-]; the joints cannot make the others."""
     readings_reynolds: float = 1000.0
@@ -99,9 +88,9 @@ class Swimming(Experiment):
     readings_cells: int = 32
     """Cells per body length of these [-]."""
     tow: float = 4.0
-    """Way over which the straight body is towed, its drag the mean over the last length [body length]."""
+    """Distance over which the straight body is towed, its drag the mean over the last length [body length]."""
     frames: int = 20
-    """Of the films, over one cycle [-]."""
+    """Pictures of each film, over one cycle [-], 1 to 200."""
     keep: str = ""
     """Folder for what is finished of an interrupted run, from which it goes on; empty keeps nothing."""
 
@@ -128,44 +117,38 @@ class Swimming(Experiment):
             readings_cells=32, tow=2.0, frames=3,
         )  # fmt: skip
 
-    def run(self, progress: Progress = silent) -> Outcome:
-        """Swim."""
-        with stopwatch() as seconds:
-            ours, printed = (self._fit(sign) for sign in (-1, 1))
-            held = self._held("ours", ours, staged(progress, "held", 0.0, 0.08))
-            back = self._held("as printed", printed, staged(progress, "as printed", 0.08, 0.16))
-            free = self._free("ours", ours.swim, self.cells, self.free_cycles, staged(progress, "free", 0.16, 0.5))
-            arms = self._arms(ours, printed, free, staged(progress, "trunk and tail apart", 0.5, 0.92))
-            readings, table = self._readings(staged(progress, "readings of (20)", 0.92, 0.96))
-            drag = self._drag(float(free.speed[-1]), staged(progress, "towed", 0.96, 1.0))
-            record = xr.merge(
-                [
-                    _prefixed(held, "held"),
-                    _prefixed(back[["thrust", "aside", "power", "cycle_thrust"]], "printed"),
-                    _prefixed(free, "free"),
-                    arms,
-                    readings,
-                ],
-                join="exact",
-            )
-            record["model_speed"] = swim(self.robot, ours.swim).speed
-            record["towed_drag"] = ((), drag, {"units": "N/m"})
-            record["servo_limit"] = ("held_servo", [self.robot.servo(str(s)).torque for s in held.servo.values])
-            record.servo_limit.attrs["units"] = "N m"
-            record.attrs["misfit"] = ours.misfit
-            progress("films", 1.0)
-            films = {"swimming_vorticity.gif": film_vorticity(record), "swimming_pressure.gif": film_pressure(record)}
-            self._forget()
-            return Outcome(
-                experiment=self.name(),
-                measures=measures(record, self.robot, self.frequency, self.reading),
-                verdicts=verdicts(record),
-                record=record,
-                settings=self.settings(),
-                tables={"readings.md": table},
-                films=films,
-                seconds=seconds(),
-            )
+    def simulate(self, progress: Progress = silent) -> Simulated:
+        """Swim held and free, in every motion."""
+        ours, printed = (self._fit(sign) for sign in (-1, 1))
+        held = self._held("ours", ours, staged(progress, "held", 0.0, 0.08))
+        back = self._held("as printed", printed, staged(progress, "as printed", 0.08, 0.16))
+        free = self._free("ours", ours.swim, self.cells, self.free_cycles, staged(progress, "free", 0.16, 0.5))
+        arms = self._arms(ours, printed, free, staged(progress, "trunk and tail apart", 0.5, 0.92))
+        readings, table = self._readings(staged(progress, "readings of (20)", 0.92, 0.96))
+        drag = self._drag(float(free.speed[-1]), staged(progress, "towed", 0.96, 1.0))
+        told = back[["thrust", "aside", "power", "cycle_thrust"]]
+        record = xr.merge(
+            [_prefixed(held, "held"), _prefixed(told, "printed"), _prefixed(free, "free"), arms, readings],
+            join="exact",
+        )
+        record["model_speed"] = swim(self.robot, ours.swim).speed
+        record["printed_model_speed"] = swim(self.robot, printed.swim).speed
+        record["towed_drag"] = ((), drag, {"units": "N/m"})
+        record["servo_limit"] = ("held_servo", [self.robot.servo(str(s)).torque for s in held.servo.values])
+        record.servo_limit.attrs["units"] = "N m"
+        record.attrs["misfit"] = ours.misfit
+        progress("films", 1.0)
+        films = {"swimming_vorticity.gif": film_vorticity(record), "swimming_pressure.gif": film_pressure(record)}
+        self._forget()
+        return Simulated(record=record, tables={"readings.md": table}, films=films)
+
+    def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
+        """Return what the held and the free body did, and what each motion swims."""
+        return findings.measures(record, self.robot, self.frequency, self.reading)
+
+    def explain(self, measures: Mapping[str, float]) -> str:
+        """Say what tail, trunk and direction of the wave do to the speed."""
+        return findings.explain(measures)
 
     def _setting(self, cells: int, cycles: int, reynolds: float | None = None) -> Tether:
         viscosity = self.frequency * self.robot.length**2 / (reynolds or self.reynolds)

@@ -11,7 +11,7 @@ import xarray as xr
 from suchus.control import TurningCurve, Walking, turn
 from suchus.design import Crocodile
 from suchus.design.checks import Checks
-from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, silent, staged, stopwatch
+from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.figures.terrain import GAIT_LINES, draw_turning
 from suchus.gaits import GAITS
 from suchus.land import Run, simulate
@@ -19,6 +19,7 @@ from suchus.metrics import between, heading_change
 from suchus.motion import START, Gait
 from suchus.replay import replay
 from suchus.robots import ROBOTS
+from suchus.verdict import Reading
 
 _STRAIGHT = 1e-3  # [1/m]; no radius beyond a kilometre
 
@@ -33,19 +34,13 @@ class Turning(Experiment):
 
     title = "How tightly does it turn, and does it walk the circle that was asked for?"
     shows = "Section II.B"
-    decides = (
-        "A lasting bend turns the legs of one girdle against those of the other, and every gait follows it; unequal "
-        "strokes turn sprawled legs, which have stroke to spare, better than erect ones. Together they turn tightest. "
-        "The curvature grows steadily with their mixture, so that the mixture for an asked radius can be read off "
-        "once it was measured."
-    )
 
     robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
-    """Who turns."""
+    """The robot that turns."""
     gaits: tuple[Gait, ...] = field(
         default_factory=lambda: tuple(GAITS[n] for n in ("low_crawl", "semi_erect", "high_walk"))
     )
-    """In which gaits."""
+    """The gaits that it walks in."""
     bends: tuple[float, ...] = (0.0, 0.17, 0.35, 0.52, 0.79)
     """Lasting bends of the trunk [rad]."""
     asymmetries: tuple[float, ...] = (0.0, 0.25, 0.5, 0.75, 1.0)
@@ -57,7 +52,7 @@ class Turning(Experiment):
     cycles: int = 10
     """How many cycles are measured, after one more [-]."""
     timestep: float = 0.005
-    """Of the physics [s]."""
+    """Time step of the physics [s], at most 0.01."""
 
     def __post_init__(self) -> None:
         with Checks(self.name(), self) as check:
@@ -81,25 +76,17 @@ class Turning(Experiment):
             cycles=3,
         )
 
-    def run(self, progress: Progress = silent) -> Outcome:
-        """Turn."""
-        with stopwatch() as seconds:
-            rows, shown = [], []
-            for i, gait in enumerate(self.gaits):
-                share = i / len(self.gaits), (i + 1) / len(self.gaits)
-                row, pair = self._of(gait, staged(progress, gait.name, *share))
-                rows.append(row)
-                shown.append(pair)
-            record = xr.concat(rows, "gait").assign_coords(gait=[gait.name for gait in self.gaits])
-            return Outcome(
-                experiment=self.name(),
-                measures=self._measures(record),
-                verdicts=(),
-                record=record,
-                settings=self.settings(),
-                replays=self._replays(shown[int(record.curvature_mixture.max("mixture").values.argmax())]),
-                seconds=seconds(),
-            )
+    def simulate(self, progress: Progress = silent) -> Simulated:
+        """Turn in every gait, and walk circles on command."""
+        rows, shown = [], []
+        for i, gait in enumerate(self.gaits):
+            share = i / len(self.gaits), (i + 1) / len(self.gaits)
+            row, pair = self._of(gait, staged(progress, gait.name, *share))
+            rows.append(row)
+            shown.append(pair)
+        record = xr.concat(rows, "gait").assign_coords(gait=[gait.name for gait in self.gaits])
+        tightest = int(record.curvature_mixture.max("mixture").values.argmax())
+        return Simulated(record=record, replays=self._replays(shown[tightest]))
 
     def _replays(self, pair: tuple[xr.Dataset, xr.Dataset]) -> Mapping[str, Replay]:
         """Return the replay of the gait that turns tightest, and of its first circle."""
@@ -168,7 +155,8 @@ class Turning(Experiment):
         way = ((points.diff("time") ** 2).sum("xyz") ** 0.5).sum("time")
         return np.asarray(heading_change(record, START + gait.period, end) / way)
 
-    def _measures(self, record: xr.Dataset) -> Mapping[str, Measure]:
+    def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
+        """Return the tightest radius of every gait by bend, by stroke and by both, and how well circles come out."""
         measures: dict[str, Measure] = {}
         for name in record.gait.values:
             one = record.sel(gait=name)
@@ -182,6 +170,24 @@ class Turning(Experiment):
                 f"bend_times_radius_{name}": Measure(float(one.bend[-1] * _radius(one.curvature_bend[-1:])), "m"),
             }
         return measures
+
+    def explain(self, measures: Mapping[str, float]) -> str:
+        """Say by what each gait turns tightest, and how far commanded circles are off."""
+        m = {name: Reading(value) for name, value in measures.items()}
+        names = [gait.name for gait in self.gaits]
+        told = [
+            f"the {name.replace('_', ' ')} in {m[f'tightest_bend_{name}']:.2f} m by a lasting bend, "
+            f"{m[f'tightest_asymmetry_{name}']:.2f} m by unequal strokes and {m[f'tightest_both_{name}']:.2f} m by the "
+            "mixture of both"
+            for name in names
+        ]
+        walked = sum(m[f"circles_walked_{name}"] for name in names)
+        off = max(m[f"radius_off_{name}"] for name in names)
+        circles = f"of {len(names) * len(self.asked)} circles on command {walked:.0f} can be walked"
+        how = f", and their radius is off by at most {off:.0%}" if walked else ""
+        return (
+            f"Tightest turns {'; '.join(told)}. The mixture for a radius is read off a measured curve: {circles}{how}."
+        )
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw curvatures and circles."""

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from suchus.design import LEGS, Crocodile
+from suchus.design import AnyRobot, layout
 from suchus.fault import Fault, Plant
 
 
@@ -27,10 +27,9 @@ class LostFoot(Fault):
         return self.limb
 
     @classmethod
-    def parts(cls, robot: Crocodile) -> tuple[str, ...]:
+    def parts(cls, robot: AnyRobot) -> tuple[str, ...]:
         """Return the names of the legs."""
-        del robot
-        return LEGS
+        return layout(robot).limb_names
 
     def apply(self, plant: Plant) -> None:
         """Let the sole pass through the ground."""

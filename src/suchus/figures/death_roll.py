@@ -14,6 +14,7 @@ from suchus.design import LEGS, Crocodile
 from suchus.figures.posture import skeleton
 from suchus.figures.style import COLOURS, captioned, panels, styled
 from suchus.metrics import peak_torque, roll_angle
+from suchus.paper.animals import ANIMAL
 
 _BACK, _BELLY, _EDGE = np.array([0.30, 0.45, 0.35]), np.array([0.95, 0.90, 0.76]), "#3B5545"
 _ARMS = {
@@ -30,7 +31,7 @@ _BARS = {
     ("speed", "vacuum"): "#8C4A00",
     ("speed", "water"): "#E69F00",
 }
-_ANIMAL = 1.6  # [Hz]; juvenile alligators of 0.29 m, Fish et al. 2007, J. Exp. Biol. 210, 2811
+_ANIMAL = ANIMAL["death_roll"].high
 _TURN = 2 * np.pi
 
 
@@ -49,6 +50,7 @@ def draw_roll(robot: Crocodile, record: xr.Dataset) -> Figure:
     once = turned.time[turned >= 1.0]
     end = float(once[0]) if once.size else float(turned.time[-1])
     times = np.linspace(start, end, 6)
+    left = float(abs(run.angular_momentum).max())
     with styled(axes__grid=False):
         figure, axes = panels(2, 3, width=10.5, height=4.6, sharex=True, sharey=True)
         for ax, time in zip(axes.flat, times, strict=True):
@@ -60,7 +62,8 @@ def draw_roll(robot: Crocodile, record: xr.Dataset) -> Figure:
     return captioned(
         figure,
         "The roll in vacuum, seen from the right: the bend goes around the body, the body turns the other way. Green "
-        "is the back, pale the belly; left legs are blue, right ones orange. The angular momentum is zero throughout.",
+        "is the back, pale the belly; left legs are blue, right ones orange. The angular momentum stays within "
+        f"{left:.1g} kg m²/s of zero.",
     )
 
 
@@ -85,7 +88,7 @@ def draw_rates(record: xr.Dataset) -> Figure:
         ax = axes[1, 1]
         _c_points(ax, record)
         ax.axhline(_ANIMAL, color=COLOURS["alarm"], linewidth=1.2, linestyle=(0, (4, 2)))
-        ax.text(0.03, _ANIMAL - 0.03, "alligators of 0.29 m", color=COLOURS["alarm"], va="top", fontsize=11)
+        ax.text(0.03, _ANIMAL - 0.03, ANIMAL["death_roll"].who, color=COLOURS["alarm"], va="top", fontsize=11)
         ax.set_ylim(top=1.1 * _ANIMAL)
         ax.legend(loc="lower right", fontsize=10)
         axes[1, 0].legend(loc="upper left")
@@ -93,7 +96,7 @@ def draw_rates(record: xr.Dataset) -> Figure:
             ax.set_title(letter, fontweight="bold")
     return captioned(
         figure,
-        "What decides the rate. a: turns over time, C faster than S; thick in vacuum, thin in water. b: how late the "
+        "What decides the rate. a: turns over time; thick in vacuum, thin in water. b: how late the "
         "vertical bend comes, trunk in vacuum. c, d: amplitude and frequency of the trunk's bends; the triangles are "
         "the C of trunk and tail, and the dashed line is what juvenile alligators do.",
     )

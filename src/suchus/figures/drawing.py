@@ -7,7 +7,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Polygon
 
-from suchus.design import Crocodile, Leg
+from suchus.design import AnyRobot, Crocodile, Leg, layout
+from suchus.figures.plan import draw_plan
 from suchus.figures.style import COLOURS, captioned, panels, styled
 
 _TILT = radians(20)  # of the shank outward, for the drawing only
@@ -15,21 +16,27 @@ _BODY, _FIN, _LIMB = "#C9DCCB", "#E4EEE5", "#4D6B57"
 _EDGE: dict[str, Any] = {"edgecolor": _LIMB, "linewidth": 1.2}
 
 
-def dimension_drawing(robot: Crocodile) -> Figure:
+def dimension_drawing(robot: AnyRobot) -> Figure:
     """Return a robot from above and from the side with its main dimensions [mm]."""
+    tables = isinstance(robot, Crocodile)
     with styled(axes__grid=False):
         figure, axes = panels(2, 1, height=5.4, sharex=True, height_ratios=[1.5, 1])
-        _from_above(axes[0, 0], robot)
-        _from_the_side(axes[1, 0], robot)
+        if isinstance(robot, Crocodile):
+            _from_above(axes[0, 0], robot)
+            _from_the_side(axes[1, 0], robot)
+        else:
+            for ax, up in zip(axes[:, 0], (False, True), strict=True):
+                draw_plan(ax, robot, from_the_side=up)
         for ax, title in zip(axes[:, 0], ("from above", "from the side"), strict=True):
             ax.set_aspect("equal")
             ax.set_axis_off()
             ax.set_title(title, color=COLOURS["neutral"])
+    tail = f"{_mm(robot.tail.length)} mm of it tail, " if isinstance(robot, Crocodile) else ""
     return captioned(
         figure,
         f"The robot {robot.name} from above and from the side: {_mm(robot.length)} mm long, "
-        f"{_mm(robot.tail.length)} mm of it tail, {robot.mass:.2f} kg, 19 servos. "
-        "Circles are joints; the pale end of the tail is passive. Dimensions in mm.",
+        f"{tail}{robot.mass:.3g} kg, {len(layout(robot).servos)} servos. "
+        f"Circles are joints{'; the pale end of the tail is passive' if tables else ''}. Dimensions in mm.",
     )
 
 
@@ -44,7 +51,7 @@ def _from_above(ax: Axes, robot: Crocodile) -> None:
     _box(ax, -robot.tail.offset, robot.pelvis.length / 2, robot.pelvis.width / 2)
     _head(ax, robot, robot.head.width / 2, 0.0)
     _box(ax, robot.spine.length, front + 0.02, robot.thorax.width / 2)
-    for i in range(5):
+    for i in range(robot.spine.joints):
         _joint(ax, robot.spine.base + i * robot.spine.link, 0.0)
     below = -max(leg.hip_offset + leg.femur + leg.tibia * sin(_TILT) for leg in (robot.hind_leg, robot.front_leg))
     nose = robot.spine.length + robot.head.snout

@@ -15,30 +15,37 @@ from suchus.figures.timeseries import draw_band, mark_cycles
 from suchus.metrics import loss
 from suchus.motion import START
 from suchus.paper import CLAIMS
+from suchus.verdict import listed
 
 _ARMS = ("coordinated", "limbs_only")
+_MARKS = {"coordinated": "o", "limbs_only": "s", "limbs_tail_lifted": "D"}
 _OFFSET = {"coordinated": 0.13, "limbs_only": -0.13}
 
 
 def _named(joint: str) -> str:
-    return f"{joint.replace('_', ' ')} joint"
+    name = joint.replace("_", " ")
+    return name if joint.endswith("knee") else f"{name} joint"
 
 
-def _printed(joint: str, arm: str) -> float:
-    return CLAIMS[f"fault_{joint}_{arm}"].value or 0.0
+def _printed(joint: str, arm: str) -> float | None:
+    """Return what the article says of a loss, None of a joint of which it says nothing."""
+    claim = CLAIMS.get(f"fault_{joint}_{arm}")
+    return None if claim is None else claim.value
 
 
 def draw_losses(record: xr.Dataset) -> Figure:
     """Draw every reading of every fault: median and range of the change, beside what is printed.
 
     Args:
-        record: of the campaign: ``forward`` and ``intact_forward`` over variation, arm, joint, kind and legs.
+        record: of the campaign: ``forward`` and ``intact_forward`` over variation, arm, joint, kind and legs, and
+            ``lifted_forward`` of the control group with its tail in the air.
     """
-    change = 100 * loss(record.forward, record.intact_forward.sel(arm="coordinated", drop=True))
-    bare = 100 * loss(record.intact_forward.sel(arm="limbs_only"), record.intact_forward.sel(arm="coordinated"))
+    ours = record.intact_forward.sel(arm="coordinated", drop=True)
+    change = 100 * loss(record.forward, ours)
+    bare = 100 * loss(record.intact_forward.sel(arm="limbs_only"), ours)
     readings = list(product(record.kind.values, record.legs.values))
     with styled():
-        figure, axes = panels(1, 1, width=8.6, height=7.4)
+        figure, axes = panels(1, 1, width=8.6, height=1.2 + 1.55 * record.sizes["joint"])
         ax = axes[0, 0]
         ticks, labels, top = [], [], 0.0
         for joint in record.joint.values:
@@ -48,11 +55,16 @@ def draw_losses(record: xr.Dataset) -> Figure:
                 for arm in _ARMS:
                     some = change.sel(joint=joint, kind=kind, legs=legs, arm=arm)
                     _range(ax, some, top - i + _OFFSET[arm], arm)
+                if kind == record.attrs["judged_kind"] and legs == record.attrs["judged_legs"] and joint in record.lost:
+                    lifted = 100 * loss(record.lifted_forward.sel(lost=joint), ours)
+                    _range(ax, lifted, top - i + 2 * _OFFSET["limbs_only"], "limbs_tail_lifted")
                 ticks.append(top - i)
                 labels.append(f"{kind}, {'one leg' if legs == 'one' else 'both legs'}")
             for arm in _ARMS:
-                x, span = 100 * _printed(str(joint), arm), (top - len(readings) + 0.5, top + 0.4)
-                ax.plot([x, x], span, color=COLOURS[arm], linewidth=2.2, linestyle=(0, (1, 1)), zorder=1)
+                printed, span = _printed(str(joint), arm), (top - len(readings) + 0.5, top + 0.4)
+                if printed is not None:
+                    x = [100 * printed] * 2
+                    ax.plot(x, span, color=COLOURS[arm], linewidth=2.2, linestyle=(0, (1, 1)), zorder=1)
             top -= len(readings) + 1.25
         ax.axvline(float(bare.median()), color=COLOURS["limbs_only"], linewidth=1.2, zorder=0.5)
         ax.axvspan(
@@ -67,26 +79,38 @@ def draw_losses(record: xr.Dataset) -> Figure:
         ax.set_xlabel("change of displacement against the intact robot with spine and tail [%]")
         keys = [
             *(
-                Line2D([], [], color=COLOURS[a], marker="os"[i], linewidth=2.5, label=LINES[a]["label"])
-                for i, a in enumerate(_ARMS)
+                Line2D([], [], color=COLOURS[a], marker=_MARKS[a], linewidth=2.5, label=LINES[a]["label"])
+                for a in _MARKS
             ),
             Line2D([], [], color=COLOURS["neutral"], linewidth=2.2, linestyle=(0, (1, 1)), label="as printed"),
             Patch(color=COLOURS["limbs_only"], alpha=0.25, label="limbs only, intact"),
         ]
-        figure.legend(handles=keys, loc="outside upper center", ncols=4, frameon=False)
+        figure.legend(handles=keys, loc="outside upper center", ncols=3, frameon=False)
     return captioned(
         figure,
         "What a lost joint costs, for every reading of 'lost': median and range over the variations of gait and "
-        "friction. Dotted: as printed. Orange line and band: the intact robot with limbs only. The article's 75 and "
-        "55 % (hind legs, limbs only) lie to the right of its own intact 78 %: they let a damaged robot out-walk the "
-        "whole one.",
+        "friction. Dotted: as printed; of the knees the article says nothing. Orange line and band: the intact robot "
+        f"with limbs only.{_outwalked(record)} Yellow: limbs only with the tail in the air, in the judged reading.",
+    )
+
+
+def _outwalked(record: xr.Dataset) -> str:
+    """Return which printed losses of limbs only leave more than the article's own intact robot with limbs only."""
+    ours, bare = (CLAIMS[f"displacement_{arm}"].value or 0.0 for arm in _ARMS)
+    intact = bare / ours - 1.0
+    less = [p for j in record.lost.values if (p := _printed(j, "limbs_only")) is not None and p > intact]
+    if not less:
+        return ""
+    return (
+        f" The article's own intact robot with limbs only is at {intact:+.0%}; its "
+        f"{listed([f'{p:+.0%}' for p in less])} with a joint lost let a damaged robot out-walk it."
     )
 
 
 def _range(ax: Axes, values: xr.DataArray, y: float, arm: str) -> None:
     low, middle, high = (float(values.quantile(q)) for q in (0.0, 0.5, 1.0))
     ax.plot([low, high], [y, y], color=COLOURS[arm], linewidth=2.5, alpha=0.55, solid_capstyle="round", zorder=3)
-    ax.plot([middle], [y], marker="o" if arm == "coordinated" else "s", markersize=6, color=COLOURS[arm], zorder=4)
+    ax.plot([middle], [y], marker=_MARKS[arm], markersize=6, color=COLOURS[arm], zorder=4)
 
 
 def draw_over_time(record: xr.Dataset, kind: str, legs: str) -> Figure:
@@ -99,32 +123,34 @@ def draw_over_time(record: xr.Dataset, kind: str, legs: str) -> Figure:
     """
     way, intact = record.track.sel(on_ground="x"), record.intact_track.sel(on_ground="x")
     end, period = float(record.time[-1]), float(record.period)
+    of = "one leg" if legs == "one" else "both legs"
     with styled():
         figure, axes = panels(2, 2, width=10.5, height=7.0, sharex=True, sharey=True)
-        for number, (ax, joint) in enumerate(zip(axes.flat, record.joint.values, strict=True)):
+        for number, (ax, joint) in enumerate(zip(axes.flat, record.lost.values, strict=True)):
             for arm in _ARMS:
                 some = way.sel(joint=joint, kind=kind, legs=legs, arm=arm).rename(variation="run")
                 draw_band(ax, some, arm)
                 ax.plot(record.time, some.median("run"), **LINES[arm])
                 whole = intact.sel(arm=arm).median("variation")
                 ax.plot(record.time, whole, color=COLOURS[arm], linewidth=1.3, linestyle=(0, (1, 1.5)))
-                if end > START + 1.5 * period:
-                    x, y = end, (1.0 + _printed(str(joint), arm)) * (CLAIMS["displacement_coordinated"].value or 0.0)
+                printed = _printed(joint, arm)
+                if end > START + 1.5 * period and printed is not None:
+                    x, y = end, (1.0 + printed) * (CLAIMS["displacement_coordinated"].value or 0.0)
                     ax.plot(
                         x, y, "D", color=COLOURS[arm], markeredgecolor="black", markersize=8, zorder=5, clip_on=False
                     )
             mark_cycles(ax, list(np.arange(START, end + 0.01, period)))
             ax.set_xlim(START, end)
-            ax.set_title(f"Fig. {18 + number}: {_named(str(joint))}")
+            ax.set_title(f"Fig. {18 + number}: {_named(joint)}")
         for ax in axes[:, 0]:
-            ax.set_ylabel("way forward [m]")
+            ax.set_ylabel("displacement forward [m]")
         for ax in axes[-1]:
             ax.set_xlabel("time [s]")
         figure.legend(handles=_keys(), loc="outside upper center", ncols=4, frameon=False)
     return captioned(
         figure,
-        f"Way of the centre of mass with a {kind} joint in {'one leg' if legs == 'one' else 'both legs'} of a girdle: "
-        "medians and ranges over the variations of gait and friction. Dotted: the intact robots. Diamonds: what the "
+        f"Displacement of the centre of mass with a {kind} joint in {of} of a girdle: medians and ranges over the "
+        "variations of gait and friction. Dotted: the intact robots. Diamonds: what the "
         f"article's percentages make of its {CLAIMS['displacement_coordinated'].value:g} m.",
     )
 
@@ -151,8 +177,8 @@ def draw_tracks(record: xr.Dataset) -> Figure:
         ("locked", "both"): {"color": "#009E73", "label": "locked, both legs", "linestyle": (0, (3, 1.2))},
     }
     with styled():
-        figure, axes = panels(2, 2, width=10.5, height=6.0, sharex=True, sharey=True)
-        for ax, joint in zip(axes.flat, record.joint.values, strict=True):
+        figure, axes = panels(2, 3, width=12.5, height=5.6, sharex=True, sharey=True)
+        for ax, joint in zip(axes.T.flat, sorted(record.joint.values, key=_axis), strict=True):
             whole = given.intact_track.transpose("on_ground", "time").values
             ax.plot(*whole, color="#333333", linewidth=1.6, label="intact")
             _arrow(ax, whole[:, -1], float(given.intact_turn), "#333333")
@@ -170,9 +196,14 @@ def draw_tracks(record: xr.Dataset) -> Figure:
         figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=5, frameon=False)
     return captioned(
         figure,
-        "Ways of the centre of mass seen from above, with spine and tail, the left joint or both lost; arrows show "
+        "Tracks of the centre of mass seen from above, with spine and tail, the left joint or both lost; arrows show "
         "whereto the body faces at the end.",
     )
+
+
+def _axis(joint: str) -> int:
+    """Return where a joint's axis stands in the leg, from the hip on."""
+    return ("yaw", "pitch", "knee").index(joint.rpartition("_")[2])
 
 
 def _arrow(ax: Axes, at: np.ndarray, facing: float, colour: str) -> None:
@@ -186,21 +217,21 @@ def draw_held(record: xr.Dataset) -> Figure:
     """Draw how the change depends on where a locked joint holds.
 
     Args:
-        record: of the campaign: ``held_forward`` over arm, joint and hold.
+        record: of the campaign: ``held_forward`` over arm, lost joint and hold.
     """
     whole = float(record.intact_forward.sel(arm="coordinated")[0])
     change = 100 * (record.held_forward / whole - 1.0)
-    marks = dict(zip(record.joint.values, "oD^v", strict=True))
+    marks = dict(zip(record.lost.values, "oD^v", strict=True))
     with styled():
         figure, axes = panels(1, 2, width=10.5, height=4.2, sharex=True, sharey=True)
         for ax, arm in zip(axes[0], _ARMS, strict=True):
             bare = 100 * (float(record.intact_forward.sel(arm=arm)[0]) / whole - 1.0)
             ax.axhline(bare, color=COLOURS[arm], linewidth=1.3, linestyle=(0, (1, 1.5)))
-            for i, joint in enumerate(record.joint.values):
+            for i, joint in enumerate(record.lost.values):
                 front, yaw = str(joint).split("_")
                 ax.plot(
                     record.hold,
-                    change.sel(arm=arm, joint=joint),
+                    change.sel(arm=arm, lost=joint),
                     color=("#0072B2", "#56B4E9", "#D55E00", "#E69F00")[i],
                     marker=marks[joint],
                     label=f"{front} {yaw}",

@@ -104,8 +104,8 @@ def draw_onset(phase: xr.DataArray, gait: Gait, start: int = 0) -> Figure:
         axes[-1, 0].set_xlabel("cycles since the start")
     return captioned(
         figure,
-        "Feet on the ground (bars) from one random start. Without feedback the limbs keep the phases that they began "
-        "with; with it the two diagonal pairs, blue and orange, find each other and take turns.",
+        "Feet that are commanded to stand (bars) from one random start, without feedback and under two laws. Blue: one "
+        "diagonal pair of limbs, orange: the other; in the gait the pairs take turns.",
     )
 
 
@@ -154,8 +154,8 @@ def draw_gain(way: xr.DataArray) -> Figure:
         figure.colorbar(shown, ax=ax, label="way forward [%]", pad=0.02, ticks=range(20, 141, 20))
     return captioned(
         figure,
-        "Way forward in the cycles after a disturbance, in percent of the undisturbed way without feedback. Each rule "
-        "mends what it feels; the last column adds the heading loop to all three.",
+        "Way forward in the cycles after a disturbance, in percent of the undisturbed way without feedback; "
+        "the last column adds the heading loop to all three rules.",
     )
 
 

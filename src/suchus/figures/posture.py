@@ -12,13 +12,12 @@ from matplotlib.patches import Circle, PathPatch, Polygon
 from matplotlib.path import Path
 
 from suchus import rotation
-from suchus.design import LEGS, Crocodile
+from suchus.design import GRAVITY, AnyRobot, Layout, LimbPlace, layout
 from suchus.figures.silhouette import Silhouette, silhouette
 from suchus.figures.style import COLOURS
-from suchus.kinematics import body, spine
-from suchus.kinematics import leg as leg_kinematics
-from suchus.kinematics.links import LegLinks
+from suchus.kinematics.tree import Frames, frames, landmarks
 from suchus.metrics import loaded, support_polygon
+from suchus.metrics.gait import LOADED_SHARE
 from suchus.skin import poses, skin
 
 View = Literal["above", "side"]
@@ -29,20 +28,16 @@ class Skeleton(NamedTuple):
     """Points of the body in the world."""
 
     trunk: np.ndarray
-    """From the tail's pitch joint over the hind girdle's axis and the five joints to shoulder and snout, (9, 3) [m]."""
+    """From the first joint of the tail over the root and the joints ahead of it to front girdle and snout [m]."""
+    joints: np.ndarray
+    """Those of them that are joints ahead of the root, (joint, 3) [m]."""
     tail: np.ndarray
-    """From the pitch joint to the tip, (point, 3) [m]."""
-    legs: np.ndarray
-    """Midline, hip, knee and foot of each leg, (4, 4, 3) [m]."""
+    """From its first joint to the tip, (point, 3) [m]."""
+    legs: tuple[np.ndarray, ...]
+    """Midline, hip, joints and foot of each limb, (point, 3) [m]."""
 
 
-class _Bone(NamedTuple):
-    hip_offset: float
-    femur: float
-    tibia: float
-
-
-def skeleton(robot: Crocodile, record: xr.Dataset, time: float) -> Skeleton:
+def skeleton(robot: AnyRobot, record: xr.Dataset, time: float) -> Skeleton:
     """Return the body's points in the world at one time.
 
     Args:
@@ -50,55 +45,43 @@ def skeleton(robot: Crocodile, record: xr.Dataset, time: float) -> Skeleton:
         record: of one run.
         time: [s].
     """
-    now = record.sel(time=time, method="nearest")
+    now, place = record.sel(time=time, method="nearest"), layout(robot)
     angles = now.joint_angle.values.astype(float)
     R, at = rotation.matrix(now.orientation.values.astype(float)), now.position.values.astype(float)
-    trunk, legs = _front(robot, angles), np.empty((4, 4, 3))
-    T = spine.forward(robot.spine, angles[12:17])
-    shoulder = T[:3, 3] + robot.thorax.shoulder * T[:3, 0]
-    for i, name in enumerate(LEGS):
-        for j, points in enumerate(_leg(robot, name, angles[3 * i : 3 * i + 3])):
-            legs[i, j] = shoulder + T[:3, :3] @ points if name.endswith("F") else points
-    tail = body.tail_points(robot, angles[17:])
-    return Skeleton(*(at + points @ R.T for points in (trunk, tail, legs)))
+    found, marks = frames(robot, angles), landmarks(robot, angles)
+    names = [body.name for body in place.bodies]
+    ahead = found.places[[names.index(name) for name in place.trunk[1:]]].reshape(-1, 3)
+    behind = found.places[[names.index(name) for name in place.tail]].reshape(-1, 3)
+    legs = [_leg(place, limb, found, marks.feet[i]) for i, limb in enumerate(place.limbs)]
+    shoulders = [leg[0] for leg in legs[:1]]
+    trunk = np.array([*behind[:1], np.zeros(3), *ahead, *shoulders, marks.snout])
+    tail = np.array([*behind, marks.tail])
+    return Skeleton(
+        trunk=at + trunk @ R.T,
+        joints=at + ahead @ R.T,
+        tail=at + tail @ R.T,
+        legs=tuple(at + points @ R.T for points in legs),
+    )
 
 
-def _silhouette(robot: Crocodile, record: xr.Dataset, time: float, axes: tuple[int, int]) -> Silhouette:
+def _leg(place: Layout, limb: LimbPlace, found: Frames, foot: np.ndarray) -> np.ndarray:
+    """Return midline, hip, joints and foot of a limb in the frame of the root, (point, 3) [m]."""
+    first = limb.tip - len(limb.girdle.limb.links) + 1
+    parent = place.bodies[first].parent
+    x, _, z = place.bodies[first].offset
+    midline = found.places[parent] + found.turns[parent] @ np.array([x, 0.0, z])
+    return np.array([midline, *found.places[first : limb.tip + 1], foot])
+
+
+def _silhouette(robot: AnyRobot, record: xr.Dataset, time: float, axes: tuple[int, int]) -> Silhouette:
     now = record.sel(time=time, method="nearest")
     at = (now[name].values.astype(float) for name in ("position", "orientation", "joint_angle"))
     return silhouette(robot, skin(robot).posed(*poses(robot, *at)), axes)
 
 
-def _front(robot: Crocodile, angles: np.ndarray) -> np.ndarray:
-    points = [np.array([-robot.tail.offset, 0.0, 0.0]), np.zeros(3)]
-    bends = angles[12:17]
-    for i in range(5):
-        straight = np.zeros(5)
-        straight[:i] = bends[:i]
-        # joint i + 1 lies before the joints beyond it turn anything: cut the chain there
-        T = spine.forward(robot.spine, straight)
-        ahead = (4 - i) * robot.spine.link
-        points.append(T[:3, 3] - ahead * T[:3, 0] if i < 4 else T[:3, 3])
-    T = spine.forward(robot.spine, bends)
-    for reach in (robot.thorax.shoulder, robot.head.snout):
-        points.append(T[:3, 3] + reach * T[:3, 0])
-    return np.array(points)
-
-
-def _leg(robot: Crocodile, name: str, angles: np.ndarray) -> list[np.ndarray]:
-    leg = robot.leg(name)
-    bones: list[LegLinks] = [
-        _Bone(0.0, 0.0, 0.0),
-        _Bone(leg.hip_offset, 0.0, 0.0),
-        _Bone(leg.hip_offset, leg.femur, 0.0),
-        leg,
-    ]
-    return [body.from_leg_frame(leg_kinematics.forward(bone, angles), name) for bone in bones]
-
-
 def draw_posture(
     ax: Axes,
-    robot: Crocodile,
+    robot: AnyRobot,
     record: xr.Dataset,
     time: float,
     *,
@@ -121,19 +104,20 @@ def draw_posture(
     """
     rows = [0, 1] if view == "above" else [0, 2]
     bones = skeleton(robot, record, time)
-    stands = loaded(record.sel(time=time, method="nearest")).values
+    least = LOADED_SHARE * robot.mass * GRAVITY
+    stands = loaded(record.sel(time=time, method="nearest"), least).values
     if view == "side" and ground:
         ax.axhline(0.0, color=COLOURS["ground"], linewidth=1.2, zorder=0)
     if support and view == "above":
-        _support(ax, record, time)
-    for name, points, standing in zip(LEGS, bones.legs[..., rows], stands, strict=True):
-        far = view == "side" and name.startswith("L")
-        edge, radius = _paler(_EDGE, strength), robot.leg(name).foot_radius
-        foot = Circle(tuple(points[-1]), radius, facecolor=edge if standing else "white", edgecolor=edge)
+        _support(ax, record, time, least)
+    for limb, points, standing in zip(layout(robot).limbs, bones.legs, stands, strict=True):
+        far = view == "side" and limb.side > 0
+        edge, radius = _paler(_EDGE, strength), limb.girdle.limb.foot.radius
+        foot = Circle(tuple(points[-1, rows]), radius, facecolor=edge if standing else "white", edgecolor=edge)
         foot.set_zorder(0.9 if far else 4)
         ax.add_patch(foot)
-    _flesh(ax, _silhouette(robot, record, time, (rows[0], rows[1])), view, strength)
-    joints = bones.trunk[2:7, rows]
+    _flesh(ax, layout(robot), _silhouette(robot, record, time, (rows[0], rows[1])), view, strength)
+    joints = bones.joints[:, rows]
     ax.plot(
         *joints.T,
         "o",
@@ -150,7 +134,7 @@ def draw_posture(
 
 
 def draw_strip(
-    ax: Axes, robot: Crocodile, record: xr.Dataset, times: Sequence[float], *, role: str, aside: float = 0.0
+    ax: Axes, robot: AnyRobot, record: xr.Dataset, times: Sequence[float], *, role: str, aside: float = 0.0
 ) -> None:
     """Draw a robot from above at several times, the earlier ones paler, with the track of its centre of mass.
 
@@ -181,11 +165,11 @@ def _aside(record: xr.Dataset, aside: float) -> xr.DataArray:
     return xr.DataArray([0.0, aside, 0.0], dims="xyz", coords={"xyz": record.xyz})
 
 
-def _flesh(ax: Axes, seen: Silhouette, view: View, strength: float) -> None:
+def _flesh(ax: Axes, place: Layout, seen: Silhouette, view: View, strength: float) -> None:
     """Draw the skin: from the side the far legs lie behind the body and the near ones, the right, before it."""
     edge, body, far_leg, pale, plate = (_paler(c, strength) for c in (_EDGE, _BODY, _FAR, _PALE, _PLATE))
-    for name, pieces in zip(LEGS, seen.legs, strict=True):
-        near = view == "side" and name.startswith("R")
+    for limb, pieces in zip(place.limbs, seen.legs, strict=True):
+        near = view == "side" and limb.side < 0
         far = view == "side" and not near
         face, order = (far_leg, 0.8) if far else (body, 2.6) if near else (body, 1.0)
         # strokes of all pieces first, then their fillings: what is left is the outline of them all
@@ -194,10 +178,12 @@ def _flesh(ax: Axes, seen: Silhouette, view: View, strength: float) -> None:
         ax.add_artist(PathPatch(whole, facecolor=face, edgecolor=face, linewidth=0.2, zorder=order + 0.01))
         ax.update_datalim(whole.vertices)  # add_patch would look for the extremes of every edge, which takes long
     for piece, face, order in ((seen.jaw, pale, 1.9), (seen.body, body, 2.0)):
+        if not len(piece):
+            continue
         ax.add_patch(Polygon(piece, facecolor=face, edgecolor=edge, linewidth=0.9, joinstyle="round", zorder=order))
     for eye in seen.eyes if view == "above" else seen.eyes[1:]:
         ax.add_patch(Polygon(eye, facecolor=edge, edgecolor="none", zorder=2.4))
-    if strength == 1.0:
+    if strength == 1.0 and seen.scutes:
         plates = _united(seen.scutes)
         ax.add_artist(PathPatch(plates, facecolor=plate, edgecolor=edge, linewidth=0.35, zorder=2.2))
         ax.update_datalim(plates.vertices)
@@ -213,8 +199,8 @@ def _paler(colour: str, strength: float) -> str:
     return to_hex((red, green, blue))
 
 
-def _support(ax: Axes, record: xr.Dataset, time: float) -> None:
-    corners = support_polygon(record, time)
+def _support(ax: Axes, record: xr.Dataset, time: float, least: float) -> None:
+    corners = support_polygon(record, time, least)
     if len(corners) >= 3:
         ax.add_patch(Polygon(corners, facecolor="#F2C46D", alpha=0.45, edgecolor="#B8860B", linewidth=1.4, zorder=0.5))
     elif len(corners) == 2:

@@ -27,7 +27,7 @@ def draw_heights(record: xr.Dataset, hold: float) -> Figure:
             _lay_heights(ax, record, begin, stop)
             for key in ("height_crawl", "height_standing"):
                 ax.axhline(CLAIMS[key].value or 0.0, **(dict(LINES["printed"]) | {"label": None, "linewidth": 1.3}))
-            ax.set_ylim(0.0, 0.75)
+            ax.set_ylim(0.0, 1.1 * max(float(record.attrs["stretched"]), CLAIMS["height_standing"].value or 0.0))
             ax.set_xlabel("time [s]")
         for key in ("height_crawl", "height_standing"):
             value = CLAIMS[key].value or 0.0
@@ -134,7 +134,7 @@ def draw_ceiling(robot: Crocodile, record: xr.Dataset) -> Figure:
         ax.axhline(printed, **(dict(LINES["printed"]) | {"label": None}))
         ax.text(1.55, printed - 0.03, f"as printed: {printed:.2f} m", ha="right")
         ax.set_xlim(-0.4, 1.6)
-        ax.set_ylim(0.0, 0.75)
+        ax.set_ylim(0.0, 1.1 * max(bottom, printed))
         ax.set_xticks([])
         ax.set_ylabel("height [m]")
         ax.set_title("all in one line")
@@ -146,14 +146,19 @@ def draw_ceiling(robot: Crocodile, record: xr.Dataset) -> Figure:
         )
         ax.set_xlabel("centre of mass behind the feet [mm]")
         ax.set_ylabel("reach [m]")
-        ax.set_ylim(0.655, 0.70)
+        shown = [printed, *record.ceiling.values, *record.lead_reach.values[np.isfinite(record.lead_reach.values)]]
+        ax.set_ylim(min(shown) - 0.01, max(shown) + 0.01)
         ax.set_title("what a safe stand costs")
         ax.legend(loc="lower left")
+    line = sum(length for name, length, _ in lengths if name != "sole")
+    chosen = (
+        f"; the head, which the article does not give, was chosen so that they sum up to the printed {printed:g} m"
+        if abs(line - printed) <= CLAIMS["height_standing"].rounding
+        else f", {line:.3f} m without the sole; dashed, the printed {printed:g} m"
+    )
     return captioned(
         figure,
-        "Why the printed height is the greatest there is. Left: hind leg, spine and head in one line; the head, which "
-        "the article does not give, was chosen so that they sum up to the "
-        f"printed {printed:g} m. Right: the greatest height "
+        f"What the height is made of. Left: hind leg, spine and head in one line{chosen}. Right: the greatest height "
         "of the snout over the distance of the centre of mass behind the feet, torques aside, and what is simulated.",
     )
 
@@ -199,7 +204,7 @@ def draw_pushes(record: xr.Dataset, commanded: float) -> Figure:
                 )
         ax.set_xlabel("centre of mass behind the feet [mm]")
         ax.set_ylabel("smallest push that topples [N]")
-        ax.set_title("the farther behind, the safer")
+        ax.set_title("over the distance behind the feet")
         ax.set_ylim(bottom=0.0)
         ax.legend(loc="upper left")
     return captioned(

@@ -1,4 +1,7 @@
-"""How a claim fares over many designs and gaits: its number, what it follows, its border."""
+"""How claims fare over many designs and gaits: the shares in which they hold; of one, its number and its border."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -10,9 +13,53 @@ from scipy import stats
 from suchus.figures.style import COLOURS, captioned, panels, styled
 from suchus.metrics.decisive import SURE
 from suchus.paper import CLAIMS
+from suchus.verdict.shares import ROBUST
 
 _TRUE, _FALSE = "#0072B2", "#D55E00"
 _SHOWN = 8
+
+
+def draw_shares(
+    rows: Sequence[Mapping[str, Any]],
+    turned: Mapping[str, str],
+    shipped: Mapping[str, tuple[float, float, float]] | None = None,
+) -> Figure:
+    """Draw in which share of the designs each claim holds, with its 95 % interval, and what turns it.
+
+    Args:
+        rows: ``claim``, ``true`` and ``interval`` of each [-].
+        turned: what to write beside a claim, by claim.
+        shipped: share and interval of the same claims in another, larger sample [-].
+    """
+    with styled():
+        figure, axes = panels(1, 1, width=11.5, height=1.3 + 0.42 * len(rows))
+        ax, apart = axes[0, 0], 0.16 if shipped else 0.0
+        for sure in ((0, 100 * (1 - ROBUST)), (100 * ROBUST, 100)):
+            ax.axvspan(*sure, color=COLOURS["grid"], alpha=0.6, linewidth=0, zorder=0)
+        for i, row in enumerate(reversed(rows)):
+            of = [(i + apart, (row["true"], *row["interval"]), "ours", "o", "this run")]
+            if shipped and row["claim"] in shipped:
+                of.append((i - apart, shipped[row["claim"]], "printed", "D", "shipped table"))
+            for y, told, colour, mark, label in of:
+                share, low, high = (100 * x for x in told)
+                style = {"color": COLOURS[colour], "label": label if i == len(rows) - 1 and shipped else None}
+                ax.plot([low, high], [y, y], color=COLOURS[colour], linewidth=2.2, alpha=0.5)
+                ax.plot(share, y, mark, markersize=6, **style)
+            if row["claim"] in turned:
+                ax.text(102, i, turned[row["claim"]], va="center", fontsize=10)
+        ax.set_yticks(range(len(rows)), [row["claim"].replace("_", " ") for row in reversed(rows)], fontsize=11)
+        ax.set_xlim(0, 100)
+        ax.set_ylim(-0.6, len(rows) - 0.4)
+        ax.set_xlabel("designs and gaits in which the statement holds [%]")
+        ax.grid(False, axis="y")
+        if shipped:
+            ax.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2)
+    return captioned(
+        figure,
+        "In which share of the plausible designs and gaits the statement of each claim holds, with 95 % intervals. In "
+        f"the grey bands at least {ROBUST:.0%} of the designs agree; beside other claims stands the free number that "
+        "best tells where the statement holds, and on which side, where one does beyond chance.",
+    )
 
 
 def draw_claim(record: xr.Dataset, claim: str) -> Figure:
@@ -70,7 +117,7 @@ def _short(claim: str) -> str:
     if claim.startswith("fault_") and CLAIMS[claim].value is not None:
         return "change of displacement"
     short = {
-        "displacement_ratio": "way with spine and tail / limbs only",
+        "displacement_ratio": "displacement, spine and tail / limbs only",
         "com_fluctuation": "std of height, spine and tail / limbs only",
         "fault_tolerance": "faults better borne with spine and tail",
     }
@@ -81,7 +128,7 @@ def _correlations(ax: Axes, told: xr.Dataset, samples: int) -> None:
     order = np.argsort(-abs(told.correlation.values))[:_SHOWN][::-1]
     values = told.correlation.values[order]
     ax.barh(range(len(order)), values, color=[_TRUE if v > 0 else _FALSE for v in values], height=0.65)
-    ax.set_yticks(range(len(order)), [_plain(str(told.parameter.values[i])) for i in order], fontsize=10)
+    ax.set_yticks(range(len(order)), [spoken(str(told.parameter.values[i])) for i in order], fontsize=10)
     limit = _chance(samples, told.sizes["parameter"])
     ax.axvspan(-limit, limit, color="#BBBBBB", alpha=0.45, linewidth=0, zorder=3)
     ax.axvline(0.0, color="#555555", linewidth=0.9)
@@ -99,7 +146,8 @@ def _chance(samples: int, parameters: int) -> float:
     return float(t / np.sqrt(samples - 2 + t**2))
 
 
-def _plain(parameter: str) -> str:
+def spoken(parameter: str) -> str:
+    """Return how a free number is called for people: ``gait.lift`` as ``lift (gait)``."""
     of, _, name = parameter.partition(".")
     words = name.replace("_", " ").replace(".", ", ")
     return words if of == "robot" else f"{words} (gait)"
@@ -125,4 +173,4 @@ def _plane(ax: Axes, told: xr.Dataset, there: np.ndarray, holds: np.ndarray) -> 
         ax.set_title("no border within the ranges")
     ax.xaxis.set_major_locator(MaxNLocator(4))
     for axis, i in ((ax.set_xlabel, first), (ax.set_ylabel, second)):
-        axis(f"{_plain(str(told.parameter.values[i]))} [{told.parameter_unit.values[i]}]")
+        axis(f"{spoken(str(told.parameter.values[i]))} [{told.parameter_unit.values[i]}]")

@@ -6,10 +6,11 @@ from typing import NamedTuple
 import numpy as np
 from scipy.spatial import ConvexHull
 
-from suchus.design import LEGS, Crocodile
+from suchus.design import LEGS, AnyRobot, Crocodile, Layout, layout
 from suchus.skin.head import JAW_AROUND
 from suchus.skin.legs import LEG_AROUND
 from suchus.skin.look import SKIN
+from suchus.skin.plain import AROUND
 from suchus.skin.surface import Skin, skin
 
 
@@ -19,16 +20,16 @@ class Silhouette(NamedTuple):
     body: np.ndarray
     """Snout to tail tip."""
     jaw: np.ndarray
-    """The lower jaw."""
+    """The lower jaw; empty for a plain body."""
     scutes: list[np.ndarray]
     """Plates and crests, those of the midline first."""
     eyes: list[np.ndarray]
     """Left and right."""
     legs: list[list[np.ndarray]]
-    """In the order of ``LEGS``: convex pieces from haunch to claws that overlap; together they are the leg."""
+    """In the order of the robot's limbs: convex pieces from haunch to claws that overlap; together they are the leg."""
 
 
-def silhouette(robot: Crocodile, vertices: np.ndarray, axes: tuple[int, int]) -> Silhouette:
+def silhouette(robot: AnyRobot, vertices: np.ndarray, axes: tuple[int, int]) -> Silhouette:
     """Return the silhouette of a posed skin.
 
     Args:
@@ -40,6 +41,8 @@ def silhouette(robot: Crocodile, vertices: np.ndarray, axes: tuple[int, int]) ->
     starts = np.flatnonzero(np.diff(surface.part, prepend=-1))
     parts = np.split(flat, starts[1:])
     sizes = np.array([len(part) for part in parts])
+    if not isinstance(robot, Crocodile):
+        return _plain(layout(robot), surface, starts, parts)
     legs: list[list[np.ndarray]] = [[], [], [], []]
     names = _owners(surface, starts)
     for part, owner in zip(parts, names, strict=True):
@@ -53,6 +56,22 @@ def silhouette(robot: Crocodile, vertices: np.ndarray, axes: tuple[int, int]) ->
         jaw=_sides(axial[1], JAW_AROUND),
         scutes=[_hull(part[[0, 2, 4, 6, 8]]) for part in spikes],  # every other corner, and the apex
         eyes=[_hull(part) for part in eyes],
+        legs=legs,
+    )
+
+
+def _plain(place: Layout, surface: Skin, starts: np.ndarray, parts: list[np.ndarray]) -> Silhouette:
+    """Return the silhouette of a plain body: its hide, its eyes, and the hulls of its limbs' links and feet."""
+    legs: list[list[np.ndarray]] = [[] for _ in place.limbs]
+    for start, part in zip(starts[3:], parts[3:], strict=True):
+        bone = int(surface.indices[start, 0])
+        owner = next(i for i, limb in enumerate(place.limbs) if limb.tip >= bone)
+        legs[owner].append(_hull(part))
+    return Silhouette(
+        body=_sides(parts[0], AROUND),
+        jaw=np.empty((0, 2)),
+        scutes=[],
+        eyes=[_hull(part) for part in parts[1:3]],
         legs=legs,
     )
 

@@ -6,6 +6,7 @@ a dash pattern of its own as well, so that a print in grey still reads.
 
 from collections.abc import Mapping
 from contextlib import AbstractContextManager
+from io import BytesIO
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Final
@@ -14,6 +15,9 @@ import matplotlib as mpl
 import numpy as np
 from cycler import cycler
 from matplotlib.figure import Figure
+
+from suchus.design import LEGS, AnyRobot, layout
+from suchus.record import new_file
 
 COLOURS: Final[Mapping[str, str]] = MappingProxyType(
     {
@@ -39,6 +43,16 @@ COLOURS: Final[Mapping[str, str]] = MappingProxyType(
     }
 )
 """Colour of each role: the four arms, ours and the article's, the legs, spine and tail."""
+
+_MORE: Final = ("#009E73", "#B0558A", "#56B4E9", "#E69F00", "#767676", "#333333")
+
+
+def limb_colours(robot: AnyRobot) -> list[tuple[str, str]]:
+    """Return each limb of a robot with its colour: those of the article's legs, then others in turn."""
+    names = layout(robot).limb_names
+    spare = iter(_MORE * (len(names) // len(_MORE) + 1))
+    return [(name, COLOURS[name] if name in LEGS else next(spare)) for name in names]
+
 
 LINES: Final[Mapping[str, Mapping[str, Any]]] = MappingProxyType(
     {
@@ -151,10 +165,17 @@ def caption(figure: Figure) -> str:
 
 
 def save(figure: Figure, folder: Path, stem: str) -> tuple[Path, Path]:
-    """Write a figure as SVG and as PNG and return both paths; equal figures give equal bytes."""
+    """Write a figure as SVG and as PNG and return both paths; equal figures give equal bytes.
+
+    Raises:
+        Unwritable: the place cannot be written to.
+    """
     svg, png = folder / f"{stem}.svg", folder / f"{stem}.png"
     about = {"Date": None, "Creator": None, "Description": caption(figure)}
     with styled(svg__hashsalt=stem):
-        figure.savefig(svg, format="svg", metadata=about)
-        figure.savefig(png, format="png", metadata={"Software": None})
+        for path, kind, metadata in ((svg, "svg", about), (png, "png", {"Software": None})):
+            drawn = BytesIO()
+            figure.savefig(drawn, format=kind, metadata=metadata)
+            with new_file(path) as draft:
+                draft.write_bytes(drawn.getvalue())
     return svg, png

@@ -1,12 +1,14 @@
 """Pictures of the cable-driven tail."""
 
+import matplotlib as mpl
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 
-from suchus.figures.style import COLOURS, captioned, panels, styled
+from suchus.figures.style import COLOURS, SEQUENTIAL, captioned, panels, styled
+from suchus.metrics import tail_joint_spread
 
 _MM = 1000.0
 _OURS, _PRINTED, _ALARM = COLOURS["ours"], COLOURS["printed"], COLOURS["alarm"]
@@ -114,4 +116,41 @@ def tail_cords(record: xr.Dataset) -> Figure:
         figure,
         "Cords and servo of the tail. Left: change in length of both cords over all joints, exact and shortened. "
         "Right: how far the wheel turns.",
+    )
+
+
+def tail_joints(record: xr.Dataset, alike: float) -> Figure:
+    """Return the angles of the cable joints over time in both crawls, and how far they differ.
+
+    Args:
+        record: ``crawl_angle`` over crawl, time and joint [rad].
+        alike: joints that differ by no more count as turned alike [rad].
+    """
+    names = {"gait": "spine and tail", "straight": "trunk straight"}
+    count = record.sizes["joint"]
+    spread = tail_joint_spread(record.crawl_angle, [str(name) for name in record.joint.values])
+    with styled():
+        figure, axes = panels(2, 2, width=10.0, height=5.4, sharex=True, sharey="row", height_ratios=[1.6, 1])
+        for column, (crawl, name) in zip(axes.T, names.items(), strict=True):
+            above, below = column
+            for i, joint in enumerate(record.joint.values):
+                shade = mpl.colormaps[SEQUENTIAL](0.05 + 0.85 * i / max(count - 1, 1))
+                angle = np.degrees(record.crawl_angle.sel(crawl=crawl, joint=joint))
+                above.plot(record.time, angle, color=shade, linewidth=1.4, label=f"joint {i + 1}")
+            above.set_title(name)
+            below.plot(record.time, np.degrees(spread.sel(crawl=crawl)), color=_ALARM)
+            below.axhline(np.degrees(alike), color=COLOURS["neutral"], linewidth=1.2, linestyle=":")
+            below.set_xlabel("time [s]")
+        axes[0, 0].set_ylabel("angle of the joint [deg]")
+        axes[1, 0].set_ylabel("difference [deg]")
+        axes[1, 0].set_ylim(bottom=0.0)
+        if count <= 8:
+            figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=count)
+    shares = [float((spread.sel(crawl=crawl) > alike).mean()) for crawl in names]
+    return captioned(
+        figure,
+        "Whether all joints of the tail turn alike, as the formulas of III.C have it. Above: their angles in the "
+        "crawl, from the root (1) to the tip, with spine and tail and with the trunk straight. Below: the greatest "
+        f"difference between two of them; it is beyond the dotted {np.degrees(alike):.0f} degrees for "
+        f"{shares[0]:.0%} and {shares[1]:.0%} of the time.",
     )

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from suchus.design import Crocodile
 from suchus.figures.posture import draw_posture
 from suchus.figures.style import COLOURS, captioned, panels, styled
+from suchus.paper.animals import ANIMAL
 
 GAIT_LINES: Mapping[str, Mapping[str, Any]] = MappingProxyType(
     {
@@ -31,7 +32,7 @@ GAIT_LINES: Mapping[str, Mapping[str, Any]] = MappingProxyType(
 )
 """Colour, marker, dashes and label of each gait or arm."""
 _KINDS = {"bumps": "random bumps", "step": "a step up", "stone": "a stone in the path"}
-_ANIMALS = (0.1, 0.7)  # [m/s]; Nile crocodiles of 1.5 to 7 kg in the high walk (Michel, SICB abstract 76-8)
+_WALKING = ANIMAL["high_walk_speed"]
 
 
 def draw_speed_range(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]]) -> Figure:
@@ -56,10 +57,8 @@ def draw_speed_range(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]])
             ax.set_xticks([0.5, 1, 2, 4], ["0.5", "1", "2", "4"])
             ax.minorticks_off()
             ax.set_ylabel(label)
-        axes[0, 0].axhspan(*_ANIMALS, color="#EFE3C8", zorder=0)
-        axes[0, 0].text(
-            0.98, 0.95, "Nile crocodiles, 1.5 to 7 kg", transform=axes[0, 0].transAxes, ha="right", va="top"
-        )
+        axes[0, 0].axhspan(_WALKING.low, _WALKING.high, color="#EFE3C8", zorder=0)
+        axes[0, 0].text(0.98, 0.95, f"{_WALKING.who}, high walk", transform=axes[0, 0].transAxes, ha="right", va="top")
         axes[0, 0].set_ylim(0.0, 0.75)
         axes[0, 1].set_ylim(0.0, None)
         axes[1, 1].set_yscale("log")
@@ -69,7 +68,7 @@ def draw_speed_range(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]])
     return captioned(
         figure,
         "Every gait over its cycle time. Thin: legs whose servos lose torque with speed, whose cost includes what the "
-        "motor loses. Band: animals of the robot's size.",
+        f"motor loses. Band: what {_WALKING.who} do in the high walk.",
     )
 
 
@@ -129,9 +128,18 @@ def draw_rough(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]]) -> Fi
         figure.legend(handles, labels, loc="outside lower center", ncols=len(labels), fontsize=10)
     return captioned(
         figure,
-        "Way on rough ground, means over the seeds; crosses where some robots fell. Semi-erect legs get farthest on "
-        "most ground; erect legs need the IMU on bumps and pass higher stones.",
+        f"Way on rough ground, means over {record.sizes['seed']} seeds; crosses where some robots fell. Of those that "
+        f"keep one posture gets farthest: {_farthest(record, lines)}.",
     )
+
+
+def _farthest(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]]) -> str:
+    """Return on how many grounds each posture gets farthest, as a list in a sentence."""
+    single = [arm for arm in record.arm.values if str(arm) not in ("switching", "thrifty")]
+    best = record.forward.mean("seed").sel(arm=single).idxmax("arm").values
+    counts = {str(arm): int((best == arm).sum()) for arm in single}
+    told = [f"{lines[arm]['label']} on {count}" for arm, count in counts.items() if count]
+    return f"{', '.join(told)} of {len(best)} grounds"
 
 
 def _rough_bars(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]]) -> Figure:

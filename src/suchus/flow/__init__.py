@@ -8,10 +8,11 @@ from suchus.flow.free import FreeBody
 from suchus.flow.grid import Grid
 from suchus.flow.mass import Mass
 from suchus.flow.midline import Midline, Spine, foil
+from suchus.flow.outline import Implicit, Polygon, difference, from_outline, from_sdf, scaled, union
 from suchus.flow.pose import Glide, Motion, Oscillation, Pose
 from suchus.flow.record import Record
 from suchus.flow.setup import Setup
-from suchus.flow.shape import Cylinder, Ellipse, Field, Markers, Plate, Shape
+from suchus.flow.shape import Cylinder, Ellipse, Field, Markers, Plate, Shape, Solid
 from suchus.flow.sides import Inflow, Outflow, Periodic, Side, Sides, Slip, Stream, Wall
 from suchus.flow.signals import frequency, morison, noise, strouhal
 from suchus.flow.simulation import Simulation
@@ -24,6 +25,7 @@ __all__ = [
     "FreeBody",
     "Glide",
     "Grid",
+    "Implicit",
     "Inflow",
     "Load",
     "Markers",
@@ -34,6 +36,7 @@ __all__ = [
     "Outflow",
     "Periodic",
     "Plate",
+    "Polygon",
     "Pose",
     "Record",
     "Setup",
@@ -42,15 +45,21 @@ __all__ = [
     "Sides",
     "Simulation",
     "Slip",
+    "Solid",
     "Spine",
     "Stream",
     "Surface",
     "Wall",
     "added_mass",
+    "difference",
     "eel",
     "foil",
     "frequency",
+    "from_outline",
+    "from_sdf",
     "morison",
     "noise",
+    "scaled",
     "strouhal",
+    "union",
 ]

@@ -13,10 +13,10 @@ universal limiter).
 import numpy as np
 from numba import prange
 
-from suchus.flow.compiled import BLOCK, PAD, UNIT, compiled, threaded, unsigned
+from suchus.flow.compiled import BLOCK, PAD, UNIT, part, signed, threaded, unsigned
 
 
-@compiled
+@part
 def median(a, b, c):
     """Return the middle one of three numbers."""
     low = a if a < b else b
@@ -25,7 +25,7 @@ def median(a, b, c):
     return low if low > capped else capped
 
 
-@compiled
+@part
 def limited_quick(upstream, centre, downstream):
     """Return the face value: QUICK, kept monotone between its neighbours."""
     real = type(centre)
@@ -34,7 +34,7 @@ def limited_quick(upstream, centre, downstream):
     return median(quick, centre, median(steepest, centre, downstream))
 
 
-@compiled
+@part
 def _fluxes(flux, o, w, side, row, start, stop, dj, di, ej, ei, viscosity):
     """Write the fluxes of ``w`` through the faces before the nodes of a row to row ``o`` of ``flux``.
 
@@ -51,7 +51,7 @@ def _fluxes(flux, o, w, side, row, start, stop, dj, di, ej, ei, viscosity):
         flux[o, k] = speed * face - viscosity * (c - b)
 
 
-@compiled
+@part
 def _update_row(out, blend, base, flux, low, high, p, row, start, stop, ej, ei, dt, push, keep):
     """Write ``keep * blend + (1 - keep) * (base + dt * (net flux + push - pressure gradient))``."""
     j, low, high, take = unsigned(row), unsigned(low), unsigned(high), out.dtype.type(1.0) - keep
@@ -61,7 +61,7 @@ def _update_row(out, blend, base, flux, low, high, p, row, start, stop, ej, ei, 
         out[j, k] = keep * blend[j, k] + take * (base[j, k] + dt * rate)
 
 
-@compiled
+@part
 def _raw_row(raw, base, flux, low, high, row, start, stop, dt, push):
     """Write ``base + dt * (net flux + push)``: what the body is then immersed in."""
     j, low, high = unsigned(row), unsigned(low), unsigned(high)
@@ -69,7 +69,7 @@ def _raw_row(raw, base, flux, low, high, row, start, stop, dt, push):
         raw[j, k] = base[j, k] + dt * (flux[0, k] - flux[0, k + UNIT] + flux[low, k] - flux[high, k] + push)
 
 
-@compiled
+@part
 def _advance(out, blend, base, w, u, v, p, raw, window, j0, j1, s, e, ej, ei, dt, nu, push, keep):
     """Advance rows ``j0`` to ``j1``, columns ``s`` to ``e`` of one component ``w``, whose axis is (``ej``, ``ei``)."""
     none = UNIT - UNIT
@@ -99,7 +99,8 @@ def advance(
     ny, end = u.shape[0] - 2 * PAD, u.shape[1] - PAD
     su = PAD if periodic[0] else PAD + 1
     sv = PAD if periodic[1] else PAD + 1
-    for block in prange((ny + BLOCK - 1) // BLOCK):
+    for n in prange((ny + BLOCK - 1) // BLOCK):
+        block = signed(n)
         j0 = PAD + block * BLOCK
         j1 = min(j0 + BLOCK, PAD + ny)
         _advance(out_u, blend_u, base_u, u, u, v, p, raw_u, window, j0, j1, su, end, none, UNIT, dt, nu, push[0], keep)

@@ -1,19 +1,22 @@
 """Checkpoints: the whole state of a simulation in one file, from which it goes on to the same bytes."""
 
-from dataclasses import fields
 from hashlib import sha256
+from io import BytesIO
 from pathlib import Path
 from time import monotonic
 from typing import Protocol
-from zipfile import BadZipFile
 
 import numpy as np
 
 from suchus.errors import UnreadableFile, Unwritable
+from suchus.flow.fingerprint import fingerprint
 from suchus.flow.setup import Setup
 
-VERSION = 4
+VERSION = 5
 """Layout of the file; rises with every change of it."""
+
+MARK = b"suchus flow checkpoint %d\n" % VERSION
+"""How the file begins; after it the SHA-256 of the rest, 32 bytes, and then the rest, arrays in NumPy's ``npz``."""
 
 State = dict[str, np.ndarray]
 """What a simulation needs to go on, by name."""
@@ -33,30 +36,21 @@ class Resumable(Protocol):
         """Set all that changes."""
 
 
-def fingerprint(setup: Setup) -> str:
-    """Return what two simulations must share for one to go on from the other's checkpoint."""
-    s = setup
-    numbers = (
-        s.grid, s.viscosity, s.density, s.follow, s.follow_axes, s.courant, s.step, s.tolerance, s.precision,
-        tuple(type(getattr(s.sides, f.name)).__name__ for f in fields(s.sides)), s.sides.endless,
-        tuple((type(b).__name__, type(b.shape).__name__, b.name) for b in s.bodies),
-        None if callable(s.stream) else s.stream,
-    )  # fmt: skip
-    return sha256(repr(numbers).encode()).hexdigest()
-
-
 def save(sim: Resumable, path: Path) -> None:
     """Write the state to a file; a kill in between leaves the old file whole.
 
     Raises:
         Unwritable: naming the place.
     """
-    state = {"version": np.array(VERSION), "setup": np.array(fingerprint(sim.setup)), **sim.state()}
+    content = BytesIO()
+    np.savez(content, allow_pickle=False, setup=np.array(fingerprint(sim.setup)), **sim.state())
+    data = content.getbuffer()
     part = path.with_name(path.name + ".part")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         with part.open("wb") as file:
-            np.savez(file, allow_pickle=False, **state)
+            file.write(MARK + sha256(data).digest())
+            file.write(data)
         part.replace(path)
     except OSError as error:
         raise Unwritable(f"the checkpoint {path} cannot be written: {error.strerror}; choose another place.") from error
@@ -66,15 +60,21 @@ def load(sim: Resumable, path: Path) -> None:
     """Set the simulation to the state in a file.
 
     Raises:
-        UnreadableFile: not a checkpoint, of another version, or of another setup.
+        UnreadableFile: not a checkpoint, of another version, damaged, or of another setup.
     """
     try:
-        with np.load(path, allow_pickle=False) as file:
-            state = {key: file[key] for key in file.files}
-    except (OSError, ValueError, BadZipFile, EOFError) as error:
-        raise UnreadableFile(f"{path} is not a checkpoint ({error}); delete it to start anew.") from error
-    if "version" not in state or int(state["version"]) != VERSION:
+        data = path.read_bytes()
+    except OSError as error:
+        raise UnreadableFile(f"the checkpoint {path} cannot be read: {error.strerror}.") from error
+    if not data.startswith(MARK):
         raise UnreadableFile(f"{path} is not a checkpoint of version {VERSION}; delete it to start anew.")
+    told, content = data[len(MARK) : len(MARK) + 32], data[len(MARK) + 32 :]
+    if sha256(content).digest() != told:
+        raise UnreadableFile(
+            f"the checkpoint {path} is damaged: its checksum is not that of what it holds. Delete it to start anew."
+        )
+    with np.load(BytesIO(content), allow_pickle=False) as file:
+        state = {key: file[key] for key in file.files}
     if str(state["setup"]) != fingerprint(sim.setup):
         raise UnreadableFile(f"{path} was written by another setup; give that setup, or another file.")
     sim.resume(state)

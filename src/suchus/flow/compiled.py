@@ -7,11 +7,16 @@ them is as much as the work on 512 cells. Threads share rows in blocks of ``BLOC
 in order, so that the same bytes come out on any number of threads.
 """
 
+import sys
 from collections.abc import Callable
-from typing import ParamSpec, TypeVar
+from time import monotonic
+from typing import Generic, ParamSpec, TypeVar
 
 import numba
 import numpy as np
+from numba.core import event
+
+from suchus.flow import linking
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -28,6 +33,10 @@ PAD = 2
 unsigned = np.uint64
 """What rows and columns are counted in by the kernels."""
 
+signed = np.int64
+"""What kernels make of the number of a ``prange`` loop: numba counts on threads and without them in different types,
+and the parts would be compiled for both."""
+
 UNIT = unsigned(1)
 """One, as they count: with a signed one, numbers of rows would become floats [-]."""
 
@@ -37,13 +46,48 @@ Window = tuple[int, int, int, int]
 # No "nnan" and no "ninf": a NaN must stay visible.
 _FAST = {"contract", "reassoc", "nsz", "arcp"}
 
+_OPTIONS = {"fastmath": _FAST, "error_model": "numpy", "nogil": True, "no_cfunc_wrapper": True}
+
+linking.install()
+
+
+class _Notice(event.Listener):  # type: ignore[misc]
+    """Says on the error stream that kernels are being compiled, once that has taken ``AFTER``."""
+
+    AFTER = 2.0  # [s]
+
+    def __init__(self) -> None:
+        self._open, self._since, self._spent, self._said = 0, 0.0, 0.0, False
+
+    def on_start(self, told: event.Event) -> None:
+        """Note when a kernel begins to be compiled."""
+        if told.data["dispatcher"].py_func.__module__.startswith(__package__ or ""):
+            if self._open == 0:
+                self._since = monotonic()
+            if not self._said and self._spent > self.AFTER:
+                self._said = True
+                print(
+                    "Compiling the flow solver for this machine: once, about a minute for each precision ...",
+                    file=sys.stderr, flush=True,
+                )  # fmt: skip
+            self._open += 1
+
+    def on_end(self, told: event.Event) -> None:
+        """Add up what it took."""
+        if told.data["dispatcher"].py_func.__module__.startswith(__package__ or ""):
+            self._open -= 1
+            if self._open == 0:
+                self._spent += monotonic() - self._since
+
+
+event.register("numba:compile", _Notice())
+
 
 def _compile(function: Callable[P, R], parallel: bool) -> Callable[P, R]:
-    options = {"fastmath": _FAST, "error_model": "numpy", "nogil": True, "parallel": parallel}
     try:
-        made: Callable[P, R] = numba.njit(cache=True, **options)(function)
+        made: Callable[P, R] = numba.njit(cache=True, parallel=parallel, **_OPTIONS)(function)
     except RuntimeError:  # neither this folder nor the user's cache can be written: compile anew every time
-        made = numba.njit(**options)(function)
+        made = numba.njit(parallel=parallel, **_OPTIONS)(function)
     return made
 
 
@@ -55,3 +99,26 @@ def compiled(function: Callable[P, R]) -> Callable[P, R]:
 def threaded(function: Callable[P, R]) -> Callable[P, R]:
     """Compile ``function``, whose ``prange`` loops run on several threads."""
     return _compile(function, parallel=True)
+
+
+class Part(Generic[P, R]):
+    """A function that is compiled as a part of the kernels that call it; called from Python it is plain Python."""
+
+    def __init__(self, function: Callable[P, R], *, parallel: bool = False) -> None:
+        self.py_func = function
+        self._compiled = numba.njit(no_cpython_wrapper=True, parallel=parallel, **_OPTIONS)(function)
+        self._numba_type_ = numba.types.Dispatcher(self._compiled)
+
+    def __call__(self, *given: P.args, **named: P.kwargs) -> R:
+        """Return what the function returns."""
+        return self.py_func(*given, **named)
+
+
+def part(function: Callable[P, R]) -> Part[P, R]:
+    """Let the kernels that call ``function`` take it in."""
+    return Part(function)
+
+
+def threaded_part(function: Callable[P, R]) -> Part[P, R]:
+    """Let the kernels that call ``function`` take it in; its ``prange`` loops run on several threads."""
+    return Part(function, parallel=True)

@@ -37,7 +37,11 @@ class Load:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Surface:
-    """Pressure and friction along a body's outline."""
+    """Pressure and friction along a body's outline: where the load sits.
+
+    Both are read off the wall and are low: by 2 to 5 % in sum, and more where they peak. The peak wall vorticity of a
+    cylinder at Re 185 is 20 % low at 24 cells a diameter. For the sum take ``Record.force``, which is not.
+    """
 
     markers: Markers
     """Where."""

@@ -2,12 +2,17 @@
 
 from dataclasses import dataclass
 from math import ceil, isfinite
+from numbers import Real
 
 import numpy as np
 
 from suchus.errors import InvalidDesign
 from suchus.flow.compiled import PAD
 from suchus.flow.multigrid import COARSEST
+from suchus.kinds import misfits, show
+
+MOST = 2**16
+"""Cells along a side [-]; the fields of a square of so many would take a hundred gigabytes."""
 
 
 def _coarsest(nx: int, ny: int) -> tuple[int, int]:
@@ -23,6 +28,21 @@ def _fitting(nx: int, ny: int) -> tuple[int, int]:
         halvings += 1
     step = 2**halvings
     return step * max(4, ceil(nx / step)), step * max(4, ceil(ny / step))
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, Real) and not isinstance(value, bool) and isfinite(value)
+
+
+def check_kinds(value: object) -> None:
+    """Refuse a setting whose fields hold other kinds of things than they declare.
+
+    Raises:
+        InvalidDesign: naming all of them.
+    """
+    wrong = [f"{field} {text}" for field, text in misfits(value)]
+    if wrong:
+        raise InvalidDesign(f"{'; '.join(wrong)}.")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -41,9 +61,14 @@ class Grid:
     """Lower left corner of the domain (x, y) [m]."""
 
     def __post_init__(self) -> None:
+        check_kinds(self)
         if not (isfinite(self.cell) and self.cell > 0):
             raise InvalidDesign(f"cell is {self.cell} m; a cell has a positive side. Give the side in metres.")
+        if not all(isfinite(place) for place in self.origin):
+            raise InvalidDesign(f"the origin is {self.origin} m; two finite numbers are needed.")
         nx, ny = self.cells
+        if max(nx, ny) > MOST:
+            raise InvalidDesign(f"the grid has {show(self.cells)} cells; up to {MOST} along each side are allowed.")
         if min(nx, ny) < 8:
             raise InvalidDesign(f"the grid has {nx} x {ny} cells; at least 8 x 8 are needed.")
         if max(_coarsest(nx, ny)) > COARSEST:
@@ -60,7 +85,15 @@ class Grid:
         Raises:
             InvalidDesign: an empty rectangle or a cell that is not positive.
         """
+        ends = (x, y, (0.0, cell))
+        if not all(isinstance(end, (tuple, list)) and len(end) == 2 and all(map(_is_number, end)) for end in ends):
+            raise InvalidDesign(
+                f"the rectangle is {show(x)} x {show(y)} m and the cell {show(cell)} m; two pairs of finite "
+                "numbers and one more are needed."
+            )
         wide, high = x[1] - x[0], y[1] - y[0]
+        if cell > 0 and max(wide, high) / MOST > cell:
+            raise InvalidDesign(f"cells of {cell} m make a side of {max(wide, high) / cell:.3g}; {MOST} are allowed.")
         if not (cell > 0 and wide > 0 and high > 0):
             raise InvalidDesign(
                 f"the rectangle {x} x {y} m with cells of {cell} m is empty; give rising limits and a positive cell."

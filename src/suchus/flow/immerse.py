@@ -12,7 +12,7 @@ Source: Maertens and Weymouth 2015, Comput. Methods Appl. Mech. Eng. 283, 106-12
 import numpy as np
 from numba import prange
 
-from suchus.flow.compiled import BLOCK, compiled, threaded
+from suchus.flow.compiled import BLOCK, UNIT, compiled, part, signed, threaded, unsigned
 
 REACH = 3.0
 """Distance from the surface up to which normals and velocities are needed [cells]."""
@@ -44,7 +44,7 @@ def wall_offset(viscosity: float, fastest: float, courant: float) -> float:
     return float(0.66 * (courant * viscosity / (fastest + 4 * viscosity)) ** 0.4)
 
 
-@compiled
+@part
 def moment0(distance):
     """Return the share of the fluid at a signed distance [cells] from the surface, 0 inside to 1 outside."""
     if distance <= -1.0:
@@ -54,7 +54,7 @@ def moment0(distance):
     return 0.5 * (1.0 + distance + np.sin(np.pi * distance) / np.pi)
 
 
-@compiled
+@part
 def moment1(distance):
     """Return the first moment of the kernel at a signed distance [cells] from the surface [cells]."""
     if abs(distance) >= 1.0:
@@ -119,15 +119,17 @@ def fill_source(source, bu, bv, cx, cy, window):
             source[j, i] = (one - share) * ((bu[j, i + 1] - bu[j, i]) + (bv[j + 1, i] - bv[j, i]))
 
 
-@compiled
-def _immerse_row(out, blend, raw, low, high, b, b_low, b_high, mu0, passage, mu1_x, mu1_y, p, dt, keep):
-    take = out.dtype.type(1.0) - keep
-    for k in range(1, out.size - 1):
-        f = raw[k] - b[k]
-        slope_x = (raw[k + 1] - b[k + 1]) - (raw[k - 1] - b[k - 1])
-        slope_y = (high[k] - b_high[k]) - (low[k] - b_low[k])
-        moved = b[k] + mu0[k] * f - dt * passage[k] * p[k] + mu1_x[k] * slope_x + mu1_y[k] * slope_y
-        out[k] = keep * blend[k] + take * moved
+@part
+def _immerse_row(out, blend, raw, b, mu0, passage, mu1_x, mu1_y, p, row, start, stop, ej, ei, dt, keep):
+    j, take = unsigned(row), out.dtype.type(1.0) - keep
+    low, high = j - UNIT, j + UNIT
+    for k in range(unsigned(start), unsigned(stop)):
+        f = raw[j, k] - b[j, k]
+        slope_x = (raw[j, k + UNIT] - b[j, k + UNIT]) - (raw[j, k - UNIT] - b[j, k - UNIT])
+        slope_y = (raw[high, k] - b[high, k]) - (raw[low, k] - b[low, k])
+        rise = p[j, k] - p[j - ej, k - ei]
+        moved = b[j, k] + mu0[j, k] * f - dt * passage[j, k] * rise + mu1_x[j, k] * slope_x + mu1_y[j, k] * slope_y
+        out[j, k] = keep * blend[j, k] + take * moved
 
 
 @threaded
@@ -137,19 +139,11 @@ def immerse(out, blend, raw, b, mu0, passage, mu1_x, mu1_y, p, along, window, dt
     ``raw`` is the fluid's own update without the pressure, ``b`` the body's velocity, ``along`` 0 for u and 1 for v;
     ``out = keep * blend + (1 - keep) * (immersed - dt passage grad p)``.
     """
-    s, e = window[2], window[3]
-    rows = window[1] - window[0]
-    for block in prange((rows + BLOCK - 1) // BLOCK):
-        rise = np.empty(e - s, p.dtype)
-        for j in range(
-            max(window[0] + block * BLOCK, window[0] + 1), min(window[0] + (block + 1) * BLOCK, window[1] - 1)
-        ):
-            if along == 0:
-                rise[:] = p[j, s:e] - p[j, s - 1 : e - 1]
-            else:
-                rise[:] = p[j, s:e] - p[j - 1, s:e]
-            _immerse_row(
-                out[j, s:e], blend[j, s:e], raw[j, s:e], raw[j - 1, s:e], raw[j + 1, s:e],
-                b[j, s:e], b[j - 1, s:e], b[j + 1, s:e], mu0[j, s:e], passage[j, s:e], mu1_x[j, s:e], mu1_y[j, s:e],
-                rise, dt, keep,
-            )  # fmt: skip
+    none = UNIT - UNIT
+    ej, ei = (none, UNIT) if along == 0 else (UNIT, none)
+    rows, s, e = window[1] - window[0], window[2] + 1, window[3] - 1
+    for n in prange((rows + BLOCK - 1) // BLOCK):
+        block = signed(n)
+        first = window[0] + block * BLOCK
+        for j in range(max(first, window[0] + 1), min(first + BLOCK, window[1] - 1)):
+            _immerse_row(out, blend, raw, b, mu0, passage, mu1_x, mu1_y, p, j, s, e, ej, ei, dt, keep)

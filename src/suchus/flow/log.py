@@ -91,10 +91,18 @@ class Log:
         )  # fmt: skip
 
 
-def columns(load: Load, act: Reaction, frame: np.ndarray, place: Pose) -> list[float]:
-    """Return the ``COLUMNS`` of one body; ``frame`` is the mean velocity of the grid [m/s]."""
+def columns(load: Load, act: Reaction, frame: np.ndarray, place: Pose, error: float) -> list[float]:
+    """Return the ``COLUMNS`` of one body.
+
+    Args:
+        load: pressure and friction along its outline.
+        act: what the water did to it.
+        frame: mean velocity of the grid [m/s].
+        place: where it is.
+        error: estimated error of its force [-].
+    """
     power = act.power - float(frame @ np.array(act.force))
     return [
         *load.pressure, *load.shear, act.torque, power, *place.position, place.angle, *place.velocity, place.spin,
-        *act.force,
+        *act.force, error,
     ]  # fmt: skip

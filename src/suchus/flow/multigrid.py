@@ -16,9 +16,9 @@ Source: Briggs, Henson and McCormick 2000, A Multigrid Tutorial, SIAM.
 import numpy as np
 from numba import prange
 
-from suchus.flow.compiled import BLOCK, PAD, SERIAL_BELOW, UNIT, compiled, threaded, unsigned
+from suchus.flow.compiled import BLOCK, PAD, SERIAL_BELOW, UNIT, compiled, part, signed, threaded_part, unsigned
 from suchus.flow.patch import ONE, end, give_row, patch, start, take_coefficients
-from suchus.flow.stencil import FIRST, SECOND, apply_rows, first_row, relax_rows, seal_ends, seal_row, smooth
+from suchus.flow.stencil import FIRST, SECOND, apply_rows, copy_row, first_row, relax_rows, seal_ends, seal_row, smooth
 
 X, B, CX, CY, DINV = range(5)
 """What ``store[kind]`` holds: solution, right side, face coefficients, inverse diagonal."""
@@ -27,14 +27,14 @@ COARSEST = 32
 """Most cells along a side of the last level, which is solved by smoothing alone [-]."""
 
 
-@compiled
+@part
 def level(store, layout, kind, k):
     """Return the array of one kind on level ``k``; layout rows are (offset, ny, nx, window j0, j1, i0, i1)."""
     start, ny, nx = layout[k, 0], layout[k, 1] + 2 * PAD, layout[k, 2] + 2 * PAD
     return store[kind, start : start + ny * nx].reshape(ny, nx)
 
 
-@compiled
+@part
 def _fold(j, ny, periodic):
     """Return the row of the domain that row ``j``, which may lie beyond a wall, is a copy of."""
     if periodic:
@@ -42,7 +42,7 @@ def _fold(j, ny, periodic):
     return min(max(j, PAD), PAD + ny - 1)
 
 
-@compiled
+@part
 def _first(out, o, b, own, rect, row, periodic):
     """Write row ``row`` after the first smoothing steps to row ``o`` of ``out``."""
     first_row(out, o, 0, b, row, PAD, b.shape[1] - PAD)
@@ -50,7 +50,7 @@ def _first(out, o, b, own, rect, row, periodic):
     seal_row(out, o, periodic)
 
 
-@compiled
+@part
 def _sum_rest(coarse, coarse_row, rest, b, row):
     """Write to a coarse row what two rows of the right side have more than rows 0 and 1 of ``rest``."""
     c, j, pad = unsigned(coarse_row), unsigned(row), unsigned(PAD)
@@ -61,7 +61,7 @@ def _sum_rest(coarse, coarse_row, rest, b, row):
         coarse[c, k] = rest[0, i] + rest[0, i + UNIT]
 
 
-@compiled
+@part
 def _down(coarse, b, cx, cy, place, room, rect, j0, j1, periodic):
     """Write the summed residual after the first smoothing steps to rows ``j0`` to ``j1`` of ``coarse``."""
     ny, own = place[1], patch(room, rect, ONE)
@@ -81,7 +81,7 @@ def _down(coarse, b, cx, cy, place, room, rect, j0, j1, periodic):
         low, mid, high, top = high, top, low, mid
 
 
-@compiled
+@part
 def _add_coarse(out, o, coarse, mix, row):
     """Add to row ``o`` of ``out``, which is row ``row`` of its level, what lies bilinearly between the coarse cells."""
     near = unsigned((row - PAD) // 2 + PAD)
@@ -95,7 +95,7 @@ def _add_coarse(out, o, coarse, mix, row):
         out[o, i + UNIT] += most * mix[k] + some * mix[k + UNIT]
 
 
-@compiled
+@part
 def _up(x, b, coarse, cx, cy, dinv, place, room, rect, j0, j1, periodic):
     """Write the first smoothing steps, the coarse correction and the last two steps to rows ``j0`` to ``j1``."""
     px, py = periodic[0], periodic[1]
@@ -114,37 +114,41 @@ def _up(x, b, coarse, cx, cy, dinv, place, room, rect, j0, j1, periodic):
             continue
         low, mid, high = mid, high, low
         if j > PAD + ny and not py:
-            rows[high] = rows[mid]
+            copy_row(rows, high, rows, mid)
         else:
             here = _fold(j - 1, ny, py)
             relax_rows(rows, high, rows, a, m, z, b, cx, cy, dinv, place, here, one, px)
         if j == PAD + 1 and not py:
-            rows[mid] = rows[high]
+            copy_row(rows, mid, rows, high)
         if j >= j0 + 2:
             relax_rows(x, j - 2, rows, low, mid, high, b, cx, cy, dinv, place, j - 2, two, px)
 
 
-@threaded
+@threaded_part
 def _down_threaded(coarse, b, cx, cy, place, room, rect, periodic):
     end = coarse.shape[0] - PAD
-    for k in prange((end - PAD + BLOCK - 1) // BLOCK):
+    for n in prange((end - PAD + BLOCK - 1) // BLOCK):
+        k = signed(n)
         j0 = PAD + k * BLOCK
         _down(coarse, b, cx, cy, place, room, rect, j0, min(j0 + BLOCK, end), periodic)
 
 
-@threaded
+@threaded_part
 def _up_threaded(x, b, coarse, cx, cy, dinv, place, room, rect, periodic):
     end = x.shape[0] - PAD
-    for k in prange((end - PAD + BLOCK - 1) // BLOCK):
+    for n in prange((end - PAD + BLOCK - 1) // BLOCK):
+        k = signed(n)
         j0 = PAD + k * BLOCK
         _up(x, b, coarse, cx, cy, dinv, place, room, rect, j0, min(j0 + BLOCK, end), periodic)
 
 
-@compiled
+@part
 def _solve_coarsest(x, b, cx, cy, dinv, place, periodic):
-    y = np.empty_like(x)
+    y = np.empty(x.shape, x.dtype)
     end, wide = x.shape[0] - PAD, x.shape[1] - PAD
-    x[:] = 0
+    for j in range(x.shape[0]):
+        for i in range(x.shape[1]):
+            x[j, i] = 0
     total, live = 0.0, 0
     for j in range(PAD, end):
         for i in range(PAD, wide):
@@ -162,7 +166,7 @@ def _solve_coarsest(x, b, cx, cy, dinv, place, periodic):
         x, y = y, x
 
 
-@compiled
+@part
 def cycle(x, store, layout, room, rects, periodic):
     """Write one V-cycle for the right side ``B`` of level 0, started from nothing, to ``x``."""
     last = layout.shape[0] - 1
@@ -198,7 +202,7 @@ def cycle(x, store, layout, room, rects, periodic):
         seal_ends(out, periodic[1])
 
 
-@compiled
+@part
 def _coefficients(cx, cy, dinv, place):
     """Fill the inverse diagonal in the window; a cell with no open face gets 0."""
     small = cx.dtype.type(1e-6)
@@ -208,14 +212,14 @@ def _coefficients(cx, cy, dinv, place):
             dinv[j, i] = 1 / total if total > small else 0
 
 
-@compiled
+@part
 def _in_line(before, here, after):
     """Return the coefficient of three faces in line between the middles of two coarse cells, the outer ones halved."""
     resistance = here * after + 2 * before * after + before * here
     return 4 * before * here * after / resistance if resistance > 0 else before
 
 
-@compiled
+@part
 def _joined(one, two):
     """Return a coarse face's coefficient from those of its two fine faces and of the faces before and behind them.
 

@@ -1,4 +1,4 @@
-# mypy: disable-error-code="no-untyped-def, var-annotated"
+# mypy: disable-error-code="no-untyped-def, var-annotated, call-overload"
 # (the kernels get their types from numba, once per precision)
 """Sides that move as they would in water without end: what the vorticity in the domain induces there.
 
@@ -21,7 +21,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numba import prange
 
-from suchus.flow.compiled import PAD, Window, compiled, threaded
+from suchus.flow.compiled import PAD, UNIT, Window, part, signed, threaded, unsigned
 from suchus.flow.grid import Grid
 
 SIDE = 8
@@ -34,20 +34,20 @@ FADE = 0.25
 """Share of the domain's length over which a wake is faded before it leaves: about a wavelength of a street [-]."""
 
 
-@compiled
-def _spin_row(total, moment, v, v_left, u, u_low, arm):
-    for k in range(total.size):
-        w = (v[k] - v_left[k]) - (u[k] - u_low[k])
+@part
+def _spin_row(total, moment, u, v, row, arm):
+    j, pad = unsigned(row), unsigned(PAD)
+    for k in range(UNIT, unsigned(total.size)):
+        w = (v[j, k + pad] - v[j, k + pad - UNIT]) - (u[j, k + pad] - u[j - UNIT, k + pad])
         total[k] += w
         moment[k] += arm * w
 
 
-@compiled
-def _spread_row(block, row, b, window):
-    """Add the divergence of one row of cells in the window to the blocks of row ``b``; ``row`` is (u, v, v above)."""
-    u, v, v_high, arm = row
+@part
+def _spread_row(block, u, v, j, arm, b, window):
+    """Add the divergence of row ``j`` of cells in the window to the blocks of row ``b``."""
     for i in range(window[2], window[3]):
-        spread = np.float64((u[i + 1] - u[i]) + (v_high[i] - v[i]))
+        spread = np.float64((u[j, i + 1] - u[j, i]) + (v[j + 1, i] - v[j, i]))
         k = (i - PAD) // SIDE
         across = (i - PAD) + 0.5 - (SIDE * k + 0.5 * (SIDE - 1))
         block[0, b, k] += spread
@@ -63,12 +63,15 @@ def gather(u, v, window, block):
     in m/s per cell times cells squared. Divergence is counted in the bodies' window only.
     """
     ny, nx = u.shape[0] - 2 * PAD, u.shape[1] - 2 * PAD
-    for b in prange(block.shape[1]):
+    for n in prange(block.shape[1]):
+        b = signed(n)
         middle = SIDE * b + 0.5 * (SIDE - 1)
-        total, moment = np.zeros(nx, u.dtype), np.zeros(nx, u.dtype)
+        total, moment = np.empty(nx, u.dtype), np.empty(nx, u.dtype)
+        for k in range(nx):
+            total[k], moment[k] = 0, 0
         for c in range(max(SIDE * b, 1), min(SIDE * b + SIDE, ny)):
-            j, s, e, arm = c + PAD, PAD + 1, PAD + nx, u.dtype.type(c - middle)
-            _spin_row(total[1:], moment[1:], v[j, s:e], v[j, s - 1 : e - 1], u[j, s:e], u[j - 1, s:e], arm)
+            j, arm = c + PAD, u.dtype.type(c - middle)
+            _spin_row(total, moment, u, v, j, arm)
         for k in range(block.shape[2]):
             vortex, up, along = 0.0, 0.0, 0.0
             for i in range(SIDE * k, min(SIDE * k + SIDE, nx)):
@@ -77,10 +80,10 @@ def gather(u, v, window, block):
                 along += (i - (SIDE * k + 0.5 * (SIDE - 1))) * total[i]
             block[0, b, k], block[1, b, k], block[2, b, k], block[3, b, k] = 0.0, vortex, up, -along
         for j in range(max(SIDE * b + PAD, window[0]), min(SIDE * b + SIDE + PAD, window[1])):
-            _spread_row(block, (u[j], v[j], v[j + 1], j - PAD + 0.5 - middle), b, window)
+            _spread_row(block, u, v, j, j - PAD + 0.5 - middle, b, window)
 
 
-@compiled
+@part
 def _induced_at(x, y, place, strength, least):
     """Return the velocity that blocks at ``place`` (2, block) with ``strength`` (4, block) induce at a point."""
     u, v = 0.0, 0.0

@@ -10,7 +10,7 @@ middle. (The velocity of the nearest outline point is not, and the force then ju
 import numpy as np
 from numba import prange
 
-from suchus.flow.compiled import compiled, threaded
+from suchus.flow.compiled import compiled, part, signed, threaded
 
 ROWS = 16
 """Rows of points that one thread paints at a time [-]."""
@@ -29,7 +29,7 @@ def distance_to_edge(px, py, ax, ay, bx, by):
     return dx * dx + dy * dy, share
 
 
-@compiled
+@part
 def _paint_edge(square, edge, share, rows, k, ax, ay, bx, by, x0, y0, h, reach):
     """Keep edge ``k`` at the points of the rows (first, end) that no other edge is nearer to."""
     j0 = max(int(np.ceil((min(ay, by) - reach - y0) / h)), rows[0])
@@ -47,7 +47,7 @@ def _paint_edge(square, edge, share, rows, k, ax, ay, bx, by, x0, y0, h, reach):
                 share[j, i] = f
 
 
-@compiled
+@part
 def _wind_edge(winding, ax, ay, bx, by, x0, y0, h):
     """Note on every row that the edge crosses, at the first point right of it, which way it crosses."""
     ny, nx = winding.shape
@@ -62,7 +62,7 @@ def _wind_edge(winding, ax, ay, bx, by, x0, y0, h):
             winding[j, i] += way
 
 
-@compiled
+@part
 def find_section(px, py, start, sx, sy, tx, ty):
     """Return the segment of the midline whose cross-section holds the point, and where along it, 0 to 1."""
     last = sx.size - 2
@@ -81,7 +81,7 @@ def find_section(px, py, start, sx, sy, tx, ty):
     return k, min(max(share, 0.0), 1.0)
 
 
-@compiled
+@part
 def section_velocity(px, py, k, f, spine, width_rate):
     """Return the velocity that the cross-section carries to a point.
 
@@ -113,7 +113,7 @@ def ring(spine):
     return out
 
 
-@compiled
+@part
 def _paint_row(out, j, square, edge, share, winding, outline, spine, width_rate, tx, ty, x0, y0, h):
     """Write what ``paint`` returns for one row of points, whose nearest edges are known."""
     count, n = outline.shape[1], spine.shape[1]
@@ -146,26 +146,15 @@ def _paint_row(out, j, square, edge, share, winding, outline, spine, width_rate,
 
 
 @threaded
-def paint(spine, width_rate, x0, y0, h, nx, ny, reach):
-    """Return distance, normal (x, y), velocity (x, y) and thickness on the window, shape (6, ny, nx).
-
-    The thickness is that of the cross-section one cell inside the nearest point of the outline: near the blunt
-    nose it is large, along a tail it is the tail's.
-    """
-    outline = ring(spine)
-    count = outline.shape[1]
-    tx, ty = np.cos(spine[2]), np.sin(spine[2])
-    square = np.full((ny, nx), reach * reach)
-    edge = np.full((ny, nx), -1, np.int32)
-    share = np.zeros((ny, nx))
-    winding = np.zeros((ny, nx), np.int32)
-    out = np.zeros((6, ny, nx))
-    out[5] = np.inf
+def _paint(out, square, edge, share, winding, outline, spine, width_rate, tx, ty, x0, y0, h, reach):
+    """Paint ``out``, row by row; the other arrays of its shape are room."""
+    count, ny = outline.shape[1], square.shape[0]
     for k in range(count):
         m = (k + 1) % count
         if outline[1, k] != outline[1, m]:
             _wind_edge(winding, outline[0, k], outline[1, k], outline[0, m], outline[1, m], x0, y0, h)
-    for block in prange((ny + ROWS - 1) // ROWS):
+    for n in prange((ny + ROWS - 1) // ROWS):
+        block = signed(n)
         rows = block * ROWS, min((block + 1) * ROWS, ny)
         for k in range(count):
             m = (k + 1) % count
@@ -174,13 +163,33 @@ def paint(spine, width_rate, x0, y0, h, nx, ny, reach):
                 _paint_edge(square, edge, share, rows, k, ax, ay, bx, by, x0, y0, h, reach)
         for j in range(rows[0], rows[1]):
             _paint_row(out, j, square, edge, share, winding, outline, spine, width_rate, tx, ty, x0, y0, h)
+
+
+def paint(
+    spine: np.ndarray, width_rate: np.ndarray, x0: float, y0: float, h: float, nx: int, ny: int, reach: float
+) -> np.ndarray:
+    """Return distance, normal (x, y), velocity (x, y) and thickness on the window, shape (6, ny, nx).
+
+    The thickness is that of the cross-section one cell inside the nearest point of the outline: near the blunt
+    nose it is large, along a tail it is the tail's.
+    """
+    outline, headings = ring(spine), spine[2]
+    square, edge = np.full((ny, nx), reach * reach), np.full((ny, nx), -1, np.int32)
+    share, winding = np.zeros((ny, nx)), np.zeros((ny, nx), np.int32)
+    out = np.zeros((6, ny, nx))
+    out[5] = np.inf
+    _paint(out, square, edge, share, winding, outline, spine, width_rate, np.cos(headings), np.sin(headings), x0, y0, h,
+           reach)  # fmt: skip
     return out
 
 
 @compiled
 def sections(point, guess, spine, width_rate):
     """Return velocity (x, y) and turning rate of the cross-sections that hold the points, shape (3, point)."""
-    tx, ty = np.cos(spine[2]), np.sin(spine[2])
+    n = spine.shape[1]
+    tx, ty = np.empty(n), np.empty(n)
+    for k in range(n):
+        tx[k], ty[k] = np.cos(spine[2, k]), np.sin(spine[2, k])
     out = np.empty((3, point.shape[1]))
     for m in range(point.shape[1]):
         px, py = point[0, m], point[1, m]

@@ -9,8 +9,8 @@ that a smoothing step is one long loop; the cells at the rim keep their value, b
 
 import numpy as np
 
-from suchus.flow.compiled import PAD, UNIT, compiled, unsigned
-from suchus.flow.stencil import FIRST, SECOND, first_row, relax_patch
+from suchus.flow.compiled import PAD, UNIT, part, unsigned
+from suchus.flow.stencil import FIRST, SECOND, copy_row, first_row, relax_patch
 
 ONE, TWO, RIGHT, FACE_X, FACE_Y, INVERSE = range(6)
 """What ``room[kind]`` holds: solution, its second copy, right side, face coefficients, inverse diagonal."""
@@ -42,14 +42,14 @@ def room_for(room: np.ndarray, patches: np.ndarray) -> np.ndarray:
     return room if size <= room.shape[1] else np.zeros((6, size + size // 4), room.dtype)
 
 
-@compiled
+@part
 def patch(room, rect, kind):
     """Return what the room holds of one kind for one patch, shape (row, column)."""
     high, wide = rect[2] - rect[1], rect[4] - rect[3]
     return room[kind, rect[0] : rect[0] + high * wide].reshape(high, wide)
 
 
-@compiled
+@part
 def _take(to, rect, a):
     """Copy a patch from an array of its level to the room."""
     for j in range(unsigned(to.shape[0])):
@@ -57,22 +57,24 @@ def _take(to, rect, a):
             to[j, i] = a[j + unsigned(rect[1]), i + unsigned(rect[3])]
 
 
-@compiled
+@part
 def take_coefficients(room, rect, cx, cy, dinv):
     """Copy the coefficients of a patch from its level to the room."""
     _take(patch(room, rect, FACE_X), rect, cx)
     _take(patch(room, rect, FACE_Y), rect, cy)
     inverse = patch(room, rect, INVERSE)
     _take(inverse, rect, dinv)
-    inverse[:, 0] = 0
-    inverse[:, -1] = 0
+    for j in range(inverse.shape[0]):
+        inverse[j, 0] = 0
+        inverse[j, inverse.shape[1] - 1] = 0
 
 
-@compiled
+@part
 def _relax(room, rect, first, second):
     x, y = patch(room, rect, ONE), patch(room, rect, TWO)
     wide = x.shape[1]
-    y[0], y[-1] = x[0], x[-1]
+    copy_row(y, 0, x, 0)
+    copy_row(y, y.shape[0] - 1, x, x.shape[0] - 1)
     x, y, b = x.reshape(-1), y.reshape(-1), patch(room, rect, RIGHT).reshape(-1)
     cx, cy = patch(room, rect, FACE_X).reshape(-1), patch(room, rect, FACE_Y).reshape(-1)
     dinv = patch(room, rect, INVERSE).reshape(-1)
@@ -81,7 +83,7 @@ def _relax(room, rect, first, second):
         relax_patch(x, y, b, cx, cy, dinv, wide, second)
 
 
-@compiled
+@part
 def start(room, rect, b):
     """Write the first smoothing steps on a patch to the room; at its rim they are those without a body."""
     _take(patch(room, rect, RIGHT), rect, b)
@@ -91,7 +93,7 @@ def start(room, rect, b):
     _relax(room, rect, room.dtype.type(FIRST), room.dtype.type(SECOND))
 
 
-@compiled
+@part
 def end(room, rect, x):
     """Smooth ``x`` on a patch."""
     own = patch(room, rect, ONE)
@@ -101,7 +103,7 @@ def end(room, rect, x):
         give_row(x, j, own, rect, j)
 
 
-@compiled
+@part
 def give_row(out, o, own, rect, row):
     """Copy row ``row`` of a patch's solution, but for its rim, to row ``o`` of ``out``; it may not have that row."""
     if rect[1] < row < rect[2] - 1:

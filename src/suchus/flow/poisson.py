@@ -13,9 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 from numba import prange
 
-from suchus.flow.compiled import BLOCK, PAD, compiled, threaded, unsigned
+from suchus.flow.compiled import BLOCK, PAD, compiled, part, signed, threaded_part, unsigned
 from suchus.flow.multigrid import CX, CY, DINV, B, X, cycle, level
-from suchus.flow.stencil import LANES, apply_rows, largest_size, seal_row
+from suchus.flow.stencil import LANES, apply_rows, copy_row, largest_size, seal_row
 
 PARALLEL = 1e-3
 """Share of (z, A z) that must be left once z is orthogonal to the last direction: with less it stays as it is [-]."""
@@ -33,7 +33,7 @@ PATIENCE = 15
 """... so many may pass [-]."""
 
 
-@compiled
+@part
 def _dots(z, az, r, d, row):
     """Return (z, A z), (d, A z), (r, z) and (r, d) of a row; the last is nearly nothing, so r's sums are double."""
     zero, j = z.dtype.type(0.0), unsigned(row)
@@ -46,32 +46,33 @@ def _dots(z, az, r, d, row):
     return own, old, gain, left
 
 
-@threaded
+@threaded_part
 def _measure(z, r, d, cx, cy, place, sums):
     """Write the row sums of (z, A z), (d, A z), (r, z) and (r, d)."""
     end = z.shape[0] - PAD
-    for block in prange((end - PAD + BLOCK - 1) // BLOCK):
+    for n in prange((end - PAD + BLOCK - 1) // BLOCK):
+        block = signed(n)
         az = np.empty((1, z.shape[1]), z.dtype)
         for j in range(PAD + block * BLOCK, min(PAD + (block + 1) * BLOCK, end)):
             apply_rows(az, 0, z, j - 1, j, j + 1, cx, cy, place, j)
             sums[j, 0], sums[j, 1], sums[j, 2], sums[j, 3] = _dots(z, az, r, d, j)
 
 
-@compiled
+@part
 def _mix(out, o, z, d, row, a, b):
     o, j = unsigned(o), unsigned(row)
     for k in range(unsigned(z.shape[1])):
         out[o, k] = a * z[j, k] + b * d[j, k]
 
 
-@compiled
+@part
 def _rise(x, e, row, alpha):
     j = unsigned(row)
     for k in range(unsigned(x.shape[1])):
         x[j, k] += alpha * e[j, k]
 
 
-@compiled
+@part
 def _lower(r, row, q, alpha):
     """Subtract ``alpha`` times the one row of ``q`` from a row of ``r``; return its summed size."""
     total, j = r.dtype.type(0.0), unsigned(row)
@@ -81,11 +82,12 @@ def _lower(r, row, q, alpha):
     return total
 
 
-@threaded
+@threaded_part
 def _first_step(r, z, cx, cy, place, alpha, periodic, sums):
     """Write ``r -= alpha A z`` and the row sums of |r| and largest |r|."""
     end = z.shape[0] - PAD
-    for block in prange((end - PAD + BLOCK - 1) // BLOCK):
+    for n in prange((end - PAD + BLOCK - 1) // BLOCK):
+        block = signed(n)
         q, top = np.empty((1, z.shape[1]), z.dtype), np.empty(LANES, z.dtype)
         for j in range(PAD + block * BLOCK, min(PAD + (block + 1) * BLOCK, end)):
             apply_rows(q, 0, z, j - 1, j, j + 1, cx, cy, place, j)
@@ -94,11 +96,12 @@ def _first_step(r, z, cx, cy, place, alpha, periodic, sums):
             seal_row(r, j, periodic)
 
 
-@threaded
+@threaded_part
 def _step(r, z, d, cx, cy, place, alpha, beta, periodic, sums):
     """Write ``r -= alpha A (z + beta d)`` and the row sums of |r| and largest |r|."""
     end, one = z.shape[0] - PAD, z.dtype.type(1.0)
-    for block in prange((end - PAD + BLOCK - 1) // BLOCK):
+    for n in prange((end - PAD + BLOCK - 1) // BLOCK):
+        block = signed(n)
         q, top = np.empty((1, z.shape[1]), z.dtype), np.empty(LANES, z.dtype)
         rows = np.empty((3, z.shape[1]), z.dtype)
         low, mid, high = 0, 1, 2
@@ -114,17 +117,34 @@ def _step(r, z, d, cx, cy, place, alpha, beta, periodic, sums):
                 seal_row(r, c, periodic)
 
 
-@threaded
+@threaded_part
 def _keep(x, e, z, d, alpha, beta, before):
     """Write ``e = z + beta d`` and ``x = alpha e + before d``, or ``x += alpha e`` if ``before`` is 0."""
     one = z.dtype.type(1.0)
-    for block in prange((x.shape[0] + BLOCK - 1) // BLOCK):
+    for n in prange((x.shape[0] + BLOCK - 1) // BLOCK):
+        block = signed(n)
         for j in range(block * BLOCK, min((block + 1) * BLOCK, x.shape[0])):
             _mix(e, j, z, d, j, one, beta)
             if before != 0:
                 _mix(x, j, z, d, j, alpha, alpha * beta + before)
             else:
                 _rise(x, e, j, alpha)
+
+
+@part
+def _total(sums, column):
+    total, k = 0.0, unsigned(column)
+    for j in range(unsigned(PAD), unsigned(sums.shape[0] - PAD)):
+        total += sums[j, k]
+    return total
+
+
+@part
+def _most(sums, column):
+    most, k = 0.0, unsigned(column)
+    for j in range(unsigned(PAD), unsigned(sums.shape[0] - PAD)):
+        most = sums[j, k] if sums[j, k] > most else most
+    return most
 
 
 @compiled
@@ -142,7 +162,6 @@ def solve(x, d, q, store, layout, room, rects, periodic, sums, mean_limit, max_l
     real = store.dtype.type
     place = layout[0]
     cells = layout[0, 1] * layout[0, 2]
-    s, e = PAD, r.shape[0] - PAD
     last, alpha, beta, before = 1.0, 0.0, 0.0, 0.0
     begun, due, kept = d, False, False
     mean, largest, best, since = 0.0, 0.0, np.inf, 0
@@ -153,14 +172,14 @@ def solve(x, d, q, store, layout, room, rects, periodic, sums, mean_limit, max_l
             d, q, before, due, kept = q, d, 0.0, False, True
         cycle(d if k == 0 else z, store, layout, room, rects, periodic)
         _measure(d if k == 0 else z, r, d, cx, cy, place, sums)
-        own, old, gain = sums[s:e, 0].sum(), sums[s:e, 1].sum(), sums[s:e, 2].sum()
+        own, old, gain = _total(sums, 0), _total(sums, 1), _total(sums, 2)
         turn = 0.0 if k == 0 else -old / last
         last = own + turn * old
         if last < PARALLEL * own:
             turn, last = 0.0, own
         if not last > 0:
             break
-        alpha, beta = (gain + turn * sums[s:e, 3].sum()) / last, turn
+        alpha, beta = (gain + turn * _total(sums, 3)) / last, turn
         if k == 0:
             _first_step(r, d, cx, cy, place, real(alpha), periodic[0], sums)
             before = alpha
@@ -169,7 +188,7 @@ def solve(x, d, q, store, layout, room, rects, periodic, sums, mean_limit, max_l
             due = True
         k += 1
         told = mean, largest
-        mean, largest = sums[s:e, 0].sum() / cells, sums[s:e, 1].max()
+        mean, largest = _total(sums, 0) / cells, _most(sums, 1)
         if mean <= mean_limit and largest <= max_limit:
             break
         worst = max(mean / mean_limit, largest / max_limit)
@@ -183,7 +202,8 @@ def solve(x, d, q, store, layout, room, rects, periodic, sums, mean_limit, max_l
         return k, mean, largest, before + due * alpha * beta, due * alpha
     if due:
         _keep(x, q, z, d, real(alpha), real(beta), real(before))
-    begun[:] = x
+    for j in range(x.shape[0]):
+        copy_row(begun, j, x, j)
     return k, mean, largest, 1.0, 0.0
 
 

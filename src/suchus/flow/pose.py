@@ -59,6 +59,8 @@ class Oscillation:
     """Amplitude along x and y [m]."""
     pitch: float = 0.0
     """Amplitude of the angle [rad]."""
+    mean_angle: float = 0.0
+    """Angle about which it pitches [rad]."""
     phase: float = 0.0
     """Phase of the heave at time 0 [rad]."""
     pitch_phase: float = 0.0
@@ -73,7 +75,7 @@ class Oscillation:
                 self.centre[0] + self.heave[0] * np.sin(heave),
                 self.centre[1] + self.heave[1] * np.sin(heave),
             ),
-            angle=self.pitch * np.sin(pitch),
+            angle=self.mean_angle + self.pitch * np.sin(pitch),
             velocity=(rate * self.heave[0] * np.cos(heave), rate * self.heave[1] * np.cos(heave)),
             spin=rate * self.pitch * np.cos(pitch),
         )

@@ -2,10 +2,10 @@
 # (the kernels get their types from numba, once per precision)
 """Values of the staggered fields at points between the nodes."""
 
-from suchus.flow.compiled import compiled
+from suchus.flow.compiled import compiled, part
 
 
-@compiled
+@part
 def at(a, x, y):
     """Return the bilinear interpolation of ``a`` at padded indices (x, y), which may lie between nodes."""
     i, j = int(x), int(y)

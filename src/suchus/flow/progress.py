@@ -15,7 +15,7 @@ class Bar:
 
     def __init__(self, start: float, until: float, cells: int, *, show: bool) -> None:
         self._start, self._until, self._cells, self._show = start, until, cells, show
-        self._began, self._steps = monotonic(), 0
+        self._opened, self._began, self._steps = monotonic(), 0.0, -1
         self._progress: Progress | None = None
         self._task = TaskID(0)
 
@@ -33,8 +33,9 @@ class Bar:
     def move(self, time: float) -> None:
         """Tell that a step has ended at a time [s]."""
         self._steps += 1
-        elapsed = monotonic() - self._began
-        if not self._show or elapsed < _QUIET:
+        if self._steps == 0:  # the first step may have had kernels compiled
+            self._began = monotonic()
+        if not self._show or monotonic() - self._opened < _QUIET:
             return
         if self._progress is None:
             self._progress = Progress(
@@ -44,4 +45,5 @@ class Bar:
             )  # fmt: skip
             self._progress.start()
             self._task = self._progress.add_task("", total=self._until, speed=0.0)
-        self._progress.update(self._task, completed=time, speed=self._steps * self._cells / elapsed / 1e6)
+        speed = self._steps * self._cells / max(monotonic() - self._began, 1e-9) / 1e6
+        self._progress.update(self._task, completed=time, speed=speed)

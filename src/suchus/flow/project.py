@@ -5,11 +5,11 @@
 import numpy as np
 from numba import prange
 
-from suchus.flow.compiled import BLOCK, PAD, UNIT, compiled, threaded, unsigned
+from suchus.flow.compiled import BLOCK, PAD, UNIT, compiled, part, signed, threaded, unsigned
 from suchus.flow.stencil import LANES, largest_size, seal_row
 
 
-@compiled
+@part
 def _divergence_row(r, u, v, row, mean):
     """Write ``-div u - mean`` along a row."""
     j = unsigned(row)
@@ -17,7 +17,7 @@ def _divergence_row(r, u, v, row, mean):
         r[j, k] = (u[j, k] - u[j, k + UNIT]) + (v[j, k] - v[j + UNIT, k]) - mean
 
 
-@compiled
+@part
 def _size(r, row):
     total, j = r.dtype.type(0), unsigned(row)
     for k in range(unsigned(PAD), unsigned(r.shape[1] - PAD)):
@@ -32,7 +32,8 @@ def residual(r, u, v, source, dinv, window, mean, periodic, sums):
     Cells that lie wholly inside the body get 0: no pressure acts there.
     """
     end = u.shape[0] - PAD
-    for block in prange((end - PAD + BLOCK - 1) // BLOCK):
+    for n in prange((end - PAD + BLOCK - 1) // BLOCK):
+        block = signed(n)
         top = np.empty(LANES, u.dtype)
         for j in range(PAD + block * BLOCK, min(PAD + (block + 1) * BLOCK, end)):
             _divergence_row(r, u, v, j, mean)
@@ -60,7 +61,7 @@ def mean_residual(u, v, source, window):
     return total / ((t - s) * (b - s))
 
 
-@compiled
+@part
 def _add(out, o, d, z, row, a, b):
     o, j = unsigned(o), unsigned(row)
     if b == 0:
@@ -71,7 +72,7 @@ def _add(out, o, d, z, row, a, b):
             out[o, k] = a * d[j, k] + b * z[j, k]
 
 
-@compiled
+@part
 def _correct_plain(u, v, p, row, x, low, mid, level, gain, start, stop):
     j, low, mid = unsigned(row), unsigned(low), unsigned(mid)
     for k in range(unsigned(start), unsigned(stop)):
@@ -81,7 +82,7 @@ def _correct_plain(u, v, p, row, x, low, mid, level, gain, start, stop):
         p[j, k] += gain * (m - level)
 
 
-@compiled
+@part
 def _correct_body(u, v, p, row, x, low, mid, cx, cy, level, gain, start, stop):
     j, low, mid = unsigned(row), unsigned(low), unsigned(mid)
     for k in range(unsigned(start), unsigned(stop)):
@@ -91,7 +92,7 @@ def _correct_body(u, v, p, row, x, low, mid, cx, cy, level, gain, start, stop):
         p[j, k] += gain * (m - level)
 
 
-@compiled
+@part
 def _along_sides(x):
     """Return the mean of the outermost cells of the domain."""
     n, m = x.shape[0] - PAD - 1, x.shape[1] - PAD - 1
@@ -114,7 +115,8 @@ def correct(u, v, p, d, z, a, b, cx, cy, window, gain):
     s, e = PAD, u.shape[1] - PAD
     end = u.shape[0] - PAD
     level = u.dtype.type(a * _along_sides(d) + b * _along_sides(z))
-    for block in prange((end - PAD + BLOCK - 1) // BLOCK):
+    for n in prange((end - PAD + BLOCK - 1) // BLOCK):
+        block = signed(n)
         x = np.empty((2, u.shape[1]), u.dtype)
         low, mid = 0, 1
         first = PAD + block * BLOCK
@@ -130,7 +132,7 @@ def correct(u, v, p, d, z, a, b, cx, cy, window, gain):
             _correct_plain(u, v, p, j, x, low, mid, level, gain, f, e)
 
 
-@compiled
+@part
 def _speeds(out, u, v, row):
     j = unsigned(row)
     for k in range(unsigned(PAD), unsigned(u.shape[1] - PAD)):
@@ -143,7 +145,8 @@ def _speeds(out, u, v, row):
 def fastest(u, v, sums):
     """Write the largest |u| + |v| of every row to ``sums[:, 0]``."""
     end = u.shape[0] - PAD
-    for block in prange((end - PAD + BLOCK - 1) // BLOCK):
+    for n in prange((end - PAD + BLOCK - 1) // BLOCK):
+        block = signed(n)
         speed, top = np.empty((1, u.shape[1]), u.dtype), np.empty(LANES, u.dtype)
         for j in range(PAD + block * BLOCK, min(PAD + (block + 1) * BLOCK, end)):
             _speeds(speed, u, v, j)

@@ -4,11 +4,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from suchus.errors import UnknownName
+
 COLUMNS = (
     "pressure_x", "pressure_y", "shear_x", "shear_y", "torque", "power", "x", "y", "angle", "velocity_x", "velocity_y",
-    "spin", "force_x", "force_y",
+    "spin", "force_x", "force_y", "layer_error",
 )  # fmt: skip
-"""Values kept of each body at each step, in the order of the last axis of ``Record.bodies``."""
+"""Values kept of each body at each step, in the order of the last axis of ``Record.bodies``.
+
+``layer_error`` is the estimated error of the force, over the force, by the cells across the boundary layer; see
+``resolution``.
+"""
 
 HEAD = 5
 """Numbers at the start of a row: time, step, two counts of cycles, divergence [-]."""
@@ -31,10 +37,27 @@ class Record:
     bodies: np.ndarray
     """The ``COLUMNS`` of each body, shape (step, body, column) [N/m, N, W/m, m, rad, m/s, rad/s]."""
 
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Names of the columns that ``column`` knows."""
+        return COLUMNS
+
     def column(self, name: str, body: str | int = 0) -> np.ndarray:
-        """Return one column of one body, shape (step,)."""
-        k = self.names.index(body) if isinstance(body, str) else body
-        return self.bodies[:, k, COLUMNS.index(name)]
+        """Return one of the ``columns`` of one body, by its name or number, shape (step,).
+
+        Raises:
+            UnknownName: there is no such column or body; it lists those that there are.
+        """
+        if name not in COLUMNS:
+            raise UnknownName("column", str(name), COLUMNS)
+        return self.bodies[:, self._number(body), COLUMNS.index(name)]
+
+    def _number(self, body: str | int) -> int:
+        if isinstance(body, str) and body in self.names:
+            return self.names.index(body)
+        if isinstance(body, str) or not -len(self.names) <= body < len(self.names):
+            raise UnknownName("body", str(body), self.names or ("none",))
+        return body
 
     def force(self, body: str | int = 0) -> np.ndarray:
         """Return the force on a body, mean over each step, from the momentum it exchanges, shape (step, 2) [N/m]."""

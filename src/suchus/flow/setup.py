@@ -2,19 +2,20 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from math import isfinite, sqrt
-from typing import Literal
+from math import isfinite
+from typing import Any, Literal
 
 import numpy as np
 
 from suchus.errors import InvalidDesign
 from suchus.flow.body import Body, thin_share, window_of
 from suchus.flow.free import FreeBody, Swimmer
-from suchus.flow.grid import Grid
+from suchus.flow.grid import Grid, check_kinds
+from suchus.flow.resolution import DOUBTED, REFUSED, cells_across, estimate, needed
 from suchus.flow.shape import Markers
 from suchus.flow.sides import Sides
 
-LAYER_CELLS = 0.7
+LAYER_CELLS = needed(REFUSED)
 """Fewest cells across a boundary layer of thickness L / sqrt(Re) [-]."""
 
 
@@ -51,16 +52,19 @@ class Setup:
     precision: Literal["single", "double"] = "single"
     """Precision of the fields; sums are always double."""
     coarse: bool = False
-    """Whether a Reynolds number that the grid cannot carry is let through."""
+    """Whether a Reynolds number that the grid cannot carry is let through, without a warning."""
 
     def __post_init__(self) -> None:
+        check_kinds(self)
         for name in ("viscosity", "density", "tolerance"):
             value = getattr(self, name)
             if not (isfinite(value) and value > 0):
                 raise InvalidDesign(f"{name} is {value}; a positive number is needed.")
         if not 0 < self.courant <= 1:
             raise InvalidDesign(f"courant is {self.courant}; above 1 the time stepping explodes. Give 0 to 1, say 0.8.")
-        if self.step is not None and not self.step > 0:
+        if not callable(self.stream) and not all(isfinite(part) for part in self.stream):
+            raise InvalidDesign(f"stream is {self.stream} m/s; two finite numbers are needed.")
+        if self.step is not None and not (isfinite(self.step) and self.step > 0):
             raise InvalidDesign(f"step is {self.step} s; a time step is positive. Give None to let the solver choose.")
         if self.precision not in ("single", "double"):
             raise InvalidDesign(f"precision is {self.precision!r}; there is 'single' and 'double'.")
@@ -68,6 +72,12 @@ class Setup:
             raise InvalidDesign(
                 f"tolerance {self.tolerance} is below what single precision resolves (5e-7); take precision='double'."
             )
+        bodies: Any = self.bodies
+        if not isinstance(bodies, tuple) or not all(isinstance(b, Body | FreeBody) for b in bodies):
+            given = getattr(bodies, "__name__", type(bodies).__name__)
+            raise InvalidDesign(f"bodies is a {given}; give a tuple of Body and FreeBody, (body,) for a single one.")
+        if not callable(self.stream):
+            self._check_stream(self.stream, "")
         names = [b.name for b in self.bodies]
         if len(set(names)) != len(names):
             raise InvalidDesign(f"bodies are named {names}; give each its own name.")
@@ -81,7 +91,16 @@ class Setup:
 
     def far(self, time: float) -> tuple[float, float]:
         """Return the velocity of the far water at a time [m/s]."""
-        return self.stream(time) if callable(self.stream) else self.stream
+        if not callable(self.stream):
+            return self.stream
+        stream = self.stream(time)
+        self._check_stream(stream, f" at t = {time:.4g} s")
+        return stream
+
+    @staticmethod
+    def _check_stream(stream: Any, when: str) -> None:
+        if np.shape(stream) != (2,) or not np.isfinite(np.asarray(stream, float)).all():
+            raise InvalidDesign(f"stream is {stream}{when}; give two finite velocities (x, y) in m/s.")
 
     def check(self) -> dict[str, float]:
         """Return, per body, the share of its length that is too thin for the grid.
@@ -95,13 +114,13 @@ class Setup:
             pose = body.pose(0.0) if isinstance(body, Body) else Swimmer.of(body).pose(body.shape.mass(0.0))
             window_of(body, pose, self.grid, 0.0)
             thin[body.name] = thin_share(body, self.grid, 0.0)
-            self.check_layer(body, body.shape.markers(0.0, pose, self.grid.cell), self.far(0.0), 0.0)
+            self.layer_error(body, body.shape.markers(0.0, pose, self.grid.cell), self.far(0.0), 0.0)
         return thin
 
-    def check_layer(
+    def layer_error(
         self, body: Body | FreeBody, markers: Markers, stream: tuple[float, float], time: float, *, slack: float = 1.0
-    ) -> None:
-        """Refuse a body so fast that the grid does not carry its boundary layer.
+    ) -> float:
+        """Return the estimated error of a body's force by the cells across its boundary layer; see ``resolution``.
 
         Args:
             body: the body.
@@ -111,16 +130,28 @@ class Setup:
             slack: factor on the speed that is let through [-].
 
         Raises:
-            InvalidDesign: naming the cell that would carry it.
+            InvalidDesign: the estimate is above ``REFUSED``, naming the cell that would carry it.
         """
         length = max(float(np.ptp(markers.x)), float(np.ptp(markers.y)))
         speed = float(np.hypot(markers.velocity_x - stream[0], markers.velocity_y - stream[1]).max())
-        reynolds = speed * length / self.viscosity
-        if self.coarse or reynolds < 1 or length / sqrt(reynolds / slack) >= LAYER_CELLS * self.grid.cell:
-            return
-        layer = length / sqrt(reynolds)
-        raise InvalidDesign(
-            f"at t = {time:.4g} s and Reynolds number {reynolds:.4g} the boundary layer of {body.name} is {layer:.3g} "
-            f"m thin, and a cell is {self.grid.cell:.3g} m; take cells of at most {layer / LAYER_CELLS:.3g} m, a lower "
-            f"Reynolds number, or coarse=True to go on anyway."
+        cells = cells_across(length, speed, self.viscosity, self.grid.cell)
+        if not self.coarse and cells * slack**0.5 < LAYER_CELLS:
+            layer = cells * self.grid.cell
+            raise InvalidDesign(
+                f"at t = {time:.4g} s and Reynolds number {speed * length / self.viscosity:.4g} the boundary layer of "
+                f"{body.name} is {layer:.3g} m thin and a cell {self.grid.cell:.3g} m: its force would be off by some "
+                f"{100 * estimate(cells):.0f} %; take cells of at most {layer / LAYER_CELLS:.3g} m, better "
+                f"{layer / needed(DOUBTED):.3g} m, a lower Reynolds number, or coarse=True to go on anyway."
+            )
+        return estimate(cells)
+
+    def layer_warning(self, body: Body | FreeBody, error: float) -> str | None:
+        """Return what is to be said of an estimated error of a body's force, if anything is."""
+        if self.coarse or error <= DOUBTED:
+            return None
+        better = self.grid.cell * needed(error) / needed(DOUBTED)
+        return (
+            f"the boundary layer of {body.name} is {needed(error):.2g} cells thin: its force may be off by some "
+            f"{100 * error:.0f} %. Take cells of at most {better:.3g} m for {100 * DOUBTED:.0f} %, or coarse=True to "
+            f"hear nothing of it."
         )

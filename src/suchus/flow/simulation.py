@@ -1,17 +1,19 @@
 """A flow under way: steps, runs with progress and checkpoints, and shows its fields."""
 
 from collections.abc import Callable
+from math import isfinite
 from pathlib import Path
 
 import numba
 import numpy as np
 
 from suchus import threads
-from suchus.errors import OutsideLimits
+from suchus.errors import OutsideLimits, UnknownName
 from suchus.flow import checkpoint as store
 from suchus.flow.added import added_mass
 from suchus.flow.body import Body
 from suchus.flow.compiled import PAD
+from suchus.flow.consistency import Consistency
 from suchus.flow.fields import Fields
 from suchus.flow.force import ControlVolume, Surface, sample
 from suchus.flow.free import FreeBody, Swimmer
@@ -23,6 +25,7 @@ from suchus.flow.progress import Bar
 from suchus.flow.record import Record
 from suchus.flow.setup import Setup
 from suchus.flow.shape import Markers
+from suchus.flow.watch import EVERY, Watch
 from suchus.flow.water import Water
 
 ADDED_EVERY = 8
@@ -59,7 +62,7 @@ class Simulation(Fields):
         self.frame = np.zeros((2, 2))  # position and velocity of the grid
         self.swimmers = {b.name: Swimmer.of(b) for b in setup.bodies if isinstance(b, FreeBody)}
         self._threads = threads.count() if thread_count is None else thread_count
-        self._log = Log(setup)
+        self._log, self._watch = Log(setup), Watch(setup)
         self._last = 0.0
         self._frame_velocity_at(0.0)
         stream = self._stream(0.0)
@@ -73,12 +76,25 @@ class Simulation(Fields):
         self._peak = 2 * self._speed  # fastest water so far; beside a bluff body, twice the stream
         self.water.place(list(setup.bodies), [self._in_frame(self.pose(b.name)) for b in setup.bodies], 0.0)
         self._log.hold(self.water, outlines)
+        self._watch.layers(
+            [setup.layer_error(b, m, stream, 0.0) for b, m in zip(setup.bodies, outlines, strict=True)]
+        )  # fmt: skip
+        self._motions = [self._watched(b) for b in setup.bodies if isinstance(b, Body) and callable(b.motion)]
+
+    def _watched(self, body: Body) -> Consistency:
+        outline, pose = body.shape.markers(0.0, body.pose(0.0), self.setup.grid.cell), body.pose(0.0)
+        reach = float(np.hypot(outline.x - pose.position[0], outline.y - pose.position[1]).max())
+        motion = Consistency(body.name, body.pose, reach, self.setup.grid.cell)
+        motion.start(0.0, self.setup.step or self._limit(max(self.water.fastest(), self._speed)))
+        return motion
 
     # --- state -------------------------------------------------------------------------------------------------
 
     def pose(self, name: str, time: float | None = None) -> Pose:
         """Return the pose of a body in the world, now or (unless it is free) at another time [s]."""
-        body = next(b for b in self.setup.bodies if b.name == name)
+        body = next((b for b in self.setup.bodies if b.name == name), None)
+        if body is None:
+            raise UnknownName("body", name, [b.name for b in self.setup.bodies] or ("none",))
         if isinstance(body, Body):
             return body.pose(self.time if time is None else time)
         return self.swimmers[name].pose(body.shape.mass(self.time if time is None else time))
@@ -109,8 +125,7 @@ class Simulation(Fields):
         Raises:
             OutsideLimits: a fixed step is asked for and carries water over more than a cell.
         """
-        fastest = max(self._fastest if self._log.rows else self.water.fastest(), self._speed)
-        limit = self.setup.grid.cell / (fastest + 4 * float(self.water.nu))
+        limit = self._limit(max(self._fastest if self._log.rows else self.water.fastest(), self._speed))
         if self.setup.step is None:
             return self.setup.courant * limit
         if self.setup.step > 1.2 * limit:
@@ -121,17 +136,23 @@ class Simulation(Fields):
             )
         return self.setup.step
 
+    def _limit(self, fastest: float) -> float:
+        return self.setup.grid.cell / (fastest + 4 * float(self.water.nu))
+
     def advance(self, dt: float | None = None) -> None:
         """Advance by one step [s].
 
         Raises:
             Diverged: the fields are no longer finite or far too fast; the record's fields are the last good ones.
+            InvalidDesign: a body leaves the domain, is too fast for the grid, or its motion contradicts itself.
         """
         numba.set_num_threads(min(self._threads, numba.config.NUMBA_NUM_THREADS))
         if not self._log.rows:
             self._reference = self.water.fastest()
             self._speed = max(self._speed, self._reference, self.setup.sides.fastest(self.setup.grid))
         dt = self.next_step() if dt is None else dt
+        for motion in self._motions:
+            motion.look(self.time, dt)
         for swimmer in self.swimmers.values():
             swimmer.advance(self.time, dt, self.setup.density)
         old_frame = self.frame.copy()
@@ -148,9 +169,12 @@ class Simulation(Fields):
         markers = [
             b.shape.markers(time, p, self.setup.grid.cell) for b, p in zip(self.setup.bodies, poses, strict=True)
         ]
-        for body, outline in zip(self.setup.bodies, markers, strict=True):
-            if not body.still:
-                self.setup.check_layer(body, outline, self._stream(time), time, slack=SLACK)
+        self._watch.layers(
+            [
+                self.setup.layer_error(b, m, self._stream(time), time, slack=SLACK)
+                for b, m in zip(self.setup.bodies, markers, strict=True)
+            ]
+        )
         ahead = float(np.hypot(*self._stream(time)))
         self._speed = max([self._speed, ahead] + [_fastest_marker(m) for m in markers])  # it may just start to move
         push = tuple(-(self.frame[1] - old_frame[1]) / dt)
@@ -183,7 +207,7 @@ class Simulation(Fields):
                 swimmer.load = np.array([*act.force, act.torque])
                 if swimmer.steps % ADDED_EVERY == 1:
                     swimmer.added = added_mass(water, markers, point, setup.density, k)
-            values += columns(load, act, drift, place)
+            values += columns(load, act, drift, place, self._watch.errors[k])
             body_speed = max(body_speed, _fastest_marker(markers))
         self._peak = max(self._peak, fastest)
         self._speed = max(float(np.hypot(*water.border.stream)), body_speed, min(fastest, 10 * self._speed), 1e-12)
@@ -198,6 +222,8 @@ class Simulation(Fields):
         self._log.refuse_nonsense(fastest, self._reference, row, good)
         self._log.control(water, dt, shift)
         self._log.rows.append(row)
+        if len(self._log.rows) % EVERY == 0:
+            self._watch.sides(water, self.time)
 
     def state(self) -> store.State:
         """Return all that changes, for a checkpoint."""
@@ -247,7 +273,10 @@ class Simulation(Fields):
             Diverged: see ``advance``.
             UnreadableFile: the checkpoint is broken or belongs to another setup.
             Unwritable: the checkpoint cannot be written.
+            OutsideLimits: ``until`` is not a time.
         """
+        if not isfinite(until):
+            raise OutsideLimits(f"the run is to last until {until} s; give a finite time.")
         path = None if checkpoint is None else Path(checkpoint)
         if path is not None and path.exists():
             store.load(self, path)
@@ -267,6 +296,7 @@ class Simulation(Fields):
                     saver.save(self)
             finally:
                 saver.save(self, now=True)
+        self._watch.sides(self.water, self.time)
         return self.record
 
     def control(self, margin: float) -> None:
@@ -293,7 +323,14 @@ class Simulation(Fields):
         return self._log.record
 
     def surface(self, name: str | None = None) -> Surface:
-        """Return pressure and friction along a body's outline, positions in the frame of the grid."""
-        body = next(b for b in self.setup.bodies if name in (None, b.name))
+        """Return pressure and friction along a body's outline, positions in the frame of the grid.
+
+        Raises:
+            UnknownName: there is no such body, or none at all.
+        """
+        names = [b.name for b in self.setup.bodies]
+        if not names or name not in (None, *names):
+            raise UnknownName("body", "" if name is None else name, names or ("none",))
+        body = self.setup.bodies[0 if name is None else names.index(name)]
         pose = self._in_frame(self.pose(body.name))
         return sample(self.water, body.shape.markers(self.time, pose, self.setup.grid.cell), self.setup.density)

@@ -7,7 +7,7 @@ The coefficients differ from 1 only inside a window; everywhere else the plain s
 its number in it; ``low``, ``mid`` and ``high`` are the numbers of the row below, the row itself and the row above.
 """
 
-from suchus.flow.compiled import PAD, UNIT, compiled, unsigned
+from suchus.flow.compiled import PAD, UNIT, compiled, part, unsigned
 
 FIRST, SECOND = 0.5617, 1.3896
 """Jacobi weights: Chebyshev roots for the eigenvalues 0.5 to 2 of the scaled operator [-]."""
@@ -16,7 +16,7 @@ LANES = 16
 """Numbers that a largest is kept of side by side: one alone is not vectorised, as it could hide a NaN [-]."""
 
 
-@compiled
+@part
 def seal_row(a, row, periodic):
     """Fill the two cells beside a row's ends that the stencil reads."""
     j, n = unsigned(row), a.shape[1]
@@ -28,24 +28,33 @@ def seal_row(a, row, periodic):
         a[j, n - PAD] = a[j, n - PAD - 1]
 
 
+@part
+def copy_row(to, o, x, row):
+    """Copy row ``row`` of ``x`` to row ``o`` of ``to``.
+
+    Written out: an assignment of slices brings along numba's message for slices that do not fit, which takes longer to
+    compile than the kernels.
+    """
+    o, j = unsigned(o), unsigned(row)
+    for k in range(unsigned(x.shape[1])):
+        to[o, k] = x[j, k]
+
+
 @compiled
 def seal_ends(x, periodic):
     """Fill the row below the first and the row above the last."""
     n = x.shape[0]
-    if periodic:
-        x[PAD - 1] = x[n - PAD - 1]
-        x[n - PAD] = x[PAD]
-    else:
-        x[PAD - 1] = x[PAD]
-        x[n - PAD] = x[n - PAD - 1]
+    copy_row(x, PAD - 1, x, n - PAD - 1 if periodic else PAD)
+    copy_row(x, n - PAD, x, PAD if periodic else n - PAD - 1)
 
 
-@compiled
+@part
 def largest_size(a, row, top):
     """Return the largest absolute value of a row inside the domain; ``top`` is room for ``LANES`` numbers."""
     j, s, e = unsigned(row), unsigned(PAD), unsigned(a.shape[1] - PAD)
     lanes = unsigned(LANES)
-    top[:] = 0
+    for k in range(lanes):
+        top[k] = 0
     whole = s + (e - s) // lanes * lanes
     for i in range(s, whole, lanes):
         for k in range(lanes):
@@ -54,10 +63,13 @@ def largest_size(a, row, top):
     for i in range(whole, e):
         size = abs(a[j, i])
         top[0] = size if size > top[0] else top[0]
-    return top.max()
+    largest = top[0]
+    for k in range(UNIT, lanes):
+        largest = top[k] if top[k] > largest else largest
+    return largest
 
 
-@compiled
+@part
 def _apply_body(x, low, mid, high, cx, cy, j, k):
     m = x[mid, k]
     return (cx[j, k] * (m - x[mid, k - UNIT]) + cx[j, k + UNIT] * (m - x[mid, k + UNIT])) + (
@@ -65,7 +77,7 @@ def _apply_body(x, low, mid, high, cx, cy, j, k):
     )
 
 
-@compiled
+@part
 def apply_rows(out, o, x, low, mid, high, cx, cy, place, row):
     """Write the operator times row ``row`` of the level, which is ``mid`` in ``x``, to row ``o`` of ``out``."""
     o, low, mid, high, j = unsigned(o), unsigned(low), unsigned(mid), unsigned(high), unsigned(row)
@@ -77,7 +89,7 @@ def apply_rows(out, o, x, low, mid, high, cx, cy, place, row):
             out[o, k] = _apply_body(x, low, mid, high, cx, cy, j, k)
 
 
-@compiled
+@part
 def first_row(out, o, shift, b, row, start, stop):
     """Write two smoothing steps that start from nothing, where all coefficients are 1; ``b`` is the right side.
 
@@ -93,7 +105,7 @@ def first_row(out, o, shift, b, row, start, stop):
         out[o, k - shift] = own * b[j, k] + near * around
 
 
-@compiled
+@part
 def relax_rows(out, o, x, low, mid, high, b, cx, cy, dinv, place, row, weight, periodic):
     """Write one Jacobi step of row ``row`` of the level, which is ``mid`` in ``x``, to row ``o`` of ``out``."""
     o, low, mid, high, j = unsigned(o), unsigned(low), unsigned(mid), unsigned(high), unsigned(row)
@@ -109,14 +121,14 @@ def relax_rows(out, o, x, low, mid, high, b, cx, cy, dinv, place, row, weight, p
     seal_row(out, o, periodic)
 
 
-@compiled
+@part
 def smooth(out, x, b, cx, cy, dinv, place, weight, periodic):
     """Write one Jacobi step from ``x`` to ``out``."""
     for j in range(PAD, x.shape[0] - PAD):
         relax_rows(out, j, x, j - 1, j, j + 1, b, cx, cy, dinv, place, j, weight, periodic)
 
 
-@compiled
+@part
 def relax_patch(out, x, b, cx, cy, dinv, width, weight):
     """Write one Jacobi step from ``x`` to ``out`` on a small array whose rows of ``width`` cells lie end to end.
 

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import Crocodile
+from suchus.design import AnyRobot, crocodile
 from suchus.design.checks import require
 from suchus.errors import OutsideLimits
 from suchus.hardware.servo_map import ServoMap
@@ -25,7 +25,7 @@ class Commands(NamedTuple):
     """What the map makes of the angles [us]."""
 
 
-def commands(robot: Crocodile, gait: Gait, servo_map: ServoMap, cycles: int = 1) -> Commands:
+def commands(robot: AnyRobot, gait: Gait, servo_map: ServoMap, cycles: int = 1) -> Commands:
     """Return the commands of some cycles, so that they can be repeated without a jump.
 
     A cycle is divided into the whole number of intervals that is nearest to the map's rate.
@@ -41,6 +41,7 @@ def commands(robot: Crocodile, gait: Gait, servo_map: ServoMap, cycles: int = 1)
 
     Paper: Eq. (18) for the cable.
     """
+    robot = crocodile(robot, "the file of servo commands")
     require("commands", "cycles", cycles, 1, 1000, "")
     check_limits(robot, gait)
     samples = round(gait.period * servo_map.rate)

@@ -1,7 +1,21 @@
 """Kinematics: pure NumPy, double precision, batched over leading axes."""
 
-from suchus.kinematics import body, dh, leg, mass, printed, spine, tail, wave
+from suchus.kinematics import body, dh, leg, limb, mass, printed, spine, tail, tree, wave
 from suchus.kinematics.body import Landmarks, landmarks
 from suchus.kinematics.wave import Wave
 
-__all__ = ["Landmarks", "Wave", "body", "dh", "landmarks", "leg", "mass", "printed", "spine", "tail", "wave"]
+__all__ = [
+    "Landmarks",
+    "Wave",
+    "body",
+    "dh",
+    "landmarks",
+    "leg",
+    "limb",
+    "mass",
+    "printed",
+    "spine",
+    "tail",
+    "tree",
+    "wave",
+]

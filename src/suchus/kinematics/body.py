@@ -1,70 +1,28 @@
-"""Where feet, snout and tail tip are, for a whole robot.
+"""Where feet, snout and tail are, for a crocodile-like robot.
 
 Everything is in the frame of the pelvis: origin on the midline at the hind girdle's axis, x forward, y left,
 z up. Angles come in the order of ``suchus.design.joint_names``.
 """
 
-from typing import NamedTuple
-
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import LEGS, Crocodile, cable_joints, fin_joints, joint_names, leg_joints, spine_joints
-from suchus.errors import InvalidDesign
-from suchus.kinematics import leg, spine
+from suchus.design import LEGS, AnyRobot, Crocodile, cable_joints, fin_joints
+from suchus.errors import UnknownName
+from suchus.kinematics.given import rows
+from suchus.kinematics.tree import Landmarks, landmarks
+
+__all__ = ["Landmarks", "feet", "from_leg_frame", "landmarks", "tail_points", "to_leg_frame"]
 
 
-class Landmarks(NamedTuple):
-    """Points of the body in the frame of the pelvis."""
-
-    feet: Float[np.ndarray, "*batch 4 3"]
-    """Centres of the feet in the order of ``LEGS`` [m]."""
-    snout: Float[np.ndarray, "*batch 3"]
-    """Tip of the snout [m]."""
-    tail: Float[np.ndarray, "*batch 3"]
-    """Tip of the tail [m]."""
-
-
-def landmarks(robot: Crocodile, angles: Float[np.ndarray, "*batch joint"]) -> Landmarks:
-    """Return feet, snout and tail tip.
+def feet(robot: AnyRobot, angles: Float[np.ndarray, "*batch joint"]) -> Float[np.ndarray, "*batch limb 3"]:
+    """Return the centres of the feet in the order of the layout's limbs [m].
 
     Args:
         robot: the robot.
-        angles: of every hinge, in the order of ``joint_names(robot)`` [rad].
-
-    Raises:
-        InvalidDesign: the number of angles is not the robot's number of hinges.
+        angles: of every hinge [rad].
     """
-    count = len(joint_names(robot))
-    if angles.shape[-1] != count:
-        raise InvalidDesign(
-            f"{angles.shape[-1]} angles were given; {robot.name} has {count} hinges: give one for each."
-        )
-    legs, trunk = len(leg_joints()), len(leg_joints()) + len(spine_joints())
-    T = spine.forward(robot.spine, angles[..., legs:trunk])
-    return Landmarks(
-        feet=feet(robot, angles[..., :trunk]),
-        snout=T[..., :3, 3] + robot.head.snout * T[..., :3, 0],
-        tail=tail_points(robot, angles[..., trunk:])[..., -1, :],
-    )
-
-
-def feet(robot: Crocodile, angles: Float[np.ndarray, "*batch 17"]) -> Float[np.ndarray, "*batch 4 3"]:
-    """Return the centres of the feet in the order of ``LEGS`` [m].
-
-    Args:
-        robot: the robot.
-        angles: of the legs, then of the spine [rad].
-    """
-    T = spine.forward(robot.spine, angles[..., len(leg_joints()) :])
-    shoulder = T[..., :3, 3] + robot.thorax.shoulder * T[..., :3, 0]
-    found = np.empty((*angles.shape[:-1], len(LEGS), 3))
-    for i, name in enumerate(LEGS):
-        foot = from_leg_frame(leg.forward(robot.leg(name), angles[..., 3 * i : 3 * i + 3]), name)
-        if name.endswith("F"):
-            foot = shoulder + np.einsum("...ij,...j->...i", T[..., :3, :3], foot)
-        found[..., i, :] = foot
-    return found
+    return landmarks(robot, angles).feet
 
 
 def from_leg_frame(point: Float[np.ndarray, "*batch 3"], name: str) -> Float[np.ndarray, "*batch 3"]:
@@ -72,13 +30,13 @@ def from_leg_frame(point: Float[np.ndarray, "*batch 3"], name: str) -> Float[np.
 
     A right leg is the mirror image of a left one.
     """
-    left = 1.0 if name.startswith("L") else -1.0
+    left, point = _side(name), rows(point, 3, "the point")
     return np.stack([point[..., 1], left * point[..., 0], -point[..., 2]], axis=-1)
 
 
 def to_leg_frame(point: Float[np.ndarray, "*batch 3"], name: str) -> Float[np.ndarray, "*batch 3"]:
     """Return a point of a girdle's frame in the D-H base frame of a leg [m]; see ``from_leg_frame``."""
-    left = 1.0 if name.startswith("L") else -1.0
+    left, point = _side(name), rows(point, 3, "the point")
     return np.stack([left * point[..., 1], point[..., 0], -point[..., 2]], axis=-1)
 
 
@@ -91,6 +49,7 @@ def tail_points(robot: Crocodile, angles: Float[np.ndarray, "*batch joint"]) -> 
     """
     tail = robot.tail
     cables, segments = len(cable_joints(robot)), len(fin_joints(robot)) // 2
+    angles = rows(angles, 1 + cables + 2 * segments, f"the tail's angles of {robot.name}")
     x = np.broadcast_to(np.array([-1.0, 0.0, 0.0]), (*angles.shape[:-1], 3))  # along the straight tail
     points = [tail.offset * x]
     R = _pitched(angles[..., 0])
@@ -104,6 +63,12 @@ def tail_points(robot: Crocodile, angles: Float[np.ndarray, "*batch joint"]) -> 
         R = R @ _yawed(bend[..., 0]) @ _pitched(bend[..., 1])
         points.append(points[-1] + tail.fin_length / segments * -R[..., :, 0])
     return np.stack(points, axis=-2)
+
+
+def _side(name: str) -> float:
+    if name not in LEGS:
+        raise UnknownName("leg", name, LEGS)
+    return 1.0 if name.startswith("L") else -1.0
 
 
 def _yawed(angle: np.ndarray) -> np.ndarray:

@@ -3,7 +3,7 @@
 import numpy as np
 from jaxtyping import Float
 
-from suchus.errors import InvalidDesign
+from suchus.kinematics.given import rows
 from suchus.kinematics.links import Numbers
 from suchus.paper.tables import Chain
 
@@ -43,8 +43,7 @@ def frames(chain: Chain, angles: Float[np.ndarray, "*batch joint"]) -> Float[np.
     Paper: Eq. (6).
     """
     count = len(chain.a)
-    if angles.shape[-1] != count:
-        raise InvalidDesign(f"{angles.shape[-1]} angles were given for a chain of {count} links; give one per link.")
+    angles = rows(angles, count, "the chain's angles")
     T = np.empty((*angles.shape, 4, 4))
     for i in range(count):
         step = transform(chain.a[i], chain.alpha[i], chain.d[i], angles[..., i])

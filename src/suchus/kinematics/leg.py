@@ -11,6 +11,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from suchus.errors import InvalidDesign, Unreachable
+from suchus.kinematics.given import rows
 from suchus.kinematics.links import LegLinks
 
 CHUNK = 8192
@@ -31,6 +32,7 @@ def forward(leg: LegLinks, angles: Float[np.ndarray, "*batch 3"]) -> Float[np.nd
 
     Paper: Eq. (7).
     """
+    angles = rows(angles, 3, "the leg's angles")
     yaw, pitch, knee = np.moveaxis(angles, -1, 0)
     shank = pitch + knee
     reach = leg.femur * np.cos(pitch) + leg.tibia * np.cos(shank)
@@ -46,7 +48,7 @@ def knee_point(leg: LegLinks, angles: Float[np.ndarray, "*batch 3"]) -> Float[np
 
     Paper: Eqs (2), (3).
     """
-    yaw, pitch, _ = np.moveaxis(angles, -1, 0)
+    yaw, pitch, _ = np.moveaxis(rows(angles, 3, "the leg's angles"), -1, 0)
     reach = leg.femur * np.cos(pitch)
     return np.stack([leg.hip_offset + np.cos(yaw) * reach, np.sin(yaw) * reach, leg.femur * np.sin(pitch)], axis=-1)
 
@@ -78,7 +80,8 @@ def inverse(
     for name, sign in (("knee", knee), ("side", side)):
         if sign not in (1, -1):
             raise InvalidDesign(f"{name} is {sign!r}; 1 or -1 is allowed.")
-    points = np.ascontiguousarray(foot, dtype=np.float64).reshape(-1, 3)
+    foot = rows(foot, 3, "the foot's place")
+    points = np.ascontiguousarray(foot).reshape(-1, 3)
     angles = np.empty_like(points)
     reached = True
     with np.errstate(invalid="ignore", over="ignore"):
@@ -99,19 +102,20 @@ def jacobian(leg: LegLinks, angles: Float[np.ndarray, "*batch 3"]) -> Float[np.n
         leg: the lengths.
         angles: yaw, pitch, knee [rad].
     """
-    yaw, pitch, knee = np.moveaxis(angles, -1, 0)
+    yaw, pitch, knee = np.moveaxis(rows(angles, 3, "the leg's angles"), -1, 0)
     shank = pitch + knee
     s1, c1 = np.sin(yaw), np.cos(yaw)
     down, out = leg.tibia * np.sin(shank), leg.tibia * np.cos(shank)
     z = leg.femur * np.sin(pitch) + down
     r = leg.femur * np.cos(pitch) + out
     zero = np.zeros_like(r)
-    rows = [[-s1 * r, -c1 * z, -c1 * down], [c1 * r, -s1 * z, -s1 * down], [zero, r, out]]
-    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+    partial = [[-s1 * r, -c1 * z, -c1 * down], [c1 * r, -s1 * z, -s1 * down], [zero, r, out]]
+    return np.stack([np.stack(row, axis=-1) for row in partial], axis=-2)
 
 
 def reachable(leg: LegLinks, foot: Float[np.ndarray, "*batch 3"]) -> Bool[np.ndarray, "*batch"]:
     """Return which points the foot can reach, joint limits aside."""
+    foot = rows(foot, 3, "the foot's place")
     with np.errstate(invalid="ignore", over="ignore"):
         squared = (foot[..., 0] - leg.hip_offset) ** 2 + foot[..., 1] ** 2 + foot[..., 2] ** 2
         cosine = (squared - (leg.femur**2 + leg.tibia**2)) / (2.0 * leg.femur * leg.tibia)

@@ -39,20 +39,12 @@ class SpineLinks(Protocol):
 
 
 @runtime_checkable
-class TailPlates(Protocol):
-    """The measures of a tail's cable section; ``suchus.design.Tail`` has them."""
+class Cords(Protocol):
+    """The measures of a cable over several joints; ``suchus.design.Tail`` and ``suchus.design.Cable`` have them."""
 
     @property
     def joints(self) -> int:
         """Number of joints, N [-]."""
-
-    @property
-    def plate(self) -> float:
-        """Thickness of a plate, H [m]."""
-
-    @property
-    def gap(self) -> float:
-        """Gap between plates, h [m]."""
 
     @property
     def cord_spacing(self) -> float:
@@ -61,3 +53,16 @@ class TailPlates(Protocol):
     @property
     def pulley(self) -> float:
         """Radius of the servo's wheel, r [m]."""
+
+
+@runtime_checkable
+class TailPlates(Cords, Protocol):
+    """The measures of a tail's cable section; ``suchus.design.Tail`` has them."""
+
+    @property
+    def plate(self) -> float:
+        """Thickness of a plate, H [m]."""
+
+    @property
+    def gap(self) -> float:
+        """Gap between plates, h [m]."""

@@ -8,39 +8,22 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import LEGS, Crocodile, Tail, cable_joints, joint_names
-from suchus.errors import InvalidDesign
+from suchus.design import GRAVITY, LEGS, AnyRobot, Crocodile, cable_joints, crocodile, joint_names, layout
+from suchus.design.leg import LEG_SHARES
+from suchus.design.tail import TailSegments, tail_segments
 from suchus.kinematics import body, leg, spine
+from suchus.kinematics.given import rows
 
-LEG_SHARES = (0.60, 0.35, 0.05)
-"""How a leg's mass is spread over femur, tibia and foot [-]."""
-GRAVITY = 9.81
-"""[m/s2]."""
-
-
-class TailSegments(NamedTuple):
-    """The segments of a tail, the root first: plates between their joints, then the passive end."""
-
-    lengths: list[float]
-    """[m]."""
-    radii: list[float]
-    """[m]."""
-    masses: list[float]
-    """[kg]."""
-
-
-def tail_segments(tail: Tail) -> TailSegments:
-    """Return length, radius and mass of each segment; the mass is spread in proportion to volume."""
-    lengths = [
-        tail.root + tail.pitch / 2,
-        *([tail.pitch] * (tail.joints - 1)),
-        tail.pitch / 2,
-        *([tail.fin_length / tail.fin_segments] * tail.fin_segments),
-    ]
-    middles = np.cumsum(lengths) - 0.5 * np.array(lengths)
-    radii = np.interp(middles, [0.0, float(np.sum(lengths))], [tail.radius_root, tail.radius_tip])
-    volumes = radii**2 * lengths
-    return TailSegments(lengths, radii.tolist(), (tail.mass * volumes / volumes.sum()).tolist())
+__all__ = [
+    "GRAVITY",
+    "LEG_SHARES",
+    "Pieces",
+    "TailSegments",
+    "cantilever_torque",
+    "centre_of_mass",
+    "pieces",
+    "tail_segments",
+]
 
 
 class Pieces(NamedTuple):
@@ -52,7 +35,7 @@ class Pieces(NamedTuple):
     """Their centres of mass in the frame of the pelvis [m]."""
 
 
-def pieces(robot: Crocodile, angles: Float[np.ndarray, "*batch joint"]) -> Pieces:
+def pieces(robot: AnyRobot, angles: Float[np.ndarray, "*batch joint"]) -> Pieces:
     """Return every piece of the body.
 
     Args:
@@ -62,11 +45,8 @@ def pieces(robot: Crocodile, angles: Float[np.ndarray, "*batch joint"]) -> Piece
     Raises:
         InvalidDesign: the number of angles is not the robot's number of hinges.
     """
-    count = len(joint_names(robot))
-    if angles.shape[-1] != count:
-        raise InvalidDesign(
-            f"{angles.shape[-1]} angles were given; {robot.name} has {count} hinges: give one for each."
-        )
+    angles = rows(angles, len(joint_names(robot)), f"the posture of {robot.name}, an angle for each hinge,")
+    robot = crocodile(robot, "the mass of the trunk in closed form")
     masses = [robot.pelvis.mass, *4 * [robot.spine.link_mass], robot.thorax.mass, robot.head.mass]
     for name in LEGS:
         masses += [share * robot.leg(name).mass for share in LEG_SHARES]
@@ -75,7 +55,7 @@ def pieces(robot: Crocodile, angles: Float[np.ndarray, "*batch joint"]) -> Piece
     return Pieces(np.array(masses), np.stack(centres, axis=-2))
 
 
-def centre_of_mass(robot: Crocodile, angles: Float[np.ndarray, "*batch joint"]) -> Float[np.ndarray, "*batch 3"]:
+def centre_of_mass(robot: AnyRobot, angles: Float[np.ndarray, "*batch joint"]) -> Float[np.ndarray, "*batch 3"]:
     """Return the centre of mass of a posture in the frame of the pelvis [m].
 
     Args:
@@ -101,7 +81,7 @@ def cantilever_torque(robot: Crocodile) -> float:
 
 
 def _trunk(robot: Crocodile, angles: np.ndarray) -> list[np.ndarray]:
-    bends = angles[..., 12:17]
+    bends = angles[..., layout(robot).ahead]
     joints = spine.joints(robot.spine, bends)
     T = spine.forward(robot.spine, bends)
     shoulder, snout = robot.thorax.shoulder, robot.head.snout
@@ -114,11 +94,11 @@ def _trunk(robot: Crocodile, angles: np.ndarray) -> list[np.ndarray]:
 
 
 def _legs(robot: Crocodile, angles: np.ndarray) -> list[np.ndarray]:
-    T = spine.forward(robot.spine, angles[..., 12:17])
+    T = spine.forward(robot.spine, angles[..., layout(robot).ahead])
     shoulder = T[..., :3, 3] + robot.thorax.shoulder * T[..., :3, 0]
     found = []
     for i, name in enumerate(LEGS):
-        links, bends = robot.leg(name), angles[..., 3 * i : 3 * i + 3]
+        links, bends = robot.leg(name), angles[..., layout(robot).limbs[i].hinges]
         knee, foot = leg.knee_point(links, bends), leg.forward(links, bends)
         hip = np.broadcast_to(np.array([links.hip_offset, 0.0, 0.0]), knee.shape)
         for point in ((hip + knee) / 2, (knee + foot) / 2, foot):
@@ -130,7 +110,7 @@ def _legs(robot: Crocodile, angles: np.ndarray) -> list[np.ndarray]:
 
 
 def _tail(robot: Crocodile, angles: np.ndarray) -> list[np.ndarray]:
-    points = body.tail_points(robot, angles[..., 17:])
+    points = body.tail_points(robot, angles[..., layout(robot).behind])
     cables = len(cable_joints(robot))
     # the middle of the last plate ends a segment, though no joint is there: the passive end begins
     assert points.shape[-2] == cables + 2 + robot.tail.fin_segments

@@ -12,6 +12,7 @@ from jaxtyping import Float
 
 from suchus.errors import InvalidDesign, Unreachable
 from suchus.kinematics import dh
+from suchus.kinematics.given import rows
 from suchus.kinematics.links import Numbers, SpineLinks
 from suchus.paper.tables import SPINE_CHAIN, Chain
 
@@ -43,6 +44,7 @@ def forward(spine: SpineLinks, angles: Float[np.ndarray, "*batch 5"]) -> Float[n
 
     Paper: Eq. (15).
     """
+    angles = rows(angles, 5, "the spine's angles")
     c, s = np.cos(angles), np.sin(angles)
     c1, c2, c3, c4, c5 = (c[..., i, None] for i in range(5))
     s1, s2, s3, s4, s5 = (s[..., i, None] for i in range(5))
@@ -150,6 +152,7 @@ def least_bending(
     Raises:
         Unreachable: a point cannot be reached with any first yaw angle, or is not a number.
     """
+    point = rows(point, 3, "the point")
     points = point.reshape(-1, 3)
     heading = np.broadcast_to(np.asarray(azimuth, dtype=np.float64), point.shape[:-1]).reshape(-1, 1)
     parts = range(0, max(len(points), 1), CHUNK)

@@ -8,7 +8,8 @@ import numpy as np
 from jaxtyping import Float
 
 from suchus.errors import OutsideLimits
-from suchus.kinematics.links import Numbers, TailPlates
+from suchus.kinematics.given import numbers
+from suchus.kinematics.links import Cords, Numbers, TailPlates
 
 
 def bend_limit(tail: TailPlates) -> float:
@@ -31,7 +32,7 @@ def cable_changes(tail: TailPlates, bend: Numbers) -> tuple[Float[np.ndarray, "*
 
     Paper: Eq. (16), times N.
     """
-    theta = np.asarray(bend, dtype=np.float64)
+    theta = numbers(bend, "the bend")
     limit = bend_limit(tail)
     if not np.all(np.abs(theta) <= limit):
         worst = float(theta.flat[np.argmax(~(np.abs(theta.ravel()) <= limit))])
@@ -59,7 +60,7 @@ def slack(tail: TailPlates, bend: Numbers) -> Float[np.ndarray, "*batch"]:
     return np.asarray(-(toward + away))
 
 
-def servo_angle(tail: TailPlates, bend: Numbers) -> Float[np.ndarray, "*batch"]:
+def servo_angle(tail: Cords, bend: Numbers) -> Float[np.ndarray, "*batch"]:
     """Return how far the servo's wheel turns for a bend [rad].
 
     Args:
@@ -68,11 +69,11 @@ def servo_angle(tail: TailPlates, bend: Numbers) -> Float[np.ndarray, "*batch"]:
 
     Paper: Eq. (18).
     """
-    half = np.asarray(bend, dtype=np.float64) / (2 * tail.joints)
+    half = numbers(bend, "the bend") / (2 * tail.joints)
     return np.asarray(tail.joints * tail.cord_spacing * np.sin(half) / tail.pulley)
 
 
-def bend_of_servo(tail: TailPlates, angle: Numbers) -> Float[np.ndarray, "*batch"]:
+def bend_of_servo(tail: Cords, angle: Numbers) -> Float[np.ndarray, "*batch"]:
     """Return the bend that the servo's wheel makes [rad]: the inverse of ``servo_angle``.
 
     Args:
@@ -82,7 +83,7 @@ def bend_of_servo(tail: TailPlates, angle: Numbers) -> Float[np.ndarray, "*batch
     Raises:
         OutsideLimits: the wheel would pull more cord than any bend of the tail takes up.
     """
-    sine = np.asarray(angle, dtype=np.float64) * tail.pulley / (tail.joints * tail.cord_spacing)
+    sine = numbers(angle, "the wheel's angle") * tail.pulley / (tail.joints * tail.cord_spacing)
     if not np.all(np.abs(sine) <= 1.0):
         limit = tail.joints * tail.cord_spacing / tail.pulley
         worst = float(np.asarray(angle).flat[np.argmax(~(np.abs(sine.ravel()) <= 1.0))])
@@ -102,7 +103,7 @@ def joint_positions(tail: TailPlates, bend: Numbers) -> Float[np.ndarray, "*batc
 
     Paper: Eq. (19).
     """
-    theta = np.asarray(bend, dtype=np.float64)[..., None]
+    theta = numbers(bend, "the bend")[..., None]
     pitch = tail.plate + tail.gap
     turned = np.arange(tail.joints) * theta / tail.joints  # of the plate before each joint
     steps = np.stack([np.cos(turned), np.sin(turned)], axis=-1) * pitch
@@ -112,6 +113,6 @@ def joint_positions(tail: TailPlates, bend: Numbers) -> Float[np.ndarray, "*batc
 
 def end_position(tail: TailPlates, bend: Numbers) -> Float[np.ndarray, "*batch 2"]:
     """Return the middle of the last plate in the plane of the tail [m]; the flexible end begins there."""
-    theta = np.asarray(bend, dtype=np.float64)
+    theta = numbers(bend, "the bend")
     half = (tail.plate + tail.gap) / 2
     return joint_positions(tail, theta)[..., -1, :] + half * np.stack([np.cos(theta), np.sin(theta)], axis=-1)

@@ -6,6 +6,7 @@ from math import floor
 import numpy as np
 
 from suchus.land.run import Run
+from suchus.motion import hip_height
 
 _EARLY = 1e-6
 """By how much too early rather than too late a trouble may be awaited [control period]."""
@@ -20,14 +21,14 @@ class Alike:
 
     Args:
         runs: the runs.
-        first: the servo angles at the start, shape (run, 19) [rad].
+        first: the servo angles at the start, shape (run, servo) [rad].
         period: of control [s].
     """
 
     def __init__(self, runs: Sequence[Run], first: np.ndarray, period: float) -> None:
         groups: dict[object, list[int]] = {}
         for sim, run in enumerate(runs):
-            key = (run.robot, run.ground, run.afloat, run.gait.hip_height, first[sim].tobytes())
+            key = (run.robot, run.ground, run.afloat, hip_height(run.robot, run.gait), first[sim].tobytes())
             groups.setdefault(key, []).append(sim)
         self._groups = [members for members in groups.values() if len(members) > 1]
         self._leaves: dict[int, set[int]] = {}
@@ -43,7 +44,7 @@ class Alike:
 
         Args:
             tick: number of the control period.
-            targets: what the servos are told in it, shape (run, 19) [rad].
+            targets: what the servos are told in it, shape (run, servo) [rad].
         """
         if not self._groups:
             return

@@ -9,13 +9,13 @@ import numpy as np
 from mujoco.batch import Batch, SimulationError
 
 from suchus import threads
-from suchus.design import Crocodile, servo_names
+from suchus.design import GRAVITY, AnyRobot, layout
 from suchus.design.ground import Ground
 from suchus.design.relief import Relief
-from suchus.kinematics.mass import GRAVITY
 from suchus.land.alike import Alike
 from suchus.land.run import Afloat, Run
-from suchus.model import activations, compile_model, standing
+from suchus.model import activations, compile_model, force_sensors, standing
+from suchus.motion import hip_height
 
 _TOO_FAST = 1e3  # [rad/s] or [m/s]; nothing on a robot moves so fast: the physics has come apart
 _CURRENT = mujoco.mjtStage.mjSTAGE_VEL  # after a step, positions and velocities describe the new state
@@ -47,8 +47,9 @@ class Bench:
             self.batch.bind(name) for name in ("qpos", "qvel", "ctrl", "sensordata")
         )
         self.readings = self.sensors.copy()
-        self._forces = slice(int(shared.sensor("LF_force").adr[0]), int(shared.sensor("tail_force").adr[0]) + 3)
-        servos = [shared.sensor(f"{name}_position") for name in servo_names()]
+        forces = force_sensors(runs[0].robot)
+        self._forces = slice(int(shared.sensor(forces[0]).adr[0]), int(shared.sensor(forces[-1]).adr[0]) + 3)
+        servos = [shared.sensor(f"{name}_position") for name in layout(runs[0].robot).servos]
         self._positions = slice(int(servos[0].adr[0]), int(servos[-1].adr[0]) + 1)
         self.alive = np.ones(len(runs), dtype=bool)
         self.ended = np.full(len(runs), np.inf)
@@ -132,15 +133,16 @@ class Bench:
 
         Args:
             runs: the runs.
-            first: the servo angles at the start, shape (run, 19) [rad].
+            first: the servo angles at the start, shape (run, servo) [rad].
         """
         act = self.batch.bind("act")
         found: dict[object, tuple[np.ndarray, np.ndarray]] = {}
         for sim, run in enumerate(runs):
-            key = (run.robot, run.gait.hip_height, first[sim].tobytes())
+            height = hip_height(run.robot, run.gait)
+            key = (run.robot, height, first[sim].tobytes())
             if key not in found:
                 model = compile_model(run.robot, self._timestep)  # every run begins on even ground
-                posture = standing(model, run.robot, run.gait.hip_height, first[sim])
+                posture = standing(model, run.robot, height, first[sim])
                 found[key] = posture, activations(model, first[sim])
             self.qpos[sim], act[sim] = found[key]
             self.ctrl[sim] = first[sim]
@@ -154,7 +156,7 @@ class Bench:
         sensor filters them, everything else as it is now.
 
         Args:
-            targets: shape (run, 19) [rad].
+            targets: shape (run, servo) [rad].
             steps: number of physics steps.
             time: at which they begin [s].
             alike: runs of which one stands for all; None if there are none.
@@ -195,7 +197,7 @@ class Bench:
             self.alive[sim], self.ended[sim], self.cause[sim] = False, time, cause
 
 
-def _model(robot: Crocodile, timestep: float, relief: Relief | None) -> Any:
+def _model(robot: AnyRobot, timestep: float, relief: Relief | None) -> Any:
     """Return a model of its own, which does not look for islands.
 
     A robot is one island, so that the bytes are the same, and a step takes a sixteenth less time.

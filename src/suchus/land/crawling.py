@@ -5,19 +5,21 @@ from collections.abc import Sequence
 import xarray as xr
 
 from suchus.control import Control, OpenLoop
-from suchus.design import Crocodile
+from suchus.design import AnyRobot
 from suchus.design.ground import Ground
 from suchus.errors import Diverged
 from suchus.fault import Fault
+from suchus.gaits import GAITS
 from suchus.land.push import Push
 from suchus.land.run import Run
 from suchus.land.simulation import simulate
-from suchus.motion import Gait
+from suchus.motion import AnyGait
+from suchus.robots import ROBOTS
 
 
 def crawl(
-    robot: Crocodile,
-    gait: Gait,
+    robot: AnyRobot | str,
+    gait: AnyGait | str,
     *,
     duration: float = 9.0,
     faults: Sequence[Fault] = (),
@@ -26,13 +28,13 @@ def crawl(
     control: Control | None = None,
     noise: float = 0.0,
     seed: int = 0,
-    timestep: float = 0.002,
+    timestep: float | None = None,
 ) -> xr.Dataset:
     """Let a robot walk.
 
     Args:
-        robot: who walks.
-        gait: how.
+        robot: who walks, or its name on the shelf.
+        gait: how, or its name on the shelf.
         duration: including the first second, in which the robot settles [s].
         faults: what breaks, and when.
         pushes: forces from outside.
@@ -40,7 +42,7 @@ def crawl(
         control: open loop if None.
         noise: standard deviation of noise on every servo angle commanded [rad].
         seed: of the noise.
-        timestep: of the physics [s].
+        timestep: of the physics [s]; that of the robot's size if None.
 
     Returns:
         The record, without the dimension ``run`` (see ``record.schema``).
@@ -50,8 +52,8 @@ def crawl(
         OutsideLimits: the robot's joints cannot follow the gait.
     """
     run = Run(
-        robot=robot,
-        gait=gait,
+        robot=ROBOTS.resolve(robot),
+        gait=GAITS.resolve(gait),
         ground=ground or Ground(),
         faults=tuple(faults),
         pushes=tuple(pushes),
@@ -64,7 +66,7 @@ def crawl(
         time = float(record.ended)
         raise Diverged(
             f"the crawl came apart at {time:.2f} s: {record.cause.item()}. "
-            f"A shorter timestep than {timestep} s may help.",
+            f"A shorter timestep than {record.timestep} s may help.",
             time=time,
             record=record.sel(time=slice(None, time + 1e-9)),
         )

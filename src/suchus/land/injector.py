@@ -1,14 +1,14 @@
 """The injector: it begins, keeps up and mends the faults of the runs of a batch, whoever steps the batch."""
 
-from collections.abc import Iterator, Mapping, MutableMapping, Sequence
+from collections.abc import Iterator, Mapping, MutableMapping
 
 import numpy as np
 
 from suchus.control import Sensed
-from suchus.design import LEGS, servo_names
+from suchus.design import AnyRobot, layout
 from suchus.fault import Fault
 from suchus.land.bench import Bench
-from suchus.model import SLEW, TRUNK_BODIES
+from suchus.model import SLEW
 
 _KINDS = {"actuator": "actuator", "geom": "geom", "body": "body", "jnt": "joint"}
 """What the rows of a model's field are, by how its name begins."""
@@ -20,11 +20,20 @@ class Injector:
     Args:
         bench: the batch.
         period: of control [s].
+        robot: one of the batch's robots, which share a layout.
     """
 
-    def __init__(self, bench: Bench, period: float) -> None:
+    def __init__(self, bench: Bench, period: float, robot: AnyRobot) -> None:
         self._bench, self._period = bench, period
-        self._columns = {name: i for i, name in enumerate(servo_names())}
+        place = layout(robot)
+        self._columns = {
+            group: {name: i for i, name in enumerate(names)}
+            for group, names in (
+                ("servo", place.servos),
+                ("foot_pressure", place.limb_names),
+                ("belly_pressure", place.trunk),
+            )
+        }
         self._broken: dict[tuple[int, str], tuple[Fault, Site]] = {}
 
     def begin(self, sim: int, fault: Fault) -> None:
@@ -74,11 +83,11 @@ class Site:
     Args:
         bench: the batch.
         sim: the run.
-        columns: of the servos in arrays.
+        columns: of servos, feet and bodies of the trunk in arrays, by group.
     """
 
-    def __init__(self, bench: Bench, sim: int, columns: Mapping[str, int]) -> None:
-        self._bench, self._sim, self._columns = bench, sim, columns
+    def __init__(self, bench: Bench, sim: int, columns: Mapping[str, Mapping[str, int]]) -> None:
+        self._bench, self._sim, self._groups, self._columns = bench, sim, columns, columns["servo"]
         self._since: int | None = None
         self._before: dict[tuple[str, int], np.ndarray] = {}
         self._unpowered: list[str] = []
@@ -101,8 +110,7 @@ class Site:
         whole: np.ndarray = getattr(self.sensed, group)[self._sim : self._sim + 1]
         if of is None:
             return whole[0] if whole.ndim > 1 else whole
-        names: Sequence[str] = {"foot_pressure": LEGS, "belly_pressure": TRUNK_BODIES}.get(group, tuple(self._columns))
-        column = names.index(of)
+        column = self._groups.get(group, self._columns)[of]
         return whole[0, column : column + 1]
 
     def parameter(self, field: str, of: str) -> np.ndarray:

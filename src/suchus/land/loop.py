@@ -6,6 +6,7 @@ import numpy as np
 
 from suchus.control import Command, Controller, Joinable
 from suchus.design.checks import require
+from suchus.design.scale import control_period
 from suchus.errors import InvalidDesign
 from suchus.land.alike import Alike
 from suchus.land.bench import Bench
@@ -13,36 +14,40 @@ from suchus.land.readings import Readings
 from suchus.land.run import Run
 from suchus.land.troubles import Troubles
 
-CONTROL_PERIOD = 0.01  # [s]; 100 Hz, what a bus of hobby servos sustains
+CONTROL_PERIOD = 0.01
+"""Of the article's robot [s]: 100 Hz, what a bus of hobby servos sustains; ``design.scale`` has those of others."""
 
 
-def physics_steps(timestep: float) -> int:
+def physics_steps(timestep: float, period: float = CONTROL_PERIOD) -> int:
     """Return the number of physics steps in a control period.
+
+    Args:
+        timestep: of the physics [s].
+        period: of control [s].
 
     Raises:
         InvalidDesign: the time step does not divide the control period.
     """
-    require("simulate", "timestep", timestep, 1e-5, CONTROL_PERIOD, "s")
-    steps = round(CONTROL_PERIOD / timestep)
-    if abs(steps * timestep - CONTROL_PERIOD) > 1e-9:
-        raise InvalidDesign(
-            f"simulate.timestep is {timestep} s; it must divide the control period of {CONTROL_PERIOD} s."
-        )
+    require("simulate", "timestep", timestep, 1e-6, period, "s")
+    steps = round(period / timestep)
+    if abs(steps * timestep - period) > 1e-9:
+        raise InvalidDesign(f"simulate.timestep is {timestep} s; it must divide the control period of {period} s.")
     return steps
 
 
-def start(runs: Sequence[Run], ticks: int) -> Controller:
+def start(runs: Sequence[Run], ticks: int, period: float = CONTROL_PERIOD) -> Controller:
     """Start the controller of a group of runs that share one.
 
     Args:
         runs: with equal controls, or with controls that can be joined.
         ticks: number of control periods to come.
+        period: of control [s].
     """
     robots, gaits, seeds = [run.robot for run in runs], [run.gait for run in runs], [run.seed for run in runs]
     control = runs[0].control
     if isinstance(control, Joinable):
-        return control.start_together([run.control for run in runs], robots, gaits, seeds, ticks, CONTROL_PERIOD)
-    return control.start(robots, gaits, seeds, ticks, CONTROL_PERIOD)
+        return control.start_together([run.control for run in runs], robots, gaits, seeds, ticks, period)
+    return control.start(robots, gaits, seeds, ticks, period)
 
 
 class Loop:
@@ -58,13 +63,14 @@ class Loop:
 
     def __init__(self, runs: Sequence[Run], ticks: int, steps: int, timestep: float, *, samples: int) -> None:
         self._steps = steps
+        self._period = period = control_period(runs[0].robot)
         self.bench = Bench(runs, timestep)
         self.feels = any(run.control.feels for run in runs)
-        self.controller = start(runs, ticks)
+        self.controller = start(runs, ticks, period)
         first = self.controller.rest()
         self.bench.place(runs, first)
-        self._alike = Alike(runs, first, CONTROL_PERIOD)
-        self.troubles = Troubles(runs, self.bench, ticks, CONTROL_PERIOD)
+        self._alike = Alike(runs, first, period)
+        self.troubles = Troubles(runs, self.bench, ticks, period)
         self.readings = Readings(self.bench, runs, samples)
 
     def decide(self, tick: int, beat: int | None = None) -> Command:
@@ -76,7 +82,7 @@ class Loop:
         """
         self.troubles.happen(tick)
         injector = self.troubles.injector
-        sensed = injector.sense(self.readings.sensed(tick * CONTROL_PERIOD)) if self.feels else None
+        sensed = injector.sense(self.readings.sensed(tick * self._period)) if self.feels else None
         return self.controller.command(tick if beat is None else beat, sensed)
 
     def disturb(self, tick: int, command: Command) -> Command:
@@ -84,6 +90,6 @@ class Loop:
         return Command(self.troubles.disturb(tick, command.targets), command.phase)
 
     def advance(self, tick: int, targets: np.ndarray) -> None:
-        """Let one control period pass in which the servos are told these angles, shape (run, 19) [rad]."""
+        """Let one control period pass in which the servos are told these angles, shape (run, servo) [rad]."""
         self._alike.part(tick, targets)
-        self.bench.advance(targets, self._steps, tick * CONTROL_PERIOD, self._alike)
+        self.bench.advance(targets, self._steps, tick * self._period, self._alike)

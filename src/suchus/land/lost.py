@@ -9,11 +9,13 @@ from suchus.fault import Fault
 from suchus.faults import Limp, Locked
 from suchus.motion import Gait, servo_targets
 
-Joint = Literal["front_yaw", "hind_yaw", "front_pitch", "hind_pitch"]
+Joint = Literal["front_yaw", "hind_yaw", "front_pitch", "hind_pitch", "front_knee", "hind_knee"]
 Kind = Literal["limp", "locked"]
 Legs = Literal["one", "both"]
 LOST: tuple[Joint, ...] = ("front_yaw", "hind_yaw", "front_pitch", "hind_pitch")
 """The joints whose loss the article reports, in the order of Figs 18 to 21."""
+KNEES: tuple[Joint, ...] = ("front_knee", "hind_knee")
+"""The second pitch joint of each leg (III.D), of whose loss the article says nothing."""
 KINDS: tuple[Kind, ...] = ("limp", "locked")
 LEGS_LOST: tuple[Legs, ...] = ("one", "both")
 

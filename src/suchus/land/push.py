@@ -1,10 +1,9 @@
 """A push: a force from outside, for a while."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from suchus.design import Crocodile
+from suchus.design import AnyRobot
 from suchus.design.checks import require
 from suchus.errors import InvalidDesign, UnknownName
 from suchus.model import compile_model
@@ -31,7 +30,7 @@ class Push:
 
     def __post_init__(self) -> None:
         parts = list(self.force)
-        if len(parts) != 3 or not all(math.isfinite(part) and abs(part) <= MOST for part in parts):
+        if len(parts) != 3 or not all(abs(part) <= MOST for part in parts):
             raise InvalidDesign(f"push.force is {self.force}; three numbers of {-MOST:g} to {MOST:g} N are allowed.")
         require("push", "at", self.at, 0.0, 86400.0, "s")
         require("push", "duration", self.duration, 1e-3, 86400.0, "s")
@@ -42,7 +41,7 @@ class Push:
         return max(overlap, 0.0) / (end - start)
 
 
-def check_pushes(pushes: Sequence[Push], robot: Crocodile, duration: float) -> None:
+def check_pushes(pushes: Sequence[Push], robot: AnyRobot, duration: float) -> None:
     """Refuse pushes that cannot happen.
 
     Raises:

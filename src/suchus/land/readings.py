@@ -6,10 +6,10 @@ import numpy as np
 import xarray as xr
 
 from suchus.control import Sensed
-from suchus.design import LEGS, joint_names, servo_names
+from suchus.design import layout
 from suchus.land.bench import Bench
 from suchus.land.run import Run
-from suchus.model import TRUNK_BODIES, joint_addresses, sensor_names
+from suchus.model import joint_addresses, sensor_names
 from suchus.record import dataset, ground_text
 
 
@@ -19,30 +19,30 @@ class Readings:
     def __init__(self, bench: Bench, runs: Sequence[Run], samples: int) -> None:
         self._bench = bench
         self._runs = runs
+        self._place = place = layout(runs[0].robot)
         model = bench.model
         self._at = {
             name: slice(int(model.sensor(name).adr[0]), int(model.sensor(name).adr[0] + model.sensor(name).dim[0]))
-            for name in sensor_names()
+            for name in sensor_names(place.robot)
         }
         self._felt = {
-            "servo_position": self._span(servo_names(), "position"),
-            "servo_velocity": self._span(servo_names(), "velocity"),
-            "servo_torque": self._span(servo_names(), "torque"),
+            "servo_position": self._span(place.servos, "position"),
+            "servo_velocity": self._span(place.servos, "velocity"),
+            "servo_torque": self._span(place.servos, "torque"),
             "orientation": self._at["imu_orientation"],
             "angular_velocity": self._at["imu_gyroscope"],
             "acceleration": self._at["imu_accelerometer"],
         }
         self._pressed = {
-            "foot_pressure": self._upward(LEGS),
-            "belly_pressure": self._upward(TRUNK_BODIES),
-            "tail_pressure": self._at["tail_force"].start + 2,
+            "foot_pressure": self._upward(place.limb_names),
+            "belly_pressure": self._upward(place.trunk),
         }
-        self._joints = joint_addresses(model, joint_names(runs[0].robot))
+        self._joints = joint_addresses(model, place.hinges)
         n = len(runs)
         self._sensors = np.full((n, samples, model.nsensordata), np.nan)
         self._qpos = np.full((n, samples, model.nq), np.nan)
-        self._phase = np.full((n, samples, 4), np.nan)
-        self._targets = np.full((n, samples, len(servo_names())), np.nan)
+        self._phase = np.full((n, samples, len(place.limbs)), np.nan)
+        self._targets = np.full((n, samples, len(place.servos)), np.nan)
 
     def store(self, sample: int, phase: np.ndarray, targets: np.ndarray) -> None:
         """Keep one sample of the living."""
@@ -57,7 +57,7 @@ class Readings:
         read = self._bench.readings
         felt = {name: read[:, where].copy() for name, where in self._felt.items()}
         pressed = {name: -read[:, where] for name, where in self._pressed.items()}
-        return Sensed(time=time, **felt, **pressed)
+        return Sensed(time=time, **felt, **pressed, tail_pressure=-self._tail(read)[..., 2])
 
     def sample(self, run: int, sample: int) -> dict[str, np.ndarray]:
         """Return one stored sample of one run: the variables of ``record.VARIABLES`` without run and time."""
@@ -79,10 +79,10 @@ class Readings:
         coordinates: dict[str, Sequence[object] | np.ndarray] = {
             "run": np.arange(len(robots)),
             "time": time,
-            "leg": LEGS,
-            "segment": TRUNK_BODIES,
-            "joint": joint_names(robots[0]),
-            "servo": servo_names(),
+            "leg": self._place.limb_names,
+            "segment": self._place.trunk,
+            "joint": self._place.hinges,
+            "servo": self._place.servos,
             "robot": [robot.name for robot in robots],
             "gait": [run.gait.name for run in self._runs],
             "label": [run.label or run.gait.name for run in self._runs],
@@ -90,11 +90,13 @@ class Readings:
         return dataset(arrays, per_run, coordinates)
 
     def _arrays(self) -> dict[str, np.ndarray]:
-        read = self._sensors
-        n, samples = read.shape[:2]
+        read, place = self._sensors, self._place
 
         def block(names: Sequence[str], suffix: str) -> np.ndarray:
-            return self._block(read, names, suffix)
+            return np.array(read[..., self._span(names, suffix)])
+
+        def points(names: Sequence[str], suffix: str) -> np.ndarray:
+            return block(names, suffix).reshape(*read.shape[:2], len(names), 3)
 
         return {
             "position": self._qpos[..., :3],
@@ -104,29 +106,32 @@ class Readings:
             "angular_momentum": read[..., self._at["angular_momentum"]],
             "snout": block(("snout",), "position"),
             "tail_tip": block(("tail_tip",), "position"),
-            "foot_position": block([f"{leg}_foot" for leg in LEGS], "position").reshape(n, samples, 4, 3),
+            "foot_position": points([f"{limb}_foot" for limb in place.limb_names], "position"),
             # the sensors read the robot's force on the ground; the record holds the ground's on the robot
-            "foot_force": -block(LEGS, "force").reshape(n, samples, 4, 3),
-            "belly_force": -block(TRUNK_BODIES, "force").reshape(n, samples, len(TRUNK_BODIES), 3),
-            "tail_force": -read[..., self._at["tail_force"]],
-            "servo_angle": block(servo_names(), "position"),
-            "servo_velocity": block(servo_names(), "velocity"),
-            "servo_torque": block(servo_names(), "torque"),
+            "foot_force": -points(place.limb_names, "force"),
+            "belly_force": -points(place.trunk, "force"),
+            "tail_force": -self._tail(read),
+            "servo_angle": block(place.servos, "position"),
+            "servo_velocity": block(place.servos, "velocity"),
+            "servo_torque": block(place.servos, "torque"),
             "servo_target": self._targets,
             "limb_phase": self._phase,
             "angular_velocity": read[..., self._at["imu_gyroscope"]],
             "acceleration": read[..., self._at["imu_accelerometer"]],
         }
 
-    def _block(self, read: np.ndarray, names: Sequence[str], suffix: str) -> np.ndarray:
-        """Return neighbouring sensors as one array."""
-        return np.array(read[..., self._span(names, suffix)])
+    def _tail(self, read: np.ndarray) -> np.ndarray:
+        """Return the force of the tail on the ground; zero where there is none."""
+        where = self._at.get("tail_force")
+        return np.zeros((*read.shape[:-1], 3)) if where is None else read[..., where]
 
     def _span(self, names: Sequence[str], suffix: str) -> slice:
         """Return where neighbouring sensors stand."""
+        if not names:
+            return slice(0, 0)
         return slice(self._at[f"{names[0]}_{suffix}"].start, self._at[f"{names[-1]}_{suffix}"].stop)
 
     def _upward(self, names: Sequence[str]) -> slice:
         """Return where the vertical parts of neighbouring forces stand."""
         all_parts = self._span(names, "force")
-        return slice(all_parts.start + 2, all_parts.stop, 3)
+        return slice(min(all_parts.start + 2, all_parts.stop), all_parts.stop, 3)

@@ -3,12 +3,14 @@
 from dataclasses import dataclass, field
 
 from suchus.control import Control, OpenLoop
-from suchus.design import Crocodile
-from suchus.design.checks import require
+from suchus.design import WATER_DENSITY, WATER_VISCOSITY, AnyRobot
+from suchus.design.checks import Checks, require
 from suchus.design.ground import Ground
 from suchus.fault import Fault
+from suchus.gaits import GAITS
 from suchus.land.push import Push
-from suchus.motion import Gait
+from suchus.motion import AnyGait
+from suchus.robots import ROBOTS
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -32,17 +34,17 @@ class Afloat:
 
 VACUUM = Afloat(density=0.0, viscosity=0.0)
 """Where nothing acts from outside."""
-WATER = Afloat(density=1000.0, viscosity=1e-3)
+WATER = Afloat(density=WATER_DENSITY, viscosity=WATER_VISCOSITY)
 """Fresh water of 20 degrees Celsius."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Run:
-    """One run of a batch."""
+    """One run of a batch; robot and gait may be given by their names on the shelves."""
 
-    robot: Crocodile
+    robot: AnyRobot
     """Who walks."""
-    gait: Gait
+    gait: AnyGait
     """How."""
     ground: Ground = field(default_factory=Ground)
     """On what."""
@@ -62,5 +64,8 @@ class Run:
     """For tables and legends."""
 
     def __post_init__(self) -> None:
-        require("run", "noise", self.noise, 0.0, 1.0, "rad")
-        require("run", "seed", self.seed, 0, 2**32 - 1, "")
+        object.__setattr__(self, "robot", ROBOTS.resolve(self.robot))
+        object.__setattr__(self, "gait", GAITS.resolve(self.gait))
+        with Checks("run", self) as check:
+            check.number("noise", 0.0, 1.0, "rad")
+            check.whole("seed", 0, 2**32 - 1)

@@ -7,9 +7,10 @@ import xarray as xr
 
 from suchus.control import Joinable
 from suchus.design.checks import require
+from suchus.design.scale import check_step, control_period, physics_step
 from suchus.errors import InvalidDesign
 from suchus.fault import check_faults
-from suchus.land.loop import CONTROL_PERIOD, Loop, physics_steps
+from suchus.land.loop import Loop, physics_steps
 from suchus.land.push import check_pushes
 from suchus.land.run import Run
 from suchus.model import topology
@@ -22,7 +23,7 @@ def simulate(
     runs: Sequence[Run],
     *,
     duration: float = 9.0,
-    timestep: float = 0.002,
+    timestep: float | None = None,
     every: int = 1,
     progress: Progress | None = None,
 ) -> xr.Dataset:
@@ -34,7 +35,7 @@ def simulate(
     Args:
         runs: at least one; the robots must share their number of tail joints, and which servos have integral action.
         duration: [s].
-        timestep: of the physics [s]; a whole part of the control period.
+        timestep: of the physics [s], a whole part of the control period; that of the robots' size if None.
         every: keep one sample of so many control periods.
         progress: called with the share that is done.
 
@@ -48,8 +49,11 @@ def simulate(
         UnknownName: a fault of a joint, or a push on a body, that does not exist.
     """
     runs = tuple(runs)
-    steps = _check(runs, duration, timestep, every)
-    ticks = round(duration / CONTROL_PERIOD)
+    if not runs:
+        raise InvalidDesign("there are no runs to simulate; give at least one.")
+    timestep = physics_step(runs[0].robot) if timestep is None else timestep
+    steps, period = _check(runs, duration, timestep, every)
+    ticks = round(duration / period)
     parts, order = [], []
     groups = _groups(runs)
     for number, members in enumerate(groups):
@@ -63,20 +67,28 @@ def simulate(
         order.extend(members)
     record = parts[0] if len(parts) == 1 else xr.concat(parts, "run", join="exact", data_vars="minimal")
     record = record.isel(run=np.argsort(order)).assign_coords(run=np.arange(len(runs)))
-    record.attrs.update(timestep=timestep, control_period=CONTROL_PERIOD)
+    record.attrs.update(timestep=timestep, control_period=period)
     return record
 
 
-def _check(runs: Sequence[Run], duration: float, timestep: float, every: int) -> int:
-    """Refuse what cannot be simulated; return the number of physics steps in a control period."""
-    if not runs:
-        raise InvalidDesign("there are no runs to simulate; give at least one.")
-    require("simulate", "duration", duration, CONTROL_PERIOD, 86400.0, "s")
+def _check(runs: Sequence[Run], duration: float, timestep: float, every: int) -> tuple[int, float]:
+    """Refuse what cannot be simulated; return the physics steps in a control period, and that period [s]."""
+    periods = {control_period(run.robot) for run in runs}
+    if len(periods) > 1:
+        raise InvalidDesign(
+            f"the robots of one batch have control periods of {' and '.join(f'{one:g}' for one in sorted(periods))} s, "
+            "since they differ so much in size; simulate them one after another."
+        )
+    (period,) = periods
+    require("simulate", "duration", duration, period, 86400.0, "s")
     require("simulate", "every", every, 1, 10000, "control periods")
-    steps = physics_steps(timestep)
+    steps = physics_steps(timestep, period)
+    for robot in {run.robot for run in runs}:
+        check_step(robot, timestep)
     if len({topology(run.robot) for run in runs}) > 1:
         raise InvalidDesign(
-            "the robots of one batch must have equally many tail joints, and integral action in the same servos; "
+            "the robots of one batch must have the same bodies, hinges and servos (equally many tail joints, as an "
+            "example), and integral action in the same servos; "
             "simulate them one after another."
         )
     for pair in {(run.robot, run.gait) for run in runs}:
@@ -84,7 +96,7 @@ def _check(runs: Sequence[Run], duration: float, timestep: float, every: int) ->
     for run in runs:
         check_faults(run.faults, run.robot, duration)
         check_pushes(run.pushes, run.robot, duration)
-    return steps
+    return steps, period
 
 
 def _groups(runs: Sequence[Run]) -> list[list[int]]:
@@ -113,4 +125,4 @@ def _simulate_group(
         if tick % 16 == 0:
             progress(tick / ticks)
     progress(1.0)
-    return loop.readings.record(np.arange(0, ticks + 1, every) * CONTROL_PERIOD)
+    return loop.readings.record(np.arange(0, ticks + 1, every) * control_period(runs[0].robot))

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from suchus.design import servo_names
+from suchus.design import layout
 from suchus.fault import Fault
 from suchus.land.bench import Bench
 from suchus.land.injector import Injector
@@ -23,9 +23,10 @@ class Troubles:
         for sim, run in enumerate(runs):
             for fault in run.faults:
                 self._due.setdefault(int(np.ceil(fault.at / period - 1e-9)), []).append((sim, fault))
-        self.injector = Injector(bench, period)
+        self._servos = layout(runs[0].robot).servos
+        self.injector = Injector(bench, period, runs[0].robot)
         self._noise = {
-            sim: run.noise * np.random.default_rng(run.seed).standard_normal((ticks, len(servo_names())))
+            sim: run.noise * np.random.default_rng(run.seed).standard_normal((ticks, len(self._servos)))
             for sim, run in enumerate(runs)
             if run.noise > 0
         }

@@ -12,8 +12,9 @@ from suchus.metrics.bends import (
 from suchus.metrics.decisive import Border, border, rank_correlation
 from suchus.metrics.energy import cost_of_transport, peak_torque, work
 from suchus.metrics.gait import diagonal_phase_error, duty_factor, foot_clearance, loaded, sensed_phase, two_feet_share
-from suchus.metrics.loads import swing_lift, swing_loads, tail_load_share
-from suchus.metrics.loss import loss, says
+from suchus.metrics.loads import swing_height, swing_lift, swing_loads, swing_unloaded, tail_load_share
+from suchus.metrics.loss import loss
+from suchus.metrics.mean_cycle import each_cycle, first_harmonic, mean_cycle
 from suchus.metrics.progress import displacement, heading, heading_change, path_length, slip
 from suchus.metrics.reach import held, lead, reach, static_margin
 from suchus.metrics.rolling import roll_angle, roll_rate
@@ -27,6 +28,7 @@ from suchus.metrics.stability import (
     support_polygon,
     tilt,
 )
+from suchus.metrics.tail import tail_joint_spread, tail_joint_spread_max
 from suchus.metrics.window import between, whole
 
 __all__ = [
@@ -37,6 +39,8 @@ __all__ = [
     "diagonal_phase_error",
     "displacement",
     "duty_factor",
+    "each_cycle",
+    "first_harmonic",
     "foot_clearance",
     "heading",
     "heading_change",
@@ -49,6 +53,7 @@ __all__ = [
     "line_distance_max",
     "loaded",
     "loss",
+    "mean_cycle",
     "path_length",
     "peak_torque",
     "rank_correlation",
@@ -56,7 +61,6 @@ __all__ = [
     "roll_angle",
     "roll_peak_to_peak",
     "roll_rate",
-    "says",
     "sensed_phase",
     "slip",
     "spine_amplitude",
@@ -65,9 +69,13 @@ __all__ = [
     "static_margin",
     "support_distance",
     "support_polygon",
+    "swing_height",
     "swing_lift",
     "swing_loads",
+    "swing_unloaded",
     "tail_amplitude",
+    "tail_joint_spread",
+    "tail_joint_spread_max",
     "tail_load_share",
     "tail_swing_least",
     "tail_swings",

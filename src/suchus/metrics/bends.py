@@ -40,12 +40,8 @@ def tail_swing_least(record: xr.Dataset, start: float = START, end: float | None
 def spine_sine_share(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
     """Return how much of the variance of the spine's bend a sine at the gait's frequency explains [-]."""
     bend = _window(record, "spine", start, end)
-    off = bend - bend.mean("time")
     turn = 2 * np.pi * (bend.time - bend.time[0]) / record.period
-    terms = xr.concat([np.cos(turn), np.sin(turn)], "term")  # orthogonal over whole cycles
-    explained = ((off * terms).mean("time") ** 2 / (terms**2).mean("time")).sum("term")
-    variance = (off**2).mean("time")
-    return (explained / variance.where(variance > 0)).fillna(0.0)
+    return xr.apply_ufunc(_explained, bend, turn, input_core_dims=[["time"], ["time"]], vectorize=True)
 
 
 def spine_swings(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
@@ -73,6 +69,15 @@ def _swings(record: xr.Dataset, part: Bent, start: float, end: float | None) -> 
     cycles = bend.sizes["time"] * step / record.period
     counts = xr.apply_ufunc(_changes, bend, input_core_dims=[["time"]], vectorize=True)
     return counts / cycles
+
+
+def _explained(angle: np.ndarray, turn: np.ndarray) -> float:
+    """Return the share of an angle's variance in the cosine and sine of a phase that takes whole turns."""
+    off = angle - angle.mean()
+    terms = (np.cos(turn), np.sin(turn))  # orthogonal over whole cycles
+    explained = sum((off * term).mean() ** 2 / (term**2).mean() for term in terms)
+    variance = (off**2).mean()
+    return float(explained / variance) if variance > 0 else 0.0
 
 
 def _changes(angle: np.ndarray) -> float:

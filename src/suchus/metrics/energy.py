@@ -2,7 +2,7 @@
 
 import xarray as xr
 
-from suchus.kinematics.mass import GRAVITY
+from suchus.design import GRAVITY
 from suchus.metrics.progress import displacement
 from suchus.metrics.window import between
 from suchus.motion import START

@@ -3,16 +3,29 @@
 import numpy as np
 import xarray as xr
 
+from suchus.design import GRAVITY
 from suchus.metrics.window import between
 from suchus.motion import START
 
+LOADED_SHARE = 0.0145
+"""Least normal force of a foot that counts as standing [weight of the robot]."""
 LOADED = 0.5
-"""Least normal force of a foot that counts as standing [N]; about a sixteenth of its share of the weight."""
+"""The same for the article's robot [N]; about a sixteenth of a foot's share of its weight."""
 
 
-def loaded(record: xr.Dataset, threshold: float = LOADED) -> xr.DataArray:
-    """Tell which feet stand, from their pressure."""
-    return record.foot_force.sel(xyz="z") > threshold
+def loaded(record: xr.Dataset, threshold: float | None = None) -> xr.DataArray:
+    """Tell which feet stand, from their pressure.
+
+    Args:
+        record: of one run or several.
+        threshold: least normal force of a standing foot [N]; ``LOADED_SHARE`` of the weight if None.
+    """
+    return record.foot_force.sel(xyz="z") > threshold_of(record, threshold)
+
+
+def threshold_of(record: xr.Dataset, threshold: float | None = None) -> xr.DataArray | float:
+    """Return the least normal force of what carries [N]: the one given, or ``LOADED_SHARE`` of the weight."""
+    return LOADED_SHARE * GRAVITY * record.mass if threshold is None else threshold
 
 
 def duty_factor(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
@@ -32,7 +45,7 @@ def foot_clearance(record: xr.Dataset, start: float = START, end: float | None =
 
 
 def sensed_phase(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
-    """Return the phase by which each leg is ahead of LF, from the first harmonic of its stance [cycle].
+    """Return the phase by which each leg is ahead of the first, LF, from the first harmonic of its stance [cycle].
 
     Args:
         record: over a whole number of cycles.
@@ -43,7 +56,7 @@ def sensed_phase(record: xr.Dataset, start: float = START, end: float | None = N
     stands = loaded(part).astype(float)
     turn = np.exp(-2j * np.pi * (part.time - part.time[0]) / part.period)
     angle = xr.apply_ufunc(np.angle, (stands * turn).sum("time"))
-    return np.mod((angle - angle.sel(leg="LF", drop=True)) / (2 * np.pi), 1.0)
+    return np.mod((angle - angle.isel(leg=0, drop=True)) / (2 * np.pi), 1.0)
 
 
 def diagonal_phase_error(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:

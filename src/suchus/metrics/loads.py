@@ -4,6 +4,7 @@ import numpy as np
 import xarray as xr
 
 from suchus.kinematics.mass import GRAVITY
+from suchus.metrics.gait import loaded
 from suchus.metrics.window import between
 from suchus.motion import START
 
@@ -36,6 +37,20 @@ def tail_load_share(record: xr.Dataset, start: float = START, end: float | None 
     """Return which share of the weight the tail carries, on average [-]."""
     load = between(record, start, end).tail_force.sel(xyz="z", drop=True).mean("time")
     return load / (record.mass * GRAVITY)
+
+
+def swing_height(record: xr.Dataset, leg: str, start: float = START, end: float | None = None) -> xr.DataArray:
+    """Return the mean height of the centre of mass while a leg is meant to swing [m]."""
+    part = between(record, start, end)
+    height = part.centre_of_mass.sel(xyz="z", drop=True).where(_swings(part, leg))
+    return height.mean("time").assign_attrs(units="m")
+
+
+def swing_unloaded(record: xr.Dataset, leg: str, start: float = START, end: float | None = None) -> xr.DataArray:
+    """Return the share of the time in which a foot is off the ground while it is meant to swing [-]."""
+    part = between(record, start, end)
+    free = ~loaded(part).sel(leg=leg, drop=True)
+    return free.where(_swings(part, leg)).mean("time").assign_attrs(units="1")
 
 
 def _swings(part: xr.Dataset, leg: str) -> xr.DataArray:

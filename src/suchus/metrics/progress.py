@@ -4,7 +4,8 @@ import numpy as np
 import xarray as xr
 
 from suchus import rotation
-from suchus.kinematics.mass import GRAVITY
+from suchus.design import GRAVITY
+from suchus.design.body import TRUNK_YAW
 from suchus.metrics.window import between
 from suchus.motion import START
 
@@ -16,9 +17,10 @@ def displacement(record: xr.Dataset, start: float = START, end: float | None = N
 
 
 def heading(record: xr.Dataset) -> xr.DataArray:
-    """Return over time whereto the body faces: the mean of the two girdles' directions, left positive [rad]."""
+    """Return over time where the body heads: the mean direction of the trunk's two ends, left positive [rad]."""
     yaw = xr.apply_ufunc(rotation.yaw, record.orientation, input_core_dims=[["wxyz"]])
-    trunk = sum(record.joint_angle.sel(joint=f"spine_yaw_{i}") for i in (1, 2, 3))
+    names = [str(name) for name in record.joint.values if str(name).startswith(TRUNK_YAW)]
+    trunk = sum(record.joint_angle.sel(joint=name) for name in names)
     return xr.apply_ufunc(lambda a: np.unwrap(a, axis=-1), yaw.transpose(..., "time")) + trunk / 2
 
 

@@ -5,13 +5,11 @@ import xarray as xr
 from jaxtyping import Float
 
 from suchus import rotation
-from suchus.design import Crocodile
-from suchus.kinematics import spine
-
-_TRUNK = slice(12, 17)  # of the joints
+from suchus.design import AnyRobot, Rod, layout
+from suchus.kinematics.tree import frames
 
 
-def reach(robot: Crocodile, record: xr.Dataset) -> xr.DataArray:
+def reach(robot: AnyRobot, record: xr.Dataset) -> xr.DataArray:
     """Return the height of the highest point of head and trunk over time, whatever part that is [m].
 
     This is what the robot could touch from below: when it crawls, the top of its back; when it stands, its snout.
@@ -31,30 +29,24 @@ def reach(robot: Crocodile, record: xr.Dataset) -> xr.DataArray:
     return tops.assign_attrs(units="m", long_name="highest point of head and trunk")
 
 
-def _tops(robot: Crocodile, q: np.ndarray, position: np.ndarray, angles: np.ndarray) -> Float[np.ndarray, "*batch 7"]:
-    """Return the highest point of pelvis, thorax, head and the trunk's four links [m]."""
-    up = rotation.upward(q)
-    bends = angles[..., _TRUNK]
-    T, joints = spine.forward(robot.spine, bends), spine.joints(robot.spine, bends)
-    p5, ahead = T[..., :3, 3], T[..., :3, 0]
-    shoulder, snout = robot.thorax.shoulder, robot.head.snout
-    over = np.einsum("...i,...ij->...j", up, T[..., :3, :3])  # upward, in the frame of the thorax
-    shells = (
-        (0.0, up, (robot.pelvis.length / 2, robot.pelvis.width / 2, robot.pelvis.height / 2)),
-        (
-            np.einsum("...i,...i", up, p5 + shoulder / 2 * ahead),
-            over,
-            (max(shoulder, 0.02) + 0.012, robot.thorax.width / 2, robot.thorax.height / 2),
-        ),
-        (
-            np.einsum("...i,...i", up, p5 + (shoulder + snout) / 2 * ahead),
-            over,
-            ((snout - shoulder) / 2, robot.head.width / 2, robot.head.height / 2),
-        ),
-    )
-    tops = [centre + np.linalg.norm(direction * np.array(half), axis=-1) for centre, direction, half in shells]
-    heights = np.einsum("...i,...ji->...j", up, joints)
-    tops += [np.maximum(heights[..., i], heights[..., i + 1]) + robot.spine.radius for i in range(4)]
+def _tops(
+    robot: AnyRobot, q: np.ndarray, position: np.ndarray, angles: np.ndarray
+) -> Float[np.ndarray, "*batch shape"]:
+    """Return the highest point of every shape from the root forward [m]."""
+    place, found, up = layout(robot), frames(robot, angles), rotation.upward(q)
+    segments = {segment.name: segment for segment in place.robot.axis}
+    tops = []
+    for i, body in enumerate(place.bodies):
+        shift = np.array([body.shift, 0.0, 0.0])
+        for shape in segments[body.name].shapes if body.name in place.trunk else ():
+            over = np.einsum("...i,...ij->...j", up, found.turns[..., i, :, :])  # upward, in the frame of the body
+            base = np.einsum("...i,...i", up, found.places[..., i, :])
+            if isinstance(shape, Rod):
+                ends = [np.array(end) + shift for end in (shape.start, shape.end)]
+                tops.append(base + np.maximum(*(over @ end for end in ends)) + shape.radius)
+            else:
+                centre = np.array(shape.at) + shift
+                tops.append(base + over @ centre + np.linalg.norm(over * np.array(shape.half), axis=-1))
     return np.asarray(position[..., 2, None] + np.stack(tops, axis=-1))
 
 

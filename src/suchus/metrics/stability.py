@@ -6,7 +6,7 @@ from jaxtyping import Float
 from scipy.spatial import ConvexHull, QhullError
 
 from suchus import rotation
-from suchus.metrics.gait import LOADED, loaded
+from suchus.metrics.gait import loaded, threshold_of
 from suchus.metrics.window import between
 from suchus.motion import START
 
@@ -37,7 +37,7 @@ def roll_peak_to_peak(record: xr.Dataset, start: float = START, end: float | Non
     return roll.max("time") - roll.min("time")
 
 
-def support_polygon(record: xr.Dataset, time: float, threshold: float = LOADED) -> Float[np.ndarray, "corner 2"]:
+def support_polygon(record: xr.Dataset, time: float, threshold: float | None = None) -> Float[np.ndarray, "corner 2"]:
     """Return the corners of the hull of what carries the body at one time, in order [m].
 
     Standing feet count, and the tail where it is loaded. A loaded tail stands for its tip, the farthest place where it
@@ -46,12 +46,12 @@ def support_polygon(record: xr.Dataset, time: float, threshold: float = LOADED) 
     Args:
         record: of one run.
         time: [s].
-        threshold: least normal force of what carries [N].
+        threshold: least normal force of what carries [N]; a share of the weight if None.
     """
     now = record.sel(time=time, method="nearest")
-    stands = (now.foot_force.sel(xyz="z") > threshold).values
+    stands = loaded(now, threshold).values
     points = np.asarray(now.foot_position.sel(xyz=["x", "y"]).values[stands], dtype=float)
-    if float(now.tail_force.sel(xyz="z")) > threshold:
+    if float(now.tail_force.sel(xyz="z")) > float(threshold_of(record, threshold)):
         points = np.vstack([points, now.tail_tip.sel(xyz=["x", "y"]).values.astype(float)])
     if len(points) < 3:
         return points
@@ -61,7 +61,7 @@ def support_polygon(record: xr.Dataset, time: float, threshold: float = LOADED) 
         return points
 
 
-def support_distance(record: xr.Dataset, time: float, threshold: float = LOADED) -> float:
+def support_distance(record: xr.Dataset, time: float, threshold: float | None = None) -> float:
     """Return how far the projected centre of mass lies outside the support by feet and tail [m].
 
     With two points the support is the line between them; inside a polygon the distance is negative, to the nearest
@@ -70,7 +70,7 @@ def support_distance(record: xr.Dataset, time: float, threshold: float = LOADED)
     Args:
         record: of one run.
         time: [s].
-        threshold: least normal force of what carries [N].
+        threshold: least normal force of what carries [N]; a share of the weight if None.
     """
     corners = support_polygon(record, time, threshold)
     com = record.centre_of_mass.sel(time=time, method="nearest").sel(xyz=["x", "y"]).values.astype(float)

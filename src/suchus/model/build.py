@@ -6,25 +6,23 @@ from typing import Any
 
 import mujoco
 
-from suchus.design import LEGS, Crocodile, Servo, servo_names
+from suchus.design import GRAVITY, AnyRobot, Layout, Servo, layout
 from suchus.design.relief import Relief
 from suchus.errors import InvalidDesign
+from suchus.model.bodies import add_bodies, lay_cables
 from suchus.model.ground import add_ground
-from suchus.model.legs import add_leg
-from suchus.model.names import SITES, TRUNK_BODIES
-from suchus.model.tail import CABLE, add_tail
-from suchus.model.trunk import add_trunk
+from suchus.model.names import sites
 
-TIMESTEP = 0.002  # [s]; 0.5 to 8 ms were measured to give the same displacement within 1 %
+TIMESTEP = 0.002  # [s]; of the article's robot; 0.5 to 8 ms were measured to give the same displacement within 1 %
 SLEW = 1
 """Column of ``actuator_dynprm`` in which MuJoCo's pid keeps its slew limit."""
 _POSITION_INPUT = 1  # the servo takes an angle; the other inputs of MuJoCo's pid stay unused
 
 
-def build(robot: Crocodile, *, timestep: float = TIMESTEP, relief: Relief | None = None) -> Any:
+def build(robot: AnyRobot, *, timestep: float = TIMESTEP, relief: Relief | None = None) -> Any:
     """Write a robot on the ground as a ``mujoco.MjSpec``.
 
-    World: x forward, y left, z up; the free joint carries the pelvis, whose frame is the spine's frame 0.
+    World: x forward, y left, z up; the free joint carries the root, in a crocodile the pelvis, the spine's frame 0.
 
     Args:
         robot: the design.
@@ -34,25 +32,23 @@ def build(robot: Crocodile, *, timestep: float = TIMESTEP, relief: Relief | None
     Returns:
         The ``mujoco.MjSpec``, ready for ``compile()`` or for further edits.
     """
+    place = layout(robot)
     spec = mujoco.MjSpec()
     spec.modelname = robot.name
     spec.compiler.degree = False
     _set_options(spec, timestep)
     add_ground(spec, relief)
-    pelvis = spec.worldbody.add_body(name="pelvis", pos=[0, 0, 0.2])
-    pelvis.add_freejoint(name="root")
-    thorax = add_trunk(pelvis, robot)
-    for leg in LEGS:
-        girdle, ahead = (thorax, robot.thorax.shoulder) if leg.endswith("F") else (pelvis, 0.0)
-        add_leg(girdle, ahead, leg, robot.leg(leg), robot.contact)
-    add_tail(spec, pelvis, robot)
-    for servo in servo_names():
-        _add_servo(spec, servo, robot)
-    _add_sensors(spec)
+    root = spec.worldbody.add_body(name=place.robot.root, pos=[0, 0, 0.2])
+    root.add_freejoint(name="root")
+    add_bodies(root, place)
+    lay_cables(spec, place.robot)
+    for number, servo in enumerate(place.servos):
+        _add_servo(spec, number, servo, place)
+    _add_sensors(spec, place)
     return spec
 
 
-def compile_model(robot: Crocodile, timestep: float = TIMESTEP, relief: Relief | None = None) -> Any:
+def compile_model(robot: AnyRobot, timestep: float = TIMESTEP, relief: Relief | None = None) -> Any:
     """Compile a robot on its ground; the same values give the same ``mujoco.MjModel`` again: copy it before an edit.
 
     Raises:
@@ -62,7 +58,7 @@ def compile_model(robot: Crocodile, timestep: float = TIMESTEP, relief: Relief |
 
 
 @lru_cache(maxsize=64)
-def _compiled(robot: Crocodile, timestep: float, relief: Relief | None) -> Any:
+def _compiled(robot: AnyRobot, timestep: float, relief: Relief | None) -> Any:
     """Compile once, whether the caller named what is the default or not."""
     try:
         return build(robot, timestep=timestep, relief=relief).compile()
@@ -70,13 +66,17 @@ def _compiled(robot: Crocodile, timestep: float, relief: Relief | None) -> Any:
         raise InvalidDesign(f"robot {robot.name!r} does not compile: {error}") from error
 
 
-def topology(robot: Crocodile) -> tuple[int, int, tuple[str, ...]]:
-    """Return what two robots must share to run in one batch.
+def topology(robot: AnyRobot) -> tuple[object, ...]:
+    """Return what two robots must share to run in one batch: all that decides the sizes of states and sensors.
 
-    That is their numbers of cable and passive joints, and which servos have integral action and so a state of its own.
+    That is every body with its parent and its hinges, which of them are free of limits or springs, the servos, and
+    which of them have integral action and so a state of its own.
     """
-    integrating = tuple(name for name in servo_names() if servo_of(robot, name).ki > 0)
-    return robot.tail.joints, robot.tail.fin_segments, integrating
+    place = layout(robot)
+    bodies = tuple((body.name, body.parent, tuple(name for _, name, _ in body.hinges)) for body in place.bodies)
+    integrating = tuple(name for name in place.servos if servo_of(robot, name).ki > 0)
+    shapes = tuple(len(segment.shapes) for segment in place.robot.axis)
+    return bodies, place.servos, shapes, tuple(cable.hinges for cable in place.robot.cables), integrating
 
 
 def joint_addresses(model: Any, names: Sequence[str]) -> list[int]:
@@ -84,14 +84,15 @@ def joint_addresses(model: Any, names: Sequence[str]) -> list[int]:
     return [int(model.joint(name).qposadr[0]) for name in names]
 
 
-def servo_of(robot: Crocodile, name: str) -> Servo:
-    """Return the servo that carries a name of ``design.servo_names()``."""
+def servo_of(robot: AnyRobot, name: str) -> Servo:
+    """Return the servo that carries a name of ``design.servo_names(robot)``."""
     return robot.servo(name)
 
 
 def _set_options(spec: Any, timestep: float) -> None:
     option = spec.option
     option.timestep = timestep
+    option.gravity = [0.0, 0.0, -GRAVITY]
     option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
     option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
     option.impratio = 10.0
@@ -99,9 +100,9 @@ def _set_options(spec: Any, timestep: float) -> None:
     option.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET  # divergence ends a run, it does not restart it
 
 
-def _add_servo(spec: Any, name: str, robot: Crocodile) -> None:
-    servo = servo_of(robot, name)
-    actuator = spec.add_actuator(name=name, group=servo_names().index(name))
+def _add_servo(spec: Any, number: int, name: str, place: Layout) -> None:
+    servo = place.robot.servo(name)
+    actuator = spec.add_actuator(name=name, group=number)
     actuator.set_to_pid(
         kp=servo.kp,
         kv=servo.kd,
@@ -110,10 +111,12 @@ def _add_servo(spec: Any, name: str, robot: Crocodile) -> None:
         slewmax=servo.speed,
         ctrlspec=_POSITION_INPUT,
     )
-    if name == "tail_cable":
+    if number in place.cables:
         actuator.trntype = mujoco.mjtTrn.mjTRN_TENDON
-        actuator.target = CABLE
-        actuator.gear[0] = 1.0 / robot.tail.pulley  # cable length to angle of the pulley, and its torque to tension
+        actuator.target = name
+        actuator.gear[0] = (
+            1.0 / place.cable(number).pulley
+        )  # cable length to angle of the pulley, and its torque to tension
     else:
         actuator.trntype = mujoco.mjtTrn.mjTRN_JOINT
         actuator.target = name
@@ -121,26 +124,29 @@ def _add_servo(spec: Any, name: str, robot: Crocodile) -> None:
     actuator.forcerange = [-servo.torque, servo.torque]
 
 
-def _add_sensors(spec: Any) -> None:
+def _add_sensors(spec: Any, place: Layout) -> None:
     kind, of = mujoco.mjtSensor, mujoco.mjtObj
     for suffix, sensor in (
         ("position", kind.mjSENS_ACTUATORPOS),
         ("velocity", kind.mjSENS_ACTUATORVEL),
         ("torque", kind.mjSENS_ACTUATORFRC),
     ):
-        for servo in servo_names():
+        for servo in place.servos:
             spec.add_sensor(name=f"{servo}_{suffix}", type=sensor, objtype=of.mjOBJ_ACTUATOR, objname=servo)
-    for leg in LEGS:
-        _add_force(spec, f"{leg}_force", of.mjOBJ_GEOM, f"{leg}_foot")
-    for body in TRUNK_BODIES:
+    for limb in place.limb_names:
+        _add_force(spec, f"{limb}_force", of.mjOBJ_GEOM, f"{limb}_foot")
+    for body in place.trunk:
         _add_force(spec, f"{body}_force", of.mjOBJ_BODY, body)
-    _add_force(spec, "tail_force", of.mjOBJ_XBODY, "tail_root")  # an x-body stands for its whole subtree
+    for body in place.tail[:1]:
+        _add_force(spec, "tail_force", of.mjOBJ_XBODY, body)  # an x-body stands for its whole subtree
     spec.add_sensor(name="imu_orientation", type=kind.mjSENS_FRAMEQUAT, objtype=of.mjOBJ_SITE, objname="imu")
     spec.add_sensor(name="imu_gyroscope", type=kind.mjSENS_GYRO, objtype=of.mjOBJ_SITE, objname="imu")
     spec.add_sensor(name="imu_accelerometer", type=kind.mjSENS_ACCELEROMETER, objtype=of.mjOBJ_SITE, objname="imu")
-    spec.add_sensor(name="centre_of_mass", type=kind.mjSENS_SUBTREECOM, objtype=of.mjOBJ_BODY, objname="pelvis")
-    spec.add_sensor(name="angular_momentum", type=kind.mjSENS_SUBTREEANGMOM, objtype=of.mjOBJ_BODY, objname="pelvis")
-    for site in SITES:
+    spec.add_sensor(name="centre_of_mass", type=kind.mjSENS_SUBTREECOM, objtype=of.mjOBJ_BODY, objname=place.robot.root)
+    spec.add_sensor(
+        name="angular_momentum", type=kind.mjSENS_SUBTREEANGMOM, objtype=of.mjOBJ_BODY, objname=place.robot.root
+    )
+    for site in sites(place.robot):
         spec.add_sensor(name=f"{site}_position", type=kind.mjSENS_FRAMEPOS, objtype=of.mjOBJ_SITE, objname=site)
 
 

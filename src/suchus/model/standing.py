@@ -5,12 +5,12 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from suchus.design import Crocodile, cable_joints, servo_names, spine_joints
+from suchus.design import AnyRobot, layout
 from suchus.model.build import joint_addresses
 from suchus.rotation import about
 
 
-def standing(model: Any, robot: Crocodile, hip_height: float, servos: np.ndarray) -> np.ndarray:
+def standing(model: Any, robot: AnyRobot, hip_height: float, servos: np.ndarray) -> np.ndarray:
     """Return the generalised positions of a robot that stands on the ground with given servo angles.
 
     It faces forward on the whole: a bent trunk turns the girdles to either side of +x by equal angles.
@@ -18,16 +18,20 @@ def standing(model: Any, robot: Crocodile, hip_height: float, servos: np.ndarray
     Args:
         model: its ``mujoco.MjModel``, with a ground.
         robot: the design.
-        hip_height: of the pelvis, higher where something would be below the ground [m].
-        servos: shape (19,) [rad].
+        hip_height: of the root, higher where something would be below the ground [m].
+        servos: shape (servo,) [rad].
     """
     data = mujoco.MjData(model)
-    cable, pulley_per_bend = cable_joints(robot), robot.tail.cord_spacing / 2 / robot.tail.pulley
+    place = layout(robot)
     data.qpos[2] = hip_height
-    turn = -sum(servos[servo_names().index(name)] for name in spine_joints() if "yaw" in name) / 2
+    turn = -sum(servos[i] for i in place.trunk_yaw) / 2
     data.qpos[3:7] = about(np.array([0.0, 0.0, 1.0]), turn)
-    data.qpos[joint_addresses(model, servo_names()[:-1])] = servos[:-1]
-    data.qpos[joint_addresses(model, cable)] = servos[-1] / pulley_per_bend / len(cable)
+    direct = len(place.servos) - len(place.cables)
+    data.qpos[joint_addresses(model, place.servos[:direct])] = servos[:direct]
+    for i in place.cables:
+        cable = place.cable(i)
+        pulley_per_bend = cable.cord_spacing / 2 / cable.pulley
+        data.qpos[joint_addresses(model, cable.hinges)] = servos[i] / pulley_per_bend / cable.joints
     mujoco.mj_forward(model, data)
     deepest = min((float(c.dist) for c in data.contact), default=0.0)
     data.qpos[2] -= min(deepest, 0.0)

@@ -8,7 +8,7 @@ from suchus.design import Contact
 
 FOOT_COLOUR = (0.16, 0.20, 0.18, 1.0)
 SKIN_COLOUR = (0.36, 0.46, 0.30, 1.0)
-_TORSION, _ROLLING = 0.005, 0.0001  # MuJoCo's defaults: torsional and rolling friction [m]
+_IMPEDANCE = (0.9, 0.95, 0.5, 2.0)  # MuJoCo's defaults of solimp but for its width
 
 
 def sole(body: Any, name: str, pos: list[float], radius: float, mass: float, contact: Contact) -> None:
@@ -42,9 +42,10 @@ def shell(
 def _touches(geom: Any, friction: float, contact: Contact, dimensions: int, colour: tuple[float, ...]) -> None:
     # MuJoCo takes the maximum of two frictions at equal priority, so the robot's surfaces take precedence.
     geom.priority = 1
-    geom.friction = [friction, _TORSION, _ROLLING]
+    geom.friction = [friction, contact.torsion, contact.rolling]
     geom.condim = dimensions
     geom.solref = [contact.time_constant, 1.0]
+    geom.solimp = [*_IMPEDANCE[:2], contact.depth, *_IMPEDANCE[2:]]
     geom.contype, geom.conaffinity = 0, 1  # the ground only: no self-collision
     geom.fluid_ellipsoid = 1  # how a fluid would act, where there is one
     geom.rgba = list(colour)

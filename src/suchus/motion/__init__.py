@@ -1,31 +1,57 @@
 """From time to intended posture: phases, foot paths, bends, servo targets."""
 
+from suchus.motion.angle_table import AngleTable, Curve
+from suchus.motion.any_body import (
+    AnyGait,
+    Intended,
+    check_limits,
+    hip_height,
+    intended,
+    limb_targets,
+    middle_stance,
+    pattern_targets,
+)
 from suchus.motion.gait import Gait, Legs
+from suchus.motion.pattern import AxialWave, FootPath, Held, Pattern, Sweep
 from suchus.motion.phase import limb_phase, stance, tail_bend, trunk_bend
 from suchus.motion.posture import Keyed, Planned, Posture, plan
 from suchus.motion.rising import stand_up, stretched, tallest
 from suchus.motion.roll import Roll, check_roll, roll_targets
 from suchus.motion.swim import Bends, Swim, bends, check_swim, swim_targets
-from suchus.motion.targets import check_limits, foot_targets, longest_stroke, servo_targets, within_reach
+from suchus.motion.targets import foot_targets, longest_stroke, servo_targets, within_reach
 from suchus.motion.timing import START
 
 __all__ = [
     "START",
+    "AngleTable",
+    "AnyGait",
+    "AxialWave",
     "Bends",
+    "Curve",
+    "FootPath",
     "Gait",
+    "Held",
+    "Intended",
     "Keyed",
     "Legs",
+    "Pattern",
     "Planned",
     "Posture",
     "Roll",
+    "Sweep",
     "Swim",
     "bends",
     "check_limits",
     "check_roll",
     "check_swim",
     "foot_targets",
+    "hip_height",
+    "intended",
     "limb_phase",
+    "limb_targets",
     "longest_stroke",
+    "middle_stance",
+    "pattern_targets",
     "plan",
     "roll_targets",
     "servo_targets",

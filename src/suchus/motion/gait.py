@@ -15,15 +15,15 @@ in Fig. 3b.
 """
 
 _ALLOWED = {
-    "period": (0.1, 60.0, "s"),
+    "period": (1e-3, 3600.0, "s"),
     "duty_factor": (0.05, 0.95, ""),
-    "stroke": (-0.3, 0.3, "m"),
-    "lift": (0.0, 0.3, "m"),
-    "front_reach": (-0.3, 1.0, "m"),
-    "hind_reach": (-0.3, 1.0, "m"),
-    "front_ahead": (-0.3, 0.3, "m"),
-    "hind_ahead": (-0.3, 0.3, "m"),
-    "hip_height": (0.01, 1.0, "m"),
+    "stroke": (-10.0, 10.0, "m"),
+    "lift": (0.0, 10.0, "m"),
+    "front_reach": (-10.0, 10.0, "m"),
+    "hind_reach": (-10.0, 10.0, "m"),
+    "front_ahead": (-10.0, 10.0, "m"),
+    "hind_ahead": (-10.0, 10.0, "m"),
+    "hip_height": (1e-4, 10.0, "m"),
     "trunk_bend": (0.0, 3.1416, "rad"),
     "spine_phase": (-1.0, 1.0, "cycle"),
     "tail_bend": (0.0, 3.1416, "rad"),

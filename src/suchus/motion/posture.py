@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import Crocodile, Leg, joint_names, servo_names
+from suchus.design import AnyRobot, Crocodile, Leg, crocodile, joint_names, layout, servo_names
 from suchus.design.checks import Checks
 from suchus.errors import InvalidDesign, OutsideLimits, Unreachable
 from suchus.kinematics import leg as leg_kinematics
@@ -102,7 +102,7 @@ class Keyed:
 class Planned(NamedTuple):
     """A sequence over time: servo angles, and where the body is over the hind feet."""
 
-    targets: Float[np.ndarray, "*batch 19"]
+    targets: Float[np.ndarray, "*batch servo"]
     """Servo angles in the order of ``design.servo_names()`` [rad]."""
     pitch: Float[np.ndarray, "*batch"]
     """Of the pelvis, front end up positive [rad]."""
@@ -114,7 +114,7 @@ class Planned(NamedTuple):
     """How far the tip of the tail lies behind the centres of the hind feet [m]."""
 
 
-def plan(robot: Crocodile, sequence: Keyed, time: Float[np.ndarray, "*batch"]) -> Planned:
+def plan(robot: AnyRobot, sequence: Keyed, time: Float[np.ndarray, "*batch"]) -> Planned:
     """Return a sequence at some times.
 
     In every key the hips are where the centre of mass lies ``lead`` behind the feet. Between two keys they and every
@@ -129,6 +129,7 @@ def plan(robot: Crocodile, sequence: Keyed, time: Float[np.ndarray, "*batch"]) -
     Raises:
         OutsideLimits: a hind foot or a joint cannot get there; the message names it.
     """
+    robot = crocodile(robot, "a sequence of keyed postures")
     keys = np.array([[getattr(p, name) for name in FIELDS] for p in sequence.postures])
     behind = _balance(robot, keys)
     numbers = _eased(np.array(sequence.times), np.column_stack([keys, behind]), time)
@@ -138,7 +139,7 @@ def plan(robot: Crocodile, sequence: Keyed, time: Float[np.ndarray, "*batch"]) -
     targets[..., -1] = 0.0  # the tail is straight, so its cable is
     _check_ranges(robot, targets)
     pitch, behind = given["pelvis_pitch"], numbers[..., -1]
-    tip = tail_points(robot, angles[..., 17:])[..., -1, :]
+    tip = tail_points(robot, angles[..., layout(robot).behind])[..., -1, :]
     return Planned(
         targets=targets,
         pitch=pitch,
@@ -218,9 +219,10 @@ def _named(numbers: np.ndarray) -> dict[str, np.ndarray]:
 def _angles(robot: Crocodile, given: dict[str, np.ndarray], behind: np.ndarray, *, clip: bool = False) -> np.ndarray:
     """Return the angles of every hinge."""
     angles = np.zeros((*behind.shape, len(joint_names(robot))))
-    for first in (0, 3):
+    place = layout(robot)
+    for limb in place.limbs[:2]:
         for i, name in enumerate(("arm_yaw", "arm_pitch", "arm_knee")):
-            angles[..., first + i] = given[name]
+            angles[..., limb.hinges.start + i] = given[name]
     try:
         hind = hind_leg(robot.hind_leg, _feet(robot, given, behind), given["pelvis_pitch"], clip=clip)
     except Unreachable as error:
@@ -228,9 +230,11 @@ def _angles(robot: Crocodile, given: dict[str, np.ndarray], behind: np.ndarray, 
             f"the hind feet of robot {robot.name!r} cannot stay where they are planted: {error} "
             "Lower hip_height, lead or stance."
         ) from error
-    angles[..., 6:9] = angles[..., 9:12] = hind
-    angles[..., 13], angles[..., 15] = -given["trunk_first"], -given["trunk_second"]
-    angles[..., 17] = np.clip(_tail_pitch(robot, given), *robot.tail.pitch_range)
+    for limb in place.limbs[2:]:
+        angles[..., limb.hinges] = hind
+    for servo, name in zip(place.trunk_pitch, ("trunk_first", "trunk_second"), strict=True):
+        angles[..., place.servo_hinges[servo]] = -given[name]
+    angles[..., place.behind.start] = np.clip(_tail_pitch(robot, given), *robot.tail.pitch_range)
     return angles
 
 

@@ -6,7 +6,7 @@ from math import radians
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import Crocodile, joint_names
+from suchus.design import AnyRobot, Crocodile, crocodile, joint_names, layout
 from suchus.kinematics.body import landmarks
 from suchus.kinematics.mass import centre_of_mass
 from suchus.motion.posture import Keyed, Posture, hind_leg, mass_ahead
@@ -30,7 +30,7 @@ _ARMS_RAISED = {"arm_yaw": 0.2, "arm_pitch": -0.3, "arm_knee": 1.2}  # off the g
 
 
 def stand_up(
-    robot: Crocodile,
+    robot: AnyRobot,
     *,
     pelvis_pitch: float = PELVIS_PITCH,
     stretch: float = STRETCH,
@@ -52,6 +52,7 @@ def stand_up(
         lead: where the centre of mass is commanded behind the feet when standing [m].
         slower: factor on all times [-].
     """
+    robot = crocodile(robot, "standing up")
     leg = robot.hind_leg
     length = leg.femur + leg.tibia
     ground = max(robot.pelvis.height / 2, robot.spine.radius) + 0.002
@@ -103,14 +104,15 @@ def _feet_ahead(robot: Crocodile, level: Posture) -> float:
     return float(min(mass_ahead(robot, level, longest) + 0.17 * length, longest))
 
 
-def stretched(robot: Crocodile) -> float:
+def stretched(robot: AnyRobot) -> float:
     """Return hind leg, spine and head in one straight line [m]; no posture reaches higher over the feet's centres."""
+    robot = crocodile(robot, "standing up")
     leg = robot.hind_leg
     return leg.femur + leg.tibia + robot.spine.length + robot.head.snout
 
 
 def tallest(
-    robot: Crocodile, lead: Float[np.ndarray, "*batch"], *, stance: float = _STANCE
+    robot: AnyRobot, lead: Float[np.ndarray, "*batch"], *, stance: float = _STANCE
 ) -> Float[np.ndarray, "*batch"]:
     """Return how high the snout can be while the centre of mass lies ``lead`` behind the feet [m].
 
@@ -122,31 +124,37 @@ def tallest(
         lead: how far the centre of mass lies behind the feet [m].
         stance: how far a hind foot stands outside its hip [m].
     """
+    robot = crocodile(robot, "standing up")
     pitch, first, second = (
         g.ravel()
         for g in np.meshgrid(*(np.radians(np.arange(a, b, c)) for a, b, c in ((46, 91, 2), (-15, 46, 5), (-15, 46, 5))))
     )
     leg = robot.hind_leg
     angles = np.zeros((len(pitch), len(joint_names(robot))))
-    for i, name in enumerate(("arm_yaw", "arm_pitch", "arm_knee")):
-        angles[:, i] = angles[:, 3 + i] = _ARMS_RAISED[name]
-    angles[:, 13], angles[:, 15] = -first, -second
+    place = layout(robot)
+    front, hind = place.limbs[:2], place.limbs[2:]
+    for limb in front:
+        angles[:, limb.hinges] = [_ARMS_RAISED[name] for name in ("arm_yaw", "arm_pitch", "arm_knee")]
+    pitch_joints = [place.servo_hinges[servo] for servo in place.trunk_pitch]
+    angles[:, pitch_joints] = np.column_stack([-first, -second])
+    root = place.behind.start  # of the tail
     s, c = np.sin(pitch), np.cos(pitch)
     heights = []
     for some in np.ravel(lead):
         behind, down = np.full(len(pitch), some), np.full(len(pitch), 0.9 * leg.reach[1])
         for _ in range(4):  # the legs' own weight moves the centre of mass a little
-            angles[:, 6:9] = angles[:, 9:12] = hind_leg(
-                leg, np.stack([np.full(len(pitch), stance), behind, down], axis=-1), pitch, clip=True
-            )
+            feet = np.stack([np.full(len(pitch), stance), behind, down], axis=-1)
+            bent = hind_leg(leg, feet, pitch, clip=True)
+            for limb in hind:
+                angles[:, limb.hinges] = bent
             tail = robot.tail
             drop = (down + leg.foot_radius - tail.offset * s - tail.radius_tip) / (tail.length - tail.offset)
-            angles[:, 17] = np.arcsin(np.clip(drop, -1.0, 1.0)) - pitch
+            angles[:, root] = np.arcsin(np.clip(drop, -1.0, 1.0)) - pitch
             com = centre_of_mass(robot, angles)
             behind = c * com[:, 0] - s * com[:, 2] + some
             down = np.sqrt(np.maximum(leg.reach[1] ** 2 - behind**2 - stance**2, 0.0))
         snout = landmarks(robot, angles).snout
-        fits = (angles[:, 17] >= tail.pitch_range[0]) & (angles[:, 17] <= tail.pitch_range[1]) & (down > 0)
+        fits = (angles[:, root] >= tail.pitch_range[0]) & (angles[:, root] <= tail.pitch_range[1]) & (down > 0)
         height = down + leg.foot_radius + s * snout[:, 0] + c * snout[:, 2]
         heights.append(float(np.max(np.where(fits, height, 0.0))))
     return np.reshape(np.array(heights), np.shape(lead))

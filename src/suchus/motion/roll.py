@@ -5,17 +5,13 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import Crocodile, servo_names
+from suchus.design import AnyRobot, crocodile, layout, servo_names
 from suchus.design.checks import Checks
 from suchus.errors import OutsideLimits
 from suchus.kinematics import tail as tail_kinematics
 from suchus.motion.targets import servo_range
 
 _LEGS_BACK = -np.pi / 2
-_TRUNK_YAW = [servo_names().index(f"spine_yaw_{i}") for i in (1, 2, 3)]
-_TRUNK_PITCH = [servo_names().index(f"spine_pitch_{i}") for i in (1, 2)]
-_TAIL_PITCH, _TAIL_CABLE = servo_names().index("tail_pitch"), servo_names().index("tail_cable")
-_LEG_YAW = [servo_names().index(f"{leg}_yaw") for leg in ("LF", "RF", "LH", "RH")]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,7 +47,7 @@ class Roll:
             check.number("tail_late", -1.0, 1.0, "cycle")
 
 
-def roll_targets(robot: Crocodile, roll: Roll, time: Float[np.ndarray, "*b"]) -> Float[np.ndarray, "*b 19"]:
+def roll_targets(robot: AnyRobot, roll: Roll, time: Float[np.ndarray, "*b"]) -> Float[np.ndarray, "*b servo"]:
     """Return the servo angles of a roll, in the order of ``design.servo_names()`` [rad].
 
     Args:
@@ -59,30 +55,33 @@ def roll_targets(robot: Crocodile, roll: Roll, time: Float[np.ndarray, "*b"]) ->
         roll: the motion.
         time: since its beginning [s].
     """
+    robot = crocodile(robot, "a death roll")
     cycles = roll.frequency * time
     grown = np.clip(cycles, 0.0, 1.0)
     grown = grown**2 * (3.0 - 2.0 * grown)
-    targets = np.zeros((*np.shape(time), len(servo_names())))
-    targets[..., _LEG_YAW] = _LEGS_BACK
+    place = layout(robot)
+    targets = np.zeros((*np.shape(time), len(place.servos)))
+    targets[..., [limb.servos.start for limb in place.limbs]] = _LEGS_BACK
 
     def bend(amplitude: float, late: float) -> np.ndarray:
         return np.asarray(amplitude * grown * np.cos(2 * np.pi * (cycles - late)))
 
-    targets[..., _TRUNK_YAW] = bend(roll.trunk_lateral, 0.0)[..., None] / len(_TRUNK_YAW)
-    targets[..., _TRUNK_PITCH] = bend(roll.trunk_vertical, roll.late)[..., None] / len(_TRUNK_PITCH)
-    targets[..., _TAIL_PITCH] = bend(roll.tail_vertical, roll.late + roll.tail_late)
+    targets[..., place.trunk_yaw] = bend(roll.trunk_lateral, 0.0)[..., None] / len(place.trunk_yaw)
+    targets[..., place.trunk_pitch] = bend(roll.trunk_vertical, roll.late)[..., None] / len(place.trunk_pitch)
+    targets[..., place.tail_pitch[0]] = bend(roll.tail_vertical, roll.late + roll.tail_late)
     to_the_right = -bend(roll.tail_lateral, roll.tail_late)
-    targets[..., _TAIL_CABLE] = tail_kinematics.servo_angle(robot.tail, to_the_right)
+    targets[..., place.cables[0]] = tail_kinematics.servo_angle(robot.tail, to_the_right)
     return targets
 
 
-def check_roll(robot: Crocodile, roll: Roll) -> None:
+def check_roll(robot: AnyRobot, roll: Roll) -> None:
     """Refuse a roll that a robot's joints or servos cannot follow.
 
     Raises:
         OutsideLimits: a joint would have to leave its range, or a servo to turn faster than it can; the message names
             it.
     """
+    robot = crocodile(robot, "a death roll")
     if roll.tail_lateral > robot.tail.bend_limit:
         raise OutsideLimits(
             f"the roll bends the tail by {roll.tail_lateral:.3f} rad; robot {robot.name!r} allows up to "
@@ -91,7 +90,7 @@ def check_roll(robot: Crocodile, roll: Roll) -> None:
     time = (1.0 + np.arange(257) / 256) / roll.frequency
     angles = roll_targets(robot, roll, time)
     speeds = np.abs(np.diff(angles, axis=0)).max(axis=0) / (time[1] - time[0])
-    for i, name in enumerate(servo_names()):
+    for i, name in enumerate(servo_names(robot)):
         low, high = servo_range(robot, name)
         least, most = float(angles[:, i].min()), float(angles[:, i].max())
         if least < low or most > high:

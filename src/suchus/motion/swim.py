@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import LEGS, Crocodile, servo_names
+from suchus.design import AnyRobot, crocodile, layout
 from suchus.design.checks import Checks, require
 from suchus.errors import InvalidDesign, OutsideLimits
 from suchus.kinematics import tail as tail_kinematics
@@ -91,7 +91,7 @@ def bends(swim: Swim, time: Float[np.ndarray, "*b"]) -> Bends:
     )
 
 
-def swim_targets(robot: Crocodile, swim: Swim, time: Float[np.ndarray, "*b"]) -> Float[np.ndarray, "*b 19"]:
+def swim_targets(robot: AnyRobot, swim: Swim, time: Float[np.ndarray, "*b"]) -> Float[np.ndarray, "*b servo"]:
     """Return the servo angles of a swimming motion, in the order of ``design.servo_names()`` [rad].
 
     Args:
@@ -99,22 +99,24 @@ def swim_targets(robot: Crocodile, swim: Swim, time: Float[np.ndarray, "*b"]) ->
         swim: the motion.
         time: [s].
     """
-    names = servo_names()
+    robot = crocodile(robot, "the swim by trunk and cable")
+    place = layout(robot)
     now = bends(swim, time)
-    targets = np.zeros((*np.shape(time), len(names)))
-    targets[..., [names.index(f"{leg}_yaw") for leg in LEGS]] = -np.pi / 2
-    targets[..., [names.index(name) for name in YAWS]] = now.yaw
-    targets[..., names.index("tail_cable")] = tail_kinematics.servo_angle(robot.tail, now.tail)
+    targets = np.zeros((*np.shape(time), len(place.servos)))
+    targets[..., [limb.servos.start for limb in place.limbs]] = -np.pi / 2
+    targets[..., place.trunk_yaw] = now.yaw
+    targets[..., place.cables[0]] = tail_kinematics.servo_angle(robot.tail, now.tail)
     return targets
 
 
-def check_swim(robot: Crocodile, swim: Swim) -> None:
+def check_swim(robot: AnyRobot, swim: Swim) -> None:
     """Refuse a swimming motion that a robot's joints or servos cannot follow.
 
     Raises:
         OutsideLimits: a joint would have to leave its range, or a servo to turn faster than it can; the message names
             it and by how much.
     """
+    robot = crocodile(robot, "the swim by trunk and cable")
     low, high = robot.spine.yaw_range
     asked = [(name, amplitude, min(-low, high)) for name, amplitude in zip(YAWS, swim.yaw, strict=True)]
     asked.append(("tail_cable", swim.tail, robot.tail.bend_limit))

@@ -1,12 +1,15 @@
 """The intended posture at a phase: feet by inverse kinematics, trunk and tail by their bends."""
 
+from functools import lru_cache
+
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import LEGS, Crocodile, Leg, servo_names
+from suchus.design import LEGS, AnyRobot, Leg, layout, servo_ranges
 from suchus.errors import OutsideLimits, Unreachable
 from suchus.kinematics import leg as leg_kinematics
 from suchus.kinematics import tail as tail_kinematics
+from suchus.kinematics.limb import PlainLeg, kind, plain
 from suchus.motion.gait import Gait
 from suchus.motion.phase import tail_bend, trunk_bend
 
@@ -14,7 +17,7 @@ _INSIDE = 1e-6  # [m]; how far inside its reach a clipped leg stays
 
 
 def foot_targets(
-    robot: Crocodile,
+    robot: AnyRobot,
     gait: Gait,
     phase: Float[np.ndarray, "*b 4"],
     *,
@@ -39,12 +42,11 @@ def foot_targets(
     back = (cycle - swing) / gait.duty_factor
     forward = np.where(cycle < swing, -np.cos(np.pi * s), 1.0 - 2.0 * back)
     feet = np.empty((*phase.shape, 3))
-    for i, name in enumerate(LEGS):
-        leg = robot.leg(name)
+    for i, (name, leg) in enumerate(zip(LEGS, legs_for(robot, gait), strict=True)):
         front = name.endswith("F")
         feet[..., i, 0] = leg.hip_offset + (gait.front_reach if front else gait.hind_reach)
         feet[..., i, 1] = gait.front_ahead if front else gait.hind_ahead
-        feet[..., i, 2] = gait.hip_height - leg.foot_radius
+        feet[..., i, 2] = gait.hip_height + leg.above - leg.foot_radius
     feet[..., 1] += (gait.stroke if stroke is None else stroke) * forward
     if lower is not None:
         feet[..., 2] += lower
@@ -53,7 +55,7 @@ def foot_targets(
 
 
 def servo_targets(
-    robot: Crocodile,
+    robot: AnyRobot,
     gait: Gait,
     phase: Float[np.ndarray, "*b 4"],
     *,
@@ -62,8 +64,8 @@ def servo_targets(
     stroke: Float[np.ndarray, "*b 4"] | None = None,
     lower: Float[np.ndarray, "*b 4"] | None = None,
     clip: bool = False,
-) -> Float[np.ndarray, "*b 19"]:
-    """Return the servo angles of the intended posture, in the order of ``design.servo_names()`` [rad].
+) -> Float[np.ndarray, "*b servo"]:
+    """Return the servo angles of the intended posture, in the order of ``design.servo_names(robot)`` [rad].
 
     Args:
         robot: the design.
@@ -78,24 +80,48 @@ def servo_targets(
     Raises:
         OutsideLimits: the legs cannot reach their feet's paths, and ``clip`` is false.
     """
+    place = layout(robot)
     feet = foot_targets(robot, gait, phase, stroke=stroke, lower=lower)
-    targets = np.zeros((*phase.shape[:-1], 19))
-    for i, name in enumerate(LEGS):
+    targets = np.zeros((*phase.shape[:-1], len(place.servos)))
+    for i, (limb, leg) in enumerate(zip(place.limbs, legs_for(robot, gait), strict=True)):
         try:
-            targets[..., 3 * i : 3 * i + 3] = _leg_angles(robot.leg(name), name, gait, feet[..., i, :], clip=clip)
+            targets[..., limb.servos] = _leg_angles(leg, limb.name, gait, feet[..., i, :], clip=clip)
         except Unreachable as error:
             raise OutsideLimits(
-                f"gait {gait.name!r} asks {name} for a foot path outside its reach: {error} "
+                f"gait {gait.name!r} asks {limb.name} for a foot path outside its reach: {error} "
                 "Lower stroke, reach or hip_height."
             ) from error
     bend = trunk_bend(gait, phase) if trunk is None else trunk
-    targets[..., 12] = targets[..., 14] = targets[..., 16] = bend / 3
-    targets[..., 17] = gait.tail_pitch
-    targets[..., 18] = tail_kinematics.servo_angle(robot.tail, tail_bend(gait, phase) if tail is None else tail)
+    for servo in place.trunk_yaw:
+        targets[..., servo] = bend / len(place.trunk_yaw)
+    for servo in place.tail_pitch[:1]:
+        targets[..., servo] = gait.tail_pitch
+    swing = tail_bend(gait, phase) if tail is None else tail
+    for servo in place.tail_yaw:
+        targets[..., servo] = swing / len(place.tail_yaw)
+    for servo in place.cables:
+        targets[..., servo] = tail_kinematics.servo_angle(place.cable(servo), swing)
     return targets
 
 
-def _leg_angles(leg: Leg, name: str, gait: Gait, foot: np.ndarray, *, clip: bool) -> np.ndarray:
+@lru_cache(maxsize=256)
+def legs_for(robot: AnyRobot, gait: Gait) -> tuple[PlainLeg, ...]:
+    """Return the legs that a gait of the article's kind moves, in the order of ``LEGS``.
+
+    Raises:
+        OutsideLimits: the robot has other limbs.
+    """
+    place = layout(robot)
+    if place.limb_names != LEGS or any(kind(limb.girdle.limb) != "leg" for limb in place.limbs):
+        raise OutsideLimits(
+            f"gait {gait.name!r} is for four legs of yaw, pitch and knee; robot {robot.name!r} has "
+            f"{', '.join(place.limb_names) or 'no limbs'}"
+            f"{' with other joints' if place.limb_names == LEGS else ''}: choose a gait made for it."
+        )
+    return tuple(plain(limb.girdle) for limb in place.limbs)
+
+
+def _leg_angles(leg: PlainLeg, name: str, gait: Gait, foot: np.ndarray, *, clip: bool) -> np.ndarray:
     """Return yaw, pitch and knee that bring a foot to its place the way that the gait's legs stand [rad]."""
     if clip:
         foot = within_reach(leg, foot)
@@ -112,7 +138,7 @@ def _leg_angles(leg: Leg, name: str, gait: Gait, foot: np.ndarray, *, clip: bool
     return angles
 
 
-def within_reach(leg: Leg, foot: Float[np.ndarray, "*b 3"]) -> Float[np.ndarray, "*b 3"]:
+def within_reach(leg: Leg | PlainLeg, foot: Float[np.ndarray, "*b 3"]) -> Float[np.ndarray, "*b 3"]:
     """Return foot points drawn along the line to the hip into what the leg reaches [m]."""
     hip = np.array([leg.hip_offset, 0.0, 0.0])
     away = foot - hip
@@ -121,33 +147,36 @@ def within_reach(leg: Leg, foot: Float[np.ndarray, "*b 3"]) -> Float[np.ndarray,
     return np.asarray(hip + away * np.clip(far, near + _INSIDE, most - _INSIDE) / np.maximum(far, _INSIDE))
 
 
-def longest_stroke(robot: Crocodile, gait: Gait) -> float:
+def longest_stroke(robot: AnyRobot, gait: Gait) -> float:
     """Return the longest half stroke that all four legs can reach, less 2 % [m]."""
     longest = []
+    legs = legs_for(robot, gait)
     for leg, reach, ahead in (
-        (robot.front_leg, gait.front_reach, gait.front_ahead),
-        (robot.hind_leg, gait.hind_reach, gait.hind_ahead),
+        (legs[0], gait.front_reach, gait.front_ahead),
+        (legs[2], gait.hind_reach, gait.hind_ahead),
     ):
         aside2 = reach**2 + (gait.hip_height - leg.foot_radius) ** 2
         longest.append(0.98 * max(leg.reach[1] ** 2 - aside2, 0.0) ** 0.5 - abs(ahead))
     return max(min(longest), 0.0)
 
 
-def check_limits(robot: Crocodile, gait: Gait) -> None:
+def check_limits(robot: AnyRobot, gait: Gait) -> None:
     """Refuse a gait that a robot's joints cannot follow.
 
     Raises:
         OutsideLimits: a joint would have to leave its range; the message names the joint, the angle and the range.
     """
-    if gait.tail_bend > robot.tail.bend_limit:
-        raise OutsideLimits(
-            f"gait {gait.name!r} bends the tail by {gait.tail_bend:.3f} rad; robot {robot.name!r} allows up to "
-            f"{robot.tail.bend_limit:.3f} rad: lower tail_bend."
-        )
+    place = layout(robot)
+    for cable in place.robot.cables:
+        if gait.tail_bend > cable.bend_limit:
+            raise OutsideLimits(
+                f"gait {gait.name!r} bends the tail by {gait.tail_bend:.3f} rad; robot {robot.name!r} allows up to "
+                f"{cable.bend_limit:.3f} rad: lower tail_bend."
+            )
     phase = np.arange(128)[:, None] / 128 + np.array(gait.limb_phases)
     targets = servo_targets(robot, gait, phase)
-    for i, name in enumerate(servo_names()[:-1]):
-        low, high = servo_range(robot, name)
+    direct = len(place.servos) - len(place.cables)
+    for i, (name, (low, high)) in enumerate(zip(place.servos[:direct], servo_ranges(robot), strict=False)):
         worst = targets[np.argmax(np.maximum(low - targets[:, i], targets[:, i] - high)), i]
         if not low <= worst <= high:
             raise OutsideLimits(
@@ -156,14 +185,7 @@ def check_limits(robot: Crocodile, gait: Gait) -> None:
             )
 
 
-def servo_range(robot: Crocodile, name: str) -> tuple[float, float]:
-    """Return the range of the joint that a servo turns [rad]; for the cable, of the pulley."""
-    if name == "tail_cable":
-        most = float(tail_kinematics.servo_angle(robot.tail, np.float64(robot.tail.bend_limit)))
-        return -most, most
-    if name == "tail_pitch":
-        return robot.tail.pitch_range
-    if name.startswith("spine"):
-        return robot.spine.yaw_range if "yaw" in name else robot.spine.pitch_range
-    joint: tuple[float, float] = getattr(robot.leg(name[:2]), f"{name[3:]}_range")
-    return joint
+def servo_range(robot: AnyRobot, name: str) -> tuple[float, float]:
+    """Return the range of the joint that a servo turns [rad]; for a cable, of the pulley."""
+    low, high = servo_ranges(robot)[layout(robot).servos.index(name)]
+    return float(low), float(high)

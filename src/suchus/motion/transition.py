@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import Crocodile, servo_names
+from suchus.design import AnyRobot, Crocodile, crocodile, layout
 from suchus.motion.gait import Gait
 from suchus.motion.targets import servo_range, servo_targets
 
@@ -25,7 +25,7 @@ class Transition(NamedTuple):
 
     times: Float[np.ndarray, " key"]
     """When each posture is reached, since the beginning [s]."""
-    targets: Float[np.ndarray, "key 19"]
+    targets: Float[np.ndarray, "key servo"]
     """Servo angles [rad]."""
 
     @property
@@ -33,7 +33,7 @@ class Transition(NamedTuple):
         """Of the whole [s]."""
         return float(self.times[-1])
 
-    def at(self, time: float, start: Float[np.ndarray, " 19"]) -> Float[np.ndarray, " 19"]:
+    def at(self, time: float, start: Float[np.ndarray, " servo"]) -> Float[np.ndarray, " servo"]:
         """Return the servo angles at a time, having begun with the angles ``start`` [rad]."""
         i = int(np.searchsorted(self.times, time, side="right"))
         if i >= len(self.times):
@@ -44,7 +44,7 @@ class Transition(NamedTuple):
 
 
 @lru_cache(maxsize=64)
-def transition(robot: Crocodile, here: Gait, there: Gait, *, slower: float = 1.0) -> Transition:
+def transition(robot: AnyRobot, here: Gait, there: Gait, *, slower: float = 1.0) -> Transition:
     """Return the way from one gait's posture to another's: 3.5 s.
 
     The robot stops and goes to a height at which both postures can stand. Then LF and RH are lifted, take their new
@@ -56,6 +56,7 @@ def transition(robot: Crocodile, here: Gait, there: Gait, *, slower: float = 1.0
         there: the gait that it begins.
         slower: factor on all times [-].
     """
+    robot = crocodile(robot, "a change of gait")
     height = max(MEETING, min(here.hip_height, there.hip_height))
     old, new = replace(here, hip_height=height), replace(there, hip_height=height)
     legs = [old, old]  # of the first and the second pair
@@ -71,7 +72,8 @@ def transition(robot: Crocodile, here: Gait, there: Gait, *, slower: float = 1.0
 
 def _posture(robot: Crocodile, gaits: list[Gait], lift: tuple[float, float]) -> np.ndarray:
     """Return the servo angles of a posture with straight trunk and tail, each pair of legs in its own gait."""
-    targets = np.zeros(19)
+    place = layout(robot)
+    targets = np.zeros(len(place.servos))
     for gait, pair, raised in zip(gaits, _PAIRS, lift, strict=True):
         still = replace(gait, stroke=0.0)
         lower = np.full(4, -raised)
@@ -79,8 +81,8 @@ def _posture(robot: Crocodile, gaits: list[Gait], lift: tuple[float, float]) -> 
             robot, still, np.full(4, _STANDING), trunk=np.zeros(()), tail=np.zeros(()), lower=lower, clip=True
         )
         for leg in pair:
-            targets[3 * leg : 3 * leg + 3] = angles[3 * leg : 3 * leg + 3]
-        targets[17] += angles[17] / 2
-    for i, name in enumerate(servo_names()):
+            targets[place.limbs[leg].servos] = angles[place.limbs[leg].servos]
+        targets[place.tail_pitch[0]] += angles[place.tail_pitch[0]] / 2
+    for i, name in enumerate(place.servos):
         targets[i] = np.clip(targets[i], *servo_range(robot, name))
     return targets

@@ -5,13 +5,12 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from suchus.design import LEGS, Crocodile
+from suchus.design import LEGS, AnyRobot, Crocodile, crocodile, layout
 from suchus.kinematics import body, spine
 from suchus.kinematics import leg as leg_kinematics
 from suchus.kinematics.links import LegLinks
 from suchus.kinematics.mass import tail_segments
 
-_LEG_ANGLES, _TRUNK_ANGLES = slice(0, 12), slice(12, 17)
 _GIRDLE = {"F": ("thorax",), "H": ("pelvis",)}
 _SHANK = 0.8  # of the femur's radius, as the model builds it
 
@@ -29,7 +28,7 @@ class _Capsule(NamedTuple):
     radius: float
 
 
-def clearance(robot: Crocodile, record: xr.Dataset, *, every: int = 1) -> xr.DataArray:
+def clearance(robot: AnyRobot, record: xr.Dataset, *, every: int = 1) -> xr.DataArray:
     """Return the least distance between parts of the body that could touch each other, negative where they overlap [m].
 
     The parts are capsules: femur and shank of each leg, pelvis, links of the trunk, thorax, head, segments of the
@@ -46,14 +45,15 @@ def clearance(robot: Crocodile, record: xr.Dataset, *, every: int = 1) -> xr.Dat
     return xr.DataArray(least, dims=angles.dims[:-2], attrs={"units": "m", "long_name": "clearance between parts"})
 
 
-def between_parts(robot: Crocodile, angles: np.ndarray) -> np.ndarray:
+def between_parts(robot: AnyRobot, angles: np.ndarray) -> np.ndarray:
     """Return the least distance between parts for postures [m].
 
     Args:
         robot: the robot.
         angles: of every hinge in the order of ``joint_names(robot)``, shape (..., joint) [rad].
     """
-    trunk, tail = _trunk(robot, angles[..., _TRUNK_ANGLES]), _tail(robot, angles[..., 17:])
+    robot = crocodile(robot, "the distance between parts")
+    trunk, tail = _trunk(robot, angles[..., layout(robot).ahead]), _tail(robot, angles[..., layout(robot).behind])
     legs = {name: _leg(robot, name, angles) for name in LEGS}
     pairs = [(a, b) for i, one in enumerate(LEGS) for two in LEGS[i + 1 :] for a in legs[one] for b in legs[two]]
     for name, (femur, shank) in legs.items():
@@ -95,11 +95,11 @@ def _tail(robot: Crocodile, angles: np.ndarray) -> list[_Capsule]:
 
 def _leg(robot: Crocodile, name: str, angles: np.ndarray) -> tuple[_Capsule, _Capsule]:
     leg, i = robot.leg(name), LEGS.index(name)
-    own = angles[..., _LEG_ANGLES][..., 3 * i : 3 * i + 3]
+    own = angles[..., layout(robot).limbs[i].hinges]
     bones: tuple[LegLinks, ...] = (_Bone(leg.hip_offset, 0.0, 0.0), _Bone(leg.hip_offset, leg.femur, 0.0), leg)
     hip, knee, foot = (body.from_leg_frame(leg_kinematics.forward(bone, own), name) for bone in bones)
     if name.endswith("F"):
-        T = spine.forward(robot.spine, angles[..., _TRUNK_ANGLES])
+        T = spine.forward(robot.spine, angles[..., layout(robot).ahead])
         shoulder = T[..., :3, 3] + robot.thorax.shoulder * T[..., :3, 0]
         hip, knee, foot = (shoulder + np.einsum("...ij,...j->...i", T[..., :3, :3], p) for p in (hip, knee, foot))
     return (

@@ -128,6 +128,11 @@ class Optimisation(Search):
             raise InvalidDesign(f"optimisation {self.name!r} needs low and high for {vary.field}, and nothing else.")
         if isinstance(there, bool) or not isinstance(there, (int, float)):
             raise InvalidDesign(f"optimisation {self.name!r} varies {vary.field}, which is no number.")
+        if isinstance(there, int):
+            raise InvalidDesign(
+                f"optimisation {self.name!r} varies {vary.field}, which takes whole numbers; a search moves in real "
+                "ones: make an arm of each."
+            )
         if not vary.low <= there <= vary.high:
             raise InvalidDesign(
                 f"optimisation {self.name!r} starts with {vary.field} at {there:g}, outside its range of {vary.low:g} "

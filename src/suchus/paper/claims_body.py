@@ -231,7 +231,7 @@ KINEMATICS = (
         "leg_inverse",
         "III.A, eqs (9)-(14)",
         "inverse kinematics of the leg",
-        "Equation (14) gives the joint angles for every foot position that the leg can reach.",
+        "Equation (14) gives the joint angles that bring the foot to its positions.",
         "The inverse kinematics solution of the legs of the bionic crocodile robot is as follows",
     ),
     said(
@@ -259,7 +259,7 @@ KINEMATICS = (
         "tail_cords_inextensible",
         "III.C",
         "pair of cords on one wheel",
-        "One wheel drives two inextensible cords, shortening one by what it lengthens the other.",
+        "The servo shortens one cord and lengthens the other, and so bends the tail.",
         "a pair of inextensible wire cords ... one cord is elongated, and the other is shortened",
     ),
     said(

@@ -231,8 +231,10 @@ FAULTS = (
         "fault_support",
         "IV.C, Fig. 21",
         "support with a hind pitch joint lost",
-        "Tail, right front leg and left hind leg carry the body so that the damaged hind leg can swing.",
-        "through the support function of the tail, right front leg and left back leg",
+        "Tail, right front and left hind leg carry the body and raise its centre of gravity, so that the damaged hind "
+        "leg can be lifted and swing.",
+        "raises the center of gravity of the robot through the support function of the tail, right front leg and left "
+        "back leg, so that the hind legs can be lifted off the ground and swing",
     ),
     said(
         "fault_tolerance",
@@ -251,7 +253,7 @@ HEIGHTS = (
         value=0.16,
         unit="m",
         rounding=CENTIMETRE,
-        sense="Crawling, the robot reaches no higher than its legs let it.",
+        sense="Crawling, the robot can reach this height.",
         quote="can reach a height of 0.16m in the crawling state",
     ),
     Claim(
@@ -261,7 +263,7 @@ HEIGHTS = (
         value=0.68,
         unit="m",
         rounding=CENTIMETRE,
-        sense="On hind legs and tail the robot stands up and reaches much higher.",
+        sense="On hind legs and tail the robot stands and reaches higher than when it crawls.",
         quote="and 0.68m in the bipedal standing state",
     ),
     Claim(

@@ -113,8 +113,8 @@ NAMES = (
         where="II.A",
         printed='"On the other hand, sees crocodiles raising their legs"',
         ours="the High Walk sees crocodiles ...",
-        shows="The sentence has lost its subject; the modes are described in the order of their list, and the High "
-        "Walk follows the Belly Crawl.",
+        shows="The sentence has lost its subject; of the modes listed before, the High Walk is the one with the legs "
+        "upright beneath the body.",
     ),
 )
 

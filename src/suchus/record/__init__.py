@@ -1,17 +1,19 @@
 """What happened: the schema of a run, its place on disk and where it comes from."""
 
 from suchus.record.ground import ground_of, ground_text
-from suchus.record.parts import Parts, code_digest
-from suchus.record.place import check_replaceable, check_writable, new_file, new_folder, sweep
-from suchus.record.provenance import digest, plain, provenance, versions
-from suchus.record.schema import PER_RUN, VARIABLES, dataset
+from suchus.record.place import check_name, check_replaceable, check_writable, new_file, new_folder, sweep
+from suchus.record.provenance import code_digest, digest, plain, provenance, versions
+from suchus.record.reading import check_file, read_json, read_text, read_toml, there
+from suchus.record.schema import PER_RUN, VARIABLES, check_land, dataset
 from suchus.record.store import load, save
 from suchus.record.tables import write_tables
 
 __all__ = [
     "PER_RUN",
     "VARIABLES",
-    "Parts",
+    "check_file",
+    "check_land",
+    "check_name",
     "check_replaceable",
     "check_writable",
     "code_digest",
@@ -24,8 +26,12 @@ __all__ = [
     "new_folder",
     "plain",
     "provenance",
+    "read_json",
+    "read_text",
+    "read_toml",
     "save",
     "sweep",
+    "there",
     "versions",
     "write_tables",
 ]

@@ -6,10 +6,12 @@ import math
 import platform
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
+from functools import cache
 from importlib.metadata import PackageNotFoundError, version
-from pathlib import PurePath
+from pathlib import Path, PurePath
 from typing import Any
 
+_PACKAGE = Path(__file__).parent.parent
 _PACKAGES = ("suchus", "mujoco", "numpy", "scipy", "numba", "xarray", "h5netcdf", "matplotlib")
 
 
@@ -43,6 +45,21 @@ def versions() -> dict[str, str]:
         except PackageNotFoundError:
             found[name] = "not installed"
     return found
+
+
+@cache
+def code_digest(*rooms: str) -> str:
+    """Return the SHA-256 of the source of some rooms or modules of suchus.
+
+    Args:
+        rooms: names of folders or of modules, as ``land`` or ``study/claims.py``.
+    """
+    text = hashlib.sha256()
+    for room in rooms:
+        place = _PACKAGE / room
+        for file in [place] if place.is_file() else sorted(place.rglob("*.py")):
+            text.update(file.relative_to(_PACKAGE).as_posix().encode() + b"\0" + file.read_bytes() + b"\0")
+    return text.hexdigest()
 
 
 def plain(value: Any) -> Any:

@@ -5,8 +5,10 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import xarray as xr
 
+from suchus.design.joints import LEGS
 from suchus.errors import IncompatibleRecord
 
+_LARGEST, _UNIT = 1e9, 1e-3  # numbers of a record in SI units; how far a unit quaternion's length may be off
 XYZ = ("x", "y", "z")
 WXYZ = ("w", "x", "y", "z")
 
@@ -72,3 +74,56 @@ def dataset(
         data[name] = ("run", per_run[name], {"units": unit, "long_name": what})
     data.attrs["schema"] = "suchus land record 1"
     return data
+
+
+def check_land(record: xr.Dataset, names: Sequence[str], where: str) -> None:
+    """Refuse what is no record of runs on land, however it came to be.
+
+    Args:
+        record: any.
+        names: which of ``VARIABLES`` are going to be looked at.
+        where: what it is called in messages.
+
+    Raises:
+        IncompatibleRecord: a variable is missing, or has other dimensions, labels or numbers than the schema says.
+    """
+    missing = [name for name in names if name not in record]
+    if missing or "time" not in record.coords:
+        raise IncompatibleRecord(f"{where} is no record of a run on land: it lacks {', '.join(missing) or 'time'}.")
+    if not record.time.size:
+        raise IncompatibleRecord(f"{where} has no frame; run for longer than one sample.")
+    wrong = [name for name in names if not _as_said(record, name)]
+    wrong += [name for name in ("label", "gait", "robot", *PER_RUN) if name in record and not _per_run(record[name])]
+    if wrong:
+        raise IncompatibleRecord(f"{where} holds {', '.join(wrong)} otherwise than records of runs on land do.")
+    time = record.time
+    if time.dims != ("time",) or time.dtype.kind not in "fiu" or not _rising(time.values):
+        raise IncompatibleRecord(f"{where} has times that do not rise.")
+    if "leg" in record and [str(leg) for leg in record.leg.values.ravel()] != list(LEGS):
+        told = ", ".join(map(str, record.leg.values.ravel()[:8]))
+        raise IncompatibleRecord(f"{where} has the legs {told}, not {', '.join(LEGS)}.")
+
+
+def _as_said(record: xr.Dataset, name: str) -> bool:
+    variable, dims = record[name], VARIABLES[name][0]
+    if set(variable.dims) not in ({*dims}, {"run", *dims}) or variable.dtype.kind not in "fiu" or not variable.size:
+        return False
+    labels = all(record[dim].dims == (dim,) for dim in dims if dim in record.coords)
+    named = all(dim in record.coords for dim in dims if dim in ("leg", "joint", "servo", "segment"))
+    sizes = all(variable.sizes[dim] == size for dim, size in (("xyz", 3), ("wxyz", 4)) if dim in dims)
+    numbers = np.asarray(variable.values, dtype=float)
+    numbers = numbers[np.isfinite(numbers)]
+    if not (labels and named and sizes) or (numbers.size and np.abs(numbers).max() > _LARGEST):
+        return False
+    if name == "orientation":
+        length = np.sqrt((np.asarray(variable, dtype=float) ** 2).sum(axis=variable.dims.index("wxyz")))
+        return bool((np.abs(length[np.isfinite(length)] - 1.0) < _UNIT).all())
+    return True
+
+
+def _per_run(variable: xr.DataArray) -> bool:
+    return variable.dims in ((), ("run",)) and variable.size > 0
+
+
+def _rising(values: np.ndarray) -> bool:
+    return bool(np.isfinite(values).all() and (np.diff(values) > 0).all())

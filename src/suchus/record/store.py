@@ -1,4 +1,4 @@
-"""Records on disk: NetCDF-4 files that appear complete or not at all."""
+"""Records on disk: NetCDF-4 files that appear complete or not at all, and are known if a bit of them flips."""
 
 import json
 from pathlib import Path
@@ -7,9 +7,12 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from suchus.errors import IncompatibleRecord, UnreadableFile
+from suchus.errors import IncompatibleRecord
+from suchus.record.foreign import open_foreign
 from suchus.record.place import new_file
 from suchus.record.provenance import plain
+from suchus.record.reading import check_file, unreadable
+from suchus.record.seal import holds, sealed
 
 _MARK = "suchus_record"
 _ATTRIBUTES = "suchus_attributes"
@@ -30,33 +33,49 @@ def save(record: xr.Dataset, path: Path) -> Path:
     packed = {"zlib": True, "complevel": 4, "shuffle": True}
     encoding = {str(k): packed for k, v in marked.variables.items() if v.dtype.kind in "biuf" and v.size > 1}
     with new_file(path) as draft:  # through memory: HDF5 itself dies when the disk is full
-        draft.write_bytes(marked.to_netcdf(engine="h5netcdf", encoding=encoding))
+        draft.write_bytes(sealed(bytes(marked.to_netcdf(engine="h5netcdf", encoding=encoding))))
     return path
 
 
-def load(path: Path) -> xr.Dataset:
+def load(path: Path, *, whole: bool = False) -> xr.Dataset:
     """Read a record into memory.
+
+    Args:
+        path: of the file.
+        whole: whether a file without a seal is refused too, as one that something else has changed.
 
     Raises:
         UnreadableFile: there is no such file.
-        IncompatibleRecord: the file is no record of suchus, or of a later version.
+        IncompatibleRecord: the file is damaged, no record of suchus, or of a later version.
     """
-    if not path.is_file():
-        raise UnreadableFile(f"there is no file {path}.")
+    check_file(path)
     try:
-        record = xr.load_dataset(path, engine="h5netcdf")
-    except (OSError, ValueError) as error:
-        raise IncompatibleRecord(f"{path} is not a NetCDF file that can be read.") from error
+        data = path.read_bytes()
+    except OSError as error:
+        raise unreadable(path, error) from error
+    unbroken = holds(data)
+    if unbroken is False or (whole and unbroken is None):
+        raise IncompatibleRecord(f"{path} is damaged: it is not as suchus wrote it; make it again.")
+    record = open_foreign(data, path)
     version = record.attrs.get(_MARK)
     if version is None:
         raise IncompatibleRecord(f"{path} was not written by suchus.")
-    if int(version) > _VERSION:
+    if not isinstance(version, (int, np.integer)) or version > _VERSION:
         raise IncompatibleRecord(
             f"{path} is a record of version {version}; this suchus reads up to {_VERSION}: update suchus."
         )
-    attributes: dict[str, Any] = json.loads(record.attrs[_ATTRIBUTES])
-    record.attrs = attributes
+    record.attrs = _attributes(record.attrs.get(_ATTRIBUTES), path)
     return record.assign({k: v.astype(np.str_) for k, v in record.variables.items() if _is_text(v)})
+
+
+def _attributes(text: object, path: Path) -> dict[str, Any]:
+    try:
+        told = json.loads(text) if isinstance(text, str) else None
+    except (ValueError, RecursionError):
+        told = None
+    if not isinstance(told, dict):
+        raise IncompatibleRecord(f"{path} has attributes that suchus did not write; make the record again.")
+    return told
 
 
 def _is_text(variable: xr.Variable) -> bool:

@@ -5,8 +5,9 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from suchus.design import LEGS, Crocodile, joint_names
+from suchus.design import AnyRobot, joint_names, layout
 from suchus.errors import IncompatibleRecord
+from suchus.record import check_land
 from suchus.skin import Poses, poses
 
 RATE = 30.0
@@ -31,20 +32,18 @@ class Frames(NamedTuple):
     mass: np.ndarray
     """Centre of mass, (frame, 3) [m]."""
     feet: np.ndarray
-    """Centres of the feet, (frame, 4, 3) [m]."""
+    """Centres of the feet, (frame, limb, 3) [m]."""
     forces: np.ndarray
-    """Of the ground on the feet, (frame, 4, 3) [N]."""
+    """Of the ground on the feet, (frame, limb, 3) [N]."""
 
 
-def checked(record: xr.Dataset, robot: Crocodile) -> xr.Dataset:
+def checked(record: xr.Dataset, robot: AnyRobot) -> xr.Dataset:
     """Return one run of a robot, with what a replay needs of it.
 
     Raises:
         IncompatibleRecord: it is no run on land, several runs, of another robot, or without a frame.
     """
-    missing = [name for name in _NEEDED if name not in record]
-    if missing:
-        raise IncompatibleRecord(f"the record has no {', '.join(missing)}; a replay is made from a run on land.")
+    check_land(record, _NEEDED, "what a replay is to be made from")
     if "run" in record.dims:
         count = record.sizes["run"]
         if count != 1:
@@ -61,8 +60,11 @@ def checked(record: xr.Dataset, robot: Crocodile) -> xr.Dataset:
             f"the record's {len(found)} joints are not the {len(expected)} of {robot.name!r}: {', '.join(odd[:4])} "
             f"{'is' if len(odd) == 1 else 'are'} not in both; give the robot that was recorded."
         )
-    if list(record.leg.values) != list(LEGS):
-        raise IncompatibleRecord(f"the record's legs are {', '.join(map(str, record.leg.values))}, not LF, RF, LH, RH.")
+    limbs = layout(robot).limb_names
+    if tuple(map(str, record.leg.values)) != limbs:
+        raise IncompatibleRecord(
+            f"the record's legs are {', '.join(map(str, record.leg.values))}, not {', '.join(limbs) or 'none'}."
+        )
     kept = record[list(_NEEDED)]
     values = np.concatenate([_rows(kept[name]) for name in _NEEDED], axis=1)
     count = int(np.logical_and.accumulate(np.isfinite(values).all(axis=1)).sum())
@@ -71,7 +73,7 @@ def checked(record: xr.Dataset, robot: Crocodile) -> xr.Dataset:
     return kept.isel(time=slice(0, count))
 
 
-def frames(record: xr.Dataset, robot: Crocodile, rate: float | None = None) -> Frames:
+def frames(record: xr.Dataset, robot: AnyRobot, rate: float | None = None) -> Frames:
     """Return the frames of one run.
 
     Args:

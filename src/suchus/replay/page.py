@@ -11,9 +11,9 @@ import xarray as xr
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
-from suchus.design import LEGS, Crocodile
+from suchus.design import AnyRobot
 from suchus.design.ground import Ground
-from suchus.figures import COLOURS, panels, styled
+from suchus.figures import limb_colours, panels, styled
 from suchus.figures.posture import draw_posture
 from suchus.record import ground_of, new_file, versions
 from suchus.replay.frames import Frames, checked, frames
@@ -22,7 +22,7 @@ from suchus.replay.scene import ARROW, KEYS, scene
 
 def replay(
     record: xr.Dataset,
-    robot: Crocodile,
+    robot: AnyRobot,
     *,
     ghost: xr.Dataset | None = None,
     labels: Sequence[str] = ("this run", "the other run"),
@@ -62,10 +62,10 @@ def replay(
         ghost=labels[1] if ghost is not None else "",
         beside=grounds[0].relief is None,
         overlaid=overlaid,
-        keys=KEYS | {"legs": [(leg, COLOURS[leg]) for leg in LEGS]},
+        keys=KEYS | {"legs": limb_colours(robot)},
         arrow=f"{100 * ARROW * robot.length:.0f} cm",
         version=versions()["suchus"],
-        meta=Markup(json.dumps(meta, separators=(",", ":")).replace("</", "<\\/")),
+        meta=Markup(json.dumps(meta, separators=(",", ":")).replace("<", "\\u003c")),  # begins no tag, no comment
         data=data,
     )  # fmt: skip
 
@@ -109,7 +109,7 @@ def _on(grounds: Sequence[Ground]) -> str:
     return text
 
 
-def _told(robot: Crocodile, moving: Sequence[Frames], labels: Sequence[str]) -> str:
+def _told(robot: AnyRobot, moving: Sequence[Frames], labels: Sequence[str]) -> str:
     """Return the replay in words, for those who cannot see it."""
     ways = [
         f"{label}: {one.mass[-1, 0] - one.mass[0, 0]:.2f} m forward in {(len(one.mass) - 1) / one.rate:.1f} s"
@@ -118,7 +118,7 @@ def _told(robot: Crocodile, moving: Sequence[Frames], labels: Sequence[str]) -> 
     return f"Three-dimensional replay of the robot {robot.name} on the ground. {'; '.join(ways)}."
 
 
-def _still(robot: Crocodile, record: xr.Dataset) -> tuple[str, str]:
+def _still(robot: AnyRobot, record: xr.Dataset) -> tuple[str, str]:
     """Return a still picture as SVG, and its time."""
     time = float(record.time[record.sizes["time"] // 2])
     with styled(svg__hashsalt="replay"):

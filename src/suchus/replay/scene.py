@@ -6,12 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from suchus.design import LEGS, Crocodile
+from suchus.design import GRAVITY, AnyRobot, layout
 from suchus.design.ground import Ground, slope
 from suchus.design.relief import ASIDE, CELL, REACH, Bumps, Relief, Step, field
-from suchus.figures import COLOURS
-from suchus.kinematics.mass import GRAVITY
-from suchus.metrics.gait import LOADED
+from suchus.figures import COLOURS, limb_colours
+from suchus.metrics.gait import LOADED_SHARE
 from suchus.replay.frames import Frames
 from suchus.replay.pack import Pack, quantised
 from suchus.skin import Skin, ankles, footed
@@ -24,7 +23,7 @@ _BESIDE = 0.62  # how far a second robot walks beside the first, over the robot'
 
 
 def scene(
-    robot: Crocodile, moving: Sequence[Frames], labels: Sequence[str], ground: Ground, *, overlaid: bool
+    robot: AnyRobot, moving: Sequence[Frames], labels: Sequence[str], ground: Ground, *, overlaid: bool
 ) -> tuple[dict[str, Any], str]:
     """Return what there is to be shown, and its arrays as base64.
 
@@ -43,15 +42,16 @@ def scene(
         "bones": len(surface.bones),
         "length": robot.length,
         "aside": _BESIDE * robot.length,
-        "radii": [robot.leg(leg).foot_radius for leg in LEGS],
-        "loaded": LOADED,
+        "radii": [limb.girdle.limb.foot.radius for limb in layout(robot).limbs],
+        "loaded": LOADED_SHARE * robot.mass * GRAVITY,
         "overlaid": overlaid,
         "slope": np.round(slope(ground.uphill, ground.sideways), 9).tolist(),
         "floor": float(field(relief).min()) if isinstance(relief, Bumps) else 0.0,  # as deep as the field, as in model
         "metres_per_newton": ARROW * robot.length / (robot.mass * GRAVITY),
         "marks": [max(floor(x.min()) - 1, -50), min(ceil(x.max()) + 1, 50)],
         "mark_side": -0.4 * robot.length,
-        "colours": {name: _rgb(text) for name, text in KEYS.items()} | {"legs": [_rgb(COLOURS[leg]) for leg in LEGS]},
+        "colours": {name: _rgb(text) for name, text in KEYS.items()}
+        | {"legs": [_rgb(colour) for _, colour in limb_colours(robot)]},
         "skin": _packed_skin(surface, pack),
         "actors": [_packed(robot, one, name, relief, pack) for one, name in zip(moving, labels, strict=False)],
         "relief": None if relief is None else _packed_relief(relief, pack),
@@ -74,7 +74,7 @@ def _packed_skin(surface: Skin, pack: Pack) -> dict[str, Any]:
     }
 
 
-def _packed(robot: Crocodile, one: Frames, label: str, relief: Relief | None, pack: Pack) -> dict[str, Any]:
+def _packed(robot: AnyRobot, one: Frames, label: str, relief: Relief | None, pack: Pack) -> dict[str, Any]:
     bones = ankles(robot, one.bones, one.feet, relief)
     places = bones.positions
     origin = (places.max(axis=(0, 1)) + places.min(axis=(0, 1))) / 2

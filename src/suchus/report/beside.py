@@ -4,9 +4,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
-from suchus.design import LEGS, Crocodile
+from suchus.design import LEGS, AnyRobot, Crocodile
 from suchus.paper import CLAIMS, CRAWL_END, CRAWL_START
-from suchus.report.animals import ANIMALS, Animal
+from suchus.paper.animals import ANIMALS, Animal
 from suchus.report.numbers import number, quantity
 from suchus.report.result import Result
 
@@ -32,7 +32,7 @@ _DURATION = CRAWL_END - CRAWL_START
 _COORDINATED, _LIMBS_ONLY = CLAIMS["displacement_coordinated"].value, CLAIMS["displacement_limbs_only"].value
 
 
-def beside(robot: Crocodile, results: Results) -> tuple[Beside, ...]:
+def beside(robot: AnyRobot, results: Results) -> tuple[Beside, ...]:
     """Return the rows whose experiment was run.
 
     Args:
@@ -43,7 +43,7 @@ def beside(robot: Crocodile, results: Results) -> tuple[Beside, ...]:
     return tuple(row for row in rows if row is not None)
 
 
-def _row(animal: Animal, robot: Crocodile, results: Results) -> Beside | None:
+def _row(animal: Animal, robot: AnyRobot, results: Results) -> Beside | None:
     experiment, measure, printed = _OURS[animal.key]
     value = measure(robot, results)
     if value is None:
@@ -72,45 +72,51 @@ def _measured(results: Results, experiment: str, *names: str) -> list[float] | N
     return None if any(value is None for value in values) else values
 
 
-def _tail_length(robot: Crocodile, _: Results) -> float:
-    return robot.tail.length / robot.length
+def _tail_length(robot: AnyRobot, _: Results) -> float | None:
+    return robot.tail.length / robot.length if isinstance(robot, Crocodile) else None
 
 
-def _tail_mass(robot: Crocodile, _: Results) -> float:
-    return robot.tail.mass / robot.mass
+def _tail_mass(robot: AnyRobot, _: Results) -> float | None:
+    return robot.tail.mass / robot.mass if isinstance(robot, Crocodile) else None
 
 
-def _mass(robot: Crocodile, _: Results) -> float | None:
+def _mass(robot: AnyRobot, _: Results) -> float | None:
     return robot.mass if 0.46 <= robot.length <= 1.27 else None
 
 
-def _speed(_: Crocodile, results: Results) -> float | None:
+def _speed(_: AnyRobot, results: Results) -> float | None:
     found = _measured(results, "displacement", "forward_coordinated")
     return found[0] / _DURATION if found else None
 
 
-def _stride_share(_: Crocodile, results: Results) -> float | None:
+def _high_walk_speed(_: AnyRobot, results: Results) -> float | None:
+    found = _measured(results, "speed_range", "speed_high_walk")
+    return found[0] if found else None
+
+
+def _stride_share(_: AnyRobot, results: Results) -> float | None:
     found = _measured(results, "displacement", "forward_coordinated", "forward_limbs_only")
     return 1.0 - found[1] / found[0] if found else None
 
 
-def _duty_factor(_: Crocodile, results: Results) -> float | None:
+def _duty_factor(_: AnyRobot, results: Results) -> float | None:
     found = _measured(results, "gait_diagram", *(f"duty_factor_{leg}" for leg in LEGS))
     return sum(found) / len(found) if found else None
 
 
-def _death_roll(_: Crocodile, results: Results) -> float | None:
+def _death_roll(_: AnyRobot, results: Results) -> float | None:
     found = _measured(results, "death_roll", "rate_c_shape_water")
     return abs(found[0]) if found else None
 
 
-_Measured = Callable[[Crocodile, Results], float | None]
+_Measured = Callable[[AnyRobot, Results], float | None]
 _OURS: Mapping[str, tuple[str, _Measured, float | None]] = MappingProxyType(
     {
         "tail_length": ("", _tail_length, CLAIMS["tail_share"].value),
         "tail_mass": ("", _tail_mass, None),
         "mass": ("", _mass, None),
         "speed": ("displacement", _speed, _COORDINATED / _DURATION if _COORDINATED else None),
+        "high_walk_speed": ("speed_range", _high_walk_speed, CLAIMS["high_walk_speed_low"].value),
         "stride_share": (
             "displacement",
             _stride_share,

@@ -13,7 +13,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 from suchus import figures
-from suchus.design import Crocodile
+from suchus.design import AnyRobot
 from suchus.gaits import GAITS
 from suchus.paper import AUTHORS, CLAIMS, ERRATA, TITLE
 from suchus.record import new_file, versions
@@ -162,7 +162,7 @@ def _place(result: Result, order: Mapping[str, int]) -> int:
     return max((order.get(v["claim"], len(order)) for v in result.told["verdicts"]), default=len(order))
 
 
-def _drawing(robot: Crocodile) -> dict[str, str]:
+def _drawing(robot: AnyRobot) -> dict[str, str]:
     figure = figures.dimension_drawing(robot)
     with tempfile.TemporaryDirectory() as folder:
         svg, png = figures.save(figure, Path(folder), "robot")

@@ -6,17 +6,17 @@ from typing import Any
 
 from pydantic import TypeAdapter, ValidationError
 
-from suchus.design import Crocodile
+from suchus.design import AnyRobot
 from suchus.errors import SuchusError
 from suchus.report.result import Result
 from suchus.robots import ROBOTS
 
 ARTICLES = "caiman"
 """The article's robot, shown where no result names one."""
-_ADAPTER = TypeAdapter(Crocodile)
+_ADAPTER: TypeAdapter[AnyRobot] = TypeAdapter(AnyRobot)
 
 
-def robot_of(results: Sequence[Result]) -> tuple[Crocodile, dict[str, int]]:
+def robot_of(results: Sequence[Result]) -> tuple[AnyRobot, dict[str, int]]:
     """Return the robot of most results, and how many results each other robot has, by name.
 
     A robot that this version of suchus cannot build any more does not count.
@@ -28,7 +28,7 @@ def robot_of(results: Sequence[Result]) -> tuple[Crocodile, dict[str, int]]:
     return most, {robot.name: count for robot, count in others}
 
 
-def _robot(settings: Any) -> Crocodile | None:
+def _robot(settings: Any) -> AnyRobot | None:
     told = settings.get("robot") if isinstance(settings, Mapping) else None
     try:
         return _ADAPTER.validate_python(told) if isinstance(told, Mapping) else None

@@ -66,7 +66,7 @@ def describe(outcome: Outcome, experiment: Experiment, captions: Mapping[str, st
         "experiment": outcome.experiment,
         "title": experiment.title,
         "shows": experiment.shows,
-        "decides": outcome.decides or " ".join(getattr(experiment, "decides", "").split()),
+        "decides": outcome.decides,
         "unjudged": outcome.unjudged,
         "command": command,
         "settings": record.plain(outcome.settings),

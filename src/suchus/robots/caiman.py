@@ -180,7 +180,7 @@ _ROWS: tuple[_Row, ...] = (
         "tail.joint_stiffness",
         0.3,
         2.0,
-        "spreads the bend over the joints within 10 degrees under ground load",
+        "chosen to spread the bend evenly; in the crawl the joints still differ by more than 10 degrees at times",
     ),
     ("tail.joint_damping", 0.01, 0.05, "rubber, damping ratio about 0.3"),
     ("tail.fin_length", 0.12, 0.18, "makes the tail half of the body"),

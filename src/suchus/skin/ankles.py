@@ -9,7 +9,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from suchus.design import LEGS, Crocodile
+from suchus.design import LEGS, AnyRobot, Crocodile
 from suchus.design.relief import Relief, heights
 from suchus.rotation import about, multiply, rotate
 from suchus.skin.bones import Poses, bone_names
@@ -24,9 +24,11 @@ NEAR = (0.012, 0.06)
 
 
 @lru_cache(maxsize=8)
-def footed(robot: Crocodile) -> Skin:
-    """Return the skin of a robot with its feet hung on ankles."""
+def footed(robot: AnyRobot) -> Skin:
+    """Return the skin of a robot with its feet hung on ankles; the round feet of a plain body have none."""
     surface = skin(robot)
+    if not isinstance(robot, Crocodile):
+        return surface
     indices, rest = surface.indices.copy(), [*surface.rest]
     starts = np.flatnonzero(np.diff(surface.part, prepend=-1))
     least = np.minimum.reduceat(surface.weights[:, 0], starts)
@@ -39,7 +41,7 @@ def footed(robot: Crocodile) -> Skin:
     return replace(surface, bones=(*surface.bones, *ANKLES), rest=np.array(rest), indices=indices)
 
 
-def ankles(robot: Crocodile, bones: Poses, feet: np.ndarray, relief: Relief | None = None) -> Poses:
+def ankles(robot: AnyRobot, bones: Poses, feet: np.ndarray, relief: Relief | None = None) -> Poses:
     """Return the bones of ``footed``: those of the bodies, and one more for each foot.
 
     Args:
@@ -48,6 +50,8 @@ def ankles(robot: Crocodile, bones: Poses, feet: np.ndarray, relief: Relief | No
         feet: centres of the feet, (frame, 4, 3) [m].
         relief: what stands up from the ground; None where it is even.
     """
+    if not isinstance(robot, Crocodile):
+        return bones
     names, turned = bone_names(robot), []
     above = feet[..., 2] - heights(relief, feet[..., 0], feet[..., 1])
     for i, leg in enumerate(LEGS):

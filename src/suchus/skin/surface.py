@@ -6,9 +6,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from suchus.design import Crocodile
+from suchus.design import AnyRobot, Crocodile, Layout, layout
 from suchus.errors import InvalidDesign
-from suchus.kinematics.mass import tail_segments
 from suchus.rotation import rotate
 from suchus.skin.body import body, shape
 from suchus.skin.bones import bone_names, bone_rest
@@ -17,6 +16,8 @@ from suchus.skin.legs import left_leg
 from suchus.skin.look import SKIN, Look
 from suchus.skin.mesh import Mesh, joined, normals
 from suchus.skin.paint import smooth
+from suchus.skin.plain import axis_mesh, ends, limb_meshes
+from suchus.skin.plain import eyes as plain_eyes
 from suchus.skin.scutes import left_scutes, middle_scutes
 
 _HANGS = 4  # bones that a vertex may hang on; two are used, viewers expect four
@@ -24,7 +25,7 @@ _HANGS = 4  # bones that a vertex may hang on; two are used, viewers expect four
 
 @dataclass(frozen=True, slots=True)
 class Skin:
-    """A crocodile's surface and how it follows the bones; the arrays are not to be written to."""
+    """The surface of a body and how it follows the bones; the arrays are not to be written to."""
 
     vertices: np.ndarray
     """At zero posture in the frame of the pelvis, (n, 3) [m]."""
@@ -72,18 +73,15 @@ class Skin:
 
 
 @lru_cache(maxsize=16)
-def skin(robot: Crocodile, look: Look = SKIN) -> Skin:
+def skin(robot: AnyRobot, look: Look = SKIN) -> Skin:
     """Return the skin of a robot; the same robot gives the same skin again.
 
     Args:
-        robot: any robot.
+        robot: any robot; one of the article's tables is a crocodile, any other a plain hide with rods for limbs.
         look: proportions of the animal where the robot has none.
     """
-    axial = [(mesh, None) for mesh in _axial(robot, look)]
-    limbs = [(mesh, girdle) for girdle in "FH" for mesh in left_leg(robot, girdle)]
-    parts: list[tuple[Mesh, str | None]] = [*axial]
-    parts += [(mesh.mirrored() if side == "R" else mesh, side + girdle) for mesh, girdle in limbs for side in "LR"]
-    hung = [_on_axis(robot, m.vertices) if leg is None else _on_leg(robot, m.vertices, leg) for m, leg in parts]
+    parts = _crocodile(robot, look) if isinstance(robot, Crocodile) else _plain(layout(robot))
+    hung = [_hung(robot, mesh.vertices, on) for mesh, on in parts]
     whole = joined([mesh for mesh, _ in parts])
     found = Skin(
         vertices=whole.vertices,
@@ -102,6 +100,29 @@ def skin(robot: Crocodile, look: Look = SKIN) -> Skin:
     return found
 
 
+def _crocodile(robot: Crocodile, look: Look) -> list[tuple[Mesh, str | int]]:
+    """Return the parts of a crocodile, each with the limb that it hangs on, or nothing for the axis."""
+    limbs = [(mesh, girdle) for girdle in "FH" for mesh in left_leg(robot, girdle)]
+    parts: list[tuple[Mesh, str | int]] = [(mesh, "") for mesh in _axial(robot, look)]
+    return parts + [(m.mirrored() if side == "R" else m, side + girdle) for m, girdle in limbs for side in "LR"]
+
+
+def _plain(place: Layout) -> list[tuple[Mesh, str | int]]:
+    """Return the parts of any body, each with the bone that it hangs on, or nothing for the axis."""
+    parts: list[tuple[Mesh, str | int]] = [(axis_mesh(place), "")]
+    parts += [(mesh, "") for mesh in plain_eyes(place)]
+    return parts + [part for limb in place.limbs for part in limb_meshes(place, limb)]
+
+
+def _hung(robot: AnyRobot, vertices: np.ndarray, on: str | int) -> tuple[np.ndarray, np.ndarray]:
+    """Hang vertices on one bone, on the axis or on a leg: return bones and weights."""
+    if isinstance(on, int):
+        indices, weights = np.full((len(vertices), _HANGS), on, dtype=np.int32), np.zeros((len(vertices), _HANGS))
+        weights[:, 0] = 1.0
+        return indices, weights
+    return _on_leg(robot, vertices, on) if on and isinstance(robot, Crocodile) else _on_axis(robot, vertices)
+
+
 def _axial(robot: Crocodile, look: Look) -> list[Mesh]:
     """Return the parts of head, trunk and tail."""
     outline = shape(robot, look)
@@ -110,20 +131,16 @@ def _axial(robot: Crocodile, look: Look) -> list[Mesh]:
     return [body(robot, look), jaw(robot, look), *middle_scutes(robot, outline), *both]
 
 
-def _on_axis(robot: Crocodile, vertices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Hang vertices on tail, pelvis, spine and thorax by their place along the straight body."""
-    names, rest = bone_names(robot), bone_rest(robot)
-    lengths = tail_segments(robot.tail).lengths
-    order = [names.index(f"tail_{i}") for i in range(len(lengths) - 1, 0, -1)]
-    order += [names.index(name) for name in ("tail_root", "pelvis", "spine_1", "spine_2", "spine_3", "spine_4")]
-    order.append(names.index("thorax"))
-    # a tail's segment ends at its joint, a link of the trunk begins there
-    joints = [
-        *(float(x) for x in rest[order[: len(lengths)], 0]),
-        *(float(x) for x in rest[order[len(lengths) + 1 :], 0]),
-    ]
-    ends = [-robot.tail.length, *joints, robot.spine.length + robot.head.snout]
-    return _blended(vertices[:, 0], joints, np.diff(ends), order)
+def _on_axis(robot: AnyRobot, vertices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Hang vertices on the bodies of the axis by their place along the straight body."""
+    place, rest = layout(robot), bone_rest(robot)
+    names = [body.name for body in place.bodies]
+    order = [names.index(name) for name in (*reversed(place.tail), *place.trunk)]
+    # a segment behind the root ends at its own joint, one ahead of it begins there
+    behind = len(place.tail)
+    joints = [float(rest[bone, 0]) for i, bone in enumerate(order) if i != behind]
+    front, back = ends(place)
+    return _blended(vertices[:, 0], joints, np.diff([back, *joints, front]), order)
 
 
 def _on_leg(robot: Crocodile, vertices: np.ndarray, leg: str) -> tuple[np.ndarray, np.ndarray]:

@@ -2,10 +2,10 @@
 
 from suchus.study.arm import Arm
 from suchus.study.chunk import run_chunk
-from suchus.study.claims import Claims, conduct_claims
+from suchus.study.claims import Claims, answer_finished, conduct_claims
 from suchus.study.claims_page import write_claims
 from suchus.study.cluster import NoCluster, connected
-from suchus.study.conduct import Told, conduct
+from suchus.study.conduct import Told, conduct, conducted
 from suchus.study.measures import MEASURES
 from suchus.study.page import read_study
 from suchus.study.plan import Plan
@@ -22,8 +22,10 @@ __all__ = [
     "Study",
     "Told",
     "Vary",
+    "answer_finished",
     "conduct",
     "conduct_claims",
+    "conducted",
     "connected",
     "read_study",
     "run_chunk",

@@ -1,7 +1,7 @@
-"""The ready-made study of the article's claims: plausible designs and gaits, intact, limbs only, with joints lost."""
+"""The ready-made study of the article's claims: plausible designs and gaits, with and without spine, tail, joints."""
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -11,20 +11,21 @@ import xarray as xr
 
 from suchus.design import Crocodile, unit_at, value_at
 from suchus.design.checks import Checks
-from suchus.gaits import GAITS
+from suchus.errors import UnreadableFile
+from suchus.gaits import GAITS, conditions
 from suchus.land import LOST, Run, lost
 from suchus.motion import START, Gait
 from suchus.paper import CYCLES
 from suchus.robots import ROBOTS
-from suchus.study.answers import ARMS, STATES, agreement, answers
+from suchus.study.answers import agreement, answers
 from suchus.study.arm import Arm
-from suchus.study.conduct import Told, conduct
+from suchus.study.claim_measures import FAULTY, METRICS, RUNS, asked_rules, held, measures_of
+from suchus.study.conduct import Told, conduct, finished
+from suchus.study.store import deciding, made_by
 from suchus.study.study import Study, Vary
 
-TRUNK = ("trunk_bend", "spine_phase", "tail_bend", "tail_phase", "tail_pitch")
-"""What the control group holds still; the rest of a gait is its legs."""
 FINE = 0.002  # [s]; the time step of results
-_PER_SAMPLE = len(ARMS) * len(STATES)
+_TRUNK = ("trunk_bend", "tail_bend", "tail_pitch")  # what the conditions differ in; the rest of a gait is its legs
 
 Progress = Callable[[str, Told], None]
 """Called with which of the studies runs, and how far it is."""
@@ -35,18 +36,17 @@ class Claims:
     """Every number that the article does not give, drawn from its plausible range, all at once.
 
     The numbers are those of ``chosen`` beside the robot and the gait on the shelf, but for the limits of the joints: a
-    limit only forbids, and whether a gait is forbidden is told apart.
+    limit only forbids, and whether a gait is forbidden is counted apart. Each sample is a robot and a gait, run in
+    every condition of spine and tail, see ``claim_measures.RUNS``.
     """
 
     robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
-    """Whose other fields all samples share."""
+    """The robot whose other fields all samples share."""
     gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
     """The crawl whose other fields all samples share."""
-    control: Gait = field(default_factory=lambda: GAITS["limbs_only"])
-    """What trunk and tail do in the control group."""
     samples: int = 2048
-    """How many designs and gaits [-]; each makes ten runs, about a quarter cannot walk."""
-    together: int = 32
+    """How many designs and gaits, best a power of two, as Sobol's sequence asks [-]; about a quarter cannot walk."""
+    together: int = 16
     """How many samples are simulated together, and lost when the study is killed [-]."""
     coarse: tuple[float, ...] = (0.01, 0.005)
     """Time steps that are tried, the first that agrees with 2 ms is taken; 2 ms if none does [s]."""
@@ -62,7 +62,7 @@ class Claims:
     cycles: int = int(CYCLES)
     """How many cycles are measured [-]."""
     seed: int = 0
-    """Of the Sobol sequence's scrambling."""
+    """Seed of the Sobol sequence's scrambling [-]."""
 
     def __post_init__(self) -> None:
         with Checks("claims", self) as check:
@@ -78,51 +78,62 @@ class Claims:
         """Return the study of so many samples; the first ones stay the same, however many."""
         rows = [(f"robot.{one.field}", one) for one in ROBOTS.beside("caiman", "chosen", ())]
         rows += [(f"gait.{one.field}", one) for one in GAITS.beside("belly_crawl", "chosen", ())]
-        vary = tuple(Vary(field=path, low=one.low, high=one.high) for path, one in rows if "_range[" not in path)
-        broken = ((), *(lost(self.robot, self.gait, joint, "limp") for joint in LOST))
-        held = {f"gait.{name}": value_at(self.control, name) for name in TRUNK}
         return Study(
             name="claims",
             run=Run(robot=self.robot, gait=self.gait),
-            vary=(*vary, Vary(field="faults", values=broken, each=True)),
-            measure=("displacement", "height_std"),
+            vary=tuple(Vary(field=path, low=one.low, high=one.high) for path, one in rows if "_range[" not in path),
+            measure=METRICS,
             design="sobol",
             samples=samples,
-            arms=(Arm(name=ARMS[0]), Arm(name=ARMS[1], values=held)),
+            arms=self._arms(),
             seed=self.seed,
             duration=START + self.cycles * self.gait.period,
             timestep=timestep,
-            every=10,
-            chunk=self.together * _PER_SAMPLE,
+            every=5,
+            chunk=self.together * len(RUNS),
         )
 
+    def _arms(self) -> tuple[Arm, ...]:
+        """Return what each run of a sample sets, after everything that varies."""
+        crawl = GAITS["belly_crawl"]
+        sets: dict[str, Mapping[str, Any]] = {}
+        for name, gait in conditions(crawl, GAITS["limbs_only"]).items():
+            of = {one: (value_at(gait, one), value_at(crawl, one)) for one in _TRUNK}
+            sets[name] = {f"gait.{one}": there for one, (there, here) in of.items() if there != here}
+        sets |= {
+            f"{name}_{joint}": {**sets[name], "faults": lost(self.robot, self.gait, joint, "limp")}
+            for name in FAULTY
+            for joint in LOST
+        }
+        return tuple(Arm(name=name, values=sets[name]) for name in RUNS)
+
     def record(self, study: Study, results: xr.Dataset) -> xr.Dataset:
-        """Return the results by sample, arm and state, with what became of each claim."""
-        names = [v.field for v in study.vary if not v.each]
-        shape = results.sizes["sample"] // _PER_SAMPLE, len(ARMS), len(STATES)
-        errors = results.error.values.reshape(shape[0], -1)
-        status = np.array([_status(row) for row in errors])
-        walked = np.isin(status, ("walked", "came apart"))[:, None, None]
-        way, height = (
-            np.where(walked, results[name].values.reshape(shape), np.nan) if name in results else np.full(shape, np.nan)
-            for name in ("displacement_x", "height_std")
-        )
-        values = np.column_stack([results[name].values[::_PER_SAMPLE] for name in names])
-        told = xr.Dataset(
-            {
-                "forward": (("sample", "arm", "state"), way, {"units": "m", "long_name": "displacement forward"}),
-                "std": (("sample", "arm", "state"), height, {"units": "m", "long_name": "of the height of the mass"}),
+        """Return the results by sample and run, with what became of each claim."""
+        names = [v.field for v in study.vary]
+        shape = results.sizes["sample"] // len(RUNS), len(RUNS)
+        status = np.array([_status(row) for row in results.error.values.reshape(shape)])
+        walked = np.isin(status, ("walked", "came apart"))[:, None]
+        columns = [str(c) for c in results.data_vars if c not in (*names, "seed", "arm", "error")]
+        found = {
+            c: (("sample", "run"), np.where(walked, results[c].values.reshape(shape), np.nan), results[c].attrs)
+            for c in columns
+        }
+        values = np.column_stack([results[name].values[:: len(RUNS)] for name in names])
+        record = xr.Dataset(
+            found
+            | {
                 "status": ("sample", status, {"units": "1", "long_name": "what became of it"}),
                 "value": (("sample", "parameter"), values, {"units": "1", "long_name": "each in its own unit"}),
             },
             coords={
-                "arm": list(ARMS),
-                "state": list(STATES),
+                "run": list(RUNS),
                 "parameter": names,
                 "parameter_unit": ("parameter", [unit_at(study.run, name) for name in names]),
             },
         )
-        return told.merge(answers(told, self.least))
+        return record.merge(answers(record, self.least)).assign_attrs(
+            timestep=study.timestep, seed=self.seed, cycles=self.cycles, agreed="[]", made_by=json.dumps(deciding())
+        )
 
 
 def conduct_claims(asked: Claims, folder: Path, *, progress: Progress | None = None, client: Any = None) -> xr.Dataset:
@@ -131,38 +142,80 @@ def conduct_claims(asked: Claims, folder: Path, *, progress: Progress | None = N
     Args:
         asked: the study.
         folder: for its stores, one below it for each time step that is compared and one for the runs.
-        progress: told which study runs, and how far it is.
+        progress: called with which study runs, and how far it is.
         client: a ``distributed.Client``, whose workers then run the batches; this process if None.
 
     Returns:
-        See ``answers.answers``; attributes say which time step was taken, and as JSON how it and the others agreed.
+        See ``Claims.record``; attributes say which time step was taken, as JSON how it and the others agreed, and
+        what made the runs.
 
     Raises:
         Unwritable: a store cannot be written to.
-        IncompatibleRecord: a store is another study's or another version's.
+        IncompatibleRecord: a store is another study's or another version's, or a rule needs what is not measured.
         NoCluster: the cluster was lost.
     """
+    nothing = measures_of(xr.Dataset(coords={"sample": []}), asked.least)
+    for rule in asked_rules():  # an hour before it would be found out
+        held(rule, nothing)
 
     def run(samples: int, timestep: float, place: str) -> xr.Dataset:
         study = replace(asked.study(samples, timestep), name=f"claims_{place}")
         shown = None if progress is None else (lambda told: progress(place, told))
-        results = conduct(study, folder / place, progress=shown, client=client)
-        return asked.record(study, results)
+        return asked.record(study, conduct(study, folder / place, progress=shown, client=client))
 
-    full = run(asked.compared, FINE, "compared_2ms")
+    full = run(asked.compared, FINE, _compared(FINE))
     taken, agreed = FINE, []
     for timestep in asked.coarse:
-        found = agreement(run(asked.compared, timestep, f"compared_{1000 * timestep:g}ms"), full)
+        found = agreement(run(asked.compared, timestep, _compared(timestep)), full)
         agreed.append({"timestep": timestep, **found._asdict()})
         if found.same >= asked.alike and found.chance >= asked.biased:
             taken = timestep
             break
     record = run(asked.samples, taken, "runs")
-    return record.assign_attrs(timestep=taken, agreed=json.dumps(agreed))
+    return record.assign_attrs(agreed=json.dumps(agreed), made_by=json.dumps(made_by(folder / "runs")))
+
+
+def answer_finished(asked: Claims, folder: Path) -> xr.Dataset:
+    """Answer from what ``conduct_claims`` has stored so far, whatever version stored it, and run nothing.
+
+    Args:
+        asked: the study.
+        folder: of its stores.
+
+    Returns:
+        As of ``conduct_claims``, of as many finished samples as make a power of two.
+
+    Raises:
+        UnreadableFile: not even one batch of the runs is finished.
+    """
+
+    def read(place: str) -> tuple[Study, xr.Dataset]:
+        told = made_by(folder / place, key="fields")
+        samples, timestep = int(told["samples"]), float(told["timestep"])
+        study = asked.study(samples, timestep)
+        results = finished(study, folder / place)
+        count = results.sizes["sample"] // len(RUNS)
+        whole = 1 << max(count.bit_length() - 1, 0)
+        if count == 0 or list(results.arm.values[: len(RUNS)]) != list(RUNS):
+            raise UnreadableFile(f"{folder / place} holds no finished runs of this study; start it, or let it go on.")
+        return study, results.isel(sample=slice(0, whole * len(RUNS)))
+
+    full = asked.record(*read(_compared(FINE)))
+    agreed = [
+        {"timestep": timestep, **agreement(asked.record(*read(_compared(timestep))), full)._asdict()}
+        for timestep in asked.coarse
+        if (folder / _compared(timestep)).is_dir()
+    ]
+    record = asked.record(*read("runs"))
+    return record.assign_attrs(agreed=json.dumps(agreed), made_by=json.dumps(made_by(folder / "runs")))
+
+
+def _compared(timestep: float) -> str:
+    return f"compared_{1000 * timestep:g}ms"
 
 
 def _status(errors: np.ndarray) -> str:
-    """Return what became of a sample: of its ten runs none may be refused."""
+    """Return what became of a sample: of its runs none may be refused."""
     kinds = {str(error).partition(":")[0] for error in errors if error}
     if "OutsideLimits" in kinds:
         return "outside limits"

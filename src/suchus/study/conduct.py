@@ -7,10 +7,11 @@ from typing import Any, NamedTuple
 
 import xarray as xr
 
+from suchus.errors import UnreadableFile
 from suchus.study.chunk import run_chunk
 from suchus.study.cluster import here, spread
 from suchus.study.plan import Plan
-from suchus.study.store import Store
+from suchus.study.store import Store, together
 from suchus.study.study import Study
 
 
@@ -70,6 +71,44 @@ def conduct(study: Study, folder: Path, *, progress: Progress | None = None, cli
             store.put(number, table)
             counter.finished(number, table)
         return store.gather(plan.chunks)
+
+
+def conducted(study: Study, progress: Callable[[float], None]) -> xr.Dataset:
+    """Run a study in this process and keep nothing on disk: for small ones.
+
+    Args:
+        study: the study.
+        progress: called with the share that is done.
+
+    Returns:
+        As of ``conduct``.
+    """
+    chunks = Plan(study).chunks
+    tables = []
+    for number in range(chunks):
+        tables.append(run_chunk(study, number, lambda share, n=number: progress((n + share) / chunks)))  # type: ignore[misc]
+        progress((number + 1) / chunks)
+    return together(tables)
+
+
+def finished(study: Study, folder: Path) -> xr.Dataset:
+    """Return the results of the first batches of a store, up to the first that is not finished; nothing is checked.
+
+    Args:
+        study: whose batches they are.
+        folder: its store.
+
+    Raises:
+        UnreadableFile: not even the first is finished.
+    """
+    store, tables = Store(folder, study), []
+    for number in range(Plan(study).chunks):
+        if not store.has(number):
+            break
+        tables.append(store.table(number))
+    if not tables:
+        raise UnreadableFile(f"{folder} holds no finished batch; start the study, or let it go on.")
+    return together(tables)
 
 
 class _Counter:

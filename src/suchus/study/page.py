@@ -12,6 +12,7 @@ from suchus.errors import InvalidDesign
 from suchus.fault import Fault
 from suchus.faults import from_table
 from suchus.gaits import GAITS
+from suchus.kinds import show
 from suchus.land import Ground, Run
 from suchus.motion import Gait
 from suchus.robots import ROBOTS
@@ -89,31 +90,47 @@ def read_study(path: Path) -> Study:
     return Study(
         run=run,
         vary=tuple(_resolved(vary, path.parent) for vary in page.vary),
-        **{f.name: getattr(page, f.name) for f in fields(Study) if f.name not in ("run", "vary")},
+        arms=tuple(resolved_arm(arm, path.parent) for arm in page.arms),
+        **{f.name: getattr(page, f.name) for f in fields(Study) if f.name not in ("run", "vary", "arms")},
     )
+
+
+def resolved_arm(arm: Arm, place: Path) -> Arm:
+    """Return an arm with the robots, gaits and faults that its values name.
+
+    Args:
+        arm: as a file says it.
+        place: the folder of that file.
+
+    Raises:
+        SuchusError: it names nothing that is there.
+    """
+    return replace(arm, values={field: _meant(field, value, place) for field, value in arm.values.items()})
 
 
 def _resolved(vary: Vary, place: Path) -> Vary:
     """Return a field with the things that its values name."""
     if vary.values is None:
         return vary
-    values: list[Any] = []
-    for value in vary.values:
-        if vary.field == "robot" and isinstance(value, str):
-            values.append(find(value, place, Crocodile, ROBOTS))
-        elif vary.field == "gait" and isinstance(value, str):
-            values.append(find(value, place, Gait, GAITS))
-        elif vary.field == "faults":
-            values.append(_faults(value))
-        else:
-            values.append(tuple(value) if isinstance(value, list) else value)
-    return replace(vary, values=tuple(values))
+    return replace(vary, values=tuple(_meant(vary.field, value, place) for value in vary.values))
+
+
+def _meant(field: str, value: Any, place: Path) -> Any:
+    """Return what a value of a file stands for: robots and gaits have names, faults are tables, lists are tuples."""
+    if field == "robot" and isinstance(value, str):
+        return find(value, place, Crocodile, ROBOTS)
+    if field == "gait" and isinstance(value, str):
+        return find(value, place, Gait, GAITS)
+    if field == "faults":
+        return _faults(value)
+    return tuple(value) if isinstance(value, list) else value
 
 
 def _faults(value: Any) -> tuple[Fault, ...]:
     if not isinstance(value, list) or not all(isinstance(item, Mapping) for item in value):
         raise InvalidDesign(
-            f"faults take lists of tables, as [[], [{{kind = 'limp', joint = 'LF_yaw'}}]]; one of them is {value!r}."
+            "faults take lists of tables, as [[], [{kind = 'limp', joint = 'LF_yaw'}]]; one of them is "
+            f"{show(value)}."
         )
     return tuple(from_table(item) for item in value)
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
+from math import prod
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -43,8 +44,8 @@ class Plan(Sequence[Point]):
         factorial = study.design == "factorial"
         self._each = [v for v in study.vary if factorial or v.each]
         self._sampled = [v for v in study.vary if not (factorial or v.each)]
-        self._levels = [levels(v) for v in self._each]
-        self._combinations = int(np.prod([len(v) for v in self._levels], dtype=float)) if self._levels else 1
+        self._levels = [levels(v, whole=study.whole(v.field)) for v in self._each]
+        self._combinations = prod(len(v) for v in self._levels)
         count = (study.samples or 1) if self._sampled else 1
         self._arms = study.arms or (None,)
         self._length = count * len(self._arms) * self._combinations * study.seeds
@@ -68,7 +69,7 @@ class Plan(Sequence[Point]):
             combination, level = divmod(combination, len(levels_))
             chosen[vary.field] = levels_[level]
         for vary, share in zip(self._sampled, self._shares[sample], strict=True):
-            chosen[vary.field] = value_of(vary, float(share))
+            chosen[vary.field] = value_of(vary, float(share), whole=self.study.whole(vary.field))
         return Point({v.field: chosen[v.field] for v in self.study.vary}, self.study.seed + repeat, self._arms[arm])
 
     @property
@@ -98,23 +99,32 @@ def _depth(path: str) -> int:
     return path.count(".") + path.count("[")
 
 
-def levels(vary: Vary) -> tuple[Any, ...]:
-    """Return the values of a field that are combined."""
+def levels(vary: Vary, *, whole: bool = False) -> tuple[Any, ...]:
+    """Return the values of a field that are combined.
+
+    Args:
+        vary: the field.
+        whole: whether it takes whole numbers only.
+    """
     if vary.values is not None:
         return vary.values
     assert vary.steps is not None
-    return tuple(value_of(vary, i / (vary.steps - 1)) for i in range(vary.steps))
+    values = [value_of(vary, i / (vary.steps - 1)) for i in range(vary.steps)]
+    return tuple(dict.fromkeys(round(value) for value in values)) if whole else tuple(values)
 
 
-def value_of(vary: Vary, share: float) -> Any:
+def value_of(vary: Vary, share: float, *, whole: bool = False) -> Any:
     """Return the value below which a share of a field's values lies.
 
     Args:
         vary: the field.
         share: 0 to 1.
+        whole: whether the field takes whole numbers only; those of an even range are then equally frequent.
     """
     if vary.values is not None:
         return vary.values[min(int(share * len(vary.values)), len(vary.values) - 1)]
+    if whole:
+        return _whole(vary, share)
     if vary.mean is not None and vary.spread is not None:
         low = -np.inf if vary.low is None else (vary.low - vary.mean) / vary.spread
         high = np.inf if vary.high is None else (vary.high - vary.mean) / vary.spread
@@ -126,6 +136,14 @@ def value_of(vary: Vary, share: float) -> Any:
     if vary.scale == "log":
         return float(np.clip(vary.low * (vary.high / vary.low) ** share, vary.low, vary.high))
     return float(vary.low + (vary.high - vary.low) * share)
+
+
+def _whole(vary: Vary, share: float) -> int:
+    if vary.mean is not None or vary.scale == "log":
+        return round(value_of(vary, share))
+    assert vary.low is not None
+    assert vary.high is not None
+    return int(min(vary.low + np.floor(share * (vary.high - vary.low + 1)), vary.high))
 
 
 @lru_cache(maxsize=4)

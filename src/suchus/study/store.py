@@ -3,6 +3,8 @@
 import fcntl
 import hashlib
 import json
+import logging
+import os
 import shutil
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
@@ -15,13 +17,32 @@ import numpy as np
 import xarray as xr
 
 from suchus.errors import IncompatibleRecord, UnreadableFile, Unwritable
-from suchus.record import check_writable, load, new_file, save, versions
+from suchus.record import check_writable, code_digest, load, new_file, read_json, save, there, versions
 from suchus.study.packing import packed, unpacked
 
 MARK = "study.json"
 RESULTS, TABLE = "results.nc", "results.csv"
-_FORMAT = 2
+_FORMAT = 3
+_LOG = logging.getLogger(__name__)
 _DECIDING = ("suchus", "python", "mujoco", "numpy", "scipy", "xarray", "h5netcdf")
+MADE_BY = (
+    *(
+        "catalog.py",
+        "control",
+        "design",
+        "fault.py",
+        "faults",
+        "gaits",
+        "kinds.py",
+        "kinematics",
+        "land",
+        "metrics",
+        "model",
+    ),
+    *("motion", "paper", "record", "robots", "rotation.py"),
+    *(f"study/{module}.py" for module in ("arm", "chunk", "measures", "plan", "study")),
+)
+"""Whose code decides the numbers of a run."""
 
 
 class Asked(Protocol):
@@ -57,35 +78,64 @@ class Store:
             Unwritable: the place cannot be written to, is taken by something else, or another process is at it.
             IncompatibleRecord: it holds another study, or was written by another version; it stays as it is.
         """
-        check_writable(self.folder)
-        mark = self.folder / self._mark
-        if mark.is_file():
-            self._check(mark)
-        elif self.folder.exists() and (not self.folder.is_dir() or any(self._foreign())):
-            raise Unwritable(f"{self.folder} exists and holds no {self.kind}; choose another place or move it away.")
-        else:
-            with new_file(mark) as draft:
-                draft.write_text(json.dumps(self._origin(), indent=1, sort_keys=True) + "\n", encoding="utf-8")
-        with mark.open("rb") as held:
-            try:
-                fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except BlockingIOError:
-                raise Unwritable(
-                    f"{self.folder} is being written by another process; wait or choose another."
-                ) from None
+        with self._alone():  # first of all, so that of studies that start together one finds the other at it
+            mark = self.folder / self._mark
+            if mark.is_file():
+                self._check(mark)
+            elif any(self._foreign()):
+                raise self._taken()
+            check_writable(self.folder)
+            if not mark.is_file():
+                with new_file(mark) as draft:
+                    draft.write_text(json.dumps(self._origin(), indent=1, sort_keys=True) + "\n", encoding="utf-8")
             self._sweep()
             yield self
+
+    @contextmanager
+    def _alone(self) -> Iterator[None]:
+        """Make the folder and hold a lock on it; one that was made in vain is taken away."""
+        made = not there(self.folder)
+        if not made and not self.folder.is_dir():
+            raise self._taken()
+        if made:
+            check_writable(self.folder)
+        try:
+            self.folder.mkdir(parents=True, exist_ok=True)
+            held = os.open(self.folder, os.O_RDONLY | os.O_DIRECTORY)
+        except OSError as error:
+            raise Unwritable(f"{self.folder} cannot be written: {(error.strerror or str(error)).lower()}.") from error
+        try:
+            self._lock(held)
+            yield
+        finally:
+            os.close(held)
+
+    def _lock(self, held: int) -> None:
+        try:
+            fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise Unwritable(f"{self.folder} is being written by another process; wait or choose another.") from None
+        except OSError as error:
+            raise Unwritable(f"{self.folder} lies on a disk that knows no locks; choose another place.") from error
+
+    def _taken(self) -> Unwritable:
+        return Unwritable(f"{self.folder} exists and holds no {self.kind}; choose another place or move it away.")
 
     def part(self, number: int) -> Path:
         """Return the file of one batch."""
         return self.folder / "parts" / f"{number:06d}.nc"
 
     def has(self, number: int) -> bool:
-        """Tell whether a batch is finished and can be read."""
-        try:
-            return self.part(number).is_file() and load(self.part(number)).attrs.get("part") == number
-        except IncompatibleRecord:
+        """Tell whether a batch is finished and as it was written; of one with a flipped bit we say so."""
+        if not self.part(number).is_file():
             return False
+        try:
+            sound = load(self.part(number), whole=True).attrs.get("part") == number
+        except (IncompatibleRecord, UnreadableFile):
+            sound = False
+        if not sound:
+            _LOG.warning("%s is damaged and is made again.", self.part(number))
+        return sound
 
     def put(self, number: int, table: xr.Dataset) -> None:
         """Keep the results of a batch.
@@ -117,7 +167,7 @@ class Store:
                     f"{self.folder} lacks part {number} of {parts}; start the {self.kind} again to finish it."
                 )
             tables.append(self.table(number))
-        whole = _together(tables).assign_attrs(study=self.study.name, settings=self._origin()["fields"])
+        whole = together(tables).assign_attrs(study=self.study.name, settings=self._origin()["fields"])
         save(whole, self.folder / RESULTS)
         with new_file(self.folder / TABLE) as draft:
             whole.to_dataframe().to_csv(draft, lineterminator="\n")
@@ -136,9 +186,9 @@ class Store:
     def _check(self, mark: Path) -> None:
         """Refuse what another study or another version wrote."""
         try:
-            there = json.loads(mark.read_text(encoding="utf-8"))
-            name, held, theirs = there["name"], there["fields"], there["versions"]
-        except (OSError, ValueError, KeyError, TypeError) as error:
+            said = read_json(mark)
+            name, held, theirs = said["name"], dict(said["fields"]), dict(said["versions"])
+        except (UnreadableFile, ValueError, KeyError, TypeError) as error:
             raise IncompatibleRecord(f"{mark} is no description of a {self.kind}; choose another place.") from error
         ours = self._origin()
         if held != ours["fields"]:
@@ -152,8 +202,8 @@ class Store:
             for key, value in ours["versions"].items()
             if theirs.get(key) != value
         ]
-        if changed or there.get("format") != _FORMAT:
-            by = ", ".join(changed) or f"format {there.get('format')} (here {_FORMAT})"
+        if changed or said.get("format") != _FORMAT:
+            by = ", ".join(changed) or f"format {said.get('format')} (here {_FORMAT})"
             raise IncompatibleRecord(
                 f"{self.folder} was written by {by}; mixed results would not be the same to the byte: choose another "
                 "place, or install those versions to finish it."
@@ -161,7 +211,8 @@ class Store:
 
     def _foreign(self) -> Iterator[Path]:
         """Everything in the folder but drafts that a kill left behind before the study was described."""
-        return (entry for entry in self.folder.iterdir() if not entry.name.startswith(f".{self._mark}-"))
+        drafts = (f".{self._mark}-", ".suchus-")
+        return (entry for entry in self.folder.iterdir() if not entry.name.startswith(drafts))
 
     def _sweep(self) -> None:
         """Take away drafts that a kill left behind."""
@@ -171,7 +222,7 @@ class Store:
                     shutil.rmtree(draft, ignore_errors=True)
 
 
-def _together(tables: Sequence[xr.Dataset]) -> xr.Dataset:
+def together(tables: Sequence[xr.Dataset]) -> xr.Dataset:
     """Put tables one below the other; a column that one of them lacks is NaN there."""
     columns = {str(name): v.attrs for table in tables for name, v in table.data_vars.items() if name != "error"}
     rows = {
@@ -184,10 +235,23 @@ def _together(tables: Sequence[xr.Dataset]) -> xr.Dataset:
     )
 
 
+def made_by(folder: Path, *, key: str = "versions") -> dict[str, str]:
+    """Return what a store says of itself: the versions that made it, or with the key ``fields`` its study's fields.
+
+    Raises:
+        UnreadableFile: there is no store.
+    """
+    try:
+        return dict(json.loads((folder / MARK).read_text(encoding="utf-8"))[key])
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise UnreadableFile(f"{folder} holds no study; start it first.") from error
+
+
 def deciding(libraries: Sequence[str] = ()) -> dict[str, str]:
-    """Return the versions of what makes a study's bytes, and of further libraries."""
+    """Return the versions of what makes a study's bytes, of further libraries, and the digest of our own source."""
     found = versions()
     told = {name: found.get(name, "not installed") for name in _DECIDING}
+    told["source"] = code_digest(*MADE_BY)[:12]
     for name in libraries:
         try:
             told[name] = version(name)

@@ -8,11 +8,14 @@ from suchus.design import value_at, with_values
 from suchus.design.checks import Checks, InvalidFields
 from suchus.errors import InvalidDesign, UnknownName
 from suchus.land import Run
+from suchus.motion import START
 from suchus.study.arm import Arm
 from suchus.study.measures import MEASURES
 
 Design = Literal["factorial", "sobol", "latin"]
 """How values are put together: every combination, a Sobol sequence, or a Latin hypercube."""
+SHORTEST = START + 0.1
+"""A run that is shorter leaves nothing to measure [s]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -95,7 +98,7 @@ class Study:
     seeds: int = 1
     """How many runs, with seeds that follow each other, each point gets; it matters with ``run.noise`` only [-]."""
     duration: float = 9.0
-    """Of each run [s]."""
+    """Of each run [s]; measures begin after the first second, in which the robot settles."""
     timestep: float = 0.005
     """Of the physics [s]; up to 5 ms the crawl's displacement was measured to stay the same within 0.1 %."""
     chunk: int = 32
@@ -113,7 +116,7 @@ class Study:
             check.whole("seeds", 1, 100_000)
             check.whole("chunk", 1, 10_000)
             check.whole("every", 1, 10_000)
-            check.number("duration", 0.01, 86400.0, "s")
+            check.number("duration", SHORTEST, 86400.0, "s")
             check.number("timestep", 1e-5, 0.01, "s")
             check.that(len(self.vary) > 0, "study.vary is empty; name at least one field")
             check.that(len(self.measure) > 0, "study.measure is empty; name at least one measure")
@@ -129,6 +132,11 @@ class Study:
             check.that(len(set(names)) == len(names), f"study.arms are called {', '.join(names)}; each once")
         self._check_measures()
         self._check_fields()
+
+    def whole(self, field: str) -> bool:
+        """Return whether a field of the run takes whole numbers only."""
+        there = value_at(self.run, field)
+        return isinstance(there, int) and not isinstance(there, bool)
 
     def _check_measures(self) -> None:
         for name in self.measure:
@@ -147,8 +155,10 @@ class Study:
                 raise InvalidDesign(
                     f"study {self.name!r} varies {vary.field}; the study sets it: choose seed and seeds."
                 )
-            value_at(self.run, vary.field)
-            for value in vary.ends:
+            whole = self.whole(vary.field)
+            if whole:
+                self._check_whole(vary)
+            for value in (round(end) if whole and vary.values is None else end for end in vary.ends):
                 try:
                     with_values(self.run, {vary.field: value})
                 except InvalidFields as error:
@@ -158,3 +168,17 @@ class Study:
                     continue  # wrong together with what the run has now; it may be right together with what varies
         for arm in self.arms:
             with_values(self.run, arm.values)
+
+    def _check_whole(self, vary: Vary) -> None:
+        """Refuse a range of whole numbers whose ends or steps are none."""
+        ends = [end for end in (vary.low, vary.high) if end is not None]
+        if any(end != round(end) for end in ends):
+            raise InvalidDesign(
+                f"study {self.name!r} varies {vary.field}, which takes whole numbers, from {ends[0]:g} to "
+                f"{ends[-1]:g}; give whole ends."
+            )
+        if vary.steps is not None and vary.scale == "linear" and (ends[1] - ends[0]) % (vary.steps - 1):
+            raise InvalidDesign(
+                f"study {self.name!r} varies {vary.field}, which takes whole numbers, in {vary.steps} steps from "
+                f"{ends[0]:g} to {ends[1]:g}, which are none; give other steps, or values."
+            )

@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 from scipy.cluster.vq import kmeans2
 
-from suchus.design import LEGS, Crocodile, joint_names
+from suchus.design import LEGS, Crocodile, crocodile, joint_names
 from suchus.design.relief import Relief
 from suchus.model import compile_model, joint_addresses
 from suchus.skin import ANKLES, Poses, ankles, bone_names, footed
@@ -26,7 +26,7 @@ class Posture:
     """
 
     def __init__(self, robot: Crocodile) -> None:
-        self.robot = robot
+        self.robot = robot = crocodile(robot, "the viewer")
         self.model = compile_model(robot)
         self._feet = np.zeros((len(LEGS), 3))
         self._data = mujoco.MjData(self.model)

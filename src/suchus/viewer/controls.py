@@ -113,7 +113,7 @@ class Controls:
         self._switches[name] = box
 
     def _gaits(self) -> None:
-        names = list(GAITS)
+        names = [name for name, gait in GAITS.items() if isinstance(gait, Gait)]
         mine = self._session.settings.gait
         shelf: dict[str, Gait] = {name: GAITS[name] for name in names}
         if shelf.get(mine.name) != mine:

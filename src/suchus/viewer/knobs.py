@@ -6,9 +6,8 @@ from math import isfinite, radians
 from types import MappingProxyType
 from typing import Any
 
-from suchus.design import Crocodile
+from suchus.design import GRAVITY, Crocodile
 from suchus.errors import OutsideLimits
-from suchus.kinematics.mass import GRAVITY
 from suchus.motion import Gait, check_limits
 
 _HALVINGS = 14  # of the way to a value that the robot cannot reach: a ten-thousandth of it

@@ -11,7 +11,7 @@ from suchus.design import Crocodile, joint_names
 from suchus.design.ground import Ground
 from suchus.errors import IncompatibleRecord, UnknownName
 from suchus.motion import START
-from suchus.record import VARIABLES, ground_of, load
+from suchus.record import VARIABLES, check_land, ground_of, load
 from suchus.robots import ROBOTS
 from suchus.viewer.history import table_of
 
@@ -69,12 +69,9 @@ def takes(path: Path, robot: Crocodile | None = None) -> tuple[Take, ...]:
         IncompatibleRecord: it is no record of a run on land, or of another robot.
     """
     record = load(path)
-    missing = [name for name in _NEEDED if name not in record]
-    if missing or "time" not in record.coords:
-        hint = " View it with suchus view swim." if any("midline_x" in str(name) for name in record) else ""
-        raise IncompatibleRecord(
-            f"{path} is no record of a run on land: it lacks {', '.join(missing) or 'time'}.{hint}"
-        )
+    if "position" not in record and any("midline_x" in str(name) for name in record):
+        raise IncompatibleRecord(f"{path} is no record of a run on land; view it with suchus view swim.")
+    check_land(record, _NEEDED, str(path))
     whole = record[[name for name in (*VARIABLES, "cause", "ended", "mass", "period", "stands_on") if name in record]]
     runs = [whole] if "run" not in whole.dims else [whole.isel(run=i) for i in range(whole.sizes["run"])]
     return tuple(_take(path, run, i, robot) for i, run in enumerate(runs))
@@ -131,7 +128,7 @@ class Player:
         """Jump to a time, as near as there is one; what is no number changes nothing [s]."""
         try:
             asked = float(time)  # type: ignore[arg-type]
-        except (TypeError, ValueError):
+        except (TypeError, ValueError, OverflowError):
             return
         with self._lock:
             if np.isfinite(asked):

@@ -6,12 +6,15 @@ import socket
 import warnings
 from collections.abc import Callable
 from contextlib import redirect_stdout
+from http import HTTPStatus
+from http.client import HTTPConnection, HTTPException
 from threading import Event, Lock
 from typing import Any, Protocol
 
 import viser
 
 from suchus.errors import SuchusError
+from suchus.viewer.gate import LOOPBACK, Gate
 from suchus.viewer.stage import CAMERA, LOOKS_AT
 
 MOST = 4
@@ -71,14 +74,21 @@ class Viewer:
         self._pages: dict[int, Page | None] = {}
         self._lock = Lock()
         self._over = Event()
-        with redirect_stdout(io.StringIO()):  # viser has a banner of its own
+        gate = Gate(host)
+        with redirect_stdout(io.StringIO()), gate.before():  # viser has a banner of its own
             self._server = _Server(host=host, port=port, label=title, verbose=False)
         self._server.gui.configure_theme(show_logo=False, show_share_button=False, brand_color=(0, 114, 178))
         self._server.initial_camera.position, self._server.initial_camera.look_at = camera
         self._server.initial_camera.fov = 0.72
         self._server.on_client_connect(self._come)
         self._server.on_client_disconnect(self._go)
-        self.url = f"http://{'localhost' if host in ('127.0.0.1', '::1') else host}:{self._server.get_port()}"
+        bound = self._server.get_port()
+        try:
+            _check_shut(host, bound)
+        except CannotServe:
+            self.stop()
+            raise
+        self.url = f"http://{'localhost' if host in LOOPBACK else _bracketed(host)}:{bound}/{gate.token}/"
 
     @property
     def watching(self) -> int:
@@ -139,8 +149,27 @@ def _check_free(host: str, port: int) -> None:
         with socket.socket(family, kind, protocol) as probe:
             probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
             probe.bind(address)
-    except (OSError, OverflowError) as error:
+    except (OSError, OverflowError, ValueError) as error:
         raise CannotServe(
             f"nothing can be served on {host}, port {port} ({getattr(error, 'strerror', None) or error}); "
             "take another --port, or 0 for any that is free."
         ) from error
+
+
+def _check_shut(host: str, port: int) -> None:
+    """Refuse to serve where somebody without the whole address is let in."""
+    near = {"0.0.0.0": "127.0.0.1", "::": "::1", "": "127.0.0.1"}.get(host, host)
+    asking = HTTPConnection(near, port, timeout=10.0)
+    try:
+        asking.request("GET", "/")
+        status = asking.getresponse().status
+    except (OSError, HTTPException) as error:
+        raise CannotServe(f"the server on {host}, port {port} does not answer: {error}.") from error
+    finally:
+        asking.close()
+    if status != HTTPStatus.FORBIDDEN:
+        raise CannotServe("the server lets in whoever asks, which it must not; install the viser that suchus names.")
+
+
+def _bracketed(host: str) -> str:
+    return f"[{host}]" if ":" in host else host

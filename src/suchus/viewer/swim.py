@@ -1,6 +1,6 @@
 """What a record of swimming shows over time: fields of the water and the outline of the body, without a browser."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -89,6 +89,8 @@ def _film(record: xr.Dataset, prefix: str) -> Film | None:
     if not names:
         return None
     first = record[f"{prefix}{names[0]}"]
+    if not _filmed(record, prefix, names):
+        raise IncompatibleRecord(f"{prefix or 'swim'} holds other fields or midlines than records of swimming do.")
     across, along = str(first.dims[-2]), str(first.dims[-1])
     alike = [name for name in names if record[f"{prefix}{name}"].dims == first.dims]
     fields = {name: _stacked(record[f"{prefix}{name}"].values) for name in alike}
@@ -110,6 +112,20 @@ def _film(record: xr.Dataset, prefix: str) -> Film | None:
     )
 
 
+def _filmed(record: xr.Dataset, prefix: str, names: Sequence[str]) -> bool:
+    """Tell whether fields and midlines are numbers of sizes that go together."""
+    lines = [f"{prefix}midline_{part}" for part in ("x", "y", "heading", "half_width")]
+    first = record[f"{prefix}{names[0]}"]
+    axes = [str(dim) for dim in first.dims[-2:]]
+    frames = first.shape[0] if first.ndim == 3 else 1
+    if any(name not in record for name in lines) or any(axis not in record.coords for axis in axes):
+        return False
+    numeric = all(record[name].dtype.kind in "fiu" and record[name].size for name in (*lines, *axes))
+    numeric &= all(record[f"{prefix}{name}"].dtype.kind in "fiu" for name in names) and first.size > 0
+    shapes = {_lines(record[name].values).shape for name in lines}
+    return numeric and len(shapes) == 1 and len(shape := shapes.pop()) == 2 and shape[0] >= frames
+
+
 def _stacked(values: np.ndarray) -> np.ndarray:
     return values[None] if values.ndim == 2 else values
 
@@ -122,12 +138,12 @@ def _curves(record: xr.Dataset) -> tuple[Curve, ...]:
     curves = []
     for prefix, said in _TITLES.items():
         parts = {"forward": f"{prefix}_thrust", "to the side": f"{prefix}_aside"}
-        if all(name in record for name in parts.values()):
+        if all(name in record for name in (*parts.values(), f"{prefix}_phase")):
             phase = record[f"{prefix}_phase"].values
             curves.append(
                 Curve(f"force [N/m] over the phase, {said}", phase, {k: record[v].values for k, v in parts.items()})
             )
-    if "arm_speed" in record:
+    if "arm_speed" in record and set(record.arm_speed.dims) == {"arm", "cycle"} and "arm" in record.coords:
         lines = {str(arm): record.arm_speed.sel(arm=arm).values for arm in record.arm.values[:3]}
         curves.append(Curve("speed [m/s] of each cycle", np.arange(1.0, record.sizes["cycle"] + 1), lines))
     return tuple(curves)

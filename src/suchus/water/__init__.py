@@ -5,7 +5,7 @@ from suchus.water.fit import Fit, fit, head_base
 from suchus.water.free import free_swim
 from suchus.water.held import tether
 from suchus.water.immersed import immersed
-from suchus.water.measures import Quarters, Swum, convex_higher, crossings, efficiency, level, swing
+from suchus.water.measures import Quarters, Sway, Swum, convex_higher, efficiency, level, swing, wave_form
 from suchus.water.outline import Base, Curve, Outline, Silhouette, silhouette
 from suchus.water.passive import sprung
 from suchus.water.readings import Attempt, attempts, readings_table
@@ -33,13 +33,13 @@ __all__ = [
     "PrintedWave",
     "Quarters",
     "Silhouette",
+    "Sway",
     "Swum",
     "Tether",
     "Undulation",
     "Water",
     "attempts",
     "convex_higher",
-    "crossings",
     "cruise",
     "cycle",
     "displaced",
@@ -65,5 +65,6 @@ __all__ = [
     "tether",
     "towed",
     "undulation",
+    "wave_form",
     "wave_speed",
 ]

@@ -6,8 +6,7 @@ import numpy as np
 import xarray as xr
 
 from suchus import flow
-from suchus.design import Crocodile
-from suchus.kinematics.mass import GRAVITY
+from suchus.design import GRAVITY, Crocodile
 from suchus.water.diary import Diary, Progress
 from suchus.water.held import SAMPLES
 from suchus.water.measures import swing
@@ -20,6 +19,8 @@ from suchus.water.view import View, kept, midline
 
 _BOX = (3.5, 2.0)
 """Length and width of the box [body length]."""
+TRACK = 40
+"""Samples of the track in a cycle [-]."""
 
 
 def free_swim(
@@ -66,7 +67,9 @@ class _Free:
             np.column_stack([np.interp(even, track["time"], column) for column in track[name].T])
             for name in ("snout", "across")
         )
-        amplitude, share = swing(across)
+        swung, tip = swing(across), across[:, -1:]
+        moment = self._period * np.arange(TRACK * self._pool.setting.cycles + 1) / TRACK
+        centre = [np.interp(moment, sim.record.time, sim.record.column(name)) for name in ("x", "y")]
         data = xr.Dataset(
             {
                 "speed": ("cycle", -speed, {"units": "m/s"}),
@@ -75,8 +78,12 @@ class _Free:
                 "snout_y": ("sample", across[:, 0], {"units": "m"}),
                 "heading": ("sample", snout[:, 1], {"units": "rad"}),
                 "tail_y": ("sample", across[:, -1], {"units": "m"}),
-                "swing": ("station", amplitude, {"units": "m"}),
-                "sine_share": ("station", share, {"units": "1"}),
+                "swing": ("station", swung.amplitude, {"units": "m"}),
+                "swing_late": ("station", swung.late, {"units": "1", "long_name": "phase lag of the swing [cycle]"}),
+                "sine_share": ("station", swung.share, {"units": "1"}),
+                "tip_share": ("single", [_share(tip[:-SAMPLES]), _share(tip[SAMPLES:])], {"units": "1"}),
+                "centre_x": ("moment", centre[0], {"units": "m", "long_name": "centre of mass, to the tail"}),
+                "centre_y": ("moment", centre[1], {"units": "m", "long_name": "centre of mass, to the right"}),
                 "weight": ((), DENSITY * GRAVITY * self._pool.shape.mass(sim.time).area, {"units": "N/m"}),
                 "wave_speed": ((), wave_speed(outline, motion, cycle(outline, motion)), {"units": "m/s"}),
                 "thin": ((), sim.thin["body"], {"units": "1"}),
@@ -86,3 +93,8 @@ class _Free:
         shown = self._view.dataset(frames, "frame")
         phase = (frames["time"] - self._end) / period + 1.0
         return data.merge(shown.assign_coords(frame=("frame", phase, {"units": "1"})))
+
+
+def _share(track: np.ndarray) -> float:
+    """Return which share of a track's swing over one cycle is a sine, shape of the track (sample, 1) [-]."""
+    return float(swing(track, 1).share[0])

@@ -42,6 +42,8 @@ def tether(
 ) -> xr.Dataset:
     """Return the flow around a body whose snout is held: forces over the last cycle, fields at its four quarters.
 
+    ``quarter_*`` hold what was at the quarters of every cycle but the first, which sets the water in motion.
+
     Args:
         robot: who waves.
         motion: how: with its joints, or as a wave that its midline follows exactly.
@@ -68,20 +70,29 @@ class _Held:
     def __init__(self, pool: Pool) -> None:
         self._outline, self._view = pool.outline, View(pool.grid, pool.robot.length, 1.9, 0.6)
         self._start, self._period, self._cycles = pool.end - pool.period, pool.period, pool.setting.cycles
+        self._settled = min(1, self._cycles - 1)
 
     def look(self, sim: flow.Simulation, diary: Diary) -> None:
         phase = (sim.time - self._start) / self._period
-        if phase <= SLACK:
+        turn = sim.time / self._period > self._settled + 0.25 * (diary.count("turns") + 1) - SLACK
+        if phase <= SLACK and not turn:
             return
         surface = sim.surface()
         midline = sim.setup.bodies[0].shape.spine(sim.time)  # type: ignore[attr-defined]
         sides = tail_sides(self._outline, surface)
+        seen = {
+            "difference": convex_less_concave(self._outline, surface, midline),
+            "place": place_of_difference(sides),
+        }
+        if turn:
+            diary.note("turns", sim.time, **seen)
+        if phase <= SLACK:
+            return
         diary.note(
             "steps",
             sim.time,
-            difference=convex_less_concave(self._outline, surface, midline),
+            **seen,
             bend=bend(self._outline, midline),
-            place=place_of_difference(sides),
             torque=joint_torques(self._outline, surface, midline),
             servo=servo_torques(self._outline, surface, midline),
         )
@@ -125,7 +136,23 @@ class _Held:
                 "servo": [*YAWS, "tail_cable"],
             },
         )
-        return data.merge(shown)
+        return data.merge(shown).merge(self._turns(sim.record, diary))
+
+    def _turns(self, series: flow.Record, diary: Diary) -> xr.Dataset:
+        """Return what was at the four quarters of every cycle but the first, see ``measures.Quarters``."""
+        seen, shape = diary.page("turns"), (self._cycles - self._settled, len(QUARTERS))
+        when, force = series.time - 0.5 * series.step, series.force()
+        at = {
+            "difference": (seen["difference"], "Pa"),
+            "place": (seen["place"], "1"),
+            "thrust": (np.interp(seen["time"], when, -force[:, 0]), "N/m"),
+            "aside": (np.interp(seen["time"], when, force[:, 1]), "N/m"),
+        }
+        dims = ("settled", "instant")
+        data = {
+            f"quarter_{name}": (dims, values.reshape(shape), {"units": unit}) for name, (values, unit) in at.items()
+        }
+        return xr.Dataset(data, coords={"settled": np.arange(self._settled, self._cycles) + 1})
 
 
 def _noise(series: flow.Record, period: float) -> float:

@@ -14,6 +14,10 @@ def immersed(
 ) -> flow.Midline:
     """Return the robot as a bending body of ``suchus.flow``, head at the origin, tail towards +x, y to its right.
 
+    The midline bends as it is commanded, the six cable joints all alike. On the robot one cable holds their sum alone,
+    so that the water's moments, which differ from joint to joint, would make their angles differ: that is left out, as
+    is what the passive end gives way, see ``sprung``.
+
     Seen from above that frame is turned by half a turn, not mirrored: counter-clockwise stays counter-clockwise.
 
     Args:

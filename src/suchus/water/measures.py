@@ -5,11 +5,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 from jaxtyping import Float
-
-SYMMETRIC = 0.15
-"""Forces half a cycle apart count as mirrored if they differ by less than this part of the force at T/4 [-]."""
-DIAGONAL = 0.1
-"""A force is diagonal if neither of its parts is below this part of the other [-]."""
+from scipy.optimize import least_squares
 
 
 class Quarters(NamedTuple):
@@ -25,31 +21,25 @@ class Quarters(NamedTuple):
     """Force to the right [N/m]."""
 
     @classmethod
-    def of(cls, held: xr.Dataset) -> "Quarters":
-        """Read them from a record of ``tether``."""
-        at = held.interp(phase=held.instant.values)
-        return cls(*(at[name].values.tolist() for name in cls._fields))
+    def each(cls, held: xr.Dataset) -> "list[Quarters]":
+        """Read every cycle but the first from a record of ``tether``; the last one comes last."""
+        cycles = [held.isel(settled=i) for i in range(held.sizes["settled"])]
+        return [cls(*(one[f"quarter_{name}"].values.tolist() for name in cls._fields)) for one in cycles]
 
     @property
-    def convex(self) -> bool:
-        """Whether the convex side has the higher pressure at T/4."""
-        return self.difference[0] > 0.0
+    def angle(self) -> float:
+        """Between the force at T/4 and the direction forward, 0 to pi [rad]."""
+        return float(np.arctan2(abs(self.aside[0]), self.thrust[0]))
 
     @property
-    def diagonal(self) -> bool:
-        """Whether the force at T/4 is forward and to the side."""
-        ahead, aside = self.thrust[0], abs(self.aside[0])
-        return ahead > DIAGONAL * aside and aside > DIAGONAL * ahead
-
-    @property
-    def falls(self) -> bool:
-        """Whether the difference at T/2 is smaller than at T/4, whatever its sign."""
-        return abs(self.difference[1]) < abs(self.difference[0])
+    def fall(self) -> float:
+        """By how much the size of the difference is smaller at 3T/4 than at T/4, whatever its sign [Pa]."""
+        return abs(self.difference[0]) - abs(self.difference[2])
 
     @property
     def moves(self) -> float:
-        """How far the difference has moved towards the tip from T/4 to T/2, in tail lengths [-]."""
-        return self.place[1] - self.place[0]
+        """How far the difference has moved towards the tip from T/4 to 3T/4, in tail lengths [-]."""
+        return self.place[2] - self.place[0]
 
     @property
     def asymmetry(self) -> float:
@@ -57,11 +47,6 @@ class Quarters(NamedTuple):
         size = max(abs(self.thrust[0]), abs(self.aside[0]))
         apart = max(abs(self.thrust[0] - self.thrust[2]), abs(self.aside[0] + self.aside[2]))
         return apart / size if size > 0 else 0.0
-
-    @property
-    def mirrored(self) -> bool:
-        """Whether the force at 3T/4 is that at T/4, left and right swapped."""
-        return self.asymmetry < SYMMETRIC
 
 
 def convex_higher(held: xr.Dataset) -> float:
@@ -78,24 +63,86 @@ def level(track: np.ndarray) -> np.ndarray:
     return np.asarray(track - drift - np.mean(track[:-1] - drift[:-1]))
 
 
-def crossings(free: xr.Dataset) -> int:
-    """Return how often the snout crosses its own mean line in the last two cycles: an S does so at least thrice."""
-    return int(np.sum(np.diff(np.sign(level(free.snout_y.values))) != 0))
+class Swing(NamedTuple):
+    """How each station of a body swings to either side, as a sine of one cycle."""
+
+    amplitude: Float[np.ndarray, " station"]
+    """Of the sine [m]."""
+    late: Float[np.ndarray, " station"]
+    """Phase lag of the sine behind a cosine that begins with the samples, 0 to 1 [cycle]."""
+    share: Float[np.ndarray, " station"]
+    """Of the variance about the mean line that the sine has [-]."""
 
 
-def swing(across: Float[np.ndarray, "sample station"]) -> tuple[np.ndarray, np.ndarray]:
+def swing(across: Float[np.ndarray, "sample station"], cycles: int = 2) -> Swing:
     """Return how far each station swings to either side as a sine, and which share of its swing that sine is.
 
     Args:
-        across: places to the side over two whole cycles, first and last instant included [m].
-
-    Returns:
-        Amplitude of the sine of one cycle, shape (station,) [m], and its share of the variance about the mean line [-].
+        across: places to the side over whole cycles, first and last instant included [m].
+        cycles: how many [-].
     """
     swung = np.column_stack([level(track) for track in across.T])[:-1]
-    harmonic = 2.0 * np.fft.rfft(swung, axis=0)[2] / len(swung)
+    harmonic = 2.0 * np.fft.rfft(swung, axis=0)[cycles] / len(swung)
     variance = np.maximum(np.mean(swung**2, axis=0), np.finfo(float).tiny)
-    return np.abs(harmonic), 0.5 * np.abs(harmonic) ** 2 / variance
+    late = np.mod(-np.angle(harmonic) / (2.0 * np.pi), 1.0)
+    return Swing(np.abs(harmonic), late, 0.5 * np.abs(harmonic) ** 2 / variance)
+
+
+class Sway(NamedTuple):
+    """A track's way to the side and back, once a cycle."""
+
+    amplitude: float
+    """Of the sine of one cycle [m]."""
+    noise: float
+    """Twice the standard deviation of what is left of the track about its mean line without that sine [m]."""
+    low: float
+    """Least amplitude of a single cycle [m]."""
+    high: float
+    """Greatest amplitude of a single cycle [m]."""
+
+    @classmethod
+    def of(cls, track: Float[np.ndarray, " sample"], cycles: int) -> "Sway":
+        """Measure a track to the side over whole cycles, first and last instant included [m].
+
+        Raises:
+            ValueError: the samples are no whole number for each cycle.
+        """
+        if (track.size - 1) % cycles:
+            raise ValueError(f"{track.size} samples are no whole number for each of {cycles} cycles.")
+        each = (track.size - 1) // cycles
+        amplitude, _, share = (float(values[0]) for values in swing(track[:, None], cycles))
+        left = np.sqrt(max(np.var(level(track)[:-1]) * (1.0 - share), 0.0))
+        single = [swing(track[i * each : (i + 1) * each + 1, None], 1).amplitude[0] for i in range(cycles)]
+        return cls(amplitude, 2.0 * float(left), float(min(single)), float(max(single)))
+
+
+def wave_form(
+    s: Float[np.ndarray, " station"], amplitude: Float[np.ndarray, " station"], late: Float[np.ndarray, " station"]
+) -> tuple[float, float, float, float]:
+    """Return the wave of the form (20) that comes nearest to a swinging midline, and which share of the swing it is.
+
+    Args:
+        s: arc length from the snout, over the length [-].
+        amplitude: of each station [m].
+        late: its phase lag [cycle].
+
+    Returns:
+        c1 and c2 of the envelope c1 s + c2 s^2 [m], waves along the body (positive: from head to tail) [-], and the
+        share of the mean square of the swing that the wave explains [-].
+
+    Paper: Eq. (20).
+    """
+    swung = amplitude * np.exp(-2j * np.pi * late)
+
+    def left(guess: np.ndarray) -> np.ndarray:
+        apart = (guess[0] * s + guess[1] * s**2) * np.exp(-2j * np.pi * (guess[2] * s + guess[3])) - swung
+        return np.concatenate([apart.real, apart.imag])
+
+    size = float(amplitude[-1])
+    starts = [(0.1 * size, size, waves, lag) for waves in (-1.0, 0.2, 1.0) for lag in (0.0, 0.25, 0.5, 0.75)]
+    found = min((least_squares(left, start, x_scale=(size, size, 1.0, 1.0)) for start in starts), key=lambda f: f.cost)
+    whole = float(np.sum(np.abs(swung) ** 2))
+    return float(found.x[0]), float(found.x[1]), float(found.x[2]), 1.0 - 2.0 * float(found.cost) / whole
 
 
 class Swum(NamedTuple):

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import Crocodile, cable_joints
+from suchus.design import AnyRobot, Crocodile, cable_joints, crocodile
 from suchus.errors import InvalidDesign
 from suchus.kinematics.mass import tail_segments
 from suchus.motion import Bends
@@ -29,13 +29,14 @@ class Silhouette(NamedTuple):
     """Up and down [m]."""
 
 
-def silhouette(robot: Crocodile, s: Float[np.ndarray, " station"]) -> Silhouette:
+def silhouette(robot: AnyRobot, s: Float[np.ndarray, " station"]) -> Silhouette:
     """Return how far the straight robot reaches sideways and upwards, limbs left out.
 
     Args:
         robot: the design.
         s: from the snout [m].
     """
+    robot = crocodile(robot, "the outline in the water")
     joint_5, girdle = robot.head.snout, robot.head.snout + robot.spine.length
     thorax, head = robot.thorax, robot.head
     length = head.snout - thorax.shoulder

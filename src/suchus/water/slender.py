@@ -13,6 +13,7 @@ import numpy as np
 from jaxtyping import Float
 from scipy.optimize import brentq
 
+from suchus.design import WATER_DENSITY
 from suchus.design.checks import Checks
 from suchus.errors import NotConverged
 from suchus.water.outline import Curve, Outline, summed
@@ -28,7 +29,7 @@ _NOTHING = 1e-5
 class Water:
     """Still water, and what a section of the body feels in it."""
 
-    density: float = 1000.0
+    density: float = WATER_DENSITY
     """[kg/m3]."""
     viscosity: float = 1e-6
     """Kinematic viscosity [m2/s]."""

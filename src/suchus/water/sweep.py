@@ -6,9 +6,8 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
-from suchus.design import Crocodile
+from suchus.design import GRAVITY, Crocodile
 from suchus.errors import OutsideLimits
-from suchus.kinematics.mass import GRAVITY
 from suchus.motion import Swim, check_swim
 from suchus.water.measures import efficiency
 from suchus.water.outline import Outline

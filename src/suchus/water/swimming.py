@@ -3,9 +3,9 @@
 import numpy as np
 import xarray as xr
 
-from suchus.design import Crocodile
-from suchus.kinematics.mass import GRAVITY
+from suchus.design import GRAVITY, WATER_DENSITY, Crocodile
 from suchus.motion import Swim, check_swim
+from suchus.robots import ROBOTS
 from suchus.water.outline import Curve, Outline
 from suchus.water.slender import Model, Water, cruise, cycle, reactive, recoil, resistive
 from suchus.water.undulation import Motion, undulation
@@ -14,7 +14,7 @@ MODELS: dict[str, Model] = {"resistive": resistive, "reactive": reactive}
 """The models by name."""
 
 
-def swim(robot: Crocodile, motion: Motion, *, water: Water | None = None, stations: int = 257) -> xr.Dataset:
+def swim(robot: Crocodile | str, motion: Motion, *, water: Water | None = None, stations: int = 257) -> xr.Dataset:
     """Return how a robot swims by the resistive and the reactive model.
 
     ``thrust_held`` is the mean force on a body that is kept from moving on but free to sway and turn; everything else
@@ -22,7 +22,7 @@ def swim(robot: Crocodile, motion: Motion, *, water: Water | None = None, statio
     body as heavy as the water it displaces; limbs do nothing.
 
     Args:
-        robot: who swims.
+        robot: who swims, or its name on the shelf.
         motion: of its joints; or a wave that the midline follows exactly, joints or not.
         water: density, viscosity and coefficients; fresh water if None.
         stations: points along the midline.
@@ -35,6 +35,7 @@ def swim(robot: Crocodile, motion: Motion, *, water: Water | None = None, statio
         OutsideLimits: the joints or servos cannot follow the motion.
         NotConverged: thrust and drag never balance.
     """
+    robot = ROBOTS.resolve(robot)
     if isinstance(motion, Swim):
         check_swim(robot, motion)
     outline, still = Outline(robot, stations), water or Water()
@@ -81,7 +82,7 @@ def _numbers(
     }
 
 
-def displaced(outline: Outline, density: float = 1000.0) -> float:
+def displaced(outline: Outline, density: float = WATER_DENSITY) -> float:
     """Return the mass of the water that the body displaces, its sections taken as ellipses [kg]."""
     wide, high = outline.silhouette
     return float(density * np.pi * np.trapezoid(wide * high, outline.s))

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from suchus import flow
+from suchus.design import WATER_DENSITY
 from suchus.design.checks import Checks
 from suchus.errors import InvalidDesign
 from suchus.flow.setup import LAYER_CELLS
@@ -13,7 +14,7 @@ from suchus.water.outline import Outline
 from suchus.water.slender import cycle
 from suchus.water.undulation import Motion
 
-DENSITY = 1000.0
+DENSITY = WATER_DENSITY
 """Of the water [kg/m3]."""
 GROWS = 0.5
 """Part of the first cycle in which the motion grows from nothing [cycle]."""

@@ -10,19 +10,19 @@ import xarray as xr
 
 from suchus.design import Crocodile
 from suchus.errors import InvalidDesign
-from suchus.experiment import Experiment, Measure, Outcome, judge, silent
+from suchus.experiment import Experiment, Measure, Simulated, silent
 from suchus.figures import LINES, captioned, panels
 from suchus.gaits import GAITS
 from suchus.motion import Gait
 from suchus.robots import ROBOTS
+from suchus.verdict import Clause, Rule
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Wave(Experiment):
     title = "How high is a wave?"
     shows = "Fig. 16"
-    claims = ("displacement_coordinated",)
-    decides = "The number that is put in."
+    judged_with = ()
 
     robot: Crocodile = ROBOTS["caiman"]
     """Who waves."""
@@ -41,7 +41,27 @@ class Wave(Experiment):
         if not self.amplitude > 0:
             raise InvalidDesign(f"amplitude is {self.amplitude:g} m; more than 0 m is allowed.")
 
-    def run(self, progress=silent):
+    @classmethod
+    def rules(cls):
+        put_in = (Clause("height", ">", 0.0, "a wave is high"),)
+        return (
+            Rule(
+                claim="displacement_coordinated",
+                experiment="wave",
+                measure="height",
+                holds=put_in,
+                why="It was put in <b>by hand</b>.",
+            ),
+            Rule(
+                claim="com_fluctuation",
+                experiment="wave",
+                measure="nothing",
+                holds=put_in,
+                why="A wave has no mass.",
+            ),
+        )
+
+    def simulate(self, progress=silent):
         progress("waving", 0.0)
         if self.pause:
             Path(os.environ["WAVE_STARTED"]).touch()
@@ -50,17 +70,16 @@ class Wave(Experiment):
         wave = xr.Dataset(
             {"height": ("time", self.amplitude * np.sin(t), {"units": "m"})}, coords={"time": t}, attrs={"n": {"a": 1}}
         )
-        return Outcome(
-            experiment="wave",
-            measures={"height": Measure(self.amplitude, "m"), "nothing": Measure(float("nan"), "-")},
-            verdicts=(
-                judge("displacement_coordinated", self.amplitude, "It was put in <b>by hand</b>."),
-                judge("com_fluctuation", None, "A wave has no mass."),
-            ),
-            record=wave,
-            settings={f.name: getattr(self, f.name) for f in fields(self)},
-            tables={"samples.txt": "time height\n0 0\n"},
-        )
+        return Simulated(record=wave, tables={"samples.txt": "time height\n0 0\n"})
+
+    def measure(self, record):
+        return {"height": Measure(self.amplitude, "m"), "nothing": Measure(float("nan"), "-")}
+
+    def explain(self, measures):
+        return "The number that is put in."
+
+    def settings(self):
+        return {f.name: getattr(self, f.name) for f in fields(self)}
 
     def draw(self, outcome):
         figure, axes = panels()

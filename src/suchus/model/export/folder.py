@@ -6,13 +6,14 @@ from pathlib import Path
 from typing import Literal, get_args
 
 from suchus import blueprint
-from suchus.design import Crocodile
+from suchus.design import AnyRobot, Crocodile
+from suchus.design.checks import require
 from suchus.errors import InvalidDesign, UnknownName
 from suchus.model.build import TIMESTEP
 from suchus.model.export.mjcf import mjcf
 from suchus.model.export.urdf import BALL, ball, unsaid, urdf
 from suchus.model.export.usd import scene, unsaid_in_usd, usd
-from suchus.motion import Gait, check_limits
+from suchus.motion import AnyGait, check_limits
 from suchus.record import digest, new_folder, versions
 
 Format = Literal["mjcf", "urdf", "usd"]
@@ -24,7 +25,7 @@ Its numbers come from robot.toml; keep this note with copies.
 """
 
 
-def export(robot: Crocodile, gait: Gait, folder: Path, kind: Format, *, timestep: float = TIMESTEP) -> Path:
+def export(robot: AnyRobot, gait: AnyGait, folder: Path, kind: Format, *, timestep: float = TIMESTEP) -> Path:
     """Write a robot for another tool and return the folder, which appears whole or not at all.
 
     Args:
@@ -45,6 +46,7 @@ def export(robot: Crocodile, gait: Gait, folder: Path, kind: Format, *, timestep
         raise UnknownName("format", kind, get_args(Format))
     if not robot.name or robot.name.startswith(".") or any(c in robot.name for c in "/\\\0"):
         raise InvalidDesign(f"the robot is named {robot.name!r}, which makes no file name; give it another name.")
+    require("export", "timestep", timestep, 1e-5, 0.1, "s")
     check_limits(robot, gait)
     texts = _texts(robot, gait, kind, timestep)
     origin = {"format": kind, "robot": digest({"robot": robot}), "home": digest({"gait": gait}), "versions": versions()}
@@ -60,13 +62,13 @@ def export(robot: Crocodile, gait: Gait, folder: Path, kind: Format, *, timestep
     return folder
 
 
-def _texts(robot: Crocodile, gait: Gait, kind: Format, timestep: float) -> dict[str, str]:
+def _texts(robot: AnyRobot, gait: AnyGait, kind: Format, timestep: float) -> dict[str, str]:
     if kind == "mjcf":
         return _mjcf(robot, gait, timestep)
     return _urdf(robot) if kind == "urdf" else _usd(robot, gait)
 
 
-def _mjcf(robot: Crocodile, gait: Gait, timestep: float) -> dict[str, str]:
+def _mjcf(robot: AnyRobot, gait: AnyGait, timestep: float) -> dict[str, str]:
     model, scene = mjcf(robot, gait, timestep=timestep)
     files = {
         f"{robot.name}.xml": "the robot: bodies, joints, tendon, servos, sensors, keyframe `home`",
@@ -89,7 +91,7 @@ def _mjcf(robot: Crocodile, gait: Gait, timestep: float) -> dict[str, str]:
     return {f"{robot.name}.xml": model, "scene.xml": scene, "README.md": text}
 
 
-def _urdf(robot: Crocodile) -> dict[str, str]:
+def _urdf(robot: AnyRobot) -> dict[str, str]:
     files = {f"{robot.name}.urdf": "the robot: links, joints, limits, shapes", BALL: "a ball that ellipsoids stretch"}
     about = (
         "Joints and frames (feet, snout, tail_tip, imu) carry the names that suchus gives them; x forward, y left, z "
@@ -99,7 +101,7 @@ def _urdf(robot: Crocodile) -> dict[str, str]:
     return {f"{robot.name}.urdf": urdf(robot), BALL: ball(), "README.md": text}
 
 
-def _usd(robot: Crocodile, gait: Gait) -> dict[str, str]:
+def _usd(robot: AnyRobot, gait: AnyGait) -> dict[str, str]:
     name = f"{robot.name}.usda"
     files = {
         name: "the robot: bodies, joints with limits and drives, shapes, frames",
@@ -114,17 +116,18 @@ def _usd(robot: Crocodile, gait: Gait) -> dict[str, str]:
     return {name: usd(robot, gait), "scene.usda": scene(robot), "README.md": text}
 
 
-def _readme(robot: Crocodile, files: Mapping[str, str], look: str, about: str, left_out: tuple[str, ...]) -> str:
+def _readme(robot: AnyRobot, files: Mapping[str, str], look: str, about: str, left_out: tuple[str, ...]) -> str:
     files = {
         **files,
         "robot.toml": "every number, with its meaning and unit",
         "LICENSE": "Apache-2.0",
         MARK: "which robot, which software",
     }
+    what = "A crocodile-like robot" if isinstance(robot, Crocodile) else "A robot"
     lines = [
         f"# {robot.name}",
         "",
-        f"A crocodile-like robot of {robot.mass:.2f} kg and {robot.length:.2f} m, written by suchus.",
+        f"{what} of {robot.mass:.2f} kg and {robot.length:.2f} m, written by suchus.",
         "",
         about,
         "",

@@ -6,17 +6,17 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from suchus.design import Crocodile
+from suchus.design import AnyRobot
 from suchus.model.build import TIMESTEP, build
 from suchus.model.standing import activations, standing
-from suchus.motion import Gait, servo_targets
+from suchus.motion import AnyGait, hip_height, middle_stance
 
 _DIGITS = 6  # what MuJoCo prints
 _KINDS = ("body", "geom", "joint", "site", "light", "tendon", "actuator")
 _SKY = {"type": "skybox", "builtin": "gradient", "rgb1": "0.93 0.95 0.97", "rgb2": "0.55 0.62 0.70"}
 
 
-def mjcf(robot: Crocodile, gait: Gait, *, timestep: float = TIMESTEP) -> tuple[str, str]:
+def mjcf(robot: AnyRobot, gait: AnyGait, *, timestep: float = TIMESTEP) -> tuple[str, str]:
     """Return a robot as two MJCF texts: itself, with a keyframe ``home``, and a scene that includes it.
 
     The scene compiles to the same numbers as ``build(robot)``, to the last bit.
@@ -45,14 +45,13 @@ def mjcf(robot: Crocodile, gait: Gait, *, timestep: float = TIMESTEP) -> tuple[s
     return _text(root), _text(scene)
 
 
-def home(model: Any, robot: Crocodile, gait: Gait) -> tuple[np.ndarray, np.ndarray]:
+def home(model: Any, robot: AnyRobot, gait: AnyGait) -> tuple[np.ndarray, np.ndarray]:
     """Return the generalised positions and the servo angles [rad] in which all feet stand in the middle of their path.
 
     Trunk and tail are straight.
     """
-    middle = np.full((1, 4), 1.0 - gait.duty_factor / 2)
-    servos = servo_targets(robot, gait, middle, trunk=np.zeros(1), tail=np.zeros(1))[0]
-    return standing(model, robot, gait.hip_height, servos), servos
+    servos = middle_stance(robot, gait)
+    return standing(model, robot, hip_height(robot, gait), servos), servos
 
 
 def numbers(values: Sequence[float] | np.ndarray) -> str:
@@ -60,7 +59,7 @@ def numbers(values: Sequence[float] | np.ndarray) -> str:
     return " ".join(repr(float(v) + 0.0).removesuffix(".0") for v in np.ravel(np.asarray(values)))
 
 
-def _home(model: Any, robot: Crocodile, gait: Gait) -> ElementTree.Element:
+def _home(model: Any, robot: AnyRobot, gait: AnyGait) -> ElementTree.Element:
     qpos, servos = home(model, robot, gait)
     keys = ElementTree.Element("keyframe")
     values = {"qpos": qpos, "act": activations(model, servos), "ctrl": servos}

@@ -1,5 +1,6 @@
 """URDF: links, joints, limits and shapes; what it cannot say is listed in ``UNSAID``."""
 
+from collections.abc import Mapping
 from typing import Any
 from xml.etree import ElementTree
 
@@ -7,11 +8,11 @@ import mujoco
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from suchus.design import Crocodile, cable_joints, fin_joints
+from suchus.design import AnyRobot, layout
 from suchus.model.build import compile_model, servo_of
 from suchus.model.export.mjcf import numbers
 from suchus.model.export.unsaid import told
-from suchus.model.names import SITES
+from suchus.model.names import IMU, sites
 
 BALL = "meshes/ball.obj"
 """A ball of radius 1, which ellipsoids stretch; URDF has none of its own."""
@@ -19,26 +20,33 @@ UNSAID = (
     "The cable. In the model one servo turns a pulley and a tendon bends all {cables} tail joints ({first} to {last}) "
     "at once; here each is a joint of its own, its effort limit the torque that the cable can give it. "
     "Turn them all by the same angle: the bend of the tail over {cables}.",
-    "Springs. The cable joints have {stiffness:g} N m/rad; the passive joints of the tail's end ({fins}) have "
-    "{lateral:g} N m/rad sideways and {vertical:g} N m/rad up and down at the first, half of it at the last. Their "
-    "effort limit is 0, since nothing drives them. Add the springs in your simulator, or hold these joints at zero.",
+    "Springs: {springs}. Where no cable bends them their effort limit is 0, since nothing drives them. Add the springs "
+    "in your simulator, or hold these joints at zero.",
     "Servos. They are position servos (PID) with a slew limit; only the limits of torque and speed are here. The gains "
     "are in robot.toml.",
     "Rotor inertia of the servos (armature), in robot.toml.",
     "Contact: the friction of feet ({foot:g}) and skin ({skin:g}), and that the body does not touch itself: leave "
     "self-collision off.",
-    "Two joints in one point. The second link of a hip and of a passive tail joint has no mass; its link is named "
-    "after the joint that carries it.",
+    "Joints in one point. All but the last of their links have no mass; such a link is named after the joint that "
+    "carries it.",
     "Capsules are a cylinder and two balls; ellipsoids are a faceted ball ("
     + BALL
     + "), up to {faceted:.2g} % inside.",
-    "Sensors, and the free joint: the root link is pelvis.",
+    "Sensors, and the free joint: the root link is {root}.",
 )
+MUJOCO: Mapping[str, str] = {
+    "fusestatic": "false",
+    "strippath": "false",
+    "boundmass": "1e-10",
+    "boundinertia": "1e-14",
+}
+"""What MuJoCo needs to be told, others skip it: keep the root and the frames as bodies, and where the ball lies; links
+between joints in one point have no mass, and MuJoCo wants some [kg, kg m2]."""
 _RINGS, _SECTORS = 24, 48
 _FREE_SPEED = 100.0  # [rad/s]; a limit must be given; nothing on the robot turns so fast
 
 
-def urdf(robot: Crocodile) -> str:
+def urdf(robot: AnyRobot) -> str:
     """Return a robot as URDF, with the joints and frames of the MuJoCo model by the same names, in full precision.
 
     Args:
@@ -46,9 +54,10 @@ def urdf(robot: Crocodile) -> str:
     """
     model = compile_model(robot)
     root = ElementTree.Element("robot", name=robot.name)
+    ElementTree.SubElement(ElementTree.SubElement(root, "mujoco"), "compiler", dict(MUJOCO))
     for body in range(1, model.nbody):
         _add_body(root, model, body, robot)
-    for site in (*SITES, "imu"):
+    for site in (*sites(robot), IMU):
         where = model.site(site)
         ElementTree.SubElement(root, "link", name=site)
         parent = model.body(int(where.bodyid[0])).name
@@ -58,7 +67,7 @@ def urdf(robot: Crocodile) -> str:
     return '<?xml version="1.0"?>\n' + ElementTree.tostring(root, encoding="unicode") + "\n"
 
 
-def unsaid(robot: Crocodile) -> tuple[str, ...]:
+def unsaid(robot: AnyRobot) -> tuple[str, ...]:
     """Return what the URDF of a robot leaves out, and what to do about it."""
     return told(UNSAID, robot, faceted=100 * (1 - np.cos(np.pi / _SECTORS)))
 
@@ -87,7 +96,7 @@ def ball() -> str:
     return "\n".join(lines) + "\n"
 
 
-def _add_body(root: ElementTree.Element, model: Any, body: int, robot: Crocodile) -> None:
+def _add_body(root: ElementTree.Element, model: Any, body: int, robot: AnyRobot) -> None:
     """Add a body's link, and before it the joints that carry it: all but the last end in a massless link."""
     name = model.body(body).name
     parent = model.body(int(model.body_parentid[body])).name
@@ -98,13 +107,16 @@ def _add_body(root: ElementTree.Element, model: Any, body: int, robot: Crocodile
         child = name if number == len(hinges) - 1 else f"{label}_link"
         if child != name:
             ElementTree.SubElement(root, "link", name=child)
-        joint = _joint(root, label, "revolute", parent, child)
+        kind = "revolute" if model.jnt_limited[hinge] else "continuous"
+        joint = _joint(root, label, kind, parent, child)
         place = (
             (model.body_pos[body], model.body_quat[body]) if number == 0 else (np.zeros(3), np.array([1.0, 0, 0, 0]))
         )
         _origin(joint, *place)
         _turn(joint, model, hinge, robot)
         parent = child
+    if body > 1 and not hinges:
+        _origin(_joint(root, f"{name}_fixed", "fixed", parent, name), model.body_pos[body], model.body_quat[body])
     link = ElementTree.SubElement(root, "link", name=name)
     _inertial(link, model, body)
     for geom in range(int(model.body_geomadr[body]), int(model.body_geomadr[body] + model.body_geomnum[body])):
@@ -118,20 +130,23 @@ def _joint(root: ElementTree.Element, name: str, kind: str, parent: str, child: 
     return joint
 
 
-def _turn(joint: ElementTree.Element, model: Any, hinge: int, robot: Crocodile) -> None:
+def _turn(joint: ElementTree.Element, model: Any, hinge: int, robot: AnyRobot) -> None:
     """Say about what axis, how far, with what friction, and within what limits a hinge turns."""
     name = model.joint(hinge).name
     dof = int(model.jnt_dofadr[hinge])
     ElementTree.SubElement(joint, "axis", xyz=numbers(model.jnt_axis[hinge]))
-    if name in cable_joints(robot):
-        tail = robot.tail
-        effort, speed = tail.cable_servo.torque * tail.cord_spacing / 2 / tail.pulley, tail.cable_servo.speed
-    elif name in fin_joints(robot):
-        effort, speed = 0.0, _FREE_SPEED
-    else:
+    place = layout(robot)
+    pulled = [cable for cable in place.robot.cables if name in cable.hinges]
+    if name in place.servos:
         effort, speed = servo_of(robot, name).torque, servo_of(robot, name).speed
+    elif pulled:
+        cable = pulled[0]
+        effort, speed = cable.servo.torque * cable.cord_spacing / 2 / cable.pulley, cable.servo.speed
+    else:
+        effort, speed = 0.0, _FREE_SPEED
     low, high = model.jnt_range[hinge]
-    limit = {"lower": low, "upper": high, "effort": effort, "velocity": speed}
+    limit = {"lower": low, "upper": high} if model.jnt_limited[hinge] else {}
+    limit |= {"effort": effort, "velocity": speed}
     ElementTree.SubElement(joint, "limit", {k: numbers([v]) for k, v in limit.items()})
     rubbing = {"damping": model.dof_damping[dof], "friction": model.dof_frictionloss[dof]}
     ElementTree.SubElement(joint, "dynamics", {k: numbers([v]) for k, v in rubbing.items()})

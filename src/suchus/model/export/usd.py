@@ -6,16 +6,15 @@ import mujoco
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from suchus.design import Crocodile, servo_names
+from suchus.design import GRAVITY, AnyRobot, layout
 from suchus.errors import SuchusError
-from suchus.kinematics.mass import GRAVITY
 from suchus.model.build import compile_model, servo_of
 from suchus.model.export.mjcf import home
 from suchus.model.export.unsaid import told
 from suchus.model.export.urdf import ball
-from suchus.model.names import SITES
+from suchus.model.names import IMU, sites
 from suchus.model.standing import standing
-from suchus.motion import Gait
+from suchus.motion import AnyGait
 
 LINK_MASS, LINK_INERTIA = 1e-6, 1e-9
 """Of the link between two joints in one point [kg], [kg m2]: in USD a mass of zero means that it is not known."""
@@ -23,9 +22,8 @@ UNSAID = (
     "The cable. In the model one servo turns a pulley and a tendon bends all {cables} tail joints ({first} to {last}) "
     "at once; here each is a joint of its own. Set the targets of their drives to the bend of the tail over {cables}, "
     "and their stiffness to what your controller needs.",
-    "Springs are drives with a target of zero: {stiffness:g} N m/rad at the cable joints, {lateral:g} N m/rad sideways "
-    "and {vertical:g} N m/rad up and down at the first passive joint of the tail's end ({fins}), half of it at the "
-    "last. The schema has no springs of their own, and does not tell them from motors.",
+    "Springs are drives with a target of zero: {springs}. The schema has no springs of their own, and does not tell "
+    "them from motors.",
     "Servos. A drive holds their proportional and derivative gains, torque limit and, as target, the home posture; "
     "integral gain and slew limit ({speeds} rad/s) are in robot.toml.",
     "Dry friction, damping and rotor inertia (armature) of the joints, in robot.toml.",
@@ -33,8 +31,8 @@ UNSAID = (
     "in the two materials. Ellipsoids collide as the hull of a faceted ball.",
     "That the body does not touch itself. Links that a joint connects do not collide; switch the rest of the "
     "self-collisions off in your simulator.",
-    "Two joints in one point. The first link of a hip and of a passive tail joint is not there in the robot; it has "
-    "{link:g} kg and is named after the joint that carries it.",
+    "Joints in one point. All but the last of their links are not there in the robot; such a link has {link:g} kg and "
+    "is named after the joint that carries it.",
     "Sensors. Their places are frames.",
     "More than single precision in joints, masses and inertias, whose types are floats; places of bodies and frames "
     "are doubles.",
@@ -51,7 +49,7 @@ class _Link(NamedTuple):
     turn: Rotation
 
 
-def usd(robot: Crocodile, gait: Gait) -> str:
+def usd(robot: AnyRobot, gait: AnyGait) -> str:
     """Return a robot as USD text, all joints at zero, the lowest part touching the ground.
 
     Metres, kilograms, z up; bodies lie side by side below the robot, their places in the world in full precision.
@@ -66,7 +64,7 @@ def usd(robot: Crocodile, gait: Gait) -> str:
     pxr = _library()
     model = compile_model(robot)
     data = mujoco.MjData(model)
-    data.qpos[:] = standing(model, robot, 0.0, np.zeros(len(servo_names())))
+    data.qpos[:] = standing(model, robot, 0.0, np.zeros(len(layout(robot).servos)))
     mujoco.mj_kinematics(model, data)
     stage = pxr.Usd.Stage.CreateInMemory()
     pxr.UsdGeom.SetStageMetersPerUnit(stage, 1.0)
@@ -78,14 +76,14 @@ def usd(robot: Crocodile, gait: Gait) -> str:
     pxr.UsdPhysics.ArticulationRootAPI.Apply(root.GetPrim())
     writer = _Writer(pxr, stage, robot, model, str(root.GetPath()))
     writer.materials()
-    writer.targets = dict(zip(servo_names(), home(model, robot, gait)[1].tolist(), strict=True))
+    writer.targets = dict(zip(layout(robot).servos, home(model, robot, gait)[1].tolist(), strict=True))
     for body in range(1, model.nbody):
         writer.body(body, data)
     text: str = stage.GetRootLayer().ExportToString()
     return text
 
 
-def scene(robot: Crocodile) -> str:
+def scene(robot: AnyRobot) -> str:
     """Return a USD text with gravity, light and level ground, that refers to the robot beside it."""
     return f"""#usda 1.0
 (
@@ -129,13 +127,13 @@ def Xform "World"
 """
 
 
-def unsaid_in_usd(robot: Crocodile) -> tuple[str, ...]:
+def unsaid_in_usd(robot: AnyRobot) -> tuple[str, ...]:
     """Return what the USD of a robot leaves out, and what to do about it."""
-    speeds = sorted({servo_of(robot, name).speed for name in servo_names()})
+    speeds = sorted({servo_of(robot, name).speed for name in layout(robot).servos})
     return told(UNSAID, robot, speeds=" or ".join(f"{v:g}" for v in speeds), link=LINK_MASS)
 
 
-def prim_name(robot: Crocodile) -> str:
+def prim_name(robot: AnyRobot) -> str:
     """Return the robot's name as USD allows it: letters, digits and underscores, no digit first."""
     plain = "".join(c if c.isascii() and c.isalnum() else "_" for c in robot.name)
     return f"_{plain}" if plain[:1].isdigit() else plain
@@ -153,7 +151,7 @@ def _library() -> Any:
 class _Writer:
     """What is being written; it fills its stage."""
 
-    def __init__(self, pxr: Any, stage: Any, robot: Crocodile, model: Any, root: str) -> None:
+    def __init__(self, pxr: Any, stage: Any, robot: AnyRobot, model: Any, root: str) -> None:
         self.pxr, self.stage, self.robot, self.model, self.root = pxr, stage, robot, model, root
         self.targets: dict[str, float] = {}
         self.links: dict[str, _Link] = {}
@@ -181,9 +179,11 @@ class _Writer:
         self._mass(prim, model.body_mass[body], model.body_ipos[body], model.body_inertia[body], model.body_iquat[body])
         if hinges:
             self._joint(hinges[-1], parent, at)
+        elif parent is not None:
+            self._fixed(parent, at)
         for geom in range(int(model.body_geomadr[body]), int(model.body_geomadr[body] + model.body_geomnum[body])):
             self._shape(geom, name)
-        for site in (*SITES, "imu"):
+        for site in (*sites(self.robot), IMU):
             where = model.site(site)
             if int(where.bodyid[0]) == body:
                 frame = self.pxr.UsdGeom.Xform.Define(self.stage, f"{self.root}/{name}/{site}")
@@ -208,8 +208,16 @@ class _Writer:
         held.CreateDiagonalInertiaAttr(self.pxr.Gf.Vec3f(*map(float, inertia)))
         held.CreatePrincipalAxesAttr(self.pxr.Gf.Quatf(*map(float, quat)))
 
+    def _fixed(self, parent: _Link, child: _Link) -> None:
+        gf, back = self.pxr.Gf, parent.turn.inv()
+        joint = self.pxr.UsdPhysics.FixedJoint.Define(self.stage, f"{self.root}/joints/{child.name}_fixed")
+        joint.CreateBody0Rel().SetTargets([f"{self.root}/{parent.name}"])
+        joint.CreateBody1Rel().SetTargets([f"{self.root}/{child.name}"])
+        joint.CreateLocalPos0Attr(gf.Vec3f(*back.apply(child.place - parent.place).tolist()))
+        joint.CreateLocalRot0Attr(gf.Quatf(*(back * child.turn).as_quat(scalar_first=True).tolist()))
+
     def _joint(self, hinge: int, parent: _Link | None, child: _Link) -> _Link:
-        assert parent is not None  # only the pelvis has none, and no hinge
+        assert parent is not None  # only the root has none, and no hinge
         name, gf = self.model.joint(hinge).name, self.pxr.Gf
         joint = self.pxr.UsdPhysics.RevoluteJoint.Define(self.stage, f"{self.root}/joints/{name}")
         axis, turn = _axis(self.model.jnt_axis[hinge])
@@ -221,9 +229,10 @@ class _Writer:
         joint.CreateLocalRot0Attr(gf.Quatf(*(back * child.turn * turn).as_quat(scalar_first=True).tolist()))
         joint.CreateLocalPos1Attr(gf.Vec3f(0.0, 0.0, 0.0))
         joint.CreateLocalRot1Attr(gf.Quatf(*turn.as_quat(scalar_first=True).tolist()))
-        low, high = np.degrees(self.model.jnt_range[hinge]).tolist()
-        joint.CreateLowerLimitAttr(low)
-        joint.CreateUpperLimitAttr(high)
+        if self.model.jnt_limited[hinge]:
+            low, high = np.degrees(self.model.jnt_range[hinge]).tolist()
+            joint.CreateLowerLimitAttr(low)
+            joint.CreateUpperLimitAttr(high)
         self._drive(joint.GetPrim(), name, hinge)
         return child
 
@@ -231,7 +240,7 @@ class _Writer:
         """Drive a joint by its servo, or by its spring; USD counts by the degree."""
         drive = self.pxr.UsdPhysics.DriveAPI.Apply(prim, "angular")
         drive.CreateTypeAttr("force")
-        if name in servo_names():
+        if name in layout(self.robot).servos:
             servo = servo_of(self.robot, name)
             stiffness, damping = servo.kp, servo.kd
             drive.CreateMaxForceAttr(servo.torque)

@@ -177,6 +177,8 @@
     return { ...actor, ...read, side: 0 };
   });
 
+  const limbs = 3 * meta.radii.length; // numbers for each frame
+
   function frame(actor, time) { // bones, feet, forces and centre of mass between two samples
     const f = Math.min(Math.max((time - meta.start) * meta.rate, 0), actor.frames - 1);
     const i = Math.min(Math.floor(f), Math.max(actor.frames - 2, 0)), s = actor.frames > 1 ? f - i : 0, n = skin.rest.length;
@@ -198,8 +200,8 @@
     const mix = (array, size, k, o) => (1 - s) * array[size * i + k] + s * array[size * j + k] + o;
     const three = (array, size, k, o = 0) => [mix(array, size, k, 0), mix(array, size, k + 1, o), mix(array, size, k + 2, 0)];
     return { turns, shifts, mass: three(actor.mass, 3, 0, actor.side),
-      feet: [0, 3, 6, 9].map((k) => three(actor.feet, 12, k, actor.side)),
-      forces: [0, 3, 6, 9].map((k) => three(actor.forces, 12, k)) };
+      feet: meta.radii.map((_, leg) => three(actor.feet, limbs, 3 * leg, actor.side)),
+      forces: meta.radii.map((_, leg) => three(actor.forces, limbs, 3 * leg)) };
   }
 
   // ---- shapes made anew ----------------------------------------------------------------------------------------
@@ -251,12 +253,12 @@
 
   function tracks(to, actor, faint) {
     const until = Math.min(Math.floor((state.time - meta.start) * meta.rate), actor.frames - 1), step = 2;
-    for (let leg = 0; leg < 4; leg++) {
+    for (let leg = 0; leg < meta.radii.length; leg++) {
       const colour = [...meta.colours.legs[leg], faint ? 0.35 : 0.85];
-      const at = (i) => { const k = 12 * i + 3 * leg;
+      const at = (i) => { const k = limbs * i + 3 * leg;
         return under([actor.feet[k], actor.feet[k + 1] + actor.side, actor.feet[k + 2]], meta.radii[leg], 0.0011); };
       for (let i = 0; i + step <= until; i += step) {
-        const stands = actor.forces[12 * i + 3 * leg + 2] > meta.loaded;
+        const stands = actor.forces[limbs * i + 3 * leg + 2] > meta.loaded;
         const a = at(i), b = at(i + step);
         if (!stands && rough) continue; // where the ground lies under a swinging foot is not recorded
         if (!stands) a[2] = b[2] = 0.0011;

@@ -1,0 +1,352 @@
+"""A central pattern generator: phase oscillators of axis and limbs that a single drive lets walk, then swim."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from math import radians
+from typing import NamedTuple
+
+import numpy as np
+from jaxtyping import Float
+
+from suchus.control.controller import Command
+from suchus.control.course import Course, Courses, members, mistake, number
+from suchus.control.limbs import LAWS, LimbLaw, Loads
+from suchus.control.oscillators import Oscillators, Rhythm, couple, cut
+from suchus.control.pattern_posture import PatternPosture, initial_phases, waves
+from suchus.control.pattern_rules import Rules
+from suchus.control.sensed import Sensed
+from suchus.control.spine import SpineRule
+from suchus.control.tail import TailRule
+from suchus.design import AnyRobot, layout
+from suchus.design.checks import Checks, require
+from suchus.design.scale import control_period
+from suchus.errors import InvalidDesign
+from suchus.motion import START, AnyGait, check_limits
+
+_SLACK = 1e-9  # [s]; times are multiples of the control period up to rounding
+_LEAST = 1e-9  # [-]; an amplitude below this is none
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PatternGenerator:
+    """Coupled phase oscillators, one for each limb and one for each side of each segment of the axis.
+
+    A low drive lets the limbs walk, and they draw the axis along into a standing wave; above ``limb_drives`` they fall
+    silent, and the axis is left to its own faster, travelling wave. Bends and foot paths are those of the run's gait,
+    whose period and bends are those at the drive in the middle of the limbs' range, 2. A limb follows its path in full
+    as long as it is active; as its amplitude dies it folds, or stands, or, a crank, stops. Angles of the axis are
+    clipped to the ranges of its servos. The oscillators rest until the walk begins; then the drive acts.
+
+    After Ijspeert, Crespi, Ryczko and Cabelguen 2007, Science 315, 1416; see ``Oscillators`` for the numbers.
+    """
+
+    drive: Course = 2.0
+    """Drive of all oscillators, 0 to 10 [-]."""
+    asymmetry: Course = 0.0
+    """Drive of the right side minus that of the left one, -4 to 4 [-]; with the published numbers it hardly turns."""
+    steering: Course = 0.0
+    """How far to turn, -1 to 1, to the left where positive [-]."""
+    steering_gain: float = radians(8)
+    """Steady bend of each joint ahead of the hindmost limbs at ``steering`` 1 [rad]; of all joints without limbs."""
+    lag: float | None = None
+    """Of each segment of the axis behind the one ahead of it [cycle]; None for one wave on the whole axis."""
+    gradient: tuple[tuple[float, float], ...] = ((0.0, 1.0), (1.0, 1.0))
+    """Place along the body, 0 at the snout and 1 at the tip of the tail, and factor on the bends there [-]."""
+    lesions: tuple[tuple[str, str], ...] = ()
+    """Couplings cut, in both directions: ``("axis_3", "axis_4")`` cuts the axis through; see ``oscillators.cut``."""
+    initial: str | tuple[float, ...] = "gait"
+    """Phases in which the oscillators begin.
+
+    ``gait``: those of the gait, or of the wave along the axis where the limbs are silent. ``random``: by the run's
+    seed. Or given, one for each oscillator: left side of the axis from the head, right side, limbs [cycle].
+    """
+    silent: str = "folded"
+    """What silent limbs do: ``folded`` back along the body, or ``standing`` in the middle of their path."""
+    pace: float | None = None
+    """How many times faster than published everything goes [-]; None: the gait's period at the drive in the middle."""
+    limbs: LimbLaw = LAWS["off"]
+    """Limb to limb: how loads and the trunk's torque slow the limbs' oscillators; ``LAWS["off"]`` for not at all."""
+    spine: SpineRule | None = None
+    """Spine to spine: what the trunk lacks of its commanded bend is shared out; None for none."""
+    tail: TailRule | None = None
+    """Tail to tail: the pitch of the tail gives way to the ground; None for none."""
+    oscillators: Oscillators = field(default_factory=Oscillators)
+    """The numbers of the oscillators."""
+
+    def __post_init__(self) -> None:
+        with Checks("pattern_generator", self) as check:
+            for name, low, high in (("drive", 0.0, 10.0), ("asymmetry", -4.0, 4.0), ("steering", -1.0, 1.0)):
+                wrong = mistake(getattr(self, name), low, high)
+                check.that(not wrong, f"pattern_generator.{name} {wrong}")
+            wrong = mistake(self.gradient, 0.0, 10.0)
+            check.that(not wrong, f"pattern_generator.gradient {wrong}")
+            check.number("steering_gain", 0.0, 1.0, "rad")
+            if self.lag is not None:
+                check.number("lag", -0.5, 0.5, "cycle")
+            if self.pace is not None:
+                check.number("pace", 1e-3, 1e3, "")
+            given = isinstance(self.initial, tuple) and all(number(one, -1e6, 1e6) for one in self.initial)
+            check.that(
+                given or self.initial in ("gait", "random"),
+                f"pattern_generator.initial is {str(self.initial)[:80]!r}; gait, random or a phase for each oscillator "
+                "is allowed",
+            )
+            check.that(
+                self.silent in ("folded", "standing"),
+                f"pattern_generator.silent is {str(self.silent)[:80]!r}; folded or standing is allowed",
+            )
+
+    @property
+    def feels(self) -> bool:
+        """Whether any feedback rule is on."""
+        return self.limbs.feels or self.spine is not None or self.tail is not None
+
+    def start(
+        self,
+        robots: Sequence[AnyRobot],
+        gaits: Sequence[AnyGait],
+        seeds: Sequence[int],
+        ticks: int,
+        period: float,
+    ) -> "Generator":
+        """Start it for a batch that shares it."""
+        return self.start_together([self] * len(robots), robots, gaits, seeds, ticks, period)
+
+    @staticmethod
+    def start_together(
+        controls: "Sequence[PatternGenerator]",
+        robots: Sequence[AnyRobot],
+        gaits: Sequence[AnyGait],
+        seeds: Sequence[int],
+        ticks: int,
+        period: float,
+    ) -> "Generator":
+        """Start it for a batch in which every run has its own."""
+        del ticks
+        return Generator(controls, robots, gaits, seeds, period)
+
+
+class Generator:
+    """The pattern generators of a batch."""
+
+    def __init__(
+        self,
+        controls: Sequence[PatternGenerator],
+        robots: Sequence[AnyRobot],
+        gaits: Sequence[AnyGait],
+        seeds: Sequence[int],
+        period: float,
+    ) -> None:
+        self._period = period
+        self._groups = _grouped(controls, robots, gaits)
+        self._posture = [one for i in range(len(controls)) for one, runs in self._groups if i in runs]
+        limbs = layout(robots[0]).limb_names
+        self._limbs = slice(2 * len(self._posture[0].segments), None)
+        n = self._limbs.start // 2
+        self._sides = np.array([-0.5] * n + [0.5] * n + [-0.5, 0.5] * (len(limbs) // 2))
+        self._numbers = members([control.oscillators for control in controls])
+        self._drive, self._asymmetry, self._steering = (
+            Courses([getattr(control, name) for control in controls]) for name in ("drive", "asymmetry", "steering")
+        )
+        self._shift = np.array([one.shift for one in self._posture])[:, None]
+        self._gradient = np.array([_graded(*pair) for pair in zip(controls, self._posture, strict=True)])
+        gains = zip(controls, self._posture, strict=True)
+        self._gain = np.array([[c.steering_gain * one.steers for one in p.segments] for c, p in gains])
+        self._full = [max(float(c.oscillators.axis(np.array(c.oscillators.reference))[1]), _LEAST) for c in controls]
+        self._least = np.array([max(_least(c.oscillators), _LEAST) for c in controls])[:, None]
+        self.couplings = []
+        """Of each run; see ``oscillators.Couplings``."""
+        phases = []
+        _, amplitude = self._own(START)
+        for i, (control, robot, gait, seed) in enumerate(zip(controls, robots, gaits, seeds, strict=True)):
+            parts = [one.part for one in self._posture[i].segments]
+            lag = 1.0 / n if control.lag is None else control.lag
+            whole = couple(control.oscillators, parts, limbs, gait.limb_phases, lag)
+            self.couplings.append(cut(whole, control.lesions))
+            driven = bool(amplitude[i, self._limbs].any())
+            phases.append(_initial(control, robot, gait, seed, self._posture[i], lag, driven=driven))
+        pace = np.array([_pace(*one) for one in zip(controls, robots, gaits, strict=True)])
+        self._rhythm = Rhythm(
+            self.couplings, [one.oscillators for one in controls], pace, np.array(phases), amplitude, period
+        )
+        self._loads = Loads([one.limbs for one in controls], robots, gaits, period)
+        self._rules = Rules([one.spine for one in controls], [one.tail for one in controls], robots, gaits, period)
+
+    @property
+    def phase(self) -> Float[np.ndarray, "run oscillator"]:
+        """Phases of the oscillators, not wrapped [cycle]."""
+        return self._rhythm.phase / (2 * np.pi)
+
+    @property
+    def amplitude(self) -> Float[np.ndarray, "run oscillator"]:
+        """Amplitudes of the oscillators [-]."""
+        return self._rhythm.amplitude
+
+    @property
+    def limb_phase(self) -> Float[np.ndarray, "run limb"]:
+        """Phases of the limbs in their gait, not wrapped [cycle]."""
+        return np.asarray(self.phase[:, self._limbs] + self._shift)
+
+    @property
+    def wave(self) -> Float[np.ndarray, "run segment"]:
+        """How far each segment of the axis bends to the left, in amplitudes of the gait [-]."""
+        out = self.amplitude * (1.0 + np.cos(self._rhythm.phase))
+        n = self._limbs.start // 2
+        return waves(out[:, :n], out[:, n : 2 * n], self._full) * self._gradient
+
+    def rest(self) -> Float[np.ndarray, "run servo"]:
+        """The posture of the first phases."""
+        return self._targets(0.0)
+
+    def advance(self, tick: int) -> None:
+        """Let the oscillators turn from the last control period to this one, if the walk has begun by then."""
+        before = (tick - 1) * self._period
+        if before >= START - _SLACK:
+            frequency, amplitude = self._own(before)
+            if self._loads.felt:
+                frequency[:, self._limbs] *= 1.0 - self._loads.brake(self.limb_phase)
+            self._rhythm.advance(frequency, amplitude)
+
+    def command(self, tick: int, sensed: Sensed | None) -> Command:
+        """Let the oscillators turn, and say what the servos do."""
+        if sensed is not None and self._loads.felt:
+            self._loads.feel(sensed)
+        self.advance(tick)
+        targets = self._targets(tick * self._period)
+        if sensed is not None and tick * self._period >= START - _SLACK:
+            targets = self._rules.correct(targets, sensed)
+        return Command(targets, self.limb_phase)
+
+    def _own(self, time: float) -> tuple[np.ndarray, np.ndarray]:
+        """Return own frequencies [Hz] and amplitudes [-] of all oscillators at a time."""
+        drive = self._drive.at(time)[:, None] + self._asymmetry.at(time)[:, None] * self._sides
+        frequency, amplitude = np.empty_like(drive), np.empty_like(drive)
+        axis = slice(0, self._limbs.start)
+        for numbers, runs in self._numbers:
+            for part, law in ((axis, numbers.axis), (self._limbs, numbers.limbs)):
+                frequency[runs, part], amplitude[runs, part] = law(drive[runs, part])
+        return frequency, amplitude
+
+    def _targets(self, time: float) -> Float[np.ndarray, "run servo"]:
+        share = np.clip(self.amplitude[:, self._limbs] / self._least, 0.0, 1.0)
+        wave, phase = self.wave, self.limb_phase
+        offset = self._steering.at(time)[:, None] * self._gain
+        found = [(runs, one.targets(phase[runs], share[runs], wave[runs], offset[runs])) for one, runs in self._groups]
+        targets = np.empty((len(phase), found[0][1].shape[1]))
+        for runs, some in found:
+            targets[runs] = some
+        return targets
+
+
+def _grouped(
+    controls: Sequence[PatternGenerator], robots: Sequence[AnyRobot], gaits: Sequence[AnyGait]
+) -> list[tuple[PatternPosture, np.ndarray]]:
+    for robot, gait in set(zip(robots, gaits, strict=True)):
+        check_limits(robot, gait)
+    keys = list(zip(robots, gaits, (one.silent == "standing" for one in controls), strict=True))
+    return [(PatternPosture(robot, gait, standing=standing), runs) for (robot, gait, standing), runs in members(keys)]
+
+
+def _graded(control: PatternGenerator, posture: PatternPosture) -> list[float]:
+    places, factors = zip(*control.gradient, strict=True)
+    return [float(np.interp(one.place, places, factors)) for one in posture.segments]
+
+
+def _least(numbers: Oscillators) -> float:
+    """Return the amplitude of limbs at the lowest drive that moves them [-]."""
+    return float(numbers.limbs(np.array(numbers.limb_drives[0]))[1])
+
+
+def _pace(control: PatternGenerator, robot: AnyRobot, gait: AnyGait) -> float:
+    if control.pace is not None:
+        return control.pace
+    numbers = control.oscillators
+    law = numbers.limbs if layout(robot).limbs else numbers.axis
+    frequency = float(law(np.array(numbers.reference))[0])
+    if frequency <= 0.0:
+        raise InvalidDesign(
+            f"the oscillators do not turn at drive {numbers.reference:g}, so that no pace gives the period of gait "
+            f"{gait.name!r}: set pattern_generator.pace."
+        )
+    return 1.0 / (gait.period * frequency)
+
+
+def _initial(
+    control: PatternGenerator,
+    robot: AnyRobot,
+    gait: AnyGait,
+    seed: int,
+    posture: PatternPosture,
+    lag: float,
+    *,
+    driven: bool,
+) -> np.ndarray:
+    count = 2 * len(posture.segments) + len(gait.limb_phases)
+    if control.initial == "random":
+        return 2 * np.pi * np.random.default_rng([seed, 2]).random(count)
+    if isinstance(control.initial, tuple):
+        if len(control.initial) != count:
+            raise InvalidDesign(
+                f"pattern_generator.initial has {len(control.initial)} phases; robot {robot.name!r} has {count} "
+                f"oscillators, {len(posture.segments)} on each side of its axis and one for each limb: give as many."
+            )
+        return 2 * np.pi * np.array(control.initial, dtype=float)
+    limbs = [phase - posture.shift for phase in gait.limb_phases]
+    return initial_phases(posture.segments, limbs, lag, driven=driven)
+
+
+class Oscillation(NamedTuple):
+    """What oscillators do without a body."""
+
+    time: Float[np.ndarray, " time"]
+    """Since the beginning of the run [s]."""
+    phase: Float[np.ndarray, "run time oscillator"]
+    """Of the oscillators, not wrapped [cycle]."""
+    amplitude: Float[np.ndarray, "run time oscillator"]
+    """Of the oscillators [-]."""
+    wave: Float[np.ndarray, "run time segment"]
+    """How far each segment of the axis bends to the left, in amplitudes of the gait [-]."""
+    names: tuple[str, ...]
+    """Of the oscillators."""
+
+
+def oscillate(
+    controls: Sequence[PatternGenerator],
+    robot: AnyRobot,
+    gait: AnyGait,
+    *,
+    duration: float,
+    seeds: Sequence[int] | None = None,
+    every: int = 1,
+    progress: Callable[[float], None] | None = None,
+) -> Oscillation:
+    """Let pattern generators turn without a body, from the time at which a walk begins.
+
+    Args:
+        controls: of the runs.
+        robot: whose oscillators they are.
+        gait: which they drive.
+        duration: of the oscillation [s].
+        seeds: one for each run; all 0 if None.
+        every: keep one sample of so many control periods.
+        progress: called with the share that is done.
+    """
+    require("oscillate", "duration", duration, 0.0, 86400.0, "s")
+    period, runs = control_period(robot), len(controls)
+    first, ticks = round(START / period), round(duration / period)
+    generator = Generator(controls, [robot] * runs, [gait] * runs, [0] * runs if seeds is None else seeds, period)
+    found = []
+    for tick in range(first, first + ticks + 1):
+        generator.advance(tick)
+        if (tick - first) % every == 0:
+            found.append((tick * period, generator.phase, generator.amplitude, generator.wave))
+            if progress is not None:
+                progress((tick - first) / max(ticks, 1))
+    time, phase, amplitude, wave = zip(*found, strict=True)
+    return Oscillation(
+        time=np.array(time),
+        phase=np.stack(phase, axis=1),
+        amplitude=np.stack(amplitude, axis=1),
+        wave=np.stack(wave, axis=1),
+        names=generator.couplings[0].names,
+    )

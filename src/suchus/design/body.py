@@ -1,0 +1,206 @@
+"""Any robot: an axis, girdles with limbs, what drives them, and how it meets the ground."""
+
+from collections import Counter
+from dataclasses import dataclass
+from itertools import pairwise
+
+from suchus.design.checks import Checks
+from suchus.design.contact import Contact
+from suchus.design.hinge import Cable, Hinge
+from suchus.design.limb import Girdle
+from suchus.design.segment import Segment
+from suchus.design.servo import Servo
+
+TRUNK_YAW = "spine_yaw_"
+"""How the names begin of the yaw hinges between the root and the foremost girdle, and of no others."""
+MOST_SERVOS = 31
+"""Servos at most [-]: MuJoCo can switch off so many one by one."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Robot:
+    """Any robot with an axis, as data.
+
+    World: x forward, y left, z up. At zero posture all frames are parallel and every limb points where its links say.
+    """
+
+    name: str
+    """How it is called."""
+    root: str
+    """The segment that carries the free joint: that of the hindmost girdle, or any one of a body without limbs."""
+    axis: tuple[Segment, ...]
+    """From the snout to the tip of the tail."""
+    girdles: tuple[Girdle, ...]
+    """From the front to the hind one."""
+    cables: tuple[Cable, ...]
+    """Cables, each over hinges with springs that follow each other."""
+    contact: Contact
+    """How its surfaces meet the ground."""
+
+    def __post_init__(self) -> None:
+        with Checks("robot", self) as check:
+            _check_names(self, check)
+        with Checks("robot", self) as check:
+            _check_axis(self, check)
+            _check_limbs(self, check)
+            _check_drives(self, check)
+
+    @property
+    def mass(self) -> float:
+        """Of the whole robot [kg]."""
+        axis = sum(shape.mass for segment in self.axis for shape in segment.shapes)
+        return axis + 2 * sum(girdle.limb.mass for girdle in self.girdles)
+
+    @property
+    def length(self) -> float:
+        """From the tip of the snout to the tip of the tail when straight [m]."""
+        return sum(segment.front + segment.rear for segment in self.axis)
+
+    @property
+    def axis_hinges(self) -> tuple[Hinge, ...]:
+        """Of the axis, from head to tail."""
+        return tuple(hinge for segment in self.axis for hinge in segment.hinges)
+
+    @property
+    def root_place(self) -> int:
+        """Where the root stands in the axis [-]."""
+        return [segment.name for segment in self.axis].index(self.root)
+
+    def servo(self, name: str) -> Servo:
+        """Return the servo that carries a name of ``design.servo_names(robot)``."""
+        return servos_of(self)[name]
+
+
+def servos_of(robot: Robot) -> dict[str, Servo]:
+    """Return every servo by name, those of limbs first."""
+    found = {}
+    for girdle in robot.girdles:
+        for side in "LR":
+            for hinge in girdle.limb.hinges:
+                if hinge.servo is not None:
+                    found[f"{side}{girdle.name}_{hinge.name}"] = hinge.servo
+    found |= {hinge.name: hinge.servo for hinge in robot.axis_hinges if hinge.servo is not None}
+    return found | {cable.name: cable.servo for cable in robot.cables}
+
+
+def _check_names(robot: Robot, check: Checks) -> None:
+    check.that(len(robot.axis) > 0, "the axis has no segment; give it one")
+    names = [segment.name for segment in robot.axis]
+    check.that(robot.root in names, f"root is {robot.root!r}, no segment of the axis; there is {', '.join(names)}")
+    for girdle in robot.girdles:
+        check.that(
+            girdle.segment in names,
+            f"girdle {girdle.name} sits on {girdle.segment!r}, no segment of the axis; there is {', '.join(names)}",
+        )
+    limbs = [f"{side}{girdle.name}" for girdle in robot.girdles for side in "LR"]
+    bodies = [
+        f"{limb}_{link.name}" for g in robot.girdles for limb in (f"L{g.name}", f"R{g.name}") for link in g.limb.links
+    ]
+    hinges = [hinge.name for hinge in robot.axis_hinges] + [cable.name for cable in robot.cables]
+    shapes = [shape.name for segment in robot.axis for shape in segment.shapes]
+    for what, those in (
+        ("segments or links", [*names, *bodies]),
+        ("limbs", limbs),
+        ("hinges or cables", hinges),
+        ("shapes", shapes),
+    ):
+        twice = [name for name, count in Counter(those).items() if count > 1]
+        check.that(not twice, f"several {what} are called {', '.join(twice)}; each needs a name of its own")
+
+
+def _check_axis(robot: Robot, check: Checks) -> None:
+    last = robot.axis[-1]
+    check.that(not last.hinges, f"segment {last.name} is the last one, so that its hinges join nothing; remove them")
+    place = {segment.name: i for i, segment in enumerate(robot.axis)}
+    root = robot.root_place
+    order = [(place[girdle.segment], -girdle.at) for girdle in robot.girdles]
+    check.that(order == sorted(order), "the girdles must be listed from the front to the hind one")
+    if robot.girdles:
+        hindmost = robot.girdles[-1].segment
+        check.that(
+            robot.root == hindmost,
+            f"root is {robot.root!r}; a body with limbs has its root in the hindmost girdle's segment, {hindmost!r}",
+        )
+        front = place[robot.girdles[0].segment]
+        yaws = {h.name for s in robot.axis[front:root] for h in s.hinges if h.turn == "yaw"}
+    else:
+        yaws = {h.name for s in robot.axis[:root] for h in s.hinges if h.turn == "yaw"}
+    named = {hinge.name for hinge in robot.axis_hinges if hinge.name.startswith(TRUNK_YAW)}
+    check.that(
+        yaws == named,
+        f"the yaw hinges between root and foremost girdle are {', '.join(sorted(yaws)) or 'none'}, those whose names "
+        f"begin with {TRUNK_YAW} {', '.join(sorted(named)) or 'none'}: name these hinges so, and no others",
+    )
+
+
+def _check_limbs(robot: Robot, check: Checks) -> None:
+    segments = {segment.name: segment for segment in robot.axis}
+    for girdle in robot.girdles:
+        segment = segments[girdle.segment]
+        check.that(
+            -segment.rear - 1e-9 <= girdle.at <= segment.front + 1e-9,
+            f"girdle {girdle.name} sits {girdle.at:g} m along segment {segment.name}, which reaches from "
+            f"{-segment.rear:g} to {segment.front:g} m: the parts do not join; move it there",
+        )
+        depth = girdle.limb.reach + girdle.limb.foot.radius
+        belly = max(shape.bottom for one in robot.axis for shape in one.shapes) + girdle.above
+        check.that(
+            depth > belly,
+            f"limb {girdle.name} reaches {depth:.3g} m below its hip but the belly hangs {belly:.3g} m below it: the "
+            "foot cannot reach the ground; lengthen its links",
+        )
+
+
+def _check_drives(robot: Robot, check: Checks) -> None:
+    order = [hinge.name for hinge in robot.axis_hinges]
+    by_name = {hinge.name: hinge for hinge in robot.axis_hinges}
+    taken: dict[str, str] = {}
+    for cable in robot.cables:
+        unknown = [name for name in cable.hinges if name not in by_name]
+        check.that(not unknown, f"cable {cable.name} bends {', '.join(unknown)}, no hinge of the axis")
+        if unknown:
+            continue
+        places = [order.index(name) for name in cable.hinges]
+        follow = all(abs(b - a) == 1 and b - a == places[1] - places[0] for a, b in pairwise(places))
+        alike = len({by_name[name].turn for name in cable.hinges}) == 1
+        check.that(
+            follow and alike,
+            f"cable {cable.name} bends {', '.join(cable.hinges)}, which do not follow each other along the axis as "
+            "hinges of one turn; name neighbours",
+        )
+        for name in cable.hinges:
+            second = taken.get(name) or ("a servo of its own" if by_name[name].servo is not None else "")
+            check.that(
+                not second, f"hinge {name} has two drives, cable {cable.name} and {second}; take one of them away"
+            )
+            taken[name] = f"cable {cable.name}"
+    servos = servos_of(robot)
+    check.that(
+        1 <= len(servos) <= MOST_SERVOS,
+        f"robot {robot.name} has {len(servos)} servos; 1 to {MOST_SERVOS} are allowed",
+    )
+    check_scale(check, robot.name, servos, robot.mass, robot.length)
+
+
+def check_scale(check: Checks, robot: str, servos: dict[str, Servo], mass: float, length: float) -> None:
+    """Refuse servos whose numbers belong to a body of another size.
+
+    The rotor's inertia must be a small part of the body's, or the body moves as its motors and not as its mass.
+
+    Args:
+        check: collects what is wrong.
+        robot: its name.
+        servos: by name.
+        mass: of the robot [kg].
+        length: of the robot [m].
+    """
+    for name, servo in servos.items():
+        share = servo.armature / (mass * length**2)
+        check.that(
+            share <= 0.1,
+            f"servo {name} of {robot} has an armature of {servo.armature:.3g} kg m2, {share:.3g} of mass times length "
+            f"squared ({mass:.3g} kg, {length:.3g} m), where up to 0.1 makes sense: it belongs to a larger robot; "
+            "see suchus.design.scaled",
+        )
+        if share > 0.1:
+            break

@@ -1,0 +1,176 @@
+"""One set of numbers for every size: what follows from a body's mass and length alone.
+
+With the mass M, the length L and the time T = sqrt(L / g), everything that is neither an angle nor a share scales; the
+coefficients are those of the article's robot. A salamander of 3 g and a body of 60 kg then walk alike.
+"""
+
+import re
+from dataclasses import fields, is_dataclass, replace
+from math import floor, log10, sqrt
+from typing import Any, TypeVar
+
+from suchus.design.checks import require
+from suchus.design.contact import Contact
+from suchus.design.general import AnyRobot
+from suchus.design.hinge import Spring
+from suchus.design.meaning import meanings, unit
+from suchus.design.physics import GRAVITY
+from suchus.design.servo import Servo
+from suchus.errors import InvalidDesign
+
+T = TypeVar("T")
+PERIODS = 20.0
+"""The control period is at most this part of the gravity time; a tenth already jerks the feet loose [-]."""
+PHYSICS_STEPS = 5
+"""Physics steps in a control period [-]; the physics step is then a hundredth to a 250th of the gravity time."""
+COARSEST = 20.0
+"""A physics step above this part of the gravity time is refused: a tenth loses a fifth of the stride [-]."""
+_POWERS = {"kg": (1, 0, 0), "m": (0, 1, 0), "s": (0, 0, 1), "N": (1, 1, -2), "rad": (0, 0, 0)}
+_UNIT = re.compile(r"^(kg|rad|N|m|s)(\d*)$")
+
+
+def gravity_time(length: float) -> float:
+    """Return the time that gravity needs for a body of a length, sqrt(L / g) [s]."""
+    return sqrt(length / GRAVITY)
+
+
+def control_period(robot: AnyRobot) -> float:
+    """Return the control period of a robot: the greatest of 1, 2, 5 times a power of ten below T / 20 [s].
+
+    It is 10 ms for bodies of 0.4 to 1.6 m.
+    """
+    most = gravity_time(robot.length) / PERIODS
+    power = floor(log10(most))
+    digit = max(one for one in (1, 2, 5) if one * 10.0**power <= most)
+    return round(digit * 10.0**power, 12)
+
+
+def physics_step(robot: AnyRobot) -> float:
+    """Return the time step of the physics of a robot, a fifth of its control period [s]."""
+    return control_period(robot) / PHYSICS_STEPS
+
+
+def check_step(robot: AnyRobot, timestep: float) -> None:
+    """Refuse a time step of the physics that is too long for a robot of its size.
+
+    Raises:
+        InvalidDesign: it is above a twentieth of the gravity time.
+    """
+    most = gravity_time(robot.length) / COARSEST
+    if timestep > most:
+        raise InvalidDesign(
+            f"simulate.timestep is {timestep:g} s; robot {robot.name!r} is {robot.length:.3g} m long and needs at most "
+            f"{most:.2g} s, a twentieth of sqrt(length / g): take {physics_step(robot):g} s, its own."
+        )
+
+
+def servo_for(mass: float, length: float) -> Servo:
+    """Return the servo that suits a body of a size, like those of the article's robot.
+
+    Args:
+        mass: of the whole body [kg].
+        length: of the whole body [m].
+    """
+    require("servo_for", "mass", mass, 1e-6, 1e5, "kg")
+    require("servo_for", "length", length, 1e-3, 100.0, "m")
+    torque, time = mass * GRAVITY * length, gravity_time(length)
+    return Servo(
+        kp=1.17 * torque,
+        ki=0.0,
+        kd=0.055 * torque * time,
+        integral_limit=0.0,
+        torque=0.0875 * torque,
+        speed=2.24 / time,
+        armature=1.4e-3 * mass * length**2,
+        friction=8e-4 * torque,
+        damping=0.0046 * torque * time,
+    )
+
+
+def spring_for(mass: float, length: float, share: float) -> Spring:
+    """Return a passive joint that suits a body of a size.
+
+    Args:
+        mass: of the whole body [kg].
+        length: of the whole body [m].
+        share: the mass of the segment over that of the heaviest one [-].
+    """
+    torque = mass * GRAVITY * length
+    return Spring(
+        stiffness=0.2 * torque * share,
+        damping=0.02 * torque * gravity_time(length) * share,
+        armature=2.8e-5 * mass * length**2,
+    )
+
+
+def contact_for(length: float, *, foot_friction: float, skin_friction: float) -> Contact:
+    """Return how a body of a size meets the ground.
+
+    Args:
+        length: of the body [m].
+        foot_friction: of the feet [-].
+        skin_friction: of the skin [-].
+    """
+    return Contact(
+        foot_friction=foot_friction,
+        skin_friction=skin_friction,
+        time_constant=gravity_time(length) / 16,
+        torsion=5e-3 * length,
+        rolling=1e-4 * length,
+        depth=1e-3 * length,
+    )
+
+
+def scaled(design: T, *, length: float, mass: float | None = None) -> T:
+    """Return a robot, a gait or a part in another size: every number by the power of its unit, gravity as it is.
+
+    Times go with the square root of the length. A robot of the article's tables keeps a few millimetres of its shells
+    as they are; scale ``general(robot)`` for a body that is alike in everything.
+
+    Args:
+        design: a frozen value whose docstrings name the units.
+        length: factor on lengths [-].
+        mass: factor on masses [-]; the cube of ``length`` if None.
+
+    Raises:
+        InvalidDesign: a factor is not positive, or the scaled value cannot be.
+    """
+    require("scaled", "length", length, 1e-4, 1e4, "")
+    heavier = length**3 if mass is None else mass
+    require("scaled", "mass", heavier, 1e-12, 1e12, "")
+    return _scaled(design, (heavier, length, sqrt(length)))
+
+
+def _scaled(design: Any, factors: tuple[float, float, float]) -> Any:
+    if isinstance(design, tuple):
+        return tuple(_scaled(item, factors) for item in design)
+    if not is_dataclass(design):
+        return design
+    told = meanings(type(design))
+    changed = {}
+    for field in fields(design):
+        value = getattr(design, field.name)
+        if is_dataclass(value) or (isinstance(value, tuple) and value and is_dataclass(value[0])):
+            changed[field.name] = _scaled(value, factors)
+        elif isinstance(value, float) or _numbers(value):
+            factor = _factor(unit(told.get(field.name, "")), factors)
+            if factor != 1.0:
+                changed[field.name] = tuple(factor * one for one in value) if _numbers(value) else factor * value
+    return replace(design, **changed)  # type: ignore[type-var]
+
+
+def _numbers(value: Any) -> bool:
+    return isinstance(value, tuple) and bool(value) and all(isinstance(one, (int, float)) for one in value)
+
+
+def _factor(name: str, factors: tuple[float, float, float]) -> float:
+    """Return the factor on numbers of a unit as docstrings write it, ``N m s/rad`` or ``kg m2``; 1 for one unknown."""
+    factor = 1.0
+    above, _, below = name.partition("/")
+    for part, sign in ((above, 1), (below.strip("()"), -1)):
+        for word in part.split():
+            found = _UNIT.match(word)
+            if found:
+                for one, power in zip(factors, _POWERS[found[1]], strict=True):
+                    factor *= one ** (sign * power * int(found[2] or 1))
+    return factor

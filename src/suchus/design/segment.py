@@ -1,0 +1,121 @@
+"""The axis of a body: segments from the snout to the tip of the tail."""
+
+from dataclasses import dataclass
+
+from suchus.design.checks import Checks
+from suchus.design.hinge import Hinge
+
+Point = tuple[float, float, float]
+"""Forward, left, up [m]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Rod:
+    """A rod with round ends."""
+
+    name: str
+    """Unique in the robot."""
+    start: Point
+    """Middle of one end: forward, left, up in the frame of its segment [m]."""
+    end: Point
+    """Middle of the other end [m]."""
+    radius: float
+    """[m]."""
+    mass: float
+    """[kg]."""
+
+    def __post_init__(self) -> None:
+        with Checks(f"rod {self.name}", self) as check:
+            check.number("radius", 1e-5, 10.0, "m")
+            check.number("mass", 1e-8, 1e5, "kg")
+            check.that(self.start != self.end, f"rod {self.name} begins where it ends; give it a length")
+
+    @property
+    def centre(self) -> Point:
+        """Centre of mass in the frame of its segment [m]."""
+        a, b = self.start, self.end
+        return (a[0] + b[0]) / 2, (a[1] + b[1]) / 2, (a[2] + b[2]) / 2
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """Hindmost and foremost place along the segment [m]."""
+        return min(self.start[0], self.end[0]) - self.radius, max(self.start[0], self.end[0]) + self.radius
+
+    @property
+    def bottom(self) -> float:
+        """How far it reaches below the axis [m]."""
+        return self.radius - min(self.start[2], self.end[2])
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Shell:
+    """An ellipsoid."""
+
+    name: str
+    """Unique in the robot."""
+    at: Point
+    """Its centre: forward, left, up in the frame of its segment [m]."""
+    half: Point
+    """Half of its length, width and height [m]."""
+    mass: float
+    """[kg]."""
+
+    def __post_init__(self) -> None:
+        with Checks(f"shell {self.name}", self) as check:
+            check.each("half", ("length", "width", "height"), 1e-5, 10.0, "m")
+            check.number("mass", 1e-8, 1e5, "kg")
+
+    @property
+    def centre(self) -> Point:
+        """Centre of mass in the frame of its segment [m]."""
+        return self.at
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """Hindmost and foremost place along the segment [m]."""
+        return self.at[0] - self.half[0], self.at[0] + self.half[0]
+
+    @property
+    def bottom(self) -> float:
+        """How far it reaches below the axis [m]."""
+        return self.half[2] - self.at[2]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Segment:
+    """A stiff piece of the axis: x forward, y left, z up, the origin anywhere on the axis.
+
+    Its front joint or tip lies ``front`` ahead of the origin, its rear joint or tip ``rear`` behind it.
+    """
+
+    name: str
+    """Unique in the robot."""
+    front: float
+    """From the origin forward to the joint with the segment ahead, or to the tip [m]."""
+    rear: float
+    """From the origin back to the joint with the segment behind, or to the tip [m]."""
+    shapes: tuple[Rod | Shell, ...]
+    """What it is made of; the masses are theirs."""
+    hinges: tuple[Hinge, ...] = ()
+    """Up to three hinges in its rear joint, in the order in which they turn what is farther from the root."""
+
+    def __post_init__(self) -> None:
+        with Checks(f"segment {self.name}", self) as check:
+            check.number("front", -10.0, 100.0, "m")
+            check.number("rear", -10.0, 100.0, "m")
+            check.that(
+                self.front + self.rear > 1e-6,
+                f"segment {self.name} is {self.front + self.rear:g} m long; its front must lie ahead of its rear",
+            )
+            check.that(
+                len(self.hinges) <= 3,
+                f"segment {self.name} has {len(self.hinges)} hinges at its rear; up to 3 are allowed",
+            )
+            check.that(bool(self.shapes), f"segment {self.name} has no shape, so no mass; give it a rod or a shell")
+            for shape in self.shapes:
+                low, high = shape.span
+                check.that(
+                    low <= self.front and high >= -self.rear,
+                    f"{shape.name} lies {low:g} to {high:g} m along segment {self.name}, which reaches from "
+                    f"{-self.rear:g} to {self.front:g} m: the parts do not join; move it there",
+                )

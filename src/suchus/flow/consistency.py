@@ -1,0 +1,80 @@
+"""Whether a motion's velocity is the rate of its position. The wall moves with the one and stands at the other."""
+
+from dataclasses import dataclass
+from math import hypot
+
+import numpy as np
+
+from suchus.errors import InvalidDesign
+from suchus.flow.pose import Motion
+
+SHARE = 0.1
+"""Difference of the two, over the larger one, from which they disagree [-]."""
+
+QUIET = 0.05
+"""Speed, over the fastest so far, below which differences count relative to that [-]."""
+
+NOTHING = 1e-5
+"""Distance by which the two may part in a step without further question [cells]."""
+
+PATIENCE = 3
+"""Times in a row that they must disagree: at a kink of the motion they do so once [-]."""
+
+_LOOK = 0.01  # share of a step over which positions are compared
+
+
+@dataclass(slots=True)
+class Consistency:
+    """A motion under watch."""
+
+    name: str
+    """Name of the body."""
+    motion: Motion
+    """What is watched."""
+    reach: float
+    """Distance of the body's surface from the origin of its frame [m]."""
+    cell: float
+    """Side of a cell [m]."""
+    top: float = 0.0
+    """Fastest speed so far, of either kind [m/s]."""
+    strikes: int = 0
+    """Times in a row that velocity and positions disagreed [-]."""
+
+    def start(self, time: float, dt: float) -> None:
+        """Look at the first step, of about ``dt`` [s].
+
+        Raises:
+            InvalidDesign: they disagree, with both numbers.
+        """
+        for k in reversed(range(PATIENCE)):  # the message then tells of the start
+            self.look(time + k * dt / PATIENCE, dt)
+        self.strikes = 0
+
+    def look(self, time: float, dt: float) -> None:
+        """Compare velocity and positions at a time [s] in steps of ``dt`` [s].
+
+        Raises:
+            InvalidDesign: they disagree for the third time in a row, with both numbers.
+        """
+        span = _LOOK * dt
+        now, soon, then = (self.motion(time + k * span) for k in range(3))
+        places = [np.array([*p.position, p.angle]) for p in (now, soon, then)]
+        told, seen = np.array([*now.velocity, now.spin]), (4 * places[1] - 3 * places[0] - places[2]) / (2 * span)
+        size, moved, off = (self._speed(rate) for rate in (told, seen, told - seen))
+        self.top = max(self.top, size, moved)
+        if not (off > SHARE * max(size, moved, QUIET * self.top) and off * dt > NOTHING * self.cell):
+            self.strikes = 0
+            return
+        self.strikes += 1
+        if self.strikes < PATIENCE:
+            return
+        turning = abs(told[2] - seen[2]) * self.reach > hypot(*(told - seen)[:2])
+        what, of = ("spin", "angle") if turning else ("velocity", "position")
+        numbers = "{2:.4g} rad/s" if turning else "({0:.4g}, {1:.4g}) m/s"
+        raise InvalidDesign(
+            f"at t = {time:.4g} s the motion of {self.name} gives the {what} {numbers.format(*told)}, and its "
+            f"{of} changes by {numbers.format(*seen)}; give a Pose whose {what} is the rate of its {of}."
+        )
+
+    def _speed(self, rate: np.ndarray) -> float:
+        return max(hypot(rate[0], rate[1]), abs(rate[2]) * self.reach)

@@ -1,0 +1,289 @@
+# ruff: noqa: ARG002 - rigid and bending shapes share one interface, rigid ones ignore the time
+"""Rigid shapes of any outline: polygons, and whatever a signed distance says."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from suchus.errors import InvalidDesign, UnreadableFile
+from suchus.flow.shape import Solid, positive
+
+_STEPS = 200  # steps over a body's size in which the outline of a distance is walked along
+_BETWEEN = 8  # points that are then put in each step
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Polygon(Solid):
+    """A polygon whose edges do not cross.
+
+    Raises:
+        InvalidDesign: on creation, for fewer than three corners, corners that are not finite, or crossing edges.
+    """
+
+    corners: np.ndarray
+    """Corners in order around it, either way, the first not repeated, shape (corner, 2) [m]."""
+
+    def __post_init__(self) -> None:
+        corners = np.array(self.corners, dtype=np.float64)
+        if corners.ndim != 2 or corners.shape[1] != 2 or not np.isfinite(corners).all():
+            raise InvalidDesign(f"the corners have shape {corners.shape}; give rows of two finite numbers, x and y.")
+        corners = corners[(corners != np.roll(corners, -1, axis=0)).any(axis=1)]
+        if len(corners) < 3:
+            raise InvalidDesign(f"the outline has {len(corners)} different corners; at least 3 are needed.")
+        crossing = _crossing(corners)
+        if crossing is not None:
+            raise InvalidDesign(
+                f"the outline crosses itself: edge {crossing[0]} from {corners[crossing[0]].tolist()} m and edge "
+                f"{crossing[1]} from {corners[crossing[1]].tolist()} m; give the corners in order around the body."
+            )
+        object.__setattr__(self, "corners", corners if _area(corners) > 0 else corners[::-1].copy())
+
+    def distance(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return signed distance and outward normal."""
+        points = np.stack([np.ravel(x), np.ravel(y)], axis=1)
+        starts, ends = self.corners, np.roll(self.corners, -1, axis=0)
+        nearest, foot = np.full(len(points), np.inf), np.zeros_like(points)
+        outward, inside = np.zeros_like(points), np.zeros(len(points), bool)
+        for a, b in zip(starts, ends, strict=True):
+            along, away = b - a, points - a
+            share = np.clip(away @ along / (along @ along), 0.0, 1.0)
+            at = a + share[:, None] * along
+            gap = np.hypot(*(points - at).T)
+            closer = gap < nearest
+            nearest[closer], foot[closer] = gap[closer], at[closer]
+            outward[closer] = np.array([along[1], -along[0]]) / np.hypot(*along)
+            spans = (a[1] <= points[:, 1]) != (b[1] <= points[:, 1])
+            if along[1]:
+                inside ^= spans & (points[:, 0] < a[0] + (points[:, 1] - a[1]) / along[1] * along[0])
+        sign = np.where(inside, -1.0, 1.0)
+        far = nearest > 1e-9 * float(np.ptp(self.corners))
+        outward[far] = (sign[far] / nearest[far])[:, None] * (points - foot)[far]
+        shape = np.shape(x)
+        return (sign * nearest).reshape(shape), outward[:, 0].reshape(shape), outward[:, 1].reshape(shape)
+
+    def outline(self, count: int) -> tuple[np.ndarray, np.ndarray]:
+        """Return the corners, and points between them about evenly spaced."""
+        edges = np.roll(self.corners, -1, axis=0) - self.corners
+        length = np.hypot(*edges.T)
+        parts = np.maximum(1, np.round(count * length / length.sum())).astype(int)
+        share = np.concatenate([np.arange(n) / n for n in parts])
+        points = np.repeat(self.corners, parts, axis=0) + share[:, None] * np.repeat(edges, parts, axis=0)
+        return points[:, 0], points[:, 1]
+
+    def thickness(self, time: float) -> tuple[np.ndarray, np.ndarray]:
+        """Return the diameter of the largest circle inside, to a hundredth of the outline's size."""
+        return np.zeros(1), np.full(1, _widest(self))
+
+
+def from_outline(points: np.ndarray | Path | str) -> Polygon:
+    """Return the body inside an outline.
+
+    Args:
+        points: corners in order, shape (corner, 2) [m], or a text file of two columns x and y, split by blanks or
+            commas; lines with ``#`` and a first line of names are passed over, a repeated first point is dropped.
+
+    Raises:
+        InvalidDesign: fewer than three corners, or edges that cross.
+        UnreadableFile: a file that is not there or does not hold two columns of numbers.
+    """
+    if not isinstance(points, Path | str):
+        return Polygon(corners=points)
+    path = Path(points)
+    try:
+        lines = [line.split("#")[0].replace(",", " ").split() for line in path.read_text(encoding="utf-8").splitlines()]
+    except (OSError, UnicodeDecodeError) as error:
+        raise UnreadableFile(f"the outline {path} cannot be read: {error}.") from error
+    rows = [line for line in lines if line]
+    try:
+        corners = np.array([[float(word) for word in row] for row in rows[_is_heading(rows) :]])
+        if corners.ndim != 2 or corners.shape[1] != 2:
+            raise ValueError(f"rows of shape {corners.shape}")
+    except ValueError as error:
+        raise UnreadableFile(f"the outline {path} is not two columns of numbers, x and y ({error}).") from error
+    return Polygon(corners=corners)
+
+
+def _is_heading(rows: list[list[str]]) -> bool:
+    try:
+        [float(word) for word in (rows or [[]])[0]]
+    except ValueError:
+        return True
+    return False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Implicit(Solid):
+    """The body where a function is negative; see ``from_sdf``.
+
+    Raises:
+        InvalidDesign: on creation, if the function is nowhere negative in the box, or negative on its rim.
+    """
+
+    sdf: Callable[[np.ndarray, np.ndarray], np.ndarray]
+    """Signed distance to the surface at points (x, y) [m], negative inside; exact near the surface."""
+    box: tuple[float, float, float, float]
+    """A rectangle around the body: x0, x1, y0, y1 [m]."""
+    _ring: np.ndarray = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "_ring", _around(self.sdf, self.box))
+
+    def distance(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return signed distance and outward normal, the normal by differences."""
+        x, y = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
+        step = 1e-6 * _size(self.box)
+        gx, gy = self.sdf(x + step, y) - self.sdf(x - step, y), self.sdf(x, y + step) - self.sdf(x, y - step)
+        size = np.hypot(gx, gy)
+        flat = size < 1e-3 * step  # in the very middle: any direction will do
+        safe = np.where(flat, 1.0, size)
+        return np.asarray(self.sdf(x, y), float), np.where(flat, 1.0, gx / safe), np.where(flat, 0.0, gy / safe)
+
+    def outline(self, count: int) -> tuple[np.ndarray, np.ndarray]:
+        """Return points around the body, evenly spaced."""
+        closed = np.concatenate([self._ring, self._ring[:1]])
+        arc = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(closed, axis=0).T))])
+        at = np.linspace(0, arc[-1], count, endpoint=False)
+        return np.interp(at, arc, closed[:, 0]), np.interp(at, arc, closed[:, 1])
+
+    def thickness(self, time: float) -> tuple[np.ndarray, np.ndarray]:
+        """Return the diameter of the largest circle inside, to a hundredth of the outline's size."""
+        return np.zeros(1), np.full(1, _widest(self))
+
+
+def from_sdf(
+    function: Callable[[np.ndarray, np.ndarray], np.ndarray], box: tuple[float, float, float, float]
+) -> Implicit:
+    """Return the body where ``function(x, y)`` is negative, in one piece without holes.
+
+    Args:
+        function: signed distance to the surface [m], for arrays of points [m]; its size counts within three cells of
+            the surface only.
+        box: a rectangle around the body: x0, x1, y0, y1 [m].
+
+    Raises:
+        InvalidDesign: the function is nowhere negative in the box, or negative on its rim.
+    """
+    return Implicit(sdf=function, box=box)
+
+
+def union(one: Solid, other: Solid) -> Implicit:
+    """Return the body that is inside either of two, which must overlap."""
+    return _joined(one, other, np.minimum)
+
+
+def difference(one: Solid, other: Solid) -> Implicit:
+    """Return the body inside the first and not inside the second, which must leave it in one piece without a hole."""
+    return _joined(one, other, lambda a, b: np.maximum(a, -b))
+
+
+def scaled(shape: Solid, factor: float) -> Implicit:
+    """Return a shape ``factor`` times as large about the origin of its frame.
+
+    Raises:
+        InvalidDesign: the factor is not positive.
+    """
+    positive("factor", factor)
+    return from_sdf(lambda x, y: factor * shape.distance(x / factor, y / factor)[0], _box([shape], factor))
+
+
+def _joined(one: Solid, other: Solid, both: Callable[[np.ndarray, np.ndarray], np.ndarray]) -> Implicit:
+    return from_sdf(lambda x, y: both(one.distance(x, y)[0], other.distance(x, y)[0]), _box([one, other], 1.0))
+
+
+def _box(shapes: list[Solid], factor: float) -> tuple[float, float, float, float]:
+    x, y = np.concatenate([np.stack(shape.outline(512)) for shape in shapes], axis=1) * factor
+    room = 0.05 * max(float(np.ptp(x)), float(np.ptp(y)))
+    return float(x.min()) - room, float(x.max()) + room, float(y.min()) - room, float(y.max()) + room
+
+
+def _size(box: tuple[float, float, float, float]) -> float:
+    return max(box[1] - box[0], box[3] - box[2])
+
+
+def _area(corners: np.ndarray) -> float:
+    x, y = corners.T
+    return float((x * np.roll(y, -1) - np.roll(x, -1) * y).sum() / 2)
+
+
+def _crossing(corners: np.ndarray) -> tuple[int, int] | None:
+    """Return two edges that cross or touch and are not neighbours, if there are any."""
+    a, b = corners, np.roll(corners, -1, axis=0)
+
+    def side(p: np.ndarray, q: np.ndarray, r: np.ndarray) -> np.ndarray:
+        return np.sign((q[0] - p[0]) * (r[:, 1] - p[1]) - (q[1] - p[1]) * (r[:, 0] - p[0]))
+
+    for k in range(len(corners)):
+        others = np.arange(k + 2, len(corners) - (k == 0))
+        if not others.size:
+            continue
+        p, q = a[others], b[others]
+        apart = side(a[k], b[k], p) * side(a[k], b[k], q) > 0
+        far = np.array([side(s, t, np.stack([a[k], b[k]])).prod() > 0 for s, t in zip(p, q, strict=True)])
+        beside = (np.maximum(p, q) < np.minimum(a[k], b[k])).any(axis=1) | (
+            np.minimum(p, q) > np.maximum(a[k], b[k])
+        ).any(axis=1)
+        hit = np.flatnonzero(~(apart | far | beside))
+        if hit.size:
+            return k, int(others[hit[0]])
+    return None
+
+
+def _widest(shape: Solid) -> float:
+    """Return the diameter of the largest circle inside a shape."""
+    x, y = shape.outline(512)
+    gx, gy = np.meshgrid(np.linspace(x.min(), x.max(), 101), np.linspace(y.min(), y.max(), 101))
+    return max(-2 * float(shape.distance(gx, gy)[0].min()), 0.0)
+
+
+def _around(sdf: Callable[[np.ndarray, np.ndarray], np.ndarray], box: tuple[float, float, float, float]) -> np.ndarray:
+    """Return the outline of where a function is negative, counter-clockwise, shape (point, 2) [m].
+
+    It is walked along: a step ahead at right angles to the gradient, then back to zero by Newton's method.
+
+    Raises:
+        InvalidDesign: there is no such place in the box, or it reaches the box's rim.
+    """
+    x0, x1, y0, y1 = box
+    gx, gy = np.meshgrid(np.linspace(x0, x1, 257), np.linspace(y0, y1, 257))
+    values = np.asarray(sdf(gx, gy), float)
+    if values.shape != gx.shape or not np.isfinite(values).all():
+        raise InvalidDesign("the signed distance is not a finite number at every point of the box; mend the function.")
+    if values.min() >= 0:
+        raise InvalidDesign(f"the signed distance is nowhere negative in x = {x0:.4g} to {x1:.4g} m, y = {y0:.4g} to "
+                            f"{y1:.4g} m; it is negative inside the body. Give a box around the body.")  # fmt: skip
+    if min(values[0].min(), values[-1].min(), values[:, 0].min(), values[:, -1].min()) <= 0:
+        raise InvalidDesign(f"the body reaches the rim of its box x = {x0:.4g} to {x1:.4g} m, y = {y0:.4g} to "
+                            f"{y1:.4g} m; give a larger box.")  # fmt: skip
+    step, eps = _size(box) / _STEPS, 1e-6 * _size(box)
+
+    def gradient(p: np.ndarray) -> np.ndarray:
+        x, y = p
+        return np.stack([sdf(x + eps, y) - sdf(x - eps, y), sdf(x, y + eps) - sdf(x, y - eps)]) / (2 * eps)
+
+    def onto(p: np.ndarray, times: int) -> np.ndarray:
+        for _ in range(times):
+            g = gradient(p)
+            p = p - sdf(*p) * g / np.maximum((g * g).sum(axis=0), 1e-12)
+        return p
+
+    inside = np.unravel_index(int(values.argmin()), values.shape)
+    row = values[inside[0], inside[1] :]
+    start = np.array([[gx[0, inside[1] + int(np.flatnonzero(row > 0)[0])]], [gy[inside[0], 0]]])
+    here = first = onto(start, 8)
+    points = [first]
+    for _ in range(64 * _STEPS):
+        g = gradient(here)
+        here = onto(here + step * np.stack([-g[1], g[0]]) / np.maximum(np.hypot(*g), 1e-12), 2)
+        if len(points) > 3 and np.hypot(*(here - first)) < 0.75 * step:
+            return _finer(np.concatenate(points, axis=1), lambda p: onto(p, 3)).T
+        points.append(here)
+    raise InvalidDesign("the outline of the signed distance does not close; its gradient should be about 1 near it.")
+
+
+def _finer(ring: np.ndarray, onto: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
+    """Return a ring of points, shape (2, point), with ``_BETWEEN`` times as many, all put onto the outline."""
+    share = np.arange(_BETWEEN) / _BETWEEN
+    ahead = np.roll(ring, -1, axis=1)
+    return onto((ring[:, :, None] * (1 - share) + ahead[:, :, None] * share).reshape(2, -1))

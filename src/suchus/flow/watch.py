@@ -1,0 +1,68 @@
+"""What a simulation warns of, once each: a layer too thin for the grid, and vortices at a side that cannot move."""
+
+from dataclasses import dataclass, field
+from warnings import warn
+
+import numpy as np
+
+from suchus.errors import Doubtful
+from suchus.flow.compiled import PAD
+from suchus.flow.setup import Setup
+from suchus.flow.sides import Stream
+from suchus.flow.water import Water
+
+EVERY = 256
+"""Steps after which the sides are looked at, and at a run's end [-]."""
+
+STRONG = 0.05
+"""Vorticity at a side, over the largest in the domain, that is too strong for the side to be held [-]."""
+
+FELT = 0.02
+"""Speed that the vortex gives a cell at the side, over the fastest water, below which nothing is said [-]."""
+
+
+@dataclass(slots=True)
+class Watch:
+    """Warns once of each thing."""
+
+    setup: Setup
+    """What is simulated."""
+    errors: list[float] = field(default_factory=list)
+    """Estimated error of each body's force now [-]."""
+    _said: set[str] = field(default_factory=set)
+
+    def layers(self, errors: list[float]) -> None:
+        """Note the estimated errors of all bodies' forces; warn of a body whose error is large."""
+        self.errors = errors
+        for body, error in zip(self.setup.bodies, errors, strict=True):
+            text = self.setup.layer_warning(body, error)
+            if text is not None:
+                self._say(f"layer {body.name}", text)
+
+    def sides(self, water: Water, time: float) -> None:
+        """Warn of vortices at a side that is held to the far stream, which they should move."""
+        held = [
+            (edge, name) for edge, name in zip(water.border.edges, ("left", "right", "bottom", "top"), strict=True)
+            if isinstance(edge.side, Stream) and not edge.endless and edge.leaves < 0.5
+        ]  # fmt: skip
+        if not held:
+            return
+        a, b = PAD + 1, -PAD
+        u, v = water.u, water.v
+        spin = np.abs((v[a:b, a:b] - v[a:b, a - 1 : b - 1]) - (u[a:b, a:b] - u[a - 1 : b - 1, a:b]))
+        largest, fastest = float(spin.max()), float(max(np.abs(u[a:b, a:b]).max(), np.abs(v[a:b, a:b]).max()))
+        for edge, name in held:
+            near = (spin.T if edge.axis == 0 else spin)[:2] if edge.low else (spin.T if edge.axis == 0 else spin)[-2:]
+            at = float(near.max())
+            if at > STRONG * largest and at > FELT * fastest:
+                self._say(
+                    f"side {name}",
+                    f"at t = {time:.4g} s there is a vortex at the {name} side of the domain ({100 * at / largest:.0f} "
+                    f"% of the largest vorticity), which is held to the far stream and turns it back. Enlarge the "
+                    f"domain there, or leave all four sides Stream(), which then move as in water without end.",
+                )
+
+    def _say(self, key: str, text: str) -> None:
+        if key not in self._said:
+            self._said.add(key)
+            warn(text, Doubtful, stacklevel=5)

@@ -1,0 +1,108 @@
+"""When the claims on lost joints count as what (section IV.C, Figs 18 to 21)."""
+
+from suchus.paper import CLAIMS
+from suchus.verdict.rule import Band, Clause, Rule
+
+CHANCE = 0.05
+"""How probable by chance a difference between the arms may be at most [-]."""
+_REPEATS = "repeats with noise on the servos and a tenth of spread in the friction"
+_LITTLE = Clause("", ">=", -1 / 3, "'only' is a loss of less than a third")
+_MOST = Clause("", "<=", -1 / 2, "a loss of most is one of more than half")
+_ENDS = Clause("", "<=", -0.9, "less than a tenth is left of a motion that has ended")
+_ABOUT_HALF = (
+    Clause("", "<=", -0.4, "about half is 40 % at least"),
+    Clause("", ">=", -0.7, "about half is 70 % at most"),
+)
+_NOTHING = Clause("", ">=", -0.1, "almost nothing is less than a tenth")
+_SAID: dict[tuple[str, str], tuple[Clause, ...]] = {
+    ("front_yaw", "limbs_only"): (_MOST,),
+    ("front_yaw", "coordinated"): (_LITTLE,),
+    ("hind_yaw", "limbs_only"): (_MOST,),
+    ("hind_yaw", "coordinated"): (_LITTLE,),
+    ("front_pitch", "limbs_only"): (_ENDS,),
+    ("front_pitch", "coordinated"): (_ENDS,),
+    ("hind_pitch", "limbs_only"): _ABOUT_HALF,
+    ("hind_pitch", "coordinated"): (_NOTHING,),
+}
+"""For each joint and arm the changes of displacement of which the article's sentence is true."""
+
+
+def _fault(joint: str, arm: str, said: tuple[Clause, ...]) -> Rule:
+    measure = f"loss_{joint}_limp_one_{arm}"
+    readings = "; ".join(
+        f"{kind}, {legs} {{loss_{joint}_{kind}_{legs}_{arm}:+.0%}}"
+        for kind in ("limp", "locked")
+        for legs in ("one", "both")
+    )
+    why = (
+        f"Medians over gaits and frictions: {readings}; judged is limp, one, from "
+        f"{{{measure}_low:+.0%}} to {{{measure}_high:+.0%}}, in repeats of the gait as given from "
+        f"{{{measure}_repeated_low:+.0%}} to {{{measure}_repeated_high:+.0%}}."
+    )
+    return Rule(
+        claim=f"fault_{joint}_{arm}",
+        experiment="joint_faults",
+        measure=measure,
+        holds=tuple(Clause(measure, one.relation, one.bound, one.why) for one in said),
+        band=Band(low=f"{measure}_repeated_low", high=f"{measure}_repeated_high", of=_REPEATS),
+        why=why + (_bare(joint) if arm == "limbs_only" else ""),
+    )
+
+
+def _bare(joint: str) -> str:
+    """Return what stands beside a loss without the trunk: that of the whole robot, and of one with its tail lifted."""
+    text = (
+        " The intact robot with limbs only is already at {loss_intact_limbs_only:+.0%}. With its tail in the air it "
+        f"is at {{loss_intact_limbs_tail_lifted:+.0%}} intact and at {{loss_{joint}_limp_one_limbs_tail_lifted:+.0%}} "
+        "with the joint lost."
+    )
+    printed = CLAIMS[f"fault_{joint}_limbs_only"].value or 0.0
+    ours, bare = (CLAIMS[f"displacement_{arm}"].value or 0.0 for arm in ("coordinated", "limbs_only"))
+    left = ours * (1.0 + printed)
+    if left <= bare:
+        return text
+    return (
+        f"{text} The article's {printed:+.0%} leave {left:.2f} m of {ours:g} m, more than the {bare:g} m of its own "
+        "intact robot."
+    )
+
+
+RULES = (
+    *(_fault(joint, arm, said) for (joint, arm), said in _SAID.items()),
+    Rule(
+        claim="fault_support",
+        experiment="joint_faults",
+        measure="support_share_limp",
+        holds=(
+            Clause("support_share_limp", ">", 0.5, "to carry the body is to carry most of its weight"),
+            Clause("com_rise_limp", ">", 0.0, "raised is higher than with the joint intact"),
+            Clause("foot_free_limp", ">=", 0.5, "a foot that swings is off the ground for most of its swing"),
+        ),
+        why="While the damaged right hind leg is meant to swing, tail, right front and left hind foot carry "
+        "{support_share_limp:.0%} of the load with its pitch joint limp, {support_share_intact:.0%} intact; the tail's "
+        "own part is {tail_load_limp:.1f} N. Against intact the height of the centre of mass is "
+        "{com_rise_limp:mm+.1f} mm. The foot is off the ground for {foot_free_limp:.0%} of its swing (intact "
+        "{foot_free_intact:.0%}) and rises by {foot_lift_limp:mm.0f} mm (intact {foot_lift_intact:mm.0f} mm).",
+        unswept="the campaign of each design keeps no loads of the feet, only how far it gets",
+    ),
+    Rule(
+        claim="fault_tolerance",
+        experiment="joint_faults",
+        measure="share_spine_and_tail_bear_better",
+        holds=(
+            Clause("share_spine_and_tail_bear_better", ">", 0.5, "more often than not"),
+            Clause(
+                "chance_spine_and_tail_bear_better",
+                "<=",
+                CHANCE,
+                "an exact sign test over the variations: once in twenty by chance at most",
+            ),
+        ),
+        why="Of all faults and variations the share in which more of its own intact displacement is kept with spine "
+        "and tail than with limbs only: front yaw {share_bear_better_front_yaw:.0%}, hind yaw "
+        "{share_bear_better_hind_yaw:.0%}, front pitch {share_bear_better_front_pitch:.0%}, hind pitch "
+        "{share_bear_better_hind_pitch:.0%}. By the mean over its faults that is so in "
+        "{share_variations_bear_better:.0%} of the variations; chance alone gives as many with a probability of "
+        "{chance_spine_and_tail_bear_better:.2g}. In metres it is ahead in {share_spine_and_tail_ahead:.0%}.",
+    ),
+)

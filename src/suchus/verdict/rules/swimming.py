@@ -1,0 +1,138 @@
+"""When the claims on swimming count as what (sections II.A and IV.B, equation (20), Fig. 17)."""
+
+from math import atan
+
+from suchus.verdict.rule import Band, Clause, Rule
+
+_DIAGONAL = 0.1
+_HELD = "cycles of the held body after the first"
+_LAST = "the last two cycles of the compared swims"
+_EACH = "in every measured cycle, not only in one"
+_UNSWEPT = "A swim in the resolved flow takes up to two minutes; no study runs it for other designs."
+
+
+def _cycles(measure: str, of: str) -> Band:
+    return Band(low=f"{measure}_low", high=f"{measure}_high", of=of)
+
+
+RULES = (
+    Rule(
+        claim="swim_tail_sine",
+        experiment="swimming",
+        measure="tail_sine_share",
+        kind="animals",
+        holds=(
+            Clause(
+                "tail_sine_share_low", ">=", 0.95, "of the variance: a square wave, which is no sine, has 0.81 of it"
+            ),
+        ),
+        band=_cycles("tail_sine_share", "the last two cycles of the free swim"),
+        why="Said of crocodiles. The robot's joints are commanded as sines; swimming freely, {tail_sine_share:.1%} of "
+        "the variance of its tail's tip to the side is the sine of one cycle.",
+        unswept=_UNSWEPT,
+    ),
+    Rule(
+        claim="swim_body_wave",
+        experiment="swimming",
+        measure="wave_share",
+        kind="construction",
+        holds=(
+            Clause("wave_share", ">=", 0.95, "of the mean square swing, as much as a sine needs to be called one"),
+            Clause("wave_envelope_tip", ">", "wave_envelope_middle", "the envelope of (20) grows to the tail"),
+            Clause("wave_waves_per_body", ">", 0.0, "a fish's wave runs from head to tail"),
+        ),
+        why="The joints are commanded to follow (20) as nearly as they can. Swimming freely, {wave_share:.1%} of the "
+        "midline's mean square swing is a wave of the form (20), with {wave_waves_per_body:.2f} waves on the body; its "
+        "own swing falls back by up to {envelope_dip:.0%} between the joints on its way to the tip.",
+        unswept=_UNSWEPT,
+    ),
+    Rule(
+        claim="swim_pressure_convex",
+        experiment="swimming",
+        measure="pressure_difference_1_quarter",
+        holds=(Clause("pressure_difference_1_quarter_low", ">", 0.0, _EACH),),
+        band=_cycles("pressure_difference_1_quarter", _HELD),
+        why="Mean pressure along the convex side of the tail less that along the concave side, at T/4 of (20): "
+        "{pressure_difference_1_quarter_low:.0f} to {pressure_difference_1_quarter_high:.0f} Pa. The convex side has "
+        "the higher one in {convex_higher_share:.0%} of the cycle.",
+        unswept=_UNSWEPT,
+    ),
+    Rule(
+        claim="swim_diagonal_force",
+        experiment="swimming",
+        measure="force_angle_1_quarter",
+        holds=(
+            Clause("force_angle_1_quarter_low", ">=", atan(_DIAGONAL), "less aside than a tenth of forward is ahead"),
+            Clause(
+                "force_angle_1_quarter_high", "<=", atan(1 / _DIAGONAL), "less ahead than a tenth of aside is aside"
+            ),
+        ),
+        band=_cycles("force_angle_1_quarter", _HELD),
+        why="At T/4 the force is {thrust_1_quarter:.1f} N/m forward and {aside_1_quarter:.1f} N/m to the right: "
+        "{force_angle_1_quarter:deg.0f} degrees from straight ahead, {force_angle_1_quarter_low:deg.0f} to "
+        "{force_angle_1_quarter_high:deg.0f} over the cycles.",
+        unswept=_UNSWEPT,
+    ),
+    Rule(
+        claim="swim_pressure_falls",
+        experiment="swimming",
+        measure="pressure_fall",
+        holds=(Clause("pressure_fall_low", ">", 0.0, _EACH),),
+        band=_cycles("pressure_fall", _HELD),
+        why="At T/4 the two sides differ by {pressure_difference_1_quarter:.0f} Pa, at 3T/4, which Fig. 17(c) shows, "
+        "by {pressure_difference_3_quarter:.0f} Pa; over the cycles the size falls by {pressure_fall_low:.0f} to "
+        "{pressure_fall_high:.0f} Pa. Between the two, at T/2, it is {pressure_difference_2_quarter:.0f} Pa.",
+        unswept=_UNSWEPT,
+    ),
+    Rule(
+        claim="swim_thrust_symmetric",
+        experiment="swimming",
+        measure="thrust_asymmetry",
+        holds=(
+            Clause("thrust_asymmetry_high", "<", 0.15, "of the force: less than a seventh looks alike in a picture"),
+            Clause("thrust_3_quarter_low", ">", 0.0, "a forward thrust is forward"),
+        ),
+        band=_cycles("thrust_asymmetry", _HELD),
+        why="Half a cycle apart the forces are {thrust_1_quarter:.1f} and {thrust_3_quarter:.1f} N/m forward, "
+        "{aside_1_quarter:.1f} and {aside_3_quarter:.1f} N/m to the right. Mirrored, they differ by "
+        "{thrust_asymmetry_low:.0%} to {thrust_asymmetry_high:.0%} over the cycles.",
+        unswept=_UNSWEPT,
+    ),
+    Rule(
+        claim="swim_s_shape",
+        experiment="swimming",
+        measure="track_sway",
+        holds=(
+            Clause("track_sway_low", ">=", 0.01, "of the body's length: less is as straight as a line in a picture"),
+            Clause("track_sway", ">", "track_noise", "beyond what of the track is no swing of one cycle"),
+        ),
+        band=_cycles("track_sway", "the last cycles of the free swim"),
+        why="Over the last {track_cycles:.0f} cycles the centre of mass sways by {track_sway:.2%} of the body's length "
+        "to either side once a cycle, and by up to {track_noise:.2%} otherwise; the snout sways by {snout_sway:.1%}.",
+        unswept=_UNSWEPT,
+    ),
+    Rule(
+        claim="swim_tail_thrust",
+        experiment="swimming",
+        measure="gain_tail_swim",
+        holds=(
+            Clause("gain_tail_swim_low", ">", 0.0, _EACH),
+            Clause("gain_tail_swim_share_low", ">", 0.5, "the main part is more than half"),
+        ),
+        band=_cycles("gain_tail_swim", _LAST),
+        why="The limbs are left out, here as in the article. Trunk and tail together reach {speed_trunk_and_tail:.3f} "
+        "m/s, the trunk alone {speed_trunk_only:.3f}: without the swing of the tail {gain_tail_swim_share:.0%} of the "
+        "speed are missing.",
+        unswept=_UNSWEPT,
+    ),
+    Rule(
+        claim="swim_spine_thrust",
+        experiment="swimming",
+        measure="gain_spine_swim",
+        holds=(Clause("gain_spine_swim_low", ">", 0.0, _EACH),),
+        band=_cycles("gain_spine_swim", _LAST),
+        why="Trunk and tail together reach {speed_trunk_and_tail:.3f} m/s, the tail alone {speed_tail_only:.3f}: the "
+        "swing of the spine changes the speed by {gain_spine_swim:+.3f} m/s.",
+        unswept=_UNSWEPT,
+    ),
+)

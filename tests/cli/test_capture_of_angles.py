@@ -1,0 +1,38 @@
+"""``suchus capture`` with a table of joint angles."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from suchus import blueprint
+from suchus.capture import is_angle_table
+from suchus.cli.capture import capture
+from suchus.errors import UnknownName, UnsuitedRobot
+from suchus.gaits import GAITS
+from suchus.motion import AnyGait
+
+TABLE = Path(__file__).parent.parent / "data" / "animals" / "salamander_walking.csv"
+
+
+def test_a_published_table_becomes_the_gait_of_the_shelf(tmp_path, capsys):
+    out = tmp_path / "walk.toml"
+    assert capture([str(TABLE), "--robot", "salamander", "--period", "2", "--out", str(out)]) == 0
+    assert blueprint.read(out, AnyGait, GAITS) == replace(GAITS["animal_walk"], name="walk", period=2.0)
+    assert "24 servos of salamander" in capsys.readouterr().out
+
+
+def test_a_robot_without_those_joints_is_refused_and_nothing_is_written(tmp_path):
+    with pytest.raises(UnknownName, match="joint of robot 'strider'"):
+        capture([str(TABLE), "--robot", "strider", "--out", str(tmp_path / "walk.toml")])
+    assert not list(tmp_path.iterdir())
+
+
+def test_tables_of_keypoints_are_told_from_tables_of_angles(tmp_path):
+    tracks = tmp_path / "tracks.csv"
+    tracks.write_text("time [s],hip_x [mm],hip_y [mm]\n0,0,0\n")
+    assert is_angle_table(TABLE)
+    assert not is_angle_table(tracks)
+    assert not is_angle_table(tmp_path / "none.csv")
+    with pytest.raises(UnsuitedRobot, match="a gait from tracked keypoints needs a crocodile-like robot"):
+        capture([str(tracks), "--robot", "salamander", "--out", str(tmp_path / "walk.toml")])

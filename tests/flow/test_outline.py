@@ -1,0 +1,130 @@
+"""Shapes from outlines and from distances, against those that are known."""
+
+import numpy as np
+import pytest
+
+from suchus import flow
+from suchus.errors import InvalidDesign, UnreadableFile
+
+ELLIPSE = flow.Ellipse(length=2.0, width=0.7)
+SQUARE = np.array([[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]])
+BOX = (-1.2, 1.2, -0.6, 0.6)
+POINTS = np.random.default_rng(2).uniform(-1.4, 1.4, (2, 400))
+
+
+def round_corners(count=240):
+    return np.stack(ELLIPSE.outline(count), axis=1)
+
+
+SHAPES = [
+    flow.Polygon(corners=SQUARE),
+    flow.from_outline(round_corners()[::-1]),
+    flow.from_sdf(lambda x, y: ELLIPSE.distance(x, y)[0], BOX),
+    flow.union(flow.Cylinder(diameter=0.8), flow.Plate(length=1.5, thick=0.3)),
+    flow.difference(flow.Cylinder(diameter=1.0), flow.Polygon(corners=SQUARE + np.array([0.75, 0.0]))),
+    flow.scaled(ELLIPSE, 0.5),
+]
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_distance_is_that_to_the_nearest_marker_and_the_normal_its_slope(shape):
+    m = shape.markers(0.0, flow.Pose(), 0.004)
+    x, y = POINTS[:, :200]
+    d, nx, ny = shape.distance(x, y)
+    nearest = np.sqrt(((x[:, None] - m.x) ** 2 + (y[:, None] - m.y) ** 2).min(axis=1))
+    assert np.hypot(nx, ny) == pytest.approx(1, abs=1e-6)
+    near = (nearest < 0.15) & (nearest > 0.02)
+    assert np.abs(d)[near] == pytest.approx(nearest[near], abs=0.06 if "Implicit" in type(shape).__name__ else 0.01)
+    e = 1e-3
+    ahead = shape.distance(x + e * nx, y + e * ny)[0]
+    assert np.median((ahead - d)[near] / e) == pytest.approx(1, abs=1e-3)
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_markers_close_and_enclose_the_area(shape):
+    m = shape.markers(0.0, flow.Pose(), 0.01)
+    assert abs((m.normal_x * m.length).sum()) < 1e-9
+    area = 0.5 * ((m.x * m.normal_x + m.y * m.normal_y) * m.length).sum()
+    assert area == pytest.approx(shape.mass(0.0).area, rel=0.01)
+    grid = np.linspace(-1.4, 1.4, 141)
+    inside = shape.distance(*np.meshgrid(grid, grid))[0] < 0
+    assert inside.sum() * (grid[1] - grid[0]) ** 2 == pytest.approx(area, rel=0.03)
+
+
+def test_the_distance_to_a_square_is_exact():
+    x, y = POINTS
+    over = np.stack([np.abs(x) - 0.5, np.abs(y) - 0.5])
+    exact = np.hypot(*np.maximum(over, 0)) + np.minimum(over.max(axis=0), 0)
+    assert SHAPES[0].distance(x, y)[0] == pytest.approx(exact, abs=1e-12)
+    assert SHAPES[0].thickness(0.0)[1][0] == pytest.approx(1.0, abs=0.02)
+    assert SHAPES[0].mass(0.0).moment == pytest.approx(1 / 6, rel=1e-3)
+
+
+@pytest.mark.parametrize("shape", SHAPES[1:3])
+def test_an_ellipse_by_its_outline_or_its_distance_is_the_ellipse(shape):
+    x, y = POINTS
+    right, got = ELLIPSE.distance(x, y), shape.distance(x, y)
+    near = np.abs(right[0]) < 0.3
+    assert got[0][near] == pytest.approx(right[0][near], abs=1e-3)
+    clear = near & (np.abs(right[0]) > 0.05)
+    assert (got[1] * right[1] + got[2] * right[2])[clear].min() > 0.99
+    assert shape.mass(0.0).moment == pytest.approx(ELLIPSE.mass(0.0).moment, rel=1e-3)
+    assert shape.thickness(0.0)[1][0] == pytest.approx(0.7, abs=0.02)
+
+
+@pytest.mark.parametrize(("factor", "angle"), [(0.4, 1.1), (2.5, -2.0)])
+def test_scaling_and_turning_do_what_they_say(factor, angle):
+    shape = flow.scaled(ELLIPSE, factor)
+    assert shape.mass(0.0).area == pytest.approx(factor**2 * ELLIPSE.mass(0.0).area, rel=1e-3)
+    pose = flow.Pose(position=(0.3, -0.2), angle=angle)
+    m, n = shape.markers(0.0, pose, 0.05), shape.markers(0.0, flow.Pose(), 0.05)
+    assert (m.x, m.y) == tuple(pytest.approx(a) for a in pose.to_world(n.x, n.y))
+
+
+@pytest.mark.parametrize("text", [
+    "-0.5 -0.5\n0.5 -0.5\n0.5 0.5\n-0.5 0.5\n",
+    "x,y\n-0.5,-0.5\n0.5,-0.5  # a corner\n\n0.5,0.5\n-0.5,0.5\n-0.5,-0.5\n",
+])  # fmt: skip
+def test_an_outline_from_a_file(text, tmp_path):
+    path = tmp_path / "a square.csv"
+    path.write_text(text)
+    assert np.array_equal(flow.from_outline(path).corners, SQUARE)
+    assert np.array_equal(flow.from_outline(str(path)).corners, SQUARE)
+
+
+@pytest.mark.parametrize(
+    ("text", "part"),
+    [
+        ("1 2 3\n4 5 6\n7 8 9\n", "two columns"),
+        ("", "two columns"),
+        ("1 2\n3 four\n5 6\n", "two columns"),
+        (None, "cannot be read"),
+    ],
+)
+def test_a_file_that_is_no_outline_is_refused(text, part, tmp_path):
+    path = tmp_path / "outline.txt"
+    if text is not None:
+        path.write_text(text)
+    with pytest.raises(UnreadableFile, match=part):
+        flow.from_outline(path)
+
+
+@pytest.mark.parametrize(("make", "part"), [
+    (lambda: flow.Polygon(corners=SQUARE[[0, 2, 1, 3]]), "crosses itself: edge 0 .* edge 2"),
+    (lambda: flow.Polygon(corners=SQUARE[:2]), "at least 3"),
+    (lambda: flow.Polygon(corners=np.full((4, 2), np.nan)), "two finite numbers"),
+    (lambda: flow.from_sdf(lambda x, y: np.hypot(x, y) + 1, BOX), "nowhere negative"),
+    (lambda: flow.from_sdf(lambda x, y: np.hypot(x, y) - 1, BOX), "larger box"),
+    (lambda: flow.from_sdf(lambda x, y: x * np.nan, BOX), "not a finite number"),
+    (lambda: flow.scaled(ELLIPSE, -1.0), "factor is -1.0"),
+])  # fmt: skip
+def test_outlines_that_cannot_be_are_refused(make, part):
+    with pytest.raises(InvalidDesign, match=part):
+        make()
+
+
+def test_an_oscillation_about_a_mean_angle():
+    motion = flow.Oscillation(frequency=0.5, pitch=0.2, mean_angle=0.6)
+    assert motion(0.0).angle == pytest.approx(0.6)
+    assert motion(0.5).angle == pytest.approx(0.8)
+    assert motion(0.0).spin == pytest.approx(0.2 * np.pi)

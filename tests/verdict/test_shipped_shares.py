@@ -1,0 +1,50 @@
+"""The table of shares that ships: whole, of today's rules, and read by the verdicts."""
+
+import json
+from importlib import resources
+
+import pytest
+
+from suchus.design import value_at
+from suchus.gaits import GAITS
+from suchus.robots import ROBOTS
+from suchus.verdict import RULES, SHARES
+from suchus.verdict.shares import digest
+
+FILE = resources.files("suchus.verdict") / "claims.json"
+TOLD = json.loads(FILE.read_text(encoding="utf-8")) if FILE.is_file() else {}
+shipped = pytest.mark.skipif(not TOLD, reason="no table has been shipped yet")
+
+
+def test_a_changed_row_has_another_digest():
+    rows = {"tail_swing": {"share": 0.5}, "spine_swing": {"share": 1.0}}
+    assert digest(rows) == digest(dict(reversed(rows.items())))
+    assert digest(rows) != digest(rows | {"tail_swing": {"share": 0.51}})
+
+
+@shipped
+def test_its_digest_is_that_of_its_rows():
+    assert TOLD["digest"] == digest(TOLD["claims"])
+    assert {"samples", "seed", "timestep", "agreement", "versions", "source"} <= set(TOLD)
+    assert TOLD["samples"] & (TOLD["samples"] - 1) == 0  # a power of two, as Sobol's sequence asks
+    assert sum(TOLD["became"].values()) == TOLD["samples"]
+
+
+@shipped
+def test_every_rule_without_an_excuse_has_a_row_and_every_row_a_rule():
+    assert set(SHARES) == {claim for claim, rule in RULES.items() if not rule.unswept}
+
+
+@shipped
+@pytest.mark.parametrize("share", SHARES.values(), ids=list(SHARES))
+def test_a_row_says_a_share_with_its_interval_and_what_turns_it(share):
+    assert 0.0 <= share.low <= share.share <= share.high <= 1.0
+    assert 0 < share.designs <= TOLD["samples"]
+    assert share.high - share.low < 4 / share.designs**0.5
+    assert (share.turned_by == "") == (share.at is None)
+    if share.turned_by:
+        of, _, name = share.turned_by.partition(".")
+        rows = {"robot": ROBOTS.beside("caiman", "chosen", ()), "gait": GAITS.beside("belly_crawl", "chosen", ())}[of]
+        (one,) = [row for row in rows if row.field == name]
+        assert one.low <= share.at <= one.high
+        value_at({"robot": ROBOTS["caiman"], "gait": GAITS["belly_crawl"]}[of], name)
