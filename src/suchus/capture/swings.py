@@ -192,14 +192,6 @@ def _course(shape: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return gone / gone[-1], speed / gone[-1] * (len(_GRID) - 1)
 
 
-def _course(shape: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the share of its way that a foot has gone, and its speed in ways per swing, on ``_GRID``."""
-    p, q, s = np.exp(shape)
-    speed = (1.0 - np.abs(2.0 * _GRID**s - 1.0) ** q) ** p
-    gone = np.concatenate([[0.0], np.cumsum((speed[1:] + speed[:-1]) / 2)])
-    return gone / gone[-1], speed / gone[-1] * (len(_GRID) - 1)
-
-
 def _fast(shape: np.ndarray) -> float:
     """Return where in a swing the middle of its fast part lies [swing]."""
     speed = _course(shape)[1]
@@ -288,4 +280,5 @@ def _pooled(when: np.ndarray, way: np.ndarray, share: float) -> tuple[np.ndarray
         found = least_squares(missed, x, bounds=bounds, loss="cauchy", f_scale=_TAIL, x_scale=loose, xtol=exact)
         x = found.x
         spread = _spread(spread * found.fun[: -len(x)])
-    return x, np.linalg.inv(found.jac.T @ found.jac)[:2, :2]
+    slopes = np.asarray(found.jac)
+    return x, np.linalg.inv(slopes.T @ slopes)[:2, :2]

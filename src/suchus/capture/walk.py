@@ -110,7 +110,7 @@ def observe(tracks: Tracks, *, tail_share: float = 1.0) -> Walk:
     clock = paced({leg: steps(tracks, leg, rough) for leg in LEGS}, rough)
     tracks, period = replace(tracks, time=clock.read(tracks.time)), clock.period
     whole = _read(tracks, period, tail_share)
-    feet = {leg: contact(tracks, leg, period) for leg in LEGS}
+    feet: dict[str, Contact] = {leg: contact(tracks, leg, period) for leg in LEGS}
     _check_advance(whole, tracks.source)
     _check_feet(feet, tracks.source)
     zero = _zero(feet)
@@ -142,7 +142,7 @@ def _seen(tracks: Tracks, whole: _Reading, feet: Mapping[str, Contact], zero: fl
         error = _times(n) * spread / np.sqrt(n) if n > 1 else float("nan")
         if name == "spine_rightmost":  # its phase counts from a foot
             duties = np.mean([foot.duty_error for foot in feet.values()]) / 2
-            error = float(np.linalg.norm([error, feet["LF"].middle_error, duties]))
+            error = float(np.linalg.norm(np.array([error, feet["LF"].middle_error, duties], dtype=float)))
         numbers[name] = Seen(value, spread, error, _unit(name))
     first = feet["LF"]
     for leg, foot in feet.items():

@@ -11,7 +11,7 @@ from suchus.control.oscillators import AxisPart
 from suchus.design import AnyRobot, Crank, Layout, layout, servo_ranges
 from suchus.errors import OutsideLimits, UnsuitedRobot
 from suchus.kinematics import tail as tail_kinematics
-from suchus.motion import AngleTable, AnyGait, Gait, Held, Sweep, limb_targets, middle_stance
+from suchus.motion import AngleTable, AnyGait, Gait, Held, Pattern, Sweep, limb_targets, middle_stance
 
 _FOLDED = radians(-85)  # yaw of a folded limb, backward along the body, as a swimming salamander holds them
 
@@ -43,7 +43,7 @@ def axis_segments(robot: AnyRobot, gait: AnyGait) -> tuple[AxisSegment, ...]:
     Raises:
         UnsuitedRobot: nothing bends its axis sideways.
     """
-    place = layout(robot)
+    place, gait = layout(robot), _followed(gait)
     hips = [_girdle_place(place, number) for number in range(len(place.robot.girdles))]
     found = []
 
@@ -77,11 +77,7 @@ class PatternPosture:
     """
 
     def __init__(self, robot: AnyRobot, gait: AnyGait, *, standing: bool) -> None:
-        if isinstance(gait, AngleTable):
-            raise OutsideLimits(
-                f"gait {gait.name!r} is a table of angles, whose axis has no wave for oscillators to follow: choose a "
-                "gait with bends, as 'salamander_walk'."
-            )
+        gait = _followed(gait)
         self.segments = axis_segments(robot, gait)
         self.shift = 0.25 - gait.duty_factor / 2
         """What a limb's phase is ahead of its oscillator: a left oscillator bends the body to the left [cycle]."""
@@ -128,7 +124,17 @@ class PatternPosture:
         return targets
 
 
-def _wave(place: Layout, gait: AnyGait, at: float, servo: int) -> tuple[float, float]:
+def _followed(gait: AnyGait) -> Gait | Pattern:
+    """Return a gait that oscillators can follow."""
+    if isinstance(gait, AngleTable):
+        raise OutsideLimits(
+            f"gait {gait.name!r} is a table of angles, whose axis has no wave for oscillators to follow: choose a "
+            "gait with bends, as 'salamander_walk'."
+        )
+    return gait
+
+
+def _wave(place: Layout, gait: Gait | Pattern, at: float, servo: int) -> tuple[float, float]:
     """Return with which amplitude [rad] and how late [cycle] a gait bends a hinge of the axis."""
     if not isinstance(gait, Gait):
         places, angles = zip(*gait.wave.amplitude, strict=True)
@@ -151,7 +157,7 @@ def _girdle_place(place: Layout, number: int) -> float:
     return 0.0  # not reached: a robot refuses a girdle on no segment
 
 
-def _folded(place: Layout, gait: AnyGait, middle: np.ndarray) -> np.ndarray:
+def _folded(place: Layout, gait: Gait | Pattern, middle: np.ndarray) -> np.ndarray:
     """Return the angles with every limb straight back along the body, as far as its joints go; held limbs as held."""
     folded, ranges = middle.copy(), servo_ranges(place.robot)
     for limb in place.limbs:
@@ -166,7 +172,7 @@ def _folded(place: Layout, gait: AnyGait, middle: np.ndarray) -> np.ndarray:
     return folded
 
 
-def _cranked(place: Layout, gait: AnyGait, limb: int) -> bool:
+def _cranked(place: Layout, gait: Gait | Pattern, limb: int) -> bool:
     """Tell whether a limb turns all round, so that it stops where it is."""
     return not isinstance(gait, Gait) and isinstance(gait.girdles[place.limbs[limb].number], Sweep)
 

@@ -15,7 +15,8 @@ def with_speed_lines(robot: Crocodile) -> Crocodile:
 
 def with_servos(robot: Crocodile, change: Callable[[Servo], Servo]) -> Crocodile:
     """Return a robot with each of its servos changed."""
-    return _changed(robot, change)  # type: ignore[no-any-return]
+    changed: Crocodile = _changed(robot, change)
+    return changed
 
 
 def _changed(part: Any, change: Callable[[Servo], Servo]) -> Any:

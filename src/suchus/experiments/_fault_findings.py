@@ -52,7 +52,8 @@ def measures(record: xr.Dataset) -> Mapping[str, Measure]:
 
 def _readings(record: xr.Dataset) -> dict[str, Measure]:
     """Return what every reading of every loss costs in both arms."""
-    change, found = _changes(record), {}
+    change = _changes(record)
+    found: dict[str, Measure] = {}
     for cell in product(JOINTS, KINDS, LEGS_LOST, ARMS):
         at, name = dict(zip(_CELLS, cell, strict=True)), "_".join(cell)
         found |= _ranged(f"loss_{name}", change["forward"].sel(at), "-")
@@ -100,7 +101,8 @@ def tolerance(record: xr.Dataset) -> dict[str, Measure]:
 
 def _support(record: xr.Dataset) -> dict[str, Measure]:
     """Return what carries the body while the right hind leg is meant to swing, and how high it is carried."""
-    found, height = {}, record.swing_height
+    found: dict[str, Measure] = {}
+    height = record.swing_height
     for state in (str(one) for one in record.state.values):
         load = record.support.sel(state=state)
         found |= {

@@ -184,7 +184,7 @@ class BipedalReach(Experiment):
         ]
         if not runs:
             return xr.Dataset({name: ("case", values, {"units": "m"}) for name, values in found.items()})
-        duration = max(up_at(run.robot) for run in runs) + self.wait
+        duration = max(up_at(robot) for robot, stands in zip(robots, able, strict=True) if stands) + self.wait
         record = simulate(runs, duration=duration, timestep=_COARSE, every=10, progress=progress)
         last = record.sel(time=slice(duration - 0.5, None))
         for i, case in enumerate(np.flatnonzero(able)):

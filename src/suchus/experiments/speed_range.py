@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from suchus import rotation
-from suchus.design import Crocodile
+from suchus.design import AnyRobot, Crocodile, crocodile
 from suchus.design.checks import Checks
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.figures.terrain import GAIT_LINES, draw_speed_range
@@ -220,8 +220,9 @@ def _limited(robot: Crocodile) -> Crocodile:
     return replace(robot, front_leg=front, hind_leg=hind)
 
 
-def _lying(robot: Crocodile, part: xr.Dataset) -> float:
+def _lying(some_robot: AnyRobot, part: xr.Dataset) -> float:
     """Return the share of the tail's length that lies on the ground, on average [-]."""
+    robot = crocodile(some_robot, "the share of the tail on the ground")
     some = part.isel(time=slice(None, None, 5))
     points = np.array([tail_points(robot, angles[17:]) for angles in some.joint_angle.values])
     up = rotation.upward(some.orientation.values)

@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from suchus.control import AttitudeRule, Change, Control, SwitchRule, Walking
-from suchus.design import Crocodile
+from suchus.design import Crocodile, crocodile
 from suchus.design.checks import Checks
 from suchus.design.relief import Bumps, Relief, Step, Stone, profile
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
@@ -268,14 +268,15 @@ def _look(record: xr.Dataset, met: Sequence[bool]) -> np.ndarray:
 
 def _met(one: xr.Dataset, run: Run) -> bool:
     """Return whether a robot met what stands in its path; on even ground there is nothing to be met."""
+    robot = crocodile(run.robot, "meeting an obstacle")
     relief, feet = run.ground.relief, one.foot_position.sel(leg=["LF", "RF"], xyz="x")
     match relief:
         case Bumps():
             return bool(feet.max() >= relief.start)
         case Step():
-            return bool(feet.max() >= relief.at - run.robot.front_leg.foot_radius - _AT)
+            return bool(feet.max() >= relief.at - robot.front_leg.foot_radius - _AT)
         case Stone():
-            chest = float(one.snout.sel(xyz="x").max()) - run.robot.head.snout
+            chest = float(one.snout.sel(xyz="x").max()) - robot.head.snout
             pressed = bool((one.belly_force.sel(xyz="z").sum("segment") > _TOUCH).any())
             return pressed or chest >= relief.at - 0.5 * relief.length
     return True

@@ -31,7 +31,7 @@ def _fitting(nx: int, ny: int) -> tuple[int, int]:
 
 
 def _is_number(value: object) -> bool:
-    return isinstance(value, Real) and not isinstance(value, bool) and isfinite(value)
+    return not isinstance(value, bool) and isinstance(value, Real) and isfinite(value)
 
 
 def check_kinds(value: object) -> None:
@@ -85,7 +85,7 @@ class Grid:
         Raises:
             InvalidDesign: an empty rectangle or a cell that is not positive.
         """
-        ends = (x, y, (0.0, cell))
+        ends: tuple[object, ...] = (x, y, (0.0, cell))
         if not all(isinstance(end, (tuple, list)) and len(end) == 2 and all(map(_is_number, end)) for end in ends):
             raise InvalidDesign(
                 f"the rectangle is {show(x)} x {show(y)} m and the cell {show(cell)} m; two pairs of finite "

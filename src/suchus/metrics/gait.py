@@ -63,8 +63,8 @@ def diagonal_phase_error(record: xr.Dataset, start: float = START, end: float | 
     """Return how far apart in phase the stances of a diagonal pair are, of the pair that is farther [cycle]."""
     phase = sensed_phase(record, start, end)
     of = {leg: phase.sel(leg=leg, drop=True) for leg in ("RF", "LH", "RH")}
-    apart = [np.abs((difference + 0.5) % 1.0 - 0.5) for difference in (of["RH"], of["RF"] - of["LH"])]
-    return np.maximum(*apart)
+    first, second = (abs((difference + 0.5) % 1.0 - 0.5) for difference in (of["RH"], of["RF"] - of["LH"]))
+    return first.where(first > second, second)
 
 
 def _cycles(record: xr.Dataset, start: float, end: float | None) -> xr.Dataset:

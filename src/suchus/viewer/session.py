@@ -13,7 +13,7 @@ from suchus.design.relief import Bumps
 from suchus.errors import Diverged, SuchusError
 from suchus.fault import Fault
 from suchus.faults import from_table
-from suchus.gaits.limbs_only import LIFTED
+from suchus.gaits.limbs_tail_lifted import LIFTED
 from suchus.land import CONTROL_PERIOD, Ground, Live, Push, Run
 from suchus.land.arenas import BEFORE
 from suchus.motion import START, Gait, check_limits

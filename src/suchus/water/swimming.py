@@ -3,7 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from suchus.design import GRAVITY, WATER_DENSITY, Crocodile
+from suchus.design import GRAVITY, WATER_DENSITY, Crocodile, crocodile
 from suchus.motion import Swim, check_swim
 from suchus.robots import ROBOTS
 from suchus.water.outline import Curve, Outline
@@ -35,10 +35,10 @@ def swim(robot: Crocodile | str, motion: Motion, *, water: Water | None = None, 
         OutsideLimits: the joints or servos cannot follow the motion.
         NotConverged: thrust and drag never balance.
     """
-    robot = ROBOTS.resolve(robot)
+    found = crocodile(ROBOTS.resolve(robot), "swimming in the outline of a crocodile")
     if isinstance(motion, Swim):
-        check_swim(robot, motion)
-    outline, still = Outline(robot, stations), water or Water()
+        check_swim(found, motion)
+    outline, still = Outline(found, stations), water or Water()
     bent = undulation(outline, motion)
     held = cycle(outline, bent, *recoil(outline, bent, 0.0, still))
     per_model: dict[str, list[float]] = {name: [] for name in _PER_MODEL}
@@ -47,7 +47,7 @@ def swim(robot: Crocodile | str, motion: Motion, *, water: Water | None = None, 
         free = cruise(outline, bent, model, still)
         curve = cycle(outline, bent, free.sway, free.turn)
         curves.append(curve)
-        values = _numbers(robot, motion, outline, curve, free.speed, free.power)
+        values = _numbers(found, motion, outline, curve, free.speed, free.power)
         for name, value in {"thrust_held": model(outline, held, 0.0, still).thrust, **values}.items():
             per_model[name].append(value)
     return _record(outline, motion, still, curves, per_model)
