@@ -1,4 +1,4 @@
-"""Put what a full ``suchus reproduce`` found into the documentation.
+"""Put what a full ``suchus reproduce`` found, and the shelf's questions, into the documentation.
 
 Usage: python tools/verdict_table.py OUT: reads OUT/NAME/outcome.json of every experiment, writes docs/verdicts.json,
 and the summary into the README.
@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from suchus.errors import IncompatibleRecord
+from suchus.experiments import EXPERIMENTS
 from suchus.verdict import RULES
 from suchus.verdict.judging import WORDS
 
@@ -18,6 +19,7 @@ ROOT = Path(__file__).parents[1]
 TABLE = ROOT / "docs" / "verdicts.json"
 README = ROOT / "README.md"
 START, END = "<!-- verdicts: made by tools/verdict_table.py -->", "<!-- /verdicts -->"
+QUESTIONS = "<!-- questions: made by tools/verdict_table.py -->", "<!-- /questions -->"
 _KEPT = ("verdict", "measured", "low", "high", "unit", "fragile")
 _TOLD = ("fitted", "by construction")
 
@@ -52,11 +54,20 @@ def summary(table: dict[str, dict[str, Any]]) -> str:
     )
 
 
+def questions() -> str:
+    """Return the shelf of experiments as a table of the README."""
+    rows = [f"| `{name}` | {one.title} | {one.shows} |" for name, one in EXPERIMENTS.items()]
+    return "\n".join(["| experiment | question | article |", "|---|---|---|", *rows])
+
+
 def written(readme: str, table: dict[str, dict[str, Any]]) -> str:
-    """Return the README with the summary in its place."""
-    before, _, rest = readme.partition(START)
-    _, _, after = rest.partition(END)
-    return f"{before}{START}\n{summary(table)}\n{END}{after}"
+    """Return the README with summary and questions in their places."""
+    return _between(_between(readme, START, END, summary(table)), *QUESTIONS, questions())
+
+
+def _between(text: str, start: str, end: str, middle: str) -> str:
+    before, _, rest = text.partition(start)
+    return f"{before}{start}\n{middle}\n{end}{rest.partition(end)[2]}"
 
 
 def main(out: Path) -> None:

@@ -25,6 +25,7 @@ def test_the_readme_counts_what_the_table_says():
     readme = verdict_table.README.read_text(encoding="utf-8")
     assert readme == verdict_table.written(readme, TABLE)
     assert sum(row["verdict"] == "fitted" for row in TABLE.values()) > 0
+    assert all(f"| {one.title} |" in readme for one in EXPERIMENTS.values())
     changed = {**TABLE, "tail_swing": {**TABLE["tail_swing"], "verdict": "reproduced"}}
     assert (verdict_table.written(readme, changed) == readme) == (TABLE["tail_swing"]["verdict"] == "reproduced")
 
