@@ -59,9 +59,10 @@ def test_our_crawl_comes_back_as_simulated(caiman, crawl, noisy):
     np.testing.assert_allclose(walk.value("tail_lateral"), abs(tail), rtol=AMPLITUDE)
     assert apart(walk.value("tail_lag"), np.angle(trunk / tail) / (2 * np.pi)) < 0.01
     assert walk.value("standing_trunk") > 0.98  # one servo command for all three joints
-    # front feet stand while they carry load; hind feet slide under load before they leave the ground
+    # a foot is seen to stand while it is commanded to; it still bears load when it has begun to slide
     loaded = (part.foot_force.sel(xyz="z") > 0.5).mean("time").values
-    np.testing.assert_allclose([walk.value("duty_LF"), walk.value("duty_RF")], loaded[:2], atol=0.09)
+    for leg, load in zip(LEGS[:2], loaded[:2], strict=True):
+        assert GAITS["belly_crawl"].duty_factor - 0.04 < walk.value(f"duty_{leg}") < load + 0.04
 
 
 def test_heights_give_lift_and_tail_pitch(caiman, crawl, noisy):
