@@ -47,7 +47,6 @@ def test_hostile_words_are_one_short_sentence(case, tmp_path, monkeypatch, capsy
 
 
 def run(words, **settings):
-    settings |= {"stderr": subprocess.PIPE, "text": True, "check": False}
     command = [sys.executable, "-m", "suchus", *words]
     environment = {**os.environ, **settings.pop("env", {})}
     return subprocess.run(

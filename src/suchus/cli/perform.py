@@ -1,7 +1,10 @@
 """One experiment from question to folder."""
 
+import sys
 import time
-from contextlib import AbstractContextManager
+import warnings
+from collections.abc import Iterator
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -39,7 +42,7 @@ def perform(experiment: Experiment, name: str, out: Path, progress: Progress, co
     """
     start = time.perf_counter()
     check_place(out / name)
-    with _plain_sums():
+    with _plain_sums(), _plain_warnings(name):
         outcome = experiment.run(progress)
         progress("drawing", 1.0)
         with styled():
@@ -47,6 +50,14 @@ def perform(experiment: Experiment, name: str, out: Path, progress: Progress, co
         progress("saving", 1.0)
         folder = save_outcome(outcome, figures, experiment, out / name, command=command)
     return Done(outcome=outcome, folder=folder, seconds=time.perf_counter() - start)
+
+
+@contextmanager
+def _plain_warnings(name: str) -> Iterator[None]:
+    """Write warnings as sentences on standard error, each once, without the place in the code."""
+    with warnings.catch_warnings():
+        warnings.showwarning = lambda message, *_, **__: print(f"suchus: {name}: {message}", file=sys.stderr)
+        yield
 
 
 def _plain_sums() -> AbstractContextManager[object]:
