@@ -34,6 +34,8 @@ def from_table(table: Mapping[str, Any]) -> Fault:
         if key not in known:
             raise UnknownName(f"field of the fault {make.kind()}", key[:60], known)
         _check(make.kind(), key, value, types[key])
+        if isinstance(value, int):  # a whole number in a file is a number like any other
+            given[key] = float(value)
     return make(**given)
 
 
