@@ -11,6 +11,8 @@ from suchus.paper import CLAIMS
 from suchus.verdict import RULES
 from suchus.verdict.judging import WORDS
 
+if not verdict_table.TABLE.is_file():
+    pytest.skip("docs/verdicts.json is made after a full reproduction", allow_module_level=True)
 TABLE = json.loads(verdict_table.TABLE.read_text(encoding="utf-8"))
 QUICKLY = ("gait_diagram", "leg_kinematics", "spine_kinematics", "tail_bending")
 """Experiments whose whole form takes seconds."""

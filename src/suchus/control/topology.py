@@ -39,7 +39,6 @@ def topology(robot: Crocodile, gait: Gait, control: Coordinated | None = None) -
         gait: which it walks.
         control: the rules; by default the three of ``Coordinated`` and the heading loop.
 
-    Paper: Fig. 10.
     """
     if control is None:
         control = Coordinated(heading=HeadingRule())

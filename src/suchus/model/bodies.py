@@ -84,7 +84,6 @@ def lay_cables(spec: Any, robot: Robot) -> None:
     """Lay the cables: the length of each is the sum of its hinges' angles times half the cord spacing.
 
     That is the first order of the exact change in length, whose relative error is below 1.2 % up to 180 degrees.
-    Paper: Eq. (17).
     """
     for cable in robot.cables:
         servo: Servo = cable.servo

@@ -13,7 +13,6 @@ from suchus.design.relief import Bumps
 from suchus.errors import Diverged, SuchusError
 from suchus.fault import Fault
 from suchus.faults import from_table
-from suchus.gaits.limbs_tail_lifted import LIFTED
 from suchus.land import CONTROL_PERIOD, Ground, Live, Push, Run
 from suchus.land.arenas import BEFORE
 from suchus.motion import START, Gait, check_limits
@@ -63,7 +62,7 @@ class Settings:
         gait = self.gait
         if not self.spine:
             gait = replace(gait, trunk_bend=0.0)
-        return gait if self.tail else replace(gait, tail_bend=0.0, tail_pitch=LIFTED)
+        return gait if self.tail else replace(gait, tail_bend=0.0)
 
     @property
     def control(self) -> Coordinated:
