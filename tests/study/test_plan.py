@@ -126,7 +126,7 @@ BAD = [
     ([Vary(field="gait.strok", low=0.0, high=0.1)], {}, "Did you mean 'stroke'"),
     ([Vary(field="robot.tial.mass", low=0.1, high=1.0)], {}, "Did you mean 'tail'"),
     ([Vary(field="faults[0].fraction", low=0.1, high=1.0)], {}, "field"),
-    ([Vary(field="gait.period", low=0.01, high=5.0)], {}, r"gait\.period is 0\.01 s; 0\.1 to 60 s"),
+    ([Vary(field="gait.period", low=0.0001, high=5.0)], {}, r"gait\.period is 0\.0001 s; 0\.001 to 3600 s"),
     ([Vary(field="robot.tail.joints", low=4.5, high=8.0)], {}, r"tail\.joints, which takes whole numbers"),
     ([Vary(field="gait.stroke", low=0.0, high=0.1)], {"measure": ("displacment",)}, "Did you mean 'displacement'"),
     ([Vary(field="gait.stroke", low=0.0, high=0.1)], {"samples": None}, "samples is missing"),
