@@ -7,6 +7,7 @@ from pathlib import Path
 from time import monotonic, sleep
 from types import SimpleNamespace
 from typing import Any
+from urllib.parse import urlsplit
 
 import numpy as np
 import pytest
@@ -204,7 +205,7 @@ def test_one_browser_too_many_is_told_so(watched):
 
 
 def test_a_taken_port_is_told_in_a_sentence(watched):
-    port = int(watched.viewer.url.rsplit(":", 1)[1])
+    port = urlsplit(watched.viewer.url).port
     with pytest.raises(pages.CannotServe, match="take another --port"):
         pages.Viewer(lambda client: None, port=port)
 
