@@ -1,13 +1,19 @@
 """What all tests share: hypothesis without deadlines, the same examples every time."""
 
+import fcntl
 import os
+import pickle
+from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 import xarray as xr
 from hypothesis import settings
 
 from suchus.design import Crocodile
+from suchus.experiment import Outcome
+from suchus.experiments import EXPERIMENTS
 from suchus.gaits import GAITS
 from suchus.motion import Gait
 from suchus.robots import ROBOTS
@@ -38,3 +44,31 @@ def limbs_gait() -> Gait:
 def long_tail(robot: Crocodile) -> Crocodile:
     """A robot of another topology."""
     return replace(robot, name="long_tail", tail=replace(robot.tail, joints=8, fin_segments=4))
+
+
+@pytest.fixture(scope="session")
+def quick_outcome(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Outcome]:
+    """The outcome of an experiment's quick form, run once for all workers and files of tests."""
+    base = tmp_path_factory.getbasetemp()
+    folder = (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / "quick_outcomes"
+    folder.mkdir(exist_ok=True)
+    kept: dict[str, Outcome] = {}
+
+    def outcome(name: str) -> Outcome:
+        if name not in kept:
+            kept[name] = _made_once(folder / f"{name}.pickle", lambda: EXPERIMENTS[name].quick().run())
+        return kept[name]
+
+    return outcome
+
+
+def _made_once(file: Path, make: Callable[[], Outcome]) -> Outcome:
+    """Return what a file holds, made by the first who asks while the others wait."""
+    with file.with_suffix(".lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not file.exists():
+            draft = file.with_suffix(".draft")
+            draft.write_bytes(pickle.dumps(make()))
+            draft.replace(file)
+        made: Outcome = pickle.loads(file.read_bytes())
+        return made

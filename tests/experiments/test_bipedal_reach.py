@@ -17,8 +17,8 @@ CAIMAN = ROBOTS["caiman"]
 
 
 @pytest.fixture(scope="module")
-def outcome():
-    return EXPERIMENTS["bipedal_reach"].quick().run()
+def outcome(quick_outcome):
+    return quick_outcome("bipedal_reach")
 
 
 @pytest.fixture(scope="module")

@@ -101,8 +101,8 @@ def test_the_arms_are_what_their_names_say():
     assert [law for law in STARTS if law in LAWS] == list(LAWS)
 
 
-def test_the_question_is_answered_with_every_measure_of_the_issue():
-    outcome = experiment.quick().run()
+def test_the_question_is_answered_with_every_measure_of_the_issue(quick_outcome):
+    outcome = quick_outcome("feedback")
     measures = outcome.measures
     assert measures["converged_closed"] == measures["converged_cross_load"]
     assert measures["converged_open"] == measures["converged_off"]

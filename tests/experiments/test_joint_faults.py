@@ -32,8 +32,8 @@ def campaign():
 
 
 @pytest.fixture(scope="module")
-def outcome(campaign):
-    return campaign.run()
+def outcome(quick_outcome):
+    return quick_outcome("joint_faults")
 
 
 def test_the_full_campaign_is_as_large_as_asked():

@@ -16,8 +16,8 @@ MODULES = {m.experiment.name(): m.experiment for m in (leg_kinematics, spine_kin
 
 
 @pytest.fixture(scope="module")
-def outcomes() -> dict[str, Outcome]:
-    return {name: experiment.quick().run() for name, experiment in MODULES.items()}
+def outcomes(quick_outcome) -> dict[str, Outcome]:
+    return {name: quick_outcome(name) for name in MODULES}
 
 
 def words_of(experiment, found: dict[str, float]) -> dict[str, str]:

@@ -18,8 +18,8 @@ FULL = EXPERIMENTS["sensitivity"]
 
 
 @pytest.fixture(scope="module")
-def outcome():
-    return FULL.quick().run()
+def outcome(quick_outcome):
+    return quick_outcome("sensitivity")
 
 
 def share(**changes):

@@ -16,13 +16,13 @@ from suchus.land.arenas import STONE
 
 
 @pytest.fixture(scope="module")
-def speeds():
-    return EXPERIMENTS["speed_range"].quick().run()
+def speeds(quick_outcome):
+    return quick_outcome("speed_range")
 
 
 @pytest.fixture(scope="module")
-def rough():
-    return EXPERIMENTS["terrain"].quick().run()
+def rough(quick_outcome):
+    return quick_outcome("terrain")
 
 
 def test_slower_cycles_walk_slower_and_cheaper(speeds):
@@ -62,8 +62,8 @@ def test_other_gaits_than_the_high_walk_are_measured_too():
     assert experiment.measure(record)["speed_low_crawl"].value == 0.2
 
 
-def test_the_commanded_circle_comes_out_within_ten_percent():
-    measures = EXPERIMENTS["turning"].quick().run().measures
+def test_the_commanded_circle_comes_out_within_ten_percent(quick_outcome):
+    measures = quick_outcome("turning").measures
     assert measures["circles_walked_semi_erect"].value == 1
     assert measures["radius_off_semi_erect"].value < 0.1
     assert measures["tightest_both_semi_erect"].value < measures["tightest_bend_semi_erect"].value

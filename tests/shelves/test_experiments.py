@@ -26,16 +26,26 @@ WALKED = (
     "terrain",
     "turning",
 )
-LONG = ("bipedal_reach", "joint_faults")
-"""Experiments on the batch of others whose quick form alone takes more than ten seconds of a processor."""
+LONG = (
+    "bipedal_reach",
+    "crawl_stability",
+    "death_roll",
+    "feedback",
+    "joint_faults",
+    "pattern_generator",
+    "speed_range",
+    "swimming",
+    "terrain",
+    "turning",
+)
+"""Experiments on the batch of others whose quick form alone takes more than four seconds of a processor."""
 
 GOLDEN = Path(__file__).parent.parent / "golden"
 
 
 @pytest.fixture(scope="module", params=list(EXPERIMENTS))
-def quick(request):
-    experiment = EXPERIMENTS[request.param].quick()
-    return experiment, experiment.run()
+def quick(request, quick_outcome):
+    return EXPERIMENTS[request.param].quick(), quick_outcome(request.param)
 
 
 @pytest.mark.parametrize(

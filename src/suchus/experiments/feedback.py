@@ -9,11 +9,13 @@ from typing import Any, ClassVar
 import xarray as xr
 
 from suchus.control import LAWS, Coordinated, HeadingRule, Kick
+from suchus.control.topology import topology
 from suchus.design import LEGS, Crocodile
 from suchus.design.checks import Checks
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.experiments import _feedback_findings as findings
 from suchus.figures.feedback import draw_fans, draw_gain, draw_onset, draw_tracks
+from suchus.figures.topology import draw_topology
 from suchus.gaits import GAITS
 from suchus.land import Ground, Limp, Locked, Push, Run, simulate
 from suchus.metrics import heading
@@ -233,6 +235,7 @@ class Feedback(Experiment):
             "random_starts": draw_fans(error.assign_coords(time=cycles), WITHIN),
             "finding_the_gait": draw_onset(record.start_phase.assign_coords(start_time=cycles.values), self.gait),
             "what_each_rule_gains": draw_gain(part.x.isel(time=-1) - part.x.isel(time=0)),
+            "topology": draw_topology(topology(self.robot, self.gait)),
             "disturbed_tracks": draw_tracks(part, ("limp_yaw", "push", "side_slope")),
         }
 

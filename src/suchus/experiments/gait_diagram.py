@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from suchus import blueprint
 from suchus.design import LEGS, Crocodile
 from suchus.design.checks import Checks
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
@@ -28,8 +29,9 @@ from suchus.metrics import (
     tail_amplitude,
     tail_swing_least,
     tail_swings,
+    vertical_bend,
 )
-from suchus.motion import START, Gait
+from suchus.motion import START, Gait, as_table
 from suchus.paper import CYCLES
 from suchus.paper.signs import spine_lateral
 from suchus.replay import replay
@@ -44,7 +46,9 @@ class GaitDiagram(Experiment):
     """The article's Fig. 12 for our crawl: as commanded, and as foot pressure and joint angles tell.
 
     A foot stands when its pressure exceeds half a newton. Phases are those of the first harmonic of stance. Bends are
-    sums of joint angles, of the tail those of its cable section; their sense is the article's: right is positive.
+    sums of joint angles, of the tail those of its cable section and, up and down, its pitch joint; their sense is the
+    article's: right and down are positive. The commanded cycle is written as a table of servo angles, a gait file in
+    which any angle can be changed, the vertical ones too.
     """
 
     title = "When do the feet stand, and which way do spine and tail bend?"
@@ -74,7 +78,11 @@ class GaitDiagram(Experiment):
         told = record.servo_target.sel(servo="tail_cable")
         record["commanded_tail"] = told.copy(data=bend_of_servo(self.robot.tail, told.values)).drop_vars("servo")
         page = partial(replay, record, self.robot, caption=_CAPTION)
-        return Simulated(record=record, replays={"gait_replay.html": Replay(caption=_CAPTION, make=page)})
+        return Simulated(
+            record=record,
+            tables={"gait_table.toml": blueprint.render(as_table(self.robot, self.gait))},
+            replays={"gait_replay.html": Replay(caption=_CAPTION, make=page)},
+        )
 
     def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
         """Return duty factors and phases by pressure, lags and amplitudes of the bends."""
@@ -88,6 +96,9 @@ class GaitDiagram(Experiment):
             measures[f"{name}_lag"] = Measure(lag, "cycle")
             measures[f"{name}_amplitude"] = Measure(float(amplitude(record)), "rad")
             measures[f"{name}_gain"] = Measure(gain, "-")
+            upright = sensed[f"{name}_vertical"]
+            measures[f"{name}_vertical_mean"] = Measure(float(upright.mean()), "rad")
+            measures[f"{name}_vertical_amplitude"] = Measure(float(np.ptp(upright)) / 2, "rad")
         return measures | {
             "duty_factor_greatest": Measure(float(duty.max()), "-"),
             "duty_factor_commanded": Measure(float(record.duty_factor), "-"),
@@ -111,7 +122,9 @@ class GaitDiagram(Experiment):
             f"are up to {m['diagonal_phase_error']:.2f} cycle apart. The spine bends by "
             f"{m['spine_amplitude']:deg.0f} degrees to each side, {m['spine_gain']:.0%} of its command and "
             f"{m['spine_lag']:.3f} cycle after it; the tail by {m['tail_amplitude']:deg.0f} degrees, "
-            f"{m['tail_gain']:.0%} of its command and {m['tail_lag']:.3f} cycle after it."
+            f"{m['tail_gain']:.0%} of its command and {m['tail_lag']:.3f} cycle after it. Up and down the spine moves "
+            f"by {m['spine_vertical_amplitude']:deg.1f} degrees about {m['spine_vertical_mean']:deg.1f} and the tail "
+            f"by {m['tail_vertical_amplitude']:deg.1f} about {m['tail_vertical_mean']:deg.1f} (down is positive)."
         )
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
@@ -122,28 +135,41 @@ class GaitDiagram(Experiment):
         stands = loaded(walk).transpose("leg", "time").values
         time = walk.time.values
         tracks = [
-            GaitTrack(time=time, stance=stands, spine=sensed["spine"], tail=sensed["tail"], label="simulated"),
-            GaitTrack(time=time, stance=meant, spine=commanded["spine"], tail=commanded["tail"], label="commanded"),
+            GaitTrack(time=time, stance=stands, **sensed, label="simulated"),
+            GaitTrack(time=time, stance=meant, **commanded, label="commanded"),
         ]
         marks = list(np.arange(START, time[-1] + 0.01, self.gait.period))
         figure = captioned(
             gait_diagram(tracks, cycles=marks),
             "Gait diagram in the form of the article's Fig. 12, black as simulated (foot pressure, joint angles), grey "
-            "as commanded. Filled: a foot stands, or spine and tail bend to the right; open: they bend to the left.",
+            "as commanded. Filled: a foot stands, or spine and tail bend to the right; open: they bend to the left. "
+            "Below, the lateral angles, then the vertical ones.",
         )
         return {"gait_diagram": figure}
 
 
 def _sensed(record: xr.Dataset) -> dict[str, np.ndarray]:
-    """Return the lateral angles of spine and tail in the article's signs [rad]."""
-    return {"spine": lateral_bend(record, "spine").values, "tail": lateral_bend(record, "tail").values}
+    """Return the lateral and vertical angles of spine and tail in the article's signs [rad]."""
+    angles = {}
+    for part in ("spine", "tail"):
+        angles[part] = lateral_bend(record, part).values
+        angles[f"{part}_vertical"] = vertical_bend(record, part).values
+    return angles
 
 
 def _commanded(record: xr.Dataset) -> dict[str, np.ndarray]:
-    """Return the lateral angles that the servos are told to make, in the article's signs [rad]."""
-    yaws = [str(name) for name in record.servo.values if str(name).startswith("spine_yaw")]
-    yaw = record.servo_target.sel(servo=yaws).sum("servo")
-    return {"spine": np.asarray(spine_lateral(yaw).values), "tail": record.commanded_tail.values}
+    """Return the angles that the servos are commanded to make, in the article's signs [rad]."""
+
+    def summed(beginning: str) -> xr.DataArray:
+        names = [str(name) for name in record.servo.values if str(name).startswith(beginning)]
+        return record.servo_target.sel(servo=names).sum("servo")
+
+    return {
+        "spine": np.asarray(spine_lateral(summed("spine_yaw")).values),
+        "tail": record.commanded_tail.values,
+        "spine_vertical": summed("spine_pitch").values,
+        "tail_vertical": summed("tail_pitch").values,
+    }
 
 
 def _harmonic(record: xr.Dataset, values: np.ndarray) -> complex:

@@ -24,7 +24,7 @@ _STILL = np.radians(1.0)  # a bend that never exceeds this has no sign
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class GaitTrack:
-    """One way of walking over time, as the diagram shows it."""
+    """One walk over time, as the diagram shows it."""
 
     time: np.ndarray
     """Increasing, shape (time,) [s or cycle]."""
@@ -36,6 +36,10 @@ class GaitTrack:
     """Lateral angle of the tail in the article's sign, right positive, shape (time,) [rad]."""
     label: str
     """What it is, for the legend."""
+    spine_vertical: np.ndarray | None = None
+    """Vertical angle of the spine in the article's sign, down positive, shape (time,) [rad]."""
+    tail_vertical: np.ndarray | None = None
+    """Vertical angle of the tail in the article's sign, down positive, shape (time,) [rad]."""
     spine_spread: np.ndarray | None = None
     """Half-width of a band around ``spine`` [rad]."""
     tail_spread: np.ndarray | None = None
@@ -43,10 +47,10 @@ class GaitTrack:
 
     def __post_init__(self) -> None:
         n = len(self.time)
-        shapes = {"stance": (len(LEGS), n), "spine": (n,), "tail": (n,)}
+        shapes = {"stance": (len(LEGS), n), "spine": (n,), "tail": (n,), "spine_vertical": (n,), "tail_vertical": (n,)}
         for name, wanted in shapes.items():
             found = np.shape(getattr(self, name))
-            if found != wanted:
+            if getattr(self, name) is not None and found != wanted:
                 raise InvalidDesign(f"gait track {self.label!r}: {name} has shape {found}; {wanted} is needed.")
         if n < 2 or not np.all(np.diff(self.time) > 0):
             raise InvalidDesign(f"gait track {self.label!r}: time needs two samples or more that increase.")
@@ -55,7 +59,7 @@ class GaitTrack:
 def gait_diagram(
     tracks: Sequence[GaitTrack], *, cycles: Sequence[float] = (), unit: str = "s", bends: bool = True
 ) -> Figure:
-    """Return the diagram of one or two ways of walking: bars on top, the two angles below.
+    """Return the diagram of one or two walks: bars on top, the lateral angles below, then the vertical ones if given.
 
     Args:
         tracks: the first in black, the second in grey and dashed.
@@ -63,14 +67,16 @@ def gait_diagram(
         unit: of time, ``s`` or ``cycle``.
         bends: whether to draw the angles below the bars.
     """
-    ratios = [2.1, 1.5] if bends else [1.0]
+    vertical = bends and any(track.spine_vertical is not None for track in tracks)
+    ratios = [2.1, *([1.5] if bends else []), *([1.2] if vertical else [])]
     with styled():
-        figure, axes = panels(
-            len(ratios), 1, width=WIDTH + 1.0, height=5.9 if bends else 3.6, sharex=True, height_ratios=ratios
-        )
+        height = 3.6 + 2.3 * bends + 1.9 * vertical
+        figure, axes = panels(len(ratios), 1, width=WIDTH + 1.0, height=height, sharex=True, height_ratios=ratios)
         draw_bars(axes[0, 0], tracks)
         if bends:
             draw_bends(axes[1, 0], tracks)
+        if vertical:
+            draw_vertical(axes[2, 0], tracks)
         for ax in axes[:, 0]:
             for at in cycles:
                 ax.axvline(at, color=COLOURS["neutral"], linewidth=0.9, linestyle=(0, (1, 2)), zorder=0)
@@ -125,7 +131,7 @@ def draw_bends(ax: Axes, tracks: Sequence[GaitTrack]) -> None:
             if spread is not None:
                 half = np.degrees(spread)
                 ax.fill_between(track.time, angle - half, angle + half, color=COLOURS[name], alpha=0.2, linewidth=0)
-    ax.set_ylabel("left  \N{LEFTWARDS ARROW}  angle [deg]  \N{RIGHTWARDS ARROW}  right")
+    ax.set_ylabel("lateral angle [deg],\nright positive")
     ax.margins(y=0.08)
     ax.legend(
         loc="lower center",
@@ -136,6 +142,24 @@ def draw_bends(ax: Axes, tracks: Sequence[GaitTrack]) -> None:
         columnspacing=1.2,
         handlelength=1.7,
     )
+
+
+def draw_vertical(ax: Axes, tracks: Sequence[GaitTrack]) -> None:
+    """Draw the vertical angles of spine and tail over time, up above and down, the positive side, below [deg].
+
+    Args:
+        ax: to draw on.
+        tracks: the first drawn through, the second dashed; those without vertical angles are left out.
+    """
+    ax.axhline(0.0, color=_EDGE, linewidth=0.8)
+    for track, dashes in zip(tracks, _DASHES, strict=False):
+        for name in ("spine", "tail"):
+            angle = getattr(track, f"{name}_vertical")
+            if angle is not None:
+                ax.plot(track.time, np.degrees(angle), color=COLOURS[name], linestyle=dashes)
+    ax.set_ylabel("vertical angle [deg],\ndown positive")
+    ax.margins(y=0.15)
+    ax.invert_yaxis()
 
 
 def bend_sign(angle: np.ndarray) -> np.ndarray:

@@ -8,10 +8,19 @@ from suchus.metrics.bends import (
     tail_amplitude,
     tail_swing_least,
     tail_swings,
+    vertical_bend,
 )
 from suchus.metrics.decisive import Border, border, rank_correlation
 from suchus.metrics.energy import cost_of_transport, peak_torque, work
-from suchus.metrics.gait import diagonal_phase_error, duty_factor, foot_clearance, loaded, sensed_phase, two_feet_share
+from suchus.metrics.gait import (
+    diagonal_phase_error,
+    duty_factor,
+    flight_share,
+    foot_clearance,
+    loaded,
+    sensed_phase,
+    two_feet_share,
+)
 from suchus.metrics.loads import swing_height, swing_lift, swing_loads, swing_unloaded, tail_load_share
 from suchus.metrics.loss import loss
 from suchus.metrics.mean_cycle import each_cycle, first_harmonic, mean_cycle
@@ -41,6 +50,7 @@ __all__ = [
     "duty_factor",
     "each_cycle",
     "first_harmonic",
+    "flight_share",
     "foot_clearance",
     "heading",
     "heading_change",
@@ -81,6 +91,7 @@ __all__ = [
     "tail_swings",
     "tilt",
     "two_feet_share",
+    "vertical_bend",
     "whole",
     "work",
 ]

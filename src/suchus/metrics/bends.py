@@ -1,4 +1,4 @@
-"""How spine and tail bend: the lateral angles of the article's Fig. 12, in its sign, right positive."""
+"""How spine and tail bend: the angles of the article's Fig. 12, in its signs, right and down positive."""
 
 from typing import Literal
 
@@ -18,6 +18,15 @@ def lateral_bend(record: xr.Dataset, part: Bent) -> xr.DataArray:
     names = [str(name) for name in record.joint.values if str(name).startswith(f"{part}_yaw")]
     bend = record.joint_angle.sel(joint=names).sum("joint")
     return (spine_lateral(bend) if part == "spine" else bend).assign_attrs(units="rad")
+
+
+def vertical_bend(record: xr.Dataset, part: Bent) -> xr.DataArray:
+    """Return the vertical bend of the spine, the sum of its pitch joints, or the angle of the tail's pitch joint [rad].
+
+    The signs of the joints and of the article agree here, see ``suchus.paper.signs``.
+    """
+    names = [str(name) for name in record.joint.values if str(name).startswith(f"{part}_pitch")]
+    return record.joint_angle.sel(joint=names).sum("joint").assign_attrs(units="rad")
 
 
 def spine_amplitude(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:

@@ -70,3 +70,17 @@ def diagonal_phase_error(record: xr.Dataset, start: float = START, end: float | 
 def _cycles(record: xr.Dataset, start: float, end: float | None) -> xr.Dataset:
     """Return the window without its last sample, which begins the next cycle."""
     return between(record, start, end).isel(time=slice(0, -1))
+
+
+def flight_share(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
+    """Return the share of the time in which neither feet nor belly nor tail carry any of the weight [-].
+
+    Carrying is more than a thousandth of the weight, so that the rounding of a contact does not count.
+    """
+    part = between(record, start, end)
+    up = (
+        part.foot_force.sel(xyz="z").sum("leg", skipna=False)
+        + part.belly_force.sel(xyz="z").sum("segment", skipna=False)
+        + part.tail_force.sel(xyz="z")
+    )
+    return (up < 1e-3 * record.mass * GRAVITY).mean("time")

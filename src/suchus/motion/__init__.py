@@ -18,6 +18,7 @@ from suchus.motion.posture import Keyed, Planned, Posture, plan
 from suchus.motion.rising import stand_up, stretched, tallest
 from suchus.motion.roll import Roll, check_roll, roll_targets
 from suchus.motion.swim import Bends, Swim, bends, check_swim, swim_targets
+from suchus.motion.tabled import as_table
 from suchus.motion.targets import foot_targets, longest_stroke, servo_targets, within_reach
 from suchus.motion.timing import START
 
@@ -40,6 +41,7 @@ __all__ = [
     "Roll",
     "Sweep",
     "Swim",
+    "as_table",
     "bends",
     "check_limits",
     "check_roll",

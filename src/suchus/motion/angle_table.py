@@ -9,7 +9,8 @@ from suchus.design import AnyRobot, layout
 from suchus.design.checks import Checks
 from suchus.errors import OutsideLimits, UnknownName
 
-_MOST = 1000  # samples of a curve
+MOST_ANGLES = 1000
+"""Samples of a curve at most."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -24,8 +25,8 @@ class Curve:
     def __post_init__(self) -> None:
         with Checks(f"curve {self.servo}", self) as check:
             check.that(
-                1 <= len(self.angles) <= _MOST,
-                f"curve {self.servo} has {len(self.angles)} angles; 1 to {_MOST} are allowed",
+                1 <= len(self.angles) <= MOST_ANGLES,
+                f"curve {self.servo} has {len(self.angles)} angles; 1 to {MOST_ANGLES} are allowed",
             )
             wrong = next((one for one in self.angles if not abs(one) <= 2 * np.pi), None)
             check.that(wrong is None, f"curve {self.servo} has an angle of {wrong} rad; -6.28 to 6.28 rad is allowed")
