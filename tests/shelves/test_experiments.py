@@ -20,6 +20,7 @@ WALKED = (
     "displacement",
     "feedback",
     "gait_diagram",
+    "gallop_limits",
     "joint_faults",
     "pattern_generator",
     "speed_range",

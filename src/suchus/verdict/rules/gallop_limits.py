@@ -1,0 +1,20 @@
+"""When the claim on galloping counts as what (section II.A)."""
+
+from suchus.verdict.rule import Clause, Rule
+
+RULES = (
+    Rule(
+        claim="gallop_fastest",
+        experiment="gallop_limits",
+        measure="bound_over_walk",
+        kind="animals",
+        holds=(
+            Clause("bound_over_walk", ">", 1.0, "the fastest gait outruns the others"),
+            Clause("flight_bound", ">=", 0.1, "a gallop has phases of flight; less is a walk that stumbles"),
+        ),
+        why="Said of crocodiles. With servos like the robot's own a bound goes {speed_bound:.2f} m/s, "
+        "{flight_bound:.0%} of the time in flight, and the fastest walk {speed_walk:.2f} m/s; with the best servos "
+        "tried the bound goes {speed_bound_best:.2f} m/s.",
+        unswept="Said of crocodiles; no design of a robot tells how fast they are.",
+    ),
+)

@@ -1,0 +1,103 @@
+"""The limit study of galloping: from which servo on a bound pays."""
+
+from math import inf
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from suchus.errors import InvalidDesign
+from suchus.experiments._gallop_gaits import BOUNDS, TROTS
+from suchus.experiments.gallop_limits import GallopLimits, _first, experiment
+from suchus.metrics import flight_share
+from suchus.motion import START
+from suchus.robots import ROBOTS
+
+SPEEDS = np.array([7.0, 14.0, 28.0])
+
+
+def test_the_servo_that_is_needed_is_the_first_from_which_all_faster_ones_pay():
+    assert _first(SPEEDS, np.array([False, True, True])) == 14.0
+    assert _first(SPEEDS, np.array([True, False, True])) == 28.0  # a lucky cell is none
+    assert _first(SPEEDS, np.array([True, True, True])) == 7.0
+    assert _first(SPEEDS, np.array([True, True, False])) == inf
+
+
+def record(bound, flight, walk=0.4):
+    """One torque, three servo speeds, a bound, a worse bound, a trot and a walk."""
+    one = np.ones(3)
+    speed = np.stack([np.array(bound), 0.1 * one, walk * one, 0.3 * one], axis=-1)[None]
+    flies = np.stack([np.array(flight), 0.5 * one, 0.0 * one, 0.0 * one], axis=-1)[None]
+    dims = ("torque", "servo_speed", "gait")
+    return xr.Dataset(
+        {"speed": (dims, speed), "flight": (dims, flies), "joint_speed": (dims, np.full((1, 3, 4), 20.0))},
+        coords={
+            "torque": [2.5],
+            "servo_speed": SPEEDS,
+            "gait": list("abcd"),
+            "kind": ("gait", ["bound", "bound", "trot", "walk"]),
+        },
+        attrs={"own_torque": 2.5, "own_speed": 7.0},
+    )
+
+
+def measured(*args, **fields):
+    return {name: one.value for name, one in GallopLimits().measure(record(*args, **fields)).items()}
+
+
+def test_measures_of_a_record_with_a_known_answer():
+    m = measured((0.2, 0.5, 0.9), (0.2, 0.2, 0.4))
+    assert m["bound_over_walk"] == pytest.approx(0.5)
+    assert (m["speed_bound_best"], m["servo_speed_best"], m["flight_bound_best"]) == (0.9, 28.0, 0.4)
+    assert m["servo_speed_needed"] == 14.0
+    assert m["gallops_share"] == pytest.approx(2 / 3)
+    assert measured((0.2, 0.5, 0.9), (0.2, 0.09, 0.4))["servo_speed_needed"] == 28.0  # faster, but it hardly flies
+    assert measured((0.2, 0.3, 0.39), (0.4, 0.4, 0.4))["servo_speed_needed"] == inf
+
+
+def test_the_explanation_follows_the_measures():
+    told = experiment.explain(measured((0.2, 0.5, 0.9), (0.2, 0.2, 0.4)))
+    assert "does not outrun the fastest trot or walk (0.40 m/s)" in told
+    assert "it takes servos of 14 rad/s" in told
+    told = experiment.explain(measured((0.6, 0.3, 0.3), (0.4, 0.0, 0.0)))
+    assert "and outruns the fastest trot or walk" in told
+    assert "no servo speed of the map" in told
+
+
+def test_nothing_touches_in_flight():
+    force = np.zeros((1, 4, 4, 3))
+    force[0, 1:, 0, 2] = 5.0  # a foot stands in three of four samples
+    time = START + 0.01 * np.arange(4)
+    none = np.zeros((1, 4, 3, 3))
+    flown = xr.Dataset(
+        {
+            "foot_force": (("run", "time", "leg", "xyz"), force),
+            "belly_force": (("run", "time", "segment", "xyz"), none),
+            "tail_force": (("run", "time", "xyz"), np.zeros((1, 4, 3))),
+            "mass": ("run", [3.5]),
+        },
+        coords={"time": time, "xyz": list("xyz"), "leg": list("abcd"), "segment": list("abc")},
+    )
+    assert float(flight_share(flown)[0]) == 0.25
+    flown["tail_force"][0, 0, 2] = 0.03  # less than a thousandth of 34 N
+    assert float(flight_share(flown)[0]) == 0.25
+    flown["tail_force"][0, 0, 2] = 0.04
+    assert float(flight_share(flown)[0]) == 0.0
+
+
+def test_a_shortened_map_is_not_judged_and_wrong_fields_are_told():
+    assert experiment.unjudged() == ""
+    assert "speeds has 2 values" in experiment.quick().unjudged()
+    with pytest.raises(InvalidDesign, match="walks is empty"):
+        GallopLimits(walks=())
+
+
+def test_a_bound_bends_the_trunk_up_and_down_and_a_trot_does_not():
+    for searched, least in ((BOUNDS[0], 0.1), (TROTS[0], 0.0)):
+        table = searched.table(ROBOTS["caiman"])
+        bend = sum(np.array(curve.angles) for curve in table.curves if curve.servo.startswith("spine_pitch"))
+        assert np.ptp(bend) == pytest.approx(2 * searched.trunk_amplitude, rel=0.01)
+        assert np.ptp(bend) >= least
+    fore = BOUNDS[0].gait.limb_phases
+    assert fore[0] == fore[1]
+    assert fore[2] == fore[3]
