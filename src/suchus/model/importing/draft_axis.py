@@ -86,24 +86,20 @@ def _joints(making: Making, i: int, root: int) -> list[Found]:
 
 def _ends(making: Making, parts: list[Part], places: list[float]) -> list[float]:
     """Return where segments begin and end along x, from the snout to the tip of the tail [m]."""
-    hips = {
-        making.plan.axis[pair[0].on]: [float(making.into(making.hip(chain))[0]) for chain in pair]
-        for pair in making.plan.pairs
-    }
+    limbs = [chain for pair in making.plan.pairs for chain in pair]
 
-    def reach(part: Part, at: int) -> list[float]:
-        return [*making.into(part.corners)[:, 0].tolist(), *hips.get(making.plan.axis[at], [])]
+    def reach(at: int) -> list[float]:
+        hips = [float(making.into(making.hip(chain))[0]) for chain in limbs if chain.on == at]
+        return [*making.into(parts[at].corners)[:, 0].tolist(), *hips]
 
-    front, rear = max(reach(parts[0], 0)), min(reach(parts[-1], -1))
+    front, rear = max(reach(0)), min(reach(len(parts) - 1))
     least = _LEAST * making.size.length
     if places:
         front, rear = max(front, places[0] + least), min(rear, places[-1] - least)
     return [front, *places, rear]
 
 
-def _tell_offsets(
-    making: Making, groups: Sequence[Sequence[Found]], places: list[float]
-) -> None:
+def _tell_offsets(making: Making, groups: Sequence[Sequence[Found]], places: list[float]) -> None:
     """Say which hinges do not lie on the straight axis, and by how much they were moved."""
     moved = [(off, j.name) for group in groups for j, _, _, off in group]
     for group, place in zip(groups, places, strict=True):
@@ -111,8 +107,8 @@ def _tell_offsets(
     worst = max(moved, default=(0.0, ""))
     if worst[0] > JOINED * making.size.length:
         making.told.append(
-            f"The axis of a robot is straight here: hinges of the file lie up to {worst[0]:.3g} m off it ({worst[1]}) and "
-            "were moved onto it."
+            f"The axis of a robot is straight here: hinges of the file lie up to {worst[0]:.3g} m off it ({worst[1]}) "
+            "and were moved onto it."
         )
 
 
@@ -123,12 +119,10 @@ def _shapes(making: Making, part: Part, front: float, length: float, number: int
     inside = [piece for piece in part.pieces if _overlaps(making, piece, front, length)]
     volume = sum(piece.volume for piece in inside)
     if not inside or volume <= 0:
-        making.notes[f"{place}[0].radius"] = "guess: a tenth of the segment's length, since the file has no shape for it"
+        making.notes[f"{place}[0].radius"] = "guess: a tenth of the segment's length; the file has no shape for it"
         making.told.append(f"{part.name} has no shape that is read; the draft gives it a rod.")
         radius = min(max(_THIN * length, 1e-5), 10.0)
-        return (
-            Rod(name=part.name, start=(0.0, 0.0, 0.0), end=(-length, 0.0, 0.0), radius=radius, mass=part.mass),
-        )
+        return (Rod(name=part.name, start=(0.0, 0.0, 0.0), end=(-length, 0.0, 0.0), radius=radius, mass=part.mass),)
     found: list[Rod | Shell] = []
     for i, piece in enumerate(inside):
         name = part.name if i == 0 else f"{part.name}_{i + 1}"

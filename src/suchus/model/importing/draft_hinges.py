@@ -59,8 +59,8 @@ def turn_of(joint: Joint, axis: np.ndarray, told: list[str]) -> tuple[Turn, floa
     off = degrees(np.arccos(min(abs(axis[along]), 1.0)))
     if off > SKEW:
         raise UnreadableFile(
-            f"hinge {joint.name} turns about ({', '.join(f'{v:.2f}' for v in axis)}), {off:.0f} degrees off the robot's "
-            "axes (forward, left, up) at zero posture; suchus takes hinges along them: draw its limb so that they are."
+            f"hinge {joint.name} turns about ({', '.join(f'{v:.2f}' for v in axis)}), {off:.0f} degrees off "
+            "the robot's axes (forward, left, up) at zero posture; suchus takes hinges along them: draw its limb so."
         )
     if off > _EXACT:
         told.append(f"Hinge {joint.name} is {off:.1f} degrees skew; the draft has it along an axis of the robot.")
@@ -107,7 +107,9 @@ def hinge_of(name: str, turn: Turn, sign: float, joint: Joint, size: Size, share
     low, high = sorted(sign * end for end in joint.range or (-pi, pi))
     low, high = max(low, -_WIDEST), min(high, _WIDEST)
     if not low < high:
-        raise UnreadableFile(f"hinge {joint.name} has a range of {low:g} to {high:g} rad; give it one that is not empty.")
+        raise UnreadableFile(
+            f"hinge {joint.name} has a range of {low:g} to {high:g} rad; give it one that is not empty."
+        )
     return Hinge(name=name, turn=turn, drive=servo or _spring(joint, size, share), range=(low, high))
 
 

@@ -1,5 +1,7 @@
 """The limbs of a robot that is drafted from a file: hinges, links and feet; the left limb is the pattern of a pair."""
 
+from itertools import pairwise
+
 import numpy as np
 
 from suchus.design import Foot, Girdle, Limb, Link
@@ -123,10 +125,7 @@ def _foot(making: Making, parts: list[Part], knee: np.ndarray, place: str) -> tu
             if why:
                 making.notes[f"{place}.foot.radius"] = why
             return max(far, key=lambda one: float(np.linalg.norm(one[0] - knee)) + one[1])
-    reach = sum(
-        float(np.linalg.norm(two.joints[0].anchor - one.joints[0].anchor))
-        for one, two in zip(parts[:-1], parts[1:], strict=True)
-    )
+    reach = sum(float(np.linalg.norm(two.joints[0].anchor - one.joints[0].anchor)) for one, two in pairwise(parts))
     ends = [making.into(point) for point in (*last.points, *(c for p in last.pieces for c in p.corners))]
     far_end = max(ends, key=lambda end: float(np.linalg.norm(end - knee)), default=knee)
     if np.linalg.norm(far_end - knee) < max(0.1 * reach, _POINT):
@@ -164,7 +163,9 @@ def _tell_sides(
         line = making.turned(two.axis)
         off = float(np.linalg.norm(gap - (gap @ line) * line))
         if off > _ALIKE * making.size.length:
-            making.told.append(f"{two.name} lies {off:.3g} m off the mirror image of {one.name}; the draft has the image.")
+            making.told.append(
+                f"{two.name} lies {off:.3g} m off the mirror image of {one.name}; the draft has the image."
+            )
         if one.range and two.range:
             left, right = (sorted(sign * end for end in r) for sign, r in ((a, one.range), (b, two.range)))
             if np.abs(np.subtract(left, right)).max() > _ALIKE:

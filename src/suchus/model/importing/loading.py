@@ -18,8 +18,8 @@ from suchus.record.reading import check_file
 Format = Literal["URDF", "MJCF"]
 _BODIES = 1000  # at most; MuJoCo walks down a chain by recursion
 _MESHES = 64 * 2**20  # bytes of all meshes
+_NAMES = ("name", "class", "childclass", "link", "joint", "file", "filename", "mesh", "type")
 _SUFFIXES = (".stl", ".obj")
-_UNIT = (1e-4, 1e3)  # m; a robot's size
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -57,7 +57,9 @@ def load(path: Path) -> Loaded:
             kind = "MJCF"
             clean, drives, told = clean_mjcf(with_includes(root, path), mesh)
         else:
-            raise UnreadableFile(f"it begins with <{root.tag[:40]}>; a URDF begins with <robot>, an MJCF with <mujoco>.")
+            raise UnreadableFile(
+                f"it begins with <{root.tag[:40]}>; a URDF begins with <robot>, an MJCF with <mujoco>."
+            )
         model = _compiled(clean, assets)
     except SuchusError as error:
         raise UnreadableFile(f"{path.name} cannot be imported: {error}") from error
@@ -90,7 +92,30 @@ def _given(path: Path, name: str, assets: dict[str, bytes], lost: list[str]) -> 
     return given
 
 
+def _check_numbers(clean: ElementTree.Element) -> None:
+    """Refuse numbers that are none and masses that cannot be; MuJoCo would mend or log them."""
+    for element in clean.iter():
+        for key, text in element.attrib.items():
+            if key in _NAMES:
+                continue
+            odd = next((word for word in text.split() if word.strip("+-").lower() in ("nan", "inf", "infinity")), "")
+            mass = key in ("mass", "density") or (element.tag == "mass" and key == "value")
+            if odd or (mass and not _is_mass(text)):
+                raise UnreadableFile(
+                    f"<{element.tag} {key}={(odd or text)[:40]!r}> is not allowed; "
+                    + ("a finite number from 0 on is needed." if mass else "finite numbers are needed.")
+                )
+
+
+def _is_mass(text: str) -> bool:
+    try:
+        return float(text) >= 0.0
+    except ValueError:
+        return False
+
+
 def _compiled(clean: ElementTree.Element, assets: dict[str, bytes]) -> Any:
+    _check_numbers(clean)
     if sum(1 for e in clean.iter() if e.tag in ("body", "link")) > _BODIES:
         raise UnreadableFile(f"it has more than {_BODIES} bodies.")
     try:

@@ -33,8 +33,8 @@ def with_includes(root: ElementTree.Element, path: Path) -> ElementTree.Element:
             where = inside(home, child.get("file", ""))
             if where is None:
                 raise UnreadableFile(
-                    f"the MJCF includes {child.get('file', '')[:100]!r}, which lies outside its folder and is not read; "
-                    "put it beside the file."
+                    f"the MJCF includes {child.get('file', '')[:100]!r}, which lies outside its folder and is not "
+                    "read; put it beside the file."
                 )
             if where in seen or len(seen) > _FILES:
                 raise UnreadableFile(f"the MJCF includes {where.name!r} twice, or includes too many files.")
@@ -56,9 +56,7 @@ def inside(home: Path, name: str) -> Path | None:
     return where if name and where.is_relative_to(home) else None
 
 
-def clean_mjcf(
-    root: ElementTree.Element, mesh: Mesh
-) -> tuple[ElementTree.Element, dict[str, Drive], tuple[str, ...]]:
+def clean_mjcf(root: ElementTree.Element, mesh: Mesh) -> tuple[ElementTree.Element, dict[str, Drive], tuple[str, ...]]:
     """Return an MJCF of bodies, joints and shapes alone, what drives each hinge, and sentences on what was left out.
 
     Raises:
@@ -90,9 +88,7 @@ def clean_mjcf(
     return made, drives, told
 
 
-def _cleaned(
-    element: ElementTree.Element, tags: tuple[str, ...], meshes: set[str] | None
-) -> ElementTree.Element:
+def _cleaned(element: ElementTree.Element, tags: tuple[str, ...], meshes: set[str] | None) -> ElementTree.Element:
     """Return a copy with these tags alone, without materials, and without geoms whose mesh or field is not read."""
     kept = ElementTree.Element(element.tag, {k: v for k, v in element.attrib.items() if k not in ("material", "mocap")})
     for child in element:
@@ -133,8 +129,8 @@ def _equalities(root: ElementTree.Element) -> tuple[str, ...]:
         if element.tag in ("connect", "weld"):
             ends = [element.get(key) for key in ("body1", "body2", "site1", "site2") if element.get(key)]
             raise UnreadableFile(
-                f"a <{element.tag}> of {' and '.join(map(str, ends)) or 'two bodies'} closes a loop; suchus takes trees: "
-                "remove it, or make it inactive."
+                f"a <{element.tag}> of {' and '.join(map(str, ends)) or 'two bodies'} closes a loop; suchus takes "
+                "trees: remove it, or make it inactive."
             )
         told.append(f"An equality <{element.tag}> was not taken: the joints that it ties are hinges of their own.")
     return tuple(told)
@@ -188,5 +184,5 @@ def _torque(given: Mapping[str, str]) -> float | None:
     try:
         ends = [abs(float(word)) for word in given.get("forcerange", "").split()]
     except ValueError:
-        raise UnreadableFile(f"forcerange=\"{given['forcerange'][:60]}\" is not two numbers.") from None
+        raise UnreadableFile(f'forcerange="{given["forcerange"][:60]}" is not two numbers.') from None
     return max(ends) if len(ends) == 2 and 0 < max(ends) < float("inf") else None

@@ -3,8 +3,6 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from suchus.errors import UnknownName, UnreadableFile
 from suchus.model.importing.options import Words
 from suchus.model.importing.symmetry import Plane, find_plane
@@ -60,6 +58,13 @@ def plan_of(tree: Tree, words: Words) -> Plan:
             continue
         one, two = (_main(tree, plane, first) for first in (left, right))
         pairs.append((Chain(on=axis.index(where), parts=one), Chain(on=axis.index(where), parts=two)))
+    if not pairs and len(axis) == 1:
+        alone = ", ".join(tree.parts[i].name for i, _ in lost[:4])
+        image = f"; {alone} have no mirror image" if alone else ""
+        raise UnreadableFile(
+            f"no mirrored limbs and no hinges along an axis were found{image}: draw it upright and straight at zero "
+            "posture, or say --heading."
+        )
     used = {*axis, *(i for pair in pairs for chain in pair for i in chain.parts)}
     first = [i for i in range(len(tree.parts)) if i not in used and (tree.parts[i].parent in used or i == 0)]
     why = dict(lost)
@@ -102,9 +107,17 @@ def links_between(plan: Plan, near: int, far: int) -> Iterator[tuple[Joint, bool
 
 def _told_front(plane: Plane) -> list[str]:
     where = f"the file's x axis turned left by {plane.heading % 360:g} degrees"
+    other = (plane.heading + 180) % 360
     if plane.certain:
-        return [f"Front: {where}, as names or options say (--front, --heading)."]
-    return [f"Guess: the front is {where}; if it is the rear, say --front BODY or --heading {(plane.heading + 180) % 360:g}."]
+        told = [f"Front: {where}, as names or options say (--front, --heading)."]
+    else:
+        told = [f"Guess: the front is {where}; if it is the rear, say --front BODY or --heading {other:g}."]
+    if plane.rivals:
+        others = " or ".join(f"{(heading + turn) % 360:g}" for heading in plane.rivals for turn in (0, 180))
+        told.append(
+            f"Guess: its sides mirror as well about another plane; if that is the right one, --heading {others}."
+        )
+    return told
 
 
 def _pruned(tree: Tree, names: Sequence[str]) -> tuple[Tree, list[str]]:
@@ -121,17 +134,13 @@ def _pruned(tree: Tree, names: Sequence[str]) -> tuple[Tree, list[str]]:
         return tree, []
     kept = [i for i in range(len(tree.parts)) if i not in gone]
     lighter = _lumped(tree, set(kept))
-    parts = tuple(
-        replace(lighter.parts[i], parent=-1 if i == 0 else kept.index(tree.parts[i].parent)) for i in kept
-    )
+    parts = tuple(replace(lighter.parts[i], parent=-1 if i == 0 else kept.index(tree.parts[i].parent)) for i in kept)
     left = ", ".join(tree.parts[i].name for i in sorted(gone))
     return Tree(parts=parts, told=tree.told), [f"Left out as asked, their masses lent to what carries them: {left}."]
 
 
 def _chain(tree: Tree, plane: Plane, inside: Sequence[int], words: Words) -> tuple[int, ...]:
     """Return the way through the parts in the plane from the foremost to the hindmost one."""
-    if len(inside) == 1:
-        return tuple(inside)
     ends = {i: plane.into(tree.parts[i].corners)[:, 0] for i in inside}
     front = _place(tree, words.neck, inside) if words.neck else max(inside, key=lambda i: float(ends[i].max()))
     rear = _place(tree, words.tail, inside) if words.tail else min(inside, key=lambda i: float(ends[i].min()))

@@ -8,6 +8,7 @@ from suchus.model.importing.draft import Draft, draft_of
 from suchus.model.importing.loading import load
 from suchus.model.importing.options import Words
 from suchus.model.importing.plan import plan_of
+from suchus.model.importing.straighten import straightened
 from suchus.model.importing.tree import tree_of
 
 
@@ -32,6 +33,6 @@ def import_robot(path: Path, *, name: str, words: Words | None = None) -> Draft:
         require("import", "heading", words.heading, -360.0, 360.0, "degree")
     loaded = load(path)
     try:
-        return draft_of(plan_of(tree_of(loaded), words), name, words)
+        return draft_of(straightened(plan_of(tree_of(loaded), words)), name, words)
     except UnreadableFile as error:
         raise UnreadableFile(f"{path.name} cannot be imported: {error}") from error

@@ -1,7 +1,8 @@
 """The mirror plane of a tree of hinges, the pairs of limbs that it maps onto each other, and which end is the front."""
 
 import re
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,6 +12,9 @@ from suchus.model.importing.tree import Joint, Part, Tree
 TOLERANCE = 0.02
 """Mirror images may miss each other by this share of the robot's size [-]."""
 _SHARE = 0.9  # of the hinges that a mirror plane maps onto others, at least
+_SLIM = (
+    0.25  # a body shorter than this share of its width is a slender one seen across: the halves of a snake mirror too
+)
 _STEP = 15  # degrees between the planes that are tried
 _LEVEL = 0.999  # cosine of two axes that are one
 _FLIP = np.array([1.0, -1.0, 1.0])
@@ -28,6 +32,8 @@ class Plane:
     """Of forward, from the file's x axis to the left [degree]."""
     certain: bool
     """Whether the file's names, or an option, say which end is the front."""
+    rivals: tuple[float, ...] = ()
+    """Headings of planes that mirror as many hinges, of a body about as long [degree]."""
 
     @property
     def turn(self) -> np.ndarray:
@@ -65,40 +71,51 @@ def find_plane(tree: Tree, *, front: str | None, heading: float | None) -> tuple
         UnknownName: there is no such body.
     """
     ahead = None if front is None else _named(tree, front)
-    root = tree.parts[0]
-    points = [root.origin, root.com, np.mean([j.anchor for p in tree.parts for j in p.joints], axis=0)]
-    turns = [*range(0, 180, _STEP)] if heading is None else [heading]
-    best: tuple[float, ...] = ()
-    chosen: tuple[Plane, Split] | None = None
-    most = 0.0
-    for turn in turns:
-        for point in points:
-            plane = Plane(point=point, heading=float(turn), certain=heading is not None)
-            if ahead is not None and abs(plane.into(ahead)[1]) > abs(plane.into(ahead)[0]):
-                continue
-            share = mapped_share(tree, plane)
-            most = max(most, share)
-            if share < _SHARE:
-                continue
-            split = split_by(tree, plane)
-            hinges = sum(len(tree.parts[i].joints) for one, two in split.pairs for b in (one, two) for i in tree.below(b))
-            length = np.ptp(np.concatenate([plane.into(part.corners)[:, 0] for part in tree.parts]))
-            rank = (float(hinges), round(float(length) / tree.size, 3))
-            if rank > best:
-                best, chosen = rank, (plane, split)
-    if chosen is None:
+    tried = [(mapped_share(tree, plane), plane) for plane in _candidates(tree, ahead, heading)]
+    fit = [(plane, split_by(tree, plane)) for share, plane in tried if share >= _SHARE]
+    if not fit:
+        most = max((share for share, _ in tried), default=0.0)
         raise UnreadableFile(
             f"no vertical plane mirrors its hinges onto each other (the best one {most:.0%} of them, {_SHARE:.0%} are "
             "needed): draw it upright and straight at zero posture, or say --heading."
         )
+    ranks = [_rank(tree, *one) for one in fit]
+    best = ranks.index(max(ranks))
+    plane, split = fit[best]
+    rivals = {one.heading for (one, _), rank in zip(fit, ranks, strict=True) if _close(rank, ranks[best])}
+    plane = replace(plane, rivals=tuple(sorted(rivals - {plane.heading})))
     if heading is not None:
-        return chosen
-    plane, split = chosen
+        return plane, split
     sign, certain = _forward(tree, plane, ahead)
     if sign > 0:
-        return Plane(point=plane.point, heading=plane.heading, certain=certain), split
-    flipped = Plane(point=plane.point, heading=plane.heading - 180.0, certain=certain)
-    return flipped, Split(axis=split.axis, pairs=tuple((b, a) for a, b in split.pairs), single=split.single)
+        return replace(plane, certain=certain), split
+    flipped = tuple((b, a) for a, b in split.pairs)
+    return replace(plane, heading=plane.heading - 180.0, certain=certain), replace(split, pairs=flipped)
+
+
+def _candidates(tree: Tree, ahead: np.ndarray | None, heading: float | None) -> Iterator[Plane]:
+    """Yield vertical planes through the root or the middle of the hinges; a body at the front lies along them."""
+    root = tree.parts[0]
+    points = [root.origin, root.com, np.mean([j.anchor for p in tree.parts for j in p.joints], axis=0)]
+    for turn in [*range(0, 180, _STEP)] if heading is None else [heading]:
+        for point in points:
+            plane = Plane(point=point, heading=float(turn), certain=heading is not None)
+            away = None if ahead is None else plane.turn @ (ahead - tree.com)
+            if away is None or abs(away[1]) <= abs(away[0]):
+                yield plane
+
+
+def _rank(tree: Tree, plane: Plane, split: Split) -> tuple[bool, int, float]:
+    """Return what makes a plane the likelier one: not across a slender body, hinges in mirrored branches, length."""
+    paired = [i for pair in split.pairs for first in pair for i in tree.below(first)]
+    extent = np.ptp(np.concatenate([plane.into(part.corners) for part in tree.parts]), axis=0)
+    hinges = sum(len(tree.parts[i].joints) for i in paired)
+    return bool(extent[0] >= _SLIM * extent[1]), hinges, round(float(extent[0]) / tree.size, 3)
+
+
+def _close(one: tuple[bool, int, float], two: tuple[bool, int, float]) -> bool:
+    """Tell whether nothing but a tenth of the length speaks for one plane against another."""
+    return one[:2] == two[:2] and abs(one[2] - two[2]) <= 0.1 * max(one[2], two[2])
 
 
 def mapped_share(tree: Tree, plane: Plane) -> float:
@@ -111,7 +128,8 @@ def mapped_share(tree: Tree, plane: Plane) -> float:
 def split_by(tree: Tree, plane: Plane) -> Split:
     """Return which parts lie in a plane and which branches mirror each other."""
     near = TOLERANCE * tree.size
-    axis, branches = [0], []
+    axis: list[int] = [0]
+    branches: list[int] = []
     for place, part in enumerate(tree.parts[1:], 1):
         if part.parent in axis:
             (axis if _within(part, plane, near) else branches).append(place)
@@ -162,9 +180,8 @@ def _meet(places: np.ndarray, lines: np.ndarray, others: np.ndarray, along: np.n
 def _forward(tree: Tree, plane: Plane, ahead: np.ndarray | None) -> tuple[float, bool]:
     """Return 1 if the plane's x points forward and -1 if backward, and whether something says so."""
     if ahead is not None:
-        return float(np.sign(plane.into(ahead)[0]) or 1.0), True
-    votes = 0.0
-    middle = np.mean([plane.into(part.com)[0] for part in tree.parts])
+        return float(np.sign((plane.turn @ (ahead - tree.com))[0]) or 1.0), True
+    votes, middle = 0.0, plane.into(tree.com)[0]
     for part in tree.parts:
         for name, place in [*((n, part.com) for n in part.names), *((j.name, j.anchor) for j in part.joints)]:
             says = bool(_AHEAD.search(name)) - bool(_BACK.search(name))
@@ -185,5 +202,5 @@ def _named(tree: Tree, name: str) -> np.ndarray:
 def _level(degrees: float) -> tuple[float, float]:
     """Return cosine and sine, exact at right angles."""
     exact = {0: (1.0, 0.0), 90: (0.0, 1.0), 180: (-1.0, 0.0), 270: (0.0, -1.0)}
-    turn = degrees % 360
-    return exact.get(turn) or (float(np.cos(np.radians(degrees))), float(np.sin(np.radians(degrees))))
+    whole = int(degrees % 360) if degrees % 90 == 0 else -1
+    return exact.get(whole) or (float(np.cos(np.radians(degrees))), float(np.sin(np.radians(degrees))))

@@ -90,6 +90,11 @@ class Tree:
         """Of all parts [kg]."""
         return sum(part.mass for part in self.parts)
 
+    @property
+    def com(self) -> np.ndarray:
+        """Centre of mass, shape (3,) [m]."""
+        return np.sum([part.mass * part.com for part in self.parts], axis=0) / self.mass
+
     def children(self, place: int) -> list[int]:
         """Return the places of the parts that a part carries."""
         return [i for i, part in enumerate(self.parts) if part.parent == place]
@@ -138,11 +143,15 @@ def _root(model: Any) -> tuple[int, tuple[str, ...]]:
         count[model.body_rootid[model.jnt_bodyid[joint]]] += model.jnt_type[joint] == hinge
     count[0] = -1
     root = int(np.argmax(count))
-    others = [model.body(b).name or f"body {b}" for b in range(1, model.nbody) if model.body_parentid[b] == 0 and b != root]
+    others = [
+        model.body(b).name or f"body {b}" for b in range(1, model.nbody) if model.body_parentid[b] == 0 and b != root
+    ]
     told: list[str] = []
     if others:
         told.append(f"Beside the robot the file holds {', '.join(others[:4])}, which was not taken.")
-    held = [model.joint(j).name for j in range(model.njnt) if model.jnt_bodyid[j] == root and model.jnt_type[j] == hinge]
+    held = [
+        model.joint(j).name for j in range(model.njnt) if model.jnt_bodyid[j] == root and model.jnt_type[j] == hinge
+    ]
     if held:
         told.append(
             f"{', '.join(held)} hinges the root to the world and was not taken: in suchus the root is a free body."
@@ -223,8 +232,8 @@ def _weighed(tree: Tree) -> Tree:
     names = [part.name for part in tree.parts if part.mass == 0.0]
     if tree.mass == 0.0 or 2 * len(names) > len(tree.parts):
         raise UnreadableFile(
-            f"{len(names)} of {len(tree.parts)} parts have no mass ({', '.join(names[:4])}): no <inertial> and no shape "
-            "that is read, as where there are only meshes; give each an <inertial>."
+            f"{len(names)} of {len(tree.parts)} parts have no mass ({', '.join(names[:4])}): no <inertial> and no "
+            "shape that is read, as where there are only meshes; give each an <inertial>."
         )
     require("the imported robot", "mass", tree.mass, 1e-6, 1e5, "kg")
     require("the imported robot", "size", tree.size, 1e-3, 100.0, "m")

@@ -15,9 +15,7 @@ _TURNING = ("revolute", "continuous")
 _OTHER = ("prismatic", "planar", "floating")
 
 
-def clean_urdf(
-    root: ElementTree.Element, mesh: Mesh
-) -> tuple[ElementTree.Element, dict[str, Drive], tuple[str, ...]]:
+def clean_urdf(root: ElementTree.Element, mesh: Mesh) -> tuple[ElementTree.Element, dict[str, Drive], tuple[str, ...]]:
     """Return a URDF of links and joints alone, what drives each hinge, and sentences on what was left out.
 
     Raises:
@@ -42,6 +40,7 @@ def clean_urdf(
         for joint in turning
         if (mimic := joint.find("mimic")) is not None
     ]
+    told.append("A URDF holds no cables, springs, rotor inertia or gains: what the draft has of them is a guess.")
     drives = {str(joint.get("name")): _drive(joint) for joint in turning}
     if drives and all(drive.torque == 0.0 for drive in drives.values()):
         drives = {name: Drive(torque=None, speed=drive.speed, passive=False) for name, drive in drives.items()}
@@ -53,8 +52,8 @@ def _refuse_kinds(joints: list[ElementTree.Element]) -> None:
         kind, name = joint.get("type", ""), joint.get("name", "")
         if kind in _OTHER:
             raise UnreadableFile(
-                f"joint {name!r} is {kind}; suchus takes hinges (revolute, continuous) and fixed joints: make it one of "
-                "these, or remove what it carries."
+                f"joint {name!r} is {kind}; suchus takes hinges (revolute, continuous) and fixed joints: make it one "
+                "of these, or remove what it carries."
             )
         if kind not in (*_TURNING, "fixed"):
             raise UnreadableFile(f"joint {name!r} is of type {kind!r}; revolute, continuous and fixed are allowed.")
@@ -128,5 +127,5 @@ def _number(element: ElementTree.Element | None, key: str) -> float | None:
     except ValueError:
         raise UnreadableFile(f"<limit {key}={element.get(key, '')[:40]!r}> is no number.") from None
     if not isfinite(value) or value < 0:
-        raise UnreadableFile(f"<limit {key}=\"{value:g}\"> makes no sense; a number from 0 on is allowed.")
+        raise UnreadableFile(f'<limit {key}="{value:g}"> makes no sense; a number from 0 on is allowed.')
     return value
