@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import lru_cache
 from math import cos, pi, radians
 
 import numpy as np
@@ -24,7 +25,7 @@ _DUTY = 0.6
 _PERIOD = 6.0  # in gravity times; the shelf's walks take 4 to 10
 _STANCE = radians(80)  # that a crank turns through
 _BEND, _SHARE = radians(10), 0.3  # of a trunk joint; and at most this part of its range
-_CLOUD, _NEAR = 16000, 0.08  # postures that show what a limb reaches; how near a path comes to them, in reaches
+_CLOUD, _NEAR = 16000, 0.05  # postures that show what a limb reaches; how near a path comes to them, in reaches
 _SAMPLES, _JUMP, _MARGIN = 24, 0.7, 0.02  # of a path; rad between two of them; rad from a joint's stop
 _TRIES, _PATHS = 2, 80  # starts of a limb without a closed form; paths that are solved before the search ends
 _SPEED = 0.6  # of its servo's speed that a joint is asked for at most
@@ -113,12 +114,13 @@ def _does(
     hind = layout(robot).robot.girdles[-1]
     down = height * hind.limb.reach - hind.above + girdle.above - limb.foot.radius
     lift = round(_LIFT * stroke, 4)
+    closed = limb_kinematics.kind(limb) != "other"
+    forward, up = np.array([[stroke], [lift]]) * _cycle() * limb.reach
     for outward, ahead in _beside(limb):
-        does = FootPath(stroke=stroke, lift=lift, outward=outward, ahead=ahead)
-        feet = _feet(does, limb, down)
-        near = float(np.max(cloud.query(feet)[0])) < _NEAR * limb.reach
-        if near and next(budget, None) is not None and _follows(limb, feet):
-            return does
+        feet = np.stack([forward + ahead * limb.reach, np.full(_SAMPLES, outward * limb.reach), up - down], axis=-1)
+        near = closed or float(np.max(cloud.query(feet[:: _SAMPLES // 4])[0])) < _NEAR * limb.reach
+        if near and (closed or next(budget, None) is not None) and _follows(limb, feet):
+            return FootPath(stroke=stroke, lift=lift, outward=outward, ahead=ahead)
     return None
 
 
@@ -134,8 +136,10 @@ def _beside(limb: Limb) -> Iterator[tuple[float, float]]:
             yield outward, ahead
 
 
-def _feet(does: FootPath, limb: Limb, down: float) -> np.ndarray:
-    """Return points of a path from the hip, shape (sample, 3) [m]."""
+@lru_cache(maxsize=1)
+def _cycle() -> np.ndarray:
+    """Return a path of stroke 1 and lift 1 about its middle: ahead and up, shape (2, sample) [-]."""
+    does = FootPath(stroke=1.0, lift=1.0, outward=0.0, ahead=0.0)
     timing = Pattern(
         name="path",
         period=1.0,
@@ -145,8 +149,7 @@ def _feet(does: FootPath, limb: Limb, down: float) -> np.ndarray:
         height=0.0,
         wave=AxialWave(amplitude=((0.0, 0.0),), waves=0.0, phase=0.0),
     )
-    ahead, lifted = path(timing, does, np.arange(_SAMPLES) / _SAMPLES).T * limb.reach
-    return np.stack([ahead, np.full(_SAMPLES, does.outward * limb.reach), lifted - down], axis=-1)
+    return np.asarray(path(timing, does, np.arange(_SAMPLES) / _SAMPLES).T)
 
 
 def _follows(limb: Limb, feet: np.ndarray) -> bool:

@@ -50,6 +50,8 @@ def draft_of(plan: Plan, name: str, words: Words) -> Draft:
     """
     try:
         plan, arms = _legs(plan, words)
+        if not plan.pairs and len(plan.axis) == 1:
+            raise UnreadableFile(f"nothing is left that could move: {arms[0]}")
         making = making_of(plan, words)
         girdles = [draft_girdle(making, i) for i in range(len(plan.pairs))]
         axis, root, ends = draft_axis(making)
