@@ -126,8 +126,8 @@ def test_the_written_file_is_the_draft_and_it_walks_with_its_own_gait(shelf, tmp
     if kind == "mjcf" or not draft.robot.girdles:
         return
     gait = draft_gait(draft.robot, "it_walk")
-    record = suchus.crawl(draft.robot, gait, duration=1.0 + 2 * gait.period)
-    ahead, aside, _ = displacement(record).values / draft.robot.length / 2
+    record = suchus.crawl(draft.robot, gait, duration=1.0 + gait.period)
+    ahead, aside, _ = displacement(record).values / draft.robot.length
     assert ahead > 0.05
     assert abs(aside) < 0.3 * ahead
 
@@ -179,15 +179,15 @@ def test_a_quadruped_of_today_is_two_girdles_on_one_segment_and_walks(tmp_path):
     servo = limb.hinges[0].servo
     assert (servo.torque, servo.speed) == (30.0, 15.0)
     gait = draft_gait(robot, "walk")
-    record = suchus.crawl(robot, gait, duration=1.0 + 2 * gait.period)
-    ahead, aside, _ = displacement(record).values / 2
+    record = suchus.crawl(robot, gait, duration=1.0 + gait.period)
+    ahead, aside, _ = displacement(record).values
     # two strokes of 0.2 reaches of 0.5 m each cycle; feet slip and the body rolls
     assert 0.5 < ahead / (2 * 0.2 * limb.reach) < 1.5
     assert abs(aside) < 0.5 * ahead
 
 
-@settings(max_examples=8)
-@given(heading=st.sampled_from([0, 30, 45, 90, 135, 180, 270]))
+@settings(max_examples=6)
+@given(heading=st.sampled_from([0, 30, 45, 90, 180, 270]))
 def test_the_heading_of_the_file_does_not_matter(heading, tmp_path_factory):
     c, s = np.cos(np.radians(heading)), np.sin(np.radians(heading))
     text = quadruped(lambda x, y: (float(c * x - s * y), float(s * x + c * y)), (f"{c} {s} 0", f"{-s} {c} 0"))
