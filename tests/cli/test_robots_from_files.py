@@ -55,3 +55,17 @@ def test_the_mistakes_of_the_page_are_told_in_its_words(capsys):
     Path("my_robot.toml").write_text('base = "caiman"\n[hind_leg]\nfemurr = 1\ntibia = -0.1\n')
     assert main(["run", "wave", "--robot", "my_robot.toml"]) == 2
     assert capsys.readouterr().err in PAGE
+
+
+def test_the_import_of_the_page_prints_what_it_says(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    section = PAGE.partition("## From URDF or MJCF")[2]
+    commands, said = (block.partition("\n")[2] for block in section.split("```")[1:4:2])
+    words = [line.split()[1:] for line in commands.splitlines()]
+    assert [one[0] for one in words] == ["export", "import"]
+    assert main(words[0]) == 0
+    capsys.readouterr()
+    assert main(words[1]) == 0
+    assert capsys.readouterr().out == said
+    options = [f"`{word}" for word in ("--front", "--heading", "--neck", "--leave", "--foot-radius")]
+    assert all(option in section for option in options)

@@ -1,7 +1,7 @@
 """From a frozen value to a TOML file that reads back equal, each number with its meaning beside it."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any
@@ -10,24 +10,33 @@ from suchus.design.meaning import meanings
 from suchus.record import new_file
 
 
-def write(value: object, path: Path) -> Path:
+def write(value: object, path: Path, *, notes: Mapping[str, str] | None = None, head: Sequence[str] = ()) -> Path:
     """Write a robot or a gait as TOML and return the path.
+
+    Args:
+        value: the robot or the gait.
+        path: the file.
+        notes: what to add to the comments, by the place of a value, as ``axis[0].shapes[1].mass``.
+        head: sentences to begin with, as comments.
 
     Raises:
         Unwritable: the place cannot be written to.
     """
-    text = render(value)
+    text = render(value, notes=notes, head=head)
     with new_file(path) as draft:
         draft.write_text(text, encoding="utf-8")
     return path
 
 
-def render(value: object) -> str:
-    """Return a robot or a gait as TOML; the meaning of each field follows as a comment."""
-    return "\n".join(_table(value, ())).strip() + "\n"
+def render(value: object, *, notes: Mapping[str, str] | None = None, head: Sequence[str] = ()) -> str:
+    """Return a robot or a gait as TOML; the meaning of each field follows as a comment, and its note if it has one."""
+    words = [f"# {_plain(one)}" for one in head]
+    return "\n".join([*words, *([""] if words else []), "\n".join(_table(value, (), notes or {})).strip(), ""])
 
 
-def _table(value: Any, path: tuple[str, ...], *, row: bool = False) -> list[str]:
+def _table(
+    value: Any, path: tuple[str, ...], notes: Mapping[str, str], place: str = "", *, row: bool = False
+) -> list[str]:
     """A table's own values first, then the tables below it, as TOML wants it; a row of tables has double brackets."""
     told = meanings(type(value))
     items = {f.name: getattr(value, f.name) for f in fields(value)}
@@ -36,14 +45,24 @@ def _table(value: Any, path: tuple[str, ...], *, row: bool = False) -> list[str]
     below: list[str] = []
     for name, item in items.items():
         if is_dataclass(item):
-            below += _table(item, (*path, name))
+            below += _table(item, (*path, name), notes, f"{place}{name}.")
         elif isinstance(item, tuple) and item and all(is_dataclass(one) for one in item):
-            for one in item:
-                below += _table(one, (*path, name), row=True)
+            for i, one in enumerate(item):
+                below += _table(one, (*path, name), notes, f"{place}{name}[{i}].", row=True)
         elif item is not None:
-            meaning = " ".join(told.get(name, "").split())
+            meaning = _plain(f"{told.get(name, '')} {_sentence(notes.get(place + name, ''))}")
             lines.append(f"{name} = {_inline(item)}" + (f"  # {meaning}" if meaning else ""))
     return lines + below
+
+
+def _sentence(note: str) -> str:
+    """Return a note as a sentence."""
+    return f"{note[0].upper()}{note[1:]}." if note else ""
+
+
+def _plain(text: str) -> str:
+    """Return a text that fits in a comment: one line, without control characters."""
+    return "".join(c if c.isprintable() else "?" for c in " ".join(text.split()))
 
 
 def _inline(value: Any) -> str:

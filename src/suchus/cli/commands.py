@@ -64,6 +64,12 @@ COMMANDS = (
         "suchus.cli.optimise:optimise",
     ),
     Command(
+        "import",
+        "ROBOT.urdf|ROBOT.xml [--out FILE.toml]",
+        "read a robot from a URDF or an MJCF",
+        "suchus.cli.import_robot:import_file",
+    ),
+    Command(
         "export",
         "[--format mjcf|urdf|usd] [--robot ROBOT]",
         "write a robot for other tools",

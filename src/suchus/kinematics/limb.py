@@ -21,7 +21,8 @@ _INSIDE = 1e-6  # of the reach; how far inside it a clipped target stays
 STEPS = 60
 """Gauss-Newton steps at most [-]; along a gait 2 to 5 are needed."""
 _STEP, _DAMPING, _NEAR = 0.6, 0.01, 1e-10  # rad; most that damps; error in limb lengths that ends
-_SEEDS = 40  # starts for those that get stuck, most of them on a joint limit near the hip
+SEEDS = 40
+"""Starts for those that get stuck, most of them on a joint limit near the hip [-]."""
 
 
 class PlainLeg(NamedTuple):
@@ -91,6 +92,7 @@ def inverse(
     *,
     plane: float | Float[np.ndarray, "*batch"] = 0.0,
     start: Float[np.ndarray, "*batch hinge"] | None = None,
+    tries: int = SEEDS,
 ) -> Float[np.ndarray, "*batch hinge"]:
     """Return the angles that bring a foot to points.
 
@@ -100,6 +102,7 @@ def inverse(
         plane: of a limb of the kind ``arm``: how far the elbow is turned forward about the line from hip to foot,
             0 where it stands up [rad].
         start: angles near the answer, for chains without a closed form [rad]; the middle of the ranges if None.
+        tries: how often such a chain begins again elsewhere before it gives up [-].
 
     Raises:
         Unreachable: a point is nearer or farther than the limb can reach, or is not a number.
@@ -112,7 +115,7 @@ def inverse(
         links = limb.links
         base = np.stack([points[..., 1], points[..., 0], -points[..., 2]], axis=-1)
         return closed.inverse(PlainLeg(0.0, links[0].length, links[1].length, 0.0, 0.0), base)
-    return _arm(limb, points, np.asarray(plane)) if which == "arm" else _numeric(limb, points, start)
+    return _arm(limb, points, np.asarray(plane)) if which == "arm" else _numeric(limb, points, start, tries)
 
 
 def _refuse_far(limb: Limb, points: np.ndarray) -> None:
@@ -156,7 +159,7 @@ def _arm(limb: Limb, foot: np.ndarray, plane: np.ndarray) -> np.ndarray:
     return np.stack([yaw, pitch, np.arctan2(ahead, down), bend], axis=-1)
 
 
-def _numeric(limb: Limb, points: np.ndarray, start: np.ndarray | None) -> np.ndarray:
+def _numeric(limb: Limb, points: np.ndarray, start: np.ndarray | None, tries: int) -> np.ndarray:
     """Take damped Gauss-Newton steps within the joints' ranges; who gets stuck begins again elsewhere."""
     count = len(limb.hinges)
     low, high = np.array([hinge.range or (-np.inf, np.inf) for hinge in limb.hinges]).T
@@ -165,7 +168,7 @@ def _numeric(limb: Limb, points: np.ndarray, start: np.ndarray | None) -> np.nda
     given = np.broadcast_to(middle if start is None else start, (*points.shape[:-1], count)).reshape(-1, count)
     found, error = _descend(limb, flat, np.clip(given, low, high), low, high)
     rng = np.random.default_rng(0)
-    for _ in range(_SEEDS):
+    for _ in range(tries):
         stuck = np.flatnonzero(error > 1e-7)
         if not stuck.size:
             break

@@ -169,20 +169,27 @@ class Bench:
 
     def _advance(self, targets: np.ndarray, steps: int, time: float, who: np.ndarray) -> None:
         self.ctrl[self.alive] = targets[self.alive]
-        pressed = np.zeros_like(self.readings[:, self._forces])
+        felt = self.sensors[:, self._forces]
+        pressed = np.zeros_like(felt)
+        going = self._going(who)
         for _ in range(steps):
             try:
-                going = self.alive & who
-                self.batch.step(None if going.all() else np.flatnonzero(going), stage=_CURRENT)
+                self.batch.step(going, stage=_CURRENT)
             except SimulationError as error:
                 for sim in error.ids:
                     self._end(int(sim), time, self.batch.error(int(sim)))
-            pressed += self.sensors[:, self._forces]
+                going = self._going(who)
+            pressed += felt
         self.readings[:] = self.sensors
         self.readings[:, self._forces] = pressed / steps
         fastest = np.abs(self.qvel).max(axis=1)
         for sim in np.flatnonzero(self.alive & who & ~(fastest < _TOO_FAST)):  # a NaN is not below anything
             self._end(int(sim), time, f"a speed of {fastest[sim]:.3g} was reached")
+
+    def _going(self, who: np.ndarray) -> np.ndarray | None:
+        """Return which simulations are stepped; None for all."""
+        going = self.alive & who
+        return None if going.all() else np.flatnonzero(going)
 
     def _copy(self, sims: np.ndarray, whom: np.ndarray) -> None:
         """Let runs be where others are, and feel and suffer the same."""

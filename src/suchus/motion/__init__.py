@@ -11,6 +11,7 @@ from suchus.motion.any_body import (
     middle_stance,
     pattern_targets,
 )
+from suchus.motion.draft import draft_gait
 from suchus.motion.gait import Gait, Legs
 from suchus.motion.pattern import AxialWave, FootPath, Held, Pattern, Sweep
 from suchus.motion.phase import limb_phase, stance, tail_bend, trunk_bend
@@ -46,6 +47,7 @@ __all__ = [
     "check_limits",
     "check_roll",
     "check_swim",
+    "draft_gait",
     "foot_targets",
     "hip_height",
     "intended",

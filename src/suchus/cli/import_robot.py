@@ -1,0 +1,103 @@
+"""``suchus import ROBOT.urdf``: a robot of another tool as a draft, with a gait to begin with."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Annotated
+
+import tyro
+
+from suchus import blueprint
+from suchus.cli.commands import BadCommand
+from suchus.cli.options import parse
+from suchus.design import layout
+from suchus.errors import OutsideLimits
+from suchus.model.importing import Draft, Words, import_robot
+from suchus.motion import Pattern, draft_gait
+from suchus.record import check_writable
+
+_METRES = Annotated[float | None, tyro.conf.arg(metavar="METRES")]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Options:
+    """What can be said after ``suchus import``."""
+
+    file: Annotated[Path, tyro.conf.Positional]
+    """URDF or MJCF, a tree of hinges drawn upright and straight at zero posture."""
+    out: Path | None = None
+    """The robot's file; by default the file's name with .toml, in this folder. A gait is written beside it."""
+    front: str | None = None
+    """A body at the front end. By default guessed from names, else along the file's x axis."""
+    heading: Annotated[float | None, tyro.conf.arg(metavar="DEGREES")] = None
+    """Of the front, from the file's x axis to the left; say it where a body is as long as it is wide."""
+    neck: str | None = None
+    """Body in which the axis ends in front, where it forks, as into a jaw or an arm on the back."""
+    tail: str | None = None
+    """Body in which the axis ends behind, where it forks."""
+    leave: tuple[str, ...] = ()
+    """Bodies to leave out with all that hangs on them, as arms or fins; their mass goes to what carries them."""
+    foot_radius: _METRES = None
+    """Of every foot, where the file's shapes do not say it."""
+
+
+def import_file(words: Sequence[str]) -> int:
+    """Read a robot from a file of another tool, write it and a gait, say what was guessed, and return 0.
+
+    Raises:
+        SuchusError: the words make no sense, or the file is no robot that can be taken.
+    """
+    about = (
+        "Read a robot from a URDF or an MJCF: a draft in which every guess is commented, and a gait to begin with. "
+        "Nothing in the file is executed; what it includes is read from its own folder only."
+    )
+    options: Options = parse(Options, "suchus import", words, about, [f.name for f in fields(Options)])
+    out = options.out or Path(f"{options.file.stem}.toml")
+    if out.suffix != ".toml":
+        raise BadCommand(f"the robot goes into a .toml file; --out is {str(out)!r}.")
+    check_writable(out.parent)
+    said = Words(
+        front=options.front,
+        heading=options.heading,
+        neck=options.neck,
+        tail=options.tail,
+        leave=options.leave,
+        foot_radius=options.foot_radius,
+    )
+    draft = import_robot(options.file, name=out.stem, words=said)
+    print(*_plan(draft), *(f"note: {text}" for text in draft.told), sep="\n")
+    gait = _gait(draft, f"{out.stem}_walk")
+    head = (f"A draft that suchus read from {options.file.name}. Check it; what is guessed says so.", *draft.told)
+    blueprint.write(draft.robot, out, notes=draft.notes, head=head)
+    print(f"robot: {out}")
+    if gait is not None:
+        file = blueprint.write(gait, out.with_name(f"{out.stem}_walk.toml"), head=("A first gait, not the best.",))
+        print(f"gait: {file}\nrun it: suchus run displacement --robot {out} --gait {file}")
+    return 0
+
+
+def _plan(draft: Draft) -> list[str]:
+    """Return the body plan in lines."""
+    robot, place = draft.robot, layout(draft.robot)
+    hinges = [hinge.turn for hinge in robot.axis_hinges]
+    counts = ", ".join(f"{hinges.count(turn)} {turn}" for turn in ("yaw", "pitch", "roll") if turn in hinges)
+    lines = [
+        f"{robot.name}: {robot.mass:.4g} kg, {robot.length:.4g} m, {len(place.hinges)} hinges, "
+        f"{len(place.servos)} driven",
+        f"axis: {len(robot.axis)} segments from {robot.axis[0].name} to {robot.axis[-1].name}; "
+        f"{counts or 'no'} hinges; root {robot.root}",
+    ]
+    for girdle in robot.girdles:
+        turns = ", ".join(hinge.turn for hinge in girdle.limb.hinges)
+        lines.append(
+            f"limbs L{girdle.name}, R{girdle.name} on {girdle.segment}: {turns}; reach {girdle.limb.reach:.3g} m"
+        )
+    return lines
+
+
+def _gait(draft: Draft, name: str) -> Pattern | None:
+    try:
+        return draft_gait(draft.robot, name)
+    except OutsideLimits as error:
+        print(f"note: {error}")
+        return None

@@ -1,0 +1,244 @@
+"""The tree of stiff parts and hinges of a loaded model, all joints at zero, in the frame of its file."""
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import mujoco
+import numpy as np
+
+from suchus.design.checks import require
+from suchus.errors import UnreadableFile
+from suchus.model.importing.drives import Drive
+from suchus.model.importing.loading import Loaded
+from suchus.model.importing.shapes import Piece, of_body
+
+NOTHING = 1e-9
+"""Masses up to this are none: MuJoCo was told to fill missing ones with a tenth of it [kg]."""
+JOINED = 1e-6
+"""Hinges nearer than this share of a robot's size sit in one point [-]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Joint:
+    """A hinge as its file has it."""
+
+    name: str
+    """In the file."""
+    axis: np.ndarray
+    """Unit vector about which the child turns, shape (3,) [-]."""
+    anchor: np.ndarray
+    """A point of the axis, shape (3,) [m]."""
+    zero: float
+    """What the file calls the angle of the posture in which it is drawn [rad]."""
+    range: tuple[float, float] | None
+    """Limits from that posture [rad]; None if it turns all round."""
+    drive: Drive | None
+    """What moves it; None if the file says nothing of drives."""
+    stiffness: float
+    """[N m/rad]."""
+    damping: float
+    """[N m s/rad]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Part:
+    """What moves as one: bodies without hinges between them."""
+
+    name: str
+    """Of its first body."""
+    parent: int
+    """Place of the part that carries it; -1 for the root."""
+    joints: tuple[Joint, ...]
+    """Between its parent and it, from the parent on."""
+    mass: float
+    """[kg]."""
+    com: np.ndarray
+    """Centre of mass, shape (3,) [m]."""
+    origin: np.ndarray
+    """Of its first body, shape (3,) [m]."""
+    pieces: tuple[Piece, ...]
+    """Its shapes."""
+    points: np.ndarray
+    """Origins of its bodies and sites, shape (n, 3) [m]."""
+    names: tuple[str, ...]
+    """Of its bodies."""
+
+    @property
+    def corners(self) -> np.ndarray:
+        """Points between which it lies: its anchors, its points, the corners of its shapes, shape (n, 3) [m]."""
+        ends = [np.array([[*joint.anchor] for joint in self.joints]).reshape(-1, 3), self.points]
+        return np.concatenate([*ends, *(piece.corners for piece in self.pieces)])
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Tree:
+    """Parts, a parent before its children."""
+
+    parts: tuple[Part, ...]
+    """The first one is the root."""
+    told: tuple[str, ...]
+    """What was not taken, in sentences."""
+
+    @property
+    def size(self) -> float:
+        """Greatest extent along an axis [m]."""
+        corners = np.concatenate([part.corners for part in self.parts])
+        return float(np.ptp(corners, axis=0).max())
+
+    @property
+    def mass(self) -> float:
+        """Of all parts [kg]."""
+        return sum(part.mass for part in self.parts)
+
+    @property
+    def com(self) -> np.ndarray:
+        """Centre of mass, shape (3,) [m]."""
+        return np.sum([part.mass * part.com for part in self.parts], axis=0) / self.mass
+
+    def children(self, place: int) -> list[int]:
+        """Return the places of the parts that a part carries."""
+        return [i for i, part in enumerate(self.parts) if part.parent == place]
+
+    def below(self, place: int) -> list[int]:
+        """Return the places of a part and of all that hangs on it, parents first."""
+        found = [place]
+        for i in range(place + 1, len(self.parts)):
+            if self.parts[i].parent in found:
+                found.append(i)
+        return found
+
+
+def tree_of(loaded: Loaded) -> Tree:
+    """Return the parts and hinges of what was loaded.
+
+    Raises:
+        UnreadableFile: masses are missing or absurd.
+    """
+    model = loaded.model
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    root, told = _root(model)
+    parts: list[Part] = []
+    part_of: dict[int, int] = {}
+    for body in range(root, model.nbody):
+        above = int(model.body_parentid[body])
+        if body != root and above not in part_of:
+            continue
+        here = _body(model, data, body, loaded, root=body == root)
+        if body == root or here.joints:
+            part_of[body] = len(parts)
+            parts.append(replace(here, parent=-1 if body == root else part_of[above]))
+        else:
+            part_of[body] = part_of[above]
+            parts[part_of[above]] = _fused(parts[part_of[above]], here)
+    tree = Tree(parts=tuple(_joined(parts)), told=(*loaded.told, *told))
+    return _weighed(tree)
+
+
+def _root(model: Any) -> tuple[int, tuple[str, ...]]:
+    """Return the body of the world that carries most hinges, and what else stands there."""
+    hinge = int(mujoco.mjtJoint.mjJNT_HINGE)
+    count = np.zeros(model.nbody, dtype=int)
+    for joint in range(model.njnt):
+        count[model.body_rootid[model.jnt_bodyid[joint]]] += model.jnt_type[joint] == hinge
+    count[0] = -1
+    root = int(np.argmax(count))
+    others = [
+        model.body(b).name or f"body {b}" for b in range(1, model.nbody) if model.body_parentid[b] == 0 and b != root
+    ]
+    told: list[str] = []
+    if others:
+        told.append(f"Beside the robot the file holds {', '.join(others[:4])}, which was not taken.")
+    held = [
+        model.joint(j).name for j in range(model.njnt) if model.jnt_bodyid[j] == root and model.jnt_type[j] == hinge
+    ]
+    if held:
+        told.append(
+            f"{', '.join(held)} hinges the root to the world and was not taken: in suchus the root is a free body."
+        )
+    return root, tuple(told)
+
+
+def _body(model: Any, data: Any, body: int, loaded: Loaded, *, root: bool) -> Part:
+    first, count = int(model.body_jntadr[body]), int(model.body_jntnum[body])
+    joints = () if root else tuple(_joint(model, data, j, loaded) for j in range(first, first + count))
+    sites = [data.site_xpos[s] for s in range(model.nsite) if model.site_bodyid[s] == body]
+    name = model.body(body).name or f"body_{body}"
+    return Part(
+        name=name,
+        parent=-1,
+        joints=joints,
+        mass=float(model.body_mass[body]) if model.body_mass[body] > NOTHING else 0.0,
+        com=data.xipos[body].copy(),
+        origin=data.xpos[body].copy(),
+        pieces=of_body(model, data, body),
+        points=np.array([data.xpos[body], *sites]),
+        names=(name,),
+    )
+
+
+def _joint(model: Any, data: Any, joint: int, loaded: Loaded) -> Joint:
+    name = model.joint(joint).name or f"joint_{joint}"
+    zero = float(model.qpos0[model.jnt_qposadr[joint]])
+    low, high = model.jnt_range[joint] - zero
+    dof = int(model.jnt_dofadr[joint])
+    return Joint(
+        name=name,
+        axis=data.xaxis[joint].copy(),
+        anchor=data.xanchor[joint].copy(),
+        zero=zero,
+        range=(float(low), float(high)) if model.jnt_limited[joint] else None,
+        drive=loaded.drives.get(name),
+        stiffness=float(np.ravel(model.jnt_stiffness[joint])[0]),
+        damping=float(np.ravel(model.dof_damping[dof])[0]),
+    )
+
+
+def _fused(one: Part, two: Part) -> Part:
+    """Return two parts that move as one."""
+    mass = one.mass + two.mass
+    com = (one.mass * one.com + two.mass * two.com) / mass if mass > 0 else one.com
+    return replace(
+        one,
+        mass=mass,
+        com=com,
+        pieces=one.pieces + two.pieces,
+        points=np.concatenate([one.points, two.points]),
+        names=one.names + two.names,
+    )
+
+
+def _joined(parts: list[Part]) -> list[Part]:
+    """Put hinges in one point into one joint: of the parts between them nothing is left but those with mass."""
+    size = max(float(np.ptp(np.concatenate([part.corners for part in parts]), axis=0).max()), 1e-9)
+    kept: dict[int, int] = {}
+    found: list[Part] = []
+    waiting: dict[int, tuple[int, tuple[Joint, ...]]] = {}
+    for place, part in enumerate(parts):
+        above, before = waiting.get(part.parent, (part.parent, ()))
+        joints = before + part.joints
+        children = [other for other in parts if other.parent == place]
+        empty = part.mass == 0.0 and len(children) == 1 and place > 0
+        if empty and np.linalg.norm(children[0].joints[0].anchor - joints[-1].anchor) < JOINED * size:
+            waiting[place] = (above, joints)
+            continue
+        kept[place] = len(found)
+        found.append(replace(part, joints=joints, parent=kept.get(above, -1)))
+    return found
+
+
+def _weighed(tree: Tree) -> Tree:
+    """Refuse masses that are missing or absurd; a few missing ones become a thousandth of the whole."""
+    names = [part.name for part in tree.parts if part.mass == 0.0]
+    if tree.mass == 0.0 or 2 * len(names) > len(tree.parts):
+        raise UnreadableFile(
+            f"{len(names)} of {len(tree.parts)} parts have no mass ({', '.join(names[:4])}): no <inertial> and no "
+            "shape that is read, as where there are only meshes; give each an <inertial>."
+        )
+    require("the imported robot", "mass", tree.mass, 1e-6, 1e5, "kg")
+    require("the imported robot", "size", tree.size, 1e-3, 100.0, "m")
+    if not names:
+        return tree
+    mended = tuple(replace(part, mass=part.mass or 1e-3 * tree.mass) for part in tree.parts)
+    told = f"{', '.join(names[:6])} had no mass; the draft gives each a thousandth of the robot's."
+    return Tree(parts=mended, told=(*tree.told, told))

@@ -1,0 +1,201 @@
+"""A first walk for a body that has none: foot paths that its limbs reach, at a height at which its belly is clear."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import lru_cache
+from math import cos, pi, radians
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from suchus.design import AnyRobot, Crank, Girdle, Limb, layout, servo_ranges
+from suchus.design.scale import gravity_time
+from suchus.errors import NotConverged, OutsideLimits, Unreachable
+from suchus.kinematics import limb as limb_kinematics
+from suchus.motion.any_body import check_limits, path, pattern_targets
+from suchus.motion.pattern import AxialWave, FootPath, Pattern, Sweep
+
+_STROKES = (0.2, 0.15, 0.1, 0.06)  # of the limb's reach, the longest that all girdles can take is taken
+_HEIGHTS = (0.5, 0.55, 0.6, 0.45, 0.65, 0.7, 0.4, 0.75, 0.8, 0.85, 0.35, 0.3, 0.9)  # of the reach, the first that fits
+_LIFT = 0.7  # of the stroke
+_WIDE = 0.3  # of the reach; limbs that hang down stand so far outside their hips at least, or the body rolls
+_OUTWARD = (0.55, 0.45, 0.35, 0.25, 0.15, 0.05, 0.65, 0.75, 0.0)
+_AHEAD = (0.0, 0.1, -0.1, 0.2, -0.2)
+_DUTY = 0.6
+_PERIOD = 6.0  # in gravity times; the shelf's walks take 4 to 10
+_STANCE = radians(80)  # that a crank turns through
+_BEND, _SHARE = radians(10), 0.3  # of a trunk joint; and at most this part of its range
+_CLOUD, _NEAR = 16000, 0.05  # postures that show what a limb reaches; how near a path comes to them, in reaches
+_SAMPLES, _JUMP, _MARGIN = 24, 0.7, 0.02  # of a path; rad between two of them; rad from a joint's stop
+_TRIES, _PATHS = 2, 80  # starts of a limb without a closed form; paths that are solved before the search ends
+_SPEED = 0.6  # of its servo's speed that a joint is asked for at most
+
+
+def draft_gait(robot: AnyRobot, name: str) -> Pattern:
+    """Return a walk that a robot's limbs can follow, in lengths of its own; of a body without limbs, an undulation.
+
+    Diagonal limbs go together; trunk joints bend a little with them. It is a beginning, not the best.
+
+    Args:
+        robot: any.
+        name: of the gait.
+
+    Raises:
+        OutsideLimits: no path was found that all limbs reach within their ranges.
+    """
+    girdles = layout(robot).robot.girdles
+    phases = tuple(0.5 * ((i + right) % 2) for i in range(len(girdles)) for right in (0, 1))
+    period = _PERIOD * gravity_time(robot.length)
+    gait = _walk(robot, name, phases, period) if girdles else _undulation(robot, name, period)
+    try:
+        gait = _slow_enough(robot, gait)
+        check_limits(robot, gait)
+    except NotConverged as error:
+        raise OutsideLimits(f"no walk was found for robot {robot.name!r}: {error}") from error
+    return gait
+
+
+def _walk(robot: AnyRobot, name: str, phases: tuple[float, ...], period: float) -> Pattern:
+    """Return the first walk of those that are tried, the longest strokes first."""
+    girdles = layout(robot).robot.girdles
+    clouds, budget = [_cloud(girdle.limb) for girdle in girdles], iter(range(_PATHS))
+    wave = _wave(robot)
+    for stroke in _STROKES:
+        for height in _heights(robot):
+            found = []
+            for girdle, cloud in zip(girdles, clouds, strict=True):
+                one = _does(robot, girdle, cloud, height, stroke, budget)
+                if one is None:
+                    break
+                found.append(one)
+            if len(found) == len(girdles):
+                return Pattern(
+                    name=name,
+                    period=period,
+                    duty_factor=_DUTY,
+                    limb_phases=phases,
+                    girdles=tuple(found),
+                    height=height,
+                    wave=wave,
+                )
+    raise OutsideLimits(
+        f"no walk was found for robot {robot.name!r}: its limbs reach no path of {_STROKES[-1]:g} of their reach "
+        "within their ranges; widen the ranges, or write a gait of its own."
+    )
+
+
+def _undulation(robot: AnyRobot, name: str, period: float) -> Pattern:
+    """Return a wave along the whole axis that grows toward the tail."""
+    least = float(np.abs(servo_ranges(robot)).min())
+    knots = (0.0, min(radians(15), _SHARE * least)), (1.0, min(radians(35), 0.5 * least))
+    wave = AxialWave(amplitude=knots, waves=1.0, phase=0.0)
+    return Pattern(name=name, period=period, duty_factor=_DUTY, limb_phases=(), girdles=(), height=0.0, wave=wave)
+
+
+def _heights(robot: AnyRobot) -> list[float]:
+    """Return heights of the hindmost hips [limb reach]: those first at which the belly is clear, cranks' own alone."""
+    body = layout(robot).robot
+    hind = body.girdles[-1]
+    if _is_crank(hind.limb):
+        _, depth = _down(hind.limb)
+        return [(depth * cos(_STANCE / 4) + hind.limb.foot.radius) / hind.limb.reach]
+    belly = max(shape.bottom for segment in body.axis for shape in segment.shapes) + hind.above
+    clear = [h for h in _HEIGHTS if h * hind.limb.reach > belly + 0.05 * hind.limb.reach]
+    return [*clear, *(h for h in sorted(_HEIGHTS, reverse=True) if h not in clear)]
+
+
+def _does(
+    robot: AnyRobot, girdle: Girdle, cloud: cKDTree, height: float, stroke: float, budget: Iterator[int]
+) -> FootPath | Sweep | None:
+    """Return what a girdle's limbs do at a height of the hindmost hips, if they can."""
+    limb = girdle.limb
+    if _is_crank(limb):
+        return Sweep(stance=_STANCE, down=_down(limb)[0])
+    hind = layout(robot).robot.girdles[-1]
+    down = height * hind.limb.reach - hind.above + girdle.above - limb.foot.radius
+    lift = round(_LIFT * stroke, 4)
+    closed = limb_kinematics.kind(limb) != "other"
+    forward, up = np.array([[stroke], [lift]]) * _cycle() * limb.reach
+    for outward, ahead in _beside(limb):
+        feet = np.stack([forward + ahead * limb.reach, np.full(_SAMPLES, outward * limb.reach), up - down], axis=-1)
+        near = closed or float(np.max(cloud.query(feet[:: _SAMPLES // 4])[0])) < _NEAR * limb.reach
+        if near and (closed or next(budget, None) is not None) and _follows(limb, feet):
+            return FootPath(stroke=stroke, lift=lift, outward=outward, ahead=ahead)
+    return None
+
+
+def _beside(limb: Limb) -> Iterator[tuple[float, float]]:
+    """Yield how far outside and ahead of the hip a foot may stand [limb reach]: as it is drawn first, if it stands."""
+    rest = limb_kinematics.forward(limb, np.zeros(len(limb.hinges))) / limb.reach
+    if rest[2] < -0.4:
+        for ahead in (0.0, 0.1, -0.1):
+            for outward in (max(rest[1], _WIDE), rest[1]):
+                yield float(np.clip(outward, -1, 1)), float(np.clip(rest[0] + ahead, -1, 1))
+    for ahead in _AHEAD:
+        for outward in _OUTWARD:
+            yield outward, ahead
+
+
+@lru_cache(maxsize=1)
+def _cycle() -> np.ndarray:
+    """Return a path of stroke 1 and lift 1 about its middle: ahead and up, shape (2, sample) [-]."""
+    does = FootPath(stroke=1.0, lift=1.0, outward=0.0, ahead=0.0)
+    timing = Pattern(
+        name="path",
+        period=1.0,
+        duty_factor=_DUTY,
+        limb_phases=(0.0, 0.5),
+        girdles=(does,),
+        height=0.0,
+        wave=AxialWave(amplitude=((0.0, 0.0),), waves=0.0, phase=0.0),
+    )
+    return np.asarray(path(timing, does, np.arange(_SAMPLES) / _SAMPLES).T)
+
+
+def _follows(limb: Limb, feet: np.ndarray) -> bool:
+    """Tell whether a limb brings its foot along a path within its ranges and without a jump."""
+    try:
+        angles = limb_kinematics.inverse(limb, feet, tries=_TRIES)
+    except (Unreachable, NotConverged):
+        return False
+    low, high = np.array([hinge.range or (-np.inf, np.inf) for hinge in limb.hinges]).T
+    inside = (angles > low + _MARGIN).all() and (angles < high - _MARGIN).all()
+    return bool(inside and np.abs(np.diff(angles, axis=0, append=angles[:1])).max() < _JUMP)
+
+
+def _cloud(limb: Limb) -> cKDTree:
+    """Return where a limb's foot can be, from the hip."""
+    low, high = np.array([hinge.range or (-pi, pi) for hinge in limb.hinges]).T
+    angles = np.random.default_rng(0).uniform(low, high, (_CLOUD, len(low)))
+    return cKDTree(limb_kinematics.forward(limb, angles))
+
+
+def _is_crank(limb: Limb) -> bool:
+    return len(limb.hinges) == 1 and isinstance(limb.hinges[0].drive, Crank)
+
+
+def _down(limb: Limb) -> tuple[float, float]:
+    """Return the angle at which the foot of a crank is lowest [rad], and how deep that is below the hip [m]."""
+    angles = np.linspace(-pi, pi, 721)
+    depth = -limb_kinematics.forward(limb, angles[:, None])[:, 2]
+    return float(angles[np.argmax(depth)]), float(depth.max())
+
+
+def _wave(robot: AnyRobot) -> AxialWave:
+    """Return a bend of the trunk with the limbs."""
+    place = layout(robot)
+    limits = np.abs(servo_ranges(robot)).min(axis=1)
+    knots = {
+        at: min(_BEND, _SHARE * float(limits[i])) if i in place.trunk_yaw else 0.0
+        for i, at in zip(place.axial_yaw, place.axial_place, strict=True)
+    }
+    return AxialWave(amplitude=tuple(sorted(knots.items())) or ((0.0, 0.0),), waves=0.0, phase=0.0)
+
+
+def _slow_enough(robot: AnyRobot, gait: Pattern) -> Pattern:
+    """Return a gait with a period at which no servo is asked for more speed than it has to spare."""
+    clock = np.arange(256) / 256
+    step = np.abs(np.diff(pattern_targets(robot, gait, clock), axis=0)).max(axis=0) * 256
+    place = layout(robot)
+    spare = np.array([_SPEED * place.robot.servo(name).speed for name in place.servos])
+    return replace(gait, period=float(np.round(max(gait.period, (step / spare).max()), 4)))
