@@ -2,7 +2,7 @@
 
 Usage: python tools/matrix.py [--only 3.12-lowest ...] [TESTS ...]
 
-Each environment gets the wheel, the extras ``viewer``, ``optimise`` and ``gym``, and pytest; ``suchus doctor`` and
+Each environment gets the wheel, the extras ``viewer``, ``optimise``, ``gym`` and ``usd``, and pytest; ``suchus doctor`` and
 ``suchus demo --no-browser`` run in an empty folder, then the tests named (by default the rooms that are quick and touch
 every library). Interpreters are those on the path and pyenv's; none is downloaded. The packages come by ``uv``, which
 can take the lowest versions. The table at the end says what worked; logs are in build/matrix.
@@ -24,11 +24,11 @@ from release.environment import ROOT, Environment, Failed, clean, run
 PYTHONS = ("3.11", "3.12", "3.13", "3.14")
 VERSIONS = {"newest": "highest", "lowest": "lowest-direct"}
 """Of packages, and what uv calls it."""
-EXTRAS = ("viewer", "optimise", "gym")
+EXTRAS = ("viewer", "optimise", "gym", "usd")
 TESTERS = ("pytest", "pytest-xdist", "hypothesis", "beartype")
 """Packages of the extra ``dev`` that tests need."""
 TESTS = ("blueprint", "control", "design", "faults", "kinematics", "metrics", "model", "motion", "paper", "record",
-         "shelves", "skin", "verdict", "replay", "hardware", "land", "release")  # fmt: skip
+         "shelves", "skin", "verdict", "replay", "hardware", "land")  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,6 +7,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass
 from importlib import import_module
 from importlib.metadata import PackageNotFoundError, distribution, version
@@ -193,14 +194,13 @@ def installed(name: str) -> str | None:
 def tried(*names: str) -> list[Trial]:
     """Return what trials came to, side by side, each in a process of its own."""
     command = [sys.executable, "-P", "-m", "suchus.cli.trial"]
-    running = [
-        subprocess.Popen([*command, name], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) for name in names
-    ]
-    try:
+    with ExitStack() as stack:
+        running = []
+        for name in names:
+            begun = subprocess.Popen([*command, name], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+            running.append(stack.enter_context(begun))
+            stack.callback(begun.kill)  # before its end is waited for
         return [_outcome(one) for one in running]
-    finally:
-        for one in running:
-            one.kill()
 
 
 def _outcome(process: "subprocess.Popen[str]") -> Trial:
