@@ -4,8 +4,8 @@ Usage: python tools/matrix.py [--only 3.12-lowest ...] [TESTS ...]
 
 Each environment gets the wheel, the extras ``viewer``, ``optimise``, ``gym`` and ``usd``, and pytest. In it run
 ``suchus doctor`` and ``suchus demo --no-browser``, in an empty folder, then the tests named (by default the rooms that
-are quick and touch every library). Interpreters are those on the path and pyenv's; none is downloaded. The packages come
-by ``uv``, which can take the lowest versions. A line for each says what worked; logs are in build/matrix.
+are quick and touch every library). Interpreters are those on the path and pyenv's; none is downloaded. The packages
+come by ``uv``, which can take the lowest versions. A line for each says what worked; logs are in build/matrix.
 """
 
 import argparse
