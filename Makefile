@@ -5,7 +5,7 @@ PIP := $(PY) -m pip --disable-pip-version-check --quiet
 export OMP_WAIT_POLICY := passive
 export PIP_CONSTRAINT := constraints.txt
 
-.PHONY: reproduce test check single double lint types contract tests mutate validate bench docs clean
+.PHONY: reproduce test check single double lint types contract tests mutate validate bench docs release matrix clean
 
 reproduce: .venv/.runtime
 	$(PY) -m suchus.cli reproduce --out out
@@ -57,6 +57,12 @@ bench: .venv/.dev
 docs: .venv/.dev
 	NO_MKDOCS_2_WARNING=1 $(PY) -m mkdocs build --strict
 	@echo site/index.html
+
+release: .venv/.dev # wheel and sdist, tried in fresh environments; nothing is published
+	$(PY) tools/make_release.py
+
+matrix: .venv/.dev # every Python that is here, newest and lowest versions
+	$(PY) tools/matrix.py $(TESTS)
 
 clean:
 	rm -rf .venv out build dist site

@@ -1,8 +1,9 @@
-"""What all tests share: hypothesis without deadlines, the same examples every time."""
+"""What all tests share: shapes that are checked, hypothesis without deadlines, the same examples every time."""
 
 import fcntl
 import os
 import pickle
+import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -10,13 +11,19 @@ from pathlib import Path
 import pytest
 import xarray as xr
 from hypothesis import settings
+from jaxtyping import install_import_hook
 
-from suchus.design import Crocodile
-from suchus.experiment import Outcome
-from suchus.experiments import EXPERIMENTS
-from suchus.gaits import GAITS
-from suchus.motion import Gait
-from suchus.robots import ROBOTS
+CHECKED = ("suchus.kinematics", "suchus.motion.phase", "suchus.motion.targets", "suchus.control", "suchus.metrics")
+"""Rooms whose arrays' shapes are checked at every call; production pays nothing."""
+assert not {*CHECKED} & {*sys.modules}, "imported before their shapes can be checked"
+install_import_hook(CHECKED, "beartype.beartype")  # jaxtyping's own option comes too late for us before its 0.3.6
+
+from suchus.design import Crocodile  # noqa: E402
+from suchus.experiment import Outcome  # noqa: E402
+from suchus.experiments import EXPERIMENTS  # noqa: E402
+from suchus.gaits import GAITS  # noqa: E402
+from suchus.motion import Gait  # noqa: E402
+from suchus.robots import ROBOTS  # noqa: E402
 
 if "PYTEST_XDIST_WORKER" in os.environ:  # there are as many workers as cores
     os.environ.setdefault("SUCHUS_THREADS", "1")

@@ -45,7 +45,7 @@ if TYPE_CHECKING:
     from suchus.robots import ROBOTS as ROBOTS
     from suchus.water import swim as swim
 
-__version__ = "0.1.0"
+    __version__: str
 
 _HOMES = {
     "Catalog": "suchus.catalog",
@@ -82,6 +82,8 @@ __all__ = ["__version__", *_HOMES]  # noqa: PLE0604 - the names are strings
 
 
 def __getattr__(name: str) -> Any:
+    if name == "__version__":
+        return import_module("importlib.metadata").version("suchus")
     if name not in _HOMES:
         raise AttributeError(f"suchus has no {name!r}; it has {', '.join(sorted(_HOMES))}.")
     return getattr(import_module(_HOMES[name]), name)

@@ -40,7 +40,7 @@ def one_sentence(capsys):
 
 BAD = {
     "--version x": "leave out 'x'",
-    "walk": "there is reproduce, run",
+    "walk": "there is demo, reproduce, run",
     "run": "wave",
     "run --quick": "comes first",
     "run wav": "Did you mean 'wave'?",

@@ -25,7 +25,7 @@ from typing import Any
 from suchus.cli import main
 
 _FENCE = re.compile(r'^```(\w+)(?: title="([^"]+)")?\n(.*?)^```$', re.S | re.M)
-_SETUP = ("git", "cd", "make", "python3", ".venv/bin/python", "pip", "source", "export")
+_SETUP = ("git", "cd", "make", "python3", ".venv/bin/python", "pip", "uvx", "source", "export")
 
 
 @dataclass(frozen=True, slots=True)

@@ -31,6 +31,7 @@ class Command:
 
 
 COMMANDS = (
+    Command("demo", "[--no-browser] [--out FILE.html]", "see a first walk", "suchus.cli.demo:demo"),
     Command(
         "reproduce",
         "[--out DIR] [--jobs N]",
@@ -81,6 +82,7 @@ COMMANDS = (
         "write a gait as timed servo angles",
         "suchus.cli.export_commands:export_commands",
     ),
+    Command("doctor", "", "say whether suchus can run here, and what is missing", "suchus.cli.doctor:doctor"),
     Command("list", "", "show the robots, gaits, faults and experiments", "suchus.cli.shelves:show"),
 )
 """Every command, in the order of the help."""

@@ -8,6 +8,7 @@ from suchus.cli.streams import drop_output, printable, settle
 from suchus.errors import Diverged, NotConverged, SuchusError, UnknownName, Unwritable
 
 _EXAMPLES = (
+    ("suchus demo", "a first walk, in the browser"),
     ("suchus reproduce", "everything, into out/report.html"),
     ("suchus run displacement --quick", "one experiment, in its short form"),
     ("suchus run displacement --help", "what can be changed about it"),

@@ -97,13 +97,26 @@ def _walk(words: Sequence[str]) -> int:
     named = [part for option, word in zip(("--robot", "--gait"), first, strict=False) for part in (option, word)]
     told = [*named, *words[len(first) :]]
     options: Walking = parse(Walking, "suchus view", told, about, [f.name for f in fields(Walking)])
+    return serve_walk(options)
+
+
+def serve_walk(options: Walking, opened: Callable[[str], object] | None = None) -> int:
+    """Let a robot walk in the browser until interrupted, and return 0.
+
+    Args:
+        options: who walks, how, and where it is served.
+        opened: called with the address once it can be opened.
+
+    Raises:
+        SuchusError: the walk cannot be walked, the viewer is not installed, or the port is taken.
+    """
     Session(options.robot, options.gait, timestep=options.timestep)  # refuses what cannot be walked, before a browser
     pages = _pages()
 
     def page(client: Any) -> Any:
         return pages.LivePage(client, Session(options.robot, options.gait, timestep=options.timestep))
 
-    return _serve(page, options, f"{options.robot.name}, {options.gait.name}")
+    return _serve(page, options, f"{options.robot.name}, {options.gait.name}", opened)
 
 
 def _replay(words: Sequence[str]) -> int:
@@ -138,7 +151,13 @@ def _pages() -> Any:
     return pages
 
 
-def _serve(page: Callable[[Any], Any], where: Where, title: str, **settings: Any) -> int:
+def _serve(
+    page: Callable[[Any], Any],
+    where: Where,
+    title: str,
+    opened: Callable[[str], object] | None = None,
+    **settings: Any,
+) -> int:
     pages = _pages()
     viewer = pages.Viewer(page, host=where.host, port=where.port, most=where.most, title=title, **settings)
     try:
@@ -148,6 +167,8 @@ def _serve(page: Callable[[Any], Any], where: Where, title: str, **settings: Any
                 f"Whoever reaches {where.host} and knows this address can look and meddle; nothing is encrypted.",
                 flush=True,
             )
+        if opened is not None:
+            opened(viewer.url)
         viewer.wait()
     except KeyboardInterrupt:
         print("ended.")

@@ -16,7 +16,7 @@ import numba
 import numpy as np
 from numba.core import event
 
-from suchus.flow import linking
+from suchus.flow import cache, linking
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -49,6 +49,8 @@ _FAST = {"contract", "reassoc", "nsz", "arcp"}
 _OPTIONS = {"fastmath": _FAST, "error_model": "numpy", "nogil": True, "no_cfunc_wrapper": True}
 
 linking.install()
+
+_FOLDER = cache.folder()
 
 
 class _Notice(event.Listener):  # type: ignore[misc]
@@ -84,15 +86,19 @@ event.register("numba:compile", _Notice())
 
 
 def _compile(function: Callable[P, R], parallel: bool) -> Callable[P, R]:
+    if _FOLDER is None:  # compile anew every time
+        made: Callable[P, R] = numba.njit(parallel=parallel, **_OPTIONS)(function)
+        return made
+    asked, numba.config.CACHE_DIR = numba.config.CACHE_DIR, str(_FOLDER)  # read when a kernel is made, for it alone
     try:
-        made: Callable[P, R] = numba.njit(cache=True, parallel=parallel, **_OPTIONS)(function)
-    except RuntimeError:  # neither this folder nor the user's cache can be written: compile anew every time
-        made = numba.njit(parallel=parallel, **_OPTIONS)(function)
+        made = numba.njit(cache=True, parallel=parallel, **_OPTIONS)(function)
+    finally:
+        numba.config.CACHE_DIR = asked
     return made
 
 
 def compiled(function: Callable[P, R]) -> Callable[P, R]:
-    """Compile ``function``; keep the code on disk (``NUMBA_CACHE_DIR`` moves it)."""
+    """Compile ``function``; keep the code on disk (see ``suchus.flow.cache``)."""
     return _compile(function, parallel=False)
 
 

@@ -1,0 +1,237 @@
+"""``suchus doctor``: whether suchus can run here, and what is missing, on one page."""
+
+import json
+import os
+import platform
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass
+from importlib import import_module
+from importlib.metadata import PackageNotFoundError, distribution, version
+from pathlib import Path
+from textwrap import fill
+from typing import Any
+
+from suchus import threads
+from suchus.cli.browser import browser, called
+from suchus.cli.commands import BadCommand
+from suchus.errors import SuchusError
+
+_USAGE = """usage: suchus doctor
+
+Say on one page whether suchus can run here: versions, threads, a short walk, the cache of compiled code, OpenGL,
+browser, extras. The exit code is 0 when it can run, and 2 when it cannot."""
+_EXTRAS = {
+    "viewer": "suchus view, and suchus demo live",
+    "optimise": "suchus optimise",
+    "capture": "tracks of DeepLabCut, SLEAP, LightningPose",
+    "gym": "Gymnasium tasks",
+    "usd": "suchus export --format usd",
+    "cluster": "studies on many machines",
+}
+"""What each extra is good for; those that only developers need are left out."""
+_PATIENCE = 300.0  # [s]; a cold disk and a slow machine
+_WIDE = 110  # columns
+
+
+class UnfitMachine(SuchusError):
+    """Surroundings in which suchus cannot run."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Finding:
+    """What was found of one thing."""
+
+    heading: str
+    """What was looked at."""
+    told: tuple[str, ...]
+    """What there is, in lines."""
+    wrong: str = ""
+    """What keeps suchus from running, and the remedy; empty if nothing does."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Trial:
+    """What a trial in a process of its own came to."""
+
+    found: Mapping[str, Any] | None
+    """What it printed; None if it failed."""
+    failure: str = ""
+    """Why it failed, in a line."""
+
+
+def doctor(words: Sequence[str]) -> int:
+    """Print the page and return 0.
+
+    Raises:
+        UnfitMachine: suchus cannot run here.
+        BadCommand: there were more words.
+    """
+    if any(word in ("-h", "--help") for word in words):
+        print(_USAGE)
+        return 0
+    if words:
+        raise BadCommand(f"suchus doctor takes no {words[0]!r}.")
+    walk, swim, draw = tried("walk", "swim", "draw")
+    found = [packages(), cores(), walking(walk), compiled(swim), places(), opengl(draw), browsing(), extras()]
+    print(page(found))
+    if wrong := [one.wrong for one in found if one.wrong]:
+        raise UnfitMachine(f"suchus cannot run here: {'; '.join(wrong)}.")
+    print("suchus can run here.")
+    return 0
+
+
+def page(found: Iterable[Finding]) -> str:
+    """Return what was found as text."""
+    head = f"suchus {installed('suchus') or '(not installed)'}, Python {platform.python_version()}, "
+    lines = [head + f"{platform.system()} {platform.machine()}", ""]
+    for one in found:
+        for number, text in enumerate(one.told):
+            label = one.heading if number == 0 else ""
+            lines.append(fill(text, _WIDE, initial_indent=f"{label:<10} ", subsequent_indent=" " * 11))
+    return "\n".join([*lines, ""])
+
+
+def packages(requires: Iterable[str] | None = None, at: Callable[[str], str | None] | None = None) -> Finding:
+    """Compare the packages that are there with those that suchus needs.
+
+    Args:
+        requires: what suchus needs, as its metadata say it; by default those of the installed package.
+        at: gives the version of a package, None where it is not there.
+    """
+    there, wrong = [], []
+    for need in _needs(requires, ""):
+        present = (at or installed)(need.name)
+        there.append(f"{need.name} {present or 'missing'}")
+        if present is None or not need.specifier.contains(present, prereleases=True):
+            wrong.append(f"{need.name} is {present or 'missing'}, and {need.specifier or 'any version'} is needed")
+    remedy = f"{', '.join(wrong)}: pip install --upgrade suchus" if wrong else ""
+    return Finding(heading="packages", told=(", ".join(there) or "unknown: suchus is not installed",), wrong=remedy)
+
+
+def extras(requires: Iterable[str] | None = None, at: Callable[[str], str | None] | None = None) -> Finding:
+    """Tell which extras are there, and how to get the others; the arguments are those of ``packages``."""
+    told = []
+    for extra, use in _EXTRAS.items():
+        needs = _needs(requires, extra)
+        present = [(at or installed)(need.name) for need in needs]
+        fits = all(p and n.specifier.contains(p, prereleases=True) for n, p in zip(needs, present, strict=True))
+        have = ", ".join(f"{need.name} {p}" for need, p in zip(needs, present, strict=True) if p)
+        state = f"yes, {have}" if needs and fits else f"no: pip install 'suchus[{extra}]'"
+        told.append(f"{extra:<9} {state} ({use})")
+    return Finding(heading="extras", told=tuple(told))
+
+
+def cores() -> Finding:
+    """Tell how many threads are used."""
+    asked = os.environ.get("SUCHUS_THREADS")
+    said = "SUCHUS_THREADS is not set" if asked is None else f"SUCHUS_THREADS={asked}"
+    try:
+        return Finding(heading="threads", told=(f"{threads.count()} of {os.cpu_count()} cores ({said})",))
+    except SuchusError as error:
+        return Finding(heading="threads", told=(said,), wrong=str(error).rstrip("."))
+
+
+def walking(trial: Trial) -> Finding:
+    """Judge the trial walk."""
+    if trial.found is None:
+        return Finding(heading="walking", told=("failed",), wrong=f"a short walk failed ({trial.failure})")
+    if not trial.found["finite"]:
+        return Finding(heading="walking", told=("not a number",), wrong="a short walk gave what is no number")
+    return Finding(heading="walking", told=(f"0.2 s of a crawl in {trial.found['seconds']:.1f} s",))
+
+
+def compiled(trial: Trial) -> Finding:
+    """Judge how the flow solver is compiled, and whether the code can be kept."""
+    if trial.found is None:
+        return Finding(heading="swimming", told=("failed",), wrong=f"a kernel cannot be compiled ({trial.failure})")
+    told = [f"numba compiles; its threads are those of {trial.found['layer']}"]
+    if trial.found["layer"] == "workqueue":
+        told.append("workqueue serves one flow at a time: install libgomp (the package libgomp1) for several")
+    if trial.found["missing"]:
+        told.append(f"this numba lacks {', '.join(trial.found['missing'])}: first runs may differ in their last bits")
+    if trial.found["folder"] is None:
+        told.append("compiled code cannot be kept, so every swim compiles for minutes: set NUMBA_CACHE_DIR")
+    else:
+        state = "there" if trial.found["compiled"] else "not there yet, the first swim takes a minute or two longer"
+        told.append(f"compiled code is kept in {trial.found['folder']} ({state})")
+    return Finding(heading="swimming", told=tuple(told))
+
+
+def places() -> Finding:
+    """Tell whether results can be written here."""
+    try:
+        with tempfile.TemporaryDirectory(dir=Path.cwd(), prefix=".suchus-"):
+            return Finding(heading="results", told=("this folder can be written to",))
+    except OSError as error:
+        return Finding(heading="results", told=(f"not into this folder ({error.strerror}): say --out DIR",))
+
+
+def opengl(trial: Trial) -> Finding:
+    """Tell of OpenGL, which suchus does without."""
+    there = f"off-screen by {trial.found['by']}" if trial.found else "none off-screen"
+    return Finding(heading="OpenGL", told=(f"{there}; suchus needs none, browsers draw with WebGL 2",))
+
+
+def browsing() -> Finding:
+    """Tell which browser opens."""
+    found = browser()
+    told = "none with a window: suchus demo writes a page" if found is None else called(found)
+    return Finding(heading="browser", told=(told,))
+
+
+def installed(name: str) -> str | None:
+    """Return the version of a package, None where it is not there."""
+    try:
+        return version(name)
+    except PackageNotFoundError:
+        return None
+
+
+def tried(*names: str) -> list[Trial]:
+    """Return what trials came to, side by side, each in a process of its own."""
+    command = [sys.executable, "-P", "-m", "suchus.cli.trial"]
+    with ExitStack() as stack:
+        running = []
+        for name in names:
+            begun = subprocess.Popen([*command, name], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+            running.append(stack.enter_context(begun))
+            stack.callback(begun.kill)  # before its end is waited for
+        return [_outcome(one) for one in running]
+
+
+def _outcome(process: "subprocess.Popen[str]") -> Trial:
+    try:
+        out, err = process.communicate(timeout=_PATIENCE)
+    except subprocess.TimeoutExpired:
+        return Trial(found=None, failure=f"no answer within {_PATIENCE:g} s")
+    if process.returncode < 0:
+        return Trial(found=None, failure=f"the process died of signal {-process.returncode}")
+    if process.returncode > 0:
+        return Trial(found=None, failure=(err.strip().splitlines() or ["no word"])[-1])
+    return Trial(found=json.loads(out.splitlines()[-1]))
+
+
+def _needs(requires: Iterable[str] | None, extra: str) -> list[Any]:
+    """Return what suchus, or one of its extras, needs here.
+
+    Raises:
+        UnfitMachine: what reads requirements is missing.
+    """
+    try:
+        parse = import_module("packaging.requirements").Requirement
+    except ModuleNotFoundError as error:
+        raise UnfitMachine("the package packaging is missing: pip install --upgrade suchus.") from error
+    if requires is None:
+        try:
+            requires = distribution("suchus").requires or ()
+        except PackageNotFoundError:
+            requires = ()
+    every = [parse(text) for text in requires]
+    plain = [one for one in every if one.marker is None or one.marker.evaluate({"extra": ""})]
+    if not extra:
+        return plain
+    return [one for one in every if one not in plain and one.marker and one.marker.evaluate({"extra": extra})]

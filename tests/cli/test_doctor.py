@@ -1,0 +1,139 @@
+"""`suchus doctor`: what it finds, on both sides of every judgement."""
+
+import json
+import subprocess
+import sys
+from types import SimpleNamespace
+
+import pytest
+
+from suchus.cli import doctor, main, trial
+from suchus.cli.doctor import Finding, Trial
+
+REQUIRES = ("numpy>=2.2,<3", "mujoco>=3.17,<5", 'viser>=1.1,<2; extra == "viewer"', 'mjviser; extra == "viewer"')
+WALKED = Trial(found={"seconds": 0.4, "finite": True})
+COMPILED = {"layer": "omp", "folder": "/cache/kernels-1", "compiled": 62, "missing": []}
+
+
+def at(**versions):
+    return versions.get
+
+
+@pytest.fixture
+def well(monkeypatch):
+    """A machine on which all trials succeed."""
+    trials = {"walk": WALKED, "swim": Trial(found=COMPILED), "draw": Trial(found=None, failure="no EGL")}
+    monkeypatch.setattr(doctor, "tried", lambda *names: [trials[name] for name in names])
+    monkeypatch.setattr(doctor, "packages", lambda: Finding(heading="packages", told=("numpy 2.4.6",)))
+    return trials
+
+
+def test_a_machine_that_is_well_has_its_page_and_exit_code_0(well, capsys):
+    assert main(["doctor"]) == 0
+    out = capsys.readouterr().out
+    for heading in ("packages", "threads", "walking", "swimming", "results", "OpenGL", "browser", "extras"):
+        assert f"\n{heading}" in out
+    assert out.endswith("suchus can run here.\n")
+    assert len(out.splitlines()) < 40
+    assert max(map(len, out.splitlines())) <= 110
+
+
+def test_a_walk_that_fails_is_the_sentence_and_exit_code_2(well, capsys):
+    well["walk"] = Trial(found=None, failure="ImportError: libc is too old")
+    assert main(["doctor"]) == 2
+    out, err = capsys.readouterr()
+    assert "can run here" not in out
+    assert "extras" in out
+    assert err == "suchus: suchus cannot run here: a short walk failed (ImportError: libc is too old).\n"
+
+
+def test_packages_in_their_ranges_are_well_and_others_are_named():
+    assert doctor.packages(REQUIRES, at(numpy="2.4.6", mujoco="3.17.0")).wrong == ""
+    assert doctor.packages(REQUIRES, at(numpy="2.4.6", mujoco="3.17.0")).told == ("numpy 2.4.6, mujoco 3.17.0",)
+    low = doctor.packages(REQUIRES, at(numpy="2.1.9", mujoco="5.0"))
+    assert "numpy is 2.1.9" in low.wrong
+    assert "mujoco is 5.0" in low.wrong
+    assert "mujoco is missing" in doctor.packages(REQUIRES, at(numpy="2.2")).wrong
+
+
+def test_extras_are_there_or_it_is_said_how_to_get_them():
+    (viewer, *others) = doctor.extras(REQUIRES, at(viser="1.1.1", mjviser="0.0.14")).told
+    assert viewer.startswith("viewer    yes, viser 1.1.1, mjviser 0.0.14")
+    assert all("no: pip install 'suchus[" in line for line in others)
+    assert "pip install 'suchus[viewer]'" in doctor.extras(REQUIRES, at(viser="1.1.1")).told[0]
+    assert "pip install 'suchus[viewer]'" in doctor.extras(REQUIRES, at(viser="2.0", mjviser="1")).told[0]
+
+
+def test_every_extra_that_is_told_is_one_of_the_package():
+    assert all(doctor._needs(None, extra) for extra in doctor._EXTRAS)
+
+
+def test_a_bad_number_of_threads_keeps_suchus_from_running(monkeypatch):
+    monkeypatch.setenv("SUCHUS_THREADS", "two")
+    assert "'two'" in doctor.cores().wrong
+    monkeypatch.setenv("SUCHUS_THREADS", "2")
+    assert doctor.cores().wrong == ""
+
+
+def test_a_walk_must_end_in_numbers():
+    assert doctor.walking(WALKED).wrong == ""
+    assert "no number" in doctor.walking(Trial(found={"seconds": 0.4, "finite": False})).wrong
+
+
+def test_what_is_said_of_compiled_code():
+    def told(**changes):
+        return " ".join(doctor.compiled(Trial(found=COMPILED | changes)).told)
+
+    assert told() == ("numba compiles; its threads are those of omp compiled code is kept in /cache/kernels-1 (there)")
+    assert "(not there yet" in told(compiled=0)
+    assert "set NUMBA_CACHE_DIR" in told(folder=None)
+    assert "libgomp1" in told(layer="workqueue")
+    assert "lacks _name" in told(missing=["_name"])
+    assert "cannot be compiled (x)" in doctor.compiled(Trial(found=None, failure="x")).wrong
+
+
+def test_a_folder_that_takes_nothing_is_said(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert "can be written" in doctor.places().told[0]
+    monkeypatch.setattr(doctor, "Path", SimpleNamespace(cwd=lambda: "/dev/null"))
+    assert "say --out DIR" in doctor.places().told[0]
+
+
+@pytest.fixture
+def python(monkeypatch):
+    """Let a line of Python stand for the trials."""
+
+    begin = subprocess.Popen
+
+    def set_to(code):
+        monkeypatch.setattr(
+            doctor.subprocess, "Popen", lambda words, **how: begin([sys.executable, "-I", "-S", "-c", code], **how)
+        )
+
+    return set_to
+
+
+def test_trials_that_answer_fail_die_and_hang(python, monkeypatch):
+    python("print('noise'); print('{\"by\": \"egl\"}')")
+    assert doctor.tried("draw", "draw") == [Trial(found={"by": "egl"})] * 2
+    python("import sys; print('first', file=sys.stderr); sys.exit('ImportError: no')")
+    assert doctor.tried("walk") == [Trial(found=None, failure="ImportError: no")]
+    python("import os; os.kill(os.getpid(), 11)")
+    assert doctor.tried("walk") == [Trial(found=None, failure="the process died of signal 11")]
+    python("import time; time.sleep(60)")
+    monkeypatch.setattr(doctor, "_PATIENCE", 0.2)
+    assert doctor.tried("walk") == [Trial(found=None, failure="no answer within 0.2 s")]
+
+
+def test_the_trial_walk_walks():
+    found = trial.walk()
+    assert found["finite"] is True
+    assert found["seconds"] > 0
+    assert json.loads(json.dumps(found)) == found
+
+
+def test_words_that_make_no_sense(capsys):
+    assert main(["doctor", "please"]) == 2
+    assert "takes no 'please'" in capsys.readouterr().err
+    assert main(["doctor", "--help"]) == 0
+    assert "exit code" in capsys.readouterr().out

@@ -1,0 +1,86 @@
+"""Where compiled kernels are kept: with their sources, in a place that can be written."""
+
+import ast
+from pathlib import Path
+
+import pytest
+
+from suchus.flow import cache
+
+ROOM = Path(cache.__file__).parent
+MAKERS = {"compiled", "threaded", "part", "threaded_part"}
+
+
+def decorated(file):
+    """Whether a file makes kernels, as its syntax says."""
+    tree = ast.parse(file.read_text(encoding="utf-8"))
+    calls = [node.func for node in ast.walk(tree) if isinstance(node, ast.Call)]
+    marks = [mark for node in ast.walk(tree) if isinstance(node, ast.FunctionDef) for mark in node.decorator_list]
+    return any(isinstance(one, ast.Name) and one.id in MAKERS for one in [*calls, *marks])
+
+
+def test_every_file_with_kernels_counts():
+    counted = set(cache.kernel_files())
+    assert {file for file in ROOM.glob("*.py") if decorated(file)} <= counted
+    assert ROOM / "record.py" not in counted
+
+
+@pytest.fixture
+def room(tmp_path, monkeypatch):
+    """A room with two kernel files, of which one calls the other, and one without."""
+    here = tmp_path / "a room"
+    here.mkdir()
+    (here / "a.py").write_text("from suchus.flow.compiled import PAD, part\n\n@part\ndef f(x):\n    return x\n")
+    (here / "b.py").write_text("from suchus.flow.compiled import compiled\nfrom a import f\n")
+    (here / "c.py").write_text("from suchus.flow.compiled import PAD\n")
+    monkeypatch.setattr(cache, "_HERE", here)
+    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "the user's"))
+    return here
+
+
+def test_an_edit_of_a_kernel_that_others_call_is_another_folder(room):
+    before = cache.folder()
+    assert before.parent == room / "__pycache__"
+    (room / "c.py").write_text("from suchus.flow.compiled import PAD, UNIT\n")
+    assert cache.folder() == before
+    (room / "a.py").write_text((room / "a.py").read_text().replace("return x", "return 2 * x"))
+    assert cache.folder() != before
+    assert before.is_dir()
+
+
+def test_where_the_package_cannot_be_written_the_users_folder_is_taken(room, tmp_path):
+    (room / "__pycache__").write_text("no folder")  # root may write everywhere, so that permissions would not do
+    assert cache.folder().parent == tmp_path / "the user's" / "suchus"
+
+
+def test_where_nothing_can_be_written_there_is_none(room, monkeypatch):
+    (room / "__pycache__").write_text("no folder")
+    monkeypatch.setenv("XDG_CACHE_HOME", "/dev/null")
+    assert cache.folder() is None
+
+
+def test_numbas_own_setting_comes_first_and_alone(room, tmp_path, monkeypatch):
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "asked"))
+    assert cache.folder().parent == tmp_path / "asked"
+    monkeypatch.setenv("NUMBA_CACHE_DIR", "/dev/null")
+    assert cache.folder() is None
+
+
+def test_the_latest_few_states_are_kept_and_nothing_else_is_touched(room):
+    (room / "__pycache__").mkdir()
+    (room / "__pycache__" / "a.pyc").write_text("x")
+    made = []
+    for n in range(7):
+        (room / "a.py").write_text(f"from suchus.flow.compiled import part\nN = {n}\n")
+        made.append(cache.folder())
+    kept = [one for one in made if one.is_dir()]
+    assert len(kept) == cache._KEPT
+    assert made[-1] in kept
+    assert (room / "__pycache__" / "a.pyc").exists()
+
+
+def test_without_a_home_there_is_still_an_answer(monkeypatch):
+    monkeypatch.delenv("XDG_CACHE_HOME", raising=False)
+    monkeypatch.delenv("HOME", raising=False)
+    assert cache.user_cache().name == "suchus"

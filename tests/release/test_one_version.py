@@ -1,0 +1,102 @@
+"""One place says the version and the ranges; whatever repeats them says the same."""
+
+import re
+import subprocess
+import sys
+import tomllib
+from importlib.metadata import version
+from pathlib import Path
+
+import pytest
+import yaml
+from packaging.requirements import Requirement
+from packaging.version import Version
+
+import suchus
+
+ROOT = Path(__file__).parents[2]
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+RECIPE = (ROOT / "recipe" / "recipe.yaml").read_text(encoding="utf-8")
+CONDA = {"mujoco": "mujoco-python", "matplotlib": "matplotlib-base"}
+"""What conda-forge calls packages that are called otherwise."""
+
+
+def releases(changelog):
+    """The versions of a changelog, the latest first, and what stands before the first."""
+    return re.findall(r"^## (\d\S*) \(\d{4}-\d\d-\d\d\)$", changelog, re.M)
+
+
+def test_the_latest_release_in_the_changelog_is_the_version():
+    found = releases((ROOT / "CHANGELOG.md").read_text(encoding="utf-8"))
+    assert found[0] == PROJECT["version"]
+    assert found == sorted(found, key=Version, reverse=True)
+
+
+def test_a_changelog_that_is_behind_is_seen():
+    assert releases("# C\n\n## Unreleased\n\n* x\n\n## 9.1.0 (2031-01-02)\n\n* y\n\n## 9.0.0 (2030-01-02)\n") == [
+        "9.1.0",
+        "9.0.0",
+    ]
+    assert releases("## Unreleased\n\n## 9.1.0\n") == []
+
+
+def test_the_citation_says_the_version():
+    assert f"\nversion: {PROJECT['version']}\n" in (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+
+
+def test_the_package_says_what_is_installed():
+    assert suchus.__version__ == version("suchus")
+    with pytest.raises(AttributeError, match="suchus has no '__versoin__'"):
+        _ = suchus.__versoin__
+
+
+def test_the_version_costs_no_start_up_time():
+    code = "import sys, suchus; print('importlib.metadata' in sys.modules)"
+    done = subprocess.run([sys.executable, "-I", "-S", "-c", f"import sys; sys.path[:0] = {sys.path!r}; {code}"],
+                          capture_output=True, text=True, check=True)  # fmt: skip
+    assert done.stdout.strip() == "False"
+
+
+def needs(texts):
+    """Names and ranges, as conda writes them."""
+    found = {}
+    for text in texts:
+        need = Requirement(text)
+        found[CONDA.get(need.name, need.name)] = {str(one) for one in need.specifier}
+    return found
+
+
+def run_needs(recipe):
+    """What a recipe wants at run time, without Python."""
+    every = dict(line.partition(" ")[::2] for line in yaml.safe_load(recipe)["requirements"]["run"])
+    every.pop("python")
+    return {name: set(ranges.split(",")) for name, ranges in every.items()}
+
+
+def test_the_recipe_says_the_version_and_the_ranges():
+    recipe = yaml.safe_load(RECIPE)
+    assert recipe["context"]["version"] == PROJECT["version"]
+    assert f">={recipe['context']['python_min']}" == PROJECT["requires-python"]
+    assert run_needs(RECIPE) == needs(PROJECT["dependencies"])
+    (script,) = recipe["build"]["python"]["entry_points"]
+    assert script == f"suchus = {PROJECT['scripts']['suchus']}"
+
+
+def test_a_recipe_with_another_range_is_seen():
+    assert run_needs(RECIPE.replace("numpy >=2.2", "numpy >=2.1")) != needs(PROJECT["dependencies"])
+    assert run_needs(RECIPE.replace("    - pillow >=11\n", "")) != needs(PROJECT["dependencies"])
+
+
+def test_every_tested_python_has_its_classifier():
+    named = {text.rpartition(" ")[2] for text in PROJECT["classifiers"] if re.search(r":: 3\.\d+$", text)}
+    lowest = PROJECT["requires-python"].removeprefix(">=")
+    assert min(named, key=Version) == lowest
+
+
+def test_constraints_lie_in_the_ranges():
+    pinned = dict(
+        line.split("==") for line in (ROOT / "constraints.txt").read_text(encoding="utf-8").splitlines() if "==" in line
+    )
+    for text in PROJECT["dependencies"]:
+        need = Requirement(text)
+        assert need.specifier.contains(pinned[{"jinja2": "Jinja2"}.get(need.name, need.name)]), need

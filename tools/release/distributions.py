@@ -1,0 +1,67 @@
+"""Wheel and sdist: built from the checkout, and what is in them."""
+
+import subprocess
+import tarfile
+import tomllib
+import zipfile
+from pathlib import Path
+from typing import Any
+
+from release.environment import ROOT, Environment, run
+
+PACKAGE = "src/suchus"
+_BESIDE = ("pyproject.toml", "README.md", "LICENSE", "CHANGELOG.md")
+
+
+def project() -> dict[str, Any]:
+    """Return what pyproject.toml says of the project."""
+    found: dict[str, Any] = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    return found
+
+
+def tagged() -> str:
+    """Return the tag of what is checked out, or nothing."""
+    words = ["git", "describe", "--exact-match", "--tags", "--match", "v*"]
+    done = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, check=False)
+    return done.stdout.strip()
+
+
+def build(tools: Environment, folder: Path) -> tuple[Path, Path | None]:
+    """Build into a folder, and return wheel and sdist.
+
+    The wheel is made from the sdist. Where the package ``build`` is not to be had, pip makes the wheel alone.
+    """
+    folder.mkdir(exist_ok=True)
+    for old in [*folder.glob("suchus-*.whl"), *folder.glob("suchus-*.tar.gz")]:
+        old.unlink()
+    if tools.pip_if_served("build"):
+        run([tools.bin / "python", "-m", "build", "--outdir", folder, ROOT], cwd=folder)
+    else:
+        print("The package build is not to be had: pip builds the wheel, and there is no sdist.")
+        run([tools.bin / "python", "-m", "pip", "wheel", "--no-deps", "--wheel-dir", folder, ROOT], cwd=folder)
+    (wheel,) = folder.glob("suchus-*.whl")
+    return wheel, next(iter(folder.glob("suchus-*.tar.gz")), None)
+
+
+def tracked() -> set[str]:
+    """Return the files of the package that git knows, with paths from the checkout."""
+    return set(run(["git", "ls-files", PACKAGE], cwd=ROOT).splitlines())
+
+
+def differences(wheel: Path, sdist: Path | None, sources: set[str]) -> list[str]:
+    """Return in sentences where the distributions hold other files than the sources.
+
+    Args:
+        wheel: to look into.
+        sdist: to look into, if there is one.
+        sources: paths that belong to the package, with ``src/`` before it.
+    """
+    with zipfile.ZipFile(wheel) as opened:
+        inside = {f"src/{name}" for name in opened.namelist() if name.startswith("suchus/") and not name.endswith("/")}
+    said = [f"{wheel.name} lacks {name}" for name in sorted(sources - inside)]
+    said += [f"{wheel.name} holds {name}, which git does not know" for name in sorted(inside - sources)]
+    if sdist is not None:
+        with tarfile.open(sdist) as packed:
+            names = {name.partition("/")[2] for name in packed.getnames()}
+        said += [f"{sdist.name} lacks {name}" for name in sorted((sources | set(_BESIDE)) - names)]
+    return said

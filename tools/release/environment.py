@@ -1,0 +1,82 @@
+"""A fresh environment: an interpreter with its packages, and commands that run in it away from the checkout."""
+
+import os
+import shlex
+import subprocess
+import sys
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+_OURS = ("PYTHONPATH", "PYTHONHOME", "PIP_CONSTRAINT", "VIRTUAL_ENV", "UV_CONSTRAINT", "SUCHUS_THREADS")
+
+
+class Failed(Exception):
+    """A command that ended badly; its output stands in the message."""
+
+
+def clean(path: str = "") -> dict[str, str]:
+    """Return the variables of a user who has no checkout.
+
+    Args:
+        path: a folder that comes first on ``PATH``.
+    """
+    kept = {name: value for name, value in os.environ.items() if name not in _OURS}
+    if path:
+        kept["PATH"] = path + os.pathsep + kept.get("PATH", "")
+    return kept
+
+
+def run(words: Sequence[str | Path], *, cwd: Path, env: dict[str, str] | None = None) -> str:
+    """Run a command and return what it printed on standard output.
+
+    Raises:
+        Failed: its exit code is not 0.
+    """
+    told = [str(word) for word in words]
+    done = subprocess.run(told, cwd=cwd, env=env or clean(), capture_output=True, text=True, check=False)
+    if done.returncode:
+        tail = "\n".join((done.stdout + done.stderr).splitlines()[-25:])
+        raise Failed(f"{shlex.join(told)} ended with {done.returncode}:\n{tail}")
+    return done.stdout
+
+
+@dataclass(frozen=True, slots=True)
+class Environment:
+    """A virtual environment in a folder."""
+
+    folder: Path
+    """Where it is."""
+    python: str = field(default=sys.executable)
+    """The interpreter that it is made with."""
+
+    @property
+    def bin(self) -> Path:
+        """Where its commands are."""
+        return self.folder / "bin"
+
+    def make(self) -> "Environment":
+        """Make it, with pip, if it is not there."""
+        if not (self.bin / "python").exists():
+            run([self.python, "-m", "venv", self.folder], cwd=self.folder.parent)
+        return self
+
+    def pip(self, *words: str | Path) -> None:
+        """Install."""
+        run([self.bin / "python", "-m", "pip", "--quiet", "install", *words], cwd=self.folder.parent)
+
+    def pip_if_served(self, name: str) -> bool:
+        """Install a tool and return True, or False where it is not to be had."""
+        try:
+            self.pip(name)
+        except Failed:
+            return False
+        return True
+
+    def suchus(self, *words: str, cwd: Path) -> tuple[str, float]:
+        """Run a command of suchus; return what it printed, and how long it took [s]."""
+        start = time.monotonic()
+        told = run([self.bin / "suchus", *words], cwd=cwd, env=clean(str(self.bin)))
+        return told, time.monotonic() - start
