@@ -181,7 +181,7 @@ def test_a_page_without_results_is_still_a_page():
 
 
 def test_a_folder_that_holds_no_outcome_is_refused(tmp_path):
-    with pytest.raises(UnreadableFile, match="cannot be read"):
+    with pytest.raises(UnreadableFile, match="there is no file"):
         load_result(tmp_path)
     (tmp_path / "outcome.json").write_text('{"figures": [], "tables": []}')
     with pytest.raises(IncompatibleRecord, match="lacks experiment"):

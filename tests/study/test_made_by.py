@@ -3,7 +3,7 @@
 import grimp
 
 from suchus.record import code_digest
-from suchus.study.store import MADE_BY, deciding
+from suchus.study.makers import MADE_BY, deciding
 
 HARMLESS = ("suchus.errors", "suchus.threads")  # words, and how many threads, which change no byte
 

@@ -3,7 +3,7 @@
 import numpy as np
 from jaxtyping import Float
 
-from suchus.kinematics.given import rows
+from suchus.kinematics.given import numbers, rows
 from suchus.kinematics.links import Numbers
 from suchus.paper.tables import Chain
 
@@ -19,7 +19,7 @@ def transform(a: float, alpha: float, d: float, theta: Numbers) -> Float[np.ndar
 
     Paper: Eq. (1).
     """
-    angle = np.asarray(theta, dtype=np.float64)
+    angle = numbers(theta, "theta", finite=False)
     s, c = np.sin(angle), np.cos(angle)
     sa, ca = np.sin(alpha), np.cos(alpha)
     T = np.zeros((*angle.shape, 4, 4))

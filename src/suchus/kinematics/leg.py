@@ -78,7 +78,7 @@ def inverse(
     Paper: Eqs (8) to (14), Fig. 7.
     """
     for name, sign in (("knee", knee), ("side", side)):
-        if sign not in (1, -1):
+        if not (isinstance(sign, int) and sign in (1, -1)):
             raise InvalidDesign(f"{name} is {sign!r}; 1 or -1 is allowed.")
     foot = rows(foot, 3, "the foot's place")
     points = np.ascontiguousarray(foot).reshape(-1, 3)

@@ -15,6 +15,7 @@ import numpy as np
 from jaxtyping import Float
 
 from suchus.errors import InvalidDesign, UnknownName
+from suchus.kinematics.given import numbers, together
 from suchus.kinematics.links import Numbers
 from suchus.paper.wave_constants import C1, C2, K
 
@@ -120,7 +121,7 @@ def as_printed(*, angular_frequency: float) -> Wave:
 
 def envelope(wave: Wave, x: Numbers) -> Float[np.ndarray, "*batch"]:
     """Return the amplitude [m] at ``x`` [m], measured from the head towards the tail."""
-    place = np.asarray(x, dtype=np.float64)
+    place = numbers(x, "the place", finite=False)
     return np.asarray((wave.linear + wave.quadratic * place) * place)
 
 
@@ -142,7 +143,7 @@ def displacement(wave: Wave, x: Numbers, t: Numbers) -> Float[np.ndarray, "*batc
 
 def slope(wave: Wave, x: Numbers, t: Numbers) -> Float[np.ndarray, "*batch"]:
     """Return the midline's slope dy/dx [-]; arguments as for ``displacement``."""
-    place, phase = np.asarray(x, dtype=np.float64), _phase(wave, x, t)
+    place, phase = numbers(x, "the place", finite=False), _phase(wave, x, t)
     growth = wave.linear + 2 * wave.quadratic * place
     return np.asarray(growth * np.sin(phase) + wave.wave_number * envelope(wave, place) * np.cos(phase))
 
@@ -154,5 +155,6 @@ def speed(wave: Wave, x: Numbers, t: Numbers) -> Float[np.ndarray, "*batch"]:
 
 
 def _phase(wave: Wave, x: Numbers, t: Numbers) -> np.ndarray:
-    place, time = np.asarray(x, dtype=np.float64), np.asarray(t, dtype=np.float64)
+    place, time = numbers(x, "the place", finite=False), numbers(t, "the time", finite=False)
+    together(place, time, what="place and time")
     return np.asarray(wave.wave_number * place + wave.sign * wave.angular_frequency * time)
