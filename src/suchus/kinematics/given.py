@@ -29,6 +29,18 @@ def numbers(values: Any, what: str, *, finite: bool = True) -> np.ndarray:
     return array
 
 
+def number(value: Any, what: str) -> float:
+    """Return one finite number.
+
+    Raises:
+        InvalidDesign: it is none, or more than one.
+    """
+    array = numbers(value, what)
+    if array.ndim:
+        raise InvalidDesign(f"{what} has the shape {array.shape}; a single number is needed.")
+    return float(array)
+
+
 def spread_over(values: Any, shape: tuple[int, ...], what: str) -> np.ndarray:
     """Return finite numbers as an array of a given shape: one for all, or one for each.
 

@@ -12,7 +12,7 @@ from jaxtyping import Float
 
 from suchus.errors import InvalidDesign, Unreachable
 from suchus.kinematics import dh
-from suchus.kinematics.given import numbers, rows, spread_over, together
+from suchus.kinematics.given import number, numbers, rows, spread_over, together
 from suchus.kinematics.links import Numbers, SpineLinks
 from suchus.paper.tables import SPINE_CHAIN, Chain
 
@@ -82,7 +82,7 @@ def jacobian(
         ahead: how far the point lies ahead of joint 5 along the head [m].
     """
     T = dh.frames(chain(spine), angles)
-    tip = T[..., -1, :3, 3] + ahead * T[..., -1, :3, 0]
+    tip = T[..., -1, :3, 3] + number(ahead, "ahead") * T[..., -1, :3, 0]
     axes = T[..., :3, 2]  # (*batch, joint, 3)
     moves = np.cross(axes, tip[..., None, :] - T[..., :3, 3])
     return np.swapaxes(np.concatenate([moves, axes], axis=-1), -1, -2)

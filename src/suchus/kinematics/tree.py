@@ -10,9 +10,9 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import AnyRobot, Layout, layout
+from suchus.design import AnyRobot, layout
 from suchus.design.layout import Axis
-from suchus.kinematics.given import numbers, rows
+from suchus.kinematics.given import numbers, rows, spread_over
 
 
 class Frames(NamedTuple):
@@ -65,7 +65,7 @@ def frames(robot: AnyRobot, angles: Float[np.ndarray, "*batch joint"]) -> Frames
 
 def rotation(axis: Axis, angle: Float[np.ndarray, "*batch"]) -> Float[np.ndarray, "*batch 3 3"]:
     """Return the matrices of turns about one axis of unit length (Rodrigues)."""
-    x, y, z = axis
+    x, y, z = spread_over(rows(axis, 3, "the axis"), (3,), "the axis")
     cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
     angle = numbers(angle, "the angle", finite=False)
     s, c = np.sin(angle)[..., None, None], np.cos(angle)[..., None, None]
@@ -99,15 +99,16 @@ def landmarks(robot: AnyRobot, angles: Float[np.ndarray, "*batch joint"]) -> Lan
 
 def centre_of_mass(robot: AnyRobot, angles: Float[np.ndarray, "*batch joint"]) -> Float[np.ndarray, "*batch 3"]:
     """Return the centre of mass of a posture [m]; arguments as for ``landmarks``."""
-    bodies, points, masses = _masses(layout(robot))
+    bodies, points, masses = _masses(robot)
     found = frames(robot, angles)
     at = found.places[..., bodies, :] + np.einsum("...bij,bj->...bi", found.turns[..., bodies, :, :], points)
     return np.asarray(np.einsum("b,...bi->...i", masses / masses.sum(), at))
 
 
 @lru_cache(maxsize=64)
-def _masses(place: Layout) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _masses(robot: AnyRobot) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return the body, the place in its frame [m] and the mass [kg] of every piece."""
+    place = layout(robot)
     segments = {segment.name: segment for segment in place.robot.axis}
     rows = []
     for i, body in enumerate(place.bodies):

@@ -14,12 +14,15 @@ from types import MappingProxyType
 import numpy as np
 from jaxtyping import Float
 
+from suchus.design.checks import Checks
 from suchus.errors import InvalidDesign, UnknownName
-from suchus.kinematics.given import numbers, together
+from suchus.kinds import show
+from suchus.kinematics.given import number, numbers, together
 from suchus.kinematics.links import Numbers
 from suchus.paper.wave_constants import C1, C2, K
 
 MILLIMETRE, CENTIMETRE = 1e-3, 1e-2
+_MOST = 1e12  # of a wave's numbers in SI units
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -38,11 +41,10 @@ class Wave:
     """Of omega t: -1 runs from head to tail, +1 from tail to head, as printed [-]."""
 
     def __post_init__(self) -> None:
-        if self.sign not in (1, -1):
-            raise InvalidDesign(f"wave.sign is {self.sign!r}; 1 or -1 is allowed.")
-        for name in ("linear", "quadratic", "wave_number", "angular_frequency"):
-            if not np.isfinite(getattr(self, name)):
-                raise InvalidDesign(f"wave.{name} is {getattr(self, name)!r}; a finite number is needed.")
+        with Checks("wave", self) as check:
+            check.that(self.sign in (1, -1), f"wave.sign is {show(self.sign)}; 1 or -1 is allowed")
+            for name in ("linear", "quadratic", "wave_number", "angular_frequency"):
+                check.number(name, -_MOST, _MOST, "")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -101,6 +103,7 @@ def reading(name: str, *, length: float, angular_frequency: float, sign: int = -
     """
     if name not in READINGS:
         raise UnknownName("reading of (20)", name, READINGS)
+    length, waves_per_body = number(length, "the length"), number(waves_per_body, "waves_per_body")
     if not (length > 0 and waves_per_body > 0 and np.isfinite(length * waves_per_body)):
         raise InvalidDesign(
             f"length is {length!r} m and waves_per_body {waves_per_body!r}; both must be positive and finite."

@@ -8,7 +8,6 @@ one that was stopped ends with the same bytes as one that was not.
 from collections.abc import Callable
 from hashlib import sha256
 from pathlib import Path
-from zipfile import BadZipFile
 
 import numpy as np
 
@@ -64,17 +63,25 @@ class Diary:
             UnreadableFile: they are broken, end too soon or belong to another swim.
         """
         try:
-            with np.load(path, allow_pickle=False) as file:
-                state = {key: file[key] for key in file.files}
+            state = store.arrays(path.read_bytes(), path)
+        except OSError as error:
+            reason = (error.strerror or str(error)).lower()
+            raise UnreadableFile(f"{path} cannot be read: {reason}; delete its checkpoint to start anew.") from error
+        try:
             until, whose = float(state.pop("until")), str(state.pop("about"))
-        except (OSError, ValueError, BadZipFile, EOFError, KeyError) as error:
-            raise UnreadableFile(f"{path} holds no notes of a swim ({error}); delete it and its checkpoint.") from error
+            pages = [(*key.split("/", 1), values) for key, values in state.items()]
+            lengths = {page: len(values) for page, _, values in pages}
+            sound = all(len(values) == lengths[page] for page, _, values in pages)
+            sound &= all(f"{page}/time" in state for page in lengths)
+        except (ValueError, TypeError, KeyError):
+            sound = False
+        if not sound:
+            raise UnreadableFile(f"{path} holds no notes of a swim; delete it and its checkpoint.")
         if whose != _short(about):
             raise UnreadableFile(f"{path} belongs to another swim; give that one's settings, or another checkpoint.")
         if until < time * (1 - 1e-12):
             raise UnreadableFile(f"{path} ends before its checkpoint does; delete both to start anew.")
-        for key, values in state.items():
-            page, name = key.split("/")
+        for page, name, values in pages:
             lines = self._pages.setdefault(page, [{} for _ in values])
             for line, value in zip(lines, values, strict=True):
                 line[name] = value
