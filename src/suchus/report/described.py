@@ -49,7 +49,6 @@ class _Verdict(_Told):
 
 class _Provenance(_Told):
     config_hash: str
-    versions: dict[str, str]
     seed: Any
     seconds: FiniteFloat
 

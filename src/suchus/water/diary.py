@@ -7,6 +7,7 @@ one that was stopped ends with the same bytes as one that was not.
 
 from collections.abc import Callable
 from hashlib import sha256
+from io import BytesIO
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +17,7 @@ from suchus.errors import UnreadableFile
 from suchus.flow import checkpoint as store
 from suchus.flow.progress import Bar
 from suchus.record import new_file
+from suchus.record.seal import holds, sealed
 
 Progress = Callable[[float], None]
 """Called with the share that is done."""
@@ -53,8 +55,10 @@ class Diary:
             Unwritable: naming the place.
         """
         state = {f"{page}/{name}": values for page in self._pages for name, values in self.page(page).items()}
-        with new_file(path) as draft, draft.open("wb") as file:
-            np.savez(file, allow_pickle=False, until=np.array(time), about=np.array(_short(about)), **state)
+        content = BytesIO()
+        np.savez(content, allow_pickle=False, until=np.array(time), about=np.array(_short(about)), **state)
+        with new_file(path) as draft:
+            draft.write_bytes(sealed(content.getvalue()))
 
     def load(self, path: Path, time: float, about: str) -> None:
         """Take up the notes until a time [s].
@@ -63,10 +67,13 @@ class Diary:
             UnreadableFile: they are broken, end too soon or belong to another swim.
         """
         try:
-            state = store.arrays(path.read_bytes(), path)
+            data = path.read_bytes()
         except OSError as error:
             reason = (error.strerror or str(error)).lower()
             raise UnreadableFile(f"{path} cannot be read: {reason}; delete its checkpoint to start anew.") from error
+        if holds(data) is not True:
+            raise UnreadableFile(f"{path} holds no notes of a swim, or is damaged; delete it and its checkpoint.")
+        state = store.arrays(data, path)
         try:
             until, whose = float(state.pop("until")), str(state.pop("about"))
             pages = [(*key.split("/", 1), values) for key, values in state.items()]
