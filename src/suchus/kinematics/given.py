@@ -29,6 +29,16 @@ def numbers(values: Any, what: str, *, finite: bool = True) -> np.ndarray:
     return array
 
 
+def check_sign(value: Any, what: str) -> None:
+    """Refuse what is neither 1 nor -1.
+
+    Raises:
+        InvalidDesign: it is something else, or several.
+    """
+    if not (isinstance(value, int) and value in (1, -1)):
+        raise InvalidDesign(f"{what} is {show(value)}; 1 or -1 is allowed.")
+
+
 def number(value: Any, what: str) -> float:
     """Return one finite number.
 

@@ -10,9 +10,9 @@ from collections.abc import Callable
 import numpy as np
 from jaxtyping import Float
 
-from suchus.errors import InvalidDesign, Unreachable
+from suchus.errors import Unreachable
 from suchus.kinematics import dh
-from suchus.kinematics.given import number, numbers, rows, spread_over, together
+from suchus.kinematics.given import check_sign, number, numbers, rows, spread_over, together
 from suchus.kinematics.links import Numbers, SpineLinks
 from suchus.paper.tables import SPINE_CHAIN, Chain
 
@@ -115,8 +115,7 @@ def inverse(
         Unreachable: a point cannot be reached with this first yaw angle, or is not a number.
         InvalidDesign: ``branch`` is neither 1 nor -1, an angle is no finite number, or shapes do not go together.
     """
-    if not (isinstance(branch, int) and branch in (1, -1)):
-        raise InvalidDesign(f"branch is {branch!r}; 1 or -1 is allowed.")
+    check_sign(branch, "branch")
     angles = candidates(spine, point, azimuth, first_yaw=first_yaw, branch=branch)
     lost = np.isnan(angles).any(axis=-1)
     if lost.any():

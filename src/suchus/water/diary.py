@@ -76,11 +76,11 @@ class Diary:
         state = store.arrays(data, path)
         try:
             until, whose = float(state.pop("until")), str(state.pop("about"))
-            pages = [(*key.split("/", 1), values) for key, values in state.items()]
+            pages = [(key.split("/")[0], key.split("/")[1], values) for key, values in state.items()]
             lengths = {page: len(values) for page, _, values in pages}
             sound = all(len(values) == lengths[page] for page, _, values in pages)
             sound &= all(f"{page}/time" in state for page in lengths)
-        except (ValueError, TypeError, KeyError):
+        except (ValueError, TypeError, LookupError):
             sound = False
         if not sound:
             raise UnreadableFile(f"{path} holds no notes of a swim; delete it and its checkpoint.")
