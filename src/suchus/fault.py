@@ -10,6 +10,7 @@ import numpy as np
 
 from suchus.design import AnyRobot, servo_names
 from suchus.errors import InvalidDesign, UnknownName
+from suchus.kinds import misfits
 
 SENSORS = (
     "servo_position",
@@ -164,6 +165,9 @@ def check_faults(faults: Sequence[Fault], robot: AnyRobot, duration: float) -> N
     for fault in faults:
         if not isinstance(fault, Fault):
             raise InvalidDesign(f"{str(fault)[:60]!r} is no fault; give values such as Limp('LF_yaw').")
+        wrong = [f"{field} {text}" for field, text in misfits(fault)]
+        if wrong:
+            raise InvalidDesign(f"a fault of the kind {fault.kind()} has {'; '.join(wrong)}.")
         fault.refuse(robot)
         if not (math.isfinite(fault.at) and 0.0 <= fault.at < duration):
             raise InvalidDesign(f"{fault} happens at {fault.at} s; the run lasts from 0 to {duration} s.")

@@ -18,12 +18,16 @@ def misfits(value: object) -> Iterator[tuple[str, str]]:
     for field in fields(value):  # type: ignore[arg-type]
         has, hint = getattr(value, field.name), hints[field.name]
         if not _fits(has, hint):
-            yield field.name, f"is {show(has)}; {_wanted(hint)} is needed"
+            wanted = "a smaller number" if _huge(has) and _fits(0.0, hint) else _wanted(hint)
+            yield field.name, f"is {show(has)}; {wanted} is needed"
 
 
 def show(value: object) -> str:
     """Return a value as messages repeat it: as it is written, but not at length."""
-    text = value.__name__ if isinstance(value, type) else repr(value)
+    try:
+        text = value.__name__ if isinstance(value, type) else repr(value)
+    except ValueError:  # Python writes no number of more than 4300 digits
+        text = "a number of thousands of digits"
     return text if len(text) <= _SHOWN else f"{text[: _SHOWN - 3]}..."
 
 
@@ -32,12 +36,18 @@ def _hints(kind: type) -> dict[str, Any]:
     return get_type_hints(kind)
 
 
+def _huge(value: Any) -> bool:
+    """Tell whether a number is whole and beyond what double precision holds, so that nothing can be done with it."""
+    return isinstance(value, Integral) and not -(2**1023) < int(value) < 2**1023
+
+
 def _fits(value: Any, hint: Any) -> bool:
     origin, inner = get_origin(hint), get_args(hint)
     if hint is Any:
         return True
     if hint in (float, int):
-        return isinstance(value, Real if hint is float else Integral) and not isinstance(value, bool)
+        number = isinstance(value, Real if hint is float else Integral) and not isinstance(value, bool)
+        return number and not _huge(value)
     if origin in (Union, UnionType):
         return any(_fits(value, one) for one in inner)
     if origin is Literal:

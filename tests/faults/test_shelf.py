@@ -241,6 +241,10 @@ def test_a_table_that_says_no_fault_is_refused_in_one_short_sentence(table, erro
         (Offset("LF_yaw", float("inf")), InvalidDesign, ["inf"]),
         (FAULTS["lost_foot"]("L"), UnknownName, ["limb", "LF, RF, LH, RH"]),
         ("limp", InvalidDesign, ["'limp' is no fault"]),
+        (Locked("LF_yaw", 0.0, 10**400), InvalidDesign, ["kind locked has angle", "a smaller number is needed"]),
+        (Limp("LF_yaw", -(10**5000)), InvalidDesign, ["kind limp has at", "a smaller number is needed"]),
+        (Limp("LF_yaw", None), InvalidDesign, ["at is None; a number is needed"]),
+        (Limp(["LF_yaw"]), InvalidDesign, ["joint is ['LF_yaw']; a text is needed"]),
     ],
 )
 def test_what_cannot_be_is_refused_in_one_sentence(fault, error, words):

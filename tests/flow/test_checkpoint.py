@@ -2,6 +2,8 @@
 
 import copy
 import dataclasses
+import io
+import pickle
 from functools import cached_property, lru_cache
 
 import numpy as np
@@ -13,7 +15,7 @@ from hypothesis import strategies as st
 from suchus import flow
 from suchus.errors import UnreadableFile
 from suchus.flow import fingerprint as prints
-from suchus.flow.checkpoint import MARK
+from suchus.flow.checkpoint import MARK, arrays
 from suchus.flow.fingerprint import fingerprint
 
 
@@ -186,3 +188,23 @@ def test_a_file_cut_short_is_found_and_said(saved):
     damaged.write_bytes(saved.read_bytes()[:-1])
     with pytest.raises(UnreadableFile, match="is damaged"):
         flow.Simulation(still_setup(step=0.05)).run(0.2, checkpoint=damaged, progress=False)
+
+
+def test_arrays_of_a_damaged_archive_are_as_they_were_or_refused(tmp_path):
+    content = io.BytesIO()
+    np.savez_compressed(content, a=np.arange(9.0), b=np.array("text"))
+    whole, refused = content.getvalue(), 0
+    for at in range(len(whole)):
+        for bit in (0, 3, 6):
+            damaged = whole[:at] + bytes([whole[at] ^ 1 << bit]) + whole[at + 1 :]
+            try:
+                found = arrays(damaged, tmp_path / "x.npz")
+            except UnreadableFile:
+                refused += 1
+                continue
+            sound = {"a": np.arange(9.0), "b": np.array("text")}  # a flipped count of arrays may hide one
+            assert all(np.array_equal(values, sound[name]) for name, values in found.items())
+    assert refused > len(whole)
+    for other in (b"", b"x", whole[:40], b"\x93NUMPY" + bytes(40), pickle.dumps(1)):
+        with pytest.raises(UnreadableFile, match="holds no arrays"):
+            arrays(other, tmp_path / "x.npz")

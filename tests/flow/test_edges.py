@@ -150,6 +150,7 @@ def test_a_run_until_no_time_is_refused(until):
 
 @pytest.mark.parametrize(("changes", "part"), [
     ({"stream": (float("nan"), 0.0)}, r"stream is \(nan, 0.0\) m/s; two finite numbers are needed"),
+    ({"viscosity": 10**400}, r"viscosity is 10+\.\.\.; a smaller number is needed"),
     ({"stream": (1.0,)}, r"stream is \(1.0,\); a tuple of 2"),
     ({"bodies": flow.Body}, "bodies is Body; a tuple, each a Body or a FreeBody, is needed"),
     ({"bodies": flow.Body(shape=CIRCLE)}, "bodies is .*; a tuple, each a Body or a FreeBody, is needed"),
@@ -158,6 +159,12 @@ def test_a_run_until_no_time_is_refused(until):
 def test_a_setup_that_cannot_be_says_what_is_wanted(changes, part):
     with pytest.raises(InvalidDesign, match=part):
         still_setup(**changes)
+
+
+@pytest.mark.parametrize("given", [{"origin": (0.0, 10**400)}, {"cells": (10**400, 8)}, {"cell": 10**5000}])
+def test_a_grid_of_numbers_that_nothing_can_hold_is_refused(given):
+    with pytest.raises(InvalidDesign, match=r"(each a number,|smaller number|each a whole number,) is needed"):
+        flow.Grid(**{"cells": (8, 8), "cell": 0.1, **given})
 
 
 def test_a_stream_that_is_lost_on_the_way_says_when():

@@ -79,7 +79,7 @@ def test_crawl_takes_pushes():
 @pytest.mark.parametrize(
     ("fields", "message"),
     [
-        ({"force": (1.0, 2.0)}, r"push.force is \(1.0, 2.0\); three numbers"),
+        ({"force": (1.0, 2.0)}, "push.force has 2 numbers; x, y, z need one each"),
         ({"force": (np.nan, 0.0, 0.0)}, "push.force"),
         ({"at": -1.0}, "push.at is -1 s; 0 to 86400 s is allowed"),
         ({"duration": 0.0}, "push.duration is 0 s"),

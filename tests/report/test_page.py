@@ -1,4 +1,6 @@
+import json
 import re
+import shutil
 from dataclasses import replace
 from html.parser import HTMLParser
 from types import SimpleNamespace
@@ -181,7 +183,7 @@ def test_a_page_without_results_is_still_a_page():
 
 
 def test_a_folder_that_holds_no_outcome_is_refused(tmp_path):
-    with pytest.raises(UnreadableFile, match="cannot be read"):
+    with pytest.raises(UnreadableFile, match="there is no file"):
         load_result(tmp_path)
     (tmp_path / "outcome.json").write_text('{"figures": [], "tables": []}')
     with pytest.raises(IncompatibleRecord, match="lacks experiment"):
@@ -191,6 +193,37 @@ def test_a_folder_that_holds_no_outcome_is_refused(tmp_path):
         load_result(tmp_path)
     (tmp_path / "outcome.json").write_text("[]")
     with pytest.raises(IncompatibleRecord, match="no outcome"):
+        load_result(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("place", "value"),
+    [
+        (("measures",), 3), (("measures", "way"), [1.0]), (("measures", "way", "value"), "long"),
+        (("verdicts",), {}), (("verdicts", 0), 1), (("verdicts", 0, "measured"), [1]),
+        (("verdicts", 0, "share"), "all"), (("verdicts", 0, "rule"), 1),
+        (("provenance", "seconds"), None), (("provenance", "config_hash"), 7),
+        (("title",), None), (("experiment",), ["x"]), (("figures",), 1), (("tables",), [1]), (("films",), "ab"),
+    ],
+)  # fmt: skip
+def test_an_outcome_of_other_kinds_makes_no_page(result, place, value, tmp_path):
+    shutil.copytree(result.folder, tmp_path / "question")
+    file = tmp_path / "question" / "outcome.json"
+    told = json.loads(file.read_text())
+    assert told["verdicts"]
+    inner = told
+    for key in place[:-1]:
+        inner = inner[key]
+    inner[place[-1]] = value
+    file.write_text(json.dumps(told))
+    with pytest.raises(IncompatibleRecord, match="is no outcome of suchus"):
+        load_result(file.parent)
+
+
+@pytest.mark.parametrize("text", ["[" * 5000, "1" * 5000, '{"a": "\ud800'])
+def test_an_outcome_that_cannot_be_read_is_a_sentence(tmp_path, text):
+    (tmp_path / "outcome.json").write_text(text, errors="surrogatepass")
+    with pytest.raises(UnreadableFile, match=r"outcome\.json (holds|is not)"):
         load_result(tmp_path)
 
 

@@ -16,7 +16,7 @@ from suchus.study.claim_measures import RUNS, asked_rules
 from suchus.study.claims_page import OUTCOME, SHARES, TABLE
 from suchus.study.claims_table import deciders, told, turned
 from suchus.study.claims_table import shares as shares_of
-from suchus.study.store import deciding
+from suchus.study.makers import deciding
 from suchus.verdict.shares import Share, digest
 
 EVERY = Catalog.beside

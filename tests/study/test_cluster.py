@@ -1,14 +1,23 @@
-"""A study on a cluster: the same bytes, also when a worker is killed."""
+"""Studies, searches and sweeps on a cluster: the same bytes, also when a worker or the scheduler is killed."""
 
+import json
 import os
-import signal
-import warnings
+import subprocess
+import sys
+import time
+from pathlib import Path
 
+import numpy as np
 import pytest
+import xarray as xr
 
 from suchus.cli import main
+from suchus.errors import IncompatibleRecord, InvalidDesign
 from suchus.land import Run
-from suchus.study import NoCluster, Study, Vary, conduct, connected
+from suchus.optimise import Aim, Optimisation, optimise
+from suchus.optimise.elsewhere import evaluate_on
+from suchus.optimise.evaluate import evaluate
+from suchus.study import NoCluster, Study, Vary, conduct, conduct_sweep, connected
 
 pytestmark = pytest.mark.filterwarnings("default")  # Dask's own
 
@@ -18,45 +27,140 @@ def asked(robot, crawl_gait):
     return Study(
         name="spread",
         run=Run(robot=robot, gait=crawl_gait, noise=0.01),
-        vary=(Vary(field="gait.hip_height", values=(0.088, 0.09, 0.3)),),
+        vary=(Vary(field="gait.hip_height", values=(0.088, 0.3)),),
         measure=("displacement",),
-        seeds=4,
+        seeds=2,
         chunk=1,
-        duration=2.0,
+        duration=1.1,
+        timestep=0.01,
     )
 
 
 @pytest.fixture
-def cluster():
-    distributed = pytest.importorskip("distributed", reason="Dask is not installed: pip install suchus[cluster]")
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        made = distributed.LocalCluster(
-            n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None, silence_logs=50
+def search(robot, crawl_gait):
+    return Optimisation(
+        name="small",
+        run=Run(robot=robot, gait=crawl_gait),
+        vary=(Vary(field="gait.stroke", low=0.0, high=0.12), Vary(field="gait.trunk_bend", low=0.0, high=2.3)),
+        aims=(Aim(name="displacement"),),
+        evaluations=4,
+        population=4,
+        duration=1.1,
+        timestep=0.01,
+    )
+
+
+class Machines:
+    """A scheduler and workers, each a process that can be killed."""
+
+    def __init__(self, folder, workers):
+        self._file, self._folder = folder / "scheduler.json", folder
+        self.scheduler = self._begun("scheduler", "--host", "127.0.0.1", "--port", "0")
+        self.workers = [self._begun("worker", "--nthreads", "1", "--no-nanny") for _ in range(workers)]
+        while not self._file.exists():
+            assert self.scheduler.poll() is None
+            time.sleep(0.05)
+        self.address = json.loads(self._file.read_text())["address"]
+
+    def _begun(self, what, *options):
+        words = [sys.executable, "-m", "dask", what, "--scheduler-file", str(self._file), "--no-dashboard", *options]
+        places = [str(Path(__file__).parent), *sys.path]  # a sweep's calculation stands where workers can import it
+        return subprocess.Popen(
+            words,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            cwd=self._folder,
+            env={**os.environ, "PYTHONPATH": os.pathsep.join(places), "SUCHUS_THREADS": "1"},
         )
-    with made:
-        yield made
+
+    def stop(self):
+        for process in (*self.workers, self.scheduler):
+            process.kill()
+            process.wait()
+
+
+@pytest.fixture
+def machines(tmp_path):
+    pytest.importorskip("distributed", reason="Dask is not installed: pip install suchus[cluster]")
+    (tmp_path / "machines").mkdir()
+    made = Machines(tmp_path / "machines", workers=2)
+    yield made
+    made.stop()
 
 
 def contents(folder):
     return {str(p.relative_to(folder)): p.read_bytes() for p in sorted(folder.rglob("*")) if p.is_file()}
 
 
-def test_two_workers_one_of_them_killed_give_the_same_bytes(asked, cluster, tmp_path):
-    killed = []
+def squared(number, progress):
+    time.sleep(0.2)
+    progress(1.0)
+    return xr.Dataset({"x": ("i", np.arange(3.0) * number**2, {"units": "m"})}, attrs={"of": number})
 
-    def kill_one(told):
-        if told.done >= 2 and not killed:
-            killed.append(next(iter(client.run(os.getpid).values())))
-            os.kill(killed[0], signal.SIGKILL)
 
-    with connected(cluster.scheduler_address) as client:
-        spread = conduct(asked, tmp_path / "spread", progress=kill_one, client=client)
-    assert killed
-    assert killed[0] != os.getpid()
-    assert int((spread.error != "").sum()) == 4
-    conduct(asked, tmp_path / "here")
-    assert contents(tmp_path / "spread") == contents(tmp_path / "here")
+def test_the_same_bytes_whatever_is_killed(asked, search, machines, tmp_path):
+    with connected(machines.address) as client:
+        client.wait_for_workers(2, timeout=60)
+        optimise(search, tmp_path / "search", client=client)
+        conduct(asked, tmp_path / "study", progress=lambda told: machines.workers[0].kill(), client=client)
+        assert len(client.nthreads()) == 1
+        with pytest.raises(NoCluster, match=r"the cluster was lost \(.*\); what was finished is kept"):
+            conduct_sweep(
+                "squares", squared, range(1, 6), tmp_path / "sweep", progress=lambda _: machines.stop(), client=client
+            )
+    assert 1 <= len(list((tmp_path / "sweep" / "parts").iterdir())) < 5
+    results = conduct_sweep("squares", squared, range(1, 6), tmp_path / "sweep")  # resumed, here
+    assert [(float(one.x[1]), one.attrs) for one in results] == [(float(n**2), {"of": n}) for n in range(1, 6)]
+    spread = conduct(asked, tmp_path / "study_here")
+    assert int((spread.error != "").sum()) == 2
+    optimise(search, tmp_path / "search_here")
+    conduct_sweep("squares", squared, range(1, 6), tmp_path / "sweep_here")
+    for name in ("study", "search", "sweep"):
+        assert contents(tmp_path / name) == contents(tmp_path / f"{name}_here")
+
+
+def test_a_generation_in_pieces_is_the_generation(search, monkeypatch):
+    shares = np.random.default_rng(0).uniform(-0.2, 1.2, (5, 2))  # some cannot be
+    monkeypatch.setattr("suchus.optimise.elsewhere.cores", lambda client: 3)
+    sizes, told = [], []
+
+    def spread(work, items, client, **how):
+        sizes.extend(len(item) for item in items)
+        return reversed([(i, work(item)) for i, item in enumerate(items)])
+
+    monkeypatch.setattr("suchus.optimise.elsewhere.spread", spread)
+    xr.testing.assert_identical(evaluate_on(None, search, shares, told.append), evaluate(search, shares))
+    assert (sizes, told) == ([2, 2, 1], [1 / 3, 2 / 3, 1.0])
+
+
+class Done:
+    """Of a sweep; on a class, since what a function is made with belongs to its store."""
+
+    numbers: list
+
+
+def halved(number, progress):
+    Done.numbers.append(number)
+    if len(Done.numbers) == 3:
+        raise KeyboardInterrupt
+    return xr.Dataset({"x": ((), number / 2)})
+
+
+def test_a_sweep_goes_on_with_what_is_missing_and_refuses_another(tmp_path):
+    Done.numbers = []
+    with pytest.raises(KeyboardInterrupt):
+        conduct_sweep("halves", halved, (1, 2, 3, 4), tmp_path / "s")
+    for name, work, items in (("halves", halved, (1, 2, 3)), ("halves", squared, (1, 2, 3, 4))):
+        with pytest.raises(IncompatibleRecord, match=r"differs from 'halves' in (items|work)"):
+            conduct_sweep(name, work, items, tmp_path / "s")
+    shares = []
+    whole = conduct_sweep("halves", halved, (1, 2, 3, 4), tmp_path / "s", progress=shares.append)
+    assert Done.numbers == [1, 2, 3, 3, 4]
+    assert shares == [0.75, 1.0]
+    assert [float(one.x) for one in whole] == [0.5, 1.0, 1.5, 2.0]
+    with pytest.raises(InvalidDesign, match="items is empty"):
+        conduct_sweep("none", halved, (), tmp_path / "none")
+    assert not (tmp_path / "none").exists()
 
 
 def test_a_scheduler_that_is_not_there_is_a_sentence(asked, tmp_path):
@@ -68,10 +172,25 @@ def test_a_scheduler_that_is_not_there_is_a_sentence(asked, tmp_path):
         pass
 
 
-def test_without_dask_the_sentence_says_how_to_install_it(tmp_path, monkeypatch, capsys):
-    monkeypatch.setitem(__import__("sys").modules, "distributed", None)
-    page = tmp_path / "s.toml"
-    page.write_text('measure = ["slip"]\n[[vary]]\nfield = "ground.grip"\nvalues = [1.0]\n')
-    assert main(["study", str(page), "--scheduler", "tcp://127.0.0.1:9", "--out", str(tmp_path / "s")]) == 2
+PAGE = """
+name = "s"
+{}
+[[vary]]
+field = "gait.stroke"
+low = 0.0
+high = 0.1
+"""
+
+
+@pytest.mark.parametrize(
+    "words",
+    [["study", "study.toml"], ["optimise", "search.toml"], ["run", "swim_sweep"]],
+)
+def test_each_command_takes_a_scheduler(words, tmp_path, monkeypatch, capsys):
+    (tmp_path / "study.toml").write_text(PAGE.format('measure = ["slip"]\ndesign = "latin"\nsamples = 2'))
+    (tmp_path / "search.toml").write_text(PAGE.format('aims = [{name = "displacement"}]'))
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    assert main([*words, "--scheduler", "tcp://127.0.0.1:9", "--out", "out"]) == 2
     assert "pip install 'suchus[cluster]'" in capsys.readouterr().err
-    assert not (tmp_path / "s").exists()
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["search.toml", "study.toml"]

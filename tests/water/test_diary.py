@@ -1,3 +1,4 @@
+import io
 from dataclasses import replace
 
 import numpy as np
@@ -5,6 +6,7 @@ import pytest
 
 from suchus.errors import UnreadableFile
 from suchus.motion import Swim
+from suchus.record.seal import sealed
 from suchus.water import Tether, free_swim, tether
 from suchus.water.diary import Diary
 
@@ -69,3 +71,33 @@ def test_notes_that_end_too_soon_are_refused(tmp_path):
     diary.save(tmp_path / "notes", 0.1, "a swim")
     with pytest.raises(UnreadableFile, match="ends before"):
         Diary().load(tmp_path / "notes", 0.5, "a swim")
+
+
+@pytest.mark.parametrize(
+    "values",
+    [{}, {"until": 1.0}, {"until": "x", "about": "a"}, {"until": 1.0, "about": "a", "no page": np.zeros(2)},
+     {"until": 1.0, "about": "a", "track/ends": np.zeros(2)}, {"until": 1.0, "about": "a", "track/time": 1.0},
+     {"until": 1.0, "about": "a", "track/time": np.zeros(2), "track/ends": np.zeros(3)}],
+)  # fmt: skip
+def test_notes_that_say_something_else_are_refused(tmp_path, values):
+    content = io.BytesIO()
+    np.savez(content, **values)
+    (tmp_path / "notes.npz").write_bytes(sealed(content.getvalue()))
+    with pytest.raises(UnreadableFile, match="holds no notes of a swim"):
+        Diary().load(tmp_path / "notes.npz", 0.0, "a swim")
+
+
+def test_a_flipped_bit_of_notes_is_found(tmp_path):
+    diary, file = Diary(), tmp_path / "notes"
+    diary.note("track", 0.1, ends=np.zeros(2))
+    diary.save(file, 0.1, "a swim")
+    whole = file.read_bytes()
+    for at in range(0, len(whole), 7):
+        file.write_bytes(whole[:at] + bytes([whole[at] ^ 1 << at % 8]) + whole[at + 1 :])
+        with pytest.raises(UnreadableFile, match="holds no notes of a swim"):
+            Diary().load(file, 0.1, "a swim")
+
+
+def test_notes_that_are_not_there_are_a_sentence(tmp_path):
+    with pytest.raises(UnreadableFile, match="cannot be read: no such file"):
+        Diary().load(tmp_path / "notes", 0.0, "a swim")

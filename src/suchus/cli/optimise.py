@@ -8,12 +8,13 @@ from typing import Annotated
 
 import tyro
 
-from suchus.cli.options import parse
+from suchus.cli.options import SCHEDULER, parse
 from suchus.cli.terminal import Bars, working
 from suchus.errors import UnknownName
 from suchus.optimise import AIMS, READY, Optimisation, Told, read_optimisation, write_results
 from suchus.optimise import optimise as conduct
 from suchus.record import check_name, check_writable, there
+from suchus.study import at_scheduler
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -28,6 +29,7 @@ class Options:
     """How many candidates each arm may try; more than before continues an earlier search."""
     seed: int | None = None
     """Of the search."""
+    scheduler: SCHEDULER = None
 
 
 def optimise(words: Sequence[str]) -> int:
@@ -43,8 +45,8 @@ def optimise(words: Sequence[str]) -> int:
     folder = options.out or Path("out") / "optimise" / spec.name
     check_writable(folder)
     cpu = time.process_time()
-    with working() as bars:
-        found = conduct(spec, folder, progress=_shown(bars, spec))
+    with at_scheduler(options.scheduler) as client, working() as bars:
+        found = conduct(spec, folder, progress=_shown(bars, spec), client=client)
         bars.say("the best are run again, drawn and packed for replay")
         result = write_results(spec, found, folder)
     for one in found:

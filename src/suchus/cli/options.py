@@ -36,6 +36,11 @@ CSV = Annotated[
     tyro.conf.arg(help="Write the record as CSV files too, into the folder csv beside it."),
 ]
 
+SCHEDULER = Annotated[
+    str | None,
+    tyro.conf.arg(help="Address of a Dask scheduler whose workers run it, as tcp://127.0.0.1:8786; the same bytes."),
+]
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Choice:

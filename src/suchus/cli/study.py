@@ -1,19 +1,18 @@
 """``suchus study FILE.toml``: many runs, their results into a folder that a kill cannot spoil."""
 
 from collections.abc import Callable, Sequence
-from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import tyro
 import xarray as xr
 
 from suchus.cli.commands import BadCommand
-from suchus.cli.options import CSV, TABLES, parse
+from suchus.cli.options import CSV, SCHEDULER, TABLES, parse
 from suchus.cli.terminal import working
 from suchus.record import check_name, there, write_tables
-from suchus.study import Claims, Told, answer_finished, conduct, conduct_claims, connected, read_study, write_claims
+from suchus.study import Claims, Told, answer_finished, at_scheduler, conduct, conduct_claims, read_study, write_claims
 from suchus.study.store import RESULTS, TABLE
 
 CLAIMS = "claims"
@@ -25,8 +24,7 @@ class Options:
 
     file: Annotated[Path, tyro.conf.Positional]
     """The study, a TOML file, or ``claims``, the article's claims over plausible designs; see docs/studies.md."""
-    scheduler: str | None = None
-    """Address of a Dask scheduler whose workers run it, as tcp://127.0.0.1:8786; the same bytes."""
+    scheduler: SCHEDULER = None
     samples: int | None = None
     """How many points a sampled study has; other than before is another study."""
     out: Path | None = None
@@ -55,7 +53,7 @@ def study(words: Sequence[str]) -> int:
     if options.out is None:
         check_name(asked.name, "study")
     folder = options.out or Path("out") / "studies" / asked.name
-    with _cluster(options) as client, working() as bars:
+    with at_scheduler(options.scheduler) as client, working() as bars:
         tell = bars.told(asked.name)
         results = conduct(asked, folder, progress=lambda told: tell(told, told.done / told.total), client=client)
     failed = {sample: str(error) for sample, error in enumerate(results.error.values) if error}
@@ -67,17 +65,13 @@ def study(words: Sequence[str]) -> int:
     return 0
 
 
-def _cluster(options: Options) -> AbstractContextManager[Any]:
-    return nullcontext() if options.scheduler is None else connected(options.scheduler)
-
-
 def _claims(options: Options) -> int:
     """Conduct the ready-made study of the claims, or finish it."""
     asked = Claims() if options.samples is None else Claims(samples=options.samples)
     folder = options.out or Path("out") / "studies" / CLAIMS
     if options.finished:
         return _answered(answer_finished(asked, folder), folder)
-    with _cluster(options) as client, working() as bars:
+    with at_scheduler(options.scheduler) as client, working() as bars:
         shown: dict[str, Callable[[object, float], None]] = {}
 
         def show(place: str, told: Told) -> None:

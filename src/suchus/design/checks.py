@@ -56,7 +56,7 @@ class Checks:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        if error is None or isinstance(error, (TypeError, ValueError, AttributeError)):
+        if error is None or isinstance(error, (TypeError, ValueError, AttributeError, OverflowError)):
             told = {complaint.field.partition("[")[0] for complaint in self._complaints}
             self._complaints += [Complaint(*misfit) for misfit in misfits(self._design) if misfit[0] not in told]
             if self._complaints:

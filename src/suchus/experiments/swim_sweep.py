@@ -1,7 +1,11 @@
 """How fast and how well does it swim at other frequencies, amplitudes and wavelengths?"""
 
 from collections.abc import Callable, Mapping
+from contextlib import nullcontext
 from dataclasses import dataclass, field, replace
+from functools import partial
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -13,8 +17,9 @@ from suchus.experiment import Experiment, Measure, Outcome, Progress, Simulated,
 from suchus.figures.swim_sweep import draw_check, draw_maps
 from suchus.motion import Swim
 from suchus.robots import ROBOTS
+from suchus.study import at_scheduler, conduct_sweep
 from suchus.verdict import Reading
-from suchus.water import MODELS, Swum, Tether, fit, free_swim, greatest, portion, printed_wave, scaled, survey
+from suchus.water import MODELS, Swum, Tether, fit, free_swim, greatest, printed_wave, scaled, survey
 
 _PEERS = (
     ("C. porosus, 0.3 to 1.1 m", "sustained speed rises with size, in body lengths it falls", "Elsworth et al. 2003"),
@@ -23,6 +28,22 @@ _PEERS = (
     ("Salamandra", "0.9 to 1.3 Hz swimming, 0.39 to 0.52 rad per joint", "simulation_parameters.py of its CPG"),
     ("Pleurobot", "0.8 rad per joint, a tenth of a cycle later each: one wave per body", "its published configuration"),
 )  # fmt: skip
+
+_SWUM = {"speed": "m/s", "cost_of_transport": "1", "gain": "1", "strouhal": "1", "slip": "1"}
+"""What is kept of a swim in the resolved flow, with units; see ``water.Swum``."""
+
+
+def swum_point(robot: Crocodile, setting: Tether, motion: Swim, progress: Callable[[float], None]) -> xr.Dataset:
+    """Return one swim from rest in the resolved flow in numbers.
+
+    Args:
+        robot: who swims.
+        setting: how finely and how long.
+        motion: how, at 1 Hz.
+        progress: called with the share that is done.
+    """
+    found = Swum.of(free_swim(robot, motion, setting, progress=progress), motion.frequency)._asdict()
+    return xr.Dataset({name: ((), found[name], {"units": unit}) for name, unit in _SWUM.items()})
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -57,6 +78,10 @@ class SwimSweep(Experiment):
     """Cells per body length of these [-]."""
     cycles: int = 6
     """Cycles of these; the last is measured [-]."""
+    keep: str = ""
+    """Folder for the points that are finished, from which an interrupted run goes on; empty keeps nothing."""
+    scheduler: str = ""
+    """Address of a Dask scheduler whose workers swim the points, as tcp://127.0.0.1:8786; empty swims them here."""
 
     def __post_init__(self) -> None:
         with Checks("swim_sweep", self) as check:
@@ -84,13 +109,17 @@ class SwimSweep(Experiment):
 
     def simulate(self, progress: Progress = silent) -> Simulated:
         """Work out the maps, and swim the points in the resolved flow."""
+        with at_scheduler(self.scheduler or None) as client:  # told before anything is calculated
+            return self._simulated(progress, client)
+
+    def _simulated(self, progress: Progress, client: Any) -> Simulated:
         told = staged(progress, "cheap models", 0.0, 0.3)
         fitted = {waves: self._fit(waves) for waves in {1.0, *self.waves}}
         by_frequency = self._map("frequency", self.frequencies, lambda a, f: scaled(fitted[1.0], a, f))
         told(0.5)
         by_waves = self._map("waves", self.waves, lambda a, w: scaled(fitted[w], a, 1.0))
         told(1.0)
-        points = self._points(staged(progress, "resolved flow", 0.3, 1.0))
+        points = self._points(staged(progress, "resolved flow", 0.3, 1.0), client)
         record = xr.merge([by_frequency, by_waves, points], join="exact", combine_attrs="no_conflicts")
         return Simulated(record=record, tables={"peers.md": self._peers(record)})
 
@@ -118,21 +147,19 @@ class SwimSweep(Experiment):
         }
         return xr.Dataset(data, coords=coords)
 
-    def _points(self, progress: Callable[[float], None]) -> xr.Dataset:
+    def _points(self, progress: Callable[[float], None], client: Any) -> xr.Dataset:
         """Return the points in the resolved flow, at 1 Hz, and what the cheap models say of them."""
         motions = [scaled(self._fit(waves), amplitude, 1.0) for amplitude, waves in self.points]
         setting = Tether(cells=self.cells, viscosity=self.robot.length**2 / self.reynolds, cycles=self.cycles, frames=1)
-        swum = []
-        for i, motion in enumerate(motions):
-            free = free_swim(self.robot, motion, setting, progress=portion(progress, i, len(motions)))
-            swum.append(Swum.of(free, 1.0))
+        work = partial(swum_point, self.robot, setting)
+        with nullcontext(self.keep) if self.keep else TemporaryDirectory() as folder:
+            swum = conduct_sweep(self.name(), work, motions, Path(folder), progress=progress, client=client)
         cheap = survey(self.robot, motions)
         data: dict[str, Any] = {
-            "point_speed": ("point", [one.speed for one in swum], {"units": "m/s"}),
-            "point_cost_of_transport": ("point", [one.cost_of_transport for one in swum], {"units": "1"}),
-            "point_gain": ("point", [one.gain for one in swum], {"units": "1"}),
-            "point_strouhal": ("point", [one.strouhal for one in swum], {"units": "1"}),
-            "point_slip": ("point", [one.slip for one in swum], {"units": "1"}),
+            **{
+                f"point_{name}": ("point", [float(one[name]) for one in swum], {"units": unit})
+                for name, unit in _SWUM.items()
+            },
             "point_model_speed": (("model", "point"), cheap.speed.values, {"units": "m/s"}),
             "point_amplitude": ("point", [amplitude for amplitude, _ in self.points], {"units": "1"}),
             "point_waves": ("point", [waves for _, waves in self.points], {"units": "1"}),

@@ -1,10 +1,13 @@
 """Checkpoints: the whole state of a simulation in one file, from which it goes on to the same bytes."""
 
+import struct
+import zlib
 from hashlib import sha256
 from io import BytesIO
 from pathlib import Path
 from time import monotonic
 from typing import Protocol
+from zipfile import BadZipFile
 
 import numpy as np
 
@@ -17,6 +20,10 @@ VERSION = 5
 
 MARK = b"suchus flow checkpoint %d\n" % VERSION
 """How the file begins; after it the SHA-256 of the rest, 32 bytes, and then the rest, arrays in NumPy's ``npz``."""
+
+_BROKEN = (OSError, ValueError, LookupError, TypeError, AttributeError, RuntimeError, ArithmeticError, MemoryError,
+           EOFError, SyntaxError, BadZipFile, zlib.error, struct.error)  # fmt: skip
+"""What zipfile, zlib and NumPy were seen to raise for damaged files, and those near them."""
 
 State = dict[str, np.ndarray]
 """What a simulation needs to go on, by name."""
@@ -73,11 +80,27 @@ def load(sim: Resumable, path: Path) -> None:
         raise UnreadableFile(
             f"the checkpoint {path} is damaged: its checksum is not that of what it holds. Delete it to start anew."
         )
-    with np.load(BytesIO(content), allow_pickle=False) as file:
-        state = {key: file[key] for key in file.files}
-    if str(state["setup"]) != fingerprint(sim.setup):
+    state = arrays(content, path)
+    if "setup" not in state or str(state["setup"]) != fingerprint(sim.setup):
         raise UnreadableFile(f"{path} was written by another setup; give that setup, or another file.")
     sim.resume(state)
+
+
+def arrays(content: bytes, path: Path) -> State:
+    """Return the arrays of NumPy's ``npz``.
+
+    Args:
+        content: of a file.
+        path: what it is called in messages.
+
+    Raises:
+        UnreadableFile: it holds something else, or is damaged.
+    """
+    try:
+        with np.load(BytesIO(content), allow_pickle=False) as file:
+            return {key: file[key] for key in file.files}
+    except _BROKEN as error:
+        raise UnreadableFile(f"{path} holds no arrays that can be read; delete it to start anew.") from error
 
 
 class Saver:

@@ -3,7 +3,7 @@
 import numpy as np
 from jaxtyping import Float
 
-from suchus.kinematics.given import rows
+from suchus.kinematics.given import number, numbers, rows
 from suchus.kinematics.links import Numbers
 from suchus.paper.tables import Chain
 
@@ -19,7 +19,8 @@ def transform(a: float, alpha: float, d: float, theta: Numbers) -> Float[np.ndar
 
     Paper: Eq. (1).
     """
-    angle = np.asarray(theta, dtype=np.float64)
+    a, alpha, d = number(a, "a"), number(alpha, "alpha"), number(d, "d")
+    angle = numbers(theta, "theta", finite=False)
     s, c = np.sin(angle), np.cos(angle)
     sa, ca = np.sin(alpha), np.cos(alpha)
     T = np.zeros((*angle.shape, 4, 4))

@@ -10,8 +10,8 @@ from collections.abc import Iterator
 import numpy as np
 from jaxtyping import Bool, Float
 
-from suchus.errors import InvalidDesign, Unreachable
-from suchus.kinematics.given import rows
+from suchus.errors import Unreachable
+from suchus.kinematics.given import check_sign, rows
 from suchus.kinematics.links import LegLinks
 
 CHUNK = 8192
@@ -78,8 +78,7 @@ def inverse(
     Paper: Eqs (8) to (14), Fig. 7.
     """
     for name, sign in (("knee", knee), ("side", side)):
-        if sign not in (1, -1):
-            raise InvalidDesign(f"{name} is {sign!r}; 1 or -1 is allowed.")
+        check_sign(sign, name)
     foot = rows(foot, 3, "the foot's place")
     points = np.ascontiguousarray(foot).reshape(-1, 3)
     angles = np.empty_like(points)

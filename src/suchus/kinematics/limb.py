@@ -15,6 +15,7 @@ from suchus.design import Girdle, Limb
 from suchus.design.layout import LIMB_AXES
 from suchus.errors import NotConverged, Unreachable
 from suchus.kinematics import leg as closed
+from suchus.kinematics.given import rows, spread_over
 from suchus.kinematics.tree import rotation
 
 _INSIDE = 1e-6  # of the reach; how far inside it a clipped target stays
@@ -66,7 +67,7 @@ def plain(girdle: Girdle) -> PlainLeg:
 
 def forward(limb: Limb, angles: Float[np.ndarray, "*batch hinge"]) -> Float[np.ndarray, "*batch 3"]:
     """Return the centre of the foot, from the hip [m]."""
-    return _chain(limb, angles)[0]
+    return _chain(limb, rows(angles, len(limb.hinges), "the limb's angles"))[0]
 
 
 def reach(limb: Limb) -> tuple[float, float]:
@@ -80,7 +81,7 @@ def reach(limb: Limb) -> tuple[float, float]:
 
 def within_reach(limb: Limb, foot: Float[np.ndarray, "*batch 3"]) -> Float[np.ndarray, "*batch 3"]:
     """Return points drawn along the line to the hip into what the limb reaches [m]."""
-    near, far = reach(limb)
+    foot, (near, far) = rows(foot, 3, "the foot's place"), reach(limb)
     away = np.linalg.norm(foot, axis=-1, keepdims=True)
     inside = _INSIDE * far
     return np.asarray(foot * np.clip(away, near + inside, far - inside) / np.maximum(away, inside))
@@ -108,14 +109,16 @@ def inverse(
         Unreachable: a point is nearer or farther than the limb can reach, or is not a number.
         NotConverged: no answer was found within the joints' limits, for chains without a closed form.
     """
-    points = np.asarray(foot, dtype=np.float64)
+    points = rows(foot, 3, "the foot's place")
     _refuse_far(limb, points)
     which = kind(limb)
     if which == "leg":
         links = limb.links
         base = np.stack([points[..., 1], points[..., 0], -points[..., 2]], axis=-1)
         return closed.inverse(PlainLeg(0.0, links[0].length, links[1].length, 0.0, 0.0), base)
-    return _arm(limb, points, np.asarray(plane)) if which == "arm" else _numeric(limb, points, start, tries)
+    if which == "arm":
+        return _arm(limb, points, spread_over(plane, points.shape[:-1], "the plane of the limb"))
+    return _numeric(limb, points, start, tries)
 
 
 def _refuse_far(limb: Limb, points: np.ndarray) -> None:
@@ -165,7 +168,7 @@ def _numeric(limb: Limb, points: np.ndarray, start: np.ndarray | None, tries: in
     low, high = np.array([hinge.range or (-np.inf, np.inf) for hinge in limb.hinges]).T
     flat = points.reshape(-1, 3)
     middle = np.where(np.isfinite(low), (low + high) / 2.0, 0.0)
-    given = np.broadcast_to(middle if start is None else start, (*points.shape[:-1], count)).reshape(-1, count)
+    given = spread_over(middle if start is None else start, (*points.shape[:-1], count), "the start").reshape(-1, count)
     found, error = _descend(limb, flat, np.clip(given, low, high), low, high)
     rng = np.random.default_rng(0)
     for _ in range(tries):

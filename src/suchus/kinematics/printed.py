@@ -7,6 +7,7 @@ import numpy as np
 from jaxtyping import Float
 
 from suchus.kinematics import dh
+from suchus.kinematics.given import numbers, rows
 from suchus.kinematics.links import LegLinks, Numbers, SpineLinks, TailPlates
 from suchus.paper.tables import LEG_CHAIN, Chain
 
@@ -29,7 +30,7 @@ def leg_by_matrix_subscripts(angles: Float[np.ndarray, "*batch 3"]) -> Float[np.
 
     Paper: Eqs (2) to (7).
     """
-    yaw, pitch, knee = np.moveaxis(angles, -1, 0)
+    yaw, pitch, knee = np.moveaxis(rows(angles, 3, "the leg's angles"), -1, 0)
     a0, a2, a3 = LEG_CHAIN.a[0], LEG_CHAIN.a[1], LEG_CHAIN.a[2]
     r = a2 * np.cos(pitch) + a3 * np.cos(pitch + knee)
     z = a2 * np.sin(pitch) + a3 * np.sin(pitch + knee)
@@ -41,6 +42,7 @@ def leg_inverse(leg: LegLinks, foot: Float[np.ndarray, "*batch 3"]) -> Float[np.
 
     Paper: Eqs (9) to (14).
     """
+    foot = rows(foot, 3, "the foot's place")
     u, v, w = foot[..., 0] - leg.hip_offset, foot[..., 1], foot[..., 2]
     rho = np.hypot(u, v)
     squared = rho**2 + w**2
@@ -58,6 +60,7 @@ def knee_by_wrong_side(leg: LegLinks, foot: Float[np.ndarray, "*batch 3"]) -> Fl
 
     Paper: Eq. (10).
     """
+    foot = rows(foot, 3, "the foot's place")
     ac = np.linalg.norm(foot - np.array([leg.hip_offset, 0.0, 0.0]), axis=-1)
     with np.errstate(divide="ignore", invalid="ignore"):
         cosine = (leg.femur**2 + leg.tibia**2 - ac**2) / (2 * leg.femur * ac)
@@ -69,6 +72,7 @@ def spine_position(spine: SpineLinks, angles: Float[np.ndarray, "*batch 5"]) -> 
 
     Paper: Eq. (15).
     """
+    angles = rows(angles, 5, "the spine's angles")
     s1, s2, s3, s4, _ = np.moveaxis(np.sin(angles), -1, 0)
     c1, c2, c3, c4, _ = np.moveaxis(np.cos(angles), -1, 0)
     x = c1 + c1 * c2 - s1 * s3 - c4 * s1 * s3 - c1 * s2 * s4 + c1 * c2 * c3
@@ -89,7 +93,7 @@ def cable_changes(tail: TailPlates, bend: Numbers) -> tuple[np.ndarray, np.ndarr
 
     Paper: Eq. (16).
     """
-    theta, count = np.asarray(bend, dtype=np.float64), tail.joints
+    theta, count = numbers(bend, "the bend", finite=False), tail.joints
     turn = tail.cord_spacing * np.sin(theta / (2 * count))
     sag = 2 * tail.gap * np.sin(theta / (4 * count)) ** 2
     return np.asarray(-(turn + sag)), np.asarray(turn - sag)
@@ -100,7 +104,7 @@ def cable_changes_shortened(tail: TailPlates, bend: Numbers) -> tuple[np.ndarray
 
     Paper: Eq. (17).
     """
-    turn = tail.cord_spacing * np.sin(np.asarray(bend, dtype=np.float64) / (2 * tail.joints))
+    turn = tail.cord_spacing * np.sin(numbers(bend, "the bend", finite=False) / (2 * tail.joints))
     return np.asarray(-turn), np.asarray(turn)
 
 
@@ -109,7 +113,7 @@ def servo_angle_deg(tail: TailPlates, bend: Numbers) -> np.ndarray:
 
     Paper: Eq. (18).
     """
-    sine = np.sin(np.asarray(bend, dtype=np.float64) / (2 * tail.joints))
+    sine = np.sin(numbers(bend, "the bend", finite=False) / (2 * tail.joints))
     return np.asarray(180 / (np.pi * tail.pulley) * tail.joints * tail.cord_spacing * sine)
 
 
@@ -118,7 +122,7 @@ def joint_positions(tail: TailPlates, bend: Numbers) -> Float[np.ndarray, "*batc
 
     Paper: Eq. (19).
     """
-    theta = np.asarray(bend, dtype=np.float64)[..., None]
+    theta = numbers(bend, "the bend", finite=False)[..., None]
     i = np.arange(1, tail.joints + 1)
     pitch = tail.plate + tail.gap
     both = (i - 1) * pitch * np.cos(i * theta / tail.joints)

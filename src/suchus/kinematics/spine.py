@@ -10,9 +10,9 @@ from collections.abc import Callable
 import numpy as np
 from jaxtyping import Float
 
-from suchus.errors import InvalidDesign, Unreachable
+from suchus.errors import Unreachable
 from suchus.kinematics import dh
-from suchus.kinematics.given import rows
+from suchus.kinematics.given import check_sign, number, numbers, rows, spread_over, together
 from suchus.kinematics.links import Numbers, SpineLinks
 from suchus.paper.tables import SPINE_CHAIN, Chain
 
@@ -82,7 +82,7 @@ def jacobian(
         ahead: how far the point lies ahead of joint 5 along the head [m].
     """
     T = dh.frames(chain(spine), angles)
-    tip = T[..., -1, :3, 3] + ahead * T[..., -1, :3, 0]
+    tip = T[..., -1, :3, 3] + number(ahead, "ahead") * T[..., -1, :3, 0]
     axes = T[..., :3, 2]  # (*batch, joint, 3)
     moves = np.cross(axes, tip[..., None, :] - T[..., :3, 3])
     return np.swapaxes(np.concatenate([moves, axes], axis=-1), -1, -2)
@@ -113,10 +113,9 @@ def inverse(
 
     Raises:
         Unreachable: a point cannot be reached with this first yaw angle, or is not a number.
-        InvalidDesign: ``branch`` is neither 1 nor -1.
+        InvalidDesign: ``branch`` is neither 1 nor -1, an angle is no finite number, or shapes do not go together.
     """
-    if branch not in (1, -1):
-        raise InvalidDesign(f"branch is {branch!r}; 1 or -1 is allowed.")
+    check_sign(branch, "branch")
     angles = candidates(spine, point, azimuth, first_yaw=first_yaw, branch=branch)
     lost = np.isnan(angles).any(axis=-1)
     if lost.any():
@@ -133,7 +132,11 @@ def candidates(
     branch: Numbers,
 ) -> Float[np.ndarray, "*batch 5"]:
     """Return what ``inverse`` returns, but NaN where nothing can be reached; the branch may be an array, too."""
-    return _closed_form(spine, point, np.asarray(azimuth), np.asarray(first_yaw), np.asarray(branch))[0]
+    point = rows(point, 3, "the point")
+    azimuth, first_yaw = numbers(azimuth, "the azimuth"), numbers(first_yaw, "the first yaw angle")
+    branch = numbers(branch, "the branch")
+    together(point[..., 0], azimuth, first_yaw, branch, what="point, azimuth, first yaw angle and branch")
+    return _closed_form(spine, point, azimuth, first_yaw, branch)[0]
 
 
 def least_bending(
@@ -154,7 +157,7 @@ def least_bending(
     """
     point = rows(point, 3, "the point")
     points = point.reshape(-1, 3)
-    heading = np.broadcast_to(np.asarray(azimuth, dtype=np.float64), point.shape[:-1]).reshape(-1, 1)
+    heading = spread_over(azimuth, point.shape[:-1], "the azimuth").reshape(-1, 1)
     parts = range(0, max(len(points), 1), CHUNK)
     solved = [_least_bent(spine, points[i : i + CHUNK], heading[i : i + CHUNK]) for i in parts]
     return np.concatenate(solved).reshape(*point.shape[:-1], 5)

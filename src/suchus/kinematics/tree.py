@@ -10,9 +10,9 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import AnyRobot, Layout, layout
+from suchus.design import AnyRobot, layout
 from suchus.design.layout import Axis
-from suchus.errors import InvalidDesign
+from suchus.kinematics.given import numbers, rows, spread_over
 
 
 class Frames(NamedTuple):
@@ -43,13 +43,10 @@ def frames(robot: AnyRobot, angles: Float[np.ndarray, "*batch joint"]) -> Frames
         angles: of every hinge [rad].
 
     Raises:
-        InvalidDesign: the number of angles is not the robot's number of hinges.
+        InvalidDesign: no array of numbers, or not one for each of the robot's hinges.
     """
     place = layout(robot)
-    if angles.shape[-1] != len(place.hinges):
-        raise InvalidDesign(
-            f"{angles.shape[-1]} angles were given; {robot.name} has {len(place.hinges)} hinges: give one for each."
-        )
+    angles = rows(angles, len(place.hinges), f"the posture of {robot.name}, an angle for each hinge,")
     where = {name: i for i, name in enumerate(place.hinges)}
     batch = angles.shape[:-1]
     places = np.zeros((*batch, len(place.bodies), 3))
@@ -68,8 +65,9 @@ def frames(robot: AnyRobot, angles: Float[np.ndarray, "*batch joint"]) -> Frames
 
 def rotation(axis: Axis, angle: Float[np.ndarray, "*batch"]) -> Float[np.ndarray, "*batch 3 3"]:
     """Return the matrices of turns about one axis of unit length (Rodrigues)."""
-    x, y, z = axis
+    x, y, z = spread_over(rows(axis, 3, "the axis"), (3,), "the axis")
     cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    angle = numbers(angle, "the angle", finite=False)
     s, c = np.sin(angle)[..., None, None], np.cos(angle)[..., None, None]
     return np.asarray(np.eye(3) + s * cross + (1.0 - c) * (cross @ cross))
 
@@ -82,10 +80,10 @@ def landmarks(robot: AnyRobot, angles: Float[np.ndarray, "*batch joint"]) -> Lan
         angles: of every hinge [rad].
 
     Raises:
-        InvalidDesign: the number of angles is not the robot's number of hinges.
+        InvalidDesign: no array of numbers, or not one for each of the robot's hinges.
     """
     place, found = layout(robot), frames(robot, angles)
-    feet = np.zeros((*angles.shape[:-1], len(place.limbs), 3))
+    feet = np.zeros((*found.places.shape[:-2], len(place.limbs), 3))
     for i, limb in enumerate(place.limbs):
         end = limb.girdle.limb.links[-1].end
         feet[..., i, :] = _point(found, limb.tip, (end[0], limb.side * end[1], end[2]))
@@ -101,15 +99,16 @@ def landmarks(robot: AnyRobot, angles: Float[np.ndarray, "*batch joint"]) -> Lan
 
 def centre_of_mass(robot: AnyRobot, angles: Float[np.ndarray, "*batch joint"]) -> Float[np.ndarray, "*batch 3"]:
     """Return the centre of mass of a posture [m]; arguments as for ``landmarks``."""
-    bodies, points, masses = _masses(layout(robot))
+    bodies, points, masses = _masses(robot)
     found = frames(robot, angles)
     at = found.places[..., bodies, :] + np.einsum("...bij,bj->...bi", found.turns[..., bodies, :, :], points)
     return np.asarray(np.einsum("b,...bi->...i", masses / masses.sum(), at))
 
 
 @lru_cache(maxsize=64)
-def _masses(place: Layout) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _masses(robot: AnyRobot) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return the body, the place in its frame [m] and the mass [kg] of every piece."""
+    place = layout(robot)
     segments = {segment.name: segment for segment in place.robot.axis}
     rows = []
     for i, body in enumerate(place.bodies):

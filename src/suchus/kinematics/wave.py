@@ -14,11 +14,15 @@ from types import MappingProxyType
 import numpy as np
 from jaxtyping import Float
 
+from suchus.design.checks import Checks
 from suchus.errors import InvalidDesign, UnknownName
+from suchus.kinds import show
+from suchus.kinematics.given import number, numbers, together
 from suchus.kinematics.links import Numbers
 from suchus.paper.wave_constants import C1, C2, K
 
 MILLIMETRE, CENTIMETRE = 1e-3, 1e-2
+_MOST = 1e12  # of a wave's numbers in SI units
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -37,11 +41,10 @@ class Wave:
     """Of omega t: -1 runs from head to tail, +1 from tail to head, as printed [-]."""
 
     def __post_init__(self) -> None:
-        if self.sign not in (1, -1):
-            raise InvalidDesign(f"wave.sign is {self.sign!r}; 1 or -1 is allowed.")
-        for name in ("linear", "quadratic", "wave_number", "angular_frequency"):
-            if not np.isfinite(getattr(self, name)):
-                raise InvalidDesign(f"wave.{name} is {getattr(self, name)!r}; a finite number is needed.")
+        with Checks("wave", self) as check:
+            check.that(self.sign in (1, -1), f"wave.sign is {show(self.sign)}; 1 or -1 is allowed")
+            for name in ("linear", "quadratic", "wave_number", "angular_frequency"):
+                check.number(name, -_MOST, _MOST, "")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -100,6 +103,7 @@ def reading(name: str, *, length: float, angular_frequency: float, sign: int = -
     """
     if name not in READINGS:
         raise UnknownName("reading of (20)", name, READINGS)
+    length, waves_per_body = number(length, "the length"), number(waves_per_body, "waves_per_body")
     if not (length > 0 and waves_per_body > 0 and np.isfinite(length * waves_per_body)):
         raise InvalidDesign(
             f"length is {length!r} m and waves_per_body {waves_per_body!r}; both must be positive and finite."
@@ -120,7 +124,7 @@ def as_printed(*, angular_frequency: float) -> Wave:
 
 def envelope(wave: Wave, x: Numbers) -> Float[np.ndarray, "*batch"]:
     """Return the amplitude [m] at ``x`` [m], measured from the head towards the tail."""
-    place = np.asarray(x, dtype=np.float64)
+    place = numbers(x, "the place", finite=False)
     return np.asarray((wave.linear + wave.quadratic * place) * place)
 
 
@@ -142,7 +146,7 @@ def displacement(wave: Wave, x: Numbers, t: Numbers) -> Float[np.ndarray, "*batc
 
 def slope(wave: Wave, x: Numbers, t: Numbers) -> Float[np.ndarray, "*batch"]:
     """Return the midline's slope dy/dx [-]; arguments as for ``displacement``."""
-    place, phase = np.asarray(x, dtype=np.float64), _phase(wave, x, t)
+    place, phase = numbers(x, "the place", finite=False), _phase(wave, x, t)
     growth = wave.linear + 2 * wave.quadratic * place
     return np.asarray(growth * np.sin(phase) + wave.wave_number * envelope(wave, place) * np.cos(phase))
 
@@ -154,5 +158,6 @@ def speed(wave: Wave, x: Numbers, t: Numbers) -> Float[np.ndarray, "*batch"]:
 
 
 def _phase(wave: Wave, x: Numbers, t: Numbers) -> np.ndarray:
-    place, time = np.asarray(x, dtype=np.float64), np.asarray(t, dtype=np.float64)
+    place, time = numbers(x, "the place", finite=False), numbers(t, "the time", finite=False)
+    together(place, time, what="place and time")
     return np.asarray(wave.wave_number * place + wave.sign * wave.angular_frequency * time)

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from suchus.design import AnyRobot
-from suchus.design.checks import require
+from suchus.design.checks import Checks
 from suchus.errors import InvalidDesign, UnknownName
 from suchus.model import compile_model
 
@@ -29,11 +29,10 @@ class Push:
     """Name of the body that is pushed, as ``pelvis``, ``thorax``, ``LF_tibia`` or ``tail_root``."""
 
     def __post_init__(self) -> None:
-        parts = list(self.force)
-        if len(parts) != 3 or not all(abs(part) <= MOST for part in parts):
-            raise InvalidDesign(f"push.force is {self.force}; three numbers of {-MOST:g} to {MOST:g} N are allowed.")
-        require("push", "at", self.at, 0.0, 86400.0, "s")
-        require("push", "duration", self.duration, 1e-3, 86400.0, "s")
+        with Checks("push", self) as check:
+            check.each("force", ("x", "y", "z"), -MOST, MOST, "N")
+            check.number("at", 0.0, 86400.0, "s")
+            check.number("duration", 1e-3, 86400.0, "s")
 
     def share(self, start: float, end: float) -> float:
         """Return how much of the time from ``start`` to ``end`` the push lasts, 0 to 1 [-]."""

@@ -1,6 +1,6 @@
 """Whether an optimum is one: with a finer time step, on other ground, begun otherwise; and what lies around it."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,6 +12,8 @@ from suchus.optimise.evaluate import columns, evaluate, measure
 from suchus.optimise.spec import Optimisation
 
 FINE = 0.002  # [s]; the time step of results
+Evaluate = Callable[..., xr.Dataset]
+"""Tries candidates; see ``evaluate.evaluate``."""
 _NEAR = (-0.1, -0.05, 0.0, 0.05, 0.1)  # of each range
 
 
@@ -72,8 +74,13 @@ def _under(run: Run, condition: Condition) -> Run:
     return with_values(other, {"ground.grip": run.ground.grip * condition.grip})
 
 
-def around(spec: Optimisation, best: np.ndarray) -> xr.Dataset:
+def around(spec: Optimisation, best: np.ndarray, tried: Evaluate = evaluate) -> xr.Dataset:
     """Move each field alone to both sides of the best, by a twentieth and a tenth of its range.
+
+    Args:
+        spec: the search.
+        best: the shares of the ranges at which the best lies.
+        tried: what tries candidates.
 
     Returns:
         ``share``, ``aim_...``, ``limit_...``, ``status`` over ``moved`` (which field) and ``step``.
@@ -82,7 +89,7 @@ def around(spec: Optimisation, best: np.ndarray) -> xr.Dataset:
     points = np.array([best] * (len(fields) * len(_NEAR))).reshape(len(fields), len(_NEAR), -1)
     for i in range(len(fields)):
         points[i, :, i] = np.clip(best[i] + np.array(_NEAR), 0.0, 1.0)
-    table = evaluate(spec, points.reshape(-1, len(fields)))
+    table = tried(spec, points.reshape(-1, len(fields)))
     shape = len(fields), len(_NEAR)
     return xr.Dataset(
         {name: (("moved", "step"), table[name].values.reshape(shape)) for name in ("status", *columns(spec))}

@@ -4,8 +4,9 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -14,16 +15,20 @@ from suchus import blueprint
 from suchus.errors import IncompatibleRecord, NotConverged
 from suchus.land import Run
 from suchus.optimise.aims import AIMS
-from suchus.optimise.checks import around, checked
+from suchus.optimise.checks import Evaluate, around, checked
+from suchus.optimise.elsewhere import ROOMS, evaluate_on
 from suchus.optimise.evaluate import evaluate
 from suchus.optimise.found import Found, titled
 from suchus.optimise.score import allowed, losses, score, units
 from suchus.optimise.search import search
 from suchus.optimise.spec import Optimisation
+from suchus.study.cluster import here
+from suchus.study.makers import deciding
 from suchus.study.store import Store
 
 LIBRARIES = ("cma", "comocma", "moarchiving")
 """Whose versions decide what is asked for."""
+_DECIDING = partial(deciding, LIBRARIES, ROOMS)
 _CHECKED, _AROUND = 900_000, 950_000  # first numbers of the last parts; the budget's generations are added
 
 
@@ -52,7 +57,9 @@ class Told(NamedTuple):
 Progress = Callable[[Told], None]
 
 
-def optimise(spec: Optimisation, folder: Path, *, progress: Progress | None = None) -> tuple[Found, ...]:
+def optimise(
+    spec: Optimisation, folder: Path, *, progress: Progress | None = None, client: Any = None
+) -> tuple[Found, ...]:
     """Search each arm, check what was found, and return it.
 
     Generations are stored as they are finished: whatever stops the program, at most the running one is lost. Started
@@ -63,21 +70,25 @@ def optimise(spec: Optimisation, folder: Path, *, progress: Progress | None = No
         spec: the search; with more evaluations than before, an earlier one is continued.
         folder: for its results and, below it, the store of each arm.
         progress: told how far it is.
+        client: a ``distributed.Client``, among whose workers each generation is shared out; this process if None. The
+            bytes are the same.
 
     Raises:
         Unwritable: the folder cannot be written to.
         IncompatibleRecord: a store below it is another search's or another version's.
         NoOptimiser: a library is missing.
         NotConverged: nothing that was tried keeps all limits.
+        NoCluster: the cluster was lost.
     """
-    return tuple(_arm(spec.of(arm), folder, progress or _silent) for arm in spec.arms)
+    with here(client):
+        return tuple(_arm(spec.of(arm), folder, progress or _silent, client) for arm in spec.arms)
 
 
-def _arm(spec: Optimisation, folder: Path, progress: Progress) -> Found:
+def _arm(spec: Optimisation, folder: Path, progress: Progress, client: Any) -> Found:
     """Search one arm."""
     name = spec.arms[0].name
     with opened(spec, folder / name) as store:
-        found = _searched(spec, store, folder, progress)
+        found = _searched(spec, store, folder, progress, client)
         if not found.chosen:
             raise NotConverged(
                 f"nothing of {found.history.sizes['candidate']} candidates of {name} keeps all limits; widen ranges or "
@@ -86,27 +97,33 @@ def _arm(spec: Optimisation, folder: Path, progress: Progress) -> Found:
         write_runs(found.spec, found.runs, folder)
         generations = int(found.history.generation.max())
         check = _kept(store, _CHECKED + generations, lambda: checked(spec, found.runs))
-        near = _kept(store, _AROUND + generations, lambda: around(spec, found.shares[0]))
+        near = _kept(store, _AROUND + generations, lambda: around(spec, found.shares[0], _tried(client)))
         return found.with_checks(check, near)
 
 
 @contextmanager
 def opened(spec: Optimisation, folder: Path) -> Iterator[Store]:
     """Hold the store of one arm; the budget does not tell searches apart."""
-    with Store(folder, replace(spec, evaluations=1), kind="optimisation", libraries=LIBRARIES).opened() as store:
+    with Store(folder, replace(spec, evaluations=1), kind="optimisation", versions=_DECIDING).opened() as store:
         yield store
 
 
-def _searched(spec: Optimisation, store: Store, folder: Path, progress: Progress) -> Found:
+def _tried(client: Any) -> Evaluate:
+    """Return what tries candidates: this process, or a cluster."""
+    return evaluate if client is None else partial(evaluate_on, client)
+
+
+def _searched(spec: Optimisation, store: Store, folder: Path, progress: Progress, client: Any) -> Found:
     """Run what is not in the store yet; return all candidates."""
-    start = _generation(store, 0, np.array([spec.start]), lambda x: evaluate(spec, x))
+    tried = _tried(client)
+    start = _generation(store, 0, np.array([spec.start]), lambda x: tried(spec, x))
     parts, driver, clock = units(spec, start), search(spec), _Clock(spec, progress)
     tables, best = [_numbered(start, 0)], np.inf
     while clock.done < spec.evaluations:
         asked, number = driver.ask(), len(tables)
         known = store.has(number)
         clock.begin(len(asked), fresh=not known)
-        table = _generation(store, number, asked, lambda x: evaluate(spec, x, clock.within))
+        table = _generation(store, number, asked, lambda x: tried(spec, x, clock.within))
         driver.tell(losses(spec, table, parts) if spec.pareto else score(spec, table, parts))
         tables.append(_numbered(table, number))
         found = np.where(allowed(spec, table), score(spec, table, parts), np.inf)

@@ -1,6 +1,5 @@
 """A saved outcome, read back for the page: the page is made of files and simulates nothing."""
 
-import json
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -9,6 +8,8 @@ from typing import Any
 from markupsafe import Markup
 
 from suchus.errors import IncompatibleRecord, UnreadableFile
+from suchus.record import read_json, read_text
+from suchus.report.described import check_described
 from suchus.report.embedding import embedded
 from suchus.report.saving import OUTCOME
 
@@ -79,7 +80,7 @@ def load_result(folder: Path) -> Result:
     """
     file = folder / OUTCOME
     try:
-        told = json.loads(file.read_text(encoding="utf-8"))
+        told = read_json(file)
         pictures = tuple(
             Picture(
                 name=f["name"],
@@ -88,17 +89,16 @@ def load_result(folder: Path) -> Result:
             )
             for f in told["figures"]
         )
-        tables = {name: _inside(folder, name).read_text(encoding="utf-8") for name in told["tables"]}
+        tables = {name: read_text(_inside(folder, name)) for name in told["tables"]}
         films = _moving(folder, told.get("films", ()))
         replays = _moving(folder, told.get("replays", ()))
-        wanted = ("experiment", "title", "shows", "decides", "command", "measures", "verdicts", "provenance")
-        missing = [key for key in wanted if key not in told]
+    except UnreadableFile:
+        raise
     except OSError as error:
-        raise UnreadableFile(f"{error.filename} cannot be read: {(error.strerror or '').lower()}.") from error
+        raise UnreadableFile(f"{error.filename or file} cannot be read: {(error.strerror or '').lower()}.") from error
     except (ValueError, KeyError, TypeError, AttributeError) as error:
         raise IncompatibleRecord(f"{file} is no outcome of suchus: {error}.") from error
-    if missing:
-        raise IncompatibleRecord(f"{file} lacks {', '.join(missing)}.")
+    check_described(told, file)
     return Result(folder=folder, told=told, pictures=pictures, tables=tables, films=films, replays=replays)
 
 

@@ -4,13 +4,14 @@ from suchus.study.arm import Arm
 from suchus.study.chunk import run_chunk
 from suchus.study.claims import Claims, answer_finished, conduct_claims
 from suchus.study.claims_page import write_claims
-from suchus.study.cluster import NoCluster, connected
+from suchus.study.cluster import NoCluster, at_scheduler, connected
 from suchus.study.conduct import Told, conduct, conducted
 from suchus.study.measures import MEASURES
 from suchus.study.page import read_study
 from suchus.study.plan import Plan
 from suchus.study.store import Store
 from suchus.study.study import Study, Vary
+from suchus.study.sweep import conduct_sweep
 
 __all__ = [
     "MEASURES",
@@ -23,8 +24,10 @@ __all__ = [
     "Told",
     "Vary",
     "answer_finished",
+    "at_scheduler",
     "conduct",
     "conduct_claims",
+    "conduct_sweep",
     "conducted",
     "connected",
     "read_study",

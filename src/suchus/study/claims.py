@@ -21,7 +21,8 @@ from suchus.study.answers import agreement, answers
 from suchus.study.arm import Arm
 from suchus.study.claim_measures import FAULTY, METRICS, RUNS, asked_rules, held, measures_of
 from suchus.study.conduct import Told, conduct, finished
-from suchus.study.store import deciding, made_by
+from suchus.study.makers import deciding
+from suchus.study.store import made_by
 from suchus.study.study import Study, Vary
 
 FINE = 0.002  # [s]; the time step of results

@@ -1,22 +1,22 @@
-"""The batches of a study on many machines, through Dask; the extra ``cluster`` installs it."""
+"""The parts of a store made on many machines, through Dask; the extra ``cluster`` installs it."""
 
 import logging
 import re
 import socket
 import ssl
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pickle import PickleError
-from typing import Any
+from typing import Any, TypeVar
 
 import xarray as xr
 
 from suchus.errors import IncompatibleRecord, SuchusError
-from suchus.study.chunk import run_chunk
-from suchus.study.store import deciding
-from suchus.study.study import Study
+from suchus.study.makers import deciding
 
+Item = TypeVar("Item")
+Versions = Callable[[], Mapping[str, str]]
 _LOG = logging.getLogger(__name__)
 _ADDRESS = re.compile(r"(tcp|tls)://(\[[0-9a-fA-F:.]+\]|[^\[\]/:\s]+):(\d{1,5})")
 _ALIKE = (
@@ -31,6 +31,8 @@ _RETRIES = 3  # how often a batch is begun again when its worker is lost
 _PATIENCE = 30.0  # [s]; for a first worker
 _AGAIN = 0.5  # [s]; between two looks whether somebody listens
 _GREETING = 2**20  # bytes of the first message, at most
+_UNREAD = "during deserialization"
+"""What Dask says where a scheduler or a worker cannot make out what it was sent."""
 _SOON = 10.0  # [s]; for a scheduler
 
 
@@ -69,6 +71,11 @@ def connected(address: str, patience: float = _SOON) -> Iterator[Any]:
         client.close()
 
 
+def at_scheduler(address: str | None) -> AbstractContextManager[Any]:
+    """Return a context with the client of a scheduler, see ``connected``; with None where no address is given."""
+    return connected(address) if address is not None else nullcontext()
+
+
 def here(client: Any) -> AbstractContextManager[Any]:
     """Return a context in which files are written by this process alone, whatever client is Dask's default.
 
@@ -83,17 +90,28 @@ def here(client: Any) -> AbstractContextManager[Any]:
 
 
 def spread(
-    study: Study, numbers: Sequence[int], client: Any, *, patience: float = _PATIENCE
+    work: Callable[[Item], xr.Dataset],
+    items: Sequence[Item],
+    client: Any,
+    *,
+    name: str,
+    versions: Versions = deciding,
+    patience: float = _PATIENCE,
 ) -> Iterator[tuple[int, xr.Dataset]]:
-    """Run batches on a cluster and yield each with its number as it is finished, in any order.
+    """Do one piece of work for each item on a cluster, and yield what comes of it as it is finished, in any order.
 
-    A worker that is lost loses its batch, which another one begins again.
+    A worker that is lost loses its piece, which another one begins again.
 
     Args:
-        study: the study.
-        numbers: of its batches.
+        work: makes a piece from its item alone; it and the items travel to the workers as pickles.
+        items: what differs between the pieces.
         client: a ``distributed.Client``.
+        name: what the pieces are called on Dask's own pages.
+        versions: tells what decides the bytes; it must tell the same on a worker as here.
         patience: how long to wait for a first worker [s].
+
+    Yields:
+        The index of an item, and what came of it.
 
     Raises:
         NoCluster: no worker comes, too many are lost, or the scheduler is.
@@ -105,20 +123,41 @@ def spread(
         client.wait_for_workers(1, timeout=patience)
         _check_versions(client)
         futures = client.map(
-            _batch, numbers, study=study, wanted=deciding(), pure=False, retries=_RETRIES, key=f"suchus-{study.name}"
+            _piece,
+            range(len(items)),
+            items,
+            work=work,
+            versions=versions,
+            wanted=dict(versions()),
+            pure=False,
+            retries=_RETRIES,
+            key=f"suchus-{name}",
         )
         for future in as_completed(futures, loop=client.loop):
             yield future.result()
             future.release()
     except (CancelledError, KilledWorker, OSError, TimeoutError) as error:
         raise NoCluster(
-            f"the cluster was lost ({type(error).__name__}); what was finished is kept: start the study again to go on."
+            f"the cluster was lost ({type(error).__name__}); what was finished is kept: start it again to go on."
         ) from error
     except (ImportError, AttributeError, TypeError, PickleError) as error:
-        raise NoCluster(
-            f"a worker cannot run it ({type(error).__name__}: {error}); install the same versions of Python, Dask and "
-            "suchus on every machine."
-        ) from error
+        raise _stranger(error) from error
+    except RuntimeError as error:
+        if _UNREAD in str(error):
+            raise _stranger(error) from error
+        raise
+
+
+def _stranger(error: Exception) -> NoCluster:
+    return NoCluster(
+        f"a worker cannot run it ({type(error).__name__}: {' '.join(str(error).split())[:200]}); install the same "
+        "versions of Python, Dask and suchus on every machine, and all code that the work calls."
+    )
+
+
+def cores(client: Any) -> int:
+    """Return how many pieces of work a cluster does at once, at least one [-]."""
+    return max(sum(client.nthreads().values()), 1)
 
 
 def _reach(address: str, patience: float) -> None:
@@ -194,12 +233,14 @@ def _packages(told: Mapping[str, Any]) -> dict[str, str]:
     return {name: ".".join(str(packages.get(name)).split(".")[: 2 if name == "python" else 3]) for name in _ALIKE}
 
 
-def _batch(number: int, study: Study, wanted: Mapping[str, str]) -> tuple[int, xr.Dataset]:
-    """Run one batch on a worker."""
-    here = deciding()
-    other = [f"{name} {version} (not {wanted[name]})" for name, version in here.items() if version != wanted[name]]
+def _piece(
+    number: int, item: Item, work: Callable[[Item], xr.Dataset], versions: Versions, wanted: Mapping[str, str]
+) -> tuple[int, xr.Dataset]:
+    """Do one piece of work, on a worker."""
+    found = versions()
+    other = [f"{name} {value} (not {wanted.get(name)})" for name, value in found.items() if value != wanted.get(name)]
     if other:
         raise IncompatibleRecord(
             f"a worker has {', '.join(other)}; its bytes could differ: install the same versions everywhere."
         )
-    return number, run_chunk(study, number)
+    return number, work(item)

@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -66,10 +67,11 @@ def conduct(study: Study, folder: Path, *, progress: Progress | None = None, cli
     with Store(folder, study).opened() as store, here(client):
         missing = [number for number in range(plan.chunks) if not store.has(number)]
         counter = _Counter(store, plan, missing, progress or _silent)
-        one_by_one = ((number, run_chunk(study, number, counter.within(number))) for number in missing)
-        for number, table in one_by_one if client is None else spread(study, missing, client):
-            store.put(number, table)
-            counter.finished(number, table)
+        here_alone = ((i, run_chunk(study, number, counter.within(number))) for i, number in enumerate(missing))
+        elsewhere = spread(partial(run_chunk, study), missing, client, name=study.name)
+        for i, table in here_alone if client is None else elsewhere:
+            store.put(missing[i], table)
+            counter.finished(missing[i], table)
         return store.gather(plan.chunks)
 
 

@@ -6,10 +6,9 @@ import json
 import logging
 import os
 import shutil
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import fields
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -17,32 +16,14 @@ import numpy as np
 import xarray as xr
 
 from suchus.errors import IncompatibleRecord, UnreadableFile, Unwritable
-from suchus.record import check_writable, code_digest, load, new_file, read_json, save, there, versions
+from suchus.record import check_writable, load, new_file, read_json, save, there
+from suchus.study.makers import deciding
 from suchus.study.packing import packed, unpacked
 
 MARK = "study.json"
 RESULTS, TABLE = "results.nc", "results.csv"
 _FORMAT = 3
 _LOG = logging.getLogger(__name__)
-_DECIDING = ("suchus", "python", "mujoco", "numpy", "scipy", "xarray", "h5netcdf")
-MADE_BY = (
-    *(
-        "catalog.py",
-        "control",
-        "design",
-        "fault.py",
-        "faults",
-        "gaits",
-        "kinds.py",
-        "kinematics",
-        "land",
-        "metrics",
-        "model",
-    ),
-    *("motion", "paper", "record", "robots", "rotation.py"),
-    *(f"study/{module}.py" for module in ("arm", "chunk", "measures", "plan", "study")),
-)
-"""Whose code decides the numbers of a run."""
 
 
 class Asked(Protocol):
@@ -60,15 +41,22 @@ class Store:
         folder: where they are, or shall be.
         study: whose they are, a dataclass.
         kind: what it is called in messages; also the name of the file that says what the store holds.
-        libraries: further packages whose versions decide the bytes.
+        versions: tells what decides the bytes here, see ``makers.deciding``.
     """
 
-    def __init__(self, folder: Path, study: Asked, *, kind: str = "study", libraries: Sequence[str] = ()) -> None:
+    def __init__(
+        self,
+        folder: Path,
+        study: Asked,
+        *,
+        kind: str = "study",
+        versions: Callable[[], Mapping[str, str]] = deciding,
+    ) -> None:
         self.folder = folder
         self.study = study
         self.kind = kind
         self._mark = f"{kind}.json"
-        self._libraries = tuple(libraries)
+        self._versions = versions
 
     @contextmanager
     def opened(self) -> Iterator["Store"]:
@@ -180,7 +168,7 @@ class Store:
             "name": self.study.name,
             "hash": hashlib.sha256(repr(self.study).encode()).hexdigest(),
             "fields": held,
-            "versions": deciding(self._libraries),
+            "versions": dict(self._versions()),
         }
 
     def _check(self, mark: Path) -> None:
@@ -245,16 +233,3 @@ def made_by(folder: Path, *, key: str = "versions") -> dict[str, str]:
         return dict(json.loads((folder / MARK).read_text(encoding="utf-8"))[key])
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise UnreadableFile(f"{folder} holds no study; start it first.") from error
-
-
-def deciding(libraries: Sequence[str] = ()) -> dict[str, str]:
-    """Return the versions of what makes a study's bytes, of further libraries, and the digest of our own source."""
-    found = versions()
-    told = {name: found.get(name, "not installed") for name in _DECIDING}
-    told["source"] = code_digest(*MADE_BY)[:12]
-    for name in libraries:
-        try:
-            told[name] = version(name)
-        except PackageNotFoundError:
-            told[name] = "not installed"
-    return told

@@ -7,8 +7,8 @@ one that was stopped ends with the same bytes as one that was not.
 
 from collections.abc import Callable
 from hashlib import sha256
+from io import BytesIO
 from pathlib import Path
-from zipfile import BadZipFile
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from suchus.errors import UnreadableFile
 from suchus.flow import checkpoint as store
 from suchus.flow.progress import Bar
 from suchus.record import new_file
+from suchus.record.seal import holds, sealed
 
 Progress = Callable[[float], None]
 """Called with the share that is done."""
@@ -54,8 +55,10 @@ class Diary:
             Unwritable: naming the place.
         """
         state = {f"{page}/{name}": values for page in self._pages for name, values in self.page(page).items()}
-        with new_file(path) as draft, draft.open("wb") as file:
-            np.savez(file, allow_pickle=False, until=np.array(time), about=np.array(_short(about)), **state)
+        content = BytesIO()
+        np.savez(content, allow_pickle=False, until=np.array(time), about=np.array(_short(about)), **state)
+        with new_file(path) as draft:
+            draft.write_bytes(sealed(content.getvalue()))
 
     def load(self, path: Path, time: float, about: str) -> None:
         """Take up the notes until a time [s].
@@ -64,17 +67,28 @@ class Diary:
             UnreadableFile: they are broken, end too soon or belong to another swim.
         """
         try:
-            with np.load(path, allow_pickle=False) as file:
-                state = {key: file[key] for key in file.files}
+            data = path.read_bytes()
+        except OSError as error:
+            reason = (error.strerror or str(error)).lower()
+            raise UnreadableFile(f"{path} cannot be read: {reason}; delete its checkpoint to start anew.") from error
+        if holds(data) is not True:
+            raise UnreadableFile(f"{path} holds no notes of a swim, or is damaged; delete it and its checkpoint.")
+        state = store.arrays(data, path)
+        try:
             until, whose = float(state.pop("until")), str(state.pop("about"))
-        except (OSError, ValueError, BadZipFile, EOFError, KeyError) as error:
-            raise UnreadableFile(f"{path} holds no notes of a swim ({error}); delete it and its checkpoint.") from error
+            pages = [(key.split("/")[0], key.split("/")[1], values) for key, values in state.items()]
+            lengths = {page: len(values) for page, _, values in pages}
+            sound = all(len(values) == lengths[page] for page, _, values in pages)
+            sound &= all(f"{page}/time" in state for page in lengths)
+        except (ValueError, TypeError, LookupError):
+            sound = False
+        if not sound:
+            raise UnreadableFile(f"{path} holds no notes of a swim; delete it and its checkpoint.")
         if whose != _short(about):
             raise UnreadableFile(f"{path} belongs to another swim; give that one's settings, or another checkpoint.")
         if until < time * (1 - 1e-12):
             raise UnreadableFile(f"{path} ends before its checkpoint does; delete both to start anew.")
-        for key, values in state.items():
-            page, name = key.split("/")
+        for page, name, values in pages:
             lines = self._pages.setdefault(page, [{} for _ in values])
             for line, value in zip(lines, values, strict=True):
                 line[name] = value

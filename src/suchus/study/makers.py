@@ -1,0 +1,44 @@
+"""What makes the bytes of a store: versions of libraries, and the digest of our own source."""
+
+from collections.abc import Sequence
+from importlib.metadata import PackageNotFoundError, version
+
+from suchus.record import code_digest, versions
+
+_DECIDING = ("suchus", "python", "mujoco", "numpy", "scipy", "xarray", "h5netcdf")
+MADE_BY = (
+    *(
+        "catalog.py",
+        "control",
+        "design",
+        "fault.py",
+        "faults",
+        "gaits",
+        "kinds.py",
+        "kinematics",
+        "land",
+        "metrics",
+        "model",
+    ),
+    *("motion", "paper", "record", "robots", "rotation.py"),
+    *(f"study/{module}.py" for module in ("arm", "chunk", "measures", "plan", "study")),
+)
+"""Whose code decides the numbers of a run on land."""
+
+
+def deciding(libraries: Sequence[str] = (), rooms: Sequence[str] = MADE_BY) -> dict[str, str]:
+    """Return the versions of what makes the bytes of a store.
+
+    Args:
+        libraries: further packages whose versions decide.
+        rooms: whose source decides, see ``record.code_digest``.
+    """
+    found = versions()
+    told = {name: found.get(name, "not installed") for name in _DECIDING}
+    told["source"] = code_digest(*rooms)[:12]
+    for name in libraries:
+        try:
+            told[name] = version(name)
+        except PackageNotFoundError:
+            told[name] = "not installed"
+    return told

@@ -1,0 +1,98 @@
+"""Many calculations of any kind, each from its own settings: kept, resumed and put on a cluster as a study is."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any, TypeVar
+
+import xarray as xr
+
+from suchus.design.checks import Checks
+from suchus.flow.fingerprint import fingerprint
+from suchus.study.cluster import here, spread
+from suchus.study.makers import deciding
+from suchus.study.store import Store
+
+Item = TypeVar("Item")
+Progress = Callable[[float], None]
+KIND = "sweep"
+FLOW = ("catalog.py", "design", "flow", "kinds.py", "kinematics", "motion", "paper", "record", "robots",
+        "rotation.py", "water")  # fmt: skip
+"""Whose code decides the numbers of a swim in the resolved flow."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Asked:
+    """What a store of a sweep holds."""
+
+    name: str
+    """How the sweep is called."""
+    work: str
+    """Fingerprint of the calculation."""
+    items: tuple[str, ...]
+    """Fingerprints of the settings, in their order."""
+
+    def __post_init__(self) -> None:
+        with Checks("sweep", self) as check:
+            check.that(len(self.items) > 0, "sweep.items is empty; give at least one")
+
+
+def conduct_sweep(
+    name: str,
+    work: Callable[[Item, Progress], xr.Dataset],
+    items: Sequence[Item],
+    folder: Path,
+    *,
+    rooms: Sequence[str] = FLOW,
+    progress: Progress | None = None,
+    client: Any = None,
+) -> list[xr.Dataset]:
+    """Do one calculation for each item, what is not in the store yet, and return all results in order.
+
+    Results are stored as they come: whatever stops the program, only what was being calculated is lost. Started again
+    it goes on, here or on a cluster, and ends with the same bytes as if nothing had happened.
+
+    Args:
+        name: how the sweep is called.
+        work: calculates from an item alone, and tells a function the share that is done. Its code and what it was made
+            with belong to the store, as the items do: written in other words it is another sweep's. For a cluster it
+            stands in a module that the workers can import, or in the script that is run.
+        items: settings: numbers, arrays, frozen values, tuples of them.
+        folder: the store.
+        rooms: of suchus whose source decides the results, see ``record.code_digest``.
+        progress: called with the share that is done.
+        client: a ``distributed.Client``, whose workers then calculate; this process if None. The bytes are the same.
+
+    Raises:
+        Unwritable: the store cannot be written to.
+        IncompatibleRecord: the store is another sweep's or another version's, or a worker has another version.
+        NoCluster: the cluster was lost.
+    """
+    asked = _Asked(name=name, work=fingerprint(work), items=tuple(fingerprint(item) for item in items))
+    versions = partial(deciding, ("numba",), tuple(rooms))
+    tell = progress or _silent
+    with Store(folder, asked, kind=KIND, versions=versions).opened() as store, here(client):
+        missing = [number for number in range(len(items)) if not store.has(number)]
+        left, done = [items[number] for number in missing], len(items) - len(missing)
+        here_alone = ((i, work(item, lambda share: tell((done + share) / len(items)))) for i, item in enumerate(left))
+        elsewhere = spread(partial(_quietly, work), left, client, name=name, versions=versions)
+        for i, result in here_alone if client is None else elsewhere:
+            store.put(missing[i], result)
+            done += 1
+            tell(done / len(items))
+        return [_as_made(store.table(number)) for number in range(len(items))]
+
+
+def _quietly(work: Callable[[Item, Progress], xr.Dataset], item: Item) -> xr.Dataset:
+    return work(item, _silent)
+
+
+def _as_made(table: xr.Dataset) -> xr.Dataset:
+    """Return a part without what the store notes on it."""
+    table.attrs = {name: value for name, value in table.attrs.items() if name not in ("part", "study")}
+    return table
+
+
+def _silent(share: float) -> None:
+    del share
