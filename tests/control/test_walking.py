@@ -133,7 +133,7 @@ def test_bend_and_asymmetry_steer_to_the_left(robot):
 
 def feel(rule, gait, many, *, ticks):
     """Let one run feel the same for some ticks; return the rung of each answer."""
-    switcher, phase, answers = Switcher([rule], [gait], 0.01), np.full((1, 4), 0.9), []
+    switcher, phase, answers = Switcher([rule], [ROBOTS["caiman"]], [gait], 0.01), np.full((1, 4), 0.9), []
     for _ in range(ticks):
         for _, asked in switcher.decide(many, phase, [gait], set()):
             answers.append(rule.ladder.index(asked))

@@ -207,6 +207,16 @@ def servo_ranges(robot: AnyRobot) -> np.ndarray:
     return np.array(found)
 
 
+def hips_behind_snout(robot: AnyRobot, girdle: int) -> float:
+    """Return how far a girdle's hips are behind the tip of the snout with a straight axis [m]."""
+    body, ahead = general(robot), 0.0
+    for segment in body.axis:
+        if segment.name == body.girdles[girdle].segment:
+            return ahead + segment.front - body.girdles[girdle].at
+        ahead += segment.front + segment.rear
+    raise UnknownName("segment", body.girdles[girdle].segment, [one.name for one in body.axis])
+
+
 def _pairs(robot: Robot) -> list[tuple[Girdle, str, float]]:
     return [(girdle, word + girdle.name, side) for girdle in robot.girdles for word, side in (("L", 1.0), ("R", -1.0))]
 
