@@ -11,6 +11,7 @@ from suchus.errors import InvalidDesign, OutsideLimits, UnknownName
 from suchus.gaits import GAITS
 from suchus.land import Ground, Run, simulate
 from suchus.metrics import between, displacement, heading_change, tilt
+from suchus.robots import ROBOTS
 
 POSTURES = ("belly_crawl", "low_crawl", "semi_erect", "high_walk")
 SEEDS = ((2, 0.06), (3, 0.1))

@@ -122,8 +122,8 @@ def steerable(gait: AnyGait, what: str) -> Gait | Pattern:
     if isinstance(gait, Gait | Pattern):
         return gait
     raise OutsideLimits(
-        f"{what} needs a gait of foot paths and bends; gait {gait.name!r} is a table of angles: choose another gait, as "
-        "'salamander_walk', or walk it in open loop."
+        f"{what} needs a gait of foot paths and bends; gait {gait.name!r} is a table of angles: choose another gait, "
+        "as 'salamander_walk', or walk it in open loop."
     )
 
 
