@@ -10,7 +10,7 @@ from typing import Any, ClassVar, Self
 import xarray as xr
 
 from suchus.design import AnyRobot, check_needs
-from suchus.design.scale import scaled
+from suchus.design.scale import coarse_step, scaled_fields
 from suchus.gaits import own_gait, suits
 from suchus.motion import AnyGait, straightened
 from suchus.verdict import Rule, Verdict, judge, rules_of
@@ -184,10 +184,11 @@ class Experiment(ABC):
         if all(suits(robot, gait) for value in values.values() for gait in _gaits(value)):
             return replace(self, robot=robot)  # type: ignore[type-var]
         here: AnyRobot = values["robot"]
-        factors = {"length": robot.length / here.length, "mass": robot.mass / here.mass}
-        plain = {name: value for name, value in values.items() if name != "robot" and not _gaits(value)}
-        sized = {name: getattr(scaled(self, **factors), name) for name in plain} if plain else {}
-        return replace(self, robot=robot, **sized, **self.gaits_on(robot))  # type: ignore[type-var]
+        plain = [name for name, value in values.items() if name != "robot" and not _gaits(value)]
+        sized = scaled_fields(self, plain, length=robot.length / here.length, mass=robot.mass / here.mass)
+        if "timestep" in values:  # it divides the control period
+            sized["timestep"] = values["timestep"] / coarse_step(here) * coarse_step(robot)
+        return replace(self, robot=robot, **(sized | self.gaits_on(robot)))  # type: ignore[type-var]
 
     def gaits_on(self, robot: AnyRobot) -> dict[str, Any]:
         """Return the fields that hold gaits, for a robot that cannot follow those of now: its own, and its limbs alone.

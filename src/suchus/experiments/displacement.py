@@ -242,7 +242,11 @@ class Displacement(Experiment):
     def explain(self, measures: Mapping[str, float]) -> str:
         """Say what each part adds, and how far the free numbers move the result."""
         m = {name: Reading(value) for name, value in measures.items()}
-        backwards = "walks the robot backwards" if m["forward_antiphase"] < 0 else "costs most of the displacement"
+        backwards = (
+            "walks the robot backwards"
+            if m["forward_antiphase"] < 0
+            else f"leaves {m['forward_antiphase'] / m['forward_coordinated']:.0%} of the displacement"
+        )
         form = ".2f" if isinstance(self.gait, Gait) else ".3g"  # another body may be as small as a hand
         parts = [f"the swing of the trunk makes {m['gain_spine_swing']:{form}} m"] if "gain_spine_swing" in m else []
         if "gain_tail_swing" in m:
