@@ -8,7 +8,7 @@ from jaxtyping import Float
 
 from suchus import rotation
 from suchus.control.sensed import Sensed
-from suchus.design import AnyRobot, hips_behind_snout, layout
+from suchus.design import AnyRobot, hips_ahead, layout
 from suchus.design.checks import Checks
 
 _REACH = 0.175  # [m]; of the hind limbs of the article's robot
@@ -77,9 +77,9 @@ _NONE = AttitudeRule(roll=0.0, roll_rate=0.0, pitch=0.0, pitch_rate=0.0)
 
 def _ahead(robot: AnyRobot) -> list[float]:
     """Return how far each limb's hips are ahead of the middle between the foremost and the hindmost girdle [m]."""
-    hips = [hips_behind_snout(robot, limb.number) for limb in layout(robot).limbs]
+    hips = [hips_ahead(robot, limb.number) for limb in layout(robot).limbs]
     middle = (hips[0] + hips[-1]) / 2 if hips else 0.0
-    return [middle - one for one in hips]
+    return [one - middle for one in hips]
 
 
 def _size(robot: AnyRobot) -> float:

@@ -44,7 +44,8 @@ def axis_segments(robot: AnyRobot, gait: AnyGait) -> tuple[AxisSegment, ...]:
         UnsuitedRobot: nothing bends its axis sideways.
     """
     place, gait = layout(robot), _followed(gait)
-    hips = [hips_behind_snout(robot, n) / place.robot.length for n in range(len(place.robot.girdles))]
+    girdles = range(len(place.robot.girdles))
+    hips = [hips_behind_snout(robot, number) / place.robot.length for number in girdles]
     found = []
 
     def add(at: float, servo: int, left: float) -> None:

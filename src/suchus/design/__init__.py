@@ -15,7 +15,7 @@ from suchus.design.joints import (
     servo_names,
     spine_joints,
 )
-from suchus.design.layout import Layout, LimbPlace, hips_behind_snout, layout, servo_ranges
+from suchus.design.layout import Layout, LimbPlace, hips_ahead, hips_behind_snout, layout, servo_ranges
 from suchus.design.leg import Leg
 from suchus.design.limb import Foot, Girdle, Limb, Link
 from suchus.design.needs import NEEDS, check_needs, lacking
@@ -67,6 +67,7 @@ __all__ = [
     "crocodile",
     "fin_joints",
     "general",
+    "hips_ahead",
     "hips_behind_snout",
     "joint_names",
     "lacking",

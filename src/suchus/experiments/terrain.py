@@ -90,7 +90,7 @@ class Terrain(Experiment):
         with Checks(self.name(), self) as check:
             for heights in ("bumps", "steps", "stones"):
                 if getattr(self, heights):
-                    check.rising(heights, 0.001, 0.5, "m")
+                    check.rising(heights, 1e-5, 0.5, "m")
             check.that(
                 len(self.correlations) > 0, f"{self.name()}.correlations is empty; one length at least is needed"
             )
@@ -153,7 +153,7 @@ class Terrain(Experiment):
         return {"terrain_replay.html": Replay(caption=caption, make=page)}
 
     def _shown_relief(self) -> Bumps:
-        return Bumps(height=self._shown_height, correlation=self.correlations[-1], start=self._before, seed=2)
+        return self._bumps(self._shown_height, self.correlations[-1], 2)
 
     @property
     def _shown_height(self) -> float:
@@ -164,10 +164,9 @@ class Terrain(Experiment):
         """How long the robot is beside the article's [-]."""
         return round(self.robot.length / ROBOTS["caiman"].length, 9)
 
-    @property
-    def _before(self) -> float:
-        """Where the ground begins to be rough [m]."""
-        return BEFORE * self._size
+    def _bumps(self, height: float, correlation: float, seed: int) -> Bumps:
+        size = self._size
+        return Bumps(height=height, correlation=correlation, start=BEFORE * size, seed=seed, scale=size)
 
     def arms(self) -> Mapping[str, tuple[Gait | Pattern, Control]]:
         """Return gait and control of every arm."""
@@ -191,7 +190,7 @@ class Terrain(Experiment):
         for height in self.bumps:
             lengths = [self.correlations[seed % len(self.correlations)] for seed in range(self.seeds)]
             fields = [
-                Bumps(height=height, correlation=length, start=self._before, seed=seed) for seed, length in enumerate(lengths)
+                self._bumps(height, length, seed) for seed, length in enumerate(lengths)
             ]
             rows.append(("bumps", height, list(fields)))
         for height in self.steps:
@@ -244,6 +243,7 @@ class Terrain(Experiment):
         )
         data["height"] = ("ground", [height for _, height, _ in grounds], {"units": "m"})
         data["walked"] = ((), self.walked, {"units": "s"})
+        data["size_of_robot"] = ((), self._size, {"units": "1", "long_name": "length over that of the article's robot"})
         return data
 
     @property
@@ -259,9 +259,7 @@ class Terrain(Experiment):
     def _changes(self, progress: Any) -> xr.Dataset:
         """Return how far the body tilts while every posture turns into every other."""
         pairs = list(permutations((self.crawl, self.semi_erect, self.high_walk), 2))[: self.transitions]
-        bumps = Bumps(
-            height=0.03 * self._size, correlation=self.correlations[-1], start=self._before, seed=1
-        )
+        bumps = self._bumps(0.03 * self._size, self.correlations[-1], 1)
         runs = [
             Run(
                 robot=self.robot,
