@@ -145,7 +145,11 @@ class CrawlStability(Experiment):
         return float(np.interp(wanted, np.maximum.accumulate(reached), strokes))
 
     def _strode(self, stroke: float) -> AnyGait:
-        return replace(self.control, stroke=stroke) if isinstance(self.control, Gait) else with_strokes(self.control, stroke)
+        return (
+            replace(self.control, stroke=stroke)
+            if isinstance(self.control, Gait)
+            else with_strokes(self.control, stroke)
+        )
 
     def _stroke(self) -> float:
         """Return the unit of strokes [m]: a metre, or the longest half stroke of the gait; 0 where it has none."""

@@ -99,7 +99,9 @@ class Displacement(Experiment):
         runs = [Run(robot=self.robot, gait=gait, label=arm) for arm, gait in gaits.items()]
         record = simulate(runs, duration=duration, progress=staged(progress, "conditions", 0.0, 0.1))
         told = staged(progress, "repeats", 0.1, 0.5)
-        spread = simulate(self._repeats(gaits), duration=duration, timestep=coarse_step(self.robot), every=10, progress=told)
+        spread = simulate(
+            self._repeats(gaits), duration=duration, timestep=coarse_step(self.robot), every=10, progress=told
+        )
         found = self._mapped(duration, staged(progress, "map", 0.5, 1.0))
         record = record.merge(_renamed(spread, list(gaits), self.repeats)).merge(found)
         record.attrs["least"] = _LEAST * self.robot.length
@@ -140,14 +142,13 @@ class Displacement(Experiment):
         limbs = [self._strode(self.control, s) for s in strokes]
         bent = [self._bent(self._strode(self.gait, s), b) for s in strokes for b in bends]
         pitched = [
-            replace(gait, tail_pitch=p)
-            for gait in (self.gait, self.control)
-            for p in pitches
-            if isinstance(gait, Gait)
+            replace(gait, tail_pitch=p) for gait in (self.gait, self.control) for p in pitches if isinstance(gait, Gait)
         ]
         late = [self._late(p) for p in self.phases]
         runs = [Run(robot=self.robot, gait=gait) for gait in (*limbs, *bent, *pitched, *late)]
-        reached = _forward(simulate(runs, duration=duration, timestep=coarse_step(self.robot), every=100, progress=progress)).values
+        reached = _forward(
+            simulate(runs, duration=duration, timestep=coarse_step(self.robot), every=100, progress=progress)
+        ).values
         cut = np.split(reached, np.cumsum([len(limbs), len(bent), len(pitched)]))
         metres = {"units": "m"}
         data = xr.Dataset(

@@ -17,9 +17,9 @@ from suchus.gaits import GAITS
 from suchus.kinematics.tail import bend_of_servo
 from suchus.land import Run, simulate
 from suchus.metrics import (
+    bend_swings,
     between,
     diagonal_phase_error,
-    bend_swings,
     duty_factor,
     loaded,
     sensed_phase,
@@ -91,7 +91,9 @@ class GaitDiagram(Experiment):
             measures[f"{name}_lag"] = Measure(lag, "cycle")
             measures[f"{name}_amplitude"] = Measure(float(np.ptp(bend)) / 2, "rad")
             measures[f"{name}_gain"] = Measure(gain, "-")
-            measures[f"{name}_changes_per_cycle"] = Measure(float(bend_swings(walk[f"sensed_{name}"], walk.period)), "-")
+            measures[f"{name}_changes_per_cycle"] = Measure(
+                float(bend_swings(walk[f"sensed_{name}"], walk.period)), "-"
+            )
         if "sensed_tail" in walk:
             bend = walk.sensed_tail.values
             measures["tail_swing_least"] = Measure(float(min(bend.max(), -bend.min())), "rad")

@@ -107,7 +107,12 @@ class SpeedRange(Experiment):
         robots = (self.robot, _limited(self.robot))
         runs = [Run(robot=robot, gait=replace(gait, period=gait.period * s)) for robot in robots for s in slower]
         longest, period = START + (self.cycles + 1) * gait.period * max(slower), control_period(self.robot)
-        walked = simulate(runs, duration=float(np.ceil(round(longest / period, 6)) * period), timestep=self.timestep, progress=progress)
+        walked = simulate(
+            runs,
+            duration=float(np.ceil(round(longest / period, 6)) * period),
+            timestep=self.timestep,
+            progress=progress,
+        )
         looked = [self._look(walked.isel(run=j), run) for j, run in enumerate(runs)]
         return np.array(looked).reshape(2, len(slower), len(_UNITS)), walked.isel(run=0)
 

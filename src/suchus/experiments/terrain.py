@@ -189,9 +189,7 @@ class Terrain(Experiment):
         rows: list[tuple[str, float, list[Relief | None]]] = [("bumps", 0.0, [None] * self.seeds)]
         for height in self.bumps:
             lengths = [self.correlations[seed % len(self.correlations)] for seed in range(self.seeds)]
-            fields = [
-                self._bumps(height, length, seed) for seed, length in enumerate(lengths)
-            ]
+            fields = [self._bumps(height, length, seed) for seed, length in enumerate(lengths)]
             rows.append(("bumps", height, list(fields)))
         for height in self.steps:
             rows.append(("step", height, [Step(at=float((0.66 + 0.06 * x) * size), height=height) for x, _ in places]))

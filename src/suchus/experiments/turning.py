@@ -118,9 +118,7 @@ class Turning(Experiment):
         a, b = len(bent), len(bent) + len(uneven)
         curve = _curve(most, self.mixtures, found[b:])
         tightest = np.inf if curve is None else curve.tightest
-        circles = [
-            mixed[-1] if curve is None else turn(curve, max(radius, 1.001 * tightest)) for radius in self.asked
-        ]
+        circles = [mixed[-1] if curve is None else turn(curve, max(radius, 1.001 * tightest)) for radius in self.asked]
         circled = self._walk(gait, circles, lambda share: progress(0.7 + 0.3 * share))
         walked = self._curvatures(gait, circled)
         data = xr.Dataset(

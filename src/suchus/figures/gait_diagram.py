@@ -45,7 +45,7 @@ class GaitTrack:
 
     def __post_init__(self) -> None:
         n = len(self.time)
-        shapes = {"stance": (len(self.legs), n), **{part: (n,) for part in self.bends}}
+        shapes = {"stance": (len(self.legs), n), **dict.fromkeys(self.bends, (n,))}
         for name, wanted in shapes.items():
             found = np.shape(getattr(self, name))
             if found != wanted:

@@ -3,6 +3,7 @@
 from typing import Any
 
 import mujoco
+
 from suchus.design.relief import ASIDE, REACH, Bumps, Relief, Step, Stone, field
 
 RELIEF = "relief"
