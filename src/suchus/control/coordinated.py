@@ -9,7 +9,7 @@ from jaxtyping import Float
 
 from suchus.control.controller import Command
 from suchus.control.heading import Heading, HeadingRule, Steering
-from suchus.control.limbs import LAWS, LimbLaw, Limbs
+from suchus.control.limbs import LAWS, LimbLaw, Limbs, in_pairs
 from suchus.control.open_loop import OpenLoop
 from suchus.control.sensed import Sensed
 from suchus.control.shared import silence
@@ -74,11 +74,14 @@ class Coordinated:
         return self.limbs.feels or any(rule is not None for rule in (self.spine, self.tail, self.heading))
 
     def suited(self, robot: AnyRobot, gait: AnyGait) -> "Coordinated":
-        """Return it with those of its rules that a robot's parts make possible in a gait."""
+        """Return it with those of its rules that a robot's parts make possible in a gait.
+
+        A law that makes diagonal pairs is switched off in a gait without them.
+        """
         place = layout(robot)
         return replace(
             self,
-            limbs=self.limbs if place.limbs else LAWS["off"],
+            limbs=LAWS["off"] if not place.limbs or (self.limbs.pairs and not in_pairs(place, gait)) else self.limbs,
             spine=self.spine if place.trunk_yaw else None,
             tail=self.tail if place.tail_pitch and isinstance(gait, Gait) else None,
         )
@@ -232,7 +235,6 @@ def _refuse_others(control: Coordinated, robot: AnyRobot, gait: Gait | Pattern) 
             )
     fit = control.suited(robot, gait)
     for rule, needs in (
-        ("limbs", "limbs"),
         ("spine", "servos that bend the trunk sideways"),
         ("tail", "a servo that pitches the tail and a gait that lays it down"),
     ):

@@ -192,11 +192,20 @@ def _trunk_torque(robot: AnyRobot) -> float:
     return sum(place.robot.servo(place.servos[i]).torque for i in place.trunk_yaw) or 1.0
 
 
-def _refuse_others(gait: AnyGait, place: Layout) -> None:
+def in_pairs(place: Layout, gait: AnyGait) -> bool:
+    """Tell whether diagonal limbs of a gait step together and those of a girdle take turns."""
+    return _off_pairs(place, gait) <= _DIAGONAL
+
+
+def _off_pairs(place: Layout, gait: AnyGait) -> float:
     phases = gait.limb_phases
     pairs = [(i, j, 0.0) for i, limb in enumerate(place.limbs) for j in limb.diagonal]
     pairs += [(i, limb.contralateral, 0.5) for i, limb in enumerate(place.limbs)]
-    worst = max(abs((phases[i] - phases[j] + apart + 0.5) % 1.0 - 0.5) for i, j, apart in pairs)
+    return max(abs((phases[i] - phases[j] + apart + 0.5) % 1.0 - 0.5) for i, j, apart in pairs)
+
+
+def _refuse_others(gait: AnyGait, place: Layout) -> None:
+    worst = _off_pairs(place, gait)
     if worst > _DIAGONAL:
         raise OutsideLimits(
             f"gait {gait.name!r} has limb phases {gait.limb_phases}, {worst:.2f} cycle away from diagonal pairs; this "
