@@ -39,14 +39,15 @@ NEEDS: Mapping[str, Need] = MappingProxyType(
             "an axis that bends sideways", lambda robot: bool(layout(robot).axial_yaw or layout(robot).cables)
         ),
         "tables": Need(
-            "the article's tables I and II, as 'caiman' has them", lambda robot: isinstance(robot, Crocodile)
+            "a crocodile-like robot given by the article's tables, as 'caiman'",
+            lambda robot: isinstance(robot, Crocodile),
         ),
         "article_spine": Need(
             f"the article's spine of {ARTICLE_JOINTS} joints",
             lambda robot: isinstance(robot, Crocodile) and robot.spine.joints == ARTICLE_JOINTS,
         ),
         "cable_tail": Need(
-            "a tail of the article's kind that a cable bends",
+            "the article's tail with a cable",
             lambda robot: isinstance(robot, Crocodile) and robot.tail.drive == "cable",
         ),
         "salamander_joints": Need(
@@ -76,5 +77,5 @@ def check_needs(robot: AnyRobot, needs: Sequence[str], what: str) -> None:
     """
     missing = lacking(robot, needs)
     if missing:
-        words = " and ".join(NEEDS[name].words for name in missing)
+        words = ", and ".join(NEEDS[name].words for name in missing)
         raise UnsuitedRobot(f"{what} needs {words}; robot {robot.name!r} lacks that: choose another robot.")

@@ -141,8 +141,8 @@ def explained(measures: Mapping[str, float], kind: str, legs: str) -> str:
     return (
         f"What a fault costs with spine and tail depends most on {most}: on average one choice differs from "
         f"another by {sizes}. The article says only which joint. Without the trunk the intact "
-        f"robot is already at {m['loss_intact_limbs_only']:+.0%}{lifted}, against which the cost of the fault itself is "
-        f"to be held. {_steering(m, kind, legs)}{_others(m)}"
+        f"robot is already at {m['loss_intact_limbs_only']:+.0%}{lifted}, against which the cost of the fault itself "
+        f"is to be held. {_steering(m, kind, legs)}{_others(m)}"
     )
 
 

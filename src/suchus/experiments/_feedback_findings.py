@@ -112,8 +112,8 @@ def explain(measures: Mapping[str, float]) -> str:
         f"alone ({m['cycles_to_converge_own_load']:.1f}); without feedback {m['converged_off']:.0%} find it. Kicked "
         f"limbs keep {m['kick_kept_closed']:.0%} of the displacement with {rules} and "
         f"{m['kick_kept_open']:.0%} without. A stuck spine joint costs {m['locked_spine_loss_closed']:.0%} instead of "
-        f"{m['locked_spine_loss_open']:.0%}; uphill {alone}{m['uphill_gain_closed']:+.0%}. A limp front {hip} turns the robot "
-        f"by {m['turning_limp_yaw_open']:deg.0f} degrees in the last cycle without feedback, by "
+        f"{m['locked_spine_loss_open']:.0%}; uphill {alone}{m['uphill_gain_closed']:+.0%}. A limp front {hip} turns "
+        f"the robot by {m['turning_limp_yaw_open']:deg.0f} degrees in the last cycle without feedback, by "
         f"{m['turning_limp_yaw_closed']:deg.0f} with {rules}, and by {m['turning_limp_yaw_steered']:deg.0f} "
         "with the heading loop."
     )

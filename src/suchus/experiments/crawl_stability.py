@@ -65,7 +65,8 @@ class CrawlStability(Experiment):
 
     The article compares spine and tail together with neither, at the same leg commands. That mixes four things, so all
     conditions stand side by side here, and the group without spine and tail walks once more with strokes long enough to
-    get as far. Of another body those conditions are run that its parts make possible. Fluctuation is the amplitude that the article's Fig. 15 shows: the highest less the lowest height.
+    get as far. Of another body those conditions are run that its parts make possible. Fluctuation is the amplitude that
+    the article's Fig. 15 shows: the highest less the lowest height.
     """
 
     title = "Does it crawl more steadily with spine and tail than without?"
@@ -238,12 +239,12 @@ class CrawlStability(Experiment):
             if usual > 0
             else "their longest strokes"
         )
-        split = "; ".join(parts)
+        split, digits = "; ".join(parts), 2 if form == "mm.0f" else 4
         return (
             f"The height of the centre of mass moves by {m['com_height_pp_coordinated']:mm.1f} mm with spine and tail "
             f"and by {m['com_height_pp_limbs_only']:mm.1f} mm with limbs only. {split[:1].upper()}{split[1:]}"
-            f"{'. ' if parts else ''}{lifted}{equal}, which get {m[f'forward_{_EQUAL}']:.{2 if form == 'mm.0f' else 4}f} "
-            f"m, by {m['com_height_pp_change_equal_displacement']:+.0%}."
+            f"{'. ' if parts else ''}{lifted}{equal}, which get {m[f'forward_{_EQUAL}']:.{digits}f} m, "
+            f"by {m['com_height_pp_change_equal_displacement']:+.0%}."
         )
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:

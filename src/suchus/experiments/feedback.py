@@ -127,7 +127,9 @@ class Feedback(Experiment):
     def _arms(self) -> dict[str, Coordinated]:
         """Who is disturbed: those of ``ARMS`` whose rule the body can follow."""
         return {
-            name: self._suited(one) for name, one in ARMS.items() if name != "tail" or self._suited(one).tail is not None
+            name: self._suited(one)
+            for name, one in ARMS.items()
+            if name != "tail" or self._suited(one).tail is not None
         }
 
     def simulate(self, progress: Progress = silent) -> Simulated:
@@ -251,11 +253,15 @@ class Feedback(Experiment):
             case "load_noise":
                 return replace(run, control=replace(control, load_noise=self.noise))
             case "locked_spine":
-                return replace(run, faults=(Locked(place.servos[place.trunk_yaw[len(place.trunk_yaw) // 2]], at=self._at),))
+                return replace(
+                    run, faults=(Locked(place.servos[place.trunk_yaw[len(place.trunk_yaw) // 2]], at=self._at),)
+                )
             case "limp_yaw":
                 return replace(run, faults=(Limp(place.servos[place.limbs[0].servos][0], at=self._at),))
             case "push":
-                return replace(run, pushes=(Push(force=self.push, at=self._at, duration=self._pushed, body=self._front),))
+                return replace(
+                    run, pushes=(Push(force=self.push, at=self._at, duration=self._pushed, body=self._front),)
+                )
             case "uphill" | "downhill":
                 return replace(run, ground=Ground(uphill=self.slope if name == "uphill" else -self.slope))
             case "side_slope" | "other_side":

@@ -38,9 +38,10 @@ _CAPTION = "The crawl of the gait diagram: thick tracks are feet that stand."
 class GaitDiagram(Experiment):
     """The article's Fig. 12 for our crawl: as commanded, and as foot pressure and joint angles tell.
 
-    A foot stands when its pressure exceeds a seventieth of the weight, half a newton for the caiman. Phases are those of the first harmonic of stance. Bends are
-    sums of joint angles, of the tail those that servos and cables bend; their sense is the article's: right is
-    positive. A body without a tail, or without a trunk that bends, has no track of that part.
+    A foot stands when its pressure exceeds a seventieth of the weight, half a newton for the caiman. Phases are those
+    of the first harmonic of stance. Bends are sums of joint angles, of the tail those that servos and cables bend;
+    their sense is the article's: right is positive. A body without a tail, or without a trunk that bends, has no track
+    of that part.
     """
 
     title = "When do the feet stand, and which way do spine and tail bend?"

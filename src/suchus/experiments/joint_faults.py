@@ -45,8 +45,8 @@ class JointFaults(Experiment):
     All of it over variations of gait and friction. A change of displacement is measured against the intact run with
     spine and tail of the same variation, as the article does; ``faults.csv`` has it against the intact run of the same
     arm too. Two more arms are run in the judged reading: ``steered`` with the feedback rules and the heading loop, and
-    ``limbs_tail_lifted``, limbs only with the tail in the air, where a servo lifts it. Displacement is forward, along the direction that the
-    body faced at the start.
+    ``limbs_tail_lifted``, limbs only with the tail in the air, where a servo lifts it. Displacement is forward, along
+    the direction that the body faced at the start. The limbs of another body lose the joints that they have.
     """
 
     title = "How far does it still crawl when joints of its legs are lost?"

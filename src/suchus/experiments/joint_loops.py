@@ -91,7 +91,8 @@ class JointLoops(Experiment):
             test=list(TESTS),
             time=("time", step * np.arange(1, round(self.seconds / step) + 1), {"units": "s", "long_name": "time"}),
         )
-        attrs = {"gripped": self._gripped, "joint": self.joint, "step": self.step, "load": load, "kp": layout(self.robot).robot.servo(self.joint).kp}
+        kp = layout(self.robot).robot.servo(self.joint).kp
+        attrs = {"gripped": self._gripped, "joint": self.joint, "step": self.step, "load": load, "kp": kp}
         return Simulated(record=data.assign_attrs(attrs))
 
     @property
@@ -174,7 +175,7 @@ class JointLoops(Experiment):
             m[f"forward_{last}"], m[f"forward_{first}"], less="less far", more="farther", same="as far", within=0.01
         )
         return (
-            f"Under the {m['load']:.2f} N m that the crawl asks of {self.joint} the joint sags by "
+            f"Under the {_load(m['load'])} N m that the crawl asks of {self.joint} the joint sags by "
             f"{m[f'droop_{first}']:deg.2f} degrees without an integral term and ends {m[f'droop_{last}']:deg.2f} "
             f"degrees off with {self.integrals[-1]:g} N m/(rad s). A free step overshoots by "
             f"{m[f'overshoot_{first}']:.0%} without and {m[f'overshoot_{last}']:.0%} with it; after a grip of "
@@ -202,6 +203,11 @@ class JointLoops(Experiment):
                 "each kind with several integral gains.",
             ),
         }
+
+
+def _load(torque: float) -> str:
+    """Return a torque as text: two decimals, or two digits of a very small one [N m]."""
+    return f"{torque:.2f}" if torque >= 0.05 else f"{torque:.2g}"
 
 
 def rise_time(time: np.ndarray, angle: np.ndarray, step: float) -> float:

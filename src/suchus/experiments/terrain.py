@@ -140,7 +140,8 @@ class Terrain(Experiment):
         return findings.explain(measures)
 
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
-        caption = f"Semi-erect with the IMU, and, half transparent, low, over one field of {1000 * self._shown_height:.3g} mm bumps."
+        height = f"{1000 * self._shown_height:.3g}"
+        caption = f"Semi-erect with the IMU, and, half transparent, low, over one field of {height} mm bumps."
         page = partial(
             replay,
             record.isel(run=1),

@@ -22,7 +22,7 @@ LEGS_LOST: tuple[Legs, ...] = ("one", "both")
 
 
 def lost_joints(robot: AnyRobot) -> tuple[str, ...]:
-    """Return the joints of limbs that a robot can lose, hinge by hinge from the hip on, girdle by girdle from the front.
+    """Return the joints of limbs that a robot can lose, hinge by hinge from the hip, girdle by girdle.
 
     A girdle is ``front``, ``hind``, or ``middle`` with its number where there are several; only the hind one is there
     where there is one.
