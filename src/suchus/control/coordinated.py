@@ -128,13 +128,13 @@ class Coordinator:
         ticks: int,
         period: float,
     ) -> None:
-        gaits = [steerable(gait, "the closed loop") for gait in gaits]
-        for one in set(zip(controls, robots, gaits, strict=True)):
+        paths = [steerable(gait, "the closed loop") for gait in gaits]
+        for one in set(zip(controls, robots, paths, strict=True)):
             _refuse_others(*one)
         limbs = len(layout(robots[0]).limbs)
         self._period = period
         self._table = OpenLoop().start(robots, gaits, seeds, ticks, period)
-        self._groups = _grouped(robots, gaits)
+        self._groups = _grouped(robots, paths)
         ahead = np.zeros((len(robots), limbs))
         self._noise: list[tuple[int, float, np.random.Generator]] = []
         self._kicks: dict[int, list[tuple[int, np.ndarray]]] = {}
@@ -148,9 +148,9 @@ class Coordinator:
         self._hears = np.array([control.sharing for control in controls])[:, None]
         self._limbs = Limbs([control.limbs for control in controls], robots, gaits, ahead, period)
         self._spine = Spine([control.spine for control in controls], robots, self._groups, period)
-        self._tail = Tail([control.tail for control in controls], robots, gaits, self._groups, period)
+        self._tail = Tail([control.tail for control in controls], robots, paths, self._groups, period)
         steered = any(control.heading is not None for control in controls)
-        self._heading = Heading([control.heading for control in controls], robots, gaits, period) if steered else None
+        self._heading = Heading([control.heading for control in controls], robots, paths, period) if steered else None
         self._shared = silence(len(robots), limbs)
         self._steering = Steering.none(len(robots), limbs)
 

@@ -190,11 +190,12 @@ class JointFaults(Experiment):
         """Return the gaits of all arms with the legs of one gait."""
         if not isinstance(gait, Gait):
             return {"coordinated": gait, "limbs_only": straightened(self.robot, gait, name="limbs_only")}
-        limbs = {
+        limbs: dict[str, AnyGait] = {
             arm: replace(gait, name=other.name, **{name: getattr(other, name) for name in _TRUNK})
             for arm, other in (("limbs_only", self.control), ("limbs_tail_lifted", self.lifted))
         }
-        return {"coordinated": gait} | limbs
+        arms: dict[str, AnyGait] = {"coordinated": gait}
+        return arms | limbs
 
     def _broken(self, gait: AnyGait, joint: str) -> tuple[Fault, ...]:
         """Return the faults of a joint in the judged reading."""

@@ -135,10 +135,10 @@ class _Wave:
         first = gait.limb_phases[0] if gait.limb_phases else 0.0
         since = np.exp(2j * np.pi * (phase - np.array(gait.limb_phases) + first - (0.75 - gait.duty_factor / 2)))
         self._turn = since.mean(axis=-1)
-        self._knots = [list(column) for column in zip(*gait.wave.amplitude, strict=True)]
+        self._places, self._angles = (np.array(column) for column in zip(*gait.wave.amplitude, strict=True))
 
     def at(self, place: float) -> np.ndarray:
         """Return how far a hinge at a place bends the body, concave on the left positive [rad]."""
         wave = self._gait.wave
         late = np.exp(-2j * np.pi * (wave.phase + wave.waves * place))
-        return np.asarray(wave.offset - np.interp(place, *self._knots) * (self._turn * late).real)
+        return np.asarray(wave.offset - np.interp(place, self._places, self._angles) * (self._turn * late).real)
