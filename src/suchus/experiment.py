@@ -4,11 +4,15 @@ import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass, field
-from typing import Any, ClassVar
+from dataclasses import asdict, dataclass, field, fields, replace
+from typing import Any, ClassVar, Self
 
 import xarray as xr
 
+from suchus.design import AnyRobot, check_needs
+from suchus.design.scale import coarse_step, scaled_fields
+from suchus.gaits import own_gait, suits
+from suchus.motion import AnyGait, straightened
 from suchus.verdict import Rule, Verdict, judge, rules_of
 
 Progress = Callable[[str, float], None]
@@ -96,6 +100,8 @@ class Experiment(ABC):
     """The question in one line, as a person would ask it."""
     shows: ClassVar[str]
     """Which sections, figures or equations of the article it answers."""
+    needs: ClassVar[tuple[str, ...]] = ()
+    """What it needs of a robot: names of ``design.NEEDS``; written out, so that ``suchus list`` can tell it."""
     judged_with: ClassVar[tuple[str, ...]] = ("robot",)
     """Fields that must be as on the shelf for a verdict: another robot is not judged by the article's metres."""
     judged_from: ClassVar[Mapping[str, float]] = {}
@@ -112,7 +118,13 @@ class Experiment(ABC):
         return rules_of(cls.name())
 
     def run(self, progress: Progress = silent) -> Outcome:
-        """Answer the question."""
+        """Answer the question.
+
+        Raises:
+            UnsuitedRobot: the robot lacks what the experiment needs.
+        """
+        if hasattr(self, "robot"):
+            check_needs(self.robot, self.needs, self.name())
         with stopwatch() as seconds:
             simulated = self.simulate(progress)
             measures = self.measure(simulated.record)
@@ -155,6 +167,40 @@ class Experiment(ABC):
     def quick(self) -> "Experiment":
         """Return the same question, small enough for a test."""
 
+    def on(self, robot: AnyRobot) -> Self:
+        """Return the same question for another robot.
+
+        Where the robot can follow the gaits, nothing else changes. If not, they become its own gait, and lengths,
+        times, forces and masses change with its size.
+
+        Raises:
+            UnsuitedRobot: the robot lacks what the experiment needs, or no gait on the shelf suits it.
+        """
+        check_needs(robot, self.needs, self.name())
+        names = [one.name for one in fields(self)]  # type: ignore[arg-type]
+        if "robot" not in names:
+            return self
+        values = {name: getattr(self, name) for name in names}
+        if all(suits(robot, gait) for value in values.values() for gait in _gaits(value)):
+            return replace(self, robot=robot)  # type: ignore[type-var]
+        here: AnyRobot = values["robot"]
+        plain = [name for name, value in values.items() if name != "robot" and not _gaits(value)]
+        sized = scaled_fields(self, plain, length=robot.length / here.length, mass=robot.mass / here.mass)
+        if "timestep" in values:  # it divides the control period
+            sized["timestep"] = values["timestep"] / coarse_step(here) * coarse_step(robot)
+        return replace(self, robot=robot, **(sized | self.gaits_on(robot)))  # type: ignore[type-var]
+
+    def gaits_on(self, robot: AnyRobot) -> dict[str, Any]:
+        """Return the fields that hold gaits, for a robot that cannot follow those of now: its own, and its limbs alone.
+
+        Raises:
+            UnsuitedRobot: no gait on the shelf suits it.
+        """
+        own = own_gait(robot)
+        found = {"gait": own, "gaits": (own,), "control": straightened(robot, own, name="limbs_only")}
+        names = {one.name for one in fields(self)}  # type: ignore[arg-type]
+        return {name: value for name, value in found.items() if name in names}
+
     def unjudged(self) -> str:
         """Return why a run with these settings gets no verdicts, in a sentence; empty if it does."""
         if not self.rules():
@@ -181,6 +227,12 @@ class Experiment(ABC):
     def name(cls) -> str:
         """Return the name on the shelf: the name of the module."""
         return cls.__module__.rpartition(".")[2]
+
+
+def _gaits(value: Any) -> tuple[AnyGait, ...]:
+    """Return the gaits that a field holds."""
+    many = value if isinstance(value, tuple) else (value,)
+    return tuple(one for one in many if isinstance(one, AnyGait))
 
 
 def _called(value: Any) -> str:

@@ -1,7 +1,8 @@
 import pytest
 
 from suchus.cli import main
-from suchus.hardware import STRAIGHT, read_map
+from suchus.hardware import read_map, straight
+from suchus.robots import ROBOTS
 
 
 @pytest.fixture(autouse=True)
@@ -11,7 +12,7 @@ def here(tmp_path, monkeypatch):
 
 def test_a_map_to_start_from_then_the_commands(tmp_path, capsys):
     assert main(["export-commands", "--write-map", "mine.toml"]) == 0
-    assert read_map(tmp_path / "mine.toml") == STRAIGHT
+    assert read_map(tmp_path / "mine.toml", ROBOTS["caiman"]) == straight(ROBOTS["caiman"])
     assert main(["export-commands", "limbs_only", "--map", "mine.toml"]) == 0
     folder = tmp_path / "export" / "limbs_only_commands"
     names = {"commands.csv", "trajectory.yaml", "loads.csv", "servo_map.toml", "gait.toml", "suchus_commands.json"}

@@ -101,7 +101,7 @@ def test_all_rules_off_but_random_phases_is_the_gait_at_those_phases(robot, craw
 
 
 def test_only_its_owner_writes_a_shared_variable():
-    shared = silence(2)
+    shared = silence(2, 4)
     for name, owner in OWNERS.items():
         value = np.ones((2, 4)) if name == "limb_phase" else np.ones(2)
         for other in {"limbs", "spine", "tail"} - {owner}:
@@ -118,7 +118,7 @@ def test_only_its_owner_writes_a_shared_variable():
 
 def test_the_shared_variables_are_those_that_the_article_names():
     assert set(OWNERS) == {"limb_phase", "trunk_bend", "trunk_direction", "tail_bend", "tail_direction"}
-    assert set(OWNERS) == set(silence(1).__dataclass_fields__)
+    assert set(OWNERS) == set(silence(1, 4).__dataclass_fields__)
 
 
 phases = st.lists(st.floats(0.0, 1.0), min_size=4, max_size=4)
@@ -127,8 +127,8 @@ phases = st.lists(st.floats(0.0, 1.0), min_size=4, max_size=4)
 @given(phases, st.floats(-0.5, 0.5), st.floats(-0.5, 0.5), st.floats(0.3, 0.8))
 def test_spine_and_tail_follow_the_limbs_by_the_open_loop_law(robot, crawl_gait, phase, late, later, duty):
     gait = replace(crawl_gait, spine_phase=late, tail_phase=later, duty_factor=duty)
-    groups = [(gait, np.array([0]))]
-    shared = silence(1).written_by("limbs", limb_phase=np.array([phase]))
+    groups = [(robot, gait, np.array([0]))]
+    shared = silence(1, 4).written_by("limbs", limb_phase=np.array([phase]))
     shared = Spine([None], [robot], groups, PERIOD).step(shared)
     shared = Tail([None], [robot], [gait], groups, PERIOD).step(shared)
     for name, law in (("trunk", trunk_bend), ("tail", tail_bend)):
@@ -151,7 +151,7 @@ def walked(law, robot, gait, ahead, load, ticks):
     """Let oscillators turn on synthetic loads; return the phases over time, (tick, run, 4)."""
     runs = len(ahead)
     limbs = Limbs([law] * runs, [robot] * runs, [gait] * runs, ahead, PERIOD)
-    shared, out = silence(runs), []
+    shared, out = silence(runs, 4), []
     for tick in range(ticks):
         clock = np.tile(limb_phase(gait, np.array(START + tick * PERIOD)), (runs, 1))
         shared = shared.written_by("limbs", limb_phase=clock + limbs.ahead)
@@ -255,7 +255,7 @@ def test_noise_on_the_feet_follows_the_seed(robot, crawl_gait):
 
 def test_the_joints_share_out_what_is_lacking_of_the_bend(robot, crawl_gait):
     rule = SpineRule(share=0.25, delay=0.1)
-    spine = Spine([rule, None], [robot] * 2, [(crawl_gait, np.arange(2))], PERIOD)
+    spine = Spine([rule, None], [robot] * 2, [(robot, crawl_gait, np.arange(2))], PERIOD)
     targets = np.zeros((2, 19))
     felt = sensed(2, servo_position=np.where(np.isin(np.arange(19), TRUNK_YAW[:2]), 0.1, 0.0))  # 0.2 of 0.6 rad
     for tick in range(200):
@@ -268,7 +268,7 @@ def test_the_joints_share_out_what_is_lacking_of_the_bend(robot, crawl_gait):
 
 
 def test_no_joint_is_told_to_leave_its_range(robot, crawl_gait):
-    spine = Spine([SpineRule(share=2.0, delay=0.0)], [robot], [(crawl_gait, np.arange(1))], PERIOD)
+    spine = Spine([SpineRule(share=2.0, delay=0.0)], [robot], [(robot, crawl_gait, np.arange(1))], PERIOD)
     told = spine.correct(np.zeros((1, 19)), np.array([3.0]), sensed(1))
     assert told[0, TRUNK_YAW] == pytest.approx(robot.spine.yaw_range[1])
 
@@ -277,7 +277,9 @@ def test_the_tail_gives_way_to_its_torque_within_its_range(robot, crawl_gait):
     limbs_gait = GAITS["limbs_tail_lifted"]
     gaits = [crawl_gait, crawl_gait, crawl_gait, limbs_gait]
     rule = TailRule(rate=0.5)
-    tail = Tail([rule, rule, None, rule], [robot] * 4, gaits, [(g, np.array([i])) for i, g in enumerate(gaits)], PERIOD)
+    tail = Tail(
+        [rule, rule, None, rule], [robot] * 4, gaits, [(robot, g, np.array([i])) for i, g in enumerate(gaits)], PERIOD
+    )
     pitch = np.array([gait.tail_pitch for gait in gaits])
     targets = np.zeros((4, 19))
     targets[:, PITCH] = pitch

@@ -11,6 +11,7 @@ from suchus.errors import InvalidDesign, OutsideLimits, UnknownName
 from suchus.gaits import GAITS
 from suchus.land import Ground, Run, simulate
 from suchus.metrics import between, displacement, heading_change, tilt
+from suchus.robots import ROBOTS
 
 POSTURES = ("belly_crawl", "low_crawl", "semi_erect", "high_walk")
 SEEDS = ((2, 0.06), (3, 0.1))
@@ -133,7 +134,7 @@ def test_bend_and_asymmetry_steer_to_the_left(robot):
 
 def feel(rule, gait, many, *, ticks):
     """Let one run feel the same for some ticks; return the rung of each answer."""
-    switcher, phase, answers = Switcher([rule], [gait], 0.01), np.full((1, 4), 0.9), []
+    switcher, phase, answers = Switcher([rule], [ROBOTS["caiman"]], [gait], 0.01), np.full((1, 4), 0.9), []
     for _ in range(ticks):
         for _, asked in switcher.decide(many, phase, [gait], set()):
             answers.append(rule.ladder.index(asked))

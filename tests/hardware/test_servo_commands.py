@@ -12,10 +12,10 @@ import pytest
 import xarray as xr
 
 from suchus.blueprint import MistakenFile
-from suchus.design import cable_joints, servo_names
+from suchus.design import cable_joints, layout, servo_names
 from suchus.errors import InvalidDesign, OutsideLimits
+from suchus.gaits import own_gait
 from suchus.hardware import (
-    STRAIGHT,
     Load,
     check_commands,
     check_loads,
@@ -25,12 +25,16 @@ from suchus.hardware import (
     overloaded,
     read_map,
     share_at_limit,
+    straight,
     trajectory_text,
     write_map,
 )
 from suchus.kinematics.tail import servo_angle
 from suchus.model.export.urdf import urdf
 from suchus.motion import START, limb_phase, servo_targets
+from suchus.robots import ROBOTS
+
+STRAIGHT = straight(ROBOTS["caiman"])
 
 
 def remapped(**lines):
@@ -165,7 +169,7 @@ def test_nineteen_servos_hang_on_two_boards_of_sixteen_channels():
 def test_a_map_reads_back_equal_from_a_file_with_a_line_for_each_servo(tmp_path):
     servo_map = remapped(RF_yaw={"direction": -1, "offset": 1 / 3})
     path = write_map(servo_map, tmp_path / "map.toml")
-    assert read_map(path) == servo_map
+    assert read_map(path, ROBOTS["caiman"]) == servo_map
     assert sum(line.startswith("  {name") for line in path.read_text().splitlines()) == 19
 
 
@@ -184,7 +188,7 @@ def test_mistakes_in_a_map_are_named(change, said, tmp_path):
     path = write_map(STRAIGHT, tmp_path / "map.toml")
     path.write_text(path.read_text().replace(*change, 1))
     with pytest.raises((MistakenFile, InvalidDesign), match=said):
-        read_map(path)
+        read_map(path, ROBOTS["caiman"])
 
 
 def test_the_table_holds_what_is_commanded(robot, crawl_gait):
@@ -227,3 +231,25 @@ def test_the_trajectory_has_the_fields_of_the_ros_message_and_the_joints_of_the_
     assert message["joint_names"] == names
     keys = {"positions", "velocities", "accelerations", "effort", "time_from_start"}
     assert all(set(point) == keys for point in message["points"])
+
+
+@pytest.mark.parametrize("name", ["strider", "salamander", "salamandra"])
+def test_any_robot_gets_its_commands_and_they_can_be_repeated(name):
+    body = ROBOTS[name]
+    gait, servos = own_gait(body), layout(body).servos
+    told = commands(body, gait, straight(body), cycles=2)
+    assert told.servos == servos
+    assert told.angles.shape == told.pulses.shape == (len(told.time), len(servos))
+    rows = told.angles[[0, len(told.time) // 2, -1]]
+    cranks = np.array([name.endswith("crank") for name in servos])
+    assert rows[2][~cranks] == pytest.approx(rows[0][~cranks], abs=1e-9)
+    assert np.diff(rows, axis=0)[:, cranks] == pytest.approx(-2 * pi)  # a crank goes on
+    rates = np.gradient(told.angles, told.time, axis=0)[2:-2]
+    assert told.speeds[2:-2] == pytest.approx(rates, abs=0.05 * abs(rates).max())
+    assert csv_text(told).splitlines()[0].startswith(f"time_s,{servos[0]}_rad")
+    assert f"joint_names: [{servos[0]}" in trajectory_text(body, told)
+
+
+def test_a_map_for_another_robot_is_refused():
+    with pytest.raises(InvalidDesign, match=r"lacks LF_elbow, RF_elbow, LM_yaw.*robot 'strider'"):
+        commands(ROBOTS["strider"], own_gait(ROBOTS["strider"]), STRAIGHT)

@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import Annotated
 
@@ -12,12 +12,11 @@ from suchus import blueprint
 from suchus.cli.commands import BadCommand
 from suchus.cli.options import parse
 from suchus.cli.terminal import working
-from suchus.design import Crocodile
+from suchus.design import AnyRobot
 from suchus.design.checks import require
 from suchus.errors import OutsideLimits
-from suchus.gaits import GAITS
+from suchus.gaits import GAITS, own_gait, suits
 from suchus.hardware import (
-    STRAIGHT,
     Load,
     check_commands,
     check_loads,
@@ -26,11 +25,12 @@ from suchus.hardware import (
     loads,
     overloaded,
     read_map,
+    straight,
     trajectory_text,
     write_map,
 )
 from suchus.hardware.limits import AT_LIMIT, TRACKING
-from suchus.motion import Gait
+from suchus.motion import AnyGait
 from suchus.record import check_name, check_replaceable, check_writable, digest, new_folder, versions
 from suchus.robots import ROBOTS
 
@@ -41,9 +41,9 @@ MARK = "suchus_commands.json"
 class Options:
     """What can be said after ``suchus export-commands``."""
 
-    gait: Annotated[Gait, tyro.conf.Positional] = field(default_factory=lambda: GAITS["belly_crawl"])
-    """Which gait."""
-    robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
+    gait: Annotated[AnyGait, tyro.conf.Positional] = field(default_factory=lambda: GAITS["belly_crawl"])
+    """Which gait; where none is named and the robot cannot follow this one, the robot's own."""
+    robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
     """Whose joints and servos."""
     map: Path | None = None
     """Servo map; by default 270 degree servos mounted in the middle, channels in order."""
@@ -69,8 +69,10 @@ def export_commands(words: Sequence[str]) -> int:
     options: Options = parse(
         Options, "suchus export-commands", _gait_first(words), about, [f.name for f in fields(Options)]
     )
+    if options.gait == Options().gait and options.gait.name not in words and not suits(options.robot, options.gait):
+        options = replace(options, gait=own_gait(options.robot))
     if options.write_map is not None:
-        print(f"servo map: {write_map(STRAIGHT, options.write_map)}")
+        print(f"servo map: {write_map(straight(options.robot), options.write_map)}")
         return 0
     require("export-commands", "at_limit", options.at_limit, 0.0, 1.0, "")
     require("export-commands", "tracking", options.tracking, 0.0, 7.0, "rad")
@@ -79,7 +81,7 @@ def export_commands(words: Sequence[str]) -> int:
     folder = options.out or Path("export") / f"{options.gait.name}_commands"
     check_writable(folder.parent)
     check_replaceable(folder, mark=MARK)
-    servo_map = STRAIGHT if options.map is None else read_map(options.map)
+    servo_map = straight(options.robot) if options.map is None else read_map(options.map, options.robot)
     told = commands(options.robot, options.gait, servo_map, options.cycles)
     with working() as bars:
         move = bars.task(options.gait.name)

@@ -5,8 +5,9 @@ import re
 from collections.abc import Callable, Sequence
 from contextlib import redirect_stderr
 from dataclasses import dataclass, field, fields, make_dataclass
+from itertools import pairwise
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, get_args
 
 import tyro
 from tyro.constructors import ConstructorRegistry, PrimitiveConstructorSpec, PrimitiveTypeInfo
@@ -18,7 +19,7 @@ from suchus.design import AnyRobot, Crocodile
 from suchus.errors import SuchusError, UnknownName
 from suchus.experiment import Experiment
 from suchus.gaits import GAITS
-from suchus.motion import AngleTable, AnyGait, Gait
+from suchus.motion import AngleTable, AnyGait, Gait, Pattern
 from suchus.record import there
 from suchus.robots import ROBOTS
 
@@ -65,6 +66,9 @@ def choose(experiment: Experiment, name: str, words: Sequence[str]) -> Choice:
     """
     quick = "--quick" in words
     start = experiment.quick() if quick else experiment
+    robot = _robot(words)
+    if robot is not None:
+        start = start.on(robot)
     prog = f"suchus run {name}"
     options = make_dataclass(
         "Options",
@@ -78,6 +82,22 @@ def choose(experiment: Experiment, name: str, words: Sequence[str]) -> Choice:
     names = ["quick", "out", "csv", *(f.name for f in fields(start))]  # type: ignore[arg-type]
     chosen = parse(options, prog, words, f"{start.title}\n\nAnswers: {start.shows}", names)
     return Choice(experiment=chosen.experiment, quick=quick, out=chosen.out, csv=chosen.csv)
+
+
+def _robot(words: Sequence[str]) -> AnyRobot | None:
+    """Return the robot that the words name, so that the defaults of the other options can be its own.
+
+    None where they name none, or none that there is: what is wrong is said when all words are read.
+    """
+    named = [word.partition("=")[2] for word in words if word.startswith("--robot=")]
+    named += [after for word, after in pairwise(words) if word == "--robot"]
+    if not named or named[-1].startswith("-"):
+        return None
+    try:
+        found: AnyRobot = _find(named[-1], AnyRobot, ROBOTS)
+    except SuchusError:
+        return None
+    return found
 
 
 def parse(options: type, prog: str, words: Sequence[str], description: str, names: Sequence[str]) -> Any:
@@ -132,6 +152,7 @@ def _registry() -> ConstructorRegistry:
         (Crocodile, ROBOTS, "ROBOT"),
         (AnyGait, GAITS, "GAIT"),
         (Gait, GAITS, "GAIT"),
+        (Gait | Pattern, GAITS, "GAIT"),
         (AngleTable, GAITS, "GAIT"),
     )
     for kind, shelf, metavar in shelves:
@@ -183,9 +204,14 @@ def _find(word: str, kind: Any, shelf: Catalog[Any]) -> Any:
 def _unsuited(found: Any, kind: Any, shelf: Catalog[Any]) -> str:
     fit = [name for name, thing in shelf.items() if isinstance(thing, kind)]
     return (
-        f"the {shelf.kind} {found.name!r} is a {type(found).__name__}, and this needs a {kind.__name__}: take "
+        f"the {shelf.kind} {found.name!r} is a {type(found).__name__}, and this needs a {named(kind)}: take "
         f"{', '.join(fit)}, or a file that starts from one of them."
     )
+
+
+def named(kind: Any) -> str:
+    """Return the name of a type, or of each of a union."""
+    return " or ".join(one.__name__ for one in get_args(kind) or (kind,))
 
 
 def _sentence(box: str) -> str:

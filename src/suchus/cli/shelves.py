@@ -8,6 +8,7 @@ from shutil import get_terminal_size
 from textwrap import fill
 
 from suchus.cli.commands import BadCommand
+from suchus.design import NEEDS
 
 _SHELVES = (
     ("robots", "suchus.robots"),
@@ -25,12 +26,15 @@ def show(words: Sequence[str]) -> int:
         return 0
     if words:
         raise BadCommand(f"suchus list takes no {words[0]!r}.")
-    shelves = [(heading, titles(package)) for heading, package in _SHELVES]
-    width = max((len(name) for _, shelf in shelves for name in shelf), default=0)
-    for i, (heading, shelf) in enumerate(shelves):
+    shelves = [(heading, package, titles(package)) for heading, package in _SHELVES]
+    width = max((len(name) for _, _, shelf in shelves for name in shelf), default=0)
+    for i, (heading, package, shelf) in enumerate(shelves):
         print("\n" * bool(i) + heading)
         for name, title in shelf.items():
-            print(entry(name, title, width))
+            needs, robots = _stated(package, name, "needs"), _stated(package, name, "made_for")
+            more = f" (needs {', and '.join(NEEDS[need].words for need in needs)})" if needs else ""
+            more += f" (of {', '.join(robots)})" if robots else ""
+            print(entry(name, title + more, width))
     return 0
 
 
@@ -46,6 +50,22 @@ def titles(package: str) -> dict[str, str]:
     folders = [Path(place) for place in (spec.submodule_search_locations or ())] if spec else []
     files = (file for folder in folders for file in folder.glob("*.py") if not file.stem.startswith("_"))
     return {file.stem: _title(file) for file in sorted(files, key=lambda file: file.stem)}
+
+
+def _stated(package: str, name: str, what: str) -> tuple[str, ...]:
+    """Return the texts of an assignment in a module, or in a class of it, read without importing it."""
+    spec = find_spec(package)
+    folders = (spec.submodule_search_locations or ()) if spec else ()
+    file = next((Path(place) / f"{name}.py" for place in folders if (Path(place) / f"{name}.py").exists()), None)
+    try:
+        tree = ast.parse(file.read_text(encoding="utf-8")) if file else ast.Module(body=[], type_ignores=[])
+    except (SyntaxError, UnicodeDecodeError):
+        return ()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Assign) and any(isinstance(t, ast.Name) and t.id == what for t in node.targets):
+            value = ast.literal_eval(node.value)
+            return tuple(str(one) for one in value)
+    return ()
 
 
 def _title(file: Path) -> str:

@@ -8,10 +8,10 @@ from jaxtyping import Float
 
 from suchus import rotation
 from suchus.control.sensed import Sensed
-from suchus.design import Crocodile
+from suchus.design import AnyRobot, hips_ahead, layout
 from suchus.design.checks import Checks
 
-_LEFT = np.array([1.0, -1.0, 1.0, -1.0])
+_REACH = 0.175  # [m]; of the hind limbs of the article's robot
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -34,7 +34,8 @@ class AttitudeRule:
     washout: float = 3.0
     """Over which roll and pitch are compared with their own means [s]: a slope is no stumble."""
     most: float = 0.03
-    """Most that a foot is raised or lowered [m]; a leg gives little more."""
+    """Most that a foot is raised or lowered [m], with limbs as long as those of the article's robot; a leg gives little
+    more. Other limbs as much of their reach."""
 
     def __post_init__(self) -> None:
         with Checks("attitude_rule", self) as checks:
@@ -47,17 +48,17 @@ class AttitudeRule:
 class Attitude:
     """The attitude of a batch, and what the feet do about it; each run has its own rule or none."""
 
-    def __init__(self, rules: Sequence[AttitudeRule | None], robots: Sequence[Crocodile], period: float) -> None:
+    def __init__(self, rules: Sequence[AttitudeRule | None], robots: Sequence[AnyRobot], period: float) -> None:
         given = [rule if rule is not None else _NONE for rule in rules]
         self._gain = np.array([(r.roll, r.roll_rate, r.pitch, r.pitch_rate) for r in given]).T[..., None]  # (4, run, 1)
-        self._most = np.array([[r.most] for r in given])
+        self._most = np.array([[rule.most * _size(robot)] for rule, robot in zip(given, robots, strict=True)])
         self._keep = np.exp(-period / np.array([r.washout for r in given]))
-        self._aside = np.array([_LEFT * [r.leg(leg).hip_offset for leg in ("LF", "RF", "LH", "RH")] for r in robots])
-        self._ahead = np.array([_halves(r) for r in robots])
+        self._aside = np.array([[limb.side * limb.girdle.aside for limb in layout(robot).limbs] for robot in robots])
+        self._ahead = np.array([_ahead(robot) for robot in robots])
         self._mean = np.zeros((2, len(robots)))
         self._felt = False
 
-    def lower(self, sensed: Sensed) -> Float[np.ndarray, "run 4"]:
+    def lower(self, sensed: Sensed) -> Float[np.ndarray, "run limb"]:
         """Return how much lower each foot goes [m]."""
         tilt = np.stack([rotation.roll(sensed.orientation), rotation.pitch(sensed.orientation)])
         if not self._felt:
@@ -74,6 +75,14 @@ class Attitude:
 _NONE = AttitudeRule(roll=0.0, roll_rate=0.0, pitch=0.0, pitch_rate=0.0)
 
 
-def _halves(robot: Crocodile) -> np.ndarray:
-    half = (robot.spine.length + robot.thorax.shoulder) / 2
-    return np.array([half, half, -half, -half])
+def _ahead(robot: AnyRobot) -> list[float]:
+    """Return how far each limb's hips are ahead of the middle between the foremost and the hindmost girdle [m]."""
+    hips = [hips_ahead(robot, limb.number) for limb in layout(robot).limbs]
+    middle = (hips[0] + hips[-1]) / 2 if hips else 0.0
+    return [one - middle for one in hips]
+
+
+def _size(robot: AnyRobot) -> float:
+    """Return how long the hind limbs are beside those of the article's robot [-]."""
+    limbs = layout(robot).limbs
+    return round(limbs[-1].girdle.limb.reach / _REACH, 9) if limbs else 1.0

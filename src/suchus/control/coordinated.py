@@ -9,17 +9,16 @@ from jaxtyping import Float
 
 from suchus.control.controller import Command
 from suchus.control.heading import Heading, HeadingRule, Steering
-from suchus.control.limbs import LAWS, LimbLaw, Limbs
+from suchus.control.limbs import LAWS, LimbLaw, Limbs, in_pairs
 from suchus.control.open_loop import OpenLoop
 from suchus.control.sensed import Sensed
 from suchus.control.shared import silence
 from suchus.control.spine import Spine, SpineRule
-from suchus.control.suited import leg_gaits
 from suchus.control.tail import Tail, TailRule
 from suchus.design import AnyRobot, layout
 from suchus.design.checks import Checks, require
 from suchus.errors import InvalidDesign, UnsuitedRobot
-from suchus.motion import START, AnyGait, Gait, servo_targets
+from suchus.motion import START, AnyGait, Gait, Pattern, servo_targets, steerable, steered
 
 _SLACK = 1e-9  # [s]; times are multiples of the control period up to rounding
 
@@ -30,13 +29,11 @@ class Kick:
 
     at: float
     """When [s]."""
-    ahead: tuple[float, float, float, float]
-    """How far LF, RF, LH, RH jump [cycle]."""
+    ahead: tuple[float, ...]
+    """How far each limb jumps, in the order of the robot's limbs, LF, RF, LH, RH of the article's [cycle]."""
 
     def __post_init__(self) -> None:
         require("kick", "at", self.at, 0.0, 86400.0, "s")
-        if len(self.ahead) != 4:
-            raise InvalidDesign(f"kick.ahead has {len(self.ahead)} numbers; LF, RF, LH, RH need one each.")
         for i, cycles in enumerate(self.ahead):
             require("kick", f"ahead[{i}]", cycles, -1.0, 1.0, "cycle")
 
@@ -76,6 +73,19 @@ class Coordinated:
         """Whether any rule is on."""
         return self.limbs.feels or any(rule is not None for rule in (self.spine, self.tail, self.heading))
 
+    def suited(self, robot: AnyRobot, gait: AnyGait) -> "Coordinated":
+        """Return it with those of its rules that a robot's parts make possible in a gait.
+
+        A law that makes diagonal pairs is switched off in a gait without them.
+        """
+        place = layout(robot)
+        return replace(
+            self,
+            limbs=LAWS["off"] if not place.limbs or (self.limbs.pairs and not in_pairs(place, gait)) else self.limbs,
+            spine=self.spine if place.trunk_yaw else None,
+            tail=self.tail if place.tail_pitch and isinstance(gait, Gait) else None,
+        )
+
     def start(
         self,
         robots: Sequence[AnyRobot],
@@ -102,7 +112,7 @@ class Coordinated:
 
 class _Group(NamedTuple):
     robot: AnyRobot
-    gait: Gait
+    gait: Gait | Pattern
     runs: np.ndarray
 
 
@@ -118,31 +128,31 @@ class Coordinator:
         ticks: int,
         period: float,
     ) -> None:
-        gaits = leg_gaits(gaits, "the closed loop")
-        for robot in set(robots):
-            _refuse_others(robot)
+        paths = [steerable(gait, "the closed loop") for gait in gaits]
+        for one in set(zip(controls, robots, paths, strict=True)):
+            _refuse_others(*one)
+        limbs = len(layout(robots[0]).limbs)
         self._period = period
         self._table = OpenLoop().start(robots, gaits, seeds, ticks, period)
-        self._groups = _grouped(robots, gaits)
-        by_gait = [(group.gait, group.runs) for group in self._groups]
-        ahead = np.zeros((len(robots), 4))
+        self._groups = _grouped(robots, paths)
+        ahead = np.zeros((len(robots), limbs))
         self._noise: list[tuple[int, float, np.random.Generator]] = []
         self._kicks: dict[int, list[tuple[int, np.ndarray]]] = {}
         for run, (control, gait, seed) in enumerate(zip(controls, gaits, seeds, strict=True)):
             if control.random_start:
-                ahead[run] = np.random.default_rng([seed, 0]).random(4) - gait.limb_phases
+                ahead[run] = np.random.default_rng([seed, 0]).random(limbs) - gait.limb_phases
             if control.load_noise > 0.0:
                 self._noise.append((run, control.load_noise, np.random.default_rng([seed, 1])))
             for kick in control.kicks:
                 self._kicks.setdefault(int(np.ceil(kick.at / period - _SLACK)), []).append((run, np.array(kick.ahead)))
         self._hears = np.array([control.sharing for control in controls])[:, None]
         self._limbs = Limbs([control.limbs for control in controls], robots, gaits, ahead, period)
-        self._spine = Spine([control.spine for control in controls], robots, by_gait, period)
-        self._tail = Tail([control.tail for control in controls], robots, gaits, by_gait, period)
+        self._spine = Spine([control.spine for control in controls], robots, self._groups, period)
+        self._tail = Tail([control.tail for control in controls], robots, paths, self._groups, period)
         steered = any(control.heading is not None for control in controls)
-        self._heading = Heading([control.heading for control in controls], robots, gaits, period) if steered else None
-        self._shared = silence(len(robots))
-        self._steering = Steering.none(len(robots))
+        self._heading = Heading([control.heading for control in controls], robots, paths, period) if steered else None
+        self._shared = silence(len(robots), limbs)
+        self._steering = Steering.none(len(robots), limbs)
 
     def take_over(self, before: "Coordinator") -> None:
         """Go on from where another coordinator of the same runs stands, with other gaits or rules."""
@@ -186,7 +196,18 @@ class Coordinator:
         moved = self._limbs.ahead.any(axis=1) | self._steering.any()
         for robot, gait, members in self._groups:
             runs = members[moved[members]]
-            if runs.size:
+            if runs.size and isinstance(gait, Pattern):
+                phase = self._shared.limb_phase[runs]
+                targets[runs] = steered(
+                    robot,
+                    gait,
+                    phase,
+                    trunk=self._steering.trunk[runs],
+                    size=np.ones(len(runs)),
+                    stroke=1.0 + self._steering.stroke[runs],
+                    lower=np.zeros_like(phase),
+                )
+            elif runs.size and isinstance(gait, Gait):
                 targets[runs] = servo_targets(
                     robot,
                     gait,
@@ -200,21 +221,32 @@ class Coordinator:
     def _noisy(self, sensed: Sensed) -> Sensed:
         pressure = sensed.foot_pressure.copy()
         for run, loudness, rng in self._noise:
-            pressure[run] *= np.maximum(1.0 + loudness * rng.standard_normal(4), 0.0)
+            pressure[run] *= np.maximum(1.0 + loudness * rng.standard_normal(pressure.shape[1]), 0.0)
         return replace(sensed, foot_pressure=pressure)
 
 
-def _refuse_others(robot: AnyRobot) -> None:
+def _refuse_others(control: Coordinated, robot: AnyRobot, gait: Gait | Pattern) -> None:
     place = layout(robot)
-    if not (place.trunk_yaw and place.tail_pitch):
-        raise UnsuitedRobot(
-            f"the feedback rules need servos that bend the trunk sideways and pitch the tail; robot {robot.name!r} "
-            "lacks them: let it walk in open loop."
-        )
+    for kick in control.kicks:
+        if len(kick.ahead) != len(place.limbs):
+            raise InvalidDesign(
+                f"kick.ahead has {len(kick.ahead)} numbers; {', '.join(place.limb_names) or 'no limbs'} of robot "
+                f"{robot.name!r} need one each."
+            )
+    fit = control.suited(robot, gait)
+    for rule, needs in (
+        ("spine", "servos that bend the trunk sideways"),
+        ("tail", "a servo that pitches the tail and a gait that lays it down"),
+    ):
+        if getattr(fit, rule) != getattr(control, rule):
+            raise UnsuitedRobot(
+                f"the feedback rule {rule} to {rule} needs {needs}; robot {robot.name!r} with gait {gait.name!r} lacks "
+                "that: leave the rule out, as Coordinated.suited does."
+            )
 
 
-def _grouped(robots: Sequence[AnyRobot], gaits: Sequence[Gait]) -> list[_Group]:
-    members: dict[tuple[AnyRobot, Gait], list[int]] = {}
+def _grouped(robots: Sequence[AnyRobot], gaits: Sequence[Gait | Pattern]) -> list[_Group]:
+    members: dict[tuple[AnyRobot, Gait | Pattern], list[int]] = {}
     for i, pair in enumerate(zip(robots, gaits, strict=True)):
         members.setdefault(pair, []).append(i)
     return [_Group(robot, gait, np.array(runs)) for (robot, gait), runs in members.items()]

@@ -12,9 +12,7 @@ from suchus import rotation
 from suchus.control.sensed import Sensed, finite
 from suchus.design import AnyRobot, layout
 from suchus.design.checks import Checks
-from suchus.motion import Gait, longest_stroke
-
-_LEFT = np.array([1.0, -1.0, 1.0, -1.0])
+from suchus.motion import Gait, Pattern, longest_strokes, strides
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -49,15 +47,15 @@ class HeadingRule:
 class Steering(NamedTuple):
     """What the heading loop adds to the posture."""
 
-    stroke: Float[np.ndarray, "run 4"]
+    stroke: Float[np.ndarray, "run limb"]
     """By how much each leg's stroke is longer, as a part of it [-]."""
     trunk: Float[np.ndarray, " run"]
     """Lasting bend of the trunk [rad]."""
 
     @classmethod
-    def none(cls, runs: int) -> "Steering":
+    def none(cls, runs: int, limbs: int) -> "Steering":
         """Return what steers straight ahead."""
-        return cls(np.zeros((runs, 4)), np.zeros(runs))
+        return cls(np.zeros((runs, limbs)), np.zeros(runs))
 
     def any(self) -> Bool[np.ndarray, " run"]:
         """Tell which runs are steered."""
@@ -71,7 +69,7 @@ class Heading:
         self,
         rules: Sequence[HeadingRule | None],
         robots: Sequence[AnyRobot],
-        gaits: Sequence[Gait],
+        gaits: Sequence[Gait | Pattern],
         period: float,
     ) -> None:
         off = HeadingRule(gain=0.0, integral_gain=0.0, trunk=0.0)
@@ -87,6 +85,7 @@ class Heading:
         self._count = 0
         self._walks = False
         self._yaw = list(layout(robots[0]).trunk_yaw)
+        self._left = np.array([limb.side for limb in layout(robots[0]).limbs])
         self._lasting = np.zeros(len(gaits))
         self._last = np.zeros(len(gaits))
         self._turned = np.zeros(len(gaits))
@@ -94,11 +93,11 @@ class Heading:
     def step(self, sensed: Sensed, *, walking: bool) -> Steering:
         """Answer to the direction that is felt now."""
         if not walking:
-            return Steering.none(len(self._runs))
+            return Steering.none(len(self._runs), len(self._left))
         error = self._error(sensed)
         self._lasting = np.clip(self._lasting - self._integral_gain * error / self._cycle, -self._most, self._most)
         steer = np.clip(self._lasting - self._gain * error, -self._most, self._most)
-        return Steering(-_LEFT * steer[:, None], self._trunk * steer)
+        return Steering(-self._left * steer[:, None], self._trunk * steer)
 
     def take_over(self, before: "Heading") -> None:
         """Go on from where the loops of the same runs stand; the mean over the last cycle begins anew."""
@@ -121,7 +120,7 @@ class Heading:
         return mean - self._direction
 
 
-def _most(rule: HeadingRule, robot: AnyRobot, gait: Gait) -> float:
-    if gait.stroke == 0.0:
+def _most(rule: HeadingRule, robot: AnyRobot, gait: Gait | Pattern) -> float:
+    if not strides(gait):
         return 0.0
-    return min(rule.most, max(longest_stroke(robot, gait) / abs(gait.stroke) - 1.0, 0.0))
+    return min(rule.most, max(longest_strokes(robot, gait) - 1.0, 0.0))

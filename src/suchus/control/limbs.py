@@ -13,7 +13,7 @@ from suchus.control.shared import Shared
 from suchus.design import GRAVITY, AnyRobot, Layout, layout
 from suchus.design.checks import Checks
 from suchus.errors import OutsideLimits
-from suchus.motion import AnyGait, Gait
+from suchus.motion import AnyGait
 
 _DIAGONAL = 0.02  # [cycle]; how far from diagonal pairs a gait may be that a law with pairs coordinates
 
@@ -146,19 +146,19 @@ class Limbs:
         self,
         laws: Sequence[LimbLaw],
         robots: Sequence[AnyRobot],
-        gaits: Sequence[Gait],
-        ahead: Float[np.ndarray, "run 4"],
+        gaits: Sequence[AnyGait],
+        ahead: Float[np.ndarray, "run limb"],
         period: float,
     ) -> None:
         for law, gait in set(zip(laws, gaits, strict=True)):
             if law.pairs:
-                _refuse_others(gait)
+                _refuse_others(gait, layout(robots[0]))
         self.ahead = ahead
         self._loads = Loads(laws, robots, gaits, period)
         self._cycles_per_tick = period / np.array([gait.period for gait in gaits])[:, None]
 
     def step(
-        self, shared: Shared, sensed: Sensed | None, clock: Float[np.ndarray, "run 4"], *, walking: bool
+        self, shared: Shared, sensed: Sensed | None, clock: Float[np.ndarray, "run limb"], *, walking: bool
     ) -> Shared:
         """Let the oscillators turn for one control period.
 
@@ -180,7 +180,7 @@ class Limbs:
             self.ahead = before.ahead
             self._loads.take_over(before._loads)
 
-    def kick(self, run: int, ahead: Float[np.ndarray, " 4"]) -> None:
+    def kick(self, run: int, ahead: Float[np.ndarray, " limb"]) -> None:
         """Let the limbs of one run jump ahead [cycle]."""
         self.ahead = self.ahead.copy()
         self.ahead[run] += ahead
@@ -192,9 +192,20 @@ def _trunk_torque(robot: AnyRobot) -> float:
     return sum(place.robot.servo(place.servos[i]).torque for i in place.trunk_yaw) or 1.0
 
 
-def _refuse_others(gait: Gait) -> None:
-    lf, rf, lh, rh = gait.limb_phases
-    worst = max(abs((difference + 0.5) % 1.0 - 0.5) for difference in (lf - rh, rf - lh, lf - rf + 0.5))
+def in_pairs(place: Layout, gait: AnyGait) -> bool:
+    """Tell whether diagonal limbs of a gait step together and those of a girdle take turns."""
+    return _off_pairs(place, gait) <= _DIAGONAL
+
+
+def _off_pairs(place: Layout, gait: AnyGait) -> float:
+    phases = gait.limb_phases
+    pairs = [(i, j, 0.0) for i, limb in enumerate(place.limbs) for j in limb.diagonal]
+    pairs += [(i, limb.contralateral, 0.5) for i, limb in enumerate(place.limbs)]
+    return max(abs((phases[i] - phases[j] + apart + 0.5) % 1.0 - 0.5) for i, j, apart in pairs)
+
+
+def _refuse_others(gait: AnyGait, place: Layout) -> None:
+    worst = _off_pairs(place, gait)
     if worst > _DIAGONAL:
         raise OutsideLimits(
             f"gait {gait.name!r} has limb phases {gait.limb_phases}, {worst:.2f} cycle away from diagonal pairs; this "

@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float
 
 from suchus.control.oscillators import AxisPart
-from suchus.design import AnyRobot, Crank, Layout, layout, servo_ranges
+from suchus.design import AnyRobot, Crank, Layout, hips_behind_snout, layout, servo_ranges
 from suchus.errors import OutsideLimits, UnsuitedRobot
 from suchus.kinematics import tail as tail_kinematics
 from suchus.motion import AngleTable, AnyGait, Gait, Held, Pattern, Sweep, limb_targets, middle_stance
@@ -44,7 +44,8 @@ def axis_segments(robot: AnyRobot, gait: AnyGait) -> tuple[AxisSegment, ...]:
         UnsuitedRobot: nothing bends its axis sideways.
     """
     place, gait = layout(robot), _followed(gait)
-    hips = [_girdle_place(place, number) for number in range(len(place.robot.girdles))]
+    girdles = range(len(place.robot.girdles))
+    hips = [hips_behind_snout(robot, number) / place.robot.length for number in girdles]
     found = []
 
     def add(at: float, servo: int, left: float) -> None:
@@ -145,16 +146,6 @@ def _wave(place: Layout, gait: Gait | Pattern, at: float, servo: int) -> tuple[f
     if servo in place.tail_yaw:
         return gait.tail_bend / len(place.tail_yaw), late
     return (gait.tail_bend / place.cable(servo).joints, late) if servo in place.cables else (0.0, 0.0)
-
-
-def _girdle_place(place: Layout, number: int) -> float:
-    """Return where a girdle's hips are along the body, 0 at the snout, 1 at the tip of the tail [-]."""
-    girdle, ahead = place.robot.girdles[number], 0.0
-    for segment in place.robot.axis:
-        if segment.name == girdle.segment:
-            return (ahead + segment.front - girdle.at) / place.robot.length
-        ahead += segment.front + segment.rear
-    return 0.0  # not reached: a robot refuses a girdle on no segment
 
 
 def _folded(place: Layout, gait: Gait | Pattern, middle: np.ndarray) -> np.ndarray:

@@ -31,7 +31,7 @@ class Shared:
     Paper: section III.D.
     """
 
-    limb_phase: Float[np.ndarray, "run 4"]
+    limb_phase: Float[np.ndarray, "run limb"]
     """Phase of each limb, not wrapped [cycle]; owner: limbs."""
     trunk_bend: Float[np.ndarray, " run"]
     """Lateral bend of the trunk, left positive [rad]; owner: spine."""
@@ -58,9 +58,9 @@ class Shared:
         return replace(self, **values)
 
 
-def silence(runs: int) -> Shared:
+def silence(runs: int, limbs: int) -> Shared:
     """Return the shared variables before anybody has written."""
     none = np.zeros(runs)
     return Shared(
-        limb_phase=np.zeros((runs, 4)), trunk_bend=none, trunk_direction=none, tail_bend=none, tail_direction=none
+        limb_phase=np.zeros((runs, limbs)), trunk_bend=none, trunk_direction=none, tail_bend=none, tail_direction=none
     )

@@ -10,7 +10,7 @@ from suchus.control.sensed import Sensed, finite, keep
 from suchus.control.shared import Shared
 from suchus.design import AnyRobot, layout, servo_ranges
 from suchus.design.checks import Checks
-from suchus.motion import Gait, trunk_bend
+from suchus.motion import Gait, Pattern, axis_bends
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -18,7 +18,8 @@ class SpineRule:
     """Every yaw joint of the trunk takes over a part of what all of them together lack.
 
     With B the bend that the limbs' phases ask for and q the sensed yaw angles, e is the low-passed B - sum(q), and
-    each joint is told B/3 + share e. A joint that is stuck, weak or sagging is so made up for by the others.
+    each joint is told its part of B, a third in the article's robot, and share e. A joint that is stuck, weak or
+    sagging is so made up for by the others.
     """
 
     share: float = 0.3
@@ -39,7 +40,7 @@ class Spine:
         self,
         rules: Sequence[SpineRule | None],
         robots: Sequence[AnyRobot],
-        groups: Sequence[tuple[Gait, np.ndarray]],
+        groups: Sequence[tuple[AnyRobot, Gait | Pattern, np.ndarray]],
         period: float,
     ) -> None:
         self._on = np.array([rule is not None for rule in rules])
@@ -52,11 +53,11 @@ class Spine:
         self._lacking = np.zeros(len(robots))
 
     def step(self, shared: Shared) -> Shared:
-        """Let the bend follow the limbs: each of the four pulls with a quarter of the amplitude."""
+        """Let the bend follow the limbs: each of four pulls with a quarter of the amplitude."""
         bend, direction = np.empty_like(shared.trunk_bend), np.empty_like(shared.trunk_bend)
-        for gait, runs in self._groups:
-            bend[runs] = trunk_bend(gait, shared.limb_phase[runs])
-            direction[runs] = trunk_bend(gait, shared.limb_phase[runs] + 0.25)
+        for robot, gait, runs in self._groups:
+            bend[runs] = axis_bends(robot, gait, shared.limb_phase[runs])[0]
+            direction[runs] = axis_bends(robot, gait, shared.limb_phase[runs] + 0.25)[0]
         return shared.written_by("spine", trunk_bend=bend, trunk_direction=direction)
 
     def take_over(self, before: "Spine") -> None:

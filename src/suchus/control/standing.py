@@ -11,7 +11,7 @@ from suchus import rotation
 from suchus.control.controller import Command
 from suchus.control.sensed import Sensed
 from suchus.control.suited import crocodiles, leg_gaits
-from suchus.design import AnyRobot, Crocodile, Leg, crocodile, layout
+from suchus.design import AnyRobot, Crocodile, Layout, Leg, crocodile, layout
 from suchus.design.checks import Checks
 from suchus.motion import AnyGait, Gait, limb_phase, servo_targets
 from suchus.motion.posture import Keyed, hind_leg, plan
@@ -154,8 +154,7 @@ class Standing:
         course = Course(*(np.array(part) for part in zip(*courses, strict=True)))
         legs = [robot.hind_leg for robot in ours]
         rows = np.array([unique[key] for key in keys])
-        first_pitch = layout(robots[0]).trunk_pitch[0]
-        return Stander([c.balance for c in controls], course, rows, legs, first_pitch, period)
+        return Stander([c.balance for c in controls], course, rows, legs, layout(robots[0]), period)
 
     def _course(self, robot: Crocodile, gait: Gait, time: np.ndarray) -> "Course":
         up, leave, end = self._rise(robot), self.upright_until(robot), self.down_from(robot)
@@ -199,14 +198,15 @@ class Stander:
         course: Course,
         row: np.ndarray,
         legs: Sequence[Leg],
-        first_pitch: int,
+        place: Layout,
         period: float,
     ) -> None:
         self._gains = {f.name: np.array([getattr(b or BALANCE, f.name) for b in balances]) for f in fields(Balance)}
         self._answers = np.array([b is not None for b in balances])
         self._course = course
         self._row = row
-        self._first_pitch = first_pitch
+        self._first_pitch = place.trunk_pitch[0]
+        self._hind = [limb.servos for limb in place.limbs[-2:]]
         self._legs = [(leg, np.array([leg == other for other in legs])) for leg in dict.fromkeys(legs)]
         self._period = period
         self._mean = np.full(len(row), np.nan)  # of the pitch error [rad]
@@ -228,7 +228,8 @@ class Stander:
         for leg, who in self._legs:
             some = who & upright
             angles = hind_leg(leg, feet[some], now.pitch[some], clip=True)
-            targets[some, 6:9] = targets[some, 9:12] = angles
+            for servos in self._hind:
+                targets[some, servos] = angles
         targets[upright, self._first_pitch] -= bend[upright]
         return Command(targets, now.phase)
 
@@ -240,7 +241,7 @@ class Stander:
         self._mean += self._period / g["washout"] * (low - self._mean)
         beyond = low - self._mean
         rate = sensed.angular_velocity[:, 1] + now.rate  # about the axis to the left: front end down positive
-        hind, tail = sensed.foot_pressure[:, 2:].sum(axis=1), np.maximum(sensed.tail_pressure, 0.0)
+        hind, tail = sensed.foot_pressure[:, -2:].sum(axis=1), np.maximum(sensed.tail_pressure, 0.0)
         lacking = g["tail_share"] - tail / np.maximum(hind + tail, 1.0)
         hips, trunk = g["hips_most"], g["trunk_most"]
         crept = self._crept + g["hips_per_tail"] * self._period * lacking

@@ -8,12 +8,13 @@ from jaxtyping import Float
 
 from suchus import rotation
 from suchus.control.sensed import Sensed
+from suchus.design import GRAVITY, AnyRobot
 from suchus.design.checks import Checks
 from suchus.errors import UnknownName
-from suchus.motion import Gait
+from suchus.motion import Gait, Pattern
 
 _WASHOUT = 3.0  # [s]; over which tilt is compared with its own mean
-_FOOT_LOADED = 1.0  # [N]; from here on a foot feels the ground
+_FOOT_LOADED = 0.02895931795  # of the weight, 1 N of the article's robot; from here on a foot feels the ground
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -26,7 +27,7 @@ class SwitchRule:
     above ``home`` ask for the one below, and so does a body that hardly tilts.
     """
 
-    ladder: tuple[Gait, ...]
+    ladder: tuple[Gait | Pattern, ...]
     """Gaits from the lowest posture to the highest; the run's gait must be among them."""
     home: int
     """Rung to which it returns on calm ground, counted from 0 [-]."""
@@ -55,8 +56,15 @@ class SwitchRule:
 class Switcher:
     """What a batch feels of the ground, and the postures that it asks for."""
 
-    def __init__(self, rules: Sequence[SwitchRule | None], gaits: Sequence[Gait], period: float) -> None:
+    def __init__(
+        self,
+        rules: Sequence[SwitchRule | None],
+        robots: Sequence[AnyRobot],
+        gaits: Sequence[Gait | Pattern],
+        period: float,
+    ) -> None:
         self._rules, self._period = list(rules), period
+        self._weight = np.array([robot.mass * GRAVITY for robot in robots])
         for rule, gait in zip(rules, gaits, strict=True):
             if rule is not None and gait not in rule.ladder:
                 raise UnknownName("gait on the ladder", gait.name, [g.name for g in rule.ladder])
@@ -68,8 +76,8 @@ class Switcher:
         self._calm = np.zeros(n)  # of calm without a break [s]
 
     def decide(
-        self, sensed: Sensed, phase: Float[np.ndarray, "run 4"], gaits: Sequence[Gait], busy: set[int]
-    ) -> list[tuple[int, Gait]]:
+        self, sensed: Sensed, phase: Float[np.ndarray, "run limb"], gaits: Sequence[Gait | Pattern], busy: set[int]
+    ) -> list[tuple[int, Gait | Pattern]]:
         """Feel, and return which runs begin which gait now; those that are busy feel nothing new."""
         if all(rule is None for rule in self._rules):
             return []
@@ -97,16 +105,16 @@ class Switcher:
             return -int(self._stumbling[run] > rule.stumbling or self._calm[run] >= rule.patience)
         return 0
 
-    def _feel(self, sensed: Sensed, phase: np.ndarray, gaits: Sequence[Gait], free: np.ndarray) -> None:
+    def _feel(self, sensed: Sensed, phase: np.ndarray, gaits: Sequence[Gait | Pattern], free: np.ndarray) -> None:
         feet, belly = np.nan_to_num(sensed.foot_pressure), np.nan_to_num(sensed.belly_pressure).sum(axis=1)
         total = feet.sum(axis=1) + belly + np.nan_to_num(sensed.tail_pressure)
         duty = np.array([[gait.duty_factor] for gait in gaits])
-        contradicts = (feet > _FOOT_LOADED) != (np.mod(phase, 1.0) >= 1.0 - duty)
+        contradicts = (feet > _FOOT_LOADED * self._weight[:, None]) != (np.mod(phase, 1.0) >= 1.0 - duty)
         tilt = np.nan_to_num(np.stack([rotation.roll(sensed.orientation), rotation.pitch(sensed.orientation)]))
         self._mean = tilt if self._mean is None else self._mean + self._period / _WASHOUT * (tilt - self._mean)
         off = np.hypot(*(tilt - self._mean))
         for mean, now in (
-            (self._belly, belly / np.maximum(total, 1.0)),
+            (self._belly, belly / np.maximum(total, _FOOT_LOADED * self._weight)),
             (self._stumbling, contradicts.mean(axis=1)),
             (self._tilt, off),
         ):

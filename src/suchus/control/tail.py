@@ -10,9 +10,7 @@ from suchus.control.sensed import Sensed, finite
 from suchus.control.shared import Shared
 from suchus.design import AnyRobot, layout, servo_ranges
 from suchus.design.checks import Checks
-from suchus.motion import Gait, tail_bend
-
-"""Column of the tail's pitch servo."""
+from suchus.motion import Gait, Pattern, axis_bends, tail_bend
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -44,14 +42,16 @@ class Tail:
         self,
         rules: Sequence[TailRule | None],
         robots: Sequence[AnyRobot],
-        gaits: Sequence[Gait],
-        groups: Sequence[tuple[Gait, np.ndarray]],
+        gaits: Sequence[Gait | Pattern],
+        groups: Sequence[tuple[AnyRobot, Gait | Pattern, np.ndarray]],
         period: float,
     ) -> None:
         self._groups = groups
-        self._asked = np.array([gait.tail_pitch for gait in gaits])
+        self._asked = np.array([gait.tail_pitch if isinstance(gait, Gait) else 0.0 for gait in gaits])
         self._pitch = self._asked
         self._on = np.array([rule is not None for rule in rules]) & (self._pitch >= 0.0)
+        if not self._on.any():
+            return
         self._step = period * np.array([0.0 if rule is None else rule.rate for rule in rules])
         self._column = layout(robots[0]).tail_pitch[0]
         low, high = np.array([servo_ranges(robot)[self._column] for robot in robots]).T
@@ -64,8 +64,11 @@ class Tail:
     def step(self, shared: Shared) -> Shared:
         """Let the bend follow the trunk, as late as the gait wants it; where no trunk bends, it follows the limbs."""
         bend, direction = np.empty_like(shared.tail_bend), np.empty_like(shared.tail_bend)
-        for gait, runs in self._groups:
-            if gait.trunk_bend > 0.0:
+        for robot, gait, runs in self._groups:
+            if isinstance(gait, Pattern):  # its tail is a part of one wave along the axis
+                bend[runs] = axis_bends(robot, gait, shared.limb_phase[runs])[1]
+                direction[runs] = axis_bends(robot, gait, shared.limb_phase[runs] + 0.25)[1]
+            elif gait.trunk_bend > 0.0:
                 scale, late = gait.tail_bend / gait.trunk_bend, 2 * np.pi * gait.tail_phase
                 now, later = shared.trunk_bend[runs], shared.trunk_direction[runs]
                 bend[runs] = scale * (np.cos(late) * now - np.sin(late) * later)

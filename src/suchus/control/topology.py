@@ -12,10 +12,9 @@ from suchus.control.sensed import Sensed
 from suchus.control.shared import OWNERS, Shared, silence
 from suchus.control.spine import Spine
 from suchus.control.tail import Tail
-from suchus.design import Crocodile, servo_names
-from suchus.motion import Gait
-
-_PERIOD = 0.01  # [s]; of control
+from suchus.design import AnyRobot, Layout, layout
+from suchus.design.scale import control_period
+from suchus.motion import AnyGait, steerable
 
 
 class Part(NamedTuple):
@@ -31,26 +30,31 @@ class Part(NamedTuple):
     """Shared variables that it wrote."""
 
 
-def topology(robot: Crocodile, gait: Gait, control: Coordinated | None = None) -> tuple[Part, ...]:
+def topology(robot: AnyRobot, gait: AnyGait, control: Coordinated | None = None) -> tuple[Part, ...]:
     """Return what each controller reads and writes when it takes a step, in the order in which they act.
 
     Args:
         robot: the design.
         gait: which it walks.
-        control: the rules; by default the three of ``Coordinated`` and the heading loop.
+        control: the rules; by default those of ``Coordinated`` that the robot's parts make possible, and the heading
+            loop.
 
+    Raises:
+        OutsideLimits: the gait is a table of angles.
     """
+    gait = steerable(gait, "the closed loop")
     if control is None:
-        control = Coordinated(heading=HeadingRule())
-    robots, gaits, by_gait = [robot], [gait], [(gait, np.array([0]))]
-    limbs = Limbs([control.limbs], robots, gaits, np.zeros((1, 4)), _PERIOD)
-    spine = Spine([control.spine], robots, by_gait, _PERIOD)
-    tail = Tail([control.tail], robots, gaits, by_gait, _PERIOD)
-    clock, targets = np.array([gait.limb_phases]), np.zeros((1, len(servo_names())))
+        control = Coordinated(heading=HeadingRule()).suited(robot, gait)
+    place, period = layout(robot), control_period(robot)
+    robots, gaits, groups = [robot], [gait], [(robot, gait, np.array([0]))]
+    limbs = Limbs([control.limbs], robots, gaits, np.zeros((1, len(place.limbs))), period)
+    spine = Spine([control.spine], robots, groups, period)
+    tail = Tail([control.tail], robots, gaits, groups, period)
+    clock, targets = np.array([gait.limb_phases]), np.zeros((1, len(place.servos)))
 
     def heading(_: Any, sensed: Any) -> None:
         if control.heading is not None:
-            Heading([control.heading], robots, gaits, _PERIOD).step(sensed, walking=True)
+            Heading([control.heading], robots, gaits, period).step(sensed, walking=True)
 
     def of_spine(shared: Any, sensed: Any) -> Shared:
         spine.correct(targets.copy(), np.zeros(1), sensed)
@@ -66,13 +70,13 @@ def topology(robot: Crocodile, gait: Gait, control: Coordinated | None = None) -
         "tail": of_tail,
         "heading": heading,
     }
-    return tuple(_watched(name, step) for name, step in steps.items())
+    return tuple(_watched(name, step, place) for name, step in steps.items())
 
 
-def _watched(name: str, step: Callable[[Any, Any], Shared | None]) -> Part:
+def _watched(name: str, step: Callable[[Any, Any], Shared | None], place: Layout) -> Part:
     """Return what one step read and wrote."""
-    before, heard, felt = silence(1), set[str](), set[str]()
-    after = step(_watching(before, heard), _watching(_quiet(), felt))
+    before, heard, felt = silence(1, len(place.limbs)), set[str](), set[str]()
+    after = step(_watching(before, heard), _watching(_quiet(place), felt))
     written = [] if after is None else [v for v in OWNERS if getattr(after, v) is not getattr(before, v)]
     return Part(name, frozenset(felt) - {"time"}, frozenset(heard) & frozenset(OWNERS), frozenset(written))
 
@@ -87,16 +91,16 @@ def _watching(value: object, read: set[str]) -> Any:
     return object.__new__(type("Watched", (type(value),), {"__getattribute__": noted}))
 
 
-def _quiet() -> Sensed:
+def _quiet(place: Layout) -> Sensed:
     """Return the readings of one robot at rest."""
-    servos, none = np.zeros((1, len(servo_names()))), np.zeros(1)
+    servos, none = np.zeros((1, len(place.servos))), np.zeros(1)
     return Sensed(
         time=1.0,
         servo_position=servos,
         servo_velocity=servos,
         servo_torque=servos,
-        foot_pressure=np.ones((1, 4)),
-        belly_pressure=np.zeros((1, 6)),
+        foot_pressure=np.ones((1, len(place.limbs))),
+        belly_pressure=np.zeros((1, len(place.trunk))),
         tail_pressure=none,
         orientation=np.array([[1.0, 0.0, 0.0, 0.0]]),
         angular_velocity=np.zeros((1, 3)),

@@ -9,15 +9,13 @@ from jaxtyping import Float
 from suchus.control.attitude import Attitude, AttitudeRule
 from suchus.control.controller import Command
 from suchus.control.sensed import Sensed
-from suchus.control.suited import crocodiles, leg_gaits
 from suchus.control.switching import Switcher, SwitchRule
-from suchus.design import AnyRobot, Crocodile, layout
+from suchus.design import AnyRobot, layout, servo_ranges
 from suchus.design.checks import Checks, require
 from suchus.errors import OutsideLimits
-from suchus.motion import START, AnyGait, Gait, servo_targets, tail_bend, trunk_bend
+from suchus.motion import START, AnyGait, Gait, Pattern, steerable, steered, trunk_amplitude
 from suchus.motion.transition import Transition, transition
 
-_LEFT = np.array([1.0, -1.0, 1.0, -1.0])
 _SLACK = 1e-9  # [s]
 _GROWS = 0.5  # [cycle]; over which stroke and bends grow after a change of gait
 
@@ -28,7 +26,7 @@ class Change:
 
     at: float
     """When it begins [s]."""
-    gait: Gait
+    gait: Gait | Pattern
     """To which gait."""
 
     def __post_init__(self) -> None:
@@ -89,24 +87,34 @@ class Walking:
             OutsideLimits: a robot whose trunk cannot bend as far as it is asked to.
         """
         del seeds, ticks
-        who = "a walk that is steered and changes its gait"
-        ours, theirs = crocodiles(robots, who), leg_gaits(gaits, who)
-        for control, robot, gait in zip(controls, ours, theirs, strict=True):
-            most = 3 * min(abs(end) for end in robot.spine.yaw_range)
-            if abs(control.bend) + gait.trunk_bend > most + 1e-9:
+        ours = [steerable(gait, "a walk that is steered and changes its gait") for gait in gaits]
+        for control, robot, gait in zip(controls, robots, ours, strict=True):
+            place = layout(robot)
+            if control.bend and not place.trunk_yaw:
                 raise OutsideLimits(
-                    f"gait {gait.name!r} bends the trunk by {gait.trunk_bend:.3f} rad and steering by "
+                    f"walking.bend is {control.bend:.3f} rad; robot {robot.name!r} has no servo that bends its trunk "
+                    "sideways: set it to 0, and steer by walking.asymmetry."
+                )
+            bent = trunk_amplitude(robot, gait)
+            most = float(np.abs(servo_ranges(robot)[list(place.trunk_yaw)]).min(axis=1, initial=np.inf).sum())
+            if abs(control.bend) + bent > most + 1e-9:
+                raise OutsideLimits(
+                    f"gait {gait.name!r} bends the trunk by {bent:.3f} rad and steering by "
                     f"{abs(control.bend):.3f} rad; robot {robot.name!r} allows {most:.3f} rad in all: "
                     "lower walking.bend."
                 )
-        return Walker(controls, ours, theirs, period)
+        return Walker(controls, robots, ours, period)
 
 
 class Walker:
     """The running controller of a batch of walks."""
 
     def __init__(
-        self, controls: Sequence[Walking], robots: Sequence[Crocodile], gaits: Sequence[Gait], period: float
+        self,
+        controls: Sequence[Walking],
+        robots: Sequence[AnyRobot],
+        gaits: Sequence[Gait | Pattern],
+        period: float,
     ) -> None:
         self._controls, self._robots, self._gaits = list(controls), list(robots), list(gaits)
         self._period = period
@@ -116,10 +124,13 @@ class Walker:
         self._full = np.zeros(n)  # over which stroke and bends grow [s]; zero: at once
         self._script: dict[int, tuple[float, Transition, np.ndarray]] = {}
         self._bend = np.array([control.bend for control in controls])
-        self._stroke = 1.0 - _LEFT * np.array([[control.asymmetry] for control in controls])
+        place = layout(robots[0])
+        self._stroke = 1.0 - np.array([limb.side for limb in place.limbs]) * np.array(
+            [[control.asymmetry] for control in controls]
+        )
         self._attitude = Attitude([control.attitude for control in controls], robots, period)
-        self._switcher = Switcher([control.switching for control in controls], gaits, period)
-        self._lower = np.zeros((n, 4))
+        self._switcher = Switcher([control.switching for control in controls], robots, gaits, period)
+        self._lower = np.zeros((n, len(place.limbs)))
         self._groups = _grouped(self._robots, self._gaits)
         self._last = self._walk(0.0)
 
@@ -146,11 +157,11 @@ class Walker:
         self._last = now
         return Command(now.targets.copy(), now.phase.copy())
 
-    def gait_of(self, run: int) -> Gait:
+    def gait_of(self, run: int) -> Gait | Pattern:
         """Return the gait in which a run walks, or to which it is changing."""
         return self._gaits[run]
 
-    def _asked(self, time: float, sensed: Sensed | None, phase: np.ndarray) -> list[tuple[int, Gait]]:
+    def _asked(self, time: float, sensed: Sensed | None, phase: np.ndarray) -> list[tuple[int, Gait | Pattern]]:
         """Return who begins another gait now."""
         busy = set(self._script)
         asked = []
@@ -171,29 +182,30 @@ class Walker:
 
     def _walk(self, time: float) -> Command:
         """Return the intended posture of every run by its clock; those of runs that change their gait do not count."""
-        runs_of = len(self._robots)
-        targets, phases = np.zeros((runs_of, len(layout(self._robots[0]).servos))), np.zeros((runs_of, 4))
+        place, many = layout(self._robots[0]), len(self._robots)
+        targets, phases = np.zeros((many, len(place.servos))), np.zeros((many, len(place.limbs)))
         since = np.maximum(time - self._began, 0.0)
         size = np.where(self._full > 0, np.clip(since / np.maximum(self._full, 1e-9), 0.0, 1.0), 1.0)
         for robot, gait, runs in self._groups:
             phase = (since[runs] / gait.period + self._cycles[runs])[:, None] + np.array(gait.limb_phases)
             phases[runs] = phase
-            targets[runs] = servo_targets(
+            targets[runs] = steered(
                 robot,
                 gait,
                 phase,
-                trunk=size[runs] * trunk_bend(gait, phase) + self._bend[runs],
-                tail=size[runs] * tail_bend(gait, phase),
-                stroke=gait.stroke * size[runs, None] * self._stroke[runs],
+                trunk=self._bend[runs],
+                size=size[runs],
+                stroke=self._stroke[runs],
                 lower=self._lower[runs],
-                clip=True,
             )
         return Command(targets, phases)
 
 
-def _grouped(robots: Sequence[Crocodile], gaits: Sequence[Gait]) -> list[tuple[Crocodile, Gait, np.ndarray]]:
+def _grouped(
+    robots: Sequence[AnyRobot], gaits: Sequence[Gait | Pattern]
+) -> list[tuple[AnyRobot, Gait | Pattern, np.ndarray]]:
     """Return who walks alike; to find it at every period takes as long as the walking."""
-    members: dict[tuple[Crocodile, Gait], list[int]] = {}
+    members: dict[tuple[AnyRobot, Gait | Pattern], list[int]] = {}
     for run, pair in enumerate(zip(robots, gaits, strict=True)):
         members.setdefault(pair, []).append(run)
     return [(robot, gait, np.array(runs)) for (robot, gait), runs in members.items()]

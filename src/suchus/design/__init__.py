@@ -15,9 +15,10 @@ from suchus.design.joints import (
     servo_names,
     spine_joints,
 )
-from suchus.design.layout import Layout, LimbPlace, layout, servo_ranges
+from suchus.design.layout import Layout, LimbPlace, hips_ahead, hips_behind_snout, layout, servo_ranges
 from suchus.design.leg import Leg
 from suchus.design.limb import Foot, Girdle, Limb, Link
+from suchus.design.needs import NEEDS, check_needs, lacking
 from suchus.design.physics import GRAVITY, WATER_DENSITY, WATER_VISCOSITY
 from suchus.design.robot import Crocodile
 from suchus.design.segment import Rod, Segment, Shell
@@ -31,6 +32,7 @@ from suchus.design.trunk import Head, Pelvis, Thorax
 __all__ = [
     "GRAVITY",
     "LEGS",
+    "NEEDS",
     "WATER_DENSITY",
     "WATER_VISCOSITY",
     "AnyRobot",
@@ -61,10 +63,14 @@ __all__ = [
     "Thorax",
     "Turn",
     "cable_joints",
+    "check_needs",
     "crocodile",
     "fin_joints",
     "general",
+    "hips_ahead",
+    "hips_behind_snout",
     "joint_names",
+    "lacking",
     "layout",
     "leg_joints",
     "servo_names",

@@ -207,6 +207,27 @@ def servo_ranges(robot: AnyRobot) -> np.ndarray:
     return np.array(found)
 
 
+def hips_behind_snout(robot: AnyRobot, girdle: int) -> float:
+    """Return how far a girdle's hips are behind the tip of the snout with a straight axis [m]."""
+    body, ahead = general(robot), 0.0
+    for segment in body.axis:
+        if segment.name == body.girdles[girdle].segment:
+            return ahead + segment.front - body.girdles[girdle].at
+        ahead += segment.front + segment.rear
+    raise UnknownName("segment", body.girdles[girdle].segment, [one.name for one in body.axis])
+
+
+def hips_ahead(robot: AnyRobot, girdle: int) -> float:
+    """Return how far a girdle's hips are ahead of those of the hindmost girdle with a straight axis [m]."""
+    body = general(robot)
+    if girdle == len(body.girdles) - 1:
+        return 0.0
+    names, way = [segment.name for segment in body.axis], -body.girdles[-1].at
+    for place in range(body.root_place, names.index(body.girdles[girdle].segment), -1):
+        way += body.axis[place].front + body.axis[place - 1].rear
+    return way + body.girdles[girdle].at
+
+
 def _pairs(robot: Robot) -> list[tuple[Girdle, str, float]]:
     return [(girdle, word + girdle.name, side) for girdle in robot.girdles for word, side in (("L", 1.0), ("R", -1.0))]
 

@@ -16,6 +16,7 @@ ASIDE = 1.4
 CELL = 0.025
 """Between the points of a height field [m]; about the size of a foot."""
 _RAMP = 0.15  # [m]; over which bumps grow from nothing
+_LEAST = 1e-5  # [m]; of heights, lengths and widths
 _OUTER = (0.02, 0.98)  # between these shares of a field's heights lies what is called its height
 
 
@@ -31,7 +32,7 @@ class Step:
     def __post_init__(self) -> None:
         with Checks("step", self) as checks:
             checks.number("at", *REACH, "m")
-            checks.number("height", 0.001, 0.5, "m")
+            checks.number("height", _LEAST, 0.5, "m")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -53,9 +54,9 @@ class Stone:
         with Checks("stone", self) as checks:
             checks.number("at", *REACH, "m")
             checks.number("aside", -ASIDE, ASIDE, "m")
-            checks.number("height", 0.001, 0.5, "m")
-            checks.number("length", 0.005, 1.0, "m")
-            checks.number("width", 0.005, 1.0, "m")
+            checks.number("height", _LEAST, 0.5, "m")
+            checks.number("length", _LEAST, 1.0, "m")
+            checks.number("width", _LEAST, 1.0, "m")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -70,12 +71,31 @@ class Bumps:
     """Where the field begins, ahead of the hips at the start [m]."""
     seed: int
     """Of the noise."""
+    scale: float = 1.0
+    """Factor on the extent of the field, on the distance of its points and on the ramp before it [-]; for robots much
+    smaller or larger than the article's."""
+
+    @property
+    def reach(self) -> tuple[float, float]:
+        """Along which it extends, from the hips of a robot at the start [m]."""
+        return REACH[0] * self.scale, REACH[1] * self.scale
+
+    @property
+    def aside(self) -> float:
+        """How far it extends to either side [m]."""
+        return ASIDE * self.scale
+
+    @property
+    def cell(self) -> float:
+        """Between its points [m]."""
+        return CELL * self.scale
 
     def __post_init__(self) -> None:
         with Checks("bumps", self) as checks:
-            checks.number("height", 0.001, 0.5, "m")
-            checks.number("correlation", CELL, 1.0, "m")
-            checks.number("start", *REACH, "m")
+            checks.number("height", _LEAST, 0.5, "m")
+            checks.number("scale", 1e-3, 100.0, "")
+            checks.number("correlation", CELL * self.scale, 1.0 * self.scale, "m")
+            checks.number("start", *self.reach, "m")
             checks.whole("seed", 0, 2**32 - 1)
 
 
@@ -85,15 +105,16 @@ Relief = Step | Stone | Bumps
 
 @lru_cache(maxsize=64)
 def field(bumps: Bumps) -> Float[np.ndarray, "across along"]:
-    """Return the heights of a field of bumps on a grid of ``CELL`` from the right rear corner on [m].
+    """Return the heights of a field of bumps on a grid of its cells from the right rear corner on [m].
 
     Smoothing white noise with a Gaussian of half the correlation length leaves a correlation of 1/e at that length.
     """
     across, along = round(2 * ASIDE / CELL) + 1, round((REACH[1] - REACH[0]) / CELL) + 1
     noise = np.random.default_rng(bumps.seed).standard_normal((across, along))
-    smooth = gaussian_filter(noise, bumps.correlation / 2 / CELL, mode="wrap")
+    smooth = gaussian_filter(noise, bumps.correlation / 2 / bumps.cell, mode="wrap")
     low, high = np.quantile(smooth, _OUTER)
-    grown = np.clip((REACH[0] + CELL * np.arange(along) - bumps.start) / _RAMP, 0.0, 1.0)
+    ahead = bumps.reach[0] + bumps.cell * np.arange(along) - bumps.start
+    grown = np.clip(ahead / (_RAMP * bumps.scale), 0.0, 1.0)
     heights = np.asarray((smooth - (low + high) / 2) / (high - low) * bumps.height * grown)
     heights.flags.writeable = False
     return heights
@@ -114,7 +135,7 @@ def heights(relief: Relief | None, x: Float[np.ndarray, "*b"], y: Float[np.ndarr
         return np.where(inside, relief.height, 0.0)
     if isinstance(relief, Bumps):
         grid = field(relief)
-        at = np.stack([(y + ASIDE) / CELL, (x - REACH[0]) / CELL])
+        at = np.stack([(y + relief.aside) / relief.cell, (x - relief.reach[0]) / relief.cell])
         return np.asarray(map_coordinates(grid, at, order=1, cval=float(grid.min())))
     return np.zeros_like(x)
 

@@ -2,20 +2,32 @@
 
 from collections.abc import Callable
 from dataclasses import fields, is_dataclass, replace
-from typing import Any
+from typing import Any, TypeVar
 
+from suchus.design.general import AnyRobot
 from suchus.design.robot import Crocodile
 from suchus.design.servo import Servo
 
+Kind = TypeVar("Kind", bound=AnyRobot)
 
-def with_speed_lines(robot: Crocodile) -> Crocodile:
+
+def with_leg_servos(robot: AnyRobot, change: Callable[[Servo], Servo]) -> AnyRobot:
+    """Return a robot with the servos of its limbs changed."""
+    if isinstance(robot, Crocodile):
+        front, hind = (replace(leg, servo=change(leg.servo)) for leg in (robot.front_leg, robot.hind_leg))
+        return replace(robot, front_leg=front, hind_leg=hind)
+    girdles: tuple[Any, ...] = _changed(robot.girdles, change)
+    return replace(robot, girdles=girdles)
+
+
+def with_speed_lines(robot: Kind) -> Kind:
     """Return a robot with ``Servo.with_speed_line`` in each of its servos."""
     return with_servos(robot, Servo.with_speed_line)
 
 
-def with_servos(robot: Crocodile, change: Callable[[Servo], Servo]) -> Crocodile:
+def with_servos(robot: Kind, change: Callable[[Servo], Servo]) -> Kind:
     """Return a robot with each of its servos changed."""
-    changed: Crocodile = _changed(robot, change)
+    changed: Kind = _changed(robot, change)
     return changed
 
 

@@ -8,17 +8,14 @@ import xarray as xr
 from scipy import stats
 
 from suchus.experiment import Measure
-from suchus.land import KINDS, KNEES, LEGS_LOST, LOST
+from suchus.land import KINDS, LEGS_LOST
 from suchus.metrics import loss
 from suchus.paper import CLAIMS
 from suchus.verdict import Reading, compared, listed
 
 ARMS = ("coordinated", "limbs_only")
 """With spine and tail, and without."""
-JOINTS = (*LOST, *KNEES)
-"""The joints that are lost: those of the article's figures, and the knees."""
 _CELLS = ("joint", "kind", "legs", "arm")
-_CARRIERS = ("tail", "RF", "LH")  # what the article says carries the body while the damaged RH swings
 
 
 def measures(record: xr.Dataset) -> Mapping[str, Measure]:
@@ -33,17 +30,21 @@ def measures(record: xr.Dataset) -> Mapping[str, Measure]:
     found: dict[str, Measure] = {}
     for arm in ARMS:
         found[f"forward_{arm}"] = Measure(float(record.intact_forward.sel(arm=arm)[0]), "m")
-    found["forward_limbs_tail_lifted"] = Measure(float(record.lifted_intact_forward[0]), "m")
+    lifts, steers = "lifted_forward" in record, "steered_forward" in record
+    if lifts:
+        found["forward_limbs_tail_lifted"] = Measure(float(record.lifted_intact_forward[0]), "m")
     found |= _ranged("loss_intact_limbs_only", loss(record.intact_forward.sel(arm="limbs_only"), ours), "-")
-    found |= _ranged("loss_intact_limbs_tail_lifted", loss(record.lifted_intact_forward, ours), "-")
+    if lifts:
+        found |= _ranged("loss_intact_limbs_tail_lifted", loss(record.lifted_intact_forward, ours), "-")
     found |= _readings(record)
-    kept, lifted = loss(record.steered_forward, ours), loss(record.lifted_forward, ours)
-    for joint in LOST:
+    for joint in record.lost.values:
         name = f"loss_{joint}_{reading}"
-        found |= _ranged(f"{name}_steered", kept.sel(lost=joint), "-")
-        found |= _ranged(f"{name}_limbs_tail_lifted", lifted.sel(lost=joint), "-")
-        turned = record.steered_turn.sel(lost=joint).median()
-        found[f"turn_{joint}_{reading}_steered"] = Measure(float(turned), "rad")
+        if steers:
+            found |= _ranged(f"{name}_steered", loss(record.steered_forward, ours).sel(lost=joint), "-")
+            turned = record.steered_turn.sel(lost=joint).median()
+            found[f"turn_{joint}_{reading}_steered"] = Measure(float(turned), "rad")
+        if lifts:
+            found |= _ranged(f"{name}_limbs_tail_lifted", loss(record.lifted_forward, ours).sel(lost=joint), "-")
         for arm in ARMS:
             some = loss(record.repeat_forward.sel(arm=arm), record.repeat_intact_forward.sel(arm="coordinated"))
             found |= _ends(f"{name}_{arm}_repeated", some.sel(lost=joint), "-")
@@ -54,7 +55,7 @@ def _readings(record: xr.Dataset) -> dict[str, Measure]:
     """Return what every reading of every loss costs in both arms."""
     change = _changes(record)
     found: dict[str, Measure] = {}
-    for cell in product(JOINTS, KINDS, LEGS_LOST, ARMS):
+    for cell in product(record.joint.values, KINDS, LEGS_LOST, ARMS):
         at, name = dict(zip(_CELLS, cell, strict=True)), "_".join(cell)
         found |= _ranged(f"loss_{name}", change["forward"].sel(at), "-")
         found[f"net_loss_{name}"] = Measure(float(change["net"].sel(at).median()), "-")
@@ -65,7 +66,7 @@ def _readings(record: xr.Dataset) -> dict[str, Measure]:
 
 def _effects(record: xr.Dataset) -> dict[str, Measure]:
     """Return by how much the change with spine and tail differs on average between two readings of one thing [-]."""
-    change = _changes(record)["forward"].sel(arm="coordinated", joint=list(LOST)).median("variation")
+    change = _changes(record)["forward"].sel(arm="coordinated", joint=record.lost.values).median("variation")
     found = {}
     for name, dim in (("kind", "kind"), ("joint", "joint"), ("legs", "legs")):
         pairs = combinations(change[dim].values, 2)
@@ -80,7 +81,8 @@ def tolerance(record: xr.Dataset) -> dict[str, Measure]:
     The variations are independent of each other, the faults within one of them are not: the exact sign test counts
     variations, by the mean over all faults of the article's joints.
     """
-    kept = _kept(record).sel(joint=list(LOST))
+    lost = record.lost.values if "lost" in record.coords else record.joint.values
+    kept = _kept(record).sel(joint=lost)
     ours, bare = (kept.sel(arm=arm, drop=True) for arm in ARMS)
     better, gain = ours > bare, (ours - bare).mean(("joint", "kind", "legs"))
     won, told = int((gain > 0).sum()), int((gain != 0).sum())
@@ -90,11 +92,11 @@ def tolerance(record: xr.Dataset) -> dict[str, Measure]:
         "share_spine_and_tail_bear_better": Measure(float(better.mean()), "-"),
         "share_variations_bear_better": Measure(won / kept.sizes["variation"], "-"),
         "chance_spine_and_tail_bear_better": Measure(chance, "-"),
-        "share_spine_and_tail_ahead": Measure(float(ahead.sel(joint=list(LOST)).mean()), "-"),
+        "share_spine_and_tail_ahead": Measure(float(ahead.sel(joint=lost).mean()), "-"),
         "share_limbs_only_beyond_intact": Measure(float((bare > 1.0).mean()), "-"),
         "greatest_limbs_only_over_intact": Measure(float(bare.median("variation").max()), "-"),
     }
-    for joint in LOST:
+    for joint in lost:
         found[f"share_bear_better_{joint}"] = Measure(float(better.sel(joint=joint).mean()), "-")
     return found
 
@@ -102,11 +104,13 @@ def tolerance(record: xr.Dataset) -> dict[str, Measure]:
 def _support(record: xr.Dataset) -> dict[str, Measure]:
     """Return what carries the body while the right hind leg is meant to swing, and how high it is carried."""
     found: dict[str, Measure] = {}
-    height = record.swing_height
+    height, parts = record.swing_height, [str(part) for part in record.part.values]
+    legs = [part for part in parts if part not in ("tail", "belly")]
+    carriers = ["tail", *([legs[-3]] if len(legs) > 2 else []), legs[-2]]  # beside the last leg and ahead of it
     for state in (str(one) for one in record.state.values):
         load = record.support.sel(state=state)
         found |= {
-            f"support_share_{state}": Measure(float(load.sel(part=list(_CARRIERS)).sum() / load.sum()), "-"),
+            f"support_share_{state}": Measure(float(load.sel(part=carriers).sum() / load.sum()), "-"),
             f"tail_load_{state}": Measure(float(load.sel(part="tail")), "N"),
             f"foot_lift_{state}": Measure(float(record.lifted.sel(state=state)), "m"),
             f"foot_free_{state}": Measure(float(record.free.sel(state=state)), "-"),
@@ -132,25 +136,44 @@ def explained(measures: Mapping[str, float], kind: str, legs: str) -> str:
     }
     most = max(effects, key=lambda name: effects[name])
     sizes = listed([f"{100 * value:.0f} points for {name}" for name, value in effects.items()])
-    knees = listed([f"{k.replace('_', ' ')} {m[f'loss_{k}_limp_one_coordinated']:+.0%}" for k in KNEES])
+    tail = "loss_intact_limbs_tail_lifted"
+    lifted = f" (with its tail in the air at {m[tail]:+.0%})" if tail in m else ""
     return (
         f"What a fault costs with spine and tail depends most on {most}: on average one choice differs from "
         f"another by {sizes}. The article says only which joint. Without the trunk the intact "
-        f"robot is already at {m['loss_intact_limbs_only']:+.0%} (with its tail in the air at "
-        f"{m['loss_intact_limbs_tail_lifted']:+.0%}), against which the cost of the fault itself is to be held. "
-        f"{_steering(m, kind, legs)} The knee, of which the article says nothing, costs, limp in one leg: {knees}."
+        f"robot is already at {m['loss_intact_limbs_only']:+.0%}{lifted}, against which the cost of the fault itself "
+        f"is to be held. {_steering(m, kind, legs)}{_others(m)}"
     )
 
 
 def _steering(m: Mapping[str, Reading], kind: str, legs: str) -> str:
     """Return what the feedback rules and the heading loop make of every loss."""
     told = []
-    for joint in LOST:
+    for joint in _joints_of(m, f"_{kind}_{legs}_steered"):
         name = f"loss_{joint}_{kind}_{legs}"
         alone, steered = m[f"{name}_coordinated"], m[f"{name}_steered"]
         word = compared(steered, alone, less="more", more="less", same="as much", within=0.05)
         told.append(f"{joint.replace('_', ' ')} {alone:+.0%} to {steered:+.0%} ({word} lost)")
-    return f"Steering changes the loss from: {'; '.join(told)}."
+    return f"Steering changes the loss from: {'; '.join(told)}." if told else "A table of angles cannot be steered."
+
+
+def _others(m: Mapping[str, Reading]) -> str:
+    """Return what the joints cost, limp in one leg, that lie farther from the hip."""
+    ends = f"_{KINDS[0]}_{LEGS_LOST[0]}_coordinated"
+    main = _joints_of(m, f"{ends}_repeated_low")
+    others = [joint for joint in _joints_of(m, ends) if joint not in main]
+    costs = listed([f"{joint.replace('_', ' ')} {m[f'loss_{joint}{ends}']:+.0%}" for joint in others])
+    if not others:
+        return ""
+    which = "The knee, of which the article says nothing, costs" if all("knee" in o for o in others) else "Others cost"
+    return f" {which}, limp in one leg: {costs}."
+
+
+def _joints_of(m: Mapping[str, Reading], ends: str) -> list[str]:
+    """Return the joints of whose loss there is a measure of a kind."""
+    return [
+        name.removeprefix("loss_").removesuffix(ends) for name in m if name.startswith("loss_") and name.endswith(ends)
+    ]
 
 
 def table(record: xr.Dataset) -> str:
@@ -158,7 +181,7 @@ def table(record: xr.Dataset) -> str:
     change, own = _changes(record), loss(record.forward, record.intact_forward)
     head = "joint,kind,legs,arm,forward_m,change,change_low,change_high,change_of_own_intact,net_change,path_change,"
     rows = [head + "turn_deg,printed_change"]
-    for cell in product(JOINTS, KINDS, LEGS_LOST, ARMS):
+    for cell in product(record.joint.values, KINDS, LEGS_LOST, ARMS):
         at = dict(zip(_CELLS, cell, strict=True))
         forward = change["forward"].sel(at)
         numbers = (

@@ -7,7 +7,7 @@ import xarray as xr
 
 from suchus.experiment import Measure
 from suchus.metrics.coordination import cycles_until, phase_error
-from suchus.motion import START, Gait
+from suchus.motion import START, AnyGait
 from suchus.verdict import Reading, compared
 
 SHOWN = ("open", "closed", "steered")
@@ -16,7 +16,7 @@ _GROUP = 8
 """Random starts that are counted together, for the spread [-]."""
 
 
-def start_measures(record: xr.Dataset, gait: Gait, hold: float, cycles: int) -> dict[str, Measure]:
+def start_measures(record: xr.Dataset, gait: AnyGait, hold: float, cycles: int) -> dict[str, Measure]:
     """Return how many starts converge, how fast and how well, and what the phases' sharing is worth.
 
     Args:
@@ -52,7 +52,7 @@ def start_measures(record: xr.Dataset, gait: Gait, hold: float, cycles: int) -> 
     return measures
 
 
-def disturbed_measures(record: xr.Dataset, gait: Gait, hold: float, after: int) -> dict[str, Measure]:
+def disturbed_measures(record: xr.Dataset, gait: AnyGait, hold: float, after: int) -> dict[str, Measure]:
     """Return ways and turns after each disturbance, and what the rules make of them.
 
     Args:
@@ -80,9 +80,10 @@ def disturbed_measures(record: xr.Dataset, gait: Gait, hold: float, after: int) 
         "locked_spine_loss_open": 1.0 - way["locked_spine", "open"] / way["none", "open"],
         "locked_spine_loss_closed": 1.0 - way["locked_spine", "closed"] / way["none", "open"],
         "locked_spine_loss_of_own": 1.0 - way["locked_spine", "closed"] / way["none", "closed"],
-        "uphill_gain_tail": way["uphill", "tail"] / way["uphill", "open"] - 1.0,
         "uphill_gain_closed": way["uphill", "closed"] / way["uphill", "open"] - 1.0,
     }
+    if ("uphill", "tail") in way:
+        shares["uphill_gain_tail"] = way["uphill", "tail"] / way["uphill", "open"] - 1.0
     measures |= {name: Measure(value, "-") for name, value in shares.items()}
     last = part.heading.sel(time=part.time[-1] - gait.period, method="nearest")
     turning = (part.heading.isel(time=-1) - last).sel(disturbance="limp_yaw")
@@ -100,54 +101,66 @@ def explain(measures: Mapping[str, float]) -> str:
         m["cycles_to_converge"], m["cycles_to_converge_own_load"],
         less="sooner than", more="later than", same="as soon as", within=0.05,
     )  # fmt: skip
+    rules, hip = "the rules", "hip"
+    alone = "all change the displacement by "
+    if "uphill_gain_tail" in m:
+        rules, hip = "the three rules", "yaw"
+        alone = f"the tail's rule alone changes the displacement by {m['uphill_gain_tail']:+.0%}, all three by "
     return (
         f"Limbs that feel the loads of all feet find the gait from {m['converged_cross_load']:.0%} of the random "
         f"starts, 90 % of them within {m['cycles_to_converge']:.1f} cycles, {when} limbs that feel their own foot "
         f"alone ({m['cycles_to_converge_own_load']:.1f}); without feedback {m['converged_off']:.0%} find it. Kicked "
-        f"limbs keep {m['kick_kept_closed']:.0%} of the displacement with the three rules and "
+        f"limbs keep {m['kick_kept_closed']:.0%} of the displacement with {rules} and "
         f"{m['kick_kept_open']:.0%} without. A stuck spine joint costs {m['locked_spine_loss_closed']:.0%} instead of "
-        f"{m['locked_spine_loss_open']:.0%}; uphill the tail's rule alone changes the displacement by "
-        f"{m['uphill_gain_tail']:+.0%}, all three by {m['uphill_gain_closed']:+.0%}. A limp front yaw turns the robot "
-        f"by {m['turning_limp_yaw_open']:deg.0f} degrees in the last cycle without feedback, by "
-        f"{m['turning_limp_yaw_closed']:deg.0f} with the three rules, and by {m['turning_limp_yaw_steered']:deg.0f} "
+        f"{m['locked_spine_loss_open']:.0%}; uphill {alone}{m['uphill_gain_closed']:+.0%}. A limp front {hip} turns "
+        f"the robot by {m['turning_limp_yaw_open']:deg.0f} degrees in the last cycle without feedback, by "
+        f"{m['turning_limp_yaw_closed']:deg.0f} with {rules}, and by {m['turning_limp_yaw_steered']:deg.0f} "
         "with the heading loop."
     )
 
 
-def _loop_measures(part: xr.Dataset, gait: Gait) -> dict[str, Measure]:
+def _loop_measures(part: xr.Dataset, gait: AnyGait) -> dict[str, Measure]:
     """Return how well the loops of spine and tail hold what they control, from the disturbance on."""
     stuck = part.lacking.sel(disturbance="locked_spine")
     first = part.time[0] + gait.period
     missing = {arm: _rms(_ending(stuck.sel(arm=arm), gait.period)) for arm in ("open", "spine")}
     begun = _rms(stuck.sel(arm="spine", time=slice(None, first)))
+    found = {
+        "spine_lacking_open": Measure(missing["open"], "rad"),
+        "spine_lacking_spine": Measure(missing["spine"], "rad"),
+        "spine_lacking_growth": Measure(missing["spine"] / begun, "-"),
+    }
+    if "tail_load" not in part:
+        return found
     uphill = part.sel(disturbance="uphill")
     load = {arm: abs(float(_ending(uphill.tail_load.sel(arm=arm), gait.period).mean())) for arm in ("open", "tail")}
     pitch = uphill.tail_pitch.sel(arm="tail")
     before = pitch.sel(time=slice(None, float(pitch.time[-1]) - gait.period))
     drift = abs(float(_ending(pitch, gait.period).mean() - _ending(before, gait.period).mean()))
-    return {
-        "spine_lacking_open": Measure(missing["open"], "rad"),
-        "spine_lacking_spine": Measure(missing["spine"], "rad"),
-        "spine_lacking_growth": Measure(missing["spine"] / begun, "-"),
+    return found | {
         "tail_load_open": Measure(load["open"], "N m"),
         "tail_load_tail": Measure(load["tail"], "N m"),
         "tail_pitch_drift": Measure(drift, "rad"),
     }
 
 
-def _undisturbed_measures(record: xr.Dataset, gait: Gait) -> dict[str, Measure]:
+def _undisturbed_measures(record: xr.Dataset, gait: AnyGait) -> dict[str, Measure]:
     """Return what the rules do to a robot whose phases are right, over the first two cycles."""
     part = record.sel(time=slice(START - 1e-9, START + 2 * gait.period + 1e-9), disturbance="none")
     change = part.isel(time=-1) - part.isel(time=0)
     way = {arm: float(change.x.sel(arm=arm)) for arm in record.arm.values}
     clock = change.limb_phase.mean("leg")
-    pitch = record.tail_pitch.sel(arm="closed").isel(time=-1)
-    return {
+    found = {
         "distortion": Measure(abs(way["limbs"] / way["open"] - 1.0), "-"),
         "kept_undisturbed_spine": Measure(way["spine"] / way["open"], "-"),
-        "kept_undisturbed_tail": Measure(way["tail"] / way["open"], "-"),
         "way_gained": Measure(way["closed"] / way["open"] - 1.0, "-"),
         "clock_closed": Measure(float(clock.sel(arm="closed")) / float(clock.sel(arm="open")), "-"),
+    }
+    if "tail_pitch" not in record:
+        return found
+    pitch = record.tail_pitch.sel(arm="closed").isel(time=-1)
+    return found | {
+        "kept_undisturbed_tail": Measure(way["tail"] / way["open"], "-"),
         "tail_pitch_level": Measure(float(pitch.sel(disturbance="none")), "rad"),
         "tail_pitch_uphill": Measure(float(pitch.sel(disturbance="uphill")), "rad"),
     }

@@ -11,7 +11,9 @@ from suchus.verdict import Reading, listed
 FALLEN = np.radians(60)
 """Roll or pitch beyond which nothing on the robot brings it back [rad]."""
 ROUGH = 0.03
-"""Least height of what counts as rough ground [m]: a third of the legs' hip height in the sprawled crawl is less."""
+"""Least height of what counts as rough ground for the article's robot [m]: a third of the legs' hip height in the
+sprawled crawl is less. For others it is in proportion to their length."""
+_EVEN = 1e-9  # [m]; heights that differ by less are equal
 SINGLE = ("low_crawl", "semi_erect", "high_walk", "high_walk_level")
 """Arms that keep one posture."""
 _COMPARED = ("low_crawl", "high_walk_level")
@@ -28,7 +30,7 @@ _KINDS = {"bumps": "bumps", "step": "steps", "stone": "stones"}
 
 def measures(record: xr.Dataset) -> Mapping[str, Measure]:
     """Return every number of the experiment, from its record."""
-    rough = record.isel(ground=np.flatnonzero(record.height.values >= ROUGH))
+    rough = record.isel(ground=np.flatnonzero(record.height.values >= ROUGH * float(record.size_of_robot) - _EVEN))
     found: dict[str, Measure] = {}
     for arm in record.arm.values:
         one = record.sel(arm=arm)
@@ -45,7 +47,7 @@ def measures(record: xr.Dataset) -> Mapping[str, Measure]:
             some = one.isel(ground=np.flatnonzero((record.kind.values == kind) & (record.height.values > 0)))
             found[f"kept_{kind}_{arm}"] = Measure(float(some.forward.mean() / flat.forward), "-")
             found[f"met_{kind}_{arm}"] = Measure(float(some.met.mean()), "-")
-    low = record.isel(ground=np.flatnonzero(record.height.values <= 0.04))
+    low = record.isel(ground=np.flatnonzero(record.height.values <= 0.04 * float(record.size_of_robot) + _EVEN))
     share = _share_of_best(record)
     return found | {
         **_flat(record),

@@ -9,27 +9,26 @@ from typing import Any, ClassVar
 import numpy as np
 import xarray as xr
 
-from suchus.design import Crocodile
+from suchus.design import AnyRobot, layout
 from suchus.design.checks import Checks
+from suchus.design.scale import coarse_step
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.figures import COLOURS, LINES, captioned, panels, styled
 from suchus.figures.crawls import draw_crawls
 from suchus.figures.maps import draw_map
 from suchus.figures.timeseries import draw_band, draw_lines, mark_cycles, mark_printed
-from suchus.gaits import CONDITIONS, GAITS, conditions
+from suchus.gaits import CONDITIONS, GAITS, conditions_of, suits
 from suchus.land import Ground, Run, simulate
 from suchus.metrics import cost_of_transport, duty_factor, foot_clearance, heading_change, slip, two_feet_share
 from suchus.metrics import displacement as displacement_of
-from suchus.motion import START, Gait
+from suchus.motion import START, AnyGait, Gait, strides, with_bends, with_late_axis, with_strokes
 from suchus.paper import CLAIMS, CYCLES
 from suchus.replay import replay
 from suchus.robots import ROBOTS
 from suchus.verdict import Reading
 
 _GROUPS = CONDITIONS[:2]
-_COARSE = 0.005  # [s]; time step of repeats and map, measured to agree with 2 ms within 0.1 %
-_LEAST = 0.002  # [m]; below this displacement a ratio means nothing
-_HIND = ("LH", "RH")
+_LEAST = 0.00198  # [body length]; below this displacement a ratio means nothing
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -38,19 +37,21 @@ class Displacement(Experiment):
 
     Displacement is forward, along the direction that the body faced at the start, and that of the centre of mass from
     the beginning of the first cycle to the end of the last. The control group's tail lies still on the ground; with its
-    tail in the air it is simulated beside.
+    tail in the air it is simulated beside. Of another body those conditions are run that its parts make possible, and
+    its map is over shares of its own strokes and bends.
     """
 
     title = "How far does it crawl, with spine and tail and without?"
     shows = "Section IV.B, Fig. 16"
+    needs = ("limbs", "axis")
     judged_with = ("robot", "gait", "control", "cycles")
     judged_from: ClassVar[Mapping[str, float]] = {"repeats": 8}
 
-    robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
+    robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that crawls."""
-    gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
+    gait: AnyGait = field(default_factory=lambda: GAITS["belly_crawl"])
     """The crawl with spine and tail."""
-    control: Gait = field(default_factory=lambda: GAITS["limbs_only"])
+    control: AnyGait = field(default_factory=lambda: GAITS["limbs_only"])
     """The crawl of the control group, with the same legs."""
     cycles: int = int(CYCLES)
     """How many cycles are measured [-]."""
@@ -68,6 +69,8 @@ class Displacement(Experiment):
     """Steady angles of the tail's pitch joint, down positive, over its plausible range [rad]."""
     phases: tuple[float, ...] = (-0.5, -0.375, -0.25, -0.15, -0.075, 0.0, 0.075, 0.15, 0.25, 0.375, 0.5)
     """Phase lags of the trunk's bend behind the legs, for the curve [cycle]."""
+    shares: tuple[float, ...] = (0.25, 0.5, 0.75, 1.0, 1.25, 1.5)
+    """Strokes and bends on the map of a gait that is not of the article's kind, over its own [-]."""
     seed: int = 0
     """Seed of noise and friction [-]."""
 
@@ -82,23 +85,26 @@ class Displacement(Experiment):
             check.rising("bends", 0.0, 3.0, "rad")
             check.rising("pitches", -1.0, 1.0, "rad")
             check.rising("phases", -1.0, 1.0, "cycle")
+            check.rising("shares", 0.0, 10.0, "")
 
     def quick(self) -> "Displacement":
         """One cycle, two repeats, four corners of the map."""
-        return replace(
-            self, cycles=1, repeats=2, strokes=(0.02, 0.06), bends=(0.6, 1.2), pitches=(0.1, 0.3), phases=(0.0, 0.5)
-        )
+        corners = replace(self, strokes=(0.02, 0.06), bends=(0.6, 1.2), pitches=(0.1, 0.3), shares=(0.5, 1.0))
+        return replace(corners, cycles=1, repeats=2, phases=(0.0, 0.5))
 
     def simulate(self, progress: Progress = silent) -> Simulated:
         """Crawl in every condition, repeat with noise, and map what decides."""
         duration = START + self.cycles * self.gait.period
-        gaits = conditions(self.gait, self.control)
+        gaits = conditions_of(self.robot, self.gait, self.control)
         runs = [Run(robot=self.robot, gait=gait, label=arm) for arm, gait in gaits.items()]
         record = simulate(runs, duration=duration, progress=staged(progress, "conditions", 0.0, 0.1))
         told = staged(progress, "repeats", 0.1, 0.5)
-        spread = simulate(self._repeats(gaits), duration=duration, timestep=_COARSE, every=10, progress=told)
+        spread = simulate(
+            self._repeats(gaits), duration=duration, timestep=coarse_step(self.robot), every=10, progress=told
+        )
         found = self._mapped(duration, staged(progress, "map", 0.5, 1.0))
-        record = record.merge(_renamed(spread, self.repeats)).merge(found)
+        record = record.merge(_renamed(spread, list(gaits), self.repeats)).merge(found)
+        record.attrs["least"] = _LEAST * self.robot.length
         return Simulated(record=record, replays=self._replays(record))
 
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
@@ -114,7 +120,7 @@ class Displacement(Experiment):
         )
         return {"crawl_replay.html": Replay(caption=caption, make=page)}
 
-    def _repeats(self, gaits: Mapping[str, Gait]) -> list[Run]:
+    def _repeats(self, gaits: Mapping[str, AnyGait]) -> list[Run]:
         """Return the repeats of all conditions; the i-th has the same noise and friction in each."""
         grips = np.random.default_rng(self.seed).uniform(1 - self.grip_spread, 1 + self.grip_spread, self.repeats)
         return [
@@ -132,37 +138,63 @@ class Displacement(Experiment):
 
     def _mapped(self, duration: float, progress: Any) -> xr.Dataset:
         """Return the displacement over stroke and bend, over the tail's pitch, and over the trunk's phase lag [m]."""
-        limbs = [replace(self.control, stroke=s) for s in self.strokes]
-        bent = [replace(self.gait, stroke=s, trunk_bend=b) for s in self.strokes for b in self.bends]
-        pitched = [replace(gait, tail_pitch=p) for gait in (self.gait, self.control) for p in self.pitches]
-        late = [replace(self.gait, spine_phase=p) for p in self.phases]
+        strokes, bends, pitches = self._grid()
+        limbs = [self._strode(self.control, s) for s in strokes]
+        bent = [self._bent(self._strode(self.gait, s), b) for s in strokes for b in bends]
+        pitched = [
+            replace(gait, tail_pitch=p) for gait in (self.gait, self.control) for p in pitches if isinstance(gait, Gait)
+        ]
+        late = [self._late(p) for p in self.phases]
         runs = [Run(robot=self.robot, gait=gait) for gait in (*limbs, *bent, *pitched, *late)]
-        reached = _forward(simulate(runs, duration=duration, timestep=_COARSE, every=100, progress=progress)).values
+        reached = _forward(
+            simulate(runs, duration=duration, timestep=coarse_step(self.robot), every=100, progress=progress)
+        ).values
         cut = np.split(reached, np.cumsum([len(limbs), len(bent), len(pitched)]))
         metres = {"units": "m"}
         data = xr.Dataset(
             {
                 "map_limbs_only": ("stroke", cut[0], metres),
-                "map_coordinated": (("stroke", "bend"), cut[1].reshape(len(self.strokes), -1), metres),
+                "map_coordinated": (("stroke", "bend"), cut[1].reshape(len(strokes), -1), metres),
                 "pitched": (("group", "pitch"), cut[2].reshape(2, -1), metres),
                 "late_coordinated": ("late", cut[3], metres),
             },
             coords={
-                "stroke": list(self.strokes),
-                "bend": list(self.bends),
+                "stroke": list(strokes),
+                "bend": list(bends),
                 "group": list(_GROUPS),
-                "pitch": list(self.pitches),
+                "pitch": list(pitches),
                 "late": list(self.phases),
             },
         )
+        article = isinstance(self.gait, Gait)
         for name, unit, what in (
-            ("stroke", "m", "half stroke of the legs"),
-            ("bend", "rad", "bend of the trunk"),
+            ("stroke", *(("m", "half stroke of the legs") if article else ("1", "strokes over those of the gait"))),
+            ("bend", *(("rad", "bend of the trunk") if article else ("1", "bends over those of the gait"))),
             ("pitch", "rad", "pitch of the tail, down positive"),
             ("late", "1", "phase lag of the trunk's bend, in cycles"),
         ):
             data[name].attrs.update(units=unit, long_name=what)
         return data
+
+    def _grid(self) -> tuple[tuple[float, ...], tuple[float, ...], tuple[float, ...]]:
+        """Return strokes, bends and pitches of the tail on the map, as far as the body can follow them."""
+        if isinstance(self.gait, Gait) and isinstance(self.control, Gait):
+            return self.strokes, self.bends, self.pitches if layout(self.robot).tail_pitch else ()
+        strokes = self.shares if strides(self.gait) else (1.0,)
+        strokes = tuple(s for s in strokes if suits(self.robot, with_strokes(self.gait, s))) or (1.0,)
+        bends = tuple(b for b in self.shares if suits(self.robot, with_bends(self.robot, self.gait, b))) or (1.0,)
+        return strokes, bends, ()
+
+    def _strode(self, gait: AnyGait, stroke: float) -> AnyGait:
+        return replace(gait, stroke=stroke) if isinstance(gait, Gait) else with_strokes(gait, stroke)
+
+    def _bent(self, gait: AnyGait, bend: float) -> AnyGait:
+        return replace(gait, trunk_bend=bend) if isinstance(gait, Gait) else with_bends(self.robot, gait, bend)
+
+    def _late(self, phase: float) -> AnyGait:
+        if isinstance(self.gait, Gait):
+            return replace(self.gait, spine_phase=phase)
+        return with_late_axis(self.robot, self.gait, phase)
 
     def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
         """Return displacements with their spread, what the feet did, and what each part adds."""
@@ -170,8 +202,10 @@ class Displacement(Experiment):
         cost, slid, aside = cost_of_transport(record), slip(record), displacement_of(record).sel(xyz="y")
         duty, clear, two = duty_factor(record), foot_clearance(record), two_feet_share(record)
         measures: dict[str, Measure] = {}
-        for i, arm in enumerate(CONDITIONS):
-            repeats, hind = record.spread_forward.sel(condition=arm), {"leg": list(_HIND)}
+        arms = [str(arm) for arm in record.condition.values]
+        hind = {"leg": record.leg.values[-2:]}
+        for i, arm in enumerate(arms):
+            repeats = record.spread_forward.sel(condition=arm)
             measures |= {
                 **_ranged(f"forward_{arm}", float(forward[i]), repeats, "m"),
                 f"sideways_{arm}": Measure(float(aside[i]), "m"),
@@ -183,37 +217,63 @@ class Displacement(Experiment):
                 f"two_feet_share_{arm}": Measure(float(two[i]), "-"),
             }
         for name, one, other in _GAINS:
+            if not {one, other} <= set(arms):
+                continue
             of = {arm: record.spread_forward.sel(condition=arm, drop=True) for arm in (one, other)}
-            gain = float(forward[CONDITIONS.index(one)] - forward[CONDITIONS.index(other)])
+            gain = float(forward[arms.index(one)] - forward[arms.index(other)])
             measures |= _ranged(f"gain_{name}", gain, of[one] - of[other], "m")
         for name, control in (("forward_ratio", "limbs_only"), ("forward_ratio_tail_lifted", "limbs_tail_lifted")):
+            if control not in arms:
+                continue
             apart = [record.spread_forward.sel(condition=arm, drop=True) for arm in ("coordinated", control)]
-            quotient = float(forward[0] / forward[CONDITIONS.index(control)])
+            quotient = float(forward[0] / forward[arms.index(control)])
             measures |= _ranged(name, quotient, apart[0] / apart[1], "-")
         ratio = _ratio(record)
-        return measures | {
+        measures |= {
             "ratio_on_map_low": Measure(float(ratio.min()), "-"),
             "ratio_on_map_high": Measure(float(ratio.max()), "-"),
-            "forward_over_tail_pitch_low": Measure(float(record.pitched.sel(group="coordinated").min()), "m"),
-            "forward_over_tail_pitch_high": Measure(float(record.pitched.sel(group="coordinated").max()), "m"),
             "forward_antiphase": Measure(float(record.late_coordinated.min()), "m"),
         }
+        if record.sizes["pitch"]:
+            pitched = record.pitched.sel(group="coordinated")
+            measures["forward_over_tail_pitch_low"] = Measure(float(pitched.min()), "m")
+            measures["forward_over_tail_pitch_high"] = Measure(float(pitched.max()), "m")
+        return measures
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Say what each part adds, and how far the free numbers move the result."""
         m = {name: Reading(value) for name, value in measures.items()}
-        backwards = "walks the robot backwards" if m["forward_antiphase"] < 0 else "costs most of the displacement"
-        return (
-            f"With spine and tail the robot gets {m['forward_ratio']:.1f} times as far as with the same legs alone "
-            f"({m['forward_coordinated']:.2f} against {m['forward_limbs_only']:.2f} m). Of the difference the swing of "
-            f"the trunk makes {m['gain_spine_swing']:.2f} m; the tail {_adds(m['gain_tail_contact'])} by lying on the "
-            f"ground and {_adds(m['gain_tail_swing'])} by its swing. Three free numbers decide. Over the map of leg "
-            f"stroke and trunk bend the ratio runs from {m['ratio_on_map_low']:.1f} to {m['ratio_on_map_high']:.1f}; "
-            f"over the tail pitches tried the displacement runs from {m['forward_over_tail_pitch_low']:.2f} to "
-            f"{m['forward_over_tail_pitch_high']:.2f} m. The worst phase of the trunk against the legs "
-            f"{backwards} ({m['forward_antiphase']:.2f} m). With its tail held in the air the control group drags its "
-            f"hind feet {m['hind_duty_limbs_tail_lifted']:.0%} of the time, with its tail on the ground "
+        backwards = (
+            "walks the robot backwards"
+            if m["forward_antiphase"] < 0
+            else f"leaves {m['forward_antiphase'] / m['forward_coordinated']:.0%} of the displacement"
+        )
+        form = ".2f" if isinstance(self.gait, Gait) else ".3g"  # another body may be as small as a hand
+        parts = [f"the swing of the trunk makes {m['gain_spine_swing']:{form}} m"] if "gain_spine_swing" in m else []
+        if "gain_tail_swing" in m:
+            lies = f"{_adds(m['gain_tail_contact'])} by lying on the ground and " if "gain_tail_contact" in m else ""
+            parts.append(f"the tail {lies}{_adds(m['gain_tail_swing'])} by its swing")
+        split = f"Of the difference {'; '.join(parts)}. " if parts else ""
+        pitches = (
+            f"; over the tail pitches tried the displacement runs from {m['forward_over_tail_pitch_low']:.2f} to "
+            f"{m['forward_over_tail_pitch_high']:.2f} m"
+            if "forward_over_tail_pitch_low" in m
+            else ""
+        )
+        lifted = (
+            f"With its tail held in the air the control group drags its hind feet "
+            f"{m['hind_duty_limbs_tail_lifted']:.0%} of the time, with its tail on the ground "
             f"{m['hind_duty_limbs_only']:.0%}."
+            if "hind_duty_limbs_tail_lifted" in m
+            else f"With limbs only the hind feet stand {m['hind_duty_limbs_only']:.0%} of the time, with all of the "
+            f"axis {m['hind_duty_coordinated']:.0%}."
+        )
+        return (
+            f"With {_AXIS[bool(parts)]} the robot gets {m['forward_ratio']:.1f} times as far as with the same legs "
+            f"alone ({m['forward_coordinated']:{form}} against {m['forward_limbs_only']:{form}} m). {split}"
+            f"{'Three' if pitches else 'Two'} free numbers decide. Over the map of leg stroke and trunk bend the ratio "
+            f"runs from {m['ratio_on_map_low']:.1f} to {m['ratio_on_map_high']:.1f}{pitches}. The worst phase of the "
+            f"trunk against the legs {backwards} ({m['forward_antiphase']:{form}} m). {lifted}"
         )
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
@@ -228,26 +288,28 @@ class Displacement(Experiment):
 
     def _drawn_parts(self, record: xr.Dataset) -> Any:
         forward = _forward(record)
+        arms = [str(arm) for arm in record.condition.values]
         with styled():
-            figure, axes = panels(1, 1, height=4.0)
+            figure, axes = panels(1, 1, height=1.0 + 0.5 * len(arms))
             ax = axes[0, 0]
-            for i, arm in enumerate(CONDITIONS):
-                repeats, here = record.spread_forward.sel(condition=arm), len(CONDITIONS) - i
+            for i, arm in enumerate(arms):
+                repeats, here = record.spread_forward.sel(condition=arm), len(arms) - i
                 ax.plot([float(repeats.min()), float(repeats.max())], [here, here], color=COLOURS[arm], linewidth=7,
                         alpha=0.35, solid_capstyle="butt")  # fmt: skip
                 ax.plot(float(forward[i]), here, "o", color=COLOURS[arm], markersize=9)
-                ax.annotate(f"{float(forward[i]):.2f} m", (float(forward[i]), here), (0, 10), ha="center", fontsize=11,
+                ax.annotate(f"{float(forward[i]):.3g} m", (float(forward[i]), here), (0, 10), ha="center", fontsize=11,
                             textcoords="offset points")  # fmt: skip
-            for arm in _GROUPS:
+            for arm in _GROUPS if self._article() else ():
                 printed = CLAIMS[f"displacement_{arm}"].value
                 label = "article" if arm == _GROUPS[0] else None
-                ax.plot(printed, len(CONDITIONS) - CONDITIONS.index(arm), "D", markersize=11, markerfacecolor="none",
+                ax.plot(printed, len(arms) - arms.index(arm), "D", markersize=11, markerfacecolor="none",
                         markeredgecolor="black", label=label)  # fmt: skip
-            ax.set_yticks(range(len(CONDITIONS), 0, -1), [str(LINES[arm]["label"]) for arm in CONDITIONS])
-            ax.set_ylim(0.4, len(CONDITIONS) + 0.8)
+            ax.set_yticks(range(len(arms), 0, -1), [str(LINES[arm]["label"]) for arm in arms])
+            ax.set_ylim(0.4, len(arms) + 0.8)
             ax.set_xlim(left=min(0.0, float(record.spread_forward.min())))
             ax.set_xlabel("displacement forward [m]")
-            ax.legend(loc="lower right")
+            if self._article():
+                ax.legend(loc="lower right")
         return captioned(
             figure,
             "What each part of spine and tail adds. Points: one run without noise; bars: the range of "
@@ -281,46 +343,52 @@ class Displacement(Experiment):
             f"Bands: repeats with noise on the servos and {self.grip_spread:.0%} of spread in the friction.",
         )
 
+    def _article(self) -> bool:
+        """Whether the article's numbers are for this robot and its gaits."""
+        shelf = type(self)()
+        return all(getattr(self, name) == getattr(shelf, name) for name in ("robot", "gait", "control"))
+
     def _drawn_map(self, record: xr.Dataset) -> Any:
+        pitched, article = record.sizes["pitch"] > 0, isinstance(self.gait, Gait)
         with styled(axes__grid=False):
-            figure, axes = panels(1, 3, width=12.5, height=4.3, width_ratios=[1.35, 1, 1])
-            ratio = _ratio(record).assign_coords(stroke=record.stroke * 1000, bend=np.degrees(record.bend))
-            ratio.stroke.attrs.update(units="mm", long_name="half stroke of the legs")
-            ratio.bend.attrs.update(units="deg", long_name="bend of the trunk")
-            printed = CLAIMS["displacement_ratio"].value
+            ratios = [1.35, 1, 1] if pitched else [1.35, 1]
+            figure, axes = panels(1, len(ratios), width=12.5, height=4.3, width_ratios=ratios)
+            ratio, star = _ratio(record), (1.0, 1.0)
+            if isinstance(self.gait, Gait):
+                ratio = ratio.assign_coords(stroke=record.stroke * 1000, bend=np.degrees(record.bend))
+                ratio.stroke.attrs.update(units="mm", long_name="half stroke of the legs")
+                ratio.bend.attrs.update(units="deg", long_name="bend of the trunk")
+                star = (1000 * self.gait.stroke, degrees(self.gait.trunk_bend))
+            printed = CLAIMS["displacement_ratio"].value if self._article() else None
             ax = axes[0, 0]
             if min(ratio.shape) > 1:
                 draw_map(ax, ratio.T, levels=(1, 1.5, 2, 3, 6, 12), label="ratio", emphasised=printed, form="%.3g")
-            ax.plot(
-                1000 * self.gait.stroke,
-                degrees(self.gait.trunk_bend),
-                "*",
-                markersize=15,
-                color="white",
-                markeredgecolor="black",
-            )
+            ax.plot(*star, "*", markersize=15, color="white", markeredgecolor="black")
             ax.set_title("with spine and tail / limbs only")
-            ax = axes[0, 1]
-            for arm in _GROUPS:
-                ax.plot(np.degrees(record.pitch), record.pitched.sel(group=arm), marker="o", **LINES[arm])
-            ax.axvline(degrees(self.gait.tail_pitch), color=COLOURS["neutral"], linestyle=":", linewidth=1.2)
-            ax.set_xlabel("pitch of the tail, down [deg]")
-            ax.set_ylabel("displacement forward [m]")
-            ax.set_ylim(bottom=0.0)
-            ax.legend(loc="center right")
-            ax.set_title("the tail's pitch")
-            ax = axes[0, 2]
+            if pitched and isinstance(self.gait, Gait):
+                ax = axes[0, 1]
+                for arm in _GROUPS:
+                    ax.plot(np.degrees(record.pitch), record.pitched.sel(group=arm), marker="o", **LINES[arm])
+                ax.axvline(degrees(self.gait.tail_pitch), color=COLOURS["neutral"], linestyle=":", linewidth=1.2)
+                ax.set_xlabel("pitch of the tail, down [deg]")
+                ax.set_ylabel("displacement forward [m]")
+                ax.set_ylim(bottom=0.0)
+                ax.legend(loc="center right")
+                ax.set_title("the tail's pitch")
+            ax = axes[0, -1]
             ax.axhline(0.0, color="#999999", linewidth=0.8)
             ax.plot(record.late, record.late_coordinated, marker="o", **(dict(LINES["coordinated"]) | {"label": None}))
             ax.set_xlabel("phase lag of the trunk [cycle]")
             ax.set_ylabel("displacement forward [m]")
             ax.set_title("the trunk's phase")
+        line = ", the orange line the article's ratio" if self._article() else ""
+        what = "" if article else " over shares of the strokes and bends of the robot's gait"
+        middle = " Middle: the steady pitch of the tail, the dotted line that of the crawl." if pitched else ""
         return captioned(
             figure,
-            "What decides. Left: the ratio of the displacements with spine and tail and with limbs only; the star is "
-            "the crawl of the other figures, the orange line the article's ratio. Middle: the steady pitch of the "
-            "tail, the dotted line that of the crawl. Right: the phase lag of the trunk's bend behind the legs, "
-            "with spine and tail.",
+            f"What decides. Left: the ratio of the displacements with spine and tail and with limbs only{what}; the "
+            f"star is the crawl of the other figures{line}.{middle} Right: the phase lag of the trunk's bend behind "
+            "the legs, with spine and tail.",
         )
 
 
@@ -328,17 +396,17 @@ def _forward(record: xr.Dataset) -> xr.DataArray:
     return displacement_of(record).sel(xyz="x")
 
 
-def _renamed(spread: xr.Dataset, repeats: int) -> xr.Dataset:
+def _renamed(spread: xr.Dataset, arms: list[str], repeats: int) -> xr.Dataset:
     """Return the displacement over time of the repeats, by condition."""
     x = spread.centre_of_mass.sel(xyz="x", drop=True).transpose("run", "time")
     x = x - x.sel(time=START, method="nearest", drop=True)
-    dims, shape = ("condition", "repeat"), (len(CONDITIONS), repeats)
+    dims, shape = ("condition", "repeat"), (len(arms), repeats)
     data = xr.Dataset(
         {
             "spread_over_time": ((*dims, "spread_time"), x.values.reshape(*shape, -1), {"units": "m"}),
             "spread_forward": (dims, _forward(spread).values.reshape(shape), {"units": "m"}),
         },
-        coords={"condition": list(CONDITIONS), "spread_time": spread.time.values},
+        coords={"condition": arms, "spread_time": spread.time.values},
     )
     data.spread_time.attrs["units"] = "s"
     return data
@@ -364,10 +432,12 @@ _GAINS = (
     ("tail_contact_limbs_only", "limbs_only", "limbs_tail_lifted"),
 )
 """What two conditions differ in, by which one gets farther than the other."""
+_AXIS = {True: "spine and tail", False: "a bending trunk"}
+"""How what bends is called, by whether trunk and tail can be told apart."""
 
 
 def _ratio(record: xr.Dataset) -> xr.DataArray:
-    return record.map_coordinated / record.map_limbs_only.clip(min=_LEAST)
+    return record.map_coordinated / record.map_limbs_only.clip(min=record.attrs["least"])
 
 
 experiment = Displacement()

@@ -10,22 +10,21 @@ import xarray as xr
 
 from suchus.control import LAWS, Coordinated, HeadingRule, Kick
 from suchus.control.topology import topology
-from suchus.design import LEGS, Crocodile
+from suchus.design import AnyRobot, layout
 from suchus.design.checks import Checks
+from suchus.design.scale import coarse_step, control_period
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.experiments import _feedback_findings as findings
 from suchus.figures.feedback import draw_fans, draw_gain, draw_onset, draw_tracks
 from suchus.figures.topology import draw_topology
-from suchus.gaits import GAITS
+from suchus.gaits import GAITS, own_gait
 from suchus.land import Ground, Limp, Locked, Push, Run, simulate
 from suchus.metrics import heading
 from suchus.metrics.coordination import WITHIN, phase_error
-from suchus.motion import START, Gait, trunk_bend
-from suchus.motion.swim import YAWS
+from suchus.motion import START, AnyGait, axis_bends, steerable
 from suchus.replay import replay
 from suchus.robots import ROBOTS
 
-_COARSE = 0.005  # [s]; time step, measured to agree with 2 ms within 0.1 %
 _ALONE: Mapping[str, Any] = {"spine": None, "tail": None}
 STARTS: Mapping[str, Coordinated] = {
     **{law: Coordinated(limbs=LAWS[law], random_start=True, **_ALONE) for law in LAWS},
@@ -64,17 +63,18 @@ class Feedback(Experiment):
     Converged: the largest of the four phase errors (two diagonal pairs, two girdles) is within 0.1 cycle at every
     sample from some time on until the end of the run, and for at least ``hold`` cycles. Recovery is the way forward,
     along the direction faced at the start, over ``after`` cycles from the disturbance on. Drift is the way down a slope
-    to the side, the mean of both sides.
+    to the side, the mean of both sides. The rule of the tail is left out of a body without a servo that pitches it.
     """
 
     title = "Do three feedback rules coordinate limbs, spine and tail, and what do they help against?"
     shows = "Sections II.B and III.D, Fig. 10"
+    needs = ("limbs", "trunk")
     judged_with = ("robot", "gait", "kick", "slope", "push", "noise")
     judged_from: ClassVar[Mapping[str, float]] = {"starts": 16, "cycles": 12, "hold": 2.0, "after": 5}
 
-    robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
+    robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that crawls."""
-    gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
+    gait: AnyGait = field(default_factory=lambda: GAITS["belly_crawl"])
     """How; its limbs must form diagonal pairs."""
     starts: int = 32
     """Random initial limb phases, the same for all laws [-]."""
@@ -84,12 +84,13 @@ class Feedback(Experiment):
     """For how long the limbs must stay coordinated until the end [cycle]."""
     after: int = 5
     """How long a disturbed robot is followed from the disturbance on [cycle]."""
-    kick: tuple[float, float, float, float] = (0.5, 0.0, 0.0, 0.2)
-    """How far LF, RF, LH, RH jump ahead [cycle]; together almost the farthest from the gait."""
+    kick: tuple[float, ...] = (0.5, 0.0, 0.0, 0.2)
+    """How far each limb jumps ahead, in the order of the robot's limbs [cycle]; together almost the farthest from the
+    gait."""
     slope: float = radians(10)
     """Of the ground [rad]."""
     push: tuple[float, float, float] = (0.0, 20.0, 0.0)
-    """Force on the thorax for 0.3 s [N]; 5 N does nothing even without feedback."""
+    """Force on the foremost girdle's segment for 0.3 s [N]; 5 N does nothing even without feedback."""
     noise: float = 0.3
     """Standard deviation of the noise on what the feet feel, as a part of the load [-]."""
     seed: int = 0
@@ -101,7 +102,7 @@ class Feedback(Experiment):
             check.whole("cycles", 1, 1000)
             check.number("hold", 0.1, 1000.0, "cycle")
             check.whole("after", 1, 1000)
-            check.each("kick", LEGS, -1.0, 1.0, "cycle")
+            check.each("kick", layout(self.robot).limb_names, -1.0, 1.0, "cycle")
             check.number("slope", 0.0, 0.5, "rad")
             check.each("push", ("forward", "left", "up"), -1e3, 1e3, "N")
             check.number("noise", 0.0, 10.0, "")
@@ -110,6 +111,28 @@ class Feedback(Experiment):
     def quick(self) -> "Feedback":
         """Two starts, few and short cycles."""
         return replace(self, gait=replace(self.gait, period=2.0), starts=2, cycles=2, hold=0.5, after=1)
+
+    def gaits_on(self, robot: AnyRobot) -> dict[str, Any]:
+        """Return the robot's own gait, and a kick for each of its limbs.
+
+        Raises:
+            OutsideLimits: its own gait is a table of angles.
+        """
+        own = steerable(own_gait(robot), self.name())
+        kick = (*self.kick, *(0.0,) * len(own.limb_phases))[: len(own.limb_phases)]
+        return {"gait": own, "kick": kick}
+
+    def _suited(self, control: Coordinated) -> Coordinated:
+        return control.suited(self.robot, self.gait)
+
+    @property
+    def _arms(self) -> dict[str, Coordinated]:
+        """Who is disturbed: those of ``ARMS`` whose rule the body can follow."""
+        return {
+            name: self._suited(one)
+            for name, one in ARMS.items()
+            if name != "tail" or self._suited(one).tail is not None
+        }
 
     def simulate(self, progress: Progress = silent) -> Simulated:
         """Crawl from random starts, then disturb a robot whose phases are right."""
@@ -144,6 +167,17 @@ class Feedback(Experiment):
         return {"feedback_replay.html": Replay(caption=caption, make=page)}
 
     @property
+    def _front(self) -> str:
+        """The segment of the foremost girdle."""
+        return layout(self.robot).robot.girdles[0].segment
+
+    @property
+    def _pushed(self) -> float:
+        """How long the push lasts: 0.3 s for a body as long as the article's [s]."""
+        period = control_period(self.robot)
+        return max(1, round(0.3 * (self.robot.length / ROBOTS["caiman"].length) ** 0.5 / period)) * period
+
+    @property
     def _at(self) -> float:
         """When the disturbance comes [s]."""
         return START + self.gait.period
@@ -151,15 +185,15 @@ class Feedback(Experiment):
     def _starts(self, progress: Any) -> tuple[xr.Dataset, xr.Dataset]:
         """Return limb phases and way over time for every law and start, and one start as a record under two laws."""
         runs = [
-            Run(robot=self.robot, gait=self.gait, control=control, seed=self.seed + i)
+            Run(robot=self.robot, gait=self.gait, control=self._suited(control), seed=self.seed + i)
             for control in STARTS.values()
             for i in range(self.starts)
         ]
         duration = START + self.cycles * self.gait.period
-        record = simulate(runs, duration=duration, timestep=_COARSE, every=10, progress=progress)
+        record = simulate(runs, duration=duration, timestep=coarse_step(self.robot), every=10, progress=progress)
         shape = (len(STARTS), self.starts, record.sizes["time"])
         dims = ("law", "start", "start_time")
-        phase = record.limb_phase.transpose("run", "time", "leg").values.reshape(*shape, 4)
+        phase = record.limb_phase.transpose("run", "time", "leg").values.reshape(*shape, -1)
         way = record.centre_of_mass.sel(xyz="x").transpose("run", "time").values.reshape(shape)
         pair = record.isel(run=[self.starts * list(STARTS).index(law) for law in ("cross_load", "off")])
         data = xr.Dataset(
@@ -177,48 +211,59 @@ class Feedback(Experiment):
 
     def _disturbed(self, progress: Any) -> xr.Dataset:
         """Return track, direction, limb phases and tail pitch over time for every disturbance and arm."""
-        runs = [self._disturb(control, name) for name in DISTURBANCES for control in ARMS.values()]
+        arms, place = self._arms, layout(self.robot)
+        runs = [self._disturb(control, name) for name in DISTURBANCES for control in arms.values()]
         duration = self._at + self.after * self.gait.period
-        record = simulate(runs, duration=duration, timestep=_COARSE, every=10, progress=progress)
-        dims, shape = ("disturbance", "arm", "time"), (len(DISTURBANCES), len(ARMS), record.sizes["time"])
+        record = simulate(runs, duration=duration, timestep=coarse_step(self.robot), every=10, progress=progress)
+        dims, shape = ("disturbance", "arm", "time"), (len(DISTURBANCES), len(arms), record.sizes["time"])
         track = record.centre_of_mass.transpose("run", "time", "xyz").values
         phase = record.limb_phase.transpose("run", "time", "leg").values
-        pitch = record.servo_target.sel(servo="tail_pitch").transpose("run", "time").values
         facing = heading(record).transpose("run", "time").values
-        torque = record.servo_torque.sel(servo="tail_pitch").transpose("run", "time").values
-        bent = record.servo_angle.sel(servo=list(YAWS)).sum("servo").transpose("run", "time").values
-        lacking = trunk_bend(self.gait, phase) - bent
-        return xr.Dataset(
+        bent = record.servo_angle.isel(servo=list(place.trunk_yaw)).sum("servo").transpose("run", "time").values
+        lacking = axis_bends(self.robot, steerable(self.gait, self.name()), phase)[0] - bent
+        data = xr.Dataset(
             {
                 "x": (dims, track[..., 0].reshape(shape), {"units": "m", "long_name": "way forward"}),
                 "y": (dims, track[..., 1].reshape(shape), {"units": "m", "long_name": "way to the left"}),
                 "heading": (dims, facing.reshape(shape), {"units": "rad", "long_name": "direction of the body"}),
-                "tail_pitch": (dims, pitch.reshape(shape), {"units": "rad", "long_name": "commanded, down positive"}),
-                "tail_load": (dims, torque.reshape(shape), {"units": "N m", "long_name": "on the tail's pitch servo"}),
                 "lacking": (dims, lacking.reshape(shape), {"units": "rad", "long_name": "bend missing in the trunk"}),
-                "limb_phase": ((*dims, "leg"), phase.reshape(*shape, 4), {"units": "1", "long_name": "[cycle]"}),
+                "limb_phase": ((*dims, "leg"), phase.reshape(*shape, -1), {"units": "1", "long_name": "[cycle]"}),
             },
             coords={
                 "disturbance": list(DISTURBANCES),
-                "arm": list(ARMS),
+                "arm": list(arms),
                 "time": ("time", record.time.values, {"units": "s"}),
                 "leg": record.leg.values,
             },
         )
+        if "tail" in arms:
+            at = place.tail_pitch[0]
+            pitch, torque = (
+                one.isel(servo=at).transpose("run", "time").values.reshape(shape)
+                for one in (record.servo_target, record.servo_torque)
+            )
+            data["tail_pitch"] = (dims, pitch, {"units": "rad", "long_name": "commanded, down positive"})
+            data["tail_load"] = (dims, torque, {"units": "N m", "long_name": "on the tail's pitch servo"})
+        return data
 
     def _disturb(self, control: Coordinated, name: str) -> Run:
         run = Run(robot=self.robot, gait=self.gait, control=control, seed=self.seed, label=name)
+        place = layout(self.robot)
         match name:
             case "kick":
                 return replace(run, control=replace(control, kicks=(Kick(self._at, self.kick),)))
             case "load_noise":
                 return replace(run, control=replace(control, load_noise=self.noise))
             case "locked_spine":
-                return replace(run, faults=(Locked("spine_yaw_2", at=self._at),))
+                return replace(
+                    run, faults=(Locked(place.servos[place.trunk_yaw[len(place.trunk_yaw) // 2]], at=self._at),)
+                )
             case "limp_yaw":
-                return replace(run, faults=(Limp("LF_yaw", at=self._at),))
+                return replace(run, faults=(Limp(place.servos[place.limbs[0].servos][0], at=self._at),))
             case "push":
-                return replace(run, pushes=(Push(force=self.push, at=self._at, duration=0.3),))
+                return replace(
+                    run, pushes=(Push(force=self.push, at=self._at, duration=self._pushed, body=self._front),)
+                )
             case "uphill" | "downhill":
                 return replace(run, ground=Ground(uphill=self.slope if name == "uphill" else -self.slope))
             case "side_slope" | "other_side":

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from suchus import blueprint
-from suchus.design import LEGS, Crocodile
+from suchus.design import AnyRobot, layout
 from suchus.design.checks import Checks
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.figures import captioned
@@ -18,26 +18,20 @@ from suchus.gaits import GAITS
 from suchus.kinematics.tail import bend_of_servo
 from suchus.land import Run, simulate
 from suchus.metrics import (
+    bend_swings,
     between,
     diagonal_phase_error,
     duty_factor,
-    lateral_bend,
     loaded,
     sensed_phase,
-    spine_amplitude,
-    spine_swings,
-    tail_amplitude,
-    tail_swing_least,
-    tail_swings,
-    vertical_bend,
 )
-from suchus.motion import START, Gait, as_table
+from suchus.motion import START, AnyGait, as_table
 from suchus.paper import CYCLES
-from suchus.paper.signs import spine_lateral
 from suchus.replay import replay
 from suchus.robots import ROBOTS
 from suchus.verdict import Reading, listed
 
+_PARTS = ("spine", "tail")
 _CAPTION = "The crawl of the gait diagram: thick tracks are feet that stand."
 
 
@@ -45,19 +39,21 @@ _CAPTION = "The crawl of the gait diagram: thick tracks are feet that stand."
 class GaitDiagram(Experiment):
     """The article's Fig. 12 for our crawl: as commanded, and as foot pressure and joint angles tell.
 
-    A foot stands when its pressure exceeds half a newton. Phases are those of the first harmonic of stance. Bends are
-    sums of joint angles, of the tail those of its cable section and, up and down, its pitch joint; their sense is the
-    article's: right and down are positive. The commanded cycle is written as a table of servo angles, a gait file in
-    which any angle can be changed, the vertical ones too.
+    A foot stands when its pressure exceeds a seventieth of the weight, half a newton for the caiman. Phases are those
+    of the first harmonic of stance. Bends are sums of joint angles, of the tail those that servos and cables bend, up
+    and down those of the pitch joints; their sense is the article's: right and down are positive. A body without a
+    tail, or without a trunk that bends, has no track of that part. The commanded cycle is written as a table of servo
+    angles, a gait file in which any angle can be changed, the vertical ones too.
     """
 
     title = "When do the feet stand, and which way do spine and tail bend?"
     shows = "Section III.D, Fig. 12"
+    needs = ("limbs",)
     judged_with = ("robot", "gait", "cycles")
 
-    robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
+    robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that crawls."""
-    gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
+    gait: AnyGait = field(default_factory=lambda: GAITS["belly_crawl"])
     """The gait that is shown."""
     cycles: int = int(CYCLES)
     """How many cycles are shown [-]."""
@@ -75,8 +71,13 @@ class GaitDiagram(Experiment):
         end = START + self.cycles * self.gait.period
         run = Run(robot=self.robot, gait=self.gait)
         record = simulate([run], duration=end, progress=staged(progress, "crawl", 0.0, 1.0)).isel(run=0)
-        told = record.servo_target.sel(servo="tail_cable")
-        record["commanded_tail"] = told.copy(data=bend_of_servo(self.robot.tail, told.values)).drop_vars("servo")
+        commanded = _commanded(self.robot, record)
+        for part, bend in commanded.items():
+            about = {"units": "rad", "long_name": f"commanded bend of the {part}, right positive"}
+            record[f"commanded_{part}"] = ("time", bend, about)
+        sensed = _sensed(self.robot, record)
+        for part in commanded:
+            record[f"sensed_{part}"] = ("time", sensed[part], {"units": "rad", "long_name": f"bend of the {part}"})
         page = partial(replay, record, self.robot, caption=_CAPTION)
         return Simulated(
             record=record,
@@ -87,56 +88,74 @@ class GaitDiagram(Experiment):
     def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
         """Return duty factors and phases by pressure, lags and amplitudes of the bends."""
         walk = between(record).isel(time=slice(0, -1))  # whole cycles: the last sample begins the next one
+        legs = [str(leg) for leg in record.leg.values]
         duty, phase = duty_factor(record), sensed_phase(record)
-        measures = {f"duty_factor_{leg}": Measure(float(duty.sel(leg=leg)), "-") for leg in LEGS}
-        measures |= {f"phase_{leg}": Measure(float(phase.sel(leg=leg)), "cycle") for leg in LEGS[1:]}
-        sensed, commanded = _sensed(walk), _commanded(walk)
-        for name, amplitude in (("spine", spine_amplitude), ("tail", tail_amplitude)):
-            lag, gain = _against(walk, sensed[name], commanded[name])
+        measures = {f"duty_factor_{leg}": Measure(float(duty.sel(leg=leg)), "-") for leg in legs}
+        measures |= {f"phase_{leg}": Measure(float(phase.sel(leg=leg)), "cycle") for leg in legs[1:]}
+        for name in _bending(record):
+            bend = walk[f"sensed_{name}"].values
+            lag, gain = _against(walk, bend, walk[f"commanded_{name}"].values)
             measures[f"{name}_lag"] = Measure(lag, "cycle")
-            measures[f"{name}_amplitude"] = Measure(float(amplitude(record)), "rad")
+            measures[f"{name}_amplitude"] = Measure(float(np.ptp(bend)) / 2, "rad")
             measures[f"{name}_gain"] = Measure(gain, "-")
-            upright = sensed[f"{name}_vertical"]
-            measures[f"{name}_vertical_mean"] = Measure(float(upright.mean()), "rad")
-            measures[f"{name}_vertical_amplitude"] = Measure(float(np.ptp(upright)) / 2, "rad")
+            measures[f"{name}_changes_per_cycle"] = Measure(
+                float(bend_swings(walk[f"sensed_{name}"], walk.period)), "-"
+            )
+        for name in _PARTS:
+            if f"sensed_{name}_vertical" in walk:
+                upright = walk[f"sensed_{name}_vertical"].values
+                measures[f"{name}_vertical_mean"] = Measure(float(upright.mean()), "rad")
+                measures[f"{name}_vertical_amplitude"] = Measure(float(np.ptp(upright)) / 2, "rad")
+        if "sensed_tail" in walk:
+            bend = walk.sensed_tail.values
+            measures["tail_swing_least"] = Measure(float(min(bend.max(), -bend.min())), "rad")
         return measures | {
             "duty_factor_greatest": Measure(float(duty.max()), "-"),
             "duty_factor_commanded": Measure(float(record.duty_factor), "-"),
             "diagonal_phase_error": Measure(float(diagonal_phase_error(record)), "cycle"),
             "period": Measure(_period(walk), "s"),
             "cycles": Measure(
-                float(round(float(walk.limb_phase.sel(leg="LF")[-1] - walk.limb_phase.sel(leg="LF")[0]))), "cycle"
+                float(round(float(walk.limb_phase.isel(leg=0)[-1] - walk.limb_phase.isel(leg=0)[0]))), "cycle"
             ),
-            "spine_changes_per_cycle": Measure(float(spine_swings(record)), "-"),
-            "tail_changes_per_cycle": Measure(float(tail_swings(record)), "-"),
-            "tail_swing_least": Measure(float(tail_swing_least(record)), "rad"),
         }
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Say how what the feet and joints do differs from what is commanded."""
         m = {name: Reading(value) for name, value in measures.items()}
-        duties = listed([f"{m[f'duty_factor_{leg}']:.0%} ({leg})" for leg in LEGS])
+        duties = listed([f"{m[f'duty_factor_{leg}']:.0%} ({leg})" for leg in layout(self.robot).limb_names])
+        bends = listed(
+            [
+                f"the {name} {'bends ' if name == 'spine' else ''}by {m[f'{name}_amplitude']:deg.0f} degrees"
+                f"{' to each side' if name == 'spine' else ''}, {m[f'{name}_gain']:.0%} of its command and "
+                f"{m[f'{name}_lag']:.3f} cycle after it"
+                for name in ("spine", "tail")
+                if f"{name}_gain" in m
+            ]
+        )
+        diagonal = m["diagonal_phase_error"]
+        apart = f"; the stances of diagonal pairs are up to {diagonal:.2f} cycle apart" if diagonal >= 0 else ""
         return (
             f"Commanded are limb phases and bends; what the feet make of them is felt by their pressure. Feet are told "
-            f"to stand {m['duty_factor_commanded']:.0%} of the cycle and stand {duties}; the stances of diagonal pairs "
-            f"are up to {m['diagonal_phase_error']:.2f} cycle apart. The spine bends by "
-            f"{m['spine_amplitude']:deg.0f} degrees to each side, {m['spine_gain']:.0%} of its command and "
-            f"{m['spine_lag']:.3f} cycle after it; the tail by {m['tail_amplitude']:deg.0f} degrees, "
-            f"{m['tail_gain']:.0%} of its command and {m['tail_lag']:.3f} cycle after it. Up and down the spine moves "
-            f"by {m['spine_vertical_amplitude']:deg.1f} degrees about {m['spine_vertical_mean']:deg.1f} and the tail "
-            f"by {m['tail_vertical_amplitude']:deg.1f} about {m['tail_vertical_mean']:deg.1f} (down is positive)."
+            f"to stand {m['duty_factor_commanded']:.0%} of the cycle and stand {duties}{apart}."
+            f"{' ' if bends else ''}{bends[:1].upper()}{bends[1:]}{'.' if bends else ''}{_upright(m)}"
         )
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw commanded and sensed."""
         walk = between(outcome.record)
-        commanded, sensed = _commanded(walk), _sensed(walk)
+        bends = {
+            source: {
+                part: walk[f"{source}_{part}"].values if f"{source}_{part}" in walk else None
+                for part in (*_PARTS, *(f"{name}_vertical" for name in _PARTS))
+            }
+            for source in ("sensed", "commanded")
+        }
         meant = (np.mod(walk.limb_phase, 1.0) >= 1.0 - walk.duty_factor).transpose("leg", "time").values
         stands = loaded(walk).transpose("leg", "time").values
-        time = walk.time.values
+        time, legs = walk.time.values, tuple(str(leg) for leg in walk.leg.values)
         tracks = [
-            GaitTrack(time=time, stance=stands, **sensed, label="simulated"),
-            GaitTrack(time=time, stance=meant, **commanded, label="commanded"),
+            GaitTrack(time=time, legs=legs, stance=stands, **bends["sensed"], label="simulated"),
+            GaitTrack(time=time, legs=legs, stance=meant, **bends["commanded"], label="commanded"),
         ]
         marks = list(np.arange(START, time[-1] + 0.01, self.gait.period))
         figure = captioned(
@@ -148,28 +167,53 @@ class GaitDiagram(Experiment):
         return {"gait_diagram": figure}
 
 
-def _sensed(record: xr.Dataset) -> dict[str, np.ndarray]:
-    """Return the lateral and vertical angles of spine and tail in the article's signs [rad]."""
-    angles = {}
-    for part in ("spine", "tail"):
-        angles[part] = lateral_bend(record, part).values
-        angles[f"{part}_vertical"] = vertical_bend(record, part).values
-    return angles
+def _upright(m: Mapping[str, Reading]) -> str:
+    """Return how spine and tail move up and down, in a sentence; empty where neither can."""
+    moves = listed(
+        [
+            f"the {part} by {m[f'{part}_vertical_amplitude']:deg.1f} degrees about {m[f'{part}_vertical_mean']:deg.1f}"
+            for part in _PARTS
+            if f"{part}_vertical_mean" in m
+        ]
+    )
+    return f" Up and down moves {moves}; down is positive." if moves else ""
 
 
-def _commanded(record: xr.Dataset) -> dict[str, np.ndarray]:
-    """Return the angles that the servos are commanded to make, in the article's signs [rad]."""
-
-    def summed(beginning: str) -> xr.DataArray:
-        names = [str(name) for name in record.servo.values if str(name).startswith(beginning)]
-        return record.servo_target.sel(servo=names).sum("servo")
-
+def _sensed(robot: AnyRobot, record: xr.Dataset) -> dict[str, np.ndarray]:
+    """Return the angles of spine and tail in the article's signs, right and down positive [rad]."""
+    place = layout(robot)
+    tail = {place.servos[i] for i in place.tail_yaw} | {name for i in place.cables for name in place.cable(i).hinges}
+    hinges = {"spine": [place.servos[i] for i in place.trunk_yaw], "tail": sorted(tail, key=place.hinges.index)}
+    hinges |= {f"{part}_vertical": [place.servos[i] for i in pitch] for part, pitch in _pitching(robot).items()}
+    signs = {"spine": -1.0}  # ahead of the root a positive yaw bends to the left, behind it to the right
     return {
-        "spine": np.asarray(spine_lateral(summed("spine_yaw")).values),
-        "tail": record.commanded_tail.values,
-        "spine_vertical": summed("spine_pitch").values,
-        "tail_vertical": summed("tail_pitch").values,
+        part: signs.get(part, 1.0) * record.joint_angle.sel(joint=names).sum("joint").values
+        for part, names in hinges.items()
     }
+
+
+def _commanded(robot: AnyRobot, record: xr.Dataset) -> dict[str, np.ndarray]:
+    """Return the angles that the servos are told to make, of those parts that a servo bends [rad]."""
+    place, told = layout(robot), record.servo_target.transpose("time", "servo").values
+    found: dict[str, np.ndarray] = {}
+    if place.trunk_yaw:
+        found["spine"] = -told[:, list(place.trunk_yaw)].sum(axis=1)
+    if place.tail_yaw or place.cables:
+        pulled = sum(bend_of_servo(place.cable(i), told[:, i]) for i in place.cables)
+        found["tail"] = told[:, list(place.tail_yaw)].sum(axis=1) + pulled
+    vertical = {f"{part}_vertical": told[:, list(pitch)].sum(axis=1) for part, pitch in _pitching(robot).items()}
+    return found | vertical
+
+
+def _pitching(robot: AnyRobot) -> dict[str, tuple[int, ...]]:
+    """Return the servos that bend spine and tail up and down, of those parts that have some."""
+    place = layout(robot)
+    return {part: servos for part, servos in (("spine", place.trunk_pitch), ("tail", place.tail_pitch)) if servos}
+
+
+def _bending(record: xr.Dataset) -> list[str]:
+    """Return the parts of the body that servos bend sideways."""
+    return [part for part in _PARTS if f"commanded_{part}" in record]
 
 
 def _harmonic(record: xr.Dataset, values: np.ndarray) -> complex:

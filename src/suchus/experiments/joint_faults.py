@@ -11,16 +11,17 @@ import xarray as xr
 from scipy.stats import qmc
 
 from suchus.control import Control, Coordinated, HeadingRule, OpenLoop
-from suchus.design import Chosen, Crocodile, meaning, value_at, with_values
+from suchus.design import AnyRobot, Chosen, layout, meaning, value_at, with_values
 from suchus.design.checks import Checks
+from suchus.design.scale import coarse_step
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.experiments import _fault_findings as findings
-from suchus.experiments._fault_findings import ARMS, JOINTS
+from suchus.experiments._fault_findings import ARMS
 from suchus.experiments._fault_records import lay, support
 from suchus.figures.faults import draw_held, draw_losses, draw_over_time, draw_tracks
-from suchus.gaits import GAITS
-from suchus.land import KINDS, LEGS_LOST, LOST, Fault, Ground, Limp, Locked, Run, angle_at, lost, simulate
-from suchus.land.lost import Joint, Kind, Legs
+from suchus.gaits import GAITS, conditions_of, suits
+from suchus.land import KINDS, LEGS_LOST, Fault, Ground, Limp, Locked, Run, angle_at, lost, lost_joints, simulate
+from suchus.land.lost import Kind, Legs
 from suchus.metrics import (
     between,
     displacement,
@@ -28,15 +29,13 @@ from suchus.metrics import (
     path_length,
     whole,
 )
-from suchus.motion import START, Gait
+from suchus.motion import START, AngleTable, AnyGait, Gait, straightened, with_bends, with_strokes
 from suchus.paper import CYCLES
 from suchus.replay import replay
 from suchus.robots import ROBOTS
 
 _TRUNK = ("trunk_bend", "spine_phase", "tail_bend", "tail_phase", "tail_pitch")  # the rest of a gait is its legs
-
-
-_FINE = 0.005  # [s]; time step of the three runs whose loads and heights are read
+_OF_A_LIMB = 2  # hinges of a limb, from the hip on, whose loss is repeated and steered; the article's yaw and pitch
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -46,22 +45,23 @@ class JointFaults(Experiment):
     All of it over variations of gait and friction. A change of displacement is measured against the intact run with
     spine and tail of the same variation, as the article does; ``faults.csv`` has it against the intact run of the same
     arm too. Two more arms are run in the judged reading: ``steered`` with the feedback rules and the heading loop, and
-    ``limbs_tail_lifted``, limbs only with the tail in the air. Displacement is forward, along the direction that the
-    body faced at the start.
+    ``limbs_tail_lifted``, limbs only with the tail in the air, where a servo lifts it. Displacement is forward, along
+    the direction that the body faced at the start. The limbs of another body lose the joints that they have.
     """
 
     title = "How far does it still crawl when joints of its legs are lost?"
     shows = "Section IV.C, Figs 18 to 21"
+    needs = ("limbs",)
     judged_with = ("robot", "gait", "control", "lifted", "cycles", "hold", "kind", "legs")
     judged_from: ClassVar[Mapping[str, float]] = {"variations": 8, "repeats": 4}
 
-    robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
+    robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot whose joints are lost."""
-    gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
+    gait: AnyGait = field(default_factory=lambda: GAITS["belly_crawl"])
     """The crawl with spine and tail."""
-    control: Gait = field(default_factory=lambda: GAITS["limbs_only"])
+    control: AnyGait = field(default_factory=lambda: GAITS["limbs_only"])
     """The crawl of the control group, its tail lying still; its legs follow those of ``gait``."""
-    lifted: Gait = field(default_factory=lambda: GAITS["limbs_tail_lifted"])
+    lifted: AnyGait = field(default_factory=lambda: GAITS["limbs_tail_lifted"])
     """The control group with its tail in the air, for comparison; its legs follow those of ``gait``."""
     cycles: int = int(CYCLES)
     """How many cycles are measured [-]."""
@@ -142,8 +142,10 @@ class JointFaults(Experiment):
     def _duration(self) -> float:
         return START + self.cycles * self.gait.period
 
-    def _varied(self) -> list[tuple[dict[str, Gait], float]]:
+    def _varied(self) -> list[tuple[dict[str, AnyGait], float]]:
         """Return the gaits of both arms and the grip of each variation."""
+        if not isinstance(self.gait, Gait):
+            return self._varied_patterns()
         chosen: tuple[Chosen, ...] = GAITS.beside("belly_crawl", "chosen", ())
         points = qmc.LatinHypercube(len(chosen) + 1, rng=self.seed).random(max(self.variations - 1, 1))
         varied = [(self._arms(self.gait), 1.0)]
@@ -158,22 +160,51 @@ class JointFaults(Experiment):
             varied.append((self._arms(gait), grip))
         return varied
 
-    def _arms(self, gait: Gait) -> dict[str, Gait]:
+    def _varied_patterns(self) -> list[tuple[dict[str, AnyGait], float]]:
+        """Return the same for a gait of any body, of which all strokes and all bends vary together."""
+        points = qmc.LatinHypercube(3, rng=self.seed).random(max(self.variations - 1, 1))
+        varied = [(self._arms(self.gait), 1.0)]
+        for point in points[: self.variations - 1]:
+            stroke, bend = 1.0 + 0.5 * self.spread * (2.0 * point[:2] - 1.0)
+            gait = with_bends(self.robot, with_strokes(self.gait, float(stroke)), float(bend))
+            gait = gait if suits(self.robot, gait) else self.gait
+            varied.append((self._arms(gait), float(1.0 + self.grip_spread * (2.0 * point[-1] - 1.0))))
+        return varied
+
+    @property
+    def _joints(self) -> tuple[str, ...]:
+        """The joints that are lost."""
+        return lost_joints(self.robot)
+
+    @property
+    def _lost(self) -> tuple[str, ...]:
+        """The joints whose loss is repeated, steered and locked in several places."""
+        return self._joints[: _OF_A_LIMB * len(layout(self.robot).robot.girdles)]
+
+    @property
+    def _lifts(self) -> bool:
+        """Whether the control group can lift its tail."""
+        return "limbs_tail_lifted" in conditions_of(self.robot, self.gait, self.control)
+
+    def _arms(self, gait: AnyGait) -> dict[str, AnyGait]:
         """Return the gaits of all arms with the legs of one gait."""
-        limbs = {
+        if not isinstance(gait, Gait):
+            return {"coordinated": gait, "limbs_only": straightened(self.robot, gait, name="limbs_only")}
+        limbs: dict[str, AnyGait] = {
             arm: replace(gait, name=other.name, **{name: getattr(other, name) for name in _TRUNK})
             for arm, other in (("limbs_only", self.control), ("limbs_tail_lifted", self.lifted))
         }
-        return {"coordinated": gait} | limbs
+        arms: dict[str, AnyGait] = {"coordinated": gait}
+        return arms | limbs
 
-    def _broken(self, gait: Gait, joint: Joint) -> tuple[Fault, ...]:
+    def _broken(self, gait: AnyGait, joint: str) -> tuple[Fault, ...]:
         """Return the faults of a joint in the judged reading."""
         return lost(self.robot, gait, joint, self.kind, self.legs, hold=self.hold)
 
     def _campaign(self, progress: Any) -> xr.Dataset:
         """Run everything in one batch and keep how far each got over time."""
         varied = self._varied()
-        cells = list(product(JOINTS, KINDS, LEGS_LOST))
+        cells = list(product(self._joints, KINDS, LEGS_LOST))
         runs = [
             Run(
                 robot=self.robot,
@@ -199,12 +230,14 @@ class JointFaults(Experiment):
         tracks = (way - way.isel(time=0)).transpose("run", "time", "xyz").values
         shape = (len(varied), len(ARMS), 1 + len(cells))
         data = xr.Dataset(coords={"variation": range(shape[0]), "arm": list(ARMS), "time": way.time.values})
-        data = data.assign_coords(joint=list(JOINTS), kind=list(KINDS), legs=list(LEGS_LOST), on_ground=["x", "y"])
+        data = data.assign_coords(
+            joint=list(self._joints), kind=list(KINDS), legs=list(LEGS_LOST), on_ground=["x", "y"]
+        )
         for name, (some, unit, what) in numbers.items():
             lay(data, name, some.values.reshape(shape), (), unit, what)
         lay(data, "track", tracks.reshape(*shape, -1, 2), ("time", "on_ground"), "m", "way of the centre of mass")
         told = meaning.meanings(Gait)
-        for one in GAITS.beside("belly_crawl", "chosen", ()):
+        for one in GAITS.beside("belly_crawl", "chosen", ()) if isinstance(self.gait, Gait) else ():
             values = [value_at(gaits["coordinated"], one.field) for gaits, _ in varied]
             data[f"gait_{one.field}"] = ("variation", values, {"units": meaning.unit(told[one.field])})
         data["grip"] = ("variation", [grip for _, grip in varied], {"units": "1", "long_name": "of all friction"})
@@ -227,9 +260,9 @@ class JointFaults(Experiment):
             )
             for i, grip in enumerate(grips)
             for arm in ARMS
-            for faults in ((), *(self._broken(gaits[arm], joint) for joint in LOST))
+            for faults in ((), *(self._broken(gaits[arm], joint) for joint in self._lost))
         ]
-        way = self._forward(runs, progress).reshape(self.repeats, len(ARMS), 1 + len(LOST))
+        way = self._forward(runs, progress).reshape(self.repeats, len(ARMS), 1 + len(self._lost))
         metre = {"units": "m", "long_name": "displacement forward, repeated"}
         data = xr.Dataset(
             {
@@ -237,7 +270,7 @@ class JointFaults(Experiment):
                 "repeat_forward": (("repeat", "arm", "lost"), way[:, :, 1:], metre),
             }
         )
-        return data.assign_coords(arm=list(ARMS), lost=list(LOST))
+        return data.assign_coords(arm=list(ARMS), lost=list(self._lost))
 
     def _forward(self, runs: list[Run], progress: Any) -> np.ndarray:
         """Return the displacement forward of each run [m]."""
@@ -247,26 +280,31 @@ class JointFaults(Experiment):
     def _held(self, progress: Any) -> xr.Dataset:
         """Lock one leg's joint at several places of its range, in the gait as given."""
         gaits, _ = self._varied()[0]
-        points = list(product(ARMS, LOST, self.holds))
+        points = list(product(ARMS, self._lost, self.holds))
         runs = [
             Run(robot=self.robot, gait=gaits[a], faults=lost(self.robot, gaits[a], j, "locked", hold=h))
             for a, j, h in points
         ]
-        way = self._forward(runs, progress).reshape(len(ARMS), len(LOST), len(self.holds))
+        way = self._forward(runs, progress).reshape(len(ARMS), len(self._lost), len(self.holds))
         data = xr.Dataset({"held_forward": (("arm", "lost", "hold"), way, {"units": "m"})})
-        return data.assign_coords(arm=list(ARMS), lost=list(LOST), hold=list(self.holds))
+        return data.assign_coords(arm=list(ARMS), lost=list(self._lost), hold=list(self.holds))
 
     def _lost_pitch(self, progress: Any) -> xr.Dataset:
-        """Run the gait as given intact, with the right hind pitch joint limp, and with it locked."""
-        angle = angle_at(self.robot, self.gait, "RH_pitch", self.hold)
+        """Run the gait as given intact, with the right hind pitch joint limp, and with it locked.
+
+        Of a limb with one hinge it is that one.
+        """
+        hind = layout(self.robot).limbs[-1]
+        servo = layout(self.robot).servos[hind.servos][-1 if hind.servos.stop - hind.servos.start == 1 else 1]
+        angle = angle_at(self.robot, self.gait, servo, self.hold)
         runs = [
             Run(robot=self.robot, gait=self.gait, faults=faults)
-            for faults in ((), (Limp("RH_pitch"),), (Locked("RH_pitch", angle=angle),))
+            for faults in ((), (Limp(servo),), (Locked(servo, angle=angle),))
         ]
-        return whole(simulate(runs, duration=self._duration, timestep=_FINE, progress=progress))
+        return whole(simulate(runs, duration=self._duration, timestep=coarse_step(self.robot), progress=progress))
 
     def _replays(self, lost_pitch: xr.Dataset) -> Mapping[str, Replay]:
-        caption = "The crawl with the right hind pitch joint limp from the start, and, half transparent, intact."
+        caption = "With the right hind pitch joint limp from the start, and, half transparent, intact."
         page = partial(
             replay,
             lost_pitch.isel(run=1),
@@ -280,13 +318,17 @@ class JointFaults(Experiment):
 
     def _others(self, progress: Any) -> xr.Dataset:
         """Run the judged reading of the article's joints steered, and with limbs only and the tail in the air."""
-        control = Coordinated(heading=HeadingRule())
+        joints, steers = self._lost, not isinstance(self.gait, AngleTable)
         varied, runs = self._varied(), []
         for i, (gaits, grip) in enumerate(varied):
-            ours, lifted = gaits["coordinated"], gaits["limbs_tail_lifted"]
-            cases: list[tuple[Gait, tuple[Fault, ...], Control]]
-            cases = [(ours, self._broken(ours, joint), control) for joint in LOST]
-            cases += [(lifted, (), OpenLoop()), *((lifted, self._broken(lifted, j), OpenLoop()) for j in LOST)]
+            cases: list[tuple[AnyGait, tuple[Fault, ...], Control]] = []
+            if steers:
+                ours = gaits["coordinated"]
+                control = Coordinated(heading=HeadingRule()).suited(self.robot, ours)
+                cases += [(ours, self._broken(ours, joint), control) for joint in joints]
+            if self._lifts:
+                lifted = gaits["limbs_tail_lifted"]
+                cases += [(lifted, (), OpenLoop()), *((lifted, self._broken(lifted, j), OpenLoop()) for j in joints)]
             runs += [
                 Run(
                     robot=self.robot,
@@ -299,20 +341,21 @@ class JointFaults(Experiment):
                 )
                 for gait, faults, law in cases
             ]
+        data = xr.Dataset(coords={"lost": list(joints)})
+        if not runs:
+            return data
         record = whole(simulate(runs, duration=self._duration, timestep=self.timestep, every=10, progress=progress))
-        shape, steered = (len(varied), 2 * len(LOST) + 1), slice(len(LOST))
-        way = displacement(record).sel(xyz="x").values.reshape(shape)
-        turned = heading_change(record).values.reshape(shape)
-        both, metre = ("variation", "lost"), {"units": "m"}
-        return xr.Dataset(
-            {
-                "steered_forward": (both, way[:, steered], metre | {"long_name": "forward, steered"}),
-                "steered_turn": (both, turned[:, steered], {"units": "rad", "long_name": "turned, steered"}),
-                "lifted_intact_forward": ("variation", way[:, len(LOST)], metre | {"long_name": "tail lifted, intact"}),
-                "lifted_forward": (both, way[:, len(LOST) + 1 :], metre | {"long_name": "forward, tail lifted"}),
-            },
-            coords={"lost": list(LOST)},
-        )
+        way = displacement(record).sel(xyz="x").values.reshape(len(varied), -1)
+        turned = heading_change(record).values.reshape(len(varied), -1)
+        both, metre, many = ("variation", "lost"), {"units": "m"}, len(joints)
+        if steers:
+            data["steered_forward"] = (both, way[:, :many], metre | {"long_name": "forward, steered"})
+            data["steered_turn"] = (both, turned[:, :many], {"units": "rad", "long_name": "turned, steered"})
+        if self._lifts:
+            intact, broken = way[:, -many - 1], way[:, -many:]
+            data["lifted_intact_forward"] = ("variation", intact, metre | {"long_name": "tail lifted, intact"})
+            data["lifted_forward"] = (both, broken, metre | {"long_name": "forward, tail lifted"})
+        return data
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw the losses, the way over time for both kinds of fault, the tracks, and the places of locking."""

@@ -9,25 +9,25 @@ from typing import Any, ClassVar
 import numpy as np
 import xarray as xr
 
-from suchus.design import Crocodile, servo_names
+from suchus.design import AnyRobot, layout
 from suchus.design.checks import Checks
+from suchus.design.scale import control_period, physics_step
 from suchus.design.servos import with_servos
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Simulated, silent, staged
 from suchus.figures import captioned
 from suchus.figures import joint_loops as pictures
-from suchus.gaits import GAITS
+from suchus.gaits import GAITS, own_gait
 from suchus.land import Run, simulate
 from suchus.land.stand import on_stand
 from suchus.metrics import between, displacement, whole
-from suchus.motion import START, Gait
+from suchus.motion import START, AnyGait
 from suchus.paper import CYCLES
 from suchus.robots import ROBOTS
 from suchus.verdict import Reading, compared
 
 TESTS = ("step", "load", "let_go")
 """A step without load, a load without a step, and a step while the joint is gripped, which then lets go."""
-_STEP = 0.002  # [s]; of the physics on the stand
-_GRIPPED = 1.0  # [s]; long enough for the integral to reach its limit
+_GRIPPED = 100  # [control period]; long enough for the integral to reach its limit
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,12 +39,13 @@ class JointLoops(Experiment):
 
     title = "What does an integral term buy the joint loops, and what does it cost?"
     shows = "Section III.D, Fig. 10"
+    needs = ("limbs",)
     judged_with = ("robot", "gait", "joint", "step")
     judged_from: ClassVar[Mapping[str, float]] = {"integrals": 3, "cycles": CYCLES, "seconds": 4.0}
 
-    robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
+    robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot whose servos are tested."""
-    gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
+    gait: AnyGait = field(default_factory=lambda: GAITS["belly_crawl"])
     """The crawl whose torque is the load."""
     joint: str = "LH_pitch"
     """The servo that is tested on the stand."""
@@ -62,12 +63,18 @@ class JointLoops(Experiment):
             check.rising("integrals", 0.0, 1e4, "N m/(rad s)")
             check.that(len(self.integrals) > 1 and self.integrals[0] == 0.0, "integrals must begin with 0 and go on")
             check.number("step", 0.01, 1.0, "rad")
-            check.number("seconds", 1.0, 100.0, "s")
+            check.number("seconds", 0.02, 100.0, "s")
             check.whole("cycles", 1, 1000)
 
     def quick(self) -> "JointLoops":
         """Return two gains, a second each, one cycle."""
         return replace(self, integrals=(0.0, 20.0), seconds=1.0, cycles=1)
+
+    def gaits_on(self, robot: AnyRobot) -> dict[str, Any]:
+        """Return the robot's own gait, and the left hind servo that lifts the limb, or its only one."""
+        hind = layout(robot).limbs[-2]
+        servos = layout(robot).servos[hind.servos]
+        return {"gait": own_gait(robot), "joint": servos[min(1, len(servos) - 1)]}
 
     def simulate(self, progress: Progress = silent) -> Simulated:
         """Crawl with every gain, then load the joint on the stand with what the crawl asks of it."""
@@ -77,38 +84,46 @@ class JointLoops(Experiment):
         load = float(np.sqrt((walk.servo_torque.isel(run=0).sel(servo=self.joint) ** 2).mean()))
         data = _tracking(walk, self.robot, displacement(crawls).sel(xyz="x").values)
         progress("stand", 0.7)
+        step = physics_step(self.robot)
         data["angle"] = (("test", "ki", "time"), np.array(self._tested(robots, load)), {"units": "rad"})
         data = data.assign_coords(
             ki=("ki", list(self.integrals), {"units": "N m/(rad s)", "long_name": "integral gain"}),
             test=list(TESTS),
-            time=("time", _STEP * np.arange(1, round(self.seconds / _STEP) + 1), {"units": "s", "long_name": "time"}),
+            time=("time", step * np.arange(1, round(self.seconds / step) + 1), {"units": "s", "long_name": "time"}),
         )
-        attrs = {"joint": self.joint, "step": self.step, "load": load, "kp": self.robot.servo(self.joint).kp}
+        kp = layout(self.robot).robot.servo(self.joint).kp
+        attrs = {"gripped": self._gripped, "joint": self.joint, "step": self.step, "load": load, "kp": kp}
         return Simulated(record=data.assign_attrs(attrs))
 
-    def _crawled(self, number: int, robot: Crocodile, progress: Progress) -> xr.Dataset:
+    @property
+    def _gripped(self) -> float:
+        """How long the joint is held fast, a second for the article's robot [s]."""
+        return _GRIPPED * control_period(self.robot)
+
+    def _crawled(self, number: int, robot: AnyRobot, progress: Progress) -> xr.Dataset:
         """Return the crawl with one of the gains; servos with and without an integral share no batch."""
         run = Run(robot=robot, gait=self.gait, label=f"ki {self.integrals[number]:g}")
         share = 0.7 / len(self.integrals)
         told = staged(progress, "crawl", number * share, (number + 1) * share)
         return simulate([run], duration=START + self.cycles * self.gait.period, progress=told)
 
-    def _tested(self, robots: list[Crocodile], load: float) -> list[list[np.ndarray]]:
+    def _tested(self, robots: list[AnyRobot], load: float) -> list[list[np.ndarray]]:
         """Return the joint's angle in each test with each gain [rad]."""
-        free, held = round(self.seconds / _STEP), round(_GRIPPED / _STEP)
+        step = physics_step(self.robot)
+        free, held = round(self.seconds / step), round(self._gripped / step)
         none, at = np.zeros(free), np.full(free, self.step)
         never = np.zeros(free, dtype=bool)
         found: list[list[np.ndarray]] = [[], [], []]
         for robot in robots:
-            one = on_stand(robot, self.joint, target=at, load=none, gripped=never, timestep=_STEP)
-            two = on_stand(robot, self.joint, target=none, load=none + load, gripped=never, timestep=_STEP)
+            one = on_stand(robot, self.joint, target=at, load=none, gripped=never, timestep=step)
+            two = on_stand(robot, self.joint, target=none, load=none + load, gripped=never, timestep=step)
             three = on_stand(
                 robot,
                 self.joint,
                 target=np.full(held + free, self.step),
                 load=np.zeros(held + free),
                 gripped=np.arange(held + free) < held,
-                timestep=_STEP,
+                timestep=step,
             )
             for kept, angle in zip(found, (one.angle, two.angle, three.angle[held:]), strict=True):
                 kept.append(angle)
@@ -160,11 +175,11 @@ class JointLoops(Experiment):
             m[f"forward_{last}"], m[f"forward_{first}"], less="less far", more="farther", same="as far", within=0.01
         )
         return (
-            f"Under the {m['load']:.2f} N m that the crawl asks of {self.joint} the joint sags by "
+            f"Under the {_load(m['load'])} N m that the crawl asks of {self.joint} the joint sags by "
             f"{m[f'droop_{first}']:deg.2f} degrees without an integral term and ends {m[f'droop_{last}']:deg.2f} "
             f"degrees off with {self.integrals[-1]:g} N m/(rad s). A free step overshoots by "
             f"{m[f'overshoot_{first}']:.0%} without and {m[f'overshoot_{last}']:.0%} with it; after a grip of "
-            f"{_GRIPPED:g} s, in which it winds up, by {m[f'overshoot_let_go_{first}']:.0%} and "
+            f"{self._gripped:g} s, in which it winds up, by {m[f'overshoot_let_go_{first}']:.0%} and "
             f"{m[f'overshoot_let_go_{last}']:.0%}. In the crawl droop makes {m['tracking_by_droop']:.0%} of the mean "
             f"square of the tracking error, damping {m['tracking_by_damping']:.0%}. With the integral term the joints "
             f"are off by {better} ({m[f'tracking_error_{last}']:deg.2f} against "
@@ -190,6 +205,11 @@ class JointLoops(Experiment):
         }
 
 
+def _load(torque: float) -> str:
+    """Return a torque as text: two decimals, or two digits of a very small one [N m]."""
+    return f"{torque:.2f}" if torque >= 0.05 else f"{torque:.2g}"
+
+
 def rise_time(time: np.ndarray, angle: np.ndarray, step: float) -> float:
     """Return how long an angle takes from a tenth to nine tenths of a step, NaN if it never gets there [s]."""
     passed = [np.flatnonzero(angle >= share * step) for share in (0.1, 0.9)]
@@ -201,7 +221,7 @@ def overshoot(angle: np.ndarray, step: float) -> float:
     return max(float(angle.max()) / step - 1.0, 0.0)
 
 
-def _tracking(walk: xr.Dataset, robot: Crocodile, forward: np.ndarray) -> xr.Dataset:
+def _tracking(walk: xr.Dataset, robot: AnyRobot, forward: np.ndarray) -> xr.Dataset:
     """Return what the crawls left of their commands, and what droop and damping account for.
 
     Without an integral term a servo's torque is kp times what its angle lacks of its own, slew-limited target, less kd
@@ -212,8 +232,8 @@ def _tracking(walk: xr.Dataset, robot: Crocodile, forward: np.ndarray) -> xr.Dat
         robot: whose gains the runs share.
         forward: displacement of each run [m].
     """
-    names = servo_names()
-    kp, kd = (xr.DataArray([getattr(robot.servo(n), gain) for n in names], dims="servo") for gain in ("kp", "kd"))
+    names, body = layout(robot).servos, layout(robot).robot
+    kp, kd = (xr.DataArray([getattr(body.servo(n), gain) for n in names], dims="servo") for gain in ("kp", "kd"))
     walk = walk.sel(servo=list(names))
     error = walk.servo_target - walk.servo_angle
     first = walk.isel(run=0)

@@ -31,6 +31,7 @@ class LegKinematics(Experiment):
 
     title = "Does the printed leg kinematics find the joint angles for every point in reach?"
     shows = "Section III.A: Table I, eqs (1) to (14)"
+    needs = ("tables",)
     judged_with = ("robot", "gait", "other_gait")
     judged_from: ClassVar[Mapping[str, float]] = {"points": 10_000, "phases": 100}
 

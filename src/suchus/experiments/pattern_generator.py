@@ -43,6 +43,7 @@ class PatternGeneratorExperiment(Experiment):
 
     title = "What do coupled oscillators make of a single drive: walking, swimming, turning, order from any start?"
     shows = "Beyond the article: Ijspeert et al. 2007, Science 315, 1416"
+    needs = ("axis",)
 
     robot: AnyRobot = field(default_factory=lambda: ROBOTS["salamander"])
     """The robot, with limbs and an axis that bends sideways."""

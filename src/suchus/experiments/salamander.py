@@ -36,6 +36,7 @@ class Salamander(Experiment):
 
     title = "Does a salamander's own walk, played on its model, walk as the animal does?"
     shows = "Beyond the article: kinematics and foot forces of salamanders"
+    needs = ("salamander_joints",)
 
     robot: AnyRobot = field(default_factory=lambda: ROBOTS["salamander"])
     """The robot that walks; two pairs of limbs at least and a table of angles made for it are needed."""

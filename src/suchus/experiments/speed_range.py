@@ -9,23 +9,25 @@ import numpy as np
 import xarray as xr
 
 from suchus import rotation
-from suchus.design import AnyRobot, Crocodile, crocodile
+from suchus.design import AnyRobot, Rod, Segment, Servo, layout
 from suchus.design.checks import Checks
+from suchus.design.scale import control_period
+from suchus.design.servos import with_leg_servos
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
-from suchus.figures.terrain import GAIT_LINES, draw_speed_range
+from suchus.figures.terrain import draw_speed_range, gait_lines
 from suchus.gaits import GAITS
-from suchus.kinematics.body import tail_points
 from suchus.kinematics.mass import GRAVITY
+from suchus.kinematics.tree import frames
 from suchus.land import Run, simulate
 from suchus.metrics import between, cost_of_transport, displacement, duty_factor, roll_peak_to_peak
-from suchus.motion import START, Gait, hip_height
+from suchus.motion import START, AnyGait, hip_height
 from suchus.paper.animals import ANIMAL
 from suchus.replay import replay
 from suchus.robots import ROBOTS
 from suchus.verdict import Reading, listed
 
-_TOUCHES = 0.005  # [m]; a tail this close to the ground lies on it
-_LEGS = slice(0, 12)
+_TOUCHES = 0.00495  # [body length]; a tail this close to the ground lies on it
+_LOADED = 0.0029  # of the weight; a tail that presses more on the ground touches it
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -33,17 +35,19 @@ class SpeedRange(Experiment):
     """Every gait at several cycle times, on the robot as it is and with a torque-speed line in its legs' servos.
 
     Measured over whole cycles from the second on; the speed is that of the centre of mass along the initial heading,
-    the Froude number speed squared over gravity times hip height.
+    the Froude number speed squared over gravity times hip height, without a number for a table of angles, which says no
+    height.
     """
 
     title = "How fast is each gait, and what does speed cost?"
     shows = "Sections II.A and II.B, Fig. 3"
+    needs = ("limbs",)
     judged_with = ("robot", "gaits")
     judged_from: ClassVar[Mapping[str, float]] = {"slower": 4, "cycles": 3}
 
-    robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
+    robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that walks."""
-    gaits: tuple[Gait, ...] = field(
+    gaits: tuple[AnyGait, ...] = field(
         default_factory=lambda: tuple(GAITS[n] for n in ("belly_crawl", "low_crawl", "semi_erect", "high_walk"))
     )
     """The gaits that it walks in."""
@@ -63,7 +67,8 @@ class SpeedRange(Experiment):
 
     def quick(self) -> "SpeedRange":
         """Two gaits at two cycle times."""
-        return replace(self, gaits=(GAITS["semi_erect"], GAITS["high_walk"]), slower=(1.0, 1.5), cycles=1)
+        two = tuple(GAITS[name] for name in ("semi_erect", "high_walk"))
+        return replace(self, gaits=two if set(two) <= set(self.gaits) else self.gaits[:1], slower=(1.0, 1.5), cycles=1)
 
     def simulate(self, progress: Progress = silent) -> Simulated:
         """Walk in every gait, at every cycle time, with both models of the servos."""
@@ -97,12 +102,17 @@ class SpeedRange(Experiment):
             fastest.append(found[0][1])
         return self._table(np.array(rows)), fastest
 
-    def _walked(self, gait: Gait, slower: Sequence[float], progress: Any) -> tuple[np.ndarray, xr.Dataset]:
+    def _walked(self, gait: AnyGait, slower: Sequence[float], progress: Any) -> tuple[np.ndarray, xr.Dataset]:
         """Return ``_UNITS`` at some cycle times of a gait, shape (servo_model, slower, unit), and its fastest walk."""
         robots = (self.robot, _limited(self.robot))
         runs = [Run(robot=robot, gait=replace(gait, period=gait.period * s)) for robot in robots for s in slower]
-        longest = START + (self.cycles + 1) * gait.period * max(slower)
-        walked = simulate(runs, duration=np.ceil(longest * 100) / 100, timestep=self.timestep, progress=progress)
+        longest, period = START + (self.cycles + 1) * gait.period * max(slower), control_period(self.robot)
+        walked = simulate(
+            runs,
+            duration=float(np.ceil(round(longest / period, 6)) * period),
+            timestep=self.timestep,
+            progress=progress,
+        )
         looked = [self._look(walked.isel(run=j), run) for j, run in enumerate(runs)]
         return np.array(looked).reshape(2, len(slower), len(_UNITS)), walked.isel(run=0)
 
@@ -110,16 +120,18 @@ class SpeedRange(Experiment):
         start, end = START + run.gait.period, START + (self.cycles + 1) * run.gait.period
         part = between(one, start, end)
         speed = float(displacement(one, start, end).sel(xyz="x")) / (end - start)
-        fastest = float(abs(part.servo_velocity.isel(servo=_LEGS)).quantile(0.99, "time").max())
+        legs = [i for limb in layout(run.robot).limbs for i in range(limb.servos.start, limb.servos.stop)]
+        fastest = float(abs(part.servo_velocity.isel(servo=legs)).quantile(0.99, "time").max())
+        height = hip_height(run.robot, run.gait)
         return [
             run.gait.period,
             speed,
             float(duty_factor(one, start, end).mean()),
             float(cost_of_transport(one, start, end)),
-            speed**2 / (GRAVITY * hip_height(run.robot, run.gait)),
+            speed**2 / (GRAVITY * height) if height > 0.0 else float("nan"),
             float(roll_peak_to_peak(one, start, end)),
             fastest,
-            float((part.tail_force.sel(xyz="z") > 0.1).mean()),
+            float((part.tail_force.sel(xyz="z") > _LOADED * run.robot.mass * GRAVITY).mean()),
             _lying(run.robot, part),
         ]
 
@@ -189,7 +201,7 @@ class SpeedRange(Experiment):
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw speed, cost, duty factor and Froude number over cycle time."""
-        return {"speed_range": draw_speed_range(outcome.record, GAIT_LINES)}
+        return {"speed_range": draw_speed_range(outcome.record, gait_lines(outcome.record.gait.values))}
 
 
 _UNITS = {
@@ -214,24 +226,43 @@ def _ranged(name: str, value: Any, repeats: xr.DataArray, unit: str) -> dict[str
     }
 
 
-def _limited(robot: Crocodile) -> Crocodile:
+def _limited(robot: AnyRobot) -> AnyRobot:
     """Return the robot with a torque-speed line in its legs' servos."""
-    front, hind = (replace(leg, servo=leg.servo.with_speed_line()) for leg in (robot.front_leg, robot.hind_leg))
-    return replace(robot, front_leg=front, hind_leg=hind)
+    return with_leg_servos(robot, Servo.with_speed_line)
 
 
-def _lying(some_robot: AnyRobot, part: xr.Dataset) -> float:
-    """Return the share of the tail's length that lies on the ground, on average [-]."""
-    robot = crocodile(some_robot, "the share of the tail on the ground")
+def _lying(robot: AnyRobot, part: xr.Dataset) -> float:
+    """Return the share of the tail's length that lies on the ground, on average; 0 of a body without a tail [-]."""
+    place = layout(robot)
+    if not place.tail:
+        return 0.0
     some = part.isel(time=slice(None, None, 5))
-    points = np.array([tail_points(robot, angles[17:]) for angles in some.joint_angle.values])
-    up = rotation.upward(some.orientation.values)
+    found = frames(robot, some.joint_angle.transpose("time", "joint").values)
+    numbers = [i for i, body in enumerate(place.bodies) if body.name in place.tail]
+    segments = [next(one for one in place.robot.axis if one.name == place.bodies[i].name) for i in numbers]
+    last, ahead = numbers[-1], -(segments[-1].front + segments[-1].rear)
+    tip = found.places[:, last] + ahead * found.turns[:, last, :, 0]
+    points = np.concatenate([found.places[:, numbers], tip[:, None]], axis=1)
+    up = rotation.upward(some.orientation.transpose("time", "wxyz").values)
     height = np.einsum("tk,tpk->tp", up, points) + some.position.sel(xyz="z").values[:, None]
-    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points[0], axis=0), axis=1))])
+    lengths = np.array([segment.front + segment.rear for segment in segments])
+    along = np.concatenate([[0.0], np.cumsum(lengths)])
     share = along / along[-1]
-    radius = robot.tail.radius_root + share * (robot.tail.radius_tip - robot.tail.radius_root)
-    lies = (height - radius < _TOUCHES).astype(float)
+    lies = (height - _radii(segments, along) < _TOUCHES * robot.length).astype(float)
     return float(np.trapezoid(lies, share, axis=1).mean())
+
+
+def _radii(segments: Sequence[Segment], along: np.ndarray) -> np.ndarray:
+    """Return how thick a tail is at its joints and its tip, on straight lines through its segments' middles [m]."""
+    thick = np.array(
+        [max(s.radius if isinstance(s, Rod) else s.half[2] for s in segment.shapes) for segment in segments]
+    )
+    middles = (along[1:] + along[:-1]) / 2
+    found = np.interp(along, middles, thick)
+    if len(segments) > 1:
+        found[0] = thick[0] + (thick[1] - thick[0]) * (along[0] - middles[0]) / (middles[1] - middles[0])
+        found[-1] = thick[-1] + (thick[-1] - thick[-2]) * (along[-1] - middles[-1]) / (middles[-1] - middles[-2])
+    return np.maximum(found, 0.0)
 
 
 experiment = SpeedRange()

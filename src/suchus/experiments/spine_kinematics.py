@@ -29,6 +29,7 @@ class SpineKinematics(Experiment):
 
     title = "Is the printed end of the spine where Table II puts it, and can the spine be inverted?"
     shows = "Section III.B: Table II, eq. (15)"
+    needs = ("tables", "article_spine")
     judged_with = ("robot",)
     judged_from: ClassVar[Mapping[str, float]] = {"postures": 10_000}
 

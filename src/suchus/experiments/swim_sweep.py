@@ -59,6 +59,7 @@ class SwimSweep(Experiment):
 
     title = "How fast and how well does it swim at other frequencies, amplitudes and wavelengths?"
     shows = "Section IV.B, eq. (20); beyond the article"
+    needs = ("tables", "article_spine", "cable_tail")
 
     robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that swims."""

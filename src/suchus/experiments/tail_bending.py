@@ -37,6 +37,7 @@ class TailBending(Experiment):
 
     title = "How good are the tail's formulas, from straight to bent by a half turn and in the crawl?"
     shows = "Section III.C: eqs (16) to (19)"
+    needs = ("tables", "cable_tail")
     judged_with = ("robot", "furthest", "gait", "cycles")
     judged_from: ClassVar[Mapping[str, float]] = {"steps": 91}
 

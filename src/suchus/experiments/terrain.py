@@ -10,23 +10,28 @@ import numpy as np
 import xarray as xr
 
 from suchus.control import AttitudeRule, Change, Control, SwitchRule, Walking
-from suchus.design import Crocodile, crocodile
+from suchus.design import GRAVITY, AnyRobot, layout
 from suchus.design.checks import Checks
 from suchus.design.relief import Bumps, Relief, Step, Stone, profile
+from suchus.design.scale import control_period
+from suchus.errors import UnsuitedRobot
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.experiments import _terrain_findings as findings
 from suchus.experiments._terrain_findings import FALLEN
 from suchus.figures.terrain import GAIT_LINES, draw_on_bumps, draw_rough
-from suchus.gaits import GAITS
+from suchus.gaits import GAITS, own_gait, suits
 from suchus.land import Ground, Run, simulate
 from suchus.land.arenas import BEFORE, STONE
 from suchus.metrics import between, cost_of_transport, displacement, heading_change, tilt
-from suchus.motion import START, Gait
+from suchus.motion import START, Gait, Pattern
 from suchus.replay import replay
 from suchus.robots import ROBOTS
 
-_TOUCH = 0.5  # [N]; on the belly
-_AT = 0.005  # [m]; so near to an obstacle a foot is stopped by it
+_TOUCH = 0.01447965898  # of the weight on the belly, 0.5 N of the article's robot
+_AT = 0.00495  # [body length]; so near to an obstacle a foot is stopped by it
+_LADDER = {"crawl": 0.85, "semi_erect": 1.0, "high_walk": 1.12}
+"""Heights of the three postures of a body of its own, over that of its gait [-]."""
+_STEPS = 1.75  # by which a body of its own walks more cycles: they are shorter
 Surface = Literal["even", "bumps"]
 
 
@@ -39,23 +44,24 @@ class Terrain(Experiment):
     up when the belly touches. Each seed has its own bumps, the correlation lengths in turn, and its own place of step
     or stone; on even ground all seeds but the first have noise on the servos instead. A run has fallen once it rolled
     or pitched by more than 60 degrees. It has met an obstacle once a front foot came to the bumps or the edge of the
-    step, or the chest to the stone.
+    step, or the chest to the stone. Another body walks its own gait at three heights in the place of the three gaits.
     """
 
     title = "Which posture for which ground, and can the robot choose by what it feels?"
     shows = "Section II.B, Fig. 3"
+    needs = ("foot_paths",)
     judged_with = ("robot", "crawl", "semi_erect", "high_walk", "surfaces")
     judged_from: ClassVar[Mapping[str, float]] = {
         "bumps": 2, "steps": 3, "stones": 3, "transitions": 6, "seeds": 4, "walked": 8.0,
     }  # fmt: skip
 
-    robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
+    robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that walks."""
-    crawl: Gait = field(default_factory=lambda: GAITS["low_crawl"])
+    crawl: Gait | Pattern = field(default_factory=lambda: GAITS["low_crawl"])
     """The sprawled gait."""
-    semi_erect: Gait = field(default_factory=lambda: GAITS["semi_erect"])
+    semi_erect: Gait | Pattern = field(default_factory=lambda: GAITS["semi_erect"])
     """The gait between both."""
-    high_walk: Gait = field(default_factory=lambda: GAITS["high_walk"])
+    high_walk: Gait | Pattern = field(default_factory=lambda: GAITS["high_walk"])
     """The erect gait."""
     bumps: tuple[float, ...] = (0.04, 0.06)
     """Heights of random bumps [m]."""
@@ -84,7 +90,7 @@ class Terrain(Experiment):
         with Checks(self.name(), self) as check:
             for heights in ("bumps", "steps", "stones"):
                 if getattr(self, heights):
-                    check.rising(heights, 0.001, 0.5, "m")
+                    check.rising(heights, 1e-5, 0.5, "m")
             check.that(
                 len(self.correlations) > 0, f"{self.name()}.correlations is empty; one length at least is needed"
             )
@@ -100,6 +106,23 @@ class Terrain(Experiment):
         return replace(
             self, bumps=(0.03,), steps=(), stones=(0.04,), surfaces=("even",), transitions=2, seeds=1, walked=1.5
         )
+
+    def gaits_on(self, robot: AnyRobot) -> dict[str, Any]:
+        """Return three postures of the robot's own gait, low, usual and high, as far as its limbs reach.
+
+        Raises:
+            UnsuitedRobot: its own gait puts no feet at a height.
+        """
+        own = own_gait(robot)
+        if not isinstance(own, Pattern):
+            raise UnsuitedRobot(f"{self.name()} needs a gait of foot paths; robot {robot.name!r} has {own.name!r}.")
+        more = own.period / self.semi_erect.period * _STEPS
+        found: dict[str, Any] = {"walked": round(self.walked * more, 2)}
+        for name, share in _LADDER.items():
+            heights = [own.height * (1.0 + part * (share - 1.0)) for part in (1.0, 0.5, 0.25, 0.0)]
+            tried = [replace(own, name=f"{own.name}_{name}", height=height) for height in heights]
+            found[name] = own if share == 1.0 else next(gait for gait in tried if suits(robot, gait))
+        return found
 
     def simulate(self, progress: Progress = silent) -> Simulated:
         """Walk on every ground, and turn every posture into every other."""
@@ -117,7 +140,8 @@ class Terrain(Experiment):
         return findings.explain(measures)
 
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
-        caption = "Semi-erect with the IMU, and, half transparent, crawling low, over one field of 40 mm bumps."
+        height = f"{1000 * self._shown_height:.3g}"
+        caption = f"Semi-erect with the IMU, and, half transparent, low, over one field of {height} mm bumps."
         page = partial(
             replay,
             record.isel(run=1),
@@ -130,12 +154,25 @@ class Terrain(Experiment):
         return {"terrain_replay.html": Replay(caption=caption, make=page)}
 
     def _shown_relief(self) -> Bumps:
-        return Bumps(height=0.04, correlation=self.correlations[-1], start=BEFORE, seed=2)
+        return self._bumps(self._shown_height, self.correlations[-1], 2)
 
-    def arms(self) -> Mapping[str, tuple[Gait, Control]]:
+    @property
+    def _shown_height(self) -> float:
+        return 0.04 * self._size
+
+    @property
+    def _size(self) -> float:
+        """How long the robot is beside the article's [-]."""
+        return round(self.robot.length / ROBOTS["caiman"].length, 9)
+
+    def _bumps(self, height: float, correlation: float, seed: int) -> Bumps:
+        size = self._size
+        return Bumps(height=height, correlation=correlation, start=BEFORE * size, seed=seed, scale=size)
+
+    def arms(self) -> Mapping[str, tuple[Gait | Pattern, Control]]:
         """Return gait and control of every arm."""
         ladder, level = (self.crawl, self.semi_erect, self.high_walk), AttitudeRule()
-        arms: dict[str, tuple[Gait, Control]] = {
+        arms: dict[str, tuple[Gait | Pattern, Control]] = {
             "low_crawl": (self.crawl, Walking()),
             "semi_erect": (self.semi_erect, Walking(attitude=level)),
             "high_walk": (self.high_walk, Walking()),
@@ -149,18 +186,25 @@ class Terrain(Experiment):
     def grounds(self) -> list[tuple[str, float, list[Relief | None]]]:
         """Return kind, height and the relief of every seed."""
         places = np.random.default_rng(0).uniform(-1.0, 1.0, (self.seeds, 2))
+        size = self._size
         rows: list[tuple[str, float, list[Relief | None]]] = [("bumps", 0.0, [None] * self.seeds)]
         for height in self.bumps:
             lengths = [self.correlations[seed % len(self.correlations)] for seed in range(self.seeds)]
-            fields = [
-                Bumps(height=height, correlation=length, start=BEFORE, seed=seed) for seed, length in enumerate(lengths)
-            ]
+            fields = [self._bumps(height, length, seed) for seed, length in enumerate(lengths)]
             rows.append(("bumps", height, list(fields)))
         for height in self.steps:
-            rows.append(("step", height, [Step(at=float(0.66 + 0.06 * x), height=height) for x, _ in places]))
+            rows.append(("step", height, [Step(at=float((0.66 + 0.06 * x) * size), height=height) for x, _ in places]))
         for height in self.stones:
             stones = [
-                replace(STONE, at=float(0.75 + 0.05 * x), aside=float(0.02 * y), height=height) for x, y in places
+                replace(
+                    STONE,
+                    at=float((0.75 + 0.05 * x) * size),
+                    aside=float(0.02 * y * size),
+                    height=height,
+                    length=STONE.length * size,
+                    width=STONE.width * size,
+                )
+                for x, y in places
             ]
             rows.append(("stone", height, list(stones)))
         return rows
@@ -183,7 +227,7 @@ class Terrain(Experiment):
                 for seed, relief in enumerate(reliefs)
             ]
             stage = staged(
-                progress, f"{kind} {1000 * height:.0f} mm", 0.9 * i / len(grounds), 0.9 * (i + 1) / len(grounds)
+                progress, f"{kind} {1000 * height:.3g} mm", 0.9 * i / len(grounds), 0.9 * (i + 1) / len(grounds)
             )
             record = simulate(runs, duration=START + self.walked, timestep=self.timestep, every=5, progress=stage)
             met = [_met(record.isel(run=j), run) for j, run in enumerate(runs)]
@@ -198,26 +242,37 @@ class Terrain(Experiment):
         )
         data["height"] = ("ground", [height for _, height, _ in grounds], {"units": "m"})
         data["walked"] = ((), self.walked, {"units": "s"})
+        data["size_of_robot"] = ((), self._size, {"units": "1", "long_name": "length over that of the article's robot"})
         return data
+
+    @property
+    def _pace(self) -> float:
+        """How slow the robot is beside the article's, by the time that gravity needs [-]; a second of it [s]."""
+        return self._size**0.5
+
+    def _until(self, seconds: float) -> float:
+        """Return a time after the start, scaled with the body, at a sample of the record [s]."""
+        sample = 5 * control_period(self.robot)
+        return START + float(np.ceil(round(seconds * self._pace / sample, 6)) * sample)
 
     def _changes(self, progress: Any) -> xr.Dataset:
         """Return how far the body tilts while every posture turns into every other."""
         pairs = list(permutations((self.crawl, self.semi_erect, self.high_walk), 2))[: self.transitions]
-        bumps = Bumps(height=0.03, correlation=self.correlations[-1], start=BEFORE, seed=1)
+        bumps = self._bumps(0.03 * self._size, self.correlations[-1], 1)
         runs = [
             Run(
                 robot=self.robot,
                 gait=here,
-                control=Walking(attitude=AttitudeRule(), changes=(Change(at=START + 1.0, gait=there),)),
+                control=Walking(attitude=AttitudeRule(), changes=(Change(at=START + self._pace, gait=there),)),
                 ground=Ground(relief=bumps if surface == "bumps" else None),
                 label=f"{here.name} to {there.name}",
             )
             for here, there in pairs
             for surface in self.surfaces
         ]
-        record = simulate(runs, duration=START + 6.0, timestep=self.timestep, every=5, progress=progress)
+        record = simulate(runs, duration=self._until(6.0), timestep=self.timestep, every=5, progress=progress)
         tilted = _most_tilt(record).reshape(len(pairs), len(self.surfaces))
-        after = displacement(record, START + 4.6).sel(xyz="x").values.reshape(len(pairs), len(self.surfaces))
+        after = displacement(record, self._until(4.6)).sel(xyz="x").values.reshape(len(pairs), len(self.surfaces))
         return xr.Dataset(
             {
                 "change_tilt": (("change", "surface"), tilted, {"units": "rad"}),
@@ -235,17 +290,21 @@ class Terrain(Experiment):
             for arm in ("low_crawl", "semi_erect", "high_walk_level")
         ]
         record = simulate(runs, duration=START + self.walked / 2, timestep=self.timestep, every=5, progress=progress)
-        along = np.arange(-1.2, 2.4, 0.01)
+        along = np.arange(-1.2, 2.4, 0.01) * self._size
         shown = xr.Dataset(
             {"ground_height": ("along", profile(relief, along), {"units": "m"})}, coords={"along": along}
         )
         shown.along.attrs["units"] = "m"
+        shown["shown_height"] = ((), self._shown_height, {"units": "m", "long_name": "of the bumps that are shown"})
         return record.merge(shown)
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw the postures on bumps, and the way on every ground."""
         record = outcome.record
-        return {"postures": draw_on_bumps(self.robot, record), "rough_ground": draw_rough(record, GAIT_LINES)}
+        said = "the sprawled crawl, semi-erect legs, and erect legs with elbows behind and knees ahead"
+        if not isinstance(self.crawl, Gait):
+            said = "the robot's own gait low, as usual and high"
+        return {"postures": draw_on_bumps(self.robot, record, said), "rough_ground": draw_rough(record, GAIT_LINES)}
 
 
 _UNITS = {"forward": "m", "aside": "m", "turned": "rad", "fell": "1", "cost": "1", "belly": "1", "met": "1"}
@@ -260,7 +319,7 @@ def _look(record: xr.Dataset, met: Sequence[bool]) -> np.ndarray:
         heading_change(record),
         _most_tilt(record) > FALLEN,
         cost_of_transport(record),
-        (part.belly_force.sel(xyz="z").sum("segment") > _TOUCH).mean("time"),
+        (part.belly_force.sel(xyz="z").sum("segment") > _TOUCH * GRAVITY * record.mass).mean("time"),
         met,
     )
     return np.stack([np.asarray(column, dtype=float) for column in columns], axis=-1)
@@ -268,16 +327,17 @@ def _look(record: xr.Dataset, met: Sequence[bool]) -> np.ndarray:
 
 def _met(one: xr.Dataset, run: Run) -> bool:
     """Return whether a robot met what stands in its path; on even ground there is nothing to be met."""
-    robot = crocodile(run.robot, "meeting an obstacle")
-    relief, feet = run.ground.relief, one.foot_position.sel(leg=["LF", "RF"], xyz="x")
+    place = layout(run.robot)
+    relief, feet = run.ground.relief, one.foot_position.isel(leg=[0, 1]).sel(xyz="x")
+    head, foot = place.robot.axis[0], place.limbs[0].girdle.limb.foot.radius
     match relief:
         case Bumps():
             return bool(feet.max() >= relief.start)
         case Step():
-            return bool(feet.max() >= relief.at - robot.front_leg.foot_radius - _AT)
+            return bool(feet.max() >= relief.at - foot - _AT * run.robot.length)
         case Stone():
-            chest = float(one.snout.sel(xyz="x").max()) - robot.head.snout
-            pressed = bool((one.belly_force.sel(xyz="z").sum("segment") > _TOUCH).any())
+            chest = float(one.snout.sel(xyz="x").max()) - (head.front + head.rear)
+            pressed = bool((one.belly_force.sel(xyz="z").sum("segment") > _TOUCH * GRAVITY * run.robot.mass).any())
             return pressed or chest >= relief.at - 0.5 * relief.length
     return True
 

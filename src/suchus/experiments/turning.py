@@ -9,14 +9,14 @@ import numpy as np
 import xarray as xr
 
 from suchus.control import TurningCurve, Walking, turn
-from suchus.design import Crocodile
+from suchus.design import AnyRobot, layout, servo_ranges
 from suchus.design.checks import Checks
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
-from suchus.figures.terrain import GAIT_LINES, draw_turning
+from suchus.figures.terrain import draw_turning, gait_lines
 from suchus.gaits import GAITS
 from suchus.land import Run, simulate
 from suchus.metrics import between, heading_change
-from suchus.motion import START, Gait
+from suchus.motion import START, AnyGait, Gait, steerable, strides, trunk_amplitude
 from suchus.replay import replay
 from suchus.robots import ROBOTS
 from suchus.verdict import Reading
@@ -29,15 +29,16 @@ class Turning(Experiment):
     """Curvature of the way against a lasting bend, against unequal strokes, and against both; then circles on command.
 
     The curvature is the change of heading over the length of the way, over whole cycles from the second on. The way is
-    measured from cycle to cycle, so that the swaying within one does not count.
+    measured from cycle to cycle, so that the swaying within one does not count. Bends stop where the trunk's joints do.
     """
 
     title = "How tightly does it turn, and does it walk the circle that was asked for?"
     shows = "Section II.B"
+    needs = ("limbs",)
 
-    robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
+    robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that turns."""
-    gaits: tuple[Gait, ...] = field(
+    gaits: tuple[AnyGait, ...] = field(
         default_factory=lambda: tuple(GAITS[n] for n in ("low_crawl", "semi_erect", "high_walk"))
     )
     """The gaits that it walks in."""
@@ -68,7 +69,7 @@ class Turning(Experiment):
         """One gait, three mixtures, one circle."""
         return replace(
             self,
-            gaits=(GAITS["semi_erect"],),
+            gaits=(GAITS["semi_erect"],) if GAITS["semi_erect"] in self.gaits else self.gaits[:1],
             bends=(0.0, 0.52),
             asymmetries=(0.0, 0.5),
             mixtures=(0.0, 0.5, 1.0),
@@ -104,17 +105,20 @@ class Turning(Experiment):
         )
         return {"turning_replay.html": Replay(caption=caption, make=page)}
 
-    def _of(self, gait: Gait, progress: Any) -> tuple[xr.Dataset, tuple[xr.Dataset, xr.Dataset]]:
+    def _of(self, gait: AnyGait, progress: Any) -> tuple[xr.Dataset, tuple[xr.Dataset, xr.Dataset]]:
         """Return the curvatures of one gait, and its tightest turn and first circle as records."""
-        bent = [Walking(bend=bend) for bend in self.bends]
+        room = self._room(gait)
+        bent = [Walking(bend=min(bend, room)) for bend in self.bends]
         uneven = [Walking(asymmetry=share) for share in self.asymmetries]
-        most = self.bends[-1], self.asymmetries[-1] if gait.legs == "sprawled" else 0.0
+        erect = isinstance(gait, Gait) and gait.legs == "erect"
+        most = min(self.bends[-1], room), self.asymmetries[-1] if strides(gait) and not erect else 0.0
         mixed = [Walking(bend=m * most[0], asymmetry=m * most[1]) for m in self.mixtures]
         record = self._walk(gait, [*bent, *uneven, *mixed], lambda share: progress(0.7 * share))
         found = self._curvatures(gait, record)
         a, b = len(bent), len(bent) + len(uneven)
         curve = _curve(most, self.mixtures, found[b:])
-        circles = [turn(curve, max(radius, 1.001 * curve.tightest)) for radius in self.asked]
+        tightest = np.inf if curve is None else curve.tightest
+        circles = [mixed[-1] if curve is None else turn(curve, max(radius, 1.001 * tightest)) for radius in self.asked]
         circled = self._walk(gait, circles, lambda share: progress(0.7 + 0.3 * share))
         walked = self._curvatures(gait, circled)
         data = xr.Dataset(
@@ -124,7 +128,7 @@ class Turning(Experiment):
                 "curvature_mixture": ("mixture", found[b:], {"units": "1/m"}),
                 "radius": (
                     "asked",
-                    np.where(np.array(self.asked) >= curve.tightest, 1.0 / np.maximum(walked, _STRAIGHT), np.nan),
+                    np.where(np.array(self.asked) >= tightest, 1.0 / np.maximum(walked, _STRAIGHT), np.nan),
                     {"units": "m"},
                 ),
             },
@@ -139,14 +143,20 @@ class Turning(Experiment):
             data[name].attrs["units"] = unit
         return data, (record.isel(run=b + int(found[b:].argmax())), circled.isel(run=0))
 
-    def _end(self, gait: Gait) -> float:
+    def _room(self, gait: AnyGait) -> float:
+        """Return how far the trunk can bend besides what the gait asks of it [rad]."""
+        yaw = list(layout(self.robot).trunk_yaw)
+        bent = trunk_amplitude(self.robot, steerable(gait, self.name()))
+        return max(float(np.abs(servo_ranges(self.robot)[yaw]).min(axis=1, initial=np.inf).sum()) - bent, 0.0)
+
+    def _end(self, gait: AnyGait) -> float:
         return START + (self.cycles + 1) * gait.period
 
-    def _walk(self, gait: Gait, controls: Sequence[Walking], progress: Any) -> xr.Dataset:
+    def _walk(self, gait: AnyGait, controls: Sequence[Walking], progress: Any) -> xr.Dataset:
         runs = [Run(robot=self.robot, gait=gait, control=control) for control in controls]
         return simulate(runs, duration=self._end(gait), timestep=self.timestep, progress=progress)
 
-    def _curvatures(self, gait: Gait, record: xr.Dataset) -> np.ndarray:
+    def _curvatures(self, gait: AnyGait, record: xr.Dataset) -> np.ndarray:
         """Return the curvature of each way [1/m]."""
         end = self._end(gait)
         part = between(record, START + gait.period, end)
@@ -191,14 +201,16 @@ class Turning(Experiment):
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw curvatures and circles."""
-        return {"turning": draw_turning(outcome.record, GAIT_LINES)}
+        return {"turning": draw_turning(outcome.record, gait_lines(outcome.record.gait.values))}
 
 
-def _curve(most: tuple[float, float], mixtures: Sequence[float], curvatures: np.ndarray) -> TurningCurve:
-    """Return the part of a measured curve that rises."""
+def _curve(most: tuple[float, float], mixtures: Sequence[float], curvatures: np.ndarray) -> TurningCurve | None:
+    """Return the part of a measured curve that rises; None where nothing does."""
     level, rising = curvatures, 1
     while rising < len(level) and level[rising] > level[rising - 1] + _STRAIGHT:
         rising += 1
+    if rising < 2:
+        return None
     return TurningCurve(
         bend=most[0],
         asymmetry=most[1],

@@ -5,13 +5,15 @@ from collections.abc import Sequence
 import xarray as xr
 from matplotlib.figure import Figure
 
-from suchus.design import Crocodile
+from suchus.design import AnyRobot
 from suchus.figures.posture import draw_strip
 from suchus.figures.style import COLOURS, LINES, captioned, panels, styled
 from suchus.motion import START
 
+_USUAL = 1.01  # [m]; length of the article's robot, for which distances between the strips are
 
-def draw_crawls(robot: Crocodile, record: xr.Dataset, arms: Sequence[str]) -> Figure:
+
+def draw_crawls(robot: AnyRobot, record: xr.Dataset, arms: Sequence[str]) -> Figure:
     """Draw one robot per run from above at the beginning, between and at the end of its walk.
 
     Args:
@@ -21,7 +23,8 @@ def draw_crawls(robot: Crocodile, record: xr.Dataset, arms: Sequence[str]) -> Fi
     """
     end = float(record.time[-1])
     times = [START, (START + end) / 2, end]
-    apart = 0.42  # [m]
+    size = robot.length / _USUAL
+    apart = 0.42 * size
     with styled(axes__grid=False):
         figure, axes = panels(1, 1, width=10.5, height=5.2)
         ax = axes[0, 0]
@@ -30,14 +33,14 @@ def draw_crawls(robot: Crocodile, record: xr.Dataset, arms: Sequence[str]) -> Fi
             run, aside = record.isel(run=i), -apart * i
             draw_strip(ax, robot, run, times, role=role, aside=aside)
             start, stop = (float(way.isel(run=i).sel(time=t, method="nearest")) for t in (START, end))
-            dim = aside - 0.21
+            dim = aside - 0.21 * size
             ax.annotate(
                 "", (start, dim), (stop, dim), arrowprops={"arrowstyle": "|-|", "color": COLOURS[role], "lw": 2}
             )
             ax.text(
-                max(stop, start + 0.02) + 0.03,
+                max(stop, start + 0.02 * size) + 0.03 * size,
                 dim,
-                f"{stop - start:.2f} m, {LINES[role]['label']}",
+                f"{stop - start:.{2 if size > 0.5 else 4}f} m, {LINES[role]['label']}",
                 color=COLOURS[role],
                 va="center",
                 fontsize=13,

@@ -1,5 +1,7 @@
 """What lost joints cost: displacements over time, changes against the intact robot, tracks on the ground."""
 
+import itertools
+from collections.abc import Sequence
 from itertools import product
 from typing import Any
 
@@ -19,6 +21,7 @@ from suchus.verdict import listed
 
 _ARMS = ("coordinated", "limbs_only")
 _MARKS = {"coordinated": "o", "limbs_only": "s", "limbs_tail_lifted": "D"}
+_SHADES = ("#0072B2", "#56B4E9", "#D55E00", "#E69F00", "#009E73", "#B0558A")
 _OFFSET = {"coordinated": 0.13, "limbs_only": -0.13}
 
 
@@ -55,7 +58,8 @@ def draw_losses(record: xr.Dataset) -> Figure:
                 for arm in _ARMS:
                     some = change.sel(joint=joint, kind=kind, legs=legs, arm=arm)
                     _range(ax, some, top - i + _OFFSET[arm], arm)
-                if kind == record.attrs["judged_kind"] and legs == record.attrs["judged_legs"] and joint in record.lost:
+                judged = kind == record.attrs["judged_kind"] and legs == record.attrs["judged_legs"]
+                if judged and joint in record.lost and "lifted_forward" in record:
                     lifted = 100 * loss(record.lifted_forward.sel(lost=joint), ours)
                     _range(ax, lifted, top - i + 2 * _OFFSET["limbs_only"], "limbs_tail_lifted")
                 ticks.append(top - i)
@@ -125,8 +129,11 @@ def draw_over_time(record: xr.Dataset, kind: str, legs: str) -> Figure:
     end, period = float(record.time[-1]), float(record.period)
     of = "one leg" if legs == "one" else "both legs"
     with styled():
-        figure, axes = panels(2, 2, width=10.5, height=7.0, sharex=True, sharey=True)
-        for number, (ax, joint) in enumerate(zip(axes.flat, record.lost.values, strict=True)):
+        rows = (record.sizes["lost"] + 1) // 2
+        figure, axes = panels(rows, 2, width=10.5, height=3.5 * rows, sharex=True, sharey=True)
+        for ax in axes.flat[record.sizes["lost"] :]:
+            ax.set_axis_off()
+        for number, (ax, joint) in enumerate(zip(axes.flat, record.lost.values, strict=False)):
             for arm in _ARMS:
                 some = way.sel(joint=joint, kind=kind, legs=legs, arm=arm).rename(variation="run")
                 draw_band(ax, some, arm)
@@ -141,7 +148,8 @@ def draw_over_time(record: xr.Dataset, kind: str, legs: str) -> Figure:
                     )
             mark_cycles(ax, list(np.arange(START, end + 0.01, period)))
             ax.set_xlim(START, end)
-            ax.set_title(f"Fig. {18 + number}: {_named(joint)}")
+            known = _printed(str(joint), "coordinated") is not None
+            ax.set_title(f"Fig. {18 + number}: {_named(joint)}" if known else _named(str(joint)))
         for ax in axes[:, 0]:
             ax.set_ylabel("displacement forward [m]")
         for ax in axes[-1]:
@@ -177,8 +185,9 @@ def draw_tracks(record: xr.Dataset) -> Figure:
         ("locked", "both"): {"color": "#009E73", "label": "locked, both legs", "linestyle": (0, (3, 1.2))},
     }
     with styled():
-        figure, axes = panels(2, 3, width=12.5, height=5.6, sharex=True, sharey=True)
-        for ax, joint in zip(axes.T.flat, sorted(record.joint.values, key=_axis), strict=True):
+        girdles, hinges = _grid(record.joint.values)
+        figure, axes = panels(girdles, hinges, width=2.0 + 3.5 * hinges, height=2.8 * girdles, sharex=True, sharey=True)
+        for ax, joint in zip(axes.T.flat, record.joint.values, strict=True):
             whole = given.intact_track.transpose("on_ground", "time").values
             ax.plot(*whole, color="#333333", linewidth=1.6, label="intact")
             _arrow(ax, whole[:, -1], float(given.intact_turn), "#333333")
@@ -201,9 +210,10 @@ def draw_tracks(record: xr.Dataset) -> Figure:
     )
 
 
-def _axis(joint: str) -> int:
-    """Return where a joint's axis stands in the leg, from the hip on."""
-    return ("yaw", "pitch", "knee").index(joint.rpartition("_")[2])
+def _grid(joints: Sequence[str]) -> tuple[int, int]:
+    """Return the number of girdles and of hinges in a limb, of joints that are listed hinge by hinge."""
+    girdles = len(dict.fromkeys(str(joint).partition("_")[0] for joint in joints))
+    return girdles, len(joints) // girdles
 
 
 def _arrow(ax: Axes, at: np.ndarray, facing: float, colour: str) -> None:
@@ -221,20 +231,19 @@ def draw_held(record: xr.Dataset) -> Figure:
     """
     whole = float(record.intact_forward.sel(arm="coordinated")[0])
     change = 100 * (record.held_forward / whole - 1.0)
-    marks = dict(zip(record.lost.values, "oD^v", strict=True))
+    marks = dict(zip(record.lost.values, itertools.cycle("oD^vsP"), strict=False))
     with styled():
         figure, axes = panels(1, 2, width=10.5, height=4.2, sharex=True, sharey=True)
         for ax, arm in zip(axes[0], _ARMS, strict=True):
             bare = 100 * (float(record.intact_forward.sel(arm=arm)[0]) / whole - 1.0)
             ax.axhline(bare, color=COLOURS[arm], linewidth=1.3, linestyle=(0, (1, 1.5)))
             for i, joint in enumerate(record.lost.values):
-                front, yaw = str(joint).split("_")
                 ax.plot(
                     record.hold,
                     change.sel(arm=arm, lost=joint),
-                    color=("#0072B2", "#56B4E9", "#D55E00", "#E69F00")[i],
+                    color=_SHADES[i % len(_SHADES)],
                     marker=marks[joint],
-                    label=f"{front} {yaw}",
+                    label=str(joint).replace("_", " "),
                 )
             ax.set_title(LINES[arm]["label"])
             ax.set_xlabel("where it holds in its range [-]")

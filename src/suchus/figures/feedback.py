@@ -11,9 +11,8 @@ from matplotlib.colors import TwoSlopeNorm
 from matplotlib.figure import Figure
 from matplotlib.ticker import MultipleLocator
 
-from suchus.design import LEGS
 from suchus.figures.style import COLOURS, DIVERGING, captioned, panels, styled
-from suchus.motion import Gait, stance
+from suchus.motion import AnyGait
 
 _LAWS: Final[Mapping[str, tuple[str, str]]] = MappingProxyType(
     {
@@ -87,7 +86,7 @@ def draw_fans(error: xr.DataArray, within: float) -> Figure:
     )
 
 
-def draw_onset(phase: xr.DataArray, gait: Gait, start: int = 0) -> Figure:
+def draw_onset(phase: xr.DataArray, gait: AnyGait, start: int = 0) -> Figure:
     """Draw which feet are meant to stand from one random start, without and with feedback.
 
     Args:
@@ -99,7 +98,8 @@ def draw_onset(phase: xr.DataArray, gait: Gait, start: int = 0) -> Figure:
         figure, axes = panels(3, 1, height=5.4, sharex=True)
         for ax, law in zip(axes.flat, ("off", "own_load", "cross_load"), strict=True):
             some = phase.sel(law=law).isel(start=start).transpose("start_time", "leg")
-            _bars(ax, some.start_time.values, stance(gait, some.values))
+            stands = np.mod(some.values, 1.0) >= 1.0 - gait.duty_factor
+            _bars(ax, some.start_time.values, stands, [str(leg) for leg in some.leg.values])
             ax.set_title(_LAWS[law][0])
         axes[-1, 0].set_xlabel("cycles since the start")
     return captioned(
@@ -109,15 +109,15 @@ def draw_onset(phase: xr.DataArray, gait: Gait, start: int = 0) -> Figure:
     )
 
 
-def _bars(ax: Axes, time: np.ndarray, stands: np.ndarray) -> None:
+def _bars(ax: Axes, time: np.ndarray, stands: np.ndarray, legs: Sequence[str]) -> None:
     width = float(time[1] - time[0])
-    for row, leg in enumerate(LEGS):
+    for row in range(len(legs)):
         edges = np.flatnonzero(np.diff(np.concatenate([[0], stands[:, row].astype(int), [0]])))
         spans = [(time[a], width * (b - a)) for a, b in zip(edges[::2], edges[1::2], strict=True)]
-        colour = COLOURS["coordinated"] if leg in ("LF", "RH") else COLOURS["RH"]
+        colour = COLOURS["coordinated"] if (row % 2 + row // 2) % 2 == 0 else COLOURS["RH"]
         ax.broken_barh(spans, (row - 0.36, 0.72), facecolors=colour)
-    ax.set_yticks(range(len(LEGS)), LEGS)
-    ax.set_ylim(len(LEGS) - 0.4, -0.6)
+    ax.set_yticks(range(len(legs)), legs)
+    ax.set_ylim(len(legs) - 0.4, -0.6)
     ax.set_xlim(max(0.0, float(time[0])), float(time[-1]))
 
 
@@ -128,7 +128,8 @@ def draw_gain(way: xr.DataArray) -> Figure:
         way: with the dimensions ``disturbance`` and ``arm`` [m].
     """
     share = (way / way.sel(disturbance="none", arm="open").item()).transpose("disturbance", "arm")
-    share = share.sel(arm=list(_RULES), disturbance=list(_WORDS))
+    rules = [rule for rule in _RULES if rule in share.arm.values]
+    share = share.sel(arm=rules, disturbance=list(_WORDS))
     with styled(axes__grid=False):
         figure, axes = panels(1, 1, width=8.2, height=5.2)
         ax = axes[0, 0]
@@ -144,7 +145,7 @@ def draw_gain(way: xr.DataArray) -> Figure:
                 va="center",
                 color="white" if dark else "black",
             )
-        ax.set_xticks(np.arange(len(_RULES)) + 0.5, list(_RULES.values()))
+        ax.set_xticks(np.arange(len(rules)) + 0.5, [_RULES[rule] for rule in rules])
         ax.set_yticks(np.arange(len(_WORDS)) + 0.5, list(_WORDS.values()))
         ax.tick_params(length=0)
         ax.invert_yaxis()
@@ -166,6 +167,7 @@ def draw_tracks(record: xr.Dataset, disturbances: Sequence[str]) -> Figure:
         record: with ``x`` and ``y`` along ``disturbance``, ``arm`` and ``time`` [m], from the disturbance on.
         disturbances: which ones, one panel each.
     """
+    size = float((record.x - record.x.isel(time=0)).max())
     with styled():
         figure, axes = panels(1, len(disturbances), width=10.5, height=4.8)
         for ax, name in zip(axes.flat, disturbances, strict=True):
@@ -176,8 +178,9 @@ def draw_tracks(record: xr.Dataset, disturbances: Sequence[str]) -> Figure:
                 ax.plot(-y[-1], x[-1], "o", color=colour)
             ax.plot(0, 0, "s", color="black")
             ax.set_aspect("equal", adjustable="datalim")
-            ax.xaxis.set_major_locator(MultipleLocator(0.5))
-            ax.yaxis.set_major_locator(MultipleLocator(0.5))
+            if size > 0.5:  # [m]; a small robot gets no farther than a few hundredths
+                ax.xaxis.set_major_locator(MultipleLocator(0.5))
+                ax.yaxis.set_major_locator(MultipleLocator(0.5))
             ax.set_title(_WORDS[name])
             ax.set_xlabel("to the right [m]")
         axes[0, 0].set_ylabel("forward [m]")

@@ -17,7 +17,7 @@ from suchus.figures.style import COLOURS, WIDTH, panels, styled
 _BLACK, _GREY, _EDGE = "#111111", "#9A9A9A", "#333333"
 _SHADES = (_BLACK, _GREY)
 _DASHES: tuple[Any, ...] = ("-", (0, (4, 2)))
-_ROWS = (*LEGS, "spine", "tail")
+_BENDS = ("spine", "tail")
 _STRAIGHT = 0.05  # share of the largest bend that counts as straight
 _STILL = np.radians(1.0)  # a bend that never exceeds this has no sign
 
@@ -29,13 +29,15 @@ class GaitTrack:
     time: np.ndarray
     """Increasing, shape (time,) [s or cycle]."""
     stance: np.ndarray
-    """Whether a foot stands, in the order of ``LEGS``, shape (leg, time) [-]."""
-    spine: np.ndarray
-    """Lateral angle of the spine in the article's sign, right positive, shape (time,) [rad]."""
-    tail: np.ndarray
-    """Lateral angle of the tail in the article's sign, right positive, shape (time,) [rad]."""
+    """Whether a foot stands, in the order of ``legs``, shape (leg, time) [-]."""
+    spine: np.ndarray | None
+    """Lateral angle of the spine in the article's sign, right positive, shape (time,) [rad]; None where none bends."""
+    tail: np.ndarray | None
+    """Lateral angle of the tail in the article's sign, right positive, shape (time,) [rad]; None where none bends."""
     label: str
     """What it is, for the legend."""
+    legs: tuple[str, ...] = LEGS
+    """Names of the limbs."""
     spine_vertical: np.ndarray | None = None
     """Vertical angle of the spine in the article's sign, down positive, shape (time,) [rad]."""
     tail_vertical: np.ndarray | None = None
@@ -47,13 +49,19 @@ class GaitTrack:
 
     def __post_init__(self) -> None:
         n = len(self.time)
-        shapes = {"stance": (len(LEGS), n), "spine": (n,), "tail": (n,), "spine_vertical": (n,), "tail_vertical": (n,)}
+        verticals = [name for name in ("spine_vertical", "tail_vertical") if getattr(self, name) is not None]
+        shapes = {"stance": (len(self.legs), n), **dict.fromkeys((*self.bends, *verticals), (n,))}
         for name, wanted in shapes.items():
             found = np.shape(getattr(self, name))
-            if getattr(self, name) is not None and found != wanted:
+            if found != wanted:
                 raise InvalidDesign(f"gait track {self.label!r}: {name} has shape {found}; {wanted} is needed.")
         if n < 2 or not np.all(np.diff(self.time) > 0):
             raise InvalidDesign(f"gait track {self.label!r}: time needs two samples or more that increase.")
+
+    @property
+    def bends(self) -> tuple[str, ...]:
+        """The parts of the body that bend."""
+        return tuple(part for part in _BENDS if getattr(self, part) is not None)
 
 
 def gait_diagram(
@@ -67,7 +75,8 @@ def gait_diagram(
         unit: of time, ``s`` or ``cycle``.
         bends: whether to draw the angles below the bars.
     """
-    vertical = bends and any(track.spine_vertical is not None for track in tracks)
+    bends = bends and any(track.bends for track in tracks)
+    vertical = bends and any(t.spine_vertical is not None or t.tail_vertical is not None for t in tracks)
     ratios = [2.1, *([1.5] if bends else []), *([1.2] if vertical else [])]
     with styled():
         height = 3.6 + 2.3 * bends + 1.9 * vertical
@@ -96,22 +105,23 @@ def draw_bars(ax: Axes, tracks: Sequence[GaitTrack]) -> None:
     """
     if not 1 <= len(tracks) <= len(_SHADES):
         raise InvalidDesign(f"a gait diagram shows 1 or {len(_SHADES)} tracks; {len(tracks)} were given.")
-    height = 0.66 / len(tracks)
+    height, legs, parts = 0.66 / len(tracks), tracks[0].legs, tracks[0].bends
     for i, (track, shade) in enumerate(zip(tracks, _SHADES, strict=False)):
         top = -0.33 + i * height
         for row, stands in enumerate(track.stance):
             _bars(ax, track.time, stands, (row + top, 0.92 * height), shade, shade)
-        for row, angle in ((4, track.spine), (5, track.tail)):
-            signs = bend_sign(angle)
+        for row, part in enumerate(track.bends, start=len(legs)):
+            signs = bend_sign(getattr(track, part))
             place = (row + top + 0.25, 0.92 * height)  # a gap sets the two signs apart from the four legs
             _bars(ax, track.time, signs > 0, place, shade, shade, "+" if len(tracks) == 1 else "")
             _bars(ax, track.time, signs < 0, place, "white", shade, "\N{MINUS SIGN}" if len(tracks) == 1 else "")
-    ax.set_yticks([0, 1, 2, 3, 4.25, 5.25], _ROWS)
-    ax.set_ylim(5.75, -0.5)
+    places = [*range(len(legs)), *(len(legs) + 0.25 + i for i in range(len(parts)))]
+    ax.set_yticks(places, [*legs, *parts])
+    ax.set_ylim(places[-1] + 0.5, -0.5)
     ax.set_xlim(min(t.time[0] for t in tracks), max(t.time[-1] for t in tracks))
     ax.tick_params(axis="y", length=0)
     ax.grid(False)
-    ax.axhline(3.625, color=COLOURS["grid"], linewidth=0.9)
+    ax.axhline(len(legs) - 0.375, color=COLOURS["grid"], linewidth=0.9)
     _bar_legend(ax, tracks)
 
 
@@ -124,7 +134,7 @@ def draw_bends(ax: Axes, tracks: Sequence[GaitTrack]) -> None:
     """
     ax.axhline(0.0, color=_EDGE, linewidth=0.8)
     for track, dashes in zip(tracks, _DASHES, strict=False):
-        for name in ("spine", "tail"):
+        for name in track.bends:
             angle, spread = np.degrees(getattr(track, name)), getattr(track, f"{name}_spread")
             label = f"{name}, {track.label}" if len(tracks) > 1 else name
             ax.plot(track.time, angle, color=COLOURS[name], linestyle=dashes, label=label)

@@ -12,9 +12,14 @@ _TITLES = {"step": "a step", "load": "a load", "let_go": "let go after a grip"}
 _KINDS = {
     "yaw": "leg yaw",
     "pitch": "leg pitch",
+    "roll": "leg roll",
+    "elbow": "elbow",
     "knee": "knee",
+    "crank": "crank",
+    "neck_yaw": "neck yaw",
     "spine_yaw": "spine yaw",
     "spine_pitch": "spine pitch",
+    "tail_yaw": "tail yaw",
     "tail_pitch": "tail pitch",
     "tail_cable": "tail cable",
 }
@@ -37,10 +42,11 @@ def on_stand(record: xr.Dataset) -> Figure:
             aim = 0.0 if test == "load" else np.degrees(record.attrs["step"])
             ax.axhline(aim, color=COLOURS["neutral"], linewidth=0.9, linestyle=":")
             ax.set(title=_TITLES[test], xlabel="time [s]")
-        axes[0, 0].set_xlim(0.0, 0.25)
+        pace = float(record.attrs["gripped"])  # a second for the article's robot
+        axes[0, 0].set_xlim(0.0, 0.25 * pace)
         axes[0, 0].set_ylabel("angle [deg]")
-        axes[0, 1].set_title(f"a load of {record.attrs['load']:.2f} N m")
-        axes[0, 2].set_xlim(0.0, 1.0)
+        axes[0, 1].set_title(f"a load of {record.attrs['load']:.{2 if record.attrs['load'] > 0.05 else 7}f} N m")
+        axes[0, 2].set_xlim(0.0, 1.0 * pace)
         axes[0, 0].legend(loc="lower right")
     return figure
 

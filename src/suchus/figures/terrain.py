@@ -1,6 +1,6 @@
 """Postures on rough ground, their speeds, and how they turn."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
 
@@ -9,7 +9,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from suchus.design import Crocodile
+from suchus.design import AnyRobot
 from suchus.figures.posture import draw_posture
 from suchus.figures.style import COLOURS, captioned, panels, styled
 from suchus.paper.animals import ANIMAL
@@ -31,8 +31,29 @@ GAIT_LINES: Mapping[str, Mapping[str, Any]] = MappingProxyType(
     }
 )
 """Colour, marker, dashes and label of each gait or arm."""
+_MORE = ("#56B4E9", "#F0E442", "#B0558A")
+
+
+def gait_lines(names: Iterable[Any]) -> Mapping[str, Mapping[str, Any]]:
+    """Return ``GAIT_LINES`` with lines for further gaits, which are called by their names."""
+    others = [str(name) for name in names if str(name) not in GAIT_LINES]
+    return {
+        **GAIT_LINES,
+        **{
+            name: {
+                "color": COLOURS["coordinated"] if i == 0 else _MORE[i % len(_MORE)],
+                "marker": "o",
+                "linestyle": "-",
+                "label": name.replace("_", " "),
+            }
+            for i, name in enumerate(others)
+        },
+    }
+
+
 _KINDS = {"bumps": "random bumps", "step": "a step up", "stone": "a stone in the path"}
 _WALKING = ANIMAL["high_walk_speed"]
+_USUAL = 1.01  # [m]; length of the article's robot, for which the pictures' sizes are
 
 
 def draw_speed_range(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]]) -> Figure:
@@ -59,7 +80,7 @@ def draw_speed_range(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]])
             ax.set_ylabel(label)
         axes[0, 0].axhspan(_WALKING.low, _WALKING.high, color="#EFE3C8", zorder=0)
         axes[0, 0].text(0.98, 0.95, f"{_WALKING.who}, high walk", transform=axes[0, 0].transAxes, ha="right", va="top")
-        axes[0, 0].set_ylim(0.0, 0.75)
+        axes[0, 0].set_ylim(0.0, max(0.75, 1.1 * float(record.speed.max())))
         axes[0, 1].set_ylim(0.0, None)
         axes[1, 1].set_yscale("log")
         for ax in axes[1]:
@@ -84,7 +105,7 @@ def draw_turning(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]]) -> 
                 ax.plot(scale * record[name], record[f"curvature_{name}"].sel(gait=gait), **lines[str(gait)])
             ax.set_xlabel(label)
             ax.set_ylabel("curvature of the way [1/m]")
-            ax.set_ylim(-0.1, 2.8)
+            ax.set_ylim(-0.1, max(2.8, 1.05 * float(record.curvature_mixture.max())))
         axes[0, 0].legend(loc="upper left")
         ax = axes[0, 2]
         asked = record.asked.values
@@ -169,12 +190,13 @@ def draw_ground(ax: Axes, x: np.ndarray, height: Sequence[float] | np.ndarray) -
     ax.plot(x, height, color=COLOURS["ground"], linewidth=1.4, zorder=0.3)
 
 
-def draw_on_bumps(robot: Crocodile, record: xr.Dataset) -> Figure:
+def draw_on_bumps(robot: AnyRobot, record: xr.Dataset, said: str) -> Figure:
     """Draw every run of a record from the side at its end, on the ground under it.
 
     Args:
         robot: who walked.
         record: of the experiment.
+        said: what the postures are, from above to below.
     """
     with styled(axes__grid=False):
         figure, axes = panels(3, 1, width=8.6, height=6.6)
@@ -183,13 +205,13 @@ def draw_on_bumps(robot: Crocodile, record: xr.Dataset) -> Figure:
             draw_posture(ax, robot, one, float(one.time[-1]), view="side", support=False, ground=False)
             draw_ground(ax, record.along.values, record.ground_height.values)
             ax.set_title(str(GAIT_LINES[str(one.label.item())]["label"]))
-            middle = float(one.centre_of_mass.sel(xyz="x")[-1])
-            ax.set_xlim(middle - 0.68, middle + 0.62)
-            ax.set_ylim(-0.06, 0.26)
+            middle, size = float(one.centre_of_mass.sel(xyz="x")[-1]), robot.length / _USUAL
+            ax.set_xlim(middle - 0.68 * size, middle + 0.62 * size)
+            ax.set_ylim(-0.06 * size, 0.26 * size)
             ax.set_ylabel("[m]")
         axes[-1, 0].set_xlabel("along the path [m]")
     return captioned(
         figure,
-        "Three postures on the same bumps of 40 mm, halfway through the walk: the sprawled crawl, semi-erect legs, "
-        "and erect legs with elbows behind and knees ahead. Filled feet stand.",
+        f"Three postures on the same bumps of {1000 * float(record.shown_height):.3g} mm, halfway through the walk: "
+        f"{said}. Filled feet stand.",
     )

@@ -3,9 +3,22 @@
 from typing import Any
 
 from suchus.catalog import Catalog
-from suchus.gaits._conditions import CONDITIONS, conditions
+from suchus.design import AnyRobot
+from suchus.gaits._conditions import CONDITIONS, conditions, conditions_of
+from suchus.gaits._own import gait_of, suits
+from suchus.motion import AnyGait
 
 GAITS: Catalog[Any] = Catalog("gait", "suchus.gaits", "suchus.motion:AnyGait")
 """Of either kind; who needs one of them says so by the type of its field."""
 
-__all__ = ["CONDITIONS", "GAITS", "conditions"]
+
+def own_gait(robot: AnyRobot) -> AnyGait:
+    """Return the gait in which a robot walks unless another one is asked for; see ``made_for`` in the gaits' files.
+
+    Raises:
+        UnsuitedRobot: no gait of the shelf suits it.
+    """
+    return gait_of(GAITS, robot)
+
+
+__all__ = ["CONDITIONS", "GAITS", "conditions", "conditions_of", "own_gait", "suits"]

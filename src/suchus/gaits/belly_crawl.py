@@ -26,6 +26,8 @@ gait = Gait(
     tail_pitch=0.2,
 )
 """Spine and tail take part."""
+made_for = ("caiman", "long_tail")
+"""Robots of the shelf whose gait it is."""
 
 _FITTED = (
     "leg stroke and trunk bend are the two numbers chosen so that both displacements come out as printed, "

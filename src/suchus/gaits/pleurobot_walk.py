@@ -22,6 +22,8 @@ gait = Pattern(
     ),
 )
 """The walk of the robot with four joints a limb."""
+made_for = ("pleurobot",)
+"""Robots of the shelf whose gait it is."""
 
 _REASONS = (
     Reason(r"^wave\.", 0.5, 1.5, "the standing wave of the walking animal, a dozen degrees a joint"),

@@ -27,6 +27,8 @@ gait = Pattern(
     ),
 )
 """Diagonal limbs and a standing wave, as the animal walks."""
+made_for = ("salamander",)
+"""Robots of the shelf whose gait it is."""
 
 _REASONS = (
     Reason(

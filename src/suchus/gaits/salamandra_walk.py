@@ -20,6 +20,8 @@ gait = Pattern(
     ),
 )
 """The walk of the crank-legged robot."""
+made_for = ("salamandra",)
+"""Robots of the shelf whose gait it is."""
 
 _REASONS = (
     Reason(

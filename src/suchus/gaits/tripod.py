@@ -16,6 +16,8 @@ gait = Pattern(
     wave=AxialWave(amplitude=((0.0, radians(5)), (1.0, radians(5))), waves=0.0, phase=0.0),
 )
 """The insects' gait."""
+made_for = ("strider",)
+"""Robots of the shelf whose gait it is."""
 
 _REASONS = (
     Reason(r"^wave\.", 0.5, 1.5, "a little bend with the legs, to show that the axis takes part"),

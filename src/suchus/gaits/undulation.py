@@ -15,6 +15,8 @@ gait = Pattern(
     wave=AxialWave(amplitude=((0.0, radians(15)), (1.0, radians(35))), waves=1.0, phase=0.0),
 )
 """For water; on even ground it hardly moves, since friction is the same along the body and across."""
+made_for = ("swimmer",)
+"""Robots of the shelf whose gait it is."""
 
 _REASONS = (
     Reason(r"^wave\.", 0.5, 1.5, "an eel-like wave: one wavelength on the body, growing toward the tail"),

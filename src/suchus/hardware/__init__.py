@@ -3,10 +3,9 @@
 from suchus.hardware.commands import Commands, commands
 from suchus.hardware.files import csv_text, trajectory_text
 from suchus.hardware.limits import Load, check_commands, check_loads, loads, overloaded, share_at_limit
-from suchus.hardware.servo_map import STRAIGHT, ServoLine, ServoMap, read_map, write_map
+from suchus.hardware.servo_map import ServoLine, ServoMap, read_map, straight, write_map
 
 __all__ = [
-    "STRAIGHT",
     "Commands",
     "Load",
     "ServoLine",
@@ -19,6 +18,7 @@ __all__ = [
     "overloaded",
     "read_map",
     "share_at_limit",
+    "straight",
     "trajectory_text",
     "write_map",
 ]

@@ -1,31 +1,34 @@
 """A gait as servo angles and pulses over time."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import AnyRobot, crocodile
+from suchus.design import AnyRobot, Crank, layout
 from suchus.design.checks import require
 from suchus.errors import OutsideLimits
-from suchus.hardware.servo_map import ServoMap
-from suchus.motion import START, Gait, check_limits, limb_phase, servo_targets
+from suchus.hardware.servo_map import ServoLine, ServoMap
+from suchus.motion import START, AnyGait, check_limits, intended
 
 
 class Commands(NamedTuple):
-    """What the servos are told, in the order of ``design.servo_names()``; the last sample equals the first."""
+    """What the servos are told, in the order of the robot's layout; the last sample equals the first."""
 
     time: Float[np.ndarray, " sample"]
     """From the beginning of the first cycle [s]."""
-    angles: Float[np.ndarray, "sample 19"]
+    angles: Float[np.ndarray, "sample servo"]
     """Of the joints; of the pulley for the cable [rad]."""
-    speeds: Float[np.ndarray, "sample 19"]
+    speeds: Float[np.ndarray, "sample servo"]
     """How fast the angles change: central differences over the periodic gait [rad/s]."""
-    pulses: Float[np.ndarray, "sample 19"]
+    pulses: Float[np.ndarray, "sample servo"]
     """What the map makes of the angles [us]."""
+    servos: tuple[str, ...]
+    """Names of the servos."""
 
 
-def commands(robot: AnyRobot, gait: Gait, servo_map: ServoMap, cycles: int = 1) -> Commands:
+def commands(robot: AnyRobot, gait: AnyGait, servo_map: ServoMap, cycles: int = 1) -> Commands:
     """Return the commands of some cycles, so that they can be repeated without a jump.
 
     A cycle is divided into the whole number of intervals that is nearest to the map's rate.
@@ -41,7 +44,6 @@ def commands(robot: AnyRobot, gait: Gait, servo_map: ServoMap, cycles: int = 1) 
 
     Paper: Eq. (18) for the cable.
     """
-    robot = crocodile(robot, "the file of servo commands")
     require("commands", "cycles", cycles, 1, 1000, "")
     check_limits(robot, gait)
     samples = round(gait.period * servo_map.rate)
@@ -50,17 +52,32 @@ def commands(robot: AnyRobot, gait: Gait, servo_map: ServoMap, cycles: int = 1) 
             f"gait {gait.name!r} has a cycle of {gait.period:g} s, {samples} samples at {servo_map.rate:g} Hz; "
             f"8 are needed: raise the rate to {8 / gait.period:.3g} Hz."
         )
-    phase = limb_phase(gait, START + np.arange(samples) * gait.period / samples)
-    one = servo_targets(robot, gait, phase)
+    one = intended(robot, gait, START + np.arange(samples) * gait.period / samples).targets
+    turns = _cranks(robot)
     step = gait.period / samples
-    speed = (np.roll(one, -1, axis=0) - np.roll(one, 1, axis=0)) / (2 * step)
+    after = np.roll(one, -1, axis=0)
+    after[-1] += turns  # a crank goes on where the others begin anew
+    before = np.roll(one, 1, axis=0)
+    before[0] -= turns
     along = np.arange(cycles * samples + 1)
-    angles = one[along % samples]
-    return Commands(along * step, angles, speed[along % samples], _pulses(servo_map, angles))
+    speed = (after - before) / (2 * step)
+    angles = one[along % samples] + turns * (along // samples)[:, None]
+    pulses = _pulses(servo_map.ordered(robot), angles)
+    return Commands(along * step, angles, speed[along % samples], pulses, layout(robot).servos)
 
 
-def _pulses(servo_map: ServoMap, angles: np.ndarray) -> np.ndarray:
-    lines = servo_map.ordered()
+def _cranks(robot: AnyRobot) -> np.ndarray:
+    """Return by how much each servo's angle has grown after a cycle: a turn of a crank, nothing of others [rad]."""
+    place, grown = layout(robot), np.zeros(len(layout(robot).servos))
+    for limb in place.limbs:
+        driven = [hinge for hinge in limb.girdle.limb.hinges if hinge.servo is not None]
+        for i, hinge in enumerate(driven):
+            if isinstance(hinge.drive, Crank):
+                grown[limb.servos.start + i] = -2 * np.pi
+    return grown
+
+
+def _pulses(lines: Sequence[ServoLine], angles: np.ndarray) -> np.ndarray:
     direction = np.array([line.direction for line in lines])
     offset = np.array([line.offset for line in lines])
     centre = np.array([line.pulse_centre for line in lines])

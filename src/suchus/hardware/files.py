@@ -2,14 +2,14 @@
 
 import numpy as np
 
-from suchus.design import Crocodile, cable_joints, servo_names
+from suchus.design import AnyRobot, layout
 from suchus.hardware.commands import Commands
 from suchus.kinematics.tail import bend_of_servo
 
 
 def csv_text(told: Commands) -> str:
     """Return a table: time [s], then each servo's angle [rad], then each servo's pulse [us]."""
-    names = servo_names()
+    names = told.servos
     lines = [",".join(["time_s", *(f"{n}_rad" for n in names), *(f"{n}_us" for n in names)])]
     for time, angles, pulses in zip(told.time, told.angles, told.pulses, strict=True):
         lines.append(
@@ -18,24 +18,30 @@ def csv_text(told: Commands) -> str:
     return "\n".join(lines) + "\n"
 
 
-def trajectory_text(robot: Crocodile, told: Commands) -> str:
+def trajectory_text(robot: AnyRobot, told: Commands) -> str:
     """Return a ROS 2 ``trajectory_msgs/JointTrajectory`` as YAML, for the joints of the exported URDF.
 
     That has no cable: the bend that the pulley gives the tail is shared evenly by the hinges that the cable bends.
 
     Paper: Eq. (18).
     """
-    hinges = cable_joints(robot)
-    bend = bend_of_servo(robot.tail, told.angles[:, -1])
-    turned = np.gradient(bend, told.time) if len(bend) > 1 else np.zeros_like(bend)
-    turned[[0, -1]] = (bend[1] - bend[-2]) / (told.time[1] + told.time[-1] - told.time[-2])  # the last is the first
-    places = np.column_stack([told.angles[:, :-1], np.tile(bend[:, None] / len(hinges), len(hinges))])
-    speeds = np.column_stack([told.speeds[:, :-1], np.tile(turned[:, None] / len(hinges), len(hinges))])
+    place = layout(robot)
+    direct = [i for i in range(len(place.servos)) if i not in place.cables]
+    names = [place.servos[i] for i in direct]
+    places, speeds = told.angles[:, direct], told.speeds[:, direct]
+    for servo in place.cables:
+        hinges = place.cable(servo).hinges
+        bend = bend_of_servo(place.cable(servo), told.angles[:, servo])
+        turned = np.gradient(bend, told.time) if len(bend) > 1 else np.zeros_like(bend)
+        turned[[0, -1]] = (bend[1] - bend[-2]) / (told.time[1] + told.time[-1] - told.time[-2])  # the last is the first
+        places = np.column_stack([places, np.tile(bend[:, None] / len(hinges), len(hinges))])
+        speeds = np.column_stack([speeds, np.tile(turned[:, None] / len(hinges), len(hinges))])
+        names += hinges
     lines = [
         "header:",
         "  stamp: {sec: 0, nanosec: 0}",
         "  frame_id: ''",
-        f"joint_names: [{', '.join((*servo_names()[:-1], *hinges))}]",
+        f"joint_names: [{', '.join(names)}]",
         "points:",
     ]
     for time, angles, rates in zip(told.time, places, speeds, strict=True):

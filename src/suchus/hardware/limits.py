@@ -6,14 +6,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 import xarray as xr
 
-from suchus.design import Crocodile, servo_names, with_servos
+from suchus.design import AnyRobot, layout, with_servos
 from suchus.errors import OutsideLimits
 from suchus.hardware.commands import Commands
 from suchus.hardware.servo_map import ServoMap
 from suchus.land import Run, simulate
 from suchus.metrics import between, whole
 from suchus.model.build import servo_of
-from suchus.motion import START, Gait
+from suchus.motion import START, AnyGait
 
 AT_LIMIT = 0.02
 """Share of a walk that a servo may spend at its torque limit [-]; chosen so that the peak of a footfall passes."""
@@ -55,13 +55,13 @@ class Load:
         return f"{found[0]} ({CLASSES[found[0]]:.3g} N m)" if found else f"none up to {max(CLASSES.values()):.3g} N m"
 
 
-def check_commands(robot: Crocodile, gait: Gait, servo_map: ServoMap, told: Commands) -> None:
+def check_commands(robot: AnyRobot, gait: AnyGait, servo_map: ServoMap, told: Commands) -> None:
     """Refuse commands that are faster than a servo, or pulses outside the map's limits.
 
     Raises:
         OutsideLimits: the message names the servo, the time and what is allowed.
     """
-    for i, (name, line) in enumerate(zip(servo_names(), servo_map.ordered(), strict=True)):
+    for i, (name, line) in enumerate(zip(layout(robot).servos, servo_map.ordered(robot), strict=True)):
         limit = servo_of(robot, name).speed
         steps = np.diff(told.angles[:, i]) / np.diff(told.time)
         worst = int(np.argmax(np.abs(steps)))
@@ -81,7 +81,7 @@ def check_commands(robot: Crocodile, gait: Gait, servo_map: ServoMap, told: Comm
 
 
 def loads(
-    robot: Crocodile, gait: Gait, *, cycles: int = 2, progress: Callable[[float], None] | None = None
+    robot: AnyRobot, gait: AnyGait, *, cycles: int = 2, progress: Callable[[float], None] | None = None
 ) -> Mapping[str, Load]:
     """Return what each servo bears in a simulated walk on level ground.
 
@@ -101,7 +101,7 @@ def loads(
     shares, first = share_at_limit(robot, walk.isel(run=0)), walk.time.values - START
     torques, off = np.abs(walk.servo_torque), np.abs(walk.servo_target - walk.servo_angle).isel(run=0)
     borne = {}
-    for name in servo_names():
+    for name in layout(robot).servos:
         own, limit = torques.sel(servo=name).values, servo_of(robot, name).torque
         full = own[0] >= _FULL * limit
         borne[name] = Load(
@@ -115,7 +115,7 @@ def loads(
     return borne
 
 
-def share_at_limit(robot: Crocodile, record: xr.Dataset) -> xr.DataArray:
+def share_at_limit(robot: AnyRobot, record: xr.Dataset) -> xr.DataArray:
     """Return the share of the time that each servo spends at its torque limit [-], over whatever else a record has.
 
     Args:
@@ -138,7 +138,7 @@ def overloaded(borne: Mapping[str, Load], at_limit: float = AT_LIMIT) -> list[st
 
 
 def check_loads(
-    robot: Crocodile, gait: Gait, borne: Mapping[str, Load], at_limit: float = AT_LIMIT, tracking: float = TRACKING
+    robot: AnyRobot, gait: AnyGait, borne: Mapping[str, Load], at_limit: float = AT_LIMIT, tracking: float = TRACKING
 ) -> None:
     """Refuse a gait that a servo cannot follow since it stands at its torque limit.
 

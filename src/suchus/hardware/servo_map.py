@@ -5,7 +5,7 @@ from math import pi
 from pathlib import Path
 
 from suchus import blueprint
-from suchus.design import servo_names
+from suchus.design import AnyRobot, layout
 from suchus.design.checks import Checks
 from suchus.design.meaning import meanings
 from suchus.errors import InvalidDesign
@@ -68,16 +68,6 @@ class ServoMap:
     def __post_init__(self) -> None:
         with Checks("servo map", self) as check:
             check.number("rate", 1.0, 1000.0, "Hz")
-        names = [line.name for line in self.servos]
-        missing = [name for name in servo_names() if name not in names]
-        unknown = [name for name in names if name not in servo_names()]
-        twice = sorted({name for name in names if names.count(name) > 1})
-        if missing or unknown or twice:
-            said = (("lacks", missing), ("has unknown", unknown), ("has more than once", twice))
-            text = "; it ".join(f"{verb} {', '.join(which)}" for verb, which in said if which)
-            raise InvalidDesign(
-                f"servo map {self.name!r} {text}; every servo is needed once: {', '.join(servo_names())}."
-            )
         places = [(line.board, line.channel) for line in self.servos]
         for line in self.servos:
             if places.count((line.board, line.channel)) > 1:
@@ -88,41 +78,64 @@ class ServoMap:
                     "is allowed."
                 )
 
-    def ordered(self) -> tuple[ServoLine, ...]:
-        """Return the servos in the order of ``design.servo_names()``."""
+    def ordered(self, robot: AnyRobot) -> tuple[ServoLine, ...]:
+        """Return the servos in the order of a robot's layout.
+
+        Raises:
+            InvalidDesign: a servo of the robot is missing, stands there twice, or is none of the robot's.
+        """
+        wanted, names = layout(robot).servos, [line.name for line in self.servos]
+        missing = [name for name in wanted if name not in names]
+        unknown = [name for name in names if name not in wanted]
+        twice = sorted({name for name in names if names.count(name) > 1})
+        if missing or unknown or twice:
+            said = (("lacks", missing), ("has unknown", unknown), ("has more than once", twice))
+            text = "; it ".join(f"{verb} {', '.join(which)}" for verb, which in said if which)
+            raise InvalidDesign(
+                f"servo map {self.name!r} {text}; every servo of robot {robot.name!r} is needed once: "
+                f"{', '.join(wanted)}."
+            )
         by_name = {line.name: line for line in self.servos}
-        return tuple(by_name[name] for name in servo_names())
+        return tuple(by_name[name] for name in wanted)
 
 
-STRAIGHT = ServoMap(
-    name="straight",
-    rate=50.0,
-    servos=tuple(
-        ServoLine(
-            name=name,
-            channel=place % CHANNELS,
-            direction=1,
-            offset=0.0,
-            pulse_centre=1500.0,
-            pulse_per_radian=round(2000.0 / (1.5 * pi), 3),
-            pulse_min=500.0,
-            pulse_max=2500.0,
-            board=place // CHANNELS,
-        )
-        for place, name in enumerate(servo_names())
-    ),
-)
-"""Servos that turn 270 degrees over 500 to 2500 us, mounted in the middle, on two boards of 16: a map to start from."""
+def straight(robot: AnyRobot) -> ServoMap:
+    """Return a map to start from: servos that turn 270 degrees over 500 to 2500 us, mounted in the middle.
+
+    They hang on boards of 16 channels in the order of the robot's layout.
+    """
+    return ServoMap(
+        name="straight",
+        rate=50.0,
+        servos=tuple(
+            ServoLine(
+                name=name,
+                channel=place % CHANNELS,
+                direction=1,
+                offset=0.0,
+                pulse_centre=1500.0,
+                pulse_per_radian=round(2000.0 / (1.5 * pi), 3),
+                pulse_min=500.0,
+                pulse_max=2500.0,
+                board=place // CHANNELS,
+            )
+            for place, name in enumerate(layout(robot).servos)
+        ),
+    )
 
 
-def read_map(path: Path) -> ServoMap:
-    """Read a servo map from a TOML file.
+def read_map(path: Path, robot: AnyRobot) -> ServoMap:
+    """Read a servo map of a robot from a TOML file.
 
     Raises:
         UnreadableFile: the file is missing or no TOML.
         MistakenFile: values are missing, unknown, of the wrong kind or impossible.
+        InvalidDesign: it is not for the servos of this robot.
     """
-    return blueprint.read(path, ServoMap, {STRAIGHT.name: STRAIGHT})
+    start = straight(robot)
+    found = blueprint.read(path, ServoMap, {start.name: start})
+    found.ordered(robot)
+    return found
 
 
 def write_map(servo_map: ServoMap, path: Path) -> Path:

@@ -7,7 +7,7 @@ from suchus.land.arenas import ARENAS
 from suchus.land.crawling import crawl
 from suchus.land.live import Live
 from suchus.land.loop import CONTROL_PERIOD
-from suchus.land.lost import KINDS, KNEES, LEGS_LOST, LOST, angle_at, lost
+from suchus.land.lost import KINDS, KNEES, LEGS_LOST, LOST, angle_at, lost, lost_joints
 from suchus.land.push import Push
 from suchus.land.run import VACUUM, WATER, Afloat, Run
 from suchus.land.simulation import simulate
@@ -39,6 +39,7 @@ __all__ = [
     "angle_at",
     "crawl",
     "lost",
+    "lost_joints",
     "simulate",
     "smallest_pushes",
 ]

@@ -8,14 +8,13 @@ import numpy as np
 from suchus.control import Coordinated
 from suchus.control.coordinated import Coordinator
 from suchus.design.ground import Ground
+from suchus.design.scale import check_step, control_period, physics_step
 from suchus.errors import Diverged, InvalidDesign
 from suchus.fault import Fault, check_faults
-from suchus.land.loop import CONTROL_PERIOD, Loop, physics_steps, start
+from suchus.land.loop import Loop, physics_steps, start
 from suchus.land.push import Push, check_pushes
 from suchus.land.run import Run
-from suchus.motion import START, Gait, check_limits
-
-_START = round(START / CONTROL_PERIOD)  # [control period]
+from suchus.motion import START, AnyGait, check_limits
 
 
 class Live:
@@ -26,7 +25,7 @@ class Live:
 
     Args:
         run: how it begins; its faults and pushes happen at their times.
-        timestep: of the physics [s]; a whole part of the control period.
+        timestep: of the physics [s], a whole part of the control period; that of the robot's size if None.
 
     Raises:
         InvalidDesign: a time step that does not fit, servo noise, or a control other than ``Coordinated``.
@@ -34,21 +33,25 @@ class Live:
         UnknownName: a fault of a joint, or a push on a body, that does not exist.
     """
 
-    def __init__(self, run: Run, *, timestep: float = 0.002) -> None:
+    def __init__(self, run: Run, *, timestep: float | None = None) -> None:
         if run.noise > 0.0 or not isinstance(run.control, Coordinated):
             raise InvalidDesign("a live run takes no noise on its servos, and a control of type Coordinated.")
-        steps = physics_steps(timestep)
+        self._period = control_period(run.robot)
+        timestep = physics_step(run.robot) if timestep is None else timestep
+        steps = physics_steps(timestep, self._period)
+        check_step(run.robot, timestep)
+        self._start = round(START / self._period)  # [control period]
         check_faults(run.faults, run.robot, inf)
         check_pushes(run.pushes, run.robot, inf)
-        self.run = _whole(run)
-        self._loop = Loop([self.run], _ticks(self.run), steps, timestep, samples=1)
+        self.run = self._whole(run)
+        self._loop = Loop([self.run], self._ticks(self.run), steps, timestep, samples=1)
         self._tick = self._beat = 0
         self._look()
 
     @property
     def time(self) -> float:
         """Since the beginning [s]."""
-        return self._tick * CONTROL_PERIOD
+        return self._tick * self._period
 
     @property
     def now(self) -> dict[str, np.ndarray]:
@@ -72,24 +75,24 @@ class Live:
             raise Diverged(f"the walk came apart at {time:.2f} s: {cause}.", time=time)
         self._tick += 1
         self._beat += 1
-        if self._beat >= _START + _cycle(self.run):
-            self._beat -= _cycle(self.run)
+        if self._beat >= self._start + self._cycle(self.run):
+            self._beat -= self._cycle(self.run)
         self._look()
 
-    def walk(self, gait: Gait | None = None, control: Coordinated | None = None) -> None:
+    def walk(self, gait: AnyGait | None = None, control: Coordinated | None = None) -> None:
         """Walk on in another gait or by other rules, from the same phase of the cycle.
 
         Raises:
             OutsideLimits: the robot's joints cannot follow the gait, or the rules cannot coordinate it.
         """
-        share = max(self._beat - _START, 0) / _cycle(self.run)
-        run = _whole(replace(self.run, gait=gait or self.run.gait, control=control or self.run.control))
-        controller = start([run], _ticks(run))
+        share = max(self._beat - self._start, 0) / self._cycle(self.run)
+        run = self._whole(replace(self.run, gait=gait or self.run.gait, control=control or self.run.control))
+        controller = start([run], self._ticks(run), self._period)
         if isinstance(controller, Coordinator) and isinstance(self._loop.controller, Coordinator):
             controller.take_over(self._loop.controller)
         self.run, self._loop.controller, self._loop.feels = run, controller, run.control.feels
-        if self._beat >= _START:
-            self._beat = _START + round(share * _cycle(run)) % _cycle(run)
+        if self._beat >= self._start:
+            self._beat = self._start + round(share * self._cycle(run)) % self._cycle(run)
 
     def begin(self, fault: Fault) -> None:
         """Let something break now; what was wrong with the same part before is over.
@@ -134,20 +137,17 @@ class Live:
         self._loop.readings.store(0, self._command.phase, self._command.targets)
         self._now = self._loop.readings.sample(0, 0)
 
+    def _cycle(self, run: Run) -> int:
+        """Return the length of a cycle in control periods."""
+        return round(run.gait.period / self._period)
 
-def _cycle(run: Run) -> int:
-    """Return the length of a cycle in control periods."""
-    return round(run.gait.period / CONTROL_PERIOD)
+    def _ticks(self, run: Run) -> int:
+        """Return how many control periods a controller must know."""
+        return self._start + self._cycle(run) + 1
 
-
-def _ticks(run: Run) -> int:
-    """Return how many control periods a controller must know."""
-    return _START + _cycle(run) + 1
-
-
-def _whole(run: Run) -> Run:
-    """Return a run whose gait's period is a whole number of control periods, checked."""
-    period = max(1, round(run.gait.period / CONTROL_PERIOD)) * CONTROL_PERIOD
-    gait = replace(run.gait, period=period)
-    check_limits(run.robot, gait)
-    return replace(run, gait=gait)
+    def _whole(self, run: Run) -> Run:
+        """Return a run whose gait's period is a whole number of control periods, checked."""
+        period = max(1, round(run.gait.period / self._period)) * self._period
+        gait = replace(run.gait, period=period)
+        check_limits(run.robot, gait)
+        return replace(run, gait=gait)

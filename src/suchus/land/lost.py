@@ -1,13 +1,14 @@
-"""Joints lost as the article speaks of them: by girdle and axis, in one leg or both, limp or locked."""
+"""Joints lost as the article speaks of them: by girdle and hinge, in one leg or both, limp or locked."""
 
 from typing import Literal
 
 import numpy as np
 
-from suchus.design import Crocodile, servo_names
+from suchus.design import AnyRobot, layout
+from suchus.errors import UnknownName
 from suchus.fault import Fault
 from suchus.faults import Limp, Locked
-from suchus.motion import Gait, servo_targets
+from suchus.motion import AnyGait, Gait, pattern_targets, servo_targets
 
 Joint = Literal["front_yaw", "hind_yaw", "front_pitch", "hind_pitch", "front_knee", "hind_knee"]
 Kind = Literal["limp", "locked"]
@@ -20,28 +21,61 @@ KINDS: tuple[Kind, ...] = ("limp", "locked")
 LEGS_LOST: tuple[Legs, ...] = ("one", "both")
 
 
+def lost_joints(robot: AnyRobot) -> tuple[str, ...]:
+    """Return the joints of limbs that a robot can lose, hinge by hinge from the hip, girdle by girdle.
+
+    A girdle is ``front``, ``hind``, or ``middle`` with its number where there are several; only the hind one is there
+    where there is one.
+    """
+    place = layout(robot)
+    words = girdle_words(len(place.robot.girdles))
+    found = [
+        (i, number, f"{words[number]}_{name.partition('_')[2]}")
+        for number in range(len(words))
+        for i, name in enumerate(place.servos[place.limbs[2 * number].servos])
+    ]
+    return tuple(name for _, _, name in sorted(found))
+
+
+def girdle_words(count: int) -> tuple[str, ...]:
+    """Return how girdles are called from the front to the hind one."""
+    middle = ("middle",) if count == 3 else tuple(f"middle{i}" for i in range(1, count - 1))
+    return ("front", *middle, "hind") if count > 1 else ("hind",) * count
+
+
 def lost(
-    robot: Crocodile, gait: Gait, joint: Joint, kind: Kind, legs: Legs = "one", *, hold: float = 0.5
+    robot: AnyRobot, gait: AnyGait, joint: str, kind: Kind, legs: Legs = "one", *, hold: float = 0.5
 ) -> tuple[Fault, ...]:
     """Return the faults of a run in which joints are lost from the start; one leg is the left one.
 
     Args:
         robot: whose joints they are.
         gait: that it walks in.
-        joint: which.
+        joint: one of ``lost_joints(robot)``.
         kind: without torque, or held.
         legs: one or both of the girdle.
         hold: where a locked joint holds in the range that the gait asks of it, see ``angle_at``.
+
+    Raises:
+        UnknownName: the robot has no such joint.
     """
-    girdle, _, axis = joint.partition("_")
-    names = [f"{side}{girdle[0].upper()}_{axis}" for side in ("L", "R")[: 1 if legs == "one" else 2]]
+    if joint not in lost_joints(robot):
+        raise UnknownName("joint of a girdle", joint, lost_joints(robot))
+    place = layout(robot)
+    word, _, axis = joint.partition("_")
+    girdle = place.robot.girdles[girdle_words(len(place.robot.girdles)).index(word)].name
+    names = [f"{side}{girdle}_{axis}" for side in ("L", "R")[: 1 if legs == "one" else 2]]
     if kind == "limp":
         return tuple(Limp(name) for name in names)
     return tuple(Locked(name, angle=angle_at(robot, gait, name, hold)) for name in names)
 
 
-def angle_at(robot: Crocodile, gait: Gait, servo: str, share: float) -> float:
+def angle_at(robot: AnyRobot, gait: AnyGait, servo: str, share: float) -> float:
     """Return an angle in the range that a gait asks of a servo: 0 the least, 1 the greatest [rad]."""
-    phase = np.arange(128)[:, None] / 128 + np.array(gait.limb_phases)
-    asked = servo_targets(robot, gait, phase)[:, servo_names().index(servo)]
+    clock = np.arange(128) / 128
+    if isinstance(gait, Gait):
+        targets = servo_targets(robot, gait, clock[:, None] + np.array(gait.limb_phases))
+    else:
+        targets = pattern_targets(robot, gait, clock)
+    asked = targets[:, layout(robot).servos.index(servo)]
     return float(asked.min() + share * (asked.max() - asked.min()))

@@ -18,7 +18,7 @@ class Beginning(NamedTuple):
     """Generalised velocities [m/s], [rad/s]."""
     act: Float[np.ndarray, " a"]
     """Inner states of the servos: slew-limited targets and integrals."""
-    told: Float[np.ndarray, "19"]
+    told: Float[np.ndarray, " servo"]
     """What the servos were told last [rad]."""
 
 

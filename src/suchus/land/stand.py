@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 from jaxtyping import Bool, Float
 
-from suchus.design import Crocodile, servo_names
+from suchus.design import AnyRobot, layout
 from suchus.errors import Diverged, InvalidDesign, UnknownName
 from suchus.model import activations, build
 
@@ -26,7 +26,7 @@ class Response(NamedTuple):
 
 
 def on_stand(
-    robot: Crocodile,
+    robot: AnyRobot,
     joint: str,
     *,
     target: Float[np.ndarray, " time"],
@@ -34,7 +34,7 @@ def on_stand(
     gripped: Bool[np.ndarray, " time"],
     timestep: float = 0.002,
 ) -> Response:
-    """Return what a joint does while the pelvis is fixed in the air, without gravity.
+    """Return what a joint does while the root, the pelvis, is fixed in the air, without gravity.
 
     All other servos hold zero. The joint starts at rest at zero; a grip holds it at zero whatever its servo does.
 
@@ -51,8 +51,9 @@ def on_stand(
         InvalidDesign: the servo turns no joint of its own, or the courses differ in length.
         Diverged: the joint's angle is no number any more.
     """
-    if joint not in servo_names():
-        raise UnknownName("servo", joint, servo_names())
+    servos = layout(robot).servos
+    if joint not in servos:
+        raise UnknownName("servo", joint, servos)
     if not len(target) == len(load) == len(gripped):
         lengths = f"{len(target)}, {len(load)} and {len(gripped)}"
         raise InvalidDesign(f"target, load and gripped have {lengths} samples; give as many of each.")
@@ -72,12 +73,12 @@ def on_stand(
     return Response(timestep * np.arange(1, len(target) + 1), angle, torque)
 
 
-def _model(robot: Crocodile, joint: str, timestep: float) -> mujoco.MjModel:
+def _model(robot: AnyRobot, joint: str, timestep: float) -> mujoco.MjModel:
     spec = build(robot, timestep=timestep)
     if spec.joint(joint) is None:
         raise InvalidDesign(f"servo {joint!r} turns no joint of its own; name one that does.")
     spec.delete(spec.joint("root"))
-    spec.body("pelvis").pos = [0.0, 0.0, _HEIGHT]
+    spec.body(layout(robot).robot.root).pos = [0.0, 0.0, _HEIGHT]
     spec.option.gravity = [0.0, 0.0, 0.0]
     hinge = mujoco.mjtObj.mjOBJ_JOINT
     spec.add_equality(name=_GRIP, type=mujoco.mjtEq.mjEQ_JOINT, objtype=hinge, name1=joint, active=False)

@@ -1,6 +1,7 @@
 """From a record to numbers: pure, and along whatever dimensions the record has besides time."""
 
 from suchus.metrics.bends import (
+    bend_swings,
     lateral_bend,
     spine_amplitude,
     spine_sine_share,
@@ -42,6 +43,7 @@ from suchus.metrics.window import between, whole
 
 __all__ = [
     "Border",
+    "bend_swings",
     "between",
     "border",
     "cost_of_transport",

@@ -73,9 +73,18 @@ def _amplitude(bend: xr.DataArray) -> xr.DataArray:
 
 
 def _swings(record: xr.Dataset, part: Bent, start: float, end: float | None) -> xr.DataArray:
-    bend = _window(record, part, start, end)
+    return bend_swings(_window(record, part, start, end), record.period)
+
+
+def bend_swings(bend: xr.DataArray, period: xr.DataArray) -> xr.DataArray:
+    """Return how often a bend over whole cycles changes its side in a cycle [-].
+
+    Args:
+        bend: over time, without the sample that begins the next cycle [rad].
+        period: of a cycle [s].
+    """
     step = float(bend.time[1] - bend.time[0])
-    cycles = bend.sizes["time"] * step / record.period
+    cycles = bend.sizes["time"] * step / period
     counts = xr.apply_ufunc(_changes, bend, input_core_dims=[["time"]], vectorize=True)
     return counts / cycles
 

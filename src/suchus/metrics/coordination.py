@@ -3,27 +3,27 @@
 import numpy as np
 import xarray as xr
 
-from suchus.design import LEGS
-from suchus.motion import Gait
+from suchus.metrics.gait import diagonals
+from suchus.motion import AnyGait
 
 WITHIN = 0.1
 """A limb this close to its place against another counts as coordinated [cycle]."""
-_PAIRS = (("LF", "RH"), ("RF", "LH"), ("LF", "RF"), ("LH", "RH"))
 
 
-def phase_error(phase: xr.DataArray, gait: Gait) -> xr.DataArray:
+def phase_error(phase: xr.DataArray, gait: AnyGait) -> xr.DataArray:
     """Return how far the limbs are from the gait's phases against each other [cycle].
 
-    It is the largest error of four differences: the two diagonal pairs and the two girdles.
+    It is the largest error of four differences, the two diagonal pairs and the two girdles; of any body as many as it
+    has.
 
     Args:
         phase: of the limbs, with the dimension ``leg`` [cycle].
         gait: whose phases are meant.
     """
-    meant: dict[str, float] = dict(zip(LEGS, gait.limb_phases, strict=True))
+    meant, legs = gait.limb_phases, phase.sizes["leg"]
     errors = []
-    for one, other in _PAIRS:
-        off = phase.sel(leg=one, drop=True) - phase.sel(leg=other, drop=True) - (meant[one] - meant[other])
+    for one, other in [*diagonals(legs), *((i, i + 1) for i in range(0, legs, 2))]:
+        off = phase.isel(leg=one, drop=True) - phase.isel(leg=other, drop=True) - (meant[one] - meant[other])
         errors.append(abs(np.mod(off + 0.5, 1.0) - 0.5))
     return xr.concat(errors, "pair", join="exact").max("pair").rename("phase_error")
 

@@ -60,11 +60,23 @@ def sensed_phase(record: xr.Dataset, start: float = START, end: float | None = N
 
 
 def diagonal_phase_error(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
-    """Return how far apart in phase the stances of a diagonal pair are, of the pair that is farther [cycle]."""
+    """Return how far apart in phase the stances of a diagonal pair are, of the pair that is farthest [cycle].
+
+    Diagonal are a limb and that of the other side of the next girdle; a body of one girdle has no such pair.
+    """
     phase = sensed_phase(record, start, end)
-    of = {leg: phase.sel(leg=leg, drop=True) for leg in ("RF", "LH", "RH")}
-    first, second = (abs((difference + 0.5) % 1.0 - 0.5) for difference in (of["RH"], of["RF"] - of["LH"]))
-    return first.where(first > second, second)
+    apart = [
+        abs((phase.isel(leg=one, drop=True) - phase.isel(leg=other, drop=True) + 0.5) % 1.0 - 0.5)
+        for one, other in diagonals(phase.sizes["leg"])
+    ]
+    if not apart:
+        return phase.isel(leg=0, drop=True) * float("nan")
+    return xr.concat(apart, "pair", coords="minimal", compat="override").max("pair")
+
+
+def diagonals(legs: int) -> list[tuple[int, int]]:
+    """Return the diagonal pairs of limbs that are listed girdle by girdle, left before right."""
+    return [pair for i in range(0, legs - 2, 2) for pair in ((i, i + 3), (i + 1, i + 2))]
 
 
 def _cycles(record: xr.Dataset, start: float, end: float | None) -> xr.Dataset:

@@ -52,7 +52,7 @@ def _tops(
 
 def lead(record: xr.Dataset) -> xr.DataArray:
     """Return how far the centre of mass lies behind the middle of the hind feet, seen along the body [m]."""
-    hind = record.foot_position.sel(leg=["LH", "RH"], xyz=["x", "y"])
+    hind = record.foot_position.sel(leg=record.leg.values[-2:], xyz=["x", "y"])
     forward = _forward(hind)
     behind = hind.mean("leg") - record.centre_of_mass.sel(xyz=["x", "y"])
     return (behind * forward).sum("xyz", skipna=False).assign_attrs(units="m")
@@ -65,7 +65,8 @@ def static_margin(record: xr.Dataset) -> xr.DataArray:
     most favourable one; the front side, over which a standing robot falls first, does not depend on it.
     """
     feet, xy = record.foot_position, ["x", "y"]
-    corners = [feet.sel(leg="LH", xyz=xy), feet.sel(leg="RH", xyz=xy), record.tail_tip.sel(xyz=xy)]
+    hind = [feet.isel(leg=i, drop=True).sel(xyz=xy) for i in (-2, -1)]
+    corners = [*hind, record.tail_tip.sel(xyz=xy)]
     com = record.centre_of_mass.sel(xyz=xy)
     margins = [_inside(com, corners[i], corners[(i + 2) % 3]) for i in range(3)]  # clockwise from above: left to tail
     return (
@@ -84,7 +85,7 @@ def _inside(point: xr.DataArray, start: xr.DataArray, end: xr.DataArray) -> xr.D
 
 def _forward(hind: xr.DataArray) -> xr.DataArray:
     """Return the direction across the line from the right hind foot to the left one, to the front."""
-    across = hind.sel(leg="LH") - hind.sel(leg="RH")
+    across = hind.isel(leg=0, drop=True) - hind.isel(leg=1, drop=True)
     turned = xr.concat([across.sel(xyz="y"), -across.sel(xyz="x")], "xyz", coords="minimal", compat="override")
     turned = turned.assign_coords(xyz=["x", "y"]).drop_vars("leg", errors="ignore")
     return turned / np.sqrt((turned**2).sum("xyz"))

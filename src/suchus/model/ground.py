@@ -3,7 +3,6 @@
 from typing import Any
 
 import mujoco
-import numpy as np
 
 from suchus.design.relief import ASIDE, REACH, Bumps, Relief, Step, Stone, field
 
@@ -33,7 +32,7 @@ def add_ground(spec: Any, relief: Relief | None) -> None:
     elif isinstance(relief, Stone):
         _block(spec, (relief.at, relief.aside), (relief.length / 2, relief.width / 2), relief.height)
     elif isinstance(relief, Bumps):
-        plane.pos = [0, 0, _raise(spec, field(relief))]  # as deep as the field
+        plane.pos = [0, 0, _raise(spec, relief)]  # as deep as the field
 
 
 def _block(spec: Any, at: tuple[float, float], half: tuple[float, float], height: float) -> None:
@@ -48,13 +47,14 @@ def _block(spec: Any, at: tuple[float, float], half: tuple[float, float], height
     )
 
 
-def _raise(spec: Any, heights: np.ndarray) -> float:
+def _raise(spec: Any, bumps: Bumps) -> float:
     """Add a height field; return the height of its lowest point [m]."""
+    heights, (first, last) = field(bumps), bumps.reach
     low, high = float(heights.min()), float(heights.max())
-    middle = (REACH[0] + REACH[1]) / 2
+    middle = (first + last) / 2
     spec.add_hfield(
         name=RELIEF,
-        size=[REACH[1] - middle, ASIDE, high - low, _BASE],
+        size=[last - middle, bumps.aside, high - low, _BASE * bumps.scale],
         nrow=heights.shape[0],
         ncol=heights.shape[1],
         userdata=((heights - low) / (high - low)).ravel(),

@@ -1,5 +1,13 @@
 """From time to intended posture: phases, foot paths, bends, servo targets."""
 
+from suchus.motion.altered import (
+    longest_strokes,
+    straightened,
+    strides,
+    with_bends,
+    with_late_axis,
+    with_strokes,
+)
 from suchus.motion.angle_table import AngleTable, Curve
 from suchus.motion.any_body import (
     AnyGait,
@@ -18,6 +26,8 @@ from suchus.motion.phase import limb_phase, stance, tail_bend, trunk_bend
 from suchus.motion.posture import Keyed, Planned, Posture, plan
 from suchus.motion.rising import stand_up, stretched, tallest
 from suchus.motion.roll import Roll, check_roll, roll_targets
+from suchus.motion.steered import bends as axis_bends
+from suchus.motion.steered import steerable, steered, trunk_amplitude
 from suchus.motion.swim import Bends, Swim, bends, check_swim, swim_targets
 from suchus.motion.tabled import as_table
 from suchus.motion.targets import foot_targets, longest_stroke, servo_targets, within_reach
@@ -43,6 +53,7 @@ __all__ = [
     "Sweep",
     "Swim",
     "as_table",
+    "axis_bends",
     "bends",
     "check_limits",
     "check_roll",
@@ -54,6 +65,7 @@ __all__ = [
     "limb_phase",
     "limb_targets",
     "longest_stroke",
+    "longest_strokes",
     "middle_stance",
     "pattern_targets",
     "plan",
@@ -61,10 +73,18 @@ __all__ = [
     "servo_targets",
     "stance",
     "stand_up",
+    "steerable",
+    "steered",
+    "straightened",
     "stretched",
+    "strides",
     "swim_targets",
     "tail_bend",
     "tallest",
+    "trunk_amplitude",
     "trunk_bend",
+    "with_bends",
+    "with_late_axis",
+    "with_strokes",
     "within_reach",
 ]

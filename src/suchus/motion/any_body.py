@@ -187,7 +187,7 @@ def limb_targets(
         if isinstance(does, Held):
             targets[..., limb.servos] = does.angles
         elif isinstance(does, Sweep):
-            targets[..., limb.servos] = _crank(gait, does, phase[..., i])[..., None]
+            targets[..., limb.servos] = crank(gait, does, phase[..., i], np.asarray(does.stance))[..., None]
         else:
             targets[..., limb.servos] = _on_path(robot, gait, does, limb, phase[..., i])
     return targets
@@ -230,13 +230,20 @@ def _on_path(robot: AnyRobot, gait: Pattern, does: FootPath, limb: LimbPlace, ph
         ) from error
 
 
-def _crank(gait: Pattern, does: Sweep, phase: np.ndarray) -> np.ndarray:
-    """Return the angle of a crank, which grows by a whole turn a cycle: the foot goes back below and forward above."""
+def crank(gait: Pattern, does: Sweep, phase: np.ndarray, stance: np.ndarray) -> np.ndarray:
+    """Return the angle of a crank, which grows by a whole turn a cycle: the foot goes back below and forward above.
+
+    Args:
+        gait: the movement.
+        does: what its girdle does.
+        phase: not wrapped [cycle].
+        stance: angle that it turns through in stance [rad].
+    """
     swing = 1.0 - gait.duty_factor
     turns, cycle = np.floor(phase), np.mod(phase, 1.0)
-    half = does.stance / 2
-    standing = -half + does.stance * (cycle - swing) / gait.duty_factor
-    returning = half - 2 * np.pi + (2 * np.pi - does.stance) * cycle / swing
+    half = stance / 2
+    standing = -half + stance * (cycle - swing) / gait.duty_factor
+    returning = half - 2 * np.pi + (2 * np.pi - stance) * cycle / swing
     return np.asarray(does.down - (2 * np.pi * turns + np.where(cycle < swing, returning, standing)))
 
 

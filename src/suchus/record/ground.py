@@ -21,7 +21,10 @@ def ground_text(ground: Ground | None) -> str:
         return ""
     told = asdict(ground)
     if ground.relief is not None:
-        told["relief"] = {"kind": type(ground.relief).__name__.lower(), **asdict(ground.relief)}
+        fields = asdict(ground.relief)
+        if fields.get("scale") == 1.0:  # as it was told before bumps had a scale
+            del fields["scale"]
+        told["relief"] = {"kind": type(ground.relief).__name__.lower(), **fields}
     return json.dumps(told, sort_keys=True)
 
 

@@ -107,9 +107,10 @@ def check_land(record: xr.Dataset, names: Sequence[str], where: str) -> None:
     time = record.time
     if time.dims != ("time",) or time.dtype.kind not in "fiu" or not _rising(time.values):
         raise IncompatibleRecord(f"{where} has times that do not rise.")
-    if "leg" in record and [str(leg) for leg in record.leg.values.ravel()] != list(LEGS):
-        told = ", ".join(map(str, record.leg.values.ravel()[:8]))
-        raise IncompatibleRecord(f"{where} has the legs {told}, not {', '.join(LEGS)}.")
+    legs = [str(leg) for leg in record.leg.values.ravel()] if "leg" in record else []
+    if not _in_pairs(legs):
+        told = ", ".join(legs[:8])
+        raise IncompatibleRecord(f"{where} has the legs {told}, not pairs of left and right, as {', '.join(LEGS)}.")
 
 
 def _as_said(record: xr.Dataset, name: str) -> bool:
@@ -131,6 +132,13 @@ def _as_said(record: xr.Dataset, name: str) -> bool:
 
 def _per_run(variable: xr.DataArray) -> bool:
     return variable.dims in ((), ("run",)) and variable.size > 0
+
+
+def _in_pairs(legs: Sequence[str]) -> bool:
+    """Tell whether each left limb is followed by the right one of its girdle, and none stands twice."""
+    pairs = zip(legs[::2], legs[1::2], strict=False)
+    paired = all(a[:1] == "L" and b[:1] == "R" and a[1:] == b[1:] for a, b in pairs)
+    return len(legs) % 2 == 0 and len(set(legs)) == len(legs) and paired
 
 
 def _rising(values: np.ndarray) -> bool:

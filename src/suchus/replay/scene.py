@@ -8,7 +8,7 @@ import numpy as np
 
 from suchus.design import GRAVITY, AnyRobot, layout
 from suchus.design.ground import Ground, slope
-from suchus.design.relief import ASIDE, CELL, REACH, Bumps, Relief, Step, field
+from suchus.design.relief import ASIDE, REACH, Bumps, Relief, Step, field
 from suchus.figures import COLOURS, limb_colours
 from suchus.metrics.gait import LOADED_SHARE
 from suchus.replay.frames import Frames
@@ -102,9 +102,9 @@ def _packed_relief(relief: Relief, pack: Pack) -> dict[str, Any]:
             "heights": pack.add(whole),
             "shape": list(heights.shape),
             "scale": largest / np.iinfo(np.int16).max,
-            "x0": REACH[0],
-            "y0": -ASIDE,
-            "cell": CELL,
+            "x0": relief.reach[0],
+            "y0": -relief.aside,
+            "cell": relief.cell,
         }
     if isinstance(relief, Step):
         return {"block": [relief.at, REACH[1], -ASIDE, ASIDE, relief.height]}

@@ -66,6 +66,14 @@ robot = Robot(
 """After the model of a Pleurodeles scaled to 0.10 m that is used with SalamandraSNN (MIT)."""
 
 _OWN = (
+    Reason(
+        r"^axis\[\d\]\.hinges\[1\]\.drive\.(stiffness|damping)$",
+        0.5,
+        5.0,
+        "of the model of the animal that the robot is after, in parts of weight, length and gravity time; half to five "
+        "times the stiffness changes the stride by a tenth",
+    ),
+    Reason(r"^contact\.(foot|skin)_friction$", 0.7, 1.4, "that of the same model, feet and skin alike"),
     Reason(r"\.radius$", 0.7, 1.4, "the animal's outline; a belly that clears the ground by a fifth of the body"),
     Reason(r"^girdles\[\d\]\.limb.*\.mass$", 0.5, 2.0, "a limb of 22 mg: 0.7 % of the body"),
     Reason(r"^axis.*\.(start|end)\[0\]$", 0.8, 1.2, "a rod as long as its segment, its round ends in the joints"),

@@ -1,0 +1,188 @@
+"""Every experiment runs on every robot of the shelf, or says in a sentence what the robot lacks."""
+
+from dataclasses import replace
+from functools import lru_cache
+from math import isfinite
+from pathlib import Path
+
+import pytest
+
+from suchus import blueprint
+from suchus.cli.options import choose
+from suchus.design import NEEDS, Crocodile, general, lacking, layout
+from suchus.design.scale import coarse_step
+from suchus.errors import OutsideLimits, UnsuitedRobot
+from suchus.experiments import EXPERIMENTS
+from suchus.gaits import GAITS, conditions_of, own_gait, suits
+from suchus.motion import straightened
+from suchus.robots import ROBOTS
+
+WALKERS = ("caiman", "long_tail", "pleurobot", "salamander", "salamandra", "strider")
+LEAST = {
+    "crawl_stability": {"cycles": 1, "repeats": 1},
+    "displacement": {
+        "cycles": 1,
+        "repeats": 1,
+        "phases": (0.0,),
+        "shares": (1.0,),
+        "strokes": (0.03,),
+        "bends": (1.0,),
+    },
+    "feedback": {"starts": 1, "cycles": 1, "hold": 0.1, "after": 1},
+    "gait_diagram": {"cycles": 2},
+    "joint_faults": {"cycles": 1, "variations": 1, "repeats": 1, "holds": (0.5,)},
+    "joint_loops": {"integrals": (0.0, 20.0), "cycles": 1},
+    "speed_range": {"slower": (1.0,), "cycles": 1},
+    "terrain": {"bumps": (), "steps": (), "transitions": 1, "seeds": 1, "walked": 1.0, "surfaces": ("even",)},
+    "turning": {"bends": (0.0, 0.2), "asymmetries": (0.0, 0.5), "mixtures": (0.0, 1.0), "asked": (1.0,), "cycles": 1},
+}
+"""The least with which the experiments on walkers answer at all."""
+
+
+@lru_cache(maxsize=1)
+def six():
+    """A crocodile with six spine joints and servos in its tail, as a file says it."""
+    file = Path(__file__).parent / "six.toml"
+    return blueprint.read(file, Crocodile, ROBOTS)
+
+
+def robot_of(name):
+    return six() if name == "six" else ROBOTS[name]
+
+
+def shortest(name, robot):
+    experiment = replace(EXPERIMENTS[name].quick(), **LEAST[name]).on(robot)
+    return replace(experiment, timestep=coarse_step(robot)) if hasattr(experiment, "timestep") else experiment
+
+
+@pytest.mark.parametrize("name", list(EXPERIMENTS))
+@pytest.mark.parametrize("robot", [*ROBOTS, "six"])
+def test_a_robot_without_what_is_needed_is_refused_in_a_sentence(name, robot):
+    experiment, body = EXPERIMENTS[name].quick(), robot_of(robot)
+    missing = lacking(body, experiment.needs)
+    if not missing:
+        assert experiment.on(body).robot == body
+        return
+    with pytest.raises(UnsuitedRobot) as refused:
+        experiment.on(body)
+    text = str(refused.value)
+    assert text.startswith(f"{name} needs ")
+    assert repr(body.name) in text
+    assert all(NEEDS[need].words in text for need in missing)
+    assert text.count(". ") == 0
+
+
+def test_what_runs_on_all_walkers_needs_nothing_that_one_of_them_lacks():
+    free = [name for name in LEAST if name not in ("terrain",)]
+    for name in free:
+        assert [robot for robot in (*WALKERS, "six") if lacking(robot_of(robot), EXPERIMENTS[name].needs)] == [], name
+    assert lacking(ROBOTS["salamandra"], EXPERIMENTS["terrain"].needs) == ["foot_paths"]
+
+
+@pytest.mark.parametrize("name", ["gait_diagram", "speed_range"])
+@pytest.mark.parametrize("robot", ["pleurobot", "salamander", "salamandra", "strider", "six"])
+def test_it_runs_and_is_not_judged(name, robot):
+    answers(name, robot)
+
+
+@pytest.mark.parametrize(
+    ("name", "robot"),
+    [("displacement", "strider"), ("crawl_stability", "salamandra"), ("turning", "pleurobot"), ("joint_loops", "six")],
+)
+def test_one_that_takes_longer_runs_on_one_other_body(name, robot):
+    answers(name, robot)
+
+
+@pytest.mark.validate
+@pytest.mark.parametrize("name", list(LEAST))
+@pytest.mark.parametrize("robot", ["long_tail", "pleurobot", "salamander", "salamandra", "strider", "six"])
+def test_every_one_runs_on_every_walker(name, robot):
+    if not lacking(robot_of(robot), EXPERIMENTS[name].needs):
+        answers(name, robot)
+
+
+def answers(name, robot):
+    """Run an experiment in its shortest form; look at everything that a user gets."""
+    body = robot_of(robot)
+    experiment = shortest(name, body)
+    outcome = experiment.run()
+    assert outcome.verdicts == ()
+    if experiment.rules():
+        assert outcome.unjudged.startswith("Not judged: ")
+    assert sum(isfinite(measure.value) for measure in outcome.measures.values()) > 3
+    assert len(outcome.decides) > 60
+    assert "nan" not in outcome.decides.split()
+    assert experiment.draw(outcome)
+    for replay in outcome.replays.values():
+        assert "<canvas" in replay.html
+    missing = [key for key, values in outcome.record.data_vars.items() if "units" not in values.attrs]
+    assert missing == []
+
+
+@pytest.mark.parametrize("robot", [*ROBOTS, "six"])
+def test_every_robot_has_one_gait_of_its_own_that_it_can_follow(robot):
+    body = robot_of(robot)
+    gait = own_gait(body)
+    assert suits(body, gait)
+    made = [name for name in GAITS if robot in GAITS.beside(name, "made_for", ())]
+    assert made == ([gait.name] if robot != "six" else [])
+
+
+def test_a_robot_that_no_gait_suits_is_refused_in_a_sentence():
+    body = general(ROBOTS["strider"])
+    limb = body.girdles[0].limb
+    short = replace(limb, links=tuple(replace(link, end=tuple(0.55 * x for x in link.end)) for link in limb.links))
+    stiff = tuple(
+        replace(link, hinges=tuple(replace(hinge, range=(-0.05, 0.05)) for hinge in link.hinges))
+        for link in short.links
+    )
+    girdles = tuple(replace(girdle, limb=replace(short, links=stiff)) for girdle in body.girdles)
+    with pytest.raises(UnsuitedRobot, match="no gait on the shelf suits robot 'stiff', which has LF, RF, LM"):
+        own_gait(replace(body, name="stiff", girdles=girdles))
+
+
+@pytest.mark.parametrize(
+    ("robot", "names"),
+    [
+        ("caiman", ["coordinated", "limbs_only", "limbs_tail_lifted", "tail_still", "spine_only", "tail_drag"]),
+        ("salamander", ["coordinated", "limbs_only", "tail_still", "tail_drag"]),
+        ("strider", ["coordinated", "limbs_only"]),
+    ],
+)
+def test_the_conditions_are_those_that_the_bodys_parts_make_possible(robot, names):
+    body = ROBOTS[robot]
+    own = own_gait(body)
+    assert list(conditions_of(body, own, straightened(body, own, name="limbs_only"))) == names
+
+
+def test_on_the_command_line_the_robot_brings_its_gait_and_size():
+    chosen = choose(EXPERIMENTS["displacement"], "displacement", ["--robot", "salamander"]).experiment
+    assert (chosen.robot.name, chosen.gait.name, chosen.control.name) == ("salamander", "salamander_walk", "limbs_only")
+    other = choose(EXPERIMENTS["turning"], "turning", ["--robot=strider", "--cycles", "2"]).experiment
+    assert other.cycles == 2
+    assert other.asked[0] == pytest.approx(0.6 * ROBOTS["strider"].length / ROBOTS["caiman"].length)
+    assert other.timestep == coarse_step(ROBOTS["strider"])
+
+
+def test_a_gait_that_was_asked_for_is_not_replaced():
+    words = ["--robot", "strider", "--gait", "belly_crawl", "--quick"]
+    wrong = choose(EXPERIMENTS["gait_diagram"], "gait_diagram", words).experiment
+    assert wrong.gait == GAITS["belly_crawl"]
+    with pytest.raises(OutsideLimits, match="choose a gait made for it"):
+        wrong.run()
+
+
+def test_a_robot_that_can_follow_the_gait_changes_nothing_else():
+    here = EXPERIMENTS["terrain"].quick()
+    assert here.on(six()) == replace(here, robot=six())
+
+
+def test_the_six_joint_crocodile_crawls_with_spine_and_tail_of_its_own():
+    body = six()
+    place = layout(body)
+    assert len(place.trunk_yaw) == 3
+    assert len(place.tail_yaw) == body.tail.joints
+    assert place.cables == ()
+    measures = shortest("gait_diagram", body).run().measures
+    assert measures["spine_gain"].value == pytest.approx(1.0, abs=0.1)
+    assert measures["tail_gain"].value == pytest.approx(1.0, abs=0.1)
