@@ -8,13 +8,17 @@ import mujoco
 import numpy as np
 from mujoco.batch import Batch, SimulationError
 
-from suchus import threads
+from suchus import hydro, threads
 from suchus.design import GRAVITY, AnyRobot, layout
 from suchus.design.ground import Ground
+from suchus.design.pieces import pieces
 from suchus.design.relief import Relief
+from suchus.land import wetting
+from suchus.land.afloat import surfaced
 from suchus.land.alike import Alike
 from suchus.land.run import Afloat, Run
 from suchus.model import activations, compile_model, force_sensors, standing
+from suchus.model.wet import wet_model
 from suchus.motion import hip_height
 
 _TOO_FAST = 1e3  # [rad/s] or [m/s]; nothing on a robot moves so fast: the physics has come apart
@@ -30,7 +34,9 @@ class Bench:
 
     def __init__(self, runs: Sequence[Run], timestep: float) -> None:
         bodies = [(run.robot, run.ground.relief) for run in runs]
-        models = {body: _model(body[0], timestep, body[1]) for body in dict.fromkeys(bodies)}
+        self._lakes = {sim: run.lake for sim, run in enumerate(runs) if run.lake is not None}
+        room = max(len(pieces(run.robot)) for run in runs) if self._lakes else 0
+        models = {body: _model(body[0], timestep, body[1], room) for body in dict.fromkeys(bodies)}
         shared = models[bodies[0]]
         self.model = shared
         self._single = len(models) == 1
@@ -47,6 +53,11 @@ class Bench:
             self.batch.bind(name) for name in ("qpos", "qvel", "ctrl", "sensordata")
         )
         self.readings = self.sensors.copy()
+        self.water = self.batch.bind("userdata") if self._lakes else np.zeros((len(runs), 0))
+        if self._lakes:
+            wetting.install()
+            for sim, lake in self._lakes.items():
+                self.water[sim] = lake.numbers(up(runs[sim].ground))
         forces = force_sensors(runs[0].robot)
         self._forces = slice(int(shared.sensor(forces[0]).adr[0]), int(shared.sensor(forces[-1]).adr[0]) + 3)
         servos = [shared.sensor(f"{name}_position") for name in layout(runs[0].robot).servos]
@@ -109,6 +120,12 @@ class Bench:
         now = self.batch.expand("opt.disableactuator")[sim] if self._single else self._own(sim).opt.disableactuator
         self._set_option("disableactuator", sim, int(now) & ~bit if on else int(now) | bit)
 
+    def flood(self, time: float) -> None:
+        """Let level and breath of the lakes be what they are at a time [s], where they change."""
+        for sim, lake in self._lakes.items():
+            if lake.changes():
+                self.water[sim, hydro.LEVEL], self.water[sim, hydro.BREATH] = lake.at(time)
+
     def angles(self, sim: int) -> np.ndarray:
         """Return the angles of a run's joints at the servos' shafts as they are now, shape (servo,) [rad]."""
         angles: np.ndarray = self.readings[sim, self._positions]
@@ -145,6 +162,8 @@ class Bench:
                 posture = standing(model, run.robot, height, first[sim])
                 found[key] = posture, activations(model, first[sim])
             self.qpos[sim], act[sim] = found[key]
+            if run.lake is not None:
+                self.qpos[sim] = surfaced(run.robot, run.lake, up(run.ground), self.qpos[sim], self._timestep)
             self.ctrl[sim] = first[sim]
         self.batch.forward()
         self.readings[:] = self.sensors
@@ -197,14 +216,19 @@ class Bench:
             self.alive[sim], self.ended[sim], self.cause[sim] = False, time, cause
 
 
-def _model(robot: AnyRobot, timestep: float, relief: Relief | None) -> Any:
-    """Return a model of its own, which does not look for islands.
+def _model(robot: AnyRobot, timestep: float, relief: Relief | None, room: int) -> Any:
+    """Return a model of its own, which does not look for islands; for the water where there is room for pieces.
 
     A robot is one island, so that the bytes are the same, and a step takes a sixteenth less time.
     """
-    model = copy.copy(compile_model(robot, timestep, relief))
+    model = copy.copy(wet_model(robot, timestep, relief, room) if room else compile_model(robot, timestep, relief))
     model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_ISLAND)
     return model
+
+
+def up(ground: Ground) -> np.ndarray:
+    """Return the direction against gravity in the frame of a tilted ground, a unit vector."""
+    return -_gravity(ground) / GRAVITY
 
 
 def _gravity(ground: Ground) -> np.ndarray:
