@@ -62,6 +62,12 @@ class Bench:
         self._forces = slice(int(shared.sensor(forces[0]).adr[0]), int(shared.sensor(forces[-1]).adr[0]) + 3)
         servos = [shared.sensor(f"{name}_position") for name in layout(runs[0].robot).servos]
         self._positions = slice(int(servos[0].adr[0]), int(servos[-1].adr[0]) + 1)
+        names = layout(runs[0].robot).servos
+        self.velocities, self.torques = (
+            slice(int(shared.sensor(f"{names[0]}_{what}").adr[0]), int(shared.sensor(f"{names[-1]}_{what}").adr[0]) + 1)
+            for what in ("velocity", "torque")
+        )
+        self.worked = np.zeros((len(runs), 5))
         self.alive = np.ones(len(runs), dtype=bool)
         self.ended = np.full(len(runs), np.inf)
         self.cause = [""] * len(runs)
@@ -167,6 +173,8 @@ class Bench:
             self.ctrl[sim] = first[sim]
         self.batch.forward()
         self.readings[:] = self.sensors
+        if self._lakes:
+            self.worked[:, :4] = self.water[:, hydro.FORCE : hydro.FORCE + 4]
 
     def advance(self, targets: np.ndarray, steps: int, time: float, alike: Alike | None = None) -> None:
         """Command servo angles and advance the living by some steps; who diverges dies, with the time and the cause.
@@ -189,6 +197,7 @@ class Bench:
     def _advance(self, targets: np.ndarray, steps: int, time: float, who: np.ndarray) -> None:
         self.ctrl[self.alive] = targets[self.alive]
         pressed = np.zeros_like(self.readings[:, self._forces])
+        meter = _Meter(self) if self._lakes else None
         for _ in range(steps):
             try:
                 going = self.alive & who
@@ -197,6 +206,10 @@ class Bench:
                 for sim in error.ids:
                     self._end(int(sim), time, self.batch.error(int(sim)))
             pressed += self.sensors[:, self._forces]
+            if meter is not None:
+                meter.read()
+        if meter is not None:
+            self.worked[who] = meter.mean(steps)[who]
         self.readings[:] = self.sensors
         self.readings[:, self._forces] = pressed / steps
         fastest = np.abs(self.qvel).max(axis=1)
@@ -207,6 +220,7 @@ class Bench:
         """Let runs be where others are, and feel and suffer the same."""
         self.batch.state[sims] = self.batch.state[whom]
         self.readings[sims] = self.readings[whom]
+        self.worked[sims] = self.worked[whom]
         for sim, other in zip(sims, whom, strict=True):
             if not self.alive[other]:
                 self._end(int(sim), float(self.ended[other]), self.cause[other])
@@ -214,6 +228,27 @@ class Bench:
     def _end(self, sim: int, time: float, cause: str) -> None:
         if self.alive[sim]:
             self.alive[sim], self.ended[sim], self.cause[sim] = False, time, cause
+
+
+class _Meter:
+    """Adds up step by step what the water does to the robots and what their servos do; both jitter within a period."""
+
+    def __init__(self, bench: Bench) -> None:
+        self._bench = bench
+        self._before = bench.sensors[:, bench.velocities].copy()
+        self._sum = np.zeros_like(bench.worked)
+
+    def read(self) -> None:
+        """Add one physics step: the torque in it times the mean of the speeds before and after."""
+        bench = self._bench
+        now, torque = bench.sensors[:, bench.velocities], bench.sensors[:, bench.torques]
+        self._sum[:, :4] += bench.water[:, hydro.FORCE : hydro.FORCE + 4]
+        self._sum[:, 4] += (torque * 0.5 * (self._before + now)).sum(axis=1)
+        self._before = now.copy()
+
+    def mean(self, steps: int) -> np.ndarray:
+        """Return force and power of the water and power of the servos, shape (run, 5)."""
+        return self._sum / steps
 
 
 def _model(robot: AnyRobot, timestep: float, relief: Relief | None, room: int) -> Any:

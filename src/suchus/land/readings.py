@@ -48,6 +48,7 @@ class Readings:
         self._phase = np.full((n, samples, len(place.limbs)), np.nan)
         self._targets = np.full((n, samples, len(place.servos)), np.nan)
         self._water = np.full((n, samples, bench.water.shape[1]), np.nan)
+        self._worked = np.full((n, samples, bench.worked.shape[1]), np.nan)
 
     def store(self, sample: int, phase: np.ndarray, targets: np.ndarray) -> None:
         """Keep one sample of the living."""
@@ -57,6 +58,7 @@ class Readings:
         self._phase[alive, sample] = phase[alive]
         self._targets[alive, sample] = targets[alive]
         self._water[alive, sample] = self._bench.water[alive]
+        self._worked[alive, sample] = self._bench.worked[alive]
 
     def sensed(self, time: float) -> Sensed:
         """Return what the robots feel now."""
@@ -93,7 +95,7 @@ class Readings:
             "gait": [run.gait.name for run in self._runs],
             "label": [run.label or run.gait.name for run in self._runs],
         }
-        return _with_water(dataset(arrays, per_run, coordinates), self._runs, self._water)
+        return _with_water(dataset(arrays, per_run, coordinates), self._runs, self._water, self._worked)
 
     def _arrays(self) -> dict[str, np.ndarray]:
         read, place = self._sensors, self._place
@@ -158,7 +160,7 @@ def alike(records: Sequence[xr.Dataset]) -> list[xr.Dataset]:
     return found
 
 
-def _with_water(record: xr.Dataset, runs: Sequence[Run], water: np.ndarray) -> xr.Dataset:
+def _with_water(record: xr.Dataset, runs: Sequence[Run], water: np.ndarray, worked: np.ndarray) -> xr.Dataset:
     """Add what the water does to a record; dry ones stay as they are."""
     if not water.shape[-1]:
         return record
@@ -169,8 +171,9 @@ def _with_water(record: xr.Dataset, runs: Sequence[Run], water: np.ndarray) -> x
         "water_level": water[..., hydro.LEVEL],
         "breath": water[..., hydro.BREATH],
         "share_under": water[..., hydro.UNDER] / total[:, None],
-        "water_force": water[..., hydro.FORCE : hydro.FORCE + 3],
-        "water_power": water[..., hydro.POWER],
+        "water_force": worked[..., :3],
+        "water_power": worked[..., 3],
+        "servo_power": worked[..., 4],
         "feet_share": feet[..., 0] / (GRAVITY * record.mass.values[:, None]),
     }
     return _put(record, values, [lake_text(run.lake) for run in runs])

@@ -40,11 +40,13 @@ WATER: Mapping[str, tuple[tuple[str, ...], str, str]] = {
     "share_under": (("time",), "1", "volume under water over the whole volume, foam included"),
     "water_force": (("time", "xyz"), "N", "of the water on the robot, in the world"),
     "water_power": (("time",), "W", "of the water on the robot"),
+    "servo_power": (("time",), "W", "of all servos on the joints"),
     "feet_share": (("time",), "1", "of the weight that the feet carry"),
 }
 """Further variables of runs in water, as in ``VARIABLES``.
 
-Force and power hold what the added mass took by the accelerations of the last physics step.
+Force and powers are means over the control period; they hold what the added mass took by the accelerations of the
+physics step before.
 """
 
 PER_RUN: Mapping[str, tuple[str, str]] = {
