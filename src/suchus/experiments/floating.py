@@ -78,7 +78,7 @@ class Floating(Experiment):
 
     def quick(self) -> "Floating":
         """Return one heel, few seconds, fewer points and angles."""
-        return replace(self, heels=(radians(150),), duration=3.0, energy_time=3.0, poses=2, points=2**14, angles=7)
+        return replace(self, heels=(radians(150),), duration=1.5, energy_time=1.0, poses=2, points=2**14, angles=5)
 
     def simulate(self, progress: Progress = silent) -> Simulated:
         """Float the bodies whose answers are known, then let the robot go."""
@@ -149,7 +149,7 @@ class Floating(Experiment):
             found[f"static_{name}"] = ("hull", np.array([float(getattr(one, name)) for one in both]), {"units": unit})
         return found
 
-    def _posture(self, robot: AnyRobot) -> np.ndarray:
+    def _posture(self, robot: AnyRobot) -> np.ndarray | None:
         return Swimming(swim=STILL).targets(robot, np.zeros(1))[0] if isinstance(robot, Crocodile) else None
 
     def _let_go(self, progress: Any) -> xr.Dataset:

@@ -82,8 +82,8 @@ class SwimFree(Experiment):
             check.that(not unknown, f"spread names {', '.join(unknown)}; there is {', '.join(_SPREAD)}")
 
     def quick(self) -> "SwimFree":
-        """Return one cycle after the first one, coefficients as they are."""
-        return replace(self, settle=1, cycles=1, spread=())
+        """Return the first cycle alone, coefficients as they are."""
+        return replace(self, settle=0, cycles=1, spread=())
 
     @property
     def _duration(self) -> float:
@@ -122,7 +122,7 @@ class SwimFree(Experiment):
     def _runs(self, motions: Mapping[str, Swim]) -> list[Run]:
         """Return every run; their labels say what they are."""
         lake, gait = Lake(level=self.level), GAITS["belly_crawl"]
-        stiff = replace(self.robot, name="stiff", tail=replace(self.robot.tail, joint_stiffness=self.stiffness))
+        stiff = replace(self.robot, tail=replace(self.robot.tail, joint_stiffness=self.stiffness))
         plain = partial(Swimming, limb_pitch=self.limb_pitch)
         runs = [
             Run(robot=robot, gait=gait, lake=lake, control=plain(swim=one), label=name + ending)

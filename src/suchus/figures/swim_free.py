@@ -38,7 +38,7 @@ def draw_speeds(speeds: Mapping[str, float], motions: Sequence[str], models: Seq
         ax.axhline(0.0, color=COLOURS["neutral"], linewidth=0.9)
         ax.set_xticks(range(len(motions)), [_CALLED.get(name, name) for name in motions])
         ax.set_ylabel("speed [m/s]")
-        ax.legend(loc="upper right")
+        ax.legend(loc="lower left")
     return captioned(
         figure,
         "Speed of each motion, forward positive, in six degrees of freedom at the surface and by models whose midline "

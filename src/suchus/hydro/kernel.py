@@ -10,7 +10,9 @@ to the accelerations goes into the mass matrix, the rest to the passive forces. 
 tail's end: -u p' + (p' . w) t / 2, where the water passes towards the tail (u > 0).
 """
 
+from collections.abc import Callable
 from math import acos, cos, exp, pi, sin, sqrt
+from typing import ParamSpec, TypeVar
 
 import numpy as np
 from numba import carray, njit, types
@@ -57,11 +59,29 @@ Vector = tuple[float, float, float]
 Axes = tuple[Vector, Vector, Vector]
 _TURBULENT = 5e5
 """Reynolds number from which a plate's turbulent friction counts [-]."""
-_compiled = njit(cache=True, nogil=True, error_model="numpy")
-_part = njit(nogil=True, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
+P = ParamSpec("P")
+R = TypeVar("R")
 
 
-@intrinsic  # type: ignore[untyped-decorator]
+def _compiled(function: Callable[P, R]) -> Callable[P, R]:
+    """Compile what is called from outside; keep the code on disk (``NUMBA_CACHE_DIR`` moves it)."""
+    options = {"nogil": True, "error_model": "numpy"}
+    try:
+        made: Callable[P, R] = njit(cache=True, **options)(function)
+    except RuntimeError:  # neither this folder nor the user's cache can be written: compile anew every time
+        made = njit(**options)(function)
+    return made
+
+
+def _part(function: Callable[P, R]) -> Callable[P, R]:
+    """Compile a part of these, which nothing else calls."""
+    made: Callable[P, R] = njit(nogil=True, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)(
+        function
+    )
+    return made
+
+
+@intrinsic
 def _pointer(typing, address):  # type: ignore[no-untyped-def]
     """Take a number for an address."""
     del typing, address

@@ -12,7 +12,7 @@ from mujoco.introspect.ast_nodes import AnonymousStructDecl, ArrayType, PointerT
 
 from suchus.errors import OtherMuJoCo
 
-_PLAIN = {
+_PLAIN: dict[str, Any] = {
     "mjtNum": ctypes.c_double,
     "double": ctypes.c_double,
     "float": ctypes.c_float,
@@ -46,7 +46,8 @@ def offset(struct: str, field: str) -> int:
     here = int(getattr(kind, first).offset)
     if not rest:
         return here
-    inner = dict(kind._fields_)[first]  # type: ignore[misc]
+    members: Any = kind._fields_
+    inner = next(one[1] for one in members if one[0] == first)
     return here + offset(inner.__name__, rest)
 
 

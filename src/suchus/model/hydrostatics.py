@@ -46,7 +46,7 @@ class Hydrostatics:
     heel: Float[np.ndarray, " heel"]
     """Angles of heel [rad]."""
     lever: Float[np.ndarray, " heel"]
-    """Righting lever GZ at each, trim and draft free; positive rights it [m]."""
+    """Righting lever GZ at each, trim and draft free, under water the trim held level; positive rights it [m]."""
 
     @property
     def vanishing(self) -> float:
@@ -75,12 +75,12 @@ class _Rigid:
         air = (1.0 - breath) * float(column(table, "air").sum())
         self.volume, self.breath, self.density = float(column(table, "volume").sum()) - air, breath, density
         self.reach = 2.0 * float(robot.length)
+        self.sunk = self.volume <= self.mass / density
 
     def at(self, heel: float, trim: float) -> tuple[np.ndarray, np.ndarray, float]:
         """Return up in the body's frame, the lever from the centre of mass to that of buoyancy, and the level [m]."""
         up = np.array([sin(trim), cos(trim) * sin(heel), cos(trim) * cos(heel)])
-        sunk = self.volume <= self.mass / self.density
-        level = self.reach if sunk else brentq(lambda one: self._statics(up, one)[0] - self.mass / self.density,
+        level = self.reach if self.sunk else brentq(lambda one: self._statics(up, one)[0] - self.mass / self.density,
                                                -self.reach, self.reach, xtol=1e-10)  # fmt: skip
         found = self._statics(up, level)
         return up, found[1:4] / found[0] - self.centre, level
@@ -89,14 +89,14 @@ class _Rigid:
         return np.asarray(hydrostatic(self.table, self.data.xpos, self.data.xmat, up, level, self.breath))
 
     def rest(self, heel: float, near: float) -> tuple[float, float, float]:
-        """Return trim [rad], righting lever and level [m] at a heel, the trim free from one nearby on."""
+        """Return trim [rad], righting lever and level [m] at a heel; afloat the trim is free, from one nearby on."""
 
         def along(trim: float) -> float:
             up, arm, _ = self.at(heel, trim)
             ahead = np.array([1.0, 0.0, 0.0]) - up[0] * up
             return float(arm @ ahead)
 
-        trim = _root(along, near)
+        trim = 0.0 if self.sunk else _root(along, near)
         up, arm, level = self.at(heel, trim)
         ahead = np.array([1.0, 0.0, 0.0]) - up[0] * up
         left = np.cross(up, ahead / np.linalg.norm(ahead))
