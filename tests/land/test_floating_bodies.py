@@ -3,16 +3,21 @@
 from dataclasses import replace
 from math import pi
 
+import mujoco
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from suchus.design.pieces import pieces
+from suchus.design.scale import physics_step
 from suchus.experiments import _floating_cases as cases
-from suchus.hydro import CROSS_DRAG, DENSITY, FORCE, HEADER, POWER, UNDER
+from suchus.hydro import ADDED, CROSS_DRAG, DENSITY, FORCE, HEADER, POWER, UNDER, column
 from suchus.hydro.table import COLUMNS, WIDTH
-from suchus.land import Lake, Wave
+from suchus.land import Lake, Wave, wetting
 from suchus.land.float_body import FloatBody, Pool
+from suchus.model.wet import wet_model
+from suchus.robots import ROBOTS
 
 
 @pytest.mark.parametrize("one", cases.drafts(), ids=lambda one: one.name)
@@ -165,3 +170,26 @@ def test_the_water_says_what_it_did():
     weight = np.array([0, 0, -9.81 * body.mass])
     assert told[FORCE : FORCE + 3] + weight == pytest.approx(body.mass * centre, abs=0.02 * 9.81 * body.mass)
     assert told[POWER] == pytest.approx(told[FORCE + 2] * data.qvel[2], rel=0.05)
+
+
+@pytest.mark.parametrize("name", list(ROBOTS))
+def test_every_robot_on_the_shelf_is_carried_by_what_it_displaces(name):
+    robot = ROBOTS[name]
+    wetting.install()
+    model = wet_model(robot, physics_step(robot), None, len(pieces(robot)) + 2)
+    data = mujoco.MjData(model)
+    data.userdata[:] = Lake(level=5.0, added_mass=0.0).numbers(np.array([0.0, 0.0, 1.0]))
+    mujoco.mj_forward(model, data)
+    volume = column(pieces(robot), "volume").sum()
+    assert data.userdata[UNDER] == pytest.approx(volume)
+    assert data.userdata[FORCE : FORCE + 3] == pytest.approx([0.0, 0.0, 9.81e3 * volume], abs=1e-9)
+    moved = np.zeros((2, model.nv))
+    sideways = np.eye(model.nv)[1]
+    for i, added in enumerate((0.0, 1.0)):
+        data.userdata[ADDED] = added
+        mujoco.mj_forward(model, data)
+        mujoco.mj_mulM(model, data, moved[i], sideways)
+    table = pieces(robot)
+    to_the_side = sum(column(table, "added")[:, k] * column(table, axis)[:, 1] ** 2
+                      for k, axis in enumerate(("across", "upward", "forward")))  # fmt: skip
+    assert (moved[1] - moved[0])[1] == pytest.approx(1000 * to_the_side.sum(), rel=1e-9)
