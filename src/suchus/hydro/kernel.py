@@ -23,6 +23,7 @@ from suchus.hydro.table import (
     ADDED,
     BALL,
     BREATH,
+    COLUMNS,
     CROSS_DRAG,
     CURRENT,
     DENSITY,
@@ -57,6 +58,7 @@ DATA_FIELDS = (
 
 Vector = tuple[float, float, float]
 Axes = tuple[Vector, Vector, Vector]
+_REACH = COLUMNS["reach"][0]
 _TURBULENT = 5e5
 """Reynolds number from which a plate's turbulent friction counts [-]."""
 P = ParamSpec("P")
@@ -142,6 +144,11 @@ def _blend(a: float, x: Vector, b: float, y: Vector, c: float, z: Vector) -> Vec
 @_part
 def _three(values: np.ndarray, start: int) -> Vector:
     return values[start], values[start + 1], values[start + 2]
+
+
+@_part
+def _row(values: np.ndarray, row: int, start: int) -> Vector:
+    return values[row, start], values[row, start + 1], values[row, start + 2]
 
 
 @_part
@@ -315,7 +322,7 @@ def _piece(
     """
     turn = poses[1][b]
     axes = _turned(turn, row, 5), _turned(turn, row, 8), _turned(turn, row, 11)
-    at = _plus(_three(poses[0][b], 0), _turned(turn, row, 2))
+    at = _plus(_row(poses[0], b, 0), _turned(turn, row, 2))
     raised, stream, surge = _orbit(user, time, at, up)
     ua, ub, ut = row[14] * _dot(up, axes[0]), row[15] * _dot(up, axes[1]), row[16] * _dot(up, axes[2])
     extent = sqrt(ua * ua + ub * ub + ut * ut)
@@ -324,8 +331,8 @@ def _piece(
         return 0.0
     volume = (row[17] - (1.0 - user[BREATH]) * row[18]) * share
     r = _plus(at, _times(-1.0, _three(poses[2], 0)))
-    omega, alpha = _three(motion[b], 0), _three(bias[b], 0)
-    v = _plus(_three(motion[b], 3), _plus(_cross(omega, r), _times(-1.0, stream)))  # of the centre against the water
+    omega, alpha = _row(motion, b, 0), _row(bias, b, 0)
+    v = _plus(_row(motion, b, 3), _plus(_cross(omega, r), _times(-1.0, stream)))  # of the centre against the water
     w = _dot(v, axes[0]), _dot(v, axes[1]), _dot(v, axes[2])
     # buoyancy and the pressure of the waves, at the centre of what is under water
     f = _times(user[DENSITY] * volume, _plus(_times(gravity, up), surge))
@@ -337,7 +344,7 @@ def _piece(
     if dense > 0.0:  # added mass: its bias here, the rest in the matrix
         ma, mb, mt = dense * row[19], dense * row[20], dense * row[21]
         p = _blend(ma * w[0], axes[0], mb * w[1], axes[1], mt * w[2], axes[2])
-        a = _plus(_three(bias[b], 3), _plus(_cross(alpha, r), _plus(_cross(omega, stream), _times(-1.0, surge))))
+        a = _plus(_row(bias, b, 3), _plus(_cross(alpha, r), _plus(_cross(omega, stream), _times(-1.0, surge))))
         rate = _blend(ma * _dot(a, axes[0]), axes[0], mb * _dot(a, axes[1]), axes[1], mt * _dot(a, axes[2]), axes[2])
         lost, twist = _shed(row, axes, v, omega, dense * user[SHEDDING])
         f = _plus(f, _blend(-1.0, rate, -1.0, _cross(omega, p), 1.0, lost))
@@ -408,6 +415,8 @@ def _wet(model: int, data: int, at: np.ndarray, numbers: np.ndarray) -> bool:
     for n in range(int(numbers[1])):
         row = table[n * WIDTH : (n + 1) * WIDTH]
         b = int(row[0])
+        if user[LEVEL] + abs(user[WAVE]) - _dot(up, _row(xpos, b, 0)) <= -row[_REACH]:
+            continue  # far above the surface
         poses = xpos, xmat, com[root[b]]
         under += _piece(row, b, poses, cvel, bias, up, gravity, user, clock[at[_TIME] // 8], numbers[2], force, inertia)
     for i in range(4):

@@ -31,10 +31,11 @@ COLUMNS: Mapping[str, tuple[int, int]] = {
         ("roll", 26, 27),  # roll drag over density, cross drag coefficient and the square of the rate [m5]
         ("shed", 27, 29),  # added mass per length over density, along e_a and e_b, where the tail ends; else 0 [m2]
         ("shed_at", 29, 30),  # of that end from the centre along t [m]
+        ("reach", 30, 31),  # no part of it is farther from the body's origin; filled where the table is packed [m]
     )
 }
 """Columns of each quantity in the table."""
-WIDTH = 30
+WIDTH = 31
 """Columns of the table [-]."""
 
 MAGIC = 7.3115e77
@@ -75,4 +76,6 @@ def packed(
     """
     room = np.zeros((len(table) if count is None else count, WIDTH))
     room[: len(table)] = table
+    half = np.linalg.norm(column(room, "half"), axis=1)
+    column(room, "reach")[:, 0] = np.linalg.norm(column(room, "at"), axis=1) + half
     return np.concatenate([[MAGIC, len(table), length], room.ravel()])

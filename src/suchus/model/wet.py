@@ -47,9 +47,8 @@ def carrying(spec: Any, robot: AnyRobot, room: int | None = None) -> Any:
     names = [body.name for body in layout(robot).bodies]
     model = with_pieces(spec, table, robot.length, room)
     ids = np.array([model.body(name).id for name in names])
-    found = np.array(table)
-    column(found, "body")[:, 0] = ids[table[:, 0].astype(int)]
-    model.numeric_data[HEADER : HEADER + found.size] = found.ravel()
+    rows = model.numeric_data[HEADER:].reshape(-1, table.shape[1])[: len(table)]
+    column(rows, "body")[:, 0] = ids[table[:, 0].astype(int)]
     return model
 
 
