@@ -424,6 +424,9 @@ def _wet(model: int, data: int, at: np.ndarray, numbers: np.ndarray) -> bool:
     user[UNDER] = under
     if under == 0.0:
         return False
+    if user[ADDED] > 0.0:
+        qacc = carray(_pointer(state[at[_QACC] // 8]), (nv,), np.float64)
+        _taken(parent, first, dofs, cdof, qacc, cvel, inertia, user)
     for b in range(nbody - 1, 0, -1):
         if parent[b] > 0:
             for i in range(6):
@@ -441,25 +444,53 @@ def _wet(model: int, data: int, at: np.ndarray, numbers: np.ndarray) -> bool:
         user[POWER] += acts * qvel[i]
     if user[ADDED] <= 0.0:
         return False
-    _burden(whole, state, at, inertia, cdof, owner, user)
+    _burden(whole, state, at, inertia, cdof, owner)
     return True
 
 
 @_part
-def _burden(
-    whole: np.ndarray, state: np.ndarray, at: np.ndarray, inertia: np.ndarray, cdof: np.ndarray, owner: np.ndarray,
+def _taken(
+    parent: np.ndarray,
+    first: np.ndarray,
+    dofs: np.ndarray,
+    cdof: np.ndarray,
+    qacc: np.ndarray,
+    cvel: np.ndarray,
+    inertia: np.ndarray,
     user: np.ndarray,
-) -> None:  # fmt: skip
-    """Add the composite added inertia to the joints' matrix, and to force and power what it took in the last step."""
+) -> None:
+    """Take from force and power of the water what the added mass takes by the accelerations of the last step."""
+    acceleration = np.zeros((len(parent), 6))
+    for b in range(1, len(parent)):
+        for i in range(6):
+            acceleration[b, i] = acceleration[parent[b], i]
+            for j in range(first[b], first[b] + dofs[b]):
+                acceleration[b, i] += cdof[j, i] * qacc[j]
+        if inertia[b, 9] + inertia[b, 14] + inertia[b, 20] <= 0.0:
+            continue
+        for i in range(6):
+            k, reaction = i * (i + 1) // 2, 0.0
+            for n in range(i + 1):
+                reaction += inertia[b, k + n] * acceleration[b, n]
+            for n in range(i + 1, 6):
+                reaction += inertia[b, n * (n + 1) // 2 + i] * acceleration[b, n]
+            user[POWER] -= reaction * cvel[b, i]
+            if i > 2:
+                user[FORCE + i - 3] -= reaction
+
+
+@_part
+def _burden(
+    whole: np.ndarray, state: np.ndarray, at: np.ndarray, inertia: np.ndarray, cdof: np.ndarray, owner: np.ndarray
+) -> None:
+    """Add the composite added inertia to the joints' matrix."""
     nv = len(owner)
     rownnz = carray(_pointer(whole[at[_ROWNNZ] // 8]), (nv,), np.int32)
     rowadr = carray(_pointer(whole[at[_ROWADR] // 8]), (nv,), np.int32)
     size = rowadr[nv - 1] + rownnz[nv - 1]
     column = carray(_pointer(whole[at[_COLIND] // 8]), (size,), np.int32)
     mass = carray(_pointer(state[at[_MASS] // 8]), (size,), np.float64)
-    qvel = carray(_pointer(state[at[_QVEL] // 8]), (nv,), np.float64)
-    qacc = carray(_pointer(state[at[_QACC] // 8]), (nv,), np.float64)
-    given, power, took = np.empty(6), 0.0, np.zeros(3)
+    given = np.empty(6)
     for i in range(nv):
         b = owner[i]
         for k in range(6):
@@ -474,13 +505,3 @@ def _burden(
             for k in range(6):
                 more += cdof[j, k] * given[k]
             mass[n] += more
-            power += more * qvel[i] * qacc[j]
-            if j < 3:
-                took[j] += more * qacc[i]
-            if j != i:
-                power += more * qvel[j] * qacc[i]
-                if i < 3:
-                    took[i] += more * qacc[j]
-    user[POWER] -= power
-    for i in range(3):
-        user[FORCE + i] -= took[i]

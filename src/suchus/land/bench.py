@@ -243,7 +243,7 @@ class _Meter:
         bench = self._bench
         now, torque = bench.sensors[:, bench.velocities], bench.sensors[:, bench.torques]
         self._sum[:, :4] += bench.water[:, hydro.FORCE : hydro.FORCE + 4]
-        self._sum[:, 4] += (torque * 0.5 * (self._before + now)).sum(axis=1)
+        self._sum[:, 4] += 0.5 * np.einsum("ij,ij->i", torque, self._before + now)
         self._before = now.copy()
 
     def mean(self, steps: int) -> np.ndarray:
