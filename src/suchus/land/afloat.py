@@ -8,7 +8,7 @@ from scipy.optimize import brentq
 from suchus.design import AnyRobot
 from suchus.design.pieces import pieces
 from suchus.hydro import HEADER, column
-from suchus.hydro.kernel import hydrostatic
+from suchus.hydro.forces import hydrostatic
 from suchus.land.lake import Lake
 from suchus.model.wet import wet_model
 from suchus.rotation import about, multiply

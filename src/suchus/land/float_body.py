@@ -13,7 +13,7 @@ from suchus.design import GRAVITY
 from suchus.design.checks import Checks
 from suchus.errors import Diverged
 from suchus.hydro import BALL, DISC, HEADER, SLAB, column
-from suchus.hydro.kernel import hydrostatic
+from suchus.hydro.forces import hydrostatic
 from suchus.hydro.table import COLUMNS, WIDTH
 from suchus.land import wetting
 from suchus.land.lake import Lake
@@ -143,7 +143,7 @@ class Pool:
         return np.array(self.data.qacc[:3]), np.array(self.data.qacc[3:6])
 
     def statics(self) -> Float[np.ndarray, "5"]:
-        """Return what ``hydro.kernel.hydrostatic`` says of the body as it lies."""
+        """Return what ``hydro.forces.hydrostatic`` says of the body as it lies."""
         level, breath = self._lake.at(self.data.time)
         return np.asarray(hydrostatic(self._table, self.data.xpos, self.data.xmat, _UP, level, breath))
 

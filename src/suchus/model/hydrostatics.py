@@ -14,7 +14,7 @@ from suchus.design.checks import require
 from suchus.design.pieces import pieces
 from suchus.errors import InvalidDesign
 from suchus.hydro import HEADER, column
-from suchus.hydro.kernel import hydrostatic
+from suchus.hydro.forces import hydrostatic
 from suchus.model.build import TIMESTEP, joint_addresses
 from suchus.model.wet import wet_model
 
