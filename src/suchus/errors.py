@@ -45,6 +45,21 @@ class IncompatibleRecord(SuchusError, ValueError):
     """A record that lacks what is asked of it, or was written by another version."""
 
 
+class OtherMuJoCo(SuchusError, RuntimeError):
+    """A MuJoCo whose memory is laid out otherwise than its own description says, so that water cannot act in it.
+
+    Attributes:
+        field: which field is not where it should be.
+    """
+
+    def __init__(self, field: str, version: str, why: str) -> None:
+        self.field = field
+        super().__init__(
+            f"the field {field} of MuJoCo {version} is not where it should be: {why}. Water needs a version of MuJoCo "
+            "that suchus was tested with, 4.0; dry land works with this one too."
+        )
+
+
 class NotConverged(SuchusError, RuntimeError):
     """An iteration that ended without an answer."""
 

@@ -96,7 +96,7 @@ def test_every_mistake_is_named_at_once_with_its_place(said):
         "tail.joints": "is 2.5; a whole number is needed",
         "head.mass": "is 'heavy'; a number is needed",
         "head.snout": "is 50 m; 0.0001 to 20 m is allowed",
-        "trunk": "is not known; there is name, hind_leg, front_leg, pelvis, spine, thorax, head, tail, contact",
+        "trunk": "is not known; there is name, hind_leg, front_leg, pelvis, spine, thorax, head, tail, contact, hull",
     }
 
 

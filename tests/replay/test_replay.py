@@ -220,3 +220,18 @@ def test_saving_leaves_nothing_half_written(robot, crawled, tmp_path):
     page = replay(crawled, robot)
     assert save(page, tmp_path / "run.html").read_text(encoding="utf-8") == page
     assert [file.name for file in tmp_path.iterdir()] == ["run.html"]
+
+
+def test_the_water_is_told_frame_by_frame_and_level_whatever_the_slope(robot, crawled):
+    assert opened(replay(crawled, robot))[0]["water"] is None
+    level = np.linspace(0.1, 0.3, crawled.sizes["time"])
+    wet = crawled.assign(
+        water_level=("time", level), stands_on=crawled.stands_on.copy(data=ground_text(Ground(uphill=0.2)))
+    )
+    meta, raw = opened(replay(wet, robot))
+    shown = read(raw, meta["water"]["levels"])
+    assert len(shown) == meta["actors"][0]["frames"]
+    assert shown[[0, -1]] == pytest.approx(level[[0, -1]], abs=0.01)
+    assert meta["water"]["up"] == pytest.approx([np.sin(0.2), 0.0, np.cos(0.2)], abs=1e-9)
+    dry = crawled.assign(water_level=("time", np.full(crawled.sizes["time"], np.nan)))
+    assert opened(replay(dry, robot))[0]["water"] is None

@@ -5,7 +5,7 @@ A passage stands between ``<!-- stated: NAME -->`` and ``<!-- end -->``. The mea
 """
 
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from itertools import product
 from textwrap import fill
 
@@ -17,9 +17,12 @@ _PASSAGE = re.compile(r"(<!-- stated: (\w+) -->\n)(.*?)(<!-- end -->)", re.DOTAL
 _ARMS = {"coordinated": "spine and tail", "limbs_only": "limbs only"}
 
 
-def filled(page: str, measures: Mapping[str, float]) -> str:
-    """Return a page whose passages say what the measures say."""
-    return _PASSAGE.sub(lambda found: found[1] + PASSAGES[found[2]](measures) + found[4], page)
+def filled(
+    page: str, measures: Mapping[str, float], made: Mapping[str, Callable[[Mapping[str, float]], str]] | None = None
+) -> str:
+    """Return a page whose passages say what the measures say; ``made`` makes each, those of joint faults if None."""
+    use = PASSAGES if made is None else made
+    return _PASSAGE.sub(lambda found: found[1] + use[found[2]](measures) + found[4], page)
 
 
 def passages(page: str) -> list[str]:

@@ -13,6 +13,7 @@ from suchus.control.sensed import Sensed
 from suchus.control.shared import OWNERS, Shared
 from suchus.control.spine import SpineRule
 from suchus.control.standing import BALANCE, Balance, Standing
+from suchus.control.swimming import Swimming
 from suchus.control.switching import SwitchRule
 from suchus.control.tail import TailRule
 from suchus.control.turning import CURVES, TurningCurve, turn
@@ -44,6 +45,7 @@ __all__ = [
     "Shared",
     "SpineRule",
     "Standing",
+    "Swimming",
     "SwitchRule",
     "TailRule",
     "TurningCurve",

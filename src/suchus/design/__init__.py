@@ -5,6 +5,7 @@ from suchus.design.chosen import Chosen, unit_at, value_at, with_values
 from suchus.design.contact import Contact
 from suchus.design.general import AnyRobot, general
 from suchus.design.hinge import Cable, Crank, Hinge, Spring, Turn
+from suchus.design.hull import Foam, Hull
 from suchus.design.joints import (
     LEGS,
     LegName,
@@ -41,10 +42,12 @@ __all__ = [
     "Contact",
     "Crank",
     "Crocodile",
+    "Foam",
     "Foot",
     "Girdle",
     "Head",
     "Hinge",
+    "Hull",
     "Layout",
     "Leg",
     "LegName",

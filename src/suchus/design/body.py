@@ -7,6 +7,7 @@ from itertools import pairwise
 from suchus.design.checks import Checks
 from suchus.design.contact import Contact
 from suchus.design.hinge import Cable, Hinge
+from suchus.design.hull import Hull
 from suchus.design.limb import Girdle
 from suchus.design.segment import Segment
 from suchus.design.servo import Servo
@@ -36,6 +37,8 @@ class Robot:
     """Cables, each over hinges with springs that follow each other."""
     contact: Contact
     """How its surfaces meet the ground."""
+    hull: Hull | None = None
+    """What makes it float; None for a robot without foam."""
 
     def __post_init__(self) -> None:
         with Checks("robot", self) as check:
@@ -49,7 +52,8 @@ class Robot:
     def mass(self) -> float:
         """Of the whole robot [kg]."""
         axis = sum(shape.mass for segment in self.axis for shape in segment.shapes)
-        return axis + 2 * sum(girdle.limb.mass for girdle in self.girdles)
+        foam = 0.0 if self.hull is None else self.hull.mass
+        return axis + 2 * sum(girdle.limb.mass for girdle in self.girdles) + foam
 
     @property
     def length(self) -> float:

@@ -38,6 +38,7 @@ def general(robot: AnyRobot) -> Robot:
         ),
         cables=cables,
         contact=robot.contact,
+        hull=robot.hull,
     )
 
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from suchus.design.body import check_scale
 from suchus.design.checks import Checks
 from suchus.design.contact import Contact
+from suchus.design.hull import Hull
 from suchus.design.leg import Leg
 from suchus.design.servo import Servo
 from suchus.design.spine import Spine
@@ -37,6 +38,8 @@ class Crocodile:
     """The tail."""
     contact: Contact
     """How its surfaces meet the ground."""
+    hull: Hull | None = None
+    """What makes it float; None for a robot without foam."""
 
     def __post_init__(self) -> None:
         with Checks("robot", self) as check:
@@ -59,7 +62,8 @@ class Crocodile:
     def mass(self) -> float:
         """Of the whole robot [kg]."""
         trunk = self.pelvis.mass + (self.spine.joints - 1) * self.spine.link_mass + self.thorax.mass + self.head.mass
-        return trunk + 2 * (self.hind_leg.mass + self.front_leg.mass) + self.tail.mass
+        foam = 0.0 if self.hull is None else self.hull.mass
+        return trunk + 2 * (self.hind_leg.mass + self.front_leg.mass) + self.tail.mass + foam
 
     @property
     def length(self) -> float:

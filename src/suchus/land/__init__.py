@@ -5,6 +5,7 @@ from suchus.fault import Fault
 from suchus.faults import Backlash, Deaf, Limp, Locked, LostFoot, Offset, Slow, Weak
 from suchus.land.arenas import ARENAS
 from suchus.land.crawling import crawl
+from suchus.land.lake import Lake, Wave
 from suchus.land.live import Live
 from suchus.land.loop import CONTROL_PERIOD
 from suchus.land.lost import KINDS, KNEES, LEGS_LOST, LOST, angle_at, lost, lost_joints
@@ -27,6 +28,7 @@ __all__ = [
     "Deaf",
     "Fault",
     "Ground",
+    "Lake",
     "Limp",
     "Live",
     "Locked",
@@ -35,6 +37,7 @@ __all__ = [
     "Push",
     "Run",
     "Slow",
+    "Wave",
     "Weak",
     "angle_at",
     "crawl",

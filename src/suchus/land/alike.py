@@ -28,7 +28,7 @@ class Alike:
     def __init__(self, runs: Sequence[Run], first: np.ndarray, period: float) -> None:
         groups: dict[object, list[int]] = {}
         for sim, run in enumerate(runs):
-            key = (run.robot, run.ground, run.afloat, hip_height(run.robot, run.gait), first[sim].tobytes())
+            key = (run.robot, run.ground, run.afloat, run.lake, hip_height(run.robot, run.gait), first[sim].tobytes())
             groups.setdefault(key, []).append(sim)
         self._groups = [members for members in groups.values() if len(members) > 1]
         self._leaves: dict[int, set[int]] = {}

@@ -8,13 +8,17 @@ import mujoco
 import numpy as np
 from mujoco.batch import Batch, SimulationError
 
-from suchus import threads
+from suchus import hydro, threads
 from suchus.design import GRAVITY, AnyRobot, layout
 from suchus.design.ground import Ground
+from suchus.design.pieces import pieces
 from suchus.design.relief import Relief
+from suchus.land import wetting
+from suchus.land.afloat import surfaced
 from suchus.land.alike import Alike
 from suchus.land.run import Afloat, Run
 from suchus.model import activations, compile_model, force_sensors, standing
+from suchus.model.wet import wet_model
 from suchus.motion import hip_height
 
 _TOO_FAST = 1e3  # [rad/s] or [m/s]; nothing on a robot moves so fast: the physics has come apart
@@ -30,7 +34,9 @@ class Bench:
 
     def __init__(self, runs: Sequence[Run], timestep: float) -> None:
         bodies = [(run.robot, run.ground.relief) for run in runs]
-        models = {body: _model(body[0], timestep, body[1]) for body in dict.fromkeys(bodies)}
+        self._lakes = {sim: run.lake for sim, run in enumerate(runs) if run.lake is not None}
+        room = max(len(pieces(run.robot)) for run in runs) if self._lakes else 0
+        models = {body: _model(body[0], timestep, body[1], room) for body in dict.fromkeys(bodies)}
         shared = models[bodies[0]]
         self.model = shared
         self._single = len(models) == 1
@@ -47,10 +53,21 @@ class Bench:
             self.batch.bind(name) for name in ("qpos", "qvel", "ctrl", "sensordata")
         )
         self.readings = self.sensors.copy()
+        self.water = self.batch.bind("userdata") if self._lakes else np.zeros((len(runs), 0))
+        if self._lakes:
+            wetting.install()
+            for sim, lake in self._lakes.items():
+                self.water[sim] = lake.numbers(up(runs[sim].ground))
         forces = force_sensors(runs[0].robot)
         self._forces = slice(int(shared.sensor(forces[0]).adr[0]), int(shared.sensor(forces[-1]).adr[0]) + 3)
         servos = [shared.sensor(f"{name}_position") for name in layout(runs[0].robot).servos]
         self._positions = slice(int(servos[0].adr[0]), int(servos[-1].adr[0]) + 1)
+        names = layout(runs[0].robot).servos
+        self.velocities, self.torques = (
+            slice(int(shared.sensor(f"{names[0]}_{what}").adr[0]), int(shared.sensor(f"{names[-1]}_{what}").adr[0]) + 1)
+            for what in ("velocity", "torque")
+        )
+        self.worked = np.zeros((len(runs), 5))
         self.alive = np.ones(len(runs), dtype=bool)
         self.ended = np.full(len(runs), np.inf)
         self.cause = [""] * len(runs)
@@ -109,6 +126,12 @@ class Bench:
         now = self.batch.expand("opt.disableactuator")[sim] if self._single else self._own(sim).opt.disableactuator
         self._set_option("disableactuator", sim, int(now) & ~bit if on else int(now) | bit)
 
+    def flood(self, time: float) -> None:
+        """Let level and breath of the lakes be what they are at a time [s], where they change."""
+        for sim, lake in self._lakes.items():
+            if lake.changes():
+                self.water[sim, hydro.LEVEL], self.water[sim, hydro.BREATH] = lake.at(time)
+
     def angles(self, sim: int) -> np.ndarray:
         """Return the angles of a run's joints at the servos' shafts as they are now, shape (servo,) [rad]."""
         angles: np.ndarray = self.readings[sim, self._positions]
@@ -145,9 +168,13 @@ class Bench:
                 posture = standing(model, run.robot, height, first[sim])
                 found[key] = posture, activations(model, first[sim])
             self.qpos[sim], act[sim] = found[key]
+            if run.lake is not None:
+                self.qpos[sim] = surfaced(run.robot, run.lake, up(run.ground), self.qpos[sim], self._timestep)
             self.ctrl[sim] = first[sim]
         self.batch.forward()
         self.readings[:] = self.sensors
+        if self._lakes:
+            self.worked[:, :4] = self.water[:, hydro.FORCE : hydro.FORCE + 4]
 
     def advance(self, targets: np.ndarray, steps: int, time: float, alike: Alike | None = None) -> None:
         """Command servo angles and advance the living by some steps; who diverges dies, with the time and the cause.
@@ -172,6 +199,7 @@ class Bench:
         felt = self.sensors[:, self._forces]
         pressed = np.zeros_like(felt)
         going = self._going(who)
+        meter = _Meter(self) if self._lakes else None
         for _ in range(steps):
             try:
                 self.batch.step(going, stage=_CURRENT)
@@ -180,6 +208,10 @@ class Bench:
                     self._end(int(sim), time, self.batch.error(int(sim)))
                 going = self._going(who)
             pressed += felt
+            if meter is not None:
+                meter.read()
+        if meter is not None:
+            self.worked[who] = meter.mean(steps)[who]
         self.readings[:] = self.sensors
         self.readings[:, self._forces] = pressed / steps
         fastest = np.abs(self.qvel).max(axis=1)
@@ -195,6 +227,7 @@ class Bench:
         """Let runs be where others are, and feel and suffer the same."""
         self.batch.state[sims] = self.batch.state[whom]
         self.readings[sims] = self.readings[whom]
+        self.worked[sims] = self.worked[whom]
         for sim, other in zip(sims, whom, strict=True):
             if not self.alive[other]:
                 self._end(int(sim), float(self.ended[other]), self.cause[other])
@@ -204,14 +237,40 @@ class Bench:
             self.alive[sim], self.ended[sim], self.cause[sim] = False, time, cause
 
 
-def _model(robot: AnyRobot, timestep: float, relief: Relief | None) -> Any:
-    """Return a model of its own, which does not look for islands.
+class _Meter:
+    """Adds up step by step what the water does to the robots and what their servos do; both jitter within a period."""
+
+    def __init__(self, bench: Bench) -> None:
+        self._bench = bench
+        self._before = bench.sensors[:, bench.velocities].copy()
+        self._sum = np.zeros_like(bench.worked)
+
+    def read(self) -> None:
+        """Add one physics step: the torque in it times the mean of the speeds before and after."""
+        bench = self._bench
+        now, torque = bench.sensors[:, bench.velocities], bench.sensors[:, bench.torques]
+        self._sum[:, :4] += bench.water[:, hydro.FORCE : hydro.FORCE + 4]
+        self._sum[:, 4] += 0.5 * np.einsum("ij,ij->i", torque, self._before + now)
+        self._before = now.copy()
+
+    def mean(self, steps: int) -> np.ndarray:
+        """Return force and power of the water and power of the servos, shape (run, 5)."""
+        return self._sum / steps
+
+
+def _model(robot: AnyRobot, timestep: float, relief: Relief | None, room: int) -> Any:
+    """Return a model of its own, which does not look for islands; for the water where there is room for pieces.
 
     A robot is one island, so that the bytes are the same, and a step takes a sixteenth less time.
     """
-    model = copy.copy(compile_model(robot, timestep, relief))
+    model = copy.copy(wet_model(robot, timestep, relief, room) if room else compile_model(robot, timestep, relief))
     model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_ISLAND)
     return model
+
+
+def up(ground: Ground) -> np.ndarray:
+    """Return the direction against gravity in the frame of a tilted ground, a unit vector."""
+    return -_gravity(ground) / GRAVITY
 
 
 def _gravity(ground: Ground) -> np.ndarray:

@@ -10,6 +10,7 @@ from suchus.design.ground import Ground
 from suchus.errors import Diverged
 from suchus.fault import Fault
 from suchus.gaits import GAITS
+from suchus.land.lake import Lake
 from suchus.land.push import Push
 from suchus.land.run import Run
 from suchus.land.simulation import simulate
@@ -25,6 +26,7 @@ def crawl(
     faults: Sequence[Fault] = (),
     pushes: Sequence[Push] = (),
     ground: Ground | None = None,
+    lake: Lake | None = None,
     control: Control | None = None,
     noise: float = 0.0,
     seed: int = 0,
@@ -39,6 +41,7 @@ def crawl(
         faults: what breaks, and when.
         pushes: forces from outside.
         ground: on what; level ground if None.
+        lake: in which water; dry land if None.
         control: open loop if None.
         noise: standard deviation of noise on every servo angle commanded [rad].
         seed: of the noise.
@@ -55,6 +58,7 @@ def crawl(
         robot=ROBOTS.resolve(robot),
         gait=GAITS.resolve(gait),
         ground=ground or Ground(),
+        lake=lake,
         faults=tuple(faults),
         pushes=tuple(pushes),
         control=control or OpenLoop(),

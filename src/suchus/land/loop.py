@@ -92,4 +92,5 @@ class Loop:
     def advance(self, tick: int, targets: np.ndarray) -> None:
         """Let one control period pass in which the servos are told these angles, shape (run, servo) [rad]."""
         self._alike.part(tick, targets)
+        self.bench.flood(tick * self._period)
         self.bench.advance(targets, self._steps, tick * self._period, self._alike)

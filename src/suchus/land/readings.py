@@ -1,16 +1,20 @@
 """Reading a batch's sensors: for the controller at every period, for the record at every sample."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import xarray as xr
 
+from suchus import hydro
 from suchus.control import Sensed
-from suchus.design import layout
-from suchus.land.bench import Bench
+from suchus.design import GRAVITY, layout
+from suchus.design.pieces import pieces
+from suchus.hydro import column
+from suchus.land.bench import Bench, up
+from suchus.land.lake import lake_text
 from suchus.land.run import Run
 from suchus.model import joint_addresses, sensor_names
-from suchus.record import dataset, ground_text
+from suchus.record import WATER, dataset, ground_text
 
 
 class Readings:
@@ -43,6 +47,8 @@ class Readings:
         self._qpos = np.full((n, samples, model.nq), np.nan)
         self._phase = np.full((n, samples, len(place.limbs)), np.nan)
         self._targets = np.full((n, samples, len(place.servos)), np.nan)
+        self._water = np.full((n, samples, bench.water.shape[1]), np.nan)
+        self._worked = np.full((n, samples, bench.worked.shape[1]), np.nan)
 
     def store(self, sample: int, phase: np.ndarray, targets: np.ndarray) -> None:
         """Keep one sample of the living."""
@@ -51,6 +57,8 @@ class Readings:
         self._qpos[alive, sample] = self._bench.qpos[alive]
         self._phase[alive, sample] = phase[alive]
         self._targets[alive, sample] = targets[alive]
+        self._water[alive, sample] = self._bench.water[alive]
+        self._worked[alive, sample] = self._bench.worked[alive]
 
     def sensed(self, time: float) -> Sensed:
         """Return what the robots feel now."""
@@ -87,7 +95,7 @@ class Readings:
             "gait": [run.gait.name for run in self._runs],
             "label": [run.label or run.gait.name for run in self._runs],
         }
-        return dataset(arrays, per_run, coordinates)
+        return _with_water(dataset(arrays, per_run, coordinates), self._runs, self._water, self._worked)
 
     def _arrays(self) -> dict[str, np.ndarray]:
         read, place = self._sensors, self._place
@@ -135,3 +143,45 @@ class Readings:
         """Return where the vertical parts of neighbouring forces stand."""
         all_parts = self._span(names, "force")
         return slice(min(all_parts.start + 2, all_parts.stop), all_parts.stop, 3)
+
+
+def alike(records: Sequence[xr.Dataset]) -> list[xr.Dataset]:
+    """Return records that hold the same variables: on dry land the water does nothing, and its level is NaN."""
+    if len({"water_level" in record for record in records}) < 2:
+        return list(records)
+    found = []
+    for record in records:
+        if "water_level" in record:
+            found.append(record)
+            continue
+        shape = record.sizes["run"], record.sizes["time"]
+        dry = {name: np.zeros((*shape, *(3 for dim in dims if dim == "xyz"))) for name, (dims, _, _) in WATER.items()}
+        found.append(_put(record, dry | {"water_level": np.full(shape, np.nan)}, shape[0] * [""]))
+    return found
+
+
+def _with_water(record: xr.Dataset, runs: Sequence[Run], water: np.ndarray, worked: np.ndarray) -> xr.Dataset:
+    """Add what the water does to a record; dry ones stay as they are."""
+    if not water.shape[-1]:
+        return record
+    total = np.array([column(pieces(run.robot), "volume").sum() for run in runs])
+    ups = np.array([up(run.ground) for run in runs])
+    feet = record.foot_force.sum("leg").values @ ups[:, :, None]
+    values = {
+        "water_level": water[..., hydro.LEVEL],
+        "breath": water[..., hydro.BREATH],
+        "share_under": water[..., hydro.UNDER] / total[:, None],
+        "water_force": worked[..., :3],
+        "water_power": worked[..., 3],
+        "servo_power": worked[..., 4],
+        "feet_share": feet[..., 0] / (GRAVITY * record.mass.values[:, None]),
+    }
+    return _put(record, values, [lake_text(run.lake) for run in runs])
+
+
+def _put(record: xr.Dataset, values: Mapping[str, np.ndarray], lakes: Sequence[str]) -> xr.Dataset:
+    for name, (dims, unit, what) in WATER.items():
+        record[name] = (("run", *dims), values[name], {"units": unit, "long_name": what})
+    about = {"units": "1", "long_name": "the lake as JSON; empty on dry land"}
+    record["swims_in"] = ("run", np.array(lakes, dtype=object).astype(str), about)
+    return record

@@ -8,6 +8,7 @@ from suchus.design.checks import Checks, require
 from suchus.design.ground import Ground
 from suchus.fault import Fault
 from suchus.gaits import GAITS
+from suchus.land.lake import Lake
 from suchus.land.push import Push
 from suchus.motion import AnyGait
 from suchus.robots import ROBOTS
@@ -50,6 +51,8 @@ class Run:
     """On what."""
     afloat: Afloat | None = None
     """In what it floats, instead of lying on the ground; None for the ground."""
+    lake: Lake | None = None
+    """The water that it walks and swims in; None on dry land."""
     faults: tuple[Fault, ...] = ()
     """What breaks, and when."""
     pushes: tuple[Push, ...] = ()
@@ -69,3 +72,7 @@ class Run:
         with Checks("run", self) as check:
             check.number("noise", 0.0, 1.0, "rad")
             check.whole("seed", 0, 2**32 - 1)
+            check.that(
+                self.lake is None or self.afloat is None,
+                "a run floats in a lake or in a vacuum without gravity, not in both: leave out lake or afloat",
+            )

@@ -10,8 +10,10 @@ from suchus.design.checks import require
 from suchus.design.scale import check_step, control_period, physics_step
 from suchus.errors import InvalidDesign
 from suchus.fault import check_faults
+from suchus.land.lake import check_lake
 from suchus.land.loop import Loop, physics_steps
 from suchus.land.push import check_pushes
+from suchus.land.readings import alike
 from suchus.land.run import Run
 from suchus.model import topology
 from suchus.motion import check_limits
@@ -65,6 +67,7 @@ def simulate(
 
         parts.append(_simulate_group(some, ticks, steps, timestep, every, report))
         order.extend(members)
+    parts = alike(parts)
     record = parts[0] if len(parts) == 1 else xr.concat(parts, "run", join="exact", data_vars="minimal")
     record = record.isel(run=np.argsort(order)).assign_coords(run=np.arange(len(runs)))
     record.attrs.update(timestep=timestep, control_period=period)
@@ -96,18 +99,21 @@ def _check(runs: Sequence[Run], duration: float, timestep: float, every: int) ->
     for run in runs:
         check_faults(run.faults, run.robot, duration)
         check_pushes(run.pushes, run.robot, duration)
+        if run.lake is not None:
+            check_lake(run.robot, run.lake)
     return steps, period
 
 
 def _groups(runs: Sequence[Run]) -> list[list[int]]:
     """Return the indices of the runs that share a controller: equal controls, or controls that can be joined.
 
-    Runs on different types of relief have models of different sizes and run one after another.
+    Runs on different types of relief, and runs in water and on dry land, have models of different sizes and run one
+    after another.
     """
     groups: dict[object, list[int]] = {}
     for i, run in enumerate(runs):
         joined = isinstance(run.control, Joinable)
-        key = type(run.control) if joined else run.control, type(run.ground.relief)
+        key = type(run.control) if joined else run.control, type(run.ground.relief), run.lake is None
         groups.setdefault(key, []).append(i)
     return list(groups.values())
 

@@ -1,15 +1,20 @@
 """The bodies of a robot: segments of the axis and links of the limbs, with hinges, shapes and sites."""
 
+from math import pi
 from typing import Any
 
 import mujoco
+import numpy as np
 
 from suchus.design import Contact, Hinge, Layout, LimbPlace, Robot, Rod, Segment, Servo, Spring
+from suchus.design.pieces import pieces
 from suchus.design.segment import Point
+from suchus.hydro import column
 from suchus.model.names import IMU, SNOUT, TAIL_TIP
 from suchus.model.surface import shell, skin, sole
 
 _SITE = 0.002  # [m]; as they are drawn
+_LEAST = 1e-9  # [kg] of foam; less than MuJoCo takes for a mass
 
 
 def add_bodies(root: Any, place: Layout) -> None:
@@ -78,6 +83,31 @@ def _add_link(body: Any, limb: LimbPlace, number: int, contact: Contact) -> None
     if number == len(design.links) - 1:
         sole(body, f"{limb.name}_foot", end, design.foot.radius, design.foot.mass, contact)
         body.add_site(name=f"{limb.name}_foot", pos=end, size=[_SITE, 0, 0])
+
+
+def add_foam(spec: Any, place: Layout) -> None:
+    """Add the mass of the robot's foam: balls of its volume around its centres, which touch nothing."""
+    hull = place.robot.hull
+    if hull is None:
+        return
+    table = pieces(place.robot)
+    number = {body.name: i for i, body in enumerate(place.bodies)}
+    for foam in hull.foam:
+        if foam.volume * hull.density < _LEAST:
+            continue
+        mine = table[table[:, 0] == number[foam.body]]
+        at = np.average(column(mine, "at"), axis=0, weights=column(mine, "volume")[:, 0])
+        spec.body(foam.body).add_geom(
+            name=f"{foam.body}_foam",
+            type=mujoco.mjtGeom.mjGEOM_SPHERE,
+            size=[(3 * foam.volume / (4 * pi)) ** (1 / 3), 0, 0],
+            pos=list(at),
+            mass=hull.density * foam.volume,
+            contype=0,
+            conaffinity=0,
+            priority=1,
+            group=4,
+        )
 
 
 def lay_cables(spec: Any, robot: Robot) -> None:

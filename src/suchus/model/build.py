@@ -9,7 +9,7 @@ import mujoco
 from suchus.design import GRAVITY, AnyRobot, Layout, Servo, layout
 from suchus.design.relief import Relief
 from suchus.errors import InvalidDesign
-from suchus.model.bodies import add_bodies, lay_cables
+from suchus.model.bodies import add_bodies, add_foam, lay_cables
 from suchus.model.ground import add_ground
 from suchus.model.names import sites
 
@@ -41,6 +41,7 @@ def build(robot: AnyRobot, *, timestep: float = TIMESTEP, relief: Relief | None 
     root = spec.worldbody.add_body(name=place.robot.root, pos=[0, 0, 0.2])
     root.add_freejoint(name="root")
     add_bodies(root, place)
+    add_foam(spec, place)
     lay_cables(spec, place.robot)
     for number, servo in enumerate(place.servos):
         _add_servo(spec, number, servo, place)
@@ -76,7 +77,8 @@ def topology(robot: AnyRobot) -> tuple[object, ...]:
     bodies = tuple((body.name, body.parent, tuple(name for _, name, _ in body.hinges)) for body in place.bodies)
     integrating = tuple(name for name in place.servos if servo_of(robot, name).ki > 0)
     shapes = tuple(len(segment.shapes) for segment in place.robot.axis)
-    return bodies, place.servos, shapes, tuple(cable.hinges for cable in place.robot.cables), integrating
+    foam = () if place.robot.hull is None else tuple(one.body for one in place.robot.hull.foam)
+    return bodies, foam, place.servos, shapes, tuple(cable.hinges for cable in place.robot.cables), integrating
 
 
 def joint_addresses(model: Any, names: Sequence[str]) -> list[int]:

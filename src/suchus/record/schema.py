@@ -34,6 +34,21 @@ VARIABLES: Mapping[str, tuple[tuple[str, ...], str, str]] = {
 }
 """Name of each variable: its dimensions after ``run``, its unit, what it is."""
 
+WATER: Mapping[str, tuple[tuple[str, ...], str, str]] = {
+    "water_level": (("time",), "m", "of the surface above the world's origin, against gravity"),
+    "breath": (("time",), "1", "share of the hull's air that is kept"),
+    "share_under": (("time",), "1", "volume under water over the whole volume, foam included"),
+    "water_force": (("time", "xyz"), "N", "of the water on the robot, in the world"),
+    "water_power": (("time",), "W", "of the water on the robot"),
+    "servo_power": (("time",), "W", "of all servos on the joints"),
+    "feet_share": (("time",), "1", "of the weight that the feet carry"),
+}
+"""Further variables of runs in water, as in ``VARIABLES``.
+
+Force and powers are means over the control period; they hold what the added mass took by the accelerations of the
+physics step before.
+"""
+
 PER_RUN: Mapping[str, tuple[str, str]] = {
     "mass": ("kg", "of the robot"),
     "period": ("s", "of the gait"),

@@ -35,6 +35,8 @@ class Frames(NamedTuple):
     """Centres of the feet, (frame, limb, 3) [m]."""
     forces: np.ndarray
     """Of the ground on the feet, (frame, limb, 3) [N]."""
+    level: np.ndarray | None
+    """Of the water above the world's origin, against gravity, (frame,) [m]; None on dry land."""
 
 
 def checked(record: xr.Dataset, robot: AnyRobot) -> xr.Dataset:
@@ -65,7 +67,7 @@ def checked(record: xr.Dataset, robot: AnyRobot) -> xr.Dataset:
         raise IncompatibleRecord(
             f"the record's legs are {', '.join(map(str, record.leg.values))}, not {', '.join(limbs) or 'none'}."
         )
-    kept = record[list(_NEEDED)]
+    kept = record[[*_NEEDED, *(name for name in ("water_level",) if name in record)]]
     values = np.concatenate([_rows(kept[name]) for name in _NEEDED], axis=1)
     count = int(np.logical_and.accumulate(np.isfinite(values).all(axis=1)).sum())
     if count == 0:
@@ -98,6 +100,7 @@ def frames(record: xr.Dataset, robot: AnyRobot, rate: float | None = None) -> Fr
         mass=values["centre_of_mass"],
         feet=values["foot_position"],
         forces=values["foot_force"],
+        level=_level(kept),
     )
 
 
@@ -105,3 +108,11 @@ def _rows(variable: xr.DataArray) -> np.ndarray:
     """Return the numbers of a variable, one row for each time."""
     values = np.asarray(variable.transpose("time", ...).values, dtype=float)
     return values.reshape(len(values), int(np.prod(values.shape[1:])))
+
+
+def _level(record: xr.Dataset) -> np.ndarray | None:
+    """Return the level of the water in each frame; None where there is none."""
+    if "water_level" not in record or record.water_level.dims != ("time",):
+        return None
+    level = np.asarray(record.water_level.values, dtype=float)
+    return level if np.isfinite(level).all() else None

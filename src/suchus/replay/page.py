@@ -115,7 +115,8 @@ def _told(robot: AnyRobot, moving: Sequence[Frames], labels: Sequence[str]) -> s
         f"{label}: {one.mass[-1, 0] - one.mass[0, 0]:.2f} m forward in {(len(one.mass) - 1) / one.rate:.1f} s"
         for one, label in zip(moving, labels, strict=False)
     ]
-    return f"Three-dimensional replay of the robot {robot.name} on the ground. {'; '.join(ways)}."
+    where = "on the ground" if moving[0].level is None else "in water"
+    return f"Three-dimensional replay of the robot {robot.name} {where}. {'; '.join(ways)}."
 
 
 def _still(robot: AnyRobot, record: xr.Dataset) -> tuple[str, str]:

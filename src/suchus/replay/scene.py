@@ -13,11 +13,19 @@ from suchus.figures import COLOURS, limb_colours
 from suchus.metrics.gait import LOADED_SHARE
 from suchus.replay.frames import Frames
 from suchus.replay.pack import Pack, quantised
+from suchus.rotation import rotate
 from suchus.skin import Skin, ankles, footed
 
 ARROW = 0.35
 """Length of an arrow that stands for the whole weight, over the robot's length [-]."""
-KEYS = {"force": "#D98200", "mass": COLOURS["alarm"], "support": "#B8860B", "ghost": "#6F9DC4", "relief": "#B9AE98"}
+KEYS = {
+    "force": "#D98200",
+    "mass": COLOURS["alarm"],
+    "support": "#B8860B",
+    "ghost": "#6F9DC4",
+    "relief": "#B9AE98",
+    "water": COLOURS["water"],
+}
 """Colours of what is not the robot."""
 _BESIDE = 0.62  # how far a second robot walks beside the first, over the robot's length
 
@@ -46,6 +54,7 @@ def scene(
         "loaded": LOADED_SHARE * robot.mass * GRAVITY,
         "overlaid": overlaid,
         "slope": np.round(slope(ground.uphill, ground.sideways), 9).tolist(),
+        "water": _packed_water(moving[0], ground, pack),
         "floor": float(field(relief).min()) if isinstance(relief, Bumps) else 0.0,  # as deep as the field, as in model
         "metres_per_newton": ARROW * robot.length / (robot.mass * GRAVITY),
         "marks": [max(floor(x.min()) - 1, -50), min(ceil(x.max()) + 1, 50)],
@@ -92,6 +101,15 @@ def _packed(robot: AnyRobot, one: Frames, label: str, relief: Relief | None, pac
             "forces": pack.add(one.forces.astype(np.float32)),
         },
     }
+
+
+def _packed_water(one: Frames, ground: Ground, pack: Pack) -> dict[str, Any] | None:
+    """Return the level of the water in each frame, and the direction against gravity in the frame of the ground."""
+    if one.level is None:
+        return None
+    back = slope(ground.uphill, ground.sideways) * np.array([1.0, -1.0, -1.0, -1.0])
+    up = rotate(back, np.array([0.0, 0.0, 1.0]))
+    return {"levels": pack.add(one.level.astype(np.float32)), "up": np.round(up, 9).tolist()}
 
 
 def _packed_relief(relief: Relief, pack: Pack) -> dict[str, Any]:

@@ -11,9 +11,9 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import AnyRobot, Crocodile, cable_joints, crocodile
+from suchus.design import AnyRobot, Crocodile, cable_joints, crocodile, general
+from suchus.design.profile import profile
 from suchus.errors import InvalidDesign
-from suchus.kinematics.mass import tail_segments
 from suchus.motion import Bends
 
 STATIONS = 257
@@ -36,30 +36,8 @@ def silhouette(robot: AnyRobot, s: Float[np.ndarray, " station"]) -> Silhouette:
         robot: the design.
         s: from the snout [m].
     """
-    robot = crocodile(robot, "the outline in the water")
-    joint_5, girdle = robot.head.snout, robot.head.snout + robot.spine.length
-    thorax, head = robot.thorax, robot.head
-    length = head.snout - thorax.shoulder
-    ellipsoids = (
-        (length / 2, length / 2, head.width / 2, head.height / 2),
-        (joint_5 - thorax.shoulder / 2, max(thorax.shoulder, 0.02) + 0.012, thorax.width / 2, thorax.height / 2),
-        (girdle, robot.pelvis.length / 2, robot.pelvis.width / 2, robot.pelvis.height / 2),
-    )
-    wide, high = np.zeros_like(s), np.zeros_like(s)
-    for middle, along, across, up in ellipsoids:
-        round_ = np.sqrt(np.clip(1.0 - ((s - middle) / along) ** 2, 0.0, None))
-        wide, high = np.maximum(wide, across * round_), np.maximum(high, up * round_)
-    capsules = [(joint_5 + i * robot.spine.link, robot.spine.link, robot.spine.radius) for i in range(4)]
-    at = girdle + robot.tail.offset
-    lengths, radii, _ = tail_segments(robot.tail)
-    for long, radius in zip(lengths, radii, strict=True):
-        capsules.append((at, long, radius))
-        at += long
-    for start, long, radius in capsules:
-        beyond = np.maximum(np.maximum(start - s, s - start - long), 0.0)
-        reach = np.sqrt(np.clip(radius**2 - beyond**2, 0.0, None))
-        wide, high = np.maximum(wide, reach), np.maximum(high, reach)
-    return Silhouette(wide, high)
+    found = profile(general(crocodile(robot, "the outline in the water")), s)
+    return Silhouette(found.half_width, found.half_height)
 
 
 class Base(NamedTuple):

@@ -299,6 +299,24 @@
     gl.uniform3fv(plain.uniforms.uEye, seen.eye);
     gl.uniform1f(plain.uniforms.uNight, +state.dark);
   }
+  const levels = meta.water ? take(meta.water.levels) : null;
+  function surface(seen) { // the water's, drawn last and half transparent; only where it stands above the ground
+    if (!levels) return;
+    const f = Math.min(Math.max((state.time - meta.start) * meta.rate, 0), levels.length - 1), i = Math.floor(f);
+    const level = levels[i] + (f - i) * (levels[Math.min(i + 1, levels.length - 1)] - levels[i]), up = meta.water.up;
+    const reach = 6 * meta.length, c = camera.target;
+    const at = (x, y) => [x, y, (level - up[0] * x - up[1] * y) / up[2]];
+    const corners = [[-1, -1], [1, -1], [1, 1], [-1, 1]].map(([a, b]) => at(c[0] + a * reach, c[1] + b * reach));
+    const wet = [];
+    corners.forEach((p, k) => { // clipped at the ground, after Sutherland and Hodgman
+      const q = corners[(k + 1) % 4], dp = p[2] - meta.floor, dq = q[2] - meta.floor;
+      if (dp >= 0) wet.push(p);
+      if (dp * dq < 0) wet.push(add(p, sub(q, p), dp / (dp - dq)));
+    });
+    const made = [], colour = [...meta.colours.water, 0.3];
+    for (let k = 1; k + 1 < wet.length; k++) push(made, wet[0], wet[k], wet[k + 1], colour, [0, 0, 0]);
+    triangles(made, seen, false);
+  }
   function triangles(made, seen, write) {
     if (!made.length) return;
     usePlain(seen);
@@ -391,6 +409,7 @@
     robot(now[0], seen);
     triangles(solids, seen, true);
     if (now.length > 1) through(now[1], seen);
+    surface(seen);
     if (state.support) { gl.disable(gl.DEPTH_TEST); const mark = []; hoop(mark, now[0].mass, seen); triangles(mark, seen, false); gl.enable(gl.DEPTH_TEST); }
     labels(seen);
     readout(now);

@@ -1,0 +1,73 @@
+"""Steps per second of processor time in water beside dry land: the same batch, one thread and two.
+
+Usage: python bench/bench_lake.py [--first]   (with it only how long the first wet step takes in a new process)
+"""
+
+import os
+import subprocess
+import sys
+import time
+
+import numpy as np
+
+from suchus.control import Swimming
+from suchus.gaits import GAITS
+from suchus.land import Lake, Run, simulate
+from suchus.motion import Swim
+
+DURATION, RUNS, REPEATS = 2.0, 8, 5
+WAVE = Swim(
+    name="wave", frequency=1.0, yaw=(0.36, 0.13, 0.11), yaw_late=(0.08, -0.11, -0.29), tail=0.75, tail_late=-0.11
+)
+GAIT = GAITS["belly_crawl"]
+ARMS = {
+    "dry": {"robot": "caiman"},
+    "dry, water far below": {"robot": "caiman", "lake": Lake(level=-10.0)},
+    "wading, 60 mm": {"robot": "caiman", "lake": Lake(level=0.06)},
+    "swimming": {"robot": "floating_caiman", "lake": Lake(level=2.0), "control": Swimming(swim=WAVE, limb_pitch=-0.15)},
+}
+FIRST = """
+import time
+from suchus.land import Lake, crawl
+crawl("caiman", "belly_crawl", duration=0.01)
+start = time.process_time()
+crawl("caiman", "belly_crawl", duration=0.01, lake=Lake(level=0.06))
+print(time.process_time() - start)
+"""
+
+
+def rate(arm: dict, clock) -> float:
+    """Return steps per second of a clock."""
+    runs = [Run(gait=GAIT, seed=i, noise=1e-6, **arm) for i in range(RUNS)]  # noise: no two of them go alike
+    start = clock()
+    simulate(runs, duration=DURATION)
+    return RUNS * DURATION / 0.002 / (clock() - start)
+
+
+def first() -> float:
+    """Return the processor time of the first wet step of a new process, its kernel compiled before [s]."""
+    times = [
+        float(subprocess.run([sys.executable, "-c", FIRST], capture_output=True, check=True).stdout) for _ in range(3)
+    ]
+    return min(times)
+
+
+def main() -> None:
+    print(f"{RUNS} runs of {DURATION} s, best of {REPEATS}, arms in turn; cores {os.cpu_count()}")
+    print(f"first wet step of a process: {first():.2f} s of processor time")
+    if "--first" in sys.argv:
+        return
+    for threads, clock, unit in (
+        ("1", time.process_time, "of processor time"),
+        ("2", time.perf_counter, "on the clock"),
+    ):
+        os.environ["SUCHUS_THREADS"] = threads
+        found = np.array([[rate(arm, clock) for arm in ARMS.values()] for _ in range(REPEATS)])
+        best, shares = found.max(axis=0), np.median(found / found[:, :1], axis=0)
+        print(f"{threads} thread{'s' * (threads != '1')}: steps per second {unit}, and the median share of dry")
+        for name, steps, share in zip(ARMS, best, shares, strict=True):
+            print(f"  {name:22s} {steps:8.0f}  {share:.2f}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,81 @@
+"""The table of a body's pieces, and the row of numbers that say what the water is: what the kernel reads and writes.
+
+Every piece is an affine image of a unit shape: half axes a and b across, c along, with unit axes e_a, e_b and t, which
+points forward. All of it in the frame of the body that carries the piece.
+"""
+
+from collections.abc import Mapping
+
+import numpy as np
+from jaxtyping import Float
+
+DISC, BALL, SLAB = 0, 1, 2
+"""Kinds of piece: a section of a trunk, tail or limb; an ellipsoid; a column of a box."""
+
+COLUMNS: Mapping[str, tuple[int, int]] = {
+    name: (start, stop)
+    for name, start, stop in (
+        ("body", 0, 1),  # which carries it
+        ("kind", 1, 2),
+        ("at", 2, 5),  # its centre [m]
+        ("across", 5, 8),  # e_a
+        ("upward", 8, 11),  # e_b
+        ("forward", 11, 14),  # t
+        ("half", 14, 17),  # a, b, c [m]
+        ("volume", 17, 18),  # [m3]
+        ("air", 18, 19),  # of which so much can be let out [m3]
+        ("added", 19, 22),  # added mass over density along e_a, e_b, t [m3]
+        ("area", 22, 24),  # drag area over the cross drag coefficient, for motion along e_a and e_b [m2]
+        ("skin", 24, 25),  # wetted area [m2]
+        ("end", 25, 26),  # drag area of motion along t [m2]
+        ("roll", 26, 27),  # roll drag over density, cross drag coefficient and the square of the rate [m5]
+        ("shed", 27, 29),  # added mass per length over density, along e_a and e_b, where the tail ends; else 0 [m2]
+        ("shed_at", 29, 30),  # of that end from the centre along t [m]
+        ("reach", 30, 31),  # no part of it is farther from the body's origin; filled where the table is packed [m]
+    )
+}
+"""Columns of each quantity in the table."""
+WIDTH = 31
+"""Columns of the table [-]."""
+
+MAGIC = 7.3115e77
+"""First number of a model's table, by which it is known."""
+HEADER = 3
+"""Numbers ahead of the table: magic number, number of pieces, length for the Reynolds number [m]."""
+
+LEVEL, DENSITY, BREATH, CURRENT, VISCOSITY, CROSS_DRAG, THICKENING, ADDED, SHEDDING = 0, 1, 2, 3, 6, 7, 8, 9, 10
+"""Places of what the water is, among a run's numbers.
+
+Level of the surface above the world's origin, against gravity [m]; density [kg/m3]; share of the hull's air that is
+kept [-]; velocity of the current in the world [m/s]; kinematic viscosity [m2/s]; drag coefficient of a section across
+[-]; factor on plate friction [-]; factors on added mass and on what is shed at the tail [-].
+"""
+WAVE = 11
+"""Place of a wave's amplitude [m], wave vector in the world (3) [rad/m], angular frequency [rad/s], phase [rad]."""
+FORCE, POWER, UNDER = 17, 20, 21
+"""Places of what the kernel leaves: force of the water on the robot [N], its power [W], volume under water [m3]."""
+NUMBERS = 22
+"""Length of the row [-]."""
+
+
+def column(table: Float[np.ndarray, "piece column"], name: str) -> Float[np.ndarray, "piece part"]:
+    """Return a view of one quantity of a table, see ``COLUMNS``."""
+    start, stop = COLUMNS[name]
+    return table[:, start:stop]
+
+
+def packed(
+    table: Float[np.ndarray, "piece column"], length: float, count: int | None = None
+) -> Float[np.ndarray, " n"]:
+    """Return a table as the row of numbers that a model carries.
+
+    Args:
+        table: the pieces.
+        length: of the body, for the Reynolds number of its friction [m].
+        count: pieces to make room for; as many as there are if None.
+    """
+    room = np.zeros((len(table) if count is None else count, WIDTH))
+    room[: len(table)] = table
+    half = np.linalg.norm(column(room, "half"), axis=1)
+    column(room, "reach")[:, 0] = np.linalg.norm(column(room, "at"), axis=1) + half
+    return np.concatenate([[MAGIC, len(table), length], room.ravel()])

@@ -1,0 +1,81 @@
+"""How the kernel is compiled, and three numbers at a time: tuples, which need no memory of their own."""
+
+from collections.abc import Callable
+from typing import ParamSpec, TypeVar
+
+import numpy as np
+from numba import njit
+
+Vector = tuple[float, float, float]
+"""Three numbers in the world."""
+Axes = tuple[Vector, Vector, Vector]
+"""Unit axes e_a, e_b and t of a piece."""
+P = ParamSpec("P")
+R = TypeVar("R")
+
+
+def compiled(function: Callable[P, R]) -> Callable[P, R]:
+    """Compile what is called from outside; keep the code on disk (``NUMBA_CACHE_DIR`` moves it)."""
+    options = {"nogil": True, "error_model": "numpy"}
+    try:
+        made: Callable[P, R] = njit(cache=True, **options)(function)
+    except RuntimeError:  # neither this folder nor the user's cache can be written: compile anew every time
+        made = njit(**options)(function)
+    return made
+
+
+def part(function: Callable[P, R]) -> Callable[P, R]:
+    """Compile a part of these, which nothing else calls."""
+    made: Callable[P, R] = njit(nogil=True, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)(
+        function
+    )
+    return made
+
+
+@part
+def cross(a: Vector, b: Vector) -> Vector:
+    """Return the vector product."""
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+@part
+def dot(a: Vector, b: Vector) -> float:
+    """Return the scalar product."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+@part
+def plus(a: Vector, b: Vector) -> Vector:
+    """Return the sum."""
+    return a[0] + b[0], a[1] + b[1], a[2] + b[2]
+
+
+@part
+def times(a: float, b: Vector) -> Vector:
+    """Return a vector times a number."""
+    return a * b[0], a * b[1], a * b[2]
+
+
+@part
+def blend(a: float, x: Vector, b: float, y: Vector, c: float, z: Vector) -> Vector:
+    """Return a x + b y + c z."""
+    return a * x[0] + b * y[0] + c * z[0], a * x[1] + b * y[1] + c * z[1], a * x[2] + b * y[2] + c * z[2]
+
+
+@part
+def three(values: np.ndarray, start: int) -> Vector:
+    """Return three numbers of an array."""
+    return values[start], values[start + 1], values[start + 2]
+
+
+@part
+def row3(values: np.ndarray, row: int, start: int) -> Vector:
+    """Return three numbers of a row of an array."""
+    return values[row, start], values[row, start + 1], values[row, start + 2]
+
+
+@part
+def turned(xmat: np.ndarray, values: np.ndarray, start: int) -> Vector:
+    """Return three numbers of a row, a vector in the frame of a body, in the world."""
+    v = three(values, start)
+    return dot(three(xmat, 0), v), dot(three(xmat, 3), v), dot(three(xmat, 6), v)

@@ -1,0 +1,61 @@
+"""A robot put on the water: level with the surface, as deep as its weight asks for."""
+
+import mujoco
+import numpy as np
+from jaxtyping import Float
+from scipy.optimize import brentq
+
+from suchus.design import AnyRobot
+from suchus.design.pieces import pieces
+from suchus.hydro import HEADER, column
+from suchus.hydro.forces import hydrostatic
+from suchus.land.lake import Lake
+from suchus.model.wet import wet_model
+from suchus.rotation import about, multiply
+
+
+def surfaced(
+    robot: AnyRobot, lake: Lake, up: Float[np.ndarray, "3"], qpos: Float[np.ndarray, " q"], timestep: float
+) -> Float[np.ndarray, " q"]:
+    """Return a posture lifted to the surface, level with it but for its heel, if the robot floats clear of the ground.
+
+    A robot that is heavier than its water, or that would touch the ground, stays as it stands.
+
+    Args:
+        robot: the design.
+        lake: the water.
+        up: against gravity, unit vector.
+        qpos: the posture on the ground.
+        timestep: of the physics [s].
+    """
+    level, breath = lake.at(0.0)
+    table = np.array(pieces(robot))
+    weight = robot.mass / lake.water.density
+    if column(table, "volume").sum() - (1 - breath) * column(table, "air").sum() <= weight:
+        return qpos
+    model = wet_model(robot, timestep, None, len(table))
+    data = mujoco.MjData(model)
+    here = np.array(qpos)
+    here[3:7] = multiply(multiply(_raising(up), about(np.array([1.0, 0.0, 0.0]), lake.heel)), qpos[3:7])
+    here[:3] = 0.0
+    data.qpos[:] = here
+    mujoco.mj_kinematics(model, data)
+    bodies = model.numeric_data[HEADER : HEADER + table.size].reshape(table.shape)
+
+    def lacking(height: float) -> float:
+        return float(hydrostatic(bodies, data.xpos, data.xmat, up, -height, breath)[0]) - weight
+
+    reach = float(robot.length)
+    height = brentq(lacking, -reach, reach, xtol=1e-9)  # of the root above the surface
+    here[:3] = qpos[:3] + (level + height - float(up @ qpos[:3])) * up
+    data.qpos[:] = here
+    mujoco.mj_forward(model, data)
+    touching = any(contact.dist < 0.0 for contact in data.contact)
+    return qpos if touching else here
+
+
+def _raising(up: np.ndarray) -> np.ndarray:
+    """Return the shortest turn that takes z to ``up``, as a quaternion wxyz."""
+    axis = np.cross([0.0, 0.0, 1.0], up)
+    turn = np.array([1.0 + up[2], *axis])
+    return np.asarray(turn / np.linalg.norm(turn))

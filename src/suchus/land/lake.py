@@ -1,0 +1,169 @@
+"""The water of a run: where its surface is, how heavy it is, how it moves; some of it may change while the run goes."""
+
+import json
+from dataclasses import asdict, dataclass, field
+from itertools import pairwise
+from math import cos, isfinite, pi, sin, sqrt, tau
+from typing import Any
+
+import numpy as np
+from jaxtyping import Float
+
+from suchus import hydro
+from suchus.design import GRAVITY, AnyRobot, general
+from suchus.design.checks import Checks
+from suchus.design.water import Water
+from suchus.errors import InvalidDesign
+
+Course = float | tuple[tuple[float, float], ...]
+"""A number, or times [s] with the numbers there, linear in between and held before and after."""
+STEEPEST = 0.142
+"""Height over length beyond which waves on deep water break [-]. Source: Michell 1893."""
+DEEPEST = 1000.0
+"""Greatest distance of the level from the world's origin [m]."""
+FASTEST = 5.0
+"""Greatest speed of a current [m/s]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Wave:
+    """Plane waves of small height on deep water, after Airy."""
+
+    height: float
+    """From trough to crest [m]."""
+    length: float
+    """From crest to crest [m]."""
+    heading: float = 0.0
+    """Where they run, forward 0, to the left positive [rad]."""
+    phase: float = 0.0
+    """At the world's origin at time 0, a crest at 0 [cycle]."""
+
+    def __post_init__(self) -> None:
+        with Checks("wave", self) as check:
+            check.number("height", 0.0, 100.0, "m")
+            check.number("length", 0.01, 1000.0, "m")
+            check.number("heading", -2 * pi, 2 * pi, "rad")
+            check.number("phase", -1.0, 1.0, "cycle")
+            steep = self.height / self.length if self.length > 0 else 0.0
+            check.that(
+                not steep > STEEPEST,
+                f"a wave {self.height:g} m high and {self.length:g} m long is steeper than {STEEPEST:g}, where waves "
+                f"break: at this length at most {STEEPEST * self.length:.3g} m are allowed",
+            )
+
+    @property
+    def frequency(self) -> float:
+        """Of deep water, sqrt(g / (2 pi length)) [Hz]."""
+        return sqrt(GRAVITY / (tau * self.length))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Lake:
+    """Water with a level surface. Where the ground slopes, the surface is level and the slope is the shore.
+
+    Level and breath may be courses over time, as ``((0.0, 0.1), (5.0, 0.3))``.
+    """
+
+    level: Course
+    """Of the surface above the world's origin, against gravity [m]; the ground passes through the origin."""
+    water: Water = field(default_factory=Water)
+    """Density, viscosity, and what sections of a body feel."""
+    current: tuple[float, float] = (0.0, 0.0)
+    """Velocity of the water, forward and to the left [m/s]."""
+    wave: Wave | None = None
+    """On the surface; None where it is flat."""
+    breath: Course = 1.0
+    """Share of the air of the robot's hull that is kept, 0 to 1 [-]."""
+    heel: float = 0.0
+    """Roll with which a robot that floats is put on the water, right side down positive [rad]."""
+    added_mass: float = 1.0
+    """Factor on the added mass of all pieces [-]."""
+    shedding: float = 1.0
+    """Factor on the momentum that is shed at the end of the tail [-]."""
+
+    def __post_init__(self) -> None:
+        with Checks("lake", self) as check:
+            check.each("current", ("forward", "left"), -FASTEST, FASTEST, "m/s")
+            check.number("heel", -pi, pi, "rad")
+            check.number("added_mass", 0.0, 10.0, "")
+            check.number("shedding", 0.0, 10.0, "")
+            for name, low, high, unit in (("level", -DEEPEST, DEEPEST, "m"), ("breath", 0.0, 1.0, "")):
+                check.that(*_course(name, getattr(self, name), low, high, unit))
+
+    def at(self, time: float) -> tuple[float, float]:
+        """Return level [m] and breath [-] at a time [s]."""
+        return _now(self.level, time), _now(self.breath, time)
+
+    def changes(self) -> bool:
+        """Tell whether level or breath change while the run goes."""
+        return not isinstance(self.level, (int, float)) or not isinstance(self.breath, (int, float))
+
+    def numbers(self, up: Float[np.ndarray, "3"], time: float = 0.0) -> Float[np.ndarray, " n"]:
+        """Return the row of numbers that the physics reads, see ``hydro``.
+
+        Args:
+            up: unit vector against gravity.
+            time: [s].
+        """
+        row = np.zeros(hydro.NUMBERS)
+        row[hydro.LEVEL], row[hydro.BREATH] = self.at(time)
+        row[hydro.DENSITY], row[hydro.VISCOSITY] = self.water.density, self.water.viscosity
+        row[hydro.CROSS_DRAG], row[hydro.THICKENING] = self.water.cross_drag, self.water.thickening
+        row[hydro.ADDED], row[hydro.SHEDDING] = self.added_mass, self.shedding
+        ahead, left = _level_axes(up)
+        row[hydro.CURRENT : hydro.CURRENT + 3] = self.current[0] * ahead + self.current[1] * left
+        if self.wave is not None:
+            number = tau / self.wave.length
+            heading = cos(self.wave.heading) * ahead + sin(self.wave.heading) * left
+            numbers = [self.wave.height / 2, *(number * heading), tau * self.wave.frequency, tau * self.wave.phase]
+            row[hydro.WAVE : hydro.WAVE + len(numbers)] = numbers
+        return row
+
+
+def lake_text(lake: Lake | None) -> str:
+    """Return a lake as JSON text; the empty one stands for none."""
+    return "" if lake is None else json.dumps(asdict(lake), sort_keys=True)
+
+
+def check_lake(robot: AnyRobot, lake: Lake) -> None:
+    """Refuse a breath that a robot's hull has no air for.
+
+    Raises:
+        InvalidDesign: breath is let out, and the robot has no hull with air.
+    """
+    hull = general(robot).hull
+    if (hull is None or hull.air == 0.0) and lake.breath != 1.0:
+        raise InvalidDesign(
+            f"lake.breath is {str(lake.breath)[:60]}, and robot {robot.name!r} has no air that it could let out: leave "
+            "breath at 1, or give the robot a design.Hull with air."
+        )
+
+
+def _course(name: str, course: Any, low: float, high: float, unit: str) -> tuple[bool, str]:
+    allowed = f"{low:g} to {high:g} {unit}".rstrip()
+    if isinstance(course, (int, float)) and not isinstance(course, bool):
+        return low <= course <= high, f"lake.{name} is {course:g} {unit}; {allowed} is allowed".replace(" ;", ";")
+    pairs = isinstance(course, tuple) and bool(course) and all(_pair(one) for one in course)
+    good = pairs and all(low <= value <= high for _, value in course)
+    rising = pairs and all(a[0] < b[0] for a, b in pairwise(course))
+    return good and rising, (
+        f"lake.{name} is {str(course)[:60]}; a number of {allowed}, or pairs of a time and such a number are allowed, "
+        "the times rising"
+    )
+
+
+def _pair(one: Any) -> bool:
+    return isinstance(one, tuple) and len(one) == 2 and all(isinstance(x, (int, float)) and isfinite(x) for x in one)
+
+
+def _now(course: Course, time: float) -> float:
+    if isinstance(course, (int, float)):
+        return float(course)
+    return float(np.interp(time, [at for at, _ in course], [value for _, value in course]))
+
+
+def _level_axes(up: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return forward and left along the surface."""
+    ahead = np.array([1.0, 0.0, 0.0]) - up[0] * up
+    ahead /= np.linalg.norm(ahead)
+    return ahead, np.cross(up, ahead)

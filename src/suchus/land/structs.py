@@ -1,0 +1,121 @@
+"""Where the fields of MuJoCo's structs lie: derived from its own description, verified against its bindings."""
+
+import ctypes
+from collections.abc import Iterator, Sequence
+from functools import lru_cache
+from typing import Any
+
+import mujoco
+import numpy as np
+from mujoco.introspect import structs
+from mujoco.introspect.ast_nodes import AnonymousStructDecl, ArrayType, PointerType
+
+from suchus.errors import OtherMuJoCo
+
+_PLAIN: dict[str, Any] = {
+    "mjtNum": ctypes.c_double,
+    "double": ctypes.c_double,
+    "float": ctypes.c_float,
+    "int": ctypes.c_int,
+    "char": ctypes.c_char,
+    "mjtSize": ctypes.c_int64,
+    "int64_t": ctypes.c_int64,
+    "mjtByte": ctypes.c_ubyte,
+    "mjtBool": ctypes.c_bool,
+    "size_t": ctypes.c_size_t,
+    "uint64_t": ctypes.c_uint64,
+    "uintptr_t": ctypes.c_size_t,
+}
+"""Plain C types by the names that MuJoCo's description uses."""
+
+
+def offset(struct: str, field: str) -> int:
+    """Return where a field of a struct begins [byte].
+
+    Args:
+        struct: as ``mjModel``.
+        field: its name; of a struct inside, as ``opt.gravity``.
+
+    Raises:
+        OtherMuJoCo: MuJoCo's description has no such struct or field, or a type that is not known.
+    """
+    first, _, rest = field.partition(".")
+    kind = _struct(struct)
+    if not hasattr(kind, first):
+        raise OtherMuJoCo(f"{struct}.{field}", mujoco.__version__, "its description has no such field")
+    here = int(getattr(kind, first).offset)
+    if not rest:
+        return here
+    members: Any = kind._fields_
+    inner = next(one[1] for one in members if one[0] == first)
+    return here + offset(inner.__name__, rest)
+
+
+@lru_cache(maxsize=32)
+def _struct(name: str) -> type[ctypes.Structure]:
+    """Return a struct with the fields of MuJoCo's description in their order."""
+    if name not in structs.STRUCTS:
+        raise OtherMuJoCo(name, mujoco.__version__, "its description has no such struct")
+    return _made(name, structs.STRUCTS[name].fields)
+
+
+def _made(name: str, members: Sequence[Any]) -> type[ctypes.Structure]:
+    fields = [(member.name, _type(f"{name}.{member.name}", member.type)) for member in members]
+    return type(name, (ctypes.Structure,), {"_fields_": fields})
+
+
+def _type(where: str, told: Any) -> Any:
+    if isinstance(told, PointerType):
+        return ctypes.c_void_p
+    if isinstance(told, ArrayType):
+        return _type(where, told.inner_type) * int(np.prod(told.extents))
+    if isinstance(told, AnonymousStructDecl):
+        return _made(where, told.fields)
+    if told.name in _PLAIN:
+        return _PLAIN[told.name]
+    if told.name in structs.STRUCTS:
+        return _struct(told.name)
+    if hasattr(mujoco, told.name):  # an enumeration
+        return ctypes.c_int
+    raise OtherMuJoCo(where, mujoco.__version__, f"its type {told.name} is not known")
+
+
+def verify(struct: str, instance: Any, fields: Sequence[str]) -> None:
+    """Compare what lies at the derived offsets with what MuJoCo's bindings say.
+
+    Args:
+        struct: as ``mjModel``.
+        instance: a ``mujoco.MjModel`` or ``mujoco.MjData`` in which no field is empty.
+        fields: the names of its fields; arrays are compared by address, numbers by value.
+
+    Raises:
+        OtherMuJoCo: another thing lies there; the message names field and version.
+    """
+    for field, here in _found(struct, instance._address, fields):
+        there = _bound(instance, field)
+        same = here == there.ctypes.data if isinstance(there, np.ndarray) else here == there
+        if not same:
+            raise OtherMuJoCo(f"{struct}.{field}", mujoco.__version__, f"{here} lies at its offset, not what it holds")
+
+
+def _bound(instance: Any, field: str) -> Any:
+    for name in field.split("."):
+        instance = getattr(instance, name)
+    return instance
+
+
+def _found(struct: str, address: int, fields: Sequence[str]) -> Iterator[tuple[str, float]]:
+    """Yield what lies at the offset of each field: the address of an array, or the number itself."""
+    for field in fields:
+        at = address + offset(struct, field)
+        owner, name = (structs.STRUCTS[struct], field)
+        while "." in name:
+            first, _, name = name.partition(".")
+            owner = structs.STRUCTS[next(one.type.name for one in owner.fields if one.name == first)]
+        told = next(one.type for one in owner.fields if one.name == name)
+        if isinstance(told, ArrayType):
+            yield field, at
+        elif isinstance(told, PointerType):
+            yield field, ctypes.c_size_t.from_address(at).value
+        else:
+            yield field, _PLAIN[told.name].from_address(at).value

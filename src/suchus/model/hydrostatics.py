@@ -1,0 +1,182 @@
+"""Hydrostatics of a robot at rest, as naval architects draw them: draft, trim, metacentric height, righting curve."""
+
+from dataclasses import dataclass
+from math import cos, radians, sin
+from typing import Any
+
+import mujoco
+import numpy as np
+from jaxtyping import Float
+from scipy.optimize import brentq
+
+from suchus.design import WATER_DENSITY, AnyRobot, layout, servo_names
+from suchus.design.checks import require
+from suchus.design.pieces import pieces
+from suchus.errors import InvalidDesign
+from suchus.hydro import HEADER, column
+from suchus.hydro.forces import hydrostatic
+from suchus.model.build import TIMESTEP, joint_addresses
+from suchus.model.wet import wet_model
+
+_STEEPEST = radians(80)
+_SMALL = radians(0.5)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Hydrostatics:
+    """How a robot floats, rigid in a posture."""
+
+    mass: float
+    """With its foam [kg]."""
+    volume: float
+    """With its foam, all under water [m3]."""
+    floats: bool
+    """Whether it is lighter than the water that it can displace."""
+    missing: float
+    """Volume that it lacks to float with nothing above the surface; negative where it has some to spare [m3]."""
+    surplus: float
+    """Mass by which it is too heavy; negative where it could carry more [kg]."""
+    draft: float
+    """From the surface down to its lowest point, upright; NaN if it sinks [m]."""
+    trim: float
+    """Pitch at rest, upright, nose up positive; NaN if it sinks [rad]."""
+    metacentric_height: float
+    """Transverse: slope of the righting lever where it is upright; under water, the centre of buoyancy over that of
+    mass [m]."""
+    heel: Float[np.ndarray, " heel"]
+    """Angles of heel [rad]."""
+    lever: Float[np.ndarray, " heel"]
+    """Righting lever GZ at each, trim and draft free, under water the trim held level; positive rights it [m]."""
+
+    @property
+    def vanishing(self) -> float:
+        """Least heel beyond which it does not right itself; that of the end of the curve if it does all along [rad]."""
+        lost = np.flatnonzero((self.lever <= 0.0) & (self.heel > 0.0))
+        if not lost.size:
+            return float(self.heel[-1])
+        last = int(lost[0])
+        if last == 0 or self.lever[last - 1] <= 0.0:
+            return float(self.heel[max(last - 1, 0)])
+        share = self.lever[last - 1] / (self.lever[last - 1] - self.lever[last])
+        return float(self.heel[last - 1] + share * (self.heel[last] - self.heel[last - 1]))
+
+
+class _Rigid:
+    """A robot frozen in a posture: its pieces, its weight and its centre of mass, root at the origin."""
+
+    def __init__(self, robot: AnyRobot, servos: np.ndarray, density: float, breath: float) -> None:
+        table = np.array(pieces(robot))
+        model = wet_model(robot, TIMESTEP, None, len(table))
+        self.data = data = mujoco.MjData(model)
+        _bend(model, data, robot, servos)
+        mujoco.mj_fwdPosition(model, data)
+        self.table = model.numeric_data[HEADER : HEADER + table.size].reshape(table.shape)
+        self.centre, self.mass = np.array(data.subtree_com[0]), float(model.body_subtreemass[0])
+        air = (1.0 - breath) * float(column(table, "air").sum())
+        self.volume, self.breath, self.density = float(column(table, "volume").sum()) - air, breath, density
+        self.reach = 2.0 * float(robot.length)
+        self.sunk = self.volume <= self.mass / density
+
+    def at(self, heel: float, trim: float) -> tuple[np.ndarray, np.ndarray, float]:
+        """Return up in the body's frame, the lever from the centre of mass to that of buoyancy, and the level [m]."""
+        up = np.array([sin(trim), cos(trim) * sin(heel), cos(trim) * cos(heel)])
+        level = self.reach if self.sunk else brentq(lambda one: self._statics(up, one)[0] - self.mass / self.density,
+                                               -self.reach, self.reach, xtol=1e-10)  # fmt: skip
+        found = self._statics(up, level)
+        return up, found[1:4] / found[0] - self.centre, level
+
+    def _statics(self, up: np.ndarray, level: float) -> np.ndarray:
+        return np.asarray(hydrostatic(self.table, self.data.xpos, self.data.xmat, up, level, self.breath))
+
+    def rest(self, heel: float, near: float) -> tuple[float, float, float]:
+        """Return trim [rad], righting lever and level [m] at a heel; afloat the trim is free, from one nearby on."""
+
+        def along(trim: float) -> float:
+            up, arm, _ = self.at(heel, trim)
+            ahead = np.array([1.0, 0.0, 0.0]) - up[0] * up
+            return float(arm @ ahead)
+
+        trim = 0.0 if self.sunk else _root(along, near)
+        up, arm, level = self.at(heel, trim)
+        ahead = np.array([1.0, 0.0, 0.0]) - up[0] * up
+        left = np.cross(up, ahead / np.linalg.norm(ahead))
+        return trim, -float(arm @ left), level
+
+
+def _root(function: Any, near: float) -> float:
+    """Return the zero that lies nearest to a place, by widening around it."""
+    for width in np.geomspace(radians(0.5), 2 * _STEEPEST, 12):
+        low, high = max(near - width, -_STEEPEST), min(near + width, _STEEPEST)
+        if function(low) * function(high) <= 0:
+            return float(brentq(function, low, high, xtol=1e-7))
+    return near
+
+
+def _bend(model: Any, data: Any, robot: AnyRobot, servos: np.ndarray) -> None:
+    place = layout(robot)
+    direct = [i for i in range(len(place.servos)) if i not in place.cables]
+    data.qpos[joint_addresses(model, [place.servos[i] for i in direct])] = servos[direct]
+
+
+def hydrostatics(
+    robot: AnyRobot,
+    servos: Float[np.ndarray, " servo"] | None = None,
+    *,
+    density: float = WATER_DENSITY,
+    breath: float = 1.0,
+    heels: int = 37,
+) -> Hydrostatics:
+    """Return how a robot floats, rigid in a posture with its cables straight.
+
+    Args:
+        robot: the design.
+        servos: angles of its servos; zeros if None.
+        density: of the water [kg/m3].
+        breath: share of the hull's air that is kept [-].
+        heels: angles of heel from 0 to 180 degrees at which the lever is computed [-].
+
+    Raises:
+        InvalidDesign: a density or breath that cannot be, or another number of servo angles.
+    """
+    require("hydrostatics", "density", density, 1.0, 2e4, "kg/m3")
+    require("hydrostatics", "breath", breath, 0.0, 1.0, "")
+    require("hydrostatics", "heels", heels, 3, 1000, "")
+    angles = np.zeros(len(servo_names(robot))) if servos is None else np.asarray(servos, dtype=float)
+    if len(angles) != len(servo_names(robot)):
+        raise InvalidDesign(
+            f"{len(angles)} servo angles are given and robot {robot.name!r} has {len(servo_names(robot))} servos."
+        )
+    body = _Rigid(robot, angles, density, breath)
+    floats = body.volume * density > body.mass
+    trim, _, level = body.rest(0.0, 0.0)
+    heel = np.linspace(0.0, np.pi, int(heels))
+    lever, near = np.zeros(len(heel)), trim
+    for i, angle in enumerate(heel):
+        near, lever[i], _ = body.rest(float(angle), near)
+    slope = (body.rest(_SMALL, trim)[1] - body.rest(-_SMALL, trim)[1]) / (2 * _SMALL)
+    up = body.at(0.0, trim)[0]
+    ends = _lowest(body, up)
+    return Hydrostatics(
+        mass=body.mass,
+        volume=body.volume,
+        floats=bool(floats),
+        missing=body.mass / density - body.volume,
+        surplus=body.mass - density * body.volume,
+        draft=level - ends if floats else float("nan"),
+        trim=trim if floats else float("nan"),
+        metacentric_height=float(slope),
+        heel=heel,
+        lever=lever,
+    )
+
+
+def _lowest(body: _Rigid, up: np.ndarray) -> float:
+    """Return the height of the lowest point of the pieces [m]."""
+    ids = body.table[:, 0].astype(int)
+    turn = body.data.xmat[ids].reshape(-1, 3, 3)
+    middle = body.data.xpos[ids] + np.einsum("nij,nj->ni", turn, column(body.table, "at"))
+    extent = [
+        (np.einsum("nij,nj->ni", turn, column(body.table, axis)) @ up) * column(body.table, "half")[:, k]
+        for k, axis in enumerate(("across", "upward", "forward"))
+    ]
+    return float((middle @ up - np.sqrt(np.sum(np.square(extent), axis=0))).min())

@@ -1,0 +1,68 @@
+"""A model on which water acts: it carries the table of the robot's pieces, and room for what the water is."""
+
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from suchus.design import AnyRobot, layout
+from suchus.design.pieces import pieces
+from suchus.design.relief import Relief
+from suchus.errors import InvalidDesign
+from suchus.hydro import HEADER, NUMBERS, column, packed
+from suchus.model.build import build
+
+NUMERIC = "water"
+"""Name of the custom number that holds the table; see ``hydro.packed``."""
+
+
+@lru_cache(maxsize=32)
+def wet_model(robot: AnyRobot, timestep: float, relief: Relief | None, room: int) -> Any:
+    """Compile a robot for the water; the same values give the same ``mujoco.MjModel`` again: copy it before an edit.
+
+    Args:
+        robot: the design.
+        timestep: of the physics [s].
+        relief: what stands up from even ground.
+        room: pieces that the table has room for, alike in all models of a batch.
+
+    Raises:
+        InvalidDesign: MuJoCo cannot compile it.
+    """
+    try:
+        return carrying(build(robot, timestep=timestep, relief=relief), robot, room)
+    except ValueError as error:
+        raise InvalidDesign(f"robot {robot.name!r} does not compile: {error}") from error
+
+
+def carrying(spec: Any, robot: AnyRobot, room: int | None = None) -> Any:
+    """Return a compiled ``mujoco.MjSpec`` that carries a robot's pieces.
+
+    Args:
+        spec: of a robot, perhaps with further edits that keep its bodies.
+        robot: the design.
+        room: see ``wet_model``; as much as needed if None.
+    """
+    table = np.array(pieces(robot))
+    names = [body.name for body in layout(robot).bodies]
+    model = with_pieces(spec, table, robot.length, room)
+    ids = np.array([model.body(name).id for name in names])
+    rows = model.numeric_data[HEADER:].reshape(-1, table.shape[1])[: len(table)]
+    column(rows, "body")[:, 0] = ids[table[:, 0].astype(int)]
+    return model
+
+
+def with_pieces(spec: Any, table: np.ndarray, length: float, room: int | None = None) -> Any:
+    """Return a compiled ``mujoco.MjSpec`` that carries a table of pieces.
+
+    Args:
+        spec: of any bodies.
+        table: of pieces; its bodies are numbered as MuJoCo numbers them.
+        length: for the Reynolds number of friction [m].
+        room: pieces that the table has room for; as many as there are if None.
+    """
+    data = packed(table, length, room)
+    numeric = spec.add_numeric(name=NUMERIC, size=len(data))
+    numeric.data = data
+    spec.nuserdata = NUMBERS
+    return spec.compile()

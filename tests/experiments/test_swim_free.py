@@ -1,0 +1,77 @@
+"""Measures of swims in six degrees of freedom, on hand-made records; and what is refused."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from suchus.control import Swimming
+from suchus.errors import InvalidDesign
+from suchus.experiments import EXPERIMENTS
+from suchus.experiments.swim_free import _radius, _speed, _uneven
+from suchus.motion import Swim
+from suchus.robots import ROBOTS
+from suchus.rotation import about
+
+SWIM = Swim(name="one", frequency=1.0, yaw=(0.1, 0.2, 0.3), yaw_late=(0, 0, 0), tail=0.5, tail_late=0.0)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_circle_has_its_radius_and_its_side(sign):
+    time = np.linspace(0, 6, 601)
+    angle = sign * 0.3 * time
+    track = 0.8 * np.stack([np.sin(angle), sign * (1 - np.cos(angle)), 0 * time], axis=-1)
+    part = xr.Dataset(
+        {
+            "centre_of_mass": (("time", "xyz"), track),
+            "orientation": (("time", "wxyz"), about(np.array([0.0, 0.0, 1.0]), angle)),
+        },
+        coords={"time": time, "xyz": list("xyz")},
+    )
+    assert _radius(part, 1.0) == pytest.approx(sign * 0.8, rel=0.01)
+    record = part.assign_attrs(measured_from=2.0)
+    assert _speed(part.centre_of_mass, record) == pytest.approx((track[600, 0] - track[200, 0]) / 4)
+
+
+@pytest.mark.parametrize(("amplitudes", "expected"), [((0.2, 0.2, 0.2), 1.0), ((0.4, 0.1, 0.1), 2.0)])
+def test_joints_that_share_unevenly_are_told(amplitudes, expected):
+    phase = 2 * np.pi * np.arange(100) / 100
+    angles = np.sin(phase)[:, None] * np.array(amplitudes)
+    part = xr.Dataset({"joint_angle": (("time", "joint"), angles)}, coords={"joint": ["a", "b", "c"]})
+    assert _uneven(part, part.assign_attrs(cable=["a", "b", "c"])) == pytest.approx(expected, rel=1e-6)
+
+
+def test_a_swim_grows_and_a_mean_bend_goes_to_its_side():
+    robot = ROBOTS["caiman"]
+    time = np.linspace(0, 3, 301)
+    plain = Swimming(swim=SWIM, ramp=1.0).targets(robot, time)
+    steered = Swimming(swim=SWIM, ramp=1.0, turn=0.4, trunk_turn=0.3).targets(robot, time)
+    assert np.abs(plain[0, 12:]).max() == 0.0
+    assert np.abs(plain[200:]).max(axis=0)[[14, 16]] == pytest.approx(SWIM.yaw[1:], rel=0.01)
+    more = steered - plain
+    assert more[:, 14] == pytest.approx(0.1)
+    assert (more[:, -1] < 0).all()
+    assert plain[:, 1] == pytest.approx(-0.3)
+
+
+@pytest.mark.parametrize(
+    ("fields", "message"),
+    [
+        ({"cycles": 0}, "cycles is 0"),
+        ({"spread": ("salt",)}, "spread names salt; there is cross_drag"),
+        ({"level": 0.1}, "level is 0.1 m"),
+        ({"stiffness": 0.0}, "stiffness is 0 N m/rad"),
+    ],
+)
+def test_bad_swims_are_refused(fields, message):
+    with pytest.raises(InvalidDesign, match=message):
+        replace(EXPERIMENTS["swim_free"], **fields)
+
+
+@pytest.mark.parametrize(
+    ("fields", "message"), [({"points": 1000}, "a power of two is needed"), ({"heels": (4.0,)}, "heels is")]
+)
+def test_bad_floats_are_refused(fields, message):
+    with pytest.raises(InvalidDesign, match=message):
+        replace(EXPERIMENTS["floating"], **fields)

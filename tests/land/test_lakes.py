@@ -1,0 +1,181 @@
+"""Runs in water: dry bytes, threads, records, what may change, and what is refused."""
+
+import ctypes
+from dataclasses import replace
+from math import inf, nan
+
+import mujoco
+import numpy as np
+import pytest
+
+from suchus.control import Swimming
+from suchus.errors import InvalidDesign, OtherMuJoCo, OutsideLimits
+from suchus.land import VACUUM, Ground, Lake, Run, Wave, crawl, simulate, structs, wetting
+from suchus.motion import Swim
+from suchus.record import WATER
+from suchus.robots import ROBOTS
+
+WAVE = Swim(name="wave", frequency=1.0, yaw=(0.1, 0.1, 0.1), yaw_late=(0.2, 0.1, 0.0), tail=0.6, tail_late=-0.1)
+
+
+def runs(*lakes, **more):
+    return [Run(robot="caiman", gait="belly_crawl", lake=lake, seed=i, **more) for i, lake in enumerate(lakes)]
+
+
+def test_water_far_below_changes_no_byte():
+    wetting.install()
+    dry = crawl("caiman", "belly_crawl", duration=0.5)
+    wetting.remove()
+    assert crawl("caiman", "belly_crawl", duration=0.5).identical(dry)
+    below = crawl("caiman", "belly_crawl", duration=0.5, lake=Lake(level=-5.0))
+    for name in dry:
+        assert np.array_equal(below[name], dry[name]), name
+    assert float(below.share_under.max()) == 0.0
+
+
+def test_threads_change_no_byte(monkeypatch):
+    some = runs(*(Lake(level=level, wave=Wave(height=0.02, length=1.0)) for level in (0.04, 0.08, 0.2)), noise=0.01)
+    found = []
+    for count in ("1", "2"):
+        monkeypatch.setenv("SUCHUS_THREADS", count)
+        found.append(simulate(some, duration=0.4))
+    assert found[0].identical(found[1])
+
+
+def test_runs_that_go_alike_in_one_lake_give_what_each_gives_alone():
+    lakes = [Lake(level=0.05), Lake(level=0.05), Lake(level=0.1)]
+    together = simulate(runs(*lakes), duration=0.3)
+    for i, lake in enumerate(lakes):
+        alone = crawl("caiman", "belly_crawl", duration=0.3, lake=lake, seed=i)
+        for name in ("position", "water_force", "share_under"):
+            assert np.array_equal(together[name].isel(run=i), alone[name]), name
+
+
+def test_a_record_tells_of_the_water_and_dry_runs_beside_say_that_there_is_none():
+    record = simulate(runs(Lake(level=0.06), None), duration=0.2)
+    wet, dry = record.isel(run=0), record.isel(run=1)
+    assert set(WATER) <= set(record)
+    assert float(wet.water_level[0]) == 0.06
+    assert 0.0 < float(wet.share_under[-1]) < 1.0
+    assert float(dry.share_under.max()) == 0.0
+    assert np.isnan(dry.water_level).all()
+    assert '"level": 0.06' in str(wet.swims_in.values)
+    assert str(dry.swims_in.values) == ""
+    assert "share_under" not in simulate(runs(None), duration=0.05)
+
+
+def test_level_and_breath_change_while_the_run_goes():
+    robot = ROBOTS["floating_caiman"]
+    rising = Lake(level=((0.0, 0.0), (0.2, 0.1)), breath=((0.0, 1.0), (0.2, 0.5)))
+    record = crawl(robot, "belly_crawl", duration=0.4, lake=rising)
+    assert float(record.water_level.sel(time=0.1, method="nearest")) == pytest.approx(0.05, abs=0.006)
+    assert float(record.water_level[-1]) == pytest.approx(0.1)
+    assert float(record.breath[-1]) == pytest.approx(0.5)
+    # let out at once, half the air weighs as much less as its water
+    still = [crawl(robot, "belly_crawl", duration=0.01, lake=Lake(level=9.0, breath=b)) for b in (1.0, 0.5)]
+    less = float(still[0].water_force[0, 2] - still[1].water_force[0, 2])
+    assert less > 0.0
+
+
+def test_air_let_out_weighs_as_much_as_its_water():
+    bare = ROBOTS["floating_caiman"]
+    heavy = replace(bare, hull=replace(bare.hull, density=500.0))  # sinks whichever: all of it stays under water
+    force = [
+        float(
+            crawl(heavy, "belly_crawl", duration=0.01, lake=Lake(level=9.0, breath=b, added_mass=0.0)).water_force[0, 2]
+        )
+        for b in (1.0, 0.5)
+    ]
+    assert force[0] - force[1] == pytest.approx(0.5 * bare.hull.air * 1000 * 9.81, rel=1e-6)
+
+
+def test_buoyancy_is_against_gravity_where_the_ground_slopes():
+    slope = Ground(uphill=0.3)
+    record = crawl("caiman", "belly_crawl", duration=0.01, ground=slope, lake=Lake(level=9.0, added_mass=0.0))
+    force = record.water_force[0].values
+    assert force / np.linalg.norm(force) == pytest.approx([np.sin(0.3), 0.0, np.cos(0.3)], abs=1e-9)
+
+
+def test_a_robot_that_floats_begins_at_the_surface_and_one_that_sinks_stands():
+    still = Swimming(swim=replace(WAVE, yaw=(0, 0, 0), tail=0.0))
+    lake = Lake(level=1.0)
+    light, heavy = (
+        crawl(name, "belly_crawl", duration=0.01, lake=lake, control=still) for name in ("floating_caiman", "caiman")
+    )
+    assert float(light.water_force[0, 2]) == pytest.approx(9.81 * float(light.mass), rel=1e-6)
+    assert float(light.position[0, 2]) > 0.9
+    assert float(heavy.position[0, 2]) < 0.2
+
+
+def test_it_swims_forward_and_backward_with_the_wave():
+    def distance(swim):
+        lake = Lake(level=2.0)
+        return float(
+            crawl("floating_caiman", "belly_crawl", duration=4.0, lake=lake, control=Swimming(swim=swim)).position[
+                -1, 0
+            ]
+        )
+
+    assert distance(WAVE) > 0.1
+    assert distance(WAVE.reversed()) < distance(WAVE) - 0.2
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: Lake(level=nan), r"lake.level is nan m; -1000 to 1000 m is allowed"),
+        (lambda: Lake(level=2e3), r"lake.level is 2000 m"),
+        (lambda: Lake(level=((1.0, 0.0), (0.5, 0.1))), "the times rising"),
+        (lambda: Lake(level=0.0, breath=1.5), r"lake.breath is 1.5; 0 to 1 is allowed"),
+        (lambda: Lake(level=0.0, current=(inf, 0.0)), r"current\[0\] is inf m/s; -5 to 5 m/s is allowed"),
+        (lambda: Lake(level=0.0, wave=Wave(height=0.5, length=1.0)), "steeper than 0.142, where waves break"),
+        (lambda: Wave(height=0.1, length=0.0), "length is 0 m"),
+        (lambda: Run(robot="caiman", gait="belly_crawl", lake=Lake(level=0.0), afloat=VACUUM), "not in both"),
+        (
+            lambda: crawl("caiman", "belly_crawl", duration=0.1, lake=Lake(level=0.0, breath=0.5)),
+            "no air that it could",
+        ),
+        (lambda: Swimming(swim=WAVE, turn=9.0), "swimming.turn is 9 rad"),
+    ],
+)
+def test_bad_water_is_refused_in_a_sentence(make, message):
+    with pytest.raises(InvalidDesign, match=message):
+        make()
+
+
+def test_a_swim_beyond_the_joints_is_refused():
+    with pytest.raises(OutsideLimits, match="tail_cable of robot 'caiman'"):
+        crawl("caiman", "belly_crawl", duration=0.1, control=Swimming(swim=WAVE, turn=1.7))
+
+
+def test_the_offsets_are_where_mujocos_own_arrays_are():
+    at = wetting.offsets()
+    assert len(set(at)) == len(at)
+    assert at.min() >= 0
+
+
+@pytest.mark.parametrize("field", ["qvel", "xmat"])
+def test_a_moved_field_is_found_and_named(field, monkeypatch):
+    honest = structs.offset
+    monkeypatch.setattr(structs, "offset", lambda struct, name: honest(struct, name) + 8 * (name == field))
+    with pytest.raises(OtherMuJoCo, match=rf"mjData.{field} of MuJoCo {mujoco.__version__} is not where it should be"):
+        wetting.offsets()
+
+
+def test_a_missing_field_is_named():
+    with pytest.raises(OtherMuJoCo, match=r"mjData\.nothing"):
+        structs.offset("mjData", "nothing")
+    with pytest.raises(OtherMuJoCo, match="mjNothing"):
+        structs.offset("mjNothing", "nothing")
+
+
+def test_somebody_elses_callback_is_left_alone():
+    kind = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p)
+    theirs = kind(lambda model, data: None)
+    wetting.remove()
+    mujoco.set_mjcb_passive(theirs)
+    try:
+        with pytest.raises(InvalidDesign, match="another passive callback is installed"):
+            wetting.install()
+    finally:
+        mujoco.set_mjcb_passive(None)

@@ -1,0 +1,113 @@
+"""Draft, trim and righting lever of a robot at rest."""
+
+from dataclasses import replace
+from math import pi, radians
+
+import mujoco
+import numpy as np
+import pytest
+
+from suchus.control import Swimming
+from suchus.design import servo_names
+from suchus.design.pieces import pieces
+from suchus.errors import InvalidDesign
+from suchus.experiments.floating import STILL, heel_of
+from suchus.hydro import HEADER, column
+from suchus.model.build import TIMESTEP
+from suchus.model.hydrostatics import Hydrostatics, hydrostatics
+from suchus.model.wet import wet_model
+from suchus.robots import ROBOTS
+from suchus.rotation import about
+
+BARE, FLOATING = ROBOTS["caiman"], ROBOTS["floating_caiman"]
+POSTURE = Swimming(swim=STILL).targets(BARE, np.zeros(1))[0]
+
+
+@pytest.fixture(scope="module")
+def floating():
+    return hydrostatics(FLOATING, POSTURE, heels=13)
+
+
+@pytest.fixture(scope="module")
+def bare():
+    return hydrostatics(BARE, heels=7)
+
+
+def test_the_published_robot_sinks_by_what_it_is_too_heavy(bare):
+    volume = column(pieces(BARE), "volume").sum()
+    assert not bare.floats
+    assert bare.missing == pytest.approx(BARE.mass / 1000 - volume)
+    assert bare.surplus == pytest.approx(BARE.mass - 1000 * volume)
+    assert np.isnan(bare.draft)
+    salty = hydrostatics(BARE, density=1.001 * BARE.mass / volume, heels=3)
+    assert salty.floats
+    assert salty.draft > 0
+
+
+def test_under_water_the_lever_is_that_of_buoyancy_over_mass(bare):
+    model = wet_model(BARE, TIMESTEP, None, len(pieces(BARE)))
+    data = mujoco.MjData(model)
+    for name, angle in zip(servo_names(), POSTURE, strict=True):
+        if name != "tail_cable":
+            data.joint(name).qpos = angle
+    mujoco.mj_fwdPosition(model, data)
+    rows = model.numeric_data[HEADER:].reshape(-1, pieces(BARE).shape[1])
+    ids = rows[:, 0].astype(int)
+    at = data.xpos[ids] + np.einsum("nij,nj->ni", data.xmat[ids].reshape(-1, 3, 3), column(rows, "at"))
+    over = np.average(at, axis=0, weights=column(rows, "volume")[:, 0]) - data.subtree_com[0]
+    found = hydrostatics(BARE, POSTURE, heels=7)
+    assert found.metacentric_height == pytest.approx(over[2], rel=1e-3)
+    assert found.lever == pytest.approx(over[2] * np.sin(found.heel), abs=1e-9)
+    assert over[2] < 0  # the limbs are heavy: it turns onto its side and on
+    assert bare.lever == pytest.approx(0.0, abs=1e-9)
+
+
+def test_the_floating_one_rights_itself_from_any_heel_below_150_degrees(floating):
+    assert floating.floats
+    assert floating.vanishing >= radians(150)
+    assert floating.metacentric_height > 0.01
+    assert floating.lever[[0, -1]] == pytest.approx(0.0, abs=1e-5)
+    flat = replace(
+        FLOATING, hull=replace(FLOATING.hull, foam=tuple(replace(f, raised=0.0) for f in FLOATING.hull.foam))
+    )
+    assert hydrostatics(flat, POSTURE, heels=13).vanishing < radians(150)  # without the foam on its back it does not
+
+
+def test_the_lever_begins_with_the_metacentric_height(floating):
+    fine = hydrostatics(FLOATING, POSTURE, heels=121)
+    assert fine.lever[1] == pytest.approx(floating.metacentric_height * fine.heel[1], rel=0.05)
+
+
+def test_air_let_out_takes_buoyancy(floating):
+    less = hydrostatics(FLOATING, POSTURE, breath=0.6, heels=3)
+    assert floating.volume - less.volume == pytest.approx(0.4 * FLOATING.hull.air)
+    assert less.draft > floating.draft
+    assert not hydrostatics(FLOATING, POSTURE, breath=0.0, heels=3).floats
+
+
+@pytest.mark.parametrize(
+    ("lever", "expected"),
+    [((0, 1, 1, 0), 180), ((0, 1, -1, 0), 90), ((0, -1, -1, 0), 0), ((0, 1, 3, -1), 165), ((0, 1, 1, 1), 180)],
+)
+def test_where_the_lever_vanishes(floating, lever, expected):
+    one = {name: getattr(floating, name) for name in Hydrostatics.__dataclass_fields__}
+    made = Hydrostatics(**(one | {"heel": np.linspace(0, pi, 4), "lever": np.array(lever, dtype=float)}))
+    assert made.vanishing == pytest.approx(radians(expected), abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"density": 0.0}, "density is 0 kg/m3"),
+        ({"breath": 2.0}, "breath is 2; 0 to 1"),
+        ({"servos": np.zeros(3)}, "3 servo angles are given and robot 'caiman' has 19"),
+    ],
+)
+def test_bad_hydrostatics_are_refused(given, message):
+    with pytest.raises(InvalidDesign, match=message):
+        hydrostatics(BARE, **given)
+
+
+def test_heel_is_told_all_round():
+    angles = np.radians([-170, -90, -10, 0, 10, 90, 170])
+    assert heel_of(about(np.array([1.0, 0.0, 0.0]), angles)) == pytest.approx(angles)

@@ -1,0 +1,76 @@
+"""Passages of the page on water and land that state what its experiments measured; see ``stated``."""
+
+from collections.abc import Callable, Mapping
+from math import degrees
+
+
+def _checks(m: Mapping[str, float]) -> str:
+    """Return the table of checks against exact answers."""
+    rows = (
+        ("draft of sphere, cylinder and box at three densities", f"{m['draft_error']:.0e} m off", "below 1e-6 m"),
+        ("period of heave, with and without added mass", f"{m['heave_period_error']:.0e} off", "below 1e-3"),
+        ("energy gained by a box that rocks for 60 s, implicitfast", f"{m['energy_gain']:.2%}", "below 2 %"),
+        ("the same, Runge-Kutta", f"{m['energy_gain_rk4']:.0e}" if m["energy_gain_rk4"] else "none", "below 1e-4"),
+        ("momentum of a spheroid in ideal water over 2 s, Runge-Kutta", f"{m['impulse_drift']:.0e} lost", "below 1e-5"),
+        ("volume under water beside counted points, of the whole", f"{m['volume_error']:.0e} off", "below 1e-3"),
+        ("acceleration of a neutrally buoyant body", f"{m['acceleration_neutral']:.0e} m/s2", "0"),
+        ("net force of 3 kg of ballast on a trimmed float", f"{m['force_of_ballast']:.2f} N", "-29.43 N"),
+        (
+            "angular acceleration of a keeled hull at 45 degrees",
+            f"{m['acceleration_of_keel']:.4f} rad/s2",
+            "1.1187 rad/s2",
+        ),
+    )
+    return "| check | here | wanted |\n|---|---|---|\n" + "".join(f"| {' | '.join(row)} |\n" for row in rows)
+
+
+def _hull(m: Mapping[str, float]) -> str:
+    """Return how the bare and the floating robot lie in the water."""
+    rows = [
+        ("mass", "{:.2f} kg", 1.0, "mass"),
+        ("volume", "{:.2f} l", 1e3, "volume"),
+        ("too heavy by", "{:.0f} g", 1e3, "surplus"),
+        (
+            "metacentric height (under water: centre of buoyancy over that of mass)",
+            "{:.1f} mm",
+            1e3,
+            "metacentric_height",
+        ),
+        ("righting lever vanishes at", "{:.0f} deg", degrees(1.0), "vanishing"),
+    ]
+    lines = ["| | bare `caiman` | `floating_caiman` |", "|---|---|---|"]
+    for what, form, factor, name in rows:
+        bare, ours = (form.format(factor * m[f"{name}_{kind}"] + 0.0) for kind in ("bare", "floating"))
+        lines.append(f"| {what} | {bare} | {ours} |")
+    return "\n".join(lines) + (
+        f"\n\nLet go heeled by 150 degrees it is upright to 2 degrees after {m['righting_time']:.1f} s and comes to "
+        f"rest at {degrees(m['roll_at_rest']):.2f} degrees, with {m['share_above']:.1%} of its volume above the "
+        f"surface, {1e3 * m['draft_floating']:.0f} mm deep, nose up by {degrees(m['trim_floating']):.1f} degrees.\n"
+    )
+
+
+def _swims(m: Mapping[str, float]) -> str:
+    """Return the table of speeds."""
+    lines = ["| m/s | six degrees of freedom | stiffer joints | resistive | reactive |", "|---|---|---|---|---|"]
+    for name, called in (("whole", "whole wave"), ("tail_only", "tail only"), ("trunk_only", "trunk only"),
+                         ("reversed", "reversed")):  # fmt: skip
+        cells = [f"{m[f'speed_{name}{end}']:.2f}" for end in ("", "_stiff", "_resistive", "_reactive")]
+        lines.append(f"| {called} | {' | '.join(cells)} |")
+    return "\n".join(lines) + (
+        f"\n\nThe whole wave: {m['speed_low']:.3f} to {m['speed_high']:.3f} m/s over the plausible coefficients of the "
+        f"water, {m['step_change']:.1%} at half the time step; Strouhal number {m['strouhal']:.2f}, slip "
+        f"{m['slip']:.2f}, roll {degrees(m['roll_amplitude']):.1f} degrees at most. The servos take "
+        f"{m['servo_power']:.2f} W, of which the water gets {m['water_power']:.2f}: cost of transport "
+        f"{m['cost_of_transport']:.2f} and {m['cost_of_transport_water']:.2f}. Steered, it turns on a radius of "
+        f"{abs(m['turn_radius']):.2f} m. The largest amplitude of a joint of the cable is {m['tail_spread']:.1f} times "
+        f"their mean, {m['tail_spread_stiff']:.1f} times with stiffer joints.\n"
+    )
+
+
+PASSAGES: Mapping[str, Mapping[str, Callable[[Mapping[str, float]], str]]] = {
+    "floating": {"checks": _checks, "hull": _hull},
+    "swim_free": {"swims": _swims},
+}
+"""What makes each passage, by experiment."""
+MADE = {name: make for made in PASSAGES.values() for name, make in made.items()}
+"""What makes each passage of the page."""
