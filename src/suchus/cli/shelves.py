@@ -8,7 +8,6 @@ from shutil import get_terminal_size
 from textwrap import fill
 
 from suchus.cli.commands import BadCommand
-from suchus.design import NEEDS
 
 _SHELVES = (
     ("robots", "suchus.robots"),
@@ -32,7 +31,7 @@ def show(words: Sequence[str]) -> int:
         print("\n" * bool(i) + heading)
         for name, title in shelf.items():
             needs, robots = _stated(package, name, "needs"), _stated(package, name, "made_for")
-            more = f" (needs {', and '.join(NEEDS[need].words for need in needs)})" if needs else ""
+            more = f" (needs {', '.join(needs).replace('_', ' ')})" if needs else ""
             more += f" (of {', '.join(robots)})" if robots else ""
             print(entry(name, title + more, width))
     return 0
