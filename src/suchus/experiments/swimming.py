@@ -86,7 +86,7 @@ class Swimming(Experiment):
     """Further readings of (20) whose thrust is measured [-]; the joints cannot make the others."""
     readings_reynolds: float = 1000.0
     """Reynolds number of these [-]; their tails are up to four times as fast and would need a finer grid."""
-    readings_cells: int = 32
+    readings_cells: int = 40
     """Cells per body length of these [-]."""
     tow: float = 4.0
     """Distance over which the straight body is towed, its drag the mean over the last length [body length]."""
