@@ -1,4 +1,6 @@
-"""Compile the flow solver's kernels and that of the water in the physics step once. ``make test`` does so beside mypy; else every test worker compiles them.
+"""Compile the kernels of the flow solver and of water in the physics step once.
+
+``make test`` does so beside mypy; else every test worker compiles them.
 
 ``python tools/compile_flow.py single`` or ``double``: the kernels of one precision.
 """
