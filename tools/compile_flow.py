@@ -1,4 +1,6 @@
-"""Compile the flow solver's kernels once. ``make test`` does so beside mypy; else every test worker compiles them.
+"""Compile the kernels of the flow solver and of water in the physics step once.
+
+``make test`` does so beside mypy; else every test worker compiles them.
 
 ``python tools/compile_flow.py single`` or ``double``: the kernels of one precision.
 """
@@ -6,6 +8,9 @@
 import sys
 
 from suchus import flow
+from suchus.land import wetting
+from suchus.model.hydrostatics import hydrostatics
+from suchus.robots import ROBOTS
 
 
 def main(precision: str) -> None:
@@ -14,6 +19,8 @@ def main(precision: str) -> None:
     swimmer = flow.FreeBody(shape=flow.eel(1.0), start=(-0.5, 0.0))
     cylinder = flow.Body(shape=flow.Cylinder(diameter=0.25), motion=flow.Oscillation(frequency=1.0, heave=(0.01, 0.0)))
     if precision == "single":
+        wetting.install()
+        hydrostatics(ROBOTS["caiman"], heels=3)
         setup = flow.Setup(grid=grid, viscosity=0.01, bodies=(swimmer,), follow=swimmer.name, coarse=True)
     else:
         setup = flow.Setup(
