@@ -44,6 +44,7 @@ class SwimFree(Experiment):
 
     title = "How does it swim in six degrees of freedom, at the surface?"
     shows = "Section IV.B, eq. (20); beyond the article"
+    needs = ("tables", "article_spine", "cable_tail")
 
     robot: Crocodile = field(default_factory=lambda: ROBOTS["floating_caiman"])
     """The robot that swims; it must float."""

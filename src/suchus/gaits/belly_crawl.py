@@ -26,7 +26,7 @@ gait = Gait(
     tail_pitch=0.2,
 )
 """Spine and tail take part."""
-made_for = ("caiman", "long_tail")
+made_for = ("caiman", "floating_caiman", "long_tail")
 """Robots of the shelf whose gait it is."""
 
 _FITTED = (

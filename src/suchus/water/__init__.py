@@ -1,5 +1,6 @@
 """The robot in water: its outline, waves fitted to its joints, and the models a designer calculates with."""
 
+from suchus.design.water import Water
 from suchus.water.diary import portion
 from suchus.water.fit import Fit, fit, head_base
 from suchus.water.free import free_swim
@@ -9,7 +10,7 @@ from suchus.water.measures import Quarters, Sway, Swum, convex_higher, efficienc
 from suchus.water.outline import Base, Curve, Outline, Silhouette, silhouette
 from suchus.water.passive import sprung
 from suchus.water.readings import Attempt, attempts, readings_table
-from suchus.water.slender import Cruise, Effort, Water, cruise, cycle, reactive, recoil, resistive
+from suchus.water.slender import Cruise, Effort, cruise, cycle, reactive, recoil, resistive
 from suchus.water.sweep import greatest, scaled, survey
 from suchus.water.swimming import MODELS, displaced, swim, wave_speed
 from suchus.water.tank import Tether

@@ -4,8 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from suchus.design.water import Water
 from suchus.water.outline import Outline, summed
-from suchus.water.slender import Water, recoil
+from suchus.water.slender import recoil
 from suchus.water.undulation import Motion, Undulation, undulation
 
 _ROUNDS = 12

@@ -11,10 +11,11 @@ from jaxtyping import Float
 
 from suchus import flow
 from suchus.design import Crocodile
+from suchus.design.water import Water
 from suchus.water.diary import Diary, Progress, run_on
 from suchus.water.immersed import immersed
 from suchus.water.outline import Outline
-from suchus.water.slender import Water, recoil
+from suchus.water.slender import recoil
 from suchus.water.tank import DENSITY, GROWS, Tether, check_motion
 from suchus.water.undulation import Motion
 

@@ -7,11 +7,12 @@ import numpy as np
 import xarray as xr
 
 from suchus.design import GRAVITY, Crocodile
+from suchus.design.water import Water
 from suchus.errors import OutsideLimits
 from suchus.motion import Swim, check_swim
 from suchus.water.measures import efficiency
 from suchus.water.outline import Outline
-from suchus.water.slender import Model, Water, cruise, cycle
+from suchus.water.slender import Model, cruise, cycle
 from suchus.water.swimming import MODELS, displaced, wave_speed
 from suchus.water.undulation import STILL, undulation
 

@@ -4,10 +4,11 @@ import numpy as np
 import xarray as xr
 
 from suchus.design import GRAVITY, WATER_DENSITY, Crocodile, crocodile
+from suchus.design.water import Water
 from suchus.motion import Swim, check_swim
 from suchus.robots import ROBOTS
 from suchus.water.outline import Curve, Outline
-from suchus.water.slender import Model, Water, cruise, cycle, reactive, recoil, resistive
+from suchus.water.slender import Model, cruise, cycle, reactive, recoil, resistive
 from suchus.water.undulation import Motion, undulation
 
 MODELS: dict[str, Model] = {"resistive": resistive, "reactive": reactive}
