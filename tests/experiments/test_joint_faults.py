@@ -189,7 +189,13 @@ def made_up(better: int, of: int = 8) -> xr.Dataset:
     forward[better:, 0] = 0.4
     forward[:, 0, len(LOST) :] = 0.0  # the knees do not count
     dims = ("variation", "arm", "joint", "kind", "legs")
-    coords = {"arm": list(ARMS), "joint": list(JOINTS), "kind": list(KINDS), "legs": list(LEGS_LOST)}
+    coords = {
+        "arm": list(ARMS),
+        "joint": list(JOINTS),
+        "lost": list(LOST),
+        "kind": list(KINDS),
+        "legs": list(LEGS_LOST),
+    }
     return xr.Dataset({"forward": (dims, forward), "intact_forward": (dims[:2], np.ones((of, 2)))}, coords=coords)
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from suchus.errors import InvalidDesign, OutsideLimits
+from suchus.errors import InvalidDesign, UnsuitedRobot
 from suchus.experiments import EXPERIMENTS
 from suchus.experiments._animal_walk import ANIMAL, PARTS, step
 from suchus.robots import ROBOTS
@@ -68,7 +68,7 @@ def test_it_is_drawn_and_said_beside_the_animal(outcome):
 
 
 def test_other_robots_and_settings_are_refused():
-    with pytest.raises(OutsideLimits, match="phases for 4 limbs; robot 'strider' has 6"):
+    with pytest.raises(UnsuitedRobot, match="needs the joints of the robot 'salamander'; robot 'strider' lacks that"):
         replace(EXPERIMENTS["salamander"].quick(), robot=ROBOTS["strider"]).run()
     with pytest.raises(InvalidDesign, match="loaded is 0"):
         replace(EXPERIMENTS["salamander"], loaded=0.0)

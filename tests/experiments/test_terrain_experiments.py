@@ -145,7 +145,7 @@ def rough_record(*, ahead=(True, True, False), met=1.0):
     return xr.Dataset(
         {name: (("ground", "arm", "seed"), v) for name, v in (values | {"forward": forward, "met": met_by}).items()}
         | {name: (("change", "surface"), v) for name, v in changes.items()}
-        | {"height": ("ground", [0.0, 0.03, 0.03, 0.04])},
+        | {"height": ("ground", [0.0, 0.03, 0.03, 0.04]), "size_of_robot": ((), 1.0)},
         coords={"arm": arms, "kind": ("ground", ["bumps", "bumps", "step", "stone"]), "surface": ["even", "bumps"]},
     )
 

@@ -29,7 +29,7 @@ from suchus.cli import main
 from suchus.cli.commands import COMMANDS
 from suchus.design import Crocodile, layout, servo_names, value_at, with_values
 from suchus.errors import SuchusError
-from suchus.hardware import STRAIGHT, read_map, write_map
+from suchus.hardware import read_map, straight, write_map
 from suchus.land import Deaf, Limp, Locked, Push, Run, Weak, simulate
 from suchus.motion import Gait, check_limits
 from suchus.optimise import read_optimisation
@@ -148,7 +148,7 @@ class Range:
         save(self.swim, place / "swim.nc")
         blueprint.write(robot, place / "robot.toml")
         blueprint.write(gait, place / "gait.toml")
-        write_map(STRAIGHT, place / "map.toml")
+        write_map(straight(suchus.ROBOTS["caiman"]), place / "map.toml")
         (place / "study.toml").write_text(STUDY)
         (place / "search.toml").write_text(SEARCH)
         (place / "tracks.csv").write_text(_tracks())
@@ -295,7 +295,7 @@ def search_files(self: Range, dice: Random) -> None:
 
 
 def servo_maps(self: Range, dice: Random) -> None:
-    read_map(written(self, "map.toml", dice))
+    read_map(written(self, "map.toml", dice), suchus.ROBOTS["caiman"])
 
 
 def keypoint_tables(self: Range, dice: Random) -> None:

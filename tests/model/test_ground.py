@@ -86,7 +86,7 @@ def test_reliefs_of_one_type_share_a_topology(robot):
 
 
 def test_impossible_reliefs_are_refused():
-    with pytest.raises(InvalidDesign, match=r"step\.height is 0 m; 0\.001 to 0\.5 m"):
+    with pytest.raises(InvalidDesign, match=r"step\.height is 0 m; 1e-05 to 0\.5 m"):
         Step(at=0.7, height=0.0)
     with pytest.raises(InvalidDesign, match=r"bumps\.seed"):
         Bumps(height=0.04, correlation=0.06, start=0.42, seed=-1)

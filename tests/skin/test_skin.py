@@ -178,7 +178,7 @@ def test_the_skin_encloses_the_shapes_beneath(animal):
     mujoco.mj_kinematics(model, data)
     out = standing_out(animal, found, found.vertices, data)
     head, end = out.pop("head"), out.pop([name for name in out if name.startswith("tail")][-1])
-    assert max(out.values()) < 0.003
+    assert max(far for name, far in out.items() if not name.endswith("_foam")) < 0.003  # foam is worn over the skin
     assert head < 0.016  # a snout is narrower than the ellipsoid that stands for it
     assert end < 0.010  # the last capsule ends half a ball beyond the tail's tip
 

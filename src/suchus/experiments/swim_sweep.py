@@ -75,7 +75,7 @@ class SwimSweep(Experiment):
     """Amplitude and waves per body of the points in the resolved flow [-]."""
     reynolds: float = 7000.0
     """Frequency times length squared over viscosity of these [-]."""
-    cells: int = 64
+    cells: int = 72
     """Cells per body length of these [-]."""
     cycles: int = 6
     """Cycles of these; the last is measured [-]."""

@@ -9,8 +9,12 @@ from collections.abc import Mapping
 import numpy as np
 from jaxtyping import Float
 
-DISC, BALL, SLAB = 0, 1, 2
-"""Kinds of piece: a section of a trunk, tail or limb; an ellipsoid; a column of a box."""
+DISC = 0
+"""Kind of piece: a section of a trunk, tail or limb."""
+BALL = 1
+"""Kind of piece: an ellipsoid."""
+SLAB = 2
+"""Kind of piece: a column of a box."""
 
 COLUMNS: Mapping[str, tuple[int, int]] = {
     name: (start, stop)
@@ -43,17 +47,32 @@ MAGIC = 7.3115e77
 HEADER = 3
 """Numbers ahead of the table: magic number, number of pieces, length for the Reynolds number [m]."""
 
-LEVEL, DENSITY, BREATH, CURRENT, VISCOSITY, CROSS_DRAG, THICKENING, ADDED, SHEDDING = 0, 1, 2, 3, 6, 7, 8, 9, 10
-"""Places of what the water is, among a run's numbers.
-
-Level of the surface above the world's origin, against gravity [m]; density [kg/m3]; share of the hull's air that is
-kept [-]; velocity of the current in the world [m/s]; kinematic viscosity [m2/s]; drag coefficient of a section across
-[-]; factor on plate friction [-]; factors on added mass and on what is shed at the tail [-].
-"""
+LEVEL = 0
+"""Place, among a run's numbers, of the level of the surface above the world's origin, against gravity [m]."""
+DENSITY = 1
+"""Place of the density [kg/m3]."""
+BREATH = 2
+"""Place of the share of the hull's air that is kept [-]."""
+CURRENT = 3
+"""Place of the velocity of the current in the world (3) [m/s]."""
+VISCOSITY = 6
+"""Place of the kinematic viscosity [m2/s]."""
+CROSS_DRAG = 7
+"""Place of the drag coefficient of a section across [-]."""
+THICKENING = 8
+"""Place of the factor on plate friction [-]."""
+ADDED = 9
+"""Place of the factor on added mass [-]."""
+SHEDDING = 10
+"""Place of the factor on what is shed at the tail [-]."""
 WAVE = 11
 """Place of a wave's amplitude [m], wave vector in the world (3) [rad/m], angular frequency [rad/s], phase [rad]."""
-FORCE, POWER, UNDER = 17, 20, 21
-"""Places of what the kernel leaves: force of the water on the robot [N], its power [W], volume under water [m3]."""
+FORCE = 17
+"""Place where the kernel leaves the force of the water on the robot (3) [N]."""
+POWER = 20
+"""Place where it leaves the power of that force [W]."""
+UNDER = 21
+"""Place where it leaves the volume under water [m3]."""
 NUMBERS = 22
 """Length of the row [-]."""
 

@@ -162,7 +162,7 @@ def _arm(limb: Limb, foot: np.ndarray, plane: np.ndarray) -> np.ndarray:
     return np.stack([yaw, pitch, np.arctan2(ahead, down), bend], axis=-1)
 
 
-def _numeric(limb: Limb, points: np.ndarray, start: np.ndarray | None, tries: int) -> np.ndarray:
+def _numeric(limb: Limb, points: np.ndarray, start: np.ndarray | None, tries: int = SEEDS) -> np.ndarray:
     """Take damped Gauss-Newton steps within the joints' ranges; who gets stuck begins again elsewhere."""
     count = len(limb.hinges)
     low, high = np.array([hinge.range or (-np.inf, np.inf) for hinge in limb.hinges]).T

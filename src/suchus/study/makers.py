@@ -14,6 +14,7 @@ MADE_BY = (
         "fault.py",
         "faults",
         "gaits",
+        "hydro",
         "kinds.py",
         "kinematics",
         "land",
