@@ -71,7 +71,8 @@ def draw_checks(record: xr.Dataset) -> Figure:
             )  # fmt: skip
         ax.axhline(0.0, color=COLOURS["neutral"], linewidth=0.9)
         ax.set(xlabel="time [s]", ylabel="energy less that at the start [mJ]")
-        ax.legend(loc="best")
+        ax.margins(y=0.3)
+        ax.legend(loc="upper left")
     return captioned(
         figure,
         "Drafts of floats at three densities beside closed forms, the line being equality; and the energy of a box "
