@@ -408,6 +408,8 @@ def commands(self: Range, dice: Random) -> None:
         "export",
         "export-commands",
         "replay",
+        "demo",
+        "doctor",
     ):
         words += ["--no-such-option"]
     told(main, [command.name if dice.random() < 0.95 else dice.choice(WORDS), *words])
