@@ -208,3 +208,14 @@ def test_an_address_is_checked_before_dask_looks_at_it():
     pytest.importorskip("distributed", reason="Dask is not installed: pip install suchus[cluster]")
     with pytest.raises(NoCluster, match="is no address"), connected("foo"):
         pass
+
+
+def test_a_class_where_a_word_belongs_is_told_in_plain_words():
+    for make in (
+        lambda: Vary(field=object, values=(1.0,)),
+        lambda: Vary(field=object, values=-(2**63)),
+        lambda: Study(name="a", run=Run(robot="caiman", gait="belly_crawl"), vary=(), measure=(), design=object),
+    ):
+        with pytest.raises(InvalidDesign) as told:
+            make()
+        assert "<class" not in str(told.value)
