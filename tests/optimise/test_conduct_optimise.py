@@ -14,6 +14,7 @@ import xarray as xr
 
 from suchus import blueprint
 from suchus.cli import main
+from suchus.control import Walking
 from suchus.errors import IncompatibleRecord, NotConverged, Unwritable
 from suchus.gaits import GAITS
 from suchus.land import Run, simulate
@@ -21,7 +22,7 @@ from suchus.metrics import displacement, slip
 from suchus.motion import Gait
 from suchus.optimise import Limit, evaluate, optimise, read_optimisation
 from suchus.optimise.aims import LIMITS
-from suchus.study import Arm
+from suchus.study import Arm, Vary
 
 PAGE = """
 name = "small"
@@ -147,6 +148,18 @@ def test_one_that_comes_apart_or_cannot_be_does_not_spoil_the_rest(small, monkey
     told = evaluate.evaluate(small, np.array([small.start, small.start, small.start]))
     assert told.status.values.tolist() == ["walked", "came apart", "walked"]
     assert np.isfinite(told.aim_displacement.values).tolist() == [True, False, True]
+
+
+def test_one_whose_control_cannot_steer_does_not_spoil_the_rest(small):
+    """The gait's bends and the steering's together are more than the trunk allows; each alone is not."""
+    spec = replace(
+        small,
+        run=replace(small.run, control=Walking(bend=0.4)),
+        vary=(Vary(field="control.bend", low=0.0, high=2.0), Vary(field="gait.trunk_bend", low=0.0, high=2.0)),
+    )
+    table = evaluate.evaluate(spec, np.array([[0.2, 0.5], [0.9, 0.9]]))
+    assert list(table.status.values) == ["walked", "refused"]
+    assert list(np.isfinite(table.beyond.values)) == [True, False]
 
 
 def test_torque_is_that_of_the_servo_that_works_hardest_over_its_own_limit(robot, crawl_gait):

@@ -7,6 +7,7 @@ import numpy as np
 import xarray as xr
 
 from suchus.design import with_values
+from suchus.design.scale import control_period
 from suchus.errors import SuchusError
 from suchus.land import Run, simulate
 from suchus.motion import check_limits
@@ -43,6 +44,8 @@ def evaluate(
             beyond[i] = excess(run.robot, run.gait)
             if beyond[i] == 0.0:
                 check_limits(run.robot, run.gait)
+                period = control_period(run.robot)
+                run.control.start([run.robot], [run.gait], [run.seed], 1, period)  # refuses what it cannot steer
                 runs[i] = run
         except SuchusError:
             beyond[i] = np.inf

@@ -145,7 +145,7 @@ def _lanes(runs: Sequence[Run], record: xr.Dataset, times: Sequence[float]) -> t
     for i in range(len(runs)):
         y = _seen(record.isel(run=i), times)[:, 1]
         aside.append(top - float(y.max()))
-        top += float(y.min() - y.max()) - _GAP
+        top += float(y.min() - y.max()) - 1.5 * _GAP  # hands reach beyond the feet' middles
     return aside, -top
 
 

@@ -163,7 +163,8 @@ def _pictures(
 ) -> dict[str, Figure]:
     values = [(AIMS[aim.name], AIMS[aim.name].measure(shown, record)) for aim in spec.aims]
     reached = [
-        ", ".join(f"{value[i]:.3g} {kind.unit}".removesuffix(" -") for kind, value in values) for i in range(len(shown))
+        ", ".join(f"{value[i]:#.3g} {kind.unit}".removesuffix(" -") for kind, value in values)
+        for i in range(len(shown))
     ]
     pictures = {"gaits": draw_gaits(shown, record, reached)}
     if not spec.pareto:
