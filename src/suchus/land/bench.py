@@ -56,8 +56,9 @@ class Bench:
         self.water = self.batch.bind("userdata") if self._lakes else np.zeros((len(runs), 0))
         if self._lakes:
             wetting.install()
+            self._ups = np.array([up(run.ground) for run in runs])
             for sim, lake in self._lakes.items():
-                self.water[sim] = lake.numbers(up(runs[sim].ground))
+                self.water[sim] = lake.numbers(self._ups[sim])
         forces = force_sensors(runs[0].robot)
         self._forces = slice(int(shared.sensor(forces[0]).adr[0]), int(shared.sensor(forces[-1]).adr[0]) + 3)
         servos = [shared.sensor(f"{name}_position") for name in layout(runs[0].robot).servos]
@@ -126,11 +127,26 @@ class Bench:
         now = self.batch.expand("opt.disableactuator")[sim] if self._single else self._own(sim).opt.disableactuator
         self._set_option("disableactuator", sim, int(now) & ~bit if on else int(now) | bit)
 
-    def flood(self, time: float) -> None:
-        """Let level and breath of the lakes be what they are at a time [s], where they change."""
+    def flood(self, time: float, breath: np.ndarray | None = None) -> None:
+        """Let level and breath of the lakes be what they are at a time, where they change or are commanded.
+
+        Args:
+            time: [s].
+            breath: what controllers command, shape (run,), NaN where they leave it to the lake [-]; None for all.
+        """
         for sim, lake in self._lakes.items():
             if lake.changes():
                 self.water[sim, hydro.LEVEL], self.water[sim, hydro.BREATH] = lake.at(time)
+        if breath is not None and self._lakes:
+            asked = np.isfinite(breath)
+            self.water[asked, hydro.BREATH] = breath[asked]
+
+    def depths(self) -> np.ndarray | None:
+        """Return how deep the roots are below the level of their water, 0 above it, shape (run,) [m]; None if dry."""
+        if not self._lakes:
+            return None
+        height = np.einsum("ij,ij->i", self.qpos[:, :3], self._ups)
+        return np.asarray(np.maximum(self.water[:, hydro.LEVEL] - height, 0.0))
 
     def angles(self, sim: int) -> np.ndarray:
         """Return the angles of a run's joints at the servos' shafts as they are now, shape (servo,) [rad]."""

@@ -65,7 +65,8 @@ class Readings:
         read = self._bench.readings
         felt = {name: read[:, where].copy() for name, where in self._felt.items()}
         pressed = {name: -read[:, where] for name, where in self._pressed.items()}
-        return Sensed(time=time, **felt, **pressed, tail_pressure=-self._tail(read)[..., 2])
+        depth = self._bench.depths()
+        return Sensed(time=time, **felt, **pressed, tail_pressure=-self._tail(read)[..., 2], depth=depth)
 
     def sample(self, run: int, sample: int) -> dict[str, np.ndarray]:
         """Return one stored sample of one run: the variables of ``record.VARIABLES`` without run and time."""
