@@ -200,7 +200,8 @@ class Shore(Experiment):
             f"with the least ({m['ashore_share_most_grip']:.0%} and {m['ashore_share_least_grip']:.0%}). Of all slopes "
             f"at one friction: {listed(walked)}. From land {m['into_water_share']:.0%} went into the water and swam "
             f"on. A metre costs {m['work_per_metre_swimming']:.1f} J at the surface, "
-            f"{m['work_per_metre_wading']:.1f} J wading and {m['work_per_metre_ashore']:.1f} J on the slope above the line."
+            f"{m['work_per_metre_wading']:.1f} J wading and {m['work_per_metre_ashore']:.1f} J on the slope above "
+            "the line."
         )
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
