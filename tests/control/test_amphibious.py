@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from suchus.control import Amphibious, HeadingHold, Joinable, Sensed, Swimming
+from suchus.control import Amphibious, HeadingHold, HeadingRule, Joinable, Sensed, Swimming
 from suchus.control.holding import DepthHold
 from suchus.errors import InvalidDesign
 from suchus.gaits import GAITS
@@ -22,7 +22,13 @@ GAIT = GAITS["low_crawl"]
 BEGIN = round(START / PERIOD)
 
 
-def sensed(load, robot=ROBOT):
+def twice(felt):
+    """The same felt by two robots."""
+    both = {name: np.repeat(getattr(felt, name), 2, axis=0) for name in Sensed.__dataclass_fields__ if name != "time"}
+    return Sensed(time=felt.time, **both)
+
+
+def sensed(load, robot=ROBOT, yaw=0.0):
     """What a robot feels whose feet, belly and tail carry a share of its weight, a third each."""
     part = load * robot.mass * 9.81 / 3
     none = np.zeros((1, 17))
@@ -34,7 +40,7 @@ def sensed(load, robot=ROBOT):
         foot_pressure=np.full((1, 4), part / 4),
         belly_pressure=np.full((1, 5), part / 5),
         tail_pressure=np.full(1, part),
-        orientation=np.array([[1.0, 0.0, 0.0, 0.0]]),
+        orientation=np.array([[np.cos(yaw / 2), 0.0, 0.0, np.sin(yaw / 2)]]),
         angular_velocity=np.zeros((1, 3)),
         acceleration=np.zeros((1, 3)),
         depth=np.zeros(1),
@@ -142,6 +148,26 @@ def test_breath_that_is_commanded_reaches_the_water():
     record = simulate(runs, duration=0.05)
     assert record.breath[:, -1].values == pytest.approx([1.0, 0.0])
     assert isinstance(WAY, Joinable)
+
+
+def test_what_others_of_its_batch_do_changes_nothing():
+    """The direction is felt from the beginning on, and what stays of its error adds up only while it walks."""
+    way = replace(WAY, heading=HeadingRule())
+    alone = way.start([ROBOT], [GAIT], [0], 3000, PERIOD)
+    both = Amphibious.start_together(
+        [way, replace(way, begins="walking")], [ROBOT] * 2, [GAIT] * 2, [0, 0], 3000, PERIOD
+    )
+    rng = np.random.default_rng(0)
+    for tick in range(0, 260):
+        felt = sensed(0.0 if tick < 150 else 0.5, yaw=0.3 + 0.1 * rng.random())
+        one = alone.command(tick, felt)
+        two = both.command(tick, twice(felt))
+        assert np.array_equal(two.targets[0], one.targets[0]), tick
+    swam = way.start([ROBOT], [GAIT], [0], 3000, PERIOD)
+    for tick in range(400):
+        swam.command(tick, sensed(0.0, yaw=0.3 * (tick > 0)))
+    assert np.abs(swam._heading._lasting).max() == 0.0
+    assert np.abs(swam._stroke - 1.0).max() == 0.0
 
 
 @pytest.mark.parametrize(

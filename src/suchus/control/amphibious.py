@@ -180,9 +180,8 @@ class Amphibian:
         load = (feet.sum(axis=1) + belly.sum(axis=1) + finite(sensed.tail_pressure)) / self._weight
         self._load = load + self._kept * (self._load - load)
         walks = self._blend >= 1.0
-        steer = self._heading.step(sensed, walking=bool(walks.any()))
-        self._stroke = 1.0 + np.where(walks[:, None], steer.stroke, 0.0)
-        self._trunk = np.where(walks, steer.trunk, 0.0)
+        steer = self._heading.step(sensed, walking=walks)
+        self._stroke, self._trunk = 1.0 + steer.stroke, steer.trunk
 
     def _decide(self) -> None:
         free = self._since >= self._change + self._patience

@@ -81,17 +81,24 @@ class Heading:
         self._runs = np.arange(len(gaits))
         self._cycle = np.array([max(1, round(gait.period / period)) for gait in gaits])
         self._most = np.array([_most(*those) for those in zip(settings, robots, gaits, strict=True)])
-        self._facing = Facing(robots, list(self._cycle))
+        self._facing = Facing(robots, [int(cycle) for cycle in self._cycle])
         self._left = np.array([limb.side for limb in layout(robots[0]).limbs])
         self._lasting = np.zeros(len(gaits))
 
-    def step(self, sensed: Sensed, *, walking: bool) -> Steering:
-        """Answer to the direction that is felt now."""
-        if not walking:
+    def step(self, sensed: Sensed, *, walking: bool | Bool[np.ndarray, " run"]) -> Steering:
+        """Answer to the direction that is felt now.
+
+        Args:
+            sensed: what is felt.
+            walking: which runs walk; the others are not steered, and begin anew with what stays. False: nothing is felt
+                either.
+        """
+        if walking is False:
             return Steering.none(len(self._runs), len(self._left))
         error = self._facing.feel(sensed) - self._direction
-        self._lasting = np.clip(self._lasting - self._integral_gain * error / self._cycle, -self._most, self._most)
-        steer = np.clip(self._lasting - self._gain * error, -self._most, self._most)
+        lasting = np.clip(self._lasting - self._integral_gain * error / self._cycle, -self._most, self._most)
+        self._lasting = np.where(walking, lasting, 0.0)
+        steer = np.where(walking, np.clip(self._lasting - self._gain * error, -self._most, self._most), 0.0)
         return Steering(-self._left * steer[:, None], self._trunk * steer)
 
     def take_over(self, before: "Heading") -> None:

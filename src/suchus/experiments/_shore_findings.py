@@ -1,10 +1,13 @@
 """What the experiment ``shore`` keeps of its runs, and every number that it reads from that."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import xarray as xr
 from jaxtyping import Bool, Float
 
 from suchus import rotation
+from suchus.design import GRAVITY
 from suchus.experiment import Measure
 from suchus.land import Run
 from suchus.land.bench import up
@@ -61,7 +64,7 @@ def paths(record: xr.Dataset, runs: list[Run], every: int) -> xr.Dataset:
     )  # fmt: skip
     changes = np.diff(walks[:, 1:].astype(int), axis=1) != 0
     found["switches"] = ("case", changes.sum(axis=1), {"units": "1"})
-    found["weight"] = ("case", 9.81 * record.mass.values, {"units": "N"})
+    found["weight"] = ("case", GRAVITY * record.mass.values, {"units": "N"})
     return found
 
 
@@ -80,7 +83,7 @@ def walking(phase: Float[np.ndarray, "run time"]) -> Bool[np.ndarray, "run time"
 
 def _ground_share(record: xr.Dataset, ups: np.ndarray) -> np.ndarray:
     force = record.foot_force.sum("leg").values + record.belly_force.sum("segment").values + record.tail_force.values
-    return np.asarray(np.einsum("rti,ri->rt", force, ups) / (9.81 * record.mass.values[:, None]))
+    return np.asarray(np.einsum("rti,ri->rt", force, ups) / (GRAVITY * record.mass.values[:, None]))
 
 
 def fallen(record: xr.Dataset) -> Bool[np.ndarray, " case"]:
@@ -134,11 +137,46 @@ def measures(record: xr.Dataset) -> dict[str, Measure]:
             mine = main & np.isclose(grip, middle)
         if mine.any():
             found[f"ashore_share_{name}"] = Measure(_share(times, mine), "-")
-    return found | _costs(record.isel(case=np.flatnonzero(main)))
+    return found | _costs(record.isel(case=np.flatnonzero(main))) | _metre_costs(record)
 
 
 def _share(times: np.ndarray, mine: np.ndarray) -> float:
     return float(np.isfinite(times[mine]).mean())
+
+
+def metres(record: xr.Dataset, names: Sequence[str], last: float) -> xr.Dataset:
+    """Return speed along its course, power of the servos and error of the depth of each run, over its last seconds.
+
+    Args:
+        record: of one run for each name.
+        names: where they were.
+        last: over how long [s].
+    """
+    part = record.sel(time=slice(float(record.time[-1]) - last - 1e-9, None))
+    way = (part.centre_of_mass.isel(time=-1) - part.centre_of_mass.isel(time=0)).sel(xyz=["x", "y"])
+    deep = (part.water_level - part.position.sel(xyz="z")).mean("time")
+    return xr.Dataset(
+        {
+            "metre_speed": ("where", np.hypot(*way.transpose("xyz", "run").values) / last, {"units": "m/s"}),
+            "metre_power": ("where", part.servo_power.mean("time").values, {"units": "W"}),
+            "metre_depth": ("where", deep.values, {"units": "m"}),
+            "metre_weight": ("where", GRAVITY * record.mass.values, {"units": "N"}),
+        },
+        coords={"where": list(names)},
+    )
+
+
+def _metre_costs(record: xr.Dataset) -> dict[str, Measure]:
+    """Return speed, work over distance and cost of transport on land, at the surface and at depth."""
+    found = {}
+    for where in record["where"].values:
+        one = record.sel(where=where)
+        speed, work = float(one.metre_speed), float(one.metre_power / one.metre_speed)
+        found[f"speed_{where}"] = Measure(speed, "m/s")
+        found[f"work_per_metre_{where}"] = Measure(work, "J/m")
+        found[f"cost_of_transport_{where}"] = Measure(work / float(one.metre_weight), "-")
+    error = abs(float(record.metre_depth.sel(where="deep")) - record.attrs["depth"])
+    return found | {"depth_error": Measure(error, "m")}
 
 
 def _costs(record: xr.Dataset) -> dict[str, Measure]:

@@ -1,15 +1,15 @@
 """Does it swim in, touch ground, stand and walk out, and go back into the water?"""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
-from math import pi, radians, sin
+from math import pi, radians, sin, tan
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from suchus.control import Amphibious, HeadingHold, HeadingRule, Swimming
+from suchus.control import Amphibious, Control, DepthHold, HeadingHold, OpenLoop, Swimming
 from suchus.design import Crocodile
 from suchus.design.checks import Checks
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
@@ -17,12 +17,21 @@ from suchus.experiments import _shore_findings as findings
 from suchus.figures.shore import draw_ashore, draw_decides
 from suchus.gaits import GAITS
 from suchus.land import Ground, Lake, Run, simulate
-from suchus.motion import Gait
+from suchus.motion import Gait, Swim
 from suchus.replay import replay
 from suchus.robots import ROBOTS
 from suchus.verdict import Reading, compared, listed
 from suchus.water import fit, printed_wave
 
+_LIMBS = -0.15
+"""How far the limbs, which lie back along the body, point down while it swims [rad]."""
+_DRY, _DEEP = -10.0, 3.0
+"""Levels of the water far below dry land, and far above the ground [m]."""
+_METRES = (
+    ("land", "on level dry land"), ("ashore", "up the shore above the line"), ("wading", "wading"),
+    ("surface", "at the surface"), ("deep", "at a depth that is held"),
+)  # fmt: skip
+"""Endings of the measures of what a metre costs, and in words where that is."""
 _SAMPLE, _KEPT = 4, 5
 """Control periods between the samples of the runs, and those of them between the samples of the paths that are kept."""
 
@@ -36,7 +45,8 @@ class Shore(Experiment):
     times, with noise on the servos. Beside them other gaits on every slope with one grip, other amounts of air let out
     on the steepest slope with every grip, and walks from land into the water on every slope. It came ashore if its
     centre of mass got ``beyond`` the water line without falling; it is in the water if it swims at the end, floats
-    free, and did not fall.
+    free, and did not fall. What a metre costs is read from three more runs: the gait on level dry land, and the swim at
+    the surface and at a depth that is held.
     """
 
     title = "Does it swim in, touch ground, stand and walk out, and go back into the water?"
@@ -65,14 +75,18 @@ class Shore(Experiment):
     """Other shares, on the steepest slope [-]."""
     frequency: float = 1.0
     """Of the swim [Hz]."""
-    offshore: float = 2.2
-    """How far the water line is ahead of where it begins to swim [m]."""
+    clearance: float = 0.15
+    """Depth of the water half a body length ahead of where it begins to swim [m]."""
     inland: float = 0.4
     """How far the water line is ahead of where it begins to walk into the water [m]."""
     beyond: float = 1.0
     """How far the centre of mass must come beyond the water line [m]."""
-    duration: float = 40.0
-    """Of every run [s]."""
+    duration: float = 24.0
+    """Of every run to the shore or into the water [s]."""
+    cycles: int = 4
+    """Cycles of the gait over which the cost of a metre is measured, after as many seconds [-]."""
+    depth: float = 0.6
+    """Of the root, in the dive [m]."""
     timestep: float = 0.005
     """Of the physics [s]."""
 
@@ -86,15 +100,18 @@ class Shore(Experiment):
             if self.breaths:
                 check.rising("breaths", 0.0, 1.0, "")
             check.number("frequency", 0.05, 10.0, "Hz")
-            check.number("offshore", 0.1, 100.0, "m")
+            check.number("clearance", 0.01, 10.0, "m")
             check.number("inland", 0.0, 100.0, "m")
             check.number("beyond", 0.0, 100.0, "m")
             check.number("duration", 2.0, 3600.0, "s")
+            check.whole("cycles", 1, 1000)
+            check.number("depth", 0.0, 100.0, "m")
             check.number("timestep", 1e-5, 0.01, "s")
 
     def quick(self) -> "Shore":
         """Return one slope with one grip, no other gaits, the first seconds."""
-        return replace(self, slopes=self.slopes[1:2], grips=(1.0,), seeds=1, others=(), breaths=(), duration=2.0)
+        some = replace(self, slopes=self.slopes[1:2], grips=(1.0,), seeds=1, others=(), breaths=())
+        return replace(some, duration=2.0, cycles=1)
 
     def simulate(self, progress: Progress = silent) -> Simulated:
         """Swim ashore, with other gaits and other breaths too, and walk into the water, all at once."""
@@ -105,7 +122,7 @@ class Shore(Experiment):
             duration=self.duration,
             timestep=self.timestep,
             every=_SAMPLE,
-            progress=staged(progress, "runs to the shore", 0.0, 1.0),
+            progress=staged(progress, "runs to the shore", 0.0, 0.9),
         )
         kept = findings.paths(record, runs, _KEPT)
         for name, values, unit in (
@@ -117,10 +134,11 @@ class Shore(Experiment):
         ):
             kept[name] = ("case", np.array(values), {"units": unit})
         shown = self._shown(kept)
-        whole = xr.merge([record.isel(run=[shown]), kept], combine_attrs="override", compat="no_conflicts")
+        metres = self._metres(staged(progress, "metres on land, at the surface and below", 0.9, 1.0))
+        whole = xr.merge([record.isel(run=[shown]), kept, metres], combine_attrs="override", compat="no_conflicts")
         whole.attrs.update(
             record.attrs, beyond=self.beyond, shown=shown, line=findings.water_line(runs[shown]),
-            breathe_out=self.breathe_out,
+            breathe_out=self.breathe_out, depth=self.depth,
         )  # fmt: skip
         return Simulated(record=whole, replays=self._replays(whole))
 
@@ -141,26 +159,42 @@ class Shore(Experiment):
         cases += [("into_water", out, self._run(self.gait, -slope, g, out, 0)) for slope in self.slopes for g in ends]
         return cases
 
+    def _swim(self) -> Swim:
+        robot = replace(self.robot, hull=None)
+        return fit(robot, printed_wave(robot, "I", frequency=self.frequency, sign=-1)).swim
+
     def _run(self, gait: Gait, uphill: float, grip: float, out: float, seed: int) -> Run:
         """Return a run: up a shore from the water, or down into it where the slope falls."""
-        robot = replace(self.robot, hull=None)
-        swim = fit(robot, printed_wave(robot, "I", frequency=self.frequency, sign=-1)).swim
+        offshore = self.robot.length / 2 + self.clearance / tan(uphill) if uphill > 0 else self.inland
         control = Amphibious(
-            swim=Swimming(swim=swim, limb_pitch=-0.15, heading=HeadingHold()),
+            swim=Swimming(swim=self._swim(), limb_pitch=_LIMBS, heading=HeadingHold()),
             begins="swimming" if uphill > 0 else "walking",
             breathe_out=out,
-            heading=HeadingRule(),
         )
         return Run(
             robot=self.robot,
             gait=gait,
             ground=Ground(uphill=uphill, grip=grip),
-            lake=Lake(level=(self.offshore if uphill > 0 else self.inland) * sin(uphill)),
+            lake=Lake(level=offshore * sin(uphill)),
             control=control,
             noise=self.noise,
             seed=seed,
             label=f"{np.degrees(abs(uphill)):.0f} degrees, grip {grip:g}",
         )
+
+    def _metres(self, progress: Callable[[float], None]) -> xr.Dataset:
+        """Return speed and power of the servos on level dry land, at the surface and at depth."""
+        plain = partial(Swimming, swim=self._swim(), limb_pitch=_LIMBS, heading=HeadingHold())
+        controls: Mapping[str, Control] = {
+            "land": OpenLoop(), "surface": plain(), "deep": plain(depth=DepthHold(depth=self.depth)),
+        }  # fmt: skip
+        runs = [
+            Run(robot=self.robot, gait=self.gait, lake=Lake(level=_DRY if name == "land" else _DEEP), control=one)
+            for name, one in controls.items()
+        ]
+        last = self.cycles * self.gait.period
+        record = simulate(runs, duration=2 * last, timestep=self.timestep, every=_SAMPLE, progress=progress)
+        return findings.metres(record, list(controls), last)
 
     def _shown(self, kept: xr.Dataset) -> int:
         """Return which case is drawn: on the second slope with the greatest grip."""
@@ -192,6 +226,11 @@ class Shore(Experiment):
         walked = [f"{share:.0%} by {name.replace('_', ' ')}" for name, share in gaits.items()]
         grip = compared(m["ashore_share_most_grip"], m["ashore_share_least_grip"], less="fewer", more="more",
                         same="as many")  # fmt: skip
+        costs = [
+            f"{m[f'work_per_metre_{ending}']:.1f} J {where}"
+            for ending, where in _METRES
+            if m[f"work_per_metre_{ending}"] == m[f"work_per_metre_{ending}"]
+        ]
         when = f", half of these within {m['time_ashore']:.0f} s" if m["time_ashore"] == m["time_ashore"] else ""
         return (
             f"{m['ashore_share']:.0%} of the runs came ashore{when}; {m['falls']:.0f} fell, and none changed between "
@@ -199,9 +238,7 @@ class Shore(Experiment):
             f"{m['ashore_share_steepest']:.0%}: {listed(breaths)}. With the greatest friction {grip} come ashore than "
             f"with the least ({m['ashore_share_most_grip']:.0%} and {m['ashore_share_least_grip']:.0%}). Of all slopes "
             f"at one friction: {listed(walked)}. From land {m['into_water_share']:.0%} went into the water and swam "
-            f"on. A metre costs {m['work_per_metre_swimming']:.1f} J at the surface, "
-            f"{m['work_per_metre_wading']:.1f} J wading and {m['work_per_metre_ashore']:.1f} J on the slope above "
-            "the line."
+            f"on. A metre costs {listed(costs)}; the depth is held to {m['depth_error']:mm.0f} mm."
         )
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
