@@ -144,7 +144,8 @@ class Shore(Experiment):
 
     def _cases(self) -> list[tuple[str, float, Run]]:
         """Return kind of case, share of the air let out, and run."""
-        out, cases = self.breathe_out, []
+        out = self.breathe_out
+        cases: list[tuple[str, float, Run]] = []
         for slope in self.slopes:
             for grip in self.grips:
                 for _ in range(self.seeds):

@@ -1,5 +1,7 @@
 """A robot that swims in and walks out: side views with the water line, loads over distance, and what decides."""
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -131,7 +133,7 @@ def draw_decides(record: xr.Dataset) -> Figure:
     )
 
 
-def _map(ax: Axes, time: np.ndarray, grip: np.ndarray, row: np.ndarray, most: float) -> object:
+def _map(ax: Axes, time: np.ndarray, grip: np.ndarray, row: np.ndarray, most: float) -> Any:
     """Draw a field for each pair of grip and row: its mean time, and how many of its runs came ashore."""
     columns, rows = np.unique(grip), np.unique(np.round(row, 6))
     shown = np.full((len(rows), len(columns)), np.nan)

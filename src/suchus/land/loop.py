@@ -62,7 +62,8 @@ class Loop:
     """
 
     def __init__(self, runs: Sequence[Run], ticks: int, steps: int, timestep: float, *, samples: int) -> None:
-        self._steps, self._breath = steps, None
+        self._steps = steps
+        self._breath: np.ndarray | None = None
         self._period = period = control_period(runs[0].robot)
         self.bench = Bench(runs, timestep)
         self.feels = any(run.control.feels for run in runs)
