@@ -55,10 +55,10 @@ class Shore(Experiment):
 
     robot: Crocodile = field(default_factory=lambda: ROBOTS["floating_caiman"])
     """The robot; it must float, and have air to let out."""
-    gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
+    gait: Gait = field(default_factory=lambda: GAITS["semi_erect"])
     """In which it walks ashore."""
     others: tuple[Gait, ...] = field(
-        default_factory=lambda: tuple(GAITS[name] for name in ("low_crawl", "semi_erect", "high_walk"))
+        default_factory=lambda: tuple(GAITS[name] for name in ("belly_crawl", "low_crawl", "high_walk"))
     )
     """Gaits beside it."""
     slopes: tuple[float, ...] = (radians(5), radians(8), radians(12), radians(15))
