@@ -125,17 +125,17 @@ def test_when_it_walks_it_walks_the_gait():
     other = WAY.start([ROBOT], [walked], [0], 10, PERIOD).rest()
     rest = replace(WAY, begins="walking").start([ROBOT], [walked], [0], 10, PERIOD).rest()
     limbs = slice(0, 12)
-    assert rest[0, limbs] == pytest.approx(expected[0, 0].values[limbs], abs=0.3)
-    assert np.abs(other[0, limbs] - expected[0, 0].values[limbs]).max() > 0.5
+    assert rest[0, limbs] == pytest.approx(expected[0, 0].values[limbs], abs=0.7)
+    assert np.abs(other[0, limbs] - expected[0, 0].values[limbs]).max() > 0.9
     assert np.isfinite(command.targets).all()
 
 
 def test_it_breathes_out_when_it_walks_and_in_when_it_swims_as_fast_as_the_pump_goes():
     machine = begun(replace(WAY, breathe_out=0.5, pump=0.5))
-    _, swam = feel(machine, [0.0])
-    _, soon = feel(machine, [1.0] * 60, BEGIN + 1)
-    _, walked = feel(machine, [1.0] * 100, BEGIN + 61)
-    _, again = feel(machine, [0.0] * 300, BEGIN + 161)
+    _, swam = feel(machine, [0.0] * 100)
+    _, soon = feel(machine, [1.0] * 60, BEGIN + 100)
+    _, walked = feel(machine, [1.0] * 100, BEGIN + 160)
+    _, again = feel(machine, [0.0] * 300, BEGIN + 260)
     assert swam.breath[0] == 1.0
     assert 0.5 < soon.breath[0] < 1.0
     assert walked.breath[0] == pytest.approx(0.5)
@@ -162,7 +162,7 @@ def test_what_others_of_its_batch_do_changes_nothing():
         felt = sensed(0.0 if tick < 150 else 0.5, yaw=0.3 + 0.1 * rng.random())
         one = alone.command(tick, felt)
         two = both.command(tick, twice(felt))
-        assert np.array_equal(two.targets[0], one.targets[0]), tick
+        assert two.targets[0] == pytest.approx(one.targets[0], abs=1e-9), tick
     swam = way.start([ROBOT], [GAIT], [0], 3000, PERIOD)
     for tick in range(400):
         swam.command(tick, sensed(0.0, yaw=0.3 * (tick > 0)))

@@ -19,13 +19,12 @@ ROBOT, PERIOD = ROBOTS["floating_caiman"], 0.01
 WAVE = Swim(
     name="wave", frequency=1.0, yaw=(0.36, 0.13, 0.11), yaw_late=(0.08, -0.11, -0.29), tail=0.75, tail_late=-0.11
 )
-UP, LEFT = np.array([0.0, 0.0, 1.0]), np.array([0.0, 1.0, 0.0])
+UP = np.array([0.0, 0.0, 1.0])
 
 
-def sensed(*, yaw=0.0, pitch=0.0, depth=0.0):
-    """What a robot feels that faces to the left by ``yaw`` or points its nose down by ``pitch``."""
+def sensed(*, yaw=0.0, depth=0.0):
+    """What a robot feels that faces to the left by ``yaw``."""
     none = np.zeros((1, 17))
-    turn = about(UP, np.array([yaw])) if yaw else about(LEFT, np.array([pitch]))
     return Sensed(
         time=0.0,
         servo_position=none,
@@ -34,7 +33,7 @@ def sensed(*, yaw=0.0, pitch=0.0, depth=0.0):
         foot_pressure=np.zeros((1, 4)),
         belly_pressure=np.zeros((1, 5)),
         tail_pressure=np.zeros(1),
-        orientation=turn,
+        orientation=about(UP, np.array([yaw])),
         angular_velocity=np.zeros((1, 3)),
         acceleration=np.zeros((1, 3)),
         depth=np.array([depth]),
@@ -118,15 +117,6 @@ def test_a_weight_that_is_not_known_is_learnt():
     without, _ = depth_after(DepthHold(depth=0.6, integral_gain=0.0), 120.0, leak=0.5)
     assert np.abs(held[-500:] - 0.6).max() < 0.02
     assert np.abs(without[-500:] - 0.6).min() > 0.03
-
-
-@pytest.mark.parametrize("pitch", [0.2, -0.2])
-def test_limbs_yaw_back_where_the_nose_is_up_and_only_within_their_trim(pitch):
-    hold = Depths([DepthHold(depth=0.5, trim_gain=1.0, trim=0.3)], [ROBOT], PERIOD)
-    assert hold.back(sensed(pitch=-pitch))[0] == pytest.approx(pitch, abs=1e-6)
-    assert hold.back(sensed(pitch=-5 * pitch))[0] == pytest.approx(0.3 * np.sign(pitch), abs=1e-6)
-    off = Depths([DepthHold(depth=0.5)], [ROBOT], PERIOD)
-    assert off.back(sensed(pitch=pitch))[0] == 0.0
 
 
 def test_a_swim_holds_heading_and_depth_in_the_water():

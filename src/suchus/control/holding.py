@@ -7,7 +7,6 @@ from math import pi
 import numpy as np
 from jaxtyping import Float
 
-from suchus import rotation
 from suchus.control.facing import Facing
 from suchus.control.sensed import Sensed, finite, keep
 from suchus.design import WATER_DENSITY, AnyRobot, general
@@ -46,12 +45,11 @@ class HeadingHold:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DepthHold:
-    """Keeps a depth by the air in the hull, and the body level by the yaw of the limbs, whose foam is pushed back.
+    """Keeps a depth by the air in the hull.
 
     With e how much deeper than asked the root is and w its sinking speed, the share of the air that is kept is that of
     neutral buoyancy plus gain e + rate_gain w + integral_gain sum(e dt), within 0 and 1, and changes by ``pump`` at
-    most. With p the pitch, nose up positive, the limbs yaw by trim_gain p + trim_integral sum(p dt) backward from where
-    they are held, within ``trim``.
+    most.
     """
 
     depth: float
@@ -64,12 +62,6 @@ class DepthHold:
     """Answer to the error that stays [1/(m s)]."""
     pump: float = 0.25
     """Greatest rate at which the share of the air changes [1/s]."""
-    trim_gain: float = 0.0
-    """Answer of the limbs to the pitch [-]."""
-    trim_integral: float = 0.0
-    """Answer of the limbs to the pitch that stays [1/s]."""
-    trim: float = 0.0
-    """How far the limbs may yaw from where they are held [rad]."""
 
     def __post_init__(self) -> None:
         with Checks("depth_hold", self) as check:
@@ -78,9 +70,6 @@ class DepthHold:
             check.number("rate_gain", 0.0, 100.0, "s/m")
             check.number("integral_gain", 0.0, 100.0, "1/(m s)")
             check.number("pump", 1e-3, 100.0, "1/s")
-            check.number("trim_gain", 0.0, 100.0, "")
-            check.number("trim_integral", 0.0, 100.0, "1/s")
-            check.number("trim", 0.0, pi, "rad")
 
 
 def neutral_breath(robot: AnyRobot) -> float:
@@ -136,7 +125,7 @@ class Depths:
         )
         self._period, self._kept = period, keep(0.2, period)
         self._last: np.ndarray | None = None
-        self._sinking, self._lasting, self._trim = (np.zeros(len(some)) for _ in range(3))
+        self._sinking, self._lasting = np.zeros(len(some)), np.zeros(len(some))
         self._breath = np.ones(len(some))
 
     def breath(self, sensed: Sensed) -> Float[np.ndarray, " run"] | None:
@@ -155,10 +144,3 @@ class Depths:
         most = rule["pump"] * self._period
         self._breath = self._breath + np.clip(np.clip(asked, 0.0, 1.0) - self._breath, -most, most)
         return np.where(self._on, self._breath, np.nan)
-
-    def back(self, sensed: Sensed) -> Float[np.ndarray, " run"]:
-        """Return how far back of where they are held the limbs yaw [rad]."""
-        rule, pitch = self._rule, finite(rotation.pitch(finite(sensed.orientation)))
-        lasting = self._trim + rule["trim_integral"] * pitch * self._period
-        self._trim = np.clip(lasting, -rule["trim"], rule["trim"])
-        return np.asarray(np.clip(self._trim + rule["trim_gain"] * pitch, -rule["trim"], rule["trim"]))

@@ -128,7 +128,6 @@ class Swimmer:
         cycle = [max(1, round(1.0 / (one * period))) for one in frequency]
         self._headings = Headings([one.heading for one in controls], robots, cycle, period)
         self._depths = Depths([one.depth for one in controls], robots, period)
-        self._yaws = [limb.servos.start for limb in place.limbs]
 
     def rest(self) -> Float[np.ndarray, "run servo"]:
         """The first posture."""
@@ -141,7 +140,6 @@ class Swimmer:
             tail, trunk = self._headings.bend(sensed)
             for robot, runs in self._robots:
                 targets[runs] = _bent(targets[runs], robot, tail[runs], trunk[runs])
-            targets[:, self._yaws] -= self._depths.back(sensed)[:, None]
             breath = self._depths.breath(sensed)
         return Command(targets, self._frequency * (tick * self._period), breath)
 
