@@ -28,9 +28,9 @@ def kept(**changes):
         "ahead": ahead,
         "tilt": tilt,
         "walks": walks,
-        "ground_share": walks * 0.5,
-        "share_under": np.clip(-ahead, 0.0, 0.95),
-        "servo_power": 2.0 + 4.0 * walks,
+        "ground": walks * 0.5,
+        "under": np.clip(-ahead, 0.0, 0.95),
+        "power": 2.0 + 4.0 * walks,
     } | {name: np.array(value) for name, value in changes.items()}
     found = xr.Dataset({name: (("case", "moment"), value) for name, value in values.items()}, {"moment": moment})
     cases = {
@@ -68,17 +68,17 @@ def test_who_tilts_by_more_than_sixty_degrees_has_fallen_and_is_not_ashore(degre
 )
 def test_it_is_in_the_water_if_it_swims_there_and_floats_free(ahead, share, walks, inside):
     full = np.ones((3, 20))
-    record = kept(ahead=ahead * full, ground_share=share * full, walks=walks * full, tilt=0.1 * full)
+    record = kept(ahead=ahead * full, ground=share * full, walks=walks * full, tilt=0.1 * full)
     assert findings.in_water(record).all() == inside
     end = np.array(share * full)
     end[:, :14] = 0.5  # what was before the last seconds does not count
-    other = kept(ahead=ahead * full, ground_share=end, walks=walks * full, tilt=0.1 * full)
+    other = kept(ahead=ahead * full, ground=end, walks=walks * full, tilt=0.1 * full)
     assert findings.in_water(other).all() == inside
 
 
 def test_measures_count_who_came_ashore_fell_and_changed_its_mind():
     record = kept()
-    into = kept(ahead=np.full((3, 20), -1.0), ground_share=np.zeros((3, 20)), walks=np.zeros((3, 20)))
+    into = kept(ahead=np.full((3, 20), -1.0), ground=np.zeros((3, 20)), walks=np.zeros((3, 20)))
     into["kind"] = ("case", np.array(["into_water"] * 3))
     found = findings.measures(xr.concat([record, into], "case", data_vars="minimal", combine_attrs="override"))
     assert found["ashore_share"].value == pytest.approx(1 / 3)
@@ -125,9 +125,9 @@ def test_metres_are_read_from_the_last_seconds_along_the_course():
         {"time": time, "xyz": list("xyz")},
     )
     found = findings.metres(record, ["deep"], 2.0)
-    assert float(found.metre_speed) == pytest.approx(0.5)
-    assert float(found.metre_power) == pytest.approx(3.0)
-    assert float(found.metre_depth) == pytest.approx(0.6)
+    assert found.metre_speed.item() == pytest.approx(0.5)
+    assert found.metre_power.item() == pytest.approx(3.0)
+    assert found.metre_depth.item() == pytest.approx(0.6)
 
 
 def test_limbs_whose_phase_stands_still_do_not_walk():
@@ -166,7 +166,7 @@ def test_a_levelled_run_stands_on_a_slope_whose_water_line_is_the_origin():
     [
         ({"slopes": (0.2, 0.1)}, "slopes is"),
         ({"slopes": (0.0,)}, "slopes is"),
-        ({"grips": ()}, "grips is empty"),
+        ({"grips": ()}, "grips is \\(\\)"),
         ({"seeds": 0}, "seeds is 0"),
         ({"breathe_out": 1.5}, "breathe_out is 1.5"),
         ({"duration": 0.1}, "duration is 0.1 s"),

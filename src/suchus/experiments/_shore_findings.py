@@ -21,12 +21,12 @@ LAST = 2.0
 _UNITS = {
     "ahead": ("m", "centre of mass beyond the water line, up the shore"),
     "aside": ("m", "centre of mass to the left of where it began"),
-    "share_under": ("1", "volume under water over the whole volume"),
-    "feet_share": ("1", "of the weight that the feet carry"),
-    "ground_share": ("1", "of the weight that feet, belly and tail carry"),
+    "under": ("1", "volume under water over the whole volume"),
+    "feet": ("1", "of the weight that the feet carry"),
+    "ground": ("1", "of the weight that feet, belly and tail carry"),
     "walks": ("1", "1 where the limbs' phases advance, else 0"),
     "tilt": ("rad", "of the body against gravity"),
-    "servo_power": ("W", "of all servos on the joints"),
+    "power": ("W", "of all servos on the joints"),
 }
 
 
@@ -46,14 +46,14 @@ def paths(record: xr.Dataset, runs: list[Run], every: int) -> xr.Dataset:
     values = {
         "ahead": record.centre_of_mass.sel(xyz="x").values - line[:, None],
         "aside": record.centre_of_mass.sel(xyz="y").values,
-        "share_under": record.share_under.values,
-        "feet_share": record.feet_share.values,
-        "ground_share": shares,
+        "under": record.share_under.values,
+        "feet": record.feet_share.values,
+        "ground": shares,
         "walks": walks.astype(float),
         "tilt": np.arccos(np.clip(np.einsum("rti,ri->rt", high, ups), -1.0, 1.0)),
-        "servo_power": record.servo_power.values,
+        "power": record.servo_power.values,
     }
-    means = ("feet_share", "ground_share", "servo_power")
+    means = ("feet", "ground", "power")
     count = record.sizes["time"] // every
     whole = {name: value[:, : count * every].reshape(len(runs), count, every) for name, value in values.items()}
     kept = {name: value.mean(axis=-1) if name in means else value[..., 0] for name, value in whole.items()}
@@ -101,7 +101,7 @@ def times_ashore(record: xr.Dataset) -> Float[np.ndarray, " case"]:
 def in_water(record: xr.Dataset) -> Bool[np.ndarray, " case"]:
     """Tell which cases swim at the end, on the water's side of the line, and float free for the last seconds."""
     end = record.sel(moment=slice(float(record.moment[-1]) - LAST, None))
-    free = (end.ground_share.mean("moment") < AFLOAT) & (end.walks.max("moment") == 0.0)
+    free = (end.ground.mean("moment") < AFLOAT) & (end.walks.max("moment") == 0.0)
     return np.asarray((free & (end.ahead < 0).all("moment")).values) & ~fallen(record)
 
 
@@ -183,15 +183,15 @@ def _costs(record: xr.Dataset) -> dict[str, Measure]:
     """Return speed [m/s] and work of the servos over distance [J/m] while it swims, wades and walks ashore."""
     step = float(record.moment[1] - record.moment[0])
     speed = np.gradient(record.ahead.values, step, axis=1)
-    walks, under = record.walks.values > 0, record.share_under.values
+    walks, under = record.walks.values > 0, record.under.values
     late = (record.moment.values > 3.0)[None, :]
     found = {}
     for name, when in (
-        ("swimming", ~walks & late & (record.ground_share.values < AFLOAT)),
+        ("swimming", ~walks & late & (record.ground.values < AFLOAT)),
         ("wading", walks & (under > 0.05)),
         ("ashore", walks & (under <= 0.0)),
     ):
-        ahead, power = speed[when], record.servo_power.values[when]
+        ahead, power = speed[when], record.power.values[when]
         mean = float(ahead.mean()) if ahead.size else float("nan")
         found[f"speed_{name}"] = Measure(mean, "m/s")
         found[f"work_per_metre_{name}"] = Measure(float(power.mean()) / mean if ahead.size else float("nan"), "J/m")

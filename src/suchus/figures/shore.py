@@ -59,12 +59,10 @@ def draw_ashore(robot: AnyRobot, record: xr.Dataset) -> Figure:
         ax.set_ylim(-0.42, 0.6)
         ax = axes[1, 0]
         across = ahead * np.cos(steep)
-        ax.plot(across, path.feet_share, color=COLOURS["limbs_only"], linewidth=0.8, alpha=0.35)
+        ax.plot(across, path.feet, color=COLOURS["limbs_only"], linewidth=0.8, alpha=0.35)
         wide = max(round(1.5 / float(path.moment[1] - path.moment[0])), 1)
-        ax.plot(across, _smooth(path.feet_share.values, wide), color=COLOURS["limbs_only"], label="weight on the feet")
-        ax.plot(
-            across, path.share_under, color=COLOURS["coordinated"], linestyle=(0, (5, 2)), label="volume under water"
-        )
+        ax.plot(across, _smooth(path.feet.values, wide), color=COLOURS["limbs_only"], label="weight on the feet")
+        ax.plot(across, path.under, color=COLOURS["coordinated"], linestyle=(0, (5, 2)), label="volume under water")
         changes = np.flatnonzero(np.diff(path.walks.values) != 0)
         for i in changes:
             ax.axvline(across[i], color=COLOURS["neutral"], linewidth=0.9)
