@@ -83,8 +83,8 @@ class Shore(Experiment):
     """How far the centre of mass must come beyond the water line [m]."""
     duration: float = 24.0
     """Of every run to the shore or into the water [s]."""
-    cycles: int = 4
-    """Cycles of the gait over which the cost of a metre is measured, after as many seconds [-]."""
+    cycles: int = 10
+    """Cycles of the gait over which the cost of a metre is measured, after as many to settle [-]."""
     depth: float = 0.6
     """Of the root, in the dive [m]."""
     timestep: float = 0.005
@@ -225,20 +225,21 @@ class Shore(Experiment):
         ]
         gaits = {name.removeprefix("ashore_share_"): share for name, share in m.items() if name in _gait_names(m)}
         walked = [f"{share:.0%} by {name.replace('_', ' ')}" for name, share in gaits.items()]
-        grip = compared(m["ashore_share_most_grip"], m["ashore_share_least_grip"], less="fewer", more="more",
-                        same="as many")  # fmt: skip
+        grip = compared(m["ashore_share_most_grip"], m["ashore_share_least_grip"], less="fewer than", more="more than",
+                        same="as many as")  # fmt: skip
         costs = [
             f"{m[f'work_per_metre_{ending}']:.1f} J {where}"
             for ending, where in _METRES
             if m[f"work_per_metre_{ending}"] == m[f"work_per_metre_{ending}"]
         ]
+        by_gait = f"Of all slopes at one friction: {listed(walked)}. " if walked else ""
         when = f", half of these within {m['time_ashore']:.0f} s" if m["time_ashore"] == m["time_ashore"] else ""
         return (
             f"{m['ashore_share']:.0%} of the runs came ashore{when}; {m['falls']:.0f} fell, and none changed between "
             f"swimming and walking more than {m['switches']:.0f} times. On the steepest slope it is "
-            f"{m['ashore_share_steepest']:.0%}: {listed(breaths)}. With the greatest friction {grip} come ashore than "
-            f"with the least ({m['ashore_share_most_grip']:.0%} and {m['ashore_share_least_grip']:.0%}). Of all slopes "
-            f"at one friction: {listed(walked)}. From land {m['into_water_share']:.0%} went into the water and swam "
+            f"{m['ashore_share_steepest']:.0%}: {listed(breaths)}. With the greatest friction {grip} "
+            f"with the least come ashore ({m['ashore_share_most_grip']:.0%} and {m['ashore_share_least_grip']:.0%}). "
+            f"{by_gait}From land {m['into_water_share']:.0%} went into the water and swam "
             f"on. A metre costs {listed(costs)}; the depth is held to {m['depth_error']:mm.0f} mm."
         )
 
