@@ -83,7 +83,7 @@ class Shore(Experiment):
     """How far the centre of mass must come beyond the water line [m]."""
     duration: float = 24.0
     """Of every run to the shore or into the water [s]."""
-    cycles: int = 10
+    cycles: int = 16
     """Cycles of the gait over which the cost of a metre is measured, after as many to settle [-]."""
     depth: float = 0.6
     """Of the root, in the dive [m]."""
