@@ -36,6 +36,7 @@ LONG = (
     "gallop_limits",
     "joint_faults",
     "pattern_generator",
+    "shore",
     "speed_range",
     "swim_free",
     "swimming",

@@ -19,7 +19,17 @@ from suchus.report import Failure, Result, check_place, write_page
 
 _MOST = 4
 """Experiments at a time unless more are asked for [-]; beyond, the longest one alone decides, and each takes memory."""
-_LONG = ("swimming", "feedback", "terrain", "bipedal_reach", "joint_faults", "turning", "speed_range", "displacement")
+_LONG = (
+    "swimming",
+    "shore",
+    "feedback",
+    "terrain",
+    "bipedal_reach",
+    "joint_faults",
+    "turning",
+    "speed_range",
+    "displacement",
+)
 """What takes longest is begun first, so that no process idles in the end."""
 
 

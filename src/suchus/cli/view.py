@@ -1,7 +1,7 @@
 """``suchus view``: a walk live, or a record played back, in the browser."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from itertools import takewhile
 from pathlib import Path
 from typing import Annotated, Any
@@ -19,7 +19,10 @@ from suchus.robots import ROBOTS
 from suchus.viewer import Session
 from suchus.viewer.replay import takes
 from suchus.viewer.swim import films
+from suchus.water import fit, printed_wave
 
+_SWIM = 1.0
+"""Frequency of a live swim [Hz]."""
 _LOOPBACK = ("127.0.0.1", "localhost", "::1")
 
 
@@ -49,6 +52,8 @@ class Walking(Where):
     """How, at the beginning."""
     timestep: float = 0.005
     """Of the physics [s]; a whole part of 0.01 s."""
+    lake: tyro.conf.FlagCreatePairsOff[bool] = False
+    """Whether it swims in a lake; the floating caiman if no robot is named."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -97,6 +102,8 @@ def _walk(words: Sequence[str]) -> int:
     named = [part for option, word in zip(("--robot", "--gait"), first, strict=False) for part in (option, word)]
     told = [*named, *words[len(first) :]]
     options: Walking = parse(Walking, "suchus view", told, about, [f.name for f in fields(Walking)])
+    if options.lake and not first and "--robot" not in told:
+        options = replace(options, robot=ROBOTS["floating_caiman"])
     return serve_walk(options)
 
 
@@ -110,13 +117,16 @@ def serve_walk(options: Walking, opened: Callable[[str], object] | None = None) 
     Raises:
         SuchusError: the walk cannot be walked, the viewer is not installed, or the port is taken.
     """
-    Session(options.robot, options.gait, timestep=options.timestep)  # refuses what cannot be walked, before a browser
+    bare = replace(options.robot, hull=None)
+    swim = fit(bare, printed_wave(bare, "I", frequency=_SWIM, sign=-1)).swim if options.lake else None
+
+    def session() -> Session:
+        return Session(options.robot, options.gait, timestep=options.timestep, swim=swim)
+
+    session()  # refuses what cannot be walked, before a browser
     pages = _pages()
-
-    def page(client: Any) -> Any:
-        return pages.LivePage(client, Session(options.robot, options.gait, timestep=options.timestep))
-
-    return _serve(page, options, f"{options.robot.name}, {options.gait.name}", opened)
+    how = "in a lake" if options.lake else options.gait.name
+    return _serve(lambda client: pages.LivePage(client, session()), options, f"{options.robot.name}, {how}", opened)
 
 
 def _replay(words: Sequence[str]) -> int:
@@ -177,7 +187,7 @@ def _serve(
     return 0
 
 
-_HELP = """usage: suchus view [ROBOT] [GAIT] [--host HOST] [--port PORT]
+_HELP = """usage: suchus view [ROBOT] [GAIT] [--lake] [--host HOST] [--port PORT]
        suchus view RECORD.nc [--ghost RECORD2.nc]
        suchus view swim RECORD.nc
 
@@ -187,6 +197,7 @@ In the browser: a robot that walks live, a record played back, a swim with the w
   RECORD.nc        the record of an experiment, as out/displacement/record.nc
   --ghost FILE     another record, or the same one, shown pale beside it
   --robot ROBOT    who walks in a record, where that robot is not on the shelf
+  --lake           it swims in a lake, with sliders for the level and for its breath
   --timestep S     of the physics of a live walk; 0.005 by default
   --host HOST      address to listen on; 127.0.0.1 by default: only this computer can look
   --port PORT      port to listen on; 8080 by default, 0 for any that is free

@@ -1,9 +1,11 @@
 """From what the robot senses to what its servos are told, for a whole batch at once."""
 
+from suchus.control.amphibious import Amphibious
 from suchus.control.attitude import AttitudeRule
 from suchus.control.controller import Command, Control, Controller, Joinable
 from suchus.control.coordinated import Coordinated, Kick
 from suchus.control.heading import HeadingRule
+from suchus.control.holding import DepthHold, HeadingHold
 from suchus.control.limbs import LAWS, LimbLaw
 from suchus.control.open_loop import OpenLoop
 from suchus.control.oscillators import Oscillators
@@ -24,6 +26,7 @@ __all__ = [
     "CURVES",
     "LAWS",
     "OWNERS",
+    "Amphibious",
     "AttitudeRule",
     "Balance",
     "Change",
@@ -31,7 +34,9 @@ __all__ = [
     "Control",
     "Controller",
     "Coordinated",
+    "DepthHold",
     "Generator",
+    "HeadingHold",
     "HeadingRule",
     "Joinable",
     "Kick",

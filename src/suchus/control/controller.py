@@ -18,6 +18,8 @@ class Command(NamedTuple):
     """Servo angles [rad]."""
     phase: Float[np.ndarray, "run limb"]
     """Phase of each limb, not wrapped [cycle]."""
+    breath: Float[np.ndarray, " run"] | None = None
+    """Share of the air of each robot's hull that is kept, 0 to 1, NaN to leave it to the lake [-]; None for all."""
 
 
 @runtime_checkable

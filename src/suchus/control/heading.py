@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Bool, Float
 
-from suchus import rotation
-from suchus.control.sensed import Sensed, finite
+from suchus.control.facing import Facing
+from suchus.control.sensed import Sensed
 from suchus.design import AnyRobot, layout
 from suchus.design.checks import Checks
 from suchus.motion import Gait, Pattern, longest_strokes, strides
@@ -81,43 +81,30 @@ class Heading:
         self._runs = np.arange(len(gaits))
         self._cycle = np.array([max(1, round(gait.period / period)) for gait in gaits])
         self._most = np.array([_most(*those) for those in zip(settings, robots, gaits, strict=True)])
-        self._summed = np.zeros((int(self._cycle.max()) + 1, len(gaits)))  # a ring, as long as the longest cycle
-        self._count = 0
-        self._walks = False
-        self._yaw = list(layout(robots[0]).trunk_yaw)
+        self._facing = Facing(robots, [int(cycle) for cycle in self._cycle])
         self._left = np.array([limb.side for limb in layout(robots[0]).limbs])
         self._lasting = np.zeros(len(gaits))
-        self._last = np.zeros(len(gaits))
-        self._turned = np.zeros(len(gaits))
 
-    def step(self, sensed: Sensed, *, walking: bool) -> Steering:
-        """Answer to the direction that is felt now."""
-        if not walking:
+    def step(self, sensed: Sensed, *, walking: bool | Bool[np.ndarray, " run"]) -> Steering:
+        """Answer to the direction that is felt now.
+
+        Args:
+            sensed: what is felt.
+            walking: which runs walk; the others are not steered, and begin anew with what stays. False: nothing is felt
+                either.
+        """
+        if walking is False:
             return Steering.none(len(self._runs), len(self._left))
-        error = self._error(sensed)
-        self._lasting = np.clip(self._lasting - self._integral_gain * error / self._cycle, -self._most, self._most)
-        steer = np.clip(self._lasting - self._gain * error, -self._most, self._most)
+        error = self._facing.feel(sensed) - self._direction
+        lasting = np.clip(self._lasting - self._integral_gain * error / self._cycle, -self._most, self._most)
+        self._lasting = np.where(walking, lasting, 0.0)
+        steer = np.where(walking, np.clip(self._lasting - self._gain * error, -self._most, self._most), 0.0)
         return Steering(-self._left * steer[:, None], self._trunk * steer)
 
     def take_over(self, before: "Heading") -> None:
         """Go on from where the loops of the same runs stand; the mean over the last cycle begins anew."""
-        self._walks, self._last, self._turned = before._walks, before._last, before._turned
+        self._facing.take_over(before._facing)
         self._lasting = np.clip(before._lasting, -self._most, self._most)
-
-    def _error(self, sensed: Sensed) -> np.ndarray:
-        """Return the error of the direction, averaged over the last cycle or what there is of it [rad]."""
-        trunk = finite(sensed.servo_position[:, self._yaw]).sum(1)
-        facing = rotation.yaw(finite(sensed.orientation)) + trunk / 2
-        if self._walks:
-            self._turned = self._turned + (facing - self._last + pi) % (2 * pi) - pi
-        self._walks, self._last = True, facing
-        self._count += 1
-        size = len(self._summed)
-        now, before = self._count % size, (self._count - 1) % size
-        self._summed[now] = self._summed[before] + self._turned
-        window = np.minimum(self._cycle, self._count)
-        mean = (self._summed[now] - self._summed[(self._count - window) % size, self._runs]) / window
-        return mean - self._direction
 
 
 def _most(rule: HeadingRule, robot: AnyRobot, gait: Gait | Pattern) -> float:

@@ -31,6 +31,8 @@ class Sensed:
     """Of the IMU, in its own frame [rad/s]."""
     acceleration: Float[np.ndarray, "run 3"]
     """Of the IMU with gravity, in its own frame [m/s2]."""
+    depth: Float[np.ndarray, " run"] | None = None
+    """Of the root below the level of the water by a pressure sensor, 0 above it [m]; None on dry land."""
 
 
 def finite(values: Float[np.ndarray, "*any"]) -> Float[np.ndarray, "*any"]:

@@ -1,4 +1,4 @@
-"""Swimming as a control: the wave on trunk and tail, a mean bend that steers, limbs held out or folded."""
+"""Swimming as a control: the wave on trunk and tail, limbs held out, a mean bend that steers, heading and depth."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -7,7 +7,9 @@ from math import pi
 import numpy as np
 from jaxtyping import Float
 
-from suchus.control.open_loop import Table
+from suchus.control.controller import Command
+from suchus.control.holding import DepthHold, Depths, HeadingHold, Headings
+from suchus.control.sensed import Sensed
 from suchus.control.suited import crocodiles
 from suchus.design import AnyRobot, Crocodile, layout, servo_ranges
 from suchus.design.checks import Checks
@@ -18,9 +20,10 @@ from suchus.motion import AnyGait, Swim, bends, check_swim
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Swimming:
-    """A swimming motion in open loop; the gait of the run is not asked, and its limbs have no phase of their own.
+    """A swimming motion; the gait of the run is not asked, and its limbs have no phase of their own.
 
-    The amplitudes grow over ``ramp``. A mean bend of the tail steers, as a rudder does.
+    The amplitudes grow over ``ramp``. A mean bend of the tail steers, as a rudder does; with ``heading`` and ``depth``
+    the robot does so by what it feels.
     """
 
     swim: Swim
@@ -35,6 +38,10 @@ class Swimming:
     """How far all limbs point down [rad]; up to the surface where negative: foam on them keeps the body upright."""
     ramp: float = 1.0
     """Over which the amplitudes grow [s]."""
+    heading: HeadingHold | None = None
+    """Which keeps the direction; None for none."""
+    depth: DepthHold | None = None
+    """Which keeps the depth; None for none."""
 
     def __post_init__(self) -> None:
         with Checks("swimming", self) as check:
@@ -46,8 +53,8 @@ class Swimming:
 
     @property
     def feels(self) -> bool:
-        """Nothing is sensed."""
-        return False
+        """Whether heading or depth are held."""
+        return self.heading is not None or self.depth is not None
 
     def targets(self, robot: Crocodile, time: Float[np.ndarray, " time"]) -> Float[np.ndarray, "time servo"]:
         """Return the servo angles over time, in the order of ``design.servo_names()`` [rad]."""
@@ -69,11 +76,12 @@ class Swimming:
         seeds: Sequence[int],
         ticks: int,
         period: float,
-    ) -> Table:
-        """Tabulate the swim for every robot.
+    ) -> "Swimmer":
+        """Start the swim for every robot.
 
         Raises:
             OutsideLimits: a robot cannot follow it.
+            InvalidDesign: a robot whose depth is held has too little air.
         """
         return self.start_together([self] * len(robots), robots, gaits, seeds, ticks, period)
 
@@ -85,24 +93,66 @@ class Swimming:
         seeds: Sequence[int],
         ticks: int,
         period: float,
-    ) -> Table:
-        """Tabulate the swims of a batch, one per run.
+    ) -> "Swimmer":
+        """Start the swims of a batch, one per run.
 
         Raises:
             OutsideLimits: a robot cannot follow its swim.
+            InvalidDesign: a robot whose depth is held has too little air.
         """
         del gaits, seeds
-        ours = crocodiles(robots, "swimming by trunk and cable")
-        pairs = list(zip(controls, ours, strict=True))
+        return Swimmer(controls, crocodiles(robots, "swimming by trunk and cable"), ticks, period)
+
+
+class Swimmer:
+    """The running swims of a batch: a table for each, to which what is felt adds."""
+
+    def __init__(self, controls: Sequence[Swimming], robots: Sequence[Crocodile], ticks: int, period: float) -> None:
+        pairs = list(zip(controls, robots, strict=True))
         unique = {pair: i for i, pair in enumerate(dict.fromkeys(pairs))}
-        time = np.arange(ticks) * period
-        targets, phases = [], []
-        for control, robot in unique:
+        self._row = np.array([unique[pair] for pair in pairs])
+        time, place = np.arange(ticks) * period, layout(robots[0])
+        self._targets = np.array([control.targets(robot, time) for control, robot in unique])
+        frequency = np.array([control.swim.frequency for control in controls])
+        self._frequency, self._period = np.repeat(frequency[:, None], len(place.limbs), axis=1), period
+        for (control, robot), targets in zip(unique, self._targets, strict=True):
             check_swim(robot, control.swim)
-            targets.append(control.targets(robot, time))
-            _check(robot, targets[-1])
-            phases.append(np.repeat((control.swim.frequency * time)[:, None], len(layout(robot).limbs), axis=1))
-        return Table(np.array(targets), np.array(phases), np.array([unique[pair] for pair in pairs]))
+            _check(robot, targets)
+            if control.heading is not None:
+                for side in (-1.0, 1.0):
+                    hold = control.heading
+                    trunk, tail = np.array([side * hold.trunk_turn]), np.array([side * hold.turn])
+                    _check(robot, _bent(targets, robot, tail, trunk))
+        self._robots = [(robot, np.flatnonzero([r == robot for r in robots])) for robot in dict.fromkeys(robots)]
+        self._feels = any(control.feels for control in controls)
+        cycle = [max(1, round(1.0 / (one * period))) for one in frequency]
+        self._headings = Headings([one.heading for one in controls], robots, cycle, period)
+        self._depths = Depths([one.depth for one in controls], robots, period)
+
+    def rest(self) -> Float[np.ndarray, "run servo"]:
+        """The first posture."""
+        return self._targets[self._row, 0]
+
+    def command(self, tick: int, sensed: Sensed | None) -> Command:
+        """Look up one tick, and add what is felt."""
+        targets, breath = self._targets[self._row, tick], None
+        if sensed is not None and self._feels:
+            tail, trunk = self._headings.bend(sensed)
+            for robot, runs in self._robots:
+                targets[runs] = _bent(targets[runs], robot, tail[runs], trunk[runs])
+            breath = self._depths.breath(sensed)
+        return Command(targets, self._frequency * (tick * self._period), breath)
+
+
+def _bent(targets: np.ndarray, robot: Crocodile, tail: np.ndarray, trunk: np.ndarray) -> np.ndarray:
+    """Return servo angles, shape (row, servo), with mean bends of tail and trunk besides, left positive [rad]."""
+    place, out = layout(robot), np.array(targets)
+    cable = place.cables[0]
+    most = robot.tail.bend_limit
+    bend = tail_kinematics.bend_of_servo(robot.tail, out[:, cable]) - tail
+    out[:, cable] = tail_kinematics.servo_angle(robot.tail, np.clip(bend, -most, most))
+    out[:, place.trunk_yaw] += trunk[:, None] / len(place.trunk_yaw)
+    return out
 
 
 def _check(robot: Crocodile, targets: np.ndarray) -> None:

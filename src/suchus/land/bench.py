@@ -16,6 +16,7 @@ from suchus.design.relief import Relief
 from suchus.land import wetting
 from suchus.land.afloat import surfaced
 from suchus.land.alike import Alike
+from suchus.land.lake import Lake
 from suchus.land.run import Afloat, Run
 from suchus.model import activations, compile_model, force_sensors, standing
 from suchus.model.wet import wet_model
@@ -35,6 +36,7 @@ class Bench:
     def __init__(self, runs: Sequence[Run], timestep: float) -> None:
         bodies = [(run.robot, run.ground.relief) for run in runs]
         self._lakes = {sim: run.lake for sim, run in enumerate(runs) if run.lake is not None}
+        self._ups = np.array([up(run.ground) for run in runs])
         room = max(len(pieces(run.robot)) for run in runs) if self._lakes else 0
         models = {body: _model(body[0], timestep, body[1], room) for body in dict.fromkeys(bodies)}
         shared = models[bodies[0]]
@@ -57,7 +59,7 @@ class Bench:
         if self._lakes:
             wetting.install()
             for sim, lake in self._lakes.items():
-                self.water[sim] = lake.numbers(up(runs[sim].ground))
+                self.water[sim] = lake.numbers(self._ups[sim])
         forces = force_sensors(runs[0].robot)
         self._forces = slice(int(shared.sensor(forces[0]).adr[0]), int(shared.sensor(forces[-1]).adr[0]) + 3)
         servos = [shared.sensor(f"{name}_position") for name in layout(runs[0].robot).servos]
@@ -126,11 +128,37 @@ class Bench:
         now = self.batch.expand("opt.disableactuator")[sim] if self._single else self._own(sim).opt.disableactuator
         self._set_option("disableactuator", sim, int(now) & ~bit if on else int(now) | bit)
 
-    def flood(self, time: float) -> None:
-        """Let level and breath of the lakes be what they are at a time [s], where they change."""
+    def flood(self, time: float, breath: np.ndarray | None = None) -> None:
+        """Let level and breath of the lakes be what they are at a time, where they change or are commanded.
+
+        Args:
+            time: [s].
+            breath: what controllers command, shape (run,), NaN where they leave it to the lake [-]; None for all.
+        """
         for sim, lake in self._lakes.items():
             if lake.changes():
                 self.water[sim, hydro.LEVEL], self.water[sim, hydro.BREATH] = lake.at(time)
+        if breath is not None and self._lakes:
+            asked = np.isfinite(breath)
+            self.water[asked, hydro.BREATH] = breath[asked]
+
+    def fill(self, sim: int, lake: Lake, time: float) -> None:
+        """Let the water of a run be another one from now on; what the water did last stays to be read.
+
+        Args:
+            sim: a run that has a lake.
+            lake: the other one.
+            time: [s].
+        """
+        self._lakes[sim] = lake
+        self.water[sim, : hydro.FORCE] = lake.numbers(self._ups[sim], time)[: hydro.FORCE]
+
+    def depths(self) -> np.ndarray | None:
+        """Return how deep the roots are below the level of their water, 0 above it, shape (run,) [m]; None if dry."""
+        if not self._lakes:
+            return None
+        height = np.einsum("ij,ij->i", self.qpos[:, :3], self._ups)
+        return np.asarray(np.maximum(self.water[:, hydro.LEVEL] - height, 0.0))
 
     def angles(self, sim: int) -> np.ndarray:
         """Return the angles of a run's joints at the servos' shafts as they are now, shape (servo,) [rad]."""
@@ -140,6 +168,8 @@ class Bench:
     def tilt(self, sim: int, ground: Ground) -> None:
         """Let a ground slope as it says from now on; its grip and relief are not looked at."""
         self.field("opt.gravity", sim)[:] = _gravity(ground)
+        if sim in self._lakes:
+            self._ups[sim] = up(ground)
 
     def push(self, sim: int, body: str, force: np.ndarray) -> None:
         """Let a force act on the centre of mass of a body from now on.

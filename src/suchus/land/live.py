@@ -5,12 +5,13 @@ from math import inf
 
 import numpy as np
 
-from suchus.control import Coordinated
+from suchus.control import Coordinated, Swimming
 from suchus.control.coordinated import Coordinator
 from suchus.design.ground import Ground
 from suchus.design.scale import check_step, control_period, physics_step
 from suchus.errors import Diverged, InvalidDesign
 from suchus.fault import Fault, check_faults
+from suchus.land.lake import Lake, check_lake
 from suchus.land.loop import Loop, physics_steps, start
 from suchus.land.push import Push, check_pushes
 from suchus.land.run import Run
@@ -20,22 +21,29 @@ from suchus.motion import START, AnyGait, check_limits
 class Live:
     """One robot that walks until told otherwise, one control period at a time.
 
-    The controller hears of one cycle again and again; so a gait's period is rounded to whole control periods. With
-    an unchanged gait of such a period, all goes as in ``simulate``, up to rounding.
+    The controller hears of one cycle again and again; so the period of a gait or a swim is rounded to whole control
+    periods. With an unchanged gait of such a period, all goes as in ``simulate``, up to rounding.
 
     Args:
         run: how it begins; its faults and pushes happen at their times.
         timestep: of the physics [s], a whole part of the control period; that of the robot's size if None.
 
     Raises:
-        InvalidDesign: a time step that does not fit, servo noise, or a control other than ``Coordinated``.
-        OutsideLimits: a gait that the robot's joints cannot follow.
+        InvalidDesign: a time step that does not fit, servo noise, a control other than ``Coordinated`` or a
+            ``Swimming`` that holds nothing, or breath that the robot has no air for.
+        OutsideLimits: a gait or swim that the robot's joints cannot follow.
         UnknownName: a fault of a joint, or a push on a body, that does not exist.
     """
 
     def __init__(self, run: Run, *, timestep: float | None = None) -> None:
-        if run.noise > 0.0 or not isinstance(run.control, Coordinated):
-            raise InvalidDesign("a live run takes no noise on its servos, and a control of type Coordinated.")
+        swims = isinstance(run.control, Swimming) and not run.control.feels
+        if run.noise > 0.0 or not (swims or isinstance(run.control, Coordinated)):
+            raise InvalidDesign(
+                "a live run takes no noise on its servos, and a control of type Coordinated, or a Swimming without "
+                "heading and depth hold."
+            )
+        if run.lake is not None:
+            check_lake(run.robot, run.lake)
         self._period = control_period(run.robot)
         timestep = physics_step(run.robot) if timestep is None else timestep
         steps = physics_steps(timestep, self._period)
@@ -79,8 +87,8 @@ class Live:
             self._beat -= self._cycle(self.run)
         self._look()
 
-    def walk(self, gait: AnyGait | None = None, control: Coordinated | None = None) -> None:
-        """Walk on in another gait or by other rules, from the same phase of the cycle.
+    def walk(self, gait: AnyGait | None = None, control: Coordinated | Swimming | None = None) -> None:
+        """Walk on in another gait or by other rules, or swim, from the same phase of the cycle.
 
         Raises:
             OutsideLimits: the robot's joints cannot follow the gait, or the rules cannot coordinate it.
@@ -127,6 +135,18 @@ class Live:
         """Let the ground slope as another one does; grip and relief stay."""
         self._loop.bench.tilt(0, ground)
 
+    def fill(self, lake: Lake) -> None:
+        """Let the water be another one from now on: its level, its waves, the robot's breath.
+
+        Raises:
+            InvalidDesign: the run is on dry land, or the robot has no air that it could let out.
+        """
+        if self.run.lake is None:
+            raise InvalidDesign("this run is on dry land; begin one with a lake to change its water.")
+        check_lake(self.run.robot, lake)
+        self.run = replace(self.run, lake=lake)
+        self._loop.bench.fill(0, lake, self.time)
+
     def _look(self) -> None:
         """Decide what the servos are commanded next, and read everything."""
         self._asked = self._loop.decide(self._tick, self._beat)
@@ -139,7 +159,8 @@ class Live:
 
     def _cycle(self, run: Run) -> int:
         """Return the length of a cycle in control periods."""
-        return round(run.gait.period / self._period)
+        period = 1.0 / run.control.swim.frequency if isinstance(run.control, Swimming) else run.gait.period
+        return max(1, round(period / self._period))
 
     def _ticks(self, run: Run) -> int:
         """Return how many control periods a controller must know."""
@@ -148,6 +169,9 @@ class Live:
     def _whole(self, run: Run) -> Run:
         """Return a run whose gait's period is a whole number of control periods, checked."""
         period = max(1, round(run.gait.period / self._period)) * self._period
-        gait = replace(run.gait, period=period)
+        gait, control = replace(run.gait, period=period), run.control
         check_limits(run.robot, gait)
-        return replace(run, gait=gait)
+        if isinstance(control, Swimming):
+            swim = replace(control.swim, frequency=1.0 / (self._cycle(run) * self._period))
+            control = replace(control, swim=swim, ramp=min(control.ramp, START))
+        return replace(run, gait=gait, control=control)

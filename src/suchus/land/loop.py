@@ -63,6 +63,7 @@ class Loop:
 
     def __init__(self, runs: Sequence[Run], ticks: int, steps: int, timestep: float, *, samples: int) -> None:
         self._steps = steps
+        self._breath: np.ndarray | None = None
         self._period = period = control_period(runs[0].robot)
         self.bench = Bench(runs, timestep)
         self.feels = any(run.control.feels for run in runs)
@@ -83,14 +84,16 @@ class Loop:
         self.troubles.happen(tick)
         injector = self.troubles.injector
         sensed = injector.sense(self.readings.sensed(tick * self._period)) if self.feels else None
-        return self.controller.command(tick if beat is None else beat, sensed)
+        command = self.controller.command(tick if beat is None else beat, sensed)
+        self._breath = command.breath
+        return command
 
     def disturb(self, tick: int, command: Command) -> Command:
         """Return what the servos are commanded in the end, with noise and faults."""
-        return Command(self.troubles.disturb(tick, command.targets), command.phase)
+        return command._replace(targets=self.troubles.disturb(tick, command.targets))
 
     def advance(self, tick: int, targets: np.ndarray) -> None:
         """Let one control period pass in which the servos are told these angles, shape (run, servo) [rad]."""
-        self._alike.part(tick, targets)
-        self.bench.flood(tick * self._period)
+        self._alike.part(tick, targets if self._breath is None else np.column_stack([targets, self._breath]))
+        self.bench.flood(tick * self._period, self._breath)
         self.bench.advance(targets, self._steps, tick * self._period, self._alike)

@@ -65,11 +65,17 @@ class Readings:
         read = self._bench.readings
         felt = {name: read[:, where].copy() for name, where in self._felt.items()}
         pressed = {name: -read[:, where] for name, where in self._pressed.items()}
-        return Sensed(time=time, **felt, **pressed, tail_pressure=-self._tail(read)[..., 2])
+        depth = self._bench.depths()
+        return Sensed(time=time, **felt, **pressed, tail_pressure=-self._tail(read)[..., 2], depth=depth)
 
     def sample(self, run: int, sample: int) -> dict[str, np.ndarray]:
-        """Return one stored sample of one run: the variables of ``record.VARIABLES`` without run and time."""
-        return {name: np.array(values[run, sample]) for name, values in self._arrays().items()}
+        """Return one stored sample of one run: the variables of ``record.VARIABLES`` without run and time.
+
+        In water those of ``record.WATER`` too.
+        """
+        arrays = self._arrays()
+        wet = self._wet(arrays["foot_force"]) if self._water.shape[-1] else {}
+        return {name: np.array(values[run, sample]) for name, values in (arrays | wet).items()}
 
     def record(self, time: np.ndarray) -> xr.Dataset:
         """Return everything that was read, in the schema of a run."""
@@ -95,7 +101,26 @@ class Readings:
             "gait": [run.gait.name for run in self._runs],
             "label": [run.label or run.gait.name for run in self._runs],
         }
-        return _with_water(dataset(arrays, per_run, coordinates), self._runs, self._water, self._worked)
+        record = dataset(arrays, per_run, coordinates)
+        if not self._water.shape[-1]:
+            return record
+        return _put(record, self._wet(arrays["foot_force"]), [lake_text(run.lake) for run in self._runs])
+
+    def _wet(self, foot_force: np.ndarray) -> dict[str, np.ndarray]:
+        """Return what the water does, by the names of ``record.WATER``."""
+        water, worked = self._water, self._worked
+        total = np.array([column(pieces(run.robot), "volume").sum() for run in self._runs])
+        ups = np.array([up(run.ground) for run in self._runs])
+        weight = GRAVITY * np.array([run.robot.mass for run in self._runs])
+        return {
+            "water_level": water[..., hydro.LEVEL],
+            "breath": water[..., hydro.BREATH],
+            "share_under": water[..., hydro.UNDER] / total[:, None],
+            "water_force": worked[..., :3],
+            "water_power": worked[..., 3],
+            "servo_power": worked[..., 4],
+            "feet_share": (foot_force.sum(axis=2) @ ups[:, :, None])[..., 0] / weight[:, None],
+        }
 
     def _arrays(self) -> dict[str, np.ndarray]:
         read, place = self._sensors, self._place
@@ -158,25 +183,6 @@ def alike(records: Sequence[xr.Dataset]) -> list[xr.Dataset]:
         dry = {name: np.zeros((*shape, *(3 for dim in dims if dim == "xyz"))) for name, (dims, _, _) in WATER.items()}
         found.append(_put(record, dry | {"water_level": np.full(shape, np.nan)}, shape[0] * [""]))
     return found
-
-
-def _with_water(record: xr.Dataset, runs: Sequence[Run], water: np.ndarray, worked: np.ndarray) -> xr.Dataset:
-    """Add what the water does to a record; dry ones stay as they are."""
-    if not water.shape[-1]:
-        return record
-    total = np.array([column(pieces(run.robot), "volume").sum() for run in runs])
-    ups = np.array([up(run.ground) for run in runs])
-    feet = record.foot_force.sum("leg").values @ ups[:, :, None]
-    values = {
-        "water_level": water[..., hydro.LEVEL],
-        "breath": water[..., hydro.BREATH],
-        "share_under": water[..., hydro.UNDER] / total[:, None],
-        "water_force": worked[..., :3],
-        "water_power": worked[..., 3],
-        "servo_power": worked[..., 4],
-        "feet_share": feet[..., 0] / (GRAVITY * record.mass.values[:, None]),
-    }
-    return _put(record, values, [lake_text(run.lake) for run in runs])
 
 
 def _put(record: xr.Dataset, values: Mapping[str, np.ndarray], lakes: Sequence[str]) -> xr.Dataset:

@@ -19,6 +19,7 @@ from suchus.paper import AUTHORS, CLAIMS, ERRATA, TITLE
 from suchus.record import new_file, versions
 from suchus.report.beside import beside
 from suchus.report.embedding import embedded
+from suchus.report.metres import metres
 from suchus.report.numbers import number, quantity, tied
 from suchus.report.result import Failure, Result
 from suchus.report.robot import robot_of
@@ -140,6 +141,7 @@ def _content(results: Sequence[Result], failures: Sequence[Failure]) -> dict[str
         "tally": {result.name: _counts(result.told["verdicts"]) for result in results},
         "untouched": [c for c in CLAIMS.values() if c.key not in {v["claim"] for v in verdicts}],
         "beside": beside(robot, {result.name: result for result in results}),
+        "metres": metres({result.name: result for result in results}),
         "shown": next((result for result in results if result.replays), None),
         "robot": robot,
         "others": others,

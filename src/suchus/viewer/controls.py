@@ -7,10 +7,12 @@ from suchus.faults import FAULTS, Limp, numbers
 from suchus.gaits import GAITS
 from suchus.motion import Gait
 from suchus.viewer.knobs import (
+    BREATH,
     BUMPS,
     DIRECTION,
     GAIT_KNOBS,
     LASTING,
+    LEVEL,
     SIDE_SLOPE,
     SLOPE,
     SPEED,
@@ -66,6 +68,11 @@ class Controls:
         with gui.add_folder("Ground"):
             for name, knob in (("uphill", SLOPE), ("sideways", SIDE_SLOPE), ("bumps", BUMPS)):
                 self._add_slider(name, knob)
+        if session.settings.swim is not None:
+            with gui.add_folder("Water"):
+                self._add_switch("swims", "swims", "Off: it walks, on the ground or against the water.")
+                for name, knob in (("level", LEVEL), ("breath", BREATH)):
+                    self._add_slider(name, knob)
 
     @property
     def paused(self) -> bool:

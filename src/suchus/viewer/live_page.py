@@ -94,6 +94,7 @@ class LivePage:
             if not instant.trouble:
                 self._stage.place(instant.now, (settings.uphill, settings.sideways), follow=bool(self._follow.value))
                 self._stage.show(instant.now, instant.pushed)
+                self._stage.flood(instant.level)
             if everything:
                 self._stage.go(instant.now["centre_of_mass"])
                 self._status.content = status(
@@ -123,7 +124,8 @@ def status(instant: Instant, settings: Settings, *, rate: float, notice: str, pa
         notice: a sentence; may be empty.
         paused: whether the walk stands still.
     """
-    state = "paused" if paused else "settling" if instant.time < 1.0 else "walking"
+    moves = "swimming" if settings.swim is not None and settings.swims else "walking"
+    state = "paused" if paused else "settling" if instant.time < 1.0 else moves
     if not paused and rate < 0.9 * settings.speed:
         state += f" at {rate:.2f} x real time, as fast as this machine can"
     cells = "".join(
@@ -133,6 +135,7 @@ def status(instant: Instant, settings: Settings, *, rate: float, notice: str, pa
             ("time", f"{instant.time:.1f} s"),
             ("forward", f"{instant.forward:+.3f} m"),
             ("to the left", f"{instant.aside:+.3f} m"),
+            *((("under water", f"{float(instant.now['share_under']):.0%}"),) if instant.level is not None else ()),
         )
     )
     said = _box(instant.trouble, "#fdecea", "#a1261b") if instant.trouble else _box(notice, "#fff6dc", "#6b5200")

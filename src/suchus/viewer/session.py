@@ -7,19 +7,19 @@ from typing import Any, Literal
 
 import numpy as np
 
-from suchus.control import LAWS, Coordinated, HeadingRule
+from suchus.control import LAWS, Coordinated, HeadingRule, Swimming
 from suchus.design import Crocodile
 from suchus.design.relief import Bumps
 from suchus.errors import Diverged, SuchusError
 from suchus.fault import Fault
 from suchus.faults import from_table
-from suchus.land import CONTROL_PERIOD, Ground, Live, Push, Run
+from suchus.land import CONTROL_PERIOD, Ground, Lake, Live, Push, Run
 from suchus.land.arenas import BEFORE
-from suchus.motion import START, Gait, check_limits
+from suchus.motion import START, Gait, Swim, check_limits
 from suchus.viewer.history import History
-from suchus.viewer.knobs import BUMPS, DIRECTION, FORCE, LASTING, SIDE_SLOPE, SLOPE, SPEED, Knob, tuned
+from suchus.viewer.knobs import BREATH, BUMPS, DIRECTION, FORCE, LASTING, LEVEL, SIDE_SLOPE, SLOPE, SPEED, Knob, tuned
 
-Switch = Literal["spine", "tail", "coordination", "heading"]
+Switch = Literal["spine", "tail", "coordination", "heading", "swims"]
 
 _OPEN = Coordinated(limbs=LAWS["off"], spine=None, tail=None)
 _CORRELATION = 0.06  # [m]; of the bumps, as on the shelf of arenas
@@ -53,6 +53,14 @@ class Settings:
     """Of the next push, from forward to the left [rad]."""
     speed: float = 1.0
     """Simulated over real time [-]."""
+    swim: Swim | None = None
+    """How it swims; None on dry land."""
+    swims: bool = True
+    """Whether it swims or walks, where there is water."""
+    level: float = 0.6
+    """Of the water above the ground where the walk begins [m]."""
+    breath: float = 1.0
+    """Share of the hull's air that is kept [-]."""
     broken: tuple[Fault, ...] = ()
     """What is broken, each from the beginning of the next walk on."""
 
@@ -65,8 +73,15 @@ class Settings:
         return gait if self.tail else replace(gait, tail_bend=0.0)
 
     @property
-    def control(self) -> Coordinated:
-        """The rules that are on."""
+    def lake(self) -> Lake | None:
+        """The water; None on dry land."""
+        return None if self.swim is None else Lake(level=self.level, breath=self.breath)
+
+    @property
+    def control(self) -> Coordinated | Swimming:
+        """The swim, or the rules that are on."""
+        if self.swim is not None and self.swims:
+            return Swimming(swim=self.swim, limb_pitch=-0.15)
         rules = Coordinated() if self.coordination else _OPEN
         return replace(rules, heading=HeadingRule()) if self.heading else rules
 
@@ -79,7 +94,7 @@ class Settings:
 
 _PLAIN: dict[str, Knob] = {
     "uphill": SLOPE, "sideways": SIDE_SLOPE, "bumps": BUMPS, "force": FORCE, "lasting": LASTING,
-    "direction": DIRECTION, "speed": SPEED,
+    "direction": DIRECTION, "speed": SPEED, "level": LEVEL, "breath": BREATH,
 }  # fmt: skip
 
 
@@ -97,6 +112,8 @@ class Instant:
     """The same to the left [m]."""
     pushed: tuple[float, float, float] | None = None
     """The force of a push that lasts [N]."""
+    level: float | None = None
+    """Of the water above the ground where the walk began, against gravity [m]; None on dry land."""
     trouble: str = ""
     """Why the walk has ended; empty while it has not."""
 
@@ -108,16 +125,17 @@ class Session:
         robot: who walks.
         gait: how.
         timestep: of the physics [s].
+        swim: how it swims, in a lake; None on dry land.
 
     Raises:
-        OutsideLimits: the robot's joints cannot follow the gait.
+        OutsideLimits: the robot's joints cannot follow the gait, or the swim.
         InvalidDesign: the time step does not divide the control period.
     """
 
-    def __init__(self, robot: Crocodile, gait: Gait, *, timestep: float = 0.005) -> None:
+    def __init__(self, robot: Crocodile, gait: Gait, *, timestep: float = 0.005, swim: Swim | None = None) -> None:
         check_limits(robot, gait)
         self.robot = robot
-        self.settings = Settings(gait=gait)
+        self.settings = Settings(gait=gait, swim=swim)
         self.begun = 0
         self._timestep = timestep
         self._lock = RLock()
@@ -151,13 +169,17 @@ class Session:
             return self._change(replace(self.settings, gait=gait))
 
     def switch(self, name: Switch, on: bool) -> str:
-        """Turn spine, tail, the feedback rules or the heading loop on or off; return a sentence if that cannot be."""
+        """Turn spine, tail, the feedback rules, the heading loop or the swim on or off.
+
+        Returns:
+            A sentence if that cannot be.
+        """
         with self._lock:
             changes: dict[str, Any] = {name: bool(on)}
             return self._change(replace(self.settings, **changes))
 
     def put(self, name: str, value: object) -> str:
-        """Set slope, bumps, playback speed or what the next push is; return a sentence if that is not as asked.
+        """Set slope, bumps, water, playback speed or the next push; return a sentence if that is not as asked.
 
         Args:
             name: a field of ``Settings`` that is a number.
@@ -172,6 +194,8 @@ class Session:
                 self._begin()
             elif name in ("uphill", "sideways"):
                 self._live.tilt(self.settings.ground)
+            elif name in ("level", "breath") and self.settings.lake is not None:
+                return self._fill(before) or notice
             return notice
 
     def lose(self, part: str, kind: str, **numbers: object) -> str:
@@ -220,16 +244,27 @@ class Session:
         with self._lock:
             return replace(self.state)
 
+    def _fill(self, before: Settings) -> str:
+        """Let the water be as it is set, or keep the old one and say why."""
+        lake = self.settings.lake
+        assert lake is not None
+        try:
+            self._live.fill(lake)
+        except SuchusError as error:
+            self.settings = before
+            return str(error)
+        return ""
+
     def _begin(self) -> None:
         s = self.settings
         # a locked joint holds the angle that it has as the walk begins
-        run = Run(robot=self.robot, gait=s.walked, ground=s.ground, control=s.control, faults=s.broken)
+        run = Run(robot=self.robot, gait=s.walked, ground=s.ground, lake=s.lake, control=s.control, faults=s.broken)
         self._live = Live(run, timestep=self._timestep)
         self._history = History()
         self._push, self._due = None, 0.0
         self._origin = self._live.now["centre_of_mass"]
         self.begun += 1
-        self.state = Instant(now=self._live.now)
+        self.state = Instant(now=self._live.now, level=s.level if s.lake else None)
         self._history.note(0.0, self._live.now, (0.0, 0.0))
 
     def _change(self, settings: Settings) -> str:
@@ -254,5 +289,6 @@ class Session:
         if self._push is not None and time >= self._push.at + self._push.duration:
             self._push = None
         pushed = self._push.force if self._push else None
-        self.state = Instant(time=time, now=now, forward=float(forward), aside=float(aside), pushed=pushed)
+        level = self.settings.level if self.settings.lake else None
+        self.state = Instant(time=time, now=now, forward=float(forward), aside=float(aside), pushed=pushed, level=level)
         self._history.note(time, now, (float(forward), float(aside)))

@@ -29,6 +29,7 @@ _ARROW = Shape(radius=0.006, head=0.028, head_radius=0.014)
 _PUSH = Shape(radius=0.010, head=0.042, head_radius=0.021)
 _EDGE = Shape(radius=0.0035)
 _PLUMB = Shape(radius=0.0018)
+_LAKE = 12.0  # [m]; how far the water reaches that is drawn
 _STEPS = 400  # pieces of the way that are kept
 
 
@@ -72,6 +73,7 @@ class Stage:
         self._way = scene.add_line_segments(
             f"{_WORLD}/way", np.zeros((1, 2, 3)), rgb(COLOURS["neutral"]), thickness=0.004, visible=False
         )
+        self._water: Any = None
         self._path: list[np.ndarray] = []
         self.shown = {"forces": True, "support": True, "way": True}
 
@@ -148,6 +150,20 @@ class Stage:
             tip = self.robot.posture.body("thorax")[0] + np.array([0.0, 0.0, 0.06])
             self._push.put(tip - _PER_NEWTON * np.array(pushed), tip)
         self._stand(ground, loaded, com)
+
+    def flood(self, level: float | None) -> None:
+        """Draw the surface of the water, level where the ground slopes.
+
+        Args:
+            level: above the world's origin, against gravity [m]; None on dry land.
+        """
+        if level is None:
+            return
+        if self._water is None:
+            self._water = self._scene.add_box(
+                "/water", dimensions=(_LAKE, _LAKE, 0.001), color=rgb(COLOURS["water"]), opacity=0.35
+            )
+        self._water.position = np.array([0.0, 0.0, level + float(np.asarray(self._world.position)[2])])
 
     def _radii(self) -> np.ndarray:
         return np.array([self.robot.posture.robot.leg(leg).foot_radius for leg in LEGS])

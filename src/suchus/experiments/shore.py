@@ -1,0 +1,258 @@
+"""Does it swim in, touch ground, stand and walk out, and go back into the water?"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from functools import partial
+from math import pi, radians, sin, tan
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from suchus.control import Amphibious, Control, DepthHold, HeadingHold, OpenLoop, Swimming
+from suchus.design import Crocodile
+from suchus.design.checks import Checks
+from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
+from suchus.experiments import _shore_findings as findings
+from suchus.figures.shore import draw_ashore, draw_decides
+from suchus.gaits import GAITS
+from suchus.land import Ground, Lake, Run, simulate
+from suchus.motion import Gait, Swim
+from suchus.replay import replay
+from suchus.robots import ROBOTS
+from suchus.verdict import Reading, compared, listed
+from suchus.water import fit, printed_wave
+
+_LIMBS = -0.15
+"""How far the limbs, which lie back along the body, point down while it swims [rad]."""
+_DRY, _DEEP = -10.0, 3.0
+"""Levels of the water far below dry land, and far above the ground [m]."""
+_METRES = (
+    ("land", "on level dry land"), ("ashore", "up the shore above the line"), ("wading", "wading"),
+    ("surface", "at the surface"), ("deep", "at a depth that is held"),
+)  # fmt: skip
+"""Endings of the measures of what a metre costs, and in words where that is."""
+_SAMPLE, _KEPT = 4, 5
+"""Control periods between the samples of the runs, and those of them between the samples of the paths that are kept."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Shore(Experiment):
+    """The floating robot swims to a shore, feels ground, changes to its gait and walks out; and back into the water.
+
+    It swims by the wave of (20) with its heading held, decides between swimming and walking by the load that feet,
+    belly and tail carry, and lets out air when it begins to walk. Main runs: every slope with every grip, ``seeds``
+    times, with noise on the servos. Beside them other gaits on every slope with one grip, other amounts of air let out
+    on the steepest slope with every grip, and walks from land into the water on every slope. It came ashore if its
+    centre of mass got ``beyond`` the water line without falling; it is in the water if it swims at the end, floats
+    free, and did not fall. What a metre costs is read from three more runs: the gait on level dry land, and the swim at
+    the surface and at a depth that is held.
+    """
+
+    title = "Does it swim in, touch ground, stand and walk out, and go back into the water?"
+    shows = "Section I, whose robot is amphibious; beyond the article"
+    needs = ("tables", "article_spine", "cable_tail")
+
+    robot: Crocodile = field(default_factory=lambda: ROBOTS["floating_caiman"])
+    """The robot; it must float, and have air to let out."""
+    gait: Gait = field(default_factory=lambda: GAITS["semi_erect"])
+    """In which it walks ashore."""
+    others: tuple[Gait, ...] = field(
+        default_factory=lambda: tuple(GAITS[name] for name in ("belly_crawl", "low_crawl", "high_walk"))
+    )
+    """Gaits beside it."""
+    slopes: tuple[float, ...] = (radians(5), radians(8), radians(12), radians(15))
+    """Of the shore [rad]."""
+    grips: tuple[float, ...] = (0.6, 0.75, 0.9, 1.0)
+    """Factors on the friction of all the robot's surfaces [-]."""
+    seeds: int = 2
+    """Runs of each slope with each grip [-]."""
+    noise: float = 0.01
+    """Standard deviation of the noise on every commanded angle [rad]."""
+    breathe_out: float = 0.5
+    """Share of the air of the hull that it lets out when it begins to walk [-]."""
+    breaths: tuple[float, ...] = (0.0, 0.25, 1.0)
+    """Other shares, on the steepest slope [-]."""
+    frequency: float = 1.0
+    """Of the swim [Hz]."""
+    clearance: float = 0.15
+    """Depth of the water half a body length ahead of where it begins to swim [m]."""
+    inland: float = 0.4
+    """How far the water line is ahead of where it begins to walk into the water [m]."""
+    beyond: float = 1.0
+    """How far the centre of mass must come beyond the water line [m]."""
+    duration: float = 24.0
+    """Of every run to the shore or into the water [s]."""
+    cycles: int = 16
+    """Cycles of the gait over which the cost of a metre is measured, after as many to settle [-]."""
+    depth: float = 0.6
+    """Of the root, in the dive [m]."""
+    timestep: float = 0.005
+    """Of the physics [s]."""
+
+    def __post_init__(self) -> None:
+        with Checks(self.name(), self) as check:
+            check.rising("slopes", 0.01, pi / 4, "rad")
+            check.rising("grips", 0.01, 10.0, "")
+            check.whole("seeds", 1, 1000)
+            check.number("noise", 0.0, 1.0, "rad")
+            check.number("breathe_out", 0.0, 1.0, "")
+            if self.breaths:
+                check.rising("breaths", 0.0, 1.0, "")
+            check.number("frequency", 0.05, 10.0, "Hz")
+            check.number("clearance", 0.01, 10.0, "m")
+            check.number("inland", 0.0, 100.0, "m")
+            check.number("beyond", 0.0, 100.0, "m")
+            check.number("duration", 2.0, 3600.0, "s")
+            check.whole("cycles", 1, 1000)
+            check.number("depth", 0.0, 100.0, "m")
+            check.number("timestep", 1e-5, 0.01, "s")
+
+    def quick(self) -> "Shore":
+        """Return one slope with one grip, no other gaits, the first seconds."""
+        some = replace(self, slopes=self.slopes[1:2], grips=(1.0,), seeds=1, others=(), breaths=())
+        return replace(some, duration=2.0, cycles=1)
+
+    def simulate(self, progress: Progress = silent) -> Simulated:
+        """Swim ashore, with other gaits and other breaths too, and walk into the water, all at once."""
+        cases = self._cases()
+        runs = [run for _, _, run in cases]
+        record = simulate(
+            runs,
+            duration=self.duration,
+            timestep=self.timestep,
+            every=_SAMPLE,
+            progress=staged(progress, "runs to the shore", 0.0, 0.9),
+        )
+        kept = findings.paths(record, runs, _KEPT)
+        for name, values, unit in (
+            ("kind", [kind for kind, _, _ in cases], "1"),
+            ("walk", [run.gait.name for run in runs], "1"),
+            ("slope", [abs(run.ground.uphill) for run in runs], "rad"),
+            ("grip", [run.ground.grip for run in runs], "1"),
+            ("breathed_out", [out for _, out, _ in cases], "1"),
+        ):
+            kept[name] = ("case", np.array(values), {"units": unit})
+        shown = self._shown(kept)
+        metres = self._metres(staged(progress, "metres on land, at the surface and below", 0.9, 1.0))
+        whole = xr.merge([record.isel(run=[shown]), kept, metres], combine_attrs="override", compat="no_conflicts")
+        whole.attrs.update(
+            record.attrs, beyond=self.beyond, shown=shown, line=findings.water_line(runs[shown]),
+            breathe_out=self.breathe_out, depth=self.depth,
+        )  # fmt: skip
+        return Simulated(record=whole, replays=self._replays(whole))
+
+    def _cases(self) -> list[tuple[str, float, Run]]:
+        """Return kind of case, share of the air let out, and run."""
+        out = self.breathe_out
+        cases: list[tuple[str, float, Run]] = []
+        for slope in self.slopes:
+            for grip in self.grips:
+                for _ in range(self.seeds):
+                    cases.append(("ashore", out, self._run(self.gait, slope, grip, out, len(cases))))
+        middle = self.grips[len(self.grips) // 2]
+        cases += [
+            ("gait", out, self._run(gait, slope, middle, out, 0)) for gait in self.others for slope in self.slopes
+        ]
+        steep = self.slopes[-1]
+        cases += [("breath", b, self._run(self.gait, steep, g, b, 0)) for b in self.breaths for g in self.grips]
+        ends = dict.fromkeys((self.grips[0], self.grips[-1]))
+        cases += [("into_water", out, self._run(self.gait, -slope, g, out, 0)) for slope in self.slopes for g in ends]
+        return cases
+
+    def _swim(self) -> Swim:
+        robot = replace(self.robot, hull=None)
+        return fit(robot, printed_wave(robot, "I", frequency=self.frequency, sign=-1)).swim
+
+    def _run(self, gait: Gait, uphill: float, grip: float, out: float, seed: int) -> Run:
+        """Return a run: up a shore from the water, or down into it where the slope falls."""
+        offshore = self.robot.length / 2 + self.clearance / tan(uphill) if uphill > 0 else self.inland
+        control = Amphibious(
+            swim=Swimming(swim=self._swim(), limb_pitch=_LIMBS, heading=HeadingHold()),
+            begins="swimming" if uphill > 0 else "walking",
+            breathe_out=out,
+        )
+        return Run(
+            robot=self.robot,
+            gait=gait,
+            ground=Ground(uphill=uphill, grip=grip),
+            lake=Lake(level=offshore * sin(uphill)),
+            control=control,
+            noise=self.noise,
+            seed=seed,
+            label=f"{np.degrees(abs(uphill)):.0f} degrees, grip {grip:g}",
+        )
+
+    def _metres(self, progress: Callable[[float], None]) -> xr.Dataset:
+        """Return speed and power of the servos on level dry land, at the surface and at depth."""
+        plain = partial(Swimming, swim=self._swim(), limb_pitch=_LIMBS, heading=HeadingHold())
+        controls: Mapping[str, Control] = {
+            "land": OpenLoop(), "surface": plain(), "deep": plain(depth=DepthHold(depth=self.depth)),
+        }  # fmt: skip
+        runs = [
+            Run(robot=self.robot, gait=self.gait, lake=Lake(level=_DRY if name == "land" else _DEEP), control=one)
+            for name, one in controls.items()
+        ]
+        last = self.cycles * self.gait.period
+        record = simulate(runs, duration=2 * last, timestep=self.timestep, every=_SAMPLE, progress=progress)
+        return findings.metres(record, list(controls), last)
+
+    def _shown(self, kept: xr.Dataset) -> int:
+        """Return which case is drawn: on the second slope with the greatest grip."""
+        main = kept.kind.values == "ashore"
+        slope = self.slopes[min(1, len(self.slopes) - 1)]
+        mine = main & np.isclose(kept.slope, slope) & np.isclose(kept.grip, self.grips[-1])
+        return int(np.flatnonzero(mine)[0])
+
+    def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
+        caption = (
+            "It swims in with its limbs held back, feels ground, lets out air and walks out. Seen in the frame of the "
+            "shore."
+        )
+        page = partial(replay, record.isel(run=0), self.robot, title="From the water onto the shore", caption=caption)
+        return {"shore_replay.html": Replay(caption=caption, make=page)}
+
+    def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
+        """Return who came ashore and how soon, who fell, what else was tried, and what each metre costs."""
+        return findings.measures(record)
+
+    def explain(self, measures: Mapping[str, float]) -> str:
+        """Say how many came ashore, what decides, and what a metre costs."""
+        m = {name: Reading(value) for name, value in measures.items()}
+        breaths = [
+            f"{m[f'ashore_share_breathed_out_{i}']:.0%} with {m[f'breathed_out_{i}']:.0%} of its air let out"
+            for i in range(sum(name.startswith("breathed_out_") for name in m))
+        ]
+        gaits = {name.removeprefix("ashore_share_"): share for name, share in m.items() if name in _gait_names(m)}
+        walked = [f"{share:.0%} by {name.replace('_', ' ')}" for name, share in gaits.items()]
+        grip = compared(m["ashore_share_most_grip"], m["ashore_share_least_grip"], less="fewer than", more="more than",
+                        same="as many as")  # fmt: skip
+        costs = [
+            f"{m[f'work_per_metre_{ending}']:.1f} J {where}"
+            for ending, where in _METRES
+            if m[f"work_per_metre_{ending}"] == m[f"work_per_metre_{ending}"]
+        ]
+        by_gait = f"Of all slopes at one friction: {listed(walked)}. " if walked else ""
+        when = f", half of these within {m['time_ashore']:.0f} s" if m["time_ashore"] == m["time_ashore"] else ""
+        return (
+            f"{m['ashore_share']:.0%} of the runs came ashore{when}; {m['falls']:.0f} fell, and none changed between "
+            f"swimming and walking more than {m['switches']:.0f} times. On the steepest slope it is "
+            f"{m['ashore_share_steepest']:.0%}: {listed(breaths)}. With the greatest friction {grip} "
+            f"with the least come ashore ({m['ashore_share_most_grip']:.0%} and {m['ashore_share_least_grip']:.0%}). "
+            f"{by_gait}From land {m['into_water_share']:.0%} went into the water and swam "
+            f"on. A metre costs {listed(costs)}; the depth is held to {m['depth_error']:mm.0f} mm."
+        )
+
+    def draw(self, outcome: Outcome) -> Mapping[str, Any]:
+        """Draw one way out of the water from the side, and what decides."""
+        return {"ashore": draw_ashore(self.robot, outcome.record), "decides": draw_decides(outcome.record)}
+
+
+def _gait_names(measures: Mapping[str, float]) -> list[str]:
+    """Return the names of the measures that tell how many come ashore by each gait."""
+    other = ("steepest", "least_grip", "most_grip", "breathed_out")
+    names = [name for name in measures if name.startswith("ashore_share_")]
+    return [name for name in names if not name.removeprefix("ashore_share_").startswith(other)]
+
+
+experiment = Shore()

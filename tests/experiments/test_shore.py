@@ -1,0 +1,177 @@
+"""What counts as ashore, fallen and in the water, on hand-made records; and what is refused."""
+
+from dataclasses import replace
+from math import radians, sin, tan
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from suchus.errors import InvalidDesign
+from suchus.experiments import EXPERIMENTS
+from suchus.experiments import _shore_findings as findings
+from suchus.figures.shore import levelled
+from suchus.land import Ground
+from suchus.record import ground_text
+from suchus.rotation import about, rotate
+
+SHORE = EXPERIMENTS["shore"]
+
+
+def kept(**changes):
+    """Return three paths of 10 s: one that walks ashore, one that falls on its way, one that does not come so far."""
+    moment = np.arange(0.0, 10.0, 0.5)
+    ahead = np.array([-2.0 + 0.4 * moment, -2.0 + 0.4 * moment, -2.0 + 0.29 * moment])
+    tilt = np.array([0.2 + 0 * moment, np.where(moment > 8.0, 1.1, 0.2), 0.2 + 0 * moment])
+    walks = (ahead > -1.0).astype(float)
+    values = {
+        "ahead": ahead,
+        "tilt": tilt,
+        "walks": walks,
+        "ground": walks * 0.5,
+        "under": np.clip(-ahead, 0.0, 0.95),
+        "power": 2.0 + 4.0 * walks,
+    } | {name: np.array(value) for name, value in changes.items()}
+    found = xr.Dataset({name: (("case", "moment"), value) for name, value in values.items()}, {"moment": moment})
+    cases = {
+        "kind": ["ashore"] * 3, "walk": ["crawl"] * 3, "slope": [0.1, 0.1, 0.2], "grip": [0.6, 1.0, 1.0],
+        "breathed_out": [0.5] * 3, "switches": [1, 1, 2],
+    }  # fmt: skip
+    for name, value in cases.items():
+        found[name] = ("case", np.array(value))
+    for name, value in (("speed", [0.1, 0.2, 0.1]), ("power", [3.0, 1.2, 1.0]), ("depth", [-9.9, 0.1, 0.63])):
+        found[f"metre_{name}"] = ("where", np.array(value))
+    found["metre_weight"] = ("where", np.full(3, 30.0))
+    return found.assign_coords(where=["land", "surface", "deep"]).assign_attrs(beyond=1.0, depth=0.6)
+
+
+@pytest.mark.parametrize(("beyond", "time"), [(0.99, 7.5), (1.01, 8.0), (1.81, np.nan)])
+def test_it_is_ashore_as_soon_as_it_is_so_far_beyond_the_line(beyond, time):
+    found = findings.times_ashore(kept().assign_attrs(beyond=beyond))
+    assert found[0] == pytest.approx(time, nan_ok=True)
+
+
+@pytest.mark.parametrize(("degrees", "fell"), [(59.0, False), (61.0, True)])
+def test_who_tilts_by_more_than_sixty_degrees_has_fallen_and_is_not_ashore(degrees, fell):
+    tilt = np.full((3, 20), 0.1)
+    tilt[0, 5] = radians(degrees)
+    record = kept(tilt=tilt)
+    assert findings.fallen(record)[0] == fell
+    assert np.isnan(findings.times_ashore(record)[0]) == fell
+    tilt[0, 5] = np.nan  # came apart
+    assert findings.fallen(kept(tilt=tilt))[0]
+
+
+@pytest.mark.parametrize(
+    ("ahead", "share", "walks", "inside"),
+    [(-0.5, 0.009, 0.0, True), (-0.5, 0.011, 0.0, False), (-0.5, 0.0, 1.0, False), (0.1, 0.0, 0.0, False)],
+)
+def test_it_is_in_the_water_if_it_swims_there_and_floats_free(ahead, share, walks, inside):
+    full = np.ones((3, 20))
+    record = kept(ahead=ahead * full, ground=share * full, walks=walks * full, tilt=0.1 * full)
+    assert findings.in_water(record).all() == inside
+    end = np.array(share * full)
+    end[:, :14] = 0.5  # what was before the last seconds does not count
+    other = kept(ahead=ahead * full, ground=end, walks=walks * full, tilt=0.1 * full)
+    assert findings.in_water(other).all() == inside
+
+
+def test_measures_count_who_came_ashore_fell_and_changed_its_mind():
+    record = kept()
+    into = kept(ahead=np.full((3, 20), -1.0), ground=np.zeros((3, 20)), walks=np.zeros((3, 20)))
+    into["kind"] = ("case", np.array(["into_water"] * 3))
+    found = findings.measures(xr.concat([record, into], "case", data_vars="minimal", combine_attrs="override"))
+    assert found["ashore_share"].value == pytest.approx(1 / 3)
+    assert found["falls"].value == 1.0
+    assert found["switches"].value == 2.0
+    assert found["time_ashore"].value == found["time_ashore_longest"].value == 7.5
+    assert found["into_water_share"].value == pytest.approx(2 / 3)  # one fell
+    assert found["ashore_share_steepest"].value == 0.0
+    assert found["ashore_share_least_grip"].value == 1.0
+    assert found["ashore_share_most_grip"].value == 0.0
+    assert found["ashore_share_breathed_out_0"].value == 0.0
+    assert found["breathed_out_0"].value == 0.5
+
+
+def test_a_metre_costs_power_over_speed():
+    record = kept().isel(case=[0])
+    found = findings._costs(record)
+    assert found["speed_ashore"].value == pytest.approx(0.4)
+    assert found["work_per_metre_ashore"].value == pytest.approx(6.0 / 0.4)
+    assert found["work_per_metre_wading"].value == pytest.approx(6.0 / 0.4)
+    assert np.isnan(found["work_per_metre_swimming"].value)  # the first 3 s do not count
+
+
+def test_a_metre_on_land_at_the_surface_and_at_depth_costs_power_over_speed_and_weight():
+    found = findings._metre_costs(kept())
+    assert [found[f"work_per_metre_{where}"].value for where in ("land", "surface", "deep")] == pytest.approx(
+        [30, 6, 10]
+    )
+    assert found["cost_of_transport_surface"].value == pytest.approx(0.2)
+    assert found["depth_error"].value == pytest.approx(0.03)
+
+
+def test_metres_are_read_from_the_last_seconds_along_the_course():
+    time = np.linspace(0.0, 4.0, 5)
+    way = np.array([[0, 0, 0], [9, 0, 0], [0, 0, 0], [0.3, 0.4, 0], [0.6, 0.8, 0]], dtype=float)
+    record = xr.Dataset(
+        {
+            "centre_of_mass": (("run", "time", "xyz"), way[None]),
+            "position": (("run", "time", "xyz"), way[None] + [0, 0, 2.4]),
+            "water_level": (("run", "time"), np.full((1, 5), 3.0)),
+            "servo_power": (("run", "time"), np.array([[9.0, 9.0, 2.0, 3.0, 4.0]])),
+            "mass": ("run", [2.0]),
+        },
+        {"time": time, "xyz": list("xyz")},
+    )
+    found = findings.metres(record, ["deep"], 2.0)
+    assert found.metre_speed.item() == pytest.approx(0.5)
+    assert found.metre_power.item() == pytest.approx(3.0)
+    assert found.metre_depth.item() == pytest.approx(0.6)
+
+
+def test_limbs_whose_phase_stands_still_do_not_walk():
+    phase = np.array([[0.0, 0.0, 0.1, 0.2, 0.2]])
+    assert findings.walking(phase).tolist() == [[False, False, True, True, False]]
+
+
+@pytest.mark.parametrize("uphill", [radians(10), radians(-10)])
+def test_the_water_line_is_where_the_slope_meets_the_level(uphill):
+    run = SHORE._run(SHORE.gait, uphill, 1.0, 0.0, 0)
+    line = findings.water_line(run)
+    assert line * sin(uphill) == pytest.approx(run.lake.level)
+    assert line > 0.0
+    assert (run.lake.level > 0.0) == (uphill > 0.0)
+    assert run.control.begins == ("swimming" if uphill > 0.0 else "walking")
+
+
+def test_a_levelled_run_stands_on_a_slope_whose_water_line_is_the_origin():
+    slope, line = 0.2, 1.5
+    points = np.array([[line, 0.0, 0.0], [line + 1.0, 0.3, 0.0]])
+    names = ("position", "centre_of_mass", "snout", "tail_tip")
+    record = xr.Dataset(dict.fromkeys(names, (("time", "xyz"), points)), {"time": [0.0, 1.0]})
+    record["foot_position"] = record["foot_force"] = (("time", "leg", "xyz"), points[:, None])
+    record["orientation"] = (("time", "wxyz"), about(np.array([0.0, 0.0, 1.0]), np.zeros(2)))
+    record["stands_on"] = ((), ground_text(Ground(uphill=slope)))
+    found = levelled(record.assign_attrs(line=line))
+    assert found.position[0].values == pytest.approx(np.zeros(3), abs=1e-12)
+    assert float(found.position[1, 2]) == pytest.approx(sin(slope))
+    assert float(found.position[1, 2] / found.position[1, 0]) == pytest.approx(tan(slope))
+    up = rotate(found.orientation.values[0], np.array([1.0, 0.0, 0.0]))
+    assert up == pytest.approx([np.cos(slope), 0.0, sin(slope)])
+
+
+@pytest.mark.parametrize(
+    ("fields", "message"),
+    [
+        ({"slopes": (0.2, 0.1)}, "slopes is"),
+        ({"slopes": (0.0,)}, "slopes is"),
+        ({"grips": ()}, "grips is \\(\\)"),
+        ({"seeds": 0}, "seeds is 0"),
+        ({"breathe_out": 1.5}, "breathe_out is 1.5"),
+        ({"duration": 0.1}, "duration is 0.1 s"),
+    ],
+)
+def test_shores_that_cannot_be_are_refused(fields, message):
+    with pytest.raises(InvalidDesign, match=message):
+        replace(SHORE, **fields)
