@@ -32,7 +32,7 @@ def draw_heights(record: xr.Dataset, hold: float) -> Figure:
         for key in ("height_crawl", "height_standing"):
             value = CLAIMS[key].value or 0.0
             axes[0, 0].text(at - 1.9, value + 0.008, f"as printed: {value:.2f} m", color=COLOURS["printed"])
-        axes[0, 0].set_ylabel("height that it reaches [m]")
+        axes[0, 0].set_ylabel("height of the highest point [m]")
         axes[0, 0].set_title("standing up")
         axes[0, 1].set_title("crawl, stand, sit down, crawl on")
         close = axes[0, 1].inset_axes((0.26, 0.50, 0.5, 0.26))
@@ -132,12 +132,14 @@ def draw_ceiling(robot: Crocodile, record: xr.Dataset) -> Figure:
             ax.text(0.36, max(bottom + length / 2, 0.02), f"{name}  {1000 * length:.1f} mm", va="center")
             bottom += length
         ax.axhline(printed, **(dict(LINES["printed"]) | {"label": None}))
-        ax.text(1.55, printed - 0.03, f"as printed: {printed:.2f} m", ha="right")
+        ax.text(1.55, printed - 0.012, f"as printed: {printed:.2f} m", ha="right", va="top")
+        line = sum(length for name, length, _ in lengths if name != "sole")
+        ax.text(0.0, bottom + 0.01, f"{line:.3f} m, with the sole {bottom:.3f} m", ha="left", fontsize=11)
         ax.set_xlim(-0.4, 1.6)
         ax.set_ylim(0.0, 1.1 * max(bottom, printed))
         ax.set_xticks([])
-        ax.set_ylabel("height [m]")
-        ax.set_title("all in one line")
+        ax.set_ylabel("height above the ground [m]")
+        ax.set_title("lengths in one line")
         ax = axes[0, 1]
         ax.plot(1000 * record.behind, record.ceiling, color=COLOURS["neutral"], label="no posture reaches higher")
         ax.axhline(printed, **LINES["printed"])
@@ -150,7 +152,6 @@ def draw_ceiling(robot: Crocodile, record: xr.Dataset) -> Figure:
         ax.set_ylim(min(shown) - 0.01, max(shown) + 0.01)
         ax.set_title("what a safe stand costs")
         ax.legend(loc="lower left")
-    line = sum(length for name, length, _ in lengths if name != "sole")
     chosen = (
         f"; the head, which the article does not give, was chosen so that they sum up to the printed {printed:g} m"
         if abs(line - printed) <= CLAIMS["height_standing"].rounding
@@ -158,7 +159,8 @@ def draw_ceiling(robot: Crocodile, record: xr.Dataset) -> Figure:
     )
     return captioned(
         figure,
-        f"What the height is made of. Left: hind leg, spine and head in one line{chosen}. Right: the greatest height "
+        f"What the height is made of. Left: hind leg, spine and head in one line{chosen}; the bar stands on the sole, "
+        f"which makes it {bottom:.3f} m. Right: the greatest height "
         "of the snout over the distance of the centre of mass behind the feet, torques aside, and what is simulated.",
     )
 
@@ -171,7 +173,7 @@ def draw_pushes(record: xr.Dataset, commanded: float) -> Figure:
         commanded: lead of the stand of the other figures [m].
     """
     with styled():
-        figure, axes = panels(1, 2, width=10.0, height=4.3)
+        figure, axes = panels(1, 2, width=12.0, height=4.3)
         ax = axes[0, 0]
         ways = [str(w) for w in record.way.values]
         shown = record.push.isel(commanded=int(np.argmin(np.abs(record.commanded.values - commanded))))
@@ -192,7 +194,7 @@ def draw_pushes(record: xr.Dataset, commanded: float) -> Figure:
             for feedback, colour in _FEEDBACK.items():
                 some = record.push.sel(way=way, feedback=feedback)
                 dashes = (0, (3, 1.5)) if feedback == "off" else "-"
-                label = way if feedback == "on" else None
+                label = f"{way}, feedback {feedback}"
                 ax.plot(
                     1000 * record.lead_found,
                     some.where(np.isfinite(some)),
@@ -204,9 +206,9 @@ def draw_pushes(record: xr.Dataset, commanded: float) -> Figure:
                 )
         ax.set_xlabel("centre of mass behind the feet [mm]")
         ax.set_ylabel("smallest push that topples [N]")
-        ax.set_title("over the distance behind the feet")
+        ax.set_title("pushes over the distance behind the feet")
         ax.set_ylim(bottom=0.0)
-        ax.legend(loc="upper left")
+        ax.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize=10)
     return captioned(
         figure,
         "The smallest push of 0.2 s on the thorax that topples the standing robot, with feedback of pitch and tail "
