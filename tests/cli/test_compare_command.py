@@ -100,7 +100,7 @@ def test_an_outcome_is_equal_to_itself(two, tmp_path, capsys):
 
 
 BAD = {
-    "a": "required",
+    "a": "see suchus compare --help",
     "a b c": "one word too many",
     "a nowhere": "nowhere is not there",
     "a empty": "outcome.json",

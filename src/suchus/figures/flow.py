@@ -31,7 +31,7 @@ def _field(sim: Simulation, values: np.ndarray, limit: float, label: str, cmap: 
         image = axes.imshow(fine, origin="lower", extent=extent, cmap=cmap, vmin=-limit, vmax=limit)
         carry(image, values)
         for body in sim.setup.bodies:
-            edge = sim.surface(body.name)
+            edge = sim.surface(body.name).markers
             axes.add_patch(Polygon(np.column_stack([edge.x, edge.y]), facecolor=SKIN, edgecolor=EDGE, label=body.name))
         axes.set_xlabel("x [m]")
         axes.set_ylabel("y [m]")

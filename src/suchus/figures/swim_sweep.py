@@ -65,8 +65,9 @@ def _greatest(record: xr.Dataset, name: str) -> float:
 
 
 def _map(ax: Axes, record: xr.Dataset, name: str, axis: str, scale: Normalize) -> ScalarMappable:
-    x, y, values = record[axis].values, record.amplitude.values, record[f"{name}_by_{axis}"].values
-    possible = record[f"possible_by_{axis}"].values.astype(bool)
+    x, y = record[axis].values, record.amplitude.values
+    values = record[f"{name}_by_{axis}"].transpose("amplitude", axis).values
+    possible = record[f"possible_by_{axis}"].transpose("amplitude", axis).values.astype(bool)
     edges = _edges(x), _edges(y)
     drawn = ax.pcolormesh(*edges, values, cmap=SEQUENTIAL, norm=scale, edgecolors="white", linewidth=0.8)
     for j, i in np.ndindex(values.shape):
