@@ -108,6 +108,26 @@ def test_a_drawing_without_axes_is_in_metres():
     assert rows(figure) == [{"panel": "1", "series": "foot", "x [m]": "0.1", "y [m]": "0.2"}]
 
 
+def test_a_rectangle_tells_two_of_its_corners():
+    with styled():
+        figure, axes = panels(1, 1)
+        axes[0, 0].add_patch(mpl.patches.Rectangle((0.0, 0.2), 1.0, 0.3, label="spine"))
+        axes[0, 0].set(xlabel="x [m]", ylabel="height [m]")
+    found = rows(figure)
+    assert column(found, "height [m]", "spine") == [0.2, 0.5]
+    assert column(found, "x [m]", "spine") == [0.0, 1.0]
+
+
+def test_a_histogram_of_steps_tells_both_ends_of_each_step():
+    with styled():
+        figure, axes = panels(1, 1)
+        axes[0, 0].stairs([3.0, 5.0], [1.0, 10.0, 100.0], label="ours")
+        axes[0, 0].set(xlabel="error [mm]", ylabel="share [%]", xscale="log")
+    found = rows(figure)
+    assert column(found, "error [mm]", "ours") == [1.0, 10.0, 10.0, 100.0]
+    assert column(found, "share [%]", "ours") == [3.0, 3.0, 5.0, 5.0]
+
+
 def test_it_is_saved_beside_the_figure_and_an_empty_figure_has_none(plain, tmp_path):
     save(plain, tmp_path, "speeds")
     save(new(), tmp_path, "nothing")

@@ -22,7 +22,7 @@ from matplotlib.container import BarContainer
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 from matplotlib.lines import Line2D
-from matplotlib.patches import Circle, Patch, Polygon
+from matplotlib.patches import Circle, Patch, Polygon, Rectangle, StepPatch
 from matplotlib.ticker import FixedLocator
 
 MOST: Final = 10_000
@@ -166,6 +166,14 @@ def _of_image(ax: Axes, image: AxesImage, names: tuple[str, str]) -> Iterator[Ce
 def _of_patch(ax: Axes, patch: Patch, names: tuple[str, str]) -> Iterator[Cells]:
     if isinstance(patch, Circle):
         yield _cells(ax, names, patch.center)
+    elif isinstance(patch, StepPatch):
+        values, edges, _ = patch.get_data()
+        for value, low, high in zip(values, edges[:-1], edges[1:], strict=True):
+            yield _cells(ax, names, (low, value))
+            yield _cells(ax, names, (high, value))
+    elif isinstance(patch, Rectangle):
+        yield _cells(ax, names, patch.get_xy())
+        yield _cells(ax, names, (patch.get_x() + patch.get_width(), patch.get_y() + patch.get_height()))
     elif isinstance(patch, Polygon):
         for x, y in patch.get_xy():
             yield _cells(ax, names, (x, y))

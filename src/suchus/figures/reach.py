@@ -128,13 +128,14 @@ def draw_ceiling(robot: Crocodile, record: xr.Dataset) -> Figure:
         ax = axes[0, 0]
         bottom = 0.0
         for name, length, colour in lengths:
-            ax.add_patch(Rectangle((-0.3, bottom), 0.6, length, facecolor=colour, edgecolor="white", alpha=0.75))
+            look = {"facecolor": colour, "edgecolor": "white", "alpha": 0.75, "label": name}
+            ax.add_patch(Rectangle((-0.3, bottom), 0.6, length, **look))
             ax.text(0.36, max(bottom + length / 2, 0.02), f"{name}  {1000 * length:.1f} mm", va="center")
             bottom += length
         ax.axhline(printed, **(dict(LINES["printed"]) | {"label": None}))
         ax.text(1.55, printed - 0.012, f"as printed: {printed:.2f} m", ha="right", va="top")
         line = sum(length for name, length, _ in lengths if name != "sole")
-        ax.text(0.0, bottom + 0.01, f"{line:.3f} m, with the sole {bottom:.3f} m", ha="left", fontsize=11)
+        ax.text(-0.3, bottom + 0.012, f"{line:.3f} m, with the sole {bottom:.3f} m", fontsize=11)
         ax.set_xlim(-0.4, 1.6)
         ax.set_ylim(0.0, 1.1 * max(bottom, printed))
         ax.set_xticks([])
