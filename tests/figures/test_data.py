@@ -74,6 +74,17 @@ def test_a_field_is_told_at_its_cells_with_the_label_of_its_colour_bar():
     ]
 
 
+def test_panels_with_the_same_colours_share_the_label_of_one_bar_and_others_do_not():
+    with styled():
+        figure, axes = panels(1, 3)
+        for ax, most in zip(axes[0], (5.0, 5.0, 9.0), strict=True):
+            mesh = ax.pcolormesh([0.0, 1.0], [0.0, 2.0], [[4.0]], vmin=0.0, vmax=most)
+            if ax is axes[0, 1]:
+                figure.colorbar(mesh, ax=ax, label="reach [m]")
+            ax.set(xlabel="mass [kg]", ylabel="torque [N m]")
+    assert [(row["reach [m]"], row["value"]) for row in rows(figure)] == [("4", ""), ("4", ""), ("", "4")]
+
+
 def test_what_was_computed_stands_in_the_place_of_the_smoothed_picture():
     with styled():
         figure, axes = panels(1, 1)

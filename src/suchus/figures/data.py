@@ -208,9 +208,16 @@ def _names(ax: Axes, which: str) -> str:
 
 
 def _colour(drawn: Any) -> str:
-    bar = drawn.colorbar
-    label = "" if bar is None else _plain(bar.ax.get_ylabel() or bar.ax.get_xlabel())
+    """Return the label of the colour bar of a field, or of one in another panel with the same colours and range."""
+    panels = drawn.figure.axes
+    others = [one for ax in panels for one in (*ax.collections, *ax.images) if _scale(one) == _scale(drawn)]
+    bars = [one.colorbar for one in (drawn, *others) if one.colorbar is not None]
+    label = _plain(bars[0].ax.get_ylabel() or bars[0].ax.get_xlabel()) if bars else ""
     return label or "value"
+
+
+def _scale(drawn: Any) -> tuple[str, float | None, float | None]:
+    return drawn.get_cmap().name, drawn.norm.vmin, drawn.norm.vmax
 
 
 def _category(axis: Axis, value: float) -> str:
