@@ -44,6 +44,11 @@ def test_a_line_without_a_label_is_called_as_the_line_that_looks_alike(plain):
     assert {row["series"] for row in rows(plain)} == {"robot", "line 1"}
 
 
+def test_a_label_that_is_kept_out_of_the_legend_still_names_its_series(plain):
+    plain.axes[1].lines[0].set_label("_robot, other servos")
+    assert {row["series"] for row in rows(plain)} == {"robot", "robot, other servos"}
+
+
 def test_bars_stand_under_the_words_of_their_axis():
     with styled():
         figure, axes = panels(1, 1)

@@ -103,8 +103,7 @@ def _series(ax: Axes, known: Mapping[tuple[str, ...], str]) -> Iterator[tuple[st
     bars = [one for one in ax.containers if isinstance(one, BarContainer)]
     in_bars = {id(patch) for one in bars for patch in one.patches}
     for i, line in enumerate(ax.lines, start=1):
-        label = known.get(_look(line), f"line {i}") if _hidden(line.get_label()) else line.get_label()
-        yield _plain(str(label)), _of_line(ax, line, names)
+        yield _called(line.get_label(), known.get(_look(line), f"line {i}")), _of_line(ax, line, names)
     for i, container in enumerate(bars, start=1):
         yield _called(container.get_label(), f"bars {i}"), _of_bars(ax, container, names)
     for i, collection in enumerate(ax.collections, start=1):
@@ -245,11 +244,15 @@ def _is_number(word: str) -> bool:
 
 
 def _called(label: object, otherwise: str) -> str:
-    return otherwise if _hidden(label) else _plain(str(label))
+    """Return the name of a series: its label, or what follows the ``_`` that keeps a label out of the legend."""
+    text = _plain(str(label))
+    if not _hidden(label):
+        return text
+    return otherwise if label is None or not text or text.startswith(("_child", "_nolegend")) else text[1:]
 
 
 def _hidden(label: object) -> bool:
-    return not str(label) or str(label).startswith("_") or label is None
+    return label is None or not str(label) or str(label).startswith("_")
 
 
 def _plain(text: str) -> str:

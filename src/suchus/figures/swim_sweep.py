@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from suchus.figures.data import carry
 from suchus.figures.style import COLOURS, SEQUENTIAL, captioned, panels, styled
 
 _SALAMANDRA = (0.9, 1.3)
@@ -22,7 +23,7 @@ _ROWS: tuple[tuple[str, str], ...] = (
 """Rows of the maps: quantity and label."""
 _PALE = 0.55
 """Share of the scale from which dark digits are read better than light ones [-]."""
-_HATCHED = {"facecolor": "none", "edgecolor": "#555555", "hatch": "///", "linewidth": 0.0}
+_HATCHED = {"facecolor": "#EDEDED", "edgecolor": "#555555", "hatch": "///", "linewidth": 0.0}
 
 
 def draw_maps(record: xr.Dataset, model: str) -> Figure:
@@ -69,7 +70,10 @@ def _map(ax: Axes, record: xr.Dataset, name: str, axis: str, scale: Normalize) -
     values = record[f"{name}_by_{axis}"].transpose("amplitude", axis).values
     possible = record[f"possible_by_{axis}"].transpose("amplitude", axis).values.astype(bool)
     edges = _edges(x), _edges(y)
-    drawn = ax.pcolormesh(*edges, values, cmap=SEQUENTIAL, norm=scale, edgecolors="white", linewidth=0.8)
+    drawn = ax.pcolormesh(
+        *edges, np.where(possible, values, np.nan), cmap=SEQUENTIAL, norm=scale, edgecolors="white", linewidth=0.8
+    )
+    carry(drawn, values, x, y)
     for j, i in np.ndindex(values.shape):
         if not possible[j, i]:
             corners = (edges[0][i], edges[0][i + 1])

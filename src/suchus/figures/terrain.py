@@ -75,7 +75,7 @@ def draw_speed_range(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]])
                     one = record.sel(gait=gait, servo_model=model)
                     style = dict(lines[str(gait)]) | {"linewidth": width, "markersize": 3 if model == "line" else 6}
                     if model == "line":
-                        style |= {"label": None, "alpha": 0.7}
+                        style |= {"label": f"_{style['label']}, {_SERVOS[1]}", "alpha": 0.7}
                     ax.plot(one.period, scale * one[name], **style)
             ax.set_xscale("log")
             ax.set_xticks([0.5, 1, 2, 4], ["0.5", "1", "2", "4"])
