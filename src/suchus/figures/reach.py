@@ -22,28 +22,27 @@ def draw_heights(record: xr.Dataset, hold: float) -> Figure:
     """
     _, at, up, leave, _, end = record.attrs["stages"]
     with styled():
-        figure, axes = panels(1, 2, width=10.0, height=4.4, sharey=True, width_ratios=[1, 1.35])
-        for ax, begin, stop in ((axes[0, 0], at - 2.0, up + 2.0), (axes[0, 1], 0.0, end)):
+        figure, axes = panels(1, 3, width=12.5, height=4.6, width_ratios=[1, 1.35, 1])
+        rising, whole, standing = axes[0]
+        for ax, begin, stop in ((rising, at - 2.0, up + 2.0), (whole, 0.0, end)):
             _lay_heights(ax, record, begin, stop)
             for key in ("height_crawl", "height_standing"):
-                ax.axhline(CLAIMS[key].value or 0.0, **(dict(LINES["printed"]) | {"label": None, "linewidth": 1.3}))
+                ax.axhline(CLAIMS[key].value or 0.0, **LINES["printed"])
             ax.set_ylim(0.0, 1.1 * max(float(record.attrs["stretched"]), CLAIMS["height_standing"].value or 0.0))
+        _lay_heights(standing, record, up + 0.02 * (leave - up), leave)  # on a scale of its own, to show the scatter
+        rising.set_ylabel("height of the highest point [m]")
+        for ax, title in zip(axes[0], ("standing up", "the whole run", "standing, magnified"), strict=True):
+            ax.set_title(title)
             ax.set_xlabel("time [s]")
-        for key in ("height_crawl", "height_standing"):
-            value = CLAIMS[key].value or 0.0
-            axes[0, 0].text(at - 1.9, value + 0.008, f"as printed: {value:.2f} m", color=COLOURS["printed"])
-        axes[0, 0].set_ylabel("height of the highest point [m]")
-        axes[0, 0].set_title("standing up")
-        axes[0, 1].set_title("crawl, stand, sit down, crawl on")
-        close = axes[0, 1].inset_axes((0.26, 0.50, 0.5, 0.26))
-        _lay_heights(close, record, up + 0.02 * (leave - up), leave)
-        close.set_title("standing, magnified", fontsize=10)
-        close.tick_params(labelsize=9)
-        axes[0, 1].legend(loc="upper center", bbox_to_anchor=(0.52, 0.42))
+        handles, labels = whole.get_legend_handles_labels()
+        shown = dict(zip(labels, handles, strict=True))  # both heights of the article are one entry
+        figure.legend(shown.values(), shown.keys(), loc="outside lower center", ncols=4, fontsize=11)
     return captioned(
         figure,
         f"Height of the highest point of head and trunk. The robot crawls, stands for {hold:.0f} s, sits down and "
-        "crawls on. Dashed: the article's two heights. Bands: the range of repeats with noise on the servos.",
+        "crawls on. Dashed: the article's two heights, "
+        + " and ".join(f"{CLAIMS[key].value or 0.0:.2f} m" for key in ("height_crawl", "height_standing"))
+        + ". Bands: the range of repeats with noise on the servos.",
     )
 
 
