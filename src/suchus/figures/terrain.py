@@ -103,7 +103,7 @@ def draw_turning(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]]) -> 
     with styled():
         figure, axes = panels(1, 3, width=11.5, height=4.0)
         for ax, name, label, scale in (
-            (axes[0, 0], "bend", "lasting bend [deg]", 180 / np.pi),
+            (axes[0, 0], "bend", "curvature offset of the trunk [deg]", 180 / np.pi),
             (axes[0, 1], "asymmetry", "asymmetry of strokes [-]", 1.0),
         ):
             for gait in record.gait.values:
