@@ -84,7 +84,8 @@ def draw_claim(record: xr.Dataset, claim: str) -> Figure:
         figure,
         f"{CLAIMS[claim].sense} True in {share} of {len(number)} samples. Left: {CLAIMS[claim].quantity}; the line is "
         "the article's number. Middle: rank correlation with the parameters it follows most; within the grey band it "
-        "could be chance. Right: the two that tell most; blue is the side of the decision boundary where it is true more often.",
+        "could be chance. Right: the two that separate best; blue is the side of the decision boundary where "
+        "it is true more often.",
     )
 
 
