@@ -30,7 +30,9 @@ def draw_heights(record: xr.Dataset, hold: float) -> Figure:
                 ax.axhline(CLAIMS[key].value or 0.0, **LINES["printed"])
             ax.set_ylim(0.0, 1.1 * max(float(record.attrs["stretched"]), CLAIMS["height_standing"].value or 0.0))
         _lay_heights(standing, record, up + 0.02 * (leave - up), leave)  # on a scale of its own, to show the scatter
-        rising.set_ylabel("height of the highest point [m]")
+        for ax in axes[0]:
+            ax.set_ylabel("height of the highest point [m]")
+        whole.yaxis.label.set_visible(False)  # the same scale as beside it; its name is for the table of the figure
         for ax, title in zip(axes[0], ("standing up", "the whole run", "standing, magnified"), strict=True):
             ax.set_title(title)
             ax.set_xlabel("time [s]")

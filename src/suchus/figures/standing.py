@@ -57,6 +57,7 @@ def draw_side_views(robot: Crocodile, record: xr.Dataset) -> Figure:
         ax.set_yticks(np.arange(0.0, 0.71, 0.1))
         ax.set_ylabel("height above the ground [m]")
         ax.set_xticks([])
+        ax.set_xlabel("place along the strip [m]", visible=False)  # for the table of the figure
         ax.spines["bottom"].set_visible(False)
     return captioned(
         figure,
