@@ -34,7 +34,7 @@ def draw_side_views(robot: Crocodile, record: xr.Dataset) -> Figure:
         "standing": min(up + 2.0, (up + leave) / 2),
     }
     with styled(axes__grid=False):
-        figure, axes = panels(1, 1, width=13.0, height=3.2)
+        figure, axes = panels(1, 1, width=13.0, height=3.5)
         ax = axes[0, 0]
         edge = 0.0
         for name, time in times.items():
@@ -48,12 +48,12 @@ def draw_side_views(robot: Crocodile, record: xr.Dataset) -> Figure:
             draw_posture(ax, robot, here, time, view="side")
             _mark_support(ax, here.isel(time=0))
             ax.text(x, -0.045, name, ha="center", va="top")
-            ax.text(x, -0.095, f"{time - at:+.1f} s", ha="center", va="top", color=COLOURS["neutral"])
+            ax.text(x, -0.125, f"{time - at:+.1f} s", ha="center", va="top", color=COLOURS["neutral"])
             height = float(one.reach[0])
             ax.plot([x - 0.16, x + _REACHED], [height, height], **_REACH)
             ax.text(x + _REACHED, height + 0.008, f"{height:.2f} m", color=COLOURS["ours"], va="bottom", ha="right")
         ax.set_xlim(-_GAP, edge)
-        ax.set_ylim(-0.14, 0.74)
+        ax.set_ylim(-0.2, 0.74)
         ax.set_yticks(np.arange(0.0, 0.71, 0.1))
         ax.set_ylabel("height above the ground [m]")
         ax.set_xticks([])
