@@ -12,6 +12,7 @@ from typing import Any
 
 from suchus.errors import IncompatibleRecord
 from suchus.experiments import EXPERIMENTS
+from suchus.paper import CLAIMS
 from suchus.verdict import RULES
 from suchus.verdict.judging import WORDS
 
@@ -20,6 +21,7 @@ TABLE = ROOT / "docs" / "verdicts.json"
 README = ROOT / "README.md"
 START, END = "<!-- verdicts: made by tools/verdict_table.py -->", "<!-- /verdicts -->"
 QUESTIONS = "<!-- questions: made by tools/verdict_table.py -->", "<!-- /questions -->"
+RESULT = "<!-- result: made by tools/verdict_table.py -->", "<!-- /result -->"
 _KEPT = ("verdict", "measured", "low", "high", "unit", "fragile")
 _TOLD = ("fitted", "by construction")
 
@@ -54,6 +56,34 @@ def summary(table: dict[str, dict[str, Any]]) -> str:
     )
 
 
+def result(table: dict[str, dict[str, Any]]) -> str:
+    """Return three results with the article's numbers and the words of their verdicts, as a list of the README."""
+
+    def word(*claims: str) -> str:
+        words = dict.fromkeys(f"{table[c]['verdict']}{', fragile' if table[c]['fragile'] else ''}" for c in claims)
+        return f"**{'; '.join(words)}**"
+
+    def ours(claim: str) -> float:
+        return float(table[claim]["measured"])
+
+    def printed(claim: str) -> float:
+        return CLAIMS[claim].value or 0.0
+
+    ratio, still, moving = "displacement_ratio", "fault_front_yaw_limbs_only", "fault_front_yaw_coordinated"
+    spine = ours("swim_spine_thrust")
+    return "\n".join(
+        (
+            f"* **{ours(ratio):.1f} times** as far with spine and tail as with limbs only, at identical leg commands "
+            f"(article: {printed(ratio):.1f}): {word(ratio)}.",
+            f"* **{-ours(moving):.0%} or {-ours(still):.0%}** of the displacement is gone with a failed front yaw "
+            f"joint, with a moving and with a still trunk (article: {-printed(moving):.0%} and {-printed(still):.0%}): "
+            f"{word(moving, still)}.",
+            f"* **{abs(spine):.2f} m/s {'faster' if spine > 0 else 'slower'}** is the free swim with the swing of the "
+            f"spine than without (article: the spine gives thrust): {word('swim_spine_thrust')}.",
+        )
+    )
+
+
 def questions() -> str:
     """Return the shelf of experiments as a table of the README."""
     rows = [f"| `{name}` | {one.title} | {one.shows} |" for name, one in EXPERIMENTS.items()]
@@ -61,8 +91,9 @@ def questions() -> str:
 
 
 def written(readme: str, table: dict[str, dict[str, Any]]) -> str:
-    """Return the README with summary and questions in their places."""
-    return _between(_between(readme, START, END, summary(table)), *QUESTIONS, questions())
+    """Return the README with result, summary and questions in their places."""
+    counted = _between(readme, START, END, summary(table))
+    return _between(_between(counted, *RESULT, result(table)), *QUESTIONS, questions())
 
 
 def _between(text: str, start: str, end: str, middle: str) -> str:

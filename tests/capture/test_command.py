@@ -18,7 +18,8 @@ def test_tracks_become_a_gait_and_a_diagram(table, tmp_path, capsys):
     gait = blueprint.read(out, Gait, GAITS)
     assert gait.name == "caiman_walk"
     assert gait.trunk_bend == pytest.approx(GAITS["belly_crawl"].trunk_bend, rel=0.05)
-    assert {file.name for file in out.parent.iterdir()} == {f"caiman_walk.{kind}" for kind in ("toml", "svg", "png")}
+    kinds = ("toml", "svg", "png", "data.csv")
+    assert {file.name for file in out.parent.iterdir()} == {f"caiman_walk.{kind}" for kind in kinds}
     said = capsys.readouterr().out
     assert "standing index" in said
     assert f"suchus run displacement --gait {out}" in said

@@ -46,7 +46,7 @@ def test_without_a_browser_a_page_is_written_and_named(short, capsys, opener):
     assert list(short.iterdir()) == [page]
     assert f"the walk, in any browser: {page}" in out
     assert page.read_text().startswith("<!doctype html>")
-    told = {name: float(far) for name, far in re.findall(r"^  (.*?) +([-\d.]+) m forward$", out, re.M)}
+    told = {name: float(far) for name, far in re.findall(r"^  (.*?) +[-\d.]+ m/s, ([-\d.]+) m forward$", out, re.M)}
     assert list(told) == ["belly crawl", "limbs only"]
     assert told["belly crawl"] > 2 * told["limbs only"] > 0
     assert opener.opened == []

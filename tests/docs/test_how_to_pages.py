@@ -12,7 +12,8 @@ ROOT = Path(__file__).parents[2]
 
 
 @pytest.mark.parametrize(
-    "page", ["getting_started", "own_robot", "own_gait", "own_experiment", "own_fault", "own_controller"]
+    "page",
+    ["index", "extending", "getting_started", "own_robot", "own_gait", "own_experiment", "own_fault", "own_controller"],
 )
 def test_following_the_page_gives_what_it_says(page, tmp_path):
     code = (

@@ -5,7 +5,19 @@ import matplotlib as mpl
 import numpy as np
 import pytest
 
-from suchus.figures import COLOURS, LINES, caption, captioned, dimension_drawing, new, panels, save, styled
+from suchus.figures import (
+    COLOURS,
+    LINES,
+    STYLE,
+    WIDTH,
+    caption,
+    captioned,
+    dimension_drawing,
+    new,
+    panels,
+    save,
+    styled,
+)
 from suchus.robots import ROBOTS
 
 
@@ -71,3 +83,10 @@ def test_the_drawing_shows_the_length_of_the_robot(name):
 def test_figures_do_without_pyplot():
     code = "import suchus.figures, sys; assert 'matplotlib.pyplot' not in sys.modules"
     subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_text_is_read_in_a_column_of_a_journal():
+    """A figure of the usual width, printed 85 mm wide, has letters of 5 points at least."""
+    column = 85 / 25.4
+    sizes = [STYLE[name] for name in ("font.size", "axes.labelsize", "legend.fontsize", "xtick.labelsize")]
+    assert min(sizes) * column / WIDTH >= 5.0

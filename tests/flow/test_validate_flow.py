@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from suchus import flow
-from suchus.figures.flow import write_table, write_validation
+from suchus.figures.validation import write_table, write_validation
 from suchus.flow import signals
 
 pytestmark = pytest.mark.validate

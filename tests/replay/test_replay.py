@@ -45,6 +45,15 @@ def test_positions_are_those_of_the_bodies_to_a_tenth_of_a_millimetre(robot, cra
     assert np.allclose(np.linalg.norm(turns, axis=-1), 1.0, atol=1e-4)
 
 
+def test_the_tail_and_its_load_are_told_so_that_it_can_support(robot, crawled):
+    meta, raw = opened(replay(crawled, robot))
+    told = read(raw, meta["actors"][0]["arrays"]["tail"]).reshape(-1, 4)
+    last = crawled.sel(time=meta["start"] + (len(told) - 1) / meta["rate"], method="nearest")
+    assert np.allclose(told[-1, :3], last.tail_tip.values, atol=1e-5)
+    assert told[-1, 3] == pytest.approx(float(last.tail_force.sel(xyz="z")), rel=1e-5, abs=1e-5)
+    assert (told[:, 3] > meta["loaded"]).any()  # the crawl drags its tail
+
+
 def test_feet_of_the_bones_are_the_recorded_feet(robot, crawled):
     """The forward kinematics of the bones agrees with MuJoCo's sites."""
     shown = frames(crawled, robot)

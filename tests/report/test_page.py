@@ -1,13 +1,14 @@
 import json
 import re
 import shutil
-from dataclasses import replace
+from dataclasses import asdict, replace
 from html.parser import HTMLParser
 from types import SimpleNamespace
 
 import pytest
 import xarray as xr
 
+from suchus import record
 from suchus.errors import IncompatibleRecord, UnreadableFile
 from suchus.experiment import Experiment, Measure, Outcome, silent
 from suchus.figures import captioned, panels, styled
@@ -244,3 +245,44 @@ def test_numbers_read_well(value, unit, text):
 
 def test_a_number_keeps_the_digits_asked_for():
     assert number(0.123456, 2) == "0.12"
+
+
+def test_the_headline_comparison_stands_before_all_counts(page):
+    text = " ".join(" ".join(page.text).split())
+    assert text.index("headline comparison") < text.index("Same sense")
+    head = text[text.index("headline comparison") : text.index("Same sense")]
+    assert "0.73 m" in head
+    assert "0.5 m" in head
+    assert "cycles in the experiment" not in head  # a claim that is no headline
+
+
+def of_another_robot(result, tmp_path, name):
+    """The same result, as if it were of another robot of the shelf."""
+    shutil.copytree(result.folder, tmp_path / "question")
+    file = tmp_path / "question" / "outcome.json"
+    told = json.loads(file.read_text())
+    told["settings"] = {"robot": record.plain(asdict(ROBOTS[name]))}
+    file.write_text(json.dumps(told))
+    return render_page([load_result(file.parent)], [])
+
+
+def test_another_robot_has_a_page_of_its_own_without_the_claims_of_the_article(result, tmp_path):
+    own = of_another_robot(result, tmp_path / "own", "strider")
+    assert "Strider, measured" in own
+    gone = ("same sense", "misprints", "Read this first", "headline comparison", '<th scope="col">Verdicts', "No claim")
+    for said in gone:
+        assert said not in own
+    assert "−0.5 m" in own  # its numbers
+    assert "none of them is judged here" in own
+    caiman = of_another_robot(result, tmp_path / "article", "caiman")
+    assert "same sense" in caiman
+    assert "measured</title>" not in caiman
+
+
+def test_wide_figures_take_the_whole_page_and_others_half(result, tmp_path):
+    assert [picture.wide for picture in result.pictures] == [False, False]
+    shutil.copytree(result.folder, tmp_path / "question")
+    file = tmp_path / "question" / "first.svg"
+    file.write_text(re.sub(r'width="[\d.]+pt"', 'width="900pt"', file.read_text(), count=1))
+    assert [picture.wide for picture in load_result(file.parent).pictures] == [True, False]
+    assert render_page([load_result(file.parent)], []).count('class="across"') == 1

@@ -39,6 +39,7 @@ COMMANDS = (
         "suchus.cli.reproduce:reproduce",
     ),
     Command("run", "NAME [--FIELD VALUE ...]", "run one experiment", "suchus.cli.run:run"),
+    Command("compare", "A B [--out FILE.html]", "set two outcomes side by side", "suchus.cli.compare:compare_outcomes"),
     Command(
         "capture",
         "TRACKS [--out FILE.toml]",

@@ -18,7 +18,7 @@ from suchus.cli.view import Walking, serve_walk
 from suchus.design.checks import require
 from suchus.gaits import GAITS
 from suchus.land import Run, simulate
-from suchus.metrics import displacement
+from suchus.metrics import displacement, speed
 from suchus.record import check_writable
 from suchus.replay import replay, save
 from suchus.robots import ROBOTS
@@ -77,7 +77,8 @@ def _page(out: Path, opener: BaseBrowser | None, live: bool) -> int:
     print(f"{robot.name}: a robot of {robot.length:.2f} m and {robot.mass:.1f} kg; two cycles of its crawl")
     for name in GAITS_SHOWN:
         forward = float(displacement(walks.sel(run=GAITS_SHOWN.index(name))).sel(xyz="x"))
-        print(f"  {name.replace('_', ' '):12s} {forward:.2f} m forward")
+        mean = float(speed(walks.sel(run=GAITS_SHOWN.index(name))))
+        print(f"  {name.replace('_', ' '):12s} {mean:.3f} m/s, {forward:.2f} m forward")
     if opener is not None:
         opener.open(path.as_uri())
     print(f"the walk, in any browser: {path}")

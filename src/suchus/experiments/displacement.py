@@ -297,6 +297,9 @@ class Displacement(Experiment):
                 ax.plot([float(repeats.min()), float(repeats.max())], [here, here], color=COLOURS[arm], linewidth=7,
                         alpha=0.35, solid_capstyle="butt")  # fmt: skip
                 ax.plot(float(forward[i]), here, "o", color=COLOURS[arm], markersize=9)
+                if i == 0:
+                    ax.plot([], [], "o", color=COLOURS["neutral"], markersize=9, label="without noise")
+                    ax.plot([], [], color=COLOURS["neutral"], linewidth=7, alpha=0.35, label="range of repeats")
                 ax.annotate(f"{float(forward[i]):.3g} m", (float(forward[i]), here), (0, 10), ha="center", fontsize=11,
                             textcoords="offset points")  # fmt: skip
             for arm in _GROUPS if self._article() else ():
@@ -308,8 +311,7 @@ class Displacement(Experiment):
             ax.set_ylim(0.4, len(arms) + 0.8)
             ax.set_xlim(left=min(0.0, float(record.spread_forward.min())))
             ax.set_xlabel("displacement forward [m]")
-            if self._article():
-                ax.legend(loc="lower right")
+            ax.legend(loc="lower right")
         return captioned(
             figure,
             "What each part of spine and tail adds. Points: one run without noise; bars: the range of "
@@ -325,7 +327,8 @@ class Displacement(Experiment):
             x = x - x.sel(time=START, method="nearest")
             for arm in _GROUPS:
                 some = record.spread_over_time.sel(condition=arm)
-                draw_band(ax, some.rename(repeat="run", spread_time="time"), arm)
+                band = some.rename(repeat="run", spread_time="time")
+                draw_band(ax, band, arm, label=f"repeats, {LINES[arm]['label']}")
             draw_lines(ax, x, _GROUPS)
             end = float(record.time[-1])
             cycles = (end - START) / float(record.period[0])
@@ -362,25 +365,36 @@ class Displacement(Experiment):
             printed = CLAIMS["displacement_ratio"].value if self._article() else None
             ax = axes[0, 0]
             if min(ratio.shape) > 1:
-                draw_map(ax, ratio.T, levels=(1, 1.5, 2, 3, 6, 12), label="ratio", emphasised=printed, form="%.3g")
-            ax.plot(*star, "*", markersize=15, color="white", markeredgecolor="black")
-            ax.set_title("with spine and tail / limbs only")
+                draw_map(
+                    ax,
+                    ratio.T,
+                    levels=(1, 1.5, 2, 3, 6, 12),
+                    label="ratio of displacements [-]",
+                    emphasised=printed,
+                    form="%.3g",
+                )
+            ax.plot(
+                *star, "*", markersize=15, color="white", markeredgecolor="black", label="crawl of the other figures"
+            )
+            ax.legend(loc="upper right", fontsize=10)
+            ax.set_title("spine and tail over limbs only")
             if pitched and isinstance(self.gait, Gait):
                 ax = axes[0, 1]
                 for arm in _GROUPS:
                     ax.plot(np.degrees(record.pitch), record.pitched.sel(group=arm), marker="o", **LINES[arm])
-                ax.axvline(degrees(self.gait.tail_pitch), color=COLOURS["neutral"], linestyle=":", linewidth=1.2)
+                ax.axvline(degrees(self.gait.tail_pitch), color=COLOURS["neutral"], linestyle=":", linewidth=1.2,
+                           label=_SHOWN)  # fmt: skip
                 ax.set_xlabel("pitch of the tail, down [deg]")
                 ax.set_ylabel("displacement forward [m]")
                 ax.set_ylim(bottom=0.0)
                 ax.legend(loc="center right")
-                ax.set_title("the tail's pitch")
+                ax.set_title("pitch of the tail")
             ax = axes[0, -1]
             ax.axhline(0.0, color="#999999", linewidth=0.8)
             ax.plot(record.late, record.late_coordinated, marker="o", **(dict(LINES["coordinated"]) | {"label": None}))
             ax.set_xlabel("phase lag of the trunk [cycle]")
             ax.set_ylabel("displacement forward [m]")
-            ax.set_title("the trunk's phase")
+            ax.set_title("phase lag of the trunk")
         line = ", the orange line the article's ratio" if self._article() else ""
         what = "" if article else " over shares of the strokes and bends of the robot's gait"
         middle = " Middle: the steady pitch of the tail, the dotted line that of the crawl." if pitched else ""
@@ -390,6 +404,9 @@ class Displacement(Experiment):
             f"star is the crawl of the other figures{line}.{middle} Right: the phase lag of the trunk's bend behind "
             "the legs, with spine and tail.",
         )
+
+
+_SHOWN = "crawl of the other figures"
 
 
 def _forward(record: xr.Dataset) -> xr.DataArray:

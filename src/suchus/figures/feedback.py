@@ -152,10 +152,10 @@ def draw_gain(way: xr.DataArray) -> Figure:
         ax.set_xlabel("which rules are on")
         for side in ax.spines.values():
             side.set_visible(False)
-        figure.colorbar(shown, ax=ax, label="way forward [%]", pad=0.02, ticks=range(20, 141, 20))
+        figure.colorbar(shown, ax=ax, label="displacement forward [%]", pad=0.02, ticks=range(20, 141, 20))
     return captioned(
         figure,
-        "Way forward in the cycles after a disturbance, in percent of the undisturbed way without feedback; "
+        "Displacement in the cycles after a disturbance, in percent of that without disturbance and feedback; "
         "the last column adds the heading loop to all three rules.",
     )
 

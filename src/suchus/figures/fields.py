@@ -9,6 +9,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon
 from scipy.ndimage import zoom
 
+from suchus.figures.data import carry
+
 SKIN, EDGE = "#C9DCCB", "#2F4737"
 """Colours of a body seen from above."""
 VORTICITY, PRESSURE = "RdBu_r", "PuOr"
@@ -39,9 +41,10 @@ def draw_field(ax: Axes, record: xr.Dataset, name: str, what: str, index: int, l
     """
     x, y = record[f"{name}_x"].values, record[f"{name}_y"].values
     half = 0.5 * (x[1] - x[0])
+    values = record[f"{name}_{what}"].values[index]
     ax.grid(visible=False)
-    return ax.imshow(
-        smooth(record[f"{name}_{what}"].values[index]),
+    image = ax.imshow(
+        smooth(values),
         origin="lower",
         extent=(x[0] - half, x[-1] + half, y[0] - half, y[-1] + half),
         cmap=colormaps[cmap].resampled(_STEPS),
@@ -50,11 +53,13 @@ def draw_field(ax: Axes, record: xr.Dataset, name: str, what: str, index: int, l
         interpolation="none",
         aspect="equal",
     )
+    carry(image, values)
+    return image
 
 
-def smooth(values: np.ndarray) -> np.ndarray:
-    """Return a field on a finer grid, so that its cells do not show."""
-    return np.asarray(zoom(values, max(1, round(_PIXELS / values.shape[1])), order=1, grid_mode=True, mode="nearest"))
+def smooth(values: np.ndarray, pixels: int = _PIXELS) -> np.ndarray:
+    """Return a field on a finer grid of about ``pixels`` along x, so that its cells do not show."""
+    return np.asarray(zoom(values, max(1, round(pixels / values.shape[1])), order=1, grid_mode=True, mode="nearest"))
 
 
 def outline(record: xr.Dataset, name: str, index: int) -> tuple[np.ndarray, np.ndarray]:

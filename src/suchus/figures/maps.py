@@ -7,6 +7,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
 
+from suchus.figures.data import carry
 from suchus.figures.style import SEQUENTIAL
 
 
@@ -33,6 +34,7 @@ def draw_map(
     data = np.clip(np.nan_to_num(values.values.astype(float), nan=levels[0], posinf=levels[-1]), levels[0], levels[-1])
     fine = np.geomspace(levels[0], levels[-1], 40)
     filled = ax.contourf(right, up, data, levels=fine, cmap=SEQUENTIAL, norm=LogNorm(levels[0], levels[-1]))
+    carry(filled, values.values, right.values, up.values)
     lines = ax.contour(right, up, data, levels=list(levels[1:-1]), colors="white", linewidths=1.1)
     ax.clabel(lines, fmt=form, fontsize=11)
     if emphasised is not None:

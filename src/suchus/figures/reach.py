@@ -22,28 +22,29 @@ def draw_heights(record: xr.Dataset, hold: float) -> Figure:
     """
     _, at, up, leave, _, end = record.attrs["stages"]
     with styled():
-        figure, axes = panels(1, 2, width=10.0, height=4.4, sharey=True, width_ratios=[1, 1.35])
-        for ax, begin, stop in ((axes[0, 0], at - 2.0, up + 2.0), (axes[0, 1], 0.0, end)):
+        figure, axes = panels(1, 3, width=12.5, height=4.6, width_ratios=[1, 1.35, 1])
+        rising, whole, standing = axes[0]
+        for ax, begin, stop in ((rising, at - 2.0, up + 2.0), (whole, 0.0, end)):
             _lay_heights(ax, record, begin, stop)
             for key in ("height_crawl", "height_standing"):
-                ax.axhline(CLAIMS[key].value or 0.0, **(dict(LINES["printed"]) | {"label": None, "linewidth": 1.3}))
+                ax.axhline(CLAIMS[key].value or 0.0, **LINES["printed"])
             ax.set_ylim(0.0, 1.1 * max(float(record.attrs["stretched"]), CLAIMS["height_standing"].value or 0.0))
+        _lay_heights(standing, record, up + 0.02 * (leave - up), leave)  # on a scale of its own, to show the scatter
+        for ax in axes[0]:
+            ax.set_ylabel("height of the highest point [m]")
+        whole.yaxis.label.set_visible(False)  # the same scale as beside it; its name is for the table of the figure
+        for ax, title in zip(axes[0], ("standing up", "the whole run", "standing, magnified"), strict=True):
+            ax.set_title(title)
             ax.set_xlabel("time [s]")
-        for key in ("height_crawl", "height_standing"):
-            value = CLAIMS[key].value or 0.0
-            axes[0, 0].text(at - 1.9, value + 0.008, f"as printed: {value:.2f} m", color=COLOURS["printed"])
-        axes[0, 0].set_ylabel("height that it reaches [m]")
-        axes[0, 0].set_title("standing up")
-        axes[0, 1].set_title("crawl, stand, sit down, crawl on")
-        close = axes[0, 1].inset_axes((0.26, 0.50, 0.5, 0.26))
-        _lay_heights(close, record, up + 0.02 * (leave - up), leave)
-        close.set_title("standing, magnified", fontsize=10)
-        close.tick_params(labelsize=9)
-        axes[0, 1].legend(loc="upper center", bbox_to_anchor=(0.52, 0.42))
+        handles, labels = whole.get_legend_handles_labels()
+        shown = dict(zip(labels, handles, strict=True))  # both heights of the article are one entry
+        figure.legend(shown.values(), shown.keys(), loc="outside lower center", ncols=4, fontsize=11)
     return captioned(
         figure,
         f"Height of the highest point of head and trunk. The robot crawls, stands for {hold:.0f} s, sits down and "
-        "crawls on. Dashed: the article's two heights. Bands: the range of repeats with noise on the servos.",
+        "crawls on. Dashed: the article's two heights, "
+        + " and ".join(f"{CLAIMS[key].value or 0.0:.2f} m" for key in ("height_crawl", "height_standing"))
+        + ". Bands: the range of repeats with noise on the servos.",
     )
 
 
@@ -128,16 +129,19 @@ def draw_ceiling(robot: Crocodile, record: xr.Dataset) -> Figure:
         ax = axes[0, 0]
         bottom = 0.0
         for name, length, colour in lengths:
-            ax.add_patch(Rectangle((-0.3, bottom), 0.6, length, facecolor=colour, edgecolor="white", alpha=0.75))
+            look = {"facecolor": colour, "edgecolor": "white", "alpha": 0.75, "label": name}
+            ax.add_patch(Rectangle((-0.3, bottom), 0.6, length, **look))
             ax.text(0.36, max(bottom + length / 2, 0.02), f"{name}  {1000 * length:.1f} mm", va="center")
             bottom += length
         ax.axhline(printed, **(dict(LINES["printed"]) | {"label": None}))
-        ax.text(1.55, printed - 0.03, f"as printed: {printed:.2f} m", ha="right")
+        ax.text(1.55, printed - 0.012, f"as printed: {printed:.2f} m", ha="right", va="top")
+        line = sum(length for name, length, _ in lengths if name != "sole")
+        ax.text(-0.3, bottom + 0.012, f"{line:.3f} m, with the sole {bottom:.3f} m", fontsize=11)
         ax.set_xlim(-0.4, 1.6)
         ax.set_ylim(0.0, 1.1 * max(bottom, printed))
         ax.set_xticks([])
-        ax.set_ylabel("height [m]")
-        ax.set_title("all in one line")
+        ax.set_ylabel("height above the ground [m]")
+        ax.set_title("lengths in one line")
         ax = axes[0, 1]
         ax.plot(1000 * record.behind, record.ceiling, color=COLOURS["neutral"], label="no posture reaches higher")
         ax.axhline(printed, **LINES["printed"])
@@ -150,7 +154,6 @@ def draw_ceiling(robot: Crocodile, record: xr.Dataset) -> Figure:
         ax.set_ylim(min(shown) - 0.01, max(shown) + 0.01)
         ax.set_title("what a safe stand costs")
         ax.legend(loc="lower left")
-    line = sum(length for name, length, _ in lengths if name != "sole")
     chosen = (
         f"; the head, which the article does not give, was chosen so that they sum up to the printed {printed:g} m"
         if abs(line - printed) <= CLAIMS["height_standing"].rounding
@@ -158,7 +161,8 @@ def draw_ceiling(robot: Crocodile, record: xr.Dataset) -> Figure:
     )
     return captioned(
         figure,
-        f"What the height is made of. Left: hind leg, spine and head in one line{chosen}. Right: the greatest height "
+        f"What the height is made of. Left: hind leg, spine and head in one line{chosen}; the bar stands on the sole, "
+        f"which makes it {bottom:.3f} m. Right: the greatest height "
         "of the snout over the distance of the centre of mass behind the feet, torques aside, and what is simulated.",
     )
 
@@ -171,7 +175,7 @@ def draw_pushes(record: xr.Dataset, commanded: float) -> Figure:
         commanded: lead of the stand of the other figures [m].
     """
     with styled():
-        figure, axes = panels(1, 2, width=10.0, height=4.3)
+        figure, axes = panels(1, 2, width=12.0, height=4.3)
         ax = axes[0, 0]
         ways = [str(w) for w in record.way.values]
         shown = record.push.isel(commanded=int(np.argmin(np.abs(record.commanded.values - commanded))))
@@ -192,7 +196,7 @@ def draw_pushes(record: xr.Dataset, commanded: float) -> Figure:
             for feedback, colour in _FEEDBACK.items():
                 some = record.push.sel(way=way, feedback=feedback)
                 dashes = (0, (3, 1.5)) if feedback == "off" else "-"
-                label = way if feedback == "on" else None
+                label = f"{way}, feedback {feedback}"
                 ax.plot(
                     1000 * record.lead_found,
                     some.where(np.isfinite(some)),
@@ -204,9 +208,9 @@ def draw_pushes(record: xr.Dataset, commanded: float) -> Figure:
                 )
         ax.set_xlabel("centre of mass behind the feet [mm]")
         ax.set_ylabel("smallest push that topples [N]")
-        ax.set_title("over the distance behind the feet")
+        ax.set_title("pushes over the distance behind the feet")
         ax.set_ylim(bottom=0.0)
-        ax.legend(loc="upper left")
+        ax.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize=10)
     return captioned(
         figure,
         "The smallest push of 0.2 s on the thorax that topples the standing robot, with feedback of pitch and tail "

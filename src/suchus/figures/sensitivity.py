@@ -84,7 +84,8 @@ def draw_claim(record: xr.Dataset, claim: str) -> Figure:
         figure,
         f"{CLAIMS[claim].sense} True in {share} of {len(number)} samples. Left: {CLAIMS[claim].quantity}; the line is "
         "the article's number. Middle: rank correlation with the parameters it follows most; within the grey band it "
-        "could be chance. Right: the two that tell most; blue is the side of the border where it is rather true.",
+        "could be chance. Right: the two that separate best; blue is the side of the decision boundary where "
+        "it is true more often.",
     )
 
 
@@ -168,9 +169,9 @@ def _plane(ax: Axes, told: xr.Dataset, there: np.ndarray, holds: np.ndarray) -> 
         ax.axvline(at, color="black", linewidth=1.4)
         ax.axvspan(at, edge[1] if told.border_above else edge[0], color=_TRUE, alpha=0.08, linewidth=0, zorder=0)
         ax.set_xlim(edge)
-        ax.set_title(f"border at {at:.3g}, separation {float(told.border_separation):.2f}")
+        ax.set_title(f"decision boundary at {at:.3g}, separation {float(told.border_separation):.2f}")
     else:
-        ax.set_title("no border within the ranges")
+        ax.set_title("no decision boundary within the ranges")
     ax.xaxis.set_major_locator(MaxNLocator(4))
     for axis, i in ((ax.set_xlabel, first), (ax.set_ylabel, second)):
         axis(f"{spoken(str(told.parameter.values[i]))} [{told.parameter_unit.values[i]}]")

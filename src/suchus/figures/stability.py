@@ -32,7 +32,7 @@ def draw_heights(record: xr.Dataset, names: Sequence[str]) -> Figure:
         draw_lines(lower, height.isel(run=[0, len(names)]), (names[0], names[1]), scale=1000.0)
         lower.set_title("equal displacement: longer strokes for the legs alone")
         for ax in (upper, lower):
-            ax.set_ylabel("height − mean [mm]")
+            ax.set_ylabel("height of centre of mass\nless its mean [mm]")
             mark_cycles(ax, list(np.arange(START, float(part.time[-1]) + 0.01, float(part.period[0]))))
         upper.set_xlabel("")
         upper.legend(ncols=2, loc="upper center", bbox_to_anchor=(0.5, -0.02), frameon=False)
@@ -60,6 +60,9 @@ def draw_spreads(record: xr.Dataset, names: Sequence[str]) -> Figure:
             ax.plot([float(repeats.min()), float(repeats.max())], [here, here], color=COLOURS[name], linewidth=7,
                     alpha=0.35, solid_capstyle="butt")  # fmt: skip
             ax.plot(float(fluctuation[i]), here, "o", color=COLOURS[name], markersize=9)
+        ax.plot([], [], "o", color=COLOURS["neutral"], markersize=9, label="without noise")
+        ax.plot([], [], color=COLOURS["neutral"], linewidth=7, alpha=0.35, label="range of repeats")
+        ax.legend(loc="lower left")
         ax.set_yticks(range(len(names), 0, -1), [str(LINES[name]["label"]) for name in names])
         ax.set_ylim(0.4, len(names) + 0.6)
         ax.set_xlim(left=0.0)

@@ -9,12 +9,12 @@ from matplotlib.figure import Figure
 
 from suchus import rotation
 from suchus.design import Crocodile, servo_names
-from suchus.figures.posture import draw_posture
+from suchus.figures.posture import draw_posture, skeleton
 from suchus.figures.style import COLOURS, captioned, panels, styled
 from suchus.metrics import tilt
 
 _TOUCHES = 0.5  # [N]; less is no support
-_SPACES = (0.0, 1.02, 1.95, 2.6, 3.23)  # [m] where the robots of the strip stand, so that no two overlap
+_GAP = 0.06  # [m] between two robots of the strip
 
 
 def draw_side_views(robot: Crocodile, record: xr.Dataset) -> Figure:
@@ -34,33 +34,41 @@ def draw_side_views(robot: Crocodile, record: xr.Dataset) -> Figure:
         "standing": min(up + 2.0, (up + leave) / 2),
     }
     with styled(axes__grid=False):
-        figure, axes = panels(1, 1, width=13.0, height=3.2)
+        figure, axes = panels(1, 1, width=13.0, height=3.5)
         ax = axes[0, 0]
-        for x, (name, time) in zip(_SPACES, times.items(), strict=True):
+        edge = 0.0
+        for name, time in times.items():
             one = record.isel(run=0).sel(time=[time], method="nearest")
-            if name != "crawling":  # in the crawl the pelvis swings, and x is the way
+            if name != "crawling":  # in the crawl the pelvis swings, and the robot walks along x
                 one = _facing_right(one)
+            behind, ahead = _extent(robot, one, time)
+            x = edge + behind
+            edge = x + ahead + _GAP
             here = one.assign({n: one[n] + _shift(one, x) for n in _PLACES})
             draw_posture(ax, robot, here, time, view="side")
             _mark_support(ax, here.isel(time=0))
             ax.text(x, -0.045, name, ha="center", va="top")
-            ax.text(x, -0.095, f"{time - at:+.1f} s", ha="center", va="top", color=COLOURS["neutral"])
+            ax.text(x, -0.125, f"{time - at:+.1f} s", ha="center", va="top", color=COLOURS["neutral"])
             height = float(one.reach[0])
-            ax.plot([x - 0.16, x + 0.2], [height, height], **_REACH)
-            ax.text(x + 0.2, height + 0.008, f"{height:.2f} m", color=COLOURS["ours"], va="bottom", ha="right")
-        ax.set_xlim(_SPACES[0] - 0.62, _SPACES[-1] + 0.26)
-        ax.set_ylim(-0.14, 0.74)
+            ax.plot([x - 0.16, x + _REACHED], [height, height], **_REACH)
+            ax.text(x + _REACHED, height + 0.008, f"{height:.2f} m", color=COLOURS["ours"], va="bottom", ha="right")
+        ax.set_xlim(-_GAP, edge)
+        ax.set_ylim(-0.2, 0.74)
         ax.set_yticks(np.arange(0.0, 0.71, 0.1))
-        ax.set_ylabel("height [m]")
+        ax.set_ylabel("height above the ground [m]")
         ax.set_xticks([])
+        ax.set_xlabel("place along the strip [m]", visible=False)  # for the table of the figure
         ax.spines["bottom"].set_visible(False)
     return captioned(
         figure,
-        "From the crawl to standing on hind legs and tail, from the right side; times since it stopped to crawl. Red: "
-        "the centre of mass and its projection. Triangles: what carries the robot. Blue: the height that it reaches.",
+        "From the crawl to standing on hind legs and tail, from the right side; times since the crawl stopped. Red: "
+        "the centre of mass and its projection. Triangles: what carries the robot. Blue: the height of its highest "
+        "point.",
     )
 
 
+_LABEL = 0.34  # [m] width of the words under a robot
+_REACHED = 0.2  # [m] length of the line of the height, ahead of the hind feet
 _PLACES = ("position", "centre_of_mass", "foot_position", "tail_tip")
 _REACH: dict[str, Any] = {"color": COLOURS["ours"], "linewidth": 1.6, "linestyle": (0, (5, 2)), "zorder": 6}
 
@@ -69,6 +77,15 @@ def _shift(record: xr.Dataset, x: float) -> xr.DataArray:
     """Return what brings the hind feet's middle to a place and keeps heights."""
     now = record.foot_position.sel(leg=["LH", "RH"], xyz="x").mean(("leg", "time"))
     return xr.DataArray([x - float(now), 0.0, 0.0], dims="xyz", coords={"xyz": record.xyz})
+
+
+def _extent(robot: Crocodile, record: xr.Dataset, time: float) -> tuple[float, float]:
+    """Return how far the robot extends behind and ahead of the middle of its hind feet [m]."""
+    bones = skeleton(robot, record, time)
+    x = np.concatenate([part[:, 0] for part in (bones.trunk, bones.tail, *bones.legs)])
+    middle = float(record.foot_position.sel(leg=["LH", "RH"], xyz="x").mean())
+    label = _LABEL / 2  # the words under a robot that is narrower than they are
+    return max(middle - float(x.min()), label), max(float(x.max()) - middle, _REACHED, label)
 
 
 def _facing_right(record: xr.Dataset) -> xr.Dataset:

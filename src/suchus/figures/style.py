@@ -17,6 +17,7 @@ from cycler import cycler
 from matplotlib.figure import Figure
 
 from suchus.design import LEGS, AnyRobot, layout
+from suchus.figures.data import table
 from suchus.record import new_file
 
 COLOURS: Final[Mapping[str, str]] = MappingProxyType(
@@ -115,6 +116,10 @@ STYLE: Final[Mapping[Any, Any]] = MappingProxyType(
 """Matplotlib settings of every figure, applied by ``styled``."""
 
 
+DATA: Final = ".data.csv"
+"""How the name of the table that stands beside a figure ends, in the place of ``.svg``."""
+
+
 def styled(**settings: Any) -> AbstractContextManager[None]:
     """Return a context in which matplotlib follows ``STYLE``; what is drawn inside it looks like the rest.
 
@@ -167,6 +172,8 @@ def caption(figure: Figure) -> str:
 def save(figure: Figure, folder: Path, stem: str) -> tuple[Path, Path]:
     """Write a figure as SVG and as PNG and return both paths; equal figures give equal bytes.
 
+    The numbers that it shows stand beside it, as ``STEM.data.csv``; see ``figures.data``.
+
     Raises:
         Unwritable: the place cannot be written to.
     """
@@ -178,4 +185,7 @@ def save(figure: Figure, folder: Path, stem: str) -> tuple[Path, Path]:
             figure.savefig(drawn, format=kind, metadata=metadata)
             with new_file(path) as draft:
                 draft.write_bytes(drawn.getvalue())
+    if numbers := table(figure):
+        with new_file(folder / f"{stem}{DATA}") as draft:
+            draft.write_text(numbers, encoding="utf-8")
     return svg, png

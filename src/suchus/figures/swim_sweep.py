@@ -1,104 +1,120 @@
-"""Maps of swimming over frequency, amplitude and wavelength, and how far the cheap models are off."""
-
-from collections.abc import Sequence
+"""Maps of swimming over frequency, amplitude and wavelength, and how far the slender-body models are off."""
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
-from scipy.interpolate import RectBivariateSpline
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
+from suchus.figures.data import carry
 from suchus.figures.style import COLOURS, SEQUENTIAL, captioned, panels, styled
 
 _SALAMANDRA = (0.9, 1.3)
 """Frequencies between which its CPG swims [Hz]."""
 _AXES = ("frequency", "waves")
-_ROWS: tuple[tuple[str, str, str | None], ...] = (
-    ("speed", "speed [m/s]", "strouhal"),
-    ("efficiency", "efficiency", "slip"),
-    ("cost_of_transport", "cost of transport", None),
+_ROWS: tuple[tuple[str, str], ...] = (
+    ("speed", "speed [m/s]"),
+    ("efficiency", "efficiency [-]"),
+    ("cost_of_transport", "cost of transport [-]"),
 )
-"""Rows of the maps: quantity, label, and whose lines are drawn over it."""
+"""Rows of the maps: quantity and label."""
+_PALE = 0.55
+"""Share of the scale from which dark digits are read better than light ones [-]."""
+_HATCHED = {"facecolor": "#EDEDED", "edgecolor": "#555555", "hatch": "///", "linewidth": 0.0}
 
 
 def draw_maps(record: xr.Dataset, model: str) -> Figure:
     """Draw speed, efficiency and cost over frequency and amplitude, and over wavelength and amplitude.
 
+    Each motion that was computed is a cell with its number; nothing is interpolated, and scales begin at zero.
+
     Args:
         record: of the experiment ``swim_sweep``.
-        model: which of the cheap models.
+        model: which of the slender-body models.
     """
     chosen = record.sel(model=model)
     with styled(axes__grid=False):
         figure, axes = panels(len(_ROWS), 2, width=10.5, height=10.2, sharex="col", sharey=True)
-        for row, (name, label, lines) in zip(axes, _ROWS, strict=True):
-            levels = _levels(chosen, name)
+        for row, (name, label) in zip(axes, _ROWS, strict=True):
+            scale = Normalize(0.0, _greatest(chosen, name))
             for ax, axis in zip(row, _AXES, strict=True):
-                drawn = _map(ax, chosen, name, axis, levels)
-                _lines(ax, chosen, axis, lines)
+                drawn = _map(ax, chosen, name, axis, scale)
             figure.colorbar(drawn, ax=row, label=label, shrink=0.9)
-            row[0].set_ylabel("amplitude over that of (20)")
-        for ax, text in zip(axes[-1], ("frequency [Hz]", "waves per body"), strict=True):
+            row[0].set_ylabel("amplitude over\nthat of eq. (20) [-]")
+        for ax, text in zip(axes[-1], ("frequency [Hz]", "waves per body length [-]"), strict=True):
             ax.set_xlabel(text)
-        axes[0, 0].set_title("one wave per body")
-        axes[0, 1].set_title("1 Hz; circles: checked in the resolved flow")
+        axes[0, 0].set_title("one wave per body length")
+        axes[0, 1].set_title("1 Hz")
+        figure.legend(handles=_legend(), loc="outside lower center", ncols=3, frameon=False)
     return captioned(
         figure,
-        f"Free swimming by the {model} model, left over the frequency, right over the wavelength. Small dots are the "
-        "motions that were worked out, colours between them are interpolated. White lines: equal Strouhal number "
-        "above, equal slip in the middle. Hatched: joints or servos cannot follow. Between the dotted lines swims "
-        "Salamandra.",
+        f"Free swimming by the {model} model, left over the frequency, right over the wavelength of the body wave. "
+        "The amplitude 1 is that of (20); every cell is a motion that was computed. Hatched: joints or servos cannot "
+        "follow. Circles: checked by CFD, in two dimensions.",
     )
 
 
-def _levels(record: xr.Dataset, name: str) -> Sequence[float]:
-    """Return even steps of colour over what the robot can do in both maps of a quantity."""
+def _greatest(record: xr.Dataset, name: str) -> float:
+    """Return the greatest value in both maps of a quantity that the robot can do."""
     values = np.concatenate(
         [record[f"{name}_by_{axis}"].where(record[f"possible_by_{axis}"]).values.ravel() for axis in _AXES]
     )
-    return list(MaxNLocator(9).tick_values(np.nanmin(values), np.nanmax(values)))
+    return max(float(np.nanmax(values)), 1e-9)
 
 
-def _map(ax: Axes, record: xr.Dataset, name: str, axis: str, levels: Sequence[float]) -> ScalarMappable:
+def _map(ax: Axes, record: xr.Dataset, name: str, axis: str, scale: Normalize) -> ScalarMappable:
     x, y = record[axis].values, record.amplitude.values
-    drawn = ax.contourf(*_fine(x, y, record[f"{name}_by_{axis}"].values), levels=levels, cmap=SEQUENTIAL, extend="both")
-    most = np.minimum(record[f"most_amplitude_by_{axis}"].values, y[-1])
-    ax.fill_between(x, most, y[-1], facecolor="#EDEDED", edgecolor="#B5B5B5", hatch="////", linewidth=0.0, zorder=4)
-    ax.plot(x, most, color="#555555", linewidth=1.2, zorder=4)
-    ax.plot(*(side.ravel() for side in np.meshgrid(x, y)), ".", color="#111111", markersize=2.5, zorder=5)
+    values = record[f"{name}_by_{axis}"].transpose("amplitude", axis).values
+    possible = record[f"possible_by_{axis}"].transpose("amplitude", axis).values.astype(bool)
+    edges = _edges(x), _edges(y)
+    drawn = ax.pcolormesh(
+        *edges, np.where(possible, values, np.nan), cmap=SEQUENTIAL, norm=scale, edgecolors="white", linewidth=0.8
+    )
+    carry(drawn, values, x, y)
+    for j, i in np.ndindex(values.shape):
+        if not possible[j, i]:
+            corners = (edges[0][i], edges[0][i + 1])
+            ax.fill_between(corners, edges[1][j], edges[1][j + 1], **_HATCHED)
+        elif np.isfinite(values[j, i]):
+            colour = "black" if scale(values[j, i]) > _PALE else "white"
+            ax.text(x[i], y[j], f"{values[j, i]:.2g}", color=colour, ha="center", va="center", fontsize=10)
     if axis == "frequency":
         for edge in _SALAMANDRA:
-            if x[0] <= edge <= x[-1]:
-                ax.axvline(edge, color="white", linewidth=1.4, linestyle=(0, (1, 1.5)), zorder=4)
+            if edges[0][0] <= edge <= edges[0][-1]:
+                ax.axvline(edge, **_DOTTED)
     else:
-        ax.plot(record.point_waves, record.point_amplitude, "o", color="white", markeredgecolor="black", zorder=5)
+        ax.plot(record.point_waves, record.point_amplitude, **_CHECKED)
+    ax.set_xticks(x, [f"{value:g}" for value in x])
+    ax.set_yticks(y, [f"{value:g}" for value in y])
     return drawn
 
 
-def _lines(ax: Axes, record: xr.Dataset, axis: str, what: str | None) -> None:
-    """Draw a few lines of equal Strouhal number or slip, where they exist everywhere."""
-    values = record[f"{what}_by_{axis}"].values if what else np.array([np.nan])
-    if not np.isfinite(values).all() or np.ptp(values) < 1e-9:
-        return
-    x, y, fine = _fine(record[axis].values, record.amplitude.values, values)
-    most = np.interp(x, record[axis].values, record[f"most_amplitude_by_{axis}"].values)
-    lines = ax.contour(x, y, np.ma.array(fine, mask=y[:, None] > most), levels=3, colors="white", linewidths=0.9)
-    ax.clabel(lines, fontsize=9, fmt=f"{'St' if what == 'strouhal' else 'slip'} %.2g")
+_DOTTED = {"color": COLOURS["limbs_only"], "linewidth": 1.8, "linestyle": (0, (1, 1.5)), "zorder": 4}
+_CHECKED = {"marker": "o", "linestyle": "none", "markersize": 18, "markerfacecolor": "none",
+            "markeredgecolor": COLOURS["limbs_only"], "markeredgewidth": 1.8, "zorder": 5}  # fmt: skip
 
 
-def _fine(x: np.ndarray, y: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return a map on a fine grid, through every sample; as it is where some have no value."""
-    if not np.isfinite(values).all():
-        return x, y, np.ma.masked_invalid(values)
-    kx, ky = (min(2, side.size - 1) for side in (x, y))
-    fine = np.linspace(x[0], x[-1], 81), np.linspace(y[0], y[-1], 81)
-    return *fine, RectBivariateSpline(y, x, values, kx=ky, ky=kx)(fine[1], fine[0])
+def _legend() -> list[Line2D | Patch]:
+    return [
+        Line2D([], [], **(_CHECKED | {"markersize": 9}), label="checked by CFD"),
+        Line2D([], [], **_DOTTED, label="range of Salamandra"),
+        Patch(**_HATCHED, label="joints or servos cannot follow"),
+    ]
+
+
+def _edges(places: np.ndarray) -> np.ndarray:
+    """Return the borders of cells around places, half way between them."""
+    if places.size == 1:
+        return np.array([places[0] - 0.5, places[0] + 0.5])
+    middle = 0.5 * (places[1:] + places[:-1])
+    return np.concatenate([[2 * places[0] - middle[0]], middle, [2 * places[-1] - middle[-1]]])
 
 
 def draw_check(record: xr.Dataset) -> Figure:
-    """Draw the speed of the checked points in the resolved flow and by the cheap models.
+    """Draw the speed of the checked points by CFD and by the slender-body models.
 
     Args:
         record: of the experiment ``swim_sweep``.
@@ -108,10 +124,10 @@ def draw_check(record: xr.Dataset) -> Figure:
         ax = axes[0, 0]
         place = np.arange(record.point_speed.size)
         names = [
-            f"{float(a):.1f} x (20)\n{float(w):.1f} waves"
+            f"{float(a):.1f} × (20)\n{float(w):.1f} waves"
             for a, w in zip(record.point_amplitude, record.point_waves, strict=True)
         ]
-        bars = [("resolved flow, a slice", record.point_speed.values, COLOURS["ours"])]
+        bars = [("CFD, 2-D", record.point_speed.values, COLOURS["ours"])]
         colours = (COLOURS["tail"], COLOURS["spine"])
         for model, colour in zip(record.model.values, colours, strict=True):
             bars.append((f"{model} model, round body", record.point_model_speed.sel(model=model).values, colour))
@@ -124,7 +140,7 @@ def draw_check(record: xr.Dataset) -> Figure:
         ax.legend(loc="upper left", fontsize=10)
     return captioned(
         figure,
-        f"Speed of the checked points: the resolved two-dimensional flow, {record.attrs['cells']} cells a length at Re "
+        f"Speed of the checked points: two-dimensional CFD, {record.attrs['cells']} cells per body length at Re "
         f"{record.attrs['reynolds']:.0f}, in cycle {record.attrs['cycles']} from rest, beside what the two models of "
         "the round body reach in the end.",
     )

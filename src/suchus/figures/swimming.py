@@ -43,7 +43,7 @@ def draw_quarters(record: xr.Dataset) -> Figure:
                 images[what] = draw_field(ax, record, "held", what, i, limits[what], colours)
                 draw_body(ax, record, "held", i)
             draw_streamlines(axes[i, 1], record, "held", i)
-            axes[i, 0].set_title(f"{quarter}: convex side of the tail {difference[i]:+.0f} Pa", fontsize=12)
+            axes[i, 0].set_title(f"{quarter}: tail, convex − concave: {_signed(difference[i])} Pa", fontsize=12)
             axes[i, 1].set_title(f"{quarter}", fontsize=12)
             axes[i, 0].set_ylabel("y [m]")
             for ax in axes[i]:
@@ -56,9 +56,10 @@ def draw_quarters(record: xr.Dataset) -> Figure:
             )
     return captioned(
         figure,
-        "The water around the body held at its snout, at the four quarters of (20) as it runs from head to tail. Left: "
-        "pressure, purple above and brown below that of the far water; the numbers are the mean along the convex side "
-        "of the tail less that along the concave side. Right: vorticity, red counter-clockwise, and streamlines.",
+        "The water around the body fixed at its snout, at the four quarters of (20) as it runs from head to tail. "
+        "Left: pressure, purple above and brown below that of the far water; the numbers are the mean pressure along "
+        "the convex side of the tail less that along the concave side. Right: vorticity, red counter-clockwise, and "
+        "streamlines.",
     )
 
 
@@ -81,14 +82,14 @@ def draw_sides(record: xr.Dataset) -> Figure:
             ax.axvline(float(place[i]), color=COLOURS["neutral"], linestyle=(0, (2, 2)), linewidth=1.2)
             ax.axhline(0.0, color="#999999", linewidth=0.8)
             ax.set_title(quarter, fontsize=12)
-            ax.set_xlabel("along the tail")
+            ax.set_xlabel("place on the tail [-]")
             ax.set_xticks([0.0, 0.5, 1.0])
             ax.legend(fontsize=9, loc="best")
         axes[0, 0].set_ylabel("pressure [Pa]")
     return captioned(
         figure,
-        "Pressure on the right and on the left of the held robot's tail, from its root (0) to its tip (1); right is "
-        "above in the pictures of the flow. Dotted the mean place of the difference between the two sides.",
+        "Pressure on the right and on the left of the tail of the fixed robot, from its root (0) to its tip (1); "
+        "right is above in the pictures of the flow. Dotted the mean place of the difference between the two sides.",
     )
 
 
@@ -113,20 +114,21 @@ def draw_forces(record: xr.Dataset) -> Figure:
         ax.set_ylabel("force forward [N/m]")
         ax = axes[0, 1]
         for limit in (-1.0, 1.0):
-            ax.axhline(limit, color=COLOURS["alarm"], linewidth=1.2, linestyle=(0, (4, 2)))
+            label = "limit" if limit > 0 else None
+            ax.axhline(limit, color=COLOURS["alarm"], linewidth=1.2, linestyle=(0, (4, 2)), label=label)
         labels = ("yaw 1, at the pelvis", "yaw 2", "yaw 3, at the neck", "the tail's cable")
         for label, servo in zip(labels, record.held_servo.values, strict=True):
             share = record.held_servo_torque.sel(held_servo=servo) / record.servo_limit.sel(held_servo=servo)
             ax.plot(record.held_phase, share, label=label)
-        ax.set_ylabel("torque of the water / servo's limit")
+        ax.set_ylabel("torque of the water over servo limit [-]")
         for ax in axes[0]:
-            ax.set_xlabel("phase of the last cycle [T]")
+            ax.set_xlabel("phase of the last cycle [cycle]")
             _room_above(ax)
             ax.legend(loc="upper left", ncols=2, fontsize=9.5)
             ax.set_xlim(0.0, 1.0)
     return captioned(
         figure,
-        "Held at the snout. Left: force along the body over the last cycle per metre of depth, for the wave from head "
+        "Fixed at the snout. Left: force along the body over the last cycle per metre of depth, for the wave from head "
         "to tail and as printed; dashed and in numbers the means of all cycles but the first. Right: what the water "
         "asks of the servos at their shafts, every section as high as the robot there, over each servo's limit (red); "
         "a flow that cannot pass over and under the body overstates it.",
@@ -162,14 +164,14 @@ def draw_free(record: xr.Dataset) -> Figure:
             speed = float(record.model_speed.sel(model=model))
             ax.axhline(speed, color=COLOURS["neutral"], linestyle=dots, label=f"{model} model, round body")
         ax.xaxis.set_major_locator(MaxNLocator(integer=True))
-        ax.set_xlabel("cycle")
+        ax.set_xlabel("cycle [-]")
         ax.set_ylabel("mean speed [m/s]")
         ax.axhline(0.0, color="#999999", linewidth=0.8)
         ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.2), ncols=3, fontsize=11)
     return captioned(
         figure,
         "Free swimming from rest. Above: vorticity at the end, red counter-clockwise. Below: mean speed of each cycle, "
-        "forward positive; dashed a midline that follows (20) exactly, grey what the cheap models say of the round "
+        "forward positive; dashed a midline that follows (20) exactly, grey the slender-body models of the round "
         "body.",
     )
 
@@ -217,6 +219,10 @@ def _frame_free(ax: Axes, record: xr.Dataset) -> None:
     ax.set_ylim(-0.55, 0.55)
     ax.set_xlabel("x [m]; it swims to the left")
     ax.set_ylabel("y [m]")
+
+
+def _signed(value: float) -> str:
+    return f"{value:+.0f}".replace("-", "\N{MINUS SIGN}")
 
 
 def _room_above(ax: Axes) -> None:

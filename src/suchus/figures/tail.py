@@ -17,7 +17,7 @@ _OURS, _PRINTED, _ALARM = COLOURS["ours"], COLOURS["printed"], COLOURS["alarm"]
 def tail_positions(record: xr.Dataset) -> Figure:
     """Return the tail at several bends, ours with its plates and as printed in (19)."""
     with styled():
-        figure, axes = panels(1, 2, height=3.7)
+        figure, axes = panels(1, 2, height=3.9, sharex=True, sharey=True)
         left, right = axes[0]
         shades = (COLOURS["water"], COLOURS["ours"], "#083B5C")
         for i, (bend, shade) in enumerate(zip(record["shape"].values, shades, strict=False)):
@@ -35,8 +35,7 @@ def tail_positions(record: xr.Dataset) -> Figure:
             ax.set_xlabel("backward [mm]")
             ax.set_title(title)
         left.set_ylabel("to the right [mm]")
-        left.margins(0.12)
-        right.margins(0.12)
+        left.margins(0.12)  # both panels have one scale, so that lengths can be compared
     return captioned(
         figure,
         "The cable section of the tail, straight and bent. Left: our joints and end lie in the middle of the gaps "
@@ -75,7 +74,7 @@ def tail_cord_error(record: xr.Dataset) -> Figure:
         below.plot(bend, missing, color=COLOURS["spine"], linestyle=(0, (5, 1.5, 1, 1.5)), label="bend missing [deg]")
         below.plot(bend, _MM * record.slack, color=_ALARM, label="cord hanging loose [mm]")
         below.legend(loc="upper left")
-        below.set_ylabel("[deg] or [mm]")
+        below.set_ylabel("missing bend [deg],\nloose cord [mm]")
         below.set_xlabel("bend of the tail [deg]")
         below.set_xlim(0, float(bend.max()))
         below.set_xticks(np.arange(0, float(bend.max()) + 1, 30))

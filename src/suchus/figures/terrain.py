@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from suchus.design import AnyRobot
 from suchus.figures.posture import draw_posture
@@ -51,6 +52,8 @@ def gait_lines(names: Iterable[Any]) -> Mapping[str, Mapping[str, Any]]:
     }
 
 
+_THICK, _THIN = 2.0, 0.9
+_SERVOS = ("servos of equal torque at any speed", "servos whose torque falls with speed")
 _KINDS = {"bumps": "random bumps", "step": "a step up", "stone": "a stone in the path"}
 _WALKING = ANIMAL["high_walk_speed"]
 _USUAL = 1.01  # [m]; length of the article's robot, for which the pictures' sizes are
@@ -59,7 +62,7 @@ _USUAL = 1.01  # [m]; length of the article's robot, for which the pictures' siz
 def draw_speed_range(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]]) -> Figure:
     """Draw speed, cost, duty factor and Froude number over cycle time, the servos with a speed line thinly."""
     with styled():
-        figure, axes = panels(2, 2, width=9.6, height=7.0)
+        figure, axes = panels(2, 2, width=9.6, height=8.0, sharex=True)
         rows = (
             ("speed", "speed [m/s]", 1.0),
             ("cost", "cost of transport [-]", 1.0),
@@ -68,24 +71,26 @@ def draw_speed_range(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]])
         )
         for ax, (name, label, scale) in zip(axes.flat, rows, strict=True):
             for gait in record.gait.values:
-                for model, width in (("line", 0.9), ("slew", 2.0)):
+                for model, width in (("line", _THIN), ("slew", _THICK)):
                     one = record.sel(gait=gait, servo_model=model)
                     style = dict(lines[str(gait)]) | {"linewidth": width, "markersize": 3 if model == "line" else 6}
                     if model == "line":
-                        style |= {"label": None, "alpha": 0.7}
+                        style |= {"label": f"_{style['label']}, {_SERVOS[1]}", "alpha": 0.7}
                     ax.plot(one.period, scale * one[name], **style)
             ax.set_xscale("log")
             ax.set_xticks([0.5, 1, 2, 4], ["0.5", "1", "2", "4"])
             ax.minorticks_off()
             ax.set_ylabel(label)
-        axes[0, 0].axhspan(_WALKING.low, _WALKING.high, color="#EFE3C8", zorder=0)
-        axes[0, 0].text(0.98, 0.95, f"{_WALKING.who}, high walk", transform=axes[0, 0].transAxes, ha="right", va="top")
+        band = axes[0, 0].axhspan(_WALKING.low, _WALKING.high, color="#EFE3C8", zorder=0)
         axes[0, 0].set_ylim(0.0, max(0.75, 1.1 * float(record.speed.max())))
         axes[0, 1].set_ylim(0.0, None)
         axes[1, 1].set_yscale("log")
         for ax in axes[1]:
             ax.set_xlabel("cycle time [s]")
-        axes[1, 0].legend(loc="best")
+        handles, labels = axes[0, 0].get_legend_handles_labels()
+        models = [Line2D([], [], color=COLOURS["printed"], linewidth=width) for width in (_THICK, _THIN)]
+        handles, labels = [*handles, *models, band], [*labels, *_SERVOS, f"{_WALKING.who}, high walk"]
+        figure.legend(handles, labels, loc="outside lower center", ncols=3, fontsize=11)
     return captioned(
         figure,
         "Every gait over its cycle time. Thin: legs whose servos lose torque with speed, whose cost includes what the "
@@ -98,13 +103,13 @@ def draw_turning(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]]) -> 
     with styled():
         figure, axes = panels(1, 3, width=11.5, height=4.0)
         for ax, name, label, scale in (
-            (axes[0, 0], "bend", "lasting bend [deg]", 180 / np.pi),
+            (axes[0, 0], "bend", "curvature offset of the trunk [deg]", 180 / np.pi),
             (axes[0, 1], "asymmetry", "asymmetry of strokes [-]", 1.0),
         ):
             for gait in record.gait.values:
                 ax.plot(scale * record[name], record[f"curvature_{name}"].sel(gait=gait), **lines[str(gait)])
             ax.set_xlabel(label)
-            ax.set_ylabel("curvature of the way [1/m]")
+            ax.set_ylabel("curvature of the path [1/m]")
             ax.set_ylim(-0.1, max(2.8, 1.05 * float(record.curvature_mixture.max())))
         axes[0, 0].legend(loc="upper left")
         ax = axes[0, 2]
@@ -114,13 +119,13 @@ def draw_turning(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]]) -> 
         for gait in record.gait.values:
             style = dict(lines[str(gait)]) | {"linestyle": "none", "label": None}
             ax.plot(asked, record.radius.sel(gait=gait), **style)
-        ax.set_xlabel("asked radius [m]")
+        ax.set_xlabel("commanded radius [m]")
         ax.set_ylabel("measured radius [m]")
         ax.legend(loc="upper left")
     return captioned(
         figure,
-        "How the robot turns: left and middle, curvature of its way with a bent trunk and with unequal strokes; right, "
-        "a turn command that mixes both.",
+        "How the robot turns: left and middle, curvature of its path with a bent trunk and with unequal strokes; "
+        "right, a turn command that mixes both.",
     )
 
 
@@ -144,13 +149,13 @@ def draw_rough(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]]) -> Fi
             ax.set_title(_KINDS[kind])
             ax.set_xlabel("height [mm]")
             ax.set_ylim(0.0, None)
-        axes[0, 0].set_ylabel(f"way in {float(record.walked):g} s [m]")
+        axes[0, 0].set_ylabel(f"displacement in {float(record.walked):g} s [m]")
         handles, labels = axes[0, 0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside lower center", ncols=len(labels), fontsize=10)
     return captioned(
         figure,
-        f"Way on rough ground, means over {record.sizes['seed']} seeds; crosses where some robots fell. Of those that "
-        f"keep one posture gets farthest: {_farthest(record, lines)}.",
+        f"Displacement on rough ground, means over {record.sizes['seed']} seeds; crosses where some robots fell. "
+        f"Of those that keep one posture gets farthest: {_farthest(record, lines)}.",
     )
 
 
@@ -177,11 +182,13 @@ def _rough_bars(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]]) -> F
                 if fell > 0:
                     ax.plot(way, row, "x", color=COLOURS["alarm"], markersize=11, markeredgewidth=2)
             ax.set_title(f"{_KINDS[str(one.kind.item())]}, {height:.0f} mm" if height else "even ground")
-            ax.set_xlabel(f"way in {float(record.walked):g} s [m]")
+            ax.set_xlabel(f"displacement in {float(record.walked):g} s [m]")
         axes[0, 0].set_yticks(range(len(arms)), [str(lines[arm]["label"]) for arm in arms])
         axes[0, 0].invert_yaxis()
         axes[0, 0].margins(x=0.18)
-    return captioned(figure, "Way on each ground that was tried, means over the seeds; a cross where some robots fell.")
+    return captioned(
+        figure, "Displacement on each ground that was tried, means over the seeds; a cross where some robots fell."
+    )
 
 
 def draw_ground(ax: Axes, x: np.ndarray, height: Sequence[float] | np.ndarray) -> None:
@@ -208,7 +215,7 @@ def draw_on_bumps(robot: AnyRobot, record: xr.Dataset, said: str) -> Figure:
             middle, size = float(one.centre_of_mass.sel(xyz="x")[-1]), robot.length / _USUAL
             ax.set_xlim(middle - 0.68 * size, middle + 0.62 * size)
             ax.set_ylim(-0.06 * size, 0.26 * size)
-            ax.set_ylabel("[m]")
+            ax.set_ylabel("height [m]")
         axes[-1, 0].set_xlabel("along the path [m]")
     return captioned(
         figure,

@@ -23,7 +23,7 @@ def draw_lines(ax: Axes, values: xr.DataArray, roles: Sequence[str], *, scale: f
     ax.set_xlim(float(values.time[0]), float(values.time[-1]))
 
 
-def draw_band(ax: Axes, values: xr.DataArray, role: str, *, scale: float = 1.0) -> None:
+def draw_band(ax: Axes, values: xr.DataArray, role: str, *, scale: float = 1.0, label: str | None = None) -> None:
     """Shade the range of all runs over time in the colour of a role.
 
     Args:
@@ -31,9 +31,10 @@ def draw_band(ax: Axes, values: xr.DataArray, role: str, *, scale: float = 1.0) 
         values: with the dimensions ``run`` and ``time``.
         role: of ``style.LINES``.
         scale: factor on the values.
+        label: in the legend; None: none.
     """
     low, high = scale * values.min("run"), scale * values.max("run")
-    ax.fill_between(values.time, low, high, color=COLOURS[role], alpha=0.22, linewidth=0)
+    ax.fill_between(values.time, low, high, color=COLOURS[role], alpha=0.22, linewidth=0, label=label)
 
 
 def mark_cycles(ax: Axes, times: Sequence[float]) -> None:

@@ -6,15 +6,16 @@ import xarray as xr
 
 from suchus.control import Control, OpenLoop
 from suchus.design import AnyRobot
+from suchus.design.checks import require
 from suchus.design.ground import Ground
-from suchus.errors import Diverged
+from suchus.errors import Diverged, InvalidDesign
 from suchus.fault import Fault
 from suchus.gaits import GAITS
 from suchus.land.lake import Lake
 from suchus.land.push import Push
 from suchus.land.run import Run
 from suchus.land.simulation import simulate
-from suchus.motion import AnyGait
+from suchus.motion import START, AnyGait
 from suchus.robots import ROBOTS
 
 
@@ -22,7 +23,8 @@ def crawl(
     robot: AnyRobot | str,
     gait: AnyGait | str,
     *,
-    duration: float = 9.0,
+    duration: float | None = None,
+    cycles: float | None = None,
     faults: Sequence[Fault] = (),
     pushes: Sequence[Push] = (),
     ground: Ground | None = None,
@@ -35,13 +37,15 @@ def crawl(
     """Let a robot walk.
 
     Args:
-        robot: who walks, or its name on the shelf.
-        gait: how, or its name on the shelf.
-        duration: including the first second, in which the robot settles [s].
+        robot: the robot that walks, or its name on the shelf.
+        gait: the gait, or its name on the shelf.
+        duration: including the first second, in which the robot settles [s]; 9 s where ``cycles`` is not given.
+        cycles: cycles of the gait after that second, in the place of ``duration``, above 0 [-]: gaits of other cycle
+            times are compared over equal cycles, and by their speed.
         faults: what breaks, and when.
         pushes: forces from outside.
-        ground: on what; level ground if None.
-        lake: in which water; dry land if None.
+        ground: the ground; level if None.
+        lake: the water around the robot; dry land if None.
         control: open loop if None.
         noise: standard deviation of noise on every servo angle commanded [rad].
         seed: of the noise.
@@ -51,7 +55,8 @@ def crawl(
         The record, without the dimension ``run`` (see ``record.schema``).
 
     Raises:
-        Diverged: the physics came apart; the error carries the time and the record so far.
+        InvalidDesign: both ``duration`` and ``cycles`` are given, or one of them is out of range.
+        Diverged: the simulation diverged; the error carries the time and the record so far.
         OutsideLimits: the robot's joints cannot follow the gait.
     """
     run = Run(
@@ -65,13 +70,31 @@ def crawl(
         noise=noise,
         seed=seed,
     )
-    record = simulate([run], duration=duration, timestep=timestep).isel(run=0)
+    record = simulate([run], duration=_duration(run.gait, duration, cycles), timestep=timestep).isel(run=0)
     if record.cause.item():
         time = float(record.ended)
         raise Diverged(
-            f"the crawl came apart at {time:.2f} s: {record.cause.item()}. "
+            f"the crawl diverged at {time:.2f} s: {record.cause.item()}. "
             f"A shorter timestep than {record.timestep} s may help.",
             time=time,
             record=record.sel(time=slice(None, time + 1e-9)),
         )
     return record
+
+
+_USUAL = 9.0
+"""Duration of a crawl that names none [s]: one second to settle, and two cycles of the article's gait."""
+
+
+def _duration(gait: AnyGait, duration: float | None, cycles: float | None) -> float:
+    """Return how long to simulate [s].
+
+    Raises:
+        InvalidDesign: both are given, or ``cycles`` is out of range.
+    """
+    if cycles is None:
+        return _USUAL if duration is None else duration
+    if duration is not None:
+        raise InvalidDesign(f"crawl was given duration = {duration!r} s and cycles = {cycles!r}; give one of the two.")
+    require("crawl", "cycles", cycles, 0.01, 10_000.0, "")
+    return START + cycles * gait.period

@@ -25,7 +25,7 @@ from suchus.metrics.gait import (
 from suchus.metrics.loads import swing_height, swing_lift, swing_loads, swing_unloaded, tail_load_share
 from suchus.metrics.loss import loss
 from suchus.metrics.mean_cycle import each_cycle, first_harmonic, mean_cycle
-from suchus.metrics.progress import displacement, heading, heading_change, path_length, slip
+from suchus.metrics.progress import displacement, heading, heading_change, path_length, slip, speed
 from suchus.metrics.reach import held, lead, reach, static_margin
 from suchus.metrics.rolling import roll_angle, roll_rate
 from suchus.metrics.stability import (
@@ -75,6 +75,7 @@ __all__ = [
     "roll_rate",
     "sensed_phase",
     "slip",
+    "speed",
     "spine_amplitude",
     "spine_sine_share",
     "spine_swings",

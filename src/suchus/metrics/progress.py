@@ -1,4 +1,4 @@
-"""How far, whereto, and with how much slipping."""
+"""Displacement, speed, heading and slip."""
 
 import numpy as np
 import xarray as xr
@@ -11,9 +11,18 @@ from suchus.motion import START
 
 
 def displacement(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
-    """Return the way of the centre of mass in the world, with the dimension ``xyz`` [m]."""
+    """Return the displacement of the centre of mass in the world, with the dimension ``xyz`` [m]."""
     com = between(record, start, end).centre_of_mass
     return com.isel(time=-1) - com.isel(time=0)
+
+
+def speed(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
+    """Return the mean speed of the centre of mass along the world's x, where the robot faced at first [m/s].
+
+    Gaits of different cycle times are compared by it: the displacement over equal times counts other numbers of cycles.
+    """
+    part = between(record, start, end)
+    return displacement(record, start, end).sel(xyz="x", drop=True) / float(part.time[-1] - part.time[0])
 
 
 def heading(record: xr.Dataset) -> xr.DataArray:
@@ -31,9 +40,9 @@ def heading_change(record: xr.Dataset, start: float = START, end: float | None =
 
 
 def path_length(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
-    """Return the length of the way of the centre of mass on the ground, cycle by cycle [m].
+    """Return the length of the path of the centre of mass on the ground, cycle by cycle [m].
 
-    The swaying within a cycle does not count: the way is sampled once per cycle.
+    The swaying within a cycle does not count: the path is sampled once per cycle.
     """
     if "run" in record.dims:  # each run is sampled at its own period
         ways = [path_length(record.isel(run=i), start, end) for i in range(record.sizes["run"])]
@@ -48,7 +57,7 @@ def path_length(record: xr.Dataset, start: float = START, end: float | None = No
 
 
 def slip(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
-    """Return how far the feet slide under load, over the way of the centre of mass [-].
+    """Return how far the feet slide under load, over the displacement of the centre of mass [-].
 
     Each foot's sliding counts by the share of the weight that the foot carries meanwhile.
     """

@@ -35,6 +35,8 @@ class Frames(NamedTuple):
     """Centres of the feet, (frame, limb, 3) [m]."""
     forces: np.ndarray
     """Of the ground on the feet, (frame, limb, 3) [N]."""
+    tail: np.ndarray
+    """Tip of the tail [m] and the normal force of the ground on the tail [N], (frame, 4)."""
     level: np.ndarray | None
     """Of the water above the world's origin, against gravity, (frame,) [m]; None on dry land."""
 
@@ -100,6 +102,7 @@ def frames(record: xr.Dataset, robot: AnyRobot, rate: float | None = None) -> Fr
         mass=values["centre_of_mass"],
         feet=values["foot_position"],
         forces=values["foot_force"],
+        tail=np.column_stack([values["tail_tip"], values["tail_force"][:, 2]]),
         level=_level(kept),
     )
 

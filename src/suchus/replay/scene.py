@@ -99,6 +99,7 @@ def _packed(robot: AnyRobot, one: Frames, label: str, relief: Relief | None, pac
             "mass": pack.add(one.mass.astype(np.float32)),
             "feet": pack.add(one.feet.astype(np.float32)),
             "forces": pack.add(one.forces.astype(np.float32)),
+            "tail": pack.add(one.tail.astype(np.float32)),
         },
     }
 

@@ -22,7 +22,7 @@ from suchus.report.embedding import embedded
 from suchus.report.metres import metres
 from suchus.report.numbers import number, quantity, tied
 from suchus.report.result import Failure, Result
-from suchus.report.robot import robot_of
+from suchus.report.robot import ARTICLES, robot_of
 from suchus.report.tables import choices, parts
 from suchus.robots import ROBOTS
 
@@ -40,6 +40,18 @@ _LACKING: Mapping[str, Any] = {"fragile": False, "quote": "", "rule": ()}
 """What outcomes of version 0.1 do not say of a verdict."""
 _TOLD = ("fitted", "by construction")
 """Words for what is no evidence: it was put in. They are counted apart."""
+
+
+HEADLINE = (
+    "displacement_coordinated",
+    "displacement_limbs_only",
+    "displacement_ratio",
+    "com_fluctuation",
+    "fault_tolerance",
+    "height_standing",
+    "swim_tail_thrust",
+)
+"""Claims that the page begins with: what the article is about, in its order."""
 
 
 def write_page(results: Sequence[Result], failures: Sequence[Failure], path: Path) -> Path:
@@ -115,14 +127,16 @@ def _scatter(verdict: Mapping[str, Any]) -> str:
 def _content(results: Sequence[Result], failures: Sequence[Failure]) -> dict[str, Any]:
     order = {key: place for place, key in enumerate(CLAIMS)}
     results = sorted(results, key=lambda result: _place(result, order))
+    robot, others = robot_of(results)
+    judged = robot.name == ARTICLES  # the article's claims are about its robot, and no other page is about them
     verdicts = [
         {**_LACKING, **verdict, "experiment": result.name, "told": _share(verdict), "scatter": _scatter(verdict)}
         for result in results
         for verdict in result.told["verdicts"]
+        if judged
     ]
     verdicts.sort(key=lambda verdict: order.get(verdict["claim"], len(order)))
     counts = _counts(verdicts)
-    robot, others = robot_of(results)
     named = ROBOTS.beside(robot.name, "chosen", ()) if robot.name in ROBOTS else ()
     return {
         "results": results,
@@ -130,7 +144,9 @@ def _content(results: Sequence[Result], failures: Sequence[Failure]) -> dict[str
         "title": TITLE,
         "authors": AUTHORS,
         "failures": failures,
+        "judged": judged,
         "verdicts": verdicts,
+        "headline": [verdict for verdict in verdicts if verdict["claim"] in HEADLINE],
         "departures": [verdict for verdict in verdicts if verdict["verdict"] == "contradicted"],
         "own": {name: [v for v in verdicts if v["experiment"] == name] for name in (r.name for r in results)},
         "marks": _MARKS,
@@ -138,8 +154,8 @@ def _content(results: Sequence[Result], failures: Sequence[Failure]) -> dict[str
         "put_in": {word: n for word, n in counts.items() if word in _TOLD},
         "inputs": [verdict for verdict in verdicts if verdict["verdict"] in _TOLD],
         "fragile": sum(bool(verdict["fragile"]) for verdict in verdicts),
-        "tally": {result.name: _counts(result.told["verdicts"]) for result in results},
-        "untouched": [c for c in CLAIMS.values() if c.key not in {v["claim"] for v in verdicts}],
+        "tally": {result.name: _counts(result.told["verdicts"] if judged else ()) for result in results},
+        "untouched": [c for c in CLAIMS.values() if judged and c.key not in {v["claim"] for v in verdicts}],
         "beside": beside(robot, {result.name: result for result in results}),
         "metres": metres({result.name: result for result in results}),
         "shown": next((result for result in results if result.replays), None),
@@ -148,8 +164,8 @@ def _content(results: Sequence[Result], failures: Sequence[Failure]) -> dict[str
         "drawing": _drawing(robot),
         "parts": parts(robot),
         "chosen": {robot.name: choices(robot, named)}
-        | {name: choices(gait, GAITS.beside(name, "chosen", ())) for name, gait in GAITS.items()},
-        "misprints": tuple(ERRATA.values()),
+        | {name: choices(gait, GAITS.beside(name, "chosen", ())) for name, gait in GAITS.items() if judged},
+        "misprints": tuple(ERRATA.values()) if judged else (),
         "versions": versions(),
     }
 

@@ -1,5 +1,6 @@
 """A saved outcome, read back for the page: the page is made of files and simulates nothing."""
 
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -8,10 +9,14 @@ from typing import Any
 from markupsafe import Markup
 
 from suchus.errors import IncompatibleRecord, UnreadableFile
+from suchus.figures import WIDTH
 from suchus.record import read_json, read_text
 from suchus.report.described import check_described
 from suchus.report.embedding import embedded
 from suchus.report.saving import OUTCOME
+
+_COLUMN = 1.15 * 72 * WIDTH
+"""Width of a drawing beyond which it takes both columns of the page [pt]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -24,6 +29,8 @@ class Picture:
     """What it shows."""
     source: Markup
     """The picture itself as a data URI."""
+    wide: bool = False
+    """Whether it is so wide that half a page would make it too small to read."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -86,6 +93,7 @@ def load_result(folder: Path) -> Result:
                 name=f["name"],
                 caption=f["caption"],
                 source=embedded(_inside(folder, f"{f['name']}.svg"), _inside(folder, f"{f['name']}.png")),
+                wide=_wide(_inside(folder, f"{f['name']}.svg")),
             )
             for f in told["figures"]
         )
@@ -100,6 +108,12 @@ def load_result(folder: Path) -> Result:
         raise IncompatibleRecord(f"{file} is no outcome of suchus: {error}.") from error
     check_described(told, file)
     return Result(folder=folder, told=told, pictures=pictures, tables=tables, films=films, replays=replays)
+
+
+def _wide(svg: Path) -> bool:
+    """Return whether a drawing is wider than a figure that fills one column of text."""
+    found = re.search(r'<svg[^>]*\bwidth="([\d.]+)pt"', read_text(svg)[:2000])
+    return found is not None and float(found[1]) > _COLUMN
 
 
 def _moving(folder: Path, told: Iterable[Mapping[str, str]]) -> tuple[Moving, ...]:

@@ -12,7 +12,7 @@ from suchus.report.result import Result
 from suchus.robots import ROBOTS
 
 ARTICLES = "caiman"
-"""The article's robot, shown where no result names one."""
+"""Name of the article's robot, shown where no result names one; verdicts are shown of no other."""
 _ADAPTER: TypeAdapter[AnyRobot] = TypeAdapter(AnyRobot)
 
 

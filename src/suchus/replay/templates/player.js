@@ -201,7 +201,8 @@
     const three = (array, size, k, o = 0) => [mix(array, size, k, 0), mix(array, size, k + 1, o), mix(array, size, k + 2, 0)];
     return { turns, shifts, mass: three(actor.mass, 3, 0, actor.side),
       feet: meta.radii.map((_, leg) => three(actor.feet, limbs, 3 * leg, actor.side)),
-      forces: meta.radii.map((_, leg) => three(actor.forces, limbs, 3 * leg)) };
+      forces: meta.radii.map((_, leg) => three(actor.forces, limbs, 3 * leg)),
+      tail: [0, 1, 2, 3].map((k) => mix(actor.tail, 4, k, k === 1 ? actor.side : 0)) };
   }
 
   // ---- shapes made anew ----------------------------------------------------------------------------------------
@@ -271,6 +272,7 @@
   function support(to, actor, now) {
     const standing = now.feet.map((foot, leg) => [under(foot, meta.radii[leg], 0.0014), now.forces[leg][2] > meta.loaded])
       .filter(([, stands]) => stands).map(([at]) => at);
+    if (now.tail[3] > meta.loaded) standing.push(under(now.tail, rough ? 0 : now.tail[2], 0.0014)); // its tip, as in metrics
     const corners = hull(standing), colour = meta.colours.support;
     for (let i = 1; i + 1 < corners.length; i++) push(to, corners[0], corners[i], corners[i + 1], [...colour, 0.40], [0, 0, 0]);
     for (let i = 0; i < corners.length; i++) ribbon(to, corners[i], corners[(i + 1) % corners.length], 0.005, [...colour, 0.95]);
@@ -450,7 +452,7 @@
     $("time").setAttribute("aria-valuetext", `${state.time.toFixed(1)} seconds`);
     const way = (i) => now[i].mass[0] - actors[i].mass[0];
     $("told").textContent = now.map((_, i) => `${actors.length > 1 ? actors[i].label + ": " : ""}${metres(way(i))} forward, ` +
-      `height ${metres(now[i].mass[2])}`).join("  ·  ");
+      `centre of mass ${metres(now[i].mass[2])} high`).join("  ·  ");
   }
 
   // ---- controls ------------------------------------------------------------------------------------------------

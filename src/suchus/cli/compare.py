@@ -1,0 +1,96 @@
+"""``suchus compare A B``: two outcomes side by side, in the terminal and as a page."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Annotated
+
+import tyro
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+from suchus.cli.commands import BadCommand
+from suchus.cli.options import parse
+from suchus.record import check_writable
+from suchus.report import Comparison, compare, load_result, number, quantity, write_comparison
+from suchus.report.saving import OUTCOME
+
+_MOST = 24
+"""Measures that the terminal shows; the page has all of them [-]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Options:
+    """What can be said after ``suchus compare``."""
+
+    first: Annotated[Path, tyro.conf.Positional]
+    """An outcome: the folder that suchus run wrote, such as out/displacement, or the outcome.json in it."""
+    second: Annotated[Path, tyro.conf.Positional]
+    """The outcome that is compared with it; differences are the second less the first."""
+    out: Path = Path("compare.html")
+    """The page with numbers, verdicts, figures and replays of both."""
+
+
+def compare_outcomes(words: Sequence[str]) -> int:
+    """Compare two outcomes, write the page, say where it is, and return 0.
+
+    Raises:
+        SuchusError: the words or a file make no sense, or the place cannot be written to.
+    """
+    about = "Set two outcomes side by side: measures and their differences, verdicts, settings, figures and replays."
+    options: Options = parse(Options, "suchus compare", words, about, [f.name for f in fields(Options)])
+    if options.out.suffix.lower() not in (".html", ".htm"):
+        raise BadCommand(f"the page would be {options.out}; say --out FILE.html.")
+    check_writable(options.out.parent)
+    folders = [_folder(path) for path in (options.first, options.second)]
+    names = (str(folders[0]), str(folders[1]))
+    found = compare(load_result(folders[0]), load_result(folders[1]), names)
+    page = write_comparison(found, options.out)
+    _show(found)
+    print(f"figures and replays of both, and all {len(found.measures)} measures: {page}")
+    return 0
+
+
+def _folder(path: Path) -> Path:
+    """Return the folder of an outcome.
+
+    Raises:
+        BadCommand: the path is neither a folder nor an outcome.
+    """
+    if path.name == OUTCOME:
+        return path.parent
+    if path.is_dir():
+        return path
+    what = "is no outcome" if path.exists() else "is not there"
+    raise BadCommand(f"{path} {what}: name the folder that suchus run wrote, or the {OUTCOME} in it.")
+
+
+def _show(found: Comparison) -> None:
+    console = Console(highlight=False)
+    for letter, name in zip("AB", found.names, strict=True):
+        console.print(escape(f"{letter}: {name}"), soft_wrap=True)
+    _print(console, ("setting", "A", "B"), [(one.name, one.first, one.second) for one in found.settings[:_MOST]])
+    _print(console, ("claim judged differently", "A", "B"), [(o.quantity, o.first, o.second) for o in found.changed])
+    rows = [
+        (
+            one.name,
+            quantity(one.first, one.unit),
+            quantity(one.second, one.unit),
+            quantity(one.difference, one.unit, 3),
+            "" if one.share is None else f"{number(100 * one.share, 3)} %",
+        )
+        for one in found.measures[:_MOST]
+    ]
+    _print(console, ("measure", "A", "B", "B less A", "of A"), rows)
+
+
+def _print(console: Console, head: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
+    if not rows:
+        return
+    table = Table(box=None, padding=(0, 2, 0, 0))
+    for i, heading in enumerate(head):
+        table.add_column(heading, justify="left" if i == 0 else "right")
+    for row in rows:
+        table.add_row(*map(escape, row))
+    console.print(table)

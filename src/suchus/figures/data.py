@@ -1,0 +1,264 @@
+"""The numbers behind a figure, read from what is drawn in it: one table with quantity and unit in its header.
+
+A row is a point of a series in a panel. Each quantity, as the axes name it, has one column, which panels that show the
+same quantity share. Bars tell their own length, bands and outlines their corners, fields the value of each cell.
+"""
+
+import csv
+import io
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from math import ceil, isfinite
+from typing import Any, Final
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.axis import Axis
+from matplotlib.cm import ScalarMappable
+from matplotlib.collections import Collection, LineCollection, PathCollection, PolyCollection, QuadMesh
+from matplotlib.colors import to_hex
+from matplotlib.container import BarContainer
+from matplotlib.figure import Figure
+from matplotlib.image import AxesImage
+from matplotlib.lines import Line2D
+from matplotlib.patches import Circle, Patch, Polygon, Rectangle, StepPatch
+from matplotlib.ticker import FixedLocator
+
+MOST: Final = 10_000
+"""Values of one field that go into the table [-]; of a finer one every n-th along both axes."""
+_CARRIED: Final = "suchus_values"
+
+Cells = dict[str, str]
+"""One row: text by column."""
+
+
+@dataclass(frozen=True, slots=True)
+class Carried:
+    """A field as it was computed, where what is drawn of it is smoothed or turned into lines."""
+
+    values: np.ndarray
+    """Shape (y, x), in the unit of the colour bar."""
+    x: np.ndarray | None
+    """Places along x, in the unit of the axis; None: evenly over the picture."""
+    y: np.ndarray | None
+    """The same along y."""
+
+
+def carry(
+    artist: Artist | ScalarMappable, values: np.ndarray, x: np.ndarray | None = None, y: np.ndarray | None = None
+) -> None:
+    """Attach a field to the picture of it, to be written into the figure's table in its place.
+
+    Args:
+        artist: what ``imshow`` or ``contourf`` returned.
+        values: the field, shape (y, x), in the unit of its colour bar.
+        x: places along x, in the unit of the axis; not needed of a picture.
+        y: the same along y.
+    """
+    setattr(artist, _CARRIED, Carried(np.asarray(values), x, y))
+
+
+def table(figure: Figure) -> str:
+    """Return the numbers of a figure as CSV; empty where it shows none."""
+    rows = list(_rows(figure))
+    columns = list(dict.fromkeys(["panel", "series", *(name for row in rows for name in row)]))
+    if not rows:
+        return ""
+    text = io.StringIO()
+    writer = csv.DictWriter(text, columns, restval="", lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(rows)
+    return text.getvalue()
+
+
+def _rows(figure: Figure) -> Iterator[Cells]:
+    panels = [panel for ax in figure.axes for panel in (ax, *ax.child_axes) if isinstance(panel, Axes)]
+    shown = [ax for ax in panels if ax.get_label() != "<colorbar>"]
+    known = _labelled(shown)
+    for i, ax in enumerate(shown, start=1):
+        title = _plain(ax.get_title("left") or ax.get_title())
+        panel = f"{i} {title}".strip()
+        for name, points in _series(ax, known):
+            for point in points:
+                yield {"panel": panel, "series": name, **point}
+
+
+def _labelled(panels: Sequence[Axes]) -> Mapping[tuple[str, ...], str]:
+    """Return the label of each look that a labelled line has: lines that look alike elsewhere show the same."""
+    found: dict[tuple[str, ...], str] = {}
+    for line in (line for ax in panels for line in ax.lines):
+        if not _hidden(line.get_label()):
+            found.setdefault(_look(line), _plain(str(line.get_label())))
+    return found
+
+
+def _look(line: Line2D) -> tuple[str, ...]:
+    return to_hex(line.get_color()), str(line.get_linestyle()), str(line.get_marker())
+
+
+def _series(ax: Axes, known: Mapping[tuple[str, ...], str]) -> Iterator[tuple[str, Iterator[Cells]]]:
+    """Yield the name and the points of everything that shows numbers in a panel."""
+    names = _names(ax, "x"), _names(ax, "y")
+    bars = [one for one in ax.containers if isinstance(one, BarContainer)]
+    in_bars = {id(patch) for one in bars for patch in one.patches}
+    for i, line in enumerate(ax.lines, start=1):
+        yield _called(line.get_label(), known.get(_look(line), f"line {i}")), _of_line(ax, line, names)
+    for i, container in enumerate(bars, start=1):
+        yield _called(container.get_label(), f"bars {i}"), _of_bars(ax, container, names)
+    for i, collection in enumerate(ax.collections, start=1):
+        yield _called(collection.get_label(), f"collection {i}"), _of_collection(ax, collection, names)
+    for i, image in enumerate(ax.images, start=1):
+        yield _called(image.get_label(), f"field {i}"), _of_image(ax, image, names)
+    for i, patch in enumerate(ax.patches, start=1):
+        if id(patch) not in in_bars and patch.get_transform() - ax.transData == patch.get_patch_transform():
+            yield _called(patch.get_label(), f"outline {i}"), _of_patch(ax, patch, names)
+
+
+def _of_line(ax: Axes, line: Line2D, names: tuple[str, str]) -> Iterator[Cells]:
+    if line.get_transform() == ax.get_xaxis_transform(which="grid"):  # a vertical line over the whole height
+        yield _cells(ax, names, (line.get_xdata(orig=False)[0], None))
+    elif line.get_transform() == ax.get_yaxis_transform(which="grid"):
+        yield _cells(ax, names, (None, line.get_ydata(orig=False)[0]))
+    elif line.get_transform() == ax.transData:
+        for x, y in line.get_xydata():
+            yield _cells(ax, names, (x, y))
+
+
+def _of_bars(ax: Axes, bars: BarContainer, names: tuple[str, str]) -> Iterator[Cells]:
+    for bar in bars.patches:
+        if bars.orientation == "horizontal":
+            yield _cells(ax, names, (bar.get_width(), bar.get_y() + bar.get_height() / 2))
+        else:
+            yield _cells(ax, names, (bar.get_x() + bar.get_width() / 2, bar.get_height()))
+
+
+def _of_collection(ax: Axes, drawn: Collection, names: tuple[str, str]) -> Iterator[Cells]:
+    carried = getattr(drawn, _CARRIED, None)
+    if carried is not None:
+        yield from _of_field(ax, carried.x, carried.y, carried.values, (*names, _colour(drawn)))
+    elif isinstance(drawn, QuadMesh):
+        corners = drawn.get_coordinates()
+        middle = 0.25 * (corners[1:, 1:] + corners[1:, :-1] + corners[:-1, 1:] + corners[:-1, :-1])
+        values = np.ma.filled(np.ma.asarray(drawn.get_array(), dtype=float), np.nan).reshape(middle.shape[:2])
+        yield from _of_field(ax, middle[0, :, 0], middle[:, 0, 1], values, (*names, _colour(drawn)))
+    elif isinstance(drawn, PathCollection):
+        values = drawn.get_array()
+        for i, (x, y) in enumerate(np.ma.filled(np.ma.asarray(drawn.get_offsets(), dtype=float), np.nan)):
+            extra = {} if values is None else {_colour(drawn): _text(values[i])}
+            yield _cells(ax, names, (x, y)) | extra
+    elif isinstance(drawn, (LineCollection, PolyCollection)) and drawn.get_transform() == ax.transData:
+        for path in drawn.get_paths():
+            for x, y in path.vertices:
+                yield _cells(ax, names, (x, y))
+
+
+def _of_image(ax: Axes, image: AxesImage, names: tuple[str, str]) -> Iterator[Cells]:
+    carried = getattr(image, _CARRIED, None)
+    values = np.ma.filled(image.get_array(), np.nan) if carried is None else carried.values
+    x0, x1, y0, y1 = image.get_extent()
+    ny, nx = values.shape[:2]
+    x, y = (a + (np.arange(n) + 0.5) * (b - a) / n for a, b, n in ((x0, x1, nx), (y0, y1, ny)))
+    yield from _of_field(ax, x, y if image.origin == "lower" else y[::-1], values, (*names, _colour(image)))
+
+
+def _of_patch(ax: Axes, patch: Patch, names: tuple[str, str]) -> Iterator[Cells]:
+    if isinstance(patch, Circle):
+        yield _cells(ax, names, patch.center)
+    elif isinstance(patch, StepPatch):
+        values, edges, _ = patch.get_data()
+        for value, low, high in zip(values, edges[:-1], edges[1:], strict=True):
+            yield _cells(ax, names, (low, value))
+            yield _cells(ax, names, (high, value))
+    elif isinstance(patch, Rectangle):
+        yield _cells(ax, names, patch.get_xy())
+        yield _cells(ax, names, (patch.get_x() + patch.get_width(), patch.get_y() + patch.get_height()))
+    elif isinstance(patch, Polygon):
+        for x, y in patch.get_xy():
+            yield _cells(ax, names, (x, y))
+
+
+def _of_field(ax: Axes, x: Any, y: Any, values: np.ndarray, names: tuple[str, str, str]) -> Iterator[Cells]:
+    step = max(1, ceil((values.size / MOST) ** 0.5))
+    for j in range(0, values.shape[0], step):
+        for i in range(0, values.shape[1], step):
+            yield _cells(ax, names[:2], (x[i], y[j])) | {names[2]: _text(values[j, i])}
+
+
+def _cells(ax: Axes, names: tuple[str, str], point: tuple[float | None, float | None]) -> Cells:
+    pairs = zip(names, (ax.xaxis, ax.yaxis), point, strict=True)
+    return {name: _category(axis, value) or _text(value) for name, axis, value in pairs if value is not None}
+
+
+def _names(ax: Axes, which: str) -> str:
+    """Return the quantity and unit of an axis; inner panels have the label of the panel whose axis they share.
+
+    A panel without axes is a drawing to scale, in metres.
+    """
+    group = ax.get_shared_x_axes() if which == "x" else ax.get_shared_y_axes()
+    for one in (ax, *group.get_siblings(ax)):
+        label = _plain(one.get_xlabel() if which == "x" else one.get_ylabel())
+        if label:
+            other = _plain(one.get_ylabel() if which == "x" else one.get_xlabel())
+            return f"{which}: {label}" if label == other else label
+    if not ax.axison:
+        return f"{which} [m]"
+    return "category" if _ticks(ax.xaxis if which == "x" else ax.yaxis)[1] else which
+
+
+def _colour(drawn: Any) -> str:
+    """Return the label of the colour bar of a field, or of one in another panel with the same colours and range."""
+    panels = drawn.figure.axes
+    others = [one for ax in panels for one in (*ax.collections, *ax.images) if _scale(one) == _scale(drawn)]
+    bars = [one.colorbar for one in (drawn, *others) if one.colorbar is not None]
+    label = _plain(bars[0].ax.get_ylabel() or bars[0].ax.get_xlabel()) if bars else ""
+    return label or "value"
+
+
+def _scale(drawn: Any) -> tuple[str, float | None, float | None]:
+    return drawn.get_cmap().name, drawn.norm.vmin, drawn.norm.vmax
+
+
+def _category(axis: Axis, value: float) -> str:
+    """Return the word beside an axis that a place on it has; empty on an axis of numbers."""
+    places, words = _ticks(axis)
+    return words[int(np.argmin(np.abs(places - float(value))))] if words else ""
+
+
+def _ticks(axis: Axis) -> tuple[np.ndarray, list[str]]:
+    """Return the places and the words at the ticks of an axis; no words where numbers stand there."""
+    locator = axis.get_major_locator()
+    if not isinstance(locator, FixedLocator) or not len(locator.locs):
+        return np.zeros(0), []
+    places = np.asarray(locator.locs, dtype=float)
+    words = [_plain(word) for word in axis.get_major_formatter().format_ticks(places.tolist())]
+    return places, words if any(word and not _is_number(word) for word in words) else []
+
+
+def _is_number(word: str) -> bool:
+    try:
+        float(word.replace("\N{MINUS SIGN}", "-"))
+    except ValueError:
+        return False
+    return True
+
+
+def _called(label: object, otherwise: str) -> str:
+    """Return the name of a series: its label, or what follows the ``_`` that keeps a label out of the legend."""
+    text = _plain(str(label))
+    if not _hidden(label):
+        return text
+    return otherwise if label is None or not text or text.startswith(("_child", "_nolegend")) else text[1:]
+
+
+def _hidden(label: object) -> bool:
+    return label is None or not str(label) or str(label).startswith("_")
+
+
+def _plain(text: str) -> str:
+    return " ".join(text.replace("$", "").split())
+
+
+def _text(value: Any) -> str:
+    number = float(value)
+    return f"{number:.6g}" if isfinite(number) else ""

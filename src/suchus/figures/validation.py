@@ -1,0 +1,183 @@
+"""Plots of the flow solver's validation, and the page that shows them beside its numbers."""
+
+import re
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any, Final
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from suchus.figures.style import COLOURS, styled
+from suchus.figures.validation_page import load_rows, page
+from suchus.record import new_file
+
+_SMALL = {"fontsize": 10}
+_LINE, _OTHER, _DATA = COLOURS["coordinated"], COLOURS["limbs_only"], COLOURS["printed"]
+
+
+def _curves(rows: list[dict[str, Any]], case: str, part: str) -> dict[str, Any] | None:
+    whole = re.compile(re.escape(part) + r"(?!\d)")  # Re 100 is not Re 1000
+    found = [r["curves"] for r in rows if r["case"] == case and whole.search(r["quantity"]) and r["curves"]]
+    return max(found, key=lambda curves: len(next(iter(curves.values())))) if found else None  # the fullest
+
+
+def _draw_started(rows: list[dict[str, Any]]) -> Figure:
+    figure = Figure(figsize=(8.0, 3.4), layout="constrained")
+    for k, reynolds in enumerate((40, 550)):
+        axes = figure.add_subplot(1, 2, k + 1)
+        curves = _curves(rows, "impulsively started cylinder", f"Re {reynolds}")
+        if curves:
+            axes.plot(curves["t"], curves["cd"], color=_LINE, alpha=0.5, linewidth=4, label="from body to water")
+            axes.plot(curves["t"], curves["box"], color=_OTHER, linestyle="--", linewidth=1.4, label="momentum box")
+            axes.plot(curves["polar_t"], curves["polar_cd"], "k-", linewidth=0.8, label="polar coordinates")
+            axes.plot(curves["data_t"], curves["data_cd"], "k.", label="Koumoutsakos and\nLeonard 1995")
+            late = [c for t, c in zip(curves["t"], curves["cd"], strict=True) if t > 0.3]
+            axes.set_ylim(0.8 * min(late), 1.15 * max(late))
+            axes.set_xlim(0, max(curves["t"]))
+            if k == 0:
+                axes.legend(**_SMALL)
+        axes.set_title(f"started cylinder, Re {reynolds}")
+        axes.set_xlabel("t U / R [-]")
+        axes.set_ylabel("drag coefficient [-]")
+    return figure
+
+
+def _draw_cavity(rows: list[dict[str, Any]]) -> Figure:
+    figure = Figure(figsize=(8.0, 3.4), layout="constrained")
+    left, right = figure.subplots(1, 2)
+    for reynolds, colour, dashes in ((100, _LINE, "-"), (1000, _OTHER, "--")):
+        curves = _curves(rows, "lid-driven cavity", f"Re {reynolds}")
+        if curves:
+            left.plot(curves["u"], curves["y"], color=colour, linestyle=dashes, label=f"Re {reynolds}")
+            left.plot(curves["data_u"], curves["data_y"], "k.", label="Ghia et al. 1982" if reynolds == 1000 else None)
+            right.plot(curves["x"], curves["v"], color=colour, linestyle=dashes)
+            right.plot(curves["data_x"], curves["data_v"], "k.")
+    left.set(xlabel="u over the speed of the lid [-]", ylabel="y over the width [-]", title="on the line x = 0.5")
+    right.set(xlabel="x over the width [-]", ylabel="v over the speed of the lid [-]", title="on the line y = 0.5")
+    if left.lines:
+        left.legend(**_SMALL)
+    return figure
+
+
+def _draw_oscillated(rows: list[dict[str, Any]]) -> Figure:
+    figure = Figure(figsize=(9.6, 3.8), layout="constrained")
+    panels = figure.subplots(1, 3)
+    curves = _curves(rows, "cylinder Re 185", "shaken")
+    labels = ("mean drag coefficient [-]", "rms lift coefficient [-]", "phase of lift before motion [deg]")
+    for axes, name, label in zip(panels, ("cd", "cl", "phase"), labels, strict=True):
+        if curves:
+            axes.plot(curves["ratio"], curves[name], "o-", color=_LINE, label="mean")
+            low, high = np.transpose(curves[f"{name}_range"])
+            axes.vlines(curves["ratio"], low, high, color=_LINE, alpha=0.4, lw=3, label="range of periods")
+            if name != "phase":
+                axes.axhline(curves[f"held_{name}"], color="k", ls=":", lw=1.2, label="fixed cylinder")
+        axes.axvspan(1.1, 1.12, color="0.85", zorder=0, label="published jump")
+        axes.set(xlabel="frequency ratio [-]", ylabel=label)
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside upper center", ncols=4, frameon=False, **_SMALL)
+    return figure
+
+
+def _draw_oscillating(rows: list[dict[str, Any]]) -> Figure:
+    figure = Figure(figsize=(8.0, 3.6), layout="constrained")
+    force, energy = figure.subplots(1, 2)
+    curves = _curves(rows, "oscillating cylinder, Re 100, KC 5", "force")
+    if curves:
+        force.plot(curves["phase"], curves["force"], color=_LINE, label="from body to water")
+        force.plot(curves["data_phase"], curves["data_force"], "k.", label="Duetsch et al. 1998")
+        force.legend(loc="upper left", **_SMALL)
+    force.set(xlabel="time over the period [-]", ylabel="force / ($\\rho U^2 D$) [-]", title="Re 100, KC 5")
+    found = {r["quantity"]: r["curves"] for r in rows if r["case"] == "energy budget" and "share" in r["curves"]}
+    base: np.ndarray = np.zeros(1)
+    for quantity, part in found.items():
+        share, places = np.array(part["share"]), np.arange(len(part["share"]))
+        base = base if base.size == share.size else np.zeros(share.size)
+        energy.bar(places, share, 0.6, bottom=base, label=quantity.removeprefix("share of the work: "))
+        base = base + share
+        energy.set_xticks(places, [str(n) for n in part["cells"]])
+    energy.set(
+        xlabel="cells per diameter [-]", ylabel="share of the work of the body [-]", title="energy budget in a box"
+    )
+    if found:
+        energy.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), reverse=True, **_SMALL)
+    return figure
+
+
+def _slope(axes: Axes, size: np.ndarray, error: np.ndarray, order: int, label: str | None) -> None:
+    dashes = "--" if order == 2 else ":"
+    axes.loglog(size, 0.7 * error[-1] * (size[-1] / size) ** order, color="k", ls=dashes, lw=1.0, label=label)
+
+
+def _draw_convergence(rows: list[dict[str, Any]]) -> Figure:
+    figure = Figure(figsize=(9.6, 4.0), layout="constrained")
+    fields, forces, swim = figure.subplots(1, 3)
+    for k, (case, label) in enumerate((("Taylor-Green", "Taylor-Green"), ("turning cylinder", "turning cylinder"))):
+        curves = _curves(rows, case, "order")
+        if curves:
+            fields.loglog(curves["size"], curves["error"], "os"[k] + "-", label=label)
+            _slope(fields, np.array(curves["size"]), np.array(curves["error"]), 2, None if k else "order 2")
+    fields.set(xlabel="cells per side or diameter [-]", ylabel="rms error of velocity [-]", title="velocity")
+    for k, (case, part, sizes, values, exact, label) in enumerate(
+        (
+            ("DFG 2D-1", "Cd", "rows", "cd", 5.57953523384, "drag, DFG 2D-1"),
+            ("turning cylinder", "order", "size", "torque", 0.0, "torque, turning cyl."),
+        )
+    ):
+        curves = _curves(rows, case, part)
+        if curves:
+            size, value = np.array(curves[sizes]) / (4.1 if sizes == "rows" else 1.0), np.array(curves[values])
+            error = np.abs(value / exact - 1) if exact else value
+            forces.loglog(size, error, "os"[k] + "-", label=label)
+            _slope(forces, size, error, 1, None if k else "order 1")
+    forces.set(xlabel="cells per diameter [-]", ylabel="relative error of force [-]", title="force")
+    for k, case in enumerate(sorted({r["case"] for r in rows if r["case"].startswith("free eel")})):
+        curves = _curves(rows, case, "mean speed")
+        if curves:
+            swim.plot(curves["cells"], curves["speed"], "os^D"[k % 4] + "-", label=case.removeprefix("free eel, "))
+    swim.set(xlabel="cells per body length [-]", ylabel="speed [body lengths per cycle]", title="free eel, last cycle")
+    swim.set_ylim(0, 0.8)
+    for axes, ticks in ((fields, (16, 32, 64, 128)), (forces, (8, 16, 32, 64, 128)), (swim, (128, 192, 288, 384))):
+        axes.set_xticks(ticks, [str(n) for n in ticks])
+        axes.tick_params(axis="x", which="minor", bottom=False, labelbottom=False)
+        if axes.lines:
+            axes.legend(loc="upper left", bbox_to_anchor=(0.0, -0.2), frameon=False, **_SMALL)
+    return figure
+
+
+DRAWN: Final[Mapping[str, Callable[[list[dict[str, Any]]], Figure]]] = MappingProxyType(
+    {
+        "started": _draw_started,
+        "cavity": _draw_cavity,
+        "shaken": _draw_oscillated,
+        "oscillating": _draw_oscillating,
+        "convergence": _draw_convergence,
+    }
+)
+"""The plots of the page by name: each is drawn from all rows."""
+
+
+def write_table(folder: Path, docs: Path, sources: Sequence[str] = ()) -> None:
+    """Write ``validation.md`` to ``docs`` from the rows that the validation kept in ``folder``, and the ``sources``.
+
+    Raises:
+        IncompatibleRecord: there are no rows.
+    """
+    with new_file(docs / "validation.md") as draft:
+        draft.write_text(page(load_rows(folder), sources), encoding="utf-8")
+
+
+def write_validation(folder: Path, docs: Path, sources: Sequence[str] = ()) -> None:
+    """Write ``validation.md``, with ``sources``, and its plots to ``docs`` from the rows kept in ``folder``.
+
+    Raises:
+        IncompatibleRecord: there are no rows.
+    """
+    rows = load_rows(folder)
+    pictures = docs / "pictures"
+    pictures.mkdir(parents=True, exist_ok=True)
+    for name, draw in DRAWN.items():
+        with styled():
+            draw(rows).savefig(pictures / f"flow_{name}.png")
+    write_table(folder, docs, sources)

@@ -1,0 +1,155 @@
+"""The page of the flow solver's validation: its rows grouped by kind of case, each group with its plot."""
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from suchus.errors import IncompatibleRecord
+
+Row = Mapping[str, Any]
+"""One comparison: ``case``, ``quantity``, ``ours``, ``theirs``, ``grid``, ``domain``, ``source``, ``curves``."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Group:
+    """Cases that answer one question."""
+
+    title: str
+    """Heading on the page."""
+    about: str
+    """What the cases show, in a sentence or two."""
+    cases: tuple[str, ...]
+    """How the names of its cases begin."""
+    figures: tuple[tuple[str, str], ...] = ()
+    """Name of each plot, and what it shows."""
+
+
+GROUPS = (
+    Group(
+        title="Exact answers",
+        about="Flows with a solution on paper, and budgets that must close. They show that the equations are solved, "
+        "and with which order of accuracy.",
+        cases=("Taylor-Green", "turning cylinder", "added mass", "momentum budget", "energy budget"),
+        figures=(("convergence", "Errors against the number of cells, for fields, forces and the free eel"),),
+    ),
+    Group(
+        title="Cavity",
+        about="A box whose lid slides: no body, so that only the solver of the fluid is compared.",
+        cases=("lid-driven cavity",),
+        figures=(("cavity", "Velocity profiles on the two centre lines of the lid-driven cavity"),),
+    ),
+    Group(
+        title="Fixed cylinders",
+        about="Drag, lift, wake and shedding frequency of a cylinder that does not move.",
+        cases=("cylinder Re 40", "cylinder Re 100", "DFG 2D-1", "DFG 2D-2", "impulsively started cylinder"),
+        figures=(("started", "Drag of an impulsively started cylinder over time"),),
+    ),
+    Group(
+        title="Oscillating cylinders",
+        about="Forces on a cylinder that oscillates in still water or transversely to a stream.",
+        cases=("oscillating cylinder", "cylinder Re 185"),
+        figures=(
+            ("oscillating", "Force over a period of an oscillating cylinder, and where the work of the body goes"),
+            ("shaken", "Drag, lift and phase of a cylinder that oscillates transversely to a stream"),
+        ),
+    ),
+    Group(
+        title="Foils and thin plates",
+        about="Bodies that are thin against the grid.",
+        cases=("NACA 0012", "wavy foil", "heaving plate"),
+    ),
+    Group(
+        title="Swimming bodies",
+        about="An eel of the literature, swimming freely or fixed. Force noise is the part of the force that changes "
+        "from step to step.",
+        cases=("free eel", "held eel"),
+    ),
+)
+"""The groups of the page in their order; a case that none of them names stands in a last group."""
+
+_OTHERS = Group(title="Other cases", about="Cases that belong to none of the groups above.", cases=("",))
+_HEAD = ("quantity", "ours", "published or exact", "difference", "grid", "domain", "source")
+
+
+def load_rows(folder: Path) -> list[dict[str, Any]]:
+    """Return the rows that a validation kept.
+
+    Raises:
+        IncompatibleRecord: there are none.
+    """
+    rows = [json.loads(path.read_text(encoding="utf-8")) for path in sorted(folder.glob("*.json"))]
+    if not rows:
+        raise IncompatibleRecord(f"{folder} holds no validation rows; run `make validate` first.")
+    return rows
+
+
+def page(rows: Sequence[Row], sources: Sequence[str] = ()) -> str:
+    """Return the page as Markdown.
+
+    Args:
+        rows: every comparison, in any order.
+        sources: sentences on where the published numbers come from.
+    """
+    groups = [(group, grouped) for group, grouped in _grouped(rows) if grouped]
+    contents = [f"- [{group.title}](#{_anchor(group.title)}): {_count(grouped)}" for group, grouped in groups]
+    lines = [
+        "# Validation of the flow solver", "",
+        "What `suchus.flow` computes beside exact solutions and published numbers. `make validate` runs every case "
+        "(`tests/flow/test_validate_flow.py`) and writes this page; every row is a run of this code. What the rows "
+        "mean, and where the solver falls short, stands in [flow](flow.md).", "",
+        "Grids are told in cells per diameter D, chord or body length L. Re is the Reynolds number, Cd and Cl are the "
+        "coefficients of drag and lift, Ci that of inertia, KC the Keulegan-Carpenter number.", "",
+        *contents,
+    ]  # fmt: skip
+    for group, grouped in groups:
+        lines += ["", f"## {group.title}", "", group.about]
+        for name, text in group.figures:
+            lines += ["", f"![{text}](pictures/flow_{name}.png)"]
+        for case in dict.fromkeys(str(row["case"]) for row in grouped):
+            lines += _table(case, [row for row in grouped if row["case"] == case])
+    if sources:
+        lines += ["", "## Sources", "", *(f"- {source}" for source in sources)]
+    return "\n".join(lines) + "\n"
+
+
+def _grouped(rows: Sequence[Row]) -> Iterator[tuple[Group, list[Row]]]:
+    """Yield each group with its rows: in the order in which the group names its cases."""
+    left = list(rows)
+    for group in (*GROUPS, _OTHERS):
+        found = [row for start in group.cases for row in left if str(row["case"]).startswith(start)]
+        left = [row for row in left if row not in found]
+        yield group, found
+
+
+def _table(case: str, rows: Sequence[Row]) -> list[str]:
+    """Return a case's heading, what all its rows have in common, and the table of the rest."""
+    common = [name for name in ("grid", "domain", "source") if len({row[name] for row in rows}) == 1]
+    told = [f"{name.capitalize()}: {rows[0][name]}." for name in common if rows[0][name] != "-"]
+    columns = [name for name in _HEAD if name not in common]
+    lines = ["", f"### {case}", ""]
+    lines += [" ".join(told), ""] if told else []
+    lines += [f"| {' | '.join(columns)} |", "|" + "---|" * len(columns)]
+    return lines + [f"| {' | '.join(_cells(row)[name] for name in columns)} |" for row in rows]
+
+
+def _cells(row: Row) -> dict[str, str]:
+    theirs = row["theirs"]
+    number = isinstance(theirs, int | float)
+    return {
+        "quantity": str(row["quantity"]),
+        "ours": f"{row['ours']:.4g}",
+        "published or exact": f"{theirs:.4g}" if number else str(theirs),
+        "difference": f"{100 * (row['ours'] / theirs - 1):+.1f} %" if number and theirs else "",
+        **{name: str(row[name]) for name in ("grid", "domain", "source")},
+    }
+
+
+def _anchor(title: str) -> str:
+    return title.lower().replace(" ", "-")
+
+
+def _count(rows: Sequence[Row]) -> str:
+    cases = len({row["case"] for row in rows})
+    return f"{cases} case{'s' * (cases > 1)}, {len(rows)} number{'s' * (len(rows) > 1)}"

@@ -1,0 +1,209 @@
+"""Two outcomes side by side: numbers with their difference, verdicts, settings, figures and replays."""
+
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+from urllib.parse import quote
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup
+
+from suchus.errors import IncompatibleRecord
+from suchus.record import new_file
+from suchus.report.numbers import number, quantity
+from suchus.report.result import Moving, Picture, Result
+
+_SHOWN = 80
+"""Letters of a setting that the page shows [-]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Compared:
+    """One measure of both outcomes."""
+
+    name: str
+    """Its name."""
+    unit: str
+    """Its unit; both units where they differ."""
+    first: float | None
+    """Value in the first outcome; None where it has none."""
+    second: float | None
+    """Value in the second."""
+    difference: float | None
+    """Second less first, in ``unit``; None where one is missing or the units differ."""
+    share: float | None
+    """The difference over the size of the first [-]; None where the first is zero."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Judged:
+    """One claim, and what both outcomes say of it."""
+
+    quantity: str
+    """What the claim is about."""
+    where: str
+    """Where in the article."""
+    first: str
+    """Verdict of the first outcome; empty where it has none."""
+    second: str
+    """Verdict of the second."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Setting:
+    """One setting in which the outcomes differ."""
+
+    name: str
+    """Dotted path."""
+    first: str
+    """Value in the first outcome; empty where it has none."""
+    second: str
+    """Value in the second."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Comparison:
+    """What two outcomes have in common, and in what they differ."""
+
+    names: tuple[str, str]
+    """What the two are called."""
+    results: tuple[Result, Result]
+    """The two outcomes."""
+    measures: tuple[Compared, ...]
+    """Every measure of either, those that differ most first."""
+    verdicts: tuple[Judged, ...]
+    """Every claim that either judges, those with another verdict first."""
+    settings: tuple[Setting, ...]
+    """Every setting in which they differ."""
+
+    @property
+    def changed(self) -> tuple[Judged, ...]:
+        """Claims that both judge, and differently."""
+        return tuple(one for one in self.verdicts if one.first and one.second and one.first != one.second)
+
+
+def compare(first: Result, second: Result, names: tuple[str, str]) -> Comparison:
+    """Set two outcomes side by side.
+
+    Args:
+        first: an outcome.
+        second: another, to be compared with it.
+        names: what they are called.
+
+    Raises:
+        IncompatibleRecord: they have no measure in common.
+    """
+    measures = [_compared(name, first.told["measures"], second.told["measures"]) for name in _union(first, second)]
+    if not any(one.first is not None and one.second is not None for one in measures):
+        raise IncompatibleRecord(
+            f"{first.folder} ({first.name}) and {second.folder} ({second.name}) have no measure in common; compare two "
+            "outcomes of one experiment."
+        )
+    measures.sort(key=lambda one: (one.difference is None, -_size(one)))  # equal ones stay in their order
+    judged = list(_judged(first.told["verdicts"], second.told["verdicts"]))
+    judged.sort(key=lambda one: (one.first == one.second, not (one.first and one.second)))
+    flat = [dict(_flat(one.told.get("settings", {}))) for one in (first, second)]
+    differ = [name for name in dict.fromkeys([*flat[0], *flat[1]]) if flat[0].get(name) != flat[1].get(name)]
+    return Comparison(
+        names=names,
+        results=(first, second),
+        measures=tuple(measures),
+        verdicts=tuple(judged),
+        settings=tuple(Setting(name=n, first=_short(flat[0].get(n)), second=_short(flat[1].get(n))) for n in differ),
+    )
+
+
+def write_comparison(comparison: Comparison, path: Path) -> Path:
+    """Write the page of a comparison and return its path; replays stay where they are and are shown from there.
+
+    Raises:
+        Unwritable: the place cannot be written to.
+    """
+    text = render_comparison(comparison, path.parent)
+    with new_file(path) as draft:
+        draft.write_text(text, encoding="utf-8")
+    return path
+
+
+def render_comparison(comparison: Comparison, place: Path) -> str:
+    """Return the page as text.
+
+    Args:
+        comparison: what to show.
+        place: the folder of the page, from which it shows the replays.
+    """
+    environment = Environment(
+        loader=PackageLoader("suchus.report"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    link = {"link": lambda file: quote(Path(os.path.relpath(file, place)).as_posix())}
+    environment.filters |= {"quantity": quantity, "number": number} | link
+    first, second = comparison.results
+    content: dict[str, Any] = {
+        "style": Markup(environment.get_template("style.css").render()),
+        "it": comparison,
+        "titles": list(dict.fromkeys([first.told["title"], second.told["title"]])),
+        "pictures": _pairs({p.name: p for p in first.pictures}, {p.name: p for p in second.pictures}),
+        "replays": _pairs({r.file.name: r for r in first.replays}, {r.file.name: r for r in second.replays}),
+    }
+    return environment.get_template("compare.html").render(**content) + "\n"
+
+
+def _pairs(
+    first: Mapping[str, Picture] | Mapping[str, Moving], second: Mapping[str, Picture] | Mapping[str, Moving]
+) -> list[tuple[str, tuple[Any, Any]]]:
+    return [(name, (first.get(name), second.get(name))) for name in dict.fromkeys([*first, *second])]
+
+
+def _union(first: Result, second: Result) -> list[str]:
+    return list(dict.fromkeys([*first.told["measures"], *second.told["measures"]]))
+
+
+def _compared(name: str, first: Mapping[str, Any], second: Mapping[str, Any]) -> Compared:
+    a, b = first.get(name), second.get(name)
+    units = list(dict.fromkeys(one["unit"] for one in (a, b) if one))
+    values = [one["value"] if one else None for one in (a, b)]
+    known = len(units) == 1 and None not in values
+    difference = values[1] - values[0] if known else None
+    share = difference / abs(values[0]) if known and values[0] else None
+    return Compared(
+        name=name, unit=" / ".join(units), first=values[0], second=values[1], difference=difference, share=share
+    )
+
+
+def _size(one: Compared) -> float:
+    """How much a measure differs: over its size, so that metres and newtons can be sorted together."""
+    if one.difference is None or one.first is None or one.second is None:
+        return 0.0
+    whole = max(abs(one.first), abs(one.second))
+    return abs(one.difference) / whole if whole else 0.0
+
+
+def _judged(first: Sequence[Mapping[str, Any]], second: Sequence[Mapping[str, Any]]) -> Iterator[Judged]:
+    before, after = ({verdict["claim"]: verdict for verdict in some} for some in (first, second))
+    for claim in dict.fromkeys([*before, *after]):
+        told = before.get(claim) or after[claim]
+        words = [str(some[claim]["verdict"]) if claim in some else "" for some in (before, after)]
+        yield Judged(quantity=told["quantity"], where=told["where"], first=words[0], second=words[1])
+
+
+def _flat(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
+    """Yield every value of nested settings with its dotted path."""
+    if isinstance(value, Mapping):
+        for name, below in value.items():
+            yield from _flat(below, f"{path}.{name}".lstrip("."))
+    elif isinstance(value, list) and any(isinstance(item, Mapping) for item in value):
+        for i, below in enumerate(value):
+            yield from _flat(below, f"{path}[{i}]")
+    else:
+        yield path, value
+
+
+def _short(value: Any) -> str:
+    text = "" if value is None else str(value)
+    return text if len(text) <= _SHOWN else f"{text[: _SHOWN - 1]}…"

@@ -1,0 +1,130 @@
+"""``suchus compare A B``: numbers with their difference, verdicts, figures and replays; bad input in one sentence."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from suchus.cli import main
+from suchus.report import compare, load_result, render_comparison
+
+SVG = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 1 1"></svg>'
+
+
+def verdict(word, claim="displacement_ratio"):
+    return {"claim": claim, "quantity": f"quantity of {claim}", "statement": "s", "where": "IV.B", "printed": None,
+            "measured": 1.0, "unit": "-", "verdict": word, "why": "because"}  # fmt: skip
+
+
+def write(folder, measures, verdicts=(), settings=None, experiment="displacement", figures=(), replays=()):
+    """An outcome as ``suchus run`` leaves it, with what matters here."""
+    folder.mkdir(parents=True)
+    for name in figures:
+        (folder / f"{name}.svg").write_text(SVG)
+    for name in replays:
+        (folder / name).write_text("<p>it walks")
+    told = {
+        "experiment": experiment, "title": f"How is {experiment}?", "shows": "Fig. 16", "decides": "",
+        "command": "suchus",
+        "measures": {name: {"value": value, "unit": unit} for name, (value, unit) in measures.items()},
+        "verdicts": list(verdicts), "settings": settings or {},
+        "figures": [{"name": name, "caption": f"The {name}."} for name in figures], "tables": [],
+        "replays": [{"name": name, "caption": "A walk."} for name in replays],
+        "provenance": {"config_hash": "a", "seed": 0, "seconds": 1.0},
+    }  # fmt: skip
+    (folder / "outcome.json").write_text(json.dumps(told))
+    return folder
+
+
+@pytest.fixture
+def two(tmp_path):
+    one = write(
+        tmp_path / "a", {"far": (2.0, "m"), "same": (1.0, "-"), "gone": (3.0, "N"), "load": (0.0, "N")},
+        [verdict("reproduced"), verdict("same sense", "tail_share")], {"robot": {"mass": 3.5}, "seed": 1},
+        figures=("course", "parts"), replays=("walk.html",),
+    )  # fmt: skip
+    other = write(
+        tmp_path / "b", {"far": (1.5, "m"), "same": (1.0, "-"), "load": (0.5, "N"), "none": (None, "m")},
+        [verdict("contradicted"), verdict("same sense", "tail_share")], {"robot": {"mass": 4.0}, "seed": 1},
+        figures=("course",), replays=("walk.html",),
+    )  # fmt: skip
+    return one, other
+
+
+def test_measures_have_their_difference_and_those_that_differ_most_come_first(two):
+    found = compare(load_result(two[0]), load_result(two[1]), ("a", "b"))
+    told = {one.name: (one.difference, one.share) for one in found.measures}
+    assert told == {"load": (0.5, None), "far": (-0.5, -0.25), "same": (0.0, 0.0), "gone": (None, None),
+                    "none": (None, None)}  # fmt: skip
+    assert [one.name for one in found.measures][:3] == ["load", "far", "same"]
+
+
+def test_no_difference_is_told_of_other_units(tmp_path):
+    one, other = (
+        write(tmp_path / "a", {"x": (1.0, "m"), "y": (1.0, "m")}),
+        write(tmp_path / "b", {"x": (1.0, "N"), "y": (2.0, "m")}),
+    )
+    found = {one.name: one for one in compare(load_result(one), load_result(other), ("a", "b")).measures}
+    assert (found["x"].difference, found["x"].unit) == (None, "m / N")
+    assert found["y"].difference == 1.0
+
+
+def test_verdicts_and_settings_that_differ_are_told(two):
+    found = compare(load_result(two[0]), load_result(two[1]), ("a", "b"))
+    assert [(one.first, one.second) for one in found.changed] == [("reproduced", "contradicted")]
+    assert len(found.verdicts) == 2
+    assert [(one.name, one.first, one.second) for one in found.settings] == [("robot.mass", "3.5", "4.0")]
+
+
+def test_the_page_shows_figures_and_replays_of_both(two, tmp_path):
+    text = render_comparison(compare(load_result(two[0]), load_result(two[1]), ("a", "<b>")), tmp_path)
+    assert text.count("<img ") == 3
+    assert "B has no such figure" in text
+    assert all(f'src="{name}/walk.html"' in text for name in "ab")
+    assert "<b>" not in text
+
+
+def test_the_command_prints_the_numbers_and_names_the_page(two, tmp_path, capsys):
+    page = tmp_path / "page.html"
+    assert main(["compare", str(two[0]), str(two[1] / "outcome.json"), "--out", str(page)]) == 0
+    out = capsys.readouterr().out
+    assert "−25 %" in out
+    assert "contradicted" in out
+    assert str(page) in out.replace("\n", "")
+    assert page.is_file()
+
+
+def test_an_outcome_is_equal_to_itself(two, tmp_path, capsys):
+    assert main(["compare", str(two[0]), str(two[0]), "--out", str(tmp_path / "page.html")]) == 0
+    assert "None: both were made with the same settings" in (tmp_path / "page.html").read_text()
+
+
+BAD = {
+    "a": "see suchus compare --help",
+    "a b c": "one word too many",
+    "a nowhere": "nowhere is not there",
+    "a empty": "outcome.json",
+    "a text.txt": "text.txt is no outcome",
+    "a broken": "broken",
+    "a other": "no measure in common",
+    "a b --out page.png": "page.png",
+    "a b --out /dev/null/page.html": "cannot be written",
+    "a b --outt page.html": "--outt",
+}
+
+
+@pytest.mark.parametrize("words", BAD)
+def test_bad_words_are_one_sentence_and_leave_no_page(words, two, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    Path("empty").mkdir()
+    Path("text.txt").write_text("text")
+    Path("broken").mkdir()
+    Path("broken/outcome.json").write_text('{"measures": {}}')
+    write(Path("other"), {"speed": (1.0, "m/s")}, experiment="swimming")
+    before = sorted(tmp_path.rglob("*"))
+    assert main(["compare", *words.split()]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.count("\n") == 1
+    assert BAD[words] in err
+    assert sorted(tmp_path.rglob("*")) == before

@@ -1,0 +1,59 @@
+"""The page of the validation: no row is lost, each stands in its group, and its plots are drawn from the rows."""
+
+import json
+
+import pytest
+from matplotlib.figure import Figure
+
+from suchus.errors import IncompatibleRecord
+from suchus.figures.validation import DRAWN, write_table, write_validation
+from suchus.figures.validation_page import GROUPS, page
+
+
+def row(case, quantity="Cd", theirs=2.0, source="Someone 1990", **curves):
+    return {"case": case, "quantity": quantity, "ours": 2.1, "theirs": theirs, "grid": "16 cells/D",
+            "domain": "8 D x 6 D", "source": source, "curves": curves}  # fmt: skip
+
+
+def test_every_row_stands_in_the_group_of_its_case_and_a_new_case_in_the_last():
+    told = page([row("free eel, thick water"), row("Taylor-Green"), row("a sphere"), row("cylinder Re 100")])
+    order = [told.index(f"\n### {case}\n") for case in ("Taylor-Green", "cylinder Re 100", "free eel, thick water")]
+    assert order == sorted(order)
+    assert told.index("## Other cases") < told.index("### a sphere")
+
+
+def test_groups_without_rows_are_left_out():
+    assert "Cavity" not in page([row("Taylor-Green")])
+
+
+def test_what_all_rows_of_a_case_share_is_said_once_and_the_rest_in_the_table():
+    alike = page([row("DFG 2D-1", "Cd"), row("DFG 2D-1", "Cl", theirs="at least 1")])
+    assert "Grid: 16 cells/D. Domain: 8 D x 6 D. Source: Someone 1990." in alike
+    assert "| Cd | 2.1 | 2 | +5.0 % |" in alike
+    assert "| Cl | 2.1 | at least 1 |  |" in alike
+    assert "| Cl | 2.1 | 2 | +5.0 % | Other 2000 |" in page(
+        [row("DFG 2D-1"), row("DFG 2D-1", "Cl", source="Other 2000")]
+    )
+
+
+def test_each_plot_of_a_group_is_one_that_is_drawn():
+    named = [name for group in GROUPS for name, _ in group.figures]
+    assert sorted(named) == sorted(DRAWN)
+
+
+def test_plots_are_drawn_from_rows_that_lack_most_of_their_curves():
+    few = [row("Taylor-Green", "order", size=[16, 32], error=[1e-3, 3e-4])]
+    assert all(isinstance(draw(few), Figure) for draw in DRAWN.values())
+
+
+def test_without_rows_nothing_is_written(tmp_path):
+    with pytest.raises(IncompatibleRecord, match="make validate"):
+        write_table(tmp_path, tmp_path)
+    assert not (tmp_path / "validation.md").exists()
+
+
+def test_page_and_plots_are_written(tmp_path):
+    (tmp_path / "one.json").write_text(json.dumps(row("Taylor-Green", "order", size=[16, 32], error=[1e-3, 3e-4])))
+    write_validation(tmp_path, tmp_path, ("Someone 1990: a paper.",))
+    assert "- Someone 1990: a paper." in (tmp_path / "validation.md").read_text()
+    assert {path.stem for path in (tmp_path / "pictures").iterdir()} == {f"flow_{name}" for name in DRAWN}
