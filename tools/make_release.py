@@ -2,7 +2,8 @@
 
 Everything is tried in fresh environments in a folder outside the checkout whose name has a space, without constraints:
 ``suchus doctor``, ``suchus demo --no-browser``, one experiment, all of them in their quick forms, and the Dockerfile's
-steps. Nothing is published; docs/publishing.md says how that is done.
+steps. A commit whose tag says another version is refused first. Nothing is published; docs/publishing.md says how that
+is done.
 """
 
 import shutil
@@ -21,6 +22,10 @@ _LEFT = ("suchus_demo.html", "out/displacement/outcome.json", "out/report.html")
 def main() -> int:
     """Build, try, and return 0, or 1 where something is wrong."""
     began = time.monotonic()
+    tags, version = distributions.tags(), distributions.project()["version"]
+    if wrong := distributions.mistagged(tags, version):
+        print(wrong, file=sys.stderr)
+        return 1
     place = Path(tempfile.mkdtemp(prefix="suchus release "))
     try:
         wheel, sdist = _built(place)
@@ -31,9 +36,8 @@ def main() -> int:
         return 1
     finally:
         shutil.rmtree(place, ignore_errors=True)
-    tag, version = distributions.tagged(), distributions.project()["version"]
-    if tag != f"v{version}":
-        print(f"note: {tag or 'this commit has no tag'}; publish from the tag v{version} only.")
+    if not tags:
+        print(f"note: this commit has no tag; publish from the tag v{version} only.")
     print(f"tried in {time.monotonic() - began:.0f} s: {', '.join(str(p) for p in (wheel, sdist) if p)}")
     return 0
 

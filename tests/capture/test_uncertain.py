@@ -48,15 +48,16 @@ def test_the_period_is_the_mean_of_the_strides_and_its_spread_theirs(walker, sha
 
 @pytest.mark.parametrize(("start", "share"), [(0.2, 0.2), (0.2, 0.3), (0.9, 0.3), (0.5, 0.3)])
 def test_a_foot_hidden_in_the_same_part_of_every_cycle_is_not_read_wrong(walker, sharp, start, share):
-    walk = observe(hidden(film_animal(walker, sharp, cycles=10), "LF", walker.period, start, share))
+    tracks = film_animal(walker, sharp, cycles=10)
+    walk = observe(hidden(tracks, "LF", tracks.time / walker.period, start, share))
     seen = walk.numbers["duty_LF"]
     assert abs(seen.value - DUTY) < min(seen.error, 0.1)
     assert apart(walk.numbers["phase_RF"], 0.5) <= walk.numbers["phase_RF"].error
 
 
 def test_a_foot_whose_whole_swing_is_hidden_is_named_and_left_out_of_the_gait(caiman, walker, sharp):
-    tracks = hidden(film_animal(walker, sharp, cycles=10), "LF", walker.period, 0.96, 0.42)
-    walk = observe(tracks)
+    tracks = film_animal(walker, sharp, cycles=10)
+    walk = observe(hidden(tracks, "LF", tracks.time / walker.period, 0.96, 0.42))
     seen = walk.numbers["duty_LF"]
     assert seen.error > max(0.1, abs(seen.value - DUTY))
     (note,) = walk.notes

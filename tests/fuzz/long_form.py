@@ -1,8 +1,10 @@
 """The long form of the fuzzer: its cases, what came of them, and the passage of docs/reliability.md that says so.
 
-``python tests/fuzz/long_form.py [COUNT]``; stopped early, what was run until then counts.
+``python tests/fuzz/long_form.py [COUNT]``; stopped early, what was run until then counts, and the next call goes on
+behind it if neither suchus nor the cases have changed.
 """
 
+import hashlib
 import json
 import re
 import sys
@@ -21,60 +23,88 @@ FIRST, COUNT = 2_000, 50_000
 """Number of the first case, which is where those of the short form end, and how many there are."""
 OUTCOME = Path(__file__).with_name("long_form.json")
 PAGE = Path(__file__).parents[2] / "docs" / "reliability.md"
+PROGRESS = Path(__file__).parents[2] / "build" / "long_form.json"
+"""What was found so far, also while it is less than what ``OUTCOME`` holds of other code."""
 _PASSAGE = re.compile(r"(<!-- fuzz: made by tests/fuzz/long_form.py -->\n).*?(\n<!-- /fuzz -->)", re.DOTALL)
 _EVERY = 250  # cases between two writings
 _TOLD = ("suchus", "python", "mujoco", "numpy", "xarray", "h5netcdf")
+_CASES = Path(__file__).with_name("hostile.py")
 
 
-def run(place: Path, count: int = COUNT, *, keep: bool = False) -> dict[str, Any]:
+def run(place: Path, count: int = COUNT, *, keep: bool = False, so_far: dict[str, Any] | None = None) -> dict[str, Any]:
     """Run cases and return what came of them: dates, versions, counts, every failure.
 
     Args:
         place: an empty folder.
         count: how many cases.
-        keep: whether it is written to ``OUTCOME`` and ``PAGE`` too, now and then and at the end.
+        keep: whether it is written to files too, now and then and at the end, see ``write``.
+        so_far: what an earlier call found in the first of them, see ``kept``; they are not run again.
     """
-    cases, kinds, failures, longest = Range(place), Counter[str](), [], 0.0
-    found: dict[str, Any] = {}
-    begun = time.process_time()
+    found = {**_about(), "failures": [], "longest_seconds": 0.0, "processor_seconds": 0.0, **(so_far or {})}
+    found |= {"date": date.today().isoformat(), "failures": [*found["failures"]]}
+    found["kinds"], done = Counter(found.get("kinds", {})), found.get("cases", 0)
+    cases, last = Range(place), time.process_time()
     try:
-        for number in range(FIRST, FIRST + count):
-            before = time.process_time()
+        for number in range(FIRST + done, FIRST + count):
+            kind = KINDS[number % len(KINDS)].__name__
             try:
                 cases.case(number)
             except (Exception, Hang) as error:
-                told = f"{type(error).__name__}: {error}"[:300]
-                failures.append({"case": number, "kind": KINDS[number % len(KINDS)].__name__, "error": told})
-            kinds[KINDS[number % len(KINDS)].__name__] += 1
-            longest = max(longest, time.process_time() - before)
-            if keep and kinds.total() % _EVERY == 0:
-                found = _found(kinds, failures, longest, begun)
-                write(found)
+                found["failures"].append(
+                    {"case": number, "kind": kind, "error": f"{type(error).__name__}: {error}"[:300]}
+                )
+            now = time.process_time()
+            took, last = now - last, now
+            found["kinds"][kind] += 1
+            found["longest_seconds"] = max(found["longest_seconds"], took)
+            found["processor_seconds"] += took
+            if keep and found["kinds"].total() % _EVERY == 0:
+                write(_rounded(found))
     finally:
-        found = _found(kinds, failures, longest, begun)
         if keep:
-            write(found)
-    return found
+            write(_rounded(found))
+    return _rounded(found)
 
 
-def _found(kinds: Counter[str], failures: list[dict[str, Any]], longest: float, begun: float) -> dict[str, Any]:
+def kept() -> dict[str, Any] | None:
+    """Return what an earlier call found, if it was of the same code and versions; None otherwise."""
+    about = {name: value for name, value in _about().items() if name != "date"}
+    for file in (PROGRESS, OUTCOME):
+        found: dict[str, Any] = json.loads(file.read_text()) if file.exists() else {}
+        if all(found.get(name) == value for name, value in about.items()):
+            return found
+    return None
+
+
+def _about() -> dict[str, Any]:
+    """Return when and with which code and versions cases are run."""
     return {
         "date": date.today().isoformat(),
         "versions": {name: version for name, version in versions().items() if name in _TOLD},
-        "source": code_digest(".")[:12],
+        "source": hashlib.sha256(code_digest(".").encode() + _CASES.read_bytes()).hexdigest()[:12],
         "asked": COUNT,
-        "cases": kinds.total(),
-        "kinds": dict(sorted(kinds.items())),
-        "failures": failures,
-        "longest_seconds": round(longest, 1),
-        "processor_seconds": round(time.process_time() - begun),
+    }
+
+
+def _rounded(found: dict[str, Any]) -> dict[str, Any]:
+    """Return what was found as it is kept."""
+    return {
+        **found,
+        "cases": found["kinds"].total(),
+        "kinds": dict(sorted(found["kinds"].items())),
+        "longest_seconds": round(found["longest_seconds"], 1),
+        "processor_seconds": round(found["processor_seconds"]),
     }
 
 
 def write(found: dict[str, Any]) -> None:
-    """Write what came of the cases, and the passage of the page that says so."""
-    OUTCOME.write_text(json.dumps(found, indent=1) + "\n")
-    PAGE.write_text(_PASSAGE.sub(lambda old: old[1] + passage(found) + old[2], PAGE.read_text()))
+    """Write what came of the cases, and the passage of the page that says so unless it tells of more cases."""
+    text = json.dumps(found, indent=1) + "\n"
+    PROGRESS.parent.mkdir(exist_ok=True)
+    PROGRESS.write_text(text)
+    if found["cases"] >= json.loads(OUTCOME.read_text())["cases"]:
+        OUTCOME.write_text(text)
+        PAGE.write_text(_PASSAGE.sub(lambda old: old[1] + passage(found) + old[2], PAGE.read_text()))
 
 
 def passage(found: dict[str, Any]) -> str:
@@ -91,6 +121,6 @@ def passage(found: dict[str, Any]) -> str:
 
 if __name__ == "__main__":
     with tempfile.TemporaryDirectory() as folder:
-        came = run(Path(folder), int(sys.argv[1]) if len(sys.argv) > 1 else COUNT, keep=True)
+        came = run(Path(folder), int(sys.argv[1]) if len(sys.argv) > 1 else COUNT, keep=True, so_far=kept())
     for failure in came["failures"]:
         print(failure)

@@ -4,6 +4,7 @@ import json
 import os
 import time
 
+import long_form
 import pytest
 from hostile import KINDS, Hang, Range
 from long_form import COUNT, FIRST, OUTCOME, PAGE, passage, run
@@ -48,8 +49,43 @@ def test_the_page_says_what_the_long_form_found():
     assert f"**{len(found['failures'])}** of them failed" in PAGE.read_text()
 
 
+def test_the_long_form_goes_on_where_it_stopped_but_not_on_other_code(tmp_path, monkeypatch):
+    numbers = []
+
+    class Cases:
+        def __init__(self, place):
+            pass
+
+        def case(self, number):
+            numbers.append(number)
+            if number == FIRST + 2:
+                raise IndexError("a bare one")
+            if number == FIRST + 4 and len(numbers) == 5:
+                raise KeyboardInterrupt
+
+    monkeypatch.setattr(long_form, "Range", Cases)
+    for name in ("OUTCOME", "PROGRESS", "PAGE"):
+        monkeypatch.setattr(long_form, name, tmp_path / name)
+    long_form.PAGE.write_text(PAGE.read_text())
+    long_form.OUTCOME.write_text('{"cases": 5}')
+    with pytest.raises(KeyboardInterrupt):
+        run(tmp_path, 6, keep=True)
+    first = long_form.kept()
+    assert (first["cases"], [one["case"] for one in first["failures"]]) == (4, [FIRST + 2])
+    assert long_form.PAGE.read_text() == PAGE.read_text()  # which tells of more cases
+    found = run(tmp_path, 6, keep=True, so_far=first)
+    assert numbers == [*range(FIRST, FIRST + 5), FIRST + 4, FIRST + 5]
+    assert (found["cases"], found["failures"]) == (6, first["failures"])
+    assert json.loads(long_form.OUTCOME.read_text()) == found
+    assert "Of the long form 6 of the 50 000 cases" in long_form.PAGE.read_text()
+    monkeypatch.setattr(long_form, "code_digest", lambda room: "other")
+    assert long_form.kept() is None
+
+
 @pytest.mark.validate
 def test_fifty_thousand_hostile_cases(tmp_path):
     count = int(os.environ.get("SUCHUS_FUZZ", COUNT))
-    found = run(tmp_path, count, keep=count >= json.loads(OUTCOME.read_text())["cases"])
+    before = long_form.kept()
+    so_far = before if before and before["cases"] <= count else None
+    found = run(tmp_path, count, keep=True, so_far=so_far)
     assert (found["cases"], found["failures"]) == (count, [])

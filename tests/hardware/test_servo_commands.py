@@ -145,6 +145,12 @@ def test_the_weakest_stock_servo_that_does_is_named(needed, limit, stock):
     assert load(needed=needed, limit=limit).stock.startswith(stock)
 
 
+def test_a_servo_that_was_tried_and_stands_at_its_limit_is_not_named():
+    assert load(needed=2.9, limit=2.5).stock == "30 kg cm (2.94 N m)"
+    assert load(needed=2.9, limit=2.5, tried=2.942).stock == "35 kg cm (3.43 N m)"
+    assert load(tried=14.71).stock.startswith("none up to")
+
+
 def test_the_share_at_the_limit_counts_samples_of_each_servo(robot):
     torque = np.zeros((2, 4, 19))
     torque[0, 1, 0] = -robot.servo("LF_yaw").torque

@@ -1,10 +1,12 @@
 """What is asked of the wheel and the sdist that `make release` builds."""
 
+import subprocess
 import tarfile
 import zipfile
 
 import pytest
 
+import make_release
 from release import distributions
 
 SOURCES = {"src/suchus/__init__.py", "src/suchus/verdict/claims.json"}
@@ -42,3 +44,39 @@ def test_a_file_too_few_or_too_many_is_told(built):
 def test_the_package_holds_its_templates_and_the_table_of_claims():
     tracked = distributions.tracked()
     assert {"src/suchus/verdict/claims.json", "src/suchus/py.typed", "src/suchus/replay/templates/player.js"} <= tracked
+
+
+@pytest.mark.parametrize(
+    ("tags", "version", "said"),
+    [
+        ([], "1.2.0", ""),
+        (["v1.2.0"], "1.2.0", ""),
+        (["v1.2.1"], "1.2.0", "has the tag v1.2.1, and pyproject.toml says version 1.2.0"),
+        (["v1.2.0", "v1.2.1"], "1.2.0", "has the tag v1.2.0, v1.2.1"),
+    ],
+)
+def test_a_tag_of_another_version_is_refused(tags, version, said):
+    assert said in distributions.mistagged(tags, version)
+    assert bool(said) == bool(distributions.mistagged(tags, version))
+
+
+def test_tags_are_those_of_what_is_checked_out(tmp_path):
+    def git(*words):
+        subprocess.run(["git", "-c", "user.name=a", "-c", "user.email=a@b.c", *words], cwd=tmp_path, check=True)
+
+    git("init", "--quiet")
+    for tag in ("v0.1.0", "v0.2.0"):
+        git("commit", "--quiet", "--allow-empty", "-m", tag)
+        git("tag", tag)
+        git("tag", f"very-{tag}")
+    assert distributions.tags(tmp_path) == ["v0.2.0"]
+    git("commit", "--quiet", "--allow-empty", "-m", "after")
+    assert distributions.tags(tmp_path) == []
+
+
+def test_nothing_is_built_from_a_commit_with_the_tag_of_another_version(monkeypatch, capsys):
+    monkeypatch.setattr(distributions, "tags", lambda: ["v99.0.0"])
+    assert make_release.main() == 1
+    out, err = capsys.readouterr()
+    assert (out, err.count("\n")) == ("", 1)
+    assert "v99.0.0" in err

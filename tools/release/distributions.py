@@ -1,9 +1,9 @@
 """Wheel and sdist: built from the checkout, and what is in them."""
 
-import subprocess
 import tarfile
 import tomllib
 import zipfile
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -19,11 +19,20 @@ def project() -> dict[str, Any]:
     return found
 
 
-def tagged() -> str:
-    """Return the tag of what is checked out, or nothing."""
-    words = ["git", "describe", "--exact-match", "--tags", "--match", "v*"]
-    done = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, check=False)
-    return done.stdout.strip()
+def tags(checkout: Path = ROOT) -> list[str]:
+    """Return the tags of versions, ``v`` and a number, that what is checked out carries."""
+    return run(["git", "tag", "--points-at", "HEAD", "--list", "v[0-9]*"], cwd=checkout).split()
+
+
+def mistagged(tags: Sequence[str], version: str) -> str:
+    """Return in a sentence that tags say another version than pyproject.toml, or nothing."""
+    if not tags or list(tags) == [f"v{version}"]:
+        return ""
+    return (
+        f"this commit has the tag {', '.join(tags)}, and pyproject.toml says version {version}: one commit has one "
+        f"version. Say the same in pyproject.toml, CHANGELOG.md, CITATION.cff and recipe/recipe.yaml, or move the tag "
+        f"with `git tag --delete {' '.join(tags)}` and `git tag v{version}`."
+    )
 
 
 def build(tools: Environment, folder: Path) -> tuple[Path, Path | None]:

@@ -114,7 +114,7 @@ def export_commands(words: Sequence[str]) -> int:
 def _write_loads(options: Options, borne: Mapping[str, Load], draft: Path) -> None:
     """Write what the servos bear, and of which robot and gait."""
     origin = {"gait": digest({"gait": options.gait}), "robot": digest({"robot": options.robot}), "versions": versions()}
-    (draft / "loads.csv").write_text(_loads_text(borne), encoding="utf-8")
+    (draft / "loads.csv").write_text(_loads_text(borne, options.at_limit), encoding="utf-8")
     (draft / MARK).write_text(json.dumps(origin, indent=1, sort_keys=True) + "\n", encoding="utf-8")
 
 
@@ -131,10 +131,10 @@ def _gait_first(words: Sequence[str]) -> list[str]:
     return words
 
 
-def _loads_text(borne: Mapping[str, Load]) -> str:
-    lines = ["servo,peak_torque_Nm,torque_limit_Nm,share_at_limit,first_at_s,off_rad,needed_Nm"]
+def _loads_text(borne: Mapping[str, Load], at_limit: float) -> str:
+    lines = ["servo,peak_torque_Nm,torque_limit_Nm,share_at_limit,first_at_s,off_rad,needed_Nm,would_do"]
     for name, load in borne.items():
         first = "" if load.first != load.first else f"{load.first:.2f}"
         told = f"{load.torque:.4f},{load.limit:g},{load.at_limit:.4f},{first},{load.off:.4f},{load.needed:.4f}"
-        lines.append(f"{name},{told}")
+        lines.append(f"{name},{told},{load.stock if load.at_limit > at_limit else ''}")
     return "\n".join(lines) + "\n"

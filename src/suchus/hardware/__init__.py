@@ -2,7 +2,7 @@
 
 from suchus.hardware.commands import Commands, commands
 from suchus.hardware.files import csv_text, trajectory_text
-from suchus.hardware.limits import Load, check_commands, check_loads, loads, overloaded, share_at_limit
+from suchus.hardware.limits import Load, check_commands, check_loads, loads, loads_of_each, overloaded, share_at_limit
 from suchus.hardware.servo_map import ServoLine, ServoMap, read_map, straight, write_map
 
 __all__ = [
@@ -15,6 +15,7 @@ __all__ = [
     "commands",
     "csv_text",
     "loads",
+    "loads_of_each",
     "overloaded",
     "read_map",
     "share_at_limit",

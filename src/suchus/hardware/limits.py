@@ -1,6 +1,6 @@
 """Whether servos can do what a gait asks: pulses, speed, and torque from a simulated walk."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -47,12 +47,20 @@ class Load:
     """How far it is from its commanded angle at most, but for the worst 2 % of the walk [rad]."""
     needed: float
     """Torque that a servo four times as strong stays below, but for the hardest 2 % of the same walk [N m]."""
+    tried: float = 0.0
+    """Torque of the strongest class of servos that was tried and is at its limit for more than 2 % too [N m]."""
+
+    @property
+    def named(self) -> str | None:
+        """The weakest class of hobby servos that would do, if one does."""
+        least = max(self.limit, self.tried)
+        return next((name for name, torque in CLASSES.items() if torque >= self.needed and torque > least), None)
 
     @property
     def stock(self) -> str:
-        """The weakest class of hobby servos that would do."""
-        found = [name for name, torque in CLASSES.items() if torque >= self.needed and torque > self.limit]
-        return f"{found[0]} ({CLASSES[found[0]]:.3g} N m)" if found else f"none up to {max(CLASSES.values()):.3g} N m"
+        """What is said of that class."""
+        most = max(CLASSES.values())
+        return f"{self.named} ({CLASSES[self.named]:.3g} N m)" if self.named else f"none up to {most:.3g} N m"
 
 
 def check_commands(robot: AnyRobot, gait: AnyGait, servo_map: ServoMap, told: Commands) -> None:
@@ -95,9 +103,47 @@ def loads(
         Diverged: the physics came apart.
         OutsideLimits: the joints cannot follow the gait.
     """
+    (borne,) = loads_of_each(robot, (gait,), cycles=cycles, progress=progress)
+    return borne
+
+
+def loads_of_each(
+    robot: AnyRobot,
+    gaits: Sequence[AnyGait],
+    *,
+    cycles: int = 2,
+    timestep: float | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> list[Mapping[str, Load]]:
+    """Return what each servo bears in each of several gaits, simulated in one batch on level ground.
+
+    Args:
+        robot: who walks.
+        gaits: how.
+        cycles: how many of each.
+        timestep: of the physics [s]; that of the robot's size if None.
+        progress: called with the share that is done.
+
+    Raises:
+        Diverged: the physics came apart.
+        OutsideLimits: the joints cannot follow a gait.
+    """
     strong = with_servos(robot, lambda servo: replace(servo, torque=_STRONG * servo.torque))
-    runs = [Run(robot=one, gait=gait) for one in (robot, strong)]
-    walk = between(whole(simulate(runs, duration=START + cycles * gait.period, progress=progress)))
+    runs = [Run(robot=one, gait=gait) for gait in gaits for one in (robot, strong)]
+    ends = [START + cycles * gait.period for gait in gaits]
+    record = whole(simulate(runs, duration=max(ends), timestep=timestep, progress=progress))
+    every = [_borne(robot, between(record.isel(run=[2 * i, 2 * i + 1]), end=end)) for i, end in enumerate(ends)]
+    unsure = [i for i, borne in enumerate(every) if _weak(borne)]
+    while unsure:
+        walks = [(gaits[i], ends[i], every[i]) for i in unsure]
+        for i, borne in zip(unsure, _tried(robot, walks, timestep), strict=True):
+            every[i] = borne
+        unsure = [i for i, (_, _, before) in zip(unsure, walks, strict=True) if every[i] != before]
+    return every
+
+
+def _borne(robot: AnyRobot, walk: xr.Dataset) -> Mapping[str, Load]:
+    """Return what each servo bears in a walk of the robot, and of the same with strong servos."""
     shares, first = share_at_limit(robot, walk.isel(run=0)), walk.time.values - START
     torques, off = np.abs(walk.servo_torque), np.abs(walk.servo_target - walk.servo_angle).isel(run=0)
     borne = {}
@@ -113,6 +159,46 @@ def loads(
             needed=float(np.quantile(own[1], 1.0 - AT_LIMIT)),
         )
     return borne
+
+
+def _weak(borne: Mapping[str, Load]) -> dict[str, Load]:
+    """Return the servos at their limits for too long for which a class is named."""
+    return {name: load for name, load in borne.items() if load.at_limit > AT_LIMIT and load.named}
+
+
+def _tried(
+    robot: AnyRobot, walks: Sequence[tuple[AnyGait, float, Mapping[str, Load]]], timestep: float | None
+) -> list[Mapping[str, Load]]:
+    """Return loads that know which of the servos that they name were at their limits for too long in the same walk.
+
+    Args:
+        robot: who walks.
+        walks: gaits, when each ends [s], and what servos bear.
+        timestep: of the physics [s].
+    """
+    robots = [stronger(robot, borne) for _, _, borne in walks]
+    runs = [Run(robot=one, gait=gait) for one, (gait, _, _) in zip(robots, walks, strict=True)]
+    record = simulate(runs, duration=max(end for _, end, _ in walks), timestep=timestep)
+    found: list[Mapping[str, Load]] = []
+    for i, (one, (_, end, borne)) in enumerate(zip(robots, walks, strict=True)):
+        walk = record.isel(run=i)
+        shares = share_at_limit(one, between(walk, end=end))
+        short = {
+            name: replace(load, tried=CLASSES[str(load.named)])
+            for name, load in _weak(borne).items()
+            if walk.cause.item() or shares.sel(servo=name) > AT_LIMIT
+        }
+        found.append({**borne, **short})
+    return found
+
+
+def stronger(robot: AnyRobot, borne: Mapping[str, Load]) -> AnyRobot:
+    """Return a robot whose servos are of the classes that are named, wherever it has the same servo as there."""
+    torques: dict[int, float] = {}
+    for name, load in _weak(borne).items():
+        servo = id(robot.servo(name))  # which several joints may share
+        torques[servo] = max(torques.get(servo, 0.0), CLASSES[str(load.named)])
+    return with_servos(robot, lambda servo: replace(servo, torque=torques.get(id(servo), servo.torque)))
 
 
 def share_at_limit(robot: AnyRobot, record: xr.Dataset) -> xr.DataArray:

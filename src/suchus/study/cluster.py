@@ -33,7 +33,7 @@ _AGAIN = 0.5  # [s]; between two looks whether somebody listens
 _GREETING = 2**20  # bytes of the first message, at most
 _UNREAD = "during deserialization"
 """What Dask says where a scheduler or a worker cannot make out what it was sent."""
-_SOON = 10.0  # [s]; for a scheduler
+_SOON = 8.0  # [s]; for a scheduler: a command that finds none ends within 10 s, its start included
 
 
 class NoCluster(SuchusError, ConnectionError):

@@ -1,0 +1,77 @@
+"""Every gait of the shelf on the default robot: servos below their limits for 98 % of the walk, or it is said."""
+
+import json
+import os
+import re
+import sys
+from pathlib import Path
+
+import pytest
+from shelf_loads import measured
+
+from suchus.gaits import GAITS, suits
+from suchus.hardware.limits import AT_LIMIT
+from suchus.robots import ROBOTS
+
+ROOT = Path(__file__).parents[2]
+sys.path.insert(0, str(ROOT / "tools"))
+from pages.stated import filled  # noqa: E402
+from pages.stated_servos import table  # noqa: E402
+
+STATED = ROOT / "tests" / "docs" / "stated" / "servo_loads.json"
+PAGE = ROOT / "docs" / "servo_commands.md"
+SAID = re.compile(
+    r"(\w+) is at its torque limit of [\d.]+ N m for \d+ % of the walk, first at [\d.]+ s, and up to [\d.]+ degrees "
+    r"from its commanded angle; a servo of \d+ kg cm \([\d.]+ N m\) would do\."
+)
+
+
+def agrees(found):
+    """Refuse a gait with a servo at its limit of which nothing is said, or for which too weak a servo is named."""
+    for gait, told in found.items():
+        assert [SAID.fullmatch(one)[1] for one in told["said"]] == list(told["servos"]), gait
+        assert (told["most"] > AT_LIMIT) == bool(told["servos"]), gait
+        for name, one in told["servos"].items():
+            assert one["then"] <= AT_LIMIT, (gait, name)
+
+
+def test_every_gait_of_the_shelf_is_below_the_limits_or_it_is_said_which_servo_would_do():
+    """One cycle with coarse steps; the table of the page has two with fine ones."""
+    robot = ROBOTS["caiman"]
+    found = measured(robot, cycles=1, timestep=0.005)
+    assert list(found) == [name for name in GAITS if suits(robot, GAITS[name])]
+    assert {"limbs_only", "tail_drag"} <= {gait for gait, told in found.items() if not told["servos"]}
+    assert {"belly_crawl", "spine_only"} <= {gait for gait, told in found.items() if "spine_yaw_1" in told["servos"]}
+    agrees(found)
+
+
+def page(found):
+    return filled(PAGE.read_text(encoding="utf-8"), {}, {"servo_loads": lambda _: table(found)})
+
+
+def test_the_page_states_what_the_servos_bear():
+    """Renew with SUCHUS_GOLDEN=write, after the measures themselves."""
+    found = json.loads(STATED.read_text(encoding="utf-8"))
+    if os.environ.get("SUCHUS_GOLDEN") == "write":
+        PAGE.write_text(page(found), encoding="utf-8")
+    assert page(found) == PAGE.read_text(encoding="utf-8")
+    agrees(found)
+    found["belly_crawl"]["servos"]["spine_yaw_1"]["at_limit"] += 0.02
+    assert page(found) != PAGE.read_text(encoding="utf-8")
+    found["spine_only"]["servos"]["spine_yaw_1"]["then"] = 0.03
+    with pytest.raises(AssertionError, match="spine_only"):
+        agrees(found)
+
+
+@pytest.mark.validate
+def test_the_servos_bear_what_is_kept():
+    """Renew with SUCHUS_GOLDEN=write."""
+    found = measured(ROBOTS["caiman"], cycles=2)
+    if os.environ.get("SUCHUS_GOLDEN") == "write":
+        STATED.write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
+    kept = json.loads(STATED.read_text(encoding="utf-8"))
+    assert {gait: list(told["servos"]) for gait, told in found.items()} == {
+        gait: list(told["servos"]) for gait, told in kept.items()
+    }
+    for gait, told in found.items():
+        assert told["most"] == pytest.approx(kept[gait]["most"], abs=0.01), gait
