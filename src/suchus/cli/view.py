@@ -10,10 +10,10 @@ import tyro
 
 from suchus.cli.commands import BadCommand
 from suchus.cli.options import parse
-from suchus.design import Crocodile
+from suchus.design import AnyRobot
 from suchus.design.checks import require
-from suchus.gaits import GAITS
-from suchus.motion import Gait
+from suchus.gaits import own_gait
+from suchus.motion import AnyGait
 from suchus.record import there
 from suchus.robots import ROBOTS
 from suchus.viewer import Session
@@ -43,12 +43,12 @@ class Where:
 class Walking(Where):
     """What can be said after ``suchus view`` to see a walk."""
 
-    robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
+    robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
     """Who walks."""
-    gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
-    """How, at the beginning."""
-    timestep: float = 0.005
-    """Of the physics [s]; a whole part of 0.01 s."""
+    gait: AnyGait | None = None
+    """How, at the beginning; by default the robot's own gait."""
+    timestep: float | None = None
+    """Of the physics [s], a whole part of the control period; by default half of it, 0.005 s for the caiman."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -59,7 +59,7 @@ class Replaying(Where):
     """The record.nc of an experiment on land."""
     ghost: Path | None = None
     """Another record, or the same one, shown pale beside it."""
-    robot: Crocodile | None = None
+    robot: AnyRobot | None = None
     """Who walks in it; by default the robot of the shelf that the record names."""
 
 
@@ -110,13 +110,14 @@ def serve_walk(options: Walking, opened: Callable[[str], object] | None = None) 
     Raises:
         SuchusError: the walk cannot be walked, the viewer is not installed, or the port is taken.
     """
-    Session(options.robot, options.gait, timestep=options.timestep)  # refuses what cannot be walked, before a browser
+    robot, gait = options.robot, options.gait or own_gait(options.robot)
+    Session(robot, gait, timestep=options.timestep)  # refuses what cannot be walked, before a browser
     pages = _pages()
 
     def page(client: Any) -> Any:
-        return pages.LivePage(client, Session(options.robot, options.gait, timestep=options.timestep))
+        return pages.LivePage(client, Session(robot, gait, timestep=options.timestep))
 
-    return _serve(page, options, f"{options.robot.name}, {options.gait.name}", opened)
+    return _serve(page, options, f"{robot.name}, {gait.name}", opened, camera=pages.camera(robot))
 
 
 def _replay(words: Sequence[str]) -> int:

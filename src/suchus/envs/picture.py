@@ -8,9 +8,9 @@ from jaxtyping import UInt8
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from suchus.design import AnyRobot
-from suchus.envs.senses import size
 from suchus.figures import new, styled
 from suchus.figures.posture import draw_posture
+from suchus.robots import beside_article
 
 WIDTH, HEIGHT = 640, 480
 """Of a picture [pixel]."""
@@ -38,7 +38,7 @@ def picture(robot: AnyRobot, record: xr.Dataset, text: str) -> UInt8[np.ndarray,
         draw_posture(above, robot, record, 0.0)
         draw_posture(side, robot, record, 0.0, view="side")
         x, y = record.centre_of_mass.values[0, :2].tolist()
-        span, wide, below, tall = (size(robot) * part for part in (_SPAN, _WIDE, _BELOW, _TALL))
+        span, wide, below, tall = (beside_article(robot).length * part for part in (_SPAN, _WIDE, _BELOW, _TALL))
         above.set(xlim=(x - span / 2, x + span / 2), ylim=(y - wide / 2, y + wide / 2), ylabel="left [m]", title=text)
         side.set(xlim=(x - span / 2, x + span / 2), ylim=(-below, tall), xlabel="forward [m]", ylabel="up [m]")
         canvas: Any = FigureCanvasAgg(figure)

@@ -11,7 +11,7 @@ from suchus import rotation
 from suchus.control import Sensed
 from suchus.design import GRAVITY, AnyRobot, layout, servo_ranges
 from suchus.errors import UnknownName
-from suchus.robots import ROBOTS
+from suchus.robots import ROBOTS, beside_article
 
 _CAIMAN = ROBOTS["caiman"]
 ANGLE = float(np.pi)
@@ -40,7 +40,7 @@ class Sense(NamedTuple):
 @lru_cache(maxsize=64)
 def senses(robot: AnyRobot) -> tuple[Sense, ...]:
     """Return the columns of an observation of a robot, in order."""
-    place, pace = layout(robot), 1.0 / sqrt(size(robot))
+    place, pace = layout(robot), 1.0 / sqrt(beside_article(robot).length)
     servos, cranks = len(place.servos), bool(turning(robot).any())
     angle = "angle of each servo" + (", of a crank within half a turn to either side" if cranks else "")
     told = "angle that each servo was told last, from its centre: the last action"
@@ -68,11 +68,6 @@ def senses(robot: AnyRobot) -> tuple[Sense, ...]:
         Sense(name, slice(end - count, end), scale, what)
         for (name, count, scale, what), end in zip(rows, ends, strict=True)
     )
-
-
-def size(robot: AnyRobot) -> float:
-    """Return the length of a robot over that of the article's [-]."""
-    return float(robot.length / _CAIMAN.length)
 
 
 def turning(robot: AnyRobot) -> Bool[np.ndarray, " servo"]:
@@ -118,7 +113,7 @@ def observations(
         told: from the centre, over the span [-].
     """
     limits = np.array([robot.servo(name).torque for name in layout(robot).servos])
-    weight, slow = robot.mass * GRAVITY, sqrt(size(robot))
+    weight, slow = robot.mass * GRAVITY, sqrt(beside_article(robot).length)
     turned = turning(robot)
     position = np.where(turned, np.mod(sensed.servo_position + np.pi, 2 * np.pi) - np.pi, sensed.servo_position)
     upward, ahead = rotation.upward(sensed.orientation), rotation.ahead(sensed.orientation)

@@ -7,7 +7,7 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 
-from suchus.design import AnyRobot, check_needs, layout, with_speed_lines
+from suchus.design import AnyRobot, check_needs, front_segment, layout, with_speed_lines
 from suchus.design.checks import Checks
 from suchus.design.scale import control_period, scaled, scaled_fields
 from suchus.errors import InvalidDesign, UnknownName
@@ -139,8 +139,7 @@ class Shoves:
         """Return the body of a robot that is pushed."""
         if self.body is not None:
             return self.body
-        whole = layout(robot).robot
-        return whole.girdles[0].segment if whole.girdles else whole.root
+        return front_segment(robot)
 
 
 def _check_when(check: Checks, owner: str, earliest: float, latest: float) -> None:
