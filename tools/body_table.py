@@ -17,6 +17,7 @@ import sys
 import tempfile
 from pathlib import Path
 
+from suchus.capture import Animal, Camera, film_animal, write_table
 from suchus.cli.entry import main as suchus
 from suchus.design import AnyRobot, Crocodile
 from suchus.design.scale import coarse_step
@@ -46,6 +47,23 @@ TOOLS = {
     "export": "`suchus export`",
 }
 """Commands that take any body: their rows, and what the table calls them."""
+LIZARD = Animal(
+    trunk=0.12,
+    tail=0.20,
+    period=0.8,
+    duty_factor=0.7,
+    limb_phases=(0.0, 0.5, 0.25, 0.75),
+    stride=0.15,
+    outward=0.06,
+    lift=0.02,
+    spine_bend=0.5,
+    spine_rightmost=0.2,
+    tail_bend=0.7,
+    tail_lag=1 / 3,
+    tail_wave=0.0,
+)
+CAMERA = Camera(rate=100.0, noise=0.0, lost=0.0, heading=0.0, scale=None, heights=True, seed=0)
+"""The walk that is captured, and who films it."""
 
 
 def main() -> int:
@@ -91,7 +109,7 @@ def command(row: str, name: str, folder: Path) -> list[str]:
         timed = row in LEAST and hasattr(EXPERIMENTS[row], "timestep")
         return [*words, "--timestep", f"{coarse_step(robot):g}"] if timed else words
     if row == "capture":
-        tracks = ROOT / "tests" / "data" / "capture"
+        tracks = write_table(film_animal(LIZARD, CAMERA, cycles=3), folder / "tracks.csv")
         return ["capture", str(tracks), "--robot", name, "--out", str(folder / "captured.toml")]
     if row == "export":
         return ["export", "--robot", name, "--out", str(folder / "exported")]

@@ -294,8 +294,8 @@ def test_both_ends_of_the_sliders_of_another_body_leave_a_gait_that_it_can_walk(
             assert notice or shown(found, field) == pytest.approx(end, rel=1e-3)
             assert notice == "" or knob.label in notice
     session = Session(robot, gait)
-    assert session.tune("offset", 3.0) == ""
-    assert session.settings.gait.wave.offset == pytest.approx(np.radians(3.0))
+    assert session.tune("offset", 0.5) == ""
+    assert session.settings.gait.wave.offset == pytest.approx(np.radians(0.5))
     assert session.switch("spine", False) == ""
     assert session.settings.walked(robot).wave.amplitude != gait.wave.amplitude
     assert session.settings.walked(robot).wave.offset == session.settings.gait.wave.offset

@@ -107,19 +107,26 @@ def _shaped(walk: Walk, robot: AnyRobot, gait: Pattern, base: Pattern, notes: li
     trunk = hips_ahead(robot, 0)
     paths = []
     for legs, girdle, does in zip(_PAIRS, layout(robot).robot.girdles, base.girdles, strict=True):
+        if not isinstance(does, FootPath):
+            continue
         reach = girdle.limb.reach
-        lengths = {
-            "stroke": trunk * mean_of(walk, "stroke", legs) / reach,
-            "outward": (trunk * mean_of(walk, "outward", legs) - girdle.aside) / reach,
-            "ahead": trunk * mean_of(walk, "ahead", legs) / reach,
-        }
-        if walk.upright:
-            lengths["lift"] = trunk * mean_of(walk, "lift", legs) / reach
-        inside = {field: _rounded(float(np.clip(value, -1.0, 1.0))) for field, value in lengths.items()}
-        paths.append(replace(does, **inside))  # type: ignore[type-var, arg-type]
+        seen = {stem: trunk * mean_of(walk, stem, legs) for stem in ("stroke", "outward", "ahead")}
+        placed = replace(
+            does,
+            stroke=_share(seen["stroke"], reach),
+            outward=_share(seen["outward"] - girdle.aside, reach),
+            ahead=_share(seen["ahead"], reach),
+        )
+        lift = abs(_share(trunk * mean_of(walk, "lift", legs), reach)) if walk.upright else does.lift
+        paths.append(replace(placed, lift=lift))
     unseen = "markers lie on the skin, so that height is" if walk.upright else "lift and height were not seen and are"
     notes.append(f"{unseen} that of {base.name}")
     return replace(gait, girdles=tuple(paths))
+
+
+def _share(length: float, reach: float) -> float:
+    """Return a length as a share of a limb's reach, of which it can be no more than all."""
+    return _rounded(float(np.clip(length / reach, -1.0, 1.0)))
 
 
 def _within_limits(robot: AnyRobot, gait: Pattern, base: Pattern, notes: list[str]) -> Pattern:

@@ -72,7 +72,7 @@ def senses(robot: AnyRobot) -> tuple[Sense, ...]:
 
 def turning(robot: AnyRobot) -> Bool[np.ndarray, " servo"]:
     """Return which servos are cranks, which turn round and round [-]."""
-    return ~np.isfinite(servo_ranges(robot)).all(axis=1)
+    return np.asarray(~np.isfinite(servo_ranges(robot)).all(axis=1))
 
 
 SENSES = senses(_CAIMAN)

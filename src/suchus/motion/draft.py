@@ -4,7 +4,6 @@ from collections.abc import Iterator
 from dataclasses import replace
 from functools import lru_cache
 from math import cos, pi, radians
-from typing import TypeVar
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -33,7 +32,6 @@ _SAMPLES, _JUMP, _MARGIN = 24, 0.7, 0.02  # of a path; rad between two of them; 
 _TRIES, _PATHS = 2, 80  # starts of a limb without a closed form; paths that are solved before the search ends
 _SPEED = 0.6  # of its servo's speed that a joint is asked for at most
 _PLANAR = 2  # hinges of a limb whose foot moves on a surface only
-Kind = TypeVar("Kind", Pattern, AngleTable)
 
 
 def draft_gait(robot: AnyRobot, name: str) -> Pattern | AngleTable:
@@ -206,7 +204,7 @@ def _wave(robot: AnyRobot) -> AxialWave:
     return AxialWave(amplitude=tuple(sorted(knots.items())) or ((0.0, 0.0),), waves=0.0, phase=0.0)
 
 
-def _slow_enough(robot: AnyRobot, gait: Kind) -> Kind:
+def _slow_enough(robot: AnyRobot, gait: Pattern | AngleTable) -> Pattern | AngleTable:
     """Return a gait with a period at which no servo is asked for more speed than it has to spare."""
     clock = np.arange(256) / 256
     step = np.abs(np.diff(pattern_targets(robot, gait, clock), axis=0)).max(axis=0) * 256
