@@ -77,25 +77,29 @@ def _bent(walk: Walk, robot: AnyRobot, duty: float, notes: list[str]) -> AxialWa
         for i in place.cables
         for where in place.cable_places(i)
     ]
-    late, middle, knots = {}, {}, dict.fromkeys(at.values(), 0.0)
-    for part, hinges in parts.items():
-        seen = clock * walk.bends[f"{part}_lateral"]
-        if not hinges:
-            notes.append(f"robot {robot.name} has no {part} that bends; {degrees(abs(seen)):.0f} degrees were seen")
-            continue
-        middle[part] = float(np.mean([where for where, _ in hinges]))
-        late[part] = _within_half(-float(np.angle(seen)) / (2 * np.pi) - (0.75 - duty / 2))
-        for where, most in hinges:
-            knots[where] = min(abs(seen) / len(hinges), most)
-        if abs(seen) / len(hinges) > min(most for _, most in hinges):
-            notes.append(f"the {part} would bend by {degrees(abs(seen)):.0f} degrees; its joints' ranges were taken")
-    waves = 0.0
+    seen = {part: clock * walk.bends[f"{part}_lateral"] for part in parts}
+    bent = {part: hinges for part, hinges in parts.items() if hinges}
+    notes += [
+        f"robot {robot.name} has no {part} that bends; {degrees(abs(seen[part])):.0f} degrees were seen"
+        for part in parts
+        if part not in bent
+    ]
+    middle = {part: float(np.mean([where for where, _ in hinges])) for part, hinges in bent.items()}
+    late = {part: _within_half(-float(np.angle(seen[part])) / (2 * np.pi) - (0.75 - duty / 2)) for part in bent}
+    sign, waves = dict.fromkeys(bent, 1.0), 0.0
     if len(late) > 1:
         lag = _within_half(late["tail"] - late["spine"])
         if abs(lag) > 0.25:  # a standing wave with a node, and what is left of the lag travels
-            lag = _within_half(lag + 0.5)
-            knots |= {where: -knots[where] for where, _ in parts["tail"]}
+            lag, sign["tail"] = _within_half(lag + 0.5), -1.0
         waves = lag / (middle["tail"] - middle["spine"])
+    knots = dict.fromkeys(at.values(), 0.0)
+    for part, hinges in bent.items():
+        turns = [np.exp(2j * np.pi * waves * (where - middle[part])) for where, _ in hinges]
+        asked = abs(seen[part]) / max(abs(sum(turns)), 1e-9)  # joints that bend one after the other cancel a little
+        knots |= {where: sign[part] * min(asked, most) for where, most in hinges}
+        if asked > min(most for _, most in hinges):
+            told = degrees(abs(seen[part]))
+            notes.append(f"the {part} would bend by {told:.0f} degrees; its joints' ranges were taken")
     first = next(iter(late), "")
     phase = _within_half(late[first] - waves * middle[first]) if first else 0.0
     shape = tuple((where, _rounded(angle)) for where, angle in sorted(knots.items())) or ((0.0, 0.0),)
