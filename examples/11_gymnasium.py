@@ -34,8 +34,8 @@ print(*robots.unwrapped.pack.chances[1].fault.split()[:2], "in the second robot"
 task = envs.TASKS["Crawl"]
 centre = tuple(robots.unwrapped.pack.centre)
 policies = {
-    "holding still": envs.still,
-    "anything": envs.Anything(np.random.default_rng(0)),
+    "holding still": envs.Still(task),
+    "anything": envs.Anything(task, np.random.default_rng(0)),
     "the shelf's crawl": envs.Follow(task=task, centre=centre, gait=task.gait),
 }
 for name, policy in policies.items():

@@ -101,8 +101,8 @@ def main() -> None:
     centre = tuple(envs.CrocodileVectorEnv(1, task).pack.centre)
     name = f"learned in {STEPS} steps"
     shown = {
-        "standing still": (task, envs.still),
-        "anything": (task, envs.Anything(np.random.default_rng(SEED))),
+        "standing still": (task, envs.Still(task)),
+        "anything": (task, envs.Anything(task, np.random.default_rng(SEED))),
         "the shelf's gait": (task, envs.Follow(task=task, centre=centre, gait=task.gait)),
         name: (task, learned),
         f"{name}, physics of 2 ms": (replace(task, timestep=0.002), learned),

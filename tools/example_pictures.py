@@ -67,8 +67,8 @@ def policies() -> Figure:
     task = envs.TASKS["Crawl"]
     centre = tuple(envs.CrocodileVectorEnv(1, task).pack.centre)
     players = {
-        "holding still": envs.still,
-        "anything": envs.Anything(np.random.default_rng(0)),
+        "holding still": envs.Still(task),
+        "anything": envs.Anything(task, np.random.default_rng(0)),
         "the shelf's crawl": envs.Follow(task=task, centre=centre, gait=task.gait),
     }
     return _bars({name: envs.play(task, player, episodes=8).forward.tolist() for name, player in players.items()})

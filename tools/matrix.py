@@ -23,6 +23,7 @@ from pathlib import Path
 from typing import Any
 
 from pages.stated import filled
+
 from release import distributions
 from release.environment import ROOT, Environment, Failed, clean, run
 

@@ -34,5 +34,5 @@ def test_tables_of_keypoints_are_told_from_tables_of_angles(tmp_path):
     assert is_angle_table(TABLE)
     assert not is_angle_table(tracks)
     assert not is_angle_table(tmp_path / "none.csv")
-    with pytest.raises(UnsuitedRobot, match="a gait from tracked keypoints needs a crocodile-like robot"):
-        capture([str(tracks), "--robot", "salamander", "--out", str(tmp_path / "walk.toml")])
+    with pytest.raises(UnsuitedRobot, match="a gait from tracked keypoints needs four limbs"):
+        capture([str(tracks), "--robot", "strider", "--out", str(tmp_path / "walk.toml")])

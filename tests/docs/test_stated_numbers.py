@@ -5,8 +5,8 @@ import os
 from pathlib import Path
 
 import pytest
-
 from pages.stated import PASSAGES, filled, passages
+
 from suchus.experiments import EXPERIMENTS
 
 HERE = Path(__file__).parent

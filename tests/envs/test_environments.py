@@ -15,13 +15,14 @@ from gymnasium.utils.env_checker import check_env  # noqa: E402
 from gymnasium.vector import AutoresetMode  # noqa: E402
 
 from suchus import envs, rotation  # noqa: E402
-from suchus.design import servo_names  # noqa: E402
+from suchus.design import layout, leg_joints, servo_names  # noqa: E402
 from suchus.envs.pack import Pack, draw  # noqa: E402
 from suchus.envs.reward import Terms  # noqa: E402
-from suchus.errors import InvalidDesign, OutsideLimits, UnknownName  # noqa: E402
+from suchus.errors import InvalidDesign, OutsideLimits, SuchusError, UnknownName  # noqa: E402
 from suchus.faults import Locked, Weak  # noqa: E402
-from suchus.gaits import GAITS  # noqa: E402
+from suchus.gaits import GAITS, own_gait  # noqa: E402
 from suchus.motion import limb_phase, servo_targets  # noqa: E402
+from suchus.robots import ROBOTS  # noqa: E402
 
 CRAWL, STAND, FAULT = envs.TASKS.values()
 DOCS = Path(__file__).parents[2] / "docs" / "environments.md"
@@ -215,14 +216,14 @@ def test_the_joint_that_was_drawn_breaks_when_it_was_drawn(kind):
 def test_faults_are_drawn_from_all_that_are_named():
     random = np.random.default_rng(0)
     drawn = [draw(FAULT, random) for _ in range(300)]
-    assert {chance.broken.part for chance in drawn} == set(FAULT.breaks.joints)
+    assert {chance.broken.part for chance in drawn} == set(leg_joints())
     assert {chance.broken.kind() for chance in drawn} == {"limp", "locked"}
     assert max(chance.breaks for chance in drawn) <= 400
 
 
 def test_a_standing_robot_stays_up_unless_it_is_pushed_too_hard():
     pushed = envs.Shoves(most=40.0, earliest=0.2, latest=0.2)
-    calm = envs.play(replace(STAND, shoves=None), envs.still, episodes=1, steps=60)
+    calm = envs.play(replace(STAND, shoves=None), envs.Still(STAND), episodes=1, steps=60)
     assert calm.lasted.tolist() == pytest.approx([3.0])
     assert calm.returns[0] > 2.5
     env = gymnasium.make("suchus/Stand-v0", shoves=pushed).unwrapped
@@ -292,7 +293,7 @@ def test_the_gait_beats_standing_still_and_standing_still_beats_anything():
     follow = envs.Follow(task=CRAWL, centre=centre, gait=CRAWL.gait)
     returns = [
         envs.play(CRAWL, policy, episodes=4, steps=90).returns.mean()
-        for policy in (follow, envs.still, envs.Anything(np.random.default_rng(0)))
+        for policy in (follow, envs.Still(CRAWL), envs.Anything(CRAWL, np.random.default_rng(0)))
     ]
     assert returns[0] > 2 > returns[1] > -0.5 > returns[2]
 
@@ -329,7 +330,7 @@ def test_tasks_are_varied_by_naming_their_fields():
         ({"spam": 1}, UnknownName, "Did you mean 'span'?"),
         ({"task": "Crwl"}, UnknownName, "Did you mean 'Crawl'?"),
         ({"robot": "caimen"}, UnknownName, "Did you mean 'caiman'?"),
-        ({"gait": 3}, InvalidDesign, "task.gait is 3; a Gait is needed"),
+        ({"gait": 3}, InvalidDesign, "task.gait is '3'; a Gait or Pattern or AngleTable is needed"),
         ({"breaks": "limp"}, InvalidDesign, "a Breaks or None is needed"),
         ({"span": -1.0}, InvalidDesign, "0.01 to 3.2 rad is allowed"),
         ({"decision": 0.025}, InvalidDesign, "must fit the control period of 0.01 s"),
@@ -347,7 +348,7 @@ def test_what_cannot_be_is_said_in_a_sentence(changes, error, text):
 
 def test_bad_breaks_and_shoves_are_refused():
     with pytest.raises(UnknownName, match="Did you mean 'LF_yaw'"):
-        envs.Breaks(joints=("LF_yav",))
+        envs.CrocodileEnv("Fault", breaks=envs.Breaks(joints=("LF_yav",)))
     with pytest.raises(UnknownName, match="Did you mean 'weak'"):
         envs.Breaks(kinds=("wek",))
     with pytest.raises(UnknownName, match="there is no fault of a servo named 'deaf'"):
@@ -391,3 +392,100 @@ def test_the_page_lists_every_sense_as_it_is():
     for sense in envs.SENSES:
         row = f"| `{sense.name}` | {sense.columns.start} to {sense.columns.stop - 1} | {sense.scale} | {sense.what} |"
         assert row in page
+
+
+@pytest.mark.parametrize("name", list(ROBOTS))
+def test_every_robot_of_the_shelf_acts_in_spaces_of_its_own(name):
+    robot, place = ROBOTS[name], layout(ROBOTS[name])
+    env = gymnasium.make("suchus/Fault-v0", robot=name).unwrapped
+    assert env.action_space.shape == (len(place.servos),)
+    assert env.observation_space.shape == (4 * len(place.servos) + len(place.limbs) + len(place.trunk) + 15,)
+    assert gymnasium.make("suchus/Fault-v0", robot=robot).unwrapped.task == env.task
+    many = envs.CrocodileVectorEnv(2, "Fault", robot=name)
+    seen, said = many.reset(seed=[3, 4])
+    alone, info = env.reset(seed=4)
+    limbs = [servo for limb in place.limbs for servo in place.servos[limb.servos]]
+    assert info["fault"].split()[0] in (limbs or place.servos)
+    np.testing.assert_array_equal(seen[1], alone)
+    for ours, theirs in zip(acting(many, 3), acting(many, 3), strict=True):
+        assert ours[0].shape == theirs[0].shape == (2, *env.observation_space.shape)
+    assert env.observation_space.contains(env.step(env.action_space.sample())[0])
+    assert said["fault"][1] == info["fault"]
+
+
+@pytest.mark.parametrize(("name", "lengths"), [("salamander", 0.25), ("strider", 0.5), ("salamandra", 0.4)])
+def test_the_open_loop_gait_of_another_body_walks_through_the_environment(name, lengths):
+    env = envs.CrocodileVectorEnv(2, "Crawl", robot=name)
+    task = env.task
+    assert task.gait == own_gait(task.robot)
+    follow = envs.Follow(task=task, centre=tuple(env.pack.centre), gait=task.gait)
+    cycles = 60 * task.decision / task.gait.period
+    assert cycles > 1.4
+    played = envs.play(task, follow, episodes=2, steps=60)
+    assert played.forward.min() > lengths * task.robot.length
+    assert played.returns.min() > 1.0
+    held = envs.play(task, envs.Still(task), episodes=1, steps=10)
+    assert abs(held.forward[0]) < 0.02 * task.robot.length
+
+
+def test_a_crank_turns_on_by_what_it_is_told_and_its_angle_is_told_within_a_turn():
+    env = envs.CrocodileVectorEnv(1, "Crawl", robot="salamandra", jitter=0.0)
+    env.reset(seed=0)
+    cranks = [place.servos.start for place in layout(env.task.robot).limbs]
+    speed = env.task.robot.servo("LF_crank").speed
+    action = np.zeros((1, env.single_action_space.shape[0]))
+    action[0, cranks[0]], action[0, cranks[1]] = 0.9, 3.0
+    before = env.pack._told.copy()
+    seen = [env.step(action)[0][0] for _ in range(30)]
+    turned = (env.pack._told - before)[0]
+    assert turned[cranks[:2]] == pytest.approx([0.9 * speed * 1.5, speed * 1.5])
+    assert turned[cranks[0]] > 2 * np.pi
+    assert envs.part(np.array(seen), "told", "salamandra")[-1, cranks].tolist() == pytest.approx([0.9, 1.0, 0.0, 0.0])
+    angles = np.pi * envs.part(np.array(seen), "servo_position", "salamandra")[:, cranks[0]].astype(float)
+    assert np.abs(angles).max() <= np.pi
+    assert np.ptp(angles) > 5.0
+    assert np.unwrap(angles)[-1] - angles[0] == pytest.approx(0.9 * speed * 1.5, abs=1.0)
+
+
+def test_a_task_follows_the_size_of_the_robot():
+    task = CRAWL.on(ROBOTS["salamander"])
+    longer = ROBOTS["salamander"].length / ROBOTS["caiman"].length
+    heavier = ROBOTS["salamander"].mass / ROBOTS["caiman"].mass
+    assert (task.decision, task.timestep) == (0.025, 0.0025)
+    assert task.rewards.forward == pytest.approx(CRAWL.rewards.forward / longer)
+    assert task.rewards.work == pytest.approx(CRAWL.rewards.work / (heavier * longer))
+    assert task.rewards.haste == CRAWL.rewards.haste
+    pushed = replace(CRAWL, shoves=envs.Shoves()).on(ROBOTS["strider"])
+    assert pushed.shoves.most == pytest.approx(15.0 * 3.0 / ROBOTS["caiman"].mass)
+    assert (pushed.shoves.where(pushed.robot), envs.Shoves().where(CRAWL.robot)) == ("front", "thorax")
+    assert CRAWL.on(ROBOTS["long_tail"]) == replace(CRAWL, robot=ROBOTS["long_tail"])
+    rates = {sense.name: sense.scale for sense in envs.senses(ROBOTS["salamander"])}
+    assert rates["servo_velocity"] == f"{10 / np.sqrt(longer):.3g} rad/s"
+
+
+def test_the_senses_of_the_article_s_robot_are_its_readings_over_fixed_scales():
+    env = envs.CrocodileVectorEnv(1, CRAWL)
+    env.reset(seed=1)
+    *_, (seen, *_) = acting(env, 3)
+    felt = env.pack._sensed()
+    np.testing.assert_array_equal(
+        envs.part(seen, "servo_velocity"), np.clip(felt.servo_velocity / 10, -1, 1, dtype="f4")
+    )
+    np.testing.assert_array_equal(envs.part(seen, "angular_velocity"), (felt.angular_velocity / 10).astype("f4"))
+    assert envs.senses(ROBOTS["caiman"]) == envs.SENSES
+    assert env.single_observation_space.shape == (101,)
+
+
+@pytest.mark.parametrize(
+    ("changes", "text"),
+    [
+        ({"task": "Stand", "robot": "strider"}, "a task that begins upright needs a crocodile-like robot"),
+        ({"robot": "strider", "gait": "belly_crawl"}, "choose a gait made for it"),
+        ({"robot": "strider", "breaks": envs.Breaks(joints=("tail_cable",))}, "no servo named 'tail_cable'"),
+        ({"robot": "strider", "timestep": 0.02}, "task.timestep is 0.02"),
+    ],
+)
+def test_what_another_body_cannot_do_is_refused_in_a_sentence(changes, text):
+    with pytest.raises(SuchusError, match=text) as told:
+        envs.CrocodileEnv(**changes)
+    assert str(told.value).count(". ") <= 1

@@ -16,6 +16,7 @@ from suchus.robots import ROBOTS
 ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT / "tools"))
 from pages.stated import filled  # noqa: E402
+
 from pages.stated_servos import table  # noqa: E402
 
 STATED = ROOT / "tests" / "docs" / "stated" / "servo_loads.json"

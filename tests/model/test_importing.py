@@ -13,13 +13,14 @@ from hypothesis import strategies as st
 import suchus
 from suchus import blueprint
 from suchus.design import AnyRobot, Crank, Servo, Spring, general, layout
+from suchus.design.scale import coarse_step
 from suchus.errors import OutsideLimits, UnknownName, UnreadableFile
 from suchus.gaits import GAITS
 from suchus.metrics import displacement
 from suchus.model import compile_model, joint_addresses
 from suchus.model.export import export
 from suchus.model.importing import Words, import_robot
-from suchus.motion import check_limits, draft_gait
+from suchus.motion import AngleTable, check_limits, draft_gait
 from suchus.robots import ROBOTS
 
 PLACES = 1e-9  # m
@@ -344,3 +345,52 @@ def test_a_file_of_nothing_but_what_stands_is_refused(tmp_path):
     with pytest.raises(UnreadableFile, match="no hinge"):
         read(urdf(link("a"), link("b"), joint("ab", "a", "b", (0, 0, 0), "1 0 0", kind="fixed")), tmp_path)
     assert not list(Path(tmp_path).glob("*.toml"))
+
+
+def two_hinges(kind):
+    """Return a quadruped whose limbs have two hinges: hip swung by yaw and lifted by pitch, or two in one plane."""
+    axes = {"sprawled": ("0 0 1", "1 0 0"), "upright": ("0 1 0", "0 1 0"), "flat": ("0 0 1", "0 0 1")}[kind]
+    parts = [link("base", 3.0, shape('<box size="0.5 0.12 0.06"/>'))]
+    for name, (x, y) in {"FL": (0.2, 1), "FR": (0.2, -1), "RL": (-0.2, 1), "RR": (-0.2, -1)}.items():
+        out = (0.0, 0.12 * y, 0.0) if kind != "upright" else (0.0, 0.0, -0.12)
+        tip = (0.0, 0.10 * y, -0.10) if kind != "upright" else (0.0, 0.0, -0.12)
+        knee = (0.0, 0.0, 0.0) if kind == "sprawled" else out
+        foot = tuple(a + b for a, b in zip(out, tip, strict=True)) if kind == "sprawled" else tip
+        parts += [
+            link(f"{name}_upper", 0.05, at=" ".join(str(part / 2) for part in knee)),
+            link(f"{name}_lower", 0.05, shape('<sphere radius="0.015"/>', " ".join(map(str, foot)))),
+            joint(f"{name}_one", "base", f"{name}_upper", (x, 0.07 * y, 0.0), axes[0]),
+            joint(f"{name}_two", f"{name}_upper", f"{name}_lower", knee, axes[1]),
+        ]
+    return urdf(*parts)
+
+
+@pytest.mark.parametrize("kind", ["sprawled", "upright"])
+def test_limbs_of_two_hinges_get_a_gait_that_walks(kind, tmp_path):
+    robot = read(two_hinges(kind), tmp_path, heading=0.0).robot
+    assert [len(girdle.limb.hinges) for girdle in robot.girdles] == [2, 2]
+    gait = draft_gait(robot, "walk")
+    assert isinstance(gait, AngleTable)
+    check_limits(robot, gait)
+    record = suchus.crawl(robot, gait, duration=1.0 + 2 * gait.period, timestep=coarse_step(robot))
+    ahead, aside, _ = displacement(record).values / robot.length
+    assert ahead > 0.05
+    assert abs(aside) < 0.5 * ahead
+
+
+@pytest.mark.parametrize(("kind", "why"), [("flat", "along no path of 0.08 of"), ("one", "have 1 driven hinges")])
+def test_limbs_that_cannot_walk_are_told_in_a_sentence_what_to_do(kind, why, tmp_path):
+    robot = read(two_hinges("flat" if kind == "flat" else "sprawled"), tmp_path, heading=0.0).robot
+    if kind == "one":
+        robot = replace(robot, girdles=tuple(with_one_hinge(girdle) for girdle in robot.girdles))
+    with pytest.raises(OutsideLimits, match=why) as told:
+        draft_gait(robot, "walk")
+    assert "write a gait of its own" in str(told.value)
+
+
+def with_one_hinge(girdle):
+    """Return a girdle whose limbs keep their first hinge."""
+    first, *others = girdle.limb.links
+    links = (replace(first, hinges=first.hinges[:1]), *(replace(one, hinges=()) for one in others))
+    kept = tuple(one for one in links if one.hinges)
+    return replace(girdle, limb=replace(girdle.limb, links=kept))

@@ -4,9 +4,9 @@ import json
 import re
 
 import pytest
+from pages.stated import filled
 
 import matrix
-from pages.stated import filled
 
 SOUND = {"date": "2026-01-02", "told": "ok: doctor", "sound": True, "versions": {"numpy": "2.2.0"}}
 

@@ -6,15 +6,20 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from suchus.design import layout
+from suchus.design.scale import control_period, scaled
 from suchus.errors import OutsideLimits
 from suchus.faults import Limp, Locked
-from suchus.gaits import GAITS
+from suchus.gaits import GAITS, own_gait
 from suchus.land import simulate
 from suchus.motion import Gait, check_limits
 from suchus.robots import ROBOTS
 from suchus.viewer import Session
-from suchus.viewer.knobs import FORCE, GAIT_KNOBS, force_on, shown, tuned
+from suchus.viewer.bodies import Posture, pieces
+from suchus.viewer.history import columns
+from suchus.viewer.knobs import BUMPS, FORCE, GAIT_KNOBS, bumps_under, force_on, knobs_of, shown, tuned
 from suchus.viewer.live_page import status
+from suchus.viewer.plots import gait_bars, plans
 from suchus.viewer.session import _PLAIN
 
 ROBOT, CRAWL = ROBOTS["caiman"], GAITS["belly_crawl"]
@@ -194,7 +199,8 @@ def test_every_fault_of_the_shelf_can_be_let_happen_and_is_there_after_a_reset()
 def test_the_force_of_a_push_is_told_beside_the_weight_of_whom_it_pushes():
     heavy = replace(ROBOT, name="heavy", pelvis=replace(ROBOT.pelvis, mass=ROBOT.pelvis.mass + 10.0))
     assert force_on(heavy).hint == f"heavy weighs {(ROBOT.mass + 10.0) * 9.81:.0f} N."
-    assert replace(force_on(heavy), hint="") == FORCE
+    assert replace(force_on(ROBOT), hint="") == FORCE
+    assert force_on(heavy).high == pytest.approx(FORCE.high * heavy.mass / ROBOT.mass, rel=0.02)
 
 
 def test_a_push_lasts_as_long_as_it_says():
@@ -233,3 +239,87 @@ def test_the_plots_reach_back_a_few_seconds(sound):
     assert np.all(np.diff(table["time"]) > 0)
     weight = sum(table[name][-100:].mean() for name in ("LF", "RF", "LH", "RH", "belly", "tail"))
     assert weight == pytest.approx(ROBOT.mass * 9.81, rel=0.1)
+
+
+def test_the_article_s_robot_has_the_sliders_that_others_are_scaled_from():
+    assert knobs_of(ROBOT, CRAWL) == GAIT_KNOBS
+    assert bumps_under(ROBOT) == BUMPS
+    assert Session(ROBOT, GAIT).settings.force == 15.0
+
+
+@pytest.mark.parametrize("name", list(ROBOTS))
+def test_every_robot_walks_live_and_is_drawn_pushed_and_broken(name):
+    robot, gait = ROBOTS[name], own_gait(ROBOTS[name])
+    session, calm = Session(robot, gait), Session(robot, gait)
+    period, weight, place = control_period(robot), 9.81 * robot.mass, layout(robot)
+    assert session.settings.force == pytest.approx(0.434 * weight, rel=0.05)
+    assert force_on(robot).high * force_on(robot).scale == pytest.approx(1.74 * weight, rel=0.05)
+    assert str(round(weight)) in force_on(robot).hint or "mN" in force_on(robot).hint
+    for one in (session, calm):
+        one.advance(5 * period)
+    session.push()
+    for one in (session, calm):
+        one.advance(15 * period)
+    now = session.look()
+    assert now.pushed == pytest.approx((0.0, session.settings.force, 0.0), abs=1e-6)
+    moved = now.now["centre_of_mass"][1] - calm.look().now["centre_of_mass"][1]
+    assert moved > (1e-3 * robot.length if place.limbs else 0.0)  # friction all but holds a body that lies on its belly
+    part = place.servos[0]
+    assert session.lose(part, "limp") == ""
+    session.advance(2 * period)
+    assert not session.look().trouble
+    table = session.table()
+    assert set(table) == set(columns(place.limb_names))
+    posture = Posture(robot)
+    posture.put(session.look().now)
+    bones = posture.bones(None)
+    for piece in pieces(robot, 2):
+        assert set(piece.bones) <= set(bones)
+    for servo in (*place.servos, *place.limb_names):
+        assert np.linalg.norm(posture.part(servo) - session.look().now["position"]) < robot.length
+    assert gait_bars(robot, table).count('<text x="2"') == len(place.limbs)
+    assert [line.column for line in plans(robot)[2].lines] == [*place.limb_names, "tail", "belly"]
+
+
+@pytest.mark.parametrize("name", ["pleurobot", "salamander", "salamandra", "strider", "swimmer"])
+def test_both_ends_of_the_sliders_of_another_body_leave_a_gait_that_it_can_walk(name):
+    robot, gait = ROBOTS[name], own_gait(ROBOTS[name])
+    knobs = knobs_of(robot, gait)
+    assert {"period", "offset", "bends"} <= set(knobs)
+    assert ("strokes" in knobs, "turned" in knobs) == (name not in ("salamandra", "swimmer"), name == "salamandra")
+    for field, knob in knobs.items():
+        assert knob.low - 1e-9 <= shown(gait, field) <= knob.high + 1e-9
+        for end in (knob.low, knob.high):
+            found, notice = tuned(robot, gait, field, end)
+            check_limits(robot, found)
+            assert notice or shown(found, field) == pytest.approx(end, rel=1e-3)
+            assert notice == "" or knob.label in notice
+    session = Session(robot, gait)
+    assert session.tune("offset", 0.5) == ""
+    assert session.settings.gait.wave.offset == pytest.approx(np.radians(0.5))
+    assert session.switch("spine", False) == ""
+    assert session.settings.walked(robot).wave.amplitude != gait.wave.amplitude
+    assert session.settings.walked(robot).wave.offset == session.settings.gait.wave.offset
+
+
+def test_a_smaller_crocodile_has_smaller_sliders():
+    small = scaled(ROBOT, length=0.5)
+    half = knobs_of(small, CRAWL)
+    assert half["stroke"].high == pytest.approx(50.0)
+    assert half["period"] == GAIT_KNOBS["period"]
+    assert bumps_under(small).high == pytest.approx(30.0)
+
+
+def test_a_table_of_angles_has_nothing_to_turn_and_is_refused_in_a_sentence():
+    robot, gait = ROBOTS["salamander"], GAITS["animal_walk"]
+    assert knobs_of(robot, gait) == {}
+    with pytest.raises(OutsideLimits, match="is a table of angles: choose another gait"):
+        Session(robot, gait)
+
+
+def test_a_body_without_limbs_is_watched_but_has_no_heading_loop():
+    session = Session(ROBOTS["swimmer"], own_gait(ROBOTS["swimmer"]))
+    assert "needs limbs to walk on; robot 'swimmer' lacks that" in session.switch("heading", True)
+    assert session.settings.heading is False
+    session.advance(0.05)
+    assert not session.look().trouble

@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from suchus.design import LEGS
 from suchus.design.ground import Ground, slope
 from suchus.design.relief import Bumps, heights
 from suchus.errors import IncompatibleRecord, UnreadableFile
@@ -12,7 +13,7 @@ from suchus.robots import ROBOTS
 from suchus.rotation import rotate
 from suchus.viewer import rods
 from suchus.viewer.bodies import Posture, pieces, support
-from suchus.viewer.history import COLUMNS
+from suchus.viewer.history import columns
 from suchus.viewer.plots import gait_bars
 from suchus.viewer.replay import _NEEDED, Player, takes
 from suchus.viewer.swim import films
@@ -33,7 +34,7 @@ def test_a_record_gives_a_take_for_every_run(walk):
     record = found[0].record
     np.testing.assert_array_equal(found[0].at(0.71)["position"], record.position.sel(time=0.7, method="nearest"))
     np.testing.assert_array_equal(found[0].at(99.0)["position"], record.position.isel(time=-1))
-    assert set(found[0].table()) == set(COLUMNS)
+    assert set(found[0].table()) == set(columns(LEGS))
     assert found[0].table()["forward"][20] == pytest.approx(0.0, abs=1e-9)  # at one second the walk begins
 
 
@@ -138,8 +139,10 @@ def test_the_support_of_four_feet_goes_round():
 
 def test_gait_bars_show_every_stance_of_every_foot():
     time = np.linspace(0.0, 4.0, 401)
-    table = {name: np.where(np.sin(2 * np.pi * time) > 0, 5.0, 0.0) for name in COLUMNS} | {"time": time}
-    assert gait_bars(table).count('height="15" fill="#0072B2"') == 4  # the left front foot, four times
+    table = {name: np.where(np.sin(2 * np.pi * time) > 0, 5.0, 0.0) for name in columns(LEGS)} | {"time": time}
+    assert (
+        gait_bars(ROBOTS["caiman"], table).count('height="15" fill="#0072B2"') == 4
+    )  # the left front foot, four times
 
 
 def test_a_film_of_a_swim_has_a_frame_for_every_instant(tmp_path):

@@ -3,6 +3,7 @@
 from suchus.capture.angle_table import AngleCycle, is_angle_table, read_angles
 from suchus.capture.animal import Animal, film_animal
 from suchus.capture.film import Camera, film, keypoints
+from suchus.capture.patterned import NEEDED, to_pattern
 from suchus.capture.played import to_angle_table
 from suchus.capture.reading import Reading, read_tracks, told, write_gait
 from suchus.capture.retarget import Captured, driven_share, to_gait
@@ -12,6 +13,7 @@ from suchus.capture.walk import Seen, Walk, observe
 from suchus.capture.wave import standing_index
 
 __all__ = [
+    "NEEDED",
     "AngleCycle",
     "Animal",
     "Camera",
@@ -32,6 +34,7 @@ __all__ = [
     "standing_index",
     "to_angle_table",
     "to_gait",
+    "to_pattern",
     "told",
     "write_gait",
     "write_table",

@@ -8,9 +8,9 @@ import numpy as np
 
 from suchus.capture.walk import UNSURE, Walk
 from suchus.capture.wave import STANDING
-from suchus.design import LEGS, AnyRobot, Crocodile, crocodile, servo_names
-from suchus.errors import OutsideLimits
-from suchus.motion import Gait, check_limits, servo_targets, tail_bend, trunk_bend
+from suchus.design import LEGS, AnyRobot, Crocodile, layout
+from suchus.errors import OutsideLimits, UnsuitedRobot
+from suchus.motion import Gait, Pattern, check_limits, servo_targets, tail_bend, trunk_bend
 
 Duty = Literal["retraction", "contact"]
 """Which share of the cycle becomes the duty factor: feet going back along the body, or feet at rest on the ground.
@@ -28,7 +28,7 @@ _STEPS = 200  # of the phase, where a gait is looked at over a cycle
 class Captured:
     """A gait read from a walk."""
 
-    gait: Gait
+    gait: Gait | Pattern
     """What the robot is told to do."""
     notes: tuple[str, ...]
     """What was seen and the gait does not hold, what it holds and was not seen, and what was changed."""
@@ -51,7 +51,8 @@ def to_gait(walk: Walk, robot: AnyRobot, base: Gait, *, name: str, duty: Duty = 
     Raises:
         OutsideLimits: the robot cannot follow even with the base's posture and a small stroke.
     """
-    robot = crocodile(robot, "a captured walk")
+    if not isinstance(robot, Crocodile):
+        raise UnsuitedRobot(f"robot {robot.name!r} walks by a pattern; a captured gait of legs needs a crocodile's.")
     notes: list[str] = []
     gait = _timed(walk, replace(base, name=name), duty, notes)
     gait = _bent(walk, gait, notes)
@@ -70,19 +71,20 @@ def driven_share(robot: Crocodile) -> float:
     return (cable - robot.tail.pitch / 4) / (cable + robot.tail.fin_length)
 
 
-def _mean(walk: Walk, stem: str, legs: tuple[str, ...] = LEGS) -> float:
+def mean_of(walk: Walk, stem: str, legs: tuple[str, ...] = LEGS) -> float:
+    """Return the mean of a number over legs, leaving out duty factors that are not sure."""
     known = [leg for leg in legs if stem != "duty" or not walk.numbers[f"duty_{leg}"].error > UNSURE]
     return float(np.mean([walk.value(f"{stem}_{leg}") for leg in known or legs]))
 
 
 def _timed(walk: Walk, gait: Gait, duty: Duty, notes: list[str]) -> Gait:
     stem = "duty" if duty == "contact" else "retraction"
-    share = _mean(walk, stem)
-    other = _mean(walk, "retraction" if duty == "contact" else "duty")
+    share = mean_of(walk, stem)
+    other = mean_of(walk, "retraction" if duty == "contact" else "duty")
     if abs(share - other) > 0.05:
         notes.append(
-            f"feet rest on the ground for {_mean(walk, 'duty'):.2f} of the cycle and go back along the body for "
-            f"{_mean(walk, 'retraction'):.2f} of it; a gait has one duty factor, the {duty} share was taken"
+            f"feet rest on the ground for {mean_of(walk, 'duty'):.2f} of the cycle and go back along the body for "
+            f"{mean_of(walk, 'retraction'):.2f} of it; a gait has one duty factor, the {duty} share was taken"
         )
     apart = {leg: walk.value(f"{stem}_{leg}") for leg in LEGS}
     if np.ptp(list(apart.values())) > 0.05:
@@ -100,7 +102,7 @@ def _timed(walk: Walk, gait: Gait, duty: Duty, notes: list[str]) -> Gait:
 def _bent(walk: Walk, gait: Gait, notes: list[str]) -> Gait:
     """Set the bends so that the gait's own law gives the first harmonics that were seen."""
     # both clocks have LF's mid-stance in common: the gait's begins half the difference of the duty factors off
-    clock = np.exp(1j * np.pi * (gait.duty_factor - _mean(walk, "duty")))
+    clock = np.exp(1j * np.pi * (gait.duty_factor - mean_of(walk, "duty")))
     unit = replace(gait, trunk_bend=1.0, tail_bend=1.0, spine_phase=0.0, tail_phase=0.0)
     # the gait's laws speak in joint angles, what was seen in the article's signs
     spine, late = _solve(-clock * walk.bends["spine_lateral"], _harmonic(unit, "trunk"))
@@ -143,8 +145,9 @@ def _solve(seen: complex, unit: complex) -> tuple[float, float]:
 def _shaped(walk: Walk, robot: Crocodile, gait: Gait, base: Gait, notes: list[str]) -> Gait:
     """Take lengths over in proportion to the trunk, and from the base what was not seen."""
     trunk = robot.spine.length + robot.thorax.shoulder
-    stroke = trunk * _mean(walk, "stroke")
-    pairs = {girdle: trunk * _mean(walk, "stroke", legs) for girdle, legs in (("front", LEGS[:2]), ("hind", LEGS[2:]))}
+    stroke = trunk * mean_of(walk, "stroke")
+    sides = (("front", LEGS[:2]), ("hind", LEGS[2:]))
+    pairs = {girdle: trunk * mean_of(walk, "stroke", legs) for girdle, legs in sides}
     if abs(pairs["front"] - pairs["hind"]) > 0.1 * stroke:
         told = " and ".join(f"{girdle} {1000 * value:.0f} mm" for girdle, value in pairs.items())
         notes.append(f"the feet's half strokes differ, {told} at the robot's size; the gait holds their mean")
@@ -154,22 +157,22 @@ def _shaped(walk: Walk, robot: Crocodile, gait: Gait, base: Gait, notes: list[st
         notes.append(f"markers lie on the skin, so that hip_height is that of {base.name}")
         gait = replace(
             gait,
-            lift=_rounded(trunk * _mean(walk, "lift")),
+            lift=_rounded(trunk * mean_of(walk, "lift")),
             tail_pitch=_rounded(walk.value("tail_vertical_steady")),
         )
     return replace(
         gait,
         stroke=_rounded(stroke),
-        front_reach=_rounded(trunk * _mean(walk, "outward", LEGS[:2]) - robot.front_leg.hip_offset),
-        hind_reach=_rounded(trunk * _mean(walk, "outward", LEGS[2:]) - robot.hind_leg.hip_offset),
-        front_ahead=_rounded(trunk * _mean(walk, "ahead", LEGS[:2])),
-        hind_ahead=_rounded(trunk * _mean(walk, "ahead", LEGS[2:])),
+        front_reach=_rounded(trunk * mean_of(walk, "outward", LEGS[:2]) - robot.front_leg.hip_offset),
+        hind_reach=_rounded(trunk * mean_of(walk, "outward", LEGS[2:]) - robot.hind_leg.hip_offset),
+        front_ahead=_rounded(trunk * mean_of(walk, "ahead", LEGS[:2])),
+        hind_ahead=_rounded(trunk * mean_of(walk, "ahead", LEGS[2:])),
     )
 
 
 def _within_limits(robot: Crocodile, gait: Gait, base: Gait, notes: list[str]) -> Gait:
     """Change as little as needed: bends to their limits, then the base's posture, then a shorter stroke."""
-    trunk_most = 3 * min(abs(end) for end in robot.spine.yaw_range)
+    trunk_most = len(layout(robot).trunk_yaw) * min(abs(end) for end in robot.spine.yaw_range)
     for field, asked, most in (
         ("trunk_bend", gait.trunk_bend, trunk_most),
         ("tail_bend", gait.tail_bend, robot.tail.bend_limit),
@@ -218,26 +221,17 @@ def _within_speed(robot: Crocodile, gait: Gait, notes: list[str]) -> Gait:
     phase = np.arange(_STEPS + 1) / _STEPS
     targets = servo_targets(robot, gait, phase[:, None] + np.array(gait.limb_phases))
     turns = np.abs(np.diff(targets, axis=0)).max(axis=0) * _STEPS  # [rad/cycle]
-    allowed = np.array([_speed(robot, servo) for servo in servo_names()])
+    servos = layout(robot).servos
+    allowed = np.array([robot.servo(servo).speed for servo in servos])
     needed = float((turns / allowed).max())
     if needed <= gait.period:
         return gait
-    slow = servo_names()[int(np.argmax(turns / allowed))]
+    slow = servos[int(np.argmax(turns / allowed))]
     notes.append(
         f"in a cycle of {gait.period:.2f} s {slow} would have to turn faster than its servo can; the period is "
         f"{needed:.2f} s"
     )
     return replace(gait, period=_rounded(needed + 5e-5))
-
-
-def _speed(robot: Crocodile, servo: str) -> float:
-    if servo == "tail_cable":
-        return robot.tail.cable_servo.speed
-    if servo == "tail_pitch":
-        return robot.tail.pitch_servo.speed
-    if servo.startswith("spine"):
-        return (robot.spine.yaw_servo if "yaw" in servo else robot.spine.pitch_servo).speed
-    return robot.leg(servo[:2]).servo.speed
 
 
 def _unheld(walk: Walk) -> list[str]:

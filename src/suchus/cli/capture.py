@@ -10,6 +10,8 @@ import tyro
 
 from suchus import blueprint
 from suchus.capture import (
+    NEEDED,
+    Captured,
     Reading,
     Walk,
     driven_share,
@@ -19,20 +21,23 @@ from suchus.capture import (
     read_tracks,
     to_angle_table,
     to_gait,
+    to_pattern,
     told,
     write_gait,
 )
 from suchus.cli.commands import BadCommand
 from suchus.cli.options import parse
 from suchus.cli.terminal import working
-from suchus.design import AnyRobot
-from suchus.design.suited import crocodile
+from suchus.design import AnyRobot, Crocodile, check_needs
+from suchus.errors import OutsideLimits
 from suchus.figures import captioned, save
 from suchus.figures.gait_diagram import GaitTrack, gait_diagram
-from suchus.gaits import GAITS
-from suchus.motion import Gait, check_limits
+from suchus.gaits import own_gait
+from suchus.motion import AnyGait, Gait, Pattern, check_limits
 from suchus.record import check_writable
 from suchus.robots import ROBOTS
+
+_SHELF = "caiman"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -45,14 +50,14 @@ class Options:
     """The gait file; its diagram is saved beside it."""
     robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
     """Who shall walk like that."""
-    base: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
-    """Gait that lends what was not seen."""
+    base: AnyGait | None = None
+    """Gait that lends what was not seen; by default the robot's own."""
     period: float = 1.0
     """Of a table of joint angles, which is over one cycle: its duration [s]."""
     duty: Literal["retraction", "contact"] = "retraction"
     """What the duty factor is: the share in which feet go back along the body, or in which they rest on the ground."""
     tail_share: float | None = None
-    """Where along the tail its bend is taken, 1 at the tip; by default where the robot's cable ends."""
+    """Where along the tail its bend is taken, 1 at the tip; by default where a crocodile's cable ends."""
     names: tuple[str, ...] = ()
     """Keypoints that the file calls otherwise, as THEIRS=OURS."""
     fps: float | None = None
@@ -84,20 +89,35 @@ def capture(words: Sequence[str]) -> int:
     check_writable(options.out.parent)
     if is_angle_table(options.tracks):
         return _play(options)
-    robot = crocodile(options.robot, "a gait from tracked keypoints")
+    robot = options.robot
+    check_needs(robot, NEEDED, "a gait from tracked keypoints")
+    base = options.base or own_gait(robot)
     with working() as bars:
         move = bars.task(options.tracks.name)
         move("reading", 0.1)
         tracks = read_tracks(options.tracks, _how(options)).between(options.start, options.end)
         move("looking for the cycle", 0.3)
-        walk = observe(tracks, tail_share=driven_share(robot) if options.tail_share is None else options.tail_share)
+        driven = driven_share(robot) if isinstance(robot, Crocodile) else 1.0
+        walk = observe(tracks, tail_share=driven if options.tail_share is None else options.tail_share)
         move("writing", 0.8)
-        captured = to_gait(walk, robot, options.base, name=options.out.stem, duty=options.duty)
+        captured = _retargeted(walk, options, base)
         write_gait(captured, walk, options.out)
         picture = _draw(walk, options.out)
+    who = "" if robot.name == _SHELF else f"--robot {robot.name} "
     print(*told(walk), *(f"note: {note}" for note in captured.notes), sep="\n")
-    print(f"gait: {options.out}\ndiagram: {picture}\nrun it: suchus run displacement --gait {options.out}")
+    print(f"gait: {options.out}\ndiagram: {picture}\nrun it: suchus run displacement {who}--gait {options.out}")
     return 0
+
+
+def _retargeted(walk: Walk, options: Options, base: AnyGait) -> Captured:
+    """Return the gait of the kind that lends what was not seen."""
+    if isinstance(base, Gait):
+        return to_gait(walk, options.robot, base, name=options.out.stem, duty=options.duty)
+    if isinstance(base, Pattern):
+        return to_pattern(walk, options.robot, base, name=options.out.stem, duty=options.duty)
+    raise OutsideLimits(
+        f"gait {base.name!r} is a table of angles, which lends nothing to a captured walk: name another --base."
+    )
 
 
 def _play(options: Options) -> int:

@@ -11,7 +11,7 @@ import tyro
 from suchus.cli.options import parse
 from suchus.design import AnyRobot
 from suchus.errors import UnknownName
-from suchus.gaits import GAITS
+from suchus.gaits import own_gait
 from suchus.model.export import Format, export
 from suchus.motion import AnyGait
 from suchus.record import check_name, check_writable
@@ -26,8 +26,8 @@ class Options:
     """MJCF for MuJoCo, USD for Isaac, Newton and Omniverse (extra usd), URDF for nearly everything else."""
     robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
     """Which robot."""
-    home: AnyGait = field(default_factory=lambda: GAITS["belly_crawl"])
-    """Gait whose mid-stance is the home posture of the MJCF."""
+    home: AnyGait | None = None
+    """Gait whose mid-stance is the home posture of the MJCF; by default the robot's own."""
     timestep: Annotated[float, tyro.conf.arg(metavar="SECONDS")] = 0.002
     """Of the physics in the MJCF."""
     out: Path | None = None
@@ -47,7 +47,7 @@ def export_robot(words: Sequence[str]) -> int:
         check_name(options.robot.name, "robot")
     folder = options.out or Path("export") / f"{options.robot.name}_{options.format}"
     check_writable(folder.parent)
-    export(options.robot, options.home, folder, options.format, timestep=options.timestep)
+    export(options.robot, options.home or own_gait(options.robot), folder, options.format, timestep=options.timestep)
     print(f"{options.robot.name} as {options.format.upper()}: {folder}")
     return 0
 

@@ -10,10 +10,10 @@ import tyro
 
 from suchus.cli.commands import BadCommand
 from suchus.cli.options import parse
-from suchus.design import Crocodile
+from suchus.design import AnyRobot, crocodile
 from suchus.design.checks import require
-from suchus.gaits import GAITS
-from suchus.motion import Gait
+from suchus.gaits import own_gait
+from suchus.motion import AnyGait, Swim
 from suchus.record import there
 from suchus.robots import ROBOTS
 from suchus.viewer import Session
@@ -46,12 +46,12 @@ class Where:
 class Walking(Where):
     """What can be said after ``suchus view`` to see a walk."""
 
-    robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
+    robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
     """Who walks."""
-    gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
-    """How, at the beginning."""
-    timestep: float = 0.005
-    """Of the physics [s]; a whole part of 0.01 s."""
+    gait: AnyGait | None = None
+    """How, at the beginning; by default the robot's own gait."""
+    timestep: float | None = None
+    """Of the physics [s], a whole part of the control period; by default half of it, 0.005 s for the caiman."""
     lake: tyro.conf.FlagCreatePairsOff[bool] = False
     """Whether it swims in a lake; the floating caiman if no robot is named."""
 
@@ -64,7 +64,7 @@ class Replaying(Where):
     """The record.nc of an experiment on land."""
     ghost: Path | None = None
     """Another record, or the same one, shown pale beside it."""
-    robot: Crocodile | None = None
+    robot: AnyRobot | None = None
     """Who walks in it; by default the robot of the shelf that the record names."""
 
 
@@ -117,16 +117,29 @@ def serve_walk(options: Walking, opened: Callable[[str], object] | None = None) 
     Raises:
         SuchusError: the walk cannot be walked, the viewer is not installed, or the port is taken.
     """
-    bare = replace(options.robot, hull=None)
-    swim = fit(bare, printed_wave(bare, "I", frequency=_SWIM, sign=-1)).swim if options.lake else None
+    robot, gait = options.robot, options.gait or own_gait(options.robot)
+    swim = _swim(robot) if options.lake else None
 
     def session() -> Session:
-        return Session(options.robot, options.gait, timestep=options.timestep, swim=swim)
+        return Session(robot, gait, timestep=options.timestep, swim=swim)
 
     session()  # refuses what cannot be walked, before a browser
     pages = _pages()
-    how = "in a lake" if options.lake else options.gait.name
-    return _serve(lambda client: pages.LivePage(client, session()), options, f"{options.robot.name}, {how}", opened)
+    how = "in a lake" if options.lake else gait.name
+    return _serve(
+        lambda client: pages.LivePage(client, session()), options, f"{robot.name}, {how}", opened,
+        camera=pages.camera(robot),
+    )  # fmt: skip
+
+
+def _swim(robot: AnyRobot) -> Swim:
+    """Return the article's wave on the joints of a robot.
+
+    Raises:
+        UnsuitedRobot: it does not swim by trunk and cable.
+    """
+    bare = replace(crocodile(robot, "suchus view --lake"), hull=None)
+    return fit(bare, printed_wave(bare, "I", frequency=_SWIM, sign=-1)).swim
 
 
 def _replay(words: Sequence[str]) -> int:

@@ -233,6 +233,11 @@ def _refuse_others(control: Coordinated, robot: AnyRobot, gait: Gait | Pattern) 
                 f"kick.ahead has {len(kick.ahead)} numbers; {', '.join(place.limb_names) or 'no limbs'} of robot "
                 f"{robot.name!r} need one each."
             )
+    if control.heading is not None and not place.limbs:
+        raise UnsuitedRobot(
+            f"the heading loop strides longer on one side and needs limbs to walk on; robot {robot.name!r} lacks that: "
+            "leave the loop out."
+        )
     fit = control.suited(robot, gait)
     for rule, needs in (
         ("spine", "servos that bend the trunk sideways"),

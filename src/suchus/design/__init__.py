@@ -16,7 +16,7 @@ from suchus.design.joints import (
     servo_names,
     spine_joints,
 )
-from suchus.design.layout import Layout, LimbPlace, hips_ahead, hips_behind_snout, layout, servo_ranges
+from suchus.design.layout import Layout, LimbPlace, front_segment, hips_ahead, hips_behind_snout, layout, servo_ranges
 from suchus.design.leg import Leg
 from suchus.design.limb import Foot, Girdle, Limb, Link
 from suchus.design.needs import NEEDS, check_needs, lacking
@@ -69,6 +69,7 @@ __all__ = [
     "check_needs",
     "crocodile",
     "fin_joints",
+    "front_segment",
     "general",
     "hips_ahead",
     "hips_behind_snout",

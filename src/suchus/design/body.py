@@ -12,7 +12,7 @@ from suchus.design.limb import Girdle
 from suchus.design.segment import Segment
 from suchus.design.servo import Servo
 
-TRUNK_YAW = "spine_yaw_"
+_TRUNK_YAW = "spine_yaw_"
 """How the names begin of the yaw hinges between the root and the foremost girdle, and of no others."""
 MOST_SERVOS = 31
 """Servos at most [-]: MuJoCo can switch off so many one by one."""
@@ -87,6 +87,11 @@ def servos_of(robot: Robot) -> dict[str, Servo]:
     return found | {cable.name: cable.servo for cable in robot.cables}
 
 
+def bends_trunk(hinge: str) -> bool:
+    """Tell by its name whether a hinge bends the trunk sideways; bodies must name those hinges, and no others, so."""
+    return hinge.startswith(_TRUNK_YAW)
+
+
 def _check_names(robot: Robot, check: Checks) -> None:
     check.that(len(robot.axis) > 0, "the axis has no segment; give it one")
     names = [segment.name for segment in robot.axis]
@@ -129,11 +134,11 @@ def _check_axis(robot: Robot, check: Checks) -> None:
         yaws = {h.name for s in robot.axis[front:root] for h in s.hinges if h.turn == "yaw"}
     else:
         yaws = {h.name for s in robot.axis[:root] for h in s.hinges if h.turn == "yaw"}
-    named = {hinge.name for hinge in robot.axis_hinges if hinge.name.startswith(TRUNK_YAW)}
+    named = {hinge.name for hinge in robot.axis_hinges if bends_trunk(hinge.name)}
     check.that(
         yaws == named,
         f"the yaw hinges between root and foremost girdle are {', '.join(sorted(yaws)) or 'none'}, those whose names "
-        f"begin with {TRUNK_YAW} {', '.join(sorted(named)) or 'none'}: name these hinges so, and no others",
+        f"begin with {_TRUNK_YAW} {', '.join(sorted(named)) or 'none'}: name these hinges so, and no others",
     )
 
 

@@ -10,7 +10,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from suchus.design.body import TRUNK_YAW, Robot
+from suchus.design.body import Robot, bends_trunk
 from suchus.design.general import AnyRobot, general
 from suchus.design.hinge import Cable, Hinge
 from suchus.design.limb import Girdle
@@ -178,7 +178,7 @@ def layout(robot: AnyRobot) -> Layout:
         axial_pitch=among(by_head, "pitch"),
         axial_left=tuple(1.0 if servos[i] in front else -1.0 for i in yaws),
         axial_place=tuple(_place(body, servos[i]) for i in yaws),
-        trunk_yaw=tuple(i for i in among(front, "yaw") if servos[i].startswith(TRUNK_YAW)),
+        trunk_yaw=tuple(i for i in among(front, "yaw") if bends_trunk(servos[i])),
         trunk_pitch=among(_within(body, front), "pitch"),
         tail_yaw=among(back, "yaw"),
         tail_pitch=among(back, "pitch"),
@@ -205,6 +205,12 @@ def servo_ranges(robot: AnyRobot) -> np.ndarray:
         else:
             found.append(by_name[name].range or (-np.inf, np.inf))
     return np.array(found)
+
+
+def front_segment(robot: AnyRobot) -> str:
+    """Return the name of the segment of the front girdle, or of the root of a robot without limbs."""
+    body = general(robot)
+    return body.girdles[0].segment if body.girdles else body.root
 
 
 def hips_behind_snout(robot: AnyRobot, girdle: int) -> float:

@@ -1,9 +1,9 @@
 """Robots as Gymnasium environments; importing this room registers them. The extra ``gym`` installs gymnasium."""
 
 from suchus.envs.spaces import action_space, observation_space  # isort: skip  # says what is missing, if it is
-from suchus.envs.policies import Anything, Follow, Played, Policy, play, still
+from suchus.envs.policies import Anything, Follow, Played, Policy, Still, play
 from suchus.envs.registering import IDS, STEPS, register
-from suchus.envs.senses import SENSES, part
+from suchus.envs.senses import SENSES, part, senses
 from suchus.envs.single import CrocodileEnv
 from suchus.envs.task import TASKS, Breaks, Rewards, Shoves, Task
 from suchus.envs.vector import CrocodileVectorEnv
@@ -24,11 +24,12 @@ __all__ = [
     "Policy",
     "Rewards",
     "Shoves",
+    "Still",
     "Task",
     "action_space",
     "observation_space",
     "part",
     "play",
     "register",
-    "still",
+    "senses",
 ]

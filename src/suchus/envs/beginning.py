@@ -6,16 +6,18 @@ from math import ceil
 import numpy as np
 
 from suchus.control import Standing
-from suchus.design import Crocodile
+from suchus.design import Crocodile, crocodile
+from suchus.design.scale import control_period
 from suchus.envs.task import Task
 from suchus.errors import Diverged
 from suchus.gaits import GAITS
-from suchus.land import CONTROL_PERIOD, Ground, Run
+from suchus.land import Ground, Run
 from suchus.land.bench import Bench
 from suchus.land.readings import Readings
 from suchus.land.restarting import Beginning
 from suchus.model import activations, compile_model, standing
 from suchus.model.export import home
+from suchus.motion import hip_height
 
 STILL = 3.0
 """How long a robot has stood before an episode of standing begins [s]; it has settled after two."""
@@ -31,20 +33,20 @@ def begin(task: Task) -> Beginning:
         Diverged: it does not stand up.
     """
     if task.start == "upright":
-        return _upright(task.body, task.ground, task.timestep)
+        return _upright(crocodile(task.body, "standing up"), task.ground, task.timestep)
     model = compile_model(task.body, task.timestep)
     qpos, servos = home(model, task.body, task.gait)
     return Beginning(qpos, np.zeros(model.nv), activations(model, servos), servos)
 
 
 def off_by(task: Task, at: Beginning, jitter: np.ndarray) -> Beginning:
-    """Return a beginning with its servos off their places, shape (19,) [rad]; they are told their places all the same.
+    """Return a beginning with its servos off their places, shape (servo,) [rad]; they are told their places still.
 
     A lying robot is put on the ground again. One that stands keeps its tail, whose bend is no joint's alone.
     """
     model = compile_model(task.body, task.timestep)
     if task.start == "lying":
-        return at._replace(qpos=standing(model, task.robot, task.gait.hip_height, at.told + jitter))
+        return at._replace(qpos=standing(model, task.robot, hip_height(task.robot, task.gait), at.told + jitter))
     qpos = at.qpos.copy()
     qpos[model.jnt_qposadr[model.actuator_trnid[:-1, 0]]] += jitter[:-1]
     return at._replace(qpos=qpos)
@@ -53,18 +55,18 @@ def off_by(task: Task, at: Beginning, jitter: np.ndarray) -> Beginning:
 @lru_cache(maxsize=16)
 def _upright(robot: Crocodile, ground: Ground, timestep: float) -> Beginning:
     """Let a robot stand up once, as the shelf does it, and return the state in which it stands still."""
-    gait = GAITS[_STRAIGHT]
+    gait, period = GAITS[_STRAIGHT], control_period(robot)
     control = Standing(at=_SOON, hold=STILL)
     run = Run(robot=robot, gait=gait, ground=ground, control=control)
-    ticks = ceil((control.upright_from(robot) + STILL) / CONTROL_PERIOD)
+    ticks = ceil((control.upright_from(robot) + STILL) / period)
     bench = Bench([run], timestep)
     readings = Readings(bench, [run], 1)
-    controller = control.start([robot], [gait], [0], ticks, CONTROL_PERIOD)
+    controller = control.start([robot], [gait], [0], ticks, period)
     bench.place([run], controller.rest())
     targets = controller.rest()
     for tick in range(ticks):
-        targets = controller.command(tick, readings.sensed(tick * CONTROL_PERIOD)).targets
-        bench.advance(targets, round(CONTROL_PERIOD / timestep), tick * CONTROL_PERIOD)
+        targets = controller.command(tick, readings.sensed(tick * period)).targets
+        bench.advance(targets, round(period / timestep), tick * period)
     if not bench.alive.all():
         raise Diverged(
             f"robot {robot.name!r} does not stand up: {bench.cause[0]}; an upright start needs one that does.",

@@ -9,20 +9,21 @@ from jaxtyping import Bool, Float
 
 from suchus import rotation
 from suchus.control import Sensed
-from suchus.design import servo_names
+from suchus.design import layout, servo_ranges
+from suchus.design.scale import control_period
 from suchus.envs.beginning import begin, off_by
 from suchus.envs.reward import Terms
-from suchus.envs.senses import SERVOS, observations
+from suchus.envs.senses import observations, turning
 from suchus.envs.task import Task
 from suchus.errors import UnknownName
 from suchus.fault import Fault, check_faults
-from suchus.land import CONTROL_PERIOD, Run
+from suchus.land import Run
 from suchus.land.bench import Bench
 from suchus.land.injector import Injector
 from suchus.land.readings import Readings
 from suchus.land.restarting import restart
 from suchus.model import compile_model
-from suchus.motion.targets import check_limits, servo_range
+from suchus.motion import check_limits
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,13 +40,15 @@ class Chance:
     """Of the push [N]."""
     pushed: int = -1
     """In which control period it begins; -1: never."""
+    period: float
+    """Of control [s]."""
 
     @property
     def fault(self) -> str:
         """In words; empty if nothing breaks."""
         if self.broken is None:
             return ""
-        return f"{self.broken.part} {self.broken.kind()} from {self.breaks * CONTROL_PERIOD:.2f} s"
+        return f"{self.broken.part} {self.broken.kind()} from {self.breaks * self.period:.2f} s"
 
 
 class Pack:
@@ -59,31 +62,35 @@ class Pack:
     def __init__(self, task: Task, count: int) -> None:
         self.task, self.count = task, count
         check_limits(task.robot, task.gait)
-        for fault in task.breaks.possible if task.breaks else ():
+        for fault in task.breaks.possible(task.robot) if task.breaks else ():
             check_faults([fault], task.robot, np.inf)
         self._begin = begin(task)
-        self._low, self._high = np.array([servo_range(task.robot, name) for name in servo_names()]).T
+        self._period, place = control_period(task.robot), layout(task.robot)
+        self._low, self._high = servo_ranges(task.robot).T
+        self._cranks = turning(task.robot)
+        self._turn = task.decision * np.array([task.robot.servo(name).speed for name in place.servos])
         self._runs = [Run(robot=task.body, gait=task.gait, ground=task.ground)] * count
         self._bench = Bench(self._runs, task.timestep)
         self._readings = Readings(self._bench, self._runs, 1)
-        self._steps = round(CONTROL_PERIOD / task.timestep)
+        self._steps = round(self._period / task.timestep)
         self._check_body()
         self._told = np.tile(self._begin.told, (count, 1))
-        self._injector = Injector(self._bench, CONTROL_PERIOD, task.robot)
+        self._turned = np.zeros_like(self._told)
+        self._injector = Injector(self._bench, self._period, task.robot)
         self._tick = np.zeros(count, dtype=int)
         self._periods = 0
-        self.chances = [Chance()] * count
+        self.chances = [Chance(period=self._period)] * count
         self.causes = [""] * count
 
     @property
-    def centre(self) -> Float[np.ndarray, "19"]:
+    def centre(self) -> Float[np.ndarray, " servo"]:
         """Servo angles of an action of zero [rad]."""
         return self._begin.told
 
     @property
     def time(self) -> Float[np.ndarray, " run"]:
         """Since the beginning of each episode [s]."""
-        return self._tick * CONTROL_PERIOD
+        return self._tick * self._period
 
     @property
     def phase(self) -> Float[np.ndarray, " run"]:
@@ -98,38 +105,43 @@ class Pack:
             chances: for each of them, what leaves its episode to chance.
         """
         for i, random in zip(robots, chances, strict=True):
-            jitter = self.task.jitter * random.uniform(-1.0, 1.0, SERVOS)
+            jitter = self.task.jitter * random.uniform(-1.0, 1.0, self._told.shape[1])
             self._injector.mend(i)
             restart(self._bench, i, off_by(self.task, self._begin, jitter))
-            self._told[i], self._tick[i] = self._begin.told, 0
+            self._told[i], self._turned[i], self._tick[i] = self._begin.told, 0.0, 0
             self.chances[i], self.causes[i] = draw(self.task, random), ""
 
     def feel(self) -> Float[np.ndarray, "run n"]:
         """Return what each robot feels, see ``senses``."""
-        told = (self._told - self.centre) / self.task.span
+        told = np.where(self._cranks, self._turned / self._turn, (self._told - self.centre) / self.task.span)
         return observations(self.task.robot, self._sensed(), self.phase, told)
 
-    def act(self, actions: Float[np.ndarray, "run 19"], who: Bool[np.ndarray, " run"]) -> Terms:
+    def act(self, actions: Float[np.ndarray, "run servo"], who: Bool[np.ndarray, " run"]) -> Terms:
         """Let some robots act for one step; the terms of the others mean nothing.
+
+        A crank has no centre: an action turns it on from where it was told to be, at most at its no-load speed.
 
         Args:
             actions: -1 to 1; what is beyond counts as the end that it is beyond [-].
             who: which robots.
         """
-        span = self.task.span * np.clip(np.asarray(actions, dtype=float), -1.0, 1.0)
-        goal = np.where(who[:, None], np.clip(self.centre + span, self._low, self._high), self._told)
+        shares = np.clip(np.asarray(actions, dtype=float), -1.0, 1.0)
+        there = np.clip(self.centre + self.task.span * shares, self._low, self._high)
+        goal = np.where(self._cranks, self._told + self._turn * shares, there)
+        goal = np.where(who[:, None], goal, self._told)
         before, work = self._read("centre_of_mass"), np.zeros(self.count)
         self._bench.alive[:] = who
-        periods = round(self.task.decision / CONTROL_PERIOD)
+        periods = round(self.task.decision / self._period)
         for k in range(periods):
             self._happen(who)
             targets = self._told + (k + 1) / periods * (goal - self._told)
             self._bench.advance(self._injector.command(self._periods, targets), self._steps, 0.0)
             self._periods += 1
-            work += self._power() * CONTROL_PERIOD
+            work += self._power() * self._period
             self._tick[who] += 1
-        haste = ((goal - self._told) ** 2).sum(axis=1)
-        self._told = goal
+        turned = goal - self._told
+        haste = (turned**2).sum(axis=1)
+        self._told, self._turned = goal, np.where(who[:, None], turned, self._turned)
         return self._terms(who, before, work, haste)
 
     def record(self, robot: int) -> xr.Dataset:
@@ -163,7 +175,8 @@ class Pack:
         if 0.0 < self.task.least_height > height:
             return f"it fell {when}: the snout is at {height:.3f} m, below {self.task.least_height:g} m"
         tilt, most = (float(np.degrees(np.arccos(np.clip(c, -1, 1)))) for c in (level, self.task.least_level))
-        return f"it rolled over {when}: the pelvis is tilted by {tilt:.0f} degrees, beyond {most:.0f}"
+        root = layout(self.task.robot).robot.root
+        return f"it rolled over {when}: the {root} is tilted by {tilt:.0f} degrees, beyond {most:.0f}"
 
     def _happen(self, who: np.ndarray) -> None:
         """Break and push those whose time has come."""
@@ -172,10 +185,10 @@ class Pack:
             if tick == chance.breaks and chance.broken is not None:
                 self._injector.begin(int(i), chance.broken)
             if chance.pushed >= 0 and self.task.shoves is not None:
-                lasting = round(self.task.shoves.lasting / CONTROL_PERIOD)
+                lasting = round(self.task.shoves.lasting / self._period)
                 if tick in (chance.pushed, chance.pushed + lasting):
                     force = np.array(chance.force) * (tick == chance.pushed)
-                    self._bench.push(int(i), self.task.shoves.body, force)
+                    self._bench.push(int(i), self.task.shoves.where(self.task.robot), force)
 
     def _sensed(self) -> Sensed:
         return self._injector.sense(self._readings.sensed(0.0))
@@ -183,7 +196,7 @@ class Pack:
     def _power(self) -> Float[np.ndarray, " run"]:
         """Return torque times speed, summed over the servos [W]."""
         read = self._bench.readings
-        return np.abs(read[:, SERVOS : 2 * SERVOS] * read[:, 2 * SERVOS : 3 * SERVOS]).sum(axis=1)
+        return np.abs(read[:, self._bench.velocities] * read[:, self._bench.torques]).sum(axis=1)
 
     def _read(self, sensor: str) -> np.ndarray:
         where = self._bench.model.sensor(sensor)
@@ -195,21 +208,23 @@ class Pack:
             return
         model = compile_model(self.task.body, self.task.timestep)
         bodies = [model.body(i).name for i in range(1, model.nbody)]
-        if self.task.shoves.body not in bodies:
-            raise UnknownName("body", self.task.shoves.body, bodies)
+        where = self.task.shoves.where(self.task.robot)
+        if where not in bodies:
+            raise UnknownName("body", where, bodies)
 
 
 def draw(task: Task, random: np.random.Generator) -> Chance:
     """Leave an episode to chance: the clock's phase, what breaks and who pushes."""
-    chance = {"phase": float(random.uniform())}
+    period = control_period(task.robot)
+    chance = {"phase": float(random.uniform()), "period": period}
     fault, push = task.breaks, task.shoves
     told: dict[str, object] = {}
     if fault is not None:
-        broken = fault.draw(random)
-        told["breaks"] = int(np.ceil(random.uniform(fault.earliest, fault.latest) / CONTROL_PERIOD))
+        broken = fault.draw(random, task.robot)
+        told["breaks"] = int(np.ceil(random.uniform(fault.earliest, fault.latest) / period))
         told["broken"] = broken
     if push is not None:
-        told["pushed"] = int(np.ceil(random.uniform(push.earliest, push.latest) / CONTROL_PERIOD))
+        told["pushed"] = int(np.ceil(random.uniform(push.earliest, push.latest) / period))
         way, force = random.uniform(-np.pi, np.pi), random.uniform(0.0, push.most)
         told["force"] = (float(force * np.cos(way)), float(force * np.sin(way)), 0.0)
     return Chance(**chance, **told)  # type: ignore[arg-type]

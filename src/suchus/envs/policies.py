@@ -6,50 +6,71 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
+from suchus.design import layout
 from suchus.envs.registering import STEPS
-from suchus.envs.senses import SERVOS, part
+from suchus.envs.senses import part, turning
 from suchus.envs.task import Task
 from suchus.envs.vector import CrocodileVectorEnv
-from suchus.motion import Gait, servo_targets
+from suchus.motion import AnyGait, Gait, pattern_targets, servo_targets
 
-Policy = Callable[[Float[np.ndarray, "run n"]], Float[np.ndarray, "run 19"]]
+Policy = Callable[[Float[np.ndarray, "run n"]], Float[np.ndarray, "run servo"]]
 """From observations to actions."""
 
 
-def still(seen: Float[np.ndarray, "run n"]) -> Float[np.ndarray, "run 19"]:
-    """Hold the posture in which the episode begins: all actions are zero."""
-    return np.zeros((len(seen), SERVOS))
+@dataclass(frozen=True, slots=True)
+class Still:
+    """All actions are zero: the posture in which the episode begins is held."""
+
+    task: Task
+    """Whose actions they are."""
+
+    def __call__(self, seen: Float[np.ndarray, "run n"]) -> Float[np.ndarray, "run servo"]:
+        """Return zeros."""
+        return np.zeros((len(seen), len(layout(self.task.robot).servos)))
 
 
 @dataclass(slots=True)
 class Anything:
     """Actions drawn evenly from all that there are."""
 
+    task: Task
+    """Whose actions they are."""
     random: np.random.Generator
     """What draws."""
 
-    def __call__(self, seen: Float[np.ndarray, "run n"]) -> Float[np.ndarray, "run 19"]:
+    def __call__(self, seen: Float[np.ndarray, "run n"]) -> Float[np.ndarray, "run servo"]:
         """Draw."""
-        return self.random.uniform(-1.0, 1.0, (len(seen), SERVOS))
+        return self.random.uniform(-1.0, 1.0, (len(seen), len(layout(self.task.robot).servos)))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Follow:
-    """A gait that follows the clock of the observation and nothing else."""
+    """A gait that follows the clock of the observation and, where limbs are cranks, the angles of the cranks."""
 
     task: Task
     """Whose actions they are."""
     centre: tuple[float, ...]
     """Servo angles of an action of zero, ``Pack.centre`` [rad]."""
-    gait: Gait
+    gait: AnyGait
     """Which gait; its period should be the task's, or it goes at that one's pace."""
 
-    def __call__(self, seen: Float[np.ndarray, "run n"]) -> Float[np.ndarray, "run 19"]:
+    def __call__(self, seen: Float[np.ndarray, "run n"]) -> Float[np.ndarray, "run servo"]:
         """Look up where the servos shall be when the step ends."""
-        sine, cosine = part(seen, "clock").astype(float).T
-        clock = np.arctan2(sine, cosine) / (2 * np.pi) + self.task.decision / self.task.gait.period
-        targets = servo_targets(self.task.robot, self.gait, clock[:, None] + np.array(self.gait.limb_phases))
-        return np.clip((targets - np.array(self.centre)) / self.task.span, -1.0, 1.0)
+        task, gait, robot = self.task, self.gait, self.task.robot
+        sine, cosine = part(seen, "clock", robot).astype(float).T
+        clock = np.arctan2(sine, cosine) / (2 * np.pi) + task.decision / task.gait.period
+        if isinstance(gait, Gait):
+            targets = servo_targets(robot, gait, clock[:, None] + np.array(gait.limb_phases))
+        else:
+            targets = pattern_targets(robot, gait, clock)
+        actions = (targets - np.array(self.centre)) / task.span
+        cranks = turning(robot)
+        if cranks.any():
+            behind = targets - np.pi * part(seen, "servo_position", robot)
+            speed = np.array([robot.servo(name).speed for name in layout(robot).servos])
+            ahead = (np.mod(behind + np.pi, 2 * np.pi) - np.pi) / (task.decision * speed)
+            actions = np.where(cranks, ahead, actions)
+        return np.clip(actions, -1.0, 1.0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

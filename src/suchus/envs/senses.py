@@ -1,21 +1,25 @@
 """What a learner is given: readings that the robot has, each over its scale, as one row of -1 to 1."""
 
+from functools import lru_cache
+from math import sqrt
 from typing import NamedTuple
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
 from suchus import rotation
 from suchus.control import Sensed
-from suchus.design import GRAVITY, LEGS, Crocodile, servo_names, spine_joints
+from suchus.design import GRAVITY, AnyRobot, layout, servo_ranges
+from suchus.errors import UnknownName
+from suchus.robots import ROBOTS, beside_article
 
-SERVOS = len(servo_names())
+_CAIMAN = ROBOTS["caiman"]
 ANGLE = float(np.pi)
-"""Scale of angles [rad]: no joint turns so far."""
+"""Scale of angles [rad]: no joint turns so far, and the angle of a crank is told within half a turn."""
 SPEED = 10.0
-"""Scale of servos' speeds [rad/s]; their no-load speed is 7."""
+"""Scale of servos' speeds [rad/s] for a body as long as the article's; their no-load speed is 7."""
 RATE = 10.0
-"""Scale of the gyroscope [rad/s]; twice what a death roll reaches."""
+"""Scale of the gyroscope [rad/s] for a body as long as the article's; twice what a death roll reaches."""
 ACCELERATION = 4 * GRAVITY
 """Scale of the accelerometer [m/s2]; the range that a cheap one is set to."""
 
@@ -33,70 +37,98 @@ class Sense(NamedTuple):
     """In words."""
 
 
-_ROWS = (
-    ("servo_position", SERVOS, "pi rad", "angle of each servo"),
-    ("servo_velocity", SERVOS, f"{SPEED:g} rad/s", "speed of each servo"),
-    ("servo_torque", SERVOS, "its limit, N m", "torque of each servo"),
-    ("foot_pressure", len(LEGS), "weight, N", "normal force under each foot, the mean over a control period"),
-    ("belly_pressure", len(spine_joints()) + 1, "weight, N", "the same under each body of the trunk"),
-    ("tail_pressure", 1, "weight, N", "the same under the tail"),
-    ("upward", 3, "1", "the world's upward direction in the pelvis, from the IMU's orientation"),
-    ("ahead", 3, "1", "the world's x direction in the pelvis, from the IMU's orientation"),
-    ("angular_velocity", 3, f"{RATE:g} rad/s", "of the IMU in the pelvis, in its own frame"),
-    ("acceleration", 3, f"{ACCELERATION:.1f} m/s2", "of the IMU with gravity, in its own frame"),
-    ("clock", 2, "1", "sine and cosine of the phase of a clock with the gait's period"),
-    ("told", SERVOS, "span, rad", "angle that each servo was told last, from its centre: the last action"),
-)
-
-
-def _laid_out() -> tuple[Sense, ...]:
-    ends = np.cumsum([size for _, size, _, _ in _ROWS]).tolist()
+@lru_cache(maxsize=64)
+def senses(robot: AnyRobot) -> tuple[Sense, ...]:
+    """Return the columns of an observation of a robot, in order."""
+    place, pace = layout(robot), 1.0 / sqrt(beside_article(robot).length)
+    servos, cranks = len(place.servos), bool(turning(robot).any())
+    angle = "angle of each servo" + (", of a crank within half a turn to either side" if cranks else "")
+    told = "angle that each servo was told last, from its centre: the last action"
+    rows = (
+        ("servo_position", servos, "pi rad", angle),
+        ("servo_velocity", servos, f"{SPEED * pace:.3g} rad/s", "speed of each servo"),
+        ("servo_torque", servos, "its limit, N m", "torque of each servo"),
+        (
+            "foot_pressure",
+            len(place.limbs),
+            "weight, N",
+            "normal force under each foot, the mean over a control period",
+        ),
+        ("belly_pressure", len(place.trunk), "weight, N", "the same under each body of the trunk"),
+        ("tail_pressure", 1, "weight, N", "the same under the tail"),
+        ("upward", 3, "1", f"the world's upward direction in the {place.robot.root}, from the IMU's orientation"),
+        ("ahead", 3, "1", f"the world's x direction in the {place.robot.root}, from the IMU's orientation"),
+        ("angular_velocity", 3, f"{RATE * pace:.3g} rad/s", f"of the IMU in the {place.robot.root}, in its own frame"),
+        ("acceleration", 3, f"{ACCELERATION:.1f} m/s2", "of the IMU with gravity, in its own frame"),
+        ("clock", 2, "1", "sine and cosine of the phase of a clock with the gait's period"),
+        ("told", servos, "span, rad", told),
+    )
+    ends = np.cumsum([count for _, count, _, _ in rows]).tolist()
     return tuple(
-        Sense(name, slice(end - size, end), scale, what)
-        for (name, size, scale, what), end in zip(_ROWS, ends, strict=True)
+        Sense(name, slice(end - count, end), scale, what)
+        for (name, count, scale, what), end in zip(rows, ends, strict=True)
     )
 
 
-SENSES = _laid_out()
-"""The columns of an observation, in order."""
-SIZE = SENSES[-1].columns.stop
-"""How many they are."""
+def turning(robot: AnyRobot) -> Bool[np.ndarray, " servo"]:
+    """Return which servos are cranks, which turn round and round [-]."""
+    return np.asarray(~np.isfinite(servo_ranges(robot)).all(axis=1))
 
 
-def part(observations: Float[np.ndarray, "*b n"], name: str) -> Float[np.ndarray, "*b m"]:
-    """Return some columns of observations by their name in ``SENSES``."""
-    return observations[..., next(sense.columns for sense in SENSES if sense.name == name)]
+SENSES = senses(_CAIMAN)
+"""The columns of an observation of the article's robot."""
+
+
+def part(
+    observations: Float[np.ndarray, "*b n"], name: str, robot: AnyRobot | str = _CAIMAN
+) -> Float[np.ndarray, "*b m"]:
+    """Return some columns of observations by their name in ``senses``.
+
+    Args:
+        observations: as an environment returns them.
+        name: of the reading, as ``clock``.
+        robot: whose they are, or its name on the shelf.
+
+    Raises:
+        UnknownName: there is no such reading.
+    """
+    columns = {sense.name: sense.columns for sense in senses(ROBOTS.resolve(robot))}
+    if name not in columns:
+        raise UnknownName("reading", name, columns)
+    return observations[..., columns[name]]
 
 
 def observations(
-    robot: Crocodile,
+    robot: AnyRobot,
     sensed: Sensed,
     phase: Float[np.ndarray, " run"],
-    told: Float[np.ndarray, "run 19"],
+    told: Float[np.ndarray, "run servo"],
 ) -> Float[np.ndarray, "run n"]:
     """Return one row for each robot; readings beyond their scales are cut off at -1 and 1, lost ones are 0.
 
     Args:
-        robot: whose limits and weight are the scales.
+        robot: whose limits, weight and length are the scales.
         sensed: the readings.
         phase: of the clock [cycle].
         told: from the centre, over the span [-].
     """
-    limits = np.array([robot.servo(name).torque for name in servo_names()])
-    weight = robot.mass * GRAVITY
+    limits = np.array([robot.servo(name).torque for name in layout(robot).servos])
+    weight, slow = robot.mass * GRAVITY, sqrt(beside_article(robot).length)
+    turned = turning(robot)
+    position = np.where(turned, np.mod(sensed.servo_position + np.pi, 2 * np.pi) - np.pi, sensed.servo_position)
     upward, ahead = rotation.upward(sensed.orientation), rotation.ahead(sensed.orientation)
     turn = 2 * np.pi * phase
     rows = np.concatenate(
         [
-            sensed.servo_position / ANGLE,
-            sensed.servo_velocity / SPEED,
+            position / ANGLE,
+            sensed.servo_velocity / (SPEED / slow),
             sensed.servo_torque / limits,
             sensed.foot_pressure / weight,
             sensed.belly_pressure / weight,
             sensed.tail_pressure[:, None] / weight,
             upward,
             ahead,
-            sensed.angular_velocity / RATE,
+            sensed.angular_velocity / (RATE / slow),
             sensed.acceleration / ACCELERATION,
             np.stack([np.sin(turn), np.cos(turn)], axis=1),
             told,

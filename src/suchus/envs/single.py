@@ -32,7 +32,7 @@ class CrocodileEnv(gymnasium.Env):  # type: ignore[misc]  # gymnasium is not rea
         check_render_mode(render_mode)
         self.task = chosen(task, changes)
         self.pack = Pack(self.task, 1)
-        self.action_space, self.observation_space = action_space(), observation_space()
+        self.action_space, self.observation_space = action_space(self.task.robot), observation_space(self.task.robot)
         self.render_mode = render_mode
         self.metadata = metadata(self.task)
 

@@ -5,7 +5,8 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
-from suchus.envs.senses import SERVOS, SIZE
+from suchus.design import AnyRobot, layout
+from suchus.envs.senses import senses
 from suchus.errors import OutsideLimits, SuchusError, UnknownName
 
 
@@ -21,17 +22,17 @@ except ImportError as _error:
 RENDER_MODES = ("rgb_array",)
 
 
-def action_space() -> Any:
-    """Return the ``gymnasium.spaces.Box`` of actions: one number of -1 to 1 for each servo."""
-    return gymnasium.spaces.Box(-1.0, 1.0, (SERVOS,), np.float32)
+def action_space(robot: AnyRobot) -> Any:
+    """Return the ``gymnasium.spaces.Box`` of a robot's actions: one number of -1 to 1 for each servo."""
+    return gymnasium.spaces.Box(-1.0, 1.0, (len(layout(robot).servos),), np.float32)
 
 
-def observation_space() -> Any:
-    """Return the ``gymnasium.spaces.Box`` of observations: see ``senses.SENSES``."""
-    return gymnasium.spaces.Box(-1.0, 1.0, (SIZE,), np.float32)
+def observation_space(robot: AnyRobot) -> Any:
+    """Return the ``gymnasium.spaces.Box`` of what a robot is given: see ``senses.senses``."""
+    return gymnasium.spaces.Box(-1.0, 1.0, (senses(robot)[-1].columns.stop,), np.float32)
 
 
-def checked(actions: Any, shape: tuple[int, ...]) -> Float[np.ndarray, "*b 19"]:
+def checked(actions: Any, shape: tuple[int, ...]) -> Float[np.ndarray, "*b servo"]:
     """Return actions as numbers.
 
     Raises:

@@ -7,17 +7,22 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 
-from suchus.design import Crocodile, crocodile, leg_joints, servo_names, with_speed_lines
+from suchus.design import AnyRobot, check_needs, front_segment, layout, with_speed_lines
 from suchus.design.checks import Checks
+from suchus.design.scale import control_period, scaled, scaled_fields
 from suchus.errors import InvalidDesign, UnknownName
 from suchus.fault import Fault
 from suchus.faults import FAULTS
-from suchus.gaits import GAITS
-from suchus.land import CONTROL_PERIOD, Ground
-from suchus.motion import Gait
+from suchus.gaits import GAITS, own_gait, suits
+from suchus.land import Ground
+from suchus.motion import AnyGait
 from suchus.robots import ROBOTS
 
 Start = Literal["lying", "upright"]
+NEEDED: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {"lying": (), "upright": ("tables", "article_spine", "cable_tail")}
+)
+"""What a beginning needs of a robot: names of ``design.NEEDS``."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,8 +56,9 @@ class Rewards:
 class Breaks:
     """One servo of every episode that breaks, drawn anew each time."""
 
-    joints: tuple[str, ...] = leg_joints()
-    """Servos among which it is drawn; those of the legs, since the article breaks no others."""
+    joints: tuple[str, ...] | None = None
+    """Servos among which it is drawn; None: those of the limbs, since the article breaks no others, or all of a robot
+    without limbs."""
     kinds: tuple[str, ...] = ("limp", "locked")
     """How it breaks, by names of faults of servos, each as it is on the shelf: ``limp``: without torque; ``locked``:
     holding the angle that it has at that time."""
@@ -65,11 +71,8 @@ class Breaks:
     """Until when [s]; half of the episode remains to do without it."""
 
     def __post_init__(self) -> None:
-        unknown = [name for name in self.joints if name not in servo_names()]
-        if unknown:
-            raise UnknownName("servo", unknown[0], servo_names())
         with Checks("breaks", self) as check:
-            check.that(len(self.joints) > 0, "breaks.joints is empty; name one servo at least")
+            check.that(self.joints is None or len(self.joints) > 0, "breaks.joints is empty; name one servo at least")
             check.that(len(self.kinds) > 0, "breaks.kinds is empty; name one fault at least")
             _check_when(check, "breaks", self.earliest, self.latest)
         allowed = tuple(kind for kind in FAULTS if FAULTS[kind].acts_on == "servo")
@@ -77,18 +80,32 @@ class Breaks:
             if kind not in allowed:
                 raise UnknownName("fault of a servo", str(kind)[:40], allowed)
 
-    @property
-    def possible(self) -> tuple[Fault, ...]:
-        """All faults that may be drawn, each from 0 s on."""
+    def among(self, robot: AnyRobot) -> tuple[str, ...]:
+        """Return the servos of a robot among which it is drawn.
+
+        Raises:
+            UnknownName: the robot has no such servo.
+        """
+        place = layout(robot)
+        if self.joints is None:
+            return tuple(name for limb in place.limbs for name in place.servos[limb.servos]) or place.servos
+        for name in self.joints:
+            if name not in place.servos:
+                raise UnknownName("servo", name, place.servos)
+        return self.joints
+
+    def possible(self, robot: AnyRobot) -> tuple[Fault, ...]:
+        """Return all faults of a robot that may be drawn, each from 0 s on."""
         if self.faults:
             return self.faults
-        return tuple(self._fault(kind, joint) for kind in self.kinds for joint in self.joints)
+        return tuple(self._fault(kind, joint) for kind in self.kinds for joint in self.among(robot))
 
-    def draw(self, random: np.random.Generator) -> Fault:
-        """Draw one."""
+    def draw(self, random: np.random.Generator, robot: AnyRobot) -> Fault:
+        """Draw one for a robot."""
         if self.faults:
             return self.faults[int(random.integers(len(self.faults)))]
-        joint = self.joints[int(random.integers(len(self.joints)))]
+        joints = self.among(robot)
+        joint = joints[int(random.integers(len(joints)))]
         return self._fault(self.kinds[int(random.integers(len(self.kinds)))], joint)
 
     @staticmethod
@@ -109,14 +126,20 @@ class Shoves:
     """Until when [s]; a fall takes less than 2 s, so that it still shows."""
     lasting: float = 0.2
     """How long it lasts [s], as in the experiments on standing."""
-    body: str = "thorax"
-    """What is pushed."""
+    body: str | None = None
+    """What is pushed; None: the segment of the front girdle, or the root of a robot without limbs."""
 
     def __post_init__(self) -> None:
         with Checks("shoves", self) as check:
             check.number("most", 0.0, 1e3, "N")
-            check.number("lasting", CONTROL_PERIOD, 60.0, "s")
+            check.number("lasting", 1e-3, 60.0, "s")
             _check_when(check, "shoves", self.earliest, self.latest)
+
+    def where(self, robot: AnyRobot) -> str:
+        """Return the body of a robot that is pushed."""
+        if self.body is not None:
+            return self.body
+        return front_segment(robot)
 
 
 def _check_when(check: Checks, owner: str, earliest: float, latest: float) -> None:
@@ -135,9 +158,10 @@ class Task:
     An action is one number of -1 to 1 for each servo: it is told the angle ``centre + span action``, within its range.
     Angles of servos were chosen rather than changes to a gait, because with these the shelf's gait would be the action
     zero, and nothing would be left to learn; ``span`` keeps even random actions near a posture that carries the robot.
+    An action turns a crank on, at most at its servo's no-load speed.
     """
 
-    robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
+    robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
     """Who acts; what its servos give while they turn is said by ``speed_lines``."""
     speed_lines: bool = True
     """Whether the torque of every servo falls linearly to nothing at its no-load speed, as that of a motor does.
@@ -145,7 +169,7 @@ class Task:
     Without these lines a servo gives its full torque at any speed, and what is learned lives on that: see
     ``docs/environments.md``.
     """
-    gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
+    gait: AnyGait = field(default_factory=lambda: GAITS["belly_crawl"])
     """Gait whose mid-stance is the centre of the actions of a lying robot, and whose period the clock tells."""
     ground: Ground = field(default_factory=Ground)
     """On what."""
@@ -176,12 +200,42 @@ class Task:
     """Who pushes; None: nobody."""
 
     @property
-    def body(self) -> Crocodile:
+    def body(self) -> AnyRobot:
         """The robot as its physics has it: with the torque-speed lines if ``speed_lines`` is true."""
         return with_speed_lines(self.robot) if self.speed_lines else self.robot
 
+    def on(self, robot: AnyRobot, gait: AnyGait | None = None) -> "Task":
+        """Return the same task for another robot.
+
+        Where the robot can follow the gait and keeps the same control period, nothing else changes. If not, the gait
+        becomes its own, lengths, forces, weights of rewards and times change with its size, and the time between two
+        actions is as many control periods.
+
+        Args:
+            robot: in either form.
+            gait: another gait; its own if None and it cannot follow that of now.
+
+        Raises:
+            UnsuitedRobot: the robot lacks what the beginning needs, or no gait on the shelf suits it.
+        """
+        check_needs(robot, NEEDED[self.start], f"a task that begins {self.start}")
+        longer, heavier = robot.length / self.robot.length, robot.mass / self.robot.mass
+        slower = control_period(robot) / control_period(self.robot)
+        changes: dict[str, Any] = {}
+        if slower != 1.0:
+            changes = {name: round(slower * getattr(self, name), 12) for name in ("decision", "timestep")}
+        if not suits(robot, self.gait):
+            changes |= scaled_fields(self, ["least_height"], length=longer, mass=heavier)
+            changes |= {"gait": gait or own_gait(robot)}
+            for name in ("rewards", "breaks", "shoves"):
+                if getattr(self, name) is not None:
+                    changes[name] = scaled(getattr(self, name), length=longer, mass=heavier)
+        return replace(self, robot=robot, **(changes | ({"gait": gait} if gait is not None else {})))
+
     def __post_init__(self) -> None:
-        crocodile(self.robot, "an environment")
+        if self.start in NEEDED:
+            check_needs(self.robot, NEEDED[self.start], f"a task that begins {self.start}")
+        period = control_period(self.robot)
         with Checks("task", self) as check:
             check.that(
                 isinstance(self.speed_lines, bool),
@@ -192,21 +246,23 @@ class Task:
                 f"task.start is {self.start!r}; {' or '.join(get_args(Start))} is allowed",
             )
             check.number("span", 0.01, 3.2, "rad")
-            check.number("decision", CONTROL_PERIOD, 1.0, "s")
-            check.number("timestep", 1e-4, CONTROL_PERIOD, "s")
+            check.number("decision", period, 100 * period, "s")
+            check.number("timestep", 1e-2 * period, period, "s")
             check.number("jitter", 0.0, 0.5, "rad")
             check.number("least_level", -1.0, 1.0, "")
             check.number("least_height", 0.0, 10.0, "m")
             for name, whole, part in (
-                ("decision", self.decision, CONTROL_PERIOD),
-                ("timestep", CONTROL_PERIOD, self.timestep),
+                ("decision", self.decision, period),
+                ("timestep", period, self.timestep),
             ):
                 share = whole / part if part > 0 else 0.0
                 check.that(
                     abs(share - round(share)) < 1e-6,
-                    f"task.{name} is {getattr(self, name)} s; it must fit the control period of {CONTROL_PERIOD} s "
+                    f"task.{name} is {getattr(self, name)} s; it must fit the control period of {period} s "
                     "a whole number of times",
                 )
+        if self.breaks is not None:
+            self.breaks.among(self.robot)
 
 
 STANDING_SPAN = 0.3
@@ -234,11 +290,12 @@ TASKS: Mapping[str, Task] = MappingProxyType(
 def chosen(task: Task | str, changes: Mapping[str, Any]) -> Task:
     """Return a task, given itself or by its name, with some fields changed.
 
-    A robot or a gait may be given by its name on the shelf.
+    A robot or a gait may be given by its name on the shelf; a robot brings its gait and its size, see ``Task.on``.
 
     Raises:
-        UnknownName: there is no such task, or no such field; the message lists those that are.
+        UnknownName: there is no such task, field, robot, gait or servo; the message lists those that are.
         InvalidDesign: a value makes no sense.
+        UnsuitedRobot: the robot lacks what the task needs.
     """
     if isinstance(task, str):
         if task not in TASKS:
@@ -254,8 +311,8 @@ def chosen(task: Task | str, changes: Mapping[str, Any]) -> Task:
         for name, value in changes.items()
     }
     kinds: Mapping[str, tuple[type, ...]] = {
-        "robot": (Crocodile,),
-        "gait": (Gait,),
+        "robot": get_args(AnyRobot),
+        "gait": get_args(AnyGait),
         "ground": (Ground,),
         "rewards": (Rewards,),
         "breaks": (Breaks, type(None)),
@@ -264,5 +321,7 @@ def chosen(task: Task | str, changes: Mapping[str, Any]) -> Task:
     for name, value in found.items():
         if name in kinds and not isinstance(value, kinds[name]):
             wanted = " or ".join("None" if kind is type(None) else kind.__name__ for kind in kinds[name])
-            raise InvalidDesign(f"task.{name} is {value!r}; a {wanted} is needed.")
+            raise InvalidDesign(f"task.{name} is {str(value)[:80]!r}; a {wanted} is needed.")
+    if "robot" in found:
+        task = task.on(found.pop("robot"), found.pop("gait", None))
     return replace(task, **found)

@@ -51,7 +51,8 @@ class CrocodileVectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[misc]  # g
         self.num_envs, self.max_episode_steps, self.render_mode = num_envs, max_episode_steps, render_mode
         self.autoreset_mode = _mode(autoreset_mode)
         self.metadata = {**metadata(self.task), "autoreset_mode": self.autoreset_mode}
-        self.single_action_space, self.single_observation_space = action_space(), observation_space()
+        robot = self.task.robot
+        self.single_action_space, self.single_observation_space = action_space(robot), observation_space(robot)
         self.action_space = batch_space(self.single_action_space, num_envs)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self._randoms = [seeding.np_random()[0] for _ in range(num_envs)]

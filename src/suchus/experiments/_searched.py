@@ -36,7 +36,8 @@ class Searched:
     def table(self, robot: Crocodile) -> AngleTable:
         """Return the gait as a table of servo angles."""
         table = as_table(robot, self.gait, _SAMPLES)
-        pitch = [name for name in layout(robot).servos if name.startswith("spine_pitch")]
+        place = layout(robot)
+        pitch = [place.servos[i] for i in place.trunk_pitch]
         clock = np.arange(_SAMPLES) / _SAMPLES - self.trunk_phase
         bend = (self.trunk_mean + self.trunk_amplitude * np.cos(2 * np.pi * clock)) / len(pitch)
         others = tuple(curve for curve in table.curves if curve.servo not in pitch)

@@ -289,7 +289,7 @@ class BipedalReach(Experiment):
         record = outcome.record
         return {
             "side_views": draw_side_views(self.robot, record),
-            "angles": draw_angles(record),
+            "angles": draw_angles(self.robot, record),
             "height_over_time": draw_heights(record, self.hold),
             "torque_and_mass": draw_limits(self.robot, record, _UP * stretched(self.robot)),
             "ceiling": draw_ceiling(self.robot, record),

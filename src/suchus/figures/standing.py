@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from suchus import rotation
-from suchus.design import Crocodile, servo_names
+from suchus.design import Crocodile, layout
 from suchus.figures.posture import draw_posture, skeleton
 from suchus.figures.style import COLOURS, captioned, panels, styled
 from suchus.metrics import tilt
@@ -110,15 +110,16 @@ def _mark_support(ax: Axes, now: xr.Dataset) -> None:
     ax.plot(x, [-0.012] * len(x), "^", color="#B8860B", markersize=7, zorder=6, clip_on=False)
 
 
-def draw_angles(record: xr.Dataset) -> Figure:
+def draw_angles(robot: Crocodile, record: xr.Dataset) -> Figure:
     """Draw the angles of pelvis, trunk and tail over time, up positive, on the way up and on the way down.
 
     Args:
+        robot: who stands up.
         record: of the experiment; its first run and its ``stages`` are used.
     """
     _, at, up, leave, down, _ = record.attrs["stages"]
     one = record.isel(run=0)
-    first, second, tail = (servo_names().index(n) for n in ("spine_pitch_1", "spine_pitch_2", "tail_pitch"))
+    (first, second), (tail,) = layout(robot).trunk_pitch, layout(robot).tail_pitch
     lines = (
         ("pelvis against the ground", -tilt(one)["pitch"], {"color": COLOURS["ours"]}),
         ("trunk, first pitch joint", -one.servo_angle[:, first], {"color": COLOURS["spine"]}),

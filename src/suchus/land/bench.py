@@ -222,10 +222,14 @@ class Bench:
             self._advance(targets, steps, time, alike.first)
             self._copy(alike.others, alike.whom)
         else:
-            self._advance(targets, steps, time, np.ones_like(self.alive))
+            self._advance(targets, steps, time, None)
 
-    def _advance(self, targets: np.ndarray, steps: int, time: float, who: np.ndarray) -> None:
-        self.ctrl[self.alive] = targets[self.alive]
+    def _advance(self, targets: np.ndarray, steps: int, time: float, who: np.ndarray | None) -> None:
+        # what all runs share is done at once: with one run alone each of these lines shows in its time
+        if self.alive.all():
+            self.ctrl[:] = targets
+        else:
+            self.ctrl[self.alive] = targets[self.alive]
         felt = self.sensors[:, self._forces]
         pressed = np.zeros_like(felt)
         going = self._going(who)
@@ -241,16 +245,23 @@ class Bench:
             if meter is not None:
                 meter.read()
         if meter is not None:
-            self.worked[who] = meter.mean(steps)[who]
+            some = slice(None) if who is None else who
+            self.worked[some] = meter.mean(steps)[some]
         self.readings[:] = self.sensors
         self.readings[:, self._forces] = pressed / steps
         fastest = np.abs(self.qvel).max(axis=1)
-        for sim in np.flatnonzero(self.alive & who & ~(fastest < _TOO_FAST)):  # a NaN is not below anything
-            self._end(int(sim), time, f"a speed of {fastest[sim]:.3g} was reached")
+        sound = fastest < _TOO_FAST  # a NaN is not below anything
+        if not sound.all():
+            for sim in np.flatnonzero(self._living(who) & ~sound):
+                self._end(int(sim), time, f"a speed of {fastest[sim]:.3g} was reached")
 
-    def _going(self, who: np.ndarray) -> np.ndarray | None:
+    def _living(self, who: np.ndarray | None) -> np.ndarray:
+        """Return who is alive, of some or of all."""
+        return self.alive if who is None else self.alive & who
+
+    def _going(self, who: np.ndarray | None) -> np.ndarray | None:
         """Return which simulations are stepped; None for all."""
-        going = self.alive & who
+        going = self._living(who)
         return None if going.all() else np.flatnonzero(going)
 
     def _copy(self, sims: np.ndarray, whom: np.ndarray) -> None:

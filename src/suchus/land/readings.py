@@ -80,7 +80,8 @@ class Readings:
     def record(self, time: np.ndarray) -> xr.Dataset:
         """Return everything that was read, in the schema of a run."""
         robots = [run.robot for run in self._runs]
-        arrays = self._arrays()
+        # parts of a block of all sensors would keep the whole block
+        arrays = {name: np.ascontiguousarray(values) for name, values in self._arrays().items()}
         last = np.minimum(self._bench.ended, time[-1])
         per_run = {
             "mass": np.array([robot.mass for robot in robots]),

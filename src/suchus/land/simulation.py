@@ -69,7 +69,9 @@ def simulate(
         order.extend(members)
     parts = alike(parts)
     record = parts[0] if len(parts) == 1 else xr.concat(parts, "run", join="exact", data_vars="minimal")
-    record = record.isel(run=np.argsort(order)).assign_coords(run=np.arange(len(runs)))
+    if len(groups) > 1:
+        record = record.isel(run=np.argsort(order))
+    record = record.assign_coords(run=np.arange(len(runs)))
     record.attrs.update(timestep=timestep, control_period=period)
     return record
 

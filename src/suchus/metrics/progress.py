@@ -5,7 +5,7 @@ import xarray as xr
 
 from suchus import rotation
 from suchus.design import GRAVITY
-from suchus.design.body import TRUNK_YAW
+from suchus.design.body import bends_trunk
 from suchus.metrics.window import between
 from suchus.motion import START
 
@@ -28,7 +28,7 @@ def speed(record: xr.Dataset, start: float = START, end: float | None = None) ->
 def heading(record: xr.Dataset) -> xr.DataArray:
     """Return over time where the body heads: the mean direction of the trunk's two ends, left positive [rad]."""
     yaw = xr.apply_ufunc(rotation.yaw, record.orientation, input_core_dims=[["wxyz"]])
-    names = [str(name) for name in record.joint.values if str(name).startswith(TRUNK_YAW)]
+    names = [str(name) for name in record.joint.values if bends_trunk(str(name))]
     trunk = sum(record.joint_angle.sel(joint=name) for name in names)
     return xr.apply_ufunc(lambda a: np.unwrap(a, axis=-1), yaw.transpose(..., "time")) + trunk / 2
 

@@ -12,7 +12,9 @@ from suchus.design import AnyRobot, Crank, Girdle, Limb, layout, servo_ranges
 from suchus.design.scale import gravity_time
 from suchus.errors import NotConverged, OutsideLimits, Unreachable
 from suchus.kinematics import limb as limb_kinematics
+from suchus.motion.angle_table import AngleTable
 from suchus.motion.any_body import check_limits, path, pattern_targets
+from suchus.motion.draft_table import table_walk
 from suchus.motion.pattern import AxialWave, FootPath, Pattern, Sweep
 
 _STROKES = (0.2, 0.15, 0.1, 0.06)  # of the limb's reach, the longest that all girdles can take is taken
@@ -29,12 +31,14 @@ _CLOUD, _NEAR = 16000, 0.05  # postures that show what a limb reaches; how near 
 _SAMPLES, _JUMP, _MARGIN = 24, 0.7, 0.02  # of a path; rad between two of them; rad from a joint's stop
 _TRIES, _PATHS = 2, 80  # starts of a limb without a closed form; paths that are solved before the search ends
 _SPEED = 0.6  # of its servo's speed that a joint is asked for at most
+_PLANAR = 2  # hinges of a limb whose foot moves on a surface only
 
 
-def draft_gait(robot: AnyRobot, name: str) -> Pattern:
+def draft_gait(robot: AnyRobot, name: str) -> Pattern | AngleTable:
     """Return a walk that a robot's limbs can follow, in lengths of its own; of a body without limbs, an undulation.
 
-    Diagonal limbs go together; trunk joints bend a little with them. It is a beginning, not the best.
+    Diagonal limbs go together; trunk joints bend a little with them. It is a beginning, not the best. Limbs of
+    two hinges, whose feet move on a surface only, get a table of angles.
 
     Args:
         robot: any.
@@ -46,7 +50,15 @@ def draft_gait(robot: AnyRobot, name: str) -> Pattern:
     girdles = layout(robot).robot.girdles
     phases = tuple(0.5 * ((i + right) % 2) for i in range(len(girdles)) for right in (0, 1))
     period = _PERIOD * gravity_time(robot.length)
-    gait = _walk(robot, name, phases, period) if girdles else _undulation(robot, name, period)
+    gait: Pattern | AngleTable
+    if not girdles:
+        gait = _undulation(robot, name, period)
+    elif all(len(girdle.limb.hinges) > _PLANAR or _is_crank(girdle.limb) for girdle in girdles):
+        gait = _walk(robot, name, phases, period)
+    else:
+        gait = table_walk(
+            robot, name=name, period=period, duty_factor=_DUTY, phases=phases, wave=_wave(robot), path=_cycle()
+        )
     try:
         gait = _slow_enough(robot, gait)
         check_limits(robot, gait)
@@ -192,7 +204,7 @@ def _wave(robot: AnyRobot) -> AxialWave:
     return AxialWave(amplitude=tuple(sorted(knots.items())) or ((0.0, 0.0),), waves=0.0, phase=0.0)
 
 
-def _slow_enough(robot: AnyRobot, gait: Pattern) -> Pattern:
+def _slow_enough(robot: AnyRobot, gait: Pattern | AngleTable) -> Pattern | AngleTable:
     """Return a gait with a period at which no servo is asked for more speed than it has to spare."""
     clock = np.arange(256) / 256
     step = np.abs(np.diff(pattern_targets(robot, gait, clock), axis=0)).max(axis=0) * 256

@@ -11,8 +11,11 @@ from suchus.design.checks import Checks, require
 from suchus.errors import InvalidDesign, OutsideLimits
 from suchus.kinematics import tail as tail_kinematics
 
-YAWS = ("spine_yaw_1", "spine_yaw_2", "spine_yaw_3")
-"""The trunk's yaw servos from the pelvis forward."""
+
+def trunk_yaws(robot: AnyRobot) -> tuple[str, ...]:
+    """Return the trunk's yaw servos from the root forward."""
+    place = layout(robot)
+    return tuple(place.servos[i] for i in place.trunk_yaw)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -118,8 +121,10 @@ def check_swim(robot: AnyRobot, swim: Swim) -> None:
     """
     robot = crocodile(robot, "the swim by trunk and cable")
     low, high = robot.spine.yaw_range
-    asked = [(name, amplitude, min(-low, high)) for name, amplitude in zip(YAWS, swim.yaw, strict=True)]
-    asked.append(("tail_cable", swim.tail, robot.tail.bend_limit))
+    asked = [(name, amplitude, min(-low, high)) for name, amplitude in zip(trunk_yaws(robot), swim.yaw, strict=True)]
+    place = layout(robot)
+    cable = place.servos[place.cables[0]]
+    asked.append((cable, swim.tail, robot.tail.bend_limit))
     for name, amplitude, limit in asked:
         if amplitude > limit:
             raise OutsideLimits(
@@ -127,7 +132,7 @@ def check_swim(robot: AnyRobot, swim: Swim) -> None:
                 f"more than the {limit:.3f} rad that robot {robot.name!r} allows: lower the amplitude, or take a "
                 "longer wave."
             )
-        shaft = float(tail_kinematics.servo_angle(robot.tail, amplitude)) if name == "tail_cable" else amplitude
+        shaft = float(tail_kinematics.servo_angle(robot.tail, amplitude)) if name == cable else amplitude
         speed, most = 2 * np.pi * swim.frequency * shaft, robot.servo(name).speed
         if speed > most:
             raise OutsideLimits(

@@ -12,7 +12,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 from scipy.stats import qmc
 
-from suchus.design import LEGS, Crocodile, joint_names, spine_joints
+from suchus.design import LEGS, Crocodile, joint_names, layout, spine_joints
 from suchus.kinematics import leg as leg_kinematics
 from suchus.kinematics import spine
 from suchus.kinematics.body import from_leg_frame, landmarks, tail_points, to_leg_frame
@@ -125,7 +125,8 @@ def _tail_laid(robot: Crocodile, angles: np.ndarray, pelvis: np.ndarray) -> Bool
     tail = robot.tail
     drop = (pelvis[:, 1] - tail.offset * np.sin(pelvis[:, 2]) - tail.radius_tip) / (tail.length - tail.offset)
     pitch = np.arcsin(np.clip(drop, -1.0, 1.0)) - pelvis[:, 2]
-    angles[:, joint_names(robot).index("tail_pitch")] = pitch
+    place = layout(robot)
+    angles[:, place.servo_hinges[place.tail_pitch[0]]] = pitch
     low, high = tail.pitch_range
     return np.asarray((np.abs(drop) <= 1.0) & (pitch >= low) & (pitch <= high))
 

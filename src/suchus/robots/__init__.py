@@ -3,8 +3,16 @@
 from typing import Any
 
 from suchus.catalog import Catalog
+from suchus.design import AnyRobot
+from suchus.robots._size import Beside, beside
 
 ROBOTS: Catalog[Any] = Catalog("robot", "suchus.robots", "suchus.design:AnyRobot")
 """Of either kind; who needs one of them says so by the type of its field."""
 
-__all__ = ["ROBOTS"]
+
+def beside_article(robot: AnyRobot) -> Beside:
+    """Return the size of a robot over that of the article's robot."""
+    return beside(ROBOTS, robot)
+
+
+__all__ = ["ROBOTS", "Beside", "beside_article"]

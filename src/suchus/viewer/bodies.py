@@ -9,10 +9,10 @@ import mujoco
 import numpy as np
 from scipy.cluster.vq import kmeans2
 
-from suchus.design import LEGS, Crocodile, crocodile, joint_names
+from suchus.design import AnyRobot, layout
 from suchus.design.relief import Relief
 from suchus.model import compile_model, joint_addresses
-from suchus.skin import ANKLES, Poses, ankles, bone_names, footed
+from suchus.skin import Poses, ankles, bone_names, footed
 
 COLOURS = 7
 """Into how many colours the skin is cut; more look smoother and move slower [-]."""
@@ -25,12 +25,13 @@ class Posture:
         robot: whose bodies.
     """
 
-    def __init__(self, robot: Crocodile) -> None:
-        self.robot = robot = crocodile(robot, "the viewer")
+    def __init__(self, robot: AnyRobot) -> None:
+        self.robot = robot
+        self._place = layout(robot)
         self.model = compile_model(robot)
-        self._feet = np.zeros((len(LEGS), 3))
+        self._feet = np.zeros((len(self._place.limbs), 3))
         self._data = mujoco.MjData(self.model)
-        self._joints = joint_addresses(self.model, joint_names(robot))
+        self._joints = joint_addresses(self.model, self._place.hinges)
 
     def put(self, now: Mapping[str, np.ndarray]) -> None:
         """Take the posture of an instant, by the names of ``record.VARIABLES``."""
@@ -45,10 +46,10 @@ class Posture:
         Args:
             relief: what stands up from the ground; None where it is even.
         """
-        names = bone_names(self.robot)
-        places, turns = zip(*map(self.body, names), strict=True)
+        places, turns = zip(*map(self.body, bone_names(self.robot)), strict=True)
         found = ankles(self.robot, Poses(np.array([places]), np.array([turns])), self._feet[None], relief)
-        return dict(zip((*names, *ANKLES), zip(found.positions[0], found.quaternions[0], strict=True), strict=True))
+        at = zip(found.positions[0], found.quaternions[0], strict=True)
+        return dict(zip(footed(self.robot).bones, at, strict=True))
 
     def geoms(self) -> list[int]:
         """Return the numbers of the geoms that belong to the robot."""
@@ -67,10 +68,12 @@ class Posture:
 
     def part(self, name: str) -> np.ndarray:
         """Return where the joint of a servo, or the foot of a leg, is [m]; for the cable, where its first joint is."""
-        if name in LEGS:
+        place = self._place
+        if name in place.limb_names:
             return np.array(self._data.site(f"{name}_foot").xpos)
-        number = self.model.joint("tail_yaw_1" if name == "tail_cable" else name).id
-        return np.array(self._data.xanchor[number])
+        servo = place.servos.index(name) if name in place.servos else -1
+        hinge = place.cable(servo).hinges[0] if servo in place.cables else name
+        return np.array(self._data.xanchor[self.model.joint(hinge).id])
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,7 +95,7 @@ class Piece:
 
 
 @lru_cache(maxsize=8)
-def pieces(robot: Crocodile, count: int = COLOURS) -> tuple[Piece, ...]:
+def pieces(robot: AnyRobot, count: int = COLOURS) -> tuple[Piece, ...]:
     """Return the skin of a robot cut by colour, since a browser's skinned mesh has but one.
 
     Args:
@@ -129,8 +132,8 @@ def support(feet: np.ndarray, loaded: np.ndarray) -> np.ndarray:
     """Return the corners of the support of the loaded feet in order, (corner, 3) [m].
 
     Args:
-        feet: places on the ground in the order of ``LEGS``, (4, 3) [m].
-        loaded: which stand, (4,).
+        feet: places on the ground, one for each limb, (limb, 3) [m].
+        loaded: which stand, (limb,).
     """
     corners = feet[loaded]
     if len(corners) < 3:

@@ -4,23 +4,10 @@ from collections.abc import Callable
 from typing import Any
 
 from suchus.faults import FAULTS, Limp, numbers
-from suchus.gaits import GAITS
-from suchus.motion import Gait
-from suchus.viewer.knobs import (
-    BREATH,
-    BUMPS,
-    DIRECTION,
-    GAIT_KNOBS,
-    LASTING,
-    LEVEL,
-    SIDE_SLOPE,
-    SLOPE,
-    SPEED,
-    Knob,
-    force_on,
-    shown,
-)
-from suchus.viewer.session import Session, Switch
+from suchus.gaits import GAITS, suits
+from suchus.motion import AnyGait, Gait
+from suchus.viewer.knobs import Knob, knobs_of, shown
+from suchus.viewer.session import Session, Switch, plain_knobs
 
 Say = Callable[[str], None]
 """Tells people a sentence; an empty one is not told."""
@@ -51,28 +38,30 @@ class Controls:
         self.touched = 0
         self._switches: dict[str, Any] = {}
         self._sliders: dict[str, Any] = {}
+        self._turned: list[str] = []
         self._playback()
         with gui.add_folder("Arms and feedback"):
             for switch, label, hint in _SWITCHES:
                 self._add_switch(switch, label, hint)
         with gui.add_folder("Gait"):
             self._gaits()
-            for name, knob in GAIT_KNOBS.items():
+            for name, knob in knobs_of(session.robot, session.settings.gait).items():
                 self._add_gait_slider(name, knob)
+        knobs = plain_knobs(session.robot)
         with gui.add_folder("Break a joint"):
             self._faults()
         with gui.add_folder("Push"):
-            for name, knob in (("force", force_on(session.robot)), ("direction", DIRECTION), ("lasting", LASTING)):
-                self._add_slider(name, knob)
+            for name in ("force", "direction", "lasting"):
+                self._add_slider(name, knobs[name])
             self._on(gui.add_button("push the trunk", color="orange"), lambda _: session.push())
         with gui.add_folder("Ground"):
-            for name, knob in (("uphill", SLOPE), ("sideways", SIDE_SLOPE), ("bumps", BUMPS)):
-                self._add_slider(name, knob)
+            for name in ("uphill", "sideways", "bumps"):
+                self._add_slider(name, knobs[name])
         if session.settings.swim is not None:
             with gui.add_folder("Water"):
                 self._add_switch("swims", "swims", "Off: it walks, on the ground or against the water.")
-                for name, knob in (("level", LEVEL), ("breath", BREATH)):
-                    self._add_slider(name, knob)
+                for name in ("level", "breath"):
+                    self._add_slider(name, knobs[name])
 
     @property
     def paused(self) -> bool:
@@ -102,7 +91,7 @@ class Controls:
             self._pause = gui.add_checkbox("pause", initial_value=False)
             self._on(self._pause, lambda _: None)
             self._on(gui.add_button("reset", hint="Begin anew with everything as it is set."), self._reset)
-            self._add_slider("speed", SPEED)
+            self._add_slider("speed", plain_knobs(self._session.robot)["speed"])
 
     def _reset(self, _: object) -> None:
         self._session.reset()
@@ -120,22 +109,29 @@ class Controls:
         self._switches[name] = box
 
     def _gaits(self) -> None:
-        names = [name for name, gait in GAITS.items() if isinstance(gait, Gait)]
         mine = self._session.settings.gait
-        shelf: dict[str, Gait] = {name: GAITS[name] for name in names}
+        shelf: dict[str, AnyGait] = {name: gait for name, gait in GAITS.items() if self._fits(gait)}
         if shelf.get(mine.name) != mine:
             shelf = {mine.name: mine, **shelf}
         menu = self._gui.add_dropdown("from the shelf", tuple(shelf), initial_value=mine.name)
 
         def act(name: Any) -> str:
             notice = self._session.adopt(shelf[name])
-            for field in GAIT_KNOBS:
+            for field in self._turned:
                 self._sliders[field].value = shown(self._session.settings.gait, field)
             return notice
 
         self._on(menu, act)
 
+    def _fits(self, gait: AnyGait) -> bool:
+        """Tell whether a gait of the shelf has the same sliders, and the robot can follow it where it is a pattern."""
+        robot, mine = self._session.robot, self._session.settings.gait
+        if isinstance(gait, Gait) and isinstance(mine, Gait):
+            return True
+        return set(knobs_of(robot, gait)) == set(knobs_of(robot, mine)) and suits(robot, gait)
+
     def _add_gait_slider(self, name: str, knob: Knob) -> None:
+        self._turned.append(name)
         now = shown(self._session.settings.gait, name)
         slider = self._slider(knob, now)
 

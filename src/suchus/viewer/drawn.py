@@ -6,12 +6,14 @@ from typing import Any, Literal
 import numpy as np
 from mjviser.conversions import create_primitive_mesh
 
-from suchus.design import Crocodile
+from suchus.design import AnyRobot
 from suchus.design.relief import Relief
 from suchus.fault import Fault
+from suchus.robots import beside_article
 from suchus.viewer.bodies import Posture, pieces
 
 Look = Literal["skin", "collision geoms"]
+_MARK, _WORD = 0.026, 0.035  # [m]; radius of a mark on the article's robot, and how far above it its word is
 LIMP, LOCKED = (225, 60, 45), (40, 40, 45)
 """Colours of the marks on joints that are lost."""
 GHOST = (120, 140, 200)
@@ -28,11 +30,12 @@ class DrawnRobot:
         ghost: whether it is there for comparison: pale, one colour.
     """
 
-    def __init__(self, scene: Any, root: str, robot: Crocodile, *, ghost: bool = False) -> None:
+    def __init__(self, scene: Any, root: str, robot: AnyRobot, *, ghost: bool = False) -> None:
         self._scene, self._root, self._ghost = scene, root, ghost
         self.posture = Posture(robot)
         self.relief: Relief | None = None
         self._marks: dict[str, Any] = {}
+        self._size = beside_article(robot).length
         self._lost: tuple[Fault, ...] = ()
         self._look: Look = "skin"
         self._geoms: dict[int, Any] = {}
@@ -88,7 +91,7 @@ class DrawnRobot:
                 handle.position, handle.wxyz = self.posture.geom(number)
         for part, (ball, label) in self._marks.items():
             ball.position = self.posture.part(part)
-            label.position = ball.position + np.array([0.0, 0.0, 0.035])
+            label.position = ball.position + np.array([0.0, 0.0, self._size * _WORD])
 
     def mark(self, lost: Sequence[Fault]) -> None:
         """Mark the joints and legs that are broken, each with how."""
@@ -104,7 +107,11 @@ class DrawnRobot:
         part, kind = fault.part, fault.kind()
         place = self.posture.part(part)
         ball = self._scene.add_icosphere(
-            f"{self._root}/lost_{part}", 0.026, color=LIMP if kind == "limp" else LOCKED, position=place, opacity=0.85
+            f"{self._root}/lost_{part}",
+            self._size * _MARK,
+            color=LIMP if kind == "limp" else LOCKED,
+            position=place,
+            opacity=0.85,
         )
         text = f"{part} {kind}".replace("_", " ")
         label = self._scene.add_label(f"{self._root}/word_{part}", text, position=place, anchor="bottom-center")

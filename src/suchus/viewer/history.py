@@ -1,28 +1,34 @@
 """The last seconds of a walk, for plots."""
 
 from collections import deque
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import xarray as xr
 
-from suchus.design import LEGS
-
 WINDOW = 12.0
 """How far back the plots look [s]."""
-COLUMNS = ("time", "height", "forward", "aside", *LEGS, "belly", "tail")
-"""Time [s], height and way of the centre of mass [m], what feet, belly and tail carry [N]."""
+
+
+def columns(limbs: Sequence[str]) -> tuple[str, ...]:
+    """Return the names of the columns: time [s], height and way of the centre of mass [m], then loads [N].
+
+    Args:
+        limbs: names of the limbs; the loads are those of their feet, of the belly and of the tail.
+    """
+    return ("time", "height", "forward", "aside", *limbs, "belly", "tail")
 
 
 class History:
-    """Rows of ``COLUMNS``, the oldest forgotten.
+    """Rows of ``columns``, the oldest forgotten.
 
     Args:
+        limbs: names of the limbs.
         every: between two rows [s].
     """
 
-    def __init__(self, every: float = 0.02) -> None:
-        self._every = every
+    def __init__(self, limbs: Sequence[str], every: float = 0.02) -> None:
+        self._every, self._columns = every, columns(limbs)
         self._rows: deque[list[float]] = deque(maxlen=round(WINDOW / every) + 1)
 
     def note(self, time: float, now: Mapping[str, np.ndarray], way: tuple[float, float]) -> None:
@@ -41,8 +47,8 @@ class History:
 
     def table(self) -> dict[str, np.ndarray]:
         """Return the columns by name, each of shape (row,)."""
-        rows = np.array(self._rows).reshape(len(self._rows), len(COLUMNS))
-        return {name: rows[:, i] for i, name in enumerate(COLUMNS)}
+        rows = np.array(self._rows).reshape(len(self._rows), len(self._columns))
+        return {name: rows[:, i] for i, name in enumerate(self._columns)}
 
 
 def table_of(record: xr.Dataset, origin: np.ndarray) -> dict[str, np.ndarray]:
@@ -54,6 +60,7 @@ def table_of(record: xr.Dataset, origin: np.ndarray) -> dict[str, np.ndarray]:
     """
     com, feet = record.centre_of_mass.values, record.foot_force.sel(xyz="z").values
     way = com - origin
-    columns = [record.time.values, com[:, 2], way[:, 0], way[:, 1], *feet.T]
-    columns += [record.belly_force.sel(xyz="z").sum("segment").values, record.tail_force.sel(xyz="z").values]
-    return dict(zip(COLUMNS, (np.asarray(column, dtype=float) for column in columns), strict=True))
+    found = [record.time.values, com[:, 2], way[:, 0], way[:, 1], *feet.T]
+    found += [record.belly_force.sel(xyz="z").sum("segment").values, record.tail_force.sel(xyz="z").values]
+    names = columns([str(limb) for limb in record.leg.values])
+    return dict(zip(names, (np.asarray(column, dtype=float) for column in found), strict=True))

@@ -6,9 +6,10 @@ from math import isfinite, radians
 from types import MappingProxyType
 from typing import Any
 
-from suchus.design import GRAVITY, Crocodile
-from suchus.errors import OutsideLimits
-from suchus.motion import Gait, check_limits
+from suchus.design import GRAVITY, AnyRobot
+from suchus.errors import InvalidDesign, NotConverged, OutsideLimits
+from suchus.motion import AnyGait, FootPath, Gait, Pattern, Sweep, check_limits, with_bends, with_strokes
+from suchus.robots import beside_article
 
 _HALVINGS = 14  # of the way to a value that the robot cannot reach: a ten-thousandth of it
 
@@ -101,6 +102,47 @@ GAIT_KNOBS: Mapping[str, Knob] = MappingProxyType(
 )  # fmt: skip
 """Fields of a gait that can be turned; the ranges lie within those that ``Gait`` allows."""
 
+_SHARE = 0.01  # a per cent
+PATTERN_KNOBS: Mapping[str, Knob] = MappingProxyType(
+    {
+        "period": GAIT_KNOBS["period"],
+        "duty_factor": GAIT_KNOBS["duty_factor"],
+        "strokes": Knob(
+            label="limb stroke", unit="% of reach", low=1.0, high=60.0, step=1.0, scale=_SHARE,
+            hint="Half of the way that a foot goes back in stance, of the front limbs; others in proportion.",
+        ),
+        "lifts": Knob(
+            label="foot lift", unit="% of reach", low=1.0, high=60.0, step=1.0, scale=_SHARE,
+            hint="In swing, of the front limbs; others in proportion.",
+        ),
+        "height": Knob(
+            label="hip height", unit="% of reach", low=10.0, high=120.0, step=1.0, scale=_SHARE,
+            hint="Of the hindmost hips above the ground.",
+        ),
+        "turned": Knob(
+            label="crank in stance", unit="deg", low=10.0, high=340.0, step=5.0, scale=_DEGREE,
+            hint="Angle that a crank turns through while its foot stands.",
+        ),
+        "bends": Knob(
+            label="axis bend", unit="deg", low=0.1, high=60.0, step=0.5, scale=_DEGREE,
+            hint="Greatest amplitude of a joint of the axis; others in proportion.",
+        ),
+        "late": Knob(
+            label="axis phase", unit="cycle", low=-0.5, high=0.5, step=0.01,
+            hint="How late the axis bends against the limbs.",
+        ),
+        "waves": Knob(
+            label="waves along the body", unit="", low=-2.0, high=2.0, step=0.05,
+            hint="0 is a standing wave; positive it runs from head to tail.",
+        ),
+        "offset": Knob(
+            label="bend to the left", unit="deg", low=-15.0, high=15.0, step=0.5, scale=_DEGREE,
+            hint="Of every joint of the axis, steadily: it turns left.",
+        ),
+    }
+)  # fmt: skip
+"""What can be turned of a pattern of any body."""
+
 SLOPE = Knob(label="uphill", unit="deg", low=-20.0, high=20.0, step=0.5, scale=_DEGREE, hint="Slope along the walk.")
 SIDE_SLOPE = Knob(
     label="left side up", unit="deg", low=-20.0, high=20.0, step=0.5, scale=_DEGREE, hint="Slope across the walk."
@@ -109,13 +151,17 @@ BUMPS = Knob(
     label="bumps", unit="mm", low=0.0, high=60.0, step=5.0, scale=1e-3,
     hint="Height of a field of random bumps ahead; the walk begins anew on them.",
 )  # fmt: skip
+"""For a robot as long as the article's; see ``bumps_under``."""
 SPEED = Knob(label="playback speed", unit="x", low=0.05, high=4.0, step=0.05, hint="1 is real time.")
 FORCE = Knob(label="force", unit="N", low=0.0, high=60.0, step=1.0)
+"""For a robot as heavy as the article's; see ``force_on``."""
 LASTING = Knob(label="lasting", unit="s", low=0.02, high=2.0, step=0.02, hint="Duration of the push.")
 DIRECTION = Knob(
     label="direction", unit="deg", low=-180.0, high=180.0, step=15.0, scale=_DEGREE,
     hint="0 pushes forward, 90 to the left, 180 backward.",
 )  # fmt: skip
+_PUSH = 15.0  # [N]; on the article's robot, at first
+_FAINT = 1.0  # [N]; a lighter body is pushed in millinewtons
 
 LEVEL = Knob(
     label="water level", unit="mm", low=0.0, high=1000.0, step=5.0, scale=1e-3,
@@ -127,17 +173,74 @@ BREATH = Knob(
 )  # fmt: skip
 
 
-def force_on(robot: Crocodile) -> Knob:
-    """Return the knob of a push's force, with the weight of whom it pushes."""
-    return replace(FORCE, hint=f"{robot.name} weighs {robot.mass * GRAVITY:.0f} N.")
+def force_on(robot: AnyRobot) -> Knob:
+    """Return the knob of a push's force, which follows the weight of whom it pushes, in newtons or millinewtons."""
+    weight = robot.mass * GRAVITY
+    unit, scale = ("N", 1.0) if weight >= _FAINT else ("mN", 1e-3)
+    told = f"{weight / scale:.0f}" if weight / scale >= 10.0 else f"{weight / scale:.2g}"
+    hint = f"{robot.name} weighs {told} {unit}."
+    high = _rounded(FORCE.high * beside_article(robot).weight / scale)
+    return replace(FORCE, unit=unit, scale=scale, high=high, step=_rounded(high / 60.0), hint=hint)
 
 
-def shown(gait: Gait, name: str) -> float:
+def push_on(robot: AnyRobot) -> float:
+    """Return the force of a push as it is set at first [N]: 0.43 of the weight of a body of another size."""
+    return _rounded(_PUSH * beside_article(robot).weight)
+
+
+def bumps_under(robot: AnyRobot) -> Knob:
+    """Return the knob of the bumps' height, which follows the length of whom they are under."""
+    return _resized(BUMPS, beside_article(robot).length)
+
+
+def knobs_of(robot: AnyRobot, gait: AnyGait) -> Mapping[str, Knob]:
+    """Return what can be turned of a movement, by name; nothing of a table of angles."""
+    if isinstance(gait, Gait):
+        share = beside_article(robot).length
+        return {name: _resized(knob, share) if knob.unit == "mm" else knob for name, knob in GAIT_KNOBS.items()}
+    if not isinstance(gait, Pattern):
+        return {}
+    there = {name for name, value in _pattern(gait).items() if value != 0.0 or name in ("late", "waves", "offset")}
+    if not any(angle for _, angle in gait.wave.amplitude):
+        there -= {"late", "waves"}
+    return {name: knob for name, knob in PATTERN_KNOBS.items() if name in there}
+
+
+def _resized(knob: Knob, share: float) -> Knob:
+    low, high = (float(f"{share * end:.2g}") for end in (knob.low, knob.high))
+    return replace(knob, low=low, high=high, step=_rounded(share * knob.step))
+
+
+def _rounded(value: float) -> float:
+    return float(f"{value:.2g}")
+
+
+def _pattern(gait: Pattern) -> dict[str, float]:
+    """Return what can be turned of a pattern, by name, in SI units; 0 where it has no such part."""
+    paths = [does for does in gait.girdles if isinstance(does, FootPath)]
+    cranks = [does for does in gait.girdles if isinstance(does, Sweep)]
+    return {
+        "period": gait.period,
+        "duty_factor": gait.duty_factor if gait.girdles else 0.0,
+        "strokes": abs(paths[0].stroke) if paths else 0.0,
+        "lifts": paths[0].lift if paths else 0.0,
+        "height": gait.height if paths else 0.0,
+        "turned": cranks[0].stance if cranks else 0.0,
+        "bends": max((abs(angle) for _, angle in gait.wave.amplitude), default=0.0),
+        "late": gait.wave.phase,
+        "waves": gait.wave.waves,
+        "offset": gait.wave.offset,
+    }
+
+
+def shown(gait: AnyGait, name: str) -> float:
     """Return a field of a gait in the unit of its knob, to four digits."""
-    return float(f"{getattr(gait, name) / GAIT_KNOBS[name].scale:.4g}")
+    scale = (GAIT_KNOBS if name in GAIT_KNOBS else PATTERN_KNOBS)[name].scale
+    now = _pattern(gait)[name] if isinstance(gait, Pattern) else getattr(gait, name)
+    return float(f"{now / scale:.4g}")
 
 
-def tuned(robot: Crocodile, gait: Gait, name: str, value: object) -> tuple[Gait, str]:
+def tuned(robot: AnyRobot, gait: AnyGait, name: str, value: object) -> tuple[AnyGait, str]:
     """Return a gait with one field turned as far as the robot's joints follow, and a sentence if that is not as asked.
 
     Args:
@@ -146,31 +249,47 @@ def tuned(robot: Crocodile, gait: Gait, name: str, value: object) -> tuple[Gait,
         name: of the knob.
         value: asked for, in the knob's unit; anything.
     """
-    knob, now = GAIT_KNOBS[name], shown(gait, name)
+    knob, now = knobs_of(robot, gait)[name], shown(gait, name)
     asked, notice = knob.within(value, now)
     if notice and asked == now:
         return gait, notice
-    wanted = _with(gait, name, asked)
-    why = _refused(robot, wanted)
+    wanted, why = _tried(robot, gait, name, asked * knob.scale)
     if not why:
         return wanted, notice
     fits, reached = gait, now
     for i in range(1, _HALVINGS + 1):
         between = reached + (asked - now) / 2**i
-        trial = _with(gait, name, between)
-        if not _refused(robot, trial):
+        trial, refused = _tried(robot, gait, name, between * knob.scale)
+        if not refused:
             fits, reached = trial, between
     return fits, f"{knob.label}: the robot cannot follow {knob.said(asked)}; it is {knob.said(reached)} now. {why}"
 
 
-def _with(gait: Gait, name: str, value: float) -> Gait:
-    change: dict[str, Any] = {name: value * GAIT_KNOBS[name].scale}
-    return replace(gait, **change)
-
-
-def _refused(robot: Crocodile, gait: Gait) -> str:
+def _tried(robot: AnyRobot, gait: AnyGait, name: str, value: float) -> tuple[AnyGait, str]:
+    """Return a gait with one field changed, and why the robot cannot follow it; empty if it can."""
     try:
-        check_limits(robot, gait)
-    except OutsideLimits as error:
-        return str(error)
-    return ""
+        changed = _with(robot, gait, name, value)
+        check_limits(robot, changed)
+    except (InvalidDesign, NotConverged, OutsideLimits) as error:
+        return gait, str(error)
+    return changed, ""
+
+
+def _with(robot: AnyRobot, gait: AnyGait, name: str, value: float) -> AnyGait:
+    """Return a gait with one field changed, in SI units."""
+    change: dict[str, Any] = {name: value}
+    if not isinstance(gait, Pattern) or name in ("period", "duty_factor", "height"):
+        return replace(gait, **change)
+    share = value / _pattern(gait)[name] if name in ("strokes", "turned", "lifts", "bends") else 1.0
+    if name in ("strokes", "turned"):
+        return with_strokes(gait, share)
+    if name == "bends":
+        return with_bends(robot, gait, share)
+    if name == "lifts":
+        lifted = [
+            replace(does, lift=share * does.lift) if isinstance(does, FootPath) else does for does in gait.girdles
+        ]
+        return replace(gait, girdles=tuple(lifted))
+    field = "phase" if name == "late" else name
+    changed: dict[str, Any] = {field: value}
+    return replace(gait, wave=replace(gait.wave, **changed))

@@ -45,7 +45,7 @@ class LivePage:
             switches = {name: gui.add_checkbox(label, initial_value=True) for name, label in _SHOWN}
         gui.main_panel.dock_right()
         gui.main_panel.set_width(330)
-        self._plots = Plots(gui, uplot)
+        self._plots = Plots(gui, uplot, session.robot)
         self._stage = Stage(client.scene, session.robot)
         self._stage.look("skin")
         self._skin.on_update(lambda _: self._stage.look("skin" if self._skin.value else "collision geoms"))

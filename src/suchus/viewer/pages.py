@@ -3,7 +3,8 @@
 from suchus.viewer.live_page import LivePage
 from suchus.viewer.replay_page import ReplayPage
 from suchus.viewer.server import CannotServe, Viewer
+from suchus.viewer.stage import camera
 from suchus.viewer.swim_page import CAMERA as FROM_ABOVE
 from suchus.viewer.swim_page import SwimPage
 
-__all__ = ["FROM_ABOVE", "CannotServe", "LivePage", "ReplayPage", "SwimPage", "Viewer"]
+__all__ = ["FROM_ABOVE", "CannotServe", "LivePage", "ReplayPage", "SwimPage", "Viewer", "camera"]

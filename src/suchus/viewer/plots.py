@@ -7,12 +7,14 @@ from typing import Any
 import numpy as np
 from scipy.ndimage import uniform_filter1d
 
-from suchus.design import LEGS
+from suchus.design import GRAVITY, AnyRobot
 from suchus.figures import COLOURS
-from suchus.metrics.gait import LOADED
+from suchus.figures.style import limb_colours
+from suchus.metrics.gait import LOADED_SHARE
 
 _POINTS = 400  # of a line; more are not seen
 _PALE = "#c9ccd1"
+_LIGHT = 0.1  # [kg]; the loads of lighter bodies are shown in millinewtons
 AXIS = {"stroke": "#555555", "grid": {"stroke": "#e6e6e6", "width": 1}, "ticks": {"stroke": "#cccccc", "width": 1}}
 """How axes are drawn, as uPlot has it."""
 
@@ -45,26 +47,29 @@ class Plan:
     """Over how long values are averaged [s]; feet that touch down make spikes that hide the rest."""
 
 
-PLANS = (
-    Plan("height of the centre of mass [mm]", (Line("height", "height", COLOURS["ours"]),), 1e3),
-    Plan(
-        "way since the first step [m]",
-        (
-            Line("forward", "forward", COLOURS["ours"]),
-            Line("to the left", "aside", COLOURS["limbs_only"], (6.0, 3.0)),
+def plans(robot: AnyRobot) -> tuple[Plan, ...]:
+    """Return the charts of a robot, from above."""
+    light = robot.mass < _LIGHT
+    return (
+        Plan("height of the centre of mass [mm]", (Line("height", "height", COLOURS["ours"]),), 1e3),
+        Plan(
+            "way since the first step [m]",
+            (
+                Line("forward", "forward", COLOURS["ours"]),
+                Line("to the left", "aside", COLOURS["limbs_only"], (6.0, 3.0)),
+            ),
         ),
-    ),
-    Plan(
-        "load on the ground [N], mean over 0.1 s",
-        (
-            *(Line(leg, leg, COLOURS[leg]) for leg in LEGS),
-            Line("tail", "tail", COLOURS["tail"], (2.0, 3.0)),
-            Line("belly", "belly", COLOURS["neutral"], (6.0, 3.0)),
+        Plan(
+            f"load on the ground [{'mN' if light else 'N'}], mean over 0.1 s",
+            (
+                *(Line(limb, limb, colour) for limb, colour in limb_colours(robot)),
+                Line("tail", "tail", COLOURS["tail"], (2.0, 3.0)),
+                Line("belly", "belly", COLOURS["neutral"], (6.0, 3.0)),
+            ),
+            1e3 if light else 1.0,
+            mean=0.1,
         ),
-        mean=0.1,
-    ),
-)
-"""The charts, from above."""
+    )
 
 
 class Chart:
@@ -115,7 +120,9 @@ class Chart:
         self._handle.data = tuple(np.asarray(column, dtype=float) for column in (time, *pale, *lines))
 
     def _values(self, table: Mapping[str, np.ndarray], line: Line) -> np.ndarray:
-        values = self._plan.scale * table[line.column]
+        values = self._plan.scale * table.get(
+            line.column, np.full(len(table["time"]), np.nan)
+        )  # a ghost of other limbs
         count = round(self._plan.mean / float(np.diff(table["time"][:2])[0])) if self._plan.mean else 0
         return values if count < 2 or len(values) < count else uniform_filter1d(values, count, mode="nearest")
 
@@ -137,27 +144,30 @@ def series(uplot: Any, line: Line) -> Any:
     return uplot.Series(label=line.label, stroke=line.colour, width=1.6, **dashes)
 
 
-def gait_bars(table: Mapping[str, np.ndarray], *, now: float | None = None, width: int = 330) -> str:
-    """Return the gait as an SVG picture: a bar for every stance of every foot.
+def gait_bars(robot: AnyRobot, table: Mapping[str, np.ndarray], *, now: float | None = None, width: int = 330) -> str:
+    """Return the gait as an SVG picture: a bar for every stance of every foot; empty for a robot without limbs.
 
     Args:
-        table: columns by name, see ``history.COLUMNS``.
+        robot: who walks.
+        table: columns by name, see ``history.columns``.
         now: where to draw a cursor [s]; None for none.
         width: of the picture [pixel].
     """
-    time = table["time"]
+    time, limbs, least = table["time"], limb_colours(robot), LOADED_SHARE * robot.mass * GRAVITY
+    if not limbs:
+        return ""
     left, right, row, top = 30, width - 12, 19, 20
     start, end = float(time[0]), max(float(time[-1]), float(time[0]) + 1.0)
     pixels = (right - left) / (end - start)
-    parts = [f'<text x="{left}" y="12" class="t">feet that stand (more than {LOADED:g} N)</text>']
-    for i, leg in enumerate(LEGS):
+    parts = [f'<text x="{left}" y="12" class="t">feet that stand (more than {least:.1g} N)</text>']
+    for i, (leg, colour) in enumerate(limbs):
         y = top + i * row
         parts.append(f'<text x="2" y="{y + 12}">{leg}</text>')
         parts.append(f'<rect x="{left}" y="{y}" width="{right - left}" height="15" fill="#f0efec"/>')
-        for a, b in _stances(time, table[leg] > LOADED):
+        for a, b in _stances(time, table[leg] > least):
             bar = f'x="{left + (a - start) * pixels:.1f}" width="{max((b - a) * pixels, 0.8):.1f}"'
-            parts.append(f'<rect {bar} y="{y}" height="15" fill="{COLOURS[leg]}"/>')
-    bottom = top + 4 * row
+            parts.append(f'<rect {bar} y="{y}" height="15" fill="{colour}"/>')
+    bottom = top + len(limbs) * row
     for tick in np.arange(np.ceil(start), end + 1e-9, max(1.0, np.ceil((end - start) / 6))):
         x = left + (tick - start) * pixels
         parts.append(f'<line x1="{x:.1f}" x2="{x:.1f}" y1="{top}" y2="{bottom}" stroke="#ffffff" stroke-opacity=".6"/>')
@@ -185,13 +195,15 @@ class Plots:
     Args:
         gui: viser's interface of one browser.
         uplot: viser's module of chart settings.
+        robot: who walks.
         compared: whether there is a second run, drawn pale.
     """
 
-    def __init__(self, gui: Any, uplot: Any, *, compared: bool = False) -> None:
+    def __init__(self, gui: Any, uplot: Any, robot: AnyRobot, *, compared: bool = False) -> None:
+        self._robot = robot
         panel = gui.add_panel()
         with panel.add_tab("Measured"):
-            self._charts = [Chart(gui, plan, uplot, compared=compared) for plan in PLANS]
+            self._charts = [Chart(gui, plan, uplot, compared=compared) for plan in plans(robot)]
             self._bars = gui.add_html("")
         panel.dock_left()
         panel.set_width(370)
@@ -202,9 +214,9 @@ class Plots:
         ghost: Mapping[str, np.ndarray] | None = None,
         now: float | None = None,
     ) -> None:
-        """Draw the columns of ``history.COLUMNS``."""
+        """Draw the columns of ``history.columns``."""
         if len(table["time"]) < 2:
             return
         for chart in self._charts:
             chart.draw(table, ghost)
-        self._bars.content = gait_bars(table, now=now)
+        self._bars.content = gait_bars(self._robot, table, now=now)

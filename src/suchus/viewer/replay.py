@@ -7,7 +7,7 @@ from threading import RLock
 import numpy as np
 import xarray as xr
 
-from suchus.design import Crocodile, joint_names
+from suchus.design import AnyRobot, joint_names
 from suchus.design.ground import Ground
 from suchus.errors import IncompatibleRecord, UnknownName
 from suchus.motion import START
@@ -25,7 +25,7 @@ class Take:
 
     label: str
     """What it is called."""
-    robot: Crocodile
+    robot: AnyRobot
     """Who walks in it."""
     record: xr.Dataset
     """The run, without the dimension ``run``."""
@@ -53,11 +53,11 @@ class Take:
         return {name: self.record[name].values[sample] for name in _NEEDED}
 
     def table(self) -> dict[str, np.ndarray]:
-        """Return the columns for plots, see ``history.COLUMNS``."""
+        """Return the columns for plots, see ``history.columns``."""
         return table_of(self.record, self.origin)
 
 
-def takes(path: Path, robot: Crocodile | None = None) -> tuple[Take, ...]:
+def takes(path: Path, robot: AnyRobot | None = None) -> tuple[Take, ...]:
     """Return the runs of a record on land.
 
     Args:
@@ -77,7 +77,7 @@ def takes(path: Path, robot: Crocodile | None = None) -> tuple[Take, ...]:
     return tuple(_take(path, run, i, robot) for i, run in enumerate(runs))
 
 
-def _take(path: Path, run: xr.Dataset, number: int, robot: Crocodile | None) -> Take:
+def _take(path: Path, run: xr.Dataset, number: int, robot: AnyRobot | None) -> Take:
     who = robot or _robot(path, str(run.coords["robot"].item()) if "robot" in run.coords else "caiman")
     if tuple(run.joint.values) != joint_names(who):
         raise IncompatibleRecord(
@@ -92,13 +92,14 @@ def _take(path: Path, run: xr.Dataset, number: int, robot: Crocodile | None) -> 
     return Take(label=f"{number}: {label}", robot=who, record=run.isel(time=valid).load(), ground=ground)
 
 
-def _robot(path: Path, name: str) -> Crocodile:
+def _robot(path: Path, name: str) -> AnyRobot:
     try:
-        return ROBOTS[name]
+        found: AnyRobot = ROBOTS[name]
     except UnknownName as error:
         raise IncompatibleRecord(
             f"{path} was walked by robot {name!r}, which is not on the shelf: give its file with --robot FILE.toml."
         ) from error
+    return found
 
 
 class Player:

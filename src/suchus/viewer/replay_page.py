@@ -44,7 +44,7 @@ class ReplayPage:
             self._follow = gui.add_checkbox("camera follows", initial_value=True)
         gui.main_panel.dock_right()
         gui.main_panel.set_width(330)
-        self._plots = Plots(gui, uplot, compared=bool(ghosts))
+        self._plots = Plots(gui, uplot, takes[0].robot, compared=bool(ghosts))
         self._stage = Stage(client.scene, takes[0].robot)
         if ghosts:
             self._stage.compare(ghosts[0].robot)

@@ -8,16 +8,31 @@ from typing import Any, Literal
 import numpy as np
 
 from suchus.control import LAWS, Coordinated, HeadingRule, Swimming
-from suchus.design import Crocodile
+from suchus.design import AnyRobot, front_segment, layout
 from suchus.design.relief import Bumps
+from suchus.design.scale import coarse_step, control_period
 from suchus.errors import Diverged, SuchusError
 from suchus.fault import Fault
 from suchus.faults import from_table
-from suchus.land import CONTROL_PERIOD, Ground, Lake, Live, Push, Run
+from suchus.land import Ground, Lake, Live, Push, Run
 from suchus.land.arenas import BEFORE
-from suchus.motion import START, Gait, Swim, check_limits
+from suchus.motion import START, AnyGait, Swim, check_limits, straightened
+from suchus.robots import beside_article
 from suchus.viewer.history import History
-from suchus.viewer.knobs import BREATH, BUMPS, DIRECTION, FORCE, LASTING, LEVEL, SIDE_SLOPE, SLOPE, SPEED, Knob, tuned
+from suchus.viewer.knobs import (
+    BREATH,
+    DIRECTION,
+    LASTING,
+    LEVEL,
+    SIDE_SLOPE,
+    SLOPE,
+    SPEED,
+    Knob,
+    bumps_under,
+    force_on,
+    push_on,
+    tuned,
+)
 
 Switch = Literal["spine", "tail", "coordination", "heading", "swims"]
 
@@ -29,7 +44,7 @@ _CORRELATION = 0.06  # [m]; of the bumps, as on the shelf of arenas
 class Settings:
     """Everything that was chosen; what it makes of the walk is in ``Session``."""
 
-    gait: Gait
+    gait: AnyGait
     """As the sliders say."""
     spine: bool = True
     """Whether the trunk bends; if not, it is straight as in the article's control group."""
@@ -45,6 +60,8 @@ class Settings:
     """Slope across the walk, left side up positive [rad]."""
     bumps: float = 0.0
     """Height of the bumps ahead [m]; 0 for even ground."""
+    size: float = 1.0
+    """Length of the robot over that of the article's, which the length of the bumps follows [-]."""
     force: float = 15.0
     """Of the next push [N]."""
     lasting: float = 0.2
@@ -64,13 +81,11 @@ class Settings:
     broken: tuple[Fault, ...] = ()
     """What is broken, each from the beginning of the next walk on."""
 
-    @property
-    def walked(self) -> Gait:
-        """The gait with the switches of spine and tail."""
-        gait = self.gait
-        if not self.spine:
-            gait = replace(gait, trunk_bend=0.0)
-        return gait if self.tail else replace(gait, tail_bend=0.0)
+    def walked(self, robot: AnyRobot) -> AnyGait:
+        """Return the gait of a robot with the switches of spine and tail."""
+        if self.spine and self.tail:
+            return self.gait
+        return straightened(robot, self.gait, trunk=not self.spine, tail=not self.tail)
 
     @property
     def lake(self) -> Lake | None:
@@ -88,14 +103,20 @@ class Settings:
     @property
     def ground(self) -> Ground:
         """What it walks on."""
-        bumps = Bumps(height=self.bumps, correlation=_CORRELATION, start=BEFORE, seed=0) if self.bumps else None
+        length, start = (round(self.size * part, 9) for part in (_CORRELATION, BEFORE))
+        bumps = Bumps(height=self.bumps, correlation=length, start=start, seed=0) if self.bumps else None
         return Ground(uphill=self.uphill, sideways=self.sideways, relief=bumps)
 
 
 _PLAIN: dict[str, Knob] = {
-    "uphill": SLOPE, "sideways": SIDE_SLOPE, "bumps": BUMPS, "force": FORCE, "lasting": LASTING,
-    "direction": DIRECTION, "speed": SPEED, "level": LEVEL, "breath": BREATH,
+    "uphill": SLOPE, "sideways": SIDE_SLOPE, "lasting": LASTING, "direction": DIRECTION, "speed": SPEED,
+    "level": LEVEL, "breath": BREATH,
 }  # fmt: skip
+
+
+def plain_knobs(robot: AnyRobot) -> dict[str, Knob]:
+    """Return the knobs of the fields of ``Settings`` that are numbers, for a robot."""
+    return {**_PLAIN, "bumps": bumps_under(robot), "force": force_on(robot)}
 
 
 @dataclass(slots=True)
@@ -124,7 +145,7 @@ class Session:
     Args:
         robot: who walks.
         gait: how.
-        timestep: of the physics [s].
+        timestep: of the physics [s]; for many runs of a robot of its size if None.
         swim: how it swims, in a lake; None on dry land.
 
     Raises:
@@ -132,12 +153,16 @@ class Session:
         InvalidDesign: the time step does not divide the control period.
     """
 
-    def __init__(self, robot: Crocodile, gait: Gait, *, timestep: float = 0.005, swim: Swim | None = None) -> None:
+    def __init__(
+        self, robot: AnyRobot, gait: AnyGait, *, timestep: float | None = None, swim: Swim | None = None
+    ) -> None:
         check_limits(robot, gait)
         self.robot = robot
-        self.settings = Settings(gait=gait, swim=swim)
+        share = beside_article(robot).length
+        self.settings = Settings(gait=gait, force=push_on(robot), size=share, swim=swim)
         self.begun = 0
-        self._timestep = timestep
+        self._timestep = coarse_step(robot) if timestep is None else timestep
+        self._period = control_period(robot)
         self._lock = RLock()
         self._push: Push | None = None
         self._begin()
@@ -153,8 +178,8 @@ class Session:
             if self.state.trouble:
                 return
             self._due += seconds
-            while self._due >= CONTROL_PERIOD - 1e-9 and not self.state.trouble:
-                self._due -= CONTROL_PERIOD
+            while self._due >= self._period - 1e-9 and not self.state.trouble:
+                self._due -= self._period
                 self._step()
 
     def tune(self, name: str, value: object) -> str:
@@ -163,7 +188,7 @@ class Session:
             gait, notice = tuned(self.robot, self.settings.gait, name, value)
             return notice if gait == self.settings.gait else self._change(replace(self.settings, gait=gait)) or notice
 
-    def adopt(self, gait: Gait) -> str:
+    def adopt(self, gait: AnyGait) -> str:
         """Walk on in another gait; return a sentence if the robot cannot."""
         with self._lock:
             return self._change(replace(self.settings, gait=gait))
@@ -185,7 +210,7 @@ class Session:
             name: a field of ``Settings`` that is a number.
             value: in the unit of its knob; anything.
         """
-        knob = _PLAIN[name]
+        knob = plain_knobs(self.robot)[name]
         with self._lock:
             asked, notice = knob.within(value, getattr(self.settings, name) / knob.scale)
             changes: dict[str, Any] = {name: asked * knob.scale}
@@ -230,12 +255,12 @@ class Session:
         with self._lock:
             s = self.settings
             force = (s.force * cos(s.direction), s.force * sin(s.direction), 0.0)
-            push = Push(force=force, at=self._live.time, duration=s.lasting)
+            push = Push(force=force, at=self._live.time, duration=s.lasting, body=front_segment(self.robot))
             self._live.push(push)
             self._push = push
 
     def table(self) -> dict[str, np.ndarray]:
-        """Return the last seconds, by the names of ``history.COLUMNS``."""
+        """Return the last seconds, by the names of ``history.columns``."""
         with self._lock:
             return self._history.table()
 
@@ -258,9 +283,12 @@ class Session:
     def _begin(self) -> None:
         s = self.settings
         # a locked joint holds the angle that it has as the walk begins
-        run = Run(robot=self.robot, gait=s.walked, ground=s.ground, lake=s.lake, control=s.control, faults=s.broken)
+        run = Run(
+            robot=self.robot, gait=s.walked(self.robot), ground=s.ground, lake=s.lake, control=s.control,
+            faults=s.broken,
+        )  # fmt: skip
         self._live = Live(run, timestep=self._timestep)
-        self._history = History()
+        self._history = History(layout(self.robot).limb_names)
         self._push, self._due = None, 0.0
         self._origin = self._live.now["centre_of_mass"]
         self.begun += 1
@@ -270,7 +298,7 @@ class Session:
     def _change(self, settings: Settings) -> str:
         """Walk on by other settings, or keep the old ones and say why."""
         try:
-            self._live.walk(settings.walked, settings.control)
+            self._live.walk(settings.walked(self.robot), settings.control)
         except SuchusError as error:
             return str(error)
         self.settings = settings

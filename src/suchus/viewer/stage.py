@@ -1,28 +1,33 @@
 """The scene of one browser: ground, robot, forces, support, way; the camera may follow."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import fields
+from math import log10
 from typing import Any
 
 import numpy as np
 from mjviser.conversions import create_primitive_mesh
 
-from suchus.design import LEGS, Crocodile
+from suchus.design import GRAVITY, AnyRobot, front_segment, layout
 from suchus.design.ground import slope
 from suchus.design.relief import Relief, heights
 from suchus.fault import Fault
 from suchus.figures import COLOURS
-from suchus.metrics.gait import LOADED
+from suchus.figures.style import limb_colours
+from suchus.metrics.gait import LOADED_SHARE
 from suchus.model import compile_model
+from suchus.robots import beside_article
 from suchus.rotation import rotate
 from suchus.viewer.bodies import support
 from suchus.viewer.drawn import DrawnRobot, Look
 from suchus.viewer.rods import Rod, Shape
 
 CAMERA = (0.8, -1.4, 0.8)
-"""Where the camera is at first [m]."""
+"""Where the camera is at first, for a robot as long as the article's [m]."""
 LOOKS_AT = (-0.1, 0.0, 0.0)
-"""Where it looks at first [m]."""
-_PER_NEWTON = 0.008  # [m]; the robot's weight is then as long as its trunk
+"""Where it looks at first, for a robot as long as the article's [m]."""
+_WEIGHT = 0.276  # [m]; how long the weight of a robot as long as the article's is, as long as its trunk
+_TIP, _COM, _STEP = 0.06, 0.014, 0.005  # [m]; of a push above its body, radius of a ball, between points of the way
 _ABOVE = 0.003  # [m]; what is painted on the ground lies so far above it
 _WORLD = "/world"
 _ARROW = Shape(radius=0.006, head=0.028, head_radius=0.014)
@@ -36,6 +41,12 @@ _STEPS = 400  # pieces of the way that are kept
 def rgb(colour: str) -> tuple[int, int, int]:
     """Return a colour written as #rrggbb."""
     return int(colour[1:3], 16), int(colour[3:5], 16), int(colour[5:7], 16)
+
+
+def camera(robot: AnyRobot) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
+    """Return where the camera is at first and where it looks, to have a robot in view [m]."""
+    (a, b, c), (x, y, z), far = CAMERA, LOOKS_AT, beside_article(robot).length
+    return (far * a, far * b, far * c), (far * x, far * y, far * z)
 
 
 def light(scene: Any) -> None:
@@ -56,8 +67,13 @@ class Stage:
         robot: who walks.
     """
 
-    def __init__(self, scene: Any, robot: Crocodile) -> None:
-        self._scene = scene
+    def __init__(self, scene: Any, robot: AnyRobot) -> None:
+        self._scene, self._size = scene, beside_article(robot).length
+        weight = robot.mass * GRAVITY
+        self._per_newton, self._least = self._size * _WEIGHT / weight, LOADED_SHARE * weight
+        place = layout(robot)
+        self._radii = np.array([limb.girdle.limb.foot.radius for limb in place.limbs])
+        self._front = front_segment(robot)
         light(scene)
         self._world = scene.add_frame(_WORLD, show_axes=False)
         self.robot = DrawnRobot(scene, f"{_WORLD}/robot", robot)
@@ -65,20 +81,21 @@ class Stage:
         self._relief: Any = None
         self._grid: Any = None
         self.lay(None)
-        self._forces = [self._rod(f"force_{leg}", _ARROW, COLOURS[leg]) for leg in LEGS]
+        self._forces = [self._rod(f"force_{limb}", _ARROW, colour) for limb, colour in limb_colours(robot)]
         self._push = self._rod("push", _PUSH, COLOURS["printed"])
-        self._support = [self._rod(f"support_{i}", _EDGE, COLOURS["spine"]) for i in range(4)]
-        self._com = scene.add_icosphere(f"{_WORLD}/centre_of_mass", 0.014, color=rgb(COLOURS["tail"]))
+        self._support = [self._rod(f"support_{i}", _EDGE, COLOURS["spine"]) for i in range(len(place.limbs))]
+        self._com = scene.add_icosphere(f"{_WORLD}/centre_of_mass", self._size * _COM, color=rgb(COLOURS["tail"]))
         self._plumb = self._rod("plumb", _PLUMB, COLOURS["tail"])
         self._way = scene.add_line_segments(
-            f"{_WORLD}/way", np.zeros((1, 2, 3)), rgb(COLOURS["neutral"]), thickness=0.004, visible=False
+            f"{_WORLD}/way", np.zeros((1, 2, 3)), rgb(COLOURS["neutral"]), thickness=0.004 * self._size, visible=False
         )
         self._water: Any = None
         self._path: list[np.ndarray] = []
         self.shown = {"forces": True, "support": True, "way": True}
 
     def _rod(self, name: str, shape: Shape, colour: str) -> Rod:
-        return Rod(self._scene, f"{_WORLD}/{name}", shape, rgb(colour))
+        lengths = {field.name: self._size * getattr(shape, field.name) for field in fields(shape)}
+        return Rod(self._scene, f"{_WORLD}/{name}", Shape(**lengths), rgb(colour))
 
     def lay(self, relief: Relief | None) -> None:
         """Lay the ground, even or with what stands up from it."""
@@ -89,16 +106,17 @@ class Stage:
             if handle is not None:
                 handle.remove()
         model = compile_model(self.robot.posture.robot, relief=relief)
+        decade = 10.0 ** round(log10(self._size))
         self._grid = self._scene.add_grid(
             f"{_WORLD}/grid",
             infinite_grid=True,
-            cell_size=0.1,
-            section_size=0.5,
+            cell_size=0.1 * decade,
+            section_size=0.5 * decade,
             cell_color=(205, 200, 190),
             section_color=(165, 158, 146),
             plane_color=(236, 232, 224),
             plane_opacity=1.0,
-            fade_distance=9.0,
+            fade_distance=9.0 * self._size,
             shadow_opacity=0.3,
             position=(0.0, 0.0, float(model.geom("ground").pos[2])),
         )
@@ -115,7 +133,7 @@ class Stage:
                 position=np.array(geom.pos),
             )
 
-    def compare(self, robot: Crocodile) -> None:
+    def compare(self, robot: AnyRobot) -> None:
         """Add a ghost for comparison."""
         self.ghost = DrawnRobot(self._scene, f"{_WORLD}/ghost", robot, ghost=True)
         self.ghost.relief = self.robot.relief
@@ -137,18 +155,18 @@ class Stage:
         """Show an instant, by the names of ``record.VARIABLES``, and a push that lasts."""
         self.robot.show(now)
         feet, forces, com = now["foot_position"], now["foot_force"], now["centre_of_mass"]
-        ground = feet - np.array([0.0, 0.0, 1.0]) * self._radii()[:, None]
-        loaded = forces[:, 2] > LOADED
+        ground = feet - np.array([0.0, 0.0, 1.0]) * self._radii[:, None]
+        loaded = forces[:, 2] > self._least
         for arrow, foot, force, stands in zip(self._forces, ground, forces, loaded, strict=True):
             if self.shown["forces"] and stands:
-                arrow.put(foot, foot + _PER_NEWTON * force)
+                arrow.put(foot, foot + self._per_newton * force)
             else:
                 arrow.hide()
         if pushed is None:
             self._push.hide()
         else:
-            tip = self.robot.posture.body("thorax")[0] + np.array([0.0, 0.0, 0.06])
-            self._push.put(tip - _PER_NEWTON * np.array(pushed), tip)
+            tip = self.robot.posture.body(self._front)[0] + np.array([0.0, 0.0, self._size * _TIP])
+            self._push.put(tip - self._per_newton * np.array(pushed), tip)
         self._stand(ground, loaded, com)
 
     def flood(self, level: float | None) -> None:
@@ -165,13 +183,11 @@ class Stage:
             )
         self._water.position = np.array([0.0, 0.0, level + float(np.asarray(self._world.position)[2])])
 
-    def _radii(self) -> np.ndarray:
-        return np.array([self.robot.posture.robot.leg(leg).foot_radius for leg in LEGS])
-
     def _stand(self, feet: np.ndarray, loaded: np.ndarray, com: np.ndarray) -> None:
-        corners = support(feet, loaded) + np.array([0.0, 0.0, _ABOVE])
+        above = self._size * _ABOVE
+        corners = support(feet, loaded) + np.array([0.0, 0.0, above])
         floor = float(feet[loaded, 2].mean()) if loaded.any() else 0.0
-        below = np.array([com[0], com[1], floor + _ABOVE])
+        below = np.array([com[0], com[1], floor + above])
         sides = len(corners) if len(corners) > 2 else len(corners) - 1
         for i, edge in enumerate(self._support):
             if self.shown["support"] and i < sides:
@@ -188,7 +204,7 @@ class Stage:
     def go(self, com: np.ndarray) -> None:
         """Lengthen the way on the ground to where the centre of mass is now."""
         here = np.array([com[0], com[1], 0.0])
-        if self._path and np.linalg.norm(here - self._path[-1]) < 0.005:
+        if self._path and np.linalg.norm(here - self._path[-1]) < self._size * _STEP:
             return
         self._path = [*self._path, here][-_STEPS:]
         self.draw_way(np.array(self._path))
@@ -197,7 +213,7 @@ class Stage:
         """Draw a way on the ground, (point, 3) [m], at whatever height its points are."""
         self._way.visible = bool(self.shown["way"] and len(path) > 1)
         if len(path) > 1:
-            level = heights(self.robot.relief, path[:, 0], path[:, 1]) + _ABOVE
+            level = heights(self.robot.relief, path[:, 0], path[:, 1]) + self._size * _ABOVE
             path = np.column_stack([path[:, :2], level])
             self._way.points = np.stack([path[:-1], path[1:]], axis=1).astype(np.float32)
 

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import Crocodile, cable_joints
+from suchus.design import Crocodile, cable_joints, layout
 from suchus.errors import InvalidDesign, OutsideLimits
 from suchus.motion import Swim, bends
-from suchus.motion.swim import YAWS
+from suchus.motion.swim import trunk_yaws
 from suchus.water.outline import Base, Outline
 from suchus.water.waves import BodyWave, along
 
@@ -115,13 +115,15 @@ def _limits(robot: Crocodile) -> np.ndarray:
 
 
 def _joints(robot: Crocodile) -> tuple[str, ...]:
-    return (*YAWS, *cable_joints(robot), *(f"fin_yaw_{i + 1}" for i in range(robot.tail.fin_segments)))
+    return (*trunk_yaws(robot), *cable_joints(robot), *(f"fin_yaw_{i + 1}" for i in range(robot.tail.fin_segments)))
 
 
 def _check_amplitudes(robot: Crocodile, name: str, amplitudes: np.ndarray) -> None:
     low, high = robot.spine.yaw_range
     limits = [*3 * [min(-low, high)], robot.tail.bend_limit]
-    for joint, amplitude, limit in zip((*YAWS, "tail_cable"), amplitudes, limits, strict=True):
+    place = layout(robot)
+    names = (*trunk_yaws(robot), *(place.servos[i] for i in place.cables))
+    for joint, amplitude, limit in zip(names, amplitudes, limits, strict=True):
         if amplitude > limit:
             raise OutsideLimits(
                 f"the joints of robot {robot.name!r} cannot make {name!r}: it asks {joint} for {amplitude:.2f} rad to "

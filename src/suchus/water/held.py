@@ -6,8 +6,8 @@ import numpy as np
 import xarray as xr
 
 from suchus import flow
-from suchus.design import Crocodile
-from suchus.motion.swim import YAWS
+from suchus.design import Crocodile, cable_joints, layout
+from suchus.motion.swim import trunk_yaws
 from suchus.water.diary import Diary, Progress
 from suchus.water.pool import SLACK, Pool, cycle_means
 from suchus.water.skin import (
@@ -68,6 +68,7 @@ class _Held:
     """What is seen of a held body."""
 
     def __init__(self, pool: Pool) -> None:
+        self._robot = pool.robot
         self._outline, self._view = pool.outline, View(pool.grid, pool.robot.length, 1.9, 0.6)
         self._start, self._period, self._cycles = pool.end - pool.period, pool.period, pool.setting.cycles
         self._settled = min(1, self._cycles - 1)
@@ -101,6 +102,7 @@ class _Held:
             diary.note("quarters", sim.time, sides=sides, **fields, **kept(midline))
 
     def record(self, sim: flow.Simulation, diary: Diary) -> xr.Dataset:
+        place, yaws = layout(self._robot), trunk_yaws(self._robot)
         series, steps, quarters = sim.record.after(self._start), diary.page("steps"), diary.page("quarters")
         phase = np.arange(1, SAMPLES + 1) / SAMPLES
         seen = (steps["time"] - self._start) / self._period
@@ -132,8 +134,8 @@ class _Held:
                 "instant": list(QUARTERS),
                 "side": ["left", "right"],
                 "tail": ("tail", np.linspace(0.0, 1.0, PLACES), {"units": "1"}),
-                "joint": [*YAWS, "tail_yaw_1"],
-                "servo": [*YAWS, "tail_cable"],
+                "joint": [*yaws, cable_joints(self._robot)[0]],
+                "servo": [*yaws, *(place.servos[i] for i in place.cables)],
             },
         )
         return data.merge(shown).merge(self._turns(sim.record, diary))

@@ -1,0 +1,177 @@
+"""A first walk for limbs that cannot put their feet on any path, as those of two hinges: a table of servo angles.
+
+The foot's place ahead and its height follow a path; how far outside it stands is left to the limb.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+from jaxtyping import Float
+from scipy.optimize import least_squares
+
+from suchus.design import AnyRobot, Crank, Girdle, Limb, layout
+from suchus.errors import OutsideLimits
+from suchus.kinematics import limb as limb_kinematics
+from suchus.motion.angle_table import AngleTable, Curve
+from suchus.motion.any_body import pattern_targets
+from suchus.motion.pattern import AxialWave, Held, Pattern
+
+_STROKES = (0.25, 0.18, 0.12, 0.08)  # of the limb's reach, the longest that all girdles can take is taken
+_DEPTHS = (0.5, 0.6, 0.4, 0.7, 0.3, 0.8, 0.2, 0.9)  # of the hindmost limbs' reach, the first that fits
+_LIFT = 0.6  # of the stroke
+_CLOUD = 4000  # postures among which the middle of the stance is looked for
+_FROM_MIDDLE = 1e-3  # weight of angles beside lengths in reaches: of two postures that do, the one near the middle
+_OFF, _MARGIN, _JUMP = 0.02, 0.02, 0.9  # reaches off the path; rad from a stop; rad between two samples
+_NEEDED = 2
+"""Hinges without which a foot cannot be lifted and brought forward."""
+
+
+def table_walk(
+    robot: AnyRobot,
+    *,
+    name: str,
+    period: float,
+    duty_factor: float,
+    phases: tuple[float, ...],
+    wave: AxialWave,
+    path: Float[np.ndarray, "2 sample"],
+) -> AngleTable:
+    """Return a walk as a table, whose feet follow a path ahead and up as far as each limb's hinges let them.
+
+    Args:
+        robot: whose limbs have servos at two hinges or more.
+        name: of the gait.
+        period: of one cycle [s].
+        duty_factor: share of the cycle in which a foot stands [-].
+        phases: of the limbs when the walk begins [cycle].
+        wave: how the axis bends.
+        path: ahead and up over one cycle, with stroke 1 and lift 1 [-].
+
+    Raises:
+        OutsideLimits: a limb has too few hinges, or none of the paths that are tried is in reach.
+    """
+    place = layout(robot)
+    girdles = place.robot.girdles
+    for girdle in girdles:
+        _check_hinges(robot, girdle)
+    hind = girdles[-1]
+    for stroke in _STROKES:
+        for depth in _DEPTHS:
+            hips = depth * hind.limb.reach + hind.limb.foot.radius - hind.above  # height of the root's axis
+            found: list[np.ndarray] = []
+            for girdle in girdles:
+                angles = _followed(girdle.limb, path, stroke, hips + girdle.above - girdle.limb.foot.radius)
+                if angles is None:
+                    break
+                found.append(angles)
+            if len(found) == len(girdles):
+                return _tabled(robot, name, period, duty_factor, phases, wave, found)
+    raise OutsideLimits(
+        f"no walk was found for robot {robot.name!r}: its limbs bring their feet along no path of {_STROKES[-1]:g} of "
+        "their reach within their ranges; widen the ranges, or write a gait of its own."
+    )
+
+
+def _check_hinges(robot: AnyRobot, girdle: Girdle) -> None:
+    driven = [hinge for hinge in girdle.limb.hinges if hinge.servo is not None]
+    if len(driven) >= _NEEDED and not any(isinstance(hinge.drive, Crank) for hinge in driven):
+        return
+    limbs = f"limbs L{girdle.name} and R{girdle.name}"
+    raise OutsideLimits(
+        f"no walk was found for robot {robot.name!r}: {limbs} have {len(driven)} driven hinges, cranks counted, and a "
+        f"foot needs {_NEEDED} without cranks to be lifted and brought forward; drive more of them, leave these limbs "
+        "out, or write a gait of its own."
+    )
+
+
+def _followed(limb: Limb, path: np.ndarray, stroke: float, down: float) -> np.ndarray | None:
+    """Return the angles along a path at a depth below the hip, (sample, hinge) [rad]; None if the limb cannot."""
+    low, high = np.array([hinge.range or (-np.pi, np.pi) for hinge in limb.hinges]).T
+    driven = np.array([hinge.servo is not None for hinge in limb.hinges])
+    low, high = low + _MARGIN, high - _MARGIN
+    if (low >= high)[driven].any():
+        return None
+    middle = np.where(driven, (low + high) / 2, 0.0)
+    drawn = np.random.default_rng(0).uniform(low, high, (_CLOUD, len(low)))
+    cloud = np.where(driven, np.vstack([middle[None], drawn]), 0.0)
+    feet = limb_kinematics.forward(limb, cloud)
+    low, high = low[driven], high[driven]
+
+    def placed(angles: np.ndarray) -> np.ndarray:
+        whole = np.zeros(len(driven))
+        whole[driven] = angles
+        return np.asarray(limb_kinematics.forward(limb, whole[None])[0])
+
+    # the middle of the stance lies where the limb is near the middle of its ranges
+    apart = np.abs(feet[:, 2] + down) / limb.reach
+    cost = np.where(apart < _OFF, np.abs(cloud - middle).sum(axis=1), np.inf)
+    if not np.isfinite(cost).any():
+        return None
+    start = cloud[np.argmin(cost)][driven]
+    ahead = float(feet[np.argmin(cost), 0])
+    wanted = np.stack([ahead + stroke * limb.reach * path[0], _LIFT * stroke * limb.reach * path[1] - down], axis=1)
+    return _solved(placed, wanted / limb.reach, limb.reach, start, (low, high), driven)
+
+
+def _solved(
+    placed: Callable[[np.ndarray], np.ndarray],
+    wanted: np.ndarray,
+    reach: float,
+    start: np.ndarray,
+    ends: tuple[np.ndarray, np.ndarray],
+    driven: np.ndarray,
+) -> np.ndarray | None:
+    """Return the angles sample by sample, each from the one before; the second round closes the cycle."""
+    low, high = ends
+    middle, angles = (low + high) / 2, np.clip(start, low + 1e-9, high - 1e-9)
+    found = np.zeros((len(wanted), len(driven)))
+    for _ in range(2):
+        for i, (x, z) in enumerate(wanted):
+
+            def off(q: np.ndarray, x: float = x, z: float = z) -> np.ndarray:
+                foot = placed(q) / reach
+                return np.array([foot[0] - x, foot[2] - z, *(_FROM_MIDDLE * (q - middle))])
+
+            done = least_squares(off, angles, bounds=(low, high), xtol=1e-8, ftol=1e-8)
+            if np.abs(done.fun[:2]).max() > _OFF:
+                return None
+            angles = np.clip(done.x, low + 1e-9, high - 1e-9)
+            found[i, driven] = angles
+    jump = np.abs(np.diff(found, axis=0, append=found[:1])).max()
+    return found if jump < _JUMP else None
+
+
+def _tabled(
+    robot: AnyRobot,
+    name: str,
+    period: float,
+    duty_factor: float,
+    phases: tuple[float, ...],
+    wave: AxialWave,
+    limbs: list[np.ndarray],
+) -> AngleTable:
+    """Return the table of limbs at their phases and of the axis."""
+    place = layout(robot)
+    count = len(limbs[0])
+    still = Pattern(
+        name=name,
+        period=period,
+        duty_factor=duty_factor,
+        limb_phases=phases,
+        girdles=tuple(
+            Held(angles=(0.0,) * sum(hinge.servo is not None for hinge in girdle.limb.hinges))
+            for girdle in place.robot.girdles
+        ),
+        height=0.0,
+        wave=wave,
+    )
+    targets = pattern_targets(robot, still, np.arange(count) / count)
+    for i, limb in enumerate(place.limbs):
+        driven = [hinge.servo is not None for hinge in limb.girdle.limb.hinges]
+        mine = limbs[limb.number][:, driven]
+        targets[:, limb.servos] = np.roll(mine, -round(phases[i] * count), axis=0)
+    curves = tuple(
+        Curve(servo=servo, angles=tuple(float(round(angle, 6)) for angle in column))
+        for servo, column in zip(place.servos, targets.T, strict=True)
+    )
+    return AngleTable(name=name, period=period, duty_factor=duty_factor, limb_phases=phases, curves=curves)

@@ -1,0 +1,65 @@
+"""The table of experiments and bodies says what the command line says: an answer, or a sentence and exit code 2."""
+
+import json
+
+import pytest
+
+import body_table as tool
+from suchus.design import lacking
+from suchus.experiments import EXPERIMENTS
+from suchus.robots import ROBOTS
+
+REFUSED = [(row, name) for row in EXPERIMENTS for name in ROBOTS if lacking(ROBOTS[name], EXPERIMENTS[row].needs)]
+FOUND = json.loads(tool.FOUND.read_text())
+
+
+def test_the_page_holds_the_table_of_what_was_found():
+    begin, end = tool.MARKS
+    page = tool.PAGE.read_text()
+    assert page.count(begin) == page.count(end) == 1
+    assert page.split(begin)[1].split(end)[0] == tool.table(FOUND)
+
+
+def test_nothing_that_was_tried_failed_and_who_lacks_something_was_refused():
+    assert [told for cells in FOUND.values() for told in cells.values() if told.startswith("exit ")] == []
+    assert set(FOUND) <= {*EXPERIMENTS, *tool.TOOLS}
+    for row, name in REFUSED:
+        if name in FOUND.get(row, {}):
+            assert f"{row} needs " in FOUND[row][name]
+            assert tool.mark(FOUND[row][name]) == "refuses"
+    for row, cells in FOUND.items():
+        for name, told in cells.items():
+            if row in EXPERIMENTS and told:
+                assert repr(name) in told
+
+
+def test_a_cell_tells_answers_refusals_and_failures_apart():
+    assert [tool.mark(told) for told in ("", "suchus: it needs limbs.", "exit 1: it came apart", None)] == [
+        "answers",
+        "refuses",
+        "failed",
+        "not tried",
+    ]
+    table = tool.table({"terrain": {"caiman": "", "swimmer": "suchus: no."}})
+    assert "| `terrain` | answers |" in table
+    assert "| refuses |" in table
+
+
+def test_every_pair_that_cannot_be_is_refused_at_the_command_line_in_one_sentence(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for row, name in REFUSED:
+        told = tool.tried(row, name)
+        assert f"{row} needs " in told, (row, name, told)
+        assert repr(name) in told
+        assert told.count(". ") == 0
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.validate
+@pytest.mark.parametrize("name", list(ROBOTS))
+@pytest.mark.parametrize("row", [*EXPERIMENTS, *tool.TOOLS])
+def test_every_pair_answers_or_is_refused_in_a_sentence(row, name, tmp_path, monkeypatch):
+    if (row, name) in REFUSED:
+        return
+    monkeypatch.chdir(tmp_path)
+    assert not tool.tried(row, name).startswith("exit ")
