@@ -34,13 +34,16 @@ ADDED_EVERY = 8
 SLACK = 1.5
 """Factor on the speed that a grid carries, from which a moving body stops a run [-]."""
 
+OFFSET_CHANGE = 1e-3
+"""Change of the wall's offset from which bodies that stand still are placed anew [cells]: 0.04 % of a force."""
+
 
 def _fastest_marker(markers: Markers) -> float:
     """Return the fastest speed of a body's surface in the frame of the grid [m/s]."""
     return float(np.hypot(markers.velocity_x, markers.velocity_y).max())
 
 
-_CHANGING = ("time", "_last", "_speed", "_peak", "_reference")
+_CHANGING = ("time", "_last", "_speed", "_reference")
 
 
 class Simulation(Fields):
@@ -73,7 +76,6 @@ class Simulation(Fields):
         self._speed = max([float(np.hypot(*stream)), 1e-12] + [_fastest_marker(m) for m in outlines])
         self._fastest = 0.0  # fastest water after the last step
         self._reference = 0.0  # fastest stream, body or wall so far
-        self._peak = 2 * self._speed  # fastest water so far; beside a bluff body, twice the stream
         self.water.place(list(setup.bodies), [self._in_frame(self.pose(b.name)) for b in setup.bodies], 0.0)
         self._log.hold(self.water, outlines)
         self._watch.layers(
@@ -161,8 +163,8 @@ class Simulation(Fields):
         time = self.time + dt
         poses = [self._in_frame(self.pose(b.name, time)) for b in self.setup.bodies]
         moving = self.setup.follow is not None or not all(b.still for b in self.setup.bodies)
-        offset = wall_offset(float(self.water.nu), self._peak, self.setup.courant)
-        if moving or not self._placed or abs(offset - self.water.offset) > 2e-3:
+        offset = wall_offset(float(self.water.nu) * dt / self.setup.grid.cell)
+        if moving or not self._placed or abs(offset - self.water.offset) > OFFSET_CHANGE:
             self.water.offset = offset
             self.water.place(list(self.setup.bodies), poses, time)
             self._placed = True
@@ -209,7 +211,6 @@ class Simulation(Fields):
                     swimmer.added = added_mass(water, markers, point, setup.density, k)
             values += columns(load, act, drift, place, self._watch.errors[k])
             body_speed = max(body_speed, _fastest_marker(markers))
-        self._peak = max(self._peak, fastest)
         self._speed = max(float(np.hypot(*water.border.stream)), body_speed, min(fastest, 10 * self._speed), 1e-12)
         self._reference = max(
             self._reference, float(np.hypot(*water.border.stream)), body_speed, setup.sides.fastest(setup.grid)
