@@ -144,7 +144,7 @@ def test_two_bodies_feel_their_own_forces():
 
 
 def test_a_step_that_changes_at_once_hardly_jolts_the_force():
-    """Set before the run: 5 % of the drag when the step is halved, 2 % when it is doubled back.
+    """Halved, 2.3 % of the drag were measured where the bound is 5 %; doubled, 0.3 % where it is 2 %.
 
     With the wall's offset of the step before, the first is 27 %.
     """

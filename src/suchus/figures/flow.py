@@ -3,6 +3,7 @@
 import json
 import re
 from pathlib import Path
+from textwrap import wrap
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from suchus.errors import IncompatibleRecord
-from suchus.flow import Record, Simulation
+from suchus.flow import ALONG_THE_SKIN, Record, Simulation
 
 
 def _panel(width: float, height: float) -> tuple[Figure, Axes]:
@@ -64,6 +65,24 @@ def forces(record: Record, body: str | int = 0) -> Figure:
     axes.set_xlabel("time (s)")
     axes.set_ylabel("force (N/m)")
     axes.legend(frameon=False)
+    return figure
+
+
+def skin(sim: Simulation, body: str | None = None) -> Figure:
+    """Return pressure and friction along a body's outline now, and what is known of their error."""
+    surface = sim.surface(body)
+    m = surface.markers
+    place = np.cumsum(m.length) - m.length / 2
+    friction = surface.shear[1] * m.normal_x - surface.shear[0] * m.normal_y
+    figure = Figure(figsize=(7.5, 3.6), layout="constrained", dpi=110)
+    for axes, values, label in zip(
+        figure.subplots(1, 2), (surface.pressure, friction), ("pressure (Pa)", "friction, counter-clockwise (Pa)"),
+        strict=True,
+    ):  # fmt: skip
+        axes.plot(place, values, linewidth=1.2)
+        axes.set(xlabel="along the outline, counter-clockwise (m)", ylabel=label)
+    figure.suptitle(f"t = {sim.time:.3g} s", fontsize="medium", x=0.02, ha="left")
+    figure.supxlabel("\n".join(wrap(ALONG_THE_SKIN, 130)), fontsize="x-small", x=0.02, ha="left")
     return figure
 
 
@@ -216,7 +235,7 @@ def write_table(folder: Path, docs: Path, sources: tuple[str, ...] = ()) -> None
     lines = [
         "# Validation of the flow solver", "",
         "Written by `make validate` (`tests/flow/test_validate_flow.py`); every row is a run of this code.",
-        "What the rows mean and where they fall short: [flow.md](flow.md).", "",
+        "What the rows mean and where they fall short: [how far it can be trusted](flow_limits.md).", "",
         "| case | quantity | ours | published or exact | difference | grid | domain | source |", "|" + "---|" * 8,
     ]  # fmt: skip
     for row in _rows(folder):
