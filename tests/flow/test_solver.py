@@ -83,7 +83,7 @@ def test_channel_flow_keeps_its_parabola():
     y = grid.y
     assert sim.velocity[0][:, -4] == pytest.approx(6 * y * (1 - y), abs=0.01)
     slope = np.polyfit(grid.x[8:-8], sim.pressure[n // 2, 8:-8], 1)[0]
-    assert slope == pytest.approx(-12 * 0.1 * 1000, rel=0.02)
+    assert slope == pytest.approx(-12 * 0.1 * sim.setup.density, rel=0.02)
 
 
 def test_velocity_is_free_of_divergence():
