@@ -109,7 +109,7 @@ def test_a_vti_file_holds_the_fields_where_they_are(tmp_path):
 def test_fields_have_units_and_the_world_s_coordinates():
     sim = sheared()
     sim.frame[:] = (10.0, 1.0), (0.3, -0.1)
-    data = flow.fields(sim)
+    data = flow.snapshot(sim)
     assert data.velocity.dims == ("component", "y", "x")
     assert float(data.velocity.sel(component="x")[0, 0]) == pytest.approx(
         0.5 + 2 * -1.96875 + 3 * 1.96875 + 0.3, abs=1e-4

@@ -10,7 +10,7 @@ from suchus.flow.grid import Grid
 from suchus.flow.mass import Mass
 from suchus.flow.midline import Midline, Spine, foil
 from suchus.flow.outline import Implicit, Polygon, difference, from_outline, from_sdf, scaled, union
-from suchus.flow.output import FieldSeries, fields, save_vti
+from suchus.flow.output import FieldSeries, save_vti, snapshot
 from suchus.flow.pose import Glide, Motion, Oscillation, Pose
 from suchus.flow.rake import Rake, Sample, line
 from suchus.flow.record import Coefficients, Record
@@ -63,7 +63,6 @@ __all__ = [
     "added_mass",
     "difference",
     "eel",
-    "fields",
     "foil",
     "frequency",
     "from_outline",
@@ -73,6 +72,7 @@ __all__ = [
     "noise",
     "save_vti",
     "scaled",
+    "snapshot",
     "strouhal",
     "union",
 ]

@@ -28,7 +28,7 @@ _NAMES = {
 }
 
 
-def fields(sim: Fields) -> xr.Dataset:
+def snapshot(sim: Fields) -> xr.Dataset:
     """Return the fields at the cell centres now, dimensions ``y`` and ``x`` (and ``component`` of the velocity) [m].
 
     The coordinates are those of the world: those of a grid that follows a body travel.
@@ -61,7 +61,7 @@ def save_vti(sim: Fields, path: Path | str) -> None:
 
 
 def _vti(sim: Fields) -> bytes:
-    data, grid, frame = fields(sim), sim.setup.grid, sim.frame[0]
+    data, grid, frame = snapshot(sim), sim.setup.grid, sim.frame[0]
     nx, ny = grid.cells
     x, y, h = (float(value) for value in (*(np.array(grid.origin) + frame), grid.cell))
     arrays, blocks, offset = [], [], 0
@@ -136,7 +136,7 @@ class FieldSeries:
 
 
 def _add_to_netcdf(sim: Fields, path: Path) -> None:
-    new = fields(sim)
+    new = snapshot(sim)
     if sim.setup.follow is not None:  # a grid that travels: places relative to it, and where it is
         new = new.assign_coords(
             x=new.x - sim.frame[0, 0], y=new.y - sim.frame[0, 1],
