@@ -262,7 +262,7 @@ class Simulation(Fields):
         """Go on from the state of a checkpoint."""
         for key in _CHANGING:
             setattr(self, key, float(state[key]))
-        self.frame, self._placed = state["frame"], False
+        self.frame = state["frame"]
         self._log.rows, self._log.held = list(state["rows"]), state["held"]
         self.water.resume(state)
         self._fastest = self.water.fastest()
@@ -270,6 +270,7 @@ class Simulation(Fields):
             swimmer.resume({key.removeprefix(f"{name}."): state[key] for key in state if key.startswith(f"{name}.")})
         poses = [self._in_frame(self.pose(b.name)) for b in self.setup.bodies]
         self.water.place(list(self.setup.bodies), poses, self.time)
+        self._placed = bool(self._log.rows)  # as in the run that goes on: not anew, with the offset of another step
 
     # --- a run -------------------------------------------------------------------------------------------------
 
