@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from flow_cases import still_setup
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from suchus import flow
@@ -20,6 +20,7 @@ def found(poses, shapes=(ROUND, ROUND), law=LAW, spacing=0.02):
     return contact.forces(law, outlines, [np.array(p.position) for p in poses])
 
 
+@settings(max_examples=30)
 @given(st.floats(0, 6.3), st.floats(0, 6.3), st.floats(-0.05, 0.09))
 def test_both_are_pushed_alike_and_apart(where, angle, space):
     direction = np.array([np.cos(where), np.sin(where)])
@@ -30,6 +31,7 @@ def test_both_are_pushed_alike_and_apart(where, angle, space):
     assert abs(other[2]) < 0.05 * np.hypot(*other[:2])
 
 
+@settings(max_examples=30)
 @given(st.floats(0, 6.3), st.floats(0, 6.3))
 def test_angular_momentum_is_kept(one, other):
     poses = (flow.Pose(angle=one), flow.Pose(position=(0.9, 0.2), angle=other))

@@ -4,7 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.special import kv
 
@@ -27,13 +27,14 @@ def inviscid(body, dt, count, *, added=ADDED):
     return np.array(rows)
 
 
-@given(stiffness=st.floats(1.0, 60.0), steps=st.integers(25, 80), axis=st.integers(0, 2))
+@settings(max_examples=9)
+@given(stiffness=st.floats(1.0, 60.0), steps=st.integers(25, 60), axis=st.integers(0, 2))
 def test_a_spring_rings_with_mass_and_added_mass_and_neither_gains_nor_loses(stiffness, steps, axis):
     inertia = [2 * AREA, 2 * AREA, 2 * CIRCLE.mass(0.0).moment][axis] + ADDED[axis, axis]
     rate, push = np.sqrt(stiffness / inertia), np.eye(3)[axis]
     dt, anchor = 2 * np.pi / rate / steps, tuple(0.1 * push)
     body = flow.FreeBody(shape=CIRCLE, density=2.0, springs=tuple(stiffness * push), anchor=anchor)
-    rows = inviscid(body, dt, 20 * steps)
+    rows = inviscid(body, dt, 6 * steps)
     swing = rows[:, axis] - anchor[axis]
     energy = 0.5 * inertia * rows[:, 3 + axis] ** 2 + 0.5 * stiffness * swing**2
     assert np.ptp(energy[60:]) < 1e-9 * energy[-1]  # by then the first step's impulse is repaid
