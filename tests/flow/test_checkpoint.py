@@ -26,6 +26,13 @@ def heaving(amplitude, scale=1.0):
     return motion
 
 
+def pull(stiffness):
+    def force(time, state):
+        return -stiffness * state.position[0], 0.0, 0.0
+
+    return force
+
+
 def ribbon(width):
     spine = flow.foil(1.0, thickness=width).spine(0.0)
     return flow.Midline(spine=lambda time: spine, deforms=False)
@@ -35,6 +42,7 @@ def setup():
     """One of everything that a setup can hold."""
     return still_setup(
         stream=(0.3, -0.1), follow="ell", step=0.01, follow_axes=(True, False),
+        contact=flow.Contact(gap=0.1, pressure=2.0),
         sides=flow.Sides(left=flow.Inflow(profile=lambda y: 0.3 + 0 * y), right=flow.Outflow(), bottom=flow.Slip(),
                          top=flow.Wall(speed=0.2)),
         bodies=(
@@ -45,7 +53,8 @@ def setup():
             flow.Body(shape=flow.Plate(length=0.9, thick=0.4), motion=flow.Glide(start=(0.1, 0.2), velocity=(1.0, 0.0)),
                       name="plate"),
             flow.Body(shape=ribbon(0.2), motion=heaving(0.1), name="ribbon"),
-            flow.FreeBody(shape=flow.Cylinder(diameter=0.7), start=(0.2, 0.3), density=800.0, name="free"),
+            flow.FreeBody(shape=flow.Cylinder(diameter=0.7), start=(0.2, 0.3), density=800.0, name="free",
+                          anchor=(0.2, 0.3, 0.1), force=pull(0.3)),
         ),
     )  # fmt: skip
 
@@ -122,6 +131,14 @@ def test_a_motion_is_what_it_is_made_of(other):
 
     assert fingerprint(bodies(heaving(0.1))) == fingerprint(bodies(heaving(0.1)))
     assert fingerprint(bodies(other)) != fingerprint(bodies(heaving(0.1)))
+
+
+def test_a_force_is_what_it_is_made_of():
+    def bodies(stiffness):
+        return still_setup(bodies=(flow.FreeBody(shape=flow.Cylinder(diameter=1.0), force=pull(stiffness)),))
+
+    assert fingerprint(bodies(0.3)) == fingerprint(bodies(0.3))
+    assert fingerprint(bodies(0.3)) != fingerprint(bodies(0.4))
 
 
 def test_a_midline_is_what_its_stations_are():

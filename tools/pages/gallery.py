@@ -13,6 +13,8 @@ _SHARED = {
     "01_crawl": ("crawling.png",),
     "05_cylinder_wake": ("flow_wake.png",),
     "06_eel": ("flow_eel.png",),
+    "14_heaving_foil": ("flow_foil.png",),
+    "16_falling_ellipse": ("flow_falling.png",),
     "09_replay": ("replay.png",),
     "10_optimise": ("optimised_crawl.png",),
 }

@@ -1,5 +1,7 @@
 """Pictures of flows: vorticity, pressure, and forces over time."""
 
+from textwrap import wrap
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -8,7 +10,7 @@ from matplotlib.patches import Polygon
 from suchus.figures.data import carry
 from suchus.figures.fields import EDGE, PRESSURE, SKIN, VORTICITY, smooth
 from suchus.figures.style import COLOURS, WIDTH, panels, styled
-from suchus.flow import Record, Simulation
+from suchus.flow import ALONG_THE_SKIN, Record, Simulation
 
 _PIXELS = 900
 """About how many pixels the longer side of a field has [-]."""
@@ -72,4 +74,22 @@ def forces(record: Record, body: str | int = 0) -> Figure:
         axes.set_xlabel("time [s]")
         axes.set_ylabel("force per depth [N/m]")
         axes.legend()
+    return figure
+
+
+def skin(sim: Simulation, body: str | None = None) -> Figure:
+    """Return pressure and friction along a body's outline now, and what is known of their error."""
+    surface = sim.surface(body)
+    m = surface.markers
+    place = np.cumsum(m.length) - m.length / 2
+    friction = surface.shear[1] * m.normal_x - surface.shear[0] * m.normal_y
+    with styled():
+        figure, grid = panels(1, 2, width=WIDTH, height=3.8)
+        for axes, values, label in zip(
+            grid[0], (surface.pressure, friction), ("pressure [Pa]", "friction, counter-clockwise [Pa]"), strict=True
+        ):
+            axes.plot(place, values, color=COLOURS["coordinated"], linewidth=1.4)
+            axes.set(xlabel="along the outline, counter-clockwise [m]", ylabel=label)
+        figure.suptitle(f"t = {sim.time:.3g} s", fontsize="medium", x=0.02, ha="left")
+        figure.supxlabel("\n".join(wrap(ALONG_THE_SKIN, 130)), fontsize="x-small", x=0.02, ha="left")
     return figure

@@ -17,6 +17,7 @@ from suchus.figures.fields import (
 )
 from suchus.figures.film import film
 from suchus.figures.style import COLOURS, captioned, panels, styled
+from suchus.flow import ALONG_THE_SKIN
 
 _QUARTERS = ("T/4", "T/2", "3T/4", "T")
 _FILM_DPI = 68
@@ -89,7 +90,8 @@ def draw_sides(record: xr.Dataset) -> Figure:
     return captioned(
         figure,
         "Pressure on the right and on the left of the tail of the fixed robot, from its root (0) to its tip (1); "
-        "right is above in the pictures of the flow. Dotted the mean place of the difference between the two sides.",
+        "right is above in the pictures of the flow. Dotted the mean place of the difference between the two sides. "
+        f"{ALONG_THE_SKIN}",
     )
 
 
@@ -131,7 +133,8 @@ def draw_forces(record: xr.Dataset) -> Figure:
         "Fixed at the snout. Left: force along the body over the last cycle per metre of depth, for the wave from head "
         "to tail and as printed; dashed and in numbers the means of all cycles but the first. Right: what the water "
         "asks of the servos at their shafts, every section as high as the robot there, over each servo's limit (red); "
-        "a flow that cannot pass over and under the body overstates it.",
+        f"a flow that cannot pass over and under the body overstates it. On the right: {ALONG_THE_SKIN[0].lower()}"
+        f"{ALONG_THE_SKIN[1:]}",
     )
 
 

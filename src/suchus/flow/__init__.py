@@ -2,6 +2,7 @@
 
 from suchus.flow.added import added_mass
 from suchus.flow.body import Body
+from suchus.flow.contact import Contact
 from suchus.flow.eel import eel
 from suchus.flow.force import Load, Surface
 from suchus.flow.free import FreeBody
@@ -9,8 +10,11 @@ from suchus.flow.grid import Grid
 from suchus.flow.mass import Mass
 from suchus.flow.midline import Midline, Spine, foil
 from suchus.flow.outline import Implicit, Polygon, difference, from_outline, from_sdf, scaled, union
+from suchus.flow.output import FieldSeries, save_vti, snapshot
 from suchus.flow.pose import Glide, Motion, Oscillation, Pose
-from suchus.flow.record import Record
+from suchus.flow.rake import Rake, Sample, line
+from suchus.flow.record import Coefficients, Record
+from suchus.flow.resolution import ALONG_THE_SKIN
 from suchus.flow.setup import Setup
 from suchus.flow.shape import Cylinder, Ellipse, Field, Markers, Plate, Shape, Solid
 from suchus.flow.sides import Inflow, Outflow, Periodic, Side, Sides, Slip, Stream, Wall
@@ -18,10 +22,14 @@ from suchus.flow.signals import frequency, morison, noise, strouhal
 from suchus.flow.simulation import Simulation
 
 __all__ = [
+    "ALONG_THE_SKIN",
     "Body",
+    "Coefficients",
+    "Contact",
     "Cylinder",
     "Ellipse",
     "Field",
+    "FieldSeries",
     "FreeBody",
     "Glide",
     "Grid",
@@ -38,7 +46,9 @@ __all__ = [
     "Plate",
     "Polygon",
     "Pose",
+    "Rake",
     "Record",
+    "Sample",
     "Setup",
     "Shape",
     "Side",
@@ -57,9 +67,12 @@ __all__ = [
     "frequency",
     "from_outline",
     "from_sdf",
+    "line",
     "morison",
     "noise",
+    "save_vti",
     "scaled",
+    "snapshot",
     "strouhal",
     "union",
 ]

@@ -4,6 +4,9 @@ import numpy as np
 
 from suchus.flow.compiled import PAD
 from suchus.flow.force import edge_mean
+from suchus.flow.log import Log
+from suchus.flow.rake import Sample, read
+from suchus.flow.record import Record
 from suchus.flow.setup import Setup
 from suchus.flow.water import Water
 
@@ -13,6 +16,24 @@ class Fields:
 
     setup: Setup
     water: Water
+    time: float
+    """How far the run has come [s]."""
+    frame: np.ndarray
+    """Position and velocity of the grid, shape (2, 2) [m, m/s]."""
+    _log: Log
+
+    @property
+    def record(self) -> Record:
+        """The time series so far."""
+        return self._log.record
+
+    def probe(self, points: np.ndarray | tuple[float, float]) -> Sample:
+        """Return velocity and pressure at points of the world, shape (point, 2) or one (x, y) [m].
+
+        Raises:
+            InvalidDesign: a point that is not in the domain.
+        """
+        return read(self.water, np.asarray(points, float), self.frame, self.setup.density)
 
     @property
     def velocity(self) -> tuple[np.ndarray, np.ndarray]:
@@ -36,6 +57,17 @@ class Fields:
         u, v = self.water.u, self.water.v
         a, b = PAD + 1, -PAD
         return ((v[a:b, a:b] - v[a:b, a - 1 : b - 1]) - (u[a:b, a:b] - u[a - 1 : b - 1, a:b])) / self.setup.grid.cell
+
+    @property
+    def vorticity_at_centres(self) -> np.ndarray:
+        """Vorticity at the cell centres, mean of the four corners, shape (ny, nx) [1/s]."""
+        u, v = self.water.u, self.water.v
+        a, b = PAD, -PAD
+        here, low = np.s_[a : b + 1], np.s_[a - 1 : b]
+        corners = (v[here, here] - v[here, low]) - (u[here, here] - u[low, here])
+        sums = (corners[1:, 1:] + corners[1:, :-1]) + (corners[:-1, 1:] + corners[:-1, :-1])
+        values: np.ndarray = sums / (4 * self.setup.grid.cell)
+        return values
 
     @property
     def fluid_share(self) -> np.ndarray:

@@ -39,8 +39,7 @@ class Load:
 class Surface:
     """Pressure and friction along a body's outline: where the load sits.
 
-    Both are read off the wall and are low: by 2 to 5 % in sum, and more where they peak. The peak wall vorticity of a
-    cylinder at Re 185 is 20 % low at 24 cells a diameter. For the sum take ``Record.force``, which is not.
+    ``resolution.ALONG_THE_SKIN`` says how far off they are. For the sum take ``Record.force``.
     """
 
     markers: Markers

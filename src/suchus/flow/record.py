@@ -1,10 +1,11 @@
 """What a simulation tells: one row per time step."""
 
 from dataclasses import dataclass
+from math import isfinite
 
 import numpy as np
 
-from suchus.errors import UnknownName
+from suchus.errors import OutsideLimits, UnknownName
 
 COLUMNS = (
     "pressure_x", "pressure_y", "shear_x", "shear_y", "torque", "power", "x", "y", "angle", "velocity_x", "velocity_y",
@@ -18,6 +19,22 @@ COLUMNS = (
 
 HEAD = 5
 """Numbers at the start of a row: time, step, two counts of cycles, divergence [-]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Coefficients:
+    """Force, torque and power of a body over those of a reference, means over the steps, each of shape (step,) [-]."""
+
+    time: np.ndarray
+    """Middles of the steps, which the means belong to, shape (step,) [s]."""
+    drag: np.ndarray
+    """Force along the stream over ``density speed^2 length / 2``."""
+    lift: np.ndarray
+    """Force across it, a quarter turn counter-clockwise from the drag, over the same."""
+    moment: np.ndarray
+    """Torque, counter-clockwise, over ``density speed^2 length^2 / 2``."""
+    power: np.ndarray
+    """Power that the body gives to the water over ``density speed^3 length / 2``."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -63,8 +80,39 @@ class Record:
         """Return the force on a body, mean over each step, from the momentum it exchanges, shape (step, 2) [N/m]."""
         return np.stack([self.column(f"force_{a}", body) for a in ("x", "y")], axis=1)
 
+    def coefficients(
+        self, body: str | int = 0, *, length: float, speed: float, density: float = 1.0, along: float = 0.0
+    ) -> Coefficients:
+        """Return the coefficients of a body's force, torque and power by a reference.
+
+        Args:
+            body: its name or number.
+            length: of the reference, say the diameter or chord [m].
+            speed: of the reference, say that of the stream [m/s].
+            density: of the water; ``Setup`` has the same default [kg/m^3].
+            along: direction of the stream, counter-clockwise from x [rad].
+
+        Raises:
+            UnknownName: there is no such body.
+            OutsideLimits: a reference that is not a positive number.
+        """
+        for name, value, unit in (("length", length, "m"), ("speed", speed, "m/s"), ("density", density, "kg/m3")):
+            if not (isfinite(value) and value > 0):
+                raise OutsideLimits(f"the {name} of the reference is {value} {unit}; give a positive number.")
+        pressure = 0.5 * density * speed**2
+        fx, fy = self.force(body).T / (pressure * length)
+        c, s = np.cos(along), np.sin(along)
+        return Coefficients(
+            time=self.time - self.step / 2, drag=c * fx + s * fy, lift=c * fy - s * fx,
+            moment=self.column("torque", body) / (pressure * length**2),
+            power=self.column("power", body) / (pressure * speed * length),
+        )  # fmt: skip
+
     def surface_force(self, body: str | int = 0) -> np.ndarray:
-        """Return pressure and friction integrated over a body's outline at each step's end, shape (step, 2) [N/m]."""
+        """Return pressure and friction integrated over a body's outline at each step's end, shape (step, 2) [N/m].
+
+        Its error is that of ``resolution.ALONG_THE_SKIN``.
+        """
         return np.stack(
             [self.column(f"pressure_{a}", body) + self.column(f"shear_{a}", body) for a in ("x", "y")], axis=1
         )

@@ -9,6 +9,7 @@ import numpy as np
 
 from suchus.errors import InvalidDesign
 from suchus.flow.body import Body, thin_share, window_of
+from suchus.flow.contact import Contact
 from suchus.flow.free import FreeBody, Swimmer
 from suchus.flow.grid import Grid, check_kinds
 from suchus.flow.resolution import DOUBTED, REFUSED, cells_across, estimate, needed
@@ -31,14 +32,16 @@ class Setup:
     """The cells."""
     viscosity: float
     """Kinematic viscosity of the water [m^2/s]."""
-    density: float = 1000.0
-    """Density of the water [kg/m^3]."""
+    density: float = 1.0
+    """Density of the water, 1 unless it is given: forces then come in units of speed squared times length [kg/m^3]."""
     stream: tuple[float, float] | Callable[[float], tuple[float, float]] = (0.0, 0.0)
     """Velocity of the far water, fixed or for every time [m/s]."""
     sides: Sides = field(default_factory=Sides)
     """What happens on the sides of the domain."""
     bodies: tuple[Body | FreeBody, ...] = ()
     """The bodies in the water."""
+    contact: Contact | None = None
+    """Force between bodies that nearly touch; None lets them run into each other."""
     follow: str | None = None
     """Name of the body whose centre the grid travels with; None keeps the grid where it is."""
     follow_axes: tuple[bool, bool] = (True, True)

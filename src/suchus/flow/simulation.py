@@ -1,6 +1,7 @@
 """A flow under way: steps, runs with progress and checkpoints, and shows its fields."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from math import isfinite
 from pathlib import Path
 
@@ -10,6 +11,7 @@ import numpy as np
 from suchus import threads
 from suchus.errors import OutsideLimits, UnknownName
 from suchus.flow import checkpoint as store
+from suchus.flow import contact
 from suchus.flow.added import added_mass
 from suchus.flow.body import Body
 from suchus.flow.compiled import PAD
@@ -34,13 +36,19 @@ ADDED_EVERY = 8
 SLACK = 1.5
 """Factor on the speed that a grid carries, from which a moving body stops a run [-]."""
 
+OFFSET_CHANGE = 1e-3
+"""Change of the wall's offset from which bodies that stand still are placed anew [cells]: 0.04 % of a force."""
+
 
 def _fastest_marker(markers: Markers) -> float:
     """Return the fastest speed of a body's surface in the frame of the grid [m/s]."""
     return float(np.hypot(markers.velocity_x, markers.velocity_y).max())
 
 
-_CHANGING = ("time", "_last", "_speed", "_peak", "_reference")
+Watcher = Callable[["Simulation"], None]
+"""What looks at a simulation on its way."""
+
+_CHANGING = ("time", "_last", "_speed", "_reference")
 
 
 class Simulation(Fields):
@@ -73,7 +81,6 @@ class Simulation(Fields):
         self._speed = max([float(np.hypot(*stream)), 1e-12] + [_fastest_marker(m) for m in outlines])
         self._fastest = 0.0  # fastest water after the last step
         self._reference = 0.0  # fastest stream, body or wall so far
-        self._peak = 2 * self._speed  # fastest water so far; beside a bluff body, twice the stream
         self.water.place(list(setup.bodies), [self._in_frame(self.pose(b.name)) for b in setup.bodies], 0.0)
         self._log.hold(self.water, outlines)
         self._watch.layers(
@@ -153,16 +160,17 @@ class Simulation(Fields):
         dt = self.next_step() if dt is None else dt
         for motion in self._motions:
             motion.look(self.time, dt)
-        for swimmer in self.swimmers.values():
-            swimmer.advance(self.time, dt, self.setup.density)
+        contacts = self._contacts(dt)
+        for name, swimmer in self.swimmers.items():
+            swimmer.advance(self.time, dt, self.setup.density, contacts.get(name))
         old_frame = self.frame.copy()
         self._frame_velocity_at(self.time + dt)
         self.frame[0] += dt * 0.5 * (old_frame[1] + self.frame[1])
         time = self.time + dt
         poses = [self._in_frame(self.pose(b.name, time)) for b in self.setup.bodies]
         moving = self.setup.follow is not None or not all(b.still for b in self.setup.bodies)
-        offset = wall_offset(float(self.water.nu), self._peak, self.setup.courant)
-        if moving or not self._placed or abs(offset - self.water.offset) > 2e-3:
+        offset = wall_offset(float(self.water.nu) * dt / self.setup.grid.cell)
+        if moving or not self._placed or abs(offset - self.water.offset) > OFFSET_CHANGE:
             self.water.offset = offset
             self.water.place(list(self.setup.bodies), poses, time)
             self._placed = True
@@ -182,6 +190,23 @@ class Simulation(Fields):
         self.water.step(dt, self._stream(time), (float(push[0]), float(push[1])), limits)
         self.time, self._last = time, dt
         self._note(dt, poses, markers, push, 0.5 * (old_frame[1] + self.frame[1]))
+
+    def _contacts(self, dt: float) -> dict[str, np.ndarray]:
+        """Return the force and torque by contact on each body, in the middle of the next step [N/m, N]."""
+        setup = self.setup
+        if setup.contact is None or not self.swimmers:
+            return {}
+        outlines, centres = [], []
+        for body in setup.bodies:
+            outline = body.shape.markers(self.time, self.pose(body.name), setup.grid.cell)
+            ahead = 0.5 * dt
+            outlines.append(
+                replace(outline, x=outline.x + ahead * outline.velocity_x, y=outline.y + ahead * outline.velocity_y)
+            )
+            swimmer = self.swimmers.get(body.name)
+            centres.append(np.zeros(2) if swimmer is None else swimmer.place[:2] + ahead * swimmer.rate[:2])
+        found = contact.forces(setup.contact, outlines, centres)
+        return dict(zip([b.name for b in setup.bodies], found, strict=True))
 
     def _about(self, name: str, pose: Pose) -> tuple[float, float]:
         """Return the point that a body's torque is about, in the frame of the grid [m]."""
@@ -209,7 +234,6 @@ class Simulation(Fields):
                     swimmer.added = added_mass(water, markers, point, setup.density, k)
             values += columns(load, act, drift, place, self._watch.errors[k])
             body_speed = max(body_speed, _fastest_marker(markers))
-        self._peak = max(self._peak, fastest)
         self._speed = max(float(np.hypot(*water.border.stream)), body_speed, min(fastest, 10 * self._speed), 1e-12)
         self._reference = max(
             self._reference, float(np.hypot(*water.border.stream)), body_speed, setup.sides.fastest(setup.grid)
@@ -238,7 +262,7 @@ class Simulation(Fields):
         """Go on from the state of a checkpoint."""
         for key in _CHANGING:
             setattr(self, key, float(state[key]))
-        self.frame, self._placed = state["frame"], False
+        self.frame = state["frame"]
         self._log.rows, self._log.held = list(state["rows"]), state["held"]
         self.water.resume(state)
         self._fastest = self.water.fastest()
@@ -246,6 +270,7 @@ class Simulation(Fields):
             swimmer.resume({key.removeprefix(f"{name}."): state[key] for key in state if key.startswith(f"{name}.")})
         poses = [self._in_frame(self.pose(b.name)) for b in self.setup.bodies]
         self.water.place(list(self.setup.bodies), poses, self.time)
+        self._placed = bool(self._log.rows)  # as in the run that goes on: not anew, with the offset of another step
 
     # --- a run -------------------------------------------------------------------------------------------------
 
@@ -253,7 +278,7 @@ class Simulation(Fields):
         self,
         until: float,
         *,
-        watch: Callable[["Simulation"], None] | None = None,
+        watch: Watcher | Sequence[Watcher] | None = None,
         every: float | None = None,
         checkpoint: Path | str | None = None,
         checkpoint_every: float = 60.0,
@@ -263,7 +288,8 @@ class Simulation(Fields):
 
         Args:
             until: time to reach, exactly [s].
-            watch: called with the simulation whenever ``every`` seconds of flow time have passed, and at the end.
+            watch: called with the simulation whenever ``every`` seconds of flow time have passed, and at the end;
+                one or several, such as a ``Rake`` or a ``FieldSeries``.
             every: interval of ``watch`` [s]; None calls it after every step.
             checkpoint: file that the state is saved to; if it exists, the run goes on from there.
             checkpoint_every: wall-clock seconds between two savings [s].
@@ -281,6 +307,7 @@ class Simulation(Fields):
         if path is not None and path.exists():
             store.load(self, path)
         cells = self.setup.grid.cells[0] * self.setup.grid.cells[1]
+        watchers = () if watch is None else (watch,) if callable(watch) else tuple(watch)
         due = due_after(self.time, every)
         saver = store.Saver(path, checkpoint_every)
         with Bar(self.time, until, cells, show=progress) as bar:
@@ -290,8 +317,9 @@ class Simulation(Fields):
                     if until - self.time < 1e-6 * self._last:  # rounding must not leave a tiny last step
                         self.time = until
                     bar.move(self.time)
-                    if watch is not None and (self.time >= due or self.time == until):
-                        watch(self)
+                    if watchers and (self.time >= due or self.time == until):
+                        for one in watchers:
+                            one(self)
                         due = due_after(self.time, every)
                     saver.save(self)
             finally:
@@ -316,11 +344,6 @@ class Simulation(Fields):
         return np.array(self._log.control_rows).reshape(-1, 2)
 
     # --- what there is to see ----------------------------------------------------------------------------------
-
-    @property
-    def record(self) -> Record:
-        """The time series so far."""
-        return self._log.record
 
     def surface(self, name: str | None = None) -> Surface:
         """Return pressure and friction along a body's outline, positions in the frame of the grid.

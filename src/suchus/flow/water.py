@@ -33,6 +33,9 @@ that does not carries what was left over."""
 STUCK = 1000.0
 """Residual over its limit above which a solve has failed; below, rounding stopped it short [-]."""
 
+Vector = tuple[np.ndarray, np.ndarray]
+"""A pair along x and y."""
+
 
 def _fields(count: int, shape: tuple[int, int], dtype: type) -> list[np.ndarray]:
     return [np.zeros(shape, dtype) for _ in range(count)]
@@ -177,30 +180,43 @@ class Water:
         first = self.border.steps == 0 and self.border.water is not None
         start = self.p.copy() if first else self.p
         self.border.prepare(self.u, self.v, self.window, float(step), stream)
-        self._stages(step, force, limits)
+        self._heun(step, force, limits)
         if first:  # a body that starts at once moves the far water at once
             for _ in range(MOST_ROUNDS):
                 if self.border.settle(self._u2, self._v2, self.window) <= limits[1]:
                     break
                 self.p[:] = start
-                self._stages(step, force, limits)
+                self._heun(step, force, limits)
         (self.u, self.v), (self._u2, self._v2) = (self._u2, self._v2), (self.u, self.v)
 
-    def _stages(self, step, force, limits) -> None:  # type: ignore[no-untyped-def]
-        """Write the velocity at the end of the step to the second pair of fields."""
+    def _heun(self, step: float, force: tuple[float, float], limits: tuple[float, float]) -> None:
+        """Take a step of Heun's method: predict, project, correct, project.
+
+        On return the second pair of fields, ``_u2`` and ``_v2``, is the velocity at the step's end, ``p`` its pressure,
+        and ``given`` what the immersion gave to the water.
+        """
         self.solves = []
         self.given[:] = 0
-        now, one, two = (self.u, self.v), (self._u1, self._v1), (self._u2, self._v2)
-        real = self.dtype
-        self._advance(one, now, now, now, step, force, real(0))
-        self._project(one, step, limits)
-        self._collect(one, now, step, real(0))
-        self.border.settle(*one, self.window)
-        self._advance(two, one, now, one, step, force, real(0.5))
-        self._project(two, real(0.5) * step, limits)
-        self._collect(two, one, step, real(0.5))
+        now, predicted, corrected = (self.u, self.v), (self._u1, self._v1), (self._u2, self._v2)
+        half = self.dtype(0.5)
+        self._predict(predicted, now, step, force)
+        self._project(predicted, step, limits)
+        self._collect(predicted, now, step, self.dtype(0))
+        self.border.settle(*predicted, self.window)
+        self._correct(corrected, now, predicted, step, force)
+        self._project(corrected, half * step, limits)
+        self._collect(corrected, predicted, step, half)
+
+    def _predict(self, out: Vector, now: Vector, step: float, force: tuple[float, float]) -> None:
+        """On return ``out`` is Euler's step from ``now``, immersed, before its divergence is projected out."""
+        self._advance(out, now, now, now, step, force, self.dtype(0))
+
+    def _correct(self, out: Vector, now: Vector, predicted: Vector, step: float, force: tuple[float, float]) -> None:
+        """On return ``out`` is the mean of ``predicted`` and of a step from ``now`` with its rates, immersed."""
+        self._advance(out, predicted, now, predicted, step, force, self.dtype(0.5))
 
     def _advance(self, out, blend, base, rate, dt, push, keep) -> None:  # type: ignore[no-untyped-def]
+        """On return ``out = keep blend + (1 - keep) B[base + dt (f(rate) + push) - dt grad p]``, B the immersion."""
         window = np.array(self.window)
         advance(
             out[0], out[1], blend[0], blend[1], base[0], base[1], rate[0], rate[1], self.p, self._raw_u, self._raw_v,
@@ -244,7 +260,8 @@ class Water:
             contents(sums, self.bv, mu0_v, self.owners[1], 1, window)
         return sums
 
-    def _project(self, velocity: tuple[np.ndarray, np.ndarray], dt: float, limits: tuple[float, float]) -> None:
+    def _project(self, velocity: Vector, dt: float, limits: tuple[float, float]) -> None:
+        """On return the divergence of ``velocity`` is that of the bodies, to ``limits``; ``p`` has what that took."""
         window = np.array(self.window)
         r = self._part(multigrid.B)
         mean = mean_residual(*velocity, self._source, window)

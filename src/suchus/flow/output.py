@@ -1,0 +1,191 @@
+"""Fields for other programs: VTK ImageData for ParaView, and NetCDF.
+
+Both hold velocity, pressure, vorticity and the fluid's share at the cell centres, the velocity in the world's frame.
+Format: VTK file formats, XML ImageData with raw appended data (``https://docs.vtk.org``).
+"""
+
+import os
+import struct
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field
+from html import escape, unescape
+from pathlib import Path
+from re import findall
+
+import numpy as np
+import xarray as xr
+
+from suchus.errors import InvalidDesign, UnreadableFile, Unwritable
+from suchus.flow.fields import Fields
+
+_UNITS = {"velocity": "m s-1", "pressure": "Pa", "vorticity": "s-1", "fluid_share": "1"}
+_NAMES = {
+    "velocity": "velocity of the water in the world's frame",
+    "pressure": "pressure, zero on the average along the sides of the domain",
+    "vorticity": "vorticity, positive counter-clockwise",
+    "fluid_share": "share of the water, 0 inside the bodies",
+}
+
+
+def snapshot(sim: Fields) -> xr.Dataset:
+    """Return the fields at the cell centres now, dimensions ``y`` and ``x`` (and ``component`` of the velocity) [m].
+
+    The coordinates are those of the world: those of a grid that follows a body travel.
+    """
+    grid, (place, drift) = sim.setup.grid, sim.frame
+    velocity = np.stack([w + d for w, d in zip(sim.velocity, drift, strict=True)])
+    values = {
+        "velocity": (("component", "y", "x"), velocity), "pressure": (("y", "x"), sim.pressure),
+        "vorticity": (("y", "x"), sim.vorticity_at_centres), "fluid_share": (("y", "x"), sim.fluid_share),
+    }  # fmt: skip
+    return xr.Dataset(
+        {
+            name: (dims, np.asarray(value, np.float32), {"units": _UNITS[name], "long_name": _NAMES[name]})
+            for name, (dims, value) in values.items()
+        },
+        coords={
+            "x": ("x", grid.x + place[0], {"units": "m"}), "y": ("y", grid.y + place[1], {"units": "m"}),
+            "component": ["x", "y"], "time": ((), sim.time, {"units": "s"}),
+        },
+    )  # fmt: skip
+
+
+def save_vti(sim: Fields, path: Path | str) -> None:
+    """Write the fields now as a VTK ImageData file, which ParaView and VisIt open.
+
+    Raises:
+        Unwritable: naming the place.
+    """
+    _write(Path(path), _vti(sim))
+
+
+def _vti(sim: Fields) -> bytes:
+    data, grid, frame = snapshot(sim), sim.setup.grid, sim.frame[0]
+    nx, ny = grid.cells
+    x, y, h = (float(value) for value in (*(np.array(grid.origin) + frame), grid.cell))
+    arrays, blocks, offset = [], [], 0
+    for name in _UNITS:
+        values = data[name].to_numpy()
+        if name == "velocity":  # VTK's vectors have three components, each point's side by side
+            values = np.stack([*values, np.zeros_like(values[0])], axis=-1)
+        block = values.astype("<f4").tobytes()
+        parts = 3 if name == "velocity" else 1
+        arrays.append(
+            f'<DataArray type="Float32" Name="{name}" NumberOfComponents="{parts}" format="appended" '
+            f'offset="{offset}"/>'
+        )
+        blocks.append(struct.pack("<Q", len(block)) + block)
+        offset += len(blocks[-1])
+    extent = f"0 {nx} 0 {ny} 0 0"
+    head = (
+        '<?xml version="1.0"?>\n'
+        '<VTKFile type="ImageData" version="1.0" byte_order="LittleEndian" header_type="UInt64">\n'
+        f'<ImageData WholeExtent="{extent}" Origin="{x!r} {y!r} 0" Spacing="{h!r} {h!r} 1">\n'
+        '<FieldData><DataArray type="Float64" Name="TimeValue" NumberOfTuples="1" format="ascii">'
+        f"{float(sim.time)!r}</DataArray></FieldData>\n"
+        f'<Piece Extent="{extent}"><CellData Scalars="vorticity" Vectors="velocity">\n'
+        + "\n".join(arrays)
+        + '\n</CellData></Piece></ImageData>\n<AppendedData encoding="raw">\n_'
+    )
+    return head.encode() + b"".join(blocks) + b"\n</AppendedData></VTKFile>"
+
+
+@dataclass(slots=True)
+class FieldSeries:
+    """Fields at chosen times of a run, in a file: ``simulation.run(..., watch=series)``.
+
+    Each is written as soon as it is reached, at the end of the first step from its time on; a run that is killed keeps
+    what it had, and one that goes on from a checkpoint adds to it.
+
+    Raises:
+        InvalidDesign: on creation, for times that do not rise or a file that is neither .nc nor .pvd.
+    """
+
+    path: Path | str
+    """``*.nc`` for NetCDF with all times, ``*.pvd`` for a series of .vti files beside it."""
+    times: Sequence[float]
+    """When [s]."""
+    _next: int = field(default=0, init=False)
+    _last: float = field(default=-np.inf, init=False)
+
+    def __post_init__(self) -> None:
+        self.path, self.times = Path(self.path), tuple(float(time) for time in self.times)
+        if self.path.suffix not in (".nc", ".pvd"):
+            raise InvalidDesign(f"fields are to be written to {self.path}; give a name that ends with .nc or .pvd.")
+        if not self.times or not np.isfinite(self.times).all() or (np.diff(self.times) <= 0).any():
+            raise InvalidDesign(f"the times of the fields are {self.times} s; give finite times that rise.")
+
+    def __call__(self, sim: Fields) -> None:
+        """Write the fields, if it is time.
+
+        Raises:
+            Unwritable: naming the place.
+            UnreadableFile: a file of that name holds something else.
+        """
+        if not np.isfinite(self._last):  # those before this run were written by the one that it goes on from
+            started = sim.time - (sim.record.step[-1] if sim.record.step.size else 0.0)
+            while started > 0 and self._next < len(self.times) and self.times[self._next] <= started * (1 + 1e-12):
+                self._next += 1
+        self._last = sim.time
+        due = self._next
+        while self._next < len(self.times) and sim.time >= self.times[self._next] * (1 - 1e-12):
+            self._next += 1
+        if self._next > due:
+            (_add_to_netcdf if Path(self.path).suffix == ".nc" else _add_to_collection)(sim, Path(self.path))
+
+
+def _add_to_netcdf(sim: Fields, path: Path) -> None:
+    new = snapshot(sim)
+    if sim.setup.follow is not None:  # a grid that travels: places relative to it, and where it is
+        new = new.assign_coords(
+            x=new.x - sim.frame[0, 0], y=new.y - sim.frame[0, 1],
+            grid_x=((), sim.frame[0, 0], {"units": "m"}), grid_y=((), sim.frame[0, 1], {"units": "m"}),
+        )  # fmt: skip
+    new = new.expand_dims("time")
+    if path.exists():
+        try:
+            with xr.open_dataset(path, engine="h5netcdf", decode_times=False) as file:
+                old = file.load()
+            old = old.isel(time=old.time.to_numpy() < sim.time * (1 - 1e-12))
+            new = xr.concat([old, new], dim="time", join="exact") if old.sizes["time"] else new
+        except (OSError, ValueError, KeyError) as error:
+            raise UnreadableFile(
+                f"{path} holds no fields of this run, so none are added to it; give another name or delete it."
+            ) from error
+    for name in ("x", "y", "time"):
+        new[name].attrs["units"] = "s" if name == "time" else "m"
+    _write(path, bytes(new.to_netcdf(engine="h5netcdf")))
+
+
+def _add_to_collection(sim: Fields, path: Path) -> None:
+    entries: list[tuple[float, str]] = []
+    if path.exists():
+        try:
+            text = path.read_text(encoding="utf-8")
+        except (OSError, UnicodeDecodeError) as error:
+            raise UnreadableFile(f"{path} cannot be read: {error}; give another name.") from error
+        entries = [(float(at), unescape(name)) for at, name in findall(r'timestep="([0-9.e+-]+)" file="([^"]+)"', text)]
+        entries = [entry for entry in entries if entry[0] < sim.time * (1 - 1e-12)]
+    name = f"{path.stem}_{len(entries):04d}.vti"
+    save_vti(sim, path.with_name(name))
+    entries.append((float(sim.time), name))
+    rows = "\n".join(f'<DataSet timestep="{at!r}" file="{escape(file)}"/>' for at, file in entries)
+    _write(
+        path,
+        f'<?xml version="1.0"?>\n<VTKFile type="Collection" version="1.0">\n<Collection>\n{rows}\n</Collection>\n'
+        f"</VTKFile>\n".encode(),
+    )
+
+
+def _write(path: Path, content: bytes) -> None:
+    """Write a file whole or not at all."""
+    part = path.with_name(f"{path.name}.{os.getpid()}.part")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        part.write_bytes(content)
+        part.replace(path)
+    except OSError as error:
+        with suppress(OSError):
+            part.unlink()
+        raise Unwritable(f"{path} cannot be written: {error.strerror}; choose another place.") from error

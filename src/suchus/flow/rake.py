@@ -1,0 +1,133 @@
+"""Values at chosen points: at one instant, and along a line or rake over time."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Protocol
+
+import numpy as np
+
+from suchus.errors import InvalidDesign
+from suchus.flow.compiled import PAD
+from suchus.flow.force import edge_mean
+from suchus.flow.grid import Grid
+from suchus.flow.pace import due_after
+from suchus.flow.water import Water
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Sample:
+    """The water at some points, in the world's frame."""
+
+    points: np.ndarray
+    """Where, shape (point, 2) [m]."""
+    velocity: np.ndarray
+    """Velocity (x, y), shape (point, 2) [m/s]."""
+    pressure: np.ndarray
+    """Pressure, zero on the average along the sides of the domain, shape (point,) [Pa]."""
+
+
+def line(start: tuple[float, float], end: tuple[float, float], count: int) -> np.ndarray:
+    """Return ``count`` points evenly spaced from ``start`` to ``end``, both included, shape (count, 2) [m].
+
+    Raises:
+        InvalidDesign: fewer than two points.
+    """
+    if count < 2:
+        raise InvalidDesign(f"a line of {count} points; at least 2 are needed.")
+    return np.linspace(np.asarray(start, float), np.asarray(end, float), count)
+
+
+def read(water: Water, points: np.ndarray, frame: np.ndarray, density: float) -> Sample:
+    """Return velocity and pressure at points, linear between the nodes.
+
+    Inside a body and within a cell of its surface they are the body's as much as the water's.
+
+    Args:
+        water: the fields.
+        points: where, shape (point, 2), or one point (2,) [m].
+        frame: position and velocity of the grid, shape (2, 2) [m, m/s].
+        density: of the water [kg/m^3].
+
+    Raises:
+        InvalidDesign: a point that is not in the domain.
+    """
+    where = np.atleast_2d(np.asarray(points, float))
+    if where.ndim != 2 or where.shape[1] != 2:
+        raise InvalidDesign(f"the points have the shape {np.shape(points)}; give one row (x, y) for each point.")
+    grid, local = water.grid, where - frame[0]
+    _check(grid, where, local, frame[0])
+    x, y = ((local - np.array(grid.origin)) / grid.cell + PAD).T
+    level = float(edge_mean(water.p))
+    velocity = np.stack([_at(water.u, x, y - 0.5), _at(water.v, x - 0.5, y)], axis=1) + frame[1]
+    return Sample(points=where, velocity=velocity, pressure=density * (_at(water.p, x - 0.5, y - 0.5) - level))
+
+
+def _check(grid: Grid, where: np.ndarray, local: np.ndarray, frame: np.ndarray) -> None:
+    low, high = np.array(grid.origin), np.array(grid.origin) + grid.size
+    outside = np.flatnonzero(~((local >= low) & (local <= high)).all(axis=1))
+    if outside.size:
+        (x, y), (x0, y0), (x1, y1) = where[outside[0]], low + frame, high + frame
+        raise InvalidDesign(
+            f"the point ({x:.4g}, {y:.4g}) m is outside the domain x = {x0:.4g} to {x1:.4g} m, y = {y0:.4g} to "
+            f"{y1:.4g} m; give points in it."
+        )
+
+
+def _at(a: np.ndarray, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Return the bilinear interpolation of ``a`` at padded indices."""
+    i, j = x.astype(int), y.astype(int)
+    f, g = x - i, y - j
+    low, high = ((1 - f) * a[k, i] + f * a[k, i + 1] for k in (j, j + 1))
+    values: np.ndarray = (1 - g) * low + g * high
+    return values
+
+
+class _Probed(Protocol):
+    @property
+    def time(self) -> float: ...
+
+    def probe(self, points: np.ndarray) -> Sample: ...
+
+
+Place = np.ndarray | Callable[[float], np.ndarray]
+"""Points of shape (point, 2) [m], or those for every time [s]."""
+
+
+@dataclass(slots=True)
+class Rake:
+    """Points at which velocity and pressure are noted during a run: ``simulation.run(..., watch=rake)``.
+
+    Raises:
+        InvalidDesign: in the run, if a point leaves the domain.
+    """
+
+    points: Place
+    """Where; a function of time for a rake that travels [m]."""
+    every: float | None = None
+    """Interval of the notes [s]; None notes after every step."""
+    _times: list[float] = field(default_factory=list)
+    _samples: list[Sample] = field(default_factory=list)
+    _due: float = 0.0
+
+    def __call__(self, sim: _Probed) -> None:
+        """Note the water at the points, if it is time."""
+        if sim.time < self._due:
+            return
+        self._due = due_after(sim.time, self.every)
+        self._samples.append(sim.probe(self.points(sim.time) if callable(self.points) else self.points))
+        self._times.append(sim.time)
+
+    @property
+    def time(self) -> np.ndarray:
+        """Times of the notes, shape (time,) [s]."""
+        return np.array(self._times)
+
+    @property
+    def velocity(self) -> np.ndarray:
+        """Velocity (x, y) in the world's frame, shape (time, point, 2) [m/s]."""
+        return np.array([sample.velocity for sample in self._samples])
+
+    @property
+    def pressure(self) -> np.ndarray:
+        """Pressure, zero on the average along the sides of the domain, shape (time, point) [Pa]."""
+        return np.array([sample.pressure for sample in self._samples])
