@@ -118,7 +118,7 @@ def serve_walk(options: Walking, opened: Callable[[str], object] | None = None) 
         SuchusError: the walk cannot be walked, the viewer is not installed, or the port is taken.
     """
     robot, gait = options.robot, options.gait or own_gait(options.robot)
-    swim = _swim(robot) if options.lake else None
+    swim = _wave_of(robot) if options.lake else None
 
     def session() -> Session:
         return Session(robot, gait, timestep=options.timestep, swim=swim)
@@ -132,7 +132,7 @@ def serve_walk(options: Walking, opened: Callable[[str], object] | None = None) 
     )  # fmt: skip
 
 
-def _swim(robot: AnyRobot) -> Swim:
+def _wave_of(robot: AnyRobot) -> Swim:
     """Return the article's wave on the joints of a robot.
 
     Raises:

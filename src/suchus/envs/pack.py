@@ -105,7 +105,7 @@ class Pack:
             chances: for each of them, what leaves its episode to chance.
         """
         for i, random in zip(robots, chances, strict=True):
-            jitter = self.task.jitter * random.uniform(-1.0, 1.0, self._told.shape[1])
+            jitter = self.task.jitter * np.asarray(random.uniform(-1.0, 1.0, self._told.shape[1]))
             self._injector.mend(i)
             restart(self._bench, i, off_by(self.task, self._begin, jitter))
             self._told[i], self._turned[i], self._tick[i] = self._begin.told, 0.0, 0

@@ -117,11 +117,11 @@ def _series(ax: Axes, known: Mapping[tuple[str, ...], str]) -> Iterator[tuple[st
 
 def _of_line(ax: Axes, line: Line2D, names: tuple[str, str]) -> Iterator[Cells]:
     if line.get_transform() == ax.get_xaxis_transform(which="grid"):  # a vertical line over the whole height
-        yield _cells(ax, names, (line.get_xdata(orig=False)[0], None))
+        yield _cells(ax, names, (float(np.asarray(line.get_xdata(orig=False))[0]), None))
     elif line.get_transform() == ax.get_yaxis_transform(which="grid"):
-        yield _cells(ax, names, (None, line.get_ydata(orig=False)[0]))
+        yield _cells(ax, names, (None, float(np.asarray(line.get_ydata(orig=False))[0])))
     elif line.get_transform() == ax.transData:
-        for x, y in line.get_xydata():
+        for x, y in np.asarray(line.get_xydata(), dtype=float):
             yield _cells(ax, names, (x, y))
 
 
@@ -138,24 +138,26 @@ def _of_collection(ax: Axes, drawn: Collection, names: tuple[str, str]) -> Itera
     if carried is not None:
         yield from _of_field(ax, carried.x, carried.y, carried.values, (*names, _colour(drawn)))
     elif isinstance(drawn, QuadMesh):
-        corners = drawn.get_coordinates()
-        middle = 0.25 * (corners[1:, 1:] + corners[1:, :-1] + corners[:-1, 1:] + corners[:-1, :-1])
-        values = np.ma.filled(np.ma.asarray(drawn.get_array(), dtype=float), np.nan).reshape(middle.shape[:2])
+        corners = np.asarray(drawn.get_coordinates(), dtype=float)
+        middle: np.ndarray = 0.25 * (corners[1:, 1:] + corners[1:, :-1] + corners[:-1, 1:] + corners[:-1, :-1])
+        values: np.ndarray = np.ma.filled(np.ma.asarray(drawn.get_array(), dtype=float), np.nan).reshape(
+            middle.shape[:2]
+        )
         yield from _of_field(ax, middle[0, :, 0], middle[:, 0, 1], values, (*names, _colour(drawn)))
     elif isinstance(drawn, PathCollection):
-        values = drawn.get_array()
+        coloured: Any = drawn.get_array()
         for i, (x, y) in enumerate(np.ma.filled(np.ma.asarray(drawn.get_offsets(), dtype=float), np.nan)):
-            extra = {} if values is None else {_colour(drawn): _text(values[i])}
+            extra = {} if coloured is None else {_colour(drawn): _text(coloured[i])}
             yield _cells(ax, names, (x, y)) | extra
     elif isinstance(drawn, (LineCollection, PolyCollection)) and drawn.get_transform() == ax.transData:
         for path in drawn.get_paths():
-            for x, y in path.vertices:
+            for x, y in np.asarray(path.vertices, dtype=float):
                 yield _cells(ax, names, (x, y))
 
 
 def _of_image(ax: Axes, image: AxesImage, names: tuple[str, str]) -> Iterator[Cells]:
     carried = getattr(image, _CARRIED, None)
-    values = np.ma.filled(image.get_array(), np.nan) if carried is None else carried.values
+    values = np.ma.filled(np.ma.asarray(image.get_array()), np.nan) if carried is None else carried.values
     x0, x1, y0, y1 = image.get_extent()
     ny, nx = values.shape[:2]
     x, y = (a + (np.arange(n) + 0.5) * (b - a) / n for a, b, n in ((x0, x1, nx), (y0, y1, ny)))
@@ -228,9 +230,9 @@ def _category(axis: Axis, value: float) -> str:
 def _ticks(axis: Axis) -> tuple[np.ndarray, list[str]]:
     """Return the places and the words at the ticks of an axis; no words where numbers stand there."""
     locator = axis.get_major_locator()
-    if not isinstance(locator, FixedLocator) or not len(locator.locs):
-        return np.zeros(0), []
-    places = np.asarray(locator.locs, dtype=float)
+    places: np.ndarray = np.array(locator() if isinstance(locator, FixedLocator) else [], dtype=float)
+    if not places.size:
+        return places, []
     words = [_plain(word) for word in axis.get_major_formatter().format_ticks(places.tolist())]
     return places, words if any(word and not _is_number(word) for word in words) else []
 

@@ -1,5 +1,7 @@
 """How high a robot reaches that stands on hind legs and tail, what limits it, and what topples it."""
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -129,7 +131,7 @@ def draw_ceiling(robot: Crocodile, record: xr.Dataset) -> Figure:
         ax = axes[0, 0]
         bottom = 0.0
         for name, length, colour in lengths:
-            look = {"facecolor": colour, "edgecolor": "white", "alpha": 0.75, "label": name}
+            look: dict[str, Any] = {"facecolor": colour, "edgecolor": "white", "alpha": 0.75, "label": name}
             ax.add_patch(Rectangle((-0.3, bottom), 0.6, length, **look))
             ax.text(0.36, max(bottom + length / 2, 0.02), f"{name}  {1000 * length:.1f} mm", va="center")
             bottom += length

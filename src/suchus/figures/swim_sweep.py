@@ -1,5 +1,8 @@
 """Maps of swimming over frequency, amplitude and wavelength, and how far the slender-body models are off."""
 
+from collections.abc import Mapping
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -23,7 +26,7 @@ _ROWS: tuple[tuple[str, str], ...] = (
 """Rows of the maps: quantity and label."""
 _PALE = 0.55
 """Share of the scale from which dark digits are read better than light ones [-]."""
-_HATCHED = {"facecolor": "#EDEDED", "edgecolor": "#555555", "hatch": "///", "linewidth": 0.0}
+_HATCHED: Mapping[str, Any] = {"facecolor": "#EDEDED", "edgecolor": "#555555", "hatch": "///", "linewidth": 0.0}
 
 
 def draw_maps(record: xr.Dataset, model: str) -> Figure:
@@ -80,7 +83,9 @@ def _map(ax: Axes, record: xr.Dataset, name: str, axis: str, scale: Normalize) -
             ax.fill_between(corners, edges[1][j], edges[1][j + 1], **_HATCHED)
         elif np.isfinite(values[j, i]):
             colour = "black" if scale(values[j, i]) > _PALE else "white"
-            ax.text(x[i], y[j], f"{values[j, i]:.2g}", color=colour, ha="center", va="center", fontsize=10)
+            ax.text(
+                float(x[i]), float(y[j]), f"{values[j, i]:.2g}", color=colour, ha="center", va="center", fontsize=10
+            )
     if axis == "frequency":
         for edge in _SALAMANDRA:
             if edges[0][0] <= edge <= edges[0][-1]:
@@ -92,14 +97,14 @@ def _map(ax: Axes, record: xr.Dataset, name: str, axis: str, scale: Normalize) -
     return drawn
 
 
-_DOTTED = {"color": COLOURS["limbs_only"], "linewidth": 1.8, "linestyle": (0, (1, 1.5)), "zorder": 4}
-_CHECKED = {"marker": "o", "linestyle": "none", "markersize": 18, "markerfacecolor": "none",
+_DOTTED: Mapping[str, Any] = {"color": COLOURS["limbs_only"], "linewidth": 1.8, "linestyle": (0, (1, 1.5)), "zorder": 4}
+_CHECKED: Mapping[str, Any] = {"marker": "o", "linestyle": "none", "markersize": 18, "markerfacecolor": "none",
             "markeredgecolor": COLOURS["limbs_only"], "markeredgewidth": 1.8, "zorder": 5}  # fmt: skip
 
 
 def _legend() -> list[Line2D | Patch]:
     return [
-        Line2D([], [], **(_CHECKED | {"markersize": 9}), label="checked by CFD"),
+        Line2D([], [], **{**_CHECKED, "markersize": 9}, label="checked by CFD"),
         Line2D([], [], **_DOTTED, label="range of Salamandra"),
         Patch(**_HATCHED, label="joints or servos cannot follow"),
     ]

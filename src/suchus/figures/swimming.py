@@ -116,8 +116,8 @@ def draw_forces(record: xr.Dataset) -> Figure:
         ax.set_ylabel("force forward [N/m]")
         ax = axes[0, 1]
         for limit in (-1.0, 1.0):
-            label = "limit" if limit > 0 else None
-            ax.axhline(limit, color=COLOURS["alarm"], linewidth=1.2, linestyle=(0, (4, 2)), label=label)
+            named = "limit" if limit > 0 else None
+            ax.axhline(limit, color=COLOURS["alarm"], linewidth=1.2, linestyle=(0, (4, 2)), label=named)
         labels = ("yaw 1, at the pelvis", "yaw 2", "yaw 3, at the neck", "the tail's cable")
         for label, servo in zip(labels, record.held_servo.values, strict=True):
             share = record.held_servo_torque.sel(held_servo=servo) / record.servo_limit.sel(held_servo=servo)

@@ -168,9 +168,10 @@ def _compared(name: str, first: Mapping[str, Any], second: Mapping[str, Any]) ->
     a, b = first.get(name), second.get(name)
     units = list(dict.fromkeys(one["unit"] for one in (a, b) if one))
     values = [one["value"] if one else None for one in (a, b)]
-    known = len(units) == 1 and None not in values
-    difference = values[1] - values[0] if known else None
-    share = difference / abs(values[0]) if known and values[0] else None
+    difference = share = None
+    if len(units) == 1 and values[0] is not None and values[1] is not None:
+        difference = values[1] - values[0]
+        share = difference / abs(values[0]) if values[0] else None
     return Compared(
         name=name, unit=" / ".join(units), first=values[0], second=values[1], difference=difference, share=share
     )
