@@ -22,8 +22,7 @@ from datetime import date
 from pathlib import Path
 from typing import Any
 
-from pages.stated import filled
-
+from pages.passages import put
 from release import distributions
 from release.environment import ROOT, Environment, Failed, clean, run
 
@@ -89,7 +88,7 @@ def keep(cell: Cell) -> None:
     told = {name: value for name, value in asdict(cell).items() if name not in ("name", "why")}
     every[cell.name] = {"date": date.today().isoformat(), **told}
     KEPT.write_text(json.dumps(dict(sorted(every.items())), indent=1) + "\n", encoding="utf-8")
-    PAGE.write_text(filled(PAGE.read_text(encoding="utf-8"), {}, {"matrix": lambda _: table(every)}), encoding="utf-8")
+    PAGE.write_text(put(PAGE.read_text(encoding="utf-8"), {"matrix": table(every)}), encoding="utf-8")
 
 
 def table(every: dict[str, dict[str, Any]]) -> str:

@@ -16,7 +16,7 @@ from suchus.record import code_digest
 
 ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT / "tools"))
-from pages.stated import filled  # noqa: E402
+from pages.passages import put  # noqa: E402
 
 FIRST, COUNT = 2000, 200
 """Number of the first animal of ``menagerie.ailing``, and how many there are."""
@@ -63,7 +63,7 @@ def numbers(told: dict[str, Any]) -> dict[str, dict[str, float]]:
 
 def page(told: dict[str, Any]) -> str:
     """Return the page with the passage on these animals."""
-    return filled(PAGE.read_text(encoding="utf-8"), {}, {"intervals": lambda _: passage(numbers(told))})
+    return put(PAGE.read_text(encoding="utf-8"), {"intervals": passage(numbers(told))})
 
 
 def passage(found: dict[str, dict[str, float]]) -> str:

@@ -4,9 +4,9 @@ import json
 import re
 
 import pytest
-from pages.stated import filled
 
 import matrix
+from pages.passages import put
 
 SOUND = {"date": "2026-01-02", "told": "ok: doctor", "sound": True, "versions": {"numpy": "2.2.0"}}
 
@@ -14,7 +14,7 @@ SOUND = {"date": "2026-01-02", "told": "ok: doctor", "sound": True, "versions": 
 def test_the_page_shows_what_was_tried():
     """Renew with ``make matrix``."""
     page, every = matrix.PAGE.read_text(encoding="utf-8"), json.loads(matrix.KEPT.read_text(encoding="utf-8"))
-    assert filled(page, {}, {"matrix": lambda _: matrix.table(every)}) == page
+    assert put(page, {"matrix": matrix.table(every)}) == page
     assert "/" not in re.sub(r"build/matrix/[\w.-]+\.log", "", json.dumps(every))  # no place of one machine
 
 

@@ -1,10 +1,5 @@
-"""Passages of a page that state what an experiment measured, made from its measures.
+"""Passages of the page on faults, made from the measures of ``joint_faults``; see ``stated``."""
 
-A passage stands between ``<!-- stated: NAME -->`` and ``<!-- end -->``. The measures of the full form are kept in
-``tests/docs/stated``; a test compares page and measures, and ``make validate`` compares the measures with a new run.
-"""
-
-import re
 from collections.abc import Callable, Mapping
 from itertools import product
 from textwrap import fill
@@ -13,21 +8,7 @@ from suchus.land import KINDS, KNEES, LEGS_LOST, LOST
 from suchus.paper import CLAIMS
 from suchus.verdict import Reading, compared, listed
 
-_PASSAGE = re.compile(r"(<!-- stated: (\w+) -->\n)(.*?)(<!-- end -->)", re.DOTALL)
 _ARMS = {"coordinated": "spine and tail", "limbs_only": "limbs only"}
-
-
-def filled(
-    page: str, measures: Mapping[str, float], made: Mapping[str, Callable[[Mapping[str, float]], str]] | None = None
-) -> str:
-    """Return a page whose passages say what the measures say; ``made`` makes each, those of joint faults if None."""
-    use = PASSAGES if made is None else made
-    return _PASSAGE.sub(lambda found: found[1] + use[found[2]](measures) + found[4], page)
-
-
-def passages(page: str) -> list[str]:
-    """Return the names of the passages of a page."""
-    return [found[1] for found in _PASSAGE.findall(page)]
 
 
 def _percent(value: float) -> str:
@@ -101,5 +82,7 @@ def _borne(measures: Mapping[str, float]) -> str:
     return "".join(fill(item, 118, initial_indent="* ", subsequent_indent="  ") + "\n" for item in items)
 
 
-PASSAGES = {"losses": _losses, "steered": _steered, "borne": _borne}
-"""By name: what makes a passage from the measures of ``joint_faults``."""
+PASSAGES: Mapping[str, Mapping[str, Callable[[Mapping[str, float]], str]]] = {
+    "joint_faults": {"losses": _losses, "steered": _steered, "borne": _borne}
+}
+"""What makes each passage, by what was measured."""

@@ -72,5 +72,3 @@ PASSAGES: Mapping[str, Mapping[str, Callable[[Mapping[str, float]], str]]] = {
     "swim_free": {"swims": _swims},
 }
 """What makes each passage, by experiment."""
-MADE = {name: make for made in PASSAGES.values() for name, make in made.items()}
-"""What makes each passage of the page."""
