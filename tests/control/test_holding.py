@@ -10,6 +10,7 @@ from suchus.control.holding import Depths, Headings, neutral_breath
 from suchus.design import WATER_DENSITY
 from suchus.design.pieces import volumes
 from suchus.errors import InvalidDesign, OutsideLimits
+from suchus.gaits import GAITS
 from suchus.land import Lake, Run, simulate
 from suchus.motion import Swim
 from suchus.robots import ROBOTS
@@ -149,7 +150,9 @@ def test_a_swim_holds_heading_and_depth_in_the_water():
             "would have to let out",
         ),
         (
-            lambda: Swimming(swim=WAVE, heading=HeadingHold(trunk_turn=3.0)).start([ROBOT], ["x"], [0], 10, PERIOD),
+            lambda: Swimming(swim=WAVE, heading=HeadingHold(trunk_turn=3.0)).start(
+                [ROBOT], [GAITS["belly_crawl"]], [0], 10, PERIOD
+            ),
             OutsideLimits,
             "spine_yaw_1 of robot",
         ),

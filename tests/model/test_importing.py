@@ -365,9 +365,14 @@ def two_hinges(kind):
     return urdf(*parts)
 
 
-@pytest.mark.parametrize("kind", ["sprawled", "upright"])
-def test_limbs_of_two_hinges_get_a_gait_that_walks(kind, tmp_path):
-    robot = read(two_hinges(kind), tmp_path, heading=0.0).robot
+def test_limbs_of_two_hinges_in_one_plane_are_refused_with_what_to_do(tmp_path):
+    robot = read(two_hinges("upright"), tmp_path, heading=0.0).robot
+    with pytest.raises(OutsideLimits, match="write a gait of its own"):
+        draft_gait(robot, "walk")
+
+
+def test_limbs_of_two_hinges_get_a_gait_that_walks(tmp_path):
+    robot = read(two_hinges("sprawled"), tmp_path, heading=0.0).robot
     assert [len(girdle.limb.hinges) for girdle in robot.girdles] == [2, 2]
     gait = draft_gait(robot, "walk")
     assert isinstance(gait, AngleTable)

@@ -147,9 +147,9 @@ def test_the_limbs_alone_walk_as_the_control_group_does():
     session = Session(ROBOT, CRAWL)
     session.switch("spine", False)
     session.switch("tail", False)
-    assert replace(session.settings.walked, name="limbs_only") == GAITS["limbs_only"]
+    assert replace(session.settings.walked(ROBOT), name="limbs_only") == GAITS["limbs_only"]
     session.switch("tail", True)
-    assert replace(session.settings.walked, name="tail_drag") == GAITS["tail_drag"]
+    assert replace(session.settings.walked(ROBOT), name="tail_drag") == GAITS["tail_drag"]
 
 
 def test_rules_that_cannot_coordinate_a_gait_are_refused_with_a_sentence():

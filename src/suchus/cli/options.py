@@ -7,6 +7,7 @@ from contextlib import redirect_stderr
 from dataclasses import dataclass, field, fields, make_dataclass
 from itertools import pairwise
 from pathlib import Path
+from types import NoneType
 from typing import Annotated, Any, get_args
 
 import tyro
@@ -150,7 +151,9 @@ def _registry() -> ConstructorRegistry:
     shelves: tuple[tuple[Any, Catalog[Any], str], ...] = (
         (AnyRobot, ROBOTS, "ROBOT"),
         (Crocodile, ROBOTS, "ROBOT"),
+        (AnyRobot | None, ROBOTS, "ROBOT"),
         (AnyGait, GAITS, "GAIT"),
+        (AnyGait | None, GAITS, "GAIT"),
         (Gait, GAITS, "GAIT"),
         (Gait | Pattern, GAITS, "GAIT"),
         (AngleTable, GAITS, "GAIT"),
@@ -168,7 +171,7 @@ def _shelf_rule(
         metavar=f"{metavar}|FILE.toml",
         instance_from_str=lambda words: _find(_first(words), kind, shelf),
         is_instance=lambda value: isinstance(value, kind),
-        str_from_instance=lambda value: [str(value.name)],
+        str_from_instance=lambda value: ["own" if value is None else str(value.name)],
     )
     return lambda info: spec if info.type == kind else None
 
@@ -211,7 +214,7 @@ def _unsuited(found: Any, kind: Any, shelf: Catalog[Any]) -> str:
 
 def named(kind: Any) -> str:
     """Return the name of a type, or of each of a union."""
-    return " or ".join(one.__name__ for one in get_args(kind) or (kind,))
+    return " or ".join(one.__name__ for one in get_args(kind) or (kind,) if one is not NoneType)
 
 
 def _sentence(box: str) -> str:

@@ -111,7 +111,7 @@ def _series(ax: Axes, known: Mapping[tuple[str, ...], str]) -> Iterator[tuple[st
     for i, image in enumerate(ax.images, start=1):
         yield _called(image.get_label(), f"field {i}"), _of_image(ax, image, names)
     for i, patch in enumerate(ax.patches, start=1):
-        if id(patch) not in in_bars and patch.get_transform() - ax.transData == patch.get_patch_transform():
+        if id(patch) not in in_bars and patch.get_data_transform() == ax.transData:
             yield _called(patch.get_label(), f"outline {i}"), _of_patch(ax, patch, names)
 
 

@@ -74,9 +74,14 @@ def table_walk(
 
 def _check_hinges(robot: AnyRobot, girdle: Girdle) -> None:
     driven = [hinge for hinge in girdle.limb.hinges if hinge.servo is not None]
-    if len(driven) >= _NEEDED and not any(isinstance(hinge.drive, Crank) for hinge in driven):
-        return
     limbs = f"limbs L{girdle.name} and R{girdle.name}"
+    if len(driven) >= _NEEDED and not any(isinstance(hinge.drive, Crank) for hinge in driven):
+        if len(driven) == _NEEDED and len({hinge.turn for hinge in driven}) == 1:
+            raise OutsideLimits(
+                f"no walk was found for robot {robot.name!r}: {limbs} move in one plane, and what would be drafted for "
+                "them does not walk forward; write a gait of its own."
+            )
+        return
     raise OutsideLimits(
         f"no walk was found for robot {robot.name!r}: {limbs} have {len(driven)} driven hinges, cranks counted, and a "
         f"foot needs {_NEEDED} without cranks to be lifted and brought forward; drive more of them, leave these limbs "
