@@ -383,7 +383,7 @@ def test_limbs_of_two_hinges_get_a_gait_that_walks(tmp_path):
     assert abs(aside) < 0.5 * ahead
 
 
-@pytest.mark.parametrize(("kind", "why"), [("flat", "along no path of 0.08 of"), ("one", "have 1 driven hinges")])
+@pytest.mark.parametrize(("kind", "why"), [("flat", "in one plane"), ("one", "have 1 driven hinges")])
 def test_limbs_that_cannot_walk_are_told_in_a_sentence_what_to_do(kind, why, tmp_path):
     robot = read(two_hinges("flat" if kind == "flat" else "sprawled"), tmp_path, heading=0.0).robot
     if kind == "one":

@@ -67,8 +67,34 @@ def _swims(m: Mapping[str, float]) -> str:
     )
 
 
+def _ashore(m: Mapping[str, float]) -> str:
+    """Return how often it comes ashore, beside what was wanted, and what a metre costs."""
+    rows = (
+        ("came 1 m ashore, of all runs", f"{m['ashore_share']:.0%}", "90 % at least"),
+        ("the same on the steepest slope", f"{m['ashore_share_steepest']:.0%}", "-"),
+        ("the same with the least friction", f"{m['ashore_share_least_grip']:.0%}", "-"),
+        ("falls", f"{m['falls']:.0f}", "0"),
+        ("changes between swimming and walking, at most", f"{m['switches']:.0f}", "2"),
+        ("time to come ashore, median", f"{m['time_ashore']:.1f} s", "-"),
+        ("back from land into the water", f"{m['into_water_share']:.0%}", "90 % at least"),
+        ("error of the depth that is held", f"{1e3 * m['depth_error']:.0f} mm", "-"),
+    )
+    costs = ", ".join(
+        f"{called} {m[f'work_per_metre_{where}']:.0f}"
+        for where, called in (
+            ("land", "level land"), ("ashore", "up the shore"), ("wading", "wading"), ("surface", "at the surface"),
+            ("deep", "at depth"),
+        )
+    )  # fmt: skip
+    table = "| in `suchus run shore` | here | wanted |\n|---|---|---|\n" + "".join(
+        f"| {' | '.join(row)} |\n" for row in rows
+    )
+    return f"{table}\nWork of the servos over distance [J/m]: {costs}.\n"
+
+
 PASSAGES: Mapping[str, Mapping[str, Callable[[Mapping[str, float]], str]]] = {
     "floating": {"checks": _checks, "hull": _hull},
     "swim_free": {"swims": _swims},
+    "shore": {"ashore": _ashore},
 }
 """What makes each passage, by experiment."""
