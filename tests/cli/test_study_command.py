@@ -14,7 +14,7 @@ duration = 1.1
 measure = ["displacement"]
 
 [[vary]]
-field = "ground.grip"
+field = "ground.friction_scale"
 values = [0.5, 1.0]
 
 [[vary]]
@@ -39,14 +39,17 @@ def test_a_study_says_where_its_results_are_and_what_failed(tmp_path, capsys):
     assert main(["study", "grip.toml", "--csv"]) == 0
     assert (tmp_path / "out" / "studies" / "grip" / "results.csv").is_file()
     header = (tmp_path / "out" / "studies" / "grip" / "csv" / "sample.csv").read_text().splitlines()[0].split(",")
-    assert header[:3] == ["sample", "ground.grip", "gait.hip_height [m]"]
+    assert header[:3] == ["sample", "ground.friction_scale", "gait.hip_height [m]"]
     assert (tmp_path / "out" / "studies" / "grip" / "results.nc").stat().st_mtime_ns >= before
 
 
 BAD = {
-    ("ground.grip", "ground.gripp"): "Did you mean 'grip'?",
-    ("[0.5, 1.0]", "[0.5, 100.0]"): "varies ground.grip, but ground.grip is 100; 0.01 to 10 is allowed",
-    ("[0.5, 1.0]", '["much"]'): "varies ground.grip, but ground.grip is 'much'",
+    ("ground.friction_scale", "ground.friction_skale"): "Did you mean 'friction_scale'?",
+    (
+        "[0.5, 1.0]",
+        "[0.5, 100.0]",
+    ): "but ground.friction_scale is 100; 0.01 to 10 is allowed",
+    ("[0.5, 1.0]", '["much"]'): "varies ground.friction_scale, but ground.friction_scale is 'much'",
     ("field =", "feild ="): "did you mean vary[0].field?",
     ("duration = 1.1", "duration = -1.0"): "1.1 to 86400 s is allowed",
     ('"displacement"', '"displacment"'): "Did you mean 'displacement'?",

@@ -14,9 +14,7 @@ from suchus.motion import START, Swim
 from suchus.robots import ROBOTS
 
 ROBOT, PERIOD = ROBOTS["floating_caiman"], 0.01
-WAVE = Swim(
-    name="wave", frequency=1.0, yaw=(0.36, 0.13, 0.11), yaw_late=(0.08, -0.11, -0.29), tail=0.75, tail_late=-0.11
-)
+WAVE = Swim(name="wave", frequency=1.0, yaw=(0.36, 0.13, 0.11), yaw_lag=(0.08, -0.11, -0.29), tail=0.75, tail_lag=-0.11)
 WAY = Amphibious(swim=Swimming(swim=WAVE), memory=0.1, change=0.5, patience=0.2)
 GAIT = GAITS["low_crawl"]
 BEGIN = round(START / PERIOD)
@@ -166,7 +164,7 @@ def test_what_others_of_its_batch_do_changes_nothing():
     swam = way.start([ROBOT], [GAIT], [0], 3000, PERIOD)
     for tick in range(400):
         swam.command(tick, sensed(0.0, yaw=0.3 * (tick > 0)))
-    assert np.abs(swam._heading._lasting).max() == 0.0
+    assert np.abs(swam._heading._offset).max() == 0.0
     assert np.abs(swam._stroke - 1.0).max() == 0.0
 
 

@@ -22,7 +22,7 @@ TRUNK = Roll(
     tail_lateral=0.0,
     tail_vertical=0.0,
     late=0.25,
-    tail_late=0.0,
+    tail_lag=0.0,
 )
 
 

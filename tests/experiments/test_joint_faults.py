@@ -106,7 +106,7 @@ def test_the_first_variation_is_the_gait_as_given_and_the_rest_differ(campaign, 
         assert one.low <= values[1] <= one.high
         assert values[1] != values[0]
     assert record.grip[0] == 1.0
-    assert abs(record.grip[1] - 1.0) <= campaign.grip_spread
+    assert abs(record.grip[1] - 1.0) <= campaign.friction_spread
 
 
 def test_both_arms_of_a_variation_have_the_same_legs(campaign):

@@ -52,7 +52,13 @@ def test_only_equal_robots_on_equal_grounds_begin_alike(run, long_tail):
     first = np.zeros((5, 19))
     first[4, 3] = 1e-16
     other = replace(run.gait, name="another", period=9.0)  # the physics knows no gait
-    runs = [run, replace(run, gait=other), replace(run, robot=long_tail), replace(run, ground=Ground(grip=0.9)), run]
+    runs = [
+        run,
+        replace(run, gait=other),
+        replace(run, robot=long_tail),
+        replace(run, ground=Ground(friction_scale=0.9)),
+        run,
+    ]
     assert followers(Alike(runs, first, 0.01)) == {1: 0}
 
 

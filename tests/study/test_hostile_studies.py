@@ -25,7 +25,7 @@ name = "s"
 duration = 1.1
 measure = ["displacement"]
 [[vary]]
-field = "ground.grip"
+field = "ground.friction_scale"
 values = [1.0]
 """
 
@@ -35,7 +35,7 @@ def asked(robot, crawl_gait):
     return Study(
         name="s",
         run=Run(robot=robot, gait=crawl_gait),
-        vary=(Vary(field="ground.grip", values=(0.9, 1.0, 1.1)),),
+        vary=(Vary(field="ground.friction_scale", values=(0.9, 1.0, 1.1)),),
         measure=("displacement",),
         chunk=1,
         duration=1.1,

@@ -45,9 +45,9 @@ class Animal:
     tail_bend: float
     """Amplitude of the tail's lateral angle at its tip, right positive [rad]."""
     tail_lag: float
-    """How late the tail's root bends against the trunk [cycle]."""
+    """Phase lag of the tail's root behind the trunk [cycle]."""
     tail_wave: float
-    """How much later the tip bends than the root [cycle]; 0: a standing wave."""
+    """Phase lag of the tip behind the root [cycle]; 0: a standing wave."""
     swing: Swing = "cosine"
     """How its feet move."""
 
@@ -102,8 +102,8 @@ def _midline(animal: Animal, time: np.ndarray) -> dict[str, np.ndarray]:
     for i in range(1, _TAIL + 1):
         bend = np.zeros_like(time)
         for j in range(i):
-            late = animal.spine_rightmost + animal.tail_lag + animal.tail_wave * j / (_TAIL - 1)
-            bend += animal.tail_bend / _TAIL * np.cos(2 * np.pi * (phase - late))
+            lag = animal.spine_rightmost + animal.tail_lag + animal.tail_wave * j / (_TAIL - 1)
+            bend += animal.tail_bend / _TAIL * np.cos(2 * np.pi * (phase - lag))
         at = at - animal.tail / _TAIL * _direction(pelvis + bend)
         points["tail_tip" if i == _TAIL else f"tail_{i}"] = at
     return points

@@ -1,7 +1,9 @@
 """Where the command line begins and ends: words in, an exit code out."""
 
 import sys
-from collections.abc import Sequence
+import warnings
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 
 from suchus.cli.commands import COMMANDS, BadCommand
 from suchus.cli.streams import drop_output, printable, settle
@@ -28,7 +30,8 @@ def main(words: Sequence[str] | None = None) -> int:
     words = list(sys.argv[1:] if words is None else words)
     settle()
     try:
-        return _flushed(words)
+        with _plain_warnings():
+            return _flushed(words)
     except (Diverged, NotConverged) as error:
         return _complain(str(error), 1)
     except SuchusError as error:
@@ -38,6 +41,14 @@ def main(words: Sequence[str] | None = None) -> int:
     except BrokenPipeError:  # the reader of our output has gone, as in `suchus list | head -1`
         drop_output()
         return 0
+
+
+@contextmanager
+def _plain_warnings() -> Iterator[None]:
+    """Write warnings as sentences on standard error, without the place in the code."""
+    with warnings.catch_warnings():
+        warnings.showwarning = lambda message, *_, **__: print(f"suchus: {message}", file=sys.stderr)
+        yield
 
 
 def _flushed(words: list[str]) -> int:

@@ -109,8 +109,8 @@ class AxisPart(NamedTuple):
 
     girdle: int
     """Number of the girdle whose limbs drive it; -1 without limbs."""
-    late: float
-    """How late it bends against those limbs [cycle]."""
+    phase_lag: float
+    """Phase lag of its bend behind those limbs [cycle]."""
 
 
 def couple(
@@ -153,7 +153,7 @@ def couple(
         for limb in range(len(limbs)):  # those of other girdles too, without weight: equal bodies have equal edges
             girdle, side = divmod(limb, 2)
             weight = stiff * numbers.limb_axis_weight if girdle == part.girdle else 0.0
-            found.append((side * n + k, 2 * n + limb, weight, 2 * pi * part.late))
+            found.append((side * n + k, 2 * n + limb, weight, 2 * pi * part.phase_lag))
     found.sort()
     receiver, sender, weights, biases = (np.array(column) for column in zip(*found, strict=True))
     names = [f"axis_{k + 1}_{side}" for side in ("left", "right") for k in range(n)]

@@ -62,17 +62,17 @@ class Tail:
         self._low, self._high = low, high
 
     def step(self, shared: Shared) -> Shared:
-        """Let the bend follow the trunk, as late as the gait wants it; where no trunk bends, it follows the limbs."""
+        """Let the bend follow the trunk, with the gait's phase lag; where no trunk bends, it follows the limbs."""
         bend, direction = np.empty_like(shared.tail_bend), np.empty_like(shared.tail_bend)
         for robot, gait, runs in self._groups:
             if isinstance(gait, Pattern):  # its tail is a part of one wave along the axis
                 bend[runs] = axis_bends(robot, gait, shared.limb_phase[runs])[1]
                 direction[runs] = axis_bends(robot, gait, shared.limb_phase[runs] + 0.25)[1]
             elif gait.trunk_bend > 0.0:
-                scale, late = gait.tail_bend / gait.trunk_bend, 2 * np.pi * gait.tail_phase
+                scale, lag = gait.tail_bend / gait.trunk_bend, 2 * np.pi * gait.tail_phase
                 now, later = shared.trunk_bend[runs], shared.trunk_direction[runs]
-                bend[runs] = scale * (np.cos(late) * now - np.sin(late) * later)
-                direction[runs] = scale * (np.cos(late) * later + np.sin(late) * now)
+                bend[runs] = scale * (np.cos(lag) * now - np.sin(lag) * later)
+                direction[runs] = scale * (np.cos(lag) * later + np.sin(lag) * now)
             else:
                 bend[runs] = tail_bend(gait, shared.limb_phase[runs])
                 direction[runs] = tail_bend(gait, shared.limb_phase[runs] + 0.25)

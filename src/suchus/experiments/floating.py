@@ -24,7 +24,7 @@ from suchus.replay import replay
 from suchus.robots import ROBOTS
 from suchus.verdict import Reading, compared
 
-STILL = Swim(name="still", frequency=1.0, yaw=(0, 0, 0), yaw_late=(0, 0, 0), tail=0.0, tail_late=0.0)
+STILL = Swim(name="still", frequency=1.0, yaw=(0, 0, 0), yaw_lag=(0, 0, 0), tail=0.0, tail_lag=0.0)
 """No motion."""
 _UPRIGHT = 0.035
 """Heel within which it counts as upright [rad]; 2 degrees."""

@@ -31,6 +31,7 @@ from suchus.metrics import (
 )
 from suchus.motion import START, AngleTable, AnyGait, Gait, straightened, with_bends, with_strokes
 from suchus.paper import CYCLES
+from suchus.renamed import old_names
 from suchus.replay import replay
 from suchus.robots import ROBOTS
 
@@ -38,6 +39,7 @@ _TRUNK = ("trunk_bend", "spine_phase", "tail_bend", "tail_phase", "tail_pitch") 
 _OF_A_LIMB = 2  # hinges of a limb, from the hip on, whose loss is repeated and steered; the article's yaw and pitch
 
 
+@old_names(grip_spread="friction_spread", repeat_grip="repeat_friction_spread")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class JointFaults(Experiment):
     """Front and hind; yaw, pitch and knee; limp and locked; one leg and both; with spine and tail and with limbs only.
@@ -69,13 +71,13 @@ class JointFaults(Experiment):
     """Gaits and frictions [-]; the first is the gait as given, without noise."""
     spread: float = 0.25
     """Part of each plausible range of the gait's numbers that the variations cover, about the number given [-]."""
-    grip_spread: float = 0.2
+    friction_spread: float = 0.2
     """Half-width of the uniform spread of the friction, as a part of it [-]."""
     noise: float = 0.01
     """Standard deviation of the noise on every commanded angle [rad]; a hobby servo's dead band."""
     repeats: int = 4
     """Runs of the judged reading in the gait as given, with noise and another friction, for the spread [-]."""
-    repeat_grip: float = 0.1
+    repeat_friction_spread: float = 0.1
     """Half-width of the uniform spread of the friction in the repeats, as a part of it [-]."""
     hold: float = 0.5
     """Where a locked joint holds in the range that the gait asks of it: 0 least, 1 greatest [-].
@@ -104,9 +106,9 @@ class JointFaults(Experiment):
             check.whole("cycles", 1, 1000)
             check.whole("variations", 1, 10_000)
             check.number("spread", 0.0, 1.0, "")
-            check.number("grip_spread", 0.0, 0.9, "")
+            check.number("friction_spread", 0.0, 0.9, "")
             check.whole("repeats", 1, 10_000)
-            check.number("repeat_grip", 0.0, 0.9, "")
+            check.number("repeat_friction_spread", 0.0, 0.9, "")
             check.number("noise", 0.0, 1.0, "rad")
             check.number("hold", 0.0, 1.0, "")
             check.rising("holds", 0.0, 1.0, "")
@@ -143,7 +145,7 @@ class JointFaults(Experiment):
         return START + self.cycles * self.gait.period
 
     def _varied(self) -> list[tuple[dict[str, AnyGait], float]]:
-        """Return the gaits of both arms and the grip of each variation."""
+        """Return the gaits of both arms and the friction scale of each variation."""
         if not isinstance(self.gait, Gait):
             return self._varied_patterns()
         chosen: tuple[Chosen, ...] = GAITS.beside("belly_crawl", "chosen", ())
@@ -156,8 +158,8 @@ class JointFaults(Experiment):
                 low, high = max(given - reach, min(one.low, given)), min(given + reach, max(one.high, given))
                 values[one.field] = float(low + share * (high - low))
             gait = with_values(self.gait, values)
-            grip = float(1.0 + self.grip_spread * (2.0 * point[-1] - 1.0))
-            varied.append((self._arms(gait), grip))
+            scale = float(1.0 + self.friction_spread * (2.0 * point[-1] - 1.0))
+            varied.append((self._arms(gait), scale))
         return varied
 
     def _varied_patterns(self) -> list[tuple[dict[str, AnyGait], float]]:
@@ -168,7 +170,7 @@ class JointFaults(Experiment):
             stroke, bend = 1.0 + 0.5 * self.spread * (2.0 * point[:2] - 1.0)
             gait = with_bends(self.robot, with_strokes(self.gait, float(stroke)), float(bend))
             gait = gait if suits(self.robot, gait) else self.gait
-            varied.append((self._arms(gait), float(1.0 + self.grip_spread * (2.0 * point[-1] - 1.0))))
+            varied.append((self._arms(gait), float(1.0 + self.friction_spread * (2.0 * point[-1] - 1.0))))
         return varied
 
     @property
@@ -209,12 +211,12 @@ class JointFaults(Experiment):
             Run(
                 robot=self.robot,
                 gait=gaits[arm],
-                ground=Ground(grip=grip),
+                ground=Ground(friction_scale=scale),
                 faults=faults,
                 noise=self.noise if i else 0.0,
                 seed=self.seed + i,
             )
-            for i, (gaits, grip) in enumerate(varied)
+            for i, (gaits, scale) in enumerate(varied)
             for arm in ARMS
             for faults in ((), *(lost(self.robot, gaits[arm], *cell, hold=self.hold) for cell in cells))
         ]
@@ -240,7 +242,7 @@ class JointFaults(Experiment):
         for one in GAITS.beside("belly_crawl", "chosen", ()) if isinstance(self.gait, Gait) else ():
             values = [value_at(gaits["coordinated"], one.field) for gaits, _ in varied]
             data[f"gait_{one.field}"] = ("variation", values, {"units": meaning.unit(told[one.field])})
-        data["grip"] = ("variation", [grip for _, grip in varied], {"units": "1", "long_name": "of all friction"})
+        data["grip"] = ("variation", [scale for _, scale in varied], {"units": "1", "long_name": "friction scale"})
         data["time"].attrs["units"] = "s"
         data["period"] = ((), self.gait.period, {"units": "s"})
         return data
@@ -248,17 +250,18 @@ class JointFaults(Experiment):
     def _spread(self, progress: Any) -> xr.Dataset:
         """Repeat the judged reading in the gait as given, with noise on the servos and other friction."""
         gaits, _ = self._varied()[0]
-        grips = np.random.default_rng(self.seed).uniform(1 - self.repeat_grip, 1 + self.repeat_grip, self.repeats)
+        spread = self.repeat_friction_spread
+        scales = np.random.default_rng(self.seed).uniform(1 - spread, 1 + spread, self.repeats)
         runs = [
             Run(
                 robot=self.robot,
                 gait=gaits[arm],
-                ground=Ground(grip=float(grip)),
+                ground=Ground(friction_scale=float(scale)),
                 faults=faults,
                 noise=self.noise,
                 seed=self.seed + 1 + i,
             )
-            for i, grip in enumerate(grips)
+            for i, scale in enumerate(scales)
             for arm in ARMS
             for faults in ((), *(self._broken(gaits[arm], joint) for joint in self._lost))
         ]
@@ -320,7 +323,7 @@ class JointFaults(Experiment):
         """Run the judged reading of the article's joints steered, and with limbs only and the tail in the air."""
         joints, steers = self._lost, not isinstance(self.gait, AngleTable)
         varied, runs = self._varied(), []
-        for i, (gaits, grip) in enumerate(varied):
+        for i, (gaits, scale) in enumerate(varied):
             cases: list[tuple[AnyGait, tuple[Fault, ...], Control]] = []
             if steers:
                 ours = gaits["coordinated"]
@@ -333,7 +336,7 @@ class JointFaults(Experiment):
                 Run(
                     robot=self.robot,
                     gait=gait,
-                    ground=Ground(grip=grip),
+                    ground=Ground(friction_scale=scale),
                     faults=faults,
                     control=law,
                     noise=self.noise if i else 0.0,

@@ -312,7 +312,7 @@ def _swept(record: xr.Dataset) -> dict[str, Measure]:
 
 
 def _lags(phase: np.ndarray) -> np.ndarray:
-    """Return how late each segment is behind the one ahead of it, from -0.5 to 0.5 [cycle]; 0 of a single segment."""
+    """Return the phase lag of each segment behind the one ahead of it, -0.5 to 0.5 [cycle]; 0 of a single segment."""
     if len(phase) < 2:
         return np.zeros(1)
     return np.asarray(np.mod(-np.diff(phase) + 0.5, 1.0) - 0.5)

@@ -100,8 +100,8 @@ class Bench:
 
     def _lay_ground(self, runs: Sequence[Run]) -> None:
         for sim, run in enumerate(runs):
-            if run.ground.grip != 1.0:
-                self.field("geom_friction", sim)[1:, 0] *= run.ground.grip
+            if run.ground.friction_scale != 1.0:
+                self.field("geom_friction", sim)[1:, 0] *= run.ground.friction_scale
             if run.ground.uphill or run.ground.sideways:
                 self.tilt(sim, run.ground)
             if run.afloat is not None:
@@ -166,7 +166,7 @@ class Bench:
         return angles
 
     def tilt(self, sim: int, ground: Ground) -> None:
-        """Let a ground slope as it says from now on; its grip and relief are not looked at."""
+        """Let a ground slope as it says from now on; its friction and relief are not looked at."""
         self.field("opt.gravity", sim)[:] = _gravity(ground)
         if sim in self._lakes:
             self._ups[sim] = up(ground)

@@ -132,7 +132,7 @@ class Live:
         self._loop.troubles.push(0, push)
 
     def tilt(self, ground: Ground) -> None:
-        """Let the ground slope as another one does; grip and relief stay."""
+        """Let the ground slope as another one does; friction and relief stay."""
         self._loop.bench.tilt(0, ground)
 
     def fill(self, lake: Lake) -> None:

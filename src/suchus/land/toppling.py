@@ -22,7 +22,7 @@ def smallest_pushes(
     levels: Sequence[float],
     fell: Callable[[xr.Dataset], xr.DataArray],
     finer: int = 4,
-    lasting: float = 0.2,
+    duration: float = 0.2,
     body: str = "thorax",
     wait: float = 3.0,
     timestep: float = 0.005,
@@ -42,7 +42,7 @@ def smallest_pushes(
         fell: tells from a record which runs fell, along the dimension ``run``; its last sample is ``wait`` after the
             push.
         finer: number of forces of the second batch; the answer is off by at most the gap between two of them.
-        lasting: how long the push lasts [s].
+        duration: of the push [s].
         body: what is pushed.
         wait: how long is waited for the fall [s].
         timestep: of the physics [s].
@@ -55,7 +55,7 @@ def smallest_pushes(
     if len(scan) < 2 or np.any(np.diff(scan) <= 0):
         raise InvalidDesign(f"levels are {tuple(levels)}; increasing forces above 0 N are needed.")
     topples = _Trial(
-        runs, directions, Push(force=(0.0, 0.0, 0.0), at=at, duration=lasting, body=body), fell, wait, timestep
+        runs, directions, Push(force=(0.0, 0.0, 0.0), at=at, duration=duration, body=body), fell, wait, timestep
     )
     forces = np.broadcast_to(scan[1:], (len(runs), len(directions), len(levels)))
     coarse = topples(forces, lambda share: progress(0.6 * share))

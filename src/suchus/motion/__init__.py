@@ -4,8 +4,8 @@ from suchus.motion.altered import (
     longest_strokes,
     straightened,
     strides,
+    with_axis_lag,
     with_bends,
-    with_late_axis,
     with_strokes,
 )
 from suchus.motion.angle_table import AngleTable, Curve
@@ -83,8 +83,8 @@ __all__ = [
     "tallest",
     "trunk_amplitude",
     "trunk_bend",
+    "with_axis_lag",
     "with_bends",
-    "with_late_axis",
     "with_strokes",
     "within_reach",
 ]

@@ -66,11 +66,11 @@ class Gait:
     trunk_bend: float
     """Amplitude of the lateral bend of the whole trunk, the sum of its yaw angles [rad]."""
     spine_phase: float
-    """How late the trunk bends against the legs [cycle]; 0: each girdle carries its swing foot forward."""
+    """Phase lag of the trunk's bend behind the legs [cycle]; 0: each girdle carries its swing foot forward."""
     tail_bend: float
     """Amplitude of the lateral bend of the tail [rad]."""
     tail_phase: float
-    """How late the tail bends against the trunk [cycle]; 0: head and tail swing to opposite sides."""
+    """Phase lag of the tail's bend behind the trunk's [cycle]; 0: head and tail swing to opposite sides."""
     tail_pitch: float
     """Steady angle of the tail's pitch joint, down positive [rad]: the ground carries the tail, or it is lifted."""
 

@@ -73,7 +73,7 @@ class AxialWave:
     waves: float
     """Wavelengths along the body; the wave runs from head to tail where positive [-]."""
     phase: float
-    """How late it is; 0: concave on the right a quarter of a cycle before the first limb's mid-stance [cycle]."""
+    """Phase lag [cycle]; 0: concave on the right a quarter of a cycle before the first limb's mid-stance."""
     offset: float = 0.0
     """Steady bend of every hinge, concave on the left where positive, to turn left [rad]."""
 

@@ -141,5 +141,5 @@ class _Wave:
     def at(self, place: float) -> np.ndarray:
         """Return how far a hinge at a place bends the body, concave on the left positive [rad]."""
         wave = self._gait.wave
-        late = np.exp(-2j * np.pi * (wave.phase + wave.waves * place))
-        return np.asarray(wave.offset - np.interp(place, self._places, self._angles) * (self._turn * late).real)
+        lag = np.exp(-2j * np.pi * (wave.phase + wave.waves * place))
+        return np.asarray(wave.offset - np.interp(place, self._places, self._angles) * (self._turn * lag).real)

@@ -23,7 +23,7 @@ class Condition:
 
     tells: str
     """In words."""
-    grip: float = 1.0
+    friction_scale: float = 1.0
     """Factor on the friction [-]."""
     noise: float = 0.0
     """On every commanded angle [rad]."""
@@ -35,9 +35,9 @@ class Condition:
 
 CONDITIONS = (
     Condition("2 ms"),
-    Condition("foot friction 0.5", grip=0.625),
-    Condition("foot friction 0.65", grip=0.8125),
-    Condition("foot friction 1.0", grip=1.25),
+    Condition("foot friction 0.5", friction_scale=0.625),
+    Condition("foot friction 0.65", friction_scale=0.8125),
+    Condition("foot friction 1.0", friction_scale=1.25),
     Condition("servo noise 0.01 rad, seed 1", noise=0.01, seed=1),
     Condition("servo noise 0.01 rad, seed 2", noise=0.01, seed=2),
     Condition("begun a quarter of a cycle later", later=0.25),
@@ -71,7 +71,7 @@ def _under(run: Run, condition: Condition) -> Run:
     phases = tuple((phase + condition.later + 1.0) % 1.0 for phase in run.gait.limb_phases)
     gait = replace(run.gait, limb_phases=phases)  # type: ignore[arg-type]
     other = replace(run, gait=gait if condition.later else run.gait, noise=condition.noise, seed=condition.seed)
-    return with_values(other, {"ground.grip": run.ground.grip * condition.grip})
+    return with_values(other, {"ground.friction_scale": run.ground.friction_scale * condition.friction_scale})
 
 
 def around(spec: Optimisation, best: np.ndarray, tried: Evaluate = evaluate) -> xr.Dataset:

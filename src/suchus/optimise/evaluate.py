@@ -78,13 +78,14 @@ def _walked(
     """Return what each candidate reached, None for one that came apart; on every ground, the worst limit counts."""
     if not runs:
         return {}
-    laid = [with_values(run, {"ground.grip": grip}) for run in runs.values() for grip in spec.grips]
+    scales = spec.friction_scales
+    laid = [with_values(run, {"ground.friction_scale": scale}) for run in runs.values() for scale in scales]
     record = simulate(laid, duration=spec.duration, timestep=timestep, every=_EVERY, progress=progress)
     measured = measure(spec, laid, record)
     broken = (record.cause.values != "").reshape(len(runs), -1).any(axis=1)
     found: dict[int, dict[str, float] | None] = {}
     for row, i in enumerate(runs):
-        at = slice(row * len(spec.grips), (row + 1) * len(spec.grips))
+        at = slice(row * len(scales), (row + 1) * len(scales))
         found[i] = None if broken[row] else {name: _joined(name, values[at]) for name, values in measured.items()}
     return found
 

@@ -10,6 +10,7 @@ from suchus.design.checks import Checks, InvalidFields
 from suchus.errors import InvalidDesign, UnknownName
 from suchus.land import Run
 from suchus.optimise.aims import AIMS, LIMITS
+from suchus.renamed import old_names
 from suchus.study import Arm, Vary
 
 WHOLE = Arm(name="best")
@@ -48,6 +49,7 @@ class Limit:
             check.number("value", -1e6, 1e6, LIMITS[self.name].unit)
 
 
+@old_names(grips="friction_scales")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Search:
     """What a search is besides where it starts; a file says the same."""
@@ -72,7 +74,7 @@ class Search:
     """Of the front that are pushed forward together [-]."""
     sigma: float = 0.25
     """First standard deviation of the candidates, as a part of each range [-]."""
-    grips: tuple[float, ...] = (1.0,)
+    friction_scales: tuple[float, ...] = (1.0,)
     """Factors on the ground's friction: a candidate is run on each; aims are means, limits hold on the worst [-]."""
     seed: int = 0
     """Of the search."""
@@ -103,9 +105,9 @@ class Optimisation(Search):
             check.that(len(self.vary) > 0, "optimisation.vary is empty; name at least one field")
             check.that(len(self.aims) > 0, "optimisation.aims is empty; name at least one aim")
             check.that(len(self.arms) > 0, "optimisation.arms is empty; leave it out for a single search")
-            check.that(len(self.grips) > 0, "optimisation.grips is empty; leave it out for 1.0")
-            for grip in self.grips:
-                check.that(0.01 <= grip <= 10.0, f"optimisation.grips has {grip:g}; 0.01 to 10 is allowed")
+            check.that(len(self.friction_scales) > 0, "optimisation.friction_scales is empty; leave it out for 1.0")
+            for scale in self.friction_scales:
+                check.that(0.01 <= scale <= 10.0, f"optimisation.friction_scales has {scale:g}; 0.01 to 10 is allowed")
             names = [arm.name for arm in self.arms]
             check.that(len(set(names)) == len(names), f"optimisation.arms are called {', '.join(names)}; each once")
             two = len({aim.name for aim in self.aims}) == len(self.aims)

@@ -23,7 +23,7 @@ class Vary:
     """A field of the run and what it takes: listed values, a range, or a normal distribution within a range."""
 
     field: str
-    """Dotted path from the run, as ``gait.stroke``, ``robot.contact.foot_friction``, ``ground.grip``, ``faults``."""
+    """Dotted path from the run, as ``gait.stroke``, ``robot.contact.foot_friction``, ``ground.friction_scale``."""
     values: tuple[Any, ...] | None = None
     """Values to choose from: numbers, or whole robots, gaits or tuples of faults."""
     low: float | None = None

@@ -51,7 +51,7 @@ class Controls:
         with gui.add_folder("Break a joint"):
             self._faults()
         with gui.add_folder("Push"):
-            for name in ("force", "direction", "lasting"):
+            for name in ("force", "direction", "push_duration"):
                 self._add_slider(name, knobs[name])
             self._on(gui.add_button("push the trunk", color="orange"), lambda _: session.push())
         with gui.add_folder("Ground"):

@@ -22,8 +22,8 @@ from suchus.viewer.history import History
 from suchus.viewer.knobs import (
     BREATH,
     DIRECTION,
-    LASTING,
     LEVEL,
+    PUSH_DURATION,
     SIDE_SLOPE,
     SLOPE,
     SPEED,
@@ -64,7 +64,7 @@ class Settings:
     """Length of the robot over that of the article's, which the length of the bumps follows [-]."""
     force: float = 15.0
     """Of the next push [N]."""
-    lasting: float = 0.2
+    push_duration: float = 0.2
     """Of the next push [s]."""
     direction: float = 1.5707963267948966
     """Of the next push, from forward to the left [rad]."""
@@ -109,7 +109,7 @@ class Settings:
 
 
 _PLAIN: dict[str, Knob] = {
-    "uphill": SLOPE, "sideways": SIDE_SLOPE, "lasting": LASTING, "direction": DIRECTION, "speed": SPEED,
+    "uphill": SLOPE, "sideways": SIDE_SLOPE, "push_duration": PUSH_DURATION, "direction": DIRECTION, "speed": SPEED,
     "level": LEVEL, "breath": BREATH,
 }  # fmt: skip
 
@@ -255,7 +255,7 @@ class Session:
         with self._lock:
             s = self.settings
             force = (s.force * cos(s.direction), s.force * sin(s.direction), 0.0)
-            push = Push(force=force, at=self._live.time, duration=s.lasting, body=front_segment(self.robot))
+            push = Push(force=force, at=self._live.time, duration=s.push_duration, body=front_segment(self.robot))
             self._live.push(push)
             self._push = push
 

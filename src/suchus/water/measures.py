@@ -68,7 +68,7 @@ class Swing(NamedTuple):
 
     amplitude: Float[np.ndarray, " station"]
     """Of the sine [m]."""
-    late: Float[np.ndarray, " station"]
+    phase_lag: Float[np.ndarray, " station"]
     """Phase lag of the sine behind a cosine that begins with the samples, 0 to 1 [cycle]."""
     share: Float[np.ndarray, " station"]
     """Of the variance about the mean line that the sine has [-]."""
@@ -84,8 +84,8 @@ def swing(across: Float[np.ndarray, "sample station"], cycles: int = 2) -> Swing
     swung = np.column_stack([level(track) for track in across.T])[:-1]
     harmonic = 2.0 * np.fft.rfft(swung, axis=0)[cycles] / len(swung)
     variance = np.maximum(np.mean(swung**2, axis=0), np.finfo(float).tiny)
-    late = np.mod(-np.angle(harmonic) / (2.0 * np.pi), 1.0)
-    return Swing(np.abs(harmonic), late, 0.5 * np.abs(harmonic) ** 2 / variance)
+    lag = np.mod(-np.angle(harmonic) / (2.0 * np.pi), 1.0)
+    return Swing(np.abs(harmonic), lag, 0.5 * np.abs(harmonic) ** 2 / variance)
 
 
 class Sway(NamedTuple):
@@ -117,14 +117,14 @@ class Sway(NamedTuple):
 
 
 def wave_form(
-    s: Float[np.ndarray, " station"], amplitude: Float[np.ndarray, " station"], late: Float[np.ndarray, " station"]
+    s: Float[np.ndarray, " station"], amplitude: Float[np.ndarray, " station"], lag: Float[np.ndarray, " station"]
 ) -> tuple[float, float, float, float]:
     """Return the wave of the form (20) that comes nearest to a swinging midline, and which share of the swing it is.
 
     Args:
         s: arc length from the snout, over the length [-].
         amplitude: of each station [m].
-        late: its phase lag [cycle].
+        lag: its phase lag [cycle].
 
     Returns:
         c1 and c2 of the envelope c1 s + c2 s^2 [m], waves along the body (positive: from head to tail) [-], and the
@@ -132,7 +132,7 @@ def wave_form(
 
     Paper: Eq. (20).
     """
-    swung = amplitude * np.exp(-2j * np.pi * late)
+    swung = amplitude * np.exp(-2j * np.pi * lag)
 
     def left(guess: np.ndarray) -> np.ndarray:
         apart = (guess[0] * s + guess[1] * s**2) * np.exp(-2j * np.pi * (guess[2] * s + guess[3])) - swung

@@ -101,9 +101,9 @@ def wave_speed(outline: Outline, motion: Motion, curve: Curve) -> float:
     weight = np.abs(harmonic) ** 2
     if weight.sum() == 0.0:
         return float("inf")
-    late = -np.unwrap(np.angle(harmonic))
+    lag = -np.unwrap(np.angle(harmonic))
     s = outline.s - np.average(outline.s, weights=weight)
-    k = float(np.sum(weight * s * late) / np.sum(weight * s**2))
+    k = float(np.sum(weight * s * lag) / np.sum(weight * s**2))
     return 2 * np.pi * motion.frequency / k if k else float("inf")
 
 

@@ -99,7 +99,7 @@ class Undulation:
 Motion = Swim | ExactWave | Undulation
 """What a body can be asked to do: bend its joints, follow a wave, or bend as was worked out before."""
 
-STILL = Swim(name="still", frequency=1.0, yaw=(0.0, 0.0, 0.0), yaw_late=(0.0, 0.0, 0.0), tail=0.0, tail_late=0.0)
+STILL = Swim(name="still", frequency=1.0, yaw=(0.0, 0.0, 0.0), yaw_lag=(0.0, 0.0, 0.0), tail=0.0, tail_lag=0.0)
 """A motion that is none."""
 
 
@@ -114,8 +114,8 @@ def undulation(outline: Outline, motion: Motion) -> Undulation:
         return motion
     if isinstance(motion, ExactWave):
         return _of_wave(outline, motion)
-    late = np.array([*motion.yaw_late, motion.tail_late])
-    angles = np.array([*motion.yaw, motion.tail]) * np.exp(-2j * np.pi * late)
+    lag = np.array([*motion.yaw_lag, motion.tail_lag])
+    angles = np.array([*motion.yaw, motion.tail]) * np.exp(-2j * np.pi * lag)
     middles, stations = outline.bending @ angles, outline.bending_at(outline.s) @ angles
     return Undulation(
         name=motion.name,
