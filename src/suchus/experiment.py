@@ -101,7 +101,7 @@ class Experiment(ABC):
     shows: ClassVar[str]
     """Which sections, figures or equations of the article it answers."""
     needs: ClassVar[tuple[str, ...]] = ()
-    """What it needs of a robot: names of ``design.NEEDS``; written out, so that ``suchus list`` can tell it."""
+    """What it needs of a robot: names of ``design.NEEDS``; written out, so that ``suchus list`` can show it."""
     judged_with: ClassVar[tuple[str, ...]] = ("robot",)
     """Fields that must be as on the shelf for a verdict: another robot is not judged by the article's metres."""
     judged_from: ClassVar[Mapping[str, float]] = {}
@@ -244,6 +244,6 @@ def _called(value: Any) -> str:
 
 @contextmanager
 def stopwatch() -> Iterator[Callable[[], float]]:
-    """Yield a function that tells the seconds since the block was entered."""
+    """Yield a function that returns the seconds since the block was entered."""
     start = time.perf_counter()
     yield lambda: time.perf_counter() - start

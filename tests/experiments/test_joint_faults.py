@@ -248,7 +248,7 @@ def test_a_run_that_comes_apart_is_not_measured():
     record = simulate([Run(robot=CAIMAN, gait=CRAWL)] * 2, duration=0.5, timestep=0.005)
     assert whole(record) is record
     broken = record.assign(cause=("run", ["", "a speed of 2e3 was reached"]), ended=("run", [0.5, 0.2]))
-    with pytest.raises(Diverged, match=r"run 1 of 2, belly_crawl, came apart at 0\.20 s") as caught:
+    with pytest.raises(Diverged, match=r"run 1 of 2, belly_crawl, diverged at 0\.20 s") as caught:
         whole(broken)
     assert caught.value.time == 0.2
     assert float(caught.value.record.time[-1]) == pytest.approx(0.2)

@@ -148,7 +148,7 @@ def test_one_that_comes_apart_or_cannot_be_does_not_spoil_the_rest(small, monkey
 
     monkeypatch.setattr(evaluate, "simulate", apart)
     told = evaluate.evaluate(small, np.array([small.start, small.start, small.start]))
-    assert told.status.values.tolist() == ["walked", "came apart", "walked"]
+    assert told.status.values.tolist() == ["walked", "diverged", "walked"]
     assert np.isfinite(told.aim_displacement.values).tolist() == [True, False, True]
 
 

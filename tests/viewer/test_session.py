@@ -227,7 +227,7 @@ def test_a_walk_that_comes_apart_says_so_and_can_be_begun_anew(tmp_path, monkeyp
     session = walked(seconds=0.3)
     session._live._loop.bench.qvel[0, 3] = nan
     session.advance(0.5)
-    assert "came apart at 0.3" in session.look().trouble
+    assert "diverged at 0.3" in session.look().trouble
     session.advance(0.5)
     session.reset()
     session.advance(0.2)

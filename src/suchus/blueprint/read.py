@@ -116,7 +116,7 @@ def _follows(place: Place, mended: set[Place]) -> bool:
 
 
 def _mend(data: Any, place: Place, spare: Any) -> bool:
-    """Put the spare value at a place, or drop what should not be there; tell whether that was possible."""
+    """Put the spare value at a place, or drop what should not be there; return whether that was possible."""
     if not place:
         return False
     for key in place[:-1]:

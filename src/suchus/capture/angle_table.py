@@ -35,7 +35,7 @@ class AngleCycle:
 
 
 def is_angle_table(path: Path) -> bool:
-    """Tell whether a file is a CSV table of joint angles: its first column is ``time``, a share, without a unit."""
+    """Return whether a file is a CSV table of joint angles: its first column is ``time``, a share, without a unit."""
     if path.suffix.lower() != ".csv" or not path.is_file():
         return False
     with path.open("rb") as file:

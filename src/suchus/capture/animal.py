@@ -123,7 +123,7 @@ def _foot(animal: Animal, leg: str, time: np.ndarray) -> np.ndarray:
 
 
 def _gone(swing: Swing, share: np.ndarray) -> np.ndarray:
-    """Share of its way that a foot has gone after a share of its swing."""
+    """Share of its path that a foot has covered after a share of its swing."""
     if swing == "cosine":
         return np.asarray((1 - np.cos(np.pi * share)) / 2)
     if swing == "jerk_free":

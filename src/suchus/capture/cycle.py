@@ -14,7 +14,7 @@ LEAST_FRAMES = 12
 """Frames in one cycle below which steps cannot be told apart [-]."""
 _FASTEST = 12.0  # [1/s]; the stride frequency of the fastest small lizards
 _REPEATS = 0.15  # share of the movement that one harmonic explains; of noise alone it explains less
-_PIECE = 6.0  # [cycle]; a pace that varies by a tenth has not gone astray by then
+_PIECE = 6.0  # [cycle]; a pace that varies by a tenth has not drifted apart by then
 _ROUNDS = 3  # of leaving out points that jumped
 _JUMP = 8.0  # times the usual residual; what a body does in steps stays well below
 

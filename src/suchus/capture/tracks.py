@@ -63,7 +63,7 @@ class Tracks:
 
     @property
     def thorax(self) -> tuple[str, str]:
-        """The two points that show whereto the front girdle faces, the front one first."""
+        """The two points that show the heading of the front girdle, the front one first."""
         return ("neck" if "neck" in self.points else "snout"), "shoulder"
 
     @property

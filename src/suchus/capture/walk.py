@@ -11,7 +11,7 @@ from scipy.stats import t as student
 from suchus.capture.angles import bend_angles, joint_bends, wrapped
 from suchus.capture.clock import Clock, paced
 from suchus.capture.cycle import Periodic, find_period, fit, harmonics_for
-from suchus.capture.feet import GRID, Contact, Sweep, contact, forward_way, steps, sweep
+from suchus.capture.feet import GRID, Contact, Sweep, contact, forward_path, steps, sweep
 from suchus.capture.jumps import without_jumps
 from suchus.capture.sides import check_sides
 from suchus.capture.tracks import Tracks, UnusableTracks, check_tracks
@@ -26,7 +26,7 @@ _STRAIGHT = 1e-6  # [rad]; what bends less has no phase
 _BINS = 20  # of phase, for the spread
 _SHARP = 3.0  # a joint bends if its amplitude exceeds so many of its standard errors
 _TOGETHER = 0.25  # least share of frames in which all points of a signal are seen
-_ADVANCE = 0.3  # share of the way that feet sweep below which the body does not advance
+_ADVANCE = 0.3  # share of the distance that feet sweep below which the body does not advance
 
 
 class Seen(NamedTuple):
@@ -47,7 +47,7 @@ class Seen(NamedTuple):
 class Walk:
     """A walk as it was seen; nothing in it knows of a robot.
 
-    Bends are what the body did, not what anybody told it to do: on film a robot's trunk bends by the angle that its
+    Bends are what the body did, not what was commanded: on film a robot's trunk bends by the angle that its
     servos reached.
     """
 
@@ -65,7 +65,7 @@ class Walk:
     """First harmonic of each of the four angles: the angle is its steady part and the real part of this times
     ``exp(2 pi i phase)`` [rad]."""
     notes: tuple[str, ...]
-    """What the tracks cannot tell, a sentence each."""
+    """What the tracks do not show, a sentence each."""
     cycle: xr.Dataset
     """The mean cycle over ``phase`` and ``leg``: the four angles with ``<name>_spread``, ``foot_speed``, ``stance``.
     Phase 0 is where a gait of this footfall begins: LF starts to swing."""
@@ -162,7 +162,7 @@ def _times(n: int) -> float:
 
 
 def _check_feet(feet: Mapping[str, Contact], source: str) -> None:
-    """Refuse feet of which none can be told to stand or to swing."""
+    """Refuse feet of which it cannot be seen whether they stand or swing."""
     known = {leg: foot.duty_error for leg, foot in feet.items() if np.isfinite(foot.duty_error)}
     if known and min(known.values()) > _BLIND:
         leg = min(known, key=lambda name: known[name])
@@ -186,12 +186,12 @@ def _unknown(feet: Mapping[str, Contact]) -> tuple[str, ...]:
 def _swinging(tracks: Tracks) -> np.ndarray:
     """Signals that swing once a cycle: trunk and tail, and each foot along the body."""
     angles = bend_angles(tracks)
-    return np.array([angles.spine_lateral, angles.tail_lateral, *(forward_way(tracks, leg) for leg in LEGS)])
+    return np.array([angles.spine_lateral, angles.tail_lateral, *(forward_path(tracks, leg) for leg in LEGS)])
 
 
 def _check_signals(signals: np.ndarray, source: str) -> None:
     """Points that are lost in turns may leave no frame in which a bend can be seen."""
-    names = ("the spine's bend", "the tail's bend", *(f"the way of {leg}" for leg in LEGS))
+    names = ("the spine's bend", "the tail's bend", *(f"the path of {leg}" for leg in LEGS))
     for name, seen in zip(names, np.isfinite(signals).mean(axis=1), strict=True):
         if seen < _TOGETHER:
             raise UnusableTracks(
@@ -207,11 +207,11 @@ def _read(tracks: Tracks, period: float, tail_share: float) -> _Reading:
         seen = int(np.isfinite(series).sum())
         if seen:
             fits[name] = fit(tracks.time, series, period, harmonics=harmonics_for(seen, tracks.rate * period, most=6))
-    way = [fit(tracks.time, tracks.at("hip")[:, i], period, harmonics=2, drift=1).drift[0] for i in (0, 1)]
+    advanced = [fit(tracks.time, tracks.at("hip")[:, i], period, harmonics=2, drift=1).drift[0] for i in (0, 1)]
     return _Reading(
         fits,
         {leg: sweep(tracks, leg, period) for leg in LEGS},
-        float(np.hypot(*way)) * period,
+        float(np.hypot(*advanced)) * period,
         tracks.trunk_length(),
         period,
         tail_share,
@@ -296,7 +296,7 @@ def _check_advance(reading: _Reading, source: str) -> None:
         raise UnusableTracks(
             f"in {source} the body advances by {reading.advance / reading.trunk:.2f} of its trunk's length in a cycle "
             f"while its feet sweep {swept / reading.trunk:.2f} of it: it walks on a belt, on the spot, or the camera "
-            "goes along; standing feet can only be told over ground that rests in the picture."
+            "goes along; standing feet can only be recognised over ground that rests in the picture."
         )
 
 

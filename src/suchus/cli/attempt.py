@@ -1,4 +1,4 @@
-"""One experiment of many: whatever goes wrong in it is told, and must not stop the others."""
+"""One experiment of many: whatever goes wrong in it is reported, and must not stop the others."""
 
 import traceback
 from dataclasses import dataclass
@@ -38,7 +38,7 @@ def attempt(task: Task, progress: Progress) -> Came:
 
     Args:
         task: which and where.
-        progress: told how far it has come.
+        progress: called with the share that is done, 0 to 1.
     """
     try:
         experiment = EXPERIMENTS[task.name]
@@ -55,7 +55,7 @@ def attempt(task: Task, progress: Progress) -> Came:
 
 
 def failed(name: str, sentence: str, trace: str = "") -> Came:
-    """Return what is told of an experiment that came to no result.
+    """Return what is reported of an experiment that came to no result.
 
     Args:
         name: of the experiment.

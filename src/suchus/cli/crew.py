@@ -18,7 +18,7 @@ from suchus.experiment import Progress, silent
 from suchus.record import sweep
 
 _EVERY = 0.1  # [s]; between two reports of one stage
-_PATIENCE = 10.0  # [s]; for a process that was told to stop
+_PATIENCE = 10.0  # [s]; for a process that was asked to stop
 _GONE = (EOFError, ConnectionError)  # what a pipe says when the other end has died
 
 
@@ -117,7 +117,7 @@ def _dismiss(crew: Sequence[_Worker]) -> None:
 
 @contextmanager
 def _deaf() -> Iterator[None]:
-    """Let processes that are started inside never hear Ctrl-C, which a terminal tells to all of them at once."""
+    """Let processes that are started inside never hear Ctrl-C, which a terminal sends to all of them at once."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
@@ -142,7 +142,7 @@ def _work(pipe: Connection, shelf: list[str], each: int) -> None:
 
 
 def _told(pipe: Connection) -> Progress:
-    """Return a progress that is told to the other process now and then."""
+    """Return a progress that is reported to the other process now and then."""
     stage, last = "", -_EVERY
 
     def tell(what: str, share: float) -> None:

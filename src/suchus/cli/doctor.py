@@ -162,7 +162,7 @@ def compiled(trial: Trial) -> Finding:
 
 
 def places() -> Finding:
-    """Tell whether results can be written here."""
+    """Return whether results can be written here."""
     try:
         with tempfile.TemporaryDirectory(dir=Path.cwd(), prefix=".suchus-"):
             return Finding(heading="results", told=("this folder can be written to",))

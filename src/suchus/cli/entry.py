@@ -21,7 +21,7 @@ _EXAMPLES = (
 def main(words: Sequence[str] | None = None) -> int:
     """Carry out a command line and return the exit code.
 
-    0: sound, whatever the verdicts. 1: an experiment failed. 2: bad input, told in one sentence on standard
+    0: sound, whatever the verdicts. 1: an experiment failed. 2: bad input, reported in one sentence on standard
     error. 130: stopped by Ctrl-C.
 
     Args:
@@ -103,7 +103,7 @@ def _help() -> str:
             "examples:",
             *(f"  {example:<{right}}  {text}" for example, text in _EXAMPLES),
             "",
-            "suchus COMMAND --help says more about a command; --version tells the version.",
+            "suchus COMMAND --help describes a command; --version prints the version.",
         )
     )
 

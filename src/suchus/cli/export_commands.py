@@ -103,7 +103,7 @@ def export_commands(words: Sequence[str]) -> int:
     load = borne[hardest]
     print(f"{len(told.time)} samples over {told.time[-1]:g} s: {folder}")
     print(
-        f"hardest worked in simulation: {hardest}, {load.torque:.2f} of {load.limit:g} N m, "
+        f"highest-loaded in simulation: {hardest}, {load.torque:.2f} of {load.limit:g} N m, "
         f"at the limit for {100 * load.at_limit:.1f} % of the walk"
     )
     for sentence in overloaded(borne, options.at_limit):

@@ -1,4 +1,4 @@
-"""From what the robot senses to what its servos are told, for a whole batch at once."""
+"""From what the robot senses to the commands of its servos, for a whole batch at once."""
 
 from suchus.control.amphibious import Amphibious
 from suchus.control.attitude import AttitudeRule

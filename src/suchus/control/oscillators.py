@@ -48,7 +48,7 @@ class Oscillators:
     sides_weight: float = 10.0
     """Of the coupling between left and right of a segment of the axis [1/s]."""
     limb_axis_weight: float = 30.0
-    """Of the coupling from a limb to its part of the axis, one way [1/s]."""
+    """Of the coupling from a limb to its part of the axis, in that direction only [1/s]."""
     limb_weight: float = 10.0
     """Of the coupling between the limbs of a girdle, and between those of a side on neighbouring girdles [1/s]."""
     axis_frequency: Line = (0.3, 0.2)

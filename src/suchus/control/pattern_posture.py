@@ -164,7 +164,7 @@ def _folded(place: Layout, gait: Gait | Pattern, middle: np.ndarray) -> np.ndarr
 
 
 def _cranked(place: Layout, gait: Gait | Pattern, limb: int) -> bool:
-    """Tell whether a limb turns all round, so that it stops where it is."""
+    """Return whether a limb turns all round, so that it stops where it is."""
     return not isinstance(gait, Gait) and isinstance(gait.girdles[place.limbs[limb].number], Sweep)
 
 

@@ -36,7 +36,7 @@ class Sensed:
 
 
 def finite(values: Float[np.ndarray, "*any"]) -> Float[np.ndarray, "*any"]:
-    """Return readings with zero where a run that came apart left nothing to read."""
+    """Return readings with zero where a run that diverged left nothing to read."""
     return np.where(np.isfinite(values), values, 0.0)
 
 

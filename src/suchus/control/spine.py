@@ -18,7 +18,7 @@ class SpineRule:
     """Every yaw joint of the trunk takes over a part of what all of them together lack.
 
     With B the bend that the limbs' phases ask for and q the sensed yaw angles, e is the low-passed B - sum(q), and
-    each joint is told its part of B, a third in the article's robot, and share e. A joint that is stuck, weak or
+    each joint is commanded its part of B, a third in the article's robot, and share e. A joint that is stuck, weak or
     sagging is so made up for by the others.
     """
 

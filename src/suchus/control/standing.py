@@ -94,9 +94,9 @@ class Standing:
     balance: Balance | None = BALANCE
     """How it keeps its balance; None: it does not, it follows the keys blindly."""
     rise: Keyed | None = None
-    """The way up; ``motion.rising`` of each robot if None."""
+    """The course of rising; ``motion.rising`` of each robot if None."""
     slower_down: float = 1.0
-    """The way down takes so many times as long as the way up [-]."""
+    """Duration of lying down over duration of rising [-]."""
 
     def __post_init__(self) -> None:
         with Checks("standing", self) as check:
@@ -111,11 +111,11 @@ class Standing:
         return self.balance is not None
 
     def upright_from(self, robot: AnyRobot) -> float:
-        """Return when the way up ends [s]."""
+        """Return when rising ends [s]."""
         return self.at + self.blend + self._rise(robot).duration
 
     def upright_until(self, robot: AnyRobot) -> float:
-        """Return when the way down begins [s]."""
+        """Return when lying down begins [s]."""
         return self.upright_from(robot) + self.hold
 
     def down_from(self, robot: AnyRobot) -> float:
@@ -128,7 +128,7 @@ class Standing:
     def start(
         self, robots: Sequence[AnyRobot], gaits: Sequence[AnyGait], seeds: Sequence[int], ticks: int, period: float
     ) -> "Stander":
-        """Plan the whole way of every distinct pair of robot and gait.
+        """Plan the whole course of every distinct pair of robot and gait.
 
         Raises:
             OutsideLimits: a robot cannot take the postures.

@@ -32,7 +32,7 @@ class Ground:
             check.number("sideways", -1.0, 1.0, "rad")
 
     def looks_like(self, other: "Ground") -> bool:
-        """Tell whether another ground has the same slopes and relief, whatever its friction."""
+        """Return whether another ground has the same slopes and relief, whatever its friction."""
         return (self.uphill, self.sideways, self.relief) == (other.uphill, other.sideways, other.relief)
 
 

@@ -228,10 +228,10 @@ def hips_ahead(robot: AnyRobot, girdle: int) -> float:
     body = general(robot)
     if girdle == len(body.girdles) - 1:
         return 0.0
-    names, way = [segment.name for segment in body.axis], -body.girdles[-1].at
+    names, distance = [segment.name for segment in body.axis], -body.girdles[-1].at
     for place in range(body.root_place, names.index(body.girdles[girdle].segment), -1):
-        way += body.axis[place].front + body.axis[place - 1].rear
-    return way + body.girdles[girdle].at
+        distance += body.axis[place].front + body.axis[place - 1].rear
+    return distance + body.girdles[girdle].at
 
 
 def _pairs(robot: Robot) -> list[tuple[Girdle, str, float]]:
@@ -309,9 +309,9 @@ def _within(robot: Robot, ahead: list[str]) -> list[str]:
 
 def _place(robot: Robot, hinge: str) -> float:
     """Return where a hinge of the axis is, as a share of the length from the snout."""
-    way = 0.0
+    distance = 0.0
     for segment in robot.axis:
-        way += segment.front + segment.rear
+        distance += segment.front + segment.rear
         if any(one.name == hinge for one in segment.hinges):
-            return way / robot.length
+            return distance / robot.length
     raise UnknownName("hinge", hinge, [h.name for h in robot.axis_hinges])

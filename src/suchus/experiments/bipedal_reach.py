@@ -29,7 +29,7 @@ from suchus.robots import ROBOTS
 
 _COARSE = 0.005  # [s]; time step of sweeps; reach and limits agree with those at 2 ms
 _UP = 0.6  # of the stretched length: who reaches less has not stood up, or has fallen
-_WAYS = {"fore": (1.0, 0.0, 0.0), "aft": (-1.0, 0.0, 0.0), "lateral": (0.0, 1.0, 0.0)}
+_DIRECTIONS = {"fore": (1.0, 0.0, 0.0), "aft": (-1.0, 0.0, 0.0), "lateral": (0.0, 1.0, 0.0)}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -223,7 +223,7 @@ class BipedalReach(Experiment):
         ]
         forces = smallest_pushes(
             runs,
-            list(_WAYS.values()),
+            list(_DIRECTIONS.values()),
             at=round(up_at(self.robot) + self.wait, 2),
             levels=self.pushes,
             finer=self.finer,
@@ -231,15 +231,19 @@ class BipedalReach(Experiment):
             fell=lambda record: record.snout.sel(xyz="z").isel(time=-1) < _UP * stretched(self.robot),
             timestep=_COARSE,
             progress=lambda share: progress(0.1 + 0.9 * share),
-        ).reshape(len(balances), len(leads), len(_WAYS))
+        ).reshape(len(balances), len(leads), len(_DIRECTIONS))
         stands = stood.reach.values > _UP * stretched(self.robot)
         return xr.Dataset(
             {
-                "push": (("feedback", "commanded", "way"), np.where(stands[:, None], forces, 0.0), {"units": "N"}),
+                "push": (
+                    ("feedback", "commanded", "direction"),
+                    np.where(stands[:, None], forces, 0.0),
+                    {"units": "N"},
+                ),
                 "lead_reach": ("commanded", np.where(stands, stood.reach, np.nan), {"units": "m"}),
                 "lead_found": ("commanded", np.where(stands, stood.lead, np.nan), {"units": "m"}),
             },
-            coords={"way": list(_WAYS), "commanded": leads, "feedback": list(balances)},
+            coords={"direction": list(_DIRECTIONS), "commanded": leads, "feedback": list(balances)},
         )
 
     def _lengths(self, progress: Any) -> xr.Dataset:
@@ -262,13 +266,13 @@ class BipedalReach(Experiment):
             [length(robot, part) - length(self.robot, part) for robot, part in zip(robots[1:], PARTS, strict=True)]
         )
         changes = np.stack([walking[1:] - walking[0], stood.reach.values[1:] - stood.reach.values[0]], axis=-1)
-        way = record.centre_of_mass.sel(xyz="x")
+        ahead = record.centre_of_mass.sel(xyz="x")
         return xr.Dataset(
             {
                 "crawl_reach": ("hip_height", heights[: len(self.hips)], {"units": "m"}),
                 "crawl_way": (
                     "hip_height",
-                    (way[: len(self.hips), -1] - way[: len(self.hips), 0]).values,
+                    (ahead[: len(self.hips), -1] - ahead[: len(self.hips), 0]).values,
                     {"units": "m"},
                 ),
                 "gain": (("part", "pose"), changes / longer[:, None], {"units": "1"}),

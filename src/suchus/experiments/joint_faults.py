@@ -225,19 +225,19 @@ class JointFaults(Experiment):
         numbers = {
             "forward": (displacement(record).sel(xyz="x"), "m", "displacement forward"),
             "net": (net, "m", "displacement on the ground"),
-            "path": (path_length(record), "m", "length of the way, cycle by cycle"),
+            "path": (path_length(record), "m", "path length, cycle by cycle"),
             "turn": (heading_change(record), "rad", "how far the body turned, left positive"),
         }
-        way = between(record).centre_of_mass.sel(xyz=["x", "y"])
-        tracks = (way - way.isel(time=0)).transpose("run", "time", "xyz").values
+        distance = between(record).centre_of_mass.sel(xyz=["x", "y"])
+        tracks = (distance - distance.isel(time=0)).transpose("run", "time", "xyz").values
         shape = (len(varied), len(ARMS), 1 + len(cells))
-        data = xr.Dataset(coords={"variation": range(shape[0]), "arm": list(ARMS), "time": way.time.values})
+        data = xr.Dataset(coords={"variation": range(shape[0]), "arm": list(ARMS), "time": distance.time.values})
         data = data.assign_coords(
             joint=list(self._joints), kind=list(KINDS), legs=list(LEGS_LOST), on_ground=["x", "y"]
         )
         for name, (some, unit, what) in numbers.items():
             lay(data, name, some.values.reshape(shape), (), unit, what)
-        lay(data, "track", tracks.reshape(*shape, -1, 2), ("time", "on_ground"), "m", "way of the centre of mass")
+        lay(data, "track", tracks.reshape(*shape, -1, 2), ("time", "on_ground"), "m", "track of the centre of mass")
         told = meaning.meanings(Gait)
         for one in GAITS.beside("belly_crawl", "chosen", ()) if isinstance(self.gait, Gait) else ():
             values = [value_at(gaits["coordinated"], one.field) for gaits, _ in varied]
@@ -265,12 +265,12 @@ class JointFaults(Experiment):
             for arm in ARMS
             for faults in ((), *(self._broken(gaits[arm], joint) for joint in self._lost))
         ]
-        way = self._forward(runs, progress).reshape(self.repeats, len(ARMS), 1 + len(self._lost))
+        distance = self._forward(runs, progress).reshape(self.repeats, len(ARMS), 1 + len(self._lost))
         metre = {"units": "m", "long_name": "displacement forward, repeated"}
         data = xr.Dataset(
             {
-                "repeat_intact_forward": (("repeat", "arm"), way[:, :, 0], metre),
-                "repeat_forward": (("repeat", "arm", "lost"), way[:, :, 1:], metre),
+                "repeat_intact_forward": (("repeat", "arm"), distance[:, :, 0], metre),
+                "repeat_forward": (("repeat", "arm", "lost"), distance[:, :, 1:], metre),
             }
         )
         return data.assign_coords(arm=list(ARMS), lost=list(self._lost))
@@ -288,8 +288,8 @@ class JointFaults(Experiment):
             Run(robot=self.robot, gait=gaits[a], faults=lost(self.robot, gaits[a], j, "locked", hold=h))
             for a, j, h in points
         ]
-        way = self._forward(runs, progress).reshape(len(ARMS), len(self._lost), len(self.holds))
-        data = xr.Dataset({"held_forward": (("arm", "lost", "hold"), way, {"units": "m"})})
+        distance = self._forward(runs, progress).reshape(len(ARMS), len(self._lost), len(self.holds))
+        data = xr.Dataset({"held_forward": (("arm", "lost", "hold"), distance, {"units": "m"})})
         return data.assign_coords(arm=list(ARMS), lost=list(self._lost), hold=list(self.holds))
 
     def _lost_pitch(self, progress: Any) -> xr.Dataset:
@@ -348,20 +348,20 @@ class JointFaults(Experiment):
         if not runs:
             return data
         record = whole(simulate(runs, duration=self._duration, timestep=self.timestep, every=10, progress=progress))
-        way = displacement(record).sel(xyz="x").values.reshape(len(varied), -1)
+        distance = displacement(record).sel(xyz="x").values.reshape(len(varied), -1)
         turned = heading_change(record).values.reshape(len(varied), -1)
         both, metre, many = ("variation", "lost"), {"units": "m"}, len(joints)
         if steers:
-            data["steered_forward"] = (both, way[:, :many], metre | {"long_name": "forward, steered"})
+            data["steered_forward"] = (both, distance[:, :many], metre | {"long_name": "forward, steered"})
             data["steered_turn"] = (both, turned[:, :many], {"units": "rad", "long_name": "turned, steered"})
         if self._lifts:
-            intact, broken = way[:, -many - 1], way[:, -many:]
+            intact, broken = distance[:, -many - 1], distance[:, -many:]
             data["lifted_intact_forward"] = ("variation", intact, metre | {"long_name": "tail lifted, intact"})
             data["lifted_forward"] = (both, broken, metre | {"long_name": "forward, tail lifted"})
         return data
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
-        """Draw the losses, the way over time for both kinds of fault, the tracks, and the places of locking."""
+        """Draw the losses, the distance over time for both kinds of fault, the tracks, and the places of locking."""
         record = outcome.record
         return {
             "fault_losses": draw_losses(record),

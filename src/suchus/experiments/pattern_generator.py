@@ -236,7 +236,7 @@ class PatternGeneratorExperiment(Experiment):
         )
 
     def _land(self, progress: Progress) -> tuple[xr.Dataset, xr.Dataset]:
-        """Return how far and whereto it walks under each control, and the run under the ramp."""
+        """Return how far and in which direction it walks under each control, and the run under the ramp."""
         low, high = _NUMBERS.limb_drives
         arms = {
             "drive_low": PatternGenerator(drive=low),

@@ -299,7 +299,7 @@ class Terrain(Experiment):
         return record.merge(shown)
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
-        """Draw the postures on bumps, and the way on every ground."""
+        """Draw the postures on bumps, and the distance on every ground."""
         record = outcome.record
         said = "the sprawled crawl, semi-erect legs, and erect legs with elbows behind and knees ahead"
         if not isinstance(self.crawl, Gait):
@@ -312,10 +312,10 @@ _UNITS = {"forward": "m", "aside": "m", "turned": "rad", "fell": "1", "cost": "1
 
 def _look(record: xr.Dataset, met: Sequence[bool]) -> np.ndarray:
     """Return what ``_UNITS`` names, shape (run, 7)."""
-    part, way = between(record), displacement(record)
+    part, displaced = between(record), displacement(record)
     columns: Sequence[Any] = (
-        way.sel(xyz="x"),
-        way.sel(xyz="y"),
+        displaced.sel(xyz="x"),
+        displaced.sel(xyz="y"),
         heading_change(record),
         _most_tilt(record) > FALLEN,
         cost_of_transport(record),

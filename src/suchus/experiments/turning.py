@@ -26,9 +26,9 @@ _STRAIGHT = 1e-3  # [1/m]; no radius beyond a kilometre
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Turning(Experiment):
-    """Curvature of the way against a lasting bend, against unequal strokes, and against both; then circles on command.
+    """Curvature of the path against curvature offset, unequal strokes, and both; then circles on command.
 
-    The curvature is the change of heading over the length of the way, over whole cycles from the second on. The way is
+    The curvature is the change of heading over the path length, over whole cycles from the second on. The path is
     measured from cycle to cycle, so that the swaying within one does not count. Bends stop where the trunk's joints do.
     """
 
@@ -157,13 +157,13 @@ class Turning(Experiment):
         return simulate(runs, duration=self._end(gait), timestep=self.timestep, progress=progress)
 
     def _curvatures(self, gait: AnyGait, record: xr.Dataset) -> np.ndarray:
-        """Return the curvature of each way [1/m]."""
+        """Return the curvature of each path [1/m]."""
         end = self._end(gait)
         part = between(record, START + gait.period, end)
         every = round(gait.period / float(part.time[1] - part.time[0]))
         points = part.centre_of_mass.sel(xyz=["x", "y"]).isel(time=slice(None, None, every))
-        way = ((points.diff("time") ** 2).sum("xyz") ** 0.5).sum("time")
-        return np.asarray(heading_change(record, START + gait.period, end) / way)
+        length = ((points.diff("time") ** 2).sum("xyz") ** 0.5).sum("time")
+        return np.asarray(heading_change(record, START + gait.period, end) / length)
 
     def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
         """Return the tightest radius of every gait by bend, by stroke and by both, and how well circles come out."""
@@ -186,7 +186,7 @@ class Turning(Experiment):
         m = {name: Reading(value) for name, value in measures.items()}
         names = [gait.name for gait in self.gaits]
         told = [
-            f"the {name.replace('_', ' ')} in {m[f'tightest_bend_{name}']:.2f} m by a lasting bend, "
+            f"the {name.replace('_', ' ')} in {m[f'tightest_bend_{name}']:.2f} m by a curvature offset, "
             f"{m[f'tightest_asymmetry_{name}']:.2f} m by unequal strokes and {m[f'tightest_both_{name}']:.2f} m by the "
             "mixture of both"
             for name in names

@@ -125,7 +125,7 @@ def draw_over_time(record: xr.Dataset, kind: str, legs: str) -> Figure:
         kind: ``limp`` or ``locked``.
         legs: ``one`` or ``both``.
     """
-    way, intact = record.track.sel(on_ground="x"), record.intact_track.sel(on_ground="x")
+    path, intact = record.track.sel(on_ground="x"), record.intact_track.sel(on_ground="x")
     end, period = float(record.time[-1]), float(record.period)
     of = "one leg" if legs == "one" else "both legs"
     with styled():
@@ -135,7 +135,7 @@ def draw_over_time(record: xr.Dataset, kind: str, legs: str) -> Figure:
             ax.set_axis_off()
         for number, (ax, joint) in enumerate(zip(axes.flat, record.lost.values, strict=False)):
             for arm in _ARMS:
-                some = way.sel(joint=joint, kind=kind, legs=legs, arm=arm).rename(variation="run")
+                some = path.sel(joint=joint, kind=kind, legs=legs, arm=arm).rename(variation="run")
                 draw_band(ax, some, arm)
                 ax.plot(record.time, some.median("run"), **LINES[arm])
                 whole = intact.sel(arm=arm).median("variation")
@@ -193,9 +193,9 @@ def draw_tracks(record: xr.Dataset) -> Figure:
             _arrow(ax, whole[:, -1], float(given.intact_turn), "#333333")
             for (kind, legs), look in looks.items():
                 some = given.sel(joint=joint, kind=kind, legs=legs)
-                way = some.track.transpose("on_ground", "time").values
-                ax.plot(*way, **look)
-                _arrow(ax, way[:, -1], float(some.turn), look["color"])
+                path = some.track.transpose("on_ground", "time").values
+                ax.plot(*path, **look)
+                _arrow(ax, path[:, -1], float(some.turn), look["color"])
             ax.set_title(_named(str(joint)))
             ax.set_aspect("equal")
         for ax in axes[:, 0]:
@@ -206,7 +206,7 @@ def draw_tracks(record: xr.Dataset) -> Figure:
     return captioned(
         figure,
         "Tracks of the centre of mass seen from above, with spine and tail, the left joint or both lost; arrows show "
-        "whereto the body faces at the end.",
+        "the heading at the end.",
     )
 
 

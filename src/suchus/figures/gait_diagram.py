@@ -1,4 +1,4 @@
-"""The gait diagram: who stands when, and whereto spine and tail bend meanwhile. The form of the article's Fig. 12."""
+"""The gait diagram: which feet stand when, and how spine and tail bend meanwhile, as in Fig. 12."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

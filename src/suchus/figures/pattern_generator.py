@@ -135,7 +135,7 @@ def draw_locks(record: xr.Dataset) -> Any:
 
 
 def draw_land(record: xr.Dataset) -> Any:
-    """Return stride over the drive, and turning by each way to steer."""
+    """Return stride over the drive, and turning by each kind of steering."""
     strides = ("drive_low", "straight", "drive_high")
     turns = ("straight", "asymmetry", "steering", "steering_right")
     with styled():

@@ -50,9 +50,9 @@ def _caption(parts: Sequence[Part]) -> str:
     deaf = [part.name for part in parts if not part.hears and not part.writes]
     apart = f" Apart from the shared variables: {', '.join(deaf)}." if deaf else ""
     return (
-        "Who feels and tells what, in the form of the article's Fig. 10. Arrows from sensors: what a controller reads; "
-        "solid arrows down: the shared variables that it writes; dashed arrows up: those of others that it reads."
-        + apart
+        "What each controller reads and writes, in the form of the article's Fig. 10. Arrows from sensors: what it "
+        "senses; solid arrows down: the shared variables that it writes; dashed arrows up: those of others that it "
+        "reads." + apart
     )
 
 

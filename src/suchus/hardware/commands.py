@@ -14,7 +14,7 @@ from suchus.motion import START, AnyGait, check_limits, intended
 
 
 class Commands(NamedTuple):
-    """What the servos are told, in the order of the robot's layout; the last sample equals the first."""
+    """Commanded angles of the servos [rad], in the order of the robot's layout; the last sample equals the first."""
 
     time: Float[np.ndarray, " sample"]
     """From the beginning of the first cycle [s]."""

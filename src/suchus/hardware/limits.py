@@ -21,7 +21,7 @@ TRACKING = 0.35
 """How far a servo at its limit may be from its commanded angle for all but 2 % of a walk [rad], 20 degrees.
 
 Chosen with the shelf's gaits in view: the crawl and ``spine_only`` leave 14 and 16 degrees at the first yaw joint and
-lose 1 and 3 % of their way against servos that reach their angles. A joint farther off makes another gait.
+lose 1 and 3 % of their distance against servos that reach their angles. A joint farther off makes another gait.
 """
 CLASSES: Mapping[str, float] = {
     f"{kg} kg cm": round(kg * 0.0980665, 3) for kg in (5, 10, 15, 20, 25, 30, 35, 40, 45, 60, 80, 100, 150)
@@ -46,7 +46,7 @@ class Load:
     off: float
     """How far it is from its commanded angle at most, but for the worst 2 % of the walk [rad]."""
     needed: float
-    """Torque that a servo four times as strong stays below, but for the hardest 2 % of the same walk [N m]."""
+    """98th percentile of the torque of a servo four times as strong in the same walk [N m]."""
     tried: float = 0.0
     """Torque of the strongest class of servos that was tried and is at its limit for more than 2 % too [N m]."""
 
@@ -100,7 +100,7 @@ def loads(
         progress: called with the share that is done.
 
     Raises:
-        Diverged: the physics came apart.
+        Diverged: the simulation diverged.
         OutsideLimits: the joints cannot follow the gait.
     """
     (borne,) = loads_of_each(robot, (gait,), cycles=cycles, progress=progress)
@@ -125,7 +125,7 @@ def loads_of_each(
         progress: called with the share that is done.
 
     Raises:
-        Diverged: the physics came apart.
+        Diverged: the simulation diverged.
         OutsideLimits: the joints cannot follow a gait.
     """
     strong = with_servos(robot, lambda servo: replace(servo, torque=_STRONG * servo.torque))

@@ -51,7 +51,7 @@ Kind = Literal["leg", "arm", "other"]
 
 
 def kind(limb: Limb) -> Kind:
-    """Return which way of solving a limb takes."""
+    """Return the method by which a limb is solved."""
     turns = [[hinge.turn for hinge in link.hinges] for link in limb.links]
     straight = all(link.end[0] == link.end[2] == 0.0 and link.end[1] > 0.0 for link in limb.links)
     if straight and turns == [["yaw", "pitch"], ["pitch"]]:

@@ -49,7 +49,7 @@ class Wave:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Reading:
-    """One way to give the printed constants their units."""
+    """One choice of units for the printed constants."""
 
     meaning: str
     """Which units, and where x begins."""

@@ -22,7 +22,7 @@ from suchus.model import activations, compile_model, force_sensors, standing
 from suchus.model.wet import wet_model
 from suchus.motion import hip_height
 
-_TOO_FAST = 1e3  # [rad/s] or [m/s]; nothing on a robot moves so fast: the physics has come apart
+_TOO_FAST = 1e3  # [rad/s] or [m/s]; nothing on a robot moves so fast: the physics has diverged
 _CURRENT = mujoco.mjtStage.mjSTAGE_VEL  # after a step, positions and velocities describe the new state
 
 

@@ -169,11 +169,11 @@ class Pool:
         """Let some steps pass.
 
         Raises:
-            Diverged: the physics came apart.
+            Diverged: the simulation diverged.
         """
         mujoco.mj_step(self.model, self.data, count)
         if not np.isfinite(self.data.qpos).all():
-            raise Diverged(f"the float came apart at {self.data.time:.3f} s.", time=float(self.data.time))
+            raise Diverged(f"the float diverged at {self.data.time:.3f} s.", time=float(self.data.time))
 
     def watch(self, duration: float, period: float) -> xr.Dataset:
         """Let time pass and return place, orientation, energy and momenta, sample by sample.

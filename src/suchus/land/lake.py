@@ -95,7 +95,7 @@ class Lake:
         return _now(self.level, time), _now(self.breath, time)
 
     def changes(self) -> bool:
-        """Tell whether level or breath change while the run goes."""
+        """Return whether level or breath change while the run goes."""
         return not isinstance(self.level, (int, float)) or not isinstance(self.breath, (int, float))
 
     def numbers(self, up: Float[np.ndarray, "3"], time: float = 0.0) -> Float[np.ndarray, " n"]:

@@ -93,7 +93,7 @@ class Loop:
         return command._replace(targets=self.troubles.disturb(tick, command.targets))
 
     def advance(self, tick: int, targets: np.ndarray) -> None:
-        """Let one control period pass in which the servos are told these angles, shape (run, servo) [rad]."""
+        """Let one control period pass in which the servos are commanded these angles, shape (run, servo) [rad]."""
         self._alike.part(tick, targets if self._breath is None else np.column_stack([targets, self._breath]))
         self.bench.flood(tick * self._period, self._breath)
         self.bench.advance(targets, self._steps, tick * self._period, self._alike)

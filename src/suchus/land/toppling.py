@@ -39,7 +39,7 @@ def smallest_pushes(
         directions: unit vectors in the world: forward, left, up.
         at: when the push begins [s].
         levels: forces to try, increasing [N].
-        fell: tells from a record which runs fell, along the dimension ``run``; its last sample is ``wait`` after the
+        fell: returns from a record which runs fell, along the dimension ``run``; its last sample is ``wait`` after the
             push.
         finer: number of forces of the second batch; the answer is off by at most the gap between two of them.
         duration: of the push [s].
@@ -86,9 +86,9 @@ class _Trial(NamedTuple):
     ) -> Bool[np.ndarray, "run direction force"]:
         """Tell which of the forces topple [N]."""
         batch = [
-            replace(run, pushes=(replace(self.push, force=_along(way, force)),))
-            for run, ways in zip(self.runs, forces, strict=True)
-            for way, some in zip(self.directions, ways, strict=True)
+            replace(run, pushes=(replace(self.push, force=_along(toward, force)),))
+            for run, of_run in zip(self.runs, forces, strict=True)
+            for toward, some in zip(self.directions, of_run, strict=True)
             for force in some
         ]
         end = self.push.at + self.push.duration + self.wait

@@ -12,7 +12,7 @@ _FEW = 5  # samples on one side; fewer say nothing about a border
 
 
 class Border(NamedTuple):
-    """The value of one parameter that best tells where a statement holds."""
+    """The value of one parameter that best predicts where a statement holds."""
 
     parameter: int
     """Which."""
@@ -23,7 +23,7 @@ class Border(NamedTuple):
     separation: float
     """Share of the samples where it holds, less that where it does not, on the side where it rather holds [-].
 
-    The statistic of Kolmogorov and Smirnov: 1 if the border tells everything, 0 if nothing.
+    The statistic of Kolmogorov and Smirnov: 1 if the boundary predicts every design, 0 if none.
     """
     chance: float
     """How probable so great a separation of this parameter is by chance [-]."""
@@ -45,7 +45,7 @@ def rank_correlation(
 
 
 def border(parameters: Float[np.ndarray, "sample parameter"], holds: Bool[np.ndarray, " sample"]) -> Border | None:
-    """Return the border that best tells where a statement holds.
+    """Return the boundary that best predicts where a statement holds.
 
     None where it nearly always or never holds, and where the best of so many parameters would separate as well by
     chance once in a hundred times.

@@ -85,7 +85,7 @@ def with_axis_lag(robot: AnyRobot, gait: AnyGait, lag: float) -> AnyGait:
 
 
 def strides(gait: AnyGait) -> bool:
-    """Tell whether a movement has strokes that can be changed."""
+    """Return whether a movement has strokes that can be changed."""
     if isinstance(gait, Gait):
         return gait.stroke != 0.0
     if not isinstance(gait, Pattern):

@@ -165,7 +165,7 @@ def _cycle() -> np.ndarray:
 
 
 def _follows(limb: Limb, feet: np.ndarray) -> bool:
-    """Tell whether a limb brings its foot along a path within its ranges and without a jump."""
+    """Return whether a limb brings its foot along a path within its ranges and without a jump."""
     try:
         angles = limb_kinematics.inverse(limb, feet, tries=_TRIES)
     except (Unreachable, NotConverged):

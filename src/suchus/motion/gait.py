@@ -48,7 +48,7 @@ class Gait:
     limb_phases: tuple[float, float, float, float]
     """Phase of LF, RF, LH, RH when the walk begins [cycle]."""
     stroke: float
-    """Half of the way that a foot goes back in stance, in its girdle's frame [m]."""
+    """Half of the distance that a foot moves back in stance, in its girdle's frame [m]."""
     lift: float
     """How high a foot is lifted in swing [m]."""
     front_reach: float

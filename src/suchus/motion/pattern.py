@@ -19,7 +19,7 @@ class FootPath:
     """
 
     stroke: float
-    """Half of the way that a foot goes back in stance [limb reach]."""
+    """Half of the distance that a foot moves back in stance [limb reach]."""
     lift: float
     """How high it is lifted in swing [limb reach]."""
     outward: float

@@ -94,7 +94,7 @@ class Keyed:
         return self.times[-1]
 
     def reversed(self, name: str, *, slower: float = 1.0) -> "Keyed":
-        """Return the way back, ``slower`` times as long."""
+        """Return the course back, ``slower`` times as long."""
         times = tuple(slower * (self.duration - t) for t in reversed(self.times))
         return replace(self, name=name, times=times, postures=tuple(reversed(self.postures)))
 

@@ -51,7 +51,7 @@ class Swim:
                 require("swim", f"{field}[{i}]", value, low, high, unit)
 
     def reversed(self) -> "Swim":
-        """Return the motion played backwards: the wave runs the other way."""
+        """Return the motion played backwards: the wave runs in the other direction."""
         first, second, third = self.yaw_lag
         return replace(self, yaw_lag=(-first, -second, -third), tail_lag=-self.tail_lag)
 

@@ -51,7 +51,7 @@ class Transition(NamedTuple):
 
 @lru_cache(maxsize=64)
 def transition(robot: AnyRobot, here: Gait | Pattern, there: Gait | Pattern, *, slower: float = 1.0) -> Transition:
-    """Return the way from one gait's posture to another's: 3.5 s for a body of a metre, less for a smaller one.
+    """Return the course from one gait's posture to another's: 3.5 s for a body of a metre, less for a smaller one.
 
     The robot stops and goes to a height at which both postures can stand. Then LF and RH, or the limbs of any body that
     swing in the first half of a cycle, are lifted, take their new posture and are put down; the others follow; then it

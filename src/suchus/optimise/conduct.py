@@ -69,7 +69,7 @@ def optimise(
     Args:
         spec: the search; with more evaluations than before, an earlier one is continued.
         folder: for its results and, below it, the store of each arm.
-        progress: told how far it is.
+        progress: called with the share that is done, 0 to 1.
         client: a ``distributed.Client``, among whose workers each generation is shared out; this process if None. The
             bytes are the same.
 
@@ -103,7 +103,7 @@ def _arm(spec: Optimisation, folder: Path, progress: Progress, client: Any) -> F
 
 @contextmanager
 def opened(spec: Optimisation, folder: Path) -> Iterator[Store]:
-    """Hold the store of one arm; the budget does not tell searches apart."""
+    """Hold the store of one arm; the budget does not distinguish searches."""
     with Store(folder, replace(spec, evaluations=1), kind="optimisation", versions=_DECIDING).opened() as store:
         yield store
 

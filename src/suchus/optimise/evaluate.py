@@ -15,7 +15,7 @@ from suchus.optimise.aims import AIMS, LIMITS, Kind
 from suchus.optimise.excess import excess
 from suchus.optimise.spec import Optimisation
 
-WALKED, REFUSED, APART = "walked", "refused", "came apart"
+WALKED, REFUSED, APART = "walked", "refused", "diverged"
 _EVERY = 2  # control periods; 50 looks a second
 Progress = Callable[[float], None]
 
@@ -75,7 +75,7 @@ def columns(spec: Optimisation) -> dict[str, Kind]:
 def _walked(
     spec: Optimisation, runs: Mapping[int, Run], progress: Progress | None, timestep: float
 ) -> dict[int, dict[str, float] | None]:
-    """Return what each candidate reached, None for one that came apart; on every ground, the worst limit counts."""
+    """Return what each candidate reached, None for one that diverged; on every ground, the worst limit counts."""
     if not runs:
         return {}
     scales = spec.friction_scales

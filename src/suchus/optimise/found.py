@@ -16,12 +16,12 @@ _SHOWN = 3  # points of a front whose gaits are written and checked: both ends a
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Found:
-    """What came of the search of one arm."""
+    """The result of the search in one condition."""
 
     spec: Optimisation
     """The search, of this arm alone."""
     start: xr.Dataset
-    """Where it started, as ``evaluate`` tells it."""
+    """Where it started, as ``evaluate`` returns it."""
     history: xr.Dataset
     """All candidates in order, the start first, with ``generation`` and ``score``."""
     checks: xr.Dataset | None = None

@@ -25,7 +25,7 @@ TASKS: Mapping[str, Control] = MappingProxyType(
         "stand": Standing(at=1.1, hold=3.0),
     }
 )
-"""How the gait is carried out: as it is; with a lasting bend and unequal strokes, ``control.bend`` and
+"""How the gait is carried out: as it is; with a curvature offset and unequal strokes, ``control.bend`` and
 ``control.asymmetry``; standing up after it, for ``control.hold``."""
 
 

@@ -101,7 +101,7 @@ def draw_front(found: Found) -> Figure:
 
 
 def draw_gaits(runs: Sequence[Run], record: xr.Dataset, told: Sequence[str]) -> Figure:
-    """Draw what every run does: from above at its beginning, half of its way and at its end; who stands from its side.
+    """Draw what every run does: from above at its beginning, half-way and at its end; who stands from its side.
 
     Args:
         runs: the start, and the best.

@@ -69,7 +69,7 @@ def crawl() -> Optimisation:
 
 
 def thrift() -> Optimisation:
-    """The front between way and cost of transport, with spine and tail."""
+    """The front between displacement and cost of transport, with spine and tail."""
     return Optimisation(
         name="thrift",
         run=Run(robot=ROBOTS["caiman"], gait=GAITS["belly_crawl"]),

@@ -277,7 +277,7 @@ def _checks(one: Found) -> Table:
     for i, who in enumerate(names):
         for condition in checks.condition.values:
             cells = [checks[name].sel(condition=condition).isel(run=i) for name, _ in columns]
-            numbers = [f"{float(cell):.3g}" if np.isfinite(cell) else "came apart" for cell in cells]
+            numbers = [f"{float(cell):.3g}" if np.isfinite(cell) else "diverged" for cell in cells]
             rows.append((f"{label(who)}, {condition}", *numbers))
     heads = [f"{label(name.partition('_')[2])} [{kind.unit}]" for name, kind in columns]
     return Table(caption=f"{label(one.arm)}: under other conditions", heads=("condition", *heads), rows=rows)

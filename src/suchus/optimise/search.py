@@ -17,7 +17,7 @@ class NoOptimiser(SuchusError, ImportError):
 
 
 class Search(Protocol):
-    """Asks for candidates and is told their losses."""
+    """Asks for candidates and receives their losses."""
 
     def ask(self) -> np.ndarray:
         """Return the next generation, shape (candidate, field), each from 0 to 1."""

@@ -97,7 +97,7 @@ ANIMALS = (
         high=0.790,
         unit="-",
         source="configuration files of Pleurobot, KM-RoBoTa 2016",
-        note="ours as foot pressure tells, mean of the four feet",
+        note="ours from foot pressure, mean of the four feet",
     ),
     Animal(
         key="death_roll",

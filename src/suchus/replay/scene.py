@@ -1,4 +1,4 @@
-"""What the player is told: skin, frames and ground, as JSON and one block of bytes."""
+"""What the player receives: skin, frames and ground, as JSON and one block of bytes."""
 
 from collections.abc import Sequence
 from math import ceil, floor

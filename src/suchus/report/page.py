@@ -112,7 +112,8 @@ def _share(verdict: Mapping[str, Any]) -> str:
         f"{share['designs']:,} plausible designs".replace(",", "\N{NO-BREAK SPACE}")
     )
     if share["turned_by"] and share["at"] is not None:
-        told += f"; best told by {share['turned_by']} {'above' if share['above'] else 'below'} {number(share['at'], 3)}"
+        side = "above" if share["above"] else "below"
+        told += f"; best predicted by {share['turned_by']} {side} {number(share['at'], 3)}"
     return f"{told}."
 
 

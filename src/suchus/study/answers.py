@@ -112,7 +112,7 @@ class Agreement(NamedTuple):
     """How two answers about the same samples agree."""
 
     same: float
-    """Share of the samples and claims that both can tell which they tell alike [-]."""
+    """Share of the samples and claims that both can judge and judge alike [-]."""
     forward: float
     """Median difference of the displacement forward [m]."""
     wide: float

@@ -102,7 +102,7 @@ def _sections(record: xr.Dataset, rows: Sequence[dict[str, Any]]) -> list[Sectio
     how = (
         "What decides: the share of the variance of the claim's number (of its ranks) that one parameter explains "
         "alone, with its 95 % interval, and whether the number rises or falls with it. Border: the value of the "
-        "parameter that best tells where the sentence is true, and how well (1: it tells everything)."
+        "parameter that best predicts where the sentence is true, and how well (1: always)."
     )
     each = [
         Section(title=_short(row["claim"]), texts=(CLAIMS[row["claim"]].sense,), figures=(f"claim_{row['claim']}",))

@@ -107,7 +107,7 @@ def spread(
         items: what differs between the pieces.
         client: a ``distributed.Client``.
         name: what the pieces are called on Dask's own pages.
-        versions: tells what decides the bytes; it must tell the same on a worker as here.
+        versions: returns what decides the bytes; it must return the same on a worker as here.
         patience: how long to wait for a first worker [s].
 
     Yields:
@@ -192,7 +192,7 @@ def _reach(address: str, patience: float) -> None:
 
 
 def _speaks(wire: socket.socket, secret: bool) -> bool:
-    """Tell whether a scheduler is at the other end; Dask would wait for one that says nothing, whatever its timeout.
+    """Return whether a scheduler is at the other end; Dask would wait for one that says nothing, whatever its timeout.
 
     A scheduler speaks first, with the length of what it says; behind TLS it answers the handshake.
     """
@@ -221,7 +221,9 @@ def _check_versions(client: Any) -> None:
         others = {"the scheduler": _packages(told["scheduler"])}
         others |= {f"the worker {name}": _packages(worker) for name, worker in told["workers"].items()}
     except (OSError, TimeoutError, KeyError, TypeError, ValueError, ImportError, AttributeError) as error:
-        raise NoCluster("the cluster does not tell its versions; start it with the versions that are here.") from error
+        raise NoCluster(
+            "the cluster does not report its versions; start it with the versions that are here."
+        ) from error
     for who, theirs in others.items():
         other = [f"{name} {theirs[name]} (here {ours[name]})" for name in _ALIKE if theirs[name] != ours[name]]
         if other:

@@ -51,7 +51,7 @@ def conduct(study: Study, folder: Path, *, progress: Progress | None = None, cli
     Args:
         study: the study.
         folder: its store.
-        progress: told how far it is.
+        progress: called with the share that is done, 0 to 1.
         client: a ``distributed.Client``, whose workers then run the batches; this process if None. The bytes are the
             same.
 
@@ -125,7 +125,7 @@ class _Counter:
         self._start = time.perf_counter()
 
     def within(self, number: int) -> Callable[[float], None]:
-        """Return what tells of the share of a batch."""
+        """Return a progress for the share of a batch."""
         return lambda share: self._tell(self._done + share * len(self._plan.chunk(number)))
 
     def finished(self, number: int, table: xr.Dataset) -> None:

@@ -126,7 +126,7 @@ class Study:
             check.that(len(self.measure) > 0, "study.measure is empty; name at least one measure")
             design: object = self.design
             check.that(
-                not isinstance(design, str) or design in get_args(Design),  # another kind is told anyway
+                not isinstance(design, str) or design in get_args(Design),  # another kind is reported anyway
                 f"study.design is {self.design!r}; {', '.join(get_args(Design))} is allowed",
             )
             if self.design in ("sobol", "latin"):

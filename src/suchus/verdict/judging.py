@@ -13,8 +13,8 @@ from suchus.verdict.shares import SHARES, Share
 Word = Literal["reproduced", "same sense", "contradicted", "not testable", "by construction", "fitted"]
 """``reproduced``: it came out, within the printed digits and the spread of repeats. ``same sense``: another number, but
 the statement holds; or the robot does what is said of animals. ``contradicted``: the statement does not hold.
-``not testable``: nothing was measured that could tell. ``by construction``: an input, a count or a commanded shape that
-is read back. ``fitted``: a free number was chosen so that it comes out.
+``not testable``: nothing was measured that could decide. ``by construction``: an input, a count or a commanded shape
+that is read back. ``fitted``: a free number was chosen so that it comes out.
 """
 WORDS: tuple[Word, ...] = get_args(Word)
 

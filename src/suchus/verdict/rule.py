@@ -71,7 +71,7 @@ class Rule:
     experiment: str
     """Name of the experiment whose measures it reads."""
     measure: str
-    """Which measure stands beside the printed number, or tells most about the statement."""
+    """Which measure stands beside the printed number, or says most about the statement."""
     kind: Kind = "measured"
     """What the claim rests on."""
     holds: tuple[Clause, ...] = ()

@@ -31,7 +31,7 @@ class Share:
     designs: int
     """How many designs could be judged [-]."""
     turned_by: str
-    """The free number whose value best tells where it holds; empty where none does beyond chance."""
+    """The free number whose value best predicts where it holds; empty where none does beyond chance."""
     at: float | None
     """Its value there, in its own unit."""
     above: bool

@@ -11,7 +11,7 @@ from suchus.errors import InvalidDesign, NotConverged, OutsideLimits
 from suchus.motion import AnyGait, FootPath, Gait, Pattern, Sweep, check_limits, with_bends, with_strokes
 from suchus.robots import beside_article
 
-_HALVINGS = 14  # of the way to a value that the robot cannot reach: a ten-thousandth of it
+_HALVINGS = 14  # of the distance to a value that the robot cannot reach: a ten-thousandth of it
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -71,7 +71,7 @@ GAIT_KNOBS: Mapping[str, Knob] = MappingProxyType(
         ),
         "stroke": Knob(
             label="leg stroke", unit="mm", low=0.0, high=100.0, step=1.0, scale=1e-3,
-            hint="Half of the way that a foot goes back in stance.",
+            hint="Half of the distance that a foot moves back in stance.",
         ),
         "lift": Knob(label="foot lift", unit="mm", low=0.0, high=80.0, step=1.0, scale=1e-3, hint="In swing."),
         "hip_height": Knob(
@@ -109,7 +109,7 @@ PATTERN_KNOBS: Mapping[str, Knob] = MappingProxyType(
         "duty_factor": GAIT_KNOBS["duty_factor"],
         "strokes": Knob(
             label="limb stroke", unit="% of reach", low=1.0, high=60.0, step=1.0, scale=_SHARE,
-            hint="Half of the way that a foot goes back in stance, of the front limbs; others in proportion.",
+            hint="Half of the distance that a foot moves back in stance, of the front limbs; others in proportion.",
         ),
         "lifts": Knob(
             label="foot lift", unit="% of reach", low=1.0, high=60.0, step=1.0, scale=_SHARE,

@@ -1,4 +1,4 @@
-"""Plots beside the scene: height, way, loads over the last seconds, and the bars of the gait."""
+"""Plots beside the scene: height, displacement, loads over the last seconds, and the bars of the gait."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -53,7 +53,7 @@ def plans(robot: AnyRobot) -> tuple[Plan, ...]:
     return (
         Plan("height of the centre of mass [mm]", (Line("height", "height", COLOURS["ours"]),), 1e3),
         Plan(
-            "way since the first step [m]",
+            "displacement since the first step [m]",
             (
                 Line("forward", "forward", COLOURS["ours"]),
                 Line("to the left", "aside", COLOURS["limbs_only"], (6.0, 3.0)),

@@ -92,12 +92,12 @@ class Rod:
 
     def put(self, start: np.ndarray, end: np.ndarray) -> None:
         """Show it from one point to another [m]."""
-        way = np.asarray(end, dtype=float) - start
-        length = float(np.linalg.norm(way))
+        along = np.asarray(end, dtype=float) - start
+        length = float(np.linalg.norm(along))
         if length < 1e-6:
             self.hide()
             return
-        turned = upright(way / length)
+        turned = upright(along / length)
         self._handle.visible = True
         for bone, place in zip(self._handle.bones, (start, end), strict=True):
             bone.position, bone.wxyz = place, turned

@@ -13,7 +13,7 @@ from suchus.record import load
 
 _FIELDS = ("vorticity", "pressure")
 _MAPS = {"vorticity": "RdBu_r", "pressure": "PuOr"}
-_CLIPPED = 0.985  # share of the values that the colours tell apart; a few at the tail's tip are far beyond
+_CLIPPED = 0.985  # share of the values that the colours resolve; a few at the tail's tip are far beyond
 _TITLES = {"held": "held at the snout", "free": "free, from rest", "printed": "the wave as printed"}
 
 
@@ -113,7 +113,7 @@ def _film(record: xr.Dataset, prefix: str) -> Film | None:
 
 
 def _filmed(record: xr.Dataset, prefix: str, names: Sequence[str]) -> bool:
-    """Tell whether fields and midlines are numbers of sizes that go together."""
+    """Return whether fields and midlines are numbers of sizes that go together."""
     lines = [f"{prefix}midline_{part}" for part in ("x", "y", "heading", "half_width")]
     first = record[f"{prefix}{names[0]}"]
     axes = [str(dim) for dim in first.dims[-2:]]

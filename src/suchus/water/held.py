@@ -58,7 +58,7 @@ def tether(
         InvalidDesign: the boundary layer is too thin for the grid, or the box too small.
         UnreadableFile: the checkpoint is broken or belongs to another swim.
         Unwritable: the checkpoint cannot be written.
-        Diverged: the flow came apart.
+        Diverged: the flow diverged.
     """
     pool = Pool.filled(robot, motion, setting, BOX, turn)
     return pool.swum(_Held(pool), checkpoint=checkpoint, progress=progress)

@@ -57,7 +57,8 @@ def convex_higher(held: xr.Dataset) -> float:
 def level(track: np.ndarray) -> np.ndarray:
     """Return a track over whole cycles, first and last instant included, less its mean line.
 
-    The line's slope is the way from the first to the last instant: a line of least squares would lean with a sine.
+    The line's slope is the displacement from the first to the last instant: a line of least squares would lean with a
+    sine.
     """
     drift = (track[-1] - track[0]) * np.linspace(-0.5, 0.5, track.size)
     return np.asarray(track - drift - np.mean(track[:-1] - drift[:-1]))
@@ -89,7 +90,7 @@ def swing(across: Float[np.ndarray, "sample station"], cycles: int = 2) -> Swing
 
 
 class Sway(NamedTuple):
-    """A track's way to the side and back, once a cycle."""
+    """A track's displacement to the side and back, once a cycle."""
 
     amplitude: float
     """Of the sine of one cycle [m]."""
@@ -155,7 +156,7 @@ class Swum(NamedTuple):
     slip: float
     """Speed over that of the body wave [-]."""
     strouhal: float
-    """Frequency times the way of the tail's tip from side to side, over speed [-]."""
+    """Frequency times the peak-to-peak amplitude of the tail's tip, over speed [-]."""
     cost_of_transport: float
     """Power over displaced weight and speed [-]."""
     head_yaw: float

@@ -38,9 +38,9 @@ class Pool:
     """A robot's body in a box of water, snout at the origin."""
 
     robot: Crocodile
-    """Who swims."""
+    """The robot that swims."""
     motion: Motion
-    """How."""
+    """Its swimming motion."""
     setting: Tether
     """Grid, water and time."""
     turn: complex | None
@@ -105,7 +105,7 @@ class Pool:
         Raises:
             UnreadableFile: the checkpoint is broken or belongs to another swim.
             Unwritable: it cannot be written.
-            Diverged: the flow came apart.
+            Diverged: the flow diverged.
         """
         free = self.turn is None
         start = (0.5 * self.robot.length, 0.0)
@@ -126,7 +126,7 @@ class Pool:
 
 
 def _named(motion: Motion) -> object:
-    """Return what tells a motion from others, in full."""
+    """Return what identifies a motion, in full."""
     return motion if not hasattr(motion, "middles") else (motion.name, motion.frequency, motion.middles.tobytes())
 
 

@@ -1,4 +1,4 @@
-"""The cheap models of swimming: resistive after Taylor, reactive after Lighthill, on the robot's own midline.
+"""Slender-body models of swimming: resistive after Taylor, reactive after Lighthill, on the robot's own midline.
 
 Both take every section of the body for itself. The resistive model drags it by its own velocity; the reactive one
 gives it the momentum of the water beside it, which leaves at the tail. Neither knows the wake nor the flow around the
@@ -97,7 +97,8 @@ def recoil(outline: Outline, motion: Motion, speed: float, water: Water) -> tupl
         water: density.
 
     Returns:
-        Harmonics of the snout's way to the right [m] and of the head's direction [rad]: ``Re(h exp(2 pi i f t))``.
+        Harmonics of the snout's displacement to the right [m] and of the head's direction [rad]: ``Re(h exp(2 pi i f
+        t))``.
     """
     bent = undulation(outline, motion)
     omega = 2 * np.pi * bent.frequency
@@ -130,7 +131,7 @@ class Cruise(NamedTuple):
     power: float
     """Of the joints on the water [W]."""
     sway: complex
-    """Harmonic of the snout's way to the side [m]."""
+    """Harmonic of the snout's displacement to the side [m]."""
     turn: complex
     """Harmonic of the head's direction [rad]."""
 

@@ -60,7 +60,7 @@ _PER_MODEL = {
     "speed_lengths": ("1/s", "free swimming, in body lengths"),
     "power": ("W", "of the joints on the water"),
     "slip": ("1", "speed over that of the body wave"),
-    "strouhal": ("1", "frequency times the way of the tail's tip from side to side, over speed"),
+    "strouhal": ("1", "frequency times the peak-to-peak amplitude of the tail's tip, over speed"),
     "cost_of_transport": ("1", "power over displaced weight and speed"),
     "head_yaw": ("rad", "amplitude of the head's direction"),
 }

@@ -56,7 +56,7 @@ class Undulation:
     """Way of the snout to the right [m]."""
 
     def held(self, sway: complex = 0j, turn: complex = 0j) -> "Undulation":
-        """Return the same with a first harmonic added to the snout's way [m] and to the head's direction [rad]."""
+        """Return the same with a first harmonic added to snout's displacement [m] and head's direction [rad]."""
         middles, stations, snout = self.middles.copy(), self.stations.copy(), self.sway.copy()
         middles[1] += turn
         stations[1] += turn

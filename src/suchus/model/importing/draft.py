@@ -78,7 +78,7 @@ def draft_of(plan: Plan, name: str, words: Words) -> Draft:
 
 
 def _legs(plan: Plan, words: Words) -> tuple[Plan, list[str]]:
-    """Return a plan without limbs that do not reach below the axis, and what is told of them."""
+    """Return a plan without limbs that do not reach below the axis, and what is noted of them."""
     told = []
     for number in reversed(range(len(plan.pairs))):
         making = making_of(plan, words)

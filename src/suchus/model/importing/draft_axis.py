@@ -78,9 +78,9 @@ def _joints(making: Making, i: int, root: int) -> list[Found]:
     near, far = (axis[i + 1], axis[i]) if ahead else (axis[i], axis[i + 1])
     found = []
     for joint, onward in links_between(making.plan, near, far):
-        turn, way = turn_of(joint, making.turned(joint.axis), making.told)
+        turn, sense = turn_of(joint, making.turned(joint.axis), making.told)
         off = 0.0 if turn == "yaw" else abs(float(making.into(joint.anchor)[2]))
-        found.append((joint, turn, axial_sign(turn, way, ahead=ahead, onward=onward), off))
+        found.append((joint, turn, axial_sign(turn, sense, ahead=ahead, onward=onward), off))
     return found
 
 

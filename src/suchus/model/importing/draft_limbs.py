@@ -18,7 +18,7 @@ _THIN, _FOOT = 0.1, 0.08  # radius of a link whose shape is not known, over its 
 _FOOT_SHARE = 0.1  # of the last link's mass
 _POINT = 1e-6  # m; hinges nearer to each other sit in one point
 _LEAST = 1e-5  # m; of a hip's distance from the midline
-_ALIKE = 0.01  # of the size, or rad; sides that differ by more are told
+_ALIKE = 0.01  # of the size, or rad; sides that differ by more are noted
 _POSTURES = 256
 
 

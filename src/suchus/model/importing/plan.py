@@ -70,7 +70,7 @@ def plan_of(tree: Tree, words: Words) -> Plan:
     why = dict(lost)
     for i in first:
         names = [tree.parts[k].name for k in tree.below(i) if k not in used]
-        reason = why.get(i) or ("in the middle, but not on the way from front to rear" if i in split.axis else "a fork")
+        reason = why.get(i) or ("in the middle, but not between front and rear" if i in split.axis else "a fork")
         told.append(
             f"{', '.join(names[:4])}{' ...' if len(names) > 4 else ''} was left out ({reason}); its mass went to the "
             f"part that carries it. {'See --neck and --tail.' if i in split.axis else ''}".rstrip()
@@ -140,7 +140,7 @@ def _pruned(tree: Tree, names: Sequence[str]) -> tuple[Tree, list[str]]:
 
 
 def _chain(tree: Tree, plane: Plane, inside: Sequence[int], words: Words) -> tuple[int, ...]:
-    """Return the way through the parts in the plane from the foremost to the hindmost one."""
+    """Return the path through the parts in the plane from the foremost to the hindmost one."""
     ends = {i: plane.into(tree.parts[i].corners)[:, 0] for i in inside}
     front = _place(tree, words.neck, inside) if words.neck else max(inside, key=lambda i: float(ends[i].max()))
     rear = _place(tree, words.tail, inside) if words.tail else min(inside, key=lambda i: float(ends[i].min()))
@@ -164,11 +164,11 @@ def _upward(tree: Tree, place: int) -> list[int]:
 
 
 def _main(tree: Tree, plane: Plane, first: int) -> tuple[int, ...]:
-    """Return the way from a hip to the end of the branch that has most hinges, the lowest of those alike."""
+    """Return the path from a hip to the end of the branch that has most hinges, the lowest of those alike."""
 
     def rank(place: int) -> tuple[int, float]:
-        way = [i for i in _upward(tree, place) if i >= first]
-        hinges = sum(len(tree.parts[i].joints) for i in way)
+        path = [i for i in _upward(tree, place) if i >= first]
+        hinges = sum(len(tree.parts[i].joints) for i in path)
         return hinges, -float(plane.into(tree.parts[place].corners)[:, 2].min())
 
     below = tree.below(first)

@@ -85,7 +85,7 @@ def _shortened(rod: Piece, pieces: list[Piece]) -> Piece:
 
 
 def _is_cap(ball: Piece, rods: list[Piece]) -> bool:
-    """Tell whether a ball is the round end of a rod."""
+    """Return whether a ball is the round end of a rod."""
     return ball.ball and any(
         bool(ball.half[0] <= rod.half[0] * (1 + 1e-9))
         and bool(np.linalg.norm(rod.ends - ball.centre, axis=1).min() <= _NEAR * max(rod.half[0], 1e-9))

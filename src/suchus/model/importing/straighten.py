@@ -64,7 +64,7 @@ def _angle(plan: Plan, parts: list[Part], chain: Chain, pivot: Joint, axis: np.n
 
 
 def _turn(parts: list[Part], plan: Plan, place: int, which: int, angle: float) -> None:
-    """Turn all that a hinge carries, its own part included, and tell the hinge its new zero."""
+    """Turn all that a hinge carries, its own part included, and give the hinge its new zero."""
     pivot = parts[place].joints[which]
     rotation = Rotation.from_rotvec(angle * pivot.axis)
 

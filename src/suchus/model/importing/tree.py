@@ -13,7 +13,7 @@ from suchus.model.importing.loading import Loaded
 from suchus.model.importing.shapes import Piece, of_body
 
 NOTHING = 1e-9
-"""Masses up to this are none: MuJoCo was told to fill missing ones with a tenth of it [kg]."""
+"""Masses up to this are none: MuJoCo was asked to fill missing ones with a tenth of it [kg]."""
 JOINED = 1e-6
 """Hinges nearer than this share of a robot's size sit in one point [-]."""
 
