@@ -2,6 +2,7 @@
 
 import warnings
 from dataclasses import asdict, dataclass, fields, replace
+from importlib import import_module
 
 import pytest
 import xarray as xr
@@ -16,11 +17,11 @@ from suchus.experiments import EXPERIMENTS
 from suchus.land import Ground, Run
 from suchus.motion import Swim
 from suchus.optimise.page import EXAMPLE as SEARCH
-from suchus.optimise.page import Page as SearchPage
+from suchus.optimise.page import SearchFile
 from suchus.record import ground_of, ground_text
 from suchus.renamed import modern, names_of, old_names
 from suchus.study.page import EXAMPLE as STUDY
-from suchus.study.page import Page as StudyPage
+from suchus.study.page import StudyFile
 
 
 @old_names(breadth="width")
@@ -79,9 +80,9 @@ def test_a_study_and_a_search_with_the_old_keys_still_load(tmp_path):
     study.write_text(f'measure = ["displacement"]\nground = {{grip = 0.5}}\n{text}')
     search.write_text(f'grips = [0.5, 1.0]\naims = [{{name = "displacement"}}]\n{text}')
     with pytest.warns(OldKey, match=r"Ground\.grip is now called friction_scale"):
-        assert read(study, StudyPage, {"example": STUDY}).ground == Ground(friction_scale=0.5)
+        assert read(study, StudyFile, {"example": STUDY}).ground == Ground(friction_scale=0.5)
     with pytest.warns(OldKey, match="friction_scales"):
-        assert read(search, SearchPage, {"example": SEARCH}).friction_scales == (0.5, 1.0)
+        assert read(search, SearchFile, {"example": SEARCH}).friction_scales == (0.5, 1.0)
 
 
 def test_a_dotted_path_of_before_finds_the_field(robot, crawl_gait):
@@ -117,9 +118,30 @@ def test_records_keep_their_key_in_both_directions():
     assert ground_of(xr.Dataset({"stands_on": ((), ground_text(ground))})) == ground
 
 
-@pytest.mark.parametrize("kind", [Ground, Swim, SearchPage, *(type(EXPERIMENTS[n]) for n in ("displacement",))])
+@pytest.mark.parametrize("kind", [Ground, Swim, SearchFile, *(type(EXPERIMENTS[n]) for n in ("displacement",))])
 def test_every_new_name_is_a_field_and_no_old_one_is(kind):
     there = {field.name for field in fields(kind)}
     assert set(names_of(kind).values()) <= there
     assert names_of(kind)
     assert not set(names_of(kind)) & there
+
+
+@pytest.mark.parametrize(
+    ("room", "old", "new"),
+    [
+        ("capture", "Animal", "SyntheticAnimal"), ("capture", "Reading", "ReadingOptions"),
+        ("control", "Oscillation", "OscillatorStates"), ("hardware", "Load", "ServoLoad"),
+        ("kinematics", "Wave", "PrintedWave"), ("metrics", "Border", "DecisionBoundary"),
+        ("motion", "with_late_axis", "with_axis_lag"), ("optimise", "Told", "SearchProgress"),
+        ("robots", "Beside", "RelativeSize"), ("study", "Told", "StudyProgress"),
+        ("water", "Curve", "MidlineCurve"), ("water", "Silhouette", "BodySilhouette"),
+    ],
+)  # fmt: skip
+def test_a_room_gives_what_it_exports_by_the_old_name(room, old, new):
+    package = import_module(f"suchus.{room}")
+    with pytest.warns(OldName, match=f"{old} is now called {new}") as caught:
+        found = getattr(package, old)
+    assert found is getattr(package, new)
+    assert caught[0].filename == __file__
+    with pytest.raises(AttributeError, match="nothing_of_the_kind"):
+        package.nothing_of_the_kind  # noqa: B018

@@ -17,7 +17,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from suchus.capture import Animal, Camera, film_animal, write_table
+from suchus.capture import Camera, SyntheticAnimal, film_animal, write_table
 from suchus.cli.entry import main as suchus
 from suchus.design import AnyRobot, Crocodile
 from suchus.design.scale import coarse_step
@@ -47,7 +47,7 @@ TOOLS = {
     "export": "`suchus export`",
 }
 """Commands that take any body: their rows, and what the table calls them."""
-LIZARD = Animal(
+LIZARD = SyntheticAnimal(
     trunk=0.12,
     tail=0.20,
     period=0.8,

@@ -1,8 +1,9 @@
-"""Old names of fields: they go on working for one release, and a warning gives the new name."""
+"""Old names of fields, functions and classes: they go on working for one release, and a warning gives the new name."""
 
 import warnings
 from collections.abc import Callable, Mapping
 from functools import wraps
+from importlib import import_module
 from typing import Any, TypeVar, get_args, get_type_hints
 
 from suchus.errors import OldKey, OldName
@@ -34,6 +35,24 @@ def old_names(**new: str) -> Callable[[type[T]], type[T]]:
         return cls
 
     return decorate
+
+
+def old_exports(package: str, **new: str) -> Callable[[str], Any]:
+    """Return the ``__getattr__`` of a package that still gives functions and classes by their old names.
+
+    Args:
+        package: its full name.
+        new: the new name of a function or a class by its old one.
+    """
+
+    def find(name: str) -> Any:
+        if name not in new:
+            raise AttributeError(f"module {package!r} has no attribute {name!r}")
+        text = f"{package}.{name} is now called {new[name]}; the old name works for one more release."
+        warnings.warn(text, OldName, stacklevel=2)
+        return getattr(import_module(package), new[name])
+
+    return find
 
 
 def names_of(kind: Any) -> Mapping[str, str]:

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from suchus.control import LAWS, OWNERS, Coordinated, HeadingRule, Kick, LimbLaw, OpenLoop, Sensed, SpineRule, TailRule
 from suchus.control.limbs import GRAVITY, Limbs
 from suchus.control.shared import silence
-from suchus.control.spine import Spine
-from suchus.control.tail import Tail
+from suchus.control.spine import SpineController
+from suchus.control.tail import TailController
 from suchus.design import layout
 from suchus.errors import InvalidDesign, OutsideLimits
 from suchus.gaits import GAITS
@@ -129,8 +129,8 @@ def test_spine_and_tail_follow_the_limbs_by_the_open_loop_law(robot, crawl_gait,
     gait = replace(crawl_gait, spine_phase=late, tail_phase=later, duty_factor=duty)
     groups = [(robot, gait, np.array([0]))]
     shared = silence(1, 4).written_by("limbs", limb_phase=np.array([phase]))
-    shared = Spine([None], [robot], groups, PERIOD).step(shared)
-    shared = Tail([None], [robot], [gait], groups, PERIOD).step(shared)
+    shared = SpineController([None], [robot], groups, PERIOD).step(shared)
+    shared = TailController([None], [robot], [gait], groups, PERIOD).step(shared)
     for name, law in (("trunk", trunk_bend), ("tail", tail_bend)):
         assert getattr(shared, f"{name}_bend") == pytest.approx(law(gait, np.array([phase])), abs=1e-12)
         assert getattr(shared, f"{name}_direction") == pytest.approx(law(gait, np.array([phase]) + 0.25), abs=1e-12)
@@ -255,7 +255,7 @@ def test_noise_on_the_feet_follows_the_seed(robot, crawl_gait):
 
 def test_the_joints_share_out_what_is_lacking_of_the_bend(robot, crawl_gait):
     rule = SpineRule(share=0.25, delay=0.1)
-    spine = Spine([rule, None], [robot] * 2, [(robot, crawl_gait, np.arange(2))], PERIOD)
+    spine = SpineController([rule, None], [robot] * 2, [(robot, crawl_gait, np.arange(2))], PERIOD)
     targets = np.zeros((2, 19))
     felt = sensed(2, servo_position=np.where(np.isin(np.arange(19), TRUNK_YAW[:2]), 0.1, 0.0))  # 0.2 of 0.6 rad
     for tick in range(200):
@@ -268,7 +268,7 @@ def test_the_joints_share_out_what_is_lacking_of_the_bend(robot, crawl_gait):
 
 
 def test_no_joint_is_told_to_leave_its_range(robot, crawl_gait):
-    spine = Spine([SpineRule(share=2.0, delay=0.0)], [robot], [(robot, crawl_gait, np.arange(1))], PERIOD)
+    spine = SpineController([SpineRule(share=2.0, delay=0.0)], [robot], [(robot, crawl_gait, np.arange(1))], PERIOD)
     told = spine.correct(np.zeros((1, 19)), np.array([3.0]), sensed(1))
     assert told[0, TRUNK_YAW] == pytest.approx(robot.spine.yaw_range[1])
 
@@ -277,7 +277,7 @@ def test_the_tail_gives_way_to_its_torque_within_its_range(robot, crawl_gait):
     limbs_gait = GAITS["limbs_tail_lifted"]
     gaits = [crawl_gait, crawl_gait, crawl_gait, limbs_gait]
     rule = TailRule(rate=0.5)
-    tail = Tail(
+    tail = TailController(
         [rule, rule, None, rule], [robot] * 4, gaits, [(robot, g, np.array([i])) for i, g in enumerate(gaits)], PERIOD
     )
     pitch = np.array([gait.tail_pitch for gait in gaits])

@@ -200,7 +200,7 @@ def test_versions_that_do_not_understand_each_other_are_named():
     _check_versions(Cluster({"client": ours, "scheduler": patch, "workers": {"w": ours}}))
     with pytest.raises(IncompatibleRecord, match=r"the worker w has distributed 2025\.1\.0 \(here 2026\.8\.0\)"):
         _check_versions(Cluster({"client": ours, "scheduler": ours, "workers": {"w": theirs}}))
-    with pytest.raises(NoCluster, match="does not tell its versions"):
+    with pytest.raises(NoCluster, match="does not report its versions"):
         _check_versions(Cluster({}))
 
 

@@ -19,7 +19,7 @@ _TAIL = 6  # segments of the tail
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Animal:
+class SyntheticAnimal:
     """A lizard-like body that walks straight on with feet that never slip."""
 
     trunk: float
@@ -68,7 +68,7 @@ class Animal:
             )
 
 
-def film_animal(animal: Animal, camera: Camera, *, cycles: float, pace: ArrayLike = (1.0,)) -> Tracks:
+def film_animal(animal: SyntheticAnimal, camera: Camera, *, cycles: float, pace: ArrayLike = (1.0,)) -> Tracks:
     """Return the tracks of an animal.
 
     Args:
@@ -86,7 +86,7 @@ def film_animal(animal: Animal, camera: Camera, *, cycles: float, pace: ArrayLik
     return tracked(points, time, camera, source="the film of an animal")
 
 
-def _midline(animal: Animal, time: np.ndarray) -> dict[str, np.ndarray]:
+def _midline(animal: SyntheticAnimal, time: np.ndarray) -> dict[str, np.ndarray]:
     """Points from neck to tail tip: a chain whose bends are shared evenly among its joints."""
     phase = time / animal.period
     spine = animal.spine_bend * np.cos(2 * np.pi * (phase - animal.spine_rightmost))
@@ -109,7 +109,7 @@ def _midline(animal: Animal, time: np.ndarray) -> dict[str, np.ndarray]:
     return points
 
 
-def _foot(animal: Animal, leg: str, time: np.ndarray) -> np.ndarray:
+def _foot(animal: SyntheticAnimal, leg: str, time: np.ndarray) -> np.ndarray:
     """A foot that stands still, then goes on by a stride, without a jerk at either end."""
     phase = time / animal.period + animal.limb_phases[LEGS.index(leg)]
     number, within = np.floor(phase), np.mod(phase, 1.0)

@@ -20,7 +20,7 @@ _JUMP = 8.0  # times the usual residual; what a body does in steps stays well be
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Periodic:
+class PeriodicFit:
     """A periodic quantity: mean, drift and harmonics, fitted to the frames in which it was seen."""
 
     period: float
@@ -69,7 +69,7 @@ class Periodic:
         return np.asarray(self.mean + np.power.outer(t, powers) @ self.drift)
 
 
-def fit(time: np.ndarray, values: np.ndarray, period: float, *, harmonics: int, drift: int = 0) -> Periodic:
+def fit(time: np.ndarray, values: np.ndarray, period: float, *, harmonics: int, drift: int = 0) -> PeriodicFit:
     """Fit mean, drift and harmonics by least squares to the frames that are seen; points that jumped are left out.
 
     Args:
@@ -96,7 +96,7 @@ def fit(time: np.ndarray, values: np.ndarray, period: float, *, harmonics: int, 
         use = keep
     residual = np.where(use, values - X @ found, np.nan)
     cos, sin = np.split(found[drift + 1 :], 2)
-    return Periodic(
+    return PeriodicFit(
         period=period,
         mean=float(found[0]),
         drift=found[1 : drift + 1] / reach ** np.arange(1, drift + 1),

@@ -20,7 +20,7 @@ _SURE = 1.96  # standard errors to either side that hold the truth in 95 of 100 
 _BINS, _RARE = 40, 0.2  # of the cycle; share of the frames of a bin in which a hidden foot may be seen
 
 
-class Contact(NamedTuple):
+class FootContact(NamedTuple):
     """One foot over its mean cycle; phases count from time zero of the tracks [cycle]."""
 
     speed: Float[np.ndarray, " grid"]
@@ -48,7 +48,7 @@ class Contact(NamedTuple):
         return (self.lift_off - self.touch_down) % 1.0
 
 
-class Sweep(NamedTuple):
+class FootSweep(NamedTuple):
     """How one foot moves against its girdle over the mean cycle."""
 
     forward: Float[np.ndarray, " grid"]
@@ -80,7 +80,7 @@ def steps(tracks: Tracks, leg: str, period: float) -> Middles:
     return middles(tracks.time, tracks.at(leg)[:, :2], forward_path(tracks, leg), period)
 
 
-def contact(tracks: Tracks, leg: str, period: float) -> Contact:
+def contact(tracks: Tracks, leg: str, period: float) -> FootContact:
     """Return when a foot stands in the mean cycle: see ``swings``.
 
     Args:
@@ -105,7 +105,7 @@ def contact(tracks: Tracks, leg: str, period: float) -> Contact:
     middle_error = np.hypot(_SURE * found.middle_error, times * np.std(apart, ddof=1) / np.sqrt(n)) if n > 1 else np.nan
     phase, half = grid(), found.share / 2
     lift_off, touch_down = (whole + found.skew - half) % 1.0, (whole + found.skew + half) % 1.0
-    return Contact(
+    return FootContact(
         speed=_speed(tracks, leg, period),
         stance=(phase - touch_down) % 1.0 < (lift_off - touch_down) % 1.0,
         lift_off=lift_off,
@@ -136,7 +136,7 @@ def _hidden(tracks: Tracks, point: str, period: float) -> float:
     return float(np.mean(share[filmed > 0] < _RARE))
 
 
-def sweep(tracks: Tracks, leg: str, period: float) -> Sweep:
+def sweep(tracks: Tracks, leg: str, period: float) -> FootSweep:
     """Return how a foot moves in the frame of its girdle, whose direction is smoothed over the cycle.
 
     Args:
@@ -156,7 +156,7 @@ def sweep(tracks: Tracks, leg: str, period: float) -> Sweep:
     if tracks.upright:
         lift = float(np.ptp(fit(tracks.time, tracks.at(leg)[:, 2], period, harmonics=count).swing(grid() * period)))
     course = path.mean + path.swing(grid() * period)
-    return Sweep(course, float(np.nanmean(outward)), lift, *_fitting_path(course))
+    return FootSweep(course, float(np.nanmean(outward)), lift, *_fitting_path(course))
 
 
 def path_shape(duty: float) -> Float[np.ndarray, " grid"]:

@@ -10,8 +10,8 @@ from scipy.stats import t as student
 
 from suchus.capture.angles import bend_angles, joint_bends, wrapped
 from suchus.capture.clock import Clock, paced
-from suchus.capture.cycle import Periodic, find_period, fit, harmonics_for
-from suchus.capture.feet import GRID, Contact, Sweep, contact, forward_path, steps, sweep
+from suchus.capture.cycle import PeriodicFit, find_period, fit, harmonics_for
+from suchus.capture.feet import GRID, FootContact, FootSweep, contact, forward_path, steps, sweep
 from suchus.capture.jumps import without_jumps
 from suchus.capture.sides import check_sides
 from suchus.capture.tracks import Tracks, UnusableTracks, check_tracks
@@ -78,8 +78,8 @@ class Walk:
 class _Reading(NamedTuple):
     """What one stretch of time shows."""
 
-    angles: dict[str, Periodic]
-    sweeps: dict[str, Sweep]
+    angles: dict[str, PeriodicFit]
+    sweeps: dict[str, FootSweep]
     advance: float  # of the body in one cycle [m or px]
     trunk: float  # [m or px]
     period: float
@@ -110,7 +110,7 @@ def observe(tracks: Tracks, *, tail_share: float = 1.0) -> Walk:
     clock = paced({leg: steps(tracks, leg, rough) for leg in LEGS}, rough)
     tracks, period = replace(tracks, time=clock.read(tracks.time)), clock.period
     whole = _read(tracks, period, tail_share)
-    feet: dict[str, Contact] = {leg: contact(tracks, leg, period) for leg in LEGS}
+    feet: dict[str, FootContact] = {leg: contact(tracks, leg, period) for leg in LEGS}
     _check_advance(whole, tracks.source)
     _check_feet(feet, tracks.source)
     zero = _zero(feet)
@@ -129,7 +129,9 @@ def observe(tracks: Tracks, *, tail_share: float = 1.0) -> Walk:
     )
 
 
-def _seen(tracks: Tracks, whole: _Reading, feet: Mapping[str, Contact], zero: float, clock: Clock) -> dict[str, Seen]:
+def _seen(
+    tracks: Tracks, whole: _Reading, feet: Mapping[str, FootContact], zero: float, clock: Clock
+) -> dict[str, Seen]:
     """Return every number with its spread and its interval."""
     count = int((tracks.time[-1] - tracks.time[0]) / whole.period + 0.05)
     each = [
@@ -161,7 +163,7 @@ def _times(n: int) -> float:
     return float(student.ppf(0.975, n - 1))
 
 
-def _check_feet(feet: Mapping[str, Contact], source: str) -> None:
+def _check_feet(feet: Mapping[str, FootContact], source: str) -> None:
     """Refuse feet of which it cannot be seen whether they stand or swing."""
     known = {leg: foot.duty_error for leg, foot in feet.items() if np.isfinite(foot.duty_error)}
     if known and min(known.values()) > _BLIND:
@@ -172,7 +174,7 @@ def _check_feet(feet: Mapping[str, Contact], source: str) -> None:
         )
 
 
-def _unknown(feet: Mapping[str, Contact]) -> tuple[str, ...]:
+def _unknown(feet: Mapping[str, FootContact]) -> tuple[str, ...]:
     """Say of which feet too little is seen."""
     notes = []
     for leg, foot in feet.items():
@@ -239,13 +241,13 @@ def _numbers(reading: _Reading, zero: float) -> dict[str, float]:
     return {name: value for name, value in numbers.items() if np.isfinite(value)}
 
 
-def _zero(feet: Mapping[str, Contact]) -> float:
+def _zero(feet: Mapping[str, FootContact]) -> float:
     """Phase of the tracks' clock at which the gait begins: LF's mid-stance, back by swing and half of stance."""
     duty = float(np.mean([foot.duty for foot in feet.values()]))
     return feet["LF"].touch_down + feet["LF"].duty / 2 - (1.0 - duty / 2)
 
 
-def _first(one: Periodic, zero: float) -> complex:
+def _first(one: PeriodicFit, zero: float) -> complex:
     return complex(one.harmonics[0] * np.exp(2j * np.pi * zero))
 
 
@@ -300,7 +302,7 @@ def _check_advance(reading: _Reading, source: str) -> None:
         )
 
 
-def _mean_cycle(tracks: Tracks, reading: _Reading, feet: Mapping[str, Contact], zero: float) -> xr.Dataset:
+def _mean_cycle(tracks: Tracks, reading: _Reading, feet: Mapping[str, FootContact], zero: float) -> xr.Dataset:
     phase = np.arange(GRID) / GRID
     time = (phase + zero) * reading.period
     data = xr.Dataset(coords={"phase": ("phase", phase, {"units": "1"}), "leg": list(LEGS)})
@@ -323,7 +325,7 @@ def _positive(name: str) -> str:
     return "right" if name.endswith("lateral") else "down"
 
 
-def _left_over(tracks: Tracks, one: Periodic, phase: np.ndarray, zero: float) -> np.ndarray:
+def _left_over(tracks: Tracks, one: PeriodicFit, phase: np.ndarray, zero: float) -> np.ndarray:
     """Standard deviation of the frames about the mean cycle, in bins of phase, drawn through [rad]."""
     at = np.mod(tracks.time / one.period - zero, 1.0)
     bins = np.minimum((at * _BINS).astype(int), _BINS - 1)

@@ -12,7 +12,7 @@ from suchus import blueprint
 from suchus.capture import (
     NEEDED,
     Captured,
-    Reading,
+    ReadingOptions,
     Walk,
     driven_share,
     is_angle_table,
@@ -41,7 +41,7 @@ _SHELF = "caiman"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Options:
+class CaptureOptions:
     """What can be said after ``suchus capture``."""
 
     tracks: Annotated[Path, tyro.conf.Positional]
@@ -83,7 +83,9 @@ def capture(words: Sequence[str]) -> int:
         SuchusError: the words or the tracks make no sense.
     """
     about = "Read a gait from tracked keypoints of a walking body: a gait file to run, and its diagram."
-    options: Options = parse(Options, "suchus capture", words, about, [f.name for f in fields(Options)])
+    options: CaptureOptions = parse(
+        CaptureOptions, "suchus capture", words, about, [f.name for f in fields(CaptureOptions)]
+    )
     if options.out.suffix != ".toml":
         raise BadCommand(f"the gait goes into a .toml file; --out is {str(options.out)!r}.")
     check_writable(options.out.parent)
@@ -109,7 +111,7 @@ def capture(words: Sequence[str]) -> int:
     return 0
 
 
-def _retargeted(walk: Walk, options: Options, base: AnyGait) -> Captured:
+def _retargeted(walk: Walk, options: CaptureOptions, base: AnyGait) -> Captured:
     """Return the gait of the kind that lends what was not seen."""
     if isinstance(base, Gait):
         return to_gait(walk, options.robot, base, name=options.out.stem, duty=options.duty)
@@ -120,7 +122,7 @@ def _retargeted(walk: Walk, options: Options, base: AnyGait) -> Captured:
     )
 
 
-def _play(options: Options) -> int:
+def _play(options: CaptureOptions) -> int:
     """Write the gait that plays a table of joint angles, say what it is, and return 0."""
     cycle = read_angles(options.tracks)
     gait = to_angle_table(cycle, options.robot, name=options.out.stem, period=options.period)
@@ -133,14 +135,14 @@ def _play(options: Options) -> int:
     return 0
 
 
-def _how(options: Options) -> Reading:
+def _how(options: CaptureOptions) -> ReadingOptions:
     names = {}
     for pair in options.names:
         theirs, equals, ours = pair.partition("=")
         if not (theirs and equals and ours):
             raise BadCommand(f"--names has {pair!r}; THEIRS=OURS is needed, as in left_fore_paw=LF.")
         names[theirs] = ours
-    return Reading(
+    return ReadingOptions(
         names=names,
         rate=options.fps,
         software=options.software,

@@ -12,7 +12,7 @@ from multiprocessing.process import BaseProcess
 
 import suchus.experiments
 from suchus import threads
-from suchus.cli.attempt import Came, Task, attempt, failed
+from suchus.cli.attempt import Job, JobResult, attempt, failed
 from suchus.cli.terminal import Bars
 from suchus.experiment import Progress, silent
 from suchus.record import sweep
@@ -28,11 +28,11 @@ class _Worker:
 
     process: BaseProcess
     pipe: Connection
-    task: Task | None = None
+    task: Job | None = None
     move: Progress = silent
 
 
-def side_by_side(tasks: Sequence[Task], jobs: int, bars: Bars) -> dict[str, Came]:
+def side_by_side(tasks: Sequence[Job], jobs: int, bars: Bars) -> dict[str, JobResult]:
     """Run experiments in ``jobs`` processes, which share the threads, and return what came of each by name.
 
     They are begun in the order given. A process that dies takes its experiment with it and nothing else. When this
@@ -43,7 +43,7 @@ def side_by_side(tasks: Sequence[Task], jobs: int, bars: Bars) -> dict[str, Came
         jobs: number of processes.
         bars: where progress is shown.
     """
-    left, came = list(tasks), dict[str, Came]()
+    left, came = list(tasks), dict[str, JobResult]()
     each = max(threads.count() // jobs, 1)
     crew = [_hire(each) for _ in range(min(jobs, len(left)))]
     try:
@@ -53,7 +53,7 @@ def side_by_side(tasks: Sequence[Task], jobs: int, bars: Bars) -> dict[str, Came
             for pipe in wait(list(busy)):
                 worker = busy[pipe]  # type: ignore[index]  # only connections are waited for
                 said = _heard(worker)
-                if not isinstance(said, Came):
+                if not isinstance(said, JobResult):
                     worker.move(*said)
                     continue
                 came[said.result.name] = said
@@ -81,17 +81,17 @@ def _hire(each: int) -> _Worker:
     return _Worker(process=work, pipe=here)
 
 
-def _give(worker: _Worker, task: Task, bars: Bars) -> None:
+def _give(worker: _Worker, task: Job, bars: Bars) -> None:
     worker.task, worker.move = task, bars.task(task.name)
     with suppress(*_GONE):  # it is heard of then
         worker.pipe.send(task)
 
 
-def _heard(worker: _Worker) -> Came | tuple[str, float]:
+def _heard(worker: _Worker) -> JobResult | tuple[str, float]:
     """Return what a busy worker says: what came of its experiment, or how far it is."""
     assert worker.task is not None
     try:
-        said: Came | tuple[str, float] = worker.pipe.recv()
+        said: JobResult | tuple[str, float] = worker.pipe.recv()
     except _GONE:
         worker.process.join(_PATIENCE)
         sweep(worker.task.out / worker.task.name)

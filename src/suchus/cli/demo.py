@@ -14,7 +14,7 @@ from suchus.cli.browser import browser
 from suchus.cli.commands import BadCommand
 from suchus.cli.options import parse
 from suchus.cli.terminal import working
-from suchus.cli.view import Walking, serve_walk
+from suchus.cli.view import ViewWalkOptions, serve_walk
 from suchus.design.checks import require
 from suchus.gaits import GAITS
 from suchus.land import Run, simulate
@@ -30,7 +30,7 @@ _NEEDED = ("viser", "mjviser")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Options:
+class DemoOptions:
     """What can be said after ``suchus demo``."""
 
     no_browser: Annotated[
@@ -55,11 +55,11 @@ def demo(words: Sequence[str]) -> int:
         SuchusError: the words make no sense, or the page cannot be written.
     """
     about = "A robot walks: live in the browser, or on a page that plays offline."
-    options: Options = parse(Options, "suchus demo", words, about, [f.name for f in fields(Options)])
+    options: DemoOptions = parse(DemoOptions, "suchus demo", words, about, [f.name for f in fields(DemoOptions)])
     opener = None if options.no_browser else browser()
     live = all(find_spec(name) for name in _NEEDED)
     if opener is not None and live:
-        return serve_walk(Walking(port=options.port), opener.open)
+        return serve_walk(ViewWalkOptions(port=options.port), opener.open)
     return _page(options.out, opener, live)
 
 

@@ -19,7 +19,7 @@ from suchus.robots import ROBOTS
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Options:
+class ExportOptions:
     """What can be said after ``suchus export``."""
 
     format: Format = "mjcf"
@@ -42,7 +42,9 @@ def export_robot(words: Sequence[str]) -> int:
     """
     about = "Write a robot for other tools: model, scene, home posture, and a README of what the format leaves out."
     _check_format(words)
-    options: Options = parse(Options, "suchus export", words, about, [f.name for f in fields(Options)])
+    options: ExportOptions = parse(
+        ExportOptions, "suchus export", words, about, [f.name for f in fields(ExportOptions)]
+    )
     if options.out is None:
         check_name(options.robot.name, "robot")
     folder = options.out or Path("export") / f"{options.robot.name}_{options.format}"

@@ -20,7 +20,7 @@ _METRES = Annotated[float | None, tyro.conf.arg(metavar="METRES")]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Options:
+class ImportOptions:
     """What can be said after ``suchus import``."""
 
     file: Annotated[Path, tyro.conf.Positional]
@@ -51,7 +51,9 @@ def import_file(words: Sequence[str]) -> int:
         "Read a robot from a URDF or an MJCF: a draft in which every guess is commented, and a gait to begin with. "
         "Nothing in the file is executed; what it includes is read from its own folder only."
     )
-    options: Options = parse(Options, "suchus import", words, about, [f.name for f in fields(Options)])
+    options: ImportOptions = parse(
+        ImportOptions, "suchus import", words, about, [f.name for f in fields(ImportOptions)]
+    )
     out = options.out or Path(f"{options.file.stem}.toml")
     if out.suffix != ".toml":
         raise BadCommand(f"the robot goes into a .toml file; --out is {str(out)!r}.")

@@ -11,14 +11,14 @@ import tyro
 from suchus.cli.options import SCHEDULER, parse
 from suchus.cli.terminal import Bars, working
 from suchus.errors import UnknownName
-from suchus.optimise import AIMS, READY, Optimisation, Told, read_optimisation, write_results
+from suchus.optimise import AIMS, READY, Optimisation, SearchProgress, read_optimisation, write_results
 from suchus.optimise import optimise as conduct
 from suchus.record import check_name, check_writable, there
 from suchus.study import at_scheduler
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Options:
+class OptimiseOptions:
     """What can be said after ``suchus optimise``."""
 
     what: Annotated[str, tyro.conf.Positional]
@@ -40,7 +40,9 @@ def optimise(words: Sequence[str]) -> int:
     """
     ready = "; ".join(f"{name}: {made.__doc__}" for name, made in READY.items())
     about = f"Search for a better gait or body. Started again it goes on where it stopped. Ready-made: {ready}"
-    options: Options = parse(Options, "suchus optimise", words, about, [f.name for f in fields(Options)])
+    options: OptimiseOptions = parse(
+        OptimiseOptions, "suchus optimise", words, about, [f.name for f in fields(OptimiseOptions)]
+    )
     spec = _asked(options)
     folder = options.out or Path("out") / "optimise" / spec.name
     check_writable(folder)
@@ -61,7 +63,7 @@ def optimise(words: Sequence[str]) -> int:
     return 0
 
 
-def _asked(options: Options) -> Optimisation:
+def _asked(options: OptimiseOptions) -> Optimisation:
     """Return the search that is asked for."""
     if options.what in READY:
         spec = READY[options.what]()
@@ -76,7 +78,7 @@ def _asked(options: Options) -> Optimisation:
     return spec if options.seed is None else replace(spec, seed=options.seed)
 
 
-def _shown(bars: Bars, spec: Optimisation) -> Callable[[Told], None]:
+def _shown(bars: Bars, spec: Optimisation) -> Callable[[SearchProgress], None]:
     """Return what moves a bar for each arm."""
     tells = {arm.name: bars.told(f"{spec.name} {arm.name}") for arm in spec.arms}
     return lambda told: tells[told.arm](told, min(told.done / told.budget, 1.0))

@@ -46,7 +46,7 @@ SCHEDULER = Annotated[
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Choice:
+class RunRequest:
     """What the words ask for."""
 
     experiment: Experiment
@@ -59,7 +59,7 @@ class Choice:
     """Whether the record is wanted as CSV too."""
 
 
-def choose(experiment: Experiment, name: str, words: Sequence[str]) -> Choice:
+def choose(experiment: Experiment, name: str, words: Sequence[str]) -> RunRequest:
     """Return what the words after ``suchus run NAME`` ask for.
 
     Raises:
@@ -84,7 +84,7 @@ def choose(experiment: Experiment, name: str, words: Sequence[str]) -> Choice:
     )
     names = ["quick", "out", "csv", *(f.name for f in fields(start))]  # type: ignore[arg-type]
     chosen = parse(options, prog, words, f"{start.title}\n\nAnswers: {start.shows}", names)
-    return Choice(experiment=chosen.experiment, quick=quick, out=chosen.out, csv=chosen.csv)
+    return RunRequest(experiment=chosen.experiment, quick=quick, out=chosen.out, csv=chosen.csv)
 
 
 def _today(word: str, kind: type) -> str:

@@ -18,7 +18,7 @@ from suchus.robots import ROBOTS
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Options:
+class ReplayOptions:
     """What can be said after ``suchus replay``."""
 
     file: Annotated[Path, tyro.conf.Positional]
@@ -42,7 +42,9 @@ def make_replay(words: Sequence[str]) -> int:
         SuchusError: the words or the record make no sense, or the place cannot be written to.
     """
     about = "Turn a stored run on land into one HTML file: three-dimensional, plays offline, can be mailed."
-    options: Options = parse(Options, "suchus replay", words, about, [f.name for f in fields(Options)])
+    options: ReplayOptions = parse(
+        ReplayOptions, "suchus replay", words, about, [f.name for f in fields(ReplayOptions)]
+    )
     check_file(options.file)
     out = options.out or options.file.with_suffix(".html")
     if out.suffix.lower() not in (".html", ".htm"):

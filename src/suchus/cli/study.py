@@ -12,14 +12,23 @@ from suchus.cli.commands import BadCommand
 from suchus.cli.options import CSV, SCHEDULER, TABLES, parse
 from suchus.cli.terminal import working
 from suchus.record import check_name, there, write_tables
-from suchus.study import Claims, Told, answer_finished, at_scheduler, conduct, conduct_claims, read_study, write_claims
+from suchus.study import (
+    Claims,
+    StudyProgress,
+    answer_finished,
+    at_scheduler,
+    conduct,
+    conduct_claims,
+    read_study,
+    write_claims,
+)
 from suchus.study.store import RESULTS, TABLE
 
 CLAIMS = "claims"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Options:
+class StudyOptions:
     """What can be said after ``suchus study``."""
 
     file: Annotated[Path, tyro.conf.Positional]
@@ -42,7 +51,7 @@ def study(words: Sequence[str]) -> int:
         SuchusError: the words or the file make no sense, or the store cannot be written to.
     """
     about = "Run many variants of one run, and keep what is measured. Started again it goes on where it stopped."
-    options: Options = parse(Options, "suchus study", words, about, [f.name for f in fields(Options)])
+    options: StudyOptions = parse(StudyOptions, "suchus study", words, about, [f.name for f in fields(StudyOptions)])
     if str(options.file) == CLAIMS and not there(options.file):
         return _claims(options)
     asked = read_study(options.file)
@@ -65,7 +74,7 @@ def study(words: Sequence[str]) -> int:
     return 0
 
 
-def _claims(options: Options) -> int:
+def _claims(options: StudyOptions) -> int:
     """Conduct the ready-made study of the claims, or finish it."""
     asked = Claims() if options.samples is None else Claims(samples=options.samples)
     folder = options.out or Path("out") / "studies" / CLAIMS
@@ -74,7 +83,7 @@ def _claims(options: Options) -> int:
     with at_scheduler(options.scheduler) as client, working() as bars:
         shown: dict[str, Callable[[object, float], None]] = {}
 
-        def show(place: str, told: Told) -> None:
+        def show(place: str, told: StudyProgress) -> None:
             if place not in shown:
                 shown[place] = bars.told(f"{CLAIMS} {place.replace('_', ' ')}")
             shown[place](told, told.done / told.total)

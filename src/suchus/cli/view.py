@@ -43,7 +43,7 @@ class Where:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Walking(Where):
+class ViewWalkOptions(Where):
     """What can be said after ``suchus view`` to see a walk."""
 
     robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
@@ -69,7 +69,7 @@ class Replaying(Where):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Swimming(Where):
+class ViewSwimOptions(Where):
     """What can be said after ``suchus view swim``."""
 
     record: Annotated[Path, tyro.conf.Positional]
@@ -101,13 +101,15 @@ def _walk(words: Sequence[str]) -> int:
     first = list(takewhile(lambda word: not word.startswith("-"), words[:2]))
     named = [part for option, word in zip(("--robot", "--gait"), first, strict=False) for part in (option, word)]
     told = [*named, *words[len(first) :]]
-    options: Walking = parse(Walking, "suchus view", told, about, [f.name for f in fields(Walking)])
+    options: ViewWalkOptions = parse(
+        ViewWalkOptions, "suchus view", told, about, [f.name for f in fields(ViewWalkOptions)]
+    )
     if options.lake and not first and "--robot" not in told:
         options = replace(options, robot=ROBOTS["floating_caiman"])
     return serve_walk(options)
 
 
-def serve_walk(options: Walking, opened: Callable[[str], object] | None = None) -> int:
+def serve_walk(options: ViewWalkOptions, opened: Callable[[str], object] | None = None) -> int:
     """Let a robot walk in the browser until interrupted, and return 0.
 
     Args:
@@ -153,7 +155,9 @@ def _replay(words: Sequence[str]) -> int:
 
 def _swim(words: Sequence[str]) -> int:
     about = "A swim played back in the browser, with vorticity and pressure of the water."
-    options: Swimming = parse(Swimming, "suchus view swim", words, about, [f.name for f in fields(Swimming)])
+    options: ViewSwimOptions = parse(
+        ViewSwimOptions, "suchus view swim", words, about, [f.name for f in fields(ViewSwimOptions)]
+    )
     swims, curves = films(options.record)
     pages = _pages()
     return _serve(

@@ -13,8 +13,8 @@ from suchus.control.limbs import LAWS, LimbLaw, Limbs, in_pairs
 from suchus.control.open_loop import OpenLoop
 from suchus.control.sensed import Sensed
 from suchus.control.shared import silence
-from suchus.control.spine import Spine, SpineRule
-from suchus.control.tail import Tail, TailRule
+from suchus.control.spine import SpineController, SpineRule
+from suchus.control.tail import TailController, TailRule
 from suchus.design import AnyRobot, layout
 from suchus.design.checks import Checks, require
 from suchus.errors import InvalidDesign, UnsuitedRobot
@@ -147,8 +147,8 @@ class Coordinator:
                 self._kicks.setdefault(int(np.ceil(kick.at / period - _SLACK)), []).append((run, np.array(kick.ahead)))
         self._hears = np.array([control.sharing for control in controls])[:, None]
         self._limbs = Limbs([control.limbs for control in controls], robots, gaits, ahead, period)
-        self._spine = Spine([control.spine for control in controls], robots, self._groups, period)
-        self._tail = Tail([control.tail for control in controls], robots, paths, self._groups, period)
+        self._spine = SpineController([control.spine for control in controls], robots, self._groups, period)
+        self._tail = TailController([control.tail for control in controls], robots, paths, self._groups, period)
         steered = any(control.heading is not None for control in controls)
         self._heading = Heading([control.heading for control in controls], robots, paths, period) if steered else None
         self._shared = silence(len(robots), limbs)

@@ -295,7 +295,7 @@ def _initial(
     return initial_phases(posture.segments, limbs, lag, driven=driven)
 
 
-class Oscillation(NamedTuple):
+class OscillatorStates(NamedTuple):
     """What oscillators do without a body."""
 
     time: Float[np.ndarray, " time"]
@@ -319,7 +319,7 @@ def oscillate(
     seeds: Sequence[int] | None = None,
     every: int = 1,
     progress: Callable[[float], None] | None = None,
-) -> Oscillation:
+) -> OscillatorStates:
     """Let pattern generators turn without a body, from the time at which a walk begins.
 
     Args:
@@ -343,7 +343,7 @@ def oscillate(
             if progress is not None:
                 progress((tick - first) / max(ticks, 1))
     time, phase, amplitude, wave = zip(*found, strict=True)
-    return Oscillation(
+    return OscillatorStates(
         time=np.array(time),
         phase=np.stack(phase, axis=1),
         amplitude=np.stack(amplitude, axis=1),

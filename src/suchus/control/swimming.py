@@ -76,7 +76,7 @@ class Swimming:
         seeds: Sequence[int],
         ticks: int,
         period: float,
-    ) -> "Swimmer":
+    ) -> "SwimmingController":
         """Start the swim for every robot.
 
         Raises:
@@ -93,7 +93,7 @@ class Swimming:
         seeds: Sequence[int],
         ticks: int,
         period: float,
-    ) -> "Swimmer":
+    ) -> "SwimmingController":
         """Start the swims of a batch, one per run.
 
         Raises:
@@ -101,10 +101,10 @@ class Swimming:
             InvalidDesign: a robot whose depth is held has too little air.
         """
         del gaits, seeds
-        return Swimmer(controls, crocodiles(robots, "swimming by trunk and cable"), ticks, period)
+        return SwimmingController(controls, crocodiles(robots, "swimming by trunk and cable"), ticks, period)
 
 
-class Swimmer:
+class SwimmingController:
     """The running swims of a batch: a table for each, to which what is felt adds."""
 
     def __init__(self, controls: Sequence[Swimming], robots: Sequence[Crocodile], ticks: int, period: float) -> None:

@@ -35,7 +35,7 @@ class TailRule:
             checks.that(self.highest <= self.lowest, "highest must be at most lowest: down is positive")
 
 
-class Tail:
+class TailController:
     """The tails of a batch."""
 
     def __init__(
@@ -78,7 +78,7 @@ class Tail:
                 direction[runs] = tail_bend(gait, shared.limb_phase[runs] + 0.25)
         return shared.written_by("tail", tail_bend=bend, tail_direction=direction)
 
-    def take_over(self, before: "Tail") -> None:
+    def take_over(self, before: "TailController") -> None:
         """Go on from where the tails of the same runs stand, as far as the gait asks for the same pitch."""
         self._pitch = np.where(self._on & (self._asked == before._asked), before._pitch, self._asked)
 

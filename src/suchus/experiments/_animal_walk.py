@@ -128,7 +128,7 @@ def _turned(force: xr.DataArray, record: xr.Dataset, when: Window) -> xr.DataArr
     return xr.concat(parts, xr.DataArray(list(PARTS), dims="part", name="part"))
 
 
-class Step(NamedTuple):
+class FootStep(NamedTuple):
     """What the ground does to one foot in its mean stance."""
 
     net: float
@@ -141,7 +141,7 @@ class Step(NamedTuple):
     """Duration of the stance that holds it [cycle]."""
 
 
-def step(force: xr.DataArray, least: float) -> Step:
+def step(force: xr.DataArray, least: float) -> FootStep:
     """Return what stands out in the force on one foot over a cycle.
 
     Args:
@@ -155,7 +155,7 @@ def step(force: xr.DataArray, least: float) -> Step:
     after = count if stands.all() else int(np.argmin(stands))
     before = 0 if stands.all() else int(np.argmin(stands[::-1]))
     length = min(after + before, count)
-    return Step(
+    return FootStep(
         net=float(net[top]),
         parts={name: float(one[top]) for name, one in parts.items()},
         time=before / length if length else nan,

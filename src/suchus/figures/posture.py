@@ -15,7 +15,7 @@ from suchus import rotation
 from suchus.design import GRAVITY, AnyRobot, Layout, LimbPlace, layout
 from suchus.figures.silhouette import Silhouette, silhouette
 from suchus.figures.style import COLOURS
-from suchus.kinematics.tree import Frames, frames, landmarks
+from suchus.kinematics.tree import BodyFrames, frames, landmarks
 from suchus.metrics import loaded, support_polygon
 from suchus.metrics.gait import LOADED_SHARE
 from suchus.skin import poses, skin
@@ -64,7 +64,7 @@ def skeleton(robot: AnyRobot, record: xr.Dataset, time: float) -> Skeleton:
     )
 
 
-def _leg(place: Layout, limb: LimbPlace, found: Frames, foot: np.ndarray) -> np.ndarray:
+def _leg(place: Layout, limb: LimbPlace, found: BodyFrames, foot: np.ndarray) -> np.ndarray:
     """Return midline, hip, joints and foot of a limb in the frame of the root, (point, 3) [m]."""
     first = limb.tip - len(limb.girdle.limb.links) + 1
     parent = place.bodies[first].parent

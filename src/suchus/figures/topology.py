@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from suchus.control.shared import OWNERS
-from suchus.control.topology import Part
+from suchus.control.topology import ControlPart
 from suchus.figures.style import COLOURS, captioned, new, styled
 
 _ROLES = {"limbs": "LF", "spine": "spine", "tail": "tail", "heading": "RH"}
@@ -15,7 +15,7 @@ _SENSORS, _CONTROLLERS, _SHARED = 2.0, 1.0, 0.0  # heights of the three rows
 _BOX = {"boxstyle": "round,pad=0.45", "facecolor": "white", "linewidth": 1.4}
 
 
-def draw_topology(parts: Sequence[Part]) -> Figure:
+def draw_topology(parts: Sequence[ControlPart]) -> Figure:
     """Draw which sensors each controller feels, which shared variables it writes, and whose it hears.
 
     Args:
@@ -46,7 +46,7 @@ def draw_topology(parts: Sequence[Part]) -> Figure:
     return captioned(figure, _caption(parts))
 
 
-def _caption(parts: Sequence[Part]) -> str:
+def _caption(parts: Sequence[ControlPart]) -> str:
     deaf = [part.name for part in parts if not part.hears and not part.writes]
     apart = f" Apart from the shared variables: {', '.join(deaf)}." if deaf else ""
     return (

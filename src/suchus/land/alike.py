@@ -12,7 +12,7 @@ _EARLY = 1e-6
 """By how much too early rather than too late a trouble may be awaited [control period]."""
 
 
-class Alike:
+class Deduplication:
     """The runs of a batch in groups that differ in nothing that the physics has felt yet.
 
     Such are the runs of one robot that is pushed in many ways, up to the push. Members of a group have the same robot,

@@ -15,7 +15,7 @@ from suchus.design.pieces import pieces
 from suchus.design.relief import Relief
 from suchus.land import wetting
 from suchus.land.afloat import surfaced
-from suchus.land.alike import Alike
+from suchus.land.alike import Deduplication
 from suchus.land.lake import Lake
 from suchus.land.run import Afloat, Run
 from suchus.model import activations, compile_model, force_sensors, standing
@@ -206,7 +206,7 @@ class Bench:
         if self._lakes:
             self.worked[:, :4] = self.water[:, hydro.FORCE : hydro.FORCE + 4]
 
-    def advance(self, targets: np.ndarray, steps: int, time: float, alike: Alike | None = None) -> None:
+    def advance(self, targets: np.ndarray, steps: int, time: float, alike: Deduplication | None = None) -> None:
         """Command servo angles and advance the living by some steps; who diverges dies, with the time and the cause.
 
         On return ``readings`` holds what the sensors say: contact forces as their mean over the steps, as a pressure

@@ -80,7 +80,7 @@ class FloatBody:
         return table
 
 
-class Pool:
+class FloatTank:
     """A body in a lake without a bottom.
 
     Args:
@@ -202,4 +202,4 @@ class Pool:
 
 
 _ASIDE = np.array([0.01, 0.0, 0.0])
-"""The middle of the shape in the frame of the body [m]; see ``Pool``."""
+"""The middle of the shape in the frame of the body [m]; see ``FloatTank``."""

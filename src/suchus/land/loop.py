@@ -8,11 +8,11 @@ from suchus.control import Command, Controller, Joinable
 from suchus.design.checks import require
 from suchus.design.scale import control_period
 from suchus.errors import InvalidDesign
-from suchus.land.alike import Alike
+from suchus.land.alike import Deduplication
 from suchus.land.bench import Bench
 from suchus.land.readings import Readings
 from suchus.land.run import Run
-from suchus.land.troubles import Troubles
+from suchus.land.troubles import Disturbances
 
 CONTROL_PERIOD = 0.01
 """Of the article's robot [s]: 100 Hz, what a bus of hobby servos sustains; ``design.scale`` has those of others."""
@@ -70,8 +70,8 @@ class Loop:
         self.controller = start(runs, ticks, period)
         first = self.controller.rest()
         self.bench.place(runs, first)
-        self._alike = Alike(runs, first, period)
-        self.troubles = Troubles(runs, self.bench, ticks, period)
+        self._alike = Deduplication(runs, first, period)
+        self.troubles = Disturbances(runs, self.bench, ticks, period)
         self.readings = Readings(self.bench, runs, samples)
 
     def decide(self, tick: int, beat: int | None = None) -> Command:

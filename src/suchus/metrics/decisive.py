@@ -11,7 +11,7 @@ SURE = 0.01
 _FEW = 5  # samples on one side; fewer say nothing about a border
 
 
-class Border(NamedTuple):
+class DecisionBoundary(NamedTuple):
     """The value of one parameter that best predicts where a statement holds."""
 
     parameter: int
@@ -44,7 +44,9 @@ def rank_correlation(
     return np.array([each.statistic for each in found]), np.array([each.pvalue for each in found])
 
 
-def border(parameters: Float[np.ndarray, "sample parameter"], holds: Bool[np.ndarray, " sample"]) -> Border | None:
+def border(
+    parameters: Float[np.ndarray, "sample parameter"], holds: Bool[np.ndarray, " sample"]
+) -> DecisionBoundary | None:
     """Return the boundary that best predicts where a statement holds.
 
     None where it nearly always or never holds, and where the best of so many parameters would separate as well by
@@ -58,4 +60,6 @@ def border(parameters: Float[np.ndarray, "sample parameter"], holds: Bool[np.nda
     if float(one.pvalue) * len(found) > SURE:
         return None
     # the sign is positive where more of the first sample lies below the location
-    return Border(best, float(one.statistic_location), one.statistic_sign < 0, float(one.statistic), float(one.pvalue))
+    return DecisionBoundary(
+        best, float(one.statistic_location), one.statistic_sign < 0, float(one.statistic), float(one.pvalue)
+    )

@@ -32,6 +32,7 @@ from suchus.motion.swim import Bends, Swim, bends, check_swim, swim_targets
 from suchus.motion.tabled import as_table
 from suchus.motion.targets import foot_targets, longest_stroke, servo_targets, within_reach
 from suchus.motion.timing import START
+from suchus.renamed import old_exports
 
 __all__ = [
     "START",
@@ -88,3 +89,5 @@ __all__ = [
     "with_strokes",
     "within_reach",
 ]
+
+__getattr__ = old_exports(__name__, with_late_axis="with_axis_lag")

@@ -32,7 +32,7 @@ _DECIDING = partial(deciding, LIBRARIES, ROOMS)
 _CHECKED, _AROUND = 900_000, 950_000  # first numbers of the last parts; the budget's generations are added
 
 
-class Told(NamedTuple):
+class SearchProgress(NamedTuple):
     """How far a search is."""
 
     arm: str
@@ -54,7 +54,7 @@ class Told(NamedTuple):
         return f"{int(self.done)} of {self.budget} tried, {self.rate:.1f}/s{left}{best}"
 
 
-Progress = Callable[[Told], None]
+Progress = Callable[[SearchProgress], None]
 
 
 def optimise(
@@ -69,7 +69,7 @@ def optimise(
     Args:
         spec: the search; with more evaluations than before, an earlier one is continued.
         folder: for its results and, below it, the store of each arm.
-        progress: called with the share that is done, 0 to 1.
+        progress: called with how far it is, after each piece of work.
         client: a ``distributed.Client``, among whose workers each generation is shared out; this process if None. The
             bytes are the same.
 
@@ -166,7 +166,9 @@ class _Clock:
         seconds = time.perf_counter() - self._begun
         rate = tried / seconds if tried and seconds > 0 else 0.0
         unit = AIMS[self._spec.aims[0].name].unit
-        self._progress(Told(self._spec.arms[0].name, self.done + more, self._spec.evaluations, self.best, unit, rate))
+        self._progress(
+            SearchProgress(self._spec.arms[0].name, self.done + more, self._spec.evaluations, self.best, unit, rate)
+        )
 
 
 def _numbered(table: xr.Dataset, number: int) -> xr.Dataset:
@@ -199,5 +201,5 @@ def write_runs(spec: Optimisation, runs: Sequence[Run], folder: Path) -> None:
             blueprint.write(run.robot, folder / f"{run.label}_robot.toml")
 
 
-def _silent(told: Told) -> None:
+def _silent(told: SearchProgress) -> None:
     del told

@@ -30,7 +30,7 @@ TASKS: Mapping[str, Control] = MappingProxyType(
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Page(Search):
+class SearchFile(Search):
     """What the file of a search can say."""
 
     robot: str = "caiman"
@@ -43,7 +43,7 @@ class Page(Search):
     """On what."""
 
 
-EXAMPLE = Page(
+EXAMPLE = SearchFile(
     name="example",
     vary=(Vary(field="gait.stroke", low=0.0, high=0.08),),
     aims=(Aim(name="displacement"),),
@@ -60,7 +60,7 @@ def read_optimisation(path: Path) -> Optimisation:
         UnknownName: a field, an aim, a limit, a robot or a gait that does not exist.
         InvalidDesign: a range that cannot be, or that the start is not in.
     """
-    page = blueprint.read(path, Page, {EXAMPLE.name: EXAMPLE})
+    page = blueprint.read(path, SearchFile, {EXAMPLE.name: EXAMPLE})
     run = Run(
         robot=find(page.robot, path.parent, Crocodile, ROBOTS),
         gait=find(page.gait, path.parent, Gait, GAITS),

@@ -16,7 +16,7 @@ class NoOptimiser(SuchusError, ImportError):
     """A library that the search needs and that is not installed."""
 
 
-class Search(Protocol):
+class Strategy(Protocol):
     """Asks for candidates and receives their losses."""
 
     def ask(self) -> np.ndarray:
@@ -26,7 +26,7 @@ class Search(Protocol):
         """Tell the losses of what was asked for: one number each, or two for a front."""
 
 
-def search(spec: Optimisation) -> Search:
+def search(spec: Optimisation) -> Strategy:
     """Return the search that a spec asks for.
 
     Raises:

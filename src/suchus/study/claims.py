@@ -20,7 +20,7 @@ from suchus.robots import ROBOTS
 from suchus.study.answers import agreement, answers
 from suchus.study.arm import Arm
 from suchus.study.claim_measures import FAULTY, METRICS, RUNS, asked_rules, held, measures_of
-from suchus.study.conduct import Told, conduct, finished
+from suchus.study.conduct import StudyProgress, conduct, finished
 from suchus.study.makers import deciding
 from suchus.study.store import made_by
 from suchus.study.study import Study, Vary
@@ -28,7 +28,7 @@ from suchus.study.study import Study, Vary
 FINE = 0.002  # [s]; the time step of results
 _TRUNK = ("trunk_bend", "tail_bend", "tail_pitch")  # what the conditions differ in; the rest of a gait is its legs
 
-Progress = Callable[[str, Told], None]
+Progress = Callable[[str, StudyProgress], None]
 """Called with which of the studies runs, and how far it is."""
 
 

@@ -12,7 +12,7 @@ from suchus import record as records
 from suchus.figures.sensitivity import draw_claim, draw_shares, spoken
 from suchus.paper import CLAIMS
 from suchus.study.claims_table import finite, shipped, table, told, turned
-from suchus.study.sheet import Section, Table, write_sheet
+from suchus.study.sheet import ResultTable, Section, write_sheet
 
 OUTCOME, TABLE, RECORD, SHARES = "outcome.json", "claims.csv", "claims.nc", "claims.json"
 
@@ -79,7 +79,7 @@ def _sections(record: xr.Dataset, rows: Sequence[dict[str, Any]]) -> list[Sectio
          f"{1000 * a['wide']:.0f} mm", f"{100 * a['shares']:.1f} points", _short(a["claim"]), f"{a['chance']:.2g}")
         for a in agreements(record)
     ]  # fmt: skip
-    agreed = Table(
+    agreed = ResultTable(
         caption="Coarser time steps beside 2 ms, on the first samples",
         heads=(
             "time step",
@@ -93,7 +93,7 @@ def _sections(record: xr.Dataset, rows: Sequence[dict[str, Any]]) -> list[Sectio
         rows=tried,
         words=(0, 5),
     )
-    shares = Table(
+    shares = ResultTable(
         caption="Each claim",
         heads=("claim", "samples", "true", "95 % interval", "number: 5, 50, 95 %", "what decides it", "border"),
         rows=[_row(row) for row in rows],

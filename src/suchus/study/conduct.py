@@ -16,7 +16,7 @@ from suchus.study.store import Store, together
 from suchus.study.study import Study
 
 
-class Told(NamedTuple):
+class StudyProgress(NamedTuple):
     """How far a study is."""
 
     done: float
@@ -39,7 +39,7 @@ class Told(NamedTuple):
         return f"{int(self.done)} of {self.total} runs, {self.rate:.1f}/s{left}{failures}"
 
 
-Progress = Callable[[Told], None]
+Progress = Callable[[StudyProgress], None]
 
 
 def conduct(study: Study, folder: Path, *, progress: Progress | None = None, client: Any = None) -> xr.Dataset:
@@ -51,7 +51,7 @@ def conduct(study: Study, folder: Path, *, progress: Progress | None = None, cli
     Args:
         study: the study.
         folder: its store.
-        progress: called with the share that is done, 0 to 1.
+        progress: called with how far it is, after each piece of work.
         client: a ``distributed.Client``, whose workers then run the batches; this process if None. The bytes are the
             same.
 
@@ -137,7 +137,7 @@ class _Counter:
     def _tell(self, done: float) -> None:
         seconds = time.perf_counter() - self._start
         rate = (done - self._before) / seconds if seconds > 0 else 0.0
-        self._progress(Told(done, len(self._plan), self._failed, rate))
+        self._progress(StudyProgress(done, len(self._plan), self._failed, rate))
 
 
 def _duration(seconds: float) -> str:
@@ -146,5 +146,5 @@ def _duration(seconds: float) -> str:
     return f"{seconds / 60:.0f} min" if seconds < 5400 else f"{seconds / 3600:.1f} h"
 
 
-def _silent(told: Told) -> None:
+def _silent(told: StudyProgress) -> None:
     del told

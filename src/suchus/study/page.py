@@ -21,7 +21,7 @@ from suchus.study.study import Design, Study, Vary
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Page:
+class StudyFile:
     """What a study file can say; see ``Study``."""
 
     name: str
@@ -62,7 +62,7 @@ class Page:
     """Why these fields and ranges."""
 
 
-EXAMPLE = Page(
+EXAMPLE = StudyFile(
     name="example",
     vary=(Vary(field="gait.stroke", low=0.0, high=0.08, steps=9),),
     measure=("displacement",),
@@ -79,7 +79,7 @@ def read_study(path: Path) -> Study:
         UnknownName: a field, a measure, a robot or a gait that does not exist.
         InvalidDesign: a field cannot take one of its values.
     """
-    page = blueprint.read(path, Page, {EXAMPLE.name: EXAMPLE})
+    page = blueprint.read(path, StudyFile, {EXAMPLE.name: EXAMPLE})
     run = Run(
         robot=find(page.robot, path.parent, Crocodile, ROBOTS),
         gait=find(page.gait, path.parent, Gait, GAITS),

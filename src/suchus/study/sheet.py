@@ -13,7 +13,7 @@ from suchus.record import versions
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Table:
+class ResultTable:
     """Rows of words and numbers."""
 
     caption: str
@@ -43,7 +43,7 @@ class Section:
     """Files beside the page and what they are called."""
     figures: Sequence[str] = ()
     """Names of figures."""
-    tables: Sequence[Table] = ()
+    tables: Sequence[ResultTable] = ()
     """After the figures."""
 
 

@@ -34,7 +34,7 @@ class Line:
 
 
 @dataclass(frozen=True, slots=True)
-class Plan:
+class PlotLayout:
     """A chart as it is meant to be."""
 
     title: str
@@ -47,19 +47,19 @@ class Plan:
     """Over how long values are averaged [s]; feet that touch down make spikes that hide the rest."""
 
 
-def plans(robot: AnyRobot) -> tuple[Plan, ...]:
+def plans(robot: AnyRobot) -> tuple[PlotLayout, ...]:
     """Return the charts of a robot, from above."""
     light = robot.mass < _LIGHT
     return (
-        Plan("height of the centre of mass [mm]", (Line("height", "height", COLOURS["ours"]),), 1e3),
-        Plan(
+        PlotLayout("height of the centre of mass [mm]", (Line("height", "height", COLOURS["ours"]),), 1e3),
+        PlotLayout(
             "displacement since the first step [m]",
             (
                 Line("forward", "forward", COLOURS["ours"]),
                 Line("to the left", "aside", COLOURS["limbs_only"], (6.0, 3.0)),
             ),
         ),
-        Plan(
+        PlotLayout(
             f"load on the ground [{'mN' if light else 'N'}], mean over 0.1 s",
             (
                 *(Line(limb, limb, colour) for limb, colour in limb_colours(robot)),
@@ -82,7 +82,7 @@ class Chart:
         compared: whether there is a second run, drawn pale.
     """
 
-    def __init__(self, gui: Any, plan: Plan, uplot: Any, *, compared: bool = False) -> None:
+    def __init__(self, gui: Any, plan: PlotLayout, uplot: Any, *, compared: bool = False) -> None:
         self._plan, self._compared = plan, compared
         drawn: list[Any] = [uplot.Series(label="t [s]")]
         if compared:

@@ -13,7 +13,7 @@ _SIDES = 12  # of a rod's section
 
 
 @dataclass(frozen=True, slots=True)
-class Shape:
+class RodShape:
     """How thick a rod is, and whether it ends in a head."""
 
     radius: float
@@ -24,7 +24,7 @@ class Shape:
     """Of the head [m]."""
 
 
-def rod(shape: Shape) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def rod(shape: RodShape) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return vertices [m], faces and weights of a rod from 0 to 1 along z; its two bones are its ends.
 
     Args:
@@ -65,7 +65,7 @@ def upright(direction: np.ndarray) -> np.ndarray:
     return np.array([w, -y / (2 * w), x / (2 * w), 0.0])
 
 
-class Rod:
+class DrawnRod:
     """A rod in the scene of one browser, not seen until it is put somewhere.
 
     Args:
@@ -75,7 +75,7 @@ class Rod:
         colour: red, green, blue of 255.
     """
 
-    def __init__(self, scene: Any, name: str, shape: Shape, colour: tuple[int, int, int]) -> None:
+    def __init__(self, scene: Any, name: str, shape: RodShape, colour: tuple[int, int, int]) -> None:
         vertices, faces, weights = rod(shape)
         self._handle = scene.add_mesh_skinned(
             name,

@@ -25,7 +25,7 @@ class CannotServe(SuchusError, OSError):
     """A place in the network that cannot be listened on."""
 
 
-class Page(Protocol):
+class BrowserPage(Protocol):
     """What one browser sees."""
 
     def run(self) -> None:
@@ -59,7 +59,7 @@ class Viewer:
 
     def __init__(
         self,
-        open_page: Callable[[Any], Page],
+        open_page: Callable[[Any], BrowserPage],
         *,
         host: str = "127.0.0.1",
         port: int = 8080,
@@ -71,7 +71,7 @@ class Viewer:
         warnings.filterwarnings("ignore", message="Queued a .* on a closed connection")  # a browser left in mid-frame
         logging.getLogger("websockets.server").setLevel(logging.CRITICAL)  # a browser that leaves early is no error
         self._open, self._most = open_page, most
-        self._pages: dict[int, Page | None] = {}
+        self._pages: dict[int, BrowserPage | None] = {}
         self._lock = Lock()
         self._over = Event()
         gate = Gate(host)

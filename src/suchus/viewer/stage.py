@@ -20,7 +20,7 @@ from suchus.robots import beside_article
 from suchus.rotation import rotate
 from suchus.viewer.bodies import support
 from suchus.viewer.drawn import DrawnRobot, Look
-from suchus.viewer.rods import Rod, Shape
+from suchus.viewer.rods import DrawnRod, RodShape
 
 CAMERA = (0.8, -1.4, 0.8)
 """Where the camera is at first, for a robot as long as the article's [m]."""
@@ -30,10 +30,10 @@ _WEIGHT = 0.276  # [m]; how long the weight of a robot as long as the article's 
 _TIP, _COM, _STEP = 0.06, 0.014, 0.005  # [m]; of a push above its body, radius of a ball, between points of the track
 _ABOVE = 0.003  # [m]; what is painted on the ground lies so far above it
 _WORLD = "/world"
-_ARROW = Shape(radius=0.006, head=0.028, head_radius=0.014)
-_PUSH = Shape(radius=0.010, head=0.042, head_radius=0.021)
-_EDGE = Shape(radius=0.0035)
-_PLUMB = Shape(radius=0.0018)
+_ARROW = RodShape(radius=0.006, head=0.028, head_radius=0.014)
+_PUSH = RodShape(radius=0.010, head=0.042, head_radius=0.021)
+_EDGE = RodShape(radius=0.0035)
+_PLUMB = RodShape(radius=0.0018)
 _LAKE = 12.0  # [m]; how far the water reaches that is drawn
 _STEPS = 400  # pieces of the track that are kept
 
@@ -93,9 +93,9 @@ class Stage:
         self._path: list[np.ndarray] = []
         self.shown = {"forces": True, "support": True, "track": True}
 
-    def _rod(self, name: str, shape: Shape, colour: str) -> Rod:
+    def _rod(self, name: str, shape: RodShape, colour: str) -> DrawnRod:
         lengths = {field.name: self._size * getattr(shape, field.name) for field in fields(shape)}
-        return Rod(self._scene, f"{_WORLD}/{name}", Shape(**lengths), rgb(colour))
+        return DrawnRod(self._scene, f"{_WORLD}/{name}", RodShape(**lengths), rgb(colour))
 
     def lay(self, relief: Relief | None) -> None:
         """Lay the ground, even or with what stands up from it."""

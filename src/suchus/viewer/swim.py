@@ -52,7 +52,7 @@ class Film:
 
 
 @dataclass(frozen=True, slots=True)
-class Curve:
+class PlottedCurve:
     """A measured course for a plot."""
 
     title: str
@@ -63,7 +63,7 @@ class Curve:
     """By name, each (n,)."""
 
 
-def films(path: Path) -> tuple[tuple[Film, ...], tuple[Curve, ...]]:
+def films(path: Path) -> tuple[tuple[Film, ...], tuple[PlottedCurve, ...]]:
     """Return what a record of swimming shows.
 
     Args:
@@ -134,16 +134,18 @@ def _lines(values: np.ndarray) -> np.ndarray:
     return values[None] if values.ndim == 1 else values
 
 
-def _curves(record: xr.Dataset) -> tuple[Curve, ...]:
+def _curves(record: xr.Dataset) -> tuple[PlottedCurve, ...]:
     curves = []
     for prefix, said in _TITLES.items():
         parts = {"forward": f"{prefix}_thrust", "to the side": f"{prefix}_aside"}
         if all(name in record for name in (*parts.values(), f"{prefix}_phase")):
             phase = record[f"{prefix}_phase"].values
             curves.append(
-                Curve(f"force [N/m] over the phase, {said}", phase, {k: record[v].values for k, v in parts.items()})
+                PlottedCurve(
+                    f"force [N/m] over the phase, {said}", phase, {k: record[v].values for k, v in parts.items()}
+                )
             )
     if "arm_speed" in record and set(record.arm_speed.dims) == {"arm", "cycle"} and "arm" in record.coords:
         lines = {str(arm): record.arm_speed.sel(arm=arm).values for arm in record.arm.values[:3]}
-        curves.append(Curve("speed [m/s] of each cycle", np.arange(1.0, record.sizes["cycle"] + 1), lines))
+        curves.append(PlottedCurve("speed [m/s] of each cycle", np.arange(1.0, record.sizes["cycle"] + 1), lines))
     return tuple(curves)

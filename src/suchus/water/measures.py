@@ -64,7 +64,7 @@ def level(track: np.ndarray) -> np.ndarray:
     return np.asarray(track - drift - np.mean(track[:-1] - drift[:-1]))
 
 
-class Swing(NamedTuple):
+class LateralSwing(NamedTuple):
     """How each station of a body swings to either side, as a sine of one cycle."""
 
     amplitude: Float[np.ndarray, " station"]
@@ -75,7 +75,7 @@ class Swing(NamedTuple):
     """Of the variance about the mean line that the sine has [-]."""
 
 
-def swing(across: Float[np.ndarray, "sample station"], cycles: int = 2) -> Swing:
+def swing(across: Float[np.ndarray, "sample station"], cycles: int = 2) -> LateralSwing:
     """Return how far each station swings to either side as a sine, and which share of its swing that sine is.
 
     Args:
@@ -86,7 +86,7 @@ def swing(across: Float[np.ndarray, "sample station"], cycles: int = 2) -> Swing
     harmonic = 2.0 * np.fft.rfft(swung, axis=0)[cycles] / len(swung)
     variance = np.maximum(np.mean(swung**2, axis=0), np.finfo(float).tiny)
     lag = np.mod(-np.angle(harmonic) / (2.0 * np.pi), 1.0)
-    return Swing(np.abs(harmonic), lag, 0.5 * np.abs(harmonic) ** 2 / variance)
+    return LateralSwing(np.abs(harmonic), lag, 0.5 * np.abs(harmonic) ** 2 / variance)
 
 
 class Sway(NamedTuple):

@@ -14,7 +14,7 @@ from scipy.optimize import brentq
 
 from suchus.design.water import Water
 from suchus.errors import NotConverged
-from suchus.water.outline import Curve, Outline, summed
+from suchus.water.outline import MidlineCurve, Outline, summed
 from suchus.water.undulation import Motion, undulation
 
 _TIMES = 96
@@ -32,11 +32,11 @@ class Effort(NamedTuple):
     """Of the joints on the water [W]."""
 
 
-Model = Callable[[Outline, Curve, float, Water], Effort]
+Model = Callable[[Outline, MidlineCurve, float, Water], Effort]
 """From the midline's motion over a cycle, and the speed forward [m/s], to the effort."""
 
 
-def resistive(outline: Outline, curve: Curve, speed: float, water: Water) -> Effort:
+def resistive(outline: Outline, curve: MidlineCurve, speed: float, water: Water) -> Effort:
     """Return thrust and power after Taylor: drag square to the body, friction along it.
 
     Args:
@@ -58,7 +58,7 @@ def resistive(outline: Outline, curve: Curve, speed: float, water: Water) -> Eff
     return Effort(thrust, power)
 
 
-def reactive(outline: Outline, curve: Curve, speed: float, water: Water) -> Effort:
+def reactive(outline: Outline, curve: MidlineCurve, speed: float, water: Water) -> Effort:
     """Return thrust and power after Lighthill: the momentum that sheds at the tail, less the body's friction.
 
     The mean force is that of the water that passes the plane through the tail's tip, square to the body, with the
@@ -117,7 +117,7 @@ def recoil(outline: Outline, motion: Motion, speed: float, water: Water) -> tupl
     return complex(sway), complex(turn)
 
 
-def cycle(outline: Outline, motion: Motion, sway: complex = 0j, turn: complex = 0j) -> Curve:
+def cycle(outline: Outline, motion: Motion, sway: complex = 0j, turn: complex = 0j) -> MidlineCurve:
     """Return the midline over one cycle, shape (time, station), its snout swaying and its head turning as given."""
     bent = undulation(outline, motion)
     return bent.held(sway, turn).curve(np.arange(_TIMES) / _TIMES / bent.frequency)
@@ -163,7 +163,7 @@ def cruise(outline: Outline, motion: Motion, model: Model, water: Water) -> Crui
     )
 
 
-def _velocities(curve: Curve, speed: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+def _velocities(curve: MidlineCurve, speed: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Return tangent and the velocity against the water across and along it."""
     tangent_x, tangent_y = np.cos(curve.heading), np.sin(curve.heading)
     x_rate = curve.x_rate - speed

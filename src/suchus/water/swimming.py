@@ -7,7 +7,7 @@ from suchus.design import GRAVITY, WATER_DENSITY, Crocodile, crocodile
 from suchus.design.water import Water
 from suchus.motion import Swim, check_swim
 from suchus.robots import ROBOTS
-from suchus.water.outline import Curve, Outline
+from suchus.water.outline import MidlineCurve, Outline
 from suchus.water.slender import Model, cruise, cycle, reactive, recoil, resistive
 from suchus.water.undulation import Motion, undulation
 
@@ -67,7 +67,7 @@ _PER_MODEL = {
 
 
 def _numbers(
-    robot: Crocodile, motion: Motion, outline: Outline, curve: Curve, speed: float, power: float
+    robot: Crocodile, motion: Motion, outline: Outline, curve: MidlineCurve, speed: float, power: float
 ) -> dict[str, float]:
     swing = float(np.ptp(curve.y[:, -1]))
     weight = GRAVITY * displaced(outline)
@@ -89,7 +89,7 @@ def displaced(outline: Outline, density: float = WATER_DENSITY) -> float:
     return float(density * np.pi * np.trapezoid(wide * high, outline.s))
 
 
-def wave_speed(outline: Outline, motion: Motion, curve: Curve) -> float:
+def wave_speed(outline: Outline, motion: Motion, curve: MidlineCurve) -> float:
     """Return the speed of the body wave towards the tail, negative if it runs to the head [m/s].
 
     The phase of the sideways motion along the body is fitted with a straight line, each place weighted with the square
@@ -108,7 +108,7 @@ def wave_speed(outline: Outline, motion: Motion, curve: Curve) -> float:
 
 
 def _record(
-    outline: Outline, motion: Motion, water: Water, curves: list[Curve], per_model: dict[str, list[float]]
+    outline: Outline, motion: Motion, water: Water, curves: list[MidlineCurve], per_model: dict[str, list[float]]
 ) -> xr.Dataset:
     count = len(curves[0].x)
     data = xr.Dataset(

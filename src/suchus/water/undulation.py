@@ -12,7 +12,7 @@ from jaxtyping import Complex, Float
 
 from suchus.errors import InvalidDesign
 from suchus.motion import Swim
-from suchus.water.outline import Curve, Outline, summed
+from suchus.water.outline import MidlineCurve, Outline, summed
 from suchus.water.waves import BodyWave, along
 
 _INSTANTS = 96
@@ -63,7 +63,7 @@ class Undulation:
         snout[1] += sway
         return replace(self, middles=middles, stations=stations, sway=snout)
 
-    def curve(self, time: Float[np.ndarray, "*b"], grown: float = 1.0, growing: float = 0.0) -> Curve:
+    def curve(self, time: Float[np.ndarray, "*b"], grown: float = 1.0, growing: float = 0.0) -> MidlineCurve:
         """Return the midline at times.
 
         Args:
@@ -81,7 +81,7 @@ class Undulation:
         (middle, spin), (heading, rate), (y, y_rate) = at(self.middles), at(self.stations), at(self.sway[:, None])
         step = self.outline.robot.length / (self.outline.stations - 1)
         zero = np.zeros_like(y[..., 0])
-        return Curve(
+        return MidlineCurve(
             summed(zero, step * np.cos(middle)),
             summed(y[..., 0], step * np.sin(middle)),
             heading,

@@ -6,11 +6,11 @@ from dataclasses import dataclass, replace
 from suchus.errors import UnknownName, UnreadableFile
 from suchus.model.importing.options import Words
 from suchus.model.importing.symmetry import Plane, find_plane
-from suchus.model.importing.tree import Joint, Part, Tree
+from suchus.model.importing.tree import Joint, Tree, TreePart
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Chain:
+class LimbChain:
     """A limb: parts from the hip to the foot."""
 
     on: int
@@ -20,7 +20,7 @@ class Chain:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Plan:
+class BodyPlan:
     """What is axis and what is limb."""
 
     tree: Tree
@@ -29,17 +29,17 @@ class Plan:
     """The robot's frame."""
     axis: tuple[int, ...]
     """Places in the tree, from the front end to the rear end."""
-    pairs: tuple[tuple[Chain, Chain], ...]
+    pairs: tuple[tuple[LimbChain, LimbChain], ...]
     """Limbs, left and right, from the front."""
     told: tuple[str, ...]
     """What was guessed, and what was not taken."""
 
-    def part(self, place: int) -> Part:
+    def part(self, place: int) -> TreePart:
         """Return a part of the tree."""
         return self.tree.parts[place]
 
 
-def plan_of(tree: Tree, words: Words) -> Plan:
+def plan_of(tree: Tree, words: Words) -> BodyPlan:
     """Return the body plan of a tree.
 
     Raises:
@@ -57,7 +57,7 @@ def plan_of(tree: Tree, words: Words) -> Plan:
             lost += [(i, "hangs beside the axis") for i in (left, right)]
             continue
         one, two = (_main(tree, plane, first) for first in (left, right))
-        pairs.append((Chain(on=axis.index(where), parts=one), Chain(on=axis.index(where), parts=two)))
+        pairs.append((LimbChain(on=axis.index(where), parts=one), LimbChain(on=axis.index(where), parts=two)))
     if not pairs and len(axis) == 1:
         alone = ", ".join(tree.parts[i].name for i, _ in lost[:4])
         image = f"; {alone} have no mirror image" if alone else ""
@@ -76,7 +76,7 @@ def plan_of(tree: Tree, words: Words) -> Plan:
             f"part that carries it. {'See --neck and --tail.' if i in split.axis else ''}".rstrip()
         )
     hips = {pair: plane.into(tree.parts[pair[0].parts[0]].joints[0].anchor)[0] for pair in pairs}
-    return Plan(
+    return BodyPlan(
         tree=_lumped(tree, used),
         plane=plane,
         axis=axis,
@@ -85,14 +85,14 @@ def plan_of(tree: Tree, words: Words) -> Plan:
     )
 
 
-def without(plan: Plan, pair: tuple[Chain, Chain]) -> Plan:
+def without(plan: BodyPlan, pair: tuple[LimbChain, LimbChain]) -> BodyPlan:
     """Return a plan without a pair of limbs, whose mass goes to the part that carries them."""
     pairs = tuple(one for one in plan.pairs if one is not pair)
     used = {*plan.axis, *(i for one in pairs for chain in one for i in chain.parts)}
     return replace(plan, tree=_lumped(plan.tree, used), pairs=pairs)
 
 
-def links_between(plan: Plan, near: int, far: int) -> Iterator[tuple[Joint, bool]]:
+def links_between(plan: BodyPlan, near: int, far: int) -> Iterator[tuple[Joint, bool]]:
     """Yield the hinges between two neighbours of the axis from the one near our root on.
 
     Each comes with whether its positive turn moves the far part as in the file, and not the near one.

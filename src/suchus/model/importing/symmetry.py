@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from suchus.errors import UnknownName, UnreadableFile
-from suchus.model.importing.tree import Joint, Part, Tree
+from suchus.model.importing.tree import Joint, Tree, TreePart
 
 TOLERANCE = 0.02
 """Mirror images may miss each other by this share of the robot's size [-]."""
@@ -146,7 +146,7 @@ def split_by(tree: Tree, plane: Plane) -> Split:
     return Split(axis=tuple(axis), pairs=tuple(pairs), single=tuple(single))
 
 
-def _within(part: Part, plane: Plane, near: float) -> bool:
+def _within(part: TreePart, plane: Plane, near: float) -> bool:
     """Return whether a part lies in the plane: its centre of mass, and its hinges but those across the plane."""
     if abs(plane.into(part.com)[1]) > near:
         return False
