@@ -13,7 +13,7 @@ from suchus.design.scale import gravity_time
 from suchus.errors import NotConverged, OutsideLimits, Unreachable
 from suchus.kinematics import limb as limb_kinematics
 from suchus.motion.angle_table import AngleTable
-from suchus.motion.any_body import check_limits, path, pattern_targets
+from suchus.motion.any_body import check_limits, path, shortest_period
 from suchus.motion.draft_table import table_walk
 from suchus.motion.pattern import AxialWave, FootPath, Pattern, Sweep
 
@@ -206,8 +206,4 @@ def _wave(robot: AnyRobot) -> AxialWave:
 
 def _slow_enough(robot: AnyRobot, gait: Pattern | AngleTable) -> Pattern | AngleTable:
     """Return a gait with a period at which no servo is asked for more speed than it has to spare."""
-    clock = np.arange(256) / 256
-    step = np.abs(np.diff(pattern_targets(robot, gait, clock), axis=0)).max(axis=0) * 256
-    place = layout(robot)
-    spare = np.array([_SPEED * place.robot.servo(name).speed for name in place.servos])
-    return replace(gait, period=float(np.round(max(gait.period, (step / spare).max()), 4)))
+    return replace(gait, period=float(np.round(max(gait.period, shortest_period(robot, gait)[0] / _SPEED), 4)))
