@@ -14,7 +14,7 @@ from suchus.errors import NotConverged, OutsideLimits, Unreachable
 from suchus.kinematics import limb as limb_kinematics
 from suchus.motion.angle_table import AngleTable
 from suchus.motion.any_body import check_limits, path, shortest_period
-from suchus.motion.draft_table import table_walk
+from suchus.motion.draft_table import is_upright, table_walk
 from suchus.motion.pattern import AxialWave, FootPath, Pattern, Sweep
 
 _STROKES = (0.2, 0.15, 0.1, 0.06)  # of the limb's reach, the longest that all girdles can take is taken
@@ -38,7 +38,7 @@ def draft_gait(robot: AnyRobot, name: str) -> Pattern | AngleTable:
     """Return a walk that a robot's limbs can follow, in lengths of its own; of a body without limbs, an undulation.
 
     Diagonal limbs go together; trunk joints bend a little with them. It is a beginning, not the best. Limbs of
-    two hinges, whose feet move on a surface only, get a table of angles.
+    two hinges and upright ones, whose feet move on a surface only, get a table of angles.
 
     Args:
         robot: any.
@@ -53,7 +53,7 @@ def draft_gait(robot: AnyRobot, name: str) -> Pattern | AngleTable:
     gait: Pattern | AngleTable
     if not girdles:
         gait = _undulation(robot, name, period)
-    elif all(len(girdle.limb.hinges) > _PLANAR or _is_crank(girdle.limb) for girdle in girdles):
+    elif all(_is_crank(girdle.limb) or _walks_by_paths(girdle.limb) for girdle in girdles):
         gait = _walk(robot, name, phases, period)
     else:
         gait = table_walk(
@@ -184,6 +184,10 @@ def _cloud(limb: Limb) -> cKDTree:
 
 def _is_crank(limb: Limb) -> bool:
     return len(limb.hinges) == 1 and isinstance(limb.hinges[0].drive, Crank)
+
+
+def _walks_by_paths(limb: Limb) -> bool:
+    return len(limb.hinges) > _PLANAR and not is_upright(limb)
 
 
 def _down(limb: Limb) -> tuple[float, float]:
