@@ -8,7 +8,7 @@ from suchus.design import AnyRobot, layout
 from suchus.errors import UnknownName
 from suchus.fault import Fault
 from suchus.faults import Limp, Locked
-from suchus.motion import AnyGait, Gait, pattern_targets, servo_targets
+from suchus.motion import AnyGait, cycle_targets
 
 Joint = Literal["front_yaw", "hind_yaw", "front_pitch", "hind_pitch", "front_knee", "hind_knee"]
 Kind = Literal["limp", "locked"]
@@ -73,9 +73,5 @@ def lost(
 def angle_at(robot: AnyRobot, gait: AnyGait, servo: str, share: float) -> float:
     """Return an angle in the range that a gait asks of a servo: 0 the least, 1 the greatest [rad]."""
     clock = np.arange(128) / 128
-    if isinstance(gait, Gait):
-        targets = servo_targets(robot, gait, clock[:, None] + np.array(gait.limb_phases))
-    else:
-        targets = pattern_targets(robot, gait, clock)
-    asked = targets[:, layout(robot).servos.index(servo)]
+    asked = cycle_targets(robot, gait, clock)[:, layout(robot).servos.index(servo)]
     return float(asked.min() + share * (asked.max() - asked.min()))

@@ -13,11 +13,13 @@ from suchus.motion.any_body import (
     AnyGait,
     Intended,
     check_limits,
+    cycle_targets,
     hip_height,
     intended,
     limb_targets,
     middle_stance,
     pattern_targets,
+    shortest_period,
 )
 from suchus.motion.draft import draft_gait
 from suchus.motion.gait import Gait, Legs
@@ -59,6 +61,7 @@ __all__ = [
     "check_limits",
     "check_roll",
     "check_swim",
+    "cycle_targets",
     "draft_gait",
     "foot_targets",
     "hip_height",
@@ -72,6 +75,7 @@ __all__ = [
     "plan",
     "roll_targets",
     "servo_targets",
+    "shortest_period",
     "stance",
     "stand_up",
     "steerable",

@@ -1,16 +1,11 @@
 """Results become one HTML page that needs no network and no script; films and replays stand beside it."""
 
-import os
 import re
 import tempfile
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
-from urllib.parse import quote
-
-from jinja2 import Environment, PackageLoader, StrictUndefined
-from markupsafe import Markup
 
 from suchus import figures
 from suchus.design import AnyRobot
@@ -21,6 +16,7 @@ from suchus.report.beside import beside
 from suchus.report.embedding import embedded
 from suchus.report.metres import metres
 from suchus.report.numbers import number, quantity, tied
+from suchus.report.rendering import render
 from suchus.report.result import Failure, Result
 from suchus.report.robot import ARTICLES, robot_of
 from suchus.report.tables import choices, parts
@@ -74,21 +70,7 @@ def render_page(results: Sequence[Result], failures: Sequence[Failure], place: P
         failures: what did not.
         place: the folder of the page, from which it links films and replays; None: the one that holds the results.
     """
-    environment = Environment(
-        loader=PackageLoader("suchus.report"),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    environment.filters |= {"quantity": quantity, "tied": tied, "gist": _gist, "link": lambda file: _link(file, place)}
-    style = Markup(environment.get_template("style.css").render())
-    return environment.get_template("page.html").render(style=style, **_content(results, failures)) + "\n"
-
-
-def _link(file: Path, place: Path | None) -> str:
-    start = file.parent.parent if place is None else place
-    return quote(Path(os.path.relpath(file, start)).as_posix())
+    return render("page.html", place, _content(results, failures), tied=tied, gist=_gist)
 
 
 def _gist(text: str) -> str:
