@@ -82,7 +82,7 @@ class Fault(ABC):
     acts_on: ClassVar[str]
     """What kind of part breaks: ``servo``, ``limb`` or ``sensor``."""
     at: float
-    """When it happens [s]."""
+    """Time at which the fault begins [s], at least 0."""
 
     @property
     @abstractmethod

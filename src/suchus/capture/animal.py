@@ -37,7 +37,7 @@ class SyntheticAnimal:
     outward: float
     """How far feet stand from the midline [m]."""
     lift: float
-    """How high feet are lifted [m]."""
+    """Height to which feet are lifted [m]."""
     spine_bend: float
     """Amplitude of the trunk's lateral angle, right positive [rad]."""
     spine_rightmost: float
@@ -49,7 +49,7 @@ class SyntheticAnimal:
     tail_wave: float
     """Phase lag of the tip behind the root [cycle]; 0: a standing wave."""
     swing: Swing = "cosine"
-    """How its feet move."""
+    """Course of a foot in swing."""
 
     def __post_init__(self) -> None:
         with Checks("animal", self) as check:

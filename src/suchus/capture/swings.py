@@ -50,7 +50,7 @@ class Swing(NamedTuple):
     skew: float
     """How much later than that the swing is half over [cycle]."""
     share: float
-    """How long the foot swings [-]."""
+    """Duration of the swing as a fraction of the cycle [-]."""
     share_error: float
     """Standard error of that by the frames, the unknown shape of the swing included [-]."""
     middle_error: float

@@ -45,7 +45,7 @@ class Tracks:
     unit: str
     """Of the positions: ``m``, or ``px`` where the scale is unknown."""
     source: str
-    """Where they come from, for messages."""
+    """File that they are from, for messages."""
 
     def at(self, point: str) -> Float[np.ndarray, "frame axis"]:
         """Return the track of one point."""

@@ -25,7 +25,7 @@ class Job:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class JobResult:
-    """What came of it."""
+    """Result of an experiment, or the reason why it failed."""
 
     result: Result | Failure
     """For the page."""

@@ -31,7 +31,7 @@ _NEEDED = ("viser", "mjviser")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DemoOptions:
-    """What can be said after ``suchus demo``."""
+    """Options of ``suchus demo``."""
 
     no_browser: Annotated[
         bool, tyro.conf.FlagCreatePairsOff, tyro.conf.arg(help="Open no browser: only write the page and name it.")

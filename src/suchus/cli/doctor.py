@@ -43,12 +43,12 @@ class UnfitMachine(SuchusError):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Finding:
-    """What was found of one thing."""
+    """Result of one check."""
 
     heading: str
-    """What was looked at."""
+    """Name of the thing that was checked."""
     told: tuple[str, ...]
-    """What there is, in lines."""
+    """Lines that describe what there is."""
     wrong: str = ""
     """What keeps suchus from running, and the remedy; empty if nothing does."""
 
@@ -58,7 +58,7 @@ class Trial:
     """What a trial in a process of its own came to."""
 
     found: Mapping[str, Any] | None
-    """What it printed; None if it failed."""
+    """Output of the trial; None if it failed."""
     failure: str = ""
     """Why it failed, in a line."""
 

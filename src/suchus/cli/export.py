@@ -25,7 +25,7 @@ class ExportOptions:
     format: Format = "mjcf"
     """MJCF for MuJoCo, USD for Isaac, Newton and Omniverse (extra usd), URDF for nearly everything else."""
     robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
-    """Which robot."""
+    """The robot that is exported."""
     home: AnyGait | None = None
     """Gait whose mid-stance is the home posture of the MJCF; by default the robot's own."""
     timestep: Annotated[float, tyro.conf.arg(metavar="SECONDS")] = 0.002

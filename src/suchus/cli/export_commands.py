@@ -44,13 +44,13 @@ class ExportCommandsOptions:
     gait: Annotated[AnyGait, tyro.conf.Positional] = field(default_factory=lambda: GAITS["belly_crawl"])
     """Which gait; where none is named and the robot cannot follow this one, the robot's own."""
     robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
-    """Whose joints and servos."""
+    """Robot whose joints and servos are commanded."""
     map: Path | None = None
     """Servo map; by default 270 degree servos mounted in the middle, channels in order."""
     write_map: Path | None = None
     """Only write that default map to this TOML file, to start your own from."""
     cycles: int = 1
-    """How many cycles; one can be repeated, its last sample is its first."""
+    """Number of cycles; one can be repeated, since its last sample equals its first."""
     at_limit: float = AT_LIMIT
     """Share of the walk from which on a servo counts as standing at its torque limit."""
     tracking: float = TRACKING

@@ -21,7 +21,7 @@ _METRES = Annotated[float | None, tyro.conf.arg(metavar="METRES")]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ImportOptions:
-    """What can be said after ``suchus import``."""
+    """Options of ``suchus import``."""
 
     file: Annotated[Path, tyro.conf.Positional]
     """URDF or MJCF, a tree of hinges drawn upright and straight at zero posture."""

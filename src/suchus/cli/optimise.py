@@ -19,7 +19,7 @@ from suchus.study import at_scheduler
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OptimiseOptions:
-    """What can be said after ``suchus optimise``."""
+    """Options of ``suchus optimise``."""
 
     what: Annotated[str, tyro.conf.Positional]
     """A ready-made search, or a TOML file; see docs/optimise.md."""

@@ -47,7 +47,7 @@ SCHEDULER = Annotated[
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunRequest:
-    """What the words ask for."""
+    """The experiment and the output that a command line asks for."""
 
     experiment: Experiment
     """The question with its fields set."""

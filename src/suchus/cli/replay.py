@@ -19,7 +19,7 @@ from suchus.robots import ROBOTS
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ReplayOptions:
-    """What can be said after ``suchus replay``."""
+    """Options of ``suchus replay``."""
 
     file: Annotated[Path, tyro.conf.Positional]
     """The record of a run on land, a NetCDF file, such as out/displacement/record.nc."""

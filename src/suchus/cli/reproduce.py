@@ -35,7 +35,7 @@ _LONG = (
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ReproduceOptions:
-    """What can be said after ``suchus reproduce``."""
+    """Options of ``suchus reproduce``."""
 
     out: OUT = Path("out")
     quick: QUICK = False

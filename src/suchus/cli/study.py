@@ -29,7 +29,7 @@ CLAIMS = "claims"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StudyOptions:
-    """What can be said after ``suchus study``."""
+    """Options of ``suchus study``."""
 
     file: Annotated[Path, tyro.conf.Positional]
     """The study, a TOML file, or ``claims``, the article's claims over plausible designs; see docs/studies.md."""

@@ -47,7 +47,7 @@ class ViewWalkOptions(Where):
     """What can be said after ``suchus view`` to see a walk."""
 
     robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
-    """Who walks."""
+    """The robot that walks."""
     gait: AnyGait | None = None
     """How, at the beginning; by default the robot's own gait."""
     timestep: float | None = None
@@ -70,7 +70,7 @@ class Replaying(Where):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ViewSwimOptions(Where):
-    """What can be said after ``suchus view swim``."""
+    """Options of ``suchus view swim``."""
 
     record: Annotated[Path, tyro.conf.Positional]
     """The record.nc of the experiment swimming."""

@@ -28,7 +28,7 @@ class Kick:
     """A disturbance of the clock: limbs that jump ahead."""
 
     at: float
-    """When [s]."""
+    """Time of the kick [s]."""
     ahead: tuple[float, ...]
     """How far each limb jumps, in the order of the robot's limbs, LF, RF, LH, RH of the article's [cycle]."""
 

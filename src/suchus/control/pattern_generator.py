@@ -296,7 +296,7 @@ def _initial(
 
 
 class OscillatorStates(NamedTuple):
-    """What oscillators do without a body."""
+    """Phases and amplitudes of oscillators that are integrated without a body."""
 
     time: Float[np.ndarray, " time"]
     """Since the beginning of the run [s]."""

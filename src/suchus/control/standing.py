@@ -88,7 +88,7 @@ class Standing:
     at: float
     """When the crawl stops and standing up begins [s]."""
     hold: float
-    """How long it stands [s]."""
+    """Duration of standing [s]."""
     blend: float = 1.5
     """From the posture of the gait to the first key, and back [s]."""
     balance: Balance | None = BALANCE

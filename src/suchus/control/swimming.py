@@ -39,9 +39,9 @@ class Swimming:
     ramp: float = 1.0
     """Over which the amplitudes grow [s]."""
     heading: HeadingHold | None = None
-    """Which keeps the direction; None for none."""
+    """Rule that keeps the heading; None for none."""
     depth: DepthHold | None = None
-    """Which keeps the depth; None for none."""
+    """Rule that keeps the depth; None for none."""
 
     def __post_init__(self) -> None:
         with Checks("swimming", self) as check:

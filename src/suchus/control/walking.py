@@ -25,7 +25,7 @@ class Change:
     """A change of gait at a time of its own."""
 
     at: float
-    """When it begins [s]."""
+    """Time at which it begins [s]."""
     gait: Gait | Pattern
     """To which gait."""
 
@@ -41,7 +41,7 @@ class Walking:
     """
 
     attitude: AttitudeRule | None = None
-    """Which keeps the body level; None for none."""
+    """Rule that keeps the body level; None for none."""
     changes: tuple[Change, ...] = ()
     """Changes of gait that are asked for, in the order of their times."""
     switching: SwitchRule | None = None

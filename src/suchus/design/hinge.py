@@ -54,7 +54,7 @@ class Hinge:
     turn: Turn
     """``yaw``, ``pitch`` or ``roll``."""
     drive: Servo | Spring | Crank
-    """What moves it."""
+    """Its drive: a servo, a spring or a crank."""
     range: tuple[float, float] | None = None
     """Limits [rad]; None for a crank, which has none."""
 
@@ -82,7 +82,7 @@ class Cable:
     """
 
     name: str
-    """Of the servo and the tendon."""
+    """Of the servo and the cable."""
     hinges: tuple[str, ...]
     """The hinges that it bends, from its servo to its end."""
     cord_spacing: float

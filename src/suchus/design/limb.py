@@ -84,7 +84,7 @@ class Limb:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Girdle:
-    """Where a pair of limbs sits."""
+    """The place along the axis at which a pair of limbs is attached."""
 
     name: str
     """Ending of the limbs' names: ``F`` makes ``LF`` and ``RF``."""

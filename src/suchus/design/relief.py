@@ -82,7 +82,7 @@ class Bumps:
 
     @property
     def aside(self) -> float:
-        """How far it extends to either side [m]."""
+        """Half-width, to either side [m]."""
         return ASIDE * self.scale
 
     @property
@@ -100,7 +100,7 @@ class Bumps:
 
 
 Relief = Step | Stone | Bumps
-"""Whatever stands up from even ground."""
+"""Anything that rises above even ground."""
 
 
 @lru_cache(maxsize=64)

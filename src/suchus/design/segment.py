@@ -43,7 +43,7 @@ class Rod:
 
     @property
     def bottom(self) -> float:
-        """How far it reaches below the axis [m]."""
+        """Depth of its lowest point below the axis [m]."""
         return self.radius - min(self.start[2], self.end[2])
 
 
@@ -77,7 +77,7 @@ class Shell:
 
     @property
     def bottom(self) -> float:
-        """How far it reaches below the axis [m]."""
+        """Depth of its lowest point below the axis [m]."""
         return self.half[2] - self.at[2]
 
 

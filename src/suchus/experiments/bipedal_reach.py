@@ -56,7 +56,7 @@ class BipedalReach(Experiment):
     balance: Balance = BALANCE
     """The feedback by which it keeps its balance when it stands."""
     hold: float = 60.0
-    """How long it stands [s]."""
+    """Duration of standing [s]."""
     least: float = 0.64
     """Reach that counts as standing for the time that it is held [m]; what an earlier study of this robot reached."""
     repeats: int = 4

@@ -60,7 +60,7 @@ class DeathRoll(Experiment):
     timestep: float = 0.001
     """Of the physics [s]; the cable's servo is stiff, and beyond 1 ms Runge-Kutta steps do not hold it."""
     coarse_timestep: float = 0.002
-    """Where only the trunk bends [s]."""
+    """Time step of the runs in which only the trunk bends [s]."""
     timesteps: tuple[float, ...] = (0.0025, 0.00125, 0.000625)
     """For the check of the angular momentum and the rate, falling [s]."""
 

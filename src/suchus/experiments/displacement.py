@@ -56,7 +56,7 @@ class Displacement(Experiment):
     control: AnyGait = field(default_factory=lambda: GAITS["limbs_only"])
     """The crawl of the control group, with the same legs."""
     cycles: int = int(CYCLES)
-    """How many cycles are measured [-]."""
+    """Number of cycles over which is measured [-]."""
     repeats: int = 8
     """Runs per condition with noise on the servos and another friction, for the spread [-]."""
     noise: float = 0.01

@@ -180,7 +180,7 @@ class Feedback(Experiment):
 
     @property
     def _at(self) -> float:
-        """When the disturbance comes [s]."""
+        """Time at which the disturbance begins [s]."""
         return START + self.gait.period
 
     def _starts(self, progress: Any) -> tuple[xr.Dataset, xr.Dataset]:

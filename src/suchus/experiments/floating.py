@@ -52,7 +52,7 @@ class Floating(Experiment):
     duration: float = 20.0
     """How long the robot is watched [s]; the mean of the last quarter counts as its rest."""
     energy_time: float = 60.0
-    """How long the box is watched [s]."""
+    """Duration over which the energy of the box is followed [s]."""
     periods: int = 10
     """Periods of heave that are watched [-]."""
     poses: int = 16

@@ -66,7 +66,7 @@ class JointFaults(Experiment):
     lifted: AnyGait = field(default_factory=lambda: GAITS["limbs_tail_lifted"])
     """The control group with its tail in the air, for comparison; its legs follow those of ``gait``."""
     cycles: int = int(CYCLES)
-    """How many cycles are measured [-]."""
+    """Number of cycles over which is measured [-]."""
     variations: int = 8
     """Gaits and frictions [-]; the first is the gait as given, without noise."""
     spread: float = 0.25

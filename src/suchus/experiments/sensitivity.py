@@ -50,7 +50,7 @@ class Sensitivity(Experiment):
     samples: int = 16
     """How many designs and gaits, a power of two, as Sobol's sequence asks [-]; about a quarter cannot walk."""
     cycles: int = int(CYCLES)
-    """How many cycles are measured [-]."""
+    """Number of cycles over which is measured [-]."""
     timestep: float = 0.005
     """Time step of the physics [s]; that of the shipped table, which says how it agrees with 2 ms."""
     seed: int = 0

@@ -38,7 +38,7 @@ class WorkingSpace(Experiment):
     robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that reaches."""
     gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
-    """Where its feet stand."""
+    """Gait whose stance gives the places of the feet."""
     crawling: int = 2**19
     """Configurations that are drawn on four feet; one in two hundred can be [-]."""
     standing: int = 2**18

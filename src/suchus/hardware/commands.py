@@ -23,7 +23,7 @@ class Commands(NamedTuple):
     speeds: Float[np.ndarray, "sample servo"]
     """How fast the angles change: central differences over the periodic gait [rad/s]."""
     pulses: Float[np.ndarray, "sample servo"]
-    """What the map makes of the angles [us]."""
+    """Pulse widths to which the servo map converts the angles [us]."""
     servos: tuple[str, ...]
     """Names of the servos."""
 

@@ -33,7 +33,7 @@ _STRONG = 4.0  # times as strong are the servos whose torques show what a walk a
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ServoLoad:
-    """What a servo bears in a walk."""
+    """Load of one servo over a walk."""
 
     torque: float
     """Greatest torque [N m]."""
@@ -58,7 +58,7 @@ class ServoLoad:
 
     @property
     def stock(self) -> str:
-        """What is said of that class."""
+        """Description of that class of servos."""
         most = max(CLASSES.values())
         return f"{self.named} ({CLASSES[self.named]:.3g} N m)" if self.named else f"none up to {most:.3g} N m"
 

@@ -59,9 +59,9 @@ class ServoMap:
     """All servos of a robot."""
 
     name: str
-    """How it is called."""
+    """Name, as messages, tables and files show it."""
     rate: float
-    """How often commands are sent [Hz]."""
+    """Rate of commands [Hz]."""
     servos: tuple[ServoLine, ...]
     """One for each of the robot's servos, in any order."""
 

@@ -15,10 +15,10 @@ _GRIP = "grip"
 
 
 class Response(NamedTuple):
-    """What a servo did, sample by sample."""
+    """Response of a servo over time, one entry for each physics step."""
 
     time: Float[np.ndarray, " time"]
-    """When, from the first command on [s]."""
+    """Time since the first command [s]."""
     angle: Float[np.ndarray, " time"]
     """Of the joint [rad]."""
     torque: Float[np.ndarray, " time"]

@@ -51,7 +51,7 @@ class AngleTable:
     """
 
     name: str
-    """How it is called."""
+    """Name, as messages, tables and files show it."""
     period: float
     """Of one cycle [s]."""
     duty_factor: float

@@ -24,7 +24,7 @@ _SAMPLES = 128  # of a cycle, to check it
 
 
 class Intended(NamedTuple):
-    """What is meant to happen over time."""
+    """Intended motion over time."""
 
     phase: Float[np.ndarray, "*batch limb"]
     """Of each limb, without wrapping [cycle]."""

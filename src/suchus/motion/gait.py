@@ -40,7 +40,7 @@ class Gait:
     """
 
     name: str
-    """How it is called."""
+    """Name, as messages, tables and files show it."""
     period: float
     """Of one cycle [s]."""
     duty_factor: float

@@ -98,7 +98,7 @@ class Pattern:
     """A periodic movement of any body. Phases run from 0 to 1 [cycle]; each limb swings first, then stands."""
 
     name: str
-    """How it is called."""
+    """Name, as messages, tables and files show it."""
     period: float
     """Of one cycle [s]."""
     duty_factor: float
@@ -110,7 +110,7 @@ class Pattern:
     height: float
     """Height of the hindmost girdle's hips above the ground [reach of its limb]; 0 for a body on its belly."""
     wave: AxialWave
-    """How the axis bends."""
+    """Wave by which the axis bends."""
 
     def __post_init__(self) -> None:
         with Checks("pattern", self) as check:

@@ -41,7 +41,7 @@ class Posture:
     trunk_first: float
     """How far the trunk's first pitch joint bends the front end up [rad]."""
     trunk_second: float
-    """How far the second one does [rad]."""
+    """Angle of the second one [rad]."""
     tail_press: float
     """How deep below the ground the tip of the straight tail is commanded [m]: its servo then presses it down."""
     arm_yaw: float
@@ -72,7 +72,7 @@ class Keyed:
     """A sequence of postures with their times; each turns into the next without a jolt."""
 
     name: str
-    """How it is called."""
+    """Name, as messages, tables and files show it."""
     times: tuple[float, ...]
     """When each posture is reached, from the beginning of the sequence, increasing from zero [s]."""
     postures: tuple[Posture, ...]

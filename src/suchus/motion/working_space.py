@@ -38,7 +38,7 @@ class Reached(NamedTuple):
     pelvis: Float[np.ndarray, "n 3"]
     """x, z of the pelvis in the world [m], and its pitch, front end up positive [rad]."""
     tried: int
-    """How many were drawn [-]."""
+    """Number of postures that were drawn [-]."""
 
 
 def reached(robot: Crocodile, gait: Gait, *, standing: bool, count: int, seed: int = 0) -> Reached:

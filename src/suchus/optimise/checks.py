@@ -19,7 +19,7 @@ _NEAR = (-0.1, -0.05, 0.0, 0.05, 0.1)  # of each range
 
 @dataclass(frozen=True, slots=True)
 class Condition:
-    """What is different from the search."""
+    """One condition of a check, and how it differs from the search."""
 
     tells: str
     """In words."""

@@ -27,18 +27,18 @@ from suchus.study.makers import deciding
 from suchus.study.store import Store
 
 LIBRARIES = ("cma", "comocma", "moarchiving")
-"""Whose versions decide what is asked for."""
+"""Packages whose versions decide which candidates are tried."""
 _DECIDING = partial(deciding, LIBRARIES, ROOMS)
 _CHECKED, _AROUND = 900_000, 950_000  # first numbers of the last parts; the budget's generations are added
 
 
 class SearchProgress(NamedTuple):
-    """How far a search is."""
+    """Progress of a search."""
 
     arm: str
-    """Which."""
+    """Name of the condition."""
     done: float
-    """Candidates tried in this arm, parts of a generation included."""
+    """Candidates tried in this condition, parts of a generation included."""
     budget: int
     """Candidates that it may try."""
     best: float

@@ -31,7 +31,7 @@ class Found:
 
     @property
     def arm(self) -> str:
-        """Which arm."""
+        """Name of the condition."""
         return self.spec.arms[0].name
 
     @property
@@ -70,7 +70,7 @@ class Found:
 
     @property
     def fields(self) -> list[str]:
-        """What varied."""
+        """Dotted paths of the fields that varied."""
         return [v.field for v in self.spec.vary]
 
     def values(self, which: int) -> dict[str, tuple[float, float]]:

@@ -19,7 +19,7 @@ WHOLE = Arm(name="best")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Aim:
-    """What is made better."""
+    """A quantity that the search optimises."""
 
     name: str
     """Of ``AIMS``."""
@@ -55,11 +55,11 @@ class Search:
     """What a search is besides where it starts; a file says the same."""
 
     name: str
-    """How it is called."""
+    """Name, as messages, tables and files show it."""
     vary: tuple[Vary, ...]
     """What may change, each with ``low`` and ``high``."""
     aims: tuple[Aim, ...]
-    """What is made better."""
+    """Quantities that the search optimises; two or more give a front."""
     limits: tuple[Limit, ...] = ()
     """What is allowed; joint limits, reach and servo speeds always hold."""
     arms: tuple[Arm, ...] = (WHOLE,)
@@ -91,7 +91,7 @@ class Optimisation(Search):
     """A search for the best among the runs that differ from one in some fields."""
 
     run: Run
-    """Where the search starts."""
+    """Run from which the search starts."""
 
     def __post_init__(self) -> None:
         with Checks("optimisation", self) as check:

@@ -21,7 +21,7 @@ _NEEDED = (
 
 
 class Frames(NamedTuple):
-    """What happened, at equal steps of time."""
+    """Poses, forces and water level of a run, sampled at equal steps of time."""
 
     start: float
     """Time of the first frame [s]."""

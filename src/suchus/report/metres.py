@@ -24,7 +24,7 @@ class Metre:
     where: str
     """In words."""
     experiment: str
-    """Whose measures these are."""
+    """Name of the experiment that measured them."""
     speed: str
     """With its unit."""
     work: str

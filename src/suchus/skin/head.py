@@ -42,7 +42,7 @@ _SKULL_WIDTH, _MOUTH = (curve([(row[0], row[i]) for row in (_NECK[-1], *_SKULL)]
 
 
 class Frame(NamedTuple):
-    """What the head is measured in."""
+    """Frame and units in which the head is measured."""
 
     joint: float
     """x of the jaw joint [m]."""

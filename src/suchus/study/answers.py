@@ -120,7 +120,7 @@ class Agreement(NamedTuple):
     shares: float
     """Greatest difference of a claim's share of truth [-]."""
     claim: str
-    """Which claim's share that is."""
+    """Key of the claim whose share that is."""
     chance: float
     """How likely chance alone turns one of the claims so much more often one way than the other [-]."""
 

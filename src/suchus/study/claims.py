@@ -61,7 +61,7 @@ class Claims:
     least: float = 0.05
     """An intact robot with spine and tail that gets no farther cannot lose anything that could be measured [m]."""
     cycles: int = int(CYCLES)
-    """How many cycles are measured [-]."""
+    """Number of cycles over which is measured [-]."""
     seed: int = 0
     """Seed of the Sobol sequence's scrambling [-]."""
 

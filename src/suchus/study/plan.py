@@ -74,7 +74,7 @@ class Plan(Sequence[Point]):
 
     @property
     def chunks(self) -> int:
-        """How many batches it takes."""
+        """Number of batches [-]."""
         return -(-len(self) // self.study.chunk)
 
     def chunk(self, number: int) -> range:

@@ -17,7 +17,7 @@ class ResultTable:
     """Rows of words and numbers."""
 
     caption: str
-    """What it shows."""
+    """Caption of the table."""
     heads: Sequence[str]
     """Of the columns."""
     rows: Sequence[Sequence[str]]
@@ -27,7 +27,7 @@ class ResultTable:
 
     @property
     def numeric(self) -> tuple[int, ...]:
-        """Which columns hold numbers."""
+        """Indices of the columns that hold numbers."""
         return tuple(i for i in range(len(self.heads)) if i not in self.words)
 
 

@@ -86,11 +86,11 @@ class Study:
     """Many runs that differ from one in some fields."""
 
     name: str
-    """How it is called."""
+    """Name, as messages, tables and files show it."""
     run: Run
-    """What all runs have in common."""
+    """The run from which all differ."""
     vary: tuple[Vary, ...]
-    """What differs."""
+    """Fields that vary, and over which values."""
     measure: tuple[str, ...]
     """Names of ``suchus.metrics``."""
     design: Design = "factorial"
@@ -108,7 +108,7 @@ class Study:
     chunk: int = 32
     """How many runs are simulated together, and lost when the study is killed [-]; about 3 MB of memory for each."""
     arms: tuple[Arm, ...] = ()
-    """Sides of a comparison; every run is made in each of them."""
+    """Conditions of a comparison; every run is made in each of them."""
     every: int = 1
     """Measures look at one sample of so many control periods of 10 ms [-]; memory shrinks with it."""
     reasons: tuple[str, ...] = field(default=())

@@ -24,9 +24,9 @@ class Verdict:
     """What became of one claim of the article."""
 
     claim: Claim
-    """What the article says."""
+    """The article's statement."""
     rule: Rule
-    """What decided."""
+    """The rule that was applied."""
     measured: float | None
     """What was measured, in the unit of ``unit``; None where nothing can be measured."""
     low: float | None

@@ -31,7 +31,7 @@ class Knob:
     scale: float = 1.0
     """SI value of one unit."""
     hint: str = ""
-    """What it does."""
+    """Explanation of its effect, for the page."""
 
     def __str__(self) -> str:
         return f"{self.label} [{self.unit}]" if self.unit else self.label

@@ -71,7 +71,7 @@ class Settings:
     speed: float = 1.0
     """Simulated over real time [-]."""
     swim: Swim | None = None
-    """How it swims; None on dry land."""
+    """Its swimming motion; None on dry land."""
     swims: bool = True
     """Whether it swims or walks, where there is water."""
     level: float = 0.6
@@ -102,7 +102,7 @@ class Settings:
 
     @property
     def ground(self) -> Ground:
-        """What it walks on."""
+        """The ground that it walks on."""
         length, start = (round(self.size * part, 9) for part in (_CORRELATION, BEFORE))
         bumps = Bumps(height=self.bumps, correlation=length, start=start, seed=0) if self.bumps else None
         return Ground(uphill=self.uphill, sideways=self.sideways, relief=bumps)
@@ -121,7 +121,7 @@ def plain_knobs(robot: AnyRobot) -> dict[str, Knob]:
 
 @dataclass(slots=True)
 class Instant:
-    """What is seen at one instant."""
+    """State of the walk at one instant, for the page."""
 
     time: float = 0.0
     """Since the walk was begun [s]."""

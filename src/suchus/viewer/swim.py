@@ -27,7 +27,7 @@ class Film:
     """One swim of a record, frame by frame."""
 
     title: str
-    """What it is called."""
+    """Title of the film."""
     phase: np.ndarray
     """Of each frame, (frame,) [cycle]."""
     x: np.ndarray

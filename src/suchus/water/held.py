@@ -65,7 +65,7 @@ def tether(
 
 
 class _Held:
-    """What is seen of a held body."""
+    """Time series of a tethered body."""
 
     def __init__(self, pool: Pool) -> None:
         self._robot = pool.robot

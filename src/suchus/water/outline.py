@@ -41,7 +41,7 @@ def silhouette(robot: AnyRobot, s: Float[np.ndarray, " station"]) -> BodySilhoue
 
 
 class Base(NamedTuple):
-    """Where the snout is and how the head points."""
+    """Position of the snout and direction of the head."""
 
     x: Float[np.ndarray, "*b"]
     """[m]."""
@@ -84,7 +84,7 @@ class Outline:
     """
 
     robot: Crocodile
-    """Whose midline."""
+    """Robot whose midline it is."""
     stations: int = STATIONS
     """Points along it [-]."""
 

@@ -91,7 +91,7 @@ class Pool:
 
     @property
     def end(self) -> float:
-        """When the last cycle ends [s]."""
+        """Time at which the last cycle ends [s]."""
         return self.setting.cycles * self.period
 
     def swum(self, witness: Witness, *, checkpoint: Path | str | None, progress: Progress | None) -> xr.Dataset:

@@ -77,7 +77,7 @@ class Tree:
     parts: tuple[TreePart, ...]
     """The first one is the root."""
     told: tuple[str, ...]
-    """What was not taken, in sentences."""
+    """Notes on what was not taken over, a sentence each."""
 
     @property
     def size(self) -> float:
