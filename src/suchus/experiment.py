@@ -69,7 +69,7 @@ class Simulated:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Outcome(Simulated):
-    """What came out: numbers, verdicts, and the record they were read from."""
+    """The result: numbers, verdicts, and the record they were read from."""
 
     experiment: str
     """Name on the shelf."""

@@ -55,7 +55,7 @@ def attempt(task: Job, progress: Progress) -> JobResult:
 
 
 def failed(name: str, sentence: str, trace: str = "") -> JobResult:
-    """Return what is reported of an experiment that came to no result.
+    """Return what is reported of an experiment that failed.
 
     Args:
         name: of the experiment.

@@ -64,7 +64,7 @@ def demo(words: Sequence[str]) -> int:
 
 
 def _page(out: Path, opener: BaseBrowser | None, live: bool) -> int:
-    """Write the page, name it, and say what came out."""
+    """Write the page, name it, and print the results."""
     if out.suffix.lower() not in (".html", ".htm"):
         raise BadCommand(f"the page would be {out}; say --out FILE.html.")
     check_writable(out.parent)

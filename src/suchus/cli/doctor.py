@@ -55,7 +55,7 @@ class Finding:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Trial:
-    """What a trial in a process of its own came to."""
+    """Result of a trial in a process of its own."""
 
     found: Mapping[str, Any] | None
     """Output of the trial; None if it failed."""
@@ -192,7 +192,7 @@ def installed(name: str) -> str | None:
 
 
 def tried(*names: str) -> list[Trial]:
-    """Return what trials came to, side by side, each in a process of its own."""
+    """Return the results of trials, side by side, each in a process of its own."""
     command = [sys.executable, "-P", "-m", "suchus.cli.trial"]
     with ExitStack() as stack:
         running = []

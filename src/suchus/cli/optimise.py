@@ -26,14 +26,14 @@ class OptimiseOptions:
     out: Path | None = None
     """Where it goes; by default out/optimise/NAME. A search that began there goes on."""
     evaluations: int | None = None
-    """How many candidates each arm may try; more than before continues an earlier search."""
+    """Number of candidates that each condition may try; more than before continues an earlier search."""
     seed: int | None = None
     """Of the search."""
     scheduler: SCHEDULER = None
 
 
 def optimise(words: Sequence[str]) -> int:
-    """Search, or finish a search, say what came of it, and return 0.
+    """Search, or finish a search, print the result, and return 0.
 
     Raises:
         SuchusError: the words or the file make no sense, or nothing can be written.
@@ -79,6 +79,6 @@ def _asked(options: OptimiseOptions) -> Optimisation:
 
 
 def _shown(bars: Bars, spec: Optimisation) -> Callable[[SearchProgress], None]:
-    """Return what moves a bar for each arm."""
+    """Return what moves a bar for each condition."""
     tells = {arm.name: bars.told(f"{spec.name} {arm.name}") for arm in spec.arms}
     return lambda told: tells[told.arm](told, min(told.done / told.budget, 1.0))

@@ -35,7 +35,7 @@ class StudyOptions:
     """The study, a TOML file, or ``claims``, the article's claims over plausible designs; see docs/studies.md."""
     scheduler: SCHEDULER = None
     samples: int | None = None
-    """How many points a sampled study has; other than before is another study."""
+    """Number of points of a sampled study; with another number than before it is another study."""
     out: Path | None = None
     """The store; by default out/studies/NAME. One that this study began is finished, anything else is refused."""
     finished: bool = False
@@ -45,7 +45,7 @@ class StudyOptions:
 
 
 def study(words: Sequence[str]) -> int:
-    """Conduct a study, or finish it, say what came of it, and return 0.
+    """Conduct a study, or finish it, print the result, and return 0.
 
     Raises:
         SuchusError: the words or the file make no sense, or the store cannot be written to.

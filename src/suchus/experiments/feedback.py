@@ -215,7 +215,7 @@ class Feedback(Experiment):
         return data, pair
 
     def _disturbed(self, progress: Any) -> xr.Dataset:
-        """Return track, direction, limb phases and tail pitch over time for every disturbance and arm."""
+        """Return track, direction, limb phases and tail pitch over time for every disturbance and condition."""
         arms, place = self._arms, layout(self.robot)
         runs = [self._disturb(control, name) for name in DISTURBANCES for control in arms.values()]
         duration = self._at + self.after * self.gait.period

@@ -170,7 +170,7 @@ class Terrain(Experiment):
         return Bumps(height=height, correlation=correlation, start=BEFORE * size, seed=seed, scale=size)
 
     def arms(self) -> Mapping[str, tuple[Gait | Pattern, Control]]:
-        """Return gait and control of every arm."""
+        """Return gait and control of every condition."""
         ladder, level = (self.crawl, self.semi_erect, self.high_walk), AttitudeRule()
         arms: dict[str, tuple[Gait | Pattern, Control]] = {
             "low_crawl": (self.crawl, Walking()),

@@ -1,4 +1,4 @@
-"""Which parameters decide: rank correlations, and the border between where a statement holds and where it does not."""
+"""Which parameters decide: rank correlations, and the decision boundary between true and false."""
 
 from typing import NamedTuple
 

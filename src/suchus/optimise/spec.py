@@ -14,7 +14,7 @@ from suchus.renamed import old_names
 from suchus.study import Arm, Vary
 
 WHOLE = Arm(name="best")
-"""The only arm of a search without a comparison."""
+"""The only condition of a search without a comparison."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -63,11 +63,11 @@ class Search:
     limits: tuple[Limit, ...] = ()
     """What is allowed; joint limits, reach and servo speeds always hold."""
     arms: tuple[Arm, ...] = (WHOLE,)
-    """Searched one after the other with the same budget; what an arm sets does not vary in it."""
+    """Searched one after the other with the same budget; what a condition sets does not vary in it."""
     pareto: bool = False
     """Whether two aims are weighed against each other as a front, rather than summed."""
     evaluations: int = 1200
-    """How many candidates each arm may try [-]; the generation in which they run out is finished."""
+    """Number of candidates that each condition may try [-]; the generation in which they run out is finished."""
     population: int = 16
     """Candidates of a generation, simulated in one batch; of each point of the front, where there is one [-]."""
     points: int = 6
@@ -133,7 +133,7 @@ class Optimisation(Search):
         if isinstance(there, int):
             raise InvalidDesign(
                 f"optimisation {self.name!r} varies {vary.field}, which takes whole numbers; a search moves in real "
-                "ones: make an arm of each."
+                "ones: make a condition of each."
             )
         if not vary.low <= there <= vary.high:
             raise InvalidDesign(
@@ -150,7 +150,7 @@ class Optimisation(Search):
                 continue  # wrong together with the start; it may be right together with what varies
 
     def of(self, arm: Arm) -> "Optimisation":
-        """Return the search of one arm alone: what it sets is set, and does not vary.
+        """Return the search of one condition alone: what it sets is set, and does not vary.
 
         Raises:
             UnknownName: it sets a field that does not exist.

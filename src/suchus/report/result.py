@@ -68,7 +68,7 @@ class Result:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Failure:
-    """An experiment that came to no result."""
+    """An experiment that failed."""
 
     name: str
     """Name of the experiment."""

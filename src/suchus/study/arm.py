@@ -1,4 +1,4 @@
-"""An arm of a comparison: what it sets differently from all others."""
+"""An arm, a condition of a comparison: the fields that it sets differently from all others."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field

@@ -13,7 +13,7 @@ from suchus.design import Crocodile, unit_at, value_at
 from suchus.design.checks import Checks
 from suchus.errors import UnreadableFile
 from suchus.gaits import GAITS, conditions
-from suchus.land import LOST, Run, lost
+from suchus.land import FAILED_JOINTS, Run, joint_failure
 from suchus.motion import START, Gait
 from suchus.paper import CYCLES
 from suchus.robots import ROBOTS
@@ -102,9 +102,9 @@ class Claims:
             of = {one: (value_at(gait, one), value_at(crawl, one)) for one in _TRUNK}
             sets[name] = {f"gait.{one}": there for one, (there, here) in of.items() if there != here}
         sets |= {
-            f"{name}_{joint}": {**sets[name], "faults": lost(self.robot, self.gait, joint, "limp")}
+            f"{name}_{joint}": {**sets[name], "faults": joint_failure(self.robot, self.gait, joint, "limp")}
             for name in FAULTY
-            for joint in LOST
+            for joint in FAILED_JOINTS
         }
         return tuple(Arm(name=name, values=sets[name]) for name in RUNS)
 
