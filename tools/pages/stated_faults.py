@@ -18,7 +18,7 @@ def _percent(value: float) -> str:
 def _losses(measures: Mapping[str, float]) -> str:
     """Return the table of all losses: median and range in percent, beside what is printed."""
     lines = [
-        "| lost | arm | limp, one | limp, both | locked, one | locked, both | printed |",
+        "| failed joint | condition | limp, one | limp, both | locked, one | locked, both | printed |",
         "|---|---|---|---|---|---|---|",
     ]
     for joint, (arm, name) in product((*FAILED_JOINTS, *KNEES), _ARMS.items()):
@@ -42,7 +42,7 @@ def _losses(measures: Mapping[str, float]) -> str:
 
 def _steered(measures: Mapping[str, float]) -> str:
     """Return what steering makes of each loss and turn."""
-    lines = ["| lost, limp in one leg | loss, steered | turn, steered |", "|---|---|---|"]
+    lines = ["| failed joint, limp in one leg | loss, steered | turn, steered |", "|---|---|---|"]
     doubled = []
     for joint in FAILED_JOINTS:
         name = joint.replace("_", " ")

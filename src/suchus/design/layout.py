@@ -192,7 +192,7 @@ def layout(robot: AnyRobot) -> Layout:
 def servo_ranges(robot: AnyRobot) -> np.ndarray:
     """Return the range of what each servo turns, shape (servo, 2) [rad]; a crank has none, for a cable see the pulley.
 
-    A wheel that bends N hinges by b together turns by N d sin(b / (2 N)) / r.
+    A pulley that bends N hinges by b together turns by N d sin(b / (2 N)) / r.
     """
     found, place = [], layout(robot)
     by_name = {name: hinge for body in place.bodies for hinge, name, _ in body.hinges}

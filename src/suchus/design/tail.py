@@ -34,7 +34,7 @@ class Tail:
     cord_spacing: float
     """Between the two cords, the article's d [m]."""
     pulley: float
-    """Radius of the servo's wheel, the article's r [m]."""
+    """Radius of the servo's pulley, the article's r [m]."""
     joint_stiffness: float
     """Lateral spring at each cable joint [N m/rad]."""
     joint_damping: float

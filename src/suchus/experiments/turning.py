@@ -186,9 +186,9 @@ class Turning(Experiment):
         m = {name: Reading(value) for name, value in measures.items()}
         names = [gait.name for gait in self.gaits]
         told = [
-            f"the {name.replace('_', ' ')} in {m[f'tightest_bend_{name}']:.2f} m by a curvature offset, "
-            f"{m[f'tightest_asymmetry_{name}']:.2f} m by unequal strokes and {m[f'tightest_both_{name}']:.2f} m by the "
-            "mixture of both"
+            f"the {name.replace('semi_', 'semi-').replace('_', ' ')} in {m[f'tightest_bend_{name}']:.2f} m by a "
+            f"curvature offset, {m[f'tightest_asymmetry_{name}']:.2f} m by unequal strokes and "
+            f"{m[f'tightest_both_{name}']:.2f} m by the mixture of both"
             for name in names
         ]
         walked = sum(m[f"circles_walked_{name}"] for name in names)
