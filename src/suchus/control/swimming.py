@@ -53,7 +53,7 @@ class Swimming:
 
     @property
     def feels(self) -> bool:
-        """Whether heading or depth are held."""
+        """Whether heading or depth are controlled."""
         return self.heading is not None or self.depth is not None
 
     def targets(self, robot: Crocodile, time: Float[np.ndarray, " time"]) -> Float[np.ndarray, "time servo"]:
@@ -81,7 +81,7 @@ class Swimming:
 
         Raises:
             OutsideLimits: a robot cannot follow it.
-            InvalidDesign: a robot whose depth is held has too little air.
+            InvalidDesign: a robot whose depth is controlled has too little air.
         """
         return self.start_together([self] * len(robots), robots, gaits, seeds, ticks, period)
 
@@ -98,7 +98,7 @@ class Swimming:
 
         Raises:
             OutsideLimits: a robot cannot follow its swim.
-            InvalidDesign: a robot whose depth is held has too little air.
+            InvalidDesign: a robot whose depth is controlled has too little air.
         """
         del gaits, seeds
         return SwimmingController(controls, crocodiles(robots, "swimming by trunk and cable"), ticks, period)

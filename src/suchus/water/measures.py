@@ -1,4 +1,4 @@
-"""Numbers read from the records of a held and of a free swim; how each is defined stands here."""
+"""Numbers read from the records of a tethered and of a free swim; how each is defined stands here."""
 
 from typing import NamedTuple
 

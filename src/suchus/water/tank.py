@@ -38,7 +38,7 @@ class Tether:
     frames: int = 24
     """Instants of a free body's last cycle at which the fields are kept, for films [-]."""
     box: tuple[float, float] | None = None
-    """Length and width of the box [body length]; None gives a held body 2.75 by 1.5 and a free one 3.5 by 2."""
+    """Length and width of the box [body length]; None gives a tethered body 2.75 by 1.5 and a free one 3.5 by 2."""
 
     def __post_init__(self) -> None:
         with Checks("tether", self) as check:
