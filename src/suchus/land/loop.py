@@ -75,7 +75,7 @@ class Loop:
         self.readings = Readings(self.bench, runs, samples)
 
     def decide(self, tick: int, beat: int | None = None) -> Command:
-        """Let happen what is due and return what the controller commands; ``disturb`` says what comes of it.
+        """Let happen what is due and return what the controller commands; ``disturb`` returns the result.
 
         Args:
             tick: number of the control period.

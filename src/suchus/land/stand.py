@@ -11,7 +11,7 @@ from suchus.errors import Diverged, InvalidDesign, UnknownName
 from suchus.model import activations, build
 
 _HEIGHT = 2.0  # [m]; of the stand: nothing touches the ground
-_GRIP = "grip"
+_GRIP = "clamp"
 
 
 class Response(NamedTuple):

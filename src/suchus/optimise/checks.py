@@ -50,8 +50,8 @@ def checked(spec: Optimisation, runs: Sequence[Run]) -> xr.Dataset:
     """Run the chosen, and where the search started, under every condition with 2 ms.
 
     Returns:
-        ``aim_...`` and ``limit_...`` along ``run`` (the chosen, then ``start``) and ``condition``; NaN where it came
-        apart.
+        ``aim_...`` and ``limit_...`` along ``run`` (the chosen, then ``start``) and ``condition``; NaN where it
+        diverged.
     """
     who = [*runs, replace(spec.run, label="start")]
     batch = [_under(run, condition) for run in who for condition in CONDITIONS]
