@@ -24,7 +24,7 @@ from suchus.replay import replay, save
 from suchus.robots import ROBOTS
 
 ROBOT, GAITS_SHOWN = "caiman", ("belly_crawl", "limbs_only")
-"""Who walks, and how: first alone, then, on a page, beside the control group."""
+"""Robot and gaits that are shown: live the first gait, on a page both side by side."""
 _NEEDED = ("viser", "mjviser")
 """Packages of the extra ``viewer``."""
 

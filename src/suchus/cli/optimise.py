@@ -24,11 +24,11 @@ class OptimiseOptions:
     what: Annotated[str, tyro.conf.Positional]
     """A ready-made search, or a TOML file; see docs/optimise.md."""
     out: Path | None = None
-    """Where it goes; by default out/optimise/NAME. A search that began there goes on."""
+    """Folder of results; by default out/optimise/NAME. A search that began there is continued."""
     evaluations: int | None = None
     """Number of candidates that each condition may try; more than before continues an earlier search."""
     seed: int | None = None
-    """Of the search."""
+    """Seed of the search."""
     scheduler: SCHEDULER = None
 
 
@@ -38,8 +38,8 @@ def optimise(words: Sequence[str]) -> int:
     Raises:
         SuchusError: the words or the file make no sense, or nothing can be written.
     """
-    ready = "; ".join(f"{name}: {made.__doc__}" for name, made in READY.items())
-    about = f"Search for a better gait or body. Started again it goes on where it stopped. Ready-made: {ready}"
+    ready = "\n".join(f"  {name}: {made.__doc__}" for name, made in READY.items())
+    about = f"Search for a better gait or body. A search that was stopped is continued. Ready-made:\n\n{ready}"
     options: OptimiseOptions = parse(
         OptimiseOptions, "suchus optimise", words, about, [f.name for f in fields(OptimiseOptions)]
     )

@@ -37,9 +37,9 @@ class StudyOptions:
     samples: int | None = None
     """Number of points of a sampled study; with another number than before it is another study."""
     out: Path | None = None
-    """The store; by default out/studies/NAME. One that this study began is finished, anything else is refused."""
+    """Folder of the store; by default out/studies/NAME. A store of the same study is continued, any other refused."""
     finished: bool = False
-    """Only for ``claims``: run nothing, answer from what the store holds, of a power of two of samples."""
+    """Only for ``claims``: run nothing, answer from the samples in the store, as many as are a power of two."""
     csv: CSV = False
     """Write the results as CSV files with units in the header too, into the folder csv in the store."""
 
@@ -50,7 +50,7 @@ def study(words: Sequence[str]) -> int:
     Raises:
         SuchusError: the words or the file make no sense, or the store cannot be written to.
     """
-    about = "Run many variants of one run, and keep what is measured. Started again it goes on where it stopped."
+    about = "Run many variants of one run, and store what is measured. A study that was stopped is continued."
     options: StudyOptions = parse(StudyOptions, "suchus study", words, about, [f.name for f in fields(StudyOptions)])
     if str(options.file) == CLAIMS and not there(options.file):
         return _claims(options)
