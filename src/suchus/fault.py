@@ -80,7 +80,7 @@ class Fault(ABC):
 
     __slots__ = ()
     acts_on: ClassVar[str]
-    """What kind of part breaks: ``servo``, ``limb`` or ``sensor``."""
+    """Kind of part that fails: ``servo``, ``limb`` or ``sensor``."""
     at: float
     """Time at which the fault begins [s], at least 0."""
 

@@ -23,19 +23,19 @@ class SyntheticAnimal:
     """A lizard-like body that walks straight on with feet that never slip."""
 
     trunk: float
-    """From hip to shoulder [m]."""
+    """Length from hip to shoulder [m]."""
     tail: float
     """Length of the tail [m]."""
     period: float
-    """Of one cycle [s]."""
+    """Period of one cycle [s]."""
     duty_factor: float
     """Share of the cycle in which a foot stands [-]."""
     limb_phases: tuple[float, float, float, float]
     """Phase of LF, RF, LH, RH at time zero; a limb swings first, then stands [cycle]."""
     stride: float
-    """How far the body goes in one cycle [m]."""
+    """Distance that the body moves in one cycle [m]."""
     outward: float
-    """How far feet stand from the midline [m]."""
+    """Distance by which feet stand from the midline [m]."""
     lift: float
     """Height to which feet are lifted [m]."""
     spine_bend: float

@@ -46,7 +46,7 @@ class Swing(NamedTuple):
     """The swing of one foot, from all its strides; shares are of a stride, phases count from time zero [cycle]."""
 
     phase: Float[np.ndarray, " swing"]
-    """Of the middle of the fast part of each swing: feet that slide before they lift off do not move it."""
+    """Phase of the middle of the fast part of each swing: feet that slide before they lift off do not move it."""
     skew: float
     """How much later than that the swing is half over [cycle]."""
     share: float

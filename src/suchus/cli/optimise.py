@@ -39,7 +39,7 @@ def optimise(words: Sequence[str]) -> int:
         SuchusError: the words or the file make no sense, or nothing can be written.
     """
     ready = "\n".join(f"  {name}: {made.__doc__}" for name, made in READY.items())
-    about = f"Search for a better gait or body. A search that was stopped is continued. Ready-made:\n\n{ready}"
+    about = f"Search for a better gait or body. A search that was stopped is continued. Ready-made:\n{ready}"
     options: OptimiseOptions = parse(
         OptimiseOptions, "suchus optimise", words, about, [f.name for f in fields(OptimiseOptions)]
     )

@@ -41,7 +41,7 @@ CSV = Annotated[
 
 SCHEDULER = Annotated[
     str | None,
-    tyro.conf.arg(help="Address of a Dask scheduler whose workers run it, as tcp://127.0.0.1:8786; the same bytes."),
+    tyro.conf.arg(help="Address of a Dask scheduler whose workers run it, as tcp://127.0.0.1:8786."),
 ]
 
 

@@ -27,7 +27,7 @@ class AxisSegment:
     left: float
     """1 where a positive angle of the servo bends to the left, -1 where to the right [-]."""
     amplitude: float
-    """Of its bend in the gait [rad]."""
+    """Amplitude of its bend in the gait [rad]."""
     part: AxisPart
     """The limbs that drive it, and its phase lag behind them."""
     steers: bool

@@ -33,11 +33,12 @@ class Swimming:
     trunk_turn: float = 0.0
     """Mean bend of the trunk, front end to the left positive [rad]."""
     limb_yaw: float = -pi / 2
-    """How far all limbs point forward of straight out [rad]; back along the body at -90 degrees."""
+    """Angle by which all limbs point forward of straight out [rad]; back along the body at -90 degrees."""
     limb_pitch: float = -0.3
-    """How far all limbs point down [rad]; up to the surface where negative: foam on them keeps the body upright."""
+    """Angle by which all limbs point down [rad]; up to the surface where negative: foam on them keeps the body
+    upright."""
     ramp: float = 1.0
-    """Over which the amplitudes grow [s]."""
+    """Duration over which the amplitudes grow [s]."""
     heading: HeadingHold | None = None
     """Rule that keeps the heading; None for none."""
     depth: DepthHold | None = None

@@ -82,11 +82,11 @@ class Cable:
     """
 
     name: str
-    """Of the servo and the cable."""
+    """Name of the servo and the cable."""
     hinges: tuple[str, ...]
     """The hinges that it bends, from its servo to its end."""
     cord_spacing: float
-    """Between the two cords, the article's d [m]."""
+    """Distance between the two cords, the article's d [m]."""
     pulley: float
     """Radius of the servo's pulley, the article's r [m]."""
     bend_limit: float

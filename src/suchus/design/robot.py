@@ -39,7 +39,7 @@ class Crocodile:
     contact: Contact
     """Friction, stiffness and damping of the contact of its surfaces with the ground."""
     hull: Hull | None = None
-    """What makes it float; None for a robot without foam."""
+    """Foam and air that make it float; None for a robot without."""
 
     def __post_init__(self) -> None:
         with Checks("robot", self) as check:

@@ -91,9 +91,9 @@ class Segment:
     name: str
     """Unique in the robot."""
     front: float
-    """From the origin forward to the joint with the segment ahead, or to the tip [m]."""
+    """Distance from the origin forward to the joint with the segment ahead, or to the tip [m]."""
     rear: float
-    """From the origin back to the joint with the segment behind, or to the tip [m]."""
+    """Distance from the origin back to the joint with the segment behind, or to the tip [m]."""
     shapes: tuple[Rod | Shell, ...]
     """What it is made of; the masses are theirs."""
     hinges: tuple[Hinge, ...] = ()

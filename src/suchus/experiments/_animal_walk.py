@@ -64,7 +64,7 @@ class Window(NamedTuple):
     start: float
     """Time at which the first cycle begins [s]."""
     period: float
-    """Of a cycle [s]."""
+    """Period of a cycle [s]."""
     cycles: int
     """Number of cycles [-]."""
 

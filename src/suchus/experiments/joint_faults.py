@@ -79,19 +79,19 @@ class JointFaults(Experiment):
     lifted: AnyGait = field(default_factory=lambda: GAITS["limbs_tail_lifted"])
     """The control group with its tail in the air, for comparison; its legs follow those of ``gait``."""
     cycles: int = int(CYCLES)
-    """Number of cycles over which is measured [-]."""
+    """Number of cycles that are measured [-]."""
     variations: int = 8
     """Gaits and frictions [-]; the first is the gait as given, without noise."""
     spread: float = 0.25
     """Part of each plausible range of the gait's numbers that the variations cover, about the number given [-]."""
     friction_spread: float = 0.2
-    """Half-width of the uniform spread of the friction, as a part of it [-]."""
+    """Half-width of the uniform spread of the friction, as a fraction of it [-]."""
     noise: float = 0.01
     """Standard deviation of the noise on every commanded angle [rad]; a hobby servo's dead band."""
     repeats: int = 4
     """Runs of the judged reading in the gait as given, with noise and another friction, for the spread [-]."""
     repeat_friction_spread: float = 0.1
-    """Half-width of the uniform spread of the friction in the repeats, as a part of it [-]."""
+    """Half-width of the uniform spread of the friction in the repeats, as a fraction of it [-]."""
     hold: float = 0.5
     """Where a locked joint holds in the range that the gait asks of it: 0 least, 1 greatest [-].
 

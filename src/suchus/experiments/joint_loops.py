@@ -54,9 +54,9 @@ class JointLoops(Experiment):
     step: float = radians(10.0)
     """Height of the step [rad]."""
     seconds: float = 4.0
-    """How long the joint is watched after each change [s]."""
+    """Duration for which the joint is watched after each change [s]."""
     cycles: int = int(CYCLES)
-    """How many cycles of the crawl are measured [-]."""
+    """Number of cycles of the crawl that are measured [-]."""
 
     def __post_init__(self) -> None:
         with Checks(self.name(), self) as check:

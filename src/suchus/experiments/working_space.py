@@ -46,7 +46,7 @@ class WorkingSpace(Experiment):
     cell: float = 0.025
     """Edge of the cells that are counted [m]."""
     seed: int = 0
-    """Of the drawing [-]."""
+    """Seed of the drawing [-]."""
 
     def __post_init__(self) -> None:
         with Checks(self.name(), self) as check:

@@ -18,7 +18,7 @@ class Backlash(ServoFault):
     joint: str
     """Name of the servo."""
     gap: float = 0.1
-    """From one end of the play to the other [rad]; 0 to 1."""
+    """Play from one end to the other [rad]; 0 to 1."""
     at: float = 0.0
     """Time at which the fault begins [s], at least 0."""
 

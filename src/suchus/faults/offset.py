@@ -21,7 +21,7 @@ class Offset(ServoFault):
     joint: str
     """Name of the servo."""
     angle: float = TOOTH
-    """Of the joint beyond the servo [rad]; -pi to pi."""
+    """Angle of the joint beyond the servo [rad]; -pi to pi."""
     at: float = 0.0
     """Time at which the fault begins [s], at least 0."""
 

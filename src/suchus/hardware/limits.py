@@ -38,13 +38,13 @@ class ServoLoad:
     torque: float
     """Greatest torque [N m]."""
     limit: float
-    """Of its torque [N m]."""
+    """Limit of its torque [N m]."""
     at_limit: float
     """Share of the walk that it spends at the limit [-]."""
     first: float
-    """When it first gets there, from the beginning of the walk [s]; NaN if it does not."""
+    """Time at which it first reaches its limit, from the beginning of the walk [s]; NaN if it does not."""
     off: float
-    """How far it is from its commanded angle at most, but for the worst 2 % of the walk [rad]."""
+    """Greatest error against its commanded angle, but for the worst 2 % of the walk [rad]."""
     needed: float
     """98th percentile of the torque of a servo four times as strong in the same walk [N m]."""
     tried: float = 0.0

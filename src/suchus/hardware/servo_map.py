@@ -22,7 +22,7 @@ class ServoLine:
     name: str
     """Name of the servo, as ``LF_yaw``; the angle of ``tail_cable`` is that of its pulley."""
     channel: int
-    """Of the servo board, from 0 [-]."""
+    """Channel of the servo board, from 0 [-]."""
     direction: int
     """1 if longer pulses turn the joint in its positive sense, -1 if they turn it the other way [-]."""
     offset: float

@@ -20,7 +20,7 @@ class Push:
     """
 
     force: tuple[float, float, float]
-    """In the world: forward, left, up [N]."""
+    """Force in the world frame: forward, left, up [N]."""
     at: float
     """Time at which the push begins [s]."""
     duration: float = 0.2

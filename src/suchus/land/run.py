@@ -24,7 +24,7 @@ class Afloat:
     """
 
     density: float
-    """Of the fluid [kg/m3]; 0 in vacuum."""
+    """Density of the fluid [kg/m3]; 0 in vacuum."""
     viscosity: float
     """Dynamic viscosity of the fluid [Pa s]; 0 in vacuum."""
 

@@ -20,9 +20,9 @@ class Response(NamedTuple):
     time: Float[np.ndarray, " time"]
     """Time since the first command [s]."""
     angle: Float[np.ndarray, " time"]
-    """Of the joint [rad]."""
+    """Angle of the joint [rad]."""
     torque: Float[np.ndarray, " time"]
-    """Of the servo [N m]."""
+    """Torque of the servo [N m]."""
 
 
 def on_stand(

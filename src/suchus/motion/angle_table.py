@@ -53,7 +53,7 @@ class AngleTable:
     name: str
     """Name, as messages, tables and files show it."""
     period: float
-    """Of one cycle [s]."""
+    """Period of one cycle [s]."""
     duty_factor: float
     """Share of the cycle in which a foot stands [-]; it moves nothing, measures and diagrams read it."""
     limb_phases: tuple[float, ...]

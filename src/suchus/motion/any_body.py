@@ -27,7 +27,7 @@ class Intended(NamedTuple):
     """Intended motion over time."""
 
     phase: Float[np.ndarray, "*batch limb"]
-    """Of each limb, without wrapping [cycle]."""
+    """Phase of each limb, without wrapping [cycle]."""
     targets: Float[np.ndarray, "*batch servo"]
     """Servo angles [rad]."""
 

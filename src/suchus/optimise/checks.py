@@ -22,15 +22,15 @@ class Condition:
     """One condition of a check, and how it differs from the search."""
 
     tells: str
-    """In words."""
+    """Description of the condition."""
     friction_scale: float = 1.0
     """Factor on the friction [-]."""
     noise: float = 0.0
-    """On every commanded angle [rad]."""
+    """Standard deviation of noise on every commanded angle [rad]."""
     seed: int = 0
-    """Of the noise."""
+    """Seed of the noise."""
     later: float = 0.0
-    """How much later in its cycle the walk begins [cycle]."""
+    """Phase by which the walk begins later in its cycle [cycle]."""
 
 
 CONDITIONS = (

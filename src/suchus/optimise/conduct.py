@@ -44,7 +44,7 @@ class SearchProgress(NamedTuple):
     best: float
     """First aim of the best so far, in its unit; NaN before there is one."""
     unit: str
-    """Of that aim."""
+    """Unit of that aim."""
     rate: float
     """Candidates per second of this start; 0 before the first."""
 

@@ -22,7 +22,7 @@ class Aim:
     """A quantity that the search optimises."""
 
     name: str
-    """Of ``AIMS``."""
+    """Name of the quantity, a key of ``AIMS``."""
     weight: float = 1.0
     """Beside the other aims of a sum, each counted in parts of what the start has [-]."""
 
@@ -38,9 +38,9 @@ class Limit:
     """What must not be exceeded, or undercut, whichever way the quantity goes wrong."""
 
     name: str
-    """Of ``LIMITS``."""
+    """Name of the quantity, a key of ``LIMITS``."""
     value: float
-    """In the quantity's unit."""
+    """Value of the limit, in the unit of the quantity."""
 
     def __post_init__(self) -> None:
         if self.name not in LIMITS:
@@ -57,11 +57,11 @@ class Search:
     name: str
     """Name, as messages, tables and files show it."""
     vary: tuple[Vary, ...]
-    """What may change, each with ``low`` and ``high``."""
+    """Fields that may change, each with ``low`` and ``high``."""
     aims: tuple[Aim, ...]
     """Quantities that the search optimises; two or more give a front."""
     limits: tuple[Limit, ...] = ()
-    """What is allowed; joint limits, reach and servo speeds always hold."""
+    """Limits of other quantities; joint limits, reach and servo speeds always hold."""
     arms: tuple[Arm, ...] = (WHOLE,)
     """Searched one after the other with the same budget; what a condition sets does not vary in it."""
     pareto: bool = False
@@ -71,17 +71,17 @@ class Search:
     population: int = 16
     """Candidates of a generation, simulated in one batch; of each point of the front, where there is one [-]."""
     points: int = 6
-    """Of the front that are pushed forward together [-]."""
+    """Points of the front that are pushed forward together [-]."""
     sigma: float = 0.25
     """First standard deviation of the candidates, as a part of each range [-]."""
     friction_scales: tuple[float, ...] = (1.0,)
     """Factors on the ground's friction: a candidate is run on each; aims are means, limits hold on the worst [-]."""
     seed: int = 0
-    """Of the search."""
+    """Seed of the search."""
     duration: float = 9.0
-    """Of each run [s]: two cycles of four seconds after the first second, in which the robot settles."""
+    """Duration of each run [s]: two cycles of four seconds after the first second, in which the robot settles."""
     timestep: float = 0.005
-    """Of the physics in the search [s]; the best are run again with 2 ms."""
+    """Time step of the physics in the search [s]; the best are run again with 2 ms."""
     reasons: tuple[str, ...] = ()
     """Why these fields, ranges and limits, for whoever reads the results."""
 

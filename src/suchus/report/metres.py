@@ -22,15 +22,15 @@ class Metre:
     """A row of the table."""
 
     where: str
-    """In words."""
+    """Place, in words."""
     experiment: str
     """Name of the experiment that measured them."""
     speed: str
-    """With its unit."""
+    """Speed, with its unit."""
     work: str
-    """Of the servos over the distance, with its unit."""
+    """Work of the servos over the distance, with its unit."""
     cost: str
-    """Of transport: that work over the weight; empty where it was not measured."""
+    """Cost of transport: that work over the weight; empty where it was not measured."""
 
 
 def metres(results: Mapping[str, Result]) -> list[Metre]:

@@ -47,9 +47,9 @@ class Frame(NamedTuple):
     joint: float
     """x of the jaw joint [m]."""
     reach: float
-    """From there to the tip of the snout [m]."""
+    """Distance from there to the tip of the snout [m]."""
     neck: float
-    """From the shoulders to the jaw joint [m]."""
+    """Distance from the shoulders to the jaw joint [m]."""
     w: float
     """Half width [m]."""
     h: float

@@ -16,7 +16,7 @@ class Index(NamedTuple):
     """How much of a quantity each parameter decides alone."""
 
     share: np.ndarray
-    """Of the variance of its ranks, shape (parameter,) [-]; chance alone gives about zero."""
+    """Fraction of the variance of its ranks, shape (parameter,) [-]; chance alone gives about zero."""
     low: np.ndarray
     """Lower end of the 95 % interval [-]."""
     high: np.ndarray

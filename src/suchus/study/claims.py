@@ -46,9 +46,9 @@ class Claims:
     gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
     """The crawl whose other fields all samples share."""
     samples: int = 2048
-    """How many designs and gaits, best a power of two, as Sobol's sequence asks [-]; about a quarter cannot walk."""
+    """Number of designs and gaits, best a power of two, as Sobol's sequence asks [-]; about a quarter cannot walk."""
     together: int = 16
-    """How many samples are simulated together, and lost when the study is killed [-]."""
+    """Number of samples that are simulated together, and lost when the study is killed [-]."""
     coarse: tuple[float, ...] = (0.01, 0.005)
     """Time steps that are tried, the first that agrees with 2 ms is taken; 2 ms if none does [s]."""
     compared: int = 64
@@ -61,7 +61,7 @@ class Claims:
     least: float = 0.05
     """An intact robot with spine and tail that gets no farther cannot lose anything that could be measured [m]."""
     cycles: int = int(CYCLES)
-    """Number of cycles over which is measured [-]."""
+    """Number of cycles that are measured [-]."""
     seed: int = 0
     """Seed of the Sobol sequence's scrambling [-]."""
 

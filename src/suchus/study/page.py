@@ -45,7 +45,7 @@ class StudyFile:
     samples: int | None = None
     """Number of points of a Sobol sequence or a Latin hypercube [-]."""
     seed: int = 0
-    """Of the sampling, and of the first run's noise [-]."""
+    """Seed of the sampling, and of the first run's noise [-]."""
     seeds: int = 1
     """Number of runs at each point [-]."""
     duration: float = 9.0

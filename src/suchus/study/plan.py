@@ -24,7 +24,7 @@ class Point(NamedTuple):
     values: Mapping[str, Any]
     """By field."""
     seed: int
-    """Of the run."""
+    """Seed of the run."""
     arm: Arm | None = None
     """Of the comparison, where there is one."""
 

@@ -19,7 +19,7 @@ class ResultTable:
     caption: str
     """Caption of the table."""
     heads: Sequence[str]
-    """Of the columns."""
+    """Headings of the columns."""
     rows: Sequence[Sequence[str]]
     """As they are to be read."""
     words: Sequence[int] = (0,)

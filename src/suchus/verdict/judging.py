@@ -38,7 +38,7 @@ class Verdict:
     why: str
     """One or two sentences: what decided it."""
     share: Share | None
-    """In how many plausible designs the statement holds; None where that is not known."""
+    """Fraction of plausible designs for which the statement holds; None where that is not known."""
 
     @property
     def held(self) -> bool:

@@ -33,7 +33,7 @@ class Clause:
     bound: float | str
     """A number in the measure's unit, or the name of another measure."""
     why: str
-    """Where the bound comes from: a reason that was there before the result."""
+    """Reason for the bound, one that was there before the result."""
 
     def holds(self, measures: Mapping[str, float]) -> bool:
         """Return whether the comparison is true; a number that is not finite makes it false."""

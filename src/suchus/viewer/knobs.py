@@ -27,7 +27,7 @@ class Knob:
     high: float
     """Greatest value, in that unit."""
     step: float
-    """Of the slider, in that unit."""
+    """Step of the slider, in that unit."""
     scale: float = 1.0
     """SI value of one unit."""
     hint: str = ""

@@ -63,11 +63,11 @@ class Settings:
     size: float = 1.0
     """Length of the robot over that of the article's, which the length of the bumps follows [-]."""
     force: float = 15.0
-    """Of the next push [N]."""
+    """Force of the next push [N]."""
     push_duration: float = 0.2
-    """Of the next push [s]."""
+    """Duration of the next push [s]."""
     direction: float = 1.5707963267948966
-    """Of the next push, from forward to the left [rad]."""
+    """Direction of the next push, from forward to the left [rad]."""
     speed: float = 1.0
     """Simulated over real time [-]."""
     swim: Swim | None = None
@@ -75,7 +75,7 @@ class Settings:
     swims: bool = True
     """Whether it swims or walks, where there is water."""
     level: float = 0.6
-    """Of the water above the ground where the walk begins [m]."""
+    """Level of the water above the ground where the walk begins [m]."""
     breath: float = 1.0
     """Share of the hull's air that is kept [-]."""
     broken: tuple[Fault, ...] = ()
@@ -134,7 +134,7 @@ class Instant:
     pushed: tuple[float, float, float] | None = None
     """The force of a push that lasts [N]."""
     level: float | None = None
-    """Of the water above the ground where the walk began, against gravity [m]; None on dry land."""
+    """Level of the water above the ground where the walk began, against gravity [m]; None on dry land."""
     trouble: str = ""
     """Why the walk has ended; empty while it has not."""
 

@@ -24,7 +24,7 @@ class BodySilhouette(NamedTuple):
     """The body along its straight midline, the union of its pieces."""
 
     half_width: Float[np.ndarray, " station"]
-    """To either side [m]."""
+    """Half-width, to either side [m]."""
     half_height: Float[np.ndarray, " station"]
     """Up and down [m]."""
 

@@ -46,7 +46,7 @@ class Pool:
     turn: complex | None
     """Harmonic of the direction of a tethered head; None for a free body [rad]."""
     outline: Outline
-    """Of the robot, a station at every cell."""
+    """Outline of the robot, a station at every cell."""
     grid: flow.Grid
     """The cells."""
     shape: flow.Midline

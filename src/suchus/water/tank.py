@@ -31,7 +31,7 @@ class Tether:
     viscosity: float
     """Kinematic viscosity of the water [m2/s]."""
     cycles: int
-    """How many cycles are simulated; the last is measured [-]."""
+    """Number of cycles that are simulated; the last is measured [-]."""
     blunt: float = 0.0
     """Least half-width: where the body is thinner it is thickened, its ends made round [cell]. With 1.75 cells the
     force has the least noise; with 0 the body stays as it is."""

@@ -63,7 +63,7 @@ class EelWave:
     """
 
     length: float
-    """Of the body [m]."""
+    """Length of the body [m]."""
     frequency: float
     """[Hz]."""
 

@@ -39,9 +39,9 @@ class Size:
     """Mass and length, from which servos and springs follow."""
 
     mass: float
-    """Of the robot [kg]."""
+    """Mass of the robot [kg]."""
     length: float
-    """Of the robot [m]."""
+    """Length of the robot [m]."""
 
 
 def turn_of(joint: Joint, axis: np.ndarray, told: list[str]) -> tuple[Turn, float]:

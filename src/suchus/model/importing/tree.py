@@ -45,7 +45,7 @@ class TreePart:
     """What moves as one: bodies without hinges between them."""
 
     name: str
-    """Of its first body."""
+    """Name of its first body."""
     parent: int
     """Place of the part that carries it; -1 for the root."""
     joints: tuple[Joint, ...]
@@ -61,7 +61,7 @@ class TreePart:
     points: np.ndarray
     """Origins of its bodies and sites, shape (n, 3) [m]."""
     names: tuple[str, ...]
-    """Of its bodies."""
+    """Names of its bodies."""
 
     @property
     def corners(self) -> np.ndarray:
