@@ -157,7 +157,7 @@ def _claims(judged: Mapping[str, list[str]]) -> list[str]:
     lines = [
         "## Statements",
         "",
-        f"{len(CLAIMS)} statements of the article, in its order, and the experiment that judges each. What came out is",
+        f"{len(CLAIMS)} statements of the article, in its order, and the experiment that judges each. The result is",
         "in the report that `suchus reproduce` writes.",
         "",
         "| where | statement | printed | judged by |",

@@ -1,4 +1,4 @@
-"""What a metre costs on land, at the surface and below, from the outcomes of a report."""
+"""Speed and cost of transport on land, at the surface and below, from the outcomes of a report."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

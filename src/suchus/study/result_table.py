@@ -47,7 +47,7 @@ class Section:
     """After the figures."""
 
 
-def write_sheet(
+def write_tables(
     folder: Path, title: str, lead: str, sections: Sequence[Section], pictures: Mapping[str, Figure]
 ) -> Path:
     """Write ``index.html`` and its pictures into a folder and return the page's path; equal figures give equal bytes.
@@ -82,7 +82,7 @@ def write_sheet(
         for section in sections
     ]
     foot = f"suchus {versions()['suchus']}, MuJoCo {versions()['mujoco']}."
-    page = environment.get_template("sheet.html").render(title=title, lead=lead, sections=shown, foot=foot)
+    page = environment.get_template("result_table.html").render(title=title, lead=lead, sections=shown, foot=foot)
     path = folder / "index.html"
     path.write_text(page, encoding="utf-8")
     return path
