@@ -1,4 +1,4 @@
-"""What decides each verdict, and what came out: a page made of the rules."""
+"""What decides each verdict, and the result: a page made of the rules."""
 
 import json
 from pathlib import Path

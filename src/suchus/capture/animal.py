@@ -23,21 +23,21 @@ class SyntheticAnimal:
     """A lizard-like body that walks straight on with feet that never slip."""
 
     trunk: float
-    """From hip to shoulder [m]."""
+    """Length from hip to shoulder [m]."""
     tail: float
     """Length of the tail [m]."""
     period: float
-    """Of one cycle [s]."""
+    """Period of one cycle [s]."""
     duty_factor: float
     """Share of the cycle in which a foot stands [-]."""
     limb_phases: tuple[float, float, float, float]
     """Phase of LF, RF, LH, RH at time zero; a limb swings first, then stands [cycle]."""
     stride: float
-    """How far the body goes in one cycle [m]."""
+    """Distance that the body moves in one cycle [m]."""
     outward: float
-    """How far feet stand from the midline [m]."""
+    """Distance by which feet stand from the midline [m]."""
     lift: float
-    """How high feet are lifted [m]."""
+    """Height to which feet are lifted [m]."""
     spine_bend: float
     """Amplitude of the trunk's lateral angle, right positive [rad]."""
     spine_rightmost: float
@@ -49,7 +49,7 @@ class SyntheticAnimal:
     tail_wave: float
     """Phase lag of the tip behind the root [cycle]; 0: a standing wave."""
     swing: Swing = "cosine"
-    """How its feet move."""
+    """Course of a foot in swing."""
 
     def __post_init__(self) -> None:
         with Checks("animal", self) as check:

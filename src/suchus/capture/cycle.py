@@ -24,7 +24,7 @@ class PeriodicFit:
     """A periodic quantity: mean, drift and harmonics, fitted to the frames in which it was seen."""
 
     period: float
-    """Of one cycle [s]."""
+    """Period of one cycle [s]."""
     mean: float
     """Steady part at the middle of the time."""
     drift: np.ndarray

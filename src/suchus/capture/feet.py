@@ -52,11 +52,11 @@ class FootSweep(NamedTuple):
     """How one foot moves against its girdle over the mean cycle."""
 
     forward: Float[np.ndarray, " grid"]
-    """How far it is ahead of the girdle [m or px]."""
+    """Distance by which it is ahead of the girdle [m or px]."""
     outward: float
     """Mean distance from the midline [m or px]."""
     lift: float
-    """How high it is lifted over the ground [m or px]; NaN where no heights were seen."""
+    """Height to which it is lifted over the ground [m or px]; NaN where no heights were seen."""
     stroke: float
     """Half of the distance that it moves back [m or px], by the gait's path that fits best: see ``path_shape``."""
     retraction: float

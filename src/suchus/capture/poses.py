@@ -11,7 +11,7 @@ from suchus.capture.tracks import Tracks, UnusableTracks, renamed
 from suchus.errors import UnreadableFile
 
 SOFTWARE = ("DeepLabCut", "SLEAP", "LightningPose", "Anipose", "NWB")
-"""Whose files can be read."""
+"""Software whose files can be read."""
 
 _INSTALL = 'pip install "suchus[capture]"'
 

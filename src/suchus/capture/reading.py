@@ -18,7 +18,7 @@ from suchus.record import check_file, new_file
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ReadingOptions:
-    """How a file of tracks is read."""
+    """Options with which a file of tracks is read."""
 
     names: Mapping[str, str] = field(default_factory=dict)
     """Our name of a keypoint by the file's, where they differ."""

@@ -46,11 +46,11 @@ class Swing(NamedTuple):
     """The swing of one foot, from all its strides; shares are of a stride, phases count from time zero [cycle]."""
 
     phase: Float[np.ndarray, " swing"]
-    """Of the middle of the fast part of each swing: feet that slide before they lift off do not move it."""
+    """Phase of the middle of the fast part of each swing: feet that slide before they lift off do not move it."""
     skew: float
     """How much later than that the swing is half over [cycle]."""
     share: float
-    """How long the foot swings [-]."""
+    """Duration of the swing as a fraction of the cycle [-]."""
     share_error: float
     """Standard error of that by the frames, the unknown shape of the swing included [-]."""
     middle_error: float

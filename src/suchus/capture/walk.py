@@ -52,9 +52,9 @@ class Walk:
     """
 
     source: str
-    """Where the tracks come from."""
+    """File that the tracks are from."""
     cycles: float
-    """How many were seen [-]."""
+    """Number of cycles that were seen [-]."""
     upright: bool
     """Whether heights were seen."""
     tail_share: float
@@ -76,7 +76,7 @@ class Walk:
 
 
 class _Reading(NamedTuple):
-    """What one stretch of time shows."""
+    """Quantities read from one stretch of time."""
 
     angles: dict[str, PeriodicFit]
     sweeps: dict[str, FootSweep]

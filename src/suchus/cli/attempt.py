@@ -25,7 +25,7 @@ class Job:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class JobResult:
-    """What came of it."""
+    """Result of an experiment, or the reason why it failed."""
 
     result: Result | Failure
     """For the page."""
@@ -55,7 +55,7 @@ def attempt(task: Job, progress: Progress) -> JobResult:
 
 
 def failed(name: str, sentence: str, trace: str = "") -> JobResult:
-    """Return what is reported of an experiment that came to no result.
+    """Return what is reported of an experiment that failed.
 
     Args:
         name: of the experiment.

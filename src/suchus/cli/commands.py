@@ -18,9 +18,9 @@ class Subcommand:
     name: str
     """The word."""
     usage: str
-    """What may follow it."""
+    """Words that may follow it, for the help."""
     summary: str
-    """What it does, in one line."""
+    """Summary in one line, for the help."""
     function: str
     """``module:function`` that takes the remaining words and returns the exit code."""
 

@@ -22,7 +22,7 @@ _MOST = 24
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CompareOptions:
-    """What can be said after ``suchus compare``."""
+    """Options of ``suchus compare``."""
 
     first: Annotated[Path, tyro.conf.Positional]
     """An outcome: the folder that suchus run wrote, such as out/displacement, or the outcome.json in it."""

@@ -24,14 +24,14 @@ from suchus.replay import replay, save
 from suchus.robots import ROBOTS
 
 ROBOT, GAITS_SHOWN = "caiman", ("belly_crawl", "limbs_only")
-"""Who walks, and how: first alone, then, on a page, beside the control group."""
+"""Robot and gaits that are shown: live the first gait, on a page both side by side."""
 _NEEDED = ("viser", "mjviser")
 """Packages of the extra ``viewer``."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DemoOptions:
-    """What can be said after ``suchus demo``."""
+    """Options of ``suchus demo``."""
 
     no_browser: Annotated[
         bool, tyro.conf.FlagCreatePairsOff, tyro.conf.arg(help="Open no browser: only write the page and name it.")
@@ -64,7 +64,7 @@ def demo(words: Sequence[str]) -> int:
 
 
 def _page(out: Path, opener: BaseBrowser | None, live: bool) -> int:
-    """Write the page, name it, and say what came out."""
+    """Write the page, name it, and print the results."""
     if out.suffix.lower() not in (".html", ".htm"):
         raise BadCommand(f"the page would be {out}; say --out FILE.html.")
     check_writable(out.parent)

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
 from suchus.cli.commands import COMMANDS, BadCommand
-from suchus.cli.streams import drop_output, printable, settle
+from suchus.cli.streams import drop_output, prepare_streams, printable
 from suchus.errors import Diverged, NotConverged, SuchusError, UnknownName, Unwritable
 
 _EXAMPLES = (
@@ -28,7 +28,7 @@ def main(words: Sequence[str] | None = None) -> int:
         words: what follows ``suchus``; by default those of this process.
     """
     words = list(sys.argv[1:] if words is None else words)
-    settle()
+    prepare_streams()
     try:
         with _plain_warnings():
             return _flushed(words)

@@ -20,16 +20,16 @@ from suchus.robots import ROBOTS
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExportOptions:
-    """What can be said after ``suchus export``."""
+    """Options of ``suchus export``."""
 
     format: Format = "mjcf"
     """MJCF for MuJoCo, USD for Isaac, Newton and Omniverse (extra usd), URDF for nearly everything else."""
     robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
-    """Which robot."""
+    """The robot that is exported."""
     home: AnyGait | None = None
     """Gait whose mid-stance is the home posture of the MJCF; by default the robot's own."""
     timestep: Annotated[float, tyro.conf.arg(metavar="SECONDS")] = 0.002
-    """Of the physics in the MJCF."""
+    """Time step of the physics in the MJCF [s]."""
     out: Path | None = None
     """The folder; by default export/ROBOT_FORMAT. An older export there is replaced, anything else is refused."""
 

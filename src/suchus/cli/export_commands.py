@@ -39,22 +39,22 @@ MARK = "suchus_commands.json"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExportCommandsOptions:
-    """What can be said after ``suchus export-commands``."""
+    """Options of ``suchus export-commands``."""
 
     gait: Annotated[AnyGait, tyro.conf.Positional] = field(default_factory=lambda: GAITS["belly_crawl"])
-    """Which gait; where none is named and the robot cannot follow this one, the robot's own."""
+    """The gait; by default, if the robot cannot follow this one, the robot's own."""
     robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
-    """Whose joints and servos."""
+    """Robot whose joints and servos are commanded."""
     map: Path | None = None
     """Servo map; by default 270 degree servos mounted in the middle, channels in order."""
     write_map: Path | None = None
-    """Only write that default map to this TOML file, to start your own from."""
+    """Only write the default map to this TOML file, as a start for your own."""
     cycles: int = 1
-    """How many cycles; one can be repeated, its last sample is its first."""
+    """Number of cycles; one can be repeated, since its last sample equals its first."""
     at_limit: float = AT_LIMIT
-    """Share of the walk from which on a servo counts as standing at its torque limit."""
+    """Fraction of the walk at the torque limit beyond which a servo counts as overloaded [-]."""
     tracking: float = TRACKING
-    """How far such a servo may be from its commanded angle [rad]; beyond, the gait is refused."""
+    """Greatest error of an overloaded servo against its commanded angle [rad]; beyond it the gait is refused."""
     out: Path | None = None
     """The folder; by default export/GAIT_commands. An older one there is replaced, anything else is refused."""
 

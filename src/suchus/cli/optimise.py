@@ -19,27 +19,27 @@ from suchus.study import at_scheduler
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OptimiseOptions:
-    """What can be said after ``suchus optimise``."""
+    """Options of ``suchus optimise``."""
 
     what: Annotated[str, tyro.conf.Positional]
     """A ready-made search, or a TOML file; see docs/optimise.md."""
     out: Path | None = None
-    """Where it goes; by default out/optimise/NAME. A search that began there goes on."""
+    """Folder of results; by default out/optimise/NAME. A search that began there is continued."""
     evaluations: int | None = None
-    """How many candidates each arm may try; more than before continues an earlier search."""
+    """Number of candidates that each condition may try; more than before continues an earlier search."""
     seed: int | None = None
-    """Of the search."""
+    """Seed of the search."""
     scheduler: SCHEDULER = None
 
 
 def optimise(words: Sequence[str]) -> int:
-    """Search, or finish a search, say what came of it, and return 0.
+    """Search, or finish a search, print the result, and return 0.
 
     Raises:
         SuchusError: the words or the file make no sense, or nothing can be written.
     """
-    ready = "; ".join(f"{name}: {made.__doc__}" for name, made in READY.items())
-    about = f"Search for a better gait or body. Started again it goes on where it stopped. Ready-made: {ready}"
+    ready = "\n".join(f"  {name}: {made.__doc__}" for name, made in READY.items())
+    about = f"Search for a better gait or body. A search that was stopped is continued. Ready-made:\n{ready}"
     options: OptimiseOptions = parse(
         OptimiseOptions, "suchus optimise", words, about, [f.name for f in fields(OptimiseOptions)]
     )
@@ -79,6 +79,6 @@ def _asked(options: OptimiseOptions) -> Optimisation:
 
 
 def _shown(bars: Bars, spec: Optimisation) -> Callable[[SearchProgress], None]:
-    """Return what moves a bar for each arm."""
+    """Return what moves a bar for each condition."""
     tells = {arm.name: bars.told(f"{spec.name} {arm.name}") for arm in spec.arms}
     return lambda told: tells[told.arm](told, min(told.done / told.budget, 1.0))

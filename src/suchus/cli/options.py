@@ -41,13 +41,13 @@ CSV = Annotated[
 
 SCHEDULER = Annotated[
     str | None,
-    tyro.conf.arg(help="Address of a Dask scheduler whose workers run it, as tcp://127.0.0.1:8786; the same bytes."),
+    tyro.conf.arg(help="Address of a Dask scheduler whose workers run it, as tcp://127.0.0.1:8786."),
 ]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunRequest:
-    """What the words ask for."""
+    """The experiment and the output that a command line asks for."""
 
     experiment: Experiment
     """The question with its fields set."""

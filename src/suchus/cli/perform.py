@@ -17,14 +17,14 @@ from suchus.report import check_place, save_outcome
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Done:
-    """What came of an experiment."""
+    """An experiment that was run and saved."""
 
     outcome: Outcome
     """Its outcome."""
     folder: Path
-    """Where its files are."""
+    """Folder of its files."""
     seconds: float
-    """How long running and drawing took [s]."""
+    """Duration of running and drawing [s]."""
 
 
 def perform(experiment: Experiment, name: str, out: Path, progress: Progress, command: str) -> Done:

@@ -19,16 +19,16 @@ from suchus.robots import ROBOTS
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ReplayOptions:
-    """What can be said after ``suchus replay``."""
+    """Options of ``suchus replay``."""
 
     file: Annotated[Path, tyro.conf.Positional]
     """The record of a run on land, a NetCDF file, such as out/displacement/record.nc."""
     run: str | None = None
-    """Which run of the record, by its label or its number from 0; needed where it holds several."""
+    """The run of the record, by its label or its number from 0; needed if it holds several."""
     ghost: str | None = None
     """Another run of the record, for comparison, by its label or its number."""
     robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
-    """Whose it is; by default the robot of the shelf that the record names."""
+    """Robot of the record; by default the one that the record names."""
     title: str = ""
     """Heading of the page; by default robot and gait."""
     out: Path | None = None

@@ -10,8 +10,8 @@ import tyro
 from suchus import threads
 from suchus.cli.attempt import Job, JobResult, attempt
 from suchus.cli.commands import BadCommand
-from suchus.cli.crew import side_by_side
 from suchus.cli.options import OUT, QUICK, parse
+from suchus.cli.processes import side_by_side
 from suchus.cli.terminal import Bars, working
 from suchus.experiments import EXPERIMENTS
 from suchus.record import check_writable
@@ -35,7 +35,7 @@ _LONG = (
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ReproduceOptions:
-    """What can be said after ``suchus reproduce``."""
+    """Options of ``suchus reproduce``."""
 
     out: OUT = Path("out")
     quick: QUICK = False
@@ -50,7 +50,7 @@ def reproduce(words: Sequence[str]) -> int:
     Raises:
         SuchusError: the words make no sense, or the results cannot be saved.
     """
-    told = "Run every experiment and write one page with everything that came out, DIR/report.html."
+    told = "Run every experiment and write one page with all results, DIR/report.html."
     options: ReproduceOptions = parse(ReproduceOptions, "suchus reproduce", words, told, ("out", "quick", "jobs"))
     tasks = [Job(name=name, out=options.out, quick=options.quick) for name in EXPERIMENTS]
     if not tasks:
@@ -71,7 +71,7 @@ def reproduce(words: Sequence[str]) -> int:
 
 
 def _came_of(tasks: Sequence[Job], jobs: int, bars: Bars) -> list[JobResult]:
-    """Return what came of each task, in their order."""
+    """Return the result of each task, in their order."""
     if jobs > 1:
         came = side_by_side(sorted(tasks, key=_place), jobs, bars)
         return [came[task.name] for task in tasks]

@@ -29,28 +29,28 @@ CLAIMS = "claims"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StudyOptions:
-    """What can be said after ``suchus study``."""
+    """Options of ``suchus study``."""
 
     file: Annotated[Path, tyro.conf.Positional]
     """The study, a TOML file, or ``claims``, the article's claims over plausible designs; see docs/studies.md."""
     scheduler: SCHEDULER = None
     samples: int | None = None
-    """How many points a sampled study has; other than before is another study."""
+    """Number of points of a sampled study; with another number than before it is another study."""
     out: Path | None = None
-    """The store; by default out/studies/NAME. One that this study began is finished, anything else is refused."""
+    """Folder of the store; by default out/studies/NAME. A store of the same study is continued, any other refused."""
     finished: bool = False
-    """Only for ``claims``: run nothing, answer from what the store holds, of a power of two of samples."""
+    """Only for ``claims``: run nothing, answer from the samples in the store, as many as are a power of two."""
     csv: CSV = False
     """Write the results as CSV files with units in the header too, into the folder csv in the store."""
 
 
 def study(words: Sequence[str]) -> int:
-    """Conduct a study, or finish it, say what came of it, and return 0.
+    """Conduct a study, or finish it, print the result, and return 0.
 
     Raises:
         SuchusError: the words or the file make no sense, or the store cannot be written to.
     """
-    about = "Run many variants of one run, and keep what is measured. Started again it goes on where it stopped."
+    about = "Run many variants of one run, and store what is measured. A study that was stopped is continued."
     options: StudyOptions = parse(StudyOptions, "suchus study", words, about, [f.name for f in fields(StudyOptions)])
     if str(options.file) == CLAIMS and not there(options.file):
         return _claims(options)

@@ -28,9 +28,9 @@ class Kick:
     """A disturbance of the clock: limbs that jump ahead."""
 
     at: float
-    """When [s]."""
+    """Time of the kick [s]."""
     ahead: tuple[float, ...]
-    """How far each limb jumps, in the order of the robot's limbs, LF, RF, LH, RH of the article's [cycle]."""
+    """Phase by which each limb jumps, in the order of the robot's limbs, LF, RF, LH, RH of the article's [cycle]."""
 
     def __post_init__(self) -> None:
         require("kick", "at", self.at, 0.0, 86400.0, "s")
@@ -54,7 +54,7 @@ class Coordinated:
     tail: TailRule | None = field(default_factory=TailRule)
     """Tail to tail; None for none: the tail still follows the trunk."""
     heading: HeadingRule | None = None
-    """Which keeps the direction of the walk; None for none."""
+    """Rule that keeps the heading of the walk; None for none."""
     sharing: bool = True
     """Whether spine and tail hear of the limbs' phases; if not they follow the clock, each for itself."""
     random_start: bool = False

@@ -48,7 +48,7 @@ class Steering(NamedTuple):
     """What the heading loop adds to the posture."""
 
     stroke: Float[np.ndarray, "run limb"]
-    """By how much each leg's stroke is longer, as a part of it [-]."""
+    """Fraction by which each leg's stroke is longer [-]."""
     trunk: Float[np.ndarray, " run"]
     """Lasting bend of the trunk [rad]."""
 

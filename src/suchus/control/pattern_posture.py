@@ -23,11 +23,11 @@ class AxisSegment:
     place: float
     """Along the body, 0 at the snout, 1 at the tip of the tail [-]."""
     servo: int
-    """Which bends it."""
+    """Index of the servo that bends it [-]."""
     left: float
     """1 where a positive angle of the servo bends to the left, -1 where to the right [-]."""
     amplitude: float
-    """Of its bend in the gait [rad]."""
+    """Amplitude of its bend in the gait [rad]."""
     part: AxisPart
     """The limbs that drive it, and its phase lag behind them."""
     steers: bool

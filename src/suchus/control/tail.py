@@ -21,7 +21,7 @@ class TailRule:
     """
 
     rate: float = 0.3
-    """How fast it gives way [rad/(s N m)]; faster gains more uphill, this drifts least on slopes to the side."""
+    """Rate at which it gives way [rad/(s N m)]; faster gains more uphill, this drifts least on slopes to the side."""
     lowest: float = 0.55
     """Farthest down [rad]; beyond, the tail would lift the hind feet."""
     highest: float = -0.05

@@ -25,9 +25,9 @@ class Change:
     """A change of gait at a time of its own."""
 
     at: float
-    """When it begins [s]."""
+    """Time at which it begins [s]."""
     gait: Gait | Pattern
-    """To which gait."""
+    """Gait to which the walk changes."""
 
     def __post_init__(self) -> None:
         require("change", "at", self.at, 0.0, 86400.0, "s")
@@ -41,11 +41,11 @@ class Walking:
     """
 
     attitude: AttitudeRule | None = None
-    """Which keeps the body level; None for none."""
+    """Rule that keeps the body level; None for none."""
     changes: tuple[Change, ...] = ()
     """Changes of gait that are asked for, in the order of their times."""
     switching: SwitchRule | None = None
-    """Which changes the gait by what is felt; None for none."""
+    """Rule that changes the gait by what the sensors read; None for none."""
     bend: float = 0.0
     """Lasting bend of the trunk, left positive [rad]; it steers to the left."""
     asymmetry: float = 0.0

@@ -23,7 +23,7 @@ class Ground:
     sideways: float = 0.0
     """Slope across the walk, left side up positive [rad], -1 to 1."""
     relief: Relief | None = None
-    """What stands up from it; None where it is even."""
+    """Step, stone or bumps on it; None where it is even."""
 
     def __post_init__(self) -> None:
         with Checks("ground", self) as check:

@@ -28,13 +28,13 @@ class Body:
     """A moving body: a segment of the axis or a link of a limb."""
 
     name: str
-    """Of the body in the model."""
+    """Name of the body in the model."""
     parent: int
     """Its place among the bodies; -1 for the root."""
     offset: Axis
     """Its origin in the frame of its parent, all hinges at zero [m]."""
     shift: float
-    """How far ahead of its frame, which stands at its hinges, the origin of its segment lies [m]."""
+    """Distance by which the origin of its segment lies ahead of its frame, which stands at its hinges [m]."""
     hinges: tuple[tuple[Hinge, str, Axis], ...]
     """Its hinges in the order in which they turn it: the design, the full name, the axis in its own frame."""
 
@@ -46,9 +46,9 @@ class LimbPlace:
     name: str
     """As ``LF``."""
     girdle: Girdle
-    """On which it sits."""
+    """Index of the girdle on which it sits [-]."""
     number: int
-    """Of the girdle, from the front [-]."""
+    """Number of the girdle, from the front [-]."""
     side: float
     """1 left, -1 right [-]."""
     hinges: slice
@@ -192,7 +192,7 @@ def layout(robot: AnyRobot) -> Layout:
 def servo_ranges(robot: AnyRobot) -> np.ndarray:
     """Return the range of what each servo turns, shape (servo, 2) [rad]; a crank has none, for a cable see the pulley.
 
-    A wheel that bends N hinges by b together turns by N d sin(b / (2 N)) / r.
+    A pulley that bends N hinges by b together turns by N d sin(b / (2 N)) / r.
     """
     found, place = [], layout(robot)
     by_name = {name: hinge for body in place.bodies for hinge, name, _ in body.hinges}

@@ -28,7 +28,7 @@ class Published(NamedTuple):
     unit: str
     """``-`` for none."""
     source: str
-    """Where it comes from."""
+    """Publication, or the simulation, that it is from."""
 
 
 _KINEMATICS = "Pleurodeles waltl; Karakasiliotis et al. 2013, Biol. Cybern. 107, 529"
@@ -59,18 +59,18 @@ Forces are those at the instant of the greatest net force on one foot, means ove
 
 
 class Window(NamedTuple):
-    """Whole cycles of one run."""
+    """Window of whole cycles in one run."""
 
     start: float
-    """When the first begins [s]."""
+    """Time at which the first cycle begins [s]."""
     period: float
-    """Of a cycle [s]."""
+    """Period of a cycle [s]."""
     cycles: int
-    """How many [-]."""
+    """Number of cycles [-]."""
 
     @property
     def end(self) -> float:
-        """When the last ends [s]."""
+        """Time at which the last cycle ends [s]."""
         return self.start + self.cycles * self.period
 
 

@@ -49,7 +49,7 @@ class KnownDraft:
     """A body with its exact draft."""
 
     name: str
-    """Of the body."""
+    """Name of the body."""
     body: FloatBody
     """The body."""
     exact: float

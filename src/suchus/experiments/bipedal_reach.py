@@ -52,11 +52,12 @@ class BipedalReach(Experiment):
     gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
     """The crawl before and after."""
     straight: Gait = field(default_factory=lambda: GAITS["limbs_only"])
-    """From whose first posture it stands up in the sweeps: the trunk is straight, so that pushes come from ahead."""
+    """Gait from whose first posture it stands up in the sweeps: the trunk is straight, so that pushes come from
+    ahead."""
     balance: Balance = BALANCE
     """The feedback by which it keeps its balance when it stands."""
     hold: float = 60.0
-    """How long it stands [s]."""
+    """Duration of standing [s]."""
     least: float = 0.64
     """Reach that counts as standing for the time that it is held [m]; what an earlier study of this robot reached."""
     repeats: int = 4
@@ -76,11 +77,11 @@ class BipedalReach(Experiment):
     finer: int = 4
     """Number of forces between two of them [-]."""
     wait: float = 3.0
-    """How long a robot is left alone before a push and after it [s]; a fall takes less than 2 s."""
+    """Duration for which a robot is left alone before a push and after it [s]; a fall takes less than 2 s."""
     timestep: float = 0.002
-    """Of the physics in the run of the figures [s]; sweeps take 5 ms."""
+    """Time step of the physics in the run of the figures [s]; sweeps take 5 ms."""
     longer: float = 0.05
-    """By which part legs, spine and head are lengthened, one after another [-]."""
+    """Fraction by which legs, spine and head are lengthened, one after another [-]."""
 
     def __post_init__(self) -> None:
         with Checks(self.name(), self) as check:

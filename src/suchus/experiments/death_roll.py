@@ -50,17 +50,17 @@ class DeathRoll(Experiment):
     tail_vertical: float = radians(40)
     """Amplitude of the tail's pitch joint [rad]; the cable's end bends no more than this at the root."""
     cycles: int = 3
-    """How many cycles are simulated; the first, in which the bends grow, is not measured [-]."""
+    """Number of cycles that are simulated; the first, in which the bends grow, is not measured [-]."""
     phases: tuple[float, ...] = (-0.25, -0.125, 0.0, 0.125, 0.25, 0.375, 0.5)
     """Phase lags of the trunk's vertical bend behind its lateral one, for the curve [cycle]."""
     bends: tuple[float, ...] = (radians(30), radians(60), radians(90))
     """Amplitudes of the trunk's bends, for the curve [rad]."""
     frequencies: tuple[float, ...] = (0.7, 1.0, 1.5, 2.0)
-    """Of the trunk's bends, for the curve [Hz]; at 60 degrees the pitch servos allow 2.1 Hz."""
+    """Frequencies of the trunk's bends, for the curve [Hz]; at 60 degrees the pitch servos allow 2.1 Hz."""
     timestep: float = 0.001
-    """Of the physics [s]; the cable's servo is stiff, and beyond 1 ms Runge-Kutta steps do not hold it."""
+    """Time step of the physics [s]; the cable's servo is stiff, and beyond 1 ms Runge-Kutta steps do not hold it."""
     coarse_timestep: float = 0.002
-    """Where only the trunk bends [s]."""
+    """Time step of the runs in which only the trunk bends [s]."""
     timesteps: tuple[float, ...] = (0.0025, 0.00125, 0.000625)
     """For the check of the angular momentum and the rate, falling [s]."""
 

@@ -56,13 +56,13 @@ class Displacement(Experiment):
     control: AnyGait = field(default_factory=lambda: GAITS["limbs_only"])
     """The crawl of the control group, with the same legs."""
     cycles: int = int(CYCLES)
-    """How many cycles are measured [-]."""
+    """Number of cycles that are measured [-]."""
     repeats: int = 8
     """Runs per condition with noise on the servos and another friction, for the spread [-]."""
     noise: float = 0.01
     """Standard deviation of the noise on every commanded angle in the repeats [rad]; a hobby servo's dead band."""
     friction_spread: float = 0.1
-    """Half-width of the uniform spread of the friction in the repeats, as a part of it [-]."""
+    """Half-width of the uniform spread of the friction in the repeats, as a fraction of it [-]."""
     strokes: tuple[float, ...] = (0.01, 0.02, 0.027, 0.04, 0.055, 0.07, 0.085)
     """Half strokes of the legs on the map [m]."""
     bends: tuple[float, ...] = (0.0, 0.3, 0.6, 0.9, 1.2217304763960306, 1.5)

@@ -80,22 +80,22 @@ class Feedback(Experiment):
     starts: int = 32
     """Random initial limb phases, the same for all laws [-]."""
     cycles: int = 12
-    """How long each start is followed [cycle]."""
+    """Duration for which each start is followed [cycle]."""
     hold: float = 2.0
-    """For how long the limbs must stay coordinated until the end [cycle]."""
+    """Duration for which the limbs must stay coordinated until the end [cycle]."""
     after: int = 5
-    """How long a disturbed robot is followed from the disturbance on [cycle]."""
+    """Duration for which a disturbed robot is followed from the disturbance on [cycle]."""
     kick: tuple[float, ...] = (0.5, 0.0, 0.0, 0.2)
-    """How far each limb jumps ahead, in the order of the robot's limbs [cycle]; together almost the farthest from the
-    gait."""
+    """Phase by which each limb jumps ahead, in the order of the robot's limbs [cycle]; together almost the farthest
+    from the gait."""
     slope: float = radians(10)
-    """Of the ground [rad]."""
+    """Slope of the ground [rad]."""
     push: tuple[float, float, float] = (0.0, 20.0, 0.0)
     """Force on the foremost girdle's segment for 0.3 s [N]; 5 N does nothing even without feedback."""
     noise: float = 0.3
     """Standard deviation of the noise on what the feet feel, as a part of the load [-]."""
     seed: int = 0
-    """Of the first start; the others follow."""
+    """Seed of the first start; the others follow."""
 
     def __post_init__(self) -> None:
         with Checks(self.name(), self) as check:
@@ -180,7 +180,7 @@ class Feedback(Experiment):
 
     @property
     def _at(self) -> float:
-        """When the disturbance comes [s]."""
+        """Time at which the disturbance begins [s]."""
         return START + self.gait.period
 
     def _starts(self, progress: Any) -> tuple[xr.Dataset, xr.Dataset]:
@@ -215,7 +215,7 @@ class Feedback(Experiment):
         return data, pair
 
     def _disturbed(self, progress: Any) -> xr.Dataset:
-        """Return track, direction, limb phases and tail pitch over time for every disturbance and arm."""
+        """Return track, direction, limb phases and tail pitch over time for every disturbance and condition."""
         arms, place = self._arms, layout(self.robot)
         runs = [self._disturb(control, name) for name in DISTURBANCES for control in arms.values()]
         duration = self._at + self.after * self.gait.period

@@ -56,7 +56,7 @@ class GaitDiagram(Experiment):
     gait: AnyGait = field(default_factory=lambda: GAITS["belly_crawl"])
     """The gait that is shown."""
     cycles: int = int(CYCLES)
-    """How many cycles are shown [-]."""
+    """Number of cycles that are shown [-]."""
 
     def __post_init__(self) -> None:
         with Checks(self.name(), self) as check:

@@ -1,4 +1,4 @@
-"""How far does the robot still get when joints of its legs are lost?"""
+"""How far does the robot still get when joints of its legs fail?"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -20,8 +20,20 @@ from suchus.experiments._fault_findings import ARMS
 from suchus.experiments._fault_records import lay, support
 from suchus.figures.faults import draw_held, draw_losses, draw_over_time, draw_tracks
 from suchus.gaits import GAITS, conditions_of, suits
-from suchus.land import KINDS, LEGS_LOST, Fault, Ground, Limp, Locked, Run, angle_at, lost, lost_joints, simulate
-from suchus.land.lost import Kind, Legs
+from suchus.land import (
+    KINDS,
+    LEGS_FAILED,
+    Fault,
+    Ground,
+    Limp,
+    Locked,
+    Run,
+    angle_at,
+    failing_joints,
+    joint_failure,
+    simulate,
+)
+from suchus.land.failed import Kind, Legs
 from suchus.metrics import (
     between,
     displacement,
@@ -46,19 +58,20 @@ class JointFaults(Experiment):
 
     All of it over variations of gait and friction. A change of displacement is measured against the intact run with
     spine and tail of the same variation, as the article does; ``faults.csv`` has it against the intact run of the same
-    arm too. Two more arms are run in the judged reading: ``steered`` with the feedback rules and the heading loop, and
-    ``limbs_tail_lifted``, limbs only with the tail in the air, where a servo lifts it. Displacement is forward, along
-    the direction that the body faced at the start. The limbs of another body lose the joints that they have.
+    condition too. Two more conditions are run in the judged reading: ``steered`` with the feedback rules and the
+    heading loop, and ``limbs_tail_lifted``, limbs only with the tail in the air, where a servo lifts it. Displacement
+    is forward, along the direction that the body faced at the start. The limbs of another body lose the joints that
+    they have.
     """
 
-    title = "How far does it still crawl when joints of its legs are lost?"
+    title = "How far does it still crawl when joints of its legs fail?"
     shows = "Section IV.C, Figs 18 to 21"
     needs = ("limbs",)
     judged_with = ("robot", "gait", "control", "lifted", "cycles", "hold", "kind", "legs")
     judged_from: ClassVar[Mapping[str, float]] = {"variations": 8, "repeats": 4}
 
     robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
-    """The robot whose joints are lost."""
+    """The robot whose joints fail."""
     gait: AnyGait = field(default_factory=lambda: GAITS["belly_crawl"])
     """The crawl with spine and tail."""
     control: AnyGait = field(default_factory=lambda: GAITS["limbs_only"])
@@ -66,19 +79,19 @@ class JointFaults(Experiment):
     lifted: AnyGait = field(default_factory=lambda: GAITS["limbs_tail_lifted"])
     """The control group with its tail in the air, for comparison; its legs follow those of ``gait``."""
     cycles: int = int(CYCLES)
-    """How many cycles are measured [-]."""
+    """Number of cycles that are measured [-]."""
     variations: int = 8
     """Gaits and frictions [-]; the first is the gait as given, without noise."""
     spread: float = 0.25
     """Part of each plausible range of the gait's numbers that the variations cover, about the number given [-]."""
     friction_spread: float = 0.2
-    """Half-width of the uniform spread of the friction, as a part of it [-]."""
+    """Half-width of the uniform spread of the friction, as a fraction of it [-]."""
     noise: float = 0.01
     """Standard deviation of the noise on every commanded angle [rad]; a hobby servo's dead band."""
     repeats: int = 4
     """Runs of the judged reading in the gait as given, with noise and another friction, for the spread [-]."""
     repeat_friction_spread: float = 0.1
-    """Half-width of the uniform spread of the friction in the repeats, as a part of it [-]."""
+    """Half-width of the uniform spread of the friction in the repeats, as a fraction of it [-]."""
     hold: float = 0.5
     """Where a locked joint holds in the range that the gait asks of it: 0 least, 1 greatest [-].
 
@@ -89,7 +102,7 @@ class JointFaults(Experiment):
     holds: tuple[float, ...] = (0.0, 0.25, 0.5, 0.75, 1.0)
     """Places in that range at which one leg's joint is locked, for the curve [-]."""
     kind: Kind = "limp"
-    """The reading of 'lost' that is judged.
+    """The reading of the article's 'lost' that is judged.
 
     Not in the paper; limp, because a servo that 'cannot receive and execute commands' gets no pulses, and gives way.
     """
@@ -97,7 +110,7 @@ class JointFaults(Experiment):
     """Whether one leg or both of a girdle are judged; one, because the text speaks of individual joints."""
     timestep: float = 0.005
     """Time step of the physics [s]; 2 ms were measured to move no median by more than 3 points of a hundred, while
-    10 ms move some by 6 and change what steering does to a lost hind yaw joint."""
+    10 ms move some by 6 and change what steering does to a failed hind yaw joint."""
     seed: int = 0
     """Seed of the variations and their noise [-]."""
 
@@ -145,7 +158,7 @@ class JointFaults(Experiment):
         return START + self.cycles * self.gait.period
 
     def _varied(self) -> list[tuple[dict[str, AnyGait], float]]:
-        """Return the gaits of both arms and the friction scale of each variation."""
+        """Return the gaits of both conditions and the friction scale of each variation."""
         if not isinstance(self.gait, Gait):
             return self._varied_patterns()
         chosen: tuple[Chosen, ...] = GAITS.beside("belly_crawl", "chosen", ())
@@ -175,8 +188,8 @@ class JointFaults(Experiment):
 
     @property
     def _joints(self) -> tuple[str, ...]:
-        """The joints that are lost."""
-        return lost_joints(self.robot)
+        """Names of the joints that fail."""
+        return failing_joints(self.robot)
 
     @property
     def _lost(self) -> tuple[str, ...]:
@@ -189,7 +202,7 @@ class JointFaults(Experiment):
         return "limbs_tail_lifted" in conditions_of(self.robot, self.gait, self.control)
 
     def _arms(self, gait: AnyGait) -> dict[str, AnyGait]:
-        """Return the gaits of all arms with the legs of one gait."""
+        """Return the gaits of all conditions with the legs of one gait."""
         if not isinstance(gait, Gait):
             return {"coordinated": gait, "limbs_only": straightened(self.robot, gait, name="limbs_only")}
         limbs: dict[str, AnyGait] = {
@@ -201,12 +214,12 @@ class JointFaults(Experiment):
 
     def _broken(self, gait: AnyGait, joint: str) -> tuple[Fault, ...]:
         """Return the faults of a joint in the judged reading."""
-        return lost(self.robot, gait, joint, self.kind, self.legs, hold=self.hold)
+        return joint_failure(self.robot, gait, joint, self.kind, self.legs, hold=self.hold)
 
     def _campaign(self, progress: Any) -> xr.Dataset:
         """Run everything in one batch and keep how far each got over time."""
         varied = self._varied()
-        cells = list(product(self._joints, KINDS, LEGS_LOST))
+        cells = list(product(self._joints, KINDS, LEGS_FAILED))
         runs = [
             Run(
                 robot=self.robot,
@@ -218,7 +231,7 @@ class JointFaults(Experiment):
             )
             for i, (gaits, scale) in enumerate(varied)
             for arm in ARMS
-            for faults in ((), *(lost(self.robot, gaits[arm], *cell, hold=self.hold) for cell in cells))
+            for faults in ((), *(joint_failure(self.robot, gaits[arm], *cell, hold=self.hold) for cell in cells))
         ]
         record = whole(simulate(runs, duration=self._duration, timestep=self.timestep, every=10, progress=progress))
         net = (displacement(record).sel(xyz=["x", "y"]) ** 2).sum("xyz") ** 0.5
@@ -233,7 +246,7 @@ class JointFaults(Experiment):
         shape = (len(varied), len(ARMS), 1 + len(cells))
         data = xr.Dataset(coords={"variation": range(shape[0]), "arm": list(ARMS), "time": distance.time.values})
         data = data.assign_coords(
-            joint=list(self._joints), kind=list(KINDS), legs=list(LEGS_LOST), on_ground=["x", "y"]
+            joint=list(self._joints), kind=list(KINDS), legs=list(LEGS_FAILED), on_ground=["x", "y"]
         )
         for name, (some, unit, what) in numbers.items():
             lay(data, name, some.values.reshape(shape), (), unit, what)
@@ -285,7 +298,7 @@ class JointFaults(Experiment):
         gaits, _ = self._varied()[0]
         points = list(product(ARMS, self._lost, self.holds))
         runs = [
-            Run(robot=self.robot, gait=gaits[a], faults=lost(self.robot, gaits[a], j, "locked", hold=h))
+            Run(robot=self.robot, gait=gaits[a], faults=joint_failure(self.robot, gaits[a], j, "locked", hold=h))
             for a, j, h in points
         ]
         distance = self._forward(runs, progress).reshape(len(ARMS), len(self._lost), len(self.holds))

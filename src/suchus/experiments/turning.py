@@ -45,13 +45,13 @@ class Turning(Experiment):
     bends: tuple[float, ...] = (0.0, 0.17, 0.35, 0.52, 0.79)
     """Lasting bends of the trunk [rad]."""
     asymmetries: tuple[float, ...] = (0.0, 0.25, 0.5, 0.75, 1.0)
-    """By how much left strokes are shorter and right ones longer [-]."""
+    """Fractions by which left strokes are shorter and right ones longer [-]."""
     mixtures: tuple[float, ...] = (0.0, 0.1, 0.2, 0.3, 0.45, 0.6, 0.8, 1.0)
     """Shares of the last bend together with, on sprawled legs, the last asymmetry [-]."""
     asked: tuple[float, ...] = (0.6, 0.8, 1.2, 2.0, 3.0)
     """Radii of the circles on command [m]."""
     cycles: int = 10
-    """How many cycles are measured, after one more [-]."""
+    """Number of cycles that are measured, after one more [-]."""
     timestep: float = 0.005
     """Time step of the physics [s], at most 0.01."""
 
@@ -186,9 +186,9 @@ class Turning(Experiment):
         m = {name: Reading(value) for name, value in measures.items()}
         names = [gait.name for gait in self.gaits]
         told = [
-            f"the {name.replace('_', ' ')} in {m[f'tightest_bend_{name}']:.2f} m by a curvature offset, "
-            f"{m[f'tightest_asymmetry_{name}']:.2f} m by unequal strokes and {m[f'tightest_both_{name}']:.2f} m by the "
-            "mixture of both"
+            f"the {name.replace('semi_', 'semi-').replace('_', ' ')} in {m[f'tightest_bend_{name}']:.2f} m by a "
+            f"curvature offset, {m[f'tightest_asymmetry_{name}']:.2f} m by unequal strokes and "
+            f"{m[f'tightest_both_{name}']:.2f} m by the mixture of both"
             for name in names
         ]
         walked = sum(m[f"circles_walked_{name}"] for name in names)

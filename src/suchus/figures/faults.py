@@ -1,4 +1,4 @@
-"""What lost joints cost: displacements over time, changes against the intact robot, tracks on the ground."""
+"""What failed joints cost: displacements over time, changes against the intact robot, tracks on the ground."""
 
 import itertools
 from collections.abc import Sequence
@@ -92,9 +92,10 @@ def draw_losses(record: xr.Dataset) -> Figure:
         figure.legend(handles=keys, loc="outside upper center", ncols=3, frameon=False)
     return captioned(
         figure,
-        "What a lost joint costs, for every reading of 'lost': median and range over the variations of gait and "
-        "friction. Dotted: as printed; of the knees the article says nothing. Orange line and band: the intact robot "
-        f"with limbs only.{_outwalked(record)} Yellow: limbs only with the tail in the air, in the judged reading.",
+        "What a failed joint costs, for every reading of the article's 'lost': median and range over the variations of "
+        "gait and friction. Dotted: as printed; of the knees the article says nothing. Orange line and band: the "
+        f"intact robot with limbs only.{_outwalked(record)} Yellow: limbs only with the tail in the air, in the judged "
+        f"reading.",
     )
 
 
@@ -107,7 +108,7 @@ def _outwalked(record: xr.Dataset) -> str:
         return ""
     return (
         f" The article's own intact robot with limbs only is at {intact:+.0%}; its "
-        f"{listed([f'{p:+.0%}' for p in less])} with a joint lost let a damaged robot out-walk it."
+        f"{listed([f'{p:+.0%}' for p in less])} with a failed joint let a damaged robot out-walk it."
     )
 
 
@@ -205,7 +206,7 @@ def draw_tracks(record: xr.Dataset) -> Figure:
         figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=5, frameon=False)
     return captioned(
         figure,
-        "Tracks of the centre of mass seen from above, with spine and tail, the left joint or both lost; arrows show "
+        "Tracks of the centre of mass seen from above, with spine and tail, the left joint or both failed; arrows show "
         "the heading at the end.",
     )
 
@@ -227,7 +228,7 @@ def draw_held(record: xr.Dataset) -> Figure:
     """Draw how the change depends on where a locked joint holds.
 
     Args:
-        record: of the campaign: ``held_forward`` over arm, lost joint and hold.
+        record: of the campaign: ``held_forward`` over condition, failed joint and hold.
     """
     whole = float(record.intact_forward.sel(arm="coordinated")[0])
     change = 100 * (record.held_forward / whole - 1.0)

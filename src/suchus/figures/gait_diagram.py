@@ -35,7 +35,7 @@ class GaitTrack:
     tail: np.ndarray | None
     """Lateral angle of the tail in the article's sign, right positive, shape (time,) [rad]; None where none bends."""
     label: str
-    """What it is, for the legend."""
+    """Label in the legend."""
     legs: tuple[str, ...] = LEGS
     """Names of the limbs."""
     spine_vertical: np.ndarray | None = None

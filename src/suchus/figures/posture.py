@@ -28,11 +28,12 @@ class Skeleton(NamedTuple):
     """Points of the body in the world."""
 
     trunk: np.ndarray
-    """From the first joint of the tail over the root and the joints ahead of it to front girdle and snout [m]."""
+    """Points from the first joint of the tail over the root and the joints ahead of it to front girdle and snout
+    [m]."""
     joints: np.ndarray
     """Those of them that are joints ahead of the root, (joint, 3) [m]."""
     tail: np.ndarray
-    """From its first joint to the tip, (point, 3) [m]."""
+    """Points from its first joint to the tip, (point, 3) [m]."""
     legs: tuple[np.ndarray, ...]
     """Midline, hip, joints and foot of each limb, (point, 3) [m]."""
 

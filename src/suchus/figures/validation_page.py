@@ -21,7 +21,7 @@ class Group:
     about: str
     """What the cases show, in a sentence or two."""
     cases: tuple[str, ...]
-    """How the names of its cases begin."""
+    """Prefixes of the names of its cases."""
     figures: tuple[tuple[str, str], ...] = ()
     """Name of each plot, and what it shows."""
 

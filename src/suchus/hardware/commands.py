@@ -19,11 +19,11 @@ class Commands(NamedTuple):
     time: Float[np.ndarray, " sample"]
     """From the beginning of the first cycle [s]."""
     angles: Float[np.ndarray, "sample servo"]
-    """Of the joints; of the pulley for the cable [rad]."""
+    """Angles of the joints; of the pulley for the cable [rad]."""
     speeds: Float[np.ndarray, "sample servo"]
-    """How fast the angles change: central differences over the periodic gait [rad/s]."""
+    """Rate at which the angles change: central differences over the periodic gait [rad/s]."""
     pulses: Float[np.ndarray, "sample servo"]
-    """What the map makes of the angles [us]."""
+    """Pulse widths to which the servo map converts the angles [us]."""
     servos: tuple[str, ...]
     """Names of the servos."""
 

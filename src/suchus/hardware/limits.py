@@ -33,18 +33,18 @@ _STRONG = 4.0  # times as strong are the servos whose torques show what a walk a
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ServoLoad:
-    """What a servo bears in a walk."""
+    """Load of one servo over a walk."""
 
     torque: float
     """Greatest torque [N m]."""
     limit: float
-    """Of its torque [N m]."""
+    """Limit of its torque [N m]."""
     at_limit: float
     """Share of the walk that it spends at the limit [-]."""
     first: float
-    """When it first gets there, from the beginning of the walk [s]; NaN if it does not."""
+    """Time at which it first reaches its limit, from the beginning of the walk [s]; NaN if it does not."""
     off: float
-    """How far it is from its commanded angle at most, but for the worst 2 % of the walk [rad]."""
+    """Greatest error against its commanded angle, but for the worst 2 % of the walk [rad]."""
     needed: float
     """98th percentile of the torque of a servo four times as strong in the same walk [N m]."""
     tried: float = 0.0
@@ -58,7 +58,7 @@ class ServoLoad:
 
     @property
     def stock(self) -> str:
-        """What is said of that class."""
+        """Description of that class of servos."""
         most = max(CLASSES.values())
         return f"{self.named} ({CLASSES[self.named]:.3g} N m)" if self.named else f"none up to {most:.3g} N m"
 

@@ -2,12 +2,12 @@
 
 from suchus.kinematics import body, dh, leg, limb, mass, printed, spine, tail, tree, wave
 from suchus.kinematics.body import Landmarks, landmarks
-from suchus.kinematics.wave import PrintedWave
+from suchus.kinematics.wave import TravellingWave
 from suchus.renamed import old_exports
 
 __all__ = [
     "Landmarks",
-    "PrintedWave",
+    "TravellingWave",
     "body",
     "dh",
     "landmarks",
@@ -21,4 +21,4 @@ __all__ = [
     "wave",
 ]
 
-__getattr__ = old_exports(__name__, Wave="PrintedWave")
+__getattr__ = old_exports(__name__, Wave="TravellingWave")

@@ -30,11 +30,11 @@ class PlainLeg(NamedTuple):
     """A limb of yaw, pitch and knee, its links straight out, as ``suchus.kinematics.leg`` takes it."""
 
     hip_offset: float
-    """From the midline to the yaw axis [m]."""
+    """Distance from the midline to the yaw axis [m]."""
     femur: float
-    """From hip to knee [m]."""
+    """Length from hip to knee [m]."""
     tibia: float
-    """From knee to the foot's centre [m]."""
+    """Length from knee to the foot's centre [m]."""
     foot_radius: float
     """Of the ball [m]."""
     above: float

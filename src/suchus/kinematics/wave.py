@@ -26,7 +26,7 @@ _MOST = 1e12  # of a wave's numbers in SI units
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class PrintedWave:
+class TravellingWave:
     """A travelling wave under a growing envelope, in SI units."""
 
     linear: float
@@ -52,7 +52,7 @@ class UnitReading:
     """One choice of units for the printed constants."""
 
     meaning: str
-    """Which units, and where x begins."""
+    """Units of the constants, and origin of x."""
     envelope_unit: float
     """Unit of x and y in the envelope [m]; zero stands for one body length."""
     wave_number: float
@@ -60,7 +60,7 @@ class UnitReading:
     tail_only: bool
     """Whether x begins at the root of the tail instead of the snout."""
     verdict: str
-    """What speaks for or against it."""
+    """Evidence for or against it."""
 
 
 PER_MM, PER_CM = K / MILLIMETRE, K / CENTIMETRE
@@ -89,7 +89,7 @@ READINGS: Mapping[str, UnitReading] = MappingProxyType(
 
 def reading(
     name: str, *, length: float, angular_frequency: float, sign: int = -1, waves_per_body: float = 1.0
-) -> PrintedWave:
+) -> TravellingWave:
     """Return the wave of (20) under one of ``READINGS``.
 
     Args:
@@ -116,21 +116,21 @@ def reading(
     else:
         wavelength = 2 * pi / PER_MM  # the body of 0.273 m for which c2 would have been found [m]
         quadratic, k = C2 * wavelength / length, 2 * pi * waves_per_body / length
-    return PrintedWave(linear=C1, quadratic=quadratic, wave_number=k, angular_frequency=angular_frequency, sign=sign)
+    return TravellingWave(linear=C1, quadratic=quadratic, wave_number=k, angular_frequency=angular_frequency, sign=sign)
 
 
-def as_printed(*, angular_frequency: float) -> PrintedWave:
+def as_printed(*, angular_frequency: float) -> TravellingWave:
     """Return (20) letter by letter: reading A, running from tail to head."""
     return reading("A", length=1.0, angular_frequency=angular_frequency, sign=1)
 
 
-def envelope(wave: PrintedWave, x: Numbers) -> Float[np.ndarray, "*batch"]:
+def envelope(wave: TravellingWave, x: Numbers) -> Float[np.ndarray, "*batch"]:
     """Return the amplitude [m] at ``x`` [m], measured from the head towards the tail."""
     place = numbers(x, "the place", finite=False)
     return np.asarray((wave.linear + wave.quadratic * place) * place)
 
 
-def displacement(wave: PrintedWave, x: Numbers, t: Numbers) -> Float[np.ndarray, "*batch"]:
+def displacement(wave: TravellingWave, x: Numbers, t: Numbers) -> Float[np.ndarray, "*batch"]:
     """Return how far the midline lies off the axis.
 
     Args:
@@ -146,20 +146,20 @@ def displacement(wave: PrintedWave, x: Numbers, t: Numbers) -> Float[np.ndarray,
     return np.asarray(envelope(wave, x) * np.sin(_phase(wave, x, t)))
 
 
-def slope(wave: PrintedWave, x: Numbers, t: Numbers) -> Float[np.ndarray, "*batch"]:
+def slope(wave: TravellingWave, x: Numbers, t: Numbers) -> Float[np.ndarray, "*batch"]:
     """Return the midline's slope dy/dx [-]; arguments as for ``displacement``."""
     place, phase = numbers(x, "the place", finite=False), _phase(wave, x, t)
     growth = wave.linear + 2 * wave.quadratic * place
     return np.asarray(growth * np.sin(phase) + wave.wave_number * envelope(wave, place) * np.cos(phase))
 
 
-def speed(wave: PrintedWave, x: Numbers, t: Numbers) -> Float[np.ndarray, "*batch"]:
+def speed(wave: TravellingWave, x: Numbers, t: Numbers) -> Float[np.ndarray, "*batch"]:
     """Return the midline's sideways speed dy/dt [m/s]; arguments as for ``displacement``."""
     rate = wave.sign * wave.angular_frequency
     return np.asarray(rate * envelope(wave, x) * np.cos(_phase(wave, x, t)))
 
 
-def _phase(wave: PrintedWave, x: Numbers, t: Numbers) -> np.ndarray:
+def _phase(wave: TravellingWave, x: Numbers, t: Numbers) -> np.ndarray:
     place, time = numbers(x, "the place", finite=False), numbers(t, "the time", finite=False)
     together(place, time, what="place and time")
     return np.asarray(wave.wave_number * place + wave.sign * wave.angular_frequency * time)

@@ -15,7 +15,7 @@ from suchus.design.pieces import pieces
 from suchus.design.relief import Relief
 from suchus.land import wetting
 from suchus.land.afloat import surfaced
-from suchus.land.alike import Deduplication
+from suchus.land.deduplication import Deduplication
 from suchus.land.lake import Lake
 from suchus.land.run import Afloat, Run
 from suchus.model import activations, compile_model, force_sensors, standing

@@ -29,7 +29,7 @@ class FloatBody:
     """A rigid body: an ellipsoid, an elliptic cylinder along its forward axis, or a box, its mass anywhere in it."""
 
     shape: Literal["ellipsoid", "cylinder", "box"]
-    """What it looks like."""
+    """Shape of the body."""
     half: Point
     """Half of its length, width and height [m]."""
     mass: float
@@ -134,7 +134,7 @@ class FloatTank:
 
     @property
     def middle(self) -> Float[np.ndarray, "3"]:
-        """Where the middle of the shape is [m]."""
+        """Position of the middle of the shape in the world [m]."""
         return np.array(self.data.xpos[1] + self.data.xmat[1].reshape(3, 3) @ _ASIDE)
 
     @property

@@ -8,11 +8,11 @@ from suchus.control import Command, Controller, Joinable
 from suchus.design.checks import require
 from suchus.design.scale import control_period
 from suchus.errors import InvalidDesign
-from suchus.land.alike import Deduplication
 from suchus.land.bench import Bench
+from suchus.land.deduplication import Deduplication
+from suchus.land.disturbances import Disturbances
 from suchus.land.readings import Readings
 from suchus.land.run import Run
-from suchus.land.troubles import Disturbances
 
 CONTROL_PERIOD = 0.01
 """Of the article's robot [s]: 100 Hz, what a bus of hobby servos sustains; ``design.scale`` has those of others."""
@@ -75,7 +75,7 @@ class Loop:
         self.readings = Readings(self.bench, runs, samples)
 
     def decide(self, tick: int, beat: int | None = None) -> Command:
-        """Let happen what is due and return what the controller commands; ``disturb`` says what comes of it.
+        """Let happen what is due and return what the controller commands; ``disturb`` returns the result.
 
         Args:
             tick: number of the control period.

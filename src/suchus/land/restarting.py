@@ -10,7 +10,7 @@ from suchus.land.bench import Bench
 
 
 class Beginning(NamedTuple):
-    """How a robot begins."""
+    """State in which a robot begins."""
 
     qpos: Float[np.ndarray, " q"]
     """Generalised positions [m], [rad]."""

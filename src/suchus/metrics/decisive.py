@@ -1,4 +1,4 @@
-"""Which parameters decide: rank correlations, and the border between where a statement holds and where it does not."""
+"""Which parameters decide: rank correlations, and the decision boundary between true and false."""
 
 from typing import NamedTuple
 
@@ -15,7 +15,7 @@ class DecisionBoundary(NamedTuple):
     """The value of one parameter that best predicts where a statement holds."""
 
     parameter: int
-    """Which."""
+    """Index of the parameter, from 0 [-]."""
     at: float
     """Its value there, in the parameter's unit."""
     above: bool

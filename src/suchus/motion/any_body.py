@@ -25,10 +25,10 @@ _SPEED_SAMPLES = 200  # of a cycle, to see how fast servos turn in it
 
 
 class Intended(NamedTuple):
-    """What is meant to happen over time."""
+    """Intended motion over time."""
 
     phase: Float[np.ndarray, "*batch limb"]
-    """Of each limb, without wrapping [cycle]."""
+    """Phase of each limb, without wrapping [cycle]."""
     targets: Float[np.ndarray, "*batch servo"]
     """Servo angles [rad]."""
 

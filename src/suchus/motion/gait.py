@@ -40,9 +40,9 @@ class Gait:
     """
 
     name: str
-    """How it is called."""
+    """Name, as messages, tables and files show it."""
     period: float
-    """Of one cycle [s]."""
+    """Period of one cycle [s]."""
     duty_factor: float
     """Share of the cycle in which a foot stands [-]."""
     limb_phases: tuple[float, float, float, float]
@@ -50,15 +50,15 @@ class Gait:
     stroke: float
     """Half of the distance that a foot moves back in stance, in its girdle's frame [m]."""
     lift: float
-    """How high a foot is lifted in swing [m]."""
+    """Height to which a foot is lifted in swing [m]."""
     front_reach: float
-    """How far a front foot stands outside its hip [m]."""
+    """Distance by which a front foot stands outside its hip [m]."""
     hind_reach: float
-    """How far a hind foot stands outside its hip [m]."""
+    """Distance by which a hind foot stands outside its hip [m]."""
     front_ahead: float
-    """How far the middle of a front foot's path lies ahead of its hip [m]."""
+    """Distance by which the middle of a front foot's path lies ahead of its hip [m]."""
     hind_ahead: float
-    """How far the middle of a hind foot's path lies ahead of its hip [m]."""
+    """Distance by which the middle of a hind foot's path lies ahead of its hip [m]."""
     legs: Legs
     """``sprawled`` or ``erect``; erect feet stand below their hips, so that both reaches are zero."""
     hip_height: float

@@ -30,7 +30,7 @@ class Transition(NamedTuple):
     """A sequence of postures, each reached from the one before without a jolt; it starts wherever the robot is."""
 
     times: Float[np.ndarray, " key"]
-    """When each posture is reached, since the beginning [s]."""
+    """Time at which each posture is reached, since the beginning [s]."""
     targets: Float[np.ndarray, "key servo"]
     """Servo angles [rad]."""
 

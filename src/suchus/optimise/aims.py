@@ -24,13 +24,13 @@ class Kind:
     """A quantity that can be aimed at or limited."""
 
     measure: Measured
-    """How it is measured."""
+    """Function that measures it from a record."""
     unit: str
     """SI unit, ``-`` for none."""
     good: Literal["more", "less"]
     """What is better; a limit is the least value where more is better, the greatest where less is."""
     tells: str
-    """What it is."""
+    """Description of the quantity."""
     scale: float = 1.0
     """What counts as one unit of excess where the limit itself is zero, in the unit."""
 
@@ -108,7 +108,7 @@ AIMS: Mapping[str, Kind] = MappingProxyType(
         "standing_reach": Kind(_standing, "m", "more", "least height reached while standing on hind legs and tail"),
     }
 )
-"""What can be aimed at, by name."""
+"""Quantities that a search can optimise, by name."""
 LIMITS: Mapping[str, Kind] = MappingProxyType(
     {
         "torque": Kind(_torque, "-", "less", "root mean square torque of the highest-loaded servo over its limit"),
@@ -121,4 +121,4 @@ LIMITS: Mapping[str, Kind] = MappingProxyType(
         "displacement": Kind(_forward, "m", "more", "displacement along the first heading", 0.1),
     }
 )
-"""What can be limited, by name."""
+"""Quantities that a search can limit, by name."""

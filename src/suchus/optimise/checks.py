@@ -19,18 +19,18 @@ _NEAR = (-0.1, -0.05, 0.0, 0.05, 0.1)  # of each range
 
 @dataclass(frozen=True, slots=True)
 class Condition:
-    """What is different from the search."""
+    """One condition of a check, and how it differs from the search."""
 
     tells: str
-    """In words."""
+    """Description of the condition."""
     friction_scale: float = 1.0
     """Factor on the friction [-]."""
     noise: float = 0.0
-    """On every commanded angle [rad]."""
+    """Standard deviation of noise on every commanded angle [rad]."""
     seed: int = 0
-    """Of the noise."""
+    """Seed of the noise."""
     later: float = 0.0
-    """How much later in its cycle the walk begins [cycle]."""
+    """Phase by which the walk begins later in its cycle [cycle]."""
 
 
 CONDITIONS = (
@@ -50,8 +50,8 @@ def checked(spec: Optimisation, runs: Sequence[Run]) -> xr.Dataset:
     """Run the chosen, and where the search started, under every condition with 2 ms.
 
     Returns:
-        ``aim_...`` and ``limit_...`` along ``run`` (the chosen, then ``start``) and ``condition``; NaN where it came
-        apart.
+        ``aim_...`` and ``limit_...`` along ``run`` (the chosen, then ``start``) and ``condition``; NaN where it
+        diverged.
     """
     who = [*runs, replace(spec.run, label="start")]
     batch = [_under(run, condition) for run in who for condition in CONDITIONS]

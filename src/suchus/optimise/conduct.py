@@ -27,24 +27,24 @@ from suchus.study.makers import deciding
 from suchus.study.store import Store
 
 LIBRARIES = ("cma", "comocma", "moarchiving")
-"""Whose versions decide what is asked for."""
+"""Packages whose versions decide which candidates are tried."""
 _DECIDING = partial(deciding, LIBRARIES, ROOMS)
 _CHECKED, _AROUND = 900_000, 950_000  # first numbers of the last parts; the budget's generations are added
 
 
 class SearchProgress(NamedTuple):
-    """How far a search is."""
+    """Progress of a search."""
 
     arm: str
-    """Which."""
+    """Name of the condition."""
     done: float
-    """Candidates tried in this arm, parts of a generation included."""
+    """Candidates tried in this condition, parts of a generation included."""
     budget: int
     """Candidates that it may try."""
     best: float
     """First aim of the best so far, in its unit; NaN before there is one."""
     unit: str
-    """Of that aim."""
+    """Unit of that aim."""
     rate: float
     """Candidates per second of this start; 0 before the first."""
 
@@ -60,7 +60,7 @@ Progress = Callable[[SearchProgress], None]
 def optimise(
     spec: Optimisation, folder: Path, *, progress: Progress | None = None, client: Any = None
 ) -> tuple[Found, ...]:
-    """Search each arm, check what was found, and return it.
+    """Search each condition, check what was found, and return it.
 
     Generations are stored as they are finished: whatever stops the program, at most the running one is lost. Started
     again it goes on, and ends with the same bytes as if nothing had happened. The best gait so far is always a file,
@@ -68,7 +68,7 @@ def optimise(
 
     Args:
         spec: the search; with more evaluations than before, an earlier one is continued.
-        folder: for its results and, below it, the store of each arm.
+        folder: for its results and, below it, the store of each condition.
         progress: called with how far it is, after each piece of work.
         client: a ``distributed.Client``, among whose workers each generation is shared out; this process if None. The
             bytes are the same.
@@ -85,7 +85,7 @@ def optimise(
 
 
 def _arm(spec: Optimisation, folder: Path, progress: Progress, client: Any) -> Found:
-    """Search one arm."""
+    """Search one condition."""
     name = spec.arms[0].name
     with opened(spec, folder / name) as store:
         found = _searched(spec, store, folder, progress, client)
@@ -103,7 +103,7 @@ def _arm(spec: Optimisation, folder: Path, progress: Progress, client: Any) -> F
 
 @contextmanager
 def opened(spec: Optimisation, folder: Path) -> Iterator[Store]:
-    """Hold the store of one arm; the budget does not distinguish searches."""
+    """Hold the store of one condition; the budget does not distinguish searches."""
     with Store(folder, replace(spec, evaluations=1), kind="optimisation", versions=_DECIDING).opened() as store:
         yield store
 

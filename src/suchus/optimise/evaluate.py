@@ -26,7 +26,7 @@ def evaluate(
     """Try candidates, all that can be built in one batch.
 
     Args:
-        spec: the search, of one arm.
+        spec: the search, of one condition.
         shares: where each candidate's fields lie in their ranges, shape (candidate, field), 0 to 1.
         progress: called with the share that is done.
         timestep: of the physics [s]; that of the search if None.

@@ -31,16 +31,16 @@ TASKS: Mapping[str, Control] = MappingProxyType(
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SearchFile(Search):
-    """What the file of a search can say."""
+    """The contents of the file of a search."""
 
     robot: str = "caiman"
     """Name on the shelf, or path of a TOML file beside this one."""
     gait: str = "belly_crawl"
     """Name on the shelf, or path of a TOML file beside this one."""
     task: Task = "crawl"
-    """What it does: ``crawl``, ``turn`` or ``stand``."""
+    """Task: ``crawl``, ``turn`` or ``stand``."""
     ground: Ground = field(default_factory=Ground)
-    """On what."""
+    """Ground: its friction scale, slopes and relief."""
 
 
 EXAMPLE = SearchFile(

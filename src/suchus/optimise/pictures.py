@@ -25,7 +25,7 @@ _MM = {"m": (1000.0, "mm"), "rad": (180 / np.pi, "deg")}
 
 
 def role(number: int) -> str:
-    """Return the role of ``figures.COLOURS`` of an arm."""
+    """Return the role of ``figures.COLOURS`` of a condition."""
     return _ROLES[number % len(_ROLES)]
 
 
@@ -36,7 +36,7 @@ def label(name: str) -> str:
 
 
 def draw_convergence(found: Sequence[Found]) -> Figure:
-    """Draw the first aim of the best so far of every arm over the candidates tried."""
+    """Draw the first aim of the best so far of every condition over the candidates tried."""
     kind, name = AIMS[found[0].spec.aims[0].name], label(found[0].spec.aims[0].name)
     with styled():
         figure, axes = panels(1, 1, height=4.0)

@@ -19,7 +19,7 @@ from suchus.optimise.found import Found
 from suchus.optimise.pictures import draw_around, draw_convergence, draw_front, draw_gaits, label, scaled
 from suchus.optimise.spec import Optimisation
 from suchus.replay import replay
-from suchus.study.sheet import ResultTable, Section, write_sheet
+from suchus.study.result_table import ResultTable, Section, write_tables
 
 RESULT, OUTCOME, RECORD = "result", "outcome.json", "record.nc"
 _TOLD = 5  # fields that the sentence names
@@ -31,7 +31,7 @@ def write_results(spec: Optimisation, found: Sequence[Found], folder: Path) -> P
 
     Args:
         spec: the search.
-        found: of each arm.
+        found: of each condition.
         folder: of the search.
 
     Raises:
@@ -49,7 +49,7 @@ def write_results(spec: Optimisation, found: Sequence[Found], folder: Path) -> P
             if i:
                 _write_replay(shown, record, i, draft / f"{run.label}_replay.html")
         pictures = _pictures(spec, found, shown, record)
-        write_sheet(draft, f"Optimised: {spec.name}", _lead(found), _sections(spec, found, told, pictures), pictures)
+        write_tables(draft, f"Optimised: {spec.name}", _lead(found), _sections(spec, found, told, pictures), pictures)
         text = json.dumps(told, indent=2, ensure_ascii=False, allow_nan=False)
         (draft / OUTCOME).write_text(text + "\n", encoding="utf-8")
     return folder / RESULT

@@ -14,15 +14,15 @@ from suchus.renamed import old_names
 from suchus.study import Arm, Vary
 
 WHOLE = Arm(name="best")
-"""The only arm of a search without a comparison."""
+"""The only condition of a search without a comparison."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Aim:
-    """What is made better."""
+    """A quantity that the search optimises."""
 
     name: str
-    """Of ``AIMS``."""
+    """Name of the quantity, a key of ``AIMS``."""
     weight: float = 1.0
     """Beside the other aims of a sum, each counted in parts of what the start has [-]."""
 
@@ -38,9 +38,9 @@ class Limit:
     """What must not be exceeded, or undercut, whichever way the quantity goes wrong."""
 
     name: str
-    """Of ``LIMITS``."""
+    """Name of the quantity, a key of ``LIMITS``."""
     value: float
-    """In the quantity's unit."""
+    """Value of the limit, in the unit of the quantity."""
 
     def __post_init__(self) -> None:
         if self.name not in LIMITS:
@@ -55,33 +55,33 @@ class Search:
     """What a search is besides where it starts; a file says the same."""
 
     name: str
-    """How it is called."""
+    """Name, as messages, tables and files show it."""
     vary: tuple[Vary, ...]
-    """What may change, each with ``low`` and ``high``."""
+    """Fields that may change, each with ``low`` and ``high``."""
     aims: tuple[Aim, ...]
-    """What is made better."""
+    """Quantities that the search optimises; two or more give a front."""
     limits: tuple[Limit, ...] = ()
-    """What is allowed; joint limits, reach and servo speeds always hold."""
+    """Limits of other quantities; joint limits, reach and servo speeds always hold."""
     arms: tuple[Arm, ...] = (WHOLE,)
-    """Searched one after the other with the same budget; what an arm sets does not vary in it."""
+    """Searched one after the other with the same budget; what a condition sets does not vary in it."""
     pareto: bool = False
     """Whether two aims are weighed against each other as a front, rather than summed."""
     evaluations: int = 1200
-    """How many candidates each arm may try [-]; the generation in which they run out is finished."""
+    """Number of candidates that each condition may try [-]; the generation in which they run out is finished."""
     population: int = 16
     """Candidates of a generation, simulated in one batch; of each point of the front, where there is one [-]."""
     points: int = 6
-    """Of the front that are pushed forward together [-]."""
+    """Points of the front that are pushed forward together [-]."""
     sigma: float = 0.25
     """First standard deviation of the candidates, as a part of each range [-]."""
     friction_scales: tuple[float, ...] = (1.0,)
     """Factors on the ground's friction: a candidate is run on each; aims are means, limits hold on the worst [-]."""
     seed: int = 0
-    """Of the search."""
+    """Seed of the search."""
     duration: float = 9.0
-    """Of each run [s]: two cycles of four seconds after the first second, in which the robot settles."""
+    """Duration of each run [s]: two cycles of four seconds after the first second, in which the robot settles."""
     timestep: float = 0.005
-    """Of the physics in the search [s]; the best are run again with 2 ms."""
+    """Time step of the physics in the search [s]; the best are run again with 2 ms."""
     reasons: tuple[str, ...] = ()
     """Why these fields, ranges and limits, for whoever reads the results."""
 
@@ -91,7 +91,7 @@ class Optimisation(Search):
     """A search for the best among the runs that differ from one in some fields."""
 
     run: Run
-    """Where the search starts."""
+    """Run from which the search starts."""
 
     def __post_init__(self) -> None:
         with Checks("optimisation", self) as check:
@@ -133,7 +133,7 @@ class Optimisation(Search):
         if isinstance(there, int):
             raise InvalidDesign(
                 f"optimisation {self.name!r} varies {vary.field}, which takes whole numbers; a search moves in real "
-                "ones: make an arm of each."
+                "ones: make a condition of each."
             )
         if not vary.low <= there <= vary.high:
             raise InvalidDesign(
@@ -150,7 +150,7 @@ class Optimisation(Search):
                 continue  # wrong together with the start; it may be right together with what varies
 
     def of(self, arm: Arm) -> "Optimisation":
-        """Return the search of one arm alone: what it sets is set, and does not vary.
+        """Return the search of one condition alone: what it sets is set, and does not vary.
 
         Raises:
             UnknownName: it sets a field that does not exist.

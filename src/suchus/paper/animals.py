@@ -16,9 +16,9 @@ class Animal:
     key: str
     """Its name here."""
     quantity: str
-    """What was measured, in a few words."""
+    """Name of the quantity that was measured."""
     who: str
-    """Which animals."""
+    """Species, number and size of the animals."""
     low: float
     """The number, or the least of a range."""
     high: float
@@ -26,9 +26,9 @@ class Animal:
     unit: str
     """SI unit, ``-`` for none."""
     source: str
-    """Where it is published."""
+    """Publication: authors, year, journal."""
     note: str = ""
-    """What to mind when comparing."""
+    """Caveat for the comparison."""
 
 
 ANIMALS = (

@@ -37,7 +37,7 @@ def beside(robot: AnyRobot, results: Results) -> tuple[ComparisonRow, ...]:
 
     Args:
         robot: the robot of the page.
-        results: what came out, by experiment.
+        results: by experiment.
     """
     rows = (_row(animal, robot, results) for animal in ANIMALS)
     return tuple(row for row in rows if row is not None)

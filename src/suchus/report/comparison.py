@@ -37,9 +37,9 @@ class Judged:
     """One claim, and what both outcomes say of it."""
 
     quantity: str
-    """What the claim is about."""
+    """Quantity that the claim is about."""
     where: str
-    """Where in the article."""
+    """Place in the article: section, figure or table."""
     first: str
     """Verdict of the first outcome; empty where it has none."""
     second: str
@@ -63,7 +63,7 @@ class Comparison:
     """What two outcomes have in common, and in what they differ."""
 
     names: tuple[str, str]
-    """What the two are called."""
+    """Names of the two outcomes."""
     results: tuple[Result, Result]
     """The two outcomes."""
     measures: tuple[Compared, ...]

@@ -1,4 +1,4 @@
-"""What a metre costs on land, at the surface and below, from the outcomes of a report."""
+"""Speed and cost of transport on land, at the surface and below, from the outcomes of a report."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -22,15 +22,15 @@ class Metre:
     """A row of the table."""
 
     where: str
-    """In words."""
+    """Place, in words."""
     experiment: str
-    """Whose measures these are."""
+    """Name of the experiment that measured them."""
     speed: str
-    """With its unit."""
+    """Speed, with its unit."""
     work: str
-    """Of the servos over the distance, with its unit."""
+    """Work of the servos over the distance, with its unit."""
     cost: str
-    """Of transport: that work over the weight; empty where it was not measured."""
+    """Cost of transport: that work over the weight; empty where it was not measured."""
 
 
 def metres(results: Mapping[str, Result]) -> list[Metre]:

@@ -66,7 +66,7 @@ def render_page(results: Sequence[Result], failures: Sequence[Failure], place: P
     """Return the page as text.
 
     Args:
-        results: what came out, in the order of the page.
+        results: in the order of the page.
         failures: what did not.
         place: the folder of the page, from which it links films and replays; None: the one that holds the results.
     """

@@ -19,7 +19,7 @@ class Row:
     value: str
     """Its value with its unit."""
     meaning: str
-    """What it is."""
+    """Meaning of the number, from the docstring of its field."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

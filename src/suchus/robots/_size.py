@@ -12,7 +12,7 @@ class RelativeSize(NamedTuple):
     """A robot's size over that of the article's robot."""
 
     length: float
-    """Of the body [-]."""
+    """Length of the body [-]."""
     weight: float
     """Of the body [-]."""
 

@@ -16,7 +16,7 @@ class Index(NamedTuple):
     """How much of a quantity each parameter decides alone."""
 
     share: np.ndarray
-    """Of the variance of its ranks, shape (parameter,) [-]; chance alone gives about zero."""
+    """Fraction of the variance of its ranks, shape (parameter,) [-]; chance alone gives about zero."""
     low: np.ndarray
     """Lower end of the 95 % interval [-]."""
     high: np.ndarray
@@ -120,7 +120,7 @@ class Agreement(NamedTuple):
     shares: float
     """Greatest difference of a claim's share of truth [-]."""
     claim: str
-    """Which claim's share that is."""
+    """Key of the claim whose share that is."""
     chance: float
     """How likely chance alone turns one of the claims so much more often one way than the other [-]."""
 

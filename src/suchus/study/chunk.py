@@ -29,7 +29,7 @@ def run_chunk(study: Study, number: int, progress: Progress | None = None) -> xr
 
     Returns:
         A table along ``sample``: a column for each field that varies, one or more for each measure, ``seed``, ``arm``
-        where there are arms, ``error``.
+        where there are conditions, ``error``.
     """
     plan = Plan(study)
     samples = plan.chunk(number)

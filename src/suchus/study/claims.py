@@ -13,7 +13,7 @@ from suchus.design import Crocodile, unit_at, value_at
 from suchus.design.checks import Checks
 from suchus.errors import UnreadableFile
 from suchus.gaits import GAITS, conditions
-from suchus.land import LOST, Run, lost
+from suchus.land import FAILED_JOINTS, Run, joint_failure
 from suchus.motion import START, Gait
 from suchus.paper import CYCLES
 from suchus.robots import ROBOTS
@@ -46,9 +46,9 @@ class Claims:
     gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
     """The crawl whose other fields all samples share."""
     samples: int = 2048
-    """How many designs and gaits, best a power of two, as Sobol's sequence asks [-]; about a quarter cannot walk."""
+    """Number of designs and gaits, best a power of two, as Sobol's sequence asks [-]; about a quarter cannot walk."""
     together: int = 16
-    """How many samples are simulated together, and lost when the study is killed [-]."""
+    """Number of samples that are simulated together, and lost when the study is killed [-]."""
     coarse: tuple[float, ...] = (0.01, 0.005)
     """Time steps that are tried, the first that agrees with 2 ms is taken; 2 ms if none does [s]."""
     compared: int = 64
@@ -61,7 +61,7 @@ class Claims:
     least: float = 0.05
     """An intact robot with spine and tail that gets no farther cannot lose anything that could be measured [m]."""
     cycles: int = int(CYCLES)
-    """How many cycles are measured [-]."""
+    """Number of cycles that are measured [-]."""
     seed: int = 0
     """Seed of the Sobol sequence's scrambling [-]."""
 
@@ -102,9 +102,9 @@ class Claims:
             of = {one: (value_at(gait, one), value_at(crawl, one)) for one in _TRUNK}
             sets[name] = {f"gait.{one}": there for one, (there, here) in of.items() if there != here}
         sets |= {
-            f"{name}_{joint}": {**sets[name], "faults": lost(self.robot, self.gait, joint, "limp")}
+            f"{name}_{joint}": {**sets[name], "faults": joint_failure(self.robot, self.gait, joint, "limp")}
             for name in FAULTY
-            for joint in LOST
+            for joint in FAILED_JOINTS
         }
         return tuple(Arm(name=name, values=sets[name]) for name in RUNS)
 

@@ -12,7 +12,7 @@ from suchus import record as records
 from suchus.figures.sensitivity import draw_claim, draw_shares, spoken
 from suchus.paper import CLAIMS
 from suchus.study.claims_table import finite, shipped, table, told, turned
-from suchus.study.sheet import ResultTable, Section, write_sheet
+from suchus.study.result_table import ResultTable, Section, write_tables
 
 OUTCOME, TABLE, RECORD, SHARES = "outcome.json", "claims.csv", "claims.nc", "claims.json"
 
@@ -35,7 +35,7 @@ def write_claims(record: xr.Dataset, folder: Path) -> Path:
         pictures = {f"claim_{row['claim']}": draw_claim(record, row["claim"]) for row in rows}
         pictures["shares"] = draw_shares(rows, turned(rows))
         sections = _sections(record, rows)
-        write_sheet(draft, "The article's claims over plausible designs", _lead(record), sections, pictures)
+        write_tables(draft, "The article's claims over plausible designs", _lead(record), sections, pictures)
         text = json.dumps(outcome(record, rows), indent=2, ensure_ascii=False, allow_nan=False)
         (draft / OUTCOME).write_text(text + "\n", encoding="utf-8")
     return folder
@@ -68,8 +68,8 @@ def _lead(record: xr.Dataset) -> str:
     parts = ", ".join(f"{number} {name}" for name, number in sorted(count.items(), key=lambda item: -item[1]))
     return (
         f"{record.sizes['sample']} designs and gaits ({parts}), each in six conditions of spine and tail, and with "
-        f"each of four joints lost in two of them, over {record.sizes['parameter']} numbers that the article does not "
-        "give."
+        f"each of four joints failed in two of them, over {record.sizes['parameter']} numbers that the article does "
+        f"not give."
     )
 
 

@@ -98,7 +98,7 @@ def spread(
     versions: Versions = deciding,
     patience: float = _PATIENCE,
 ) -> Iterator[tuple[int, xr.Dataset]]:
-    """Do one piece of work for each item on a cluster, and yield what comes of it as it is finished, in any order.
+    """Do one piece of work for each item on a cluster, and yield the results as they are finished, in any order.
 
     A worker that is lost loses its piece, which another one begins again.
 
@@ -111,7 +111,7 @@ def spread(
         patience: how long to wait for a first worker [s].
 
     Yields:
-        The index of an item, and what came of it.
+        The index of an item, and its result.
 
     Raises:
         NoCluster: no worker comes, too many are lost, or the scheduler is.

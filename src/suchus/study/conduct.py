@@ -17,7 +17,7 @@ from suchus.study.study import Study
 
 
 class StudyProgress(NamedTuple):
-    """How far a study is."""
+    """Progress of a study."""
 
     done: float
     """Runs that are done, parts of a batch included."""

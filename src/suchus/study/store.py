@@ -31,7 +31,7 @@ class Asked(Protocol):
 
     @property
     def name(self) -> str:
-        """How it is called."""
+        """Name, as messages, tables and files show it."""
 
 
 class Store:

@@ -24,10 +24,10 @@ FLOW = ("catalog.py", "design", "flow", "kinds.py", "kinematics", "motion", "pap
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Asked:
-    """What a store of a sweep holds."""
+    """Identity of a sweep, as its store keeps it."""
 
     name: str
-    """How the sweep is called."""
+    """Name of the sweep."""
     work: str
     """Fingerprint of the calculation."""
     items: tuple[str, ...]

@@ -24,9 +24,9 @@ class Verdict:
     """What became of one claim of the article."""
 
     claim: Claim
-    """What the article says."""
+    """The article's statement."""
     rule: Rule
-    """What decided."""
+    """The rule that was applied."""
     measured: float | None
     """What was measured, in the unit of ``unit``; None where nothing can be measured."""
     low: float | None
@@ -38,7 +38,7 @@ class Verdict:
     why: str
     """One or two sentences: what decided it."""
     share: Share | None
-    """In how many plausible designs the statement holds; None where that is not known."""
+    """Fraction of plausible designs for which the statement holds; None where that is not known."""
 
     @property
     def held(self) -> bool:

@@ -29,7 +29,7 @@ class Share:
     high: float
     """Upper end [-]."""
     designs: int
-    """How many designs could be judged [-]."""
+    """Number of designs that could be judged [-]."""
     turned_by: str
     """The free number whose value best predicts where it holds; empty where none does beyond chance."""
     at: float | None

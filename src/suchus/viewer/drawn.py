@@ -15,7 +15,7 @@ from suchus.viewer.bodies import BodyPoses, pieces
 Look = Literal["skin", "collision geoms"]
 _MARK, _WORD = 0.026, 0.035  # [m]; radius of a mark on the article's robot, and how far above it its word is
 LIMP, LOCKED = (225, 60, 45), (40, 40, 45)
-"""Colours of the marks on joints that are lost."""
+"""Colours of the marks on joints that have failed."""
 GHOST = (120, 140, 200)
 """Colour of a robot that is there for comparison."""
 

@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 WINDOW = 12.0
-"""How far back the plots look [s]."""
+"""Length of time that the plots show [s]."""
 
 
 def columns(limbs: Sequence[str]) -> tuple[str, ...]:

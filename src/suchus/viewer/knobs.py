@@ -27,11 +27,11 @@ class Knob:
     high: float
     """Greatest value, in that unit."""
     step: float
-    """Of the slider, in that unit."""
+    """Step of the slider, in that unit."""
     scale: float = 1.0
     """SI value of one unit."""
     hint: str = ""
-    """What it does."""
+    """Explanation of its effect, for the page."""
 
     def __str__(self) -> str:
         return f"{self.label} [{self.unit}]" if self.unit else self.label

@@ -115,7 +115,7 @@ _SHOWN = (
 
 
 def status(instant: Instant, settings: Settings, *, rate: float, notice: str, paused: bool) -> str:
-    """Return the head of the page as HTML: numbers, what is lost, then trouble or a notice.
+    """Return the head of the page as HTML: numbers, failed joints, then trouble or a notice.
 
     Args:
         instant: what is seen.

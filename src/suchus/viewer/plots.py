@@ -16,7 +16,7 @@ _POINTS = 400  # of a line; more are not seen
 _PALE = "#c9ccd1"
 _LIGHT = 0.1  # [kg]; the loads of lighter bodies are shown in millinewtons
 AXIS = {"stroke": "#555555", "grid": {"stroke": "#e6e6e6", "width": 1}, "ticks": {"stroke": "#cccccc", "width": 1}}
-"""How axes are drawn, as uPlot has it."""
+"""Style of the axes, in the terms of uPlot."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +40,7 @@ class PlotLayout:
     title: str
     """Above it, with the unit."""
     lines: tuple[Line, ...]
-    """What it shows."""
+    """The lines that it draws."""
     scale: float = 1.0
     """From SI to the unit of the title."""
     mean: float = 0.0

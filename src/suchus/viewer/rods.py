@@ -17,11 +17,11 @@ class RodShape:
     """How thick a rod is, and whether it ends in a head."""
 
     radius: float
-    """Of the shaft [m]."""
+    """Radius of the shaft [m]."""
     head: float = 0.0
     """Length of the head [m]; 0 for a plain rod."""
     head_radius: float = 0.0
-    """Of the head [m]."""
+    """Radius of the head [m]."""
 
 
 def rod(shape: RodShape) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -26,7 +26,7 @@ class CannotServe(SuchusError, OSError):
 
 
 class BrowserPage(Protocol):
-    """What one browser sees."""
+    """The page that one browser shows."""
 
     def run(self) -> None:
         """Live until closed."""
@@ -92,7 +92,7 @@ class Viewer:
 
     @property
     def watching(self) -> int:
-        """How many browsers have a page."""
+        """Number of browsers that have a page [-]."""
         with self._lock:
             return len(self._pages)
 

@@ -27,17 +27,17 @@ class Film:
     """One swim of a record, frame by frame."""
 
     title: str
-    """What it is called."""
+    """Title of the film."""
     phase: np.ndarray
-    """Of each frame, (frame,) [cycle]."""
+    """Phase of each frame, (frame,) [cycle]."""
     x: np.ndarray
-    """Of the points of the fields, along the body (x,) [m]."""
+    """Coordinates of the points of the fields, along the body (x,) [m]."""
     y: np.ndarray
     """Across it, (y,) [m]."""
     fields: Mapping[str, np.ndarray]
     """By name, (frame, y, x)."""
     units: Mapping[str, str]
-    """Of the fields."""
+    """Units of the fields."""
     sides: np.ndarray
     """Left and right side of the body, (frame, 2, station, 2) [m]."""
 

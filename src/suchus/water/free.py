@@ -41,7 +41,7 @@ def free_swim(
 
 
 class _Free:
-    """What is seen of a free body."""
+    """Time series of a freely swimming body."""
 
     def __init__(self, pool: Pool) -> None:
         self._pool, self._view = pool, View(pool.grid, pool.robot.length, 2.25, 0.6)

@@ -1,4 +1,4 @@
-"""Numbers read from the records of a held and of a free swim; how each is defined stands here."""
+"""Numbers read from the records of a tethered and of a free swim; how each is defined stands here."""
 
 from typing import NamedTuple
 
@@ -68,11 +68,11 @@ class LateralSwing(NamedTuple):
     """How each station of a body swings to either side, as a sine of one cycle."""
 
     amplitude: Float[np.ndarray, " station"]
-    """Of the sine [m]."""
+    """Amplitude of the sine [m]."""
     phase_lag: Float[np.ndarray, " station"]
     """Phase lag of the sine behind a cosine that begins with the samples, 0 to 1 [cycle]."""
     share: Float[np.ndarray, " station"]
-    """Of the variance about the mean line that the sine has [-]."""
+    """Fraction of the variance about the mean line that the sine has [-]."""
 
 
 def swing(across: Float[np.ndarray, "sample station"], cycles: int = 2) -> LateralSwing:
@@ -93,7 +93,7 @@ class Sway(NamedTuple):
     """A track's displacement to the side and back, once a cycle."""
 
     amplitude: float
-    """Of the sine of one cycle [m]."""
+    """Amplitude of the sine of one cycle [m]."""
     noise: float
     """Twice the standard deviation of what is left of the track about its mean line without that sine [m]."""
     low: float
@@ -152,7 +152,7 @@ class Swum(NamedTuple):
     speed: float
     """Forward [m/s]."""
     gain: float
-    """Of the speed over the cycle before [-]."""
+    """Gain of the speed over the cycle before [-]."""
     slip: float
     """Speed over that of the body wave [-]."""
     strouhal: float

@@ -24,7 +24,7 @@ class BodySilhouette(NamedTuple):
     """The body along its straight midline, the union of its pieces."""
 
     half_width: Float[np.ndarray, " station"]
-    """To either side [m]."""
+    """Half-width, to either side [m]."""
     half_height: Float[np.ndarray, " station"]
     """Up and down [m]."""
 
@@ -41,7 +41,7 @@ def silhouette(robot: AnyRobot, s: Float[np.ndarray, " station"]) -> BodySilhoue
 
 
 class Base(NamedTuple):
-    """Where the snout is and how the head points."""
+    """Position of the snout and direction of the head."""
 
     x: Float[np.ndarray, "*b"]
     """[m]."""
@@ -84,7 +84,7 @@ class Outline:
     """
 
     robot: Crocodile
-    """Whose midline."""
+    """Robot whose midline it is."""
     stations: int = STATIONS
     """Points along it [-]."""
 

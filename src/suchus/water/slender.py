@@ -29,7 +29,7 @@ class Effort(NamedTuple):
     thrust: float
     """Force forward [N]."""
     power: float
-    """Of the joints on the water [W]."""
+    """Power of the joints on the water [W]."""
 
 
 Model = Callable[[Outline, MidlineCurve, float, Water], Effort]
@@ -129,7 +129,7 @@ class Cruise(NamedTuple):
     speed: float
     """Forward; negative if it goes tail first [m/s]."""
     power: float
-    """Of the joints on the water [W]."""
+    """Power of the joints on the water [W]."""
     sway: complex
     """Harmonic of the snout's displacement to the side [m]."""
     turn: complex

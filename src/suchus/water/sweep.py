@@ -17,7 +17,7 @@ from suchus.water.swimming import MODELS, displaced, wave_speed
 from suchus.water.undulation import STILL, undulation
 
 VALUES = {"speed": "m/s", "efficiency": "1", "cost_of_transport": "1", "strouhal": "1", "slip": "1"}
-"""What is found of each motion, with units."""
+"""Quantities that are computed for each motion, with units."""
 
 
 def scaled(motion: Swim, amplitude: float, frequency: float) -> Swim:

@@ -24,9 +24,9 @@ class ExactWave:
     """A wave that the midline follows exactly, joints or not: a body that bends anywhere."""
 
     name: str
-    """How it is called."""
+    """Name, as messages, tables and files show it."""
     wave: BodyWave
-    """What it follows."""
+    """Wave that the midline follows."""
 
     def __post_init__(self) -> None:
         if not (np.isfinite(self.wave.period) and self.wave.period > 0):
@@ -43,11 +43,11 @@ class Undulation:
     """A periodic midline. Harmonic k of a value is ``Re(h[k] exp(2 pi i k f t))``, k from 0 on."""
 
     name: str
-    """How it is called."""
+    """Name, as messages, tables and files show it."""
     frequency: float
     """f [Hz]."""
     outline: Outline
-    """Whose midline."""
+    """Outline of the body whose midline it is."""
     middles: Complex[np.ndarray, "harmonic middle"]
     """Tangent angle halfway between the stations [rad]."""
     stations: Complex[np.ndarray, "harmonic station"]

@@ -31,17 +31,17 @@ class Match:
     sign: float
     """1 where positive angles turn the same way, else -1 [-]."""
     zero: float
-    """What the file calls our zero [rad]."""
+    """Angle of the file's hinge at our zero [rad]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Size:
-    """What servos and springs follow from."""
+    """Mass and length, from which servos and springs follow."""
 
     mass: float
-    """Of the robot [kg]."""
+    """Mass of the robot [kg]."""
     length: float
-    """Of the robot [m]."""
+    """Length of the robot [m]."""
 
 
 def turn_of(joint: Joint, axis: np.ndarray, told: list[str]) -> tuple[Turn, float]:

@@ -19,11 +19,11 @@ class Making:
     plan: BodyPlan
     """Axis and limbs."""
     words: Words
-    """What the user said."""
+    """The options that the user gave."""
     level: float
     """Height of the axis above the point of the mirror plane [m]."""
     size: Size
-    """What servos and springs follow from."""
+    """Mass and length, from which servos and springs follow."""
     heaviest: float
     """Mass of the heaviest part [kg]."""
     matches: list[Match] = field(default_factory=list)

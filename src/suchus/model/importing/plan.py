@@ -21,7 +21,7 @@ class LimbChain:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class BodyPlan:
-    """What is axis and what is limb."""
+    """The parts of the tree that form the axis, and those that form each limb."""
 
     tree: Tree
     """The tree; parts that were left out have lent their masses to those that carry them."""

@@ -45,7 +45,7 @@ class TreePart:
     """What moves as one: bodies without hinges between them."""
 
     name: str
-    """Of its first body."""
+    """Name of its first body."""
     parent: int
     """Place of the part that carries it; -1 for the root."""
     joints: tuple[Joint, ...]
@@ -61,7 +61,7 @@ class TreePart:
     points: np.ndarray
     """Origins of its bodies and sites, shape (n, 3) [m]."""
     names: tuple[str, ...]
-    """Of its bodies."""
+    """Names of its bodies."""
 
     @property
     def corners(self) -> np.ndarray:
@@ -77,7 +77,7 @@ class Tree:
     parts: tuple[TreePart, ...]
     """The first one is the root."""
     told: tuple[str, ...]
-    """What was not taken, in sentences."""
+    """Notes on what was not taken over, a sentence each."""
 
     @property
     def size(self) -> float:

@@ -33,7 +33,7 @@ class _Worker:
 
 
 def side_by_side(tasks: Sequence[Job], jobs: int, bars: Bars) -> dict[str, JobResult]:
-    """Run experiments in ``jobs`` processes, which share the threads, and return what came of each by name.
+    """Run experiments in ``jobs`` processes, which share the threads, and return the result of each by name.
 
     They are begun in the order given. A process that dies takes its experiment with it and nothing else. When this
     one is stopped, by Ctrl-C or an error, the others end too, and leave nothing half-written.
@@ -43,30 +43,30 @@ def side_by_side(tasks: Sequence[Job], jobs: int, bars: Bars) -> dict[str, JobRe
         jobs: number of processes.
         bars: where progress is shown.
     """
-    left, came = list(tasks), dict[str, JobResult]()
+    left, results = list(tasks), dict[str, JobResult]()
     each = max(threads.count() // jobs, 1)
-    crew = [_hire(each) for _ in range(min(jobs, len(left)))]
+    workers = [_hire(each) for _ in range(min(jobs, len(left)))]
     try:
-        for worker in crew:
+        for worker in workers:
             _give(worker, left.pop(0), bars)
-        while busy := {worker.pipe: worker for worker in crew if worker.task}:
+        while busy := {worker.pipe: worker for worker in workers if worker.task}:
             for pipe in wait(list(busy)):
                 worker = busy[pipe]  # type: ignore[index]  # only connections are waited for
                 said = _heard(worker)
                 if not isinstance(said, JobResult):
                     worker.move(*said)
                     continue
-                came[said.result.name] = said
+                results[said.result.name] = said
                 bars.say(said.told)
                 worker.task = None
                 if left and not worker.process.is_alive():
-                    crew.remove(worker)
-                    crew.append(worker := _hire(each))
+                    workers.remove(worker)
+                    workers.append(worker := _hire(each))
                 if left:
                     _give(worker, left.pop(0), bars)
     finally:
-        _dismiss(crew)
-    return came
+        _dismiss(workers)
+    return results
 
 
 def _hire(each: int) -> _Worker:
@@ -88,7 +88,7 @@ def _give(worker: _Worker, task: Job, bars: Bars) -> None:
 
 
 def _heard(worker: _Worker) -> JobResult | tuple[str, float]:
-    """Return what a busy worker says: what came of its experiment, or how far it is."""
+    """Return what a busy worker says: the result of its experiment, or how far it is."""
     assert worker.task is not None
     try:
         said: JobResult | tuple[str, float] = worker.pipe.recv()
@@ -103,13 +103,13 @@ def _heard(worker: _Worker) -> JobResult | tuple[str, float]:
     return said
 
 
-def _dismiss(crew: Sequence[_Worker]) -> None:
+def _dismiss(workers: Sequence[_Worker]) -> None:
     """Let all processes end: the idle by themselves, the busy at once."""
-    for worker in crew:
+    for worker in workers:
         worker.pipe.close()
         if worker.task is not None:
             worker.process.kill()
-    for worker in crew:
+    for worker in workers:
         worker.process.join(_PATIENCE)
         if worker.task is not None:
             sweep(worker.task.out / worker.task.name)
