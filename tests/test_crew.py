@@ -54,7 +54,7 @@ def test_processes_share_the_threads(monkeypatch):
 
 
 def test_our_own_errors_come_back_and_end_it():
-    with pytest.raises(OutsideLimits, match="[78] is too much"):
+    with pytest.raises(OutsideLimits, match=r"^[78] is too much"):
         list(side_by_side(refused, [7, 8], 2))
 
 

@@ -270,6 +270,7 @@ def test_no_process_and_processes_beside_a_cluster_are_refused(asked, tmp_path):
 
 
 def test_a_batch_whose_processes_die_is_told(asked, tmp_path, monkeypatch):
-    monkeypatch.setattr("suchus.study.conduct.side_by_side", lambda *_, **__: (said for said in [(1, Died(-9))]))
+    room = sys.modules[conduct.__module__]
+    monkeypatch.setattr(room, "side_by_side", lambda *_, **__: (said for said in [(1, Died(-9))]))
     with pytest.raises(Lost, match="the process at batch 1 of study 'strokes' ended with exit code -9, 3 times"):
         conduct(asked, tmp_path / "s", jobs=2)
