@@ -169,3 +169,17 @@ def test_a_fault_that_is_none_is_refused(fault, said, tmp_path):
     (tmp_path / "f.toml").write_text(page)
     with pytest.raises(SuchusError, match=said):
         read_study(tmp_path / "f.toml")
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--jobs", "0"], "--jobs is 0; at least 1 process is needed"),
+        (["--jobs", "2", "--scheduler", "tcp://127.0.0.1:1"], "--jobs and --scheduler exclude each other"),
+    ],
+)
+def test_processes_that_cannot_be_are_refused(words, said, tmp_path, capsys):
+    for study in ("grip.toml", "claims"):
+        assert main(["study", study, *words]) == 2
+        assert said in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()

@@ -34,6 +34,8 @@ class StudyOptions:
     file: Annotated[Path, tyro.conf.Positional]
     """The study, a TOML file, or ``claims``, the article's claims over plausible designs; see docs/studies.md."""
     scheduler: SCHEDULER = None
+    jobs: int = 1
+    """How many processes run it, which share the threads; each takes a batch at a time. The same bytes."""
     samples: int | None = None
     """Number of points of a sampled study; with another number than before it is another study."""
     out: Path | None = None
@@ -52,6 +54,10 @@ def study(words: Sequence[str]) -> int:
     """
     about = "Run many variants of one run, and store what is measured. A study that was stopped is continued."
     options: StudyOptions = parse(StudyOptions, "suchus study", words, about, [f.name for f in fields(StudyOptions)])
+    if options.jobs < 1:
+        raise BadCommand(f"--jobs is {options.jobs}; at least 1 process is needed.")
+    if options.jobs > 1 and options.scheduler is not None:
+        raise BadCommand("--jobs and --scheduler exclude each other: the workers of a cluster are started with it.")
     if str(options.file) == CLAIMS and not there(options.file):
         return _claims(options)
     asked = read_study(options.file)
@@ -64,7 +70,9 @@ def study(words: Sequence[str]) -> int:
     folder = options.out or Path("out") / "studies" / asked.name
     with at_scheduler(options.scheduler) as client, working() as bars:
         tell = bars.told(asked.name)
-        results = conduct(asked, folder, progress=lambda told: tell(told, told.done / told.total), client=client)
+        results = conduct(
+            asked, folder, progress=lambda told: tell(told, told.done / told.total), client=client, jobs=options.jobs
+        )
     failed = {sample: str(error) for sample, error in enumerate(results.error.values) if error}
     print(f"{results.sizes['sample']} runs, {len(failed)} failed: {folder / RESULTS}, {folder / TABLE}")
     if options.csv:
@@ -88,7 +96,7 @@ def _claims(options: StudyOptions) -> int:
                 shown[place] = bars.told(f"{CLAIMS} {place.replace('_', ' ')}")
             shown[place](told, told.done / told.total)
 
-        record = conduct_claims(asked, folder, progress=show, client=client)
+        record = conduct_claims(asked, folder, progress=show, client=client, jobs=options.jobs)
         return _answered(record, folder)
 
 

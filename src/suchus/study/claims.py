@@ -137,7 +137,9 @@ class Claims:
         )
 
 
-def conduct_claims(asked: Claims, folder: Path, *, progress: Progress | None = None, client: Any = None) -> xr.Dataset:
+def conduct_claims(
+    asked: Claims, folder: Path, *, progress: Progress | None = None, client: Any = None, jobs: int = 1
+) -> xr.Dataset:
     """Find the time step that agrees with the full one, run what is not in the stores yet, and answer.
 
     Args:
@@ -145,6 +147,7 @@ def conduct_claims(asked: Claims, folder: Path, *, progress: Progress | None = N
         folder: for its stores, one below it for each time step that is compared and one for the runs.
         progress: called with which study runs, and how far it is.
         client: a ``distributed.Client``, whose workers then run the batches; this process if None.
+        jobs: number of processes of this machine, see ``conduct``.
 
     Returns:
         See ``Claims.record``; attributes say which time step was taken, as JSON how it and the others agreed, and
@@ -162,7 +165,7 @@ def conduct_claims(asked: Claims, folder: Path, *, progress: Progress | None = N
     def run(samples: int, timestep: float, place: str) -> xr.Dataset:
         study = replace(asked.study(samples, timestep), name=f"claims_{place}")
         shown = None if progress is None else (lambda told: progress(place, told))
-        return asked.record(study, conduct(study, folder / place, progress=shown, client=client))
+        return asked.record(study, conduct(study, folder / place, progress=shown, client=client, jobs=jobs))
 
     full = run(asked.compared, FINE, _compared(FINE))
     taken, agreed = FINE, []

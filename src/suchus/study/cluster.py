@@ -5,7 +5,7 @@ import re
 import socket
 import ssl
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pickle import PickleError
 from typing import Any, TypeVar
@@ -97,7 +97,7 @@ def spread(
     name: str,
     versions: Versions = deciding,
     patience: float = _PATIENCE,
-) -> Iterator[tuple[int, xr.Dataset]]:
+) -> Generator[tuple[int, xr.Dataset], None, None]:
     """Do one piece of work for each item on a cluster, and yield the results as they are finished, in any order.
 
     A worker that is lost loses its piece, which another one begins again.
