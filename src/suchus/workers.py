@@ -40,7 +40,7 @@ class Done(NamedTuple):
     """A piece is finished."""
 
     value: Any
-    """What came of it."""
+    """The result of the piece."""
 
 
 class Died(NamedTuple):
@@ -54,7 +54,7 @@ class _Refused(NamedTuple):
     """A piece ended with one of our own errors."""
 
     error: SuchusError
-    """Which."""
+    """The refusal, to be raised where the work was asked for."""
 
 
 @dataclass(slots=True, kw_only=True)

@@ -100,7 +100,7 @@ def _check_hinges(robot: AnyRobot, girdle: Girdle) -> None:
 
 
 def is_upright(limb: Limb) -> bool:
-    """Tell whether all of a limb's hinges that move swing its foot fore and aft, as hip and knee of a dog do."""
+    """Return whether all of a limb's hinges that move swing its foot fore and aft, as hip and knee of a dog do."""
     return all(hinge.turn == "roll" for hinge in limb.hinges if hinge.servo is not None)
 
 
