@@ -129,7 +129,7 @@ class Shore(Experiment):
             ("kind", [kind for kind, _, _ in cases], "1"),
             ("walk", [run.gait.name for run in runs], "1"),
             ("slope", [abs(run.ground.uphill) for run in runs], "rad"),
-            ("grip", [run.ground.grip for run in runs], "1"),
+            ("grip", [run.ground.friction_scale for run in runs], "1"),
             ("breathed_out", [out for _, out, _ in cases], "1"),
         ):
             kept[name] = ("case", np.array(values), {"units": unit})
@@ -175,7 +175,7 @@ class Shore(Experiment):
         return Run(
             robot=self.robot,
             gait=gait,
-            ground=Ground(uphill=uphill, grip=grip),
+            ground=Ground(uphill=uphill, friction_scale=grip),
             lake=Lake(level=offshore * sin(uphill)),
             control=control,
             noise=self.noise,
