@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from suchus.cli import main
-from suchus.cli.processes import _dismiss, _hire
+from suchus.cli.crew import _dismiss, _hire
 
 FAKES = Path(__file__).parent / "fake_shelf"
 

@@ -12,7 +12,7 @@ from suchus.report import Failure, Result, load_result
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Job:
+class Task:
     """An experiment that is to be run."""
 
     name: str
@@ -24,7 +24,7 @@ class Job:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class JobResult:
+class Came:
     """Result of an experiment, or the reason why it failed."""
 
     result: Result | Failure
@@ -33,7 +33,7 @@ class JobResult:
     """The same in a line."""
 
 
-def attempt(task: Job, progress: Progress) -> JobResult:
+def attempt(task: Task, progress: Progress) -> Came:
     """Run an experiment into its folder and read the result back.
 
     Args:
@@ -51,10 +51,10 @@ def attempt(task: Job, progress: Progress) -> JobResult:
         return failed(task.name, f"{type(error).__name__}: {error}", traceback.format_exc())
     words = [verdict["verdict"] for verdict in result.told["verdicts"]]
     told = ", ".join(f"{words.count(word)} {word}" for word in dict.fromkeys(words)) or "no verdict"
-    return JobResult(result=result, told=f"{task.name}: {told} ({done.seconds:.1f} s)")
+    return Came(result=result, told=f"{task.name}: {told} ({done.seconds:.1f} s)")
 
 
-def failed(name: str, sentence: str, trace: str = "") -> JobResult:
+def failed(name: str, sentence: str, trace: str = "") -> Came:
     """Return what is reported of an experiment that failed.
 
     Args:
@@ -62,4 +62,4 @@ def failed(name: str, sentence: str, trace: str = "") -> JobResult:
         sentence: what went wrong.
         trace: where in the code, if it was none of our own errors.
     """
-    return JobResult(result=Failure(name=name, sentence=sentence, trace=trace), told=f"{name}: failed: {sentence}")
+    return Came(result=Failure(name=name, sentence=sentence, trace=trace), told=f"{name}: failed: {sentence}")

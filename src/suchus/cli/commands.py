@@ -12,7 +12,7 @@ class BadCommand(SuchusError):
 
 
 @dataclass(frozen=True, slots=True)
-class Subcommand:
+class Command:
     """A word after ``suchus``."""
 
     name: str
@@ -31,61 +31,59 @@ class Subcommand:
 
 
 COMMANDS = (
-    Subcommand("demo", "[--no-browser] [--out FILE.html]", "see a first walk", "suchus.cli.demo:demo"),
-    Subcommand(
+    Command("demo", "[--no-browser] [--out FILE.html]", "see a first walk", "suchus.cli.demo:demo"),
+    Command(
         "reproduce",
         "[--out DIR] [--jobs N]",
         "run every experiment and write the report",
         "suchus.cli.reproduce:reproduce",
     ),
-    Subcommand("run", "NAME [--FIELD VALUE ...]", "run one experiment", "suchus.cli.run:run"),
-    Subcommand(
-        "compare", "A B [--out FILE.html]", "set two outcomes side by side", "suchus.cli.compare:compare_outcomes"
-    ),
-    Subcommand(
+    Command("run", "NAME [--FIELD VALUE ...]", "run one experiment", "suchus.cli.run:run"),
+    Command("compare", "A B [--out FILE.html]", "set two outcomes side by side", "suchus.cli.compare:compare_outcomes"),
+    Command(
         "capture",
         "TRACKS [--out FILE.toml]",
         "read a gait from tracked keypoints",
         "suchus.cli.capture:capture",
     ),
-    Subcommand(
+    Command(
         "view",
         "[ROBOT] [GAIT] | RECORD.nc",
         "see it walk in the browser, live or played back",
         "suchus.cli.view:view",
     ),
-    Subcommand(
+    Command(
         "replay",
         "RECORD.nc [--out FILE.html]",
         "make a page of a stored run that plays offline",
         "suchus.cli.replay:make_replay",
     ),
-    Subcommand("study", "claims|FILE.toml [--out DIR]", "run many variants, resumable", "suchus.cli.study:study"),
-    Subcommand(
+    Command("study", "claims|FILE.toml [--out DIR]", "run many variants, resumable", "suchus.cli.study:study"),
+    Command(
         "optimise",
         "crawl|FILE.toml [--out DIR]",
         "search for a better gait or body, resumable",
         "suchus.cli.optimise:optimise",
     ),
-    Subcommand(
+    Command(
         "import",
         "ROBOT.urdf|ROBOT.xml [--out FILE.toml]",
         "read a robot from a URDF or an MJCF",
         "suchus.cli.import_robot:import_file",
     ),
-    Subcommand(
+    Command(
         "export",
         "[--format mjcf|urdf|usd] [--robot ROBOT]",
         "write a robot for other tools",
         "suchus.cli.export:export_robot",
     ),
-    Subcommand(
+    Command(
         "export-commands",
         "GAIT [--map FILE.toml]",
         "write a gait as timed servo angles",
         "suchus.cli.export_commands:export_commands",
     ),
-    Subcommand("doctor", "", "say whether suchus can run here, and what is missing", "suchus.cli.doctor:doctor"),
-    Subcommand("list", "", "show the robots, gaits, faults and experiments", "suchus.cli.shelves:show"),
+    Command("doctor", "", "say whether suchus can run here, and what is missing", "suchus.cli.doctor:doctor"),
+    Command("list", "", "show the robots, gaits, faults and experiments", "suchus.cli.shelves:show"),
 )
 """Every command, in the order of the help."""

@@ -8,10 +8,10 @@ from typing import Annotated
 import tyro
 
 from suchus import threads
-from suchus.cli.attempt import Job, JobResult, attempt
+from suchus.cli.attempt import Came, Task, attempt
 from suchus.cli.commands import BadCommand
+from suchus.cli.crew import side_by_side
 from suchus.cli.options import OUT, QUICK, parse
-from suchus.cli.processes import side_by_side
 from suchus.cli.terminal import Bars, working
 from suchus.experiments import EXPERIMENTS
 from suchus.record import check_writable
@@ -52,7 +52,7 @@ def reproduce(words: Sequence[str]) -> int:
     """
     told = "Run every experiment and write one page with all results, DIR/report.html."
     options: ReproduceOptions = parse(ReproduceOptions, "suchus reproduce", words, told, ("out", "quick", "jobs"))
-    tasks = [Job(name=name, out=options.out, quick=options.quick) for name in EXPERIMENTS]
+    tasks = [Task(name=name, out=options.out, quick=options.quick) for name in EXPERIMENTS]
     if not tasks:
         raise BadCommand("there is no experiment on the shelf.")
     if options.jobs is not None and options.jobs < 1:
@@ -70,7 +70,7 @@ def reproduce(words: Sequence[str]) -> int:
     return 1 if failures else 0
 
 
-def _came_of(tasks: Sequence[Job], jobs: int, bars: Bars) -> list[JobResult]:
+def _came_of(tasks: Sequence[Task], jobs: int, bars: Bars) -> list[Came]:
     """Return the result of each task, in their order."""
     if jobs > 1:
         came = side_by_side(sorted(tasks, key=_place), jobs, bars)
@@ -82,5 +82,5 @@ def _came_of(tasks: Sequence[Job], jobs: int, bars: Bars) -> list[JobResult]:
     return done
 
 
-def _place(task: Job) -> int:
+def _place(task: Task) -> int:
     return _LONG.index(task.name) if task.name in _LONG else len(_LONG)

@@ -21,7 +21,7 @@ class Group:
     about: str
     """What the cases show, in a sentence or two."""
     cases: tuple[str, ...]
-    """Prefixes of the names of its cases."""
+    """How the names of its cases begin."""
     figures: tuple[tuple[str, str], ...] = ()
     """Name of each plot, and what it shows."""
 
@@ -99,7 +99,7 @@ def page(rows: Sequence[Row], sources: Sequence[str] = ()) -> str:
         "What `suchus.flow` computes beside exact solutions and published numbers. `make validate` runs every case "
         "(`tests/flow/test_validate_flow.py`) and writes this page; every row is a run of this code. What the rows "
         "mean, and where the solver falls short, stands in [limits](flow_limits.md).", "",
-        "Grids are given in cells per diameter D, chord or body length L. Re is the Reynolds number, Cd and Cl are the "
+        "Grids are told in cells per diameter D, chord or body length L. Re is the Reynolds number, Cd and Cl are the "
         "coefficients of drag and lift, Ci that of inertia, KC the Keulegan-Carpenter number.", "",
         *contents,
     ]  # fmt: skip

@@ -12,13 +12,13 @@ from multiprocessing.process import BaseProcess
 
 import suchus.experiments
 from suchus import threads
-from suchus.cli.attempt import Job, JobResult, attempt, failed
+from suchus.cli.attempt import Came, Task, attempt, failed
 from suchus.cli.terminal import Bars
 from suchus.experiment import Progress, silent
 from suchus.record import sweep
 
 _EVERY = 0.1  # [s]; between two reports of one stage
-_PATIENCE = 10.0  # [s]; for a process that was asked to stop
+_PATIENCE = 10.0  # [s]; for a process that was told to stop
 _GONE = (EOFError, ConnectionError)  # what a pipe says when the other end has died
 
 
@@ -28,12 +28,12 @@ class _Worker:
 
     process: BaseProcess
     pipe: Connection
-    task: Job | None = None
+    task: Task | None = None
     move: Progress = silent
 
 
-def side_by_side(tasks: Sequence[Job], jobs: int, bars: Bars) -> dict[str, JobResult]:
-    """Run experiments in ``jobs`` processes, which share the threads, and return the result of each by name.
+def side_by_side(tasks: Sequence[Task], jobs: int, bars: Bars) -> dict[str, Came]:
+    """Run experiments in ``jobs`` processes, which share the threads, and return what came of each by name.
 
     They are begun in the order given. A process that dies takes its experiment with it and nothing else. When this
     one is stopped, by Ctrl-C or an error, the others end too, and leave nothing half-written.
@@ -43,30 +43,30 @@ def side_by_side(tasks: Sequence[Job], jobs: int, bars: Bars) -> dict[str, JobRe
         jobs: number of processes.
         bars: where progress is shown.
     """
-    left, results = list(tasks), dict[str, JobResult]()
+    left, came = list(tasks), dict[str, Came]()
     each = max(threads.count() // jobs, 1)
-    workers = [_hire(each) for _ in range(min(jobs, len(left)))]
+    crew = [_hire(each) for _ in range(min(jobs, len(left)))]
     try:
-        for worker in workers:
+        for worker in crew:
             _give(worker, left.pop(0), bars)
-        while busy := {worker.pipe: worker for worker in workers if worker.task}:
+        while busy := {worker.pipe: worker for worker in crew if worker.task}:
             for pipe in wait(list(busy)):
                 worker = busy[pipe]  # type: ignore[index]  # only connections are waited for
                 said = _heard(worker)
-                if not isinstance(said, JobResult):
+                if not isinstance(said, Came):
                     worker.move(*said)
                     continue
-                results[said.result.name] = said
+                came[said.result.name] = said
                 bars.say(said.told)
                 worker.task = None
                 if left and not worker.process.is_alive():
-                    workers.remove(worker)
-                    workers.append(worker := _hire(each))
+                    crew.remove(worker)
+                    crew.append(worker := _hire(each))
                 if left:
                     _give(worker, left.pop(0), bars)
     finally:
-        _dismiss(workers)
-    return results
+        _dismiss(crew)
+    return came
 
 
 def _hire(each: int) -> _Worker:
@@ -81,17 +81,17 @@ def _hire(each: int) -> _Worker:
     return _Worker(process=work, pipe=here)
 
 
-def _give(worker: _Worker, task: Job, bars: Bars) -> None:
+def _give(worker: _Worker, task: Task, bars: Bars) -> None:
     worker.task, worker.move = task, bars.task(task.name)
     with suppress(*_GONE):  # it is heard of then
         worker.pipe.send(task)
 
 
-def _heard(worker: _Worker) -> JobResult | tuple[str, float]:
-    """Return what a busy worker says: the result of its experiment, or how far it is."""
+def _heard(worker: _Worker) -> Came | tuple[str, float]:
+    """Return what a busy worker says: what came of its experiment, or how far it is."""
     assert worker.task is not None
     try:
-        said: JobResult | tuple[str, float] = worker.pipe.recv()
+        said: Came | tuple[str, float] = worker.pipe.recv()
     except _GONE:
         worker.process.join(_PATIENCE)
         sweep(worker.task.out / worker.task.name)
@@ -103,13 +103,13 @@ def _heard(worker: _Worker) -> JobResult | tuple[str, float]:
     return said
 
 
-def _dismiss(workers: Sequence[_Worker]) -> None:
+def _dismiss(crew: Sequence[_Worker]) -> None:
     """Let all processes end: the idle by themselves, the busy at once."""
-    for worker in workers:
+    for worker in crew:
         worker.pipe.close()
         if worker.task is not None:
             worker.process.kill()
-    for worker in workers:
+    for worker in crew:
         worker.process.join(_PATIENCE)
         if worker.task is not None:
             sweep(worker.task.out / worker.task.name)
@@ -117,7 +117,7 @@ def _dismiss(workers: Sequence[_Worker]) -> None:
 
 @contextmanager
 def _deaf() -> Iterator[None]:
-    """Let processes that are started inside never hear Ctrl-C, which a terminal sends to all of them at once."""
+    """Let processes that are started inside never hear Ctrl-C, which a terminal tells to all of them at once."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
@@ -142,7 +142,7 @@ def _work(pipe: Connection, shelf: list[str], each: int) -> None:
 
 
 def _told(pipe: Connection) -> Progress:
-    """Return a progress that is reported to the other process now and then."""
+    """Return a progress that is told to the other process now and then."""
     stage, last = "", -_EVERY
 
     def tell(what: str, share: float) -> None:
