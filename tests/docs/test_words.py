@@ -36,7 +36,6 @@ OLD = {
     r"\bhaste\b": "action rate",
     r"\bastray\b": "lateral drift",
     r"\bshoves?\b": "push",
-    r"\bcrews?\b": "processes",
     r"\bswelling\b": "what it is",
     r'"""(?:Who walks|How|On what|Which|What it is|What|When|Where|Whose)(?: \[s\])?\."""': "quantity, unit, range",
 }
@@ -53,6 +52,8 @@ NOT_DONE = (
     "src/suchus/experiments/swim_sweep.py",
     "src/suchus/experiments/swimming.py",
     "src/suchus/figures/shore.py",
+    "src/suchus/report/templates/page.html",
+    "src/suchus/study/cluster.py",
     "src/suchus/figures/validation.py",
     "src/suchus/figures/validation_page.py",
     "docs/amphibious.md",

@@ -28,7 +28,7 @@ CLAIMS = "claims"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class StudyOptions:
+class Options:
     """Options of ``suchus study``."""
 
     file: Annotated[Path, tyro.conf.Positional]
@@ -50,8 +50,8 @@ def study(words: Sequence[str]) -> int:
     Raises:
         SuchusError: the words or the file make no sense, or the store cannot be written to.
     """
-    about = "Run many variants of one run, and store what is measured. A study that was stopped is continued."
-    options: StudyOptions = parse(StudyOptions, "suchus study", words, about, [f.name for f in fields(StudyOptions)])
+    about = "Run many variants of one run, and keep what is measured. Started again it goes on where it stopped."
+    options: Options = parse(Options, "suchus study", words, about, [f.name for f in fields(Options)])
     if str(options.file) == CLAIMS and not there(options.file):
         return _claims(options)
     asked = read_study(options.file)
@@ -74,7 +74,7 @@ def study(words: Sequence[str]) -> int:
     return 0
 
 
-def _claims(options: StudyOptions) -> int:
+def _claims(options: Options) -> int:
     """Conduct the ready-made study of the claims, or finish it."""
     asked = Claims() if options.samples is None else Claims(samples=options.samples)
     folder = options.out or Path("out") / "studies" / CLAIMS

@@ -98,7 +98,7 @@ def spread(
     versions: Versions = deciding,
     patience: float = _PATIENCE,
 ) -> Iterator[tuple[int, xr.Dataset]]:
-    """Do one piece of work for each item on a cluster, and yield the results as they are finished, in any order.
+    """Do one piece of work for each item on a cluster, and yield what comes of it as it is finished, in any order.
 
     A worker that is lost loses its piece, which another one begins again.
 

@@ -125,7 +125,7 @@ class _Counter:
         self._start = time.perf_counter()
 
     def within(self, number: int) -> Callable[[float], None]:
-        """Return a progress for the share of a batch."""
+        """Return what tells of the share of a batch."""
         return lambda share: self._tell(self._done + share * len(self._plan.chunk(number)))
 
     def finished(self, number: int, table: xr.Dataset) -> None:
