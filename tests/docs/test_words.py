@@ -52,7 +52,6 @@ NOT_DONE = (
     "src/suchus/experiments/swim_sweep.py",
     "src/suchus/experiments/swimming.py",
     "src/suchus/figures/shore.py",
-    "src/suchus/report/templates/page.html",
     "src/suchus/study/cluster.py",
     "src/suchus/figures/validation.py",
     "src/suchus/figures/validation_page.py",
