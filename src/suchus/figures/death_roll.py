@@ -96,8 +96,8 @@ def draw_rates(record: xr.Dataset) -> Figure:
             ax.set_title(letter, fontweight="bold")
     return captioned(
         figure,
-        "What decides the rate. a: turns over time; thick in vacuum, thin in water. b: phase lag of the "
-        "vertical bend comes, trunk in vacuum. c, d: amplitude and frequency of the trunk's bends; the triangles are "
+        "What decides the rate. a: turns over time; thick in vacuum, thin in water. b: over the phase lag of "
+        "the vertical bend, trunk in vacuum. c, d: amplitude and frequency of the trunk's bends; the triangles are "
         "the C of trunk and tail, and the dashed line is what juvenile alligators do.",
     )
 

@@ -148,8 +148,8 @@ def tail_joints(record: xr.Dataset, alike: float) -> Figure:
     shares = [float((spread.sel(crawl=crawl) > alike).mean()) for crawl in names]
     return captioned(
         figure,
-        "Whether all joints of the tail turn alike, as the formulas of III.C have it. Above: their angles in the "
-        "crawl, from the root (1) to the tip, with spine and tail and with the trunk straight. Below: the greatest "
-        f"difference between two of them; it is beyond the dotted {np.degrees(alike):.0f} degrees for "
+        "Whether all joints of the tail turn by the same angle, as the formulas of III.C assume. Above: their angles "
+        "in the crawl, from the root (1) to the tip, with spine and tail and with the trunk straight. Below: the "
+        f"greatest difference between two of them; it is beyond the dotted {np.degrees(alike):.0f} degrees for "
         f"{shares[0]:.0%} and {shares[1]:.0%} of the time.",
     )
