@@ -20,7 +20,7 @@ _resting: list[Any] = []
 
 
 def checked(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Return a function whose arguments or result are checked; jaxtyping makes it of the signature that is meant."""
+    """Return a function that checks arguments or results; jaxtyping makes it of a signature, and it does nothing."""
     looked, name = beartype(function), (function.__module__, function.__qualname__)
 
     @wraps(function)
@@ -28,7 +28,7 @@ def checked(function: Callable[..., Any]) -> Callable[..., Any]:
         _calls[name] += 1
         if _calls[name] == CALLS:
             _rest(*name)
-        return looked(*args, **kwargs)
+        return looked(*args, **kwargs) if _calls[name] <= CALLS else None
 
     return counted
 
@@ -41,7 +41,10 @@ def begin() -> None:
 
 
 def _rest(module: str, name: str) -> None:
-    """Let jaxtyping call a function unchecked; it asks for the attribute of ``typing.no_type_check`` at every call."""
+    """Let jaxtyping call a function unchecked; it asks for the attribute of ``typing.no_type_check`` at each call.
+
+    A version of jaxtyping that does not is only slower.
+    """
     with suppress(AttributeError):  # what is made inside a function, or is a property, has no such place
         function = reduce(getattr, name.split("."), sys.modules[module])
         function.__no_type_check__ = True
