@@ -42,7 +42,7 @@ def old_exports(package: str, **new: str) -> Callable[[str], Any]:
 
     Args:
         package: its full name.
-        new: the new name of a function or a class by its old one.
+        new: the new name of a function or a class by its old one; ``module.name`` where it has moved into a module.
     """
 
     def find(name: str) -> Any:
@@ -50,7 +50,8 @@ def old_exports(package: str, **new: str) -> Callable[[str], Any]:
             raise AttributeError(f"module {package!r} has no attribute {name!r}")
         text = f"{package}.{name} is now called {new[name]}; the old name works for one more release."
         warnings.warn(text, OldName, stacklevel=2)
-        return getattr(import_module(package), new[name])
+        place, _, now = f"{package}.{new[name]}".rpartition(".")
+        return getattr(import_module(place), now)
 
     return find
 

@@ -12,16 +12,8 @@ from suchus.cli.commands import BadCommand
 from suchus.cli.options import CSV, SCHEDULER, TABLES, parse
 from suchus.cli.terminal import working
 from suchus.record import check_name, there, write_tables
-from suchus.study import (
-    Claims,
-    StudyProgress,
-    answer_finished,
-    at_scheduler,
-    conduct,
-    conduct_claims,
-    read_study,
-    write_claims,
-)
+from suchus.study import Claims, StudyProgress, answer_finished, at_scheduler, conduct, conduct_claims, read_study
+from suchus.study.claims_page import write_claims
 from suchus.study.store import RESULTS, TABLE
 
 CLAIMS = "claims"

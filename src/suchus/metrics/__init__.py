@@ -1,4 +1,7 @@
-"""From a record to numbers: pure, and along whatever dimensions the record has besides time."""
+"""From a record to numbers: pure, and along whatever dimensions the record has besides time.
+
+``metrics.decisive`` is asked for by its own name: it needs ``scipy.stats``, a fifth of the time of a command's start.
+"""
 
 from suchus.metrics.bends import (
     bend_swings,
@@ -11,7 +14,6 @@ from suchus.metrics.bends import (
     tail_swings,
     vertical_bend,
 )
-from suchus.metrics.decisive import DecisionBoundary, border, rank_correlation
 from suchus.metrics.energy import cost_of_transport, peak_torque, work
 from suchus.metrics.gait import (
     diagonal_phase_error,
@@ -43,10 +45,8 @@ from suchus.metrics.window import between, whole
 from suchus.renamed import old_exports
 
 __all__ = [
-    "DecisionBoundary",
     "bend_swings",
     "between",
-    "border",
     "cost_of_transport",
     "diagonal_phase_error",
     "displacement",
@@ -69,7 +69,6 @@ __all__ = [
     "mean_cycle",
     "path_length",
     "peak_torque",
-    "rank_correlation",
     "reach",
     "roll_angle",
     "roll_peak_to_peak",
@@ -100,4 +99,9 @@ __all__ = [
     "work",
 ]
 
-__getattr__ = old_exports(__name__, Border="DecisionBoundary")
+__getattr__ = old_exports(
+    __name__,
+    Border="decisive.DecisionBoundary",
+    border="decisive.border",
+    rank_correlation="decisive.rank_correlation",
+)

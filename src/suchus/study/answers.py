@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 from scipy import stats
 
-from suchus.metrics import border, rank_correlation
+from suchus.metrics.decisive import border, rank_correlation
 from suchus.study.claim_measures import asked_rules, held, measures_of
 
 _BINS, _RESAMPLED, _SURE = 8, 400, 0.95
