@@ -5,16 +5,18 @@ a row follows from the scatter of its sources, before anything is computed.
 """
 
 from suchus.atlas.case import Case, Curves, Effort, Row, Tell, bound
-from suchus.atlas.compare import Comparison, compare, rms_over_peak
-from suchus.atlas.crew import Told, compute_all
+from suchus.atlas.comparison import Comparison, compare, rms_over_peak
+from suchus.atlas.crew import Told, compute_all, finished
 from suchus.atlas.outcome import Outcome, compute, digest_of, load_outcome, save_outcome
 from suchus.atlas.published import Published, published
 from suchus.atlas.refine import refined
-from suchus.atlas.rows import CASES, ROWS, chosen
+from suchus.atlas.rows import CASES, GROUPS, LONGEST, ROWS, chosen
 from suchus.atlas.skin import Skin, read_skin
 
 __all__ = [
     "CASES",
+    "GROUPS",
+    "LONGEST",
     "ROWS",
     "Case",
     "Comparison",
@@ -32,6 +34,7 @@ __all__ = [
     "compute",
     "compute_all",
     "digest_of",
+    "finished",
     "load_outcome",
     "published",
     "read_skin",

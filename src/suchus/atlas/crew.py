@@ -1,4 +1,4 @@
-"""Flows side by side, each in a process of its own: what is finished is kept, whatever happens to the others."""
+"""Flows side by side, each in a process of its own. What is finished is kept, whatever happens to the others."""
 
 import os
 import signal
@@ -13,7 +13,6 @@ from pathlib import Path
 
 from suchus.atlas.case import Case
 from suchus.atlas.outcome import Outcome, compute, digest_of, load_outcome, save_outcome
-from suchus.atlas.rows import CASES
 from suchus.errors import UnreadableFile
 
 _EVERY = 0.2  # [s]; between two reports of one flow
@@ -43,7 +42,7 @@ def compute_all(
     Args:
         cases: the flows; the longest should come first.
         folder: of the outcomes.
-        jobs: processes at a time; each takes one thread.
+        jobs: processes at a time, each of which takes one thread; with 1 all is done here, on all threads.
         quick: whether only a trial is wanted.
         tell: takes what is to be said.
 
@@ -79,6 +78,10 @@ def _computed(
     cases: Sequence[Case], jobs: int, quick: bool, tell: Callable[[Told], None]
 ) -> Iterator[Outcome]:  # fmt: skip
     """Yield outcomes as they come; when the caller stops, by Ctrl-C or an error, the processes end."""
+    if jobs == 1:
+        for case in cases:
+            yield compute(case, quick=quick, tell=lambda share, name=case.name: tell(Told(case=name, share=share)))
+        return
     left, busy = list(cases), dict[Connection, tuple[BaseProcess, Case]]()
     try:
         while left or busy:
@@ -116,7 +119,7 @@ def _died(case: Case, quick: bool, code: int | None) -> Outcome:
 def _begin(case: Case, quick: bool) -> tuple[BaseProcess, Connection]:
     spawning = get_context("spawn")
     here, there = spawning.Pipe()
-    process = spawning.Process(target=_work, args=(there, case.name, quick), daemon=True)
+    process = spawning.Process(target=_work, args=(there, case, quick), daemon=True)
     with _one_thread(), _deaf():
         process.start()
     there.close()
@@ -150,7 +153,7 @@ def _deaf() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def _work(pipe: Connection, name: str, quick: bool) -> None:
+def _work(pipe: Connection, case: Case, quick: bool) -> None:
     """Compute one flow and send its outcome; before that, now and then, how much of it is done."""
     last = -_EVERY
 
@@ -161,4 +164,4 @@ def _work(pipe: Connection, name: str, quick: bool) -> None:
             pipe.send(share)
 
     with suppress(*_GONE):
-        pipe.send(compute(CASES[name], quick=quick, tell=tell))
+        pipe.send(compute(case, quick=quick, tell=tell))

@@ -164,15 +164,32 @@ def _snakes() -> tuple[Row, ...]:
     )  # fmt: skip
 
 
-ROWS: Mapping[str, Row] = MappingProxyType(
-    {row.name: row for part in (_walls, _started, _resting, _still, _shaken, _snakes) for row in part()}
+GROUPS: Mapping[str, tuple[Row, ...]] = MappingProxyType(
+    {
+        "Boxes and channels": _walls(),
+        "Started cylinders": _started(),
+        "Cylinders at rest in a stream": _resting(),
+        "Bodies that move in water at rest": _still(),
+        "Cylinder shaken across a stream": _shaken(),
+        "Flying snake": _snakes(),
+    }
 )
-"""The rows by their names, in the order of the page."""
+"""The rows by what they have in common, in the order of the page."""
+
+ROWS: Mapping[str, Row] = MappingProxyType({row.name: row for rows in GROUPS.values() for row in rows})
+"""The rows by their names."""
 
 CASES: Mapping[str, Case] = MappingProxyType(
     {case.name: case for room in (walls, cylinders, still, shaken, snake) for case in room.CASES}
 )
 """The flows by their names."""
+
+
+LONGEST = (
+    *(f"snake_{degrees}_re{reynolds}" for reynolds in (2000, 1000) for degrees in (30, 35)),
+    *(case.name for case in shaken.CASES), "flapping", "shedding_re100", "dfg_2d2", "settling",
+)  # fmt: skip
+"""Flows that are begun first, so that no process idles in the end."""
 
 
 def chosen(names: tuple[str, ...]) -> tuple[Row, ...]:

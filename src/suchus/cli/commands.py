@@ -83,6 +83,12 @@ COMMANDS = (
         "write a gait as timed servo angles",
         "suchus.cli.export_commands:export_commands",
     ),
+    Command(
+        "flow-atlas",
+        "[ROW ...] [--out DIR] [--jobs N]",
+        "compute published flows and draw ours beside theirs",
+        "suchus.cli.flow_atlas:flow_atlas",
+    ),
     Command("doctor", "", "say whether suchus can run here, and what is missing", "suchus.cli.doctor:doctor"),
     Command("list", "", "show the robots, gaits, faults and experiments", "suchus.cli.shelves:show"),
 )
