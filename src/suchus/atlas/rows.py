@@ -67,6 +67,10 @@ def _shaken() -> tuple[Row, ...]:
                 )
             )
     rows.append(
+        Row(name="re185_numbers", title="Cylinder at rest, Re 185: Strouhal number", case="held_re185",
+            data="re185_numbers", kind="numbers")
+    )  # fmt: skip
+    rows.append(
         Row(
             name="schneiders_drag", title="Cylinder shaken at 0.8 of its frequency, Re 185: drag, Schneiders 2013",
             case="shaken_0p8", data="schneiders2013_drag", x="y", y="cd", kind="loop", ours="drag loop",

@@ -1,12 +1,13 @@
 """A cylinder at Re 185 that oscillates across a stream near its natural frequency, and one that rests."""
 
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
 from suchus import flow
 from suchus.atlas.case import Case, Curves, Effort, Tell
-from suchus.atlas.marching import march, middles
+from suchus.atlas.marching import march, middles, nudged, shedding
 from suchus.atlas.refine import refined
 from suchus.atlas.skin import Skin, read_skin
 
@@ -20,7 +21,9 @@ AMPLITUDE = 0.2
 """Amplitude of the motion [m]."""
 
 _CODE = ("shaken.py", "marching.py", "refine.py", "skin.py")
-_COARSE_SHARE = 0.3  # of the time that a run takes [-]
+_COARSE_SHARE = 0.2  # of the time that a run takes [-]
+_SETTLED = 6.0  # [s] on the finer grid until the wake is its own
+_PERIODS = 5  # of shedding
 
 
 def _shaken(effort: Effort, tell: Tell, *, ratio: float) -> Curves:
@@ -57,11 +60,22 @@ def _shaken(effort: Effort, tell: Tell, *, ratio: float) -> Curves:
 
 
 def _setup(cells: int, rate: float) -> flow.Setup:
-    motion = flow.Oscillation(frequency=rate / (2 * np.pi), heave=(0.0, AMPLITUDE), phase=-np.pi / 2)  # begins below
+    """Return the set-up with a motion that begins at its lowest place, or at rest for a rate of 0 [rad/s]."""
+    motion = flow.Oscillation(frequency=rate / (2 * np.pi), heave=(0.0, AMPLITUDE), phase=-np.pi / 2)
+    still = flow.Pose()
     return flow.Setup(
         grid=flow.Grid.covering((-4.0, 12.0), (-5.0, 5.0), cell=1 / cells), viscosity=1 / 185, stream=(1.0, 0.0),
-        bodies=(flow.Body(shape=flow.Cylinder(diameter=1.0), motion=motion),), coarse=True,
+        bodies=(flow.Body(shape=flow.Cylinder(diameter=1.0), motion=motion if rate else still),), coarse=True,
     )  # fmt: skip
+
+
+def _held(effort: Effort, tell: Tell) -> Curves:
+    """Compute the cylinder at rest, first on the coarse grid with a gust."""
+    wake = flow.Simulation(replace(_setup(effort.coarse, 0.0), stream=nudged))
+    march(wake, effort.before, lambda share: tell(_COARSE_SHARE * share))
+    sim = refined(wake, _setup(effort.cells, 0.0))
+    record = march(sim, effort.until, lambda share: tell(_COARSE_SHARE + (1 - _COARSE_SHARE) * share))
+    return shedding(record.after(_SETTLED), _PERIODS)
 
 
 def mean_skin(skins: list[Skin]) -> Skin:
@@ -72,15 +86,28 @@ def mean_skin(skins: list[Skin]) -> Skin:
     )  # fmt: skip
 
 
-CASES = tuple(
+CASES = (
+    *(
+        Case(
+            name=f"shaken_{ratio:g}".replace(".", "p"),
+            run=partial(_shaken, ratio=ratio),
+            full=Effort(cells=40, until=3.0, coarse=16, before=9.0),
+            quick=Effort(cells=16, until=1.0, coarse=8, before=1.0),
+            code=_CODE,
+            setup=f"Re 185, 0.2 diameters across the stream at {ratio:g} of 0.195 U/D, in 16 x 10 diameters of water "
+            "without end; nine periods from rest with {coarse} cells a diameter and three with {cells}, means over the "
+            "last two at the same phase.",
+        )
+        for ratio in RATIOS
+    ),
     Case(
-        name=f"shaken_{ratio:g}".replace(".", "p"), run=partial(_shaken, ratio=ratio),
-        full=Effort(cells=48, until=3.0, coarse=24, before=9.0),
-        quick=Effort(cells=16, until=1.0, coarse=8, before=1.0), code=_CODE,
-        setup=f"Re 185, 0.2 diameters across the stream at {ratio:g} of 0.195 U/D, in 16 x 10 diameters of water "
-        "without end; nine periods from rest with {coarse} cells a diameter and three with {cells}, means over the "
-        "last two at the same phase.",
-    )
-    for ratio in RATIOS
-)  # fmt: skip
+        name="held_re185",
+        run=_held,
+        full=Effort(cells=32, until=36.0, coarse=12, before=60.0),
+        quick=Effort(cells=12, until=36.0, coarse=8, before=40.0),
+        code=_CODE,
+        setup="The same cylinder at rest, with a short gust at the start; 60 diameters of travel with {coarse} cells a "
+        "diameter and 36 with {cells}, the last five periods of shedding.",
+    ),
+)
 """The flows of this module."""
