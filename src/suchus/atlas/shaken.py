@@ -91,7 +91,7 @@ CASES = (
         Case(
             name=f"shaken_{ratio:g}".replace(".", "p"),
             run=partial(_shaken, ratio=ratio),
-            full=Effort(cells=40, until=3.0, coarse=16, before=9.0),
+            full=Effort(cells=32, until=3.0, coarse=16, before=9.0),
             quick=Effort(cells=16, until=1.0, coarse=8, before=1.0),
             code=_CODE,
             setup=f"Re 185, 0.2 diameters across the stream at {ratio:g} of 0.195 U/D, in 16 x 10 diameters of water "
