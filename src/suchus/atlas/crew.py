@@ -11,7 +11,7 @@ from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 from pathlib import Path
 
-from suchus.atlas.case import Case
+from suchus.atlas.case import Case, Tell
 from suchus.atlas.outcome import Outcome, compute, digest_of, load_outcome, save_outcome
 from suchus.errors import UnreadableFile
 
@@ -79,8 +79,7 @@ def _computed(
 ) -> Iterator[Outcome]:  # fmt: skip
     """Yield outcomes as they come; when the caller stops, by Ctrl-C or an error, the processes end."""
     if jobs == 1:
-        for case in cases:
-            yield compute(case, quick=quick, tell=lambda share, name=case.name: tell(Told(case=name, share=share)))
+        yield from (compute(case, quick=quick, tell=_telling(case.name, tell)) for case in cases)
         return
     left, busy = list(cases), dict[Connection, tuple[BaseProcess, Case]]()
     try:
@@ -88,8 +87,8 @@ def _computed(
             while left and len(busy) < jobs:
                 process, pipe = _begin(left[0], quick)
                 busy[pipe] = (process, left.pop(0))
-            for pipe in wait(list(busy)):
-                assert isinstance(pipe, Connection)
+            ready = wait(list(busy))
+            for pipe in [pipe for pipe in busy if pipe in ready]:
                 process, case = busy[pipe]
                 try:
                     said: float | Outcome = pipe.recv()
@@ -106,6 +105,10 @@ def _computed(
     finally:
         for process, _ in busy.values():
             process.kill()
+
+
+def _telling(name: str, tell: Callable[[Told], None]) -> Tell:
+    return lambda share: tell(Told(case=name, share=share))
 
 
 def _died(case: Case, quick: bool, code: int | None) -> Outcome:

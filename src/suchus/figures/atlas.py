@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -15,7 +16,7 @@ from suchus.record import new_file
 _COLUMNS = 3
 _OURS = COLOURS["ours"]
 _ABOVE = COLOURS["alarm"]
-_SMALL = {"fontsize": 8}
+_SMALL: dict[str, Any] = {"fontsize": 8}
 _FARTHEST = 1.4  # times the published peak, to which the plot of all points reaches
 
 
