@@ -85,6 +85,12 @@ COMMANDS = (
         "write a gait as timed servo angles",
         "suchus.cli.export_commands:export_commands",
     ),
+    Subcommand(
+        "flow-atlas",
+        "[ROW ...] [--out DIR] [--jobs N]",
+        "compute published flows and draw ours beside theirs",
+        "suchus.cli.flow_atlas:flow_atlas",
+    ),
     Subcommand("doctor", "", "say whether suchus can run here, and what is missing", "suchus.cli.doctor:doctor"),
     Subcommand("list", "", "show the robots, gaits, faults and experiments", "suchus.cli.shelves:show"),
 )
