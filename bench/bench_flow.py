@@ -142,27 +142,27 @@ def tell_solve(w, per_cell):
             multigrid._down_threaded, multigrid._up_threaded, poisson._measure, poisson._first_step, poisson._step
         )
     )  # fmt: skip
-    store, layout, room, patches, sides = w._store, w._layout, w._room, w._patches, w.sides.repeats
+    store, layout, room, patches, inner, sides = w._store, w._layout, w._room, w._patches, w.inner, w.sides.repeats
     print("one iteration of the pressure solver, ns per cell of the finest level; best of 20")
 
     def tell(label, function):
         print(f"  {per_cell * best(function, 20):7.2f}  {label}")
 
     for k in range(layout.shape[0]):
-        x, size = multigrid.level(store, layout, multigrid.X, k), tuple(int(n) for n in layout[k, 2:0:-1])
+        x, size = multigrid.level(store, layout, inner, multigrid.X, k), tuple(int(n) for n in layout[k, 2:0:-1])
         below, own = layout[k:].copy(), patches[k:].copy()
-        tell(f"cycle from level {k}, {size}", lambda: cycle(x, store, below, room, own, sides))  # noqa: B023
-    fine = [multigrid.level(store, layout, kind, 0) for kind in range(5)]
-    x, b, cx, cy, dinv = fine
-    coarse_b, coarse_x = (multigrid.level(store, layout, kind, 1) for kind in (multigrid.B, multigrid.X))
+        tell(f"cycle from level {k}, {size}", lambda: cycle(x, store, below, room, own, inner, sides))  # noqa: B023
+    x, b, dinv = (multigrid.level(store, layout, inner, kind, 0) for kind in (multigrid.X, multigrid.B, multigrid.DINV))
+    faces = multigrid.faces_of(store, layout, inner, 0)
+    coarse_b, coarse_x = (multigrid.level(store, layout, inner, kind, 1) for kind in (multigrid.B, multigrid.X))
     zero, rect, place = w.dtype(0), patches[0], layout[0]
-    tell("down, finest level", lambda: down(coarse_b, b, cx, cy, place, room, rect, sides))
-    tell("up, finest level", lambda: up(x, b, coarse_x, cx, cy, dinv, place, room, rect, sides))
-    tell("patch, finest level, before", lambda: start(room, rect, b))
-    tell("patch, finest level, after", lambda: end(room, rect, x))
-    tell("dot products", lambda: dots(x, b, w._d, cx, cy, place, w._sums))
-    tell("first step", lambda: first(b, x, cx, cy, place, zero, sides[0], w._sums))
-    tell("second step", lambda: second(b, x, w._d, cx, cy, place, zero, zero, sides[0], w._sums))
+    tell("down, finest level", lambda: down(coarse_b, b, faces, place, room, rect, inner, inner, sides))
+    tell("up, finest level", lambda: up(x, b, coarse_x, faces, dinv, place, room, rect, inner, inner, sides))
+    tell("patch, finest level, before", lambda: start(room, rect, b, inner))
+    tell("patch, finest level, after", lambda: end(room, rect, x, inner))
+    tell("dot products", lambda: dots(x, b, w._d, faces, place, inner, w._sums))
+    tell("first step", lambda: first(b, x, faces, place, zero, inner, sides, w._sums))
+    tell("second step", lambda: second(b, x, w._d, faces, place, zero, zero, inner, sides, w._sums))
 
 
 def main():

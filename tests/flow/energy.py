@@ -66,16 +66,13 @@ class Spy:
     def __post_init__(self):
         self.collect, self.water._collect = self.water._collect, self
 
-    def __call__(self, out, blend, dt, keep):
+    def __call__(self, stage, dt):
         w = self.water
-        self.collect(out, blend, dt, keep)
-        inside = [
-            (mu0 < 1) | (a != 0) | (b != 0)
-            for mu0, a, b in zip(w.mu0, (w._mu1xx, w._mu1yx), (w._mu1xy, w._mu1yy), strict=True)
-        ]
-        swelling = float((w.p.astype(float) * w._source).sum())
-        copies = [[f.astype(float) for f in pair] for pair in (out, blend)]
-        self.stages.append(Stage(*copies, w.p.astype(float), swelling, float(dt), float(keep), inside))
+        self.collect(stage, dt)
+        inside = [(mu0 < 1) | (mu1 != 0).any(axis=0) for mu0, mu1 in zip(w.mu0, w.mu1, strict=True)]
+        swelling = float((w.p.astype(float) * w.source).sum())
+        copies = [list(vector.astype(float)) for vector in (stage.out, stage.blend)]
+        self.stages.append(Stage(*copies, w.p.astype(float), swelling, float(dt), float(stage.keep), inside))
 
 
 def limited(far, near, ahead):
@@ -134,7 +131,7 @@ def of_step(budget, sim, spy, before):
     now = [w.u.astype(float), w.v.astype(float)]
     j0, j1, i0, i1 = w.window
     body = [np.zeros_like(f) for f in now]
-    for full, part in zip(body, w._mean, strict=True):
+    for full, part in zip(body, w.mean, strict=True):
         full[j0 : j1 + 1, i0 : i1 + 1] = part
     for k in range(2):
         of_component(budget, k, spy.stages, (before, now), before, float(w.nu), body)

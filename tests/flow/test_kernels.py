@@ -6,10 +6,18 @@ from hypothesis import strategies as st
 from suchus.flow import advect, immerse, multigrid, patch, poisson, stencil
 from suchus.flow.compiled import PAD, compiled
 from suchus.flow.immerse import close, wall_offset
+from suchus.flow.slab import inner_strides
 
-median, limited_quick, moment0, moment1, apply_rows = (
+median, limited_quick, moment0, moment1, apply_slabs, seal_slab = (
     compiled(part.py_func)
-    for part in (advect.median, advect.limited_quick, immerse.moment0, immerse.moment1, stencil.apply_rows)
+    for part in (
+        advect.median,
+        advect.limited_quick,
+        immerse.moment0,
+        immerse.moment1,
+        stencil.apply_slabs,
+        stencil.seal_slab,
+    )
 )
 """Parts of kernels, compiled by themselves."""
 
@@ -62,35 +70,35 @@ def _body(cx, cy, thin):
 
 @pytest.mark.parametrize("thin", [None, 6.0, 1.5])
 def test_the_pressure_solver_solves(thin):
-    ny, nx = 64, 96
-    layout = poisson.levels(ny, nx)
+    ny, nx, inner, repeats = 64, 96, inner_strides((96, 64)), (False, False)
+    layout = poisson.levels((nx, ny))
     store = poisson.make_store(layout, np.float64)
-    cx, cy = multigrid.level(store, layout, multigrid.CX, 0), multigrid.level(store, layout, multigrid.CY, 0)
+    faces = multigrid.faces_of(store, layout, inner, 0)
     if thin is not None:
-        _body(cx, cy, thin)
+        _body(*faces, thin)
         poisson.place_window(layout, (20, 50, 20, 82))
-        multigrid.coarsen(store, layout)
+        multigrid.coarsen(store, layout, inner)
     patches = patch.rects(layout)
-    room = patch.room_for(np.zeros((6, 0)), patches)
-    multigrid.spread(store, layout, room, patches)
+    room = patch.room_for(np.zeros((patch.FACES + 2, 0)), patches)
+    multigrid.spread(store, layout, room, patches, inner)
     rng = np.random.default_rng(0)
-    b = multigrid.level(store, layout, multigrid.B, 0)
-    u, v = cx * rng.standard_normal(cx.shape), cy * rng.standard_normal(cx.shape)
+    b = multigrid.level(store, layout, inner, multigrid.B, 0)
+    u, v = faces[0] * rng.standard_normal(b.shape), faces[1] * rng.standard_normal(b.shape)
     u[:, [PAD, -PAD]] = 0
     v[[PAD, -PAD]] = 0
-    inner = np.s_[PAD:-PAD, PAD:-PAD]
-    b[inner] = u[inner] - u[PAD:-PAD, PAD + 1 : -PAD + 1] + v[inner] - v[PAD + 1 : -PAD + 1, PAD:-PAD]
+    inner_cells = np.s_[PAD:-PAD, PAD:-PAD]
+    b[inner_cells] = u[inner_cells] - u[PAD:-PAD, PAD + 1 : -PAD + 1] + v[inner_cells] - v[PAD + 1 : -PAD + 1, PAD:-PAD]
     for j in range(ny + 2 * PAD):
-        stencil.seal_row(b, j, False)
-    wanted = b[inner].copy()
+        seal_slab(b, j, inner, repeats)
+    wanted = b[inner_cells].copy()
     x, d, q = (np.zeros(b.shape) for _ in range(3))
     sums = np.zeros((ny + 2 * PAD, 4))
-    cycles, _, _, a, c = poisson.solve(x, d, q, store, layout, room, patches, (False, False), sums, 1e-9, 1e-8, 60)
-    x = a * d + c * multigrid.level(store, layout, multigrid.X, 0)
+    cycles, _, _, a, c = poisson.solve(x, d, q, store, layout, room, patches, inner, repeats, sums, 1e-9, 1e-8, 60)
+    x = a * d + c * multigrid.level(store, layout, inner, multigrid.X, 0)
     assert cycles < (12 if thin is None else 30)
     out = np.empty((1, nx + 2 * PAD))
     for j in range(ny):  # the answer is checked with the operator, not with the solver's own residual
-        apply_rows(out, 0, x, j + PAD - 1, j + PAD, j + PAD + 1, cx, cy, layout[0], j + PAD)
+        apply_slabs(out, 0, x, j + PAD - 1, j + PAD, j + PAD + 1, faces, layout[0], j + PAD, inner)
         assert np.abs(out[0, PAD:-PAD] - wanted[j]).max() < 1e-7
 
 

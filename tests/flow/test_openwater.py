@@ -42,7 +42,7 @@ def test_what_a_vortex_induces_on_the_sides():
     def velocity(x, y):
         return swirl(x, y, (37.3, 29.1), 5.0, 4.0)
 
-    got = OpenWater((nx, ny)).inward(*fields(nx, ny, velocity), NO_BODY, [])
+    got = OpenWater((nx, ny)).inward(fields(nx, ny, velocity), NO_BODY, [])
     for ours, exact in zip(got, inward(nx, ny, velocity), strict=True):
         assert ours == pytest.approx(exact, abs=2e-4)  # of up to 0.03
 
@@ -54,7 +54,7 @@ def test_what_swells_pushes_the_sides_out():
         u, v = swirl(x, y, (27.4, 61.7), 5.0, 4.0)
         return v, -u  # outwards instead of around
 
-    got = OpenWater((nx, ny)).inward(*fields(nx, ny, velocity), (PAD, PAD + ny, PAD, PAD + nx), [])
+    got = OpenWater((nx, ny)).inward(fields(nx, ny, velocity), (PAD, PAD + ny, PAD, PAD + nx), [])
     for ours, exact in zip(got, inward(nx, ny, velocity), strict=True):
         assert ours == pytest.approx(exact, abs=2e-4)
 
@@ -73,11 +73,11 @@ def test_a_wake_that_leaves_acts_like_a_source():
         return defect * (x - 40.0) / (2 * np.pi * square), defect * (y - 64.0) / (2 * np.pi * square)
 
     u, v = fields(nx, ny, wake)
-    got = OpenWater((nx, ny)).inward(u, v, NO_BODY, [Fading(0, False, 1.0)])
+    got = OpenWater((nx, ny)).inward((u, v), NO_BODY, [Fading(0, False, 1.0)])
     exact = inward(nx, ny, source)
     assert got[0] == pytest.approx(exact[0], abs=0.02 * np.abs(exact[0]).max())
     assert got[3][:160] == pytest.approx(exact[3][:160], abs=0.05 * np.abs(exact[3]).max())
-    turned = OpenWater((ny, nx)).inward(v.T.copy(), u.T.copy(), NO_BODY, [Fading(1, False, 1.0)])
+    turned = OpenWater((ny, nx)).inward((v.T.copy(), u.T.copy()), NO_BODY, [Fading(1, False, 1.0)])
     assert turned[2] == pytest.approx(exact[0], abs=0.05 * np.abs(exact[0]).max())
 
 

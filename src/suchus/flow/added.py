@@ -33,11 +33,11 @@ def added_mass(water: Water, markers: Markers, about: tuple[float, float], densi
     rises, shores, inward = [], [], []
     for au, av in modes:
         scale = max(float(np.abs(au).max()), float(np.abs(av).max()))
-        potential = water.potential(share_u * au / scale, share_v * av / scale, _LIMIT)
+        potential = water.potential(np.stack([share_u * au, share_v * av]) / scale, _LIMIT)
         shores.append([scale * line.astype(np.float64) for line in water.along_sides(potential)])
         near = potential[j0 - 1 : j1 + 1, i0 - 1 : i1 + 1].astype(np.float64)
         rises.append((scale * (near[1:, 1:] - near[1:, :-1]), scale * (near[1:, 1:] - near[:-1, 1:])))
-        inward.append([scale * side for side in water.answer(share_u * au / scale, share_v * av / scale)])
+        inward.append([scale * side for side in water.answer(np.stack([share_u * au, share_v * av]) / scale)])
     held, own_mass = (
         h * h * np.array([[(a * share_u * p).sum() + (b * share_v * q).sum() for p, q in what] for a, b in modes])
         for what in (rises, modes)

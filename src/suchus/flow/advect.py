@@ -1,10 +1,10 @@
 # mypy: disable-error-code="no-untyped-def, var-annotated"
-# (the kernels get their types from numba, once per precision)
+# (the kernels get their types from numba, once per precision and number of dimensions)
 """Momentum on the staggered grid: limited QUICK advection and central diffusion, in cells and flow units.
 
-``u[j, i]`` sits on the left face of cell (i, j), ``v[j, i]`` on its lower face; ``PAD`` rows and columns of
-boundary values surround the domain. Lengths are in cells and velocities in m/s, so times are in cells per
-(m/s) and the viscosity is divided by the cell size.
+``velocity[d]`` sits on the faces before the cells along axis d; ``PAD`` cells of boundary values surround the domain.
+Lengths are in cells and velocities in m/s, so times are in cells per (m/s) and the viscosity is divided by the cell
+size. How fields lie in memory: ``slab``.
 
 Sources: Leonard 1979, Comput. Methods Appl. Mech. Eng. 19, 59-98 (QUICK); Leonard 1991, ibid. 88, 17-74 (the
 universal limiter).
@@ -13,7 +13,8 @@ universal limiter).
 import numpy as np
 from numba import prange
 
-from suchus.flow.compiled import BLOCK, PAD, UNIT, part, signed, threaded, unsigned
+from suchus.flow.compiled import PAD, UNIT, part, signed, threaded, unsigned
+from suchus.flow.slab import NONE, block_of, meets, row_length, run_of, window_columns, window_rows
 
 
 @part
@@ -35,13 +36,13 @@ def limited_quick(upstream, centre, downstream):
 
 
 @part
-def _fluxes(flux, o, w, side, row, start, stop, dj, di, ej, ei, viscosity):
-    """Write the fluxes of ``w`` through the faces before the nodes of a row to row ``o`` of ``flux``.
+def _fluxes(flux, o, w, side, slab, start, stop, dj, di, ej, ei, viscosity):
+    """Write the fluxes of ``w`` through the faces before the nodes of a slab to slab ``o`` of ``flux``.
 
-    The next node is ``dj`` rows and ``di`` columns on. A face moves with the mean of ``side`` at the node and ``ej``
-    rows and ``ei`` columns before it; ``viscosity`` in cells x m/s.
+    The next node is ``dj`` slabs and ``di`` cells on. A face moves with the mean of ``side`` at the node and ``ej``
+    slabs and ``ei`` cells before it; ``viscosity`` in cells x m/s.
     """
-    o, j, half = unsigned(o), unsigned(row), flux.dtype.type(0.5)
+    o, j, half = unsigned(o), unsigned(slab), flux.dtype.type(0.5)
     for k in range(unsigned(start), unsigned(stop)):
         # loaded first: a choice of loads is a branch
         a, b, c, d = w[j - dj - dj, k - di - di], w[j - dj, k - di], w[j, k], w[j + dj, k + di]
@@ -52,59 +53,72 @@ def _fluxes(flux, o, w, side, row, start, stop, dj, di, ej, ei, viscosity):
 
 
 @part
-def _update_row(out, blend, base, flux, low, high, p, row, start, stop, ej, ei, dt, push, keep):
+def _net(flux, low, high, k, inner):
+    """Return what flows into a cell: ``flux[d]`` before it and a stride on, ``low`` and ``high`` below and above."""
+    net = flux.dtype.type(0)
+    for d in range(len(inner)):
+        net += flux[d, k] - flux[d, k + inner[d]]
+    return net + flux[low, k] - flux[high, k]
+
+
+@part
+def _update_slab(out, blend, base, flux, low, high, p, slab, start, stop, inner, ej, ei, dt, push, keep):
     """Write ``keep * blend + (1 - keep) * (base + dt * (net flux + push - pressure gradient))``."""
-    j, low, high, take = unsigned(row), unsigned(low), unsigned(high), out.dtype.type(1.0) - keep
+    j, low, high, take = unsigned(slab), unsigned(low), unsigned(high), out.dtype.type(1.0) - keep
     for k in range(unsigned(start), unsigned(stop)):
-        net = flux[0, k] - flux[0, k + UNIT] + flux[low, k] - flux[high, k]
-        rate = net + push - (p[j, k] - p[j - ej, k - ei])
+        rate = _net(flux, low, high, k, inner) + push - (p[j, k] - p[j - ej, k - ei])
         out[j, k] = keep * blend[j, k] + take * (base[j, k] + dt * rate)
 
 
 @part
-def _raw_row(raw, base, flux, low, high, row, start, stop, dt, push):
-    """Write ``base + dt * (net flux + push)``: what the body is then immersed in."""
-    j, low, high = unsigned(row), unsigned(low), unsigned(high)
-    for k in range(unsigned(start), unsigned(stop)):
-        raw[j, k] = base[j, k] + dt * (flux[0, k] - flux[0, k + UNIT] + flux[low, k] - flux[high, k] + push)
+def _raw_slab(raw, base, flux, low, high, slab, place, inner, dt, push):
+    """Write ``base + dt * (net flux + push)`` in the window: what the body is then immersed in."""
+    j, low, high = unsigned(slab), unsigned(low), unsigned(high)
+    wide, (r0, r1), (s, e) = row_length(inner, raw.shape[1]), window_rows(place, inner), window_columns(place, inner)
+    for row in range(r0, r1):
+        for k in range(row * wide + s, row * wide + e):
+            raw[j, k] = base[j, k] + dt * (_net(flux, low, high, k, inner) + push)
 
 
 @part
-def _advance(out, blend, base, w, u, v, p, raw, window, j0, j1, s, e, ej, ei, dt, nu, push, keep):
-    """Advance rows ``j0`` to ``j1``, columns ``s`` to ``e`` of one component ``w``, whose axis is (``ej``, ``ei``)."""
-    none = UNIT - UNIT
-    flux = np.empty((3, u.shape[1]), u.dtype)
-    low, high = 1, 2
-    _fluxes(flux, high, w, v, j0, s, e, UNIT, none, ej, ei, nu)
+def _advance(out, blend, base, w, rate, p, raw, place, inner, j0, j1, s, e, ej, ei, dt, nu, push, keep):
+    """Advance slabs ``j0`` to ``j1``, cells ``s`` to ``e`` of one component ``w``, whose axis is (``ej``, ``ei``)."""
+    up = len(inner)
+    flux = np.empty((up + 2, w.shape[1]), w.dtype)
+    low, high = up, up + 1
+    _fluxes(flux, high, w, rate[up], j0, s, e, UNIT, NONE, ej, ei, nu)
     for j in range(j0, j1):
         low, high = high, low
-        _fluxes(flux, 0, w, u, j, s, e + 1, none, UNIT, ej, ei, nu)
-        _fluxes(flux, high, w, v, j + 1, s, e, UNIT, none, ej, ei, nu)
-        _update_row(out, blend, base, flux, low, high, p, j, s, e, ej, ei, dt, push, keep)
-        if window[0] <= j < window[1]:
-            _raw_row(raw, base, flux, low, high, j, window[2], window[3], dt, push)
+        for d in range(up):
+            _fluxes(flux, d, w, rate[d], j, s, e + inner[d], NONE, inner[d], ej, ei, nu)
+        _fluxes(flux, high, w, rate[up], j + 1, s, e, UNIT, NONE, ej, ei, nu)
+        _update_slab(out, blend, base, flux, low, high, p, j, s, e, inner, ej, ei, dt, push, keep)
+        if meets(place, inner, j):
+            _raw_slab(raw, base, flux, low, high, j, place, inner, dt, push)
 
 
 @threaded
-def advance(
-    out_u, out_v, blend_u, blend_v, base_u, base_v, u, v, p, raw_u, raw_v, window, periodic, dt, nu, push, keep
-):
-    """Advance both velocities by ``dt`` with the rates at (``u``, ``v``) and the pressure ``p``.
+def advance(out, blend, base, rate, p, raw, place, inner, repeats, dt, nu, push, keep):
+    """Advance all components of the velocity by ``dt`` with the rates at ``rate`` and the pressure ``p``.
 
-    ``out = keep * blend + (1 - keep) * (base + dt * rate)``. In the body's ``window`` (j0, j1, i0, i1) the bare
-    ``base + dt * rate`` without the pressure goes to ``raw`` as well. ``periodic`` is (x, y), ``push`` a
-    uniform acceleration (x, y).
+    ``out = keep * blend + (1 - keep) * (base + dt * rate)``. In the bodies' window the bare ``base + dt * rate``
+    without the pressure goes to ``raw`` as well. ``repeats`` says which axes are periodic, ``push`` is a uniform
+    acceleration, one number for each axis. Faces on the sides and beyond them are for the caller to fill.
     """
-    none = UNIT - UNIT
-    ny, end = u.shape[0] - 2 * PAD, u.shape[1] - PAD
-    su = PAD if periodic[0] else PAD + 1
-    sv = PAD if periodic[1] else PAD + 1
-    for n in prange((ny + BLOCK - 1) // BLOCK):
-        block = signed(n)
-        j0 = PAD + block * BLOCK
-        j1 = min(j0 + BLOCK, PAD + ny)
-        _advance(out_u, blend_u, base_u, u, u, v, p, raw_u, window, j0, j1, su, end, none, UNIT, dt, nu, push[0], keep)
-        _advance(
-            out_v, blend_v, base_v, v, u, v, p, raw_v, window, max(j0, sv), j1, PAD, end, UNIT, none, dt, nu, push[1],
-            keep,
-        )  # fmt: skip
+    size, block = out.shape[1] - 2 * PAD, block_of(inner)
+    for n in prange((size + block - 1) // block):
+        first = PAD + signed(n) * block
+        j1 = min(first + block, PAD + size)
+        for c in range(len(inner) + 1):
+            s, e = run_of(inner, out.shape[2])
+            j0, ej, ei = first, NONE, NONE
+            if c == len(inner):
+                ej = UNIT
+                j0 = first if repeats[c] else max(first, PAD + 1)
+            else:
+                ei = inner[c]
+                s = s if repeats[c] else s + inner[c]
+            _advance(
+                out[c], blend[c], base[c], rate[c], rate, p, raw[c], place, inner, j0, j1, s, e, ej, ei, dt, nu,
+                push[c], keep,
+            )  # fmt: skip

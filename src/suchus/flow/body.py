@@ -61,23 +61,24 @@ def window_of(body: AnyBody, pose: Pose, grid: Grid, time: float) -> Window:
     )  # fmt: skip
 
 
-def unite(windows: list[Window]) -> Window:
-    """Return the smallest window around all."""
+def unite(windows: list[Window], axes: int) -> Window:
+    """Return the smallest window around all; an empty one around none."""
     if not windows:
-        return PAD, PAD, PAD, PAD
-    return (
-        min(w[0] for w in windows), max(w[1] for w in windows), min(w[2] for w in windows), max(w[3] for w in windows)
-    )  # fmt: skip
+        return (PAD,) * (2 * axes)
+    return tuple((max if k % 2 else min)(w[k] for w in windows) for k in range(2 * axes))
 
 
 def measure_all(
-    bodies: list[AnyBody], poses: list[Pose], x: np.ndarray, y: np.ndarray, time: float, h: float
+    bodies: list[AnyBody], poses: list[Pose], points: list[np.ndarray], time: float, h: float
 ) -> tuple[Field, np.ndarray]:
-    """Return the field of all bodies on a window, at every point that of the nearest body, and which one it is."""
-    first = bodies[0].shape.measure(x, y, time, poses[0], (REACH + 1) * h)
+    """Return the field of all bodies on a window, at every point that of the nearest body, and which one it is.
+
+    ``points`` are the coordinates of the window along each axis [m].
+    """
+    first = bodies[0].shape.measure(*points, time, poses[0], (REACH + 1) * h)
     owner = np.zeros(first.distance.shape, np.int8)
     for k, (body, pose) in enumerate(zip(bodies[1:], poses[1:], strict=True), start=1):
-        other = body.shape.measure(x, y, time, pose, (REACH + 1) * h)
+        other = body.shape.measure(*points, time, pose, (REACH + 1) * h)
         nearer = other.distance < first.distance
         first = Field(*(np.where(nearer, getattr(other, f.name), getattr(first, f.name)) for f in fields(Field)))
         owner[nearer] = k

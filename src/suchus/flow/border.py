@@ -160,7 +160,7 @@ class Border:
         self.stream = (float(state["stream"][0]), float(state["stream"][1]))
         self.steps, self.span = int(state["prepared"][0]), float(state["prepared"][1])
 
-    def prepare(self, u: np.ndarray, v: np.ndarray, window: Window, dt: float, stream: tuple[float, float]) -> None:
+    def prepare(self, velocity: np.ndarray, window: Window, dt: float, stream: tuple[float, float]) -> None:
         """Fix the velocity on all sides at the end of the step from the fields at its start.
 
         On return as much water leaves as enters.
@@ -174,14 +174,14 @@ class Border:
             elif isinstance(edge.side, Outflow):
                 edge.leaves = 1.0
         if self.steps == 0:
-            for edge, induced in zip(self.edges, self._induced(u, v, window), strict=True):
+            for edge, induced in zip(self.edges, self._induced(velocity, window), strict=True):
                 edge.induced[:] = edge.seen[:] = induced
         grown = dt / self.span if self.span else 0.0
         for edge in self.edges:
             ahead = grown * (edge.induced - edge.seen)
             if isinstance(edge.side, Stream | Outflow):
                 rise = edge.sign * (stream[edge.axis] - before[edge.axis]) if isinstance(edge.side, Stream) else 0.0
-                carried = self._carried(edge, u, v, dt) + (rise + ahead)
+                carried = self._carried(edge, *velocity, dt) + (rise + ahead)
                 held = edge.sign * stream[edge.axis] + edge.induced + ahead
                 edge.prescribed[:] = edge.leaves * carried + (1 - edge.leaves) * held
             edge.seen[:] = edge.induced
@@ -189,7 +189,7 @@ class Border:
         self.steps, self.span = self.steps + 1, dt
         self._balance()
 
-    def settle(self, u: np.ndarray, v: np.ndarray, window: Window) -> float:
+    def settle(self, velocity: np.ndarray, window: Window) -> float:
         """Take what the fields, which are those of the step's end, induce; return the largest change [m/s].
 
         ``prepare`` could only carry on from the last steps. Without this a cylinder in a domain of 4 diameters that
@@ -198,7 +198,7 @@ class Border:
         change = 0.0
         if self.water is None:
             return change
-        for edge, induced in zip(self.edges, self._induced(u, v, window), strict=True):
+        for edge, induced in zip(self.edges, self._induced(velocity, window), strict=True):
             rise = induced - edge.induced
             edge.prescribed += rise.astype(edge.prescribed.dtype)
             edge.induced[:] = induced
@@ -208,10 +208,10 @@ class Border:
         self._balance()
         return change
 
-    def _induced(self, u: np.ndarray, v: np.ndarray, window: Window) -> list[np.ndarray]:
+    def _induced(self, velocity: np.ndarray, window: Window) -> list[np.ndarray]:
         if self.water is None:
             return [np.zeros(e.prescribed.size) for e in self.edges]
-        return self.water.inward(u, v, window, [Fading(e.axis, e.low, e.leaves) for e in self.edges if e.leaves])
+        return self.water.inward(velocity, window, [Fading(e.axis, e.low, e.leaves) for e in self.edges if e.leaves])
 
     @staticmethod
     def _carried(edge: Edge, u: np.ndarray, v: np.ndarray, dt: float) -> np.ndarray:
@@ -234,7 +234,7 @@ class Border:
             for edge in self.edges:
                 edge.prescribed -= (edge.leaves if free else float(edge.endless)) * net / room
 
-    def fill(self, u: np.ndarray, v: np.ndarray) -> None:
+    def fill(self, velocity: np.ndarray) -> None:
         """Write all boundary values around the domain."""
         for edge in self.edges:
-            edge.fill(u, v, self.stream)
+            edge.fill(*velocity, self.stream)

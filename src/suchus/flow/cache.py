@@ -19,7 +19,9 @@ _HERE = Path(__file__).parent
 _PREFIX = "kernels-"
 _KEPT = 4
 """States of the sources whose code is kept [-]."""
-_MAKERS = re.compile(r"^from suchus\.flow\.compiled import .*\b(?:compiled|threaded|part|threaded_part)\b", re.M)
+_MAKERS = re.compile(
+    r"^from suchus\.flow\.compiled import .*\b(?:compiled|threaded|part|ordered_part|threaded_part)\b", re.M
+)
 _OWN = ("compiled.py", "linking.py")
 
 

@@ -40,8 +40,8 @@ and the parts would be compiled for both."""
 UNIT = unsigned(1)
 """One, as they count: with a signed one, numbers of rows would become floats [-]."""
 
-Window = tuple[int, int, int, int]
-"""Padded cell indices j0, j1, i0, i1 around the bodies."""
+Window = tuple[int, ...]
+"""Padded cell indices around the bodies, first and end along each axis, the last axis first."""
 
 # No "nnan" and no "ninf": a NaN must stay visible.
 _FAST = {"contract", "reassoc", "nsz", "arcp"}
@@ -110,9 +110,10 @@ def threaded(function: Callable[P, R]) -> Callable[P, R]:
 class Part(Generic[P, R]):
     """A function that is compiled as a part of the kernels that call it; called from Python it is plain Python."""
 
-    def __init__(self, function: Callable[P, R], *, parallel: bool = False) -> None:
+    def __init__(self, function: Callable[P, R], *, parallel: bool = False, ordered: bool = False) -> None:
         self.py_func = function
-        self._compiled = numba.njit(no_cpython_wrapper=True, parallel=parallel, **_OPTIONS)(function)
+        options = {**_OPTIONS, "fastmath": _FAST - {"reassoc"}} if ordered else _OPTIONS
+        self._compiled = numba.njit(no_cpython_wrapper=True, parallel=parallel, **options)(function)
         self._numba_type_ = numba.types.Dispatcher(self._compiled)
 
     def __call__(self, *given: P.args, **named: P.kwargs) -> R:
@@ -123,6 +124,14 @@ class Part(Generic[P, R]):
 def part(function: Callable[P, R]) -> Part[P, R]:
     """Let the kernels that call ``function`` take it in."""
     return Part(function)
+
+
+def ordered_part(function: Callable[P, R]) -> Part[P, R]:
+    """Let the kernels that call ``function`` take it in; its sums are taken in the order in which they are written.
+
+    For loops over cells with a sum over the axes: how the compiler orders it else hangs on when it unrolls the loop.
+    """
+    return Part(function, ordered=True)
 
 
 def threaded_part(function: Callable[P, R]) -> Part[P, R]:

@@ -1,5 +1,5 @@
 # mypy: disable-error-code="no-untyped-def, var-annotated"
-# (the kernels get their types from numba, once per precision)
+# (the kernels get their types from numba, once per precision and number of dimensions)
 """Forces on bodies from the momentum that the immersion itself exchanges with the water.
 
 In each step the immersion changes the momentum of the cells in and around a body by a known amount. What of it does
@@ -14,67 +14,106 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from suchus.flow.compiled import PAD, compiled
+from suchus.flow.compiled import PAD, compiled, signed
 from suchus.flow.shape import Markers
+from suchus.flow.slab import row_length
 
-SUMS = 4
-"""Sums per body: momentum x and y, angular momentum about the grid's corner, energy [-]."""
 
-CONTENTS = SUMS + 3
-"""What is kept of a body's region: the sums of its motion, its area and its first moments x and y [-]."""
+def sums_of(axes: int) -> int:
+    """Return how many sums are kept per body: momentum, angular momentum about z, energy."""
+    return axes + 2
+
+
+def contents_of(axes: int) -> int:
+    """Return how much is kept of a body's region: the sums of its motion, its volume and its first moments."""
+    return 2 * axes + 3
 
 
 @compiled
-def collect(sums, out, blend, raw, mean, passage, mu1_x, mu1_y, p, owner, along, window, dt, keep):
-    """Add to ``sums`` (body, 4) what the immersion gave to one component of the velocity in one stage.
+def collect(sums, out, blend, raw, mean, passage, mu1, p, owner, component, place, inner, dt, keep):
+    """Add to ``sums`` (body, ``sums_of``) what the immersion gave to one component of the velocity in one stage.
 
     ``mean`` is the body's velocity in the window, mean of the step's start and end: with that of the end alone the
     power is too large by half the work of the added mass in a step. The sums are of m/s per cell; lengths for the
-    moments are in cells from the grid's corner.
+    moments are in cells from the grid's corner. ``mean`` and ``owner`` hold the window alone, slab by slab.
     """
-    for j in range(window[0] + 1, window[1] - 1):
-        for i in range(window[2] + 1, window[3] - 1):
-            if passage[j, i] >= 1 and mu1_x[j, i] == 0 and mu1_y[j, i] == 0:
-                continue
-            rise = np.float64(p[j, i]) - (p[j, i - 1] if along == 0 else p[j - 1, i])
-            moved = (np.float64(out[j, i]) - keep * np.float64(blend[j, i])) / (1.0 - keep)
-            given = moved - raw[j, i] + dt * rise
-            k = owner[j - window[0], i - window[2]]
-            sums[k, along] += given
-            sums[k, 2] += -(j - PAD + 0.5) * given if along == 0 else (i - PAD + 0.5) * given
-            sums[k, 3] += mean[j - window[0], i - window[2]] * given
+    up, w = len(inner), len(inner) + 2
+    wide, columns = signed(row_length(inner, p.shape[1])), place[3 * up + 3] - place[3 * up + 2] + 1
+    r0, r1 = (place[w + 2], place[w + 3]) if up > 1 else (-1, 2)
+    c0, c1 = place[3 * up + 2], place[3 * up + 3]
+    for j in range(place[w] + 1, place[w + 1] - 1):
+        for row in range(r0 + 1, r1 - 1):
+            for i in range(c0 + 1, c1 - 1):
+                k = row * wide + i
+                touched = passage[j, k] < 1
+                for d in range(up + 1):
+                    touched = touched or mu1[d, j, k] != 0
+                if not touched:
+                    continue
+                before = p[j - 1, k]
+                for d in range(up):
+                    before = p[j, k - signed(inner[d])] if component == d else before
+                rise = np.float64(p[j, k]) - before
+                moved = (np.float64(out[j, k]) - keep * np.float64(blend[j, k])) / (1.0 - keep)
+                given = moved - raw[j, k] + dt * rise
+                at = (row - r0) * columns + i - c0 if up > 1 else i - c0
+                m, y = owner[j - place[w], at], (row if up > 1 else j) - PAD + 0.5
+                sums[m, component] += given
+                if component == 0:
+                    sums[m, up + 1] += -y * given
+                elif component == 1:
+                    sums[m, up + 1] += (i - PAD + 0.5) * given
+                sums[m, up + 2] += mean[j - place[w], at] * given
 
 
 @compiled
-def swelling(sums, p, source, owner, window, dt):
+def swelling(sums, p, source, owner, place, inner, dt):
     """Take from the energy what the pressure does on the divergence of the bodies' own motion inside them."""
-    for j in range(window[0], window[1]):
-        for i in range(window[2], window[3]):
-            if source[j, i] != 0:
-                sums[owner[j - window[0], i - window[2]], 3] += dt * np.float64(p[j, i]) * source[j, i]
+    up, w = len(inner), len(inner) + 2
+    wide, columns = signed(row_length(inner, p.shape[1])), place[3 * up + 3] - place[3 * up + 2] + 1
+    r0, r1 = (place[w + 2], place[w + 3]) if up > 1 else (0, 1)
+    c0, c1 = place[3 * up + 2], place[3 * up + 3]
+    for j in range(place[w], place[w + 1]):
+        for row in range(r0, r1):
+            for i in range(c0, c1):
+                if source[j, row * wide + i] != 0:
+                    m = owner[j - place[w], (row - r0) * columns + i - c0]
+                    sums[m, up + 2] += dt * np.float64(p[j, row * wide + i]) * source[j, row * wide + i]
 
 
 @compiled
-def contents(sums, b, mu0, owner, along, window):
-    """Add to ``sums`` (body, 7) what the region of each body holds of one component of the velocity.
+def contents(sums, b, mu0, owner, component, place, inner):
+    """Add to ``sums`` (body, ``contents_of``) what the region of each body holds of one component of the velocity.
 
-    Columns: the ``SUMS`` of its motion, its area and first moments [m/s, m^2/s^2, cells].
+    Columns: the sums of its motion, its volume and first moments [m/s, m^2/s^2, cells].
     """
-    for j in range(window[0], window[1]):
-        for i in range(window[2], window[3]):
-            share = 1.0 - np.float64(mu0[j, i])
-            if share == 0.0:
-                continue
-            k = owner[j - window[0], i - window[2]]
-            x = i - PAD + (0.0 if along == 0 else 0.5)
-            y = j - PAD + (0.5 if along == 0 else 0.0)
-            held = share * b[j, i]
-            sums[k, along] += held
-            sums[k, 2] += -y * held if along == 0 else x * held
-            sums[k, 3] += 0.5 * held * b[j, i]
-            sums[k, 4] += 0.5 * share
-            sums[k, 5] += 0.5 * share * x
-            sums[k, 6] += 0.5 * share * y
+    up, w = len(inner), len(inner) + 2
+    wide, columns = signed(row_length(inner, b.shape[1])), place[3 * up + 3] - place[3 * up + 2] + 1
+    r0, r1 = (place[w + 2], place[w + 3]) if up > 1 else (0, 1)
+    c0, c1 = place[3 * up + 2], place[3 * up + 3]
+    axes = up + 1
+    for j in range(place[w], place[w + 1]):
+        for row in range(r0, r1):
+            for i in range(c0, c1):
+                k = row * wide + i
+                share = 1.0 - np.float64(mu0[j, k])
+                if share == 0.0:
+                    continue
+                m = owner[j - place[w], (row - r0) * columns + i - c0]
+                x = i - PAD + (0.0 if component == 0 else 0.5)
+                y = (row if up > 1 else j) - PAD + (0.0 if component == 1 else 0.5)
+                held, part_of = share * b[j, k], share / axes
+                sums[m, component] += held
+                if component == 0:
+                    sums[m, axes] += -y * held
+                elif component == 1:
+                    sums[m, axes] += x * held
+                sums[m, axes + 1] += 0.5 * held * b[j, k]
+                sums[m, axes + 2] += part_of
+                sums[m, axes + 3] += part_of * x
+                sums[m, axes + 4] += part_of * y
+                if up > 1:
+                    sums[m, axes + 5] += part_of * (j - PAD + (0.0 if component == 2 else 0.5))
 
 
 def skin(markers: Markers, offset: float, origin: tuple[float, float], h: float) -> np.ndarray:

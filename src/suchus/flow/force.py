@@ -148,8 +148,8 @@ class ControlVolume:
         Not a number in the first step.
         """
         h = water.grid.cell
-        mu0_u, mu0_v = water.mu0
-        inner_u, inner_v = (1 - mu0_u) * water.bu, (1 - mu0_v) * water.bv
+        mu0_u = water.mu0[0]
+        inner_u, inner_v = (1 - water.mu0) * water.b
         nu = float(water.nu)
         now = np.array(
             [

@@ -1,5 +1,5 @@
 # mypy: disable-error-code="no-untyped-def, var-annotated"
-# (the kernels get their types from numba, once per precision)
+# (the kernels get their types from numba, once per precision and number of dimensions)
 """The body in the equations: second-order boundary data immersion, in cells and flow units.
 
 Near the body the velocity is ``mu0 f + (1 - mu0) V + mu1 d(f - V)/dn``, where f is the fluid's own update, V the
@@ -12,10 +12,14 @@ Source: Maertens and Weymouth 2015, Comput. Methods Appl. Mech. Eng. 283, 106-12
 import numpy as np
 from numba import prange
 
-from suchus.flow.compiled import BLOCK, UNIT, compiled, part, signed, threaded, unsigned
+from suchus.flow.compiled import UNIT, compiled, ordered_part, part, signed, threaded, unsigned
+from suchus.flow.slab import NONE, block_of, meets, row_length, window_columns, window_rows
 
 REACH = 3.0
 """Distance from the surface up to which normals and velocities are needed [cells]."""
+
+POINTS = 4096
+"""Points whose moments one thread fills at a time [-]."""
 
 LEAST_SHARE = 1e-3
 """Share of the fluid kept inside the bodies, so that the pressure equation has no pockets cut off from the rest [-]."""
@@ -64,21 +68,22 @@ def moment1(distance):
 
 
 @threaded
-def fill(d, nx, ny, thickness, mu0, mu1_x, mu1_y):
-    """Fill the moments of a window from signed distances, thicknesses [cells] and normals; mu1 is halved.
+def fill(distance, normal, thickness, mu0, mu1):
+    """Fill the moments at points from signed distances, thicknesses [cells] and normals (axis, point); mu1 is halved.
 
     The kernel sees both surfaces of a thin body. So the share that a tail of any thickness takes from the cells
     around it does not depend on how it lies between the nodes; with the nearer surface alone it does, and the force
     shakes as the tail sweeps over the grid (12 % of its rms, against 1 %).
     """
-    for j in prange(d.shape[0]):
-        for i in range(d.shape[1]):
-            near = d[j, i]
-            far = -thickness[j, i] - near
-            mu0[j, i] = min(max(moment0(near) + moment0(far), LEAST_SHARE), 1.0)
+    for n in prange((distance.size + POINTS - 1) // POINTS):
+        block = signed(n)
+        for k in range(block * POINTS, min((block + 1) * POINTS, distance.size)):
+            near = distance[k]
+            far = -thickness[k] - near
+            mu0[k] = min(max(moment0(near) + moment0(far), LEAST_SHARE), 1.0)
             first = 0.5 * (moment1(near) - moment1(far))
-            mu1_x[j, i] = first * nx[j, i]
-            mu1_y[j, i] = first * ny[j, i]
+            for d in range(normal.shape[0]):
+                mu1[d, k] = first * normal[d, k]
 
 
 @compiled
@@ -108,42 +113,64 @@ def close(passage, x, y, x0, y0, h):
                 passage[j, i] = min(passage[j, i], LEAST_SHARE)
 
 
+@ordered_part
+def _source_row(source, b, mu0, slab, start, stop, inner):
+    j, up = unsigned(slab), unsigned(len(inner))
+    one, share = source.dtype.type(1.0), source.dtype.type(0.5 / (len(inner) + 1))
+    for k in range(start, stop):
+        wet, before, behind = source.dtype.type(0), source.dtype.type(0), source.dtype.type(0)
+        for d in range(len(inner)):
+            wet = wet + mu0[d, j, k]
+            before = before + b[d, j, k]
+            behind = behind + b[d, j, k + inner[d]]
+        wet = wet + mu0[up, j, k] + mu0[up, j + UNIT, k]
+        for d in range(len(inner)):
+            wet = wet + mu0[d, j, k + inner[d]]
+        source[j, k] = (one - share * wet) * ((behind + b[up, j + UNIT, k]) - (before + b[up, j, k]))
+
+
 @compiled
-def fill_source(source, bu, bv, cx, cy, window):
+def fill_source(source, b, mu0, place, inner):
     """Write ``(1 - mu0) div V``: the divergence of the body's own motion, which the pressure leaves alone."""
-    quarter = source.dtype.type(0.25)
-    one = source.dtype.type(1.0)
-    for j in range(window[0], window[1]):
-        for i in range(window[2], window[3]):
-            share = quarter * ((cx[j, i] + cx[j, i + 1]) + (cy[j, i] + cy[j + 1, i]))
-            source[j, i] = (one - share) * ((bu[j, i + 1] - bu[j, i]) + (bv[j + 1, i] - bv[j, i]))
+    wide, (r0, r1), (s, e) = row_length(inner, source.shape[1]), window_rows(place, inner), window_columns(place, inner)
+    for j in range(source.shape[0]):
+        if meets(place, inner, j):
+            for row in range(r0, r1):
+                _source_row(source, b, mu0, j, row * wide + s, row * wide + e, inner)
 
 
-@part
-def _immerse_row(out, blend, raw, b, mu0, passage, mu1_x, mu1_y, p, row, start, stop, ej, ei, dt, keep):
-    j, take = unsigned(row), out.dtype.type(1.0) - keep
+@ordered_part
+def _immerse_slab(out, blend, raw, b, mu0, passage, mu1, p, slab, start, stop, inner, ej, ei, dt, keep):
+    j, up = unsigned(slab), unsigned(len(inner))
     low, high = j - UNIT, j + UNIT
-    for k in range(unsigned(start), unsigned(stop)):
-        f = raw[j, k] - b[j, k]
-        slope_x = (raw[j, k + UNIT] - b[j, k + UNIT]) - (raw[j, k - UNIT] - b[j, k - UNIT])
-        slope_y = (raw[high, k] - b[high, k]) - (raw[low, k] - b[low, k])
-        rise = p[j, k] - p[j - ej, k - ei]
-        moved = b[j, k] + mu0[j, k] * f - dt * passage[j, k] * rise + mu1_x[j, k] * slope_x + mu1_y[j, k] * slope_y
-        out[j, k] = keep * blend[j, k] + take * moved
+    for k in range(start, stop):
+        moved = mu0[j, k] * (raw[j, k] - b[j, k]) + b[j, k] - passage[j, k] * (dt * (p[j, k] - p[j - ej, k - ei]))
+        for d in range(len(inner)):
+            s = inner[d]
+            moved = moved + mu1[d, j, k] * (raw[j, k + s] - (b[j, k + s] + raw[j, k - s]) + b[j, k - s])
+        moved = moved + mu1[up, j, k] * (raw[high, k] - (b[high, k] + raw[low, k]) + b[low, k])
+        out[j, k] = keep * (blend[j, k] - moved) + moved
 
 
 @threaded
-def immerse(out, blend, raw, b, mu0, passage, mu1_x, mu1_y, p, along, window, dt, keep):
+def immerse(out, blend, raw, b, mu0, passage, mu1, p, component, place, inner, dt, keep):
     """Write the immersed velocity of one component to the inner cells of the window.
 
-    ``raw`` is the fluid's own update without the pressure, ``b`` the body's velocity, ``along`` 0 for u and 1 for v;
-    ``out = keep * blend + (1 - keep) * (immersed - dt passage grad p)``.
+    ``raw`` is the fluid's own update without the pressure, ``b`` the body's velocity, ``mu1[d]`` the kernel's moment
+    along axis d; ``out = keep * blend + (1 - keep) * (immersed - dt passage grad p)``.
     """
-    none = UNIT - UNIT
-    ej, ei = (none, UNIT) if along == 0 else (UNIT, none)
-    rows, s, e = window[1] - window[0], window[2] + 1, window[3] - 1
-    for n in prange((rows + BLOCK - 1) // BLOCK):
-        block = signed(n)
-        first = window[0] + block * BLOCK
-        for j in range(max(first, window[0] + 1), min(first + BLOCK, window[1] - 1)):
-            _immerse_row(out, blend, raw, b, mu0, passage, mu1_x, mu1_y, p, j, s, e, ej, ei, dt, keep)
+    ej = UNIT if component == len(inner) else NONE
+    ei = NONE
+    for d in range(len(inner)):
+        ei = inner[d] if d == component else ei
+    w, block = len(inner) + 2, block_of(inner)
+    wide, (r0, r1), (s, e) = row_length(inner, p.shape[1]), window_rows(place, inner), window_columns(place, inner)
+    r0, r1 = (r0 + UNIT, r1 - UNIT) if len(inner) > 1 else (r0, r1)
+    for n in prange((place[w + 1] - place[w] + block - 1) // block):
+        first = place[w] + signed(n) * block
+        for j in range(max(first, place[w] + 1), min(first + block, place[w + 1] - 1)):
+            for row in range(r0, r1):
+                _immerse_slab(
+                    out, blend, raw, b, mu0, passage, mu1, p, j, row * wide + s + UNIT, row * wide + e - UNIT, inner,
+                    ej, ei, dt, keep,
+                )  # fmt: skip

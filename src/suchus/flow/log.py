@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from suchus.errors import Diverged
-from suchus.flow.exchange import CONTENTS, Reaction, reaction, skin
+from suchus.flow.exchange import Reaction, contents_of, reaction, skin
 from suchus.flow.force import ControlVolume, Load
 from suchus.flow.pose import Pose
 from suchus.flow.record import COLUMNS, HEAD, Record
@@ -25,7 +25,7 @@ class Log:
     """What is simulated."""
     rows: list[np.ndarray] = field(default_factory=list)
     """One row per step."""
-    held: np.ndarray = field(default_factory=lambda: np.zeros((0, CONTENTS)))
+    held: np.ndarray = field(default_factory=lambda: np.zeros((0, contents_of(2))))
     """What each body's region held at the end of the last step; see ``exchange.contents``."""
     controls: list[ControlVolume] = field(default_factory=list)
     """Boxes whose momentum is followed."""
@@ -36,7 +36,7 @@ class Log:
         """Note what the placed bodies' regions hold now; return what they held before."""
         grid, before = self.setup.grid, self.held
         skins = [skin(m, water.offset, grid.origin, grid.cell) for m in outlines]
-        self.held = water.contents() - np.array(skins).reshape(-1, CONTENTS)
+        self.held = water.contents() - np.array(skins).reshape(-1, contents_of(2))
         return before
 
     def reactions(

@@ -165,18 +165,17 @@ class OpenWater:
         """Return the open water around a grid."""
         return cls(grid.cells)
 
-    def inward(self, u: np.ndarray, v: np.ndarray, window: Window, fadings: list[Fading]) -> list[np.ndarray]:
+    def inward(self, velocity: np.ndarray, window: Window, fadings: list[Fading]) -> list[np.ndarray]:
         """Return the velocity into the domain that the fields induce on the faces of each side [m/s].
 
         Args:
-            u: velocity on the left faces, padded [m/s].
-            v: velocity on the lower faces, padded [m/s].
+            velocity: on the left and on the lower faces, padded, shape (axis, ...) [m/s].
             window: padded cell indices around the bodies.
             fadings: the sides that carry a wake out.
 
         The order is left, right, bottom, top. The sum over all faces is zero but for the sources of wakes.
         """
-        gather(u, v, np.array(window), self.blocks)
+        gather(*velocity, np.array(window), self.blocks)
         x, y = self.middles
         strength, extra = self.blocks, []
         for fading in fadings:

@@ -1,19 +1,22 @@
 # mypy: disable-error-code="no-untyped-def, var-annotated"
-# (the kernels get their types from numba, once per precision)
+# (the kernels get their types from numba, once per precision and number of dimensions)
 """The windows of all levels by themselves: small arrays on which extra smoothing steps cost next to nothing.
 
-A level's patch is its window and ``RIM`` cells around it, as far as they lie in the domain. Rows lie end to end, so
-that a smoothing step is one long loop; the cells at the rim keep their value, because their inverse diagonal counts as
-0. A row of ``rects`` is a patch: where it starts in the room, and its padded cell indices j0, j1, i0, i1.
+A level's patch is its window and ``RIM`` cells around it, as far as they lie in the domain. Its cells lie end to end,
+so that a smoothing step is one long loop; the cells at the rim keep their value, because their inverse diagonal counts
+as 0. A row of ``rects`` is a patch: where it starts in the room, and its padded cell indices, first and end along each
+axis, the last axis first.
 """
 
 import numpy as np
 
 from suchus.flow.compiled import PAD, UNIT, part, unsigned
-from suchus.flow.stencil import FIRST, SECOND, copy_row, first_row, relax_patch
+from suchus.flow.slab import NONE, row_length, strides_like
+from suchus.flow.stencil import copy_slab, first_steps, relax_patch, weights
 
-ONE, TWO, RIGHT, FACE_X, FACE_Y, INVERSE = range(6)
-"""What ``room[kind]`` holds: solution, its second copy, right side, face coefficients, inverse diagonal."""
+ONE, TWO, RIGHT, INVERSE, FACES = range(5)
+"""What ``room[kind]`` holds: solution, its second copy, right side, inverse diagonal, and from there on face
+coefficients."""
 
 RIM = 8
 """Cells around a window that its patch takes in: its rim jumps, and near a tail's end that must not be seen [-]."""
@@ -23,90 +26,126 @@ EXTRA = 6
 
 
 def rects(layout: np.ndarray) -> np.ndarray:
-    """Return the patches of a layout whose windows are placed, shape (level, 5)."""
-    rows, offset = [], 0
-    for _, ny, nx, *window in layout:
-        j0, j1, i0, i1 = (int(w) for w in window)
-        if j1 > j0:
-            j0, j1 = max(j0 - RIM, PAD), min(j1 + RIM, ny + PAD)
-            i0, i1 = max(i0 - RIM, PAD), min(i1 + RIM, nx + PAD)
-        rows.append([offset, j0, j1, i0, i1])
-        offset += (j1 - j0) * (i1 - i0)
+    """Return the patches of a layout whose windows are placed, shape (level, 1 + 2 axes)."""
+    rows, offset, axes = [], 0, layout.shape[1] // 3
+    for place in layout:
+        cells, window = place[1 : 1 + axes], place[1 + axes :].reshape(axes, 2).copy()
+        if window[0, 1] > window[0, 0]:
+            window[:, 0] = np.maximum(window[:, 0] - RIM, PAD)
+            window[:, 1] = np.minimum(window[:, 1] + RIM, cells + PAD)
+        rows.append([offset, *window.ravel()])
+        offset += int(np.prod(window[:, 1] - window[:, 0]))
     return np.array(rows, dtype=np.int64)
 
 
 def room_for(room: np.ndarray, patches: np.ndarray) -> np.ndarray:
     """Return a room in which the patches have place, the old one if it will do."""
-    offset, j0, j1, i0, i1 = patches[-1]
-    size = int(offset + (j1 - j0) * (i1 - i0))
-    return room if size <= room.shape[1] else np.zeros((6, size + size // 4), room.dtype)
+    ends = patches[-1, 1:].reshape(-1, 2)
+    size = int(patches[-1, 0] + np.prod(ends[:, 1] - ends[:, 0]))
+    return room if size <= room.shape[1] else np.zeros((FACES + len(ends), size + size // 4), room.dtype)
 
 
 @part
-def patch(room, rect, kind):
-    """Return what the room holds of one kind for one patch, shape (row, column)."""
-    high, wide = rect[2] - rect[1], rect[4] - rect[3]
-    return room[kind, rect[0] : rect[0] + high * wide].reshape(high, wide)
+def _sizes(rect, inner):
+    """Return how many slabs a patch has, and how many cells a slab of it and a row of it."""
+    high, last = rect[2] - rect[1], 2 * len(inner) + 1
+    wide = rect[last + 1] - rect[last]
+    return high, wide * (rect[4] - rect[3]) if len(inner) > 1 else wide, wide
 
 
 @part
-def _take(to, rect, a):
+def patch(room, rect, inner, kind):
+    """Return what the room holds of one kind for one patch, shape (slab, cell)."""
+    high, length, _ = _sizes(rect, inner)
+    return room[kind, rect[0] : rect[0] + high * length].reshape(high, length)
+
+
+@part
+def _rows(rect, inner):
+    """Return the first row of a patch in its level's slabs, its end, and first and end of the cells of a row."""
+    last = 2 * len(inner) + 1
+    r0, r1 = (unsigned(rect[3]), unsigned(rect[4])) if len(inner) > 1 else (NONE, UNIT)
+    return r0, r1, unsigned(rect[last]), unsigned(rect[last + 1])
+
+
+@part
+def _take(to, rect, a, inner):
     """Copy a patch from an array of its level to the room."""
+    wide, (r0, r1, s, e) = row_length(inner, a.shape[1]), _rows(rect, inner)
     for j in range(unsigned(to.shape[0])):
-        for i in range(unsigned(to.shape[1])):
-            to[j, i] = a[j + unsigned(rect[1]), i + unsigned(rect[3])]
+        for row in range(r0, r1):
+            left = row * wide + s
+            right = (row - r0) * (e - s)
+            for i in range(e - s):
+                to[j, right + i] = a[j + unsigned(rect[1]), left + i]
 
 
 @part
-def take_coefficients(room, rect, cx, cy, dinv):
+def take_coefficients(room, rect, faces, dinv, inner):
     """Copy the coefficients of a patch from its level to the room."""
-    _take(patch(room, rect, FACE_X), rect, cx)
-    _take(patch(room, rect, FACE_Y), rect, cy)
-    inverse = patch(room, rect, INVERSE)
-    _take(inverse, rect, dinv)
+    for d in range(len(inner) + 1):
+        _take(patch(room, rect, inner, FACES + d), rect, faces[d], inner)
+    inverse = patch(room, rect, inner, INVERSE)
+    _take(inverse, rect, dinv, inner)
+    _, length, wide = _sizes(rect, inner)
     for j in range(inverse.shape[0]):
-        inverse[j, 0] = 0
-        inverse[j, inverse.shape[1] - 1] = 0
+        for k in range(0, length, wide):
+            inverse[j, k] = 0
+            inverse[j, k + wide - 1] = 0
+        if len(inner) > 1:
+            for i in range(wide):
+                inverse[j, i] = 0
+                inverse[j, length - wide + i] = 0
 
 
 @part
-def _relax(room, rect, first, second):
-    x, y = patch(room, rect, ONE), patch(room, rect, TWO)
-    wide = x.shape[1]
-    copy_row(y, 0, x, 0)
-    copy_row(y, y.shape[0] - 1, x, x.shape[0] - 1)
-    x, y, b = x.reshape(-1), y.reshape(-1), patch(room, rect, RIGHT).reshape(-1)
-    cx, cy = patch(room, rect, FACE_X).reshape(-1), patch(room, rect, FACE_Y).reshape(-1)
-    dinv = patch(room, rect, INVERSE).reshape(-1)
+def _relax(room, rect, inner, first, second):
+    x, y = patch(room, rect, inner, ONE), patch(room, rect, inner, TWO)
+    _, length, wide = _sizes(rect, inner)
+    strides = strides_like(inner, unsigned(wide)) + (unsigned(length),)  # noqa: RUF005  numba unpacks no tuples
+    copy_slab(y, 0, x, 0)
+    copy_slab(y, y.shape[0] - 1, x, x.shape[0] - 1)
+    x, y, b = x.reshape(-1), y.reshape(-1), patch(room, rect, inner, RIGHT).reshape(-1)
+    faces, at = room[FACES:], unsigned(rect[0])
+    dinv = patch(room, rect, inner, INVERSE).reshape(-1)
     for _ in range(EXTRA):
-        relax_patch(y, x, b, cx, cy, dinv, wide, first)
-        relax_patch(x, y, b, cx, cy, dinv, wide, second)
+        relax_patch(y, x, b, faces, at, dinv, strides, first)
+        relax_patch(x, y, b, faces, at, dinv, strides, second)
 
 
 @part
-def start(room, rect, b):
+def start(room, rect, b, inner):
     """Write the first smoothing steps on a patch to the room; at its rim they are those without a body."""
-    _take(patch(room, rect, RIGHT), rect, b)
-    x = patch(room, rect, ONE)
+    _take(patch(room, rect, inner, RIGHT), rect, b, inner)
+    x = patch(room, rect, inner, ONE)
+    wide, (r0, r1, s, e) = row_length(inner, b.shape[1]), _rows(rect, inner)
     for j in range(rect[1], rect[2]):
-        first_row(x, j - rect[1], rect[3], b, j, rect[3], rect[4])
-    _relax(room, rect, room.dtype.type(FIRST), room.dtype.type(SECOND))
+        for row in range(r0, r1):
+            left = row * wide
+            first_steps(x, j - rect[1], left + s - (row - r0) * (e - s), b, j, inner, left + s, left + e)
+    one, two = weights(inner, room.dtype.type)
+    _relax(room, rect, inner, one, two)
 
 
 @part
-def end(room, rect, x):
+def end(room, rect, x, inner):
     """Smooth ``x`` on a patch."""
-    own = patch(room, rect, ONE)
-    _take(own, rect, x)
-    _relax(room, rect, room.dtype.type(SECOND), room.dtype.type(FIRST))
+    own = patch(room, rect, inner, ONE)
+    _take(own, rect, x, inner)
+    one, two = weights(inner, room.dtype.type)
+    _relax(room, rect, inner, two, one)
     for j in range(rect[1] + 1, rect[2] - 1):
-        give_row(x, j, own, rect, j)
+        give_slab(x, j, own, rect, j, inner)
 
 
 @part
-def give_row(out, o, own, rect, row):
-    """Copy row ``row`` of a patch's solution, but for its rim, to row ``o`` of ``out``; it may not have that row."""
-    if rect[1] < row < rect[2] - 1:
-        o, j, left = unsigned(o), unsigned(row - rect[1]), unsigned(rect[3])
-        for i in range(UNIT, unsigned(own.shape[1]) - UNIT):
-            out[o, i + left] = own[j, i]
+def give_slab(out, o, own, rect, slab, inner):
+    """Copy a slab of a patch's solution, but for its rim, to slab ``o`` of ``out``; it may not have that slab."""
+    if rect[1] < slab < rect[2] - 1:
+        o, j = unsigned(o), unsigned(slab - rect[1])
+        wide, (r0, r1, s, e) = row_length(inner, out.shape[1]), _rows(rect, inner)
+        f0, f1 = (r0 + UNIT, r1 - UNIT) if len(inner) > 1 else (r0, r1)
+        for row in range(f0, f1):
+            left, right = row * wide + s, (row - r0) * (e - s)
+            for i in range(UNIT, (e - s) - UNIT):
+                out[o, left + i] = own[j, right + i]

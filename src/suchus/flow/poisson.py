@@ -1,5 +1,5 @@
 # mypy: disable-error-code="no-untyped-def, var-annotated"
-# (the kernels get their types from numba, once per precision)
+# (the kernels get their types from numba, once per precision and number of dimensions)
 """The pressure equation: conjugate gradients, preconditioned by one multigrid cycle.
 
 Solves ``-div(c grad x) = b`` from nothing; the caller has already applied the last pressure, which is the warm
@@ -13,9 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 from numba import prange
 
-from suchus.flow.compiled import BLOCK, PAD, compiled, part, signed, threaded_part, unsigned
-from suchus.flow.multigrid import CX, CY, DINV, B, X, cycle, level
-from suchus.flow.stencil import LANES, apply_rows, copy_row, largest_size, seal_row
+from suchus.flow.compiled import PAD, Window, compiled, part, signed, threaded_part, unsigned
+from suchus.flow.multigrid import DINV, FACES, B, X, cycle, faces_of, level
+from suchus.flow.slab import EDGE, block_of, row_count, row_length
+from suchus.flow.stencil import LANES, apply_slabs, copy_slab, largest_size, seal_slab
 
 PARALLEL = 1e-3
 """Share of (z, A z) that must be left once z is orthogonal to the last direction: with less it stays as it is [-]."""
@@ -34,96 +35,104 @@ PATIENCE = 15
 
 
 @part
-def _dots(z, az, r, d, row):
-    """Return (z, A z), (d, A z), (r, z) and (r, d) of a row; the last is nearly nothing, so r's sums are double."""
-    zero, j = z.dtype.type(0.0), unsigned(row)
-    own, old, gain, left = zero, zero, 0.0, 0.0
-    for k in range(unsigned(PAD), unsigned(z.shape[1] - PAD)):
-        own += z[j, k] * az[0, k]
-        old += d[j, k] * az[0, k]
-        gain += np.float64(r[j, k]) * np.float64(z[j, k])
-        left += np.float64(r[j, k]) * np.float64(d[j, k])
-    return own, old, gain, left
+def _dots(z, az, r, d, slab, inner):
+    """Return (z, A z), (d, A z), (r, z) and (r, d) of a slab; the last is nearly nothing, so r's sums are double."""
+    j, wide = unsigned(slab), row_length(inner, z.shape[1])
+    all_own, all_old, gain, left = 0.0, 0.0, 0.0, 0.0
+    for n in range(row_count(inner, z.shape[1])):
+        s = EDGE + (EDGE + n) * wide if len(inner) > 1 else EDGE
+        own, old = z.dtype.type(0.0), z.dtype.type(0.0)
+        for k in range(s, s + wide - EDGE - EDGE):
+            own += z[j, k] * az[0, k]
+            old += d[j, k] * az[0, k]
+            gain += np.float64(r[j, k]) * np.float64(z[j, k])
+            left += np.float64(r[j, k]) * np.float64(d[j, k])
+        all_own += own
+        all_old += old
+    return all_own, all_old, gain, left
 
 
 @threaded_part
-def _measure(z, r, d, cx, cy, place, sums):
-    """Write the row sums of (z, A z), (d, A z), (r, z) and (r, d)."""
-    end = z.shape[0] - PAD
-    for n in prange((end - PAD + BLOCK - 1) // BLOCK):
-        block = signed(n)
+def _measure(z, r, d, faces, place, inner, sums):
+    """Write each slab's sums of (z, A z), (d, A z), (r, z) and (r, d)."""
+    end, block = z.shape[0] - PAD, block_of(inner)
+    for n in prange((end - PAD + block - 1) // block):
+        first = PAD + signed(n) * block
         az = np.empty((1, z.shape[1]), z.dtype)
-        for j in range(PAD + block * BLOCK, min(PAD + (block + 1) * BLOCK, end)):
-            apply_rows(az, 0, z, j - 1, j, j + 1, cx, cy, place, j)
-            sums[j, 0], sums[j, 1], sums[j, 2], sums[j, 3] = _dots(z, az, r, d, j)
+        for j in range(first, min(first + block, end)):
+            apply_slabs(az, 0, z, j - 1, j, j + 1, faces, place, j, inner)
+            sums[j, 0], sums[j, 1], sums[j, 2], sums[j, 3] = _dots(z, az, r, d, j, inner)
 
 
 @part
-def _mix(out, o, z, d, row, a, b):
-    o, j = unsigned(o), unsigned(row)
+def _mix(out, o, z, d, slab, a, b):
+    o, j = unsigned(o), unsigned(slab)
     for k in range(unsigned(z.shape[1])):
         out[o, k] = a * z[j, k] + b * d[j, k]
 
 
 @part
-def _rise(x, e, row, alpha):
-    j = unsigned(row)
+def _rise(x, e, slab, alpha):
+    j = unsigned(slab)
     for k in range(unsigned(x.shape[1])):
         x[j, k] += alpha * e[j, k]
 
 
 @part
-def _lower(r, row, q, alpha):
-    """Subtract ``alpha`` times the one row of ``q`` from a row of ``r``; return its summed size."""
-    total, j = r.dtype.type(0.0), unsigned(row)
-    for k in range(unsigned(PAD), unsigned(r.shape[1] - PAD)):
-        r[j, k] -= alpha * q[0, k]
-        total += abs(r[j, k])
-    return total
+def _lower(r, slab, q, alpha, inner):
+    """Subtract ``alpha`` times the one slab of ``q`` from a slab of ``r``; return its summed size."""
+    whole, j, wide = 0.0, unsigned(slab), row_length(inner, r.shape[1])
+    for n in range(row_count(inner, r.shape[1])):
+        s = EDGE + (EDGE + n) * wide if len(inner) > 1 else EDGE
+        total = r.dtype.type(0.0)
+        for k in range(s, s + wide - EDGE - EDGE):
+            r[j, k] -= alpha * q[0, k]
+            total += abs(r[j, k])
+        whole += total
+    return whole
 
 
 @threaded_part
-def _first_step(r, z, cx, cy, place, alpha, periodic, sums):
-    """Write ``r -= alpha A z`` and the row sums of |r| and largest |r|."""
-    end = z.shape[0] - PAD
-    for n in prange((end - PAD + BLOCK - 1) // BLOCK):
-        block = signed(n)
+def _first_step(r, z, faces, place, alpha, inner, repeats, sums):
+    """Write ``r -= alpha A z`` and each slab's sum of |r| and largest |r|."""
+    end, block = z.shape[0] - PAD, block_of(inner)
+    for n in prange((end - PAD + block - 1) // block):
+        first = PAD + signed(n) * block
         q, top = np.empty((1, z.shape[1]), z.dtype), np.empty(LANES, z.dtype)
-        for j in range(PAD + block * BLOCK, min(PAD + (block + 1) * BLOCK, end)):
-            apply_rows(q, 0, z, j - 1, j, j + 1, cx, cy, place, j)
-            sums[j, 0] = _lower(r, j, q, alpha)
-            sums[j, 1] = largest_size(r, j, top)
-            seal_row(r, j, periodic)
+        for j in range(first, min(first + block, end)):
+            apply_slabs(q, 0, z, j - 1, j, j + 1, faces, place, j, inner)
+            sums[j, 0] = _lower(r, j, q, alpha, inner)
+            sums[j, 1] = largest_size(r, j, inner, top)
+            seal_slab(r, j, inner, repeats)
 
 
 @threaded_part
-def _step(r, z, d, cx, cy, place, alpha, beta, periodic, sums):
-    """Write ``r -= alpha A (z + beta d)`` and the row sums of |r| and largest |r|."""
-    end, one = z.shape[0] - PAD, z.dtype.type(1.0)
-    for n in prange((end - PAD + BLOCK - 1) // BLOCK):
-        block = signed(n)
+def _step(r, z, d, faces, place, alpha, beta, inner, repeats, sums):
+    """Write ``r -= alpha A (z + beta d)`` and each slab's sum of |r| and largest |r|."""
+    end, block, one = z.shape[0] - PAD, block_of(inner), z.dtype.type(1.0)
+    for n in prange((end - PAD + block - 1) // block):
         q, top = np.empty((1, z.shape[1]), z.dtype), np.empty(LANES, z.dtype)
         rows = np.empty((3, z.shape[1]), z.dtype)
         low, mid, high = 0, 1, 2
-        first, last = PAD + block * BLOCK, min(PAD + (block + 1) * BLOCK, end)
-        for j in range(first - 1, last + 1):
+        first = PAD + signed(n) * block
+        for j in range(first - 1, min(first + block, end) + 1):
             low, mid, high = mid, high, low
             _mix(rows, high, z, d, j, one, beta)
             if j > first:
                 c = j - 1
-                apply_rows(q, 0, rows, low, mid, high, cx, cy, place, c)
-                sums[c, 0] = _lower(r, c, q, alpha)
-                sums[c, 1] = largest_size(r, c, top)
-                seal_row(r, c, periodic)
+                apply_slabs(q, 0, rows, low, mid, high, faces, place, c, inner)
+                sums[c, 0] = _lower(r, c, q, alpha, inner)
+                sums[c, 1] = largest_size(r, c, inner, top)
+                seal_slab(r, c, inner, repeats)
 
 
 @threaded_part
-def _keep(x, e, z, d, alpha, beta, before):
+def _keep(x, e, z, d, alpha, beta, before, inner):
     """Write ``e = z + beta d`` and ``x = alpha e + before d``, or ``x += alpha e`` if ``before`` is 0."""
-    one = z.dtype.type(1.0)
-    for n in prange((x.shape[0] + BLOCK - 1) // BLOCK):
-        block = signed(n)
-        for j in range(block * BLOCK, min((block + 1) * BLOCK, x.shape[0])):
+    one, block = z.dtype.type(1.0), block_of(inner)
+    for n in prange((x.shape[0] + block - 1) // block):
+        first = signed(n) * block
+        for j in range(first, min(first + block, x.shape[0])):
             _mix(e, j, z, d, j, one, beta)
             if before != 0:
                 _mix(x, j, z, d, j, alpha, alpha * beta + before)
@@ -148,7 +157,7 @@ def _most(sums, column):
 
 
 @compiled
-def solve(x, d, q, store, layout, room, rects, periodic, sums, mean_limit, max_limit, most):
+def solve(x, d, q, store, layout, room, rects, inner, repeats, sums, mean_limit, max_limit, most):
     """Solve for the right side ``B`` of level 0, in which the residual is left; ``x``, ``d`` and ``q`` are room.
 
     One iteration or two are what a step of the flow takes, so what they add up to is left to who reads it.
@@ -157,21 +166,21 @@ def solve(x, d, q, store, layout, room, rects, periodic, sums, mean_limit, max_l
         iterations, mean residual, largest residual, and the numbers ``a`` and ``b`` with which the solution is
         ``a d + b X``, where ``X`` is that of level 0.
     """
-    r, z = level(store, layout, B, 0), level(store, layout, X, 0)
-    cx, cy = level(store, layout, CX, 0), level(store, layout, CY, 0)
-    real = store.dtype.type
-    place = layout[0]
-    cells = layout[0, 1] * layout[0, 2]
+    r, z = level(store, layout, inner, B, 0), level(store, layout, inner, X, 0)
+    faces, place, real = faces_of(store, layout, inner, 0), layout[0], store.dtype.type
+    cells = 1
+    for axis in range(len(inner) + 1):
+        cells *= place[1 + axis]
     last, alpha, beta, before = 1.0, 0.0, 0.0, 0.0
     begun, due, kept = d, False, False
     mean, largest, best, since = 0.0, 0.0, np.inf, 0
     k = 0
     while k < most and since < (STALLED if best <= NEARLY else PATIENCE):
         if k >= 2:
-            _keep(x, q, z, d, real(alpha), real(beta), real(before))
+            _keep(x, q, z, d, real(alpha), real(beta), real(before), inner)
             d, q, before, due, kept = q, d, 0.0, False, True
-        cycle(d if k == 0 else z, store, layout, room, rects, periodic)
-        _measure(d if k == 0 else z, r, d, cx, cy, place, sums)
+        cycle(d if k == 0 else z, store, layout, room, rects, inner, repeats)
+        _measure(d if k == 0 else z, r, d, faces, place, inner, sums)
         own, old, gain = _total(sums, 0), _total(sums, 1), _total(sums, 2)
         turn = 0.0 if k == 0 else -old / last
         last = own + turn * old
@@ -181,10 +190,10 @@ def solve(x, d, q, store, layout, room, rects, periodic, sums, mean_limit, max_l
             break
         alpha, beta = (gain + turn * _total(sums, 3)) / last, turn
         if k == 0:
-            _first_step(r, d, cx, cy, place, real(alpha), periodic[0], sums)
+            _first_step(r, d, faces, place, real(alpha), inner, repeats, sums)
             before = alpha
         else:
-            _step(r, z, d, cx, cy, place, real(alpha), real(beta), periodic[0], sums)
+            _step(r, z, d, faces, place, real(alpha), real(beta), inner, repeats, sums)
             due = True
         k += 1
         told = mean, largest
@@ -201,9 +210,9 @@ def solve(x, d, q, store, layout, room, rects, periodic, sums, mean_limit, max_l
     if not kept:
         return k, mean, largest, before + due * alpha * beta, due * alpha
     if due:
-        _keep(x, q, z, d, real(alpha), real(beta), real(before))
+        _keep(x, q, z, d, real(alpha), real(beta), real(before), inner)
     for j in range(x.shape[0]):
-        copy_row(begun, j, x, j)
+        copy_slab(begun, j, x, j)
     return k, mean, largest, 1.0, 0.0
 
 
@@ -219,33 +228,41 @@ class Solve:
     """Largest divergence left over [m/s per cell]."""
 
 
-def levels(ny: int, nx: int) -> np.ndarray:
-    """Return the layout of the levels of a grid, shape (level, 7): offset, ny, nx and an empty window.
+def levels(cells: tuple[int, ...]) -> np.ndarray:
+    """Return the layout of the levels of a grid, shape (level, 1 + 3 axes), with empty windows; see ``slab``.
 
-    Halving goes on while both sizes are even and the smaller one is above 4.
+    Halving goes on while all sizes are even and the smallest one is above 4.
+
+    Args:
+        cells: number of cells along x, y (and z).
     """
-    rows, offset = [], 0
+    rows, offset, axes = [], 0, len(cells)
+    sizes = np.array(cells[::-1], dtype=np.int64)
     while True:
-        rows.append([offset, ny, nx, PAD, PAD, PAD, PAD])
-        offset += (ny + 2 * PAD) * (nx + 2 * PAD)
-        if ny % 2 or nx % 2 or min(ny, nx) <= 4:
+        rows.append([offset, *sizes, *[PAD] * (2 * axes)])
+        offset += (FACES + axes) * int(np.prod(sizes + 2 * PAD))
+        if (sizes % 2).any() or sizes.min() <= 4:
             return np.array(rows, dtype=np.int64)
-        ny, nx = ny // 2, nx // 2
+        sizes //= 2
 
 
 def make_store(layout: np.ndarray, dtype: type) -> np.ndarray:
     """Return the store of a layout with all coefficients 1."""
-    end = layout[-1, 0] + (layout[-1, 1] + 2 * PAD) * (layout[-1, 2] + 2 * PAD)
-    store = np.zeros((5, end), dtype)
-    store[CX] = store[CY] = 1
-    store[DINV] = 0.25
+    axes = layout.shape[1] // 3
+    sizes = (layout[:, 1 : 1 + axes] + 2 * PAD).prod(axis=1)
+    store = np.zeros(layout[-1, 0] + (FACES + axes) * sizes[-1], dtype)
+    for start, size in zip(layout[:, 0], sizes, strict=True):
+        store[start + DINV * size : start + (DINV + 1) * size] = 0.5 / axes
+        store[start + FACES * size : start + (FACES + axes) * size] = 1
     return store
 
 
-def place_window(layout: np.ndarray, window: tuple[int, int, int, int]) -> None:
-    """Write the window (j0, j1, i0, i1, in padded indices) and its coarser images to the layout."""
-    j0, j1, i0, i1 = (w - PAD for w in window)
+def place_window(layout: np.ndarray, window: Window) -> None:
+    """Write the window (first and end along each axis, the last axis first, padded) and its coarser images."""
+    axes = layout.shape[1] // 3
+    ends = np.array(window).reshape(axes, 2) - PAD
     for row in layout:
-        row[3:] = np.array([max(j0, 0), min(j1, row[1]), max(i0, 0), min(i1, row[2])]) + PAD
-        if j1 > j0:
-            j0, j1, i0, i1 = j0 // 2 - 1, (j1 + 1) // 2 + 1, i0 // 2 - 1, (i1 + 1) // 2 + 1
+        row[1 + axes :: 2] = np.maximum(ends[:, 0], 0) + PAD
+        row[2 + axes :: 2] = np.minimum(ends[:, 1], row[1 : 1 + axes]) + PAD
+        if ends[0, 1] > ends[0, 0]:
+            ends = np.stack([ends[:, 0] // 2 - 1, (ends[:, 1] + 1) // 2 + 1], axis=1)

@@ -1,69 +1,87 @@
 # mypy: disable-error-code="no-untyped-def, var-annotated"
-# (the kernels get their types from numba, once per precision)
-"""Divergence before the pressure solve, and the correction after it, in cells and flow units."""
+# (the kernels get their types from numba, once per precision and number of dimensions)
+"""Divergence before the pressure solve, and the correction after it, in cells and flow units; see ``slab``."""
 
 import numpy as np
 from numba import prange
 
-from suchus.flow.compiled import BLOCK, PAD, UNIT, compiled, part, signed, threaded, unsigned
-from suchus.flow.stencil import LANES, largest_size, seal_row
+from suchus.flow.compiled import PAD, UNIT, compiled, part, signed, threaded, unsigned
+from suchus.flow.slab import EDGE, block_of, meets, row_count, row_length, run_of, window_columns, window_rows
+from suchus.flow.stencil import LANES, largest_size, seal_slab, summed_size
 
 
 @part
-def _divergence_row(r, u, v, row, mean):
-    """Write ``-div u - mean`` along a row."""
-    j = unsigned(row)
-    for k in range(unsigned(PAD), unsigned(r.shape[1] - PAD)):
-        r[j, k] = (u[j, k] - u[j, k + UNIT]) + (v[j, k] - v[j + UNIT, k]) - mean
-
-
-@part
-def _size(r, row):
-    total, j = r.dtype.type(0), unsigned(row)
-    for k in range(unsigned(PAD), unsigned(r.shape[1] - PAD)):
-        total += abs(r[j, k])
-    return total
+def _divergence_slab(r, velocity, slab, mean, inner):
+    """Write ``-div u - mean`` along a slab."""
+    j, up = unsigned(slab), unsigned(len(inner))
+    first, end = run_of(inner, r.shape[1])
+    for k in range(first, end):
+        net = r.dtype.type(0)
+        for d in range(len(inner)):
+            net += velocity[d, j, k] - velocity[d, j, k + inner[d]]
+        r[j, k] = net + (velocity[up, j, k] - velocity[up, j + UNIT, k]) - mean
 
 
 @threaded
-def residual(r, u, v, source, dinv, window, mean, periodic, sums):
-    """Write ``source - div u - mean`` to ``r``; ``sums`` gets its summed size and largest size, row by row.
+def residual(r, velocity, source, dinv, place, mean, inner, repeats, sums):
+    """Write ``source - div u - mean`` to ``r``; ``sums`` gets its summed size and largest size, slab by slab.
 
     Cells that lie wholly inside the body get 0: no pressure acts there.
     """
-    end = u.shape[0] - PAD
-    for n in prange((end - PAD + BLOCK - 1) // BLOCK):
-        block = signed(n)
-        top = np.empty(LANES, u.dtype)
-        for j in range(PAD + block * BLOCK, min(PAD + (block + 1) * BLOCK, end)):
-            _divergence_row(r, u, v, j, mean)
-            if window[0] <= j < window[1]:
-                c = unsigned(j)
-                for i in range(unsigned(window[2]), unsigned(window[3])):
-                    r[c, i] = r[c, i] + source[c, i] if dinv[c, i] > 0 else 0
-            seal_row(r, j, periodic)
-            sums[j, 0] = _size(r, j)
-            sums[j, 1] = largest_size(r, j, top)
-
-
-@compiled
-def mean_residual(u, v, source, window):
-    """Return the mean of ``source - div u``: what flows in through the sides, and what the bodies push out."""
-    s, t, b = PAD, u.shape[0] - PAD, u.shape[1] - PAD
-    total = 0.0
-    for j in range(s, t):
-        total += np.float64(u[j, s]) - np.float64(u[j, b])
-    for i in range(s, b):
-        total += np.float64(v[s, i]) - np.float64(v[t, i])
-    for j in range(window[0], window[1]):
-        for i in range(window[2], window[3]):
-            total += source[j, i]
-    return total / ((t - s) * (b - s))
+    end, block = r.shape[0] - PAD, block_of(inner)
+    for n in prange((end - PAD + block - 1) // block):
+        start = PAD + signed(n) * block
+        top = np.empty(LANES, r.dtype)
+        for j in range(start, min(start + block, end)):
+            _divergence_slab(r, velocity, j, mean, inner)
+            if meets(place, inner, j):
+                c, wide, (r0, r1) = unsigned(j), row_length(inner, r.shape[1]), window_rows(place, inner)
+                s, e = window_columns(place, inner)
+                for row in range(r0, r1):
+                    for i in range(row * wide + s, row * wide + e):
+                        r[c, i] = r[c, i] + source[c, i] if dinv[c, i] > 0 else 0
+            seal_slab(r, j, inner, repeats)
+            sums[j, 0] = summed_size(r, j, inner)
+            sums[j, 1] = largest_size(r, j, inner, top)
 
 
 @part
-def _add(out, o, d, z, row, a, b):
-    o, j = unsigned(o), unsigned(row)
+def _through_sides(velocity, inner):
+    """Return what flows in through the sides."""
+    total, up, n, length = 0.0, len(inner), velocity.shape[1], velocity.shape[2]
+    wide = signed(row_length(inner, length))
+    rows, columns = signed(row_count(inner, length)), wide - 2 * PAD
+    for d in range(len(inner)):
+        # cells before a side along axis d, and the rows (d = 0) or cells (d = 1) along it
+        far = columns if d == 0 else rows * wide
+        for j in range(PAD, n - PAD):
+            for m in range(rows if d == 0 else columns):
+                k = PAD + (PAD + m) * wide if d == 0 else PAD * wide + PAD + m
+                k = k if len(inner) > 1 else PAD
+                total += np.float64(velocity[d, j, k]) - np.float64(velocity[d, j, k + far])
+    for m in range(rows):
+        s = PAD + (PAD + m) * wide if len(inner) > 1 else PAD
+        for i in range(s, s + columns):
+            total += np.float64(velocity[up, PAD, i]) - np.float64(velocity[up, n - PAD, i])
+    return total, (n - 2 * PAD) * rows * columns
+
+
+@compiled
+def mean_residual(velocity, source, place, inner):
+    """Return the mean of ``source - div u``: what flows in through the sides, and what the bodies push out."""
+    total, cells = _through_sides(velocity, inner)
+    wide, (r0, r1), (s, e) = row_length(inner, source.shape[1]), window_rows(place, inner), window_columns(place, inner)
+    for j in range(source.shape[0]):
+        if meets(place, inner, j):
+            for row in range(r0, r1):
+                for i in range(row * wide + s, row * wide + e):
+                    total += source[unsigned(j), i]
+    return total / cells
+
+
+@part
+def _add(out, o, d, z, slab, a, b):
+    o, j = unsigned(o), unsigned(slab)
     if b == 0:
         for k in range(unsigned(d.shape[1])):
             out[o, k] = a * d[j, k]
@@ -73,81 +91,105 @@ def _add(out, o, d, z, row, a, b):
 
 
 @part
-def _correct_plain(u, v, p, row, x, low, mid, level, gain, start, stop):
-    j, low, mid = unsigned(row), unsigned(low), unsigned(mid)
-    for k in range(unsigned(start), unsigned(stop)):
+def _correct_plain(velocity, p, slab, x, low, mid, level, gain, start, stop, inner):
+    j, low, mid, up = unsigned(slab), unsigned(low), unsigned(mid), unsigned(len(inner))
+    for k in range(start, stop):
         m = x[mid, k]
-        u[j, k] -= m - x[mid, k - UNIT]
-        v[j, k] -= m - x[low, k]
+        for d in range(len(inner)):
+            velocity[d, j, k] -= m - x[mid, k - inner[d]]
+        velocity[up, j, k] -= m - x[low, k]
         p[j, k] += gain * (m - level)
 
 
 @part
-def _correct_body(u, v, p, row, x, low, mid, cx, cy, level, gain, start, stop):
-    j, low, mid = unsigned(row), unsigned(low), unsigned(mid)
-    for k in range(unsigned(start), unsigned(stop)):
+def _correct_body(velocity, p, slab, x, low, mid, passage, level, gain, start, stop, inner):
+    j, low, mid, up = unsigned(slab), unsigned(low), unsigned(mid), unsigned(len(inner))
+    for k in range(start, stop):
         m = x[mid, k]
-        u[j, k] -= cx[j, k] * (m - x[mid, k - UNIT])
-        v[j, k] -= cy[j, k] * (m - x[low, k])
+        for d in range(len(inner)):
+            velocity[d, j, k] -= passage[d, j, k] * (m - x[mid, k - inner[d]])
+        velocity[up, j, k] -= passage[up, j, k] * (m - x[low, k])
         p[j, k] += gain * (m - level)
 
 
 @part
-def _along_sides(x):
-    """Return the mean of the outermost cells of the domain."""
-    n, m = x.shape[0] - PAD - 1, x.shape[1] - PAD - 1
-    total = 0.0
-    for j in range(PAD, n + 1):
-        total += np.float64(x[j, PAD]) + np.float64(x[j, m])
-    for i in range(PAD, m + 1):
-        total += np.float64(x[PAD, i]) + np.float64(x[n, i])
-    return total / (2 * (n + m + 2 - 2 * PAD))
+def _correct_slab(velocity, p, slab, x, low, mid, passage, place, level, gain, inner):
+    wide, (r0, r1), (w0, w1) = row_length(inner, p.shape[1]), window_rows(place, inner), window_columns(place, inner)
+    inside = meets(place, inner, slab)
+    for n in range(row_count(inner, p.shape[1])):
+        row = n + EDGE if len(inner) > 1 else n
+        f, e = row * wide + EDGE, row * wide + wide - EDGE
+        if inside and r0 <= row < r1:
+            _correct_plain(velocity, p, slab, x, low, mid, level, gain, f, row * wide + w0, inner)
+            _correct_body(
+                velocity, p, slab, x, low, mid, passage, level, gain, row * wide + w0, row * wide + w1, inner
+            )  # fmt: skip
+            f = row * wide + w1
+        _correct_plain(velocity, p, slab, x, low, mid, level, gain, f, e, inner)
+
+
+@part
+def _along_sides(x, inner):
+    """Return the mean of the outermost cells of the domain; one in a corner counts for each of its sides."""
+    last, wide = x.shape[0] - PAD - 1, signed(row_length(inner, x.shape[1]))
+    rows, columns, count, total = signed(row_count(inner, x.shape[1])), wide - 2 * PAD, 0, 0.0
+    for j in range(PAD, last + 1):
+        for d in range(len(inner)):
+            far = columns - 1 if d == 0 else (rows - 1) * wide
+            for m in range(rows if d == 0 else columns):
+                k = PAD + (PAD + m) * wide if d == 0 else PAD * wide + PAD + m
+                k = k if len(inner) > 1 else PAD
+                total += np.float64(x[j, k]) + np.float64(x[j, k + far])
+                count += 2
+    for m in range(rows):
+        s = PAD + (PAD + m) * wide if len(inner) > 1 else PAD
+        for i in range(s, s + columns):
+            total += np.float64(x[PAD, i]) + np.float64(x[last, i])
+            count += 2
+    return total / count
 
 
 @threaded
-def correct(u, v, p, d, z, a, b, cx, cy, window, gain):
+def correct(velocity, p, d, z, a, b, passage, place, inner, gain):
     """Subtract ``passage grad x`` from the velocity and add ``gain x`` to the pressure, where ``x = a d + b z``.
 
     The pressure is pinned: the mean of what is added is zero along the sides. Without that it drifts, and single
     precision has less and less room for what matters. Values on the domain's edges are corrected with a mirrored ``x``,
     that is, left as they are.
     """
-    s, e = PAD, u.shape[1] - PAD
-    end = u.shape[0] - PAD
-    level = u.dtype.type(a * _along_sides(d) + b * _along_sides(z))
-    for n in prange((end - PAD + BLOCK - 1) // BLOCK):
-        block = signed(n)
-        x = np.empty((2, u.shape[1]), u.dtype)
+    end, block = p.shape[0] - PAD, block_of(inner)
+    level = p.dtype.type(a * _along_sides(d, inner) + b * _along_sides(z, inner))
+    for n in prange((end - PAD + block - 1) // block):
+        first = PAD + signed(n) * block
+        x = np.empty((2, p.shape[1]), p.dtype)
         low, mid = 0, 1
-        first = PAD + block * BLOCK
         _add(x, mid, d, z, first - 1, a, b)
-        for j in range(first, min(first + BLOCK, end)):
+        for j in range(first, min(first + block, end)):
             low, mid = mid, low
             _add(x, mid, d, z, j, a, b)
-            f = s
-            if window[0] <= j < window[1]:
-                _correct_plain(u, v, p, j, x, low, mid, level, gain, s, window[2])
-                _correct_body(u, v, p, j, x, low, mid, cx, cy, level, gain, window[2], window[3])
-                f = window[3]
-            _correct_plain(u, v, p, j, x, low, mid, level, gain, f, e)
+            _correct_slab(velocity, p, j, x, low, mid, passage, place, level, gain, inner)
 
 
 @part
-def _speeds(out, u, v, row):
-    j = unsigned(row)
-    for k in range(unsigned(PAD), unsigned(u.shape[1] - PAD)):
-        a, b = abs(u[j, k]), abs(u[j, k + UNIT])
-        c, d = abs(v[j, k]), abs(v[j + UNIT, k])
-        out[0, k] = (a if a > b else b) + (c if c > d else d)
+def _speeds(out, velocity, slab, inner):
+    j, up = unsigned(slab), unsigned(len(inner))
+    first, end = run_of(inner, velocity.shape[2])
+    for k in range(first, end):
+        speed = out.dtype.type(0)
+        for d in range(len(inner)):
+            a, b = abs(velocity[d, j, k]), abs(velocity[d, j, k + inner[d]])
+            speed += a if a > b else b
+        a, b = abs(velocity[up, j, k]), abs(velocity[up, j + UNIT, k])
+        out[0, k] = speed + (a if a > b else b)
 
 
 @threaded
-def fastest(u, v, sums):
-    """Write the largest |u| + |v| of every row to ``sums[:, 0]``."""
-    end = u.shape[0] - PAD
-    for n in prange((end - PAD + BLOCK - 1) // BLOCK):
-        block = signed(n)
-        speed, top = np.empty((1, u.shape[1]), u.dtype), np.empty(LANES, u.dtype)
-        for j in range(PAD + block * BLOCK, min(PAD + (block + 1) * BLOCK, end)):
-            _speeds(speed, u, v, j)
-            sums[j, 0] = largest_size(speed, 0, top)
+def fastest(velocity, inner, sums):
+    """Write the largest sum of the components' sizes of every slab to ``sums[:, 0]``."""
+    end, block = velocity.shape[1] - PAD, block_of(inner)
+    for n in prange((end - PAD + block - 1) // block):
+        start = PAD + signed(n) * block
+        speed, top = np.empty((1, velocity.shape[2]), velocity.dtype), np.empty(LANES, velocity.dtype)
+        for j in range(start, min(start + block, end)):
+            _speeds(speed, velocity, j, inner)
+            sums[j, 0] = largest_size(speed, 0, inner, top)

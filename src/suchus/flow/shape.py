@@ -32,6 +32,16 @@ class Field:
     thickness: np.ndarray
     """Thickness of the body behind the nearest point of its surface, infinite where it is thick [m]."""
 
+    @property
+    def normal(self) -> tuple[np.ndarray, ...]:
+        """Outward normal, along each axis [-]."""
+        return self.normal_x, self.normal_y
+
+    @property
+    def velocity(self) -> tuple[np.ndarray, ...]:
+        """Velocity of the body, along each axis [m/s]."""
+        return self.velocity_x, self.velocity_y
+
 
 @dataclass(slots=True)
 class Markers:

@@ -242,7 +242,7 @@ class Simulation(Fields):
         row = np.array(
             [self.time, dt, solves[0].cycles, solves[1].cycles, solves[1].largest / self._speed, *values]
         )  # fmt: skip
-        good = {"u": water._u2, "v": water._v2}
+        good = dict(zip("uv", water.before, strict=True))
         self._log.refuse_nonsense(fastest, self._reference, row, good)
         self._log.control(water, dt, shift)
         self._log.rows.append(row)

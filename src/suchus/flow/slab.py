@@ -1,0 +1,88 @@
+# mypy: disable-error-code="no-untyped-def, var-annotated"
+# (the kernels get their types from numba, once per precision and number of dimensions)
+"""How fields lie in memory: slabs, rows and strides, the same in two dimensions and in three.
+
+A field is an array (slab, cell of the slab), a vector field has the component before that. A *slab* is all cells with
+one index along the last axis: a row of a plane grid, a plane of a grid in space. ``inner`` are the strides along the
+axes within a slab, ``(1,)`` or ``(1, cells along a row)``: a tuple of ``np.uint64``, whose length is a part of its
+type. So ``for d in range(len(inner))`` inside a loop over cells is unrolled, and one kernel serves both.
+
+A ``place`` is a row of the multigrid's layout: where a level starts, its cells along the axes, the last axis first, and
+then the window around the bodies, first and end along each axis, the last axis first.
+"""
+
+import numpy as np
+from numba.cpython.unsafe.tuple import tuple_setitem
+
+from suchus.flow.compiled import BLOCK, PAD, UNIT, part, unsigned
+
+EDGE = unsigned(PAD)
+"""``PAD``, as kernels count [-]."""
+
+NONE = unsigned(0)
+"""Nothing, as kernels count [-]."""
+
+PLANES = 16
+"""Planes that one thread takes at a time [-]."""
+
+Strides = tuple[np.uint64, ...]
+"""Strides along the axes of a slab [-]."""
+
+
+def inner_strides(cells: tuple[int, ...]) -> Strides:
+    """Return the strides within a slab of a grid with so many cells along x, y (and z)."""
+    return (UNIT,) if len(cells) == 2 else (UNIT, unsigned(cells[0] + 2 * PAD))
+
+
+@part
+def strides_like(inner, wide):
+    """Return the strides within a slab of rows that are ``wide`` cells long, as many as ``inner`` has."""
+    return tuple_setitem(inner, len(inner) - 1, wide if len(inner) > 1 else UNIT)
+
+
+@part
+def block_of(inner):
+    """Return how many slabs a thread takes at a time."""
+    return BLOCK if len(inner) == 1 else PLANES
+
+
+@part
+def row_length(inner, length):
+    """Return how many cells a row has, those around the domain with it."""
+    return inner[-1] if len(inner) > 1 else unsigned(length)
+
+
+@part
+def row_count(inner, length):
+    """Return how many rows of a slab lie in the domain."""
+    return unsigned(length) // inner[-1] - EDGE - EDGE if len(inner) > 1 else UNIT
+
+
+@part
+def run_of(inner, length):
+    """Return first and end of the shortest run of cells that holds all cells of a slab that lie in the domain."""
+    margin = NONE
+    for d in range(len(inner)):
+        margin += EDGE * inner[d]
+    return margin, unsigned(length) - margin
+
+
+@part
+def meets(place, inner, slab):
+    """Return whether a slab meets the window."""
+    w = len(inner) + 2
+    return place[w] <= slab < place[w + 1]
+
+
+@part
+def window_rows(place, inner):
+    """Return first and end of the rows of a slab that meet the window."""
+    w = len(inner) + 4
+    return (unsigned(place[w]), unsigned(place[w + 1])) if len(inner) > 1 else (NONE, UNIT)
+
+
+@part
+def window_columns(place, inner):
+    """Return first and end of the cells of a row that meet the window."""
+    w = 3 * len(inner) + 2
+    return unsigned(place[w]), unsigned(place[w + 1])
