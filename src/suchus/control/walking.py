@@ -16,6 +16,8 @@ from suchus.errors import OutsideLimits
 from suchus.motion import START, AnyGait, Gait, Pattern, steerable, steered, trunk_amplitude
 from suchus.motion.transition import Transition, transition
 
+Groups = list[tuple[AnyRobot, Gait | Pattern, np.ndarray]]
+"""Robot, gait, and the runs of a batch that have both."""
 _SLACK = 1e-9  # [s]
 _GROWS = 0.5  # [cycle]; over which stroke and bends grow after a change of gait
 
@@ -131,7 +133,7 @@ class Walker:
         self._attitude = Attitude([control.attitude for control in controls], robots, period)
         self._switcher = Switcher([control.switching for control in controls], robots, gaits, period)
         self._lower = np.zeros((n, len(place.limbs)))
-        self._groups = _grouped(self._robots, self._gaits)
+        self._groups = grouped(self._robots, self._gaits)
         self._last = self._walk(0.0)
 
     def rest(self) -> Float[np.ndarray, "run servo"]:
@@ -150,7 +152,7 @@ class Walker:
             self._script[run] = (time, course, self._last.targets[run].copy())
             self._cycles[run] += np.ceil((time - self._began[run]) / self._gaits[run].period)
             self._gaits[run] = asked
-            self._groups = _grouped(self._robots, self._gaits)
+            self._groups = grouped(self._robots, self._gaits)
         for run, (begun, course, start) in self._script.items():
             now.targets[run] = course.at(time - begun, start)
             now.phase[run] = self._last.phase[run]
@@ -201,9 +203,7 @@ class Walker:
         return Command(targets, phases)
 
 
-def _grouped(
-    robots: Sequence[AnyRobot], gaits: Sequence[Gait | Pattern]
-) -> list[tuple[AnyRobot, Gait | Pattern, np.ndarray]]:
+def grouped(robots: Sequence[AnyRobot], gaits: Sequence[Gait | Pattern]) -> Groups:
     """Return who walks alike; to find it at every period takes as long as the walking."""
     members: dict[tuple[AnyRobot, Gait | Pattern], list[int]] = {}
     for run, pair in enumerate(zip(robots, gaits, strict=True)):

@@ -3,18 +3,11 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from suchus.experiments._shore_findings import METRES
 from suchus.report.numbers import quantity
 from suchus.report.result import Result
 
 _MEASURES = ("speed", "work_per_metre", "cost_of_transport")
-_WHERE = (
-    ("land", "on level dry land"),
-    ("ashore", "up the shore, out of the water"),
-    ("wading", "up the shore, wading"),
-    ("surface", "at the surface"),
-    ("deep", "at a depth that is held"),
-)
-"""Endings of the measures, and in words where that is."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -36,7 +29,7 @@ class Metre:
 def metres(results: Mapping[str, Result]) -> list[Metre]:
     """Return the rows that the outcomes allow, in the order from land to depth."""
     rows = []
-    for ending, where in _WHERE:
+    for ending, where in METRES.items():
         for name, result in results.items():
             told = result.told["measures"]
             speed, work, cost = (_told(told.get(f"{what}_{ending}")) for what in _MEASURES)
