@@ -165,7 +165,7 @@ def test_a_rod_points_where_it_should(way):
 
 
 def test_a_rod_is_closed():
-    for shape in (rods.Shape(radius=0.1), rods.Shape(radius=0.1, head=0.3, head_radius=0.2)):
+    for shape in (rods.RodShape(radius=0.1), rods.RodShape(radius=0.1, head=0.3, head_radius=0.2)):
         _, faces, weights = rods.rod(shape)
         edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
         ahead, back = {tuple(edge) for edge in edges.tolist()}, {tuple(edge) for edge in edges[:, ::-1].tolist()}
