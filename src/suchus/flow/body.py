@@ -75,10 +75,11 @@ def measure_all(
 
     ``points`` are the coordinates of the window along each axis [m].
     """
-    first = bodies[0].shape.measure(*points, time, poses[0], (REACH + 1) * h)
+    x, y = points
+    first = bodies[0].shape.measure(x, y, time, poses[0], (REACH + 1) * h)
     owner = np.zeros(first.distance.shape, np.int8)
     for k, (body, pose) in enumerate(zip(bodies[1:], poses[1:], strict=True), start=1):
-        other = body.shape.measure(*points, time, pose, (REACH + 1) * h)
+        other = body.shape.measure(x, y, time, pose, (REACH + 1) * h)
         nearer = other.distance < first.distance
         first = Field(*(np.where(nearer, getattr(other, f.name), getattr(first, f.name)) for f in fields(Field)))
         owner[nearer] = k

@@ -181,7 +181,7 @@ class Border:
             ahead = grown * (edge.induced - edge.seen)
             if isinstance(edge.side, Stream | Outflow):
                 rise = edge.sign * (stream[edge.axis] - before[edge.axis]) if isinstance(edge.side, Stream) else 0.0
-                carried = self._carried(edge, *velocity, dt) + (rise + ahead)
+                carried = self._carried(edge, velocity[0], velocity[1], dt) + (rise + ahead)
                 held = edge.sign * stream[edge.axis] + edge.induced + ahead
                 edge.prescribed[:] = edge.leaves * carried + (1 - edge.leaves) * held
             edge.seen[:] = edge.induced
@@ -237,4 +237,4 @@ class Border:
     def fill(self, velocity: np.ndarray) -> None:
         """Write all boundary values around the domain."""
         for edge in self.edges:
-            edge.fill(*velocity, self.stream)
+            edge.fill(velocity[0], velocity[1], self.stream)

@@ -175,7 +175,7 @@ class OpenWater:
 
         The order is left, right, bottom, top. The sum over all faces is zero but for the sources of wakes.
         """
-        gather(*velocity, np.array(window), self.blocks)
+        gather(velocity[0], velocity[1], np.array(window), self.blocks)
         x, y = self.middles
         strength, extra = self.blocks, []
         for fading in fadings:

@@ -46,37 +46,45 @@ def residual(r, velocity, source, dinv, place, mean, inner, repeats, sums):
 
 
 @part
-def _through_sides(velocity, inner):
-    """Return what flows in through the sides."""
-    total, up, n, length = 0.0, len(inner), velocity.shape[1], velocity.shape[2]
-    wide = signed(row_length(inner, length))
-    rows, columns = signed(row_count(inner, length)), wide - 2 * PAD
-    for d in range(len(inner)):
-        # cells before a side along axis d, and the rows (d = 0) or cells (d = 1) along it
-        far = columns if d == 0 else rows * wide
-        for j in range(PAD, n - PAD):
-            for m in range(rows if d == 0 else columns):
-                k = PAD + (PAD + m) * wide if d == 0 else PAD * wide + PAD + m
-                k = k if len(inner) > 1 else PAD
-                total += np.float64(velocity[d, j, k]) - np.float64(velocity[d, j, k + far])
-    for m in range(rows):
-        s = PAD + (PAD + m) * wide if len(inner) > 1 else PAD
-        for i in range(s, s + columns):
-            total += np.float64(velocity[up, PAD, i]) - np.float64(velocity[up, n - PAD, i])
-    return total, (n - 2 * PAD) * rows * columns
+def _mean_of_plane(u, v, source, place):
+    s, t, b = PAD, u.shape[0] - PAD, u.shape[1] - PAD
+    total = 0.0
+    for j in range(s, t):
+        total += np.float64(u[j, s]) - np.float64(u[j, b])
+    for i in range(s, b):
+        total += np.float64(v[s, i]) - np.float64(v[t, i])
+    for j in range(place[3], place[4]):
+        for i in range(place[5], place[6]):
+            total += source[j, i]
+    return total / ((t - s) * (b - s))
+
+
+@part
+def _mean_in_space(velocity, source, place, inner):
+    end, wide, total = source.shape[0] - PAD, signed(row_length(inner, source.shape[1])), 0.0
+    rows, columns = signed(row_count(inner, source.shape[1])), wide - 2 * PAD
+    for row in range(PAD, rows + PAD):
+        for j in range(PAD, end):
+            k = row * wide + PAD
+            total += np.float64(velocity[0, j, k]) - np.float64(velocity[0, j, k + columns])
+        for i in range(row * wide + PAD, row * wide + PAD + columns):
+            total += np.float64(velocity[2, PAD, i]) - np.float64(velocity[2, end, i])
+    for j in range(PAD, end):
+        for i in range(PAD * wide + PAD, PAD * wide + PAD + columns):
+            total += np.float64(velocity[1, j, i]) - np.float64(velocity[1, j, i + rows * wide])
+    for j in range(place[4], place[5]):
+        for row in range(place[6], place[7]):
+            for i in range(row * wide + place[8], row * wide + place[9]):
+                total += source[j, i]
+    return total / ((end - PAD) * rows * columns)
 
 
 @compiled
 def mean_residual(velocity, source, place, inner):
     """Return the mean of ``source - div u``: what flows in through the sides, and what the bodies push out."""
-    total, cells = _through_sides(velocity, inner)
-    wide, (r0, r1), (s, e) = row_length(inner, source.shape[1]), window_rows(place, inner), window_columns(place, inner)
-    for j in range(source.shape[0]):
-        if meets(place, inner, j):
-            for row in range(r0, r1):
-                for i in range(row * wide + s, row * wide + e):
-                    total += source[unsigned(j), i]
-    return total / cells
+    if len(inner) == 1:
+        return _mean_of_plane(velocity[0], velocity[1], source, place)
+    return _mean_in_space(velocity, source, place, inner)
 
 
 @part
@@ -131,21 +139,25 @@ def _correct_slab(velocity, p, slab, x, low, mid, passage, place, level, gain, i
 @part
 def _along_sides(x, inner):
     """Return the mean of the outermost cells of the domain; one in a corner counts for each of its sides."""
-    last, wide = x.shape[0] - PAD - 1, signed(row_length(inner, x.shape[1]))
-    rows, columns, count, total = signed(row_count(inner, x.shape[1])), wide - 2 * PAD, 0, 0.0
-    for j in range(PAD, last + 1):
-        for d in range(len(inner)):
-            far = columns - 1 if d == 0 else (rows - 1) * wide
-            for m in range(rows if d == 0 else columns):
-                k = PAD + (PAD + m) * wide if d == 0 else PAD * wide + PAD + m
-                k = k if len(inner) > 1 else PAD
-                total += np.float64(x[j, k]) + np.float64(x[j, k + far])
-                count += 2
-    for m in range(rows):
-        s = PAD + (PAD + m) * wide if len(inner) > 1 else PAD
-        for i in range(s, s + columns):
-            total += np.float64(x[PAD, i]) + np.float64(x[last, i])
-            count += 2
+    n, wide, total = x.shape[0] - PAD - 1, signed(row_length(inner, x.shape[1])), 0.0
+    m = wide - PAD - 1
+    if len(inner) == 1:
+        for j in range(PAD, n + 1):
+            total += np.float64(x[j, PAD]) + np.float64(x[j, m])
+        for i in range(PAD, m + 1):
+            total += np.float64(x[PAD, i]) + np.float64(x[n, i])
+        return total / (2 * (n + m + 2 - 2 * PAD))
+    last, count = PAD + signed(row_count(inner, x.shape[1])) - 1, 0
+    for j in range(PAD, n + 1):
+        for row in range(PAD, last + 1):
+            total += np.float64(x[j, row * wide + PAD]) + np.float64(x[j, row * wide + m])
+        for i in range(PAD, m + 1):
+            total += np.float64(x[j, PAD * wide + i]) + np.float64(x[j, last * wide + i])
+        count += 2 * (last + m + 2 - 2 * PAD)
+    for row in range(PAD, last + 1):
+        for i in range(row * wide + PAD, row * wide + m + 1):
+            total += np.float64(x[PAD, i]) + np.float64(x[n, i])
+        count += 2 * (m + 1 - PAD)
     return total / count
 
 

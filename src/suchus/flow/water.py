@@ -87,15 +87,20 @@ class Water:
         self._slabs = shape[0], int(np.prod(shape[1:]))
         vector = (self.axes, *shape)
         # Fluid: now, predicted, corrected; pressure
-        self.velocity, self._predicted, self._corrected = (np.zeros(vector, dtype) for _ in range(3))
+        self.velocity: np.ndarray = np.zeros(vector, dtype)
+        self._predicted: np.ndarray = np.zeros(vector, dtype)
+        self._corrected: np.ndarray = np.zeros(vector, dtype)
         self.p: np.ndarray = np.zeros(shape, dtype)
         # Body: its velocity, kernel moments, own divergence; and the fluid's bare update in its window
         self.mu0: np.ndarray = np.ones(vector, dtype)
         self.mu1: np.ndarray = np.zeros((self.axes, *vector), dtype)
-        self.b, self._raw = np.zeros(vector, dtype), np.zeros(vector, dtype)
+        self.b: np.ndarray = np.zeros(vector, dtype)
+        self._raw: np.ndarray = np.zeros(vector, dtype)
         self.source: np.ndarray = np.zeros(shape, dtype)
         # Pressure solver
-        self._x, self._d, self._q = (np.zeros(self._slabs, dtype) for _ in range(3))
+        self._x: np.ndarray = np.zeros(self._slabs, dtype)
+        self._d: np.ndarray = np.zeros(self._slabs, dtype)
+        self._q: np.ndarray = np.zeros(self._slabs, dtype)
         self._layout = poisson.levels(grid.cells)
         self._store = poisson.make_store(self._layout, dtype)
         self._patches = patch.rects(self._layout)
@@ -122,12 +127,6 @@ class Water:
     def before(self) -> np.ndarray:
         """Velocity at the start of the last step [m/s]."""
         return self._corrected
-
-    @property
-    def place_of_window(self) -> np.ndarray:
-        """The finest level's row of the layout, which the kernels take the window from."""
-        row: np.ndarray = self._layout[0]
-        return row
 
     def _flat(self, a: np.ndarray) -> np.ndarray:
         """Return a field as the kernels see it: slabs, and components before them."""
@@ -203,7 +202,8 @@ class Water:
             points = [(grid.faces if c == d else grid.centres)(*ends[d], d) for d in range(self.axes)]
             f, self.owners[c] = measure_all(bodies, poses, points, time, h)
             near, thickness = f.distance / h - self.offset, f.thickness / h + 2 * self.offset
-            mu0, mu1 = np.empty(near.size, self.dtype), np.empty((self.axes, near.size), self.dtype)
+            mu0: np.ndarray = np.empty(near.size, self.dtype)
+            mu1: np.ndarray = np.empty((self.axes, near.size), self.dtype)
             fill(near.ravel(), np.stack([n.ravel() for n in f.normal]), thickness.ravel(), mu0, mu1)
             self.mu0[c][here] = self.passage[c][here] = mu0.reshape(near.shape)
             self.mu1[c][:, *here] = mu1.reshape(self.axes, *near.shape)
@@ -220,7 +220,9 @@ class Water:
         fastest(self._flat(self.velocity), self.inner, self._sums)
         return float(self._sums[PAD:-PAD, 0].max())
 
-    def step(self, dt: float, stream: tuple[float, ...], push: tuple[float, ...], limits: tuple[float, float]) -> None:
+    def step(
+        self, dt: float, stream: tuple[float, float], push: tuple[float, float], limits: tuple[float, float]
+    ) -> None:
         """Advance velocity and pressure by ``dt`` [s] around the bodies placed at its end.
 
         Args:
