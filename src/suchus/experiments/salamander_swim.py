@@ -162,7 +162,7 @@ class SalamanderSwim(Experiment):
             f"Played on the model, the animal's angles swim {m['stride_swim']:.3f} body lengths a cycle, "
             f"{abs(m['stride_off']):.0%} {side} than the animal's {animal.STRIDE:g}, which is {within} the "
             f"{m['stride_low']:.3f} to {m['stride_high']:.3f} of the highest frequency in other waters. The Strouhal "
-            f"number is {m['strouhal']:.2f}. It heels by {m['heel']:deg.0f} degrees at most, and {m['share_under']:.0%} "
+            f"number is {m['strouhal']:.2f}. It heels by {m['heel']:deg.0f} degrees at most; {m['share_under']:.0%} "
             f"of it is under water. The snout swings by {m['swing_snout']:.2f} of the body's length from end to end, "
             f"the tail's tip by {m['swing_tail']:.2f}, and least of all, by {m['swing_least']:.2f}, the body "
             f"{m['swing_least_at']:.2f} behind the snout. The joints miss their angles by {m['angle_missed']:deg.1f} "
