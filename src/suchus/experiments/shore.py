@@ -244,8 +244,8 @@ class Shore(Experiment):
         by_gait = f"Of all slopes at one friction: {listed(walked)}. " if walked else ""
         when = f", half of these within {m['time_ashore']:.0f} s" if m["time_ashore"] == m["time_ashore"] else ""
         return (
-            f"{m['ashore_share']:.0%} of the runs came ashore{when}; {m['falls']:.0f} fell, and none changed between "
-            f"swimming and walking more than {m['switches']:.0f} times. On the steepest slope it is "
+            f"{m['ashore_share']:.0%} of the runs came ashore{when}; {m['falls']:.0f} fell. The most changes between "
+            f"swimming and walking in one run are {m['switches']:.0f}. On the steepest slope it is "
             f"{m['ashore_share_steepest']:.0%}: {listed(breaths)}. With the greatest friction {grip} "
             f"with the least come ashore ({m['ashore_share_most_grip']:.0%} and {m['ashore_share_least_grip']:.0%}). "
             f"{by_gait}From land {m['into_water_share']:.0%} went into the water and swam "
