@@ -146,13 +146,13 @@ class Walker:
         self._finish(time)
         now = self._walk(time)
         for run, asked in self._asked(time, sensed, now.phase):
-            course = transition(self._robots[run], self._gaits[run], asked)
-            self._script[run] = (time, course, self._last.targets[run].copy())
+            way = transition(self._robots[run], self._gaits[run], asked)
+            self._script[run] = (time, way, self._last.targets[run].copy())
             self._cycles[run] += np.ceil((time - self._began[run]) / self._gaits[run].period)
             self._gaits[run] = asked
             self._groups = _grouped(self._robots, self._gaits)
-        for run, (begun, course, start) in self._script.items():
-            now.targets[run] = course.at(time - begun, start)
+        for run, (begun, way, start) in self._script.items():
+            now.targets[run] = way.at(time - begun, start)
             now.phase[run] = self._last.phase[run]
         self._last = now
         return Command(now.targets.copy(), now.phase.copy())
@@ -174,8 +174,8 @@ class Walker:
         return asked
 
     def _finish(self, time: float) -> None:
-        for run, (begun, course, _) in list(self._script.items()):
-            if time >= begun + course.duration - _SLACK:
+        for run, (begun, way, _) in list(self._script.items()):
+            if time >= begun + way.duration - _SLACK:
                 del self._script[run]
                 self._began[run] = time
                 self._full[run] = _GROWS * self._gaits[run].period
