@@ -132,7 +132,7 @@ def test_every_new_name_is_a_field_and_no_old_one_is(kind):
         ("capture", "Animal", "SyntheticAnimal"), ("capture", "Reading", "ReadingOptions"),
         ("control", "Oscillation", "OscillatorStates"), ("hardware", "Load", "ServoLoad"),
         ("land", "lost", "joint_failure"), ("land", "lost_joints", "failing_joints"), ("land", "LOST", "FAILED_JOINTS"),
-        ("kinematics", "Wave", "TravellingWave"), ("metrics", "Border", "DecisionBoundary"),
+        ("kinematics", "Wave", "TravellingWave"),
         ("motion", "with_late_axis", "with_axis_lag"), ("optimise", "Told", "SearchProgress"),
         ("robots", "Beside", "RelativeSize"), ("study", "Told", "StudyProgress"),
         ("water", "Curve", "MidlineCurve"), ("water", "Silhouette", "BodySilhouette"),

@@ -11,7 +11,7 @@ from suchus.metrics.bends import (
     tail_swings,
     vertical_bend,
 )
-from suchus.metrics.decisive import DecisionBoundary, border, rank_correlation
+from suchus.metrics.decisive import Border, border, rank_correlation
 from suchus.metrics.energy import cost_of_transport, peak_torque, work
 from suchus.metrics.gait import (
     diagonal_phase_error,
@@ -40,10 +40,9 @@ from suchus.metrics.stability import (
 )
 from suchus.metrics.tail import tail_joint_spread, tail_joint_spread_max
 from suchus.metrics.window import between, whole
-from suchus.renamed import old_exports
 
 __all__ = [
-    "DecisionBoundary",
+    "Border",
     "bend_swings",
     "between",
     "border",
@@ -99,5 +98,3 @@ __all__ = [
     "whole",
     "work",
 ]
-
-__getattr__ = old_exports(__name__, Border="DecisionBoundary")
