@@ -15,7 +15,7 @@ class Border(NamedTuple):
     """The value of one parameter that best tells where a statement holds."""
 
     parameter: int
-    """Which."""
+    """Index of the parameter, from 0 [-]."""
     at: float
     """Its value there, in the parameter's unit."""
     above: bool
