@@ -1,4 +1,4 @@
-# mypy: disable-error-code="no-untyped-def, var-annotated"
+# mypy: disable-error-code="no-untyped-def, var-annotated, assignment"
 # (the kernels get their types from numba, once per precision and number of dimensions)
 """Divergence before the pressure solve, and the correction after it, in cells and flow units; see ``slab``."""
 
