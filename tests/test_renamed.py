@@ -137,6 +137,7 @@ def test_every_new_name_is_a_field_and_no_old_one_is(kind):
         ("metrics", "border", "decisive.border"), ("metrics", "rank_correlation", "decisive.rank_correlation"),
         ("motion", "with_late_axis", "with_axis_lag"), ("optimise", "Told", "SearchProgress"),
         ("robots", "Beside", "RelativeSize"), ("study", "Told", "StudyProgress"),
+        ("study", "write_claims", "claims_page.write_claims"),
         ("water", "Curve", "MidlineCurve"), ("water", "Silhouette", "BodySilhouette"),
     ],
 )  # fmt: skip

@@ -37,4 +37,4 @@ __all__ = [
     "run_chunk",
 ]
 
-__getattr__ = old_exports(__name__, Told="StudyProgress")
+__getattr__ = old_exports(__name__, Told="StudyProgress", write_claims="claims_page.write_claims")
