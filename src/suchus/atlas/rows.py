@@ -58,7 +58,7 @@ def _shaken() -> tuple[Row, ...]:
                     x="angle",
                     period=360.0,
                     skin=True,
-                    title=f"Cylinder shaken at {ratio:g} of its frequency, Re 185: {quantity}, Guilmineau and Queutey "
+                    title=f"Cylinder oscillated transversely at {ratio:g} of its frequency, Re 185: {quantity}, Guilmineau and Queutey "
                     "2002",
                     data=f"guilmineau2002_{quantity}_{key}",
                     y="cp" if quantity == "pressure" else quantity,
@@ -72,7 +72,7 @@ def _shaken() -> tuple[Row, ...]:
     )  # fmt: skip
     rows.append(
         Row(
-            name="schneiders_drag", title="Cylinder shaken at 0.8 of its frequency, Re 185: drag, Schneiders 2013",
+            name="schneiders_drag", title="Cylinder oscillated transversely at 0.8 of its frequency, Re 185: drag, Schneiders 2013",
             case="shaken_0p8", data="schneiders2013_drag", x="y", y="cd", kind="loop", ours="drag loop",
             labels=("displacement / diameter [-]", "drag coefficient [-]"),
             note="A point is compared with the nearer of the two branches.",
@@ -81,7 +81,7 @@ def _shaken() -> tuple[Row, ...]:
     rows.append(
         Row(
             name="schneiders_pressure", case="shaken_0p8", data="schneiders2013_pressure", x="angle", y="cp",
-            title="Cylinder shaken at 0.8 of its frequency, Re 185: pressure going down, Schneiders 2013",
+            title="Cylinder oscillated transversely at 0.8 of its frequency, Re 185: pressure going down, Schneiders 2013",
             period=360.0, skin=True, ours="pressure going down", labels=(_ANGLE, "pressure coefficient [-]"),
         )
     )  # fmt: skip
@@ -174,7 +174,7 @@ GROUPS: Mapping[str, tuple[Row, ...]] = MappingProxyType(
         "Started cylinders": _started(),
         "Cylinders at rest in a stream": _resting(),
         "Bodies that move in water at rest": _still(),
-        "Cylinder shaken across a stream": _shaken(),
+        "Cylinder oscillated across a stream": _shaken(),
         "Flying snake": _snakes(),
     }
 )
