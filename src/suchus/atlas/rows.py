@@ -58,8 +58,8 @@ def _shaken() -> tuple[Row, ...]:
                     x="angle",
                     period=360.0,
                     skin=True,
-                    title=f"Cylinder oscillated transversely at {ratio:g} of its frequency, Re 185: {quantity}, Guilmineau and Queutey "
-                    "2002",
+                    title=f"Cylinder oscillated transversely at {ratio:g} of its frequency, Re 185: {quantity}, "
+                    "Guilmineau and Queutey 2002",
                     data=f"guilmineau2002_{quantity}_{key}",
                     y="cp" if quantity == "pressure" else quantity,
                     ours=f"uppermost {quantity}",
@@ -72,7 +72,8 @@ def _shaken() -> tuple[Row, ...]:
     )  # fmt: skip
     rows.append(
         Row(
-            name="schneiders_drag", title="Cylinder oscillated transversely at 0.8 of its frequency, Re 185: drag, Schneiders 2013",
+            name="schneiders_drag",
+            title="Cylinder oscillated transversely at 0.8 of its frequency, Re 185: drag, Schneiders 2013",
             case="shaken_0p8", data="schneiders2013_drag", x="y", y="cd", kind="loop", ours="drag loop",
             labels=("displacement / diameter [-]", "drag coefficient [-]"),
             note="A point is compared with the nearer of the two branches.",
@@ -81,7 +82,8 @@ def _shaken() -> tuple[Row, ...]:
     rows.append(
         Row(
             name="schneiders_pressure", case="shaken_0p8", data="schneiders2013_pressure", x="angle", y="cp",
-            title="Cylinder oscillated transversely at 0.8 of its frequency, Re 185: pressure going down, Schneiders 2013",
+            title="Cylinder oscillated transversely at 0.8 of its frequency, Re 185: pressure going down, "
+            "Schneiders 2013",
             period=360.0, skin=True, ours="pressure going down", labels=(_ANGLE, "pressure coefficient [-]"),
         )
     )  # fmt: skip
