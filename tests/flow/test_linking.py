@@ -17,11 +17,13 @@ from suchus.flow import openwater, project
 random = np.random.default_rng(3)
 u, v, source = (random.standard_normal((68, 100)).astype(np.float32) for _ in range(3))
 points, place, strength = random.random((2, 70)), random.random((2, 90)), random.random((4, 90))
-window = np.array([20, 40, 30, 60])
+where, inner = np.array([0, 64, 96, 20, 40, 30, 60]), (np.uint64(1),)
 for threads in (1, 2):
     numba.set_num_threads(threads)
     r, sums, out = np.zeros_like(u), np.zeros((68, 4)), np.zeros((2, 70))
-    project.residual(r, u, v, source, np.ones_like(u), window, np.float32(0.1), False, sums)
+    project.residual(
+        r, np.stack([u, v]), source, np.ones_like(u), where, np.float32(0.1), inner, (False, False), sums
+    )
     openwater.induce(points, place, strength, out)
     print(hashlib.sha256(r.tobytes() + sums.tobytes() + out.tobytes()).hexdigest())
 print(project.residual.stats.cache_misses and "compiled" or "loaded")
