@@ -17,6 +17,7 @@ import pytest
 from suchus import flow
 from suchus.figures.validation import write_table, write_validation
 from suchus.flow import signals
+from suchus.flow.resolution import SKIN_SUM
 
 pytestmark = pytest.mark.validate
 
