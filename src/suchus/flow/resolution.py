@@ -12,10 +12,10 @@ a wake that the grid cannot carry, nor about the domain.
 from math import inf, sqrt
 
 SKIN_SUM = 0.02, 0.05
-"""How much the sum of pressure and friction along the skin is low [-]; ``make validate`` holds a cylinder against it."""
+"""How much the sum of pressure and friction along the skin is low [-]; ``make validate`` checks it on a cylinder."""
 
 SKIN_PEAK = 0.2
-"""How much the peak wall vorticity of a cylinder at Re 185 is low on 24 cells a diameter [-]; see docs/flow_limits.md."""
+"""How much the peak wall vorticity of a cylinder at Re 185 is low on 24 cells a diameter [-]; docs/flow_limits.md."""
 
 ALONG_THE_SKIN = (
     f"Read from points one to three cells off the wall: pressure and friction are {100 * SKIN_SUM[0]:.0f} to "
