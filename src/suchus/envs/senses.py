@@ -24,6 +24,10 @@ ACCELERATION = 4 * GRAVITY
 """Scale of the accelerometer [m/s2]; the range that a cheap one is set to."""
 
 
+FAR = 4.0
+"""Scale of the distance to a goal, over the robot's length [-]."""
+
+
 class Sense(NamedTuple):
     """Some columns of an observation."""
 
@@ -38,8 +42,13 @@ class Sense(NamedTuple):
 
 
 @lru_cache(maxsize=64)
-def senses(robot: AnyRobot) -> tuple[Sense, ...]:
-    """Return the columns of an observation of a robot, in order."""
+def senses(robot: AnyRobot, *, goal: bool = False) -> tuple[Sense, ...]:
+    """Return the columns of an observation of a robot, in order.
+
+    Args:
+        robot: whose.
+        goal: whether its task has a goal, which adds the last two readings.
+    """
     place, pace = layout(robot), 1.0 / sqrt(beside_article(robot).length)
     servos, cranks = len(place.servos), bool(turning(robot).any())
     angle = "angle of each servo" + (", of a crank within half a turn to either side" if cranks else "")
@@ -63,6 +72,10 @@ def senses(robot: AnyRobot) -> tuple[Sense, ...]:
         ("clock", 2, "1", "sine and cosine of the phase of a clock with the gait's period"),
         ("told", servos, "span, rad", told),
     )
+    if goal:
+        towards = f"level direction to the goal in the {place.robot.root}, as a beacon and the IMU give it"
+        rows += (("goal_direction", 3, "1", towards),)
+        rows += (("goal_distance", 1, f"{FAR:g} L, m", "distance that remains to the goal, L the robot's length"),)
     ends = np.cumsum([count for _, count, _, _ in rows]).tolist()
     return tuple(
         Sense(name, slice(end - count, end), scale, what)
@@ -92,7 +105,10 @@ def part(
     Raises:
         UnknownName: there is no such reading.
     """
-    columns = {sense.name: sense.columns for sense in senses(ROBOTS.resolve(robot))}
+    known = senses(ROBOTS.resolve(robot))
+    if observations.shape[-1] > known[-1].columns.stop:
+        known = senses(ROBOTS.resolve(robot), goal=True)
+    columns = {sense.name: sense.columns for sense in known}
     if name not in columns:
         raise UnknownName("reading", name, columns)
     return observations[..., columns[name]]
@@ -103,6 +119,7 @@ def observations(
     sensed: Sensed,
     phase: Float[np.ndarray, " run"],
     told: Float[np.ndarray, "run servo"],
+    goal: tuple[Float[np.ndarray, "run 2"], Float[np.ndarray, " run"]] | None = None,
 ) -> Float[np.ndarray, "run n"]:
     """Return one row for each robot; readings beyond their scales are cut off at -1 and 1, lost ones are 0.
 
@@ -111,6 +128,8 @@ def observations(
         sensed: the readings.
         phase: of the clock [cycle].
         told: from the centre, over the span [-].
+        goal: vector in the world from each centre of mass to its goal, and the distance that remains [m]; None if the
+            task has none.
     """
     limits = np.array([robot.servo(name).torque for name in layout(robot).servos])
     weight, slow = robot.mass * GRAVITY, sqrt(beside_article(robot).length)
@@ -118,6 +137,7 @@ def observations(
     position = np.where(turned, np.mod(sensed.servo_position + np.pi, 2 * np.pi) - np.pi, sensed.servo_position)
     upward, ahead = rotation.upward(sensed.orientation), rotation.ahead(sensed.orientation)
     turn = 2 * np.pi * phase
+    towards = [] if goal is None else _towards(*goal, upward, ahead, robot.length)
     rows = np.concatenate(
         [
             position / ANGLE,
@@ -132,7 +152,18 @@ def observations(
             sensed.acceleration / ACCELERATION,
             np.stack([np.sin(turn), np.cos(turn)], axis=1),
             told,
+            *towards,
         ],
         axis=1,
     )
     return np.clip(np.where(np.isfinite(rows), rows, 0.0), -1.0, 1.0).astype(np.float32)
+
+
+def _towards(
+    offset: np.ndarray, remaining: np.ndarray, upward: np.ndarray, ahead: np.ndarray, length: float
+) -> list[np.ndarray]:
+    """Return the direction to the goal in the root, shape (run, 3), 0 at the goal, and its distance over the scale."""
+    far = np.linalg.norm(offset, axis=1, keepdims=True)
+    unit = np.divide(offset, far, out=np.zeros_like(offset), where=far > 0.0)
+    direction = unit[:, :1] * ahead + unit[:, 1:] * np.cross(upward, ahead)
+    return [direction, remaining[:, None] / (FAR * length)]

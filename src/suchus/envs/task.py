@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields, replace
+from math import radians, sin
 from types import MappingProxyType
 from typing import Any, Literal, get_args
 
@@ -10,17 +11,23 @@ import numpy as np
 from suchus.design import AnyRobot, check_needs, front_segment, layout, with_speed_lines
 from suchus.design.checks import Checks
 from suchus.design.scale import control_period, scaled, scaled_fields
+from suchus.envs.goals import AnyGoal, Goal, Landing
+from suchus.envs.water import check_floats, check_water, swimming
 from suchus.errors import InvalidDesign, UnknownName
 from suchus.fault import Fault
 from suchus.faults import FAULTS
 from suchus.gaits import GAITS, own_gait, suits
-from suchus.land import Ground
-from suchus.motion import AnyGait
+from suchus.land import Ground, Lake
+from suchus.motion import AnyGait, Swim
 from suchus.robots import ROBOTS
 
-Start = Literal["lying", "upright"]
+Start = Literal["lying", "upright", "swimming"]
 NEEDED: Mapping[str, tuple[str, ...]] = MappingProxyType(
-    {"lying": (), "upright": ("tables", "article_spine", "cable_tail")}
+    {
+        "lying": (),
+        "upright": ("tables", "article_spine", "cable_tail"),
+        "swimming": ("tables", "article_spine", "cable_tail"),
+    }
 )
 """What a beginning needs of a robot: names of ``design.NEEDS``."""
 
@@ -45,6 +52,10 @@ class Rewards:
     """Per square of the change of every commanded angle from one step to the next; negative [1/rad2]."""
     fall: float
     """Once, when the episode ends by a fall or because the physics came apart; negative [-]."""
+    approach: float = 0.0
+    """Per decrease of the distance that remains to ``Task.goal`` [1/m]."""
+    goal: float = 0.0
+    """Once, when the episode ends at the goal [-]."""
 
     def __post_init__(self) -> None:
         with Checks("rewards", self) as check:
@@ -174,7 +185,8 @@ class Task:
     ground: Ground = field(default_factory=Ground)
     """On what."""
     start: Start = "lying"
-    """How an episode begins: in the gait's mid-stance, or standing as the shelf's way up leaves the robot."""
+    """How an episode begins: in the gait's mid-stance, standing as the shelf's way up leaves the robot, or floating at
+    the surface, straight and with its limbs back along the body."""
     span: float = 0.8
     """How far an action of one turns a servo from its centre [rad]; the shelf's crawl asks for 0.78 at its pulley."""
     decision: float = 0.05
@@ -198,11 +210,24 @@ class Task:
     """What breaks; None: nothing."""
     shoves: Shoves | None = None
     """Who pushes; None: nobody."""
+    lake: Lake | None = None
+    """Water in which the robot swims or wades, its level and breath numbers; None on dry land."""
+    swim: Swim | None = None
+    """Swimming motion of a ``swimming`` start, whose wave the clock follows; None: that of (20) at 1 Hz, fitted."""
+    goal: AnyGoal | None = None
+    """What ends the episode when it is reached; None: nothing."""
 
     @property
     def body(self) -> AnyRobot:
         """The robot as its physics has it: with the torque-speed lines if ``speed_lines`` is true."""
         return with_speed_lines(self.robot) if self.speed_lines else self.robot
+
+    @property
+    def period(self) -> float:
+        """Period of the clock, that of the swimming motion or of the gait [s]."""
+        if self.start == "swimming":
+            return 1.0 / swimming(self.robot, self.swim).swim.frequency
+        return self.gait.period
 
     def on(self, robot: AnyRobot, gait: AnyGait | None = None) -> "Task":
         """Return the same task for another robot.
@@ -227,7 +252,7 @@ class Task:
         if not suits(robot, self.gait):
             changes |= scaled_fields(self, ["least_height"], length=longer, mass=heavier)
             changes |= {"gait": gait or own_gait(robot)}
-            for name in ("rewards", "breaks", "shoves"):
+            for name in ("rewards", "breaks", "shoves", "goal"):
                 if getattr(self, name) is not None:
                     changes[name] = scaled(getattr(self, name), length=longer, mass=heavier)
         return replace(self, robot=robot, **(changes | ({"gait": gait} if gait is not None else {})))
@@ -244,6 +269,10 @@ class Task:
             check.that(
                 self.start in get_args(Start),
                 f"task.start is {self.start!r}; {' or '.join(get_args(Start))} is allowed",
+            )
+            check.that(
+                not (self.start == "swimming" and self.lake is None),
+                "task.lake is None; a task that begins swimming needs water: give it a land.Lake",
             )
             check.number("span", 0.01, 3.2, "rad")
             check.number("decision", period, 100 * period, "s")
@@ -263,11 +292,31 @@ class Task:
                 )
         if self.breaks is not None:
             self.breaks.among(self.robot)
+        if self.lake is not None:
+            check_water(self.robot, self.lake)
+            if self.start == "swimming":
+                check_floats(self.robot, self.lake)
+        if self.goal is not None:
+            self.goal.check(self.ground, self.lake)
 
 
 STANDING_SPAN = 0.3
 """Of the actions in the task Stand [rad]: a hop, not another posture."""
+SWIM_SPAN = 1.4
+"""Of the actions in the task Swim [rad]: 0.75 for the wave on the tail's cable and 0.6 to steer."""
+SHORE_SPAN = 2.5
+"""Of the actions in the task Shore [rad]: from limbs that lie back along the body to the forward end of a stride."""
+_SLOPE, _OFFSHORE = radians(8), 1.6  # distance of the water line from the beginning [m], where the robot floats free
 _CRAWL = Task()
+_SWIM = replace(
+    _CRAWL,
+    robot=ROBOTS["floating_caiman"],
+    start="swimming",
+    lake=Lake(level=0.5),
+    goal=Goal(),
+    span=SWIM_SPAN,
+    rewards=Rewards(forward=0.0, astray=0.0, upright=0.0, work=-0.01, haste=-0.002, fall=-5.0, approach=10.0, goal=5.0),
+)
 TASKS: Mapping[str, Task] = MappingProxyType(
     {
         "Crawl": _CRAWL,
@@ -282,6 +331,15 @@ TASKS: Mapping[str, Task] = MappingProxyType(
             shoves=Shoves(),
         ),
         "Fault": replace(_CRAWL, breaks=Breaks()),
+        "Swim": _SWIM,
+        "Shore": replace(
+            _SWIM,
+            ground=Ground(uphill=_SLOPE),
+            lake=Lake(level=_OFFSHORE * sin(_SLOPE)),
+            gait=GAITS["semi_erect"],
+            span=SHORE_SPAN,
+            goal=Landing(),
+        ),
     }
 )
 """The tasks by name; vary one with ``dataclasses.replace``, or by naming its fields to ``gymnasium.make``."""
@@ -317,6 +375,9 @@ def chosen(task: Task | str, changes: Mapping[str, Any]) -> Task:
         "rewards": (Rewards,),
         "breaks": (Breaks, type(None)),
         "shoves": (Shoves, type(None)),
+        "lake": (Lake, type(None)),
+        "swim": (Swim, type(None)),
+        "goal": (*get_args(AnyGoal), type(None)),
     }
     for name, value in found.items():
         if name in kinds and not isinstance(value, kinds[name]):

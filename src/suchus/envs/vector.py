@@ -52,7 +52,8 @@ class CrocodileVectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[misc]  # g
         self.autoreset_mode = _mode(autoreset_mode)
         self.metadata = {**metadata(self.task), "autoreset_mode": self.autoreset_mode}
         robot = self.task.robot
-        self.single_action_space, self.single_observation_space = action_space(robot), observation_space(robot)
+        self.single_action_space = action_space(robot)
+        self.single_observation_space = observation_space(robot, goal=self.task.goal is not None)
         self.action_space = batch_space(self.single_action_space, num_envs)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self._randoms = [seeding.np_random()[0] for _ in range(num_envs)]
@@ -94,7 +95,7 @@ class CrocodileVectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[misc]  # g
         terms = self.pack.act(numbers, ~again)
         self._steps[~again] += 1
         rewards = np.where(again, 0.0, terms.reward(self.task.rewards))
-        terminated = ~again & terms.fall
+        terminated = ~again & terms.over
         late = self._steps >= (self.max_episode_steps or np.inf)
         truncated = ~again & late
         said = told(self.pack, terms)
