@@ -1,6 +1,6 @@
 """Swimming to a goal and ashore as tasks: what is seen, rewarded, ended and refused."""
 
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
@@ -9,8 +9,10 @@ from scipy.spatial.transform import Rotation
 gymnasium = pytest.importorskip("gymnasium", reason="gymnasium is not installed: pip install suchus[gym]")
 
 from suchus import envs  # noqa: E402
+from suchus.control import Amphibious, HeadingHold, HeadingRule  # noqa: E402
 from suchus.design import with_speed_lines  # noqa: E402
 from suchus.envs.pack import Pack  # noqa: E402
+from suchus.envs.senses import felt  # noqa: E402
 from suchus.envs.water import swimming  # noqa: E402
 from suchus.errors import InvalidDesign, OutsideLimits, SuchusError, UnknownName  # noqa: E402
 from suchus.land import Ground, Lake, Wave  # noqa: E402
@@ -145,10 +147,45 @@ def test_the_shelf_s_swim_fits_into_the_actions_and_the_steering_turns_both_ways
     assert np.abs(left).max() < 1.0
 
 
+@pytest.mark.parametrize("name", ["Swim", "Crawl"])
+def test_a_controller_feels_through_the_observation_what_the_robot_feels(name):
+    task = envs.TASKS[name]
+    pack = begun(task, 2)
+    pack.act(0.1 * np.ones((2, 19)), np.ones(2, dtype=bool))
+    ours, theirs = felt(pack.feel(), task.robot, 0.05), pack._sensed()
+    for field in fields(ours):
+        if field.name not in ("time", "depth", "orientation"):
+            np.testing.assert_allclose(getattr(ours, field.name), getattr(theirs, field.name), atol=1e-5, rtol=1e-5)
+    same = np.abs(np.einsum("ij,ij->i", ours.orientation, theirs.orientation))
+    np.testing.assert_allclose(same, 1.0, atol=1e-9)
+
+
+def test_a_controller_of_the_shelf_swims_through_the_actions_with_its_heading_held():
+    near = replace(SWIM, goal=replace(NEAR, bearing=0.0), jitter=0.0)
+    centre = tuple(Pack(near, 1).centre)
+    control = replace(swimming(SWIM.robot, None), ramp=1.0, heading=HeadingHold())
+    played = envs.play(near, envs.Controlled(near, centre, control, steps=100), episodes=1, steps=100)
+    assert played.goal.all()
+    away = replace(control, heading=HeadingHold(direction=1.5))
+    played = envs.play(near, envs.Controlled(near, centre, away, steps=100), episodes=1, steps=100)
+    assert not played.goal.any()
+
+
 def test_the_clock_goes_with_the_swimming_motion():
     slow = replace(swimming(SWIM.robot, None).swim, frequency=0.5)
     assert (SWIM.period, replace(SWIM, swim=slow).period) == (pytest.approx(1.0), pytest.approx(2.0))
     assert envs.TASKS["Crawl"].period == envs.TASKS["Crawl"].gait.period
+
+
+def test_a_controller_of_the_shelf_comes_ashore_through_the_actions_and_gets_more_than_who_rests():
+    centre = tuple(Pack(SHORE, 1).centre)
+    swim = replace(swimming(SHORE.robot, None), ramp=1.0, heading=HeadingHold())
+    control, steps = Amphibious(swim=swim, heading=HeadingRule()), envs.LONGER["Shore"]
+    comes = envs.play(SHORE, envs.Controlled(SHORE, centre, control, steps=steps), episodes=1, steps=steps)
+    rests = envs.play(SHORE, envs.Still(SHORE), episodes=1, steps=40)
+    assert comes.goal.all()
+    assert comes.approach[0] == pytest.approx(comes.forward[0], abs=0.02)  # it overshoots the line a little
+    assert comes.returns[0] > 10 * comes.approach[0] > 20 > 1 > abs(rests.returns[0])
 
 
 @pytest.mark.parametrize(("short_of", "reached"), [(0.04, False), (-0.04, True)])

@@ -6,11 +6,12 @@ from dataclasses import dataclass, field
 import numpy as np
 from jaxtyping import Bool, Float
 
-from suchus.control import HeadingHold
+from suchus.control import Control, Controller, HeadingHold
 from suchus.control.swimming import bent
 from suchus.design import crocodile, layout
+from suchus.design.scale import control_period
 from suchus.envs.registering import STEPS
-from suchus.envs.senses import part, turning
+from suchus.envs.senses import felt, part, turning
 from suchus.envs.task import Task
 from suchus.envs.vector import CrocodileVectorEnv
 from suchus.envs.water import swimming
@@ -95,6 +96,41 @@ class SwimToGoal:
         share = np.clip(self.hold.gain * np.arctan2(direction[:, 1], direction[:, 0]), -1.0, 1.0)
         targets = bent(targets, robot, self.hold.turn * share, self.hold.trunk_turn * share)
         return np.clip((targets - np.array(self.centre)) / task.span, -1.0, 1.0)
+
+
+class Controlled:
+    """A controller of the shelf, which feels what the observation holds; for one ``play``, since it remembers.
+
+    It decides in every control period and feels anew in every step; what it does with air or phases is not asked.
+
+    Args:
+        task: whose actions they are.
+        centre: servo angles of an action of zero, ``Pack.centre`` [rad].
+        control: the controller, as ``Run.control`` takes it.
+        steps: of the episodes, at most.
+
+    Raises:
+        SuchusError: on the first call, if the controller does not suit the robot or its gait.
+    """
+
+    def __init__(self, task: Task, centre: tuple[float, ...], control: Control, *, steps: int) -> None:
+        self._task, self._centre, self._control = task, np.array(centre), control
+        self._period = control_period(task.robot)
+        self._per_step = round(task.decision / self._period)
+        self._ticks, self._tick = steps * self._per_step, 0
+        self._controller: Controller | None = None
+
+    def __call__(self, seen: Float[np.ndarray, "run n"]) -> Float[np.ndarray, "run servo"]:
+        """Feel once, decide for every control period of the step, and return the last angles commanded."""
+        task, count = self._task, len(seen)
+        if self._controller is None:
+            robots, gaits, seeds = [task.robot] * count, [task.gait] * count, [0] * count
+            self._controller = self._control.start(robots, gaits, seeds, self._ticks, self._period)
+        sensed = felt(seen, task.robot, self._tick * self._period)
+        for _ in range(self._per_step):
+            targets = self._controller.command(self._tick, sensed).targets
+            self._tick += 1
+        return np.asarray(np.clip((targets - self._centre) / task.span, -1.0, 1.0))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

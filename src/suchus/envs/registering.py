@@ -5,7 +5,7 @@ from types import MappingProxyType
 
 import gymnasium
 
-from suchus.envs.task import TASKS
+from suchus.envs.shelf import TASKS
 
 STEPS = 200
 """Of an episode: 10 s, two and a half cycles of the article's crawl."""

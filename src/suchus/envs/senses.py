@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Bool, Float
+from scipy.spatial.transform import Rotation
 
 from suchus import rotation
 from suchus.control import Sensed
@@ -53,7 +54,7 @@ def senses(robot: AnyRobot, *, goal: bool = False) -> tuple[Sense, ...]:
     servos, cranks = len(place.servos), bool(turning(robot).any())
     angle = "angle of each servo" + (", of a crank within half a turn to either side" if cranks else "")
     told = "angle that each servo was told last, from its centre: the last action"
-    rows = (
+    rows: tuple[tuple[str, int, str, str], ...] = (
         ("servo_position", servos, "pi rad", angle),
         ("servo_velocity", servos, f"{SPEED * pace:.3g} rad/s", "speed of each servo"),
         ("servo_torque", servos, "its limit, N m", "torque of each servo"),
@@ -157,6 +158,32 @@ def observations(
         axis=1,
     )
     return np.clip(np.where(np.isfinite(rows), rows, 0.0), -1.0, 1.0).astype(np.float32)
+
+
+def felt(observations: Float[np.ndarray, "run n"], robot: AnyRobot, time: float) -> Sensed:
+    """Return the readings of which observations were made, what was cut off at the ends of the scales being lost.
+
+    Args:
+        observations: one row for each robot.
+        robot: whose they are.
+        time: [s].
+    """
+    seen = {sense.name: part(observations, sense.name, robot).astype(float) for sense in senses(robot)}
+    weight, pace = robot.mass * GRAVITY, 1.0 / sqrt(beside_article(robot).length)
+    limits = np.array([robot.servo(name).torque for name in layout(robot).servos])
+    rows = np.stack([seen["ahead"], np.cross(seen["upward"], seen["ahead"]), seen["upward"]], axis=1)
+    return Sensed(
+        time=time,
+        servo_position=ANGLE * seen["servo_position"],
+        servo_velocity=SPEED * pace * seen["servo_velocity"],
+        servo_torque=limits * seen["servo_torque"],
+        foot_pressure=weight * seen["foot_pressure"],
+        belly_pressure=weight * seen["belly_pressure"],
+        tail_pressure=weight * seen["tail_pressure"][:, 0],
+        orientation=Rotation.from_matrix(rows).as_quat(scalar_first=True),
+        angular_velocity=RATE * pace * seen["angular_velocity"],
+        acceleration=ACCELERATION * seen["acceleration"],
+    )
 
 
 def _towards(

@@ -9,8 +9,9 @@ import numpy as np
 from suchus.envs.pack import Pack
 from suchus.envs.picture import picture
 from suchus.envs.reward import Terms
+from suchus.envs.shelf import chosen
 from suchus.envs.spaces import RENDER_MODES, action_space, check_render_mode, checked, observation_space
-from suchus.envs.task import Task, chosen
+from suchus.envs.task import Task
 
 
 class CrocodileEnv(gymnasium.Env):  # type: ignore[misc]  # gymnasium is not read by mypy

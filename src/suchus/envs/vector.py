@@ -11,9 +11,10 @@ from gymnasium.vector.utils import batch_space
 
 from suchus.design.checks import require
 from suchus.envs.pack import Pack
+from suchus.envs.shelf import chosen
 from suchus.envs.single import metadata, portrait, told
 from suchus.envs.spaces import action_space, check_render_mode, checked, observation_space
-from suchus.envs.task import Task, chosen
+from suchus.envs.task import Task
 from suchus.errors import InvalidDesign
 
 _AT_RESET = ("time", "fault")  # what is said when an episode begins
