@@ -1,7 +1,7 @@
 """Goals of a task: a point, or a distance beyond the water line of a shore."""
 
 from dataclasses import dataclass
-from math import pi, sin
+from math import pi
 
 import numpy as np
 from jaxtyping import Float
@@ -106,7 +106,7 @@ class Landing:
         """
         del bearing
         assert lake is not None  # see ``check``
-        return np.array([lake.at(0.0)[0] / sin(ground.uphill) + self.beyond, begin[1]])
+        return np.array([lake.shore(ground.uphill) + self.beyond, begin[1]])
 
     def offset(self, place: Float[np.ndarray, "run 2"], goal: Float[np.ndarray, "run 2"]) -> Float[np.ndarray, "run 2"]:
         """Return the vectors from centres of mass straight up the shore to the line, zero beyond it [m]."""

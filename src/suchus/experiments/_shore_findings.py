@@ -72,8 +72,7 @@ def paths(record: xr.Dataset, runs: list[Run], every: int) -> xr.Dataset:
 def water_line(run: Run) -> float:
     """Return where the level meets the slope, ahead of where the robot begins [m]."""
     assert run.lake is not None
-    assert isinstance(run.lake.level, (int, float))
-    return float(run.lake.level / np.sin(run.ground.uphill))
+    return run.lake.shore(run.ground.uphill)
 
 
 def walking(phase: Float[np.ndarray, "run time"]) -> Bool[np.ndarray, "run time"]:

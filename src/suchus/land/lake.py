@@ -94,6 +94,10 @@ class Lake:
         """Return level [m] and breath [-] at a time [s]."""
         return _now(self.level, time), _now(self.breath, time)
 
+    def shore(self, uphill: float) -> float:
+        """Return where the level at time 0 meets ground that rises by ``uphill`` [rad], ahead along the ground [m]."""
+        return self.at(0.0)[0] / sin(uphill)
+
     def changes(self) -> bool:
         """Return whether level or breath change while the run goes."""
         return not isinstance(self.level, (int, float)) or not isinstance(self.breath, (int, float))
