@@ -116,8 +116,9 @@ def draw_parity(told: Sequence[Entry]) -> Figure:
             colour = _ABOVE if entry.bad else _OURS
             right.plot([0, 100 * found.rms], [place, place], color=colour, linewidth=3)
             right.plot(100 * found.bound, place, "k|", markersize=7, label="bound" if place == 0 else None)
-            right.text(0, place, f"{entry.row.name} ", ha="right", va="center", fontsize=7)
-        right.set(xlabel="rms difference over the peak [%]", yticks=[], ylim=(-0.8, max(len(shown), 1) - 0.2))
+        right.set_yticks(range(len(shown)), [entry.row.name for entry, _ in reversed(shown)], fontsize=7)
+        right.set(xlabel="rms difference over the peak [%]", ylim=(-0.8, max(len(shown), 1) - 0.2))
+        right.set_xlim(left=0.0)
         if shown:
             right.legend(loc="lower right", fontsize=8)
     return figure
