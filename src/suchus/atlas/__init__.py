@@ -6,7 +6,7 @@ a row follows from the scatter of its sources, before anything is computed.
 
 from suchus.atlas.case import Case, Curves, Effort, Row, Tell, bound
 from suchus.atlas.comparison import Comparison, compare, rms_over_peak
-from suchus.atlas.crew import Told, compute_all, finished
+from suchus.atlas.computing import FlowProgress, compute_all, finished
 from suchus.atlas.outcome import Outcome, compute, digest_of, load_outcome, save_outcome
 from suchus.atlas.published import Published, published
 from suchus.atlas.refine import refined
@@ -22,12 +22,12 @@ __all__ = [
     "Comparison",
     "Curves",
     "Effort",
+    "FlowProgress",
     "Outcome",
     "Published",
     "Row",
     "Skin",
     "Tell",
-    "Told",
     "bound",
     "chosen",
     "compare",

@@ -8,7 +8,7 @@ from typing import Annotated
 import tyro
 
 from suchus import threads
-from suchus.atlas import CASES, LONGEST, Outcome, Told, chosen, compute_all
+from suchus.atlas import CASES, LONGEST, FlowProgress, Outcome, chosen, compute_all
 from suchus.cli.commands import BadCommand
 from suchus.cli.options import parse
 from suchus.cli.terminal import Bars, working
@@ -18,15 +18,15 @@ from suchus.record import check_writable
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Options:
-    """What can be said after ``suchus flow-atlas``."""
+class AtlasOptions:
+    """Options of ``suchus flow-atlas``."""
 
     rows: Annotated[tuple[str, ...], tyro.conf.Positional] = ()
     """Names of rows; all if there are none. They are the headings of docs/atlas.md."""
     out: Path = Path("out") / "atlas"
     """Folder of the outcomes and of the page, atlas.md. What is finished there is kept."""
     jobs: int | None = None
-    """Flows at a time, each on one thread; by default one for each core."""
+    """Number of flows at a time, which share the threads; by default one for each thread."""
     quick: Annotated[
         bool,
         tyro.conf.FlagCreatePairsOff,
@@ -44,7 +44,9 @@ def flow_atlas(words: Sequence[str]) -> int:
         "Compute flows around bodies that others have published, and draw ours beside theirs. Started again it goes on "
         "where it stopped."
     )
-    options: Options = parse(Options, "suchus flow-atlas", words, about, [f.name for f in fields(Options)])
+    options: AtlasOptions = parse(
+        AtlasOptions, "suchus flow-atlas", words, about, [f.name for f in fields(AtlasOptions)]
+    )
     rows = chosen(options.rows)
     jobs = threads.count() if options.jobs is None else options.jobs
     if jobs < 1:
@@ -67,7 +69,7 @@ class _Teller:
         self._bars, self._count, self._done = bars, count, 0
         self._moved = dict[str, Callable[[object, float], None]]()
 
-    def __call__(self, told: Told) -> None:
+    def __call__(self, told: FlowProgress) -> None:
         if told.case not in self._moved:
             self._moved[told.case] = self._bars.told(told.case)
         if told.outcome is None:
