@@ -5,7 +5,7 @@ PIP := $(PY) -m pip --disable-pip-version-check --quiet
 export OMP_WAIT_POLICY := passive
 export PIP_CONSTRAINT := constraints.txt
 
-.PHONY: reproduce test check single double lint types contract tests mutate validate bench docs release matrix clean
+.PHONY: reproduce test check single double lint types contract tests mutate validate atlas bench docs release matrix clean
 
 reproduce: .venv/.runtime
 	$(PY) -m suchus.cli reproduce --out out
@@ -37,6 +37,10 @@ mutate: .venv/.dev # every rule of a verdict broken in every way; also a part of
 
 validate: .venv/.dev
 	$(PY) -m pytest -m validate -s
+
+atlas: .venv/.runtime # published flows beside ours, into docs/atlas.md; goes on where it stopped
+	$(PY) -m suchus.cli flow-atlas --out out/atlas
+	$(PY) tools/atlas_page.py out/atlas
 
 .venv/.base:
 	$(PYTHON) -m venv .venv

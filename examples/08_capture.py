@@ -12,8 +12,8 @@ from pathlib import Path
 
 import suchus
 from suchus.capture import (
-    Animal,
     Camera,
+    SyntheticAnimal,
     driven_share,
     film,
     film_animal,
@@ -28,7 +28,7 @@ from suchus.metrics import displacement
 
 folder = Path(sys.argv[1] if len(sys.argv) > 1 else "out/capture")
 robot, crawl = suchus.ROBOTS["caiman"], suchus.GAITS["belly_crawl"]
-lizard = Animal(
+lizard = SyntheticAnimal(
     trunk=0.12,
     tail=0.20,
     period=0.8,

@@ -32,7 +32,7 @@ with TemporaryDirectory() as folder:
 
 for field, (start, best) in found.values(0).items():
     print(f"{field}: {start:.3f} to {best:.3f}")
-ways = found.checks.aim_displacement
-for condition in ways.condition.values:
-    before, after = (float(ways.sel(run=run, condition=condition)) for run in ("start", "best"))
+displacements = found.checks.aim_displacement
+for condition in displacements.condition.values:
+    before, after = (float(displacements.sel(run=run, condition=condition)) for run in ("start", "best"))
     print(f"{condition}: {before:.3f} to {after:.3f} m")

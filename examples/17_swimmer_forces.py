@@ -1,4 +1,4 @@
-"""Periodic forces of a held swimmer, and the same swimmer towed through still water: two frames, one flow."""
+"""Periodic forces of a tethered swimmer, and the same swimmer towed through still water: two frames, one flow."""
 
 import numpy as np
 
@@ -25,6 +25,6 @@ def forces(stream, motion, follow):
 
 held = forces((speed, 0.0), flow.Pose(), None)
 towed = forces((0.0, 0.0), flow.Glide(start=(0.0, 0.0), velocity=(-speed, 0.0)), "body")
-for name, rows in (("held in a stream", held), ("towed through still water", towed)):
+for name, rows in (("tethered in a stream", held), ("towed through still water", towed)):
     (x, aside), (later_x, later) = rows
     print(f"{name}: second period {x:+.4f} along x, {aside:.4f} rms across; third {later_x:+.4f}, {later:.4f}")

@@ -13,10 +13,12 @@ import xarray as xr
 from hypothesis import settings
 from jaxtyping import install_import_hook
 
+import first_calls
+
 CHECKED = ("suchus.kinematics", "suchus.motion.phase", "suchus.motion.targets", "suchus.control", "suchus.metrics")
-"""Rooms whose arrays' shapes are checked at every call; production pays nothing."""
+"""Rooms whose arrays' shapes are checked in the first calls of each test; production pays nothing."""
 assert not {*CHECKED} & {*sys.modules}, "imported before their shapes can be checked"
-install_import_hook(CHECKED, "beartype.beartype")  # jaxtyping's own option comes too late for us before its 0.3.6
+install_import_hook(CHECKED, "first_calls.checked")  # jaxtyping's own option comes too late for us before its 0.3.6
 
 from suchus.design import Crocodile  # noqa: E402
 from suchus.experiment import Outcome  # noqa: E402
@@ -30,6 +32,11 @@ if "PYTEST_XDIST_WORKER" in os.environ:  # there are as many workers as cores
 xr.set_options(use_numbagg=False, use_bottleneck=False)  # as on the command line; numbagg compiles for half a minute
 settings.register_profile("suchus", deadline=None, derandomize=True)
 settings.load_profile("suchus")
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_setup() -> None:
+    first_calls.begin()
 
 
 @pytest.fixture(scope="session")

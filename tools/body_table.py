@@ -3,7 +3,7 @@
 Usage: python tools/body_table.py [--only NAME ...] [--table]
 
 Each pair is tried at the command line in a short form: it answers, or it refuses in a sentence with the exit code 2;
-anything else is written down as it came. What came of each pair goes into docs/bodies.json as soon as it is known, so
+anything else is written down as it came. The result of each pair goes into docs/bodies.json as soon as it is known, so
 that a run that was stopped goes on; the table is made from that file alone. ``--only`` tries the rows named anew, and
 ``--table`` nothing but writes the table.
 """
@@ -17,7 +17,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from suchus.capture import Animal, Camera, film_animal, write_table
+from suchus.capture import Camera, SyntheticAnimal, film_animal, write_table
 from suchus.cli.entry import main as suchus
 from suchus.design import AnyRobot, Crocodile
 from suchus.design.scale import coarse_step
@@ -47,7 +47,7 @@ TOOLS = {
     "export": "`suchus export`",
 }
 """Commands that take any body: their rows, and what the table calls them."""
-LIZARD = Animal(
+LIZARD = SyntheticAnimal(
     trunk=0.12,
     tail=0.20,
     period=0.8,

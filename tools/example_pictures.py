@@ -75,10 +75,10 @@ def policies() -> Figure:
 
 
 def learned() -> Figure:
-    """Draw what the twelfth example learned, as the page on environments tells it: training takes minutes."""
+    """Draw what the twelfth example learned, as the page on environments shows it: training takes minutes."""
     table = (PICTURES.parent / "environments.md").read_text(encoding="utf-8").partition("had learned then")[2]
     rows = re.findall(r"^\| ([^|]+?) \|[^|]+\| ([+-]?[0-9.]+) m \|", table, re.M)[:6]
-    return _bars({name: [float(way)] for name, way in rows})
+    return _bars({name: [float(distance)] for name, distance in rows})
 
 
 def crawling() -> Figure:
@@ -107,19 +107,19 @@ DRAWN: Mapping[str, Callable[[], Figure]] = {
 }
 
 
-def _bars(ways: Mapping[str, Sequence[float]]) -> Figure:
+def _bars(distances: Mapping[str, Sequence[float]]) -> Figure:
     """Draw how far each got: the mean as a bar, every episode as a dot."""
     with styled(axes__grid=False):
-        figure, axes = panels(1, 1, width=8.0, height=0.9 + 0.5 * len(ways))
+        figure, axes = panels(1, 1, width=8.0, height=0.9 + 0.5 * len(distances))
         ax = axes[0, 0]
-        for row, far in enumerate(ways.values()):
+        for row, far in enumerate(distances.values()):
             ax.barh(row, np.mean(far), height=0.6, color=COLOURS["coordinated"], alpha=0.75)
             if len(far) > 1:
                 ax.plot(far, [row] * len(far), "o", color=COLOURS["limbs_only"], markersize=4)
             right = max(0.0, *far)
             ax.annotate(f"{np.mean(far):+.2f} m", (right, row), (6, 0), textcoords="offset points", va="center")
         ax.axvline(0.0, color="black", linewidth=1.0)
-        ax.set_yticks(range(len(ways)), list(ways))
+        ax.set_yticks(range(len(distances)), list(distances))
         ax.invert_yaxis()
         ax.margins(x=0.12)
         ax.set_xlabel("forward in an episode, mean [m]")
@@ -131,8 +131,8 @@ def _ways(records: Mapping[str, xr.Dataset]) -> Figure:
     with styled():
         figure, axes = panels(1, 1, height=3.6)
         for (name, record), colour, dashes in zip(records.items(), colours, ("-", "--"), strict=True):
-            way = record.centre_of_mass
-            x, y = way.sel(xyz="x"), way.sel(xyz="y")
+            distance = record.centre_of_mass
+            x, y = distance.sel(xyz="x"), distance.sel(xyz="y")
             axes[0, 0].plot(x, y, dashes, color=colour, label=name)
             axes[0, 0].plot(x[-1], y[-1], "o", color=colour)
         axes[0, 0].set(xlabel="forward [m]", ylabel="to the left [m]", aspect="equal")

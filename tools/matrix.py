@@ -5,8 +5,8 @@ Usage: python tools/matrix.py [--only 3.12-lowest ...] [TESTS ...]
 Each environment gets the wheel, the extras ``viewer``, ``optimise``, ``gym`` and ``usd``, and pytest. In it run
 ``suchus doctor`` and ``suchus demo --no-browser``, in an empty folder, then the tests named (by default the rooms that
 are quick and touch every library). Interpreters are those on the path and pyenv's; none is downloaded. The packages
-come by ``uv``, which can take the lowest versions. A line for each says what worked; logs are in build/matrix. What
-came of each stays in tests/release/matrix.json, and the table of docs/publishing.md is made of it.
+come by ``uv``, which can take the lowest versions. A line for each says what worked; logs are in build/matrix. The
+result of each stays in tests/release/matrix.json, and the table of docs/publishing.md is made of it.
 """
 
 import argparse
@@ -42,7 +42,7 @@ PAGE = ROOT / "docs" / "publishing.md"
 
 @dataclass(frozen=True, slots=True)
 class Cell:
-    """What came of one environment."""
+    """Result in one environment."""
 
     name: str
     """Python and versions, such as 3.12-lowest."""
@@ -83,7 +83,7 @@ def main(words: list[str] | None = None) -> int:
 
 
 def keep(cell: Cell) -> None:
-    """Put what came of an environment into ``KEPT``, and the table of all into ``PAGE``."""
+    """Put the result in an environment into ``KEPT``, and the table of all into ``PAGE``."""
     every = json.loads(KEPT.read_text(encoding="utf-8"))
     told = {name: value for name, value in asdict(cell).items() if name not in ("name", "why")}
     every[cell.name] = {"date": date.today().isoformat(), **told}

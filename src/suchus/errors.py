@@ -84,6 +84,14 @@ class Doubtful(UserWarning):
     """A result that stands and may be farther off than usual; the message says by how much and what helps."""
 
 
+class OldName(DeprecationWarning):
+    """Code that uses an old name of a field; the message gives the new one. The old one works for one more release."""
+
+
+class OldKey(FutureWarning):
+    """A file or a command that uses an old name of a field; the message gives the new one."""
+
+
 class Unreachable(SuchusError, ValueError):
     """Points that a limb or the spine cannot reach.
 

@@ -43,7 +43,7 @@ class Replay:
     """A run to look at: a page of its own that plays in a browser."""
 
     caption: str
-    """What there is to see."""
+    """Caption: what the replay shows."""
     make: Callable[[], str]
     """Makes the page, when it is wanted. See ``suchus.replay``."""
 
@@ -69,7 +69,7 @@ class Simulated:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Outcome(Simulated):
-    """What came out: numbers, verdicts, and the record they were read from."""
+    """The result: numbers, verdicts, and the record they were read from."""
 
     experiment: str
     """Name on the shelf."""
@@ -84,7 +84,7 @@ class Outcome(Simulated):
     unjudged: str = ""
     """Why there are no verdicts, in a sentence; empty where the claims were judged."""
     seconds: float = 0.0
-    """How long the run took [s]."""
+    """Wall-clock duration of the run [s]."""
 
 
 class Experiment(ABC):
@@ -101,7 +101,7 @@ class Experiment(ABC):
     shows: ClassVar[str]
     """Which sections, figures or equations of the article it answers."""
     needs: ClassVar[tuple[str, ...]] = ()
-    """What it needs of a robot: names of ``design.NEEDS``; written out, so that ``suchus list`` can tell it."""
+    """What it needs of a robot: names of ``design.NEEDS``; written out, so that ``suchus list`` can show it."""
     judged_with: ClassVar[tuple[str, ...]] = ("robot",)
     """Fields that must be as on the shelf for a verdict: another robot is not judged by the article's metres."""
     judged_from: ClassVar[Mapping[str, float]] = {}
@@ -244,6 +244,6 @@ def _called(value: Any) -> str:
 
 @contextmanager
 def stopwatch() -> Iterator[Callable[[], float]]:
-    """Yield a function that tells the seconds since the block was entered."""
+    """Yield a function that returns the seconds since the block was entered."""
     start = time.perf_counter()
     yield lambda: time.perf_counter() - start

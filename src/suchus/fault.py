@@ -80,9 +80,9 @@ class Fault(ABC):
 
     __slots__ = ()
     acts_on: ClassVar[str]
-    """What kind of part breaks: ``servo``, ``limb`` or ``sensor``."""
+    """Kind of part that fails: ``servo``, ``limb`` or ``sensor``."""
     at: float
-    """When it happens [s]."""
+    """Time at which the fault begins [s], at least 0."""
 
     @property
     @abstractmethod

@@ -37,7 +37,7 @@ def _hints(kind: type) -> dict[str, Any]:
 
 
 def _huge(value: Any) -> bool:
-    """Tell whether a number is whole and beyond what double precision holds, so that nothing can be done with it."""
+    """Return whether a number is whole and beyond what double precision holds, so that nothing can be done with it."""
     return isinstance(value, Integral) and not -(2**1023) < int(value) < 2**1023
 
 

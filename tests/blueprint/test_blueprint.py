@@ -107,6 +107,15 @@ def test_a_file_without_base_hears_what_is_missing(said):
     assert "name" not in mistakes
 
 
+def test_a_field_in_the_wrong_part_hears_where_it_stands(said):
+    mistakes = said('base = "caiman"\nfemur = 0.1\n[tail]\nfoot_friction = 0.5\n[contact]\nmass = 1.0\n')
+    assert mistakes == {
+        "femur": "is not known there; it stands at hind_leg.femur and front_leg.femur: move it",
+        "tail.foot_friction": "is not known there; it stands at contact.foot_friction: move it",
+        "contact.mass": "is not known; there is foot_friction, skin_friction, time_constant, torsion, rolling, depth",
+    }  # many parts have a mass
+
+
 def test_mistakes_of_a_gait_are_named_at_once(said):
     mistakes = said('base = "belly_crawl"\nduty_factor = 1\nperiod = -1\nlimb_phases = [0, 3, 0, 0]\n', Gait, GAITS)
     assert mistakes.keys() == {"duty_factor", "period", "limb_phases[1]"}

@@ -1,6 +1,6 @@
 import pytest
 
-from suchus.capture import Animal, Camera
+from suchus.capture import Camera, SyntheticAnimal
 from suchus.gaits import GAITS
 from suchus.land import crawl as let_crawl
 from suchus.robots import ROBOTS
@@ -28,7 +28,7 @@ def clean():
 
 @pytest.fixture
 def lizard():
-    return Animal(
+    return SyntheticAnimal(
         trunk=0.12,
         tail=0.20,
         period=0.8,

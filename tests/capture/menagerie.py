@@ -5,7 +5,7 @@ from typing import NamedTuple, get_args
 
 import numpy as np
 
-from suchus.capture import Animal, Camera, Tracks, UnusableTracks, film_animal, observe
+from suchus.capture import Camera, SyntheticAnimal, Tracks, UnusableTracks, film_animal, observe
 from suchus.capture.animal import Swing
 from suchus.design import LEGS
 
@@ -21,7 +21,7 @@ AILMENTS = (
 
 
 class Filmed(NamedTuple):
-    animal: Animal
+    animal: SyntheticAnimal
     pace: np.ndarray
     tracks: Tracks
 
@@ -77,10 +77,12 @@ def ailing(seed: int) -> Filmed:
     return Filmed(animal, pace, tracks)
 
 
-def built(random: np.random.Generator, seed: int, *, trunk: tuple[float, float], period: tuple[float, float]) -> Animal:
+def built(
+    random: np.random.Generator, seed: int, *, trunk: tuple[float, float], period: tuple[float, float]
+) -> SyntheticAnimal:
     """An animal of random gait, its trunk [m] and its period [s] between two numbers each."""
     long, lasts, lag = random.uniform(*trunk), random.uniform(*period), random.uniform(0.2, 0.3)
-    return Animal(
+    return SyntheticAnimal(
         trunk=long,
         tail=1.7 * long,
         period=lasts,

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from suchus.capture import film_animal
-from suchus.capture.feet import GRID, Contact, contact, grid, path_shape, sweep
+from suchus.capture.feet import GRID, FootContact, contact, grid, path_shape, sweep
 from suchus.gaits import GAITS
 from suchus.motion import foot_targets
 
@@ -33,7 +33,7 @@ def test_the_speed_of_a_standing_foot_is_nearly_nothing(lizard, clean):
 
 def test_a_stance_across_the_end_of_the_cycle():
     unsure = {"middle_error": 0.0, "duty_error": 0.0, "scatter": 0.0, "hidden": 0.0}
-    edges = Contact(np.zeros(GRID), np.zeros(GRID, dtype=bool), lift_off=0.2, touch_down=0.8, middle=0.0, **unsure)
+    edges = FootContact(np.zeros(GRID), np.zeros(GRID, dtype=bool), lift_off=0.2, touch_down=0.8, middle=0.0, **unsure)
     np.testing.assert_allclose(edges.duty, 0.4, atol=1e-12)
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from suchus.capture import Reading, UnusableTracks, film_animal, observe, read_tracks, write_table
+from suchus.capture import ReadingOptions, UnusableTracks, film_animal, observe, read_tracks, write_table
 from suchus.errors import SuchusError, UnknownName, UnreadableFile
 
 HEAD = "time [s],hip_x [mm],hip_y [mm]\n"
@@ -31,15 +31,15 @@ def test_units_and_confidence_of_a_table(tmp_path):
     tracks = read_tracks(file)
     assert tracks.points == ("tail_base",)
     np.testing.assert_allclose(tracks.at("tail_base"), [[0.01, 0.02], [np.nan] * 2, [np.nan] * 2])
-    np.testing.assert_allclose(read_tracks(file, Reading(confidence=0.05)).at("tail_base")[1], [0.03, 0.04])
-    np.testing.assert_allclose(read_tracks(file, Reading(y_down=True)).at("tail_base")[0], [0.01, -0.02])
+    np.testing.assert_allclose(read_tracks(file, ReadingOptions(confidence=0.05)).at("tail_base")[1], [0.03, 0.04])
+    np.testing.assert_allclose(read_tracks(file, ReadingOptions(y_down=True)).at("tail_base")[0], [0.01, -0.02])
 
 
 def test_pixels_have_y_down(tmp_path):
     file = tmp_path / "a.csv"
     file.write_text("time [s],hip_x [px],hip_y [px]\n0,1,2\n")
     np.testing.assert_allclose(read_tracks(file).at("hip"), [[1.0, -2.0]])
-    np.testing.assert_allclose(read_tracks(file, Reading(y_down=False)).at("hip"), [[1.0, 2.0]])
+    np.testing.assert_allclose(read_tracks(file, ReadingOptions(y_down=False)).at("hip"), [[1.0, 2.0]])
 
 
 @pytest.mark.parametrize(
@@ -78,7 +78,7 @@ def test_no_file_a_folder_and_no_text(tmp_path):
     with pytest.raises(UnreadableFile, match="--software"):
         read_tracks(tmp_path / "b.xyz")
     with pytest.raises(UnknownName, match="SLEAP"):
-        read_tracks(tmp_path / "b.xyz", Reading(software="Sleep"))
+        read_tracks(tmp_path / "b.xyz", ReadingOptions(software="Sleep"))
 
 
 @pytest.fixture
@@ -133,7 +133,7 @@ def movement(monkeypatch):
 
 
 def test_poses_of_one_individual_with_y_down(deeplabcut, movement):
-    tracks = read_tracks(deeplabcut, Reading(rate=10.0, individual="one"))
+    tracks = read_tracks(deeplabcut, ReadingOptions(rate=10.0, individual="one"))
     assert movement == {"software": "DeepLabCut", "fps": 10.0}
     assert (tracks.points, tracks.unit) == (("hip", "LF"), "px")
     np.testing.assert_allclose(tracks.at("hip"), [[0, -4], [8, -12], [16, -20]])
@@ -145,9 +145,9 @@ def test_poses_need_a_rate_and_a_choice(deeplabcut, movement):
     with pytest.raises(UnusableTracks, match="--fps"):
         read_tracks(deeplabcut)
     with pytest.raises(UnusableTracks, match="2 individuals; choose one with --individual: one, two"):
-        read_tracks(deeplabcut, Reading(rate=10.0))
+        read_tracks(deeplabcut, ReadingOptions(rate=10.0))
     with pytest.raises(UnusableTracks, match="no individual 'three'"):
-        read_tracks(deeplabcut, Reading(rate=10.0, individual="three"))
+        read_tracks(deeplabcut, ReadingOptions(rate=10.0, individual="three"))
 
 
 def test_the_real_library_reads_what_it_writes(lizard, noisy, tmp_path):
@@ -160,5 +160,5 @@ def test_the_real_library_reads_what_it_writes(lizard, noisy, tmp_path):
     save_poses.to_dlc_file(data, tmp_path / "dlc.h5", split_individuals=False)
     save_poses.to_sleap_analysis_file(data, tmp_path / "sleap.h5")
     for name in ("dlc.h5", "sleap.h5"):
-        back = read_tracks(tmp_path / name, Reading(rate=100.0))
+        back = read_tracks(tmp_path / name, ReadingOptions(rate=100.0))
         assert observe(back).value("duty_LF") == pytest.approx(observe(tracks).value("duty_LF"), abs=1e-3)

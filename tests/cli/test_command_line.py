@@ -221,6 +221,7 @@ def test_ctrl_c_while_saving_keeps_the_earlier_result(tmp_path, monkeypatch, cap
         ("import suchus", {"numpy", "mujoco", "matplotlib", "xarray", "numba", "scipy", "tyro", "pydantic"}),
         ("from suchus.cli import main; main(['--help'])", {"numpy", "mujoco", "matplotlib", "xarray", "tyro"}),
         ("from suchus.cli import main; main(['list'])", {"numpy", "mujoco", "matplotlib", "xarray", "scipy"}),
+        ("import suchus.metrics", {"scipy.stats", "matplotlib", "mujoco"}),
     ],
 )
 def test_light_commands_load_nothing_heavy(code, unwanted):

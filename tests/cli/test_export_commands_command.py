@@ -17,7 +17,7 @@ def test_a_map_to_start_from_then_the_commands(tmp_path, capsys):
     folder = tmp_path / "export" / "limbs_only_commands"
     names = {"commands.csv", "trajectory.yaml", "loads.csv", "servo_map.toml", "gait.toml", "suchus_commands.json"}
     assert {p.name for p in folder.iterdir()} == names
-    assert "hardest worked" in capsys.readouterr().out
+    assert "highest-loaded" in capsys.readouterr().out
 
 
 BAD = {

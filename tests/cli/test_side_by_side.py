@@ -11,7 +11,6 @@ from pathlib import Path
 import pytest
 
 from suchus.cli import main
-from suchus.cli.crew import _dismiss, _hire
 
 FAKES = Path(__file__).parent / "fake_shelf"
 
@@ -85,17 +84,6 @@ def test_who_breaks_or_dies_is_told_and_the_others_are_as_ever(capsys, tmp_path)
     assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["report.html", "wave"]
     assert main(["run", "wave", "--out", str(tmp_path / "alone")]) == 0
     assert files(tmp_path / "out/wave") == files(tmp_path / "alone/wave")
-
-
-def test_no_worker_hears_ctrl_c():
-    """Not the first one either, with which Python starts a process of its own."""
-    crew = [_hire(1), _hire(1)]
-    for worker in crew:
-        os.kill(worker.process.pid, signal.SIGINT)
-    time.sleep(0.3)
-    assert all(worker.process.is_alive() for worker in crew)
-    _dismiss(crew)
-    assert [worker.process.exitcode for worker in crew] == [0, 0]
 
 
 def test_ctrl_c_while_one_is_saving_stops_all_and_leaves_nothing_half_written(tmp_path):

@@ -14,7 +14,7 @@ duration = 1.1
 measure = ["displacement"]
 
 [[vary]]
-field = "ground.grip"
+field = "ground.friction_scale"
 values = [0.5, 1.0]
 
 [[vary]]
@@ -39,14 +39,17 @@ def test_a_study_says_where_its_results_are_and_what_failed(tmp_path, capsys):
     assert main(["study", "grip.toml", "--csv"]) == 0
     assert (tmp_path / "out" / "studies" / "grip" / "results.csv").is_file()
     header = (tmp_path / "out" / "studies" / "grip" / "csv" / "sample.csv").read_text().splitlines()[0].split(",")
-    assert header[:3] == ["sample", "ground.grip", "gait.hip_height [m]"]
+    assert header[:3] == ["sample", "ground.friction_scale", "gait.hip_height [m]"]
     assert (tmp_path / "out" / "studies" / "grip" / "results.nc").stat().st_mtime_ns >= before
 
 
 BAD = {
-    ("ground.grip", "ground.gripp"): "Did you mean 'grip'?",
-    ("[0.5, 1.0]", "[0.5, 100.0]"): "varies ground.grip, but ground.grip is 100; 0.01 to 10 is allowed",
-    ("[0.5, 1.0]", '["much"]'): "varies ground.grip, but ground.grip is 'much'",
+    ("ground.friction_scale", "ground.friction_skale"): "Did you mean 'friction_scale'?",
+    (
+        "[0.5, 1.0]",
+        "[0.5, 100.0]",
+    ): "but ground.friction_scale is 100; 0.01 to 10 is allowed",
+    ("[0.5, 1.0]", '["much"]'): "varies ground.friction_scale, but ground.friction_scale is 'much'",
     ("field =", "feild ="): "did you mean vary[0].field?",
     ("duration = 1.1", "duration = -1.0"): "1.1 to 86400 s is allowed",
     ('"displacement"', '"displacment"'): "Did you mean 'displacement'?",
@@ -166,3 +169,17 @@ def test_a_fault_that_is_none_is_refused(fault, said, tmp_path):
     (tmp_path / "f.toml").write_text(page)
     with pytest.raises(SuchusError, match=said):
         read_study(tmp_path / "f.toml")
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--jobs", "0"], "--jobs is 0; at least 1 process is needed"),
+        (["--jobs", "2", "--scheduler", "tcp://127.0.0.1:1"], "--jobs and --scheduler exclude each other"),
+    ],
+)
+def test_processes_that_cannot_be_are_refused(words, said, tmp_path, capsys):
+    for study in ("grip.toml", "claims"):
+        assert main(["study", study, *words]) == 2
+        assert said in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()

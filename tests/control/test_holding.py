@@ -17,9 +17,7 @@ from suchus.robots import ROBOTS
 from suchus.rotation import about
 
 ROBOT, PERIOD = ROBOTS["floating_caiman"], 0.01
-WAVE = Swim(
-    name="wave", frequency=1.0, yaw=(0.36, 0.13, 0.11), yaw_late=(0.08, -0.11, -0.29), tail=0.75, tail_late=-0.11
-)
+WAVE = Swim(name="wave", frequency=1.0, yaw=(0.36, 0.13, 0.11), yaw_lag=(0.08, -0.11, -0.29), tail=0.75, tail_lag=-0.11)
 UP = np.array([0.0, 0.0, 1.0])
 
 

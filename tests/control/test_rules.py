@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from suchus.control import LAWS, OWNERS, Coordinated, HeadingRule, Kick, LimbLaw, OpenLoop, Sensed, SpineRule, TailRule
 from suchus.control.limbs import GRAVITY, Limbs
 from suchus.control.shared import silence
-from suchus.control.spine import Spine
-from suchus.control.tail import Tail
+from suchus.control.spine import SpineController
+from suchus.control.tail import TailController
 from suchus.design import layout
 from suchus.errors import InvalidDesign, OutsideLimits
 from suchus.gaits import GAITS
@@ -129,8 +129,8 @@ def test_spine_and_tail_follow_the_limbs_by_the_open_loop_law(robot, crawl_gait,
     gait = replace(crawl_gait, spine_phase=late, tail_phase=later, duty_factor=duty)
     groups = [(robot, gait, np.array([0]))]
     shared = silence(1, 4).written_by("limbs", limb_phase=np.array([phase]))
-    shared = Spine([None], [robot], groups, PERIOD).step(shared)
-    shared = Tail([None], [robot], [gait], groups, PERIOD).step(shared)
+    shared = SpineController([None], [robot], groups, PERIOD).step(shared)
+    shared = TailController([None], [robot], [gait], groups, PERIOD).step(shared)
     for name, law in (("trunk", trunk_bend), ("tail", tail_bend)):
         assert getattr(shared, f"{name}_bend") == pytest.approx(law(gait, np.array([phase])), abs=1e-12)
         assert getattr(shared, f"{name}_direction") == pytest.approx(law(gait, np.array([phase]) + 0.25), abs=1e-12)
@@ -147,10 +147,11 @@ def test_without_sharing_spine_and_tail_follow_the_clock(robot, crawl_gait):
 # --- limb to limb ---
 
 
-def walked(law, robot, gait, ahead, load, ticks):
-    """Let oscillators turn on synthetic loads; return the phases over time, (tick, run, 4)."""
+def walked(laws, robot, gait, ahead, load, ticks):
+    """Let oscillators turn on synthetic loads, by one law or one for each run; return the phases, (tick, run, 4)."""
     runs = len(ahead)
-    limbs = Limbs([law] * runs, [robot] * runs, [gait] * runs, ahead, PERIOD)
+    laws = [laws] * runs if isinstance(laws, LimbLaw) else laws
+    limbs = Limbs(laws, [robot] * runs, [gait] * runs, ahead, PERIOD)
     shared, out = silence(runs, 4), []
     for tick in range(ticks):
         clock = np.tile(limb_phase(gait, np.array(START + tick * PERIOD)), (runs, 1))
@@ -208,10 +209,9 @@ def test_loads_that_follow_the_phases_pull_the_limbs_into_diagonal_pairs(robot, 
     def load(phase):
         return quarter * (1.0 - np.sin(2 * pi * phase))  # what a leg carries, on average over postures
 
-    errors = {
-        name: pair_error(walked(replace(law, shift=0.0, delay=0.0), robot, crawl_gait, ahead.copy(), load, 6000)[-400:])
-        for name, law in LAWS.items()
-    }
+    laws = [replace(law, shift=0.0, delay=0.0) for law in LAWS.values() for _ in ahead]
+    phases = walked(laws, robot, crawl_gait, np.tile(ahead, (len(LAWS), 1)), load, 6000)[-400:]
+    errors = dict(zip(LAWS, np.split(pair_error(phases), len(LAWS), axis=1), strict=True))
     assert errors["cross_load"].max() < 0.005
     assert (errors["wrong_sign"].max(axis=0) > 0.2).all()
     # each for itself: on loads that no body passes on, own_load coordinates nothing
@@ -255,7 +255,7 @@ def test_noise_on_the_feet_follows_the_seed(robot, crawl_gait):
 
 def test_the_joints_share_out_what_is_lacking_of_the_bend(robot, crawl_gait):
     rule = SpineRule(share=0.25, delay=0.1)
-    spine = Spine([rule, None], [robot] * 2, [(robot, crawl_gait, np.arange(2))], PERIOD)
+    spine = SpineController([rule, None], [robot] * 2, [(robot, crawl_gait, np.arange(2))], PERIOD)
     targets = np.zeros((2, 19))
     felt = sensed(2, servo_position=np.where(np.isin(np.arange(19), TRUNK_YAW[:2]), 0.1, 0.0))  # 0.2 of 0.6 rad
     for tick in range(200):
@@ -268,7 +268,7 @@ def test_the_joints_share_out_what_is_lacking_of_the_bend(robot, crawl_gait):
 
 
 def test_no_joint_is_told_to_leave_its_range(robot, crawl_gait):
-    spine = Spine([SpineRule(share=2.0, delay=0.0)], [robot], [(robot, crawl_gait, np.arange(1))], PERIOD)
+    spine = SpineController([SpineRule(share=2.0, delay=0.0)], [robot], [(robot, crawl_gait, np.arange(1))], PERIOD)
     told = spine.correct(np.zeros((1, 19)), np.array([3.0]), sensed(1))
     assert told[0, TRUNK_YAW] == pytest.approx(robot.spine.yaw_range[1])
 
@@ -277,7 +277,7 @@ def test_the_tail_gives_way_to_its_torque_within_its_range(robot, crawl_gait):
     limbs_gait = GAITS["limbs_tail_lifted"]
     gaits = [crawl_gait, crawl_gait, crawl_gait, limbs_gait]
     rule = TailRule(rate=0.5)
-    tail = Tail(
+    tail = TailController(
         [rule, rule, None, rule], [robot] * 4, gaits, [(robot, g, np.array([i])) for i, g in enumerate(gaits)], PERIOD
     )
     pitch = np.array([gait.tail_pitch for gait in gaits])

@@ -67,7 +67,7 @@ def test_feet_on_the_side_that_sinks_go_lower_and_the_front_ones_when_the_nose_s
     assert lowered() == pytest.approx(np.zeros(4))
 
 
-def test_a_lasting_slope_is_no_stumble(robot):
+def test_a_constant_slope_is_no_stumble(robot):
     walker = Walking(attitude=AttitudeRule(washout=0.5)).start([robot], [GAITS["high_walk"]], [0], 10, 0.01)
     walker.command(150, sensed())
     for tick in range(151, 600):

@@ -34,7 +34,7 @@ def test_nothing_that_was_tried_failed_and_who_lacks_something_was_refused():
 
 
 def test_a_cell_tells_answers_refusals_and_failures_apart():
-    assert [tool.mark(told) for told in ("", "suchus: it needs limbs.", "exit 1: it came apart", None)] == [
+    assert [tool.mark(told) for told in ("", "suchus: it needs limbs.", "exit 1: it diverged", None)] == [
         "answers",
         "refuses",
         "failed",

@@ -21,8 +21,8 @@ TRUNK = Roll(
     trunk_vertical=radians(50),
     tail_lateral=0.0,
     tail_vertical=0.0,
-    late=0.25,
-    tail_late=0.0,
+    lag=0.25,
+    tail_lag=0.0,
 )
 
 
@@ -39,7 +39,7 @@ def rate(record, run=0):
 
 @pytest.fixture(scope="module")
 def in_vacuum():
-    return afloat([TRUNK, replace(TRUNK, late=-0.25), replace(TRUNK, trunk_vertical=0.0)])
+    return afloat([TRUNK, replace(TRUNK, lag=-0.25), replace(TRUNK, trunk_vertical=0.0)])
 
 
 def test_the_body_turns_while_its_angular_momentum_stays_zero(in_vacuum):
@@ -63,7 +63,7 @@ def test_two_slow_bends_at_the_same_time_hardly_turn_it():
     slow = replace(
         TRUNK, frequency=1.0
     )  # faster, the passive end of the tail lags sideways more than it does up and down
-    record = afloat([slow, replace(slow, late=0.0)], duration=2.0)
+    record = afloat([slow, replace(slow, lag=0.0)], duration=2.0)
     assert abs(float(roll_rate(record.isel(run=1), 1.0))) < 0.1 * float(roll_rate(record.isel(run=0), 1.0))
 
 

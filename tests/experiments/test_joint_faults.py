@@ -12,7 +12,7 @@ from suchus.errors import Diverged
 from suchus.experiments import EXPERIMENTS
 from suchus.experiments._fault_findings import tolerance
 from suchus.gaits import GAITS
-from suchus.land import KINDS, KNEES, LEGS_LOST, LOST, Limp, Locked, Run, angle_at, lost, simulate
+from suchus.land import FAILED_JOINTS, KINDS, KNEES, LEGS_FAILED, Limp, Locked, Run, angle_at, joint_failure, simulate
 from suchus.metrics import displacement, loss, swing_lift, swing_loads, whole
 from suchus.motion import foot_targets, servo_targets
 from suchus.paper import CLAIMS
@@ -22,8 +22,8 @@ from suchus.verdict import RULES, judge
 CAIMAN = ROBOTS["caiman"]
 CRAWL = GAITS["belly_crawl"]
 ARMS = ("coordinated", "limbs_only")
-JOINTS = (*LOST, *KNEES)
-CLAIMED = {f"fault_{joint}_{arm}" for joint in LOST for arm in ARMS}
+JOINTS = (*FAILED_JOINTS, *KNEES)
+CLAIMED = {f"fault_{joint}_{arm}" for joint in FAILED_JOINTS for arm in ARMS}
 
 
 @pytest.fixture(scope="module")
@@ -38,7 +38,7 @@ def outcome(quick_outcome):
 
 def test_the_full_campaign_is_as_large_as_asked():
     full = EXPERIMENTS["joint_faults"]
-    runs = full.variations * len(ARMS) * (1 + len(JOINTS) * len(KINDS) * len(LEGS_LOST))
+    runs = full.variations * len(ARMS) * (1 + len(JOINTS) * len(KINDS) * len(LEGS_FAILED))
     assert full.variations >= 8
     assert runs >= 400
     assert full.unjudged() == ""
@@ -54,9 +54,9 @@ def test_the_full_campaign_is_as_large_as_asked():
     ],
 )
 def test_lost_joints_are_those_of_the_girdle(joint, servos):
-    assert lost(CAIMAN, CRAWL, joint, "limp", "one") == (Limp(servos[0]),)
-    assert lost(CAIMAN, CRAWL, joint, "limp", "both") == tuple(Limp(name) for name in servos)
-    held = lost(CAIMAN, CRAWL, joint, "locked", "both")
+    assert joint_failure(CAIMAN, CRAWL, joint, "limp", "one") == (Limp(servos[0]),)
+    assert joint_failure(CAIMAN, CRAWL, joint, "limp", "both") == tuple(Limp(name) for name in servos)
+    held = joint_failure(CAIMAN, CRAWL, joint, "locked", "both")
     assert all(isinstance(fault, Locked) for fault in held)
     assert [fault.joint for fault in held] == list(servos)
 
@@ -86,7 +86,7 @@ def test_no_fault_costs_nothing_and_standing_still_costs_all():
 
 
 def test_every_measure_of_the_issue_is_there_with_its_range(outcome):
-    for cell in product(JOINTS, KINDS, LEGS_LOST, ARMS):
+    for cell in product(JOINTS, KINDS, LEGS_FAILED, ARMS):
         name = f"loss_{'_'.join(cell)}"
         low, middle, high = (outcome.measures[f"{name}{end}"].value for end in ("_low", "", "_high"))
         assert low <= middle <= high
@@ -106,7 +106,7 @@ def test_the_first_variation_is_the_gait_as_given_and_the_rest_differ(campaign, 
         assert one.low <= values[1] <= one.high
         assert values[1] != values[0]
     assert record.grip[0] == 1.0
-    assert abs(record.grip[1] - 1.0) <= campaign.grip_spread
+    assert abs(record.grip[1] - 1.0) <= campaign.friction_spread
 
 
 def test_both_arms_of_a_variation_have_the_same_legs(campaign):
@@ -123,8 +123,10 @@ def test_the_campaign_measures_what_lone_runs_do(campaign, outcome):
     record = outcome.record.isel(variation=0)
     runs = [
         Run(robot=CAIMAN, gait=CRAWL),
-        Run(robot=CAIMAN, gait=CRAWL, faults=lost(CAIMAN, CRAWL, "hind_yaw", "limp", "both")),
-        Run(robot=CAIMAN, gait=GAITS["limbs_only"], faults=lost(CAIMAN, CRAWL, "front_pitch", "locked", "one")),
+        Run(robot=CAIMAN, gait=CRAWL, faults=joint_failure(CAIMAN, CRAWL, "hind_yaw", "limp", "both")),
+        Run(
+            robot=CAIMAN, gait=GAITS["limbs_only"], faults=joint_failure(CAIMAN, CRAWL, "front_pitch", "locked", "one")
+        ),
     ]
     alone = simulate(runs, duration=1.0 + CRAWL.period, timestep=campaign.timestep)
     way = displacement(alone).sel(xyz="x").values
@@ -142,7 +144,7 @@ def test_net_is_no_shorter_than_forward(outcome):
 def test_the_table_has_a_row_for_every_reading_and_repeats_the_measures(outcome):
     rows = list(csv.DictReader(io.StringIO(outcome.tables["faults.csv"])))
     assert [tuple(row[k] for k in ("joint", "kind", "legs", "arm")) for row in rows] == list(
-        product(JOINTS, KINDS, LEGS_LOST, ARMS)
+        product(JOINTS, KINDS, LEGS_FAILED, ARMS)
     )
     for row in rows:
         name = "_".join(row[k] for k in ("joint", "kind", "legs", "arm"))
@@ -157,7 +159,7 @@ def test_what_robust_physics_says_about_lost_joints(outcome):
     value = {name: measure.value for name, measure in outcome.measures.items()}
     # no feet on the ground in front: no forward motion; a held joint is better than a limp one
     assert value["loss_front_pitch_limp_one_coordinated"] < -0.9
-    for joint, legs in product(("front_pitch", "hind_pitch"), LEGS_LOST):
+    for joint, legs in product(("front_pitch", "hind_pitch"), LEGS_FAILED):
         assert value[f"loss_{joint}_locked_{legs}_coordinated"] > value[f"loss_{joint}_limp_{legs}_coordinated"] + 0.2
     # with spine and tail, two lost yaw joints cost more than one
     for joint in ("front_yaw", "hind_yaw"):
@@ -177,7 +179,7 @@ def test_another_reading_of_a_lost_joint_is_measured_and_not_judged(campaign, ou
 
 def test_the_judged_reading_of_the_lifted_tail_is_that_of_a_lone_run(campaign, outcome):
     gait = GAITS["limbs_tail_lifted"]
-    runs = [Run(robot=CAIMAN, gait=gait, faults=lost(CAIMAN, gait, "hind_yaw", "limp", "one"))]
+    runs = [Run(robot=CAIMAN, gait=gait, faults=joint_failure(CAIMAN, gait, "hind_yaw", "limp", "one"))]
     way = displacement(simulate(runs, duration=1.0 + CRAWL.period, timestep=campaign.timestep)).sel(xyz="x")
     assert float(outcome.record.lifted_forward.sel(lost="hind_yaw")[0]) == float(way[0])
 
@@ -187,14 +189,14 @@ def made_up(better: int, of: int = 8) -> xr.Dataset:
     forward = np.full((of, 2, len(JOINTS), 2, 2), 0.5)
     forward[:better, 0] = 0.6
     forward[better:, 0] = 0.4
-    forward[:, 0, len(LOST) :] = 0.0  # the knees do not count
+    forward[:, 0, len(FAILED_JOINTS) :] = 0.0  # the knees do not count
     dims = ("variation", "arm", "joint", "kind", "legs")
     coords = {
         "arm": list(ARMS),
         "joint": list(JOINTS),
-        "lost": list(LOST),
+        "lost": list(FAILED_JOINTS),
         "kind": list(KINDS),
-        "legs": list(LEGS_LOST),
+        "legs": list(LEGS_FAILED),
     }
     return xr.Dataset({"forward": (dims, forward), "intact_forward": (dims[:2], np.ones((of, 2)))}, coords=coords)
 
@@ -248,7 +250,7 @@ def test_a_run_that_comes_apart_is_not_measured():
     record = simulate([Run(robot=CAIMAN, gait=CRAWL)] * 2, duration=0.5, timestep=0.005)
     assert whole(record) is record
     broken = record.assign(cause=("run", ["", "a speed of 2e3 was reached"]), ended=("run", [0.5, 0.2]))
-    with pytest.raises(Diverged, match=r"run 1 of 2, belly_crawl, came apart at 0\.20 s") as caught:
+    with pytest.raises(Diverged, match=r"run 1 of 2, belly_crawl, diverged at 0\.20 s") as caught:
         whole(broken)
     assert caught.value.time == 0.2
     assert float(caught.value.record.time[-1]) == pytest.approx(0.2)

@@ -7,11 +7,12 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from suchus.control import OpenLoop
 from suchus.errors import InvalidDesign
 from suchus.experiments import EXPERIMENTS
 from suchus.experiments import _shore_findings as findings
-from suchus.figures.shore import levelled
-from suchus.land import Ground
+from suchus.figures.shore import _aslant, levelled
+from suchus.land import Ground, simulate
 from suchus.record import ground_text
 from suchus.rotation import about, rotate
 
@@ -26,6 +27,7 @@ def kept(**changes):
     walks = (ahead > -1.0).astype(float)
     values = {
         "ahead": ahead,
+        "aside": 0.0 * ahead,
         "tilt": tilt,
         "walks": walks,
         "ground": walks * 0.5,
@@ -42,7 +44,9 @@ def kept(**changes):
     for name, value in (("speed", [0.1, 0.2, 0.1]), ("power", [3.0, 1.2, 1.0]), ("depth", [-9.9, 0.1, 0.63])):
         found[f"metre_{name}"] = ("where", np.array(value))
     found["metre_weight"] = ("where", np.full(3, 30.0))
-    return found.assign_coords(where=["land", "surface", "deep"]).assign_attrs(beyond=1.0, depth=0.6)
+    return found.assign_coords(where=["land", "surface", "deep"]).assign_attrs(
+        beyond=1.0, depth=0.6, approach=0.0, shown=0
+    )
 
 
 @pytest.mark.parametrize(("beyond", "time"), [(0.99, 7.5), (1.01, 8.0), (1.81, np.nan)])
@@ -102,6 +106,42 @@ def test_a_metre_costs_power_over_speed():
     assert np.isnan(found["work_per_metre_swimming"].value)  # the first 3 s do not count
 
 
+def test_a_metre_is_measured_along_the_course():
+    """Aslant by 0.6435 rad 0.4 m up are 0.5 m along, and 0.3 m aside."""
+    record = kept(aside=kept().ahead.values * 0.75).isel(case=[0]).assign_attrs(approach=np.arctan2(3, 4))
+    assert findings._costs(record)["speed_ashore"].value == pytest.approx(0.5)
+    assert findings._costs(record.assign_attrs(approach=0.0))["speed_ashore"].value == pytest.approx(0.4)
+
+
+@pytest.mark.parametrize(
+    ("shown", "said"),
+    [
+        (0, "after 3 s it walks, and after 8 s it is 1 m beyond the water line"),
+        (1, "after 3 s it walks, and it falls"),
+        (2, "it walks, and it does not come 1 m beyond the water line"),
+    ],
+)
+def test_what_is_shown_is_said_as_it_came(shown, said):
+    assert said in findings.ending(kept().assign_attrs(shown=shown))
+    swims = kept(walks=np.zeros((3, 20)))
+    assert "does not begin to walk" in findings.ending(swims)
+
+
+@pytest.mark.parametrize("into", [True, False])
+def test_down_a_shore_the_water_is_ahead_and_up_a_shore_behind(into):
+    """Of real runs, whose robot is put into the water, or onto dry land, by the level alone."""
+    runs = [SHORE._run(SHORE.gait, uphill, 1.0, 0.0, 0) for uphill in (radians(10), radians(-10))]
+    runs = [
+        replace(run, lake=replace(run.lake, level=run.lake.level + (0.6 if into else -0.6)), control=OpenLoop())
+        for run in runs
+    ]
+    found = findings.paths(simulate(runs, duration=0.1), runs, 1)
+    found["ground"], found["walks"] = 0.0 * found.ground, 0.0 * found.walks  # as if it swam
+    assert ((found.ahead < 0.0) == into).all()
+    assert ((found.under > 0.5) == into).all()
+    assert (findings.in_water(found) == into).all()
+
+
 def test_a_metre_on_land_at_the_surface_and_at_depth_costs_power_over_speed_and_weight():
     found = findings._metre_costs(kept())
     assert [found[f"work_per_metre_{where}"].value for where in ("land", "surface", "deep")] == pytest.approx(
@@ -145,6 +185,12 @@ def test_the_water_line_is_where_the_slope_meets_the_level(uphill):
     assert run.control.begins == ("swimming" if uphill > 0.0 else "walking")
 
 
+def test_the_caption_says_that_a_robot_which_comes_aslant_looks_shorter():
+    assert "aslant by 49 degrees" in _aslant(0.85)
+    assert "aslant by 49 degrees" in _aslant(-0.85)
+    assert _aslant(0.0) == ""
+
+
 def test_a_levelled_run_stands_on_a_slope_whose_water_line_is_the_origin():
     slope, line = 0.2, 1.5
     points = np.array([[line, 0.0, 0.0], [line + 1.0, 0.3, 0.0]])
@@ -169,6 +215,7 @@ def test_a_levelled_run_stands_on_a_slope_whose_water_line_is_the_origin():
         ({"grips": ()}, "grips is \\(\\)"),
         ({"seeds": 0}, "seeds is 0"),
         ({"breathe_out": 1.5}, "breathe_out is 1.5"),
+        ({"approach": 1.5}, "approach is 1.5"),
         ({"duration": 0.1}, "duration is 0.1 s"),
     ],
 )

@@ -14,7 +14,7 @@ from suchus.motion import Swim
 from suchus.robots import ROBOTS
 from suchus.rotation import about
 
-SWIM = Swim(name="one", frequency=1.0, yaw=(0.1, 0.2, 0.3), yaw_late=(0, 0, 0), tail=0.5, tail_late=0.0)
+SWIM = Swim(name="one", frequency=1.0, yaw=(0.1, 0.2, 0.3), yaw_lag=(0, 0, 0), tail=0.5, tail_lag=0.0)
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])

@@ -135,34 +135,6 @@ def turning(cells, *, viscosity=0.05, swing=0.2, periods=1.0, width=3.0):
     return float(torque), float(np.sqrt(np.mean(np.concatenate(squares))))
 
 
-def shaken_in_a_stream(held, ratio, *, strouhal, settle=25.0, until=75.0):
-    """Go on from the wake of a held cylinder while it is shaken across the stream, with 0.2 D at ``ratio`` times its
-    own shedding frequency.
-
-    Returns:
-        mean drag, rms of the lift and angle by which the lift is ahead of the motion [deg], over the whole periods
-        after ``settle``, and the same of each period alone, shape (1 + periods, 3). In a wake that does not lock to the
-        motion they beat.
-    """
-    rate, period = 2 * np.pi * ratio * strouhal, 1 / (ratio * strouhal)
-    body = flow.Body(shape=flow.Cylinder(diameter=1.0), motion=flow.Oscillation(frequency=1 / period, heave=(0.0, 0.2)))
-    sim = flow.Simulation(replace(held.setup, bodies=(body,)))
-    for name in ("u", "v", "p"):
-        getattr(sim.water, name)[:] = getattr(held.water, name)
-    record = sim.run(until, progress=False)
-    time, force = middle(record), 2 * record.force()
-    first, end = np.ceil(settle / period), np.floor(until / period)
-
-    def over(begin, after):
-        k = (time >= begin * period) & (time < after * period)
-        (drag, mean), weights = np.average(force[k], axis=0, weights=record.step[k]), record.step[k]
-        lift = force[k, 1] - mean
-        turning = 1j * np.average(lift * np.exp(-1j * rate * time[k]), weights=weights)
-        return drag, np.sqrt(np.average(lift**2, weights=weights)), np.angle(turning, deg=True)
-
-    return np.array([over(first, end), *(over(k, k + 1) for k in np.arange(first, end))])
-
-
 def straight_foil(cells, reynolds, until):
     """Drag coefficient of a NACA 0012 held straight along the stream, chord and speed 1, mean of the last second."""
     spine = flow.foil(1.0, thickness=0.12, stations=2 * cells + 1).spine(0.0).blunted(1.75 / cells)

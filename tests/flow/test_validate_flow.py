@@ -1,5 +1,6 @@
-"""Comparison with exact and published numbers: `make validate`. Writes docs/validation.md and its figures.
+"""Comparison with exact numbers: `make validate`. Writes docs/validation.md and its figures.
 
+What is compared with published numbers is bounded here too, on coarser grids, and shown in the atlas: `make atlas`.
 Bounds are those of the issue where the code reaches them; a row that falls short is printed with what it is, and
 its bound here is the one that holds, so that it cannot get worse unseen.
 """
@@ -24,21 +25,11 @@ DATA = ROOT / "tests" / "data" / "flow"
 OUT = ROOT / "out" / "validation"
 
 SOURCES = (
-    "Gautier et al. 2013: Computers and Fluids 75, 103-111 (arXiv:1310.6641), table 2, spectral, asymptotic far field; "
-    "quoted with its tables' numbers in public validation code. Its table 1 has 1.48 < Cd < 1.62 and 2.13 < L/D < 2.35 "
-    "for the literature before it.",
-    "Fornberg 1980 (J. Fluid Mech. 98, 819-855) and Dennis and Chang 1970 (J. Fluid Mech. 42, 471-489): as quoted in "
-    "public validation code of three projects that agree.",
-    "Liu, Zheng and Sung 1998 (J. Comput. Phys. 139, 35-57) and Park, Kwon and Choi 1998 (KSME Int. J. 12, 1200-1205): "
-    "table of the Mallard validation page, cylinder at Re 100. Posdziech and Grundmann 2007 (J. Fluids Struct. 23, "
-    "479-499), water without end: as quoted in public test code with its DOI.",
-    "Guilmineau and Queutey 2002 (J. Fluids Struct. 16, 773-794): the Strouhal number 0.195 stands in the Basilisk "
-    "test of the same case, with 0.197 and 0.199 of Young et al. 2009. No forces were found at a source.",
-    "Duetsch et al. 1998 (J. Fluid Mech. 360, 249-271): the force over a period is in the public repository "
-    "chrisminar/cuIBM. The coefficients are from memory.",
-    "Schaefer and Turek 1996 (Notes on Numerical Fluid Mechanics 52, 547-566): the ranges are quoted alike by several "
-    "public benchmarks, except for the lift: 0.99 to 1.01 in some, 0.98 to 1.02 in others.",
-    "Rows marked from memory have no bound.",
+    "Stokes 1851 (Trans. Cambridge Phil. Soc. 9, 8-106) and Wang 1968 (J. Fluid Mech. 32, 55-68): the force on a "
+    "cylinder that oscillates in water at rest by small amounts.",
+    "The eel is that of the IBAMR example eel2d, which gives no speed: what is bounded is how much finer grids and "
+    "further cycles change it.",
+    "Flows with published data stand in the [atlas](atlas.md).",
 )
 
 
@@ -92,13 +83,6 @@ def periodic(record, f):
     return float(cd), float(rms), float(5 / (at[-1] - at[0])), float(abs(ends[1] / ends[0] - 1))
 
 
-def limit(values):
-    """Return what values on three grids, each twice as fine as the last, tend to, and the order."""
-    coarse, middle, fine = values
-    ratio = (middle - coarse) / (fine - middle)
-    return float(fine + (fine - middle) / (ratio - 1)), float(np.log2(abs(ratio)))
-
-
 def test_taylor_green_order():
     sizes = [16, 32, 64, 128]
     errors = [cases.taylor_green(n) for n in sizes]
@@ -144,10 +128,8 @@ def test_momentum_budget():
     late = record.time > 0.5
     box, own = 2 * sim.control_forces[late], f[late]
     off = float(np.abs((own - box).mean(axis=0)).max() / np.abs(box[:, 0]).mean())
-    surface = 2 * record.surface_force()[late, 0].mean() / box[:, 0].mean() - 1
     where = ("24 cells/D", "10 D x 8 D", "-")
     note("momentum budget", "force less that through a box, mean over mean", off, "at most 0.01", *where)
-    note("momentum budget", "surface integral less that through a box", surface, "-", *where)
     assert off < 0.01
 
 
@@ -198,31 +180,21 @@ def test_lid_driven_cavity(reynolds, n, until):
     du = np.interp(data["y"][1:-1], y, u) - data[f"u_re{reynolds}"][1:-1]
     dv = np.interp(data["x"][1:-1], x, v) - data[f"v_re{reynolds}"][1:-1]
     rms = float(np.sqrt(np.mean(np.concatenate([du, dv]) ** 2)))
-    note(
-        "lid-driven cavity", f"rms difference of u and v over the lid's speed, Re {reynolds}", rms, "0", f"{n} x {n}",
-        "unit square", "Ghia et al. 1982", y=y, u=u, x=x, v=v, data_y=data["y"], data_u=data[f"u_re{reynolds}"],
-        data_x=data["x"], data_v=data[f"v_re{reynolds}"],
-    )  # fmt: skip
     assert rms < 0.012
 
 
 def test_cylinder_re40():
     sim, record, f = cases.cylinder(16, 40, x=(-8, 16), y=(-8, 8), until=40.0, control=1.0)
     late = record.time > 39
-    grid = ("16 cells/D", "24 D x 16 D")
     cd, length = float(f[late, 0].mean()), cases.wake_length(sim)
     box = 2 * sim.control_forces[late, 0].mean()
     offs = []
-    for source, drag, wake in (
+    for _, drag, wake in (
         ("Gautier et al. 2013", 1.4931, 2.2360),
         ("Fornberg 1980", 1.498, 2.24),
         ("Dennis and Chang 1970", 1.522, 2.35),
     ):
-        offs.append(note("cylinder Re 40", f"Cd, {source}", cd, drag, *grid, source))
-        offs.append(note("cylinder Re 40", f"wake length / D, {source}", length, wake, *grid, source))
-    note("cylinder Re 40", "Cd, momentum box", box, 1.4931, *grid, "Gautier et al. 2013")
-    surface = 2 * record.surface_force()[late, 0].mean()
-    note("cylinder Re 40", "Cd, surface integral", surface, 1.4931, *grid, "Gautier et al. 2013")
+        offs += [abs(cd / drag - 1), abs(length / wake - 1)]
     assert max(offs[:4]) < 0.02
     assert cd == pytest.approx(box, rel=0.01)
 
@@ -233,9 +205,6 @@ def test_domain():
     for height in heights:
         _, record, f = cases.cylinder(8, 40, x=(-height / 2, height), y=(-height / 2, height / 2), until=40.0)
         drags.append(f[record.time > 39, 0].mean())
-    for k, wide in ((0, "12 D x 8 D"), (1, "24 D x 16 D")):
-        note("cylinder Re 40", f"Cd in {wide} over that in 48 D x 32 D", drags[k] / drags[2], 1.0, "8 cells/D", wide,
-             "-", height=heights, cd=drags)  # fmt: skip
     assert drags[1] == pytest.approx(drags[2], rel=0.02)
     assert drags[0] == pytest.approx(drags[2], rel=0.05)
 
@@ -244,22 +213,10 @@ def test_cylinder_re100():
     sim, record, f = cases.cylinder(16, 100, x=(-8, 16), y=(-8, 8), until=60.0, kick=1.0, control=1.0)
     cd, rms, st, unsteady = periodic(record, f)
     k = signals.last_periods(record.time, f[:, 1], 5)
-    grid = ("16 cells/D", "24 D x 16 D")
-    offs = []
-    for source, drag, lift, strouhal in (
-        ("Liu et al. 1998", 1.350, 0.339, 0.164),
-        ("Park et al. 1998", 1.33, 0.33, 0.165),
-        ("Posdziech and Grundmann 2007", 1.325, None, 0.1644),
-    ):
-        offs.append(note("cylinder Re 100", f"mean Cd, {source}", cd, drag, *grid, source,
-                         t=record.time[::8], cd=f[::8, 0], cl=f[::8, 1]))  # fmt: skip
-        offs.append(note("cylinder Re 100", f"Strouhal, {source}", st, strouhal, *grid, source))
-        if lift:
-            offs.append(note("cylinder Re 100", f"Cl amplitude, {source}", rms * 2**0.5, lift, *grid, source))
     box = np.average(2 * sim.control_forces[k, 0], weights=record.step[k])
-    note("cylinder Re 100", "mean Cd, momentum box", box, 1.350, *grid, "Liu et al. 1998")
+    offs = [abs(cd / 1.350 - 1), abs(st / 0.164 - 1), abs(rms * 2**0.5 / 0.339 - 1)]  # Liu et al. 1998
     assert unsteady < 0.01
-    assert max(offs[:3]) < 0.02
+    assert max(offs) < 0.02
     assert cd == pytest.approx(box, rel=0.01)
 
 
@@ -279,29 +236,21 @@ def test_impulsively_started_cylinder(reynolds, cells, until, half):
     ):  # fmt: skip
         k = (them["t_star"] > first) & (them["t_star"] < 2 * until)
         offs.append(float(np.abs(np.interp(them["t_star"][k], star, f[:, 0]) / them["cd"][k] - 1).max()))
-        note(case, name, offs[-1], "0", *where, source, t=star[4::4], cd=f[4::4, 0],
-             box=2 * sim.control_forces[4::4, 0], data_t=data["t_star"], data_cd=data["cd"],
-             polar_t=exact["t_star"], polar_cd=exact["cd"])  # fmt: skip
+        if them is exact:
+            note(case, name, offs[-1], "0", *where, source, t=star[4::4], cd=f[4::4, 0],
+                 box=2 * sim.control_forces[4::4, 0], data_t=data["t_star"], data_cd=data["cd"],
+                 polar_t=exact["t_star"], polar_cd=exact["cd"])  # fmt: skip
     assert offs[1] < 0.03
     assert offs[2] < 0.015
 
 
 def test_duetsch_oscillating_cylinder():
     data = published("duetsch1998_force.csv")
-    (cd, ci), sim = cases.oscillating(24, keulegan=5.0, stokes=20.0, periods=5, width=8, height=6)
+    _, sim = cases.oscillating(24, keulegan=5.0, stokes=20.0, periods=5, width=8, height=6)
     last = sim.record.after(4.0)
     phase, force = cases.middle(last) - 4.0, last.force()[:, 0] / 25
     off = np.interp(data["t_over_period"], phase, force, period=1.0) - data["force"]
-    swing = -np.cos(2 * np.pi * phase)
-    drag = np.average(force * swing, weights=last.step) / np.average(-0.5 * np.abs(swing) ** 3, weights=last.step)
-    case, where = "oscillating cylinder, Re 100, KC 5", ("24 cells/D", "8 D x 6 D")
-    rms = float(np.sqrt(np.mean(off**2))) / np.abs(data["force"]).max()
-    note(case, "rms difference of the force over its peak", rms, "0", *where, "Duetsch et al. 1998", phase=phase,
-         force=force, data_phase=data["t_over_period"], data_force=data["force"])  # fmt: skip
-    note(case, "Cd, that does the force's work", drag, 2.09, *where, "Duetsch et al. 1998 (from memory, no bound)")
-    note(case, "Cd, least squares", cd, 2.09, *where, "Duetsch et al. 1998 (from memory, no bound)")
-    note(case, "Ci", ci, 1.45, *where, "Duetsch et al. 1998 (from memory, no bound)")
-    assert rms < 0.06
+    assert float(np.sqrt(np.mean(off**2))) / np.abs(data["force"]).max() < 0.06
 
 
 # The lift hangs on how the cylinder lies between the nodes: that of 2D-1, a five-hundredth of the drag, is off by -12,
@@ -310,26 +259,21 @@ CHANNEL_ROWS = (40, 80, 160)
 
 
 def test_dfg_channel_steady():
-    source = "FeatFlow, DFG 2D-1; Schaefer and Turek 1996"
     drags, lifts = [], []
     for n in CHANNEL_ROWS:
         sim, record, f = cases.channel(n, 0.2, 7.0)
         late = record.time > 6.5
         drags.append(f[late, 0].mean())
         lifts.append(f[late, 1].mean())
-    grid = ("39 cells/D", "22 D x 4.1 D")
-    off = note("DFG 2D-1", "Cd", drags[-1], 5.57953523384, *grid, source, rows=CHANNEL_ROWS, cd=drags)
-    off_l = note("DFG 2D-1", "Cl", lifts[-1], 0.010618948146, *grid, source, rows=CHANNEL_ROWS, cl=lifts)
-    off_p = note("DFG 2D-1", "pressure drop [Pa]", cases.pressure_drop(sim), 0.11752016697, *grid, source)
-    surface = record.surface_force()[late, 0].mean() * 2 / (0.2**2 * 0.1)
-    note("DFG 2D-1", "Cd, surface integral", surface, 5.57953523384, *grid, source)
+    note("DFG 2D-1", "Cd", drags[-1], "-", "39 cells/D", "22 D x 4.1 D", "-", rows=CHANNEL_ROWS, cd=drags)  # for a plot
+    off, off_l = abs(drags[-1] / 5.57953523384 - 1), abs(lifts[-1] / 0.010618948146 - 1)
+    off_p = abs(cases.pressure_drop(sim) / 0.11752016697 - 1)
     assert off < 0.01
     assert off_l < 0.2
     assert off_p < 0.02
 
 
 def test_dfg_channel_periodic():
-    source = "Schaefer and Turek 1996 (3.22 to 3.24; 0.98 to 1.02; 0.295 to 0.305)"
     drags, lifts, rates = [], [], []
     for n in CHANNEL_ROWS:
         _, record, f = cases.channel(n, 1.0, 6.0, kick=0.1)
@@ -337,68 +281,19 @@ def test_dfg_channel_periodic():
         drags.append(f[k, 0].max())
         lifts.append(f[k, 1].max())
         rates.append(flow.frequency(record.time[k], f[k, 1]) * 0.1)
-    grid, time = ("39 cells/D", "22 D x 4.1 D"), cases.middle(record)[::4]
-    note("DFG 2D-2", "largest Cd", drags[-1], 3.23, *grid, source, t=time, cd=f[::4, 0], cl=f[::4, 1])
-    off_l = note("DFG 2D-2", "largest Cl", lifts[-1], 1.00, *grid, source, rows=CHANNEL_ROWS, cl=lifts)
-    note("DFG 2D-2", "largest Cl, limit of 10, 20 and 39 cells/D", limit(lifts)[0], 1.00, *grid, source)
-    note("DFG 2D-2", "Strouhal", rates[-1], 0.300, *grid, source)
     assert 3.20 <= drags[-1] <= 3.24  # 3.238, 3.215 and 3.219 at 31, 39 and 47 cells a diameter
-    assert off_l < 0.05  # asked: 0.02; 0.968, 0.956 and 0.959 on these grids
+    assert abs(lifts[-1] - 1.0) < 0.05  # asked: 0.02; 0.968, 0.956 and 0.959 on these grids
     assert 0.295 <= rates[-1] <= 0.305
 
 
-def test_cylinder_held_and_shaken_in_a_stream():
-    """At Re 185, 0.2 D across the stream. Others saw the vortices switch sides between 1.1 and 1.12 times the frequency
-    of the held cylinder; here, at 16 cells a diameter, the wake follows at 0.9 and 1.0 alone and beats elsewhere."""
-    memory, wide = "Guilmineau and Queutey 2002 (from memory, no bound)", "20 D x 12 D"
-    for cells in (24, 16):
-        held, record, f = cases.cylinder(cells, 185, x=(-6, 14), y=(-6, 6), until=60.0, kick=1.0)
-        cd, rms, st, unsteady = periodic(record, f)
-        grid = (f"{cells} cells/D", wide)
-        note("cylinder Re 185", f"held, {cells} cells/D: mean Cd", cd, 1.287, *grid, memory)
-        note("cylinder Re 185", f"held, {cells} cells/D: rms Cl", rms, 0.443, *grid, memory)
-        source = "Guilmineau and Queutey 2002"
-        off = note("cylinder Re 185", f"held, {cells} cells/D: Strouhal", st, 0.195, *grid, source)
-        assert unsteady < 0.005
-        assert off < 0.04
-    assert shake(held, st, cd, rms, *grid) == [0.9, 1.0]
-
-
-def shake(held, strouhal, cd, rms, *grid):
-    """Keep the rows of a cylinder that is shaken; return at which ratios the drag does not beat."""
-    ratios = (0.8, 0.9, 1.0, 1.1, 1.12, 1.2)
-    series = [cases.shaken_in_a_stream(held, ratio, strouhal=strouhal) for ratio in ratios]
-    curves = {"ratio": ratios, "held_cd": cd, "held_cl": rms}
-    for k, name in enumerate(("cd", "cl", "phase")):
-        curves[name] = [s[0, k] for s in series]
-        curves[f"{name}_range"] = [(s[1:, k].min(), s[1:, k].max()) for s in series]
-    for ratio, s in zip(ratios, series, strict=True):
-        for k, quantity in enumerate(("mean Cd", "rms Cl", "lift ahead of the motion [deg]")):
-            note("cylinder Re 185", f"shaken at {ratio} of its frequency: {quantity}", s[0, k], "-", *grid,
-                 "no number found", **curves)  # fmt: skip
-        note("cylinder Re 185", f"shaken at {ratio} of its frequency: range of Cd from period to period",
-             np.ptp(s[1:, 0]), "-", *grid, "-")  # fmt: skip
-    return [ratio for ratio, s in zip(ratios, series, strict=True) if np.ptp(s[1:, 0]) < 0.09]
-
-
-@pytest.mark.parametrize(("reynolds", "remembered"), [(1000, 0.12), (5000, 0.055)])
-def test_straight_foil(reynolds, remembered):
+@pytest.mark.parametrize("reynolds", [1000, 5000])
+def test_straight_foil(reynolds):
     drags = [cases.straight_foil(n, reynolds, 5.0) for n in (64, 128)]
-    note(f"NACA 0012 Re {reynolds}", "Cd at no incidence", drags[1], remembered, "128 cells/chord", "3 x 1.5 chords",
-         "from memory, no bound", cells=(64, 128), cd=drags)  # fmt: skip
     assert drags[1] == pytest.approx(drags[0], rel=0.2)
 
 
 def test_travelling_wavy_foil():
-    speeds, drags, powers = (0.8, 1.2, 1.6), [], []
-    for speed in speeds:
-        drag, power = cases.wavy_foil(128, speed, 4)
-        drags.append(drag)
-        powers.append(power)
-    grid, wave = ("128 cells/chord", "3 x 1.5 chords"), "Dong and Lu 2007 have this wave; no numbers found"
-    for speed, drag, power in zip(speeds, drags, powers, strict=True):
-        note("wavy foil Re 5000", f"mean Cd, wave {speed} times as fast as the stream", drag, "-", *grid, wave)
-        note("wavy foil Re 5000", f"mean power, wave {speed} times as fast as the stream", power, "-", *grid, wave)
+    drags = [cases.wavy_foil(128, speed, 4)[0] for speed in (0.8, 1.2, 1.6)]
     assert drags[0] > drags[1] > drags[2]
 
 
@@ -462,8 +357,6 @@ def test_heaving_thin_plate():
         mass, work = cases.heaving_plate(cells, thick)
         masses.append(mass)
         works.append(work)
-        note("heaving plate, 0.02 L thick", f"added mass over pi/4, {cells * thick:g} cells thick", mass, "-",
-             f"{cells} cells/L", "1.6 L x 1.6 L", "-", cells=sizes[: len(masses)], mass=masses, work=works)  # fmt: skip
     assert masses[0] == pytest.approx(masses[-1], rel=0.05)
     assert masses[1] == pytest.approx(masses[-1], rel=0.02)
     assert works[1] == pytest.approx(works[-1], rel=0.02)

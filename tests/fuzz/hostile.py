@@ -100,7 +100,7 @@ design = "latin"
 samples = 4
 duration = 1.2
 faults = [{kind = "locked", joint = "LF_yaw", at = 0.5, angle = 0.1}]
-ground = {grip = 0.9, uphill = 0.1}
+ground = {friction_scale = 0.9, uphill = 0.1}
 [[vary]]
 field = "gait.stroke"
 low = 0.0
@@ -138,7 +138,7 @@ class Range:
             Study(
                 name="s",
                 run=run,
-                vary=(Vary(field="ground.grip", values=(1.0,)),),
+                vary=(Vary(field="ground.friction_scale", values=(1.0,)),),
                 measure=("displacement",),
                 duration=1.2,
             ),

@@ -6,7 +6,7 @@ from typing import Any
 from suchus.design import AnyRobot
 from suchus.errors import OutsideLimits
 from suchus.gaits import GAITS, suits
-from suchus.hardware import Load, check_loads, loads_of_each, overloaded, share_at_limit
+from suchus.hardware import ServoLoad, check_loads, loads_of_each, overloaded, share_at_limit
 from suchus.hardware.limits import AT_LIMIT, stronger
 from suchus.land import Run, simulate
 from suchus.metrics import between
@@ -35,12 +35,16 @@ def measured(
     }
 
 
-def _servo(load: Load, then: float) -> dict[str, Any]:
+def _servo(load: ServoLoad, then: float) -> dict[str, Any]:
     return {"at_limit": load.at_limit, "off": load.off, "would_do": load.stock, "then": then}
 
 
 def _with_named(
-    robot: AnyRobot, gaits: Sequence[AnyGait], weak: Sequence[Mapping[str, Load]], cycles: int, timestep: float | None
+    robot: AnyRobot,
+    gaits: Sequence[AnyGait],
+    weak: Sequence[Mapping[str, ServoLoad]],
+    cycles: int,
+    timestep: float | None,
 ) -> dict[str, dict[str, float]]:
     """Return the share at the limit of the servos that are named, each gait with its own."""
     asked = [(gait, some) for gait, some in zip(gaits, weak, strict=True) if some]
@@ -55,7 +59,7 @@ def _with_named(
     return found
 
 
-def _exported(robot: AnyRobot, gait: AnyGait, borne: Mapping[str, Load]) -> bool:
+def _exported(robot: AnyRobot, gait: AnyGait, borne: Mapping[str, ServoLoad]) -> bool:
     try:
         check_loads(robot, gait, borne)
     except OutsideLimits:

@@ -16,7 +16,7 @@ from suchus.design import cable_joints, layout, servo_names
 from suchus.errors import InvalidDesign, OutsideLimits
 from suchus.gaits import own_gait
 from suchus.hardware import (
-    Load,
+    ServoLoad,
     check_commands,
     check_loads,
     commands,
@@ -124,7 +124,9 @@ def test_a_servo_too_weak_for_the_walk_is_named_with_its_share(robot, limbs_gait
 
 
 def load(**changes):
-    return Load(**({"torque": 3.0, "limit": 3.0, "at_limit": 0.1, "first": 0.4, "off": 0.2, "needed": 3.2} | changes))
+    return ServoLoad(
+        **({"torque": 3.0, "limit": 3.0, "at_limit": 0.1, "first": 0.4, "off": 0.2, "needed": 3.2} | changes)
+    )
 
 
 def test_the_allowed_share_and_the_allowed_error_are_thresholds(robot, crawl_gait):

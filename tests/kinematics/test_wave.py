@@ -11,7 +11,7 @@ from suchus.kinematics import wave
 X = np.linspace(0, 1, 401)
 
 
-def make(letter: str = "I", **kwargs) -> wave.Wave:
+def make(letter: str = "I", **kwargs) -> wave.TravellingWave:
     return wave.reading(letter, **{"length": 1.0, "angular_frequency": 2 * pi, **kwargs})
 
 

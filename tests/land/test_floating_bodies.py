@@ -15,7 +15,7 @@ from suchus.experiments import _floating_cases as cases
 from suchus.hydro import ADDED, CROSS_DRAG, DENSITY, FORCE, HEADER, POWER, UNDER, column
 from suchus.hydro.table import COLUMNS, WIDTH
 from suchus.land import Lake, Wave, wetting
-from suchus.land.float_body import FloatBody, Pool
+from suchus.land.float_body import FloatBody, FloatTank
 from suchus.model.wet import wet_model
 from suchus.robots import ROBOTS
 
@@ -64,7 +64,7 @@ def test_a_box_heels_to_its_angle_of_loll():
     body = FloatBody(
         shape="box", half=half, mass=500 * 8 * np.prod(half), inertia=(1, 1, 1), centre=(0, 0, height), parts=24
     )
-    pool = Pool(body, cases.SURFACE)
+    pool = FloatTank(body, cases.SURFACE)
     exact = np.arctan(np.sqrt(2 * 0.004 / bm))
 
     def moment(angle):
@@ -85,7 +85,7 @@ def test_a_current_carries_the_frame_of_the_water_along():
     body = replace(cases.SPHEROID, mass=0.8 * cases.SPHEROID.mass)
     found = []
     for current in ((0.0, 0.0), (0.7, -0.4)):
-        pool = Pool(body, Lake(level=20.0, current=current), integrator="RK4")
+        pool = FloatTank(body, Lake(level=20.0, current=current), integrator="RK4")
         pool.place((0, 0, 0), velocity=(0.3 + current[0], 0.1 + current[1], 0.0), spin=(0.5, -0.4, 0.8))
         pool.step(500)
         found.append(pool.middle - [*(np.array(current) * pool.data.time), 0.0])
@@ -98,7 +98,7 @@ def test_a_small_neutral_body_goes_around_with_the_water_of_a_wave():
     speed = 0.5 * wave.height * 2 * pi * wave.frequency * np.exp(-2 * pi * deep / wave.length)
     body = FloatBody(shape="ellipsoid", half=3 * (0.005,), mass=1000 * 4 / 3 * pi * 0.005**3, inertia=3 * (1e-8,),
                      added=3 * (0.5,))  # fmt: skip
-    pool = Pool(body, Lake(level=0.0, wave=wave), timestep=0.002)
+    pool = FloatTank(body, Lake(level=0.0, wave=wave), timestep=0.002)
     pool.place((0.0, 0.0, -deep), velocity=(0.0, 0.0, speed))
     path = pool.watch(1 / wave.frequency, 0.01).middle.values - [0, 0, -deep]
     radius = speed / (2 * pi * wave.frequency)
@@ -111,7 +111,7 @@ def test_a_float_follows_long_waves():
     """Up and down, and along the surface: it is not moved at the crest of the wave's own height alone."""
     wave = Wave(height=0.05, length=20.0)
     body = replace(cases.BOX, centre=(0, 0, -0.02), added=(0.0, 0.0, 0.0))
-    pool = Pool(body, Lake(level=0.0, wave=wave))
+    pool = FloatTank(body, Lake(level=0.0, wave=wave))
     pool.place((0.0, 0.0, 0.025))
     watched = pool.watch(1 / wave.frequency, 0.02)
     surface = 0.025 * np.cos(2 * pi * wave.frequency * watched.time.values)
@@ -132,7 +132,7 @@ def test_drag_is_against_the_motion_and_takes_energy(speed, angle):
 
 def _dragged(body):
     """Return a deep body with the drag of a section."""
-    pool = Pool(body, Lake(level=10.0, added_mass=0.0))
+    pool = FloatTank(body, Lake(level=10.0, added_mass=0.0))
     rows = pool.model.numeric_data[HEADER:].reshape(-1, WIDTH)
     rows[:, slice(*COLUMNS["area"])] = 0.6 * 2 * body.half[2], 0.6 * 2 * body.half[1]
     assert pool.data.userdata[CROSS_DRAG] == 1.1
@@ -141,7 +141,7 @@ def _dragged(body):
 
 def test_what_is_shed_pushes_forward_and_takes_what_lighthill_says():
     body = FloatBody(shape="cylinder", half=(0.1, 0.02, 0.05), mass=1.0, inertia=(1, 1, 1), added=(0.0, 1.0, 1.0))
-    pool = Pool(body, Lake(level=10.0))
+    pool = FloatTank(body, Lake(level=10.0))
     rows = pool.model.numeric_data[HEADER:].reshape(-1, WIDTH)
     side = pi * 0.05**2
     rows[:, slice(*COLUMNS["shed"])], rows[:, COLUMNS["shed_at"][0]] = (side, pi * 0.02**2), -0.1
@@ -157,7 +157,7 @@ def test_what_is_shed_pushes_forward_and_takes_what_lighthill_says():
 
 def test_the_water_says_what_it_did():
     body = replace(cases.SPHEROID, mass=0.5 * cases.SPHEROID.mass)
-    pool = Pool(body, cases.DEEP)
+    pool = FloatTank(body, cases.DEEP)
     pool.place((0, 0, 0), velocity=(0.0, 0.0, 0.1))
     for _ in range(50):
         pool.step()

@@ -15,7 +15,7 @@ from suchus.motion import Swim
 from suchus.record import WATER
 from suchus.robots import ROBOTS
 
-WAVE = Swim(name="wave", frequency=1.0, yaw=(0.1, 0.1, 0.1), yaw_late=(0.2, 0.1, 0.0), tail=0.6, tail_late=-0.1)
+WAVE = Swim(name="wave", frequency=1.0, yaw=(0.1, 0.1, 0.1), yaw_lag=(0.2, 0.1, 0.0), tail=0.6, tail_lag=-0.1)
 
 
 def runs(*lakes, **more):

@@ -23,7 +23,7 @@ def momentum(record, robot):
 
 def pushed(robot, pushes, duration=0.9, **options):
     gait = suchus.GAITS["limbs_only"]
-    run = Run(robot=robot, gait=gait, ground=Ground(grip=0.01), pushes=tuple(pushes), **options)
+    run = Run(robot=robot, gait=gait, ground=Ground(friction_scale=0.01), pushes=tuple(pushes), **options)
     return simulate([run], duration=duration).isel(run=0)
 
 
@@ -63,7 +63,7 @@ def test_pushes_that_overlap_add_up_and_opposite_ones_cancel(icy):
 def test_each_run_of_a_batch_gets_its_own_push(icy):
     gait = suchus.GAITS["limbs_only"]
     pushes = [(), (Push(force=(0, 3, 0), at=0.3),), (Push(force=(0, -3, 0), at=0.3),)]
-    runs = [Run(robot=icy, gait=gait, ground=Ground(grip=0.01), pushes=p) for p in pushes]
+    runs = [Run(robot=icy, gait=gait, ground=Ground(friction_scale=0.01), pushes=p) for p in pushes]
     y = simulate(runs, duration=0.8).centre_of_mass.sel(xyz="y").isel(time=-1).values
     assert abs(y[0]) < 1e-3
     assert y[1] > 0.02

@@ -59,7 +59,7 @@ def test_a_finite_run_or_a_suchus_error(robot, crawl_gait, design, changes, brok
         run = Run(
             robot=other,
             gait=replace(crawl_gait, **changes),
-            ground=Ground(grip=grip),
+            ground=Ground(friction_scale=grip),
             faults=tuple(broken),
             noise=0.01,
             seed=seed,

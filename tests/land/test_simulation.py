@@ -182,7 +182,7 @@ def test_bad_input_is_a_sentence(robot, crawl_gait, long_tail):
         (lambda: simulate([run], duration=float("nan")), r"simulate\.duration"),
         (lambda: simulate([run], timestep=0.003), "must divide the control period"),
         (lambda: simulate([run, replace(run, robot=long_tail)]), "equally many tail joints"),
-        (lambda: Ground(grip=-1.0), r"ground\.grip is -1"),
+        (lambda: Ground(friction_scale=-1.0), r"ground\.friction_scale is -1"),
     ):
         with pytest.raises(InvalidDesign, match=words):
             call()

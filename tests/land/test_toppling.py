@@ -16,7 +16,7 @@ def moved(limit):
 
 
 def test_on_ice_the_smallest_push_grows_with_what_it_has_to_do():
-    icy = Run(robot=CAIMAN, gait=CRAWL, ground=Ground(grip=0.01))
+    icy = Run(robot=CAIMAN, gait=CRAWL, ground=Ground(friction_scale=0.01))
     # way = F/m (t^2/2 + t wait): the push that moves it so far is known
     way = 0.02
     exact = way * CAIMAN.mass / (0.2**2 / 2 + 0.2 * 0.1)

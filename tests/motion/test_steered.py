@@ -23,8 +23,8 @@ from suchus.motion import (
     steered,
     straightened,
     strides,
+    with_axis_lag,
     with_bends,
-    with_late_axis,
     with_strokes,
 )
 from suchus.motion.transition import transition
@@ -104,7 +104,7 @@ def test_a_share_of_one_and_a_lag_of_nothing_change_nothing(name):
     robot, gait = ROBOTS[name], own_gait(ROBOTS[name])
     assert with_strokes(gait, 1.0) == gait
     assert with_bends(robot, gait, 1.0) == gait
-    assert with_late_axis(robot, gait, 0.0) == gait
+    assert with_axis_lag(robot, gait, 0.0) == gait
 
 
 @pytest.mark.parametrize("name", BODIES)
@@ -126,7 +126,7 @@ def test_a_table_of_angles_is_straightened_and_shifted_too_but_not_steered():
     place, clock = layout(robot), np.arange(26) / 26
     still = pattern_targets(robot, straightened(robot, table), clock)
     assert abs(still[:, list(place.axial_yaw)]).max() == 0.0
-    late = pattern_targets(robot, with_late_axis(robot, table, 0.5), clock)
+    late = pattern_targets(robot, with_axis_lag(robot, table, 0.5), clock)
     before = pattern_targets(robot, table, clock - 0.5)
     yaw = list(place.axial_yaw)
     assert late[:, yaw] == pytest.approx(before[:, yaw], abs=1e-9)

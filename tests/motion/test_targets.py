@@ -115,6 +115,7 @@ def test_a_joint_out_of_range_is_named_with_angle_and_range(robot, crawl_gait):
         ("period", -4.0),
         ("stroke", 11.0),
         ("front_reach", 10**400),
+        ("name", float("-inf")),
         ("limb_phases", (0.0, 0.5)),
         ("limb_phases", (0.0, 0.5, 0.5, float("inf"))),
     ],

@@ -45,7 +45,7 @@ def test_what_does_not_walk_comes_last_the_nearer_to_walking_the_better(small):
     tried = table(
         [-0.5, np.nan, np.nan, np.nan, np.nan],
         [-0.05, np.nan, np.nan, np.nan, np.nan],
-        ["walked", "refused", "refused", "came apart", "refused"],
+        ["walked", "refused", "refused", "diverged", "refused"],
         [0.0, 0.1, 3.0, 0.0, np.inf],
     )
     found = score(small, tried, np.array([0.5]))

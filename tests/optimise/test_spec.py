@@ -22,7 +22,7 @@ BAD = [
     ({"aims": ()}, "name at least one aim"),
     ({"pareto": True}, "a front needs two"),
     ({"population": 2}, "4 to"),
-    ({"grips": (50.0,)}, r"0\.01 to 10"),
+    ({"friction_scales": (50.0,)}, r"0\.01 to 10"),
     ({"arms": (Arm(name="a"), Arm(name="a"))}, "each once"),
     ({"arms": (Arm(name="a", values={"gait.strok": 0.1}),)}, "Did you mean 'stroke'"),
     ({"arms": (Arm(name="a", values={"gait.stroke": 0.1, "gait.trunk_bend": 0.0}),)}, "sets every field"),
@@ -46,9 +46,9 @@ def test_names_of_aims_limits_and_arms_are_checked():
 
 def test_shares_and_values_are_the_same_thing(small):
     assert small.candidate({v.field: s for v, s in zip(small.vary, small.start, strict=True)}) == small.run
-    log = replace(small, vary=(Vary(field="ground.grip", low=0.1, high=10.0, scale="log"),))
+    log = replace(small, vary=(Vary(field="ground.friction_scale", low=0.1, high=10.0, scale="log"),))
     assert log.start == pytest.approx([0.5])
-    assert log.candidate({"ground.grip": 0.25}).ground.grip == pytest.approx(10**-0.5)
+    assert log.candidate({"ground.friction_scale": 0.25}).ground.friction_scale == pytest.approx(10**-0.5)
 
 
 def test_what_an_arm_sets_does_not_vary_in_it(small):

@@ -25,7 +25,7 @@ RELIEFS = st.one_of(
         Bumps, height=HEIGHTS, correlation=st.floats(CELL, 1.0), start=ALONG, seed=st.integers(0, 2**32 - 1)
     ),
 )  # fmt: skip
-GROUNDS = st.builds(Ground, grip=st.floats(0.01, 10.0), uphill=SLOPES, sideways=SLOPES, relief=RELIEFS)
+GROUNDS = st.builds(Ground, friction_scale=st.floats(0.01, 10.0), uphill=SLOPES, sideways=SLOPES, relief=RELIEFS)
 
 
 @given(GROUNDS)
@@ -34,7 +34,7 @@ def test_every_ground_comes_back_to_the_last_bit(ground):
 
 
 def test_each_run_tells_its_own_ground_and_a_floating_one_none(robot, crawl_gait, tmp_path):
-    grounds = (Ground(uphill=0.1, grip=0.7), Ground(relief=Step(at=0.66, height=0.02)))
+    grounds = (Ground(uphill=0.1, friction_scale=0.7), Ground(relief=Step(at=0.66, height=0.02)))
     runs = [Run(robot=robot, gait=crawl_gait, ground=ground) for ground in grounds]
     runs.append(Run(robot=robot, gait=crawl_gait, afloat=VACUUM))
     record = load(save(simulate(runs, duration=0.02, timestep=0.01), tmp_path / "r.nc"))

@@ -163,7 +163,7 @@ def on(record, ground):
 
 def test_a_slope_is_told_in_words_and_leans_the_picture(robot, crawled):
     ground = Ground(uphill=np.radians(10), sideways=np.radians(-5))
-    page = replay(on(crawled, ground), robot, ghost=on(crawled, replace(ground, grip=0.5)))
+    page = replay(on(crawled, ground), robot, ghost=on(crawled, replace(ground, friction_scale=0.5)))
     meta, _ = opened(page)
     assert "The ground rises by 10° ahead and falls by 5° to the left." in page
     assert "other ground" not in page

@@ -158,7 +158,7 @@ def test_the_page_tells_everything_that_it_promises(page):
         "It <broke>.",
         "Traceback ...",
         quantity(robot.hind_leg.femur, "m"),
-        "From hip to knee, the table's a2.",
+        "Length from hip to knee, the table's a2.",
         *(m.shows.split("  ")[0] for m in ERRATA.values()),
         *(chosen.why for chosen in ROBOTS.beside("caiman", "chosen", ())),
         *(chosen.why for name in GAITS for chosen in GAITS.beside(name, "chosen", ())),
@@ -180,7 +180,7 @@ def test_a_run_that_was_cut_short_says_so_and_has_no_verdicts(result, tmp_path):
 
 def test_a_page_without_results_is_still_a_page():
     page = Page(render_page([], []))
-    assert "No claim was touched." in page.text
+    assert "No claim was tested." in page.text
 
 
 def test_a_folder_that_holds_no_outcome_is_refused(tmp_path):

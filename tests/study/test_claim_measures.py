@@ -8,7 +8,7 @@ import xarray as xr
 
 from suchus.errors import IncompatibleRecord
 from suchus.gaits import CONDITIONS, conditions
-from suchus.land import LOST, Limp
+from suchus.land import FAILED_JOINTS, Limp
 from suchus.paper import CLAIMS
 from suchus.study import Claims, Plan
 from suchus.study.claim_measures import RUNS, asked_rules, held, measures_of
@@ -35,10 +35,10 @@ def test_the_articles_own_displacements_give_its_own_changes():
     value = {key: claim.value for key, claim in CLAIMS.items()}
     ours = value["displacement_coordinated"]
     forward = {arm: value[f"displacement_{arm}"] for arm in ("coordinated", "limbs_only")}
-    forward |= {f"{arm}_{j}": ours * (1 + value[f"fault_{j}_{arm}"]) for arm in tuple(forward) for j in LOST}
+    forward |= {f"{arm}_{j}": ours * (1 + value[f"fault_{j}_{arm}"]) for arm in tuple(forward) for j in FAILED_JOINTS}
     found = numbers(displacement_x=forward)
     assert found["forward_ratio"] == pytest.approx(value["displacement_ratio"])
-    for joint in LOST:
+    for joint in FAILED_JOINTS:
         for arm in ("coordinated", "limbs_only"):
             assert found[f"loss_{joint}_limp_one_{arm}"] == pytest.approx(value[f"fault_{joint}_{arm}"])
     # against its own intact robot of limbs only, the article's spine bears no fault of the four better: the front
@@ -74,9 +74,9 @@ def test_a_robot_that_hardly_moves_has_nothing_to_lose():
 
 def test_backwards_keeps_nothing_and_makes_no_negative_ratio():
     forward = {"coordinated": 0.7, "limbs_only": 0.2}
-    forward |= {f"{arm}_{joint}": 0.15 for arm in ("coordinated", "limbs_only") for joint in LOST}
-    forward |= {f"coordinated_{joint}": 0.6 for joint in LOST[:3]}
-    forward |= {f"{arm}_{LOST[3]}": -0.1 for arm in ("coordinated", "limbs_only")}
+    forward |= {f"{arm}_{joint}": 0.15 for arm in ("coordinated", "limbs_only") for joint in FAILED_JOINTS}
+    forward |= {f"coordinated_{joint}": 0.6 for joint in FAILED_JOINTS[:3]}
+    forward |= {f"{arm}_{FAILED_JOINTS[3]}": -0.1 for arm in ("coordinated", "limbs_only")}
     found = numbers(displacement_x=forward)
     assert found["share_spine_and_tail_bear_better"] == 0.75  # of the last neither keeps anything
     assert numbers(displacement_x=forward | {"limbs_only": -0.2})["forward_ratio"] == pytest.approx(50.0)
@@ -129,7 +129,7 @@ def test_the_runs_of_a_sample_are_the_conditions_of_its_own_gait_with_and_withou
         assert runs[name].faults == ()
         assert runs[name].robot == runs["coordinated"].robot
     for arm in ("coordinated", "limbs_only"):
-        for joint, limp in zip(LOST, ("LF_yaw", "LH_yaw", "LF_pitch", "LH_pitch"), strict=True):
+        for joint, limp in zip(FAILED_JOINTS, ("LF_yaw", "LH_yaw", "LF_pitch", "LH_pitch"), strict=True):
             one = runs[f"{arm}_{joint}"]
             assert replace(one.gait, name="") == replace(expected[arm], name="")
             assert one.faults == (Limp(limp),)

@@ -10,10 +10,10 @@ import pytest
 from suchus.catalog import Catalog
 from suchus.errors import IncompatibleRecord, UnreadableFile
 from suchus.gaits import GAITS
-from suchus.study import Claims, answer_finished, claims, conduct_claims, write_claims
+from suchus.study import Claims, answer_finished, claims, conduct_claims
 from suchus.study.answers import first_order
 from suchus.study.claim_measures import RUNS, asked_rules
-from suchus.study.claims_page import OUTCOME, SHARES, TABLE
+from suchus.study.claims_page import OUTCOME, SHARES, TABLE, write_claims
 from suchus.study.claims_table import deciders, told, turned
 from suchus.study.claims_table import shares as shares_of
 from suchus.study.makers import deciding

@@ -1,6 +1,7 @@
 """Results are the same to the byte, whatever happens on the way."""
 
 import json
+import multiprocessing
 import os
 import signal
 import subprocess
@@ -12,13 +13,15 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from suchus.errors import IncompatibleRecord, Unwritable
+from suchus.errors import IncompatibleRecord, OutsideLimits, Unwritable
 from suchus.land import Run, simulate
 from suchus.metrics import displacement
 from suchus.record import load
 from suchus.study import Plan, Study, Vary, conduct, read_study, run_chunk
+from suchus.study.conduct import Lost
 from suchus.study.packing import packed, unpacked
 from suchus.study.store import MARK, RESULTS, TABLE, Store
+from suchus.workers import Died
 
 PAGE = """
 name = "strokes"
@@ -235,3 +238,39 @@ def test_a_table_comes_back_from_its_file_as_it_was(asked, tmp_path):
     xr.testing.assert_identical(back.drop_attrs(deep=False), table.drop_attrs(deep=False))
     assert list(back.data_vars) == list(table.data_vars)
     assert packed(words_alone := table[["arm"]]) is words_alone
+
+
+def test_processes_do_not_change_a_byte_and_what_an_interrupt_leaves_is_finished(asked, tmp_path):
+    told = []
+
+    def stop(now):
+        told.append(now)
+        if list((tmp_path / "two" / "parts").glob("*.nc")):
+            raise KeyboardInterrupt
+
+    conduct(asked, tmp_path / "one")
+    with pytest.raises(KeyboardInterrupt):
+        conduct(asked, tmp_path / "two", progress=stop, jobs=2)
+    assert not multiprocessing.active_children()
+    kept = list((tmp_path / "two" / "parts").glob("*.nc"))
+    assert len(kept) == 1
+    when = kept[0].stat().st_mtime_ns
+    conduct(asked, tmp_path / "two", progress=told.append, jobs=2)
+    assert kept[0].stat().st_mtime_ns == when  # not run again
+    assert contents(tmp_path / "two") == contents(tmp_path / "one")
+    assert (told[-1].done, told[-1].total, told[-1].failed) == (5, 5, 0)
+
+
+def test_no_process_and_processes_beside_a_cluster_are_refused(asked, tmp_path):
+    with pytest.raises(OutsideLimits, match="a study in 0 processes cannot be; at least 1 is needed"):
+        conduct(asked, tmp_path / "s", jobs=0)
+    with pytest.raises(OutsideLimits, match="a cluster or 2 processes of this machine, not both"):
+        conduct(asked, tmp_path / "s", client=object(), jobs=2)
+    assert not (tmp_path / "s").exists()
+
+
+def test_a_batch_whose_processes_die_is_told(asked, tmp_path, monkeypatch):
+    room = sys.modules[conduct.__module__]
+    monkeypatch.setattr(room, "side_by_side", lambda *_, **__: (said for said in [(1, Died(-9))]))
+    with pytest.raises(Lost, match="the process at batch 1 of study 'strokes' ended with exit code -9, 3 times"):
+        conduct(asked, tmp_path / "s", jobs=2)

@@ -25,7 +25,7 @@ name = "s"
 duration = 1.1
 measure = ["displacement"]
 [[vary]]
-field = "ground.grip"
+field = "ground.friction_scale"
 values = [1.0]
 """
 
@@ -35,7 +35,7 @@ def asked(robot, crawl_gait):
     return Study(
         name="s",
         run=Run(robot=robot, gait=crawl_gait),
-        vary=(Vary(field="ground.grip", values=(0.9, 1.0, 1.1)),),
+        vary=(Vary(field="ground.friction_scale", values=(0.9, 1.0, 1.1)),),
         measure=("displacement",),
         chunk=1,
         duration=1.1,
@@ -200,7 +200,7 @@ def test_versions_that_do_not_understand_each_other_are_named():
     _check_versions(Cluster({"client": ours, "scheduler": patch, "workers": {"w": ours}}))
     with pytest.raises(IncompatibleRecord, match=r"the worker w has distributed 2025\.1\.0 \(here 2026\.8\.0\)"):
         _check_versions(Cluster({"client": ours, "scheduler": ours, "workers": {"w": theirs}}))
-    with pytest.raises(NoCluster, match="does not tell its versions"):
+    with pytest.raises(NoCluster, match="does not report its versions"):
         _check_versions(Cluster({}))
 
 

@@ -31,13 +31,13 @@ def test_a_factorial_study_takes_every_combination_once(base):
         study(
             base,
             Vary(field="gait.stroke", low=0.0, high=0.04, steps=3),
-            Vary(field="ground.grip", values=(0.5, 1.0)),
+            Vary(field="ground.friction_scale", values=(0.5, 1.0)),
             seeds=2,
             seed=7,
         )
     )
     assert len(plan) == 12
-    rows = [(p.values["gait.stroke"], p.values["ground.grip"], p.seed) for p in plan]
+    rows = [(p.values["gait.stroke"], p.values["ground.friction_scale"], p.seed) for p in plan]
     assert len(set(rows)) == 12
     assert rows[0] == (0.0, 0.5, 7)
     assert rows[1] == (0.0, 0.5, 8)
@@ -71,17 +71,17 @@ def test_a_sobol_study_may_have_any_number_of_samples(base):
 
 
 def test_a_logarithmic_range_has_as_much_below_its_geometric_mean_as_above(base):
-    vary = Vary(field="ground.grip", low=0.1, high=10.0, scale="log")
+    vary = Vary(field="ground.friction_scale", low=0.1, high=10.0, scale="log")
     assert value_of(vary, 0.5) == pytest.approx(1.0)
     assert (value_of(vary, 0.0), value_of(vary, 1.0)) == (0.1, 10.0)
 
 
 def test_a_normal_distribution_has_its_mean_and_spread_and_stays_inside(base):
-    vary = Vary(field="ground.grip", mean=1.0, spread=0.2)
+    vary = Vary(field="ground.friction_scale", mean=1.0, spread=0.2)
     values = [value_of(vary, (i + 0.5) / 2000) for i in range(2000)]
     assert np.mean(values) == pytest.approx(1.0, abs=1e-6)
     assert np.std(values) == pytest.approx(0.2, rel=0.01)
-    cut = Vary(field="ground.grip", mean=1.0, spread=0.2, low=0.9, high=1.3)
+    cut = Vary(field="ground.friction_scale", mean=1.0, spread=0.2, low=0.9, high=1.3)
     values = [value_of(cut, share) for share in (0.0, 0.3, 1.0)]
     assert values[0] == pytest.approx(0.9, abs=1e-9)
     assert values[2] == pytest.approx(1.3, abs=1e-9)

@@ -13,9 +13,7 @@ from suchus.viewer import Session
 from suchus.viewer.live_page import status
 
 ROBOT, CRAWL = ROBOTS["floating_caiman"], GAITS["belly_crawl"]
-WAVE = Swim(
-    name="wave", frequency=1.0, yaw=(0.36, 0.13, 0.11), yaw_late=(0.08, -0.11, -0.29), tail=0.75, tail_late=-0.11
-)
+WAVE = Swim(name="wave", frequency=1.0, yaw=(0.36, 0.13, 0.11), yaw_lag=(0.08, -0.11, -0.29), tail=0.75, tail_lag=-0.11)
 
 
 def afloat(seconds: float, **settings: float) -> Session:

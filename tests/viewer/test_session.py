@@ -15,7 +15,7 @@ from suchus.land import simulate
 from suchus.motion import Gait, check_limits
 from suchus.robots import ROBOTS
 from suchus.viewer import Session
-from suchus.viewer.bodies import Posture, pieces
+from suchus.viewer.bodies import BodyPoses, pieces
 from suchus.viewer.history import columns
 from suchus.viewer.knobs import BUMPS, FORCE, GAIT_KNOBS, bumps_under, force_on, knobs_of, shown, tuned
 from suchus.viewer.live_page import status
@@ -227,7 +227,7 @@ def test_a_walk_that_comes_apart_says_so_and_can_be_begun_anew(tmp_path, monkeyp
     session = walked(seconds=0.3)
     session._live._loop.bench.qvel[0, 3] = nan
     session.advance(0.5)
-    assert "came apart at 0.3" in session.look().trouble
+    assert "diverged at 0.3" in session.look().trouble
     session.advance(0.5)
     session.reset()
     session.advance(0.2)
@@ -270,7 +270,7 @@ def test_every_robot_walks_live_and_is_drawn_pushed_and_broken(name):
     assert not session.look().trouble
     table = session.table()
     assert set(table) == set(columns(place.limb_names))
-    posture = Posture(robot)
+    posture = BodyPoses(robot)
     posture.put(session.look().now)
     bones = posture.bones(None)
     for piece in pieces(robot, 2):

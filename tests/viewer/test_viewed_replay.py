@@ -12,7 +12,7 @@ from suchus.record import save
 from suchus.robots import ROBOTS
 from suchus.rotation import rotate
 from suchus.viewer import rods
-from suchus.viewer.bodies import Posture, pieces, support
+from suchus.viewer.bodies import BodyPoses, pieces, support
 from suchus.viewer.history import columns
 from suchus.viewer.plots import gait_bars
 from suchus.viewer.replay import _NEEDED, Player, takes
@@ -40,7 +40,7 @@ def test_a_record_gives_a_take_for_every_run(walk):
 
 def test_bodies_stand_where_the_record_says(walk):
     take = takes(walk)[0]
-    posture = Posture(take.robot)
+    posture = BodyPoses(take.robot)
     for time in (0.0, 1.2):
         now = take.at(time)
         posture.put(now)
@@ -68,7 +68,7 @@ def test_feet_that_stand_do_not_dip_into_the_ground(relief):
     """The toes of an erect leg would, without ankles: 16 mm."""
     robot, gait = ROBOTS["caiman"], GAITS["high_walk"]
     record = simulate([Run(robot=robot, gait=gait, ground=Ground(relief=relief))], duration=1.5, timestep=0.005)
-    posture = Posture(robot)
+    posture = BodyPoses(robot)
     (piece,) = pieces(robot, 1)
     feet = piece.weights[:, [name.endswith("ankle") for name in piece.bones]].sum(axis=1) > 0.5
     for sample in (100, 120, 140):
@@ -165,7 +165,7 @@ def test_a_rod_points_where_it_should(way):
 
 
 def test_a_rod_is_closed():
-    for shape in (rods.Shape(radius=0.1), rods.Shape(radius=0.1, head=0.3, head_radius=0.2)):
+    for shape in (rods.RodShape(radius=0.1), rods.RodShape(radius=0.1, head=0.3, head_radius=0.2)):
         _, faces, weights = rods.rod(shape)
         edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
         ahead, back = {tuple(edge) for edge in edges.tolist()}, {tuple(edge) for edge in edges[:, ::-1].tolist()}

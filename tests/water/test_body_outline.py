@@ -11,7 +11,7 @@ from suchus.model import compile_model
 from suchus.motion import Bends, Swim, bends, check_swim, swim_targets
 from suchus.water import Base, Outline, silhouette
 
-SWIM = Swim(name="wave", frequency=0.8, yaw=(0.5, 0.4, 0.2), yaw_late=(0.3, 0.1, 0.0), tail=1.1, tail_late=0.6)
+SWIM = Swim(name="wave", frequency=0.8, yaw=(0.5, 0.4, 0.2), yaw_lag=(0.3, 0.1, 0.0), tail=1.1, tail_lag=0.6)
 TIME = np.linspace(0.0, 1.25, 41)
 
 

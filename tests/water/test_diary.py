@@ -10,7 +10,7 @@ from suchus.record.seal import sealed
 from suchus.water import Tether, free_swim, tether
 from suchus.water.diary import Diary
 
-MOTION = Swim(name="wave", frequency=1.0, yaw=(0.35, 0.15, 0.1), yaw_late=(0.1, -0.1, -0.3), tail=0.75, tail_late=-0.1)
+MOTION = Swim(name="wave", frequency=1.0, yaw=(0.35, 0.15, 0.1), yaw_lag=(0.1, -0.1, -0.3), tail=0.75, tail_lag=-0.1)
 SETTING = Tether(cells=32, viscosity=1e-3, cycles=1, frames=6)
 
 

@@ -26,8 +26,8 @@ def test_the_literal_reading_is_hardly_a_wave_and_fits_well(robot):
 
 def test_the_printed_sign_plays_the_motion_backwards(robot):
     printed, ours = (fit(robot, printed_wave(robot, sign=sign), name="w").swim for sign in (1, -1))
-    assert np.exp(2j * np.pi * np.array(printed.yaw_late)) == pytest.approx(
-        np.exp(2j * np.pi * np.array(ours.reversed().yaw_late)), abs=1e-6
+    assert np.exp(2j * np.pi * np.array(printed.yaw_lag)) == pytest.approx(
+        np.exp(2j * np.pi * np.array(ours.reversed().yaw_lag)), abs=1e-6
     )
     assert printed.yaw == pytest.approx(ours.yaw, abs=1e-9)
 

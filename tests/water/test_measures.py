@@ -113,7 +113,7 @@ def test_a_swing_is_as_much_of_a_sine_as_it_is():
     pure, zigzag, twice = np.sin(2 * np.pi * t), 2 * np.abs(2 * (t % 1) - 1) - 1, np.sin(4 * np.pi * t)
     swung = swing(np.column_stack([0.2 * pure + drift, zigzag, pure + twice, 0 * t]))
     np.testing.assert_allclose(swung.amplitude, [0.2, 8 / np.pi**2, 1.0, 0.0], atol=1e-3)
-    assert swung.late[0] == pytest.approx(0.25)  # a sine comes a quarter of a cycle after a cosine
+    assert swung.phase_lag[0] == pytest.approx(0.25)  # a sine comes a quarter of a cycle after a cosine
     np.testing.assert_allclose(swung.share, [1.0, 96 / np.pi**4, 0.5, 0.0], atol=1e-3)
 
 

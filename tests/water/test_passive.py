@@ -7,7 +7,7 @@ import suchus
 from suchus.motion import Swim
 from suchus.water import Outline, fit, printed_wave, sprung, undulation
 
-STILL = Swim(name="still", frequency=1.0, yaw=(0.0, 0.0, 0.0), yaw_late=(0.0, 0.0, 0.0), tail=0.0, tail_late=0.0)
+STILL = Swim(name="still", frequency=1.0, yaw=(0.0, 0.0, 0.0), yaw_lag=(0.0, 0.0, 0.0), tail=0.0, tail_lag=0.0)
 
 
 def _stiffer(robot, factor):

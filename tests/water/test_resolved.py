@@ -8,14 +8,14 @@ from suchus.errors import InvalidDesign, OutsideLimits
 from suchus.motion import Swim
 from suchus.water import ExactWave, Outline, Tether, free_swim, immersed, tether, towed
 
-MOTION = Swim(name="wave", frequency=1.0, yaw=(0.35, 0.15, 0.1), yaw_late=(0.1, -0.1, -0.3), tail=0.75, tail_late=-0.1)
+MOTION = Swim(name="wave", frequency=1.0, yaw=(0.35, 0.15, 0.1), yaw_lag=(0.1, -0.1, -0.3), tail=0.75, tail_lag=-0.1)
 COARSE = Tether(cells=32, viscosity=1e-3, cycles=1)
 
 
 def mirrored(motion: Swim) -> Swim:
     """Return the motion half a cycle later, left and right swapped."""
-    first, second, third = motion.yaw_late
-    return replace(motion, yaw_late=(first + 0.5, second + 0.5, third + 0.5), tail_late=motion.tail_late + 0.5)
+    first, second, third = motion.yaw_lag
+    return replace(motion, yaw_lag=(first + 0.5, second + 0.5, third + 0.5), tail_lag=motion.tail_lag + 0.5)
 
 
 @pytest.mark.parametrize("time", [0.2, 0.47, 1.3])

@@ -20,7 +20,7 @@ from suchus.water import (
     wave_speed,
 )
 
-STILL = Swim(name="still", frequency=1.0, yaw=(0.0, 0.0, 0.0), yaw_late=(0.0, 0.0, 0.0), tail=0.0, tail_late=0.0)
+STILL = Swim(name="still", frequency=1.0, yaw=(0.0, 0.0, 0.0), yaw_lag=(0.0, 0.0, 0.0), tail=0.0, tail_lag=0.0)
 SMOOTH = Water(thickening=0.0)
 
 
@@ -73,7 +73,7 @@ def test_the_printed_wave_swims_tail_first_and_ours_head_first(outline, robot):
 
 def test_a_single_hinge_gets_nowhere_by_drag(outline, forward):
     """A motion that retraces its way gives no thrust: Purcell's scallop, whose drag is resistive too."""
-    flap = replace(forward, yaw=(0.0, 0.0, 0.0), tail_late=0.0)
+    flap = replace(forward, yaw=(0.0, 0.0, 0.0), tail_lag=0.0)
     held = resistive(outline, cycle(outline, flap, *recoil(outline, flap, 0.0, Water())), 0.0, Water())
     assert abs(held.thrust) < 1e-8
     assert cruise(outline, flap, resistive, Water()).speed == 0.0

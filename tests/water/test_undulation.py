@@ -42,7 +42,7 @@ def test_velocities_are_the_derivatives_of_positions(robot, name):
 
 
 def test_joints_bend_the_midline_as_the_outline_says(robot):
-    swim = Swim(name="w", frequency=0.8, yaw=(0.5, 0.4, 0.2), yaw_late=(0.3, 0.1, 0.0), tail=1.1, tail_late=0.6)
+    swim = Swim(name="w", frequency=0.8, yaw=(0.5, 0.4, 0.2), yaw_lag=(0.3, 0.1, 0.0), tail=1.1, tail_lag=0.6)
     outline = Outline(robot)
     ours, theirs = undulation(outline, swim).curve(TIME), outline.curve(bends(swim, TIME))
     for mine, other in zip(ours, theirs, strict=True):

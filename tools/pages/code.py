@@ -1,4 +1,4 @@
-"""The code as its text tells it: rooms, public names, and which part of the article a docstring names.
+"""The code as its text describes it: rooms, public names, and which part of the article a docstring names.
 
 Everything is read, nothing is imported, so that a page can be made of rooms whose extras are not installed.
 """

@@ -10,7 +10,7 @@ def page() -> str:
         "# Questions",
         "",
         "Each experiment is a question with parameters. `suchus run NAME` answers one, `suchus reproduce` all of them;",
-        "`suchus run NAME --help` tells what can be changed.",
+        "`suchus run NAME --help` lists what can be changed.",
         "",
         "| experiment | question | article |",
         "|---|---|---|",

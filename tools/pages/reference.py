@@ -25,7 +25,8 @@ def _index() -> str:
         "# API reference",
         "",
         "Everything public, from docstrings. Lengths are in metres, angles in radians; see",
-        "[conventions](../conventions.md). Rooms stand in the order of the alphabet; which may import which is told in",
+        "[conventions](../conventions.md). Rooms stand in the order of the alphabet; which may import which is stated "
+        "in",
         "[architecture](../architecture.md).",
         "",
         "| room | what it is good for |",

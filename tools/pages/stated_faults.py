@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from itertools import product
 from textwrap import fill
 
-from suchus.land import KINDS, KNEES, LEGS_LOST, LOST
+from suchus.land import FAILED_JOINTS, KINDS, KNEES, LEGS_FAILED
 from suchus.paper import CLAIMS
 from suchus.verdict import Reading, compared, listed
 
@@ -18,12 +18,12 @@ def _percent(value: float) -> str:
 def _losses(measures: Mapping[str, float]) -> str:
     """Return the table of all losses: median and range in percent, beside what is printed."""
     lines = [
-        "| lost | arm | limp, one | limp, both | locked, one | locked, both | printed |",
+        "| failed joint | condition | limp, one | limp, both | locked, one | locked, both | printed |",
         "|---|---|---|---|---|---|---|",
     ]
-    for joint, (arm, name) in product((*LOST, *KNEES), _ARMS.items()):
+    for joint, (arm, name) in product((*FAILED_JOINTS, *KNEES), _ARMS.items()):
         cells = []
-        for kind, legs in product(KINDS, LEGS_LOST):
+        for kind, legs in product(KINDS, LEGS_FAILED):
             loss = f"loss_{joint}_{kind}_{legs}_{arm}"
             middle, low, high = (_percent(measures[f"{loss}{end}"]) for end in ("", "_low", "_high"))
             cells.append(f"{middle} [{low}, {high}]")
@@ -42,9 +42,9 @@ def _losses(measures: Mapping[str, float]) -> str:
 
 def _steered(measures: Mapping[str, float]) -> str:
     """Return what steering makes of each loss and turn."""
-    lines = ["| lost, limp in one leg | loss, steered | turn, steered |", "|---|---|---|"]
+    lines = ["| failed joint, limp in one leg | loss, steered | turn, steered |", "|---|---|---|"]
     doubled = []
-    for joint in LOST:
+    for joint in FAILED_JOINTS:
         name = joint.replace("_", " ")
         loss, turn = (
             [measures[f"{what}_{joint}_limp_one_{arm}"] for arm in ("coordinated", "steered")]
@@ -64,11 +64,11 @@ def _steered(measures: Mapping[str, float]) -> str:
 def _borne(measures: Mapping[str, float]) -> str:
     """Return how faults are borne, and what carries the body, with a hind pitch joint limp."""
     m = {name: Reading(value) for name, value in measures.items()}
-    joints = listed([f"{j.replace('_', ' ')} {m[f'share_bear_better_{j}']:.0%}" for j in LOST])
+    joints = listed([f"{j.replace('_', ' ')} {m[f'share_bear_better_{j}']:.0%}" for j in FAILED_JOINTS])
     raised = compared(m["com_rise_limp"], 0.0, less="lower", more="higher", same="as high")
     items = (
         '"Spine and tail make the robot bear faults better" holds in metres in '
-        f"{m['share_spine_and_tail_ahead']:.0%} of all faults and variations. Measured against each arm's own "
+        f"{m['share_spine_and_tail_ahead']:.0%} of all faults and variations. Measured against each condition's own "
         f"intact displacement it holds in {m['share_spine_and_tail_bear_better']:.0%} of them "
         f"({joints}), and by the mean over the faults in "
         f"{m['share_variations_bear_better']:.0%} of the variations: chance alone gives as many with a probability of "

@@ -30,7 +30,7 @@ def _became(shares: Mapping[str, Any]) -> str:
 
 
 def _best(outcome: Mapping[str, Any]) -> str:
-    """Return the best crawls of both arms beside where they began, and what they do otherwise."""
+    """Return the best crawls of both conditions beside where they began, and what they do otherwise."""
     lines = ["| | the article's legs | the best legs | under the other conditions |", "|---|---|---|---|"]
     reached, told = [], []
     for arm, one in outcome["arms"].items():

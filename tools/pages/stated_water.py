@@ -92,9 +92,26 @@ def _ashore(m: Mapping[str, float]) -> str:
     return f"{table}\nWork of the servos over distance [J/m]: {costs}.\n"
 
 
+def _animal(m: Mapping[str, float]) -> str:
+    """Return the stride of the animal's swim on its model, beside the animal."""
+    names = [name.removeprefix("stride_swim_") for name in m if name.startswith("stride_swim_")]
+    lines = ["| frequency | stride [body lengths a cycle] | Strouhal number |", "|---|---|---|"]
+    lines += [f"| {n.replace('_', '.')} Hz | {m[f'stride_swim_{n}']:.3f} | {m[f'strouhal_{n}']:.2f} |" for n in names]
+    return "\n".join(lines) + (
+        f"\n\nThe mean stride is {m['stride_swim']:.3f}, {abs(m['stride_off']):.0%} "
+        f"{'more' if m['stride_off'] > 0 else 'less'} than the animal's 0.225; over halved and doubled coefficients of "
+        f"the water it is {m['stride_low']:.3f} to {m['stride_high']:.3f} at the highest frequency. The model floats "
+        f"with {m['share_under']:.0%} of it under water and heels by {degrees(m['heel']):.0f} degrees at most. From "
+        f"end to end the snout swings by {m['swing_snout']:.2f}, the tail's tip by {m['swing_tail']:.2f} body lengths, "
+        f"and least, by {m['swing_least']:.2f}, the body {m['swing_least_at']:.2f} behind the snout; the joints miss "
+        f"their angles by {degrees(m['angle_missed']):.1f} degrees.\n"
+    )
+
+
 PASSAGES: Mapping[str, Mapping[str, Callable[[Mapping[str, float]], str]]] = {
     "floating": {"checks": _checks, "hull": _hull},
     "swim_free": {"swims": _swims},
+    "salamander_swim": {"animal_swim": _animal},
     "shore": {"ashore": _ashore},
 }
 """What makes each passage, by experiment."""

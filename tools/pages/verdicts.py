@@ -1,4 +1,4 @@
-"""What decides each verdict, and what came out: a page made of the rules."""
+"""What decides each verdict, and the result: a page made of the rules."""
 
 import json
 from pathlib import Path
@@ -24,7 +24,7 @@ full `suchus reproduce`.
 * **reproduced**: it came out, and the printed number, as rounded, lies within the repeats of ours.
 * **same sense**: another number, but the statement holds; or the robot does what the article says of animals.
 * **contradicted**: the statement does not hold here.
-* **not testable**: nothing was measured that could tell.
+* **not testable**: nothing was measured that could decide.
 * **fitted**: a number that the article does not give was chosen so that its result comes out.
 * **by construction**: an input, a count or a commanded motion is read back.
 
@@ -69,7 +69,7 @@ def _swept(rule: Rule) -> str:
     share = SHARES.get(rule.claim)
     if share is None:
         return f"Not tried on other designs: {rule.unswept or 'the study has not answered it'}."
-    turned = f"; best told by `{share.turned_by}`" if share.turned_by else ""
+    turned = f"; best predicted by `{share.turned_by}`" if share.turned_by else ""
     return (
         f"Holds in {share.share:.1%} ({share.low:.1%} to {share.high:.1%}) of {share.designs} plausible "
         f"designs{turned}."

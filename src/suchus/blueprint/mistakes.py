@@ -1,8 +1,9 @@
 """From what a validator complains of to sentences that a person can act on."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import fields, is_dataclass
 from difflib import get_close_matches
+from itertools import islice
 from typing import Any, get_args
 
 from suchus.design.checks import InvalidFields
@@ -11,6 +12,7 @@ from suchus.errors import InvalidDesign, UnreadableFile
 Place = tuple[str | int, ...]
 """Keys from the top of a file down to a value."""
 
+_HOMES = 2  # of a field that stands in the wrong part; one that many parts have, as a mass, is not said
 _NEEDED: Mapping[str, str] = {
     "float_type": "a number is needed",
     "finite_number": "a finite number is needed",
@@ -82,10 +84,23 @@ def _needed(error: Mapping[str, Any], cause: Exception | None) -> str:
 
 def _unknown(place: Place, kind: type) -> str:
     known = _fields_at(place[:-1], kind)
+    homes = list(islice(_homes(str(place[-1]), kind), _HOMES + 1))
+    if 0 < len(homes) <= _HOMES:
+        return f"is not known there; it stands at {' and '.join(homes)}: move it"
     near = get_close_matches(str(place[-1]), known, n=1, cutoff=0.5)
     if near:
         return f"is not known (did you mean {dotted((*place[:-1], near[0]))}?)"
     return f"is not known; there is {', '.join(known)}" if known else "is not known"
+
+
+def _homes(name: str, kind: Any, place: str = "") -> Iterator[str]:
+    """Yield where a design has a field of a name; what is listed, as segments are, has no place that could be said."""
+    if not is_dataclass(kind):
+        return
+    for field in fields(kind):
+        if field.name == name:
+            yield f"{place}{name}"
+        yield from _homes(name, field.type, f"{place}{field.name}.")
 
 
 def _fields_at(place: Place, kind: Any) -> list[str]:

@@ -13,6 +13,7 @@ from pydantic import TypeAdapter, ValidationError
 from suchus.blueprint.mistakes import MistakenFile, Place, explain
 from suchus.errors import UnreadableFile
 from suchus.record import read_toml
+from suchus.renamed import modern
 
 T = TypeVar("T")
 
@@ -41,7 +42,7 @@ def read(path: Path, kind: Any, shelf: Mapping[str, Any]) -> Any:
         UnreadableFile: the file is missing or no TOML.
         MistakenFile: values are missing, unknown, of the wrong kind or impossible; it names all of them.
     """
-    data = read_toml(path)
+    data = modern(read_toml(path), kind)
     base = data.pop("base", None)
     known = base is None or (isinstance(base, str) and base in shelf)
     kinds = get_args(kind) or (kind,)
@@ -115,7 +116,7 @@ def _follows(place: Place, mended: set[Place]) -> bool:
 
 
 def _mend(data: Any, place: Place, spare: Any) -> bool:
-    """Put the spare value at a place, or drop what should not be there; tell whether that was possible."""
+    """Put the spare value at a place, or drop what should not be there; return whether that was possible."""
     if not place:
         return False
     for key in place[:-1]:

@@ -1,25 +1,26 @@
 """Tracked keypoints of a walking body -> spine and tail angles, foot contacts, one mean cycle -> a gait."""
 
 from suchus.capture.angle_table import AngleCycle, is_angle_table, read_angles
-from suchus.capture.animal import Animal, film_animal
+from suchus.capture.animal import SyntheticAnimal, film_animal
 from suchus.capture.film import Camera, film, keypoints
 from suchus.capture.patterned import NEEDED, to_pattern
 from suchus.capture.played import to_angle_table
-from suchus.capture.reading import Reading, read_tracks, told, write_gait
+from suchus.capture.reading import ReadingOptions, read_tracks, told, write_gait
 from suchus.capture.retarget import Captured, driven_share, to_gait
 from suchus.capture.table import write_table
 from suchus.capture.tracks import Tracks, UnusableTracks
 from suchus.capture.walk import Seen, Walk, observe
 from suchus.capture.wave import standing_index
+from suchus.renamed import old_exports
 
 __all__ = [
     "NEEDED",
     "AngleCycle",
-    "Animal",
     "Camera",
     "Captured",
-    "Reading",
+    "ReadingOptions",
     "Seen",
+    "SyntheticAnimal",
     "Tracks",
     "UnusableTracks",
     "Walk",
@@ -39,3 +40,5 @@ __all__ = [
     "write_gait",
     "write_table",
 ]
+
+__getattr__ = old_exports(__name__, Animal="SyntheticAnimal", Reading="ReadingOptions")

@@ -25,7 +25,7 @@ class AngleCycle:
     residual: Float[np.ndarray, " joint"]
     """Root mean square of what the harmonics leave of the table [rad]."""
     source: str
-    """Where they come from."""
+    """File or publication that they are from."""
 
     def at(self, phase: Float[np.ndarray, "*batch"]) -> Float[np.ndarray, "*batch joint"]:
         """Return the angles at phases [cycle]; any whole number of cycles further they are the same [rad]."""
@@ -35,7 +35,7 @@ class AngleCycle:
 
 
 def is_angle_table(path: Path) -> bool:
-    """Tell whether a file is a CSV table of joint angles: its first column is ``time``, a share, without a unit."""
+    """Return whether a file is a CSV table of joint angles: its first column is ``time``, a share, without a unit."""
     if path.suffix.lower() != ".csv" or not path.is_file():
         return False
     with path.open("rb") as file:

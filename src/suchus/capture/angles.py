@@ -14,7 +14,7 @@ from suchus.paper import BendAngles, JointSums, to_bend_angles
 
 
 def azimuth(tracks: Tracks, ahead: str, behind: str) -> Float[np.ndarray, " frame"]:
-    """Return whereto a segment looks in the ground plane, a quarter turn from x to y [rad]."""
+    """Return the direction of a segment in the ground plane, a quarter turn from x to y [rad]."""
     d = tracks.at(ahead) - tracks.at(behind)
     return np.arctan2(d[:, 1], d[:, 0])
 

@@ -19,25 +19,25 @@ _TAIL = 6  # segments of the tail
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Animal:
+class SyntheticAnimal:
     """A lizard-like body that walks straight on with feet that never slip."""
 
     trunk: float
-    """From hip to shoulder [m]."""
+    """Length from hip to shoulder [m]."""
     tail: float
     """Length of the tail [m]."""
     period: float
-    """Of one cycle [s]."""
+    """Period of one cycle [s]."""
     duty_factor: float
     """Share of the cycle in which a foot stands [-]."""
     limb_phases: tuple[float, float, float, float]
     """Phase of LF, RF, LH, RH at time zero; a limb swings first, then stands [cycle]."""
     stride: float
-    """How far the body goes in one cycle [m]."""
+    """Distance that the body moves in one cycle [m]."""
     outward: float
-    """How far feet stand from the midline [m]."""
+    """Distance by which feet stand from the midline [m]."""
     lift: float
-    """How high feet are lifted [m]."""
+    """Height to which feet are lifted [m]."""
     spine_bend: float
     """Amplitude of the trunk's lateral angle, right positive [rad]."""
     spine_rightmost: float
@@ -45,11 +45,11 @@ class Animal:
     tail_bend: float
     """Amplitude of the tail's lateral angle at its tip, right positive [rad]."""
     tail_lag: float
-    """How late the tail's root bends against the trunk [cycle]."""
+    """Phase lag of the tail's root behind the trunk [cycle]."""
     tail_wave: float
-    """How much later the tip bends than the root [cycle]; 0: a standing wave."""
+    """Phase lag of the tip behind the root [cycle]; 0: a standing wave."""
     swing: Swing = "cosine"
-    """How its feet move."""
+    """Course of a foot in swing."""
 
     def __post_init__(self) -> None:
         with Checks("animal", self) as check:
@@ -68,7 +68,7 @@ class Animal:
             )
 
 
-def film_animal(animal: Animal, camera: Camera, *, cycles: float, pace: ArrayLike = (1.0,)) -> Tracks:
+def film_animal(animal: SyntheticAnimal, camera: Camera, *, cycles: float, pace: ArrayLike = (1.0,)) -> Tracks:
     """Return the tracks of an animal.
 
     Args:
@@ -86,7 +86,7 @@ def film_animal(animal: Animal, camera: Camera, *, cycles: float, pace: ArrayLik
     return tracked(points, time, camera, source="the film of an animal")
 
 
-def _midline(animal: Animal, time: np.ndarray) -> dict[str, np.ndarray]:
+def _midline(animal: SyntheticAnimal, time: np.ndarray) -> dict[str, np.ndarray]:
     """Points from neck to tail tip: a chain whose bends are shared evenly among its joints."""
     phase = time / animal.period
     spine = animal.spine_bend * np.cos(2 * np.pi * (phase - animal.spine_rightmost))
@@ -102,14 +102,14 @@ def _midline(animal: Animal, time: np.ndarray) -> dict[str, np.ndarray]:
     for i in range(1, _TAIL + 1):
         bend = np.zeros_like(time)
         for j in range(i):
-            late = animal.spine_rightmost + animal.tail_lag + animal.tail_wave * j / (_TAIL - 1)
-            bend += animal.tail_bend / _TAIL * np.cos(2 * np.pi * (phase - late))
+            lag = animal.spine_rightmost + animal.tail_lag + animal.tail_wave * j / (_TAIL - 1)
+            bend += animal.tail_bend / _TAIL * np.cos(2 * np.pi * (phase - lag))
         at = at - animal.tail / _TAIL * _direction(pelvis + bend)
         points["tail_tip" if i == _TAIL else f"tail_{i}"] = at
     return points
 
 
-def _foot(animal: Animal, leg: str, time: np.ndarray) -> np.ndarray:
+def _foot(animal: SyntheticAnimal, leg: str, time: np.ndarray) -> np.ndarray:
     """A foot that stands still, then goes on by a stride, without a jerk at either end."""
     phase = time / animal.period + animal.limb_phases[LEGS.index(leg)]
     number, within = np.floor(phase), np.mod(phase, 1.0)
@@ -123,7 +123,7 @@ def _foot(animal: Animal, leg: str, time: np.ndarray) -> np.ndarray:
 
 
 def _gone(swing: Swing, share: np.ndarray) -> np.ndarray:
-    """Share of its way that a foot has gone after a share of its swing."""
+    """Share of its path that a foot has covered after a share of its swing."""
     if swing == "cosine":
         return np.asarray((1 - np.cos(np.pi * share)) / 2)
     if swing == "jerk_free":

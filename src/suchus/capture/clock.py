@@ -38,7 +38,7 @@ class Clock(NamedTuple):
 def paced(feet: Mapping[str, Middles], period: float) -> Clock:
     """Return the clock of a walk; an even one where too few swings were seen.
 
-    Every foot counts its own swings; how much later than the first foot each of the others swings is the same in all
+    Every foot counts its own swings; the phase lag of each other foot behind the first one is the same in all
     cycles on the clock.
 
     Args:
@@ -55,9 +55,9 @@ def paced(feet: Mapping[str, Middles], period: float) -> Clock:
     times, cycles, weights = [], [], []
     for foot in rows:
         shown = even.read(foot.time) / even.period
-        late = np.angle(np.mean(np.exp(2j * np.pi * shown))) / (2 * np.pi)
+        lag = np.angle(np.mean(np.exp(2j * np.pi * shown))) / (2 * np.pi)
         times.append(foot.time)
-        cycles.append(np.round(shown - late) + late)
+        cycles.append(np.round(shown - lag) + lag)
         weights.append(1.0 / (foot.error**2 + (0.01 * lasts) ** 2))
     time, cycle, weight = (np.concatenate(part) for part in (times, cycles, weights))
     order = np.argsort(cycle, kind="stable")

@@ -14,17 +14,17 @@ LEAST_FRAMES = 12
 """Frames in one cycle below which steps cannot be told apart [-]."""
 _FASTEST = 12.0  # [1/s]; the stride frequency of the fastest small lizards
 _REPEATS = 0.15  # share of the movement that one harmonic explains; of noise alone it explains less
-_PIECE = 6.0  # [cycle]; a pace that varies by a tenth has not gone astray by then
+_PIECE = 6.0  # [cycle]; a pace that varies by a tenth has not drifted apart by then
 _ROUNDS = 3  # of leaving out points that jumped
 _JUMP = 8.0  # times the usual residual; what a body does in steps stays well below
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Periodic:
+class PeriodicFit:
     """A periodic quantity: mean, drift and harmonics, fitted to the frames in which it was seen."""
 
     period: float
-    """Of one cycle [s]."""
+    """Period of one cycle [s]."""
     mean: float
     """Steady part at the middle of the time."""
     drift: np.ndarray
@@ -69,7 +69,7 @@ class Periodic:
         return np.asarray(self.mean + np.power.outer(t, powers) @ self.drift)
 
 
-def fit(time: np.ndarray, values: np.ndarray, period: float, *, harmonics: int, drift: int = 0) -> Periodic:
+def fit(time: np.ndarray, values: np.ndarray, period: float, *, harmonics: int, drift: int = 0) -> PeriodicFit:
     """Fit mean, drift and harmonics by least squares to the frames that are seen; points that jumped are left out.
 
     Args:
@@ -96,7 +96,7 @@ def fit(time: np.ndarray, values: np.ndarray, period: float, *, harmonics: int, 
         use = keep
     residual = np.where(use, values - X @ found, np.nan)
     cos, sin = np.split(found[drift + 1 :], 2)
-    return Periodic(
+    return PeriodicFit(
         period=period,
         mean=float(found[0]),
         drift=found[1 : drift + 1] / reach ** np.arange(1, drift + 1),

@@ -15,12 +15,12 @@ from suchus.capture.tracks import Tracks, UnusableTracks
 GRID = 400
 """Phases of a cycle at which a foot is looked at [-]."""
 _DUTIES = np.round(np.arange(0.30, 0.91, 0.01), 2)  # that a path is compared with
-_TOP = 14  # harmonics of a foot's way; enough for the jerk of lifting off
+_TOP = 14  # harmonics of a foot's path; enough for the jerk of lifting off
 _SURE = 1.96  # standard errors to either side that hold the truth in 95 of 100 cases
 _BINS, _RARE = 40, 0.2  # of the cycle; share of the frames of a bin in which a hidden foot may be seen
 
 
-class Contact(NamedTuple):
+class FootContact(NamedTuple):
     """One foot over its mean cycle; phases count from time zero of the tracks [cycle]."""
 
     speed: Float[np.ndarray, " grid"]
@@ -48,17 +48,17 @@ class Contact(NamedTuple):
         return (self.lift_off - self.touch_down) % 1.0
 
 
-class Sweep(NamedTuple):
+class FootSweep(NamedTuple):
     """How one foot moves against its girdle over the mean cycle."""
 
     forward: Float[np.ndarray, " grid"]
-    """How far it is ahead of the girdle [m or px]."""
+    """Distance by which it is ahead of the girdle [m or px]."""
     outward: float
     """Mean distance from the midline [m or px]."""
     lift: float
-    """How high it is lifted over the ground [m or px]; NaN where no heights were seen."""
+    """Height to which it is lifted over the ground [m or px]; NaN where no heights were seen."""
     stroke: float
-    """Half of the way that it goes back [m or px], by the gait's path that fits best: see ``path_shape``."""
+    """Half of the distance that it moves back [m or px], by the gait's path that fits best: see ``path_shape``."""
     retraction: float
     """Share of the cycle in which it goes back [-], by the same path."""
 
@@ -68,7 +68,7 @@ def grid() -> Float[np.ndarray, " grid"]:
     return np.arange(GRID) / GRID
 
 
-def forward_way(tracks: Tracks, leg: str) -> Float[np.ndarray, " frame"]:
+def forward_path(tracks: Tracks, leg: str) -> Float[np.ndarray, " frame"]:
     """Return how far a foot is ahead of the hip along the trunk, NaN where it was not seen [m or px]."""
     look = (tracks.at("shoulder") - tracks.at("hip"))[:, :2]
     ahead = look / np.linalg.norm(look, axis=1, keepdims=True)
@@ -77,10 +77,10 @@ def forward_way(tracks: Tracks, leg: str) -> Float[np.ndarray, " frame"]:
 
 def steps(tracks: Tracks, leg: str, period: float) -> Middles:
     """Return the middles of a foot's swings; the period need only be roughly right [s]."""
-    return middles(tracks.time, tracks.at(leg)[:, :2], forward_way(tracks, leg), period)
+    return middles(tracks.time, tracks.at(leg)[:, :2], forward_path(tracks, leg), period)
 
 
-def contact(tracks: Tracks, leg: str, period: float) -> Contact:
+def contact(tracks: Tracks, leg: str, period: float) -> FootContact:
     """Return when a foot stands in the mean cycle: see ``swings``.
 
     Args:
@@ -91,7 +91,7 @@ def contact(tracks: Tracks, leg: str, period: float) -> Contact:
     Raises:
         UnusableTracks: none of its swings was filmed from stance to stance.
     """
-    found = swing(tracks.time, tracks.at(leg)[:, :2], forward_way(tracks, leg), period)
+    found = swing(tracks.time, tracks.at(leg)[:, :2], forward_path(tracks, leg), period)
     if found is None:
         raise UnusableTracks(
             f"in {tracks.source} no step of {leg} can be seen from one stance to the next: film more cycles, track the "
@@ -105,7 +105,7 @@ def contact(tracks: Tracks, leg: str, period: float) -> Contact:
     middle_error = np.hypot(_SURE * found.middle_error, times * np.std(apart, ddof=1) / np.sqrt(n)) if n > 1 else np.nan
     phase, half = grid(), found.share / 2
     lift_off, touch_down = (whole + found.skew - half) % 1.0, (whole + found.skew + half) % 1.0
-    return Contact(
+    return FootContact(
         speed=_speed(tracks, leg, period),
         stance=(phase - touch_down) % 1.0 < (lift_off - touch_down) % 1.0,
         lift_off=lift_off,
@@ -136,7 +136,7 @@ def _hidden(tracks: Tracks, point: str, period: float) -> float:
     return float(np.mean(share[filmed > 0] < _RARE))
 
 
-def sweep(tracks: Tracks, leg: str, period: float) -> Sweep:
+def sweep(tracks: Tracks, leg: str, period: float) -> FootSweep:
     """Return how a foot moves in the frame of its girdle, whose direction is smoothed over the cycle.
 
     Args:
@@ -155,8 +155,8 @@ def sweep(tracks: Tracks, leg: str, period: float) -> Sweep:
     lift = float("nan")
     if tracks.upright:
         lift = float(np.ptp(fit(tracks.time, tracks.at(leg)[:, 2], period, harmonics=count).swing(grid() * period)))
-    way = path.mean + path.swing(grid() * period)
-    return Sweep(way, float(np.nanmean(outward)), lift, *_fitting_path(way))
+    course = path.mean + path.swing(grid() * period)
+    return FootSweep(course, float(np.nanmean(outward)), lift, *_fitting_path(course))
 
 
 def path_shape(duty: float) -> Float[np.ndarray, " grid"]:
@@ -188,7 +188,7 @@ def _paths() -> tuple[Complex[np.ndarray, "duty frequency"], Float[np.ndarray, "
 
 
 def smooth_azimuth(tracks: Tracks, ahead: str, behind: str, period: float) -> Float[np.ndarray, " frame"]:
-    """Return whereto a segment looks as drift and six harmonics, in every frame [rad]."""
+    """Return the direction of a segment as drift and six harmonics, in every frame [rad]."""
     raw = continuous(azimuth(tracks, ahead, behind))
     one = fit(tracks.time, raw, period, harmonics=_harmonics(tracks, ahead, period, 6), drift=_drift(tracks, period))
     return one.trend(tracks.time) + one.swing(tracks.time)
@@ -202,7 +202,7 @@ def continuous(angle: Float[np.ndarray, " frame"]) -> Float[np.ndarray, " frame"
 
 
 def _drift(tracks: Tracks, period: float) -> int:
-    """A curved way needs two cycles to be told from the cycle itself."""
+    """A curved path needs two cycles to be distinguished from the cycle itself."""
     return 2 if tracks.time[-1] - tracks.time[0] >= 1.9 * period else 1
 
 

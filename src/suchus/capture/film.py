@@ -27,13 +27,13 @@ class Camera:
     lost: float
     """Share of the points that are lost, each on its own [-]."""
     heading: float
-    """By how much the camera is turned against the walk [rad]."""
+    """Angle by which the camera is turned against the walk [rad]."""
     scale: float | None
     """Pixels per metre, which nobody knows afterwards [px/m]; None: the tracks are in metres."""
     heights: bool
     """Whether heights are seen too, as with two cameras."""
     seed: int
-    """Of noise and losses."""
+    """Seed of noise and losses."""
 
     def __post_init__(self) -> None:
         with Checks("camera", self) as check:

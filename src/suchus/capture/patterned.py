@@ -6,14 +6,14 @@ from math import degrees
 import numpy as np
 
 from suchus.capture.retarget import Captured, Duty, mean_of
+from suchus.capture.slowed import within_speed
 from suchus.capture.walk import Walk
 from suchus.design import LEGS, AnyRobot, check_needs, hips_ahead, layout, servo_ranges
 from suchus.errors import InvalidDesign, NotConverged, OutsideLimits, Unreachable
-from suchus.motion import AxialWave, FootPath, Pattern, check_limits, pattern_targets
+from suchus.motion import AxialWave, FootPath, Pattern, check_limits
 
 NEEDED = ("four_limbs", "foot_paths")
 """What a walk of a four-limbed animal needs of a robot: names of ``design.NEEDS``."""
-_STEPS = 200  # of a cycle, where a pattern is looked at
 _PAIRS = (LEGS[:2], LEGS[2:])
 
 
@@ -58,7 +58,7 @@ def to_pattern(walk: Walk, robot: AnyRobot, base: Pattern, *, name: str, duty: D
         notes.append(f"feet rest for {mean_of(walk, 'duty'):.2f} of the cycle; the {stem} share was taken")
     gait = _shaped(walk, robot, gait, base, notes)
     gait = _within_limits(robot, gait, base, notes)
-    return Captured(gait=_within_speed(robot, gait, notes), notes=(*walk.notes, *notes))
+    return Captured(gait=within_speed(robot, gait, notes), notes=(*walk.notes, *notes))
 
 
 def _bent(walk: Walk, robot: AnyRobot, duty: float, notes: list[str]) -> AxialWave:
@@ -161,23 +161,6 @@ def _fits(robot: AnyRobot, gait: Pattern) -> bool:
     except (InvalidDesign, NotConverged, OutsideLimits, Unreachable):
         return False
     return True
-
-
-def _within_speed(robot: AnyRobot, gait: Pattern, notes: list[str]) -> Pattern:
-    """Slow the gait down until no servo has to turn faster than it can."""
-    servos = layout(robot).servos
-    targets = pattern_targets(robot, gait, np.arange(_STEPS + 1) / _STEPS)
-    turns = np.abs(np.diff(targets, axis=0)).max(axis=0) * _STEPS  # [rad/cycle]
-    allowed = np.array([robot.servo(servo).speed for servo in servos])
-    needed = float((turns / allowed).max())
-    if needed <= gait.period:
-        return gait
-    slow = servos[int(np.argmax(turns / allowed))]
-    notes.append(
-        f"in a cycle of {gait.period:.2f} s {slow} would have to turn faster than its servo can; the period is "
-        f"{needed:.2f} s"
-    )
-    return replace(gait, period=_rounded(needed + 5e-5))
 
 
 def _within_half(cycles: float) -> float:

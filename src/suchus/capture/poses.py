@@ -11,7 +11,7 @@ from suchus.capture.tracks import Tracks, UnusableTracks, renamed
 from suchus.errors import UnreadableFile
 
 SOFTWARE = ("DeepLabCut", "SLEAP", "LightningPose", "Anipose", "NWB")
-"""Whose files can be read."""
+"""Software whose files can be read."""
 
 _INSTALL = 'pip install "suchus[capture]"'
 
@@ -48,7 +48,7 @@ def read_poses(
     """
     data = _load(path, software or _guess(path), rate)
     if "time_unit" not in data.attrs or data.attrs["time_unit"] != "seconds":
-        raise UnusableTracks(f"{path.name} does not tell its frame rate; give it, as in --fps 50.")
+        raise UnusableTracks(f"{path.name} does not give its frame rate; give it, as in --fps 50.")
     data = _one(data, individual, path.name)
     dims = [d for d in data.position.dims if d not in ("time", "space")]
     position = data.position.transpose("time", *dims, "space").values.astype(float)

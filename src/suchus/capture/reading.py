@@ -17,8 +17,8 @@ from suchus.record import check_file, new_file
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Reading:
-    """How a file of tracks is read."""
+class ReadingOptions:
+    """Options with which a file of tracks is read."""
 
     names: Mapping[str, str] = field(default_factory=dict)
     """Our name of a keypoint by the file's, where they differ."""
@@ -34,7 +34,7 @@ class Reading:
     """Whether y points to the right of x, seen from above; None: as the file's kind has it."""
 
 
-def read_tracks(path: Path, how: Reading | None = None) -> Tracks:
+def read_tracks(path: Path, how: ReadingOptions | None = None) -> Tracks:
     """Read tracks from a CSV table, or from a file of DeepLabCut, SLEAP or LightningPose.
 
     Args:
@@ -45,7 +45,7 @@ def read_tracks(path: Path, how: Reading | None = None) -> Tracks:
         UnreadableFile: there is no such file, it is empty or broken, or the library that reads it is not installed.
         UnusableTracks: it holds not what is needed.
     """
-    how = how or Reading()
+    how = how or ReadingOptions()
     if how.software is not None and how.software not in SOFTWARE:
         raise UnknownName("software", how.software, SOFTWARE)
     check_file(path)

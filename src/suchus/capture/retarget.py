@@ -6,11 +6,12 @@ from typing import Literal
 
 import numpy as np
 
+from suchus.capture.slowed import within_speed
 from suchus.capture.walk import UNSURE, Walk
 from suchus.capture.wave import STANDING
 from suchus.design import LEGS, AnyRobot, Crocodile, layout
 from suchus.errors import OutsideLimits, UnsuitedRobot
-from suchus.motion import Gait, Pattern, check_limits, servo_targets, tail_bend, trunk_bend
+from suchus.motion import Gait, Pattern, check_limits, tail_bend, trunk_bend
 
 Duty = Literal["retraction", "contact"]
 """Which share of the cycle becomes the duty factor: feet going back along the body, or feet at rest on the ground.
@@ -58,7 +59,7 @@ def to_gait(walk: Walk, robot: AnyRobot, base: Gait, *, name: str, duty: Duty = 
     gait = _bent(walk, gait, notes)
     gait = _shaped(walk, robot, gait, base, notes)
     gait = _within_limits(robot, gait, base, notes)
-    gait = _within_speed(robot, gait, notes)
+    gait = within_speed(robot, gait, notes)
     return Captured(gait=gait, notes=(*walk.notes, *notes, *_unheld(walk)))
 
 
@@ -214,24 +215,6 @@ def _fits(robot: Crocodile, gait: Gait) -> bool:
     except OutsideLimits:
         return False
     return True
-
-
-def _within_speed(robot: Crocodile, gait: Gait, notes: list[str]) -> Gait:
-    """Slow the gait down until no servo has to turn faster than it can."""
-    phase = np.arange(_STEPS + 1) / _STEPS
-    targets = servo_targets(robot, gait, phase[:, None] + np.array(gait.limb_phases))
-    turns = np.abs(np.diff(targets, axis=0)).max(axis=0) * _STEPS  # [rad/cycle]
-    servos = layout(robot).servos
-    allowed = np.array([robot.servo(servo).speed for servo in servos])
-    needed = float((turns / allowed).max())
-    if needed <= gait.period:
-        return gait
-    slow = servos[int(np.argmax(turns / allowed))]
-    notes.append(
-        f"in a cycle of {gait.period:.2f} s {slow} would have to turn faster than its servo can; the period is "
-        f"{needed:.2f} s"
-    )
-    return replace(gait, period=_rounded(needed + 5e-5))
 
 
 def _unheld(walk: Walk) -> list[str]:

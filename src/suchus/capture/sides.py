@@ -14,7 +14,7 @@ def check_sides(tracks: Tracks) -> None:
     """Refuse tracks in which a left foot lies right of its right neighbour, seen along the body.
 
     Raises:
-        UnusableTracks: it names the pair, or says that the whole picture is mirrored, and tells the frames.
+        UnusableTracks: it names the pair, or says that the whole picture is mirrored, and gives the frames.
     """
     front, hind = _crossed(tracks, "LF", "RF", *tracks.thorax), _crossed(tracks, "LH", "RH", "hip", "tail_base")
     shares = float(np.nanmean(front)), float(np.nanmean(hind))

@@ -13,8 +13,8 @@ import numpy as np
 from jaxtyping import Float
 from scipy.optimize import least_squares
 
-_SMOOTH = 0.04  # [cycle]; standard deviation of the smoothing that tells swings apart, not their edges
-_TURNS = 0.15  # share of the range of its way by which a foot must pass the middle, or it is noise
+_SMOOTH = 0.04  # [cycle]; standard deviation of the smoothing that separates swings, not their edges
+_TURNS = 0.15  # share of the range of its path by which a foot must pass the middle, or it is noise
 _HALF = 0.25  # [cycle]; what must have been filmed before and after the middle of a swing
 _LEAST = 0.02  # [cycle]; shortest swing
 _SHAPE, _SHAPES = np.log([1.4, 2.4, 1.0]), np.array([0.5, 0.5, 0.25])  # logarithms of p, q, s: expected, and how far
@@ -46,11 +46,11 @@ class Swing(NamedTuple):
     """The swing of one foot, from all its strides; shares are of a stride, phases count from time zero [cycle]."""
 
     phase: Float[np.ndarray, " swing"]
-    """Of the middle of the fast part of each swing: feet that slide before they lift off do not move it."""
+    """Phase of the middle of the fast part of each swing: feet that slide before they lift off do not move it."""
     skew: float
     """How much later than that the swing is half over [cycle]."""
     share: float
-    """How long the foot swings [-]."""
+    """Duration of the swing as a fraction of the cycle [-]."""
     share_error: float
     """Standard error of that by the frames, the unknown shape of the swing included [-]."""
     middle_error: float
@@ -63,7 +63,7 @@ class _Frames(NamedTuple):
     """What is seen around each swing, from mid-stance to mid-stance; weight 0 where nothing is."""
 
     time: Float[np.ndarray, "swing frame"]  # [cycle]
-    way: Float[np.ndarray, "swing frame"]  # from one place to the next, in strides
+    trace: Float[np.ndarray, "swing frame"]  # from one place to the next, in strides
     weight: Float[np.ndarray, "swing frame"]
 
 
@@ -98,10 +98,10 @@ def swing(time: np.ndarray, place: np.ndarray, ahead: np.ndarray, period: float)
     own, _, lasts, unsure = _each(frames, own)
     middle, seen = own[:, :2].mean(axis=1), frames.weight > 0
     when = (frames.time - middle[:, None])[seen]
-    way = ((frames.way - own[:, 2, None]) / (own[:, 3] - own[:, 2])[:, None])[seen]
+    trace = ((frames.trace - own[:, 2, None]) / (own[:, 3] - own[:, 2])[:, None])[seen]
     near = np.abs(when) < float(np.mean(lasts)) / 2 + _NEAR
-    when, way = _thinned(when[near], way[near])
-    found, covariance = _pooled(when, way, float(np.mean(lasts)))
+    when, trace = _thinned(when[near], trace[near])
+    found, covariance = _pooled(when, trace, float(np.mean(lasts)))
     apart, halves = np.array([-1.0, 1.0]), np.array([0.5, 0.5])
     share, half = float(found[:2] @ apart), float(found[:2] @ halves)
     fast = float(found[0] + share * _fast(found[4:]))
@@ -124,27 +124,27 @@ def _gap(when: np.ndarray, start: float, end: float) -> float:
     return float(np.diff(edges)[inside].max(initial=0.0))
 
 
-def _thinned(when: np.ndarray, way: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _thinned(when: np.ndarray, trace: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Put frames together that are next to each other, by their medians, until they are few enough."""
     order = np.argsort(when, kind="stable")
     size = -(-len(when) // _MOST)
     use = order[: len(order) // size * size].reshape(-1, size)
-    return when[use].mean(axis=1), np.median(way[use], axis=1)
+    return when[use].mean(axis=1), np.median(trace[use], axis=1)
 
 
 def _turns(time: np.ndarray, ahead: np.ndarray) -> Float[np.ndarray, "swing 2"]:
     """Return when a foot turns forward and back again, roughly [cycle].
 
-    Its way along the body is smoothed; a swing is where that rises from well below the middle to well above it.
+    Its path along the body is smoothed; a swing is where that rises from well below the middle to well above it.
     """
     seen = np.isfinite(ahead)
     if seen.sum() < 4:
         return np.zeros((0, 2))
     step = _SMOOTH / 4
     even = np.arange(time[0], time[-1] + step, step)
-    way = np.interp(even, time[seen], ahead[seen])
+    trace = np.interp(even, time[seen], ahead[seen])
     reach = np.exp(-0.5 * (np.arange(-12, 13) / 4.0) ** 2)
-    smooth = np.convolve(np.pad(way, 12, mode="edge"), reach / reach.sum(), mode="valid")
+    smooth = np.convolve(np.pad(trace, 12, mode="edge"), reach / reach.sum(), mode="valid")
     low, high = np.percentile(smooth, [5, 95])
     middle, far = (low + high) / 2, _TURNS * (high - low)
     side = np.where(smooth > middle + far, 1, np.where(smooth < middle - far, -1, 0))
@@ -179,13 +179,13 @@ def _cut(time: np.ndarray, place: np.ndarray, turns: np.ndarray) -> tuple[_Frame
         own.append((turn, max(back, turn + _LEAST), 0.0, 1.0))
     most = max((len(times) for times, _ in parts), default=0)
     frames = np.zeros((3, len(parts), most))
-    for k, (times, way) in enumerate(parts):
-        frames[:, k, : len(times)] = times, way, np.ones(len(times))
+    for k, (times, trace) in enumerate(parts):
+        frames[:, k, : len(times)] = times, trace, np.ones(len(times))
     return _Frames(*frames), np.array(own).reshape(-1, 4)
 
 
 def _course(shape: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the share of its way that a foot has gone, and its speed in ways per swing, on ``_GRID``."""
+    """Return the share of its path that a foot has covered, and its speed in paths per swing, on ``_GRID``."""
     p, q, s = np.exp(shape)
     speed = (1.0 - np.abs(2.0 * _GRID**s - 1.0) ** q) ** p
     gone = np.concatenate([[0.0], np.cumsum((speed[1:] + speed[:-1]) / 2)])
@@ -243,7 +243,7 @@ def _normal(frames: _Frames, own: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     course, speed = _course(_SHAPE)
     share, run = np.interp(u, _GRID, course), (there - here) / (on - off) * np.interp(u, _GRID, speed)
     J = np.stack([run * (u - 1), -run * u, 1 - share, share], axis=-1)
-    left = frames.way - here - (there - here) * share
+    left = frames.trace - here - (there - here) * share
     spread = _spread(left[frames.weight > 0])
     w = frames.weight / (1.0 + (left / (_TAIL * spread)) ** 2) / spread**2
     return np.einsum("kni,kn,knj->kij", J, w, J), np.einsum("kni,kn,kn->ki", J, w, left)
@@ -253,7 +253,7 @@ def _spread(left: np.ndarray) -> float:
     return max(1.4826 * float(np.median(np.abs(left))), _SHARP)
 
 
-def _pooled(when: np.ndarray, way: np.ndarray, share: float) -> tuple[np.ndarray, np.ndarray]:
+def _pooled(when: np.ndarray, trace: np.ndarray, share: float) -> tuple[np.ndarray, np.ndarray]:
     """Fit one swing to all frames.
 
     Returns:
@@ -266,7 +266,7 @@ def _pooled(when: np.ndarray, way: np.ndarray, share: float) -> tuple[np.ndarray
 
     def missed(x: np.ndarray) -> np.ndarray:
         u = np.clip((when - x[0]) / max(x[1] - x[0], _LEAST), 0.0, 1.0)
-        left = way - x[2] - (x[3] - x[2]) * np.interp(u, _GRID, _course(x[4:])[0])
+        left = trace - x[2] - (x[3] - x[2]) * np.interp(u, _GRID, _course(x[4:])[0])
         return np.asarray(np.concatenate([left / spread, (x - expected) / loose]))
 
     edge = 4 * loose[:4]

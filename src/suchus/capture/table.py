@@ -27,7 +27,7 @@ class _Column(NamedTuple):
 
 
 def is_table(path: Path) -> bool:
-    """Tell whether a file is a CSV table that is not one of DeepLabCut's or LightningPose's."""
+    """Return whether a file is a CSV table that is not one of DeepLabCut's or LightningPose's."""
     if path.suffix.lower() not in (".csv", ".txt"):
         return False
     with path.open("rb") as file:

@@ -37,15 +37,15 @@ class Tracks:
     """
 
     time: np.ndarray
-    """Of each frame, shape (frame,) [s]."""
+    """Time of each frame, shape (frame,) [s]."""
     points: tuple[str, ...]
     """Names of the keypoints."""
     position: np.ndarray
-    """Of each keypoint, shape (frame, point, axis) with two axes or three; NaN where it was lost [m or px]."""
+    """Position of each keypoint, shape (frame, point, axis) with two axes or three; NaN where it was lost [m or px]."""
     unit: str
-    """Of the positions: ``m``, or ``px`` where the scale is unknown."""
+    """Unit of the positions: ``m``, or ``px`` where the scale is unknown."""
     source: str
-    """Where they come from, for messages."""
+    """File that they are from, for messages."""
 
     def at(self, point: str) -> Float[np.ndarray, "frame axis"]:
         """Return the track of one point."""
@@ -63,7 +63,7 @@ class Tracks:
 
     @property
     def thorax(self) -> tuple[str, str]:
-        """The two points that show whereto the front girdle faces, the front one first."""
+        """The two points that show the heading of the front girdle, the front one first."""
         return ("neck" if "neck" in self.points else "snout"), "shoulder"
 
     @property

@@ -10,8 +10,8 @@ from scipy.stats import t as student
 
 from suchus.capture.angles import bend_angles, joint_bends, wrapped
 from suchus.capture.clock import Clock, paced
-from suchus.capture.cycle import Periodic, find_period, fit, harmonics_for
-from suchus.capture.feet import GRID, Contact, Sweep, contact, forward_way, steps, sweep
+from suchus.capture.cycle import PeriodicFit, find_period, fit, harmonics_for
+from suchus.capture.feet import GRID, FootContact, FootSweep, contact, forward_path, steps, sweep
 from suchus.capture.jumps import without_jumps
 from suchus.capture.sides import check_sides
 from suchus.capture.tracks import Tracks, UnusableTracks, check_tracks
@@ -26,7 +26,7 @@ _STRAIGHT = 1e-6  # [rad]; what bends less has no phase
 _BINS = 20  # of phase, for the spread
 _SHARP = 3.0  # a joint bends if its amplitude exceeds so many of its standard errors
 _TOGETHER = 0.25  # least share of frames in which all points of a signal are seen
-_ADVANCE = 0.3  # share of the way that feet sweep below which the body does not advance
+_ADVANCE = 0.3  # share of the distance that feet sweep below which the body does not advance
 
 
 class Seen(NamedTuple):
@@ -47,14 +47,14 @@ class Seen(NamedTuple):
 class Walk:
     """A walk as it was seen; nothing in it knows of a robot.
 
-    Bends are what the body did, not what anybody told it to do: on film a robot's trunk bends by the angle that its
+    Bends are what the body did, not what was commanded: on film a robot's trunk bends by the angle that its
     servos reached.
     """
 
     source: str
-    """Where the tracks come from."""
+    """File that the tracks are from."""
     cycles: float
-    """How many were seen [-]."""
+    """Number of cycles that were seen [-]."""
     upright: bool
     """Whether heights were seen."""
     tail_share: float
@@ -65,7 +65,7 @@ class Walk:
     """First harmonic of each of the four angles: the angle is its steady part and the real part of this times
     ``exp(2 pi i phase)`` [rad]."""
     notes: tuple[str, ...]
-    """What the tracks cannot tell, a sentence each."""
+    """What the tracks do not show, a sentence each."""
     cycle: xr.Dataset
     """The mean cycle over ``phase`` and ``leg``: the four angles with ``<name>_spread``, ``foot_speed``, ``stance``.
     Phase 0 is where a gait of this footfall begins: LF starts to swing."""
@@ -76,10 +76,10 @@ class Walk:
 
 
 class _Reading(NamedTuple):
-    """What one stretch of time shows."""
+    """Quantities read from one stretch of time."""
 
-    angles: dict[str, Periodic]
-    sweeps: dict[str, Sweep]
+    angles: dict[str, PeriodicFit]
+    sweeps: dict[str, FootSweep]
     advance: float  # of the body in one cycle [m or px]
     trunk: float  # [m or px]
     period: float
@@ -110,7 +110,7 @@ def observe(tracks: Tracks, *, tail_share: float = 1.0) -> Walk:
     clock = paced({leg: steps(tracks, leg, rough) for leg in LEGS}, rough)
     tracks, period = replace(tracks, time=clock.read(tracks.time)), clock.period
     whole = _read(tracks, period, tail_share)
-    feet: dict[str, Contact] = {leg: contact(tracks, leg, period) for leg in LEGS}
+    feet: dict[str, FootContact] = {leg: contact(tracks, leg, period) for leg in LEGS}
     _check_advance(whole, tracks.source)
     _check_feet(feet, tracks.source)
     zero = _zero(feet)
@@ -129,7 +129,9 @@ def observe(tracks: Tracks, *, tail_share: float = 1.0) -> Walk:
     )
 
 
-def _seen(tracks: Tracks, whole: _Reading, feet: Mapping[str, Contact], zero: float, clock: Clock) -> dict[str, Seen]:
+def _seen(
+    tracks: Tracks, whole: _Reading, feet: Mapping[str, FootContact], zero: float, clock: Clock
+) -> dict[str, Seen]:
     """Return every number with its spread and its interval."""
     count = int((tracks.time[-1] - tracks.time[0]) / whole.period + 0.05)
     each = [
@@ -161,8 +163,8 @@ def _times(n: int) -> float:
     return float(student.ppf(0.975, n - 1))
 
 
-def _check_feet(feet: Mapping[str, Contact], source: str) -> None:
-    """Refuse feet of which none can be told to stand or to swing."""
+def _check_feet(feet: Mapping[str, FootContact], source: str) -> None:
+    """Refuse feet of which it cannot be seen whether they stand or swing."""
     known = {leg: foot.duty_error for leg, foot in feet.items() if np.isfinite(foot.duty_error)}
     if known and min(known.values()) > _BLIND:
         leg = min(known, key=lambda name: known[name])
@@ -172,7 +174,7 @@ def _check_feet(feet: Mapping[str, Contact], source: str) -> None:
         )
 
 
-def _unknown(feet: Mapping[str, Contact]) -> tuple[str, ...]:
+def _unknown(feet: Mapping[str, FootContact]) -> tuple[str, ...]:
     """Say of which feet too little is seen."""
     notes = []
     for leg, foot in feet.items():
@@ -186,12 +188,12 @@ def _unknown(feet: Mapping[str, Contact]) -> tuple[str, ...]:
 def _swinging(tracks: Tracks) -> np.ndarray:
     """Signals that swing once a cycle: trunk and tail, and each foot along the body."""
     angles = bend_angles(tracks)
-    return np.array([angles.spine_lateral, angles.tail_lateral, *(forward_way(tracks, leg) for leg in LEGS)])
+    return np.array([angles.spine_lateral, angles.tail_lateral, *(forward_path(tracks, leg) for leg in LEGS)])
 
 
 def _check_signals(signals: np.ndarray, source: str) -> None:
     """Points that are lost in turns may leave no frame in which a bend can be seen."""
-    names = ("the spine's bend", "the tail's bend", *(f"the way of {leg}" for leg in LEGS))
+    names = ("the spine's bend", "the tail's bend", *(f"the path of {leg}" for leg in LEGS))
     for name, seen in zip(names, np.isfinite(signals).mean(axis=1), strict=True):
         if seen < _TOGETHER:
             raise UnusableTracks(
@@ -207,11 +209,11 @@ def _read(tracks: Tracks, period: float, tail_share: float) -> _Reading:
         seen = int(np.isfinite(series).sum())
         if seen:
             fits[name] = fit(tracks.time, series, period, harmonics=harmonics_for(seen, tracks.rate * period, most=6))
-    way = [fit(tracks.time, tracks.at("hip")[:, i], period, harmonics=2, drift=1).drift[0] for i in (0, 1)]
+    advanced = [fit(tracks.time, tracks.at("hip")[:, i], period, harmonics=2, drift=1).drift[0] for i in (0, 1)]
     return _Reading(
         fits,
         {leg: sweep(tracks, leg, period) for leg in LEGS},
-        float(np.hypot(*way)) * period,
+        float(np.hypot(*advanced)) * period,
         tracks.trunk_length(),
         period,
         tail_share,
@@ -239,13 +241,13 @@ def _numbers(reading: _Reading, zero: float) -> dict[str, float]:
     return {name: value for name, value in numbers.items() if np.isfinite(value)}
 
 
-def _zero(feet: Mapping[str, Contact]) -> float:
+def _zero(feet: Mapping[str, FootContact]) -> float:
     """Phase of the tracks' clock at which the gait begins: LF's mid-stance, back by swing and half of stance."""
     duty = float(np.mean([foot.duty for foot in feet.values()]))
     return feet["LF"].touch_down + feet["LF"].duty / 2 - (1.0 - duty / 2)
 
 
-def _first(one: Periodic, zero: float) -> complex:
+def _first(one: PeriodicFit, zero: float) -> complex:
     return complex(one.harmonics[0] * np.exp(2j * np.pi * zero))
 
 
@@ -296,11 +298,11 @@ def _check_advance(reading: _Reading, source: str) -> None:
         raise UnusableTracks(
             f"in {source} the body advances by {reading.advance / reading.trunk:.2f} of its trunk's length in a cycle "
             f"while its feet sweep {swept / reading.trunk:.2f} of it: it walks on a belt, on the spot, or the camera "
-            "goes along; standing feet can only be told over ground that rests in the picture."
+            "goes along; standing feet can only be recognised over ground that rests in the picture."
         )
 
 
-def _mean_cycle(tracks: Tracks, reading: _Reading, feet: Mapping[str, Contact], zero: float) -> xr.Dataset:
+def _mean_cycle(tracks: Tracks, reading: _Reading, feet: Mapping[str, FootContact], zero: float) -> xr.Dataset:
     phase = np.arange(GRID) / GRID
     time = (phase + zero) * reading.period
     data = xr.Dataset(coords={"phase": ("phase", phase, {"units": "1"}), "leg": list(LEGS)})
@@ -323,7 +325,7 @@ def _positive(name: str) -> str:
     return "right" if name.endswith("lateral") else "down"
 
 
-def _left_over(tracks: Tracks, one: Periodic, phase: np.ndarray, zero: float) -> np.ndarray:
+def _left_over(tracks: Tracks, one: PeriodicFit, phase: np.ndarray, zero: float) -> np.ndarray:
     """Standard deviation of the frames about the mean cycle, in bins of phase, drawn through [rad]."""
     at = np.mod(tracks.time / one.period - zero, 1.0)
     bins = np.minimum((at * _BINS).astype(int), _BINS - 1)

@@ -1,4 +1,4 @@
-"""One experiment of many: whatever goes wrong in it is told, and must not stop the others."""
+"""One experiment of many: whatever goes wrong in it is reported, and must not stop the others."""
 
 import traceback
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ from suchus.report import Failure, Result, load_result
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Task:
+class Job:
     """An experiment that is to be run."""
 
     name: str
@@ -24,8 +24,8 @@ class Task:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Came:
-    """What came of it."""
+class JobResult:
+    """Result of an experiment, or the reason why it failed."""
 
     result: Result | Failure
     """For the page."""
@@ -33,12 +33,12 @@ class Came:
     """The same in a line."""
 
 
-def attempt(task: Task, progress: Progress) -> Came:
+def attempt(task: Job, progress: Progress) -> JobResult:
     """Run an experiment into its folder and read the result back.
 
     Args:
         task: which and where.
-        progress: told how far it has come.
+        progress: called with the share that is done, 0 to 1.
     """
     try:
         experiment = EXPERIMENTS[task.name]
@@ -51,15 +51,15 @@ def attempt(task: Task, progress: Progress) -> Came:
         return failed(task.name, f"{type(error).__name__}: {error}", traceback.format_exc())
     words = [verdict["verdict"] for verdict in result.told["verdicts"]]
     told = ", ".join(f"{words.count(word)} {word}" for word in dict.fromkeys(words)) or "no verdict"
-    return Came(result=result, told=f"{task.name}: {told} ({done.seconds:.1f} s)")
+    return JobResult(result=result, told=f"{task.name}: {told} ({done.seconds:.1f} s)")
 
 
-def failed(name: str, sentence: str, trace: str = "") -> Came:
-    """Return what is told of an experiment that came to no result.
+def failed(name: str, sentence: str, trace: str = "") -> JobResult:
+    """Return what is reported of an experiment that failed.
 
     Args:
         name: of the experiment.
         sentence: what went wrong.
         trace: where in the code, if it was none of our own errors.
     """
-    return Came(result=Failure(name=name, sentence=sentence, trace=trace), told=f"{name}: failed: {sentence}")
+    return JobResult(result=Failure(name=name, sentence=sentence, trace=trace), told=f"{name}: failed: {sentence}")

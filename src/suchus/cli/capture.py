@@ -12,7 +12,7 @@ from suchus import blueprint
 from suchus.capture import (
     NEEDED,
     Captured,
-    Reading,
+    ReadingOptions,
     Walk,
     driven_share,
     is_angle_table,
@@ -41,39 +41,39 @@ _SHELF = "caiman"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Options:
-    """What can be said after ``suchus capture``."""
+class CaptureOptions:
+    """Options of ``suchus capture``."""
 
     tracks: Annotated[Path, tyro.conf.Positional]
     """CSV table of keypoints or of joint angles, or a file of DeepLabCut, SLEAP or LightningPose."""
     out: Path = Path("captured.toml")
     """The gait file; its diagram is saved beside it."""
     robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
-    """Who shall walk like that."""
+    """The robot for which the gait is made."""
     base: AnyGait | None = None
-    """Gait that lends what was not seen; by default the robot's own."""
+    """Gait from which the numbers are taken that cannot be seen; by default the robot's own."""
     period: float = 1.0
-    """Of a table of joint angles, which is over one cycle: its duration [s]."""
+    """Duration of the cycle in a table of joint angles [s]; keypoints need none."""
     duty: Literal["retraction", "contact"] = "retraction"
-    """What the duty factor is: the share in which feet go back along the body, or in which they rest on the ground."""
+    """Duty factor as the fraction of the cycle in which feet move back along the body, or rest on the ground."""
     tail_share: float | None = None
-    """Where along the tail its bend is taken, 1 at the tip; by default where a crocodile's cable ends."""
+    """Place along the tail up to which its bend is measured, 1 at the tip; by default the end of the cable."""
     names: tuple[str, ...] = ()
-    """Keypoints that the file calls otherwise, as THEIRS=OURS."""
+    """Keypoints that have other names in the file, as THEIRS=OURS."""
     fps: float | None = None
-    """Frames per second, if the file does not hold it."""
+    """Frames per second [Hz], if the file does not say."""
     software: str | None = None
-    """What wrote the file; guessed by default."""
+    """Software that wrote the file; guessed by default."""
     individual: str | None = None
-    """Whose tracks, if the file holds several."""
+    """Name of the individual whose tracks are read, if the file holds several."""
     confidence: float = 0.6
-    """Points with less are lost."""
+    """Confidence below which a keypoint counts as missing [-], 0 to 1."""
     y_axis: Literal["auto", "up", "down"] = "auto"
-    """Whether y points left (up) or right (down) of x, seen from above; images have it down."""
+    """Whether y points to the left of x, seen from above (up), or to the right (down), as in images."""
     start: float | None = None
-    """Leave out what comes before [s]."""
+    """Time before which frames are left out [s]."""
     end: float | None = None
-    """Leave out what comes after [s]."""
+    """Time after which frames are left out [s]."""
 
 
 def capture(words: Sequence[str]) -> int:
@@ -83,7 +83,9 @@ def capture(words: Sequence[str]) -> int:
         SuchusError: the words or the tracks make no sense.
     """
     about = "Read a gait from tracked keypoints of a walking body: a gait file to run, and its diagram."
-    options: Options = parse(Options, "suchus capture", words, about, [f.name for f in fields(Options)])
+    options: CaptureOptions = parse(
+        CaptureOptions, "suchus capture", words, about, [f.name for f in fields(CaptureOptions)]
+    )
     if options.out.suffix != ".toml":
         raise BadCommand(f"the gait goes into a .toml file; --out is {str(options.out)!r}.")
     check_writable(options.out.parent)
@@ -109,7 +111,7 @@ def capture(words: Sequence[str]) -> int:
     return 0
 
 
-def _retargeted(walk: Walk, options: Options, base: AnyGait) -> Captured:
+def _retargeted(walk: Walk, options: CaptureOptions, base: AnyGait) -> Captured:
     """Return the gait of the kind that lends what was not seen."""
     if isinstance(base, Gait):
         return to_gait(walk, options.robot, base, name=options.out.stem, duty=options.duty)
@@ -120,7 +122,7 @@ def _retargeted(walk: Walk, options: Options, base: AnyGait) -> Captured:
     )
 
 
-def _play(options: Options) -> int:
+def _play(options: CaptureOptions) -> int:
     """Write the gait that plays a table of joint angles, say what it is, and return 0."""
     cycle = read_angles(options.tracks)
     gait = to_angle_table(cycle, options.robot, name=options.out.stem, period=options.period)
@@ -133,14 +135,14 @@ def _play(options: Options) -> int:
     return 0
 
 
-def _how(options: Options) -> Reading:
+def _how(options: CaptureOptions) -> ReadingOptions:
     names = {}
     for pair in options.names:
         theirs, equals, ours = pair.partition("=")
         if not (theirs and equals and ours):
             raise BadCommand(f"--names has {pair!r}; THEIRS=OURS is needed, as in left_fore_paw=LF.")
         names[theirs] = ours
-    return Reading(
+    return ReadingOptions(
         names=names,
         rate=options.fps,
         software=options.software,

@@ -12,15 +12,15 @@ class BadCommand(SuchusError):
 
 
 @dataclass(frozen=True, slots=True)
-class Command:
+class Subcommand:
     """A word after ``suchus``."""
 
     name: str
     """The word."""
     usage: str
-    """What may follow it."""
+    """Words that may follow it, for the help."""
     summary: str
-    """What it does, in one line."""
+    """Summary in one line, for the help."""
     function: str
     """``module:function`` that takes the remaining words and returns the exit code."""
 
@@ -31,59 +31,67 @@ class Command:
 
 
 COMMANDS = (
-    Command("demo", "[--no-browser] [--out FILE.html]", "see a first walk", "suchus.cli.demo:demo"),
-    Command(
+    Subcommand("demo", "[--no-browser] [--out FILE.html]", "see a first walk", "suchus.cli.demo:demo"),
+    Subcommand(
         "reproduce",
         "[--out DIR] [--jobs N]",
         "run every experiment and write the report",
         "suchus.cli.reproduce:reproduce",
     ),
-    Command("run", "NAME [--FIELD VALUE ...]", "run one experiment", "suchus.cli.run:run"),
-    Command("compare", "A B [--out FILE.html]", "set two outcomes side by side", "suchus.cli.compare:compare_outcomes"),
-    Command(
+    Subcommand("run", "NAME [--FIELD VALUE ...]", "run one experiment", "suchus.cli.run:run"),
+    Subcommand(
+        "compare", "A B [--out FILE.html]", "set two outcomes side by side", "suchus.cli.compare:compare_outcomes"
+    ),
+    Subcommand(
         "capture",
         "TRACKS [--out FILE.toml]",
         "read a gait from tracked keypoints",
         "suchus.cli.capture:capture",
     ),
-    Command(
+    Subcommand(
         "view",
         "[ROBOT] [GAIT] | RECORD.nc",
         "see it walk in the browser, live or played back",
         "suchus.cli.view:view",
     ),
-    Command(
+    Subcommand(
         "replay",
         "RECORD.nc [--out FILE.html]",
         "make a page of a stored run that plays offline",
         "suchus.cli.replay:make_replay",
     ),
-    Command("study", "claims|FILE.toml [--out DIR]", "run many variants, resumable", "suchus.cli.study:study"),
-    Command(
+    Subcommand("study", "claims|FILE.toml [--out DIR]", "run many variants, resumable", "suchus.cli.study:study"),
+    Subcommand(
         "optimise",
         "crawl|FILE.toml [--out DIR]",
         "search for a better gait or body, resumable",
         "suchus.cli.optimise:optimise",
     ),
-    Command(
+    Subcommand(
         "import",
         "ROBOT.urdf|ROBOT.xml [--out FILE.toml]",
         "read a robot from a URDF or an MJCF",
         "suchus.cli.import_robot:import_file",
     ),
-    Command(
+    Subcommand(
         "export",
         "[--format mjcf|urdf|usd] [--robot ROBOT]",
         "write a robot for other tools",
         "suchus.cli.export:export_robot",
     ),
-    Command(
+    Subcommand(
         "export-commands",
         "GAIT [--map FILE.toml]",
         "write a gait as timed servo angles",
         "suchus.cli.export_commands:export_commands",
     ),
-    Command("doctor", "", "say whether suchus can run here, and what is missing", "suchus.cli.doctor:doctor"),
-    Command("list", "", "show the robots, gaits, faults and experiments", "suchus.cli.shelves:show"),
+    Subcommand(
+        "flow-atlas",
+        "[ROW ...] [--out DIR] [--jobs N]",
+        "compute published flows and draw ours beside theirs",
+        "suchus.cli.flow_atlas:flow_atlas",
+    ),
+    Subcommand("doctor", "", "say whether suchus can run here, and what is missing", "suchus.cli.doctor:doctor"),
+    Subcommand("list", "", "show the robots, gaits, faults and experiments", "suchus.cli.shelves:show"),
 )
 """Every command, in the order of the help."""

@@ -21,8 +21,8 @@ _MOST = 24
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Options:
-    """What can be said after ``suchus compare``."""
+class CompareOptions:
+    """Options of ``suchus compare``."""
 
     first: Annotated[Path, tyro.conf.Positional]
     """An outcome: the folder that suchus run wrote, such as out/displacement, or the outcome.json in it."""
@@ -39,7 +39,9 @@ def compare_outcomes(words: Sequence[str]) -> int:
         SuchusError: the words or a file make no sense, or the place cannot be written to.
     """
     about = "Set two outcomes side by side: measures and their differences, verdicts, settings, figures and replays."
-    options: Options = parse(Options, "suchus compare", words, about, [f.name for f in fields(Options)])
+    options: CompareOptions = parse(
+        CompareOptions, "suchus compare", words, about, [f.name for f in fields(CompareOptions)]
+    )
     if options.out.suffix.lower() not in (".html", ".htm"):
         raise BadCommand(f"the page would be {options.out}; say --out FILE.html.")
     check_writable(options.out.parent)

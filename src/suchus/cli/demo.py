@@ -14,7 +14,7 @@ from suchus.cli.browser import browser
 from suchus.cli.commands import BadCommand
 from suchus.cli.options import parse
 from suchus.cli.terminal import working
-from suchus.cli.view import Walking, serve_walk
+from suchus.cli.view import ViewWalkOptions, serve_walk
 from suchus.design.checks import require
 from suchus.gaits import GAITS
 from suchus.land import Run, simulate
@@ -24,14 +24,14 @@ from suchus.replay import replay, save
 from suchus.robots import ROBOTS
 
 ROBOT, GAITS_SHOWN = "caiman", ("belly_crawl", "limbs_only")
-"""Who walks, and how: first alone, then, on a page, beside the control group."""
+"""Robot and gaits that are shown: live the first gait, on a page both side by side."""
 _NEEDED = ("viser", "mjviser")
 """Packages of the extra ``viewer``."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Options:
-    """What can be said after ``suchus demo``."""
+class DemoOptions:
+    """Options of ``suchus demo``."""
 
     no_browser: Annotated[
         bool, tyro.conf.FlagCreatePairsOff, tyro.conf.arg(help="Open no browser: only write the page and name it.")
@@ -55,16 +55,16 @@ def demo(words: Sequence[str]) -> int:
         SuchusError: the words make no sense, or the page cannot be written.
     """
     about = "A robot walks: live in the browser, or on a page that plays offline."
-    options: Options = parse(Options, "suchus demo", words, about, [f.name for f in fields(Options)])
+    options: DemoOptions = parse(DemoOptions, "suchus demo", words, about, [f.name for f in fields(DemoOptions)])
     opener = None if options.no_browser else browser()
     live = all(find_spec(name) for name in _NEEDED)
     if opener is not None and live:
-        return serve_walk(Walking(port=options.port), opener.open)
+        return serve_walk(ViewWalkOptions(port=options.port), opener.open)
     return _page(options.out, opener, live)
 
 
 def _page(out: Path, opener: BaseBrowser | None, live: bool) -> int:
-    """Write the page, name it, and say what came out."""
+    """Write the page, name it, and print the results."""
     if out.suffix.lower() not in (".html", ".htm"):
         raise BadCommand(f"the page would be {out}; say --out FILE.html.")
     check_writable(out.parent)

@@ -43,22 +43,22 @@ class UnfitMachine(SuchusError):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Finding:
-    """What was found of one thing."""
+    """Result of one check."""
 
     heading: str
-    """What was looked at."""
+    """Name of the thing that was checked."""
     told: tuple[str, ...]
-    """What there is, in lines."""
+    """Lines that describe what there is."""
     wrong: str = ""
     """What keeps suchus from running, and the remedy; empty if nothing does."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Trial:
-    """What a trial in a process of its own came to."""
+    """Result of a trial in a process of its own."""
 
     found: Mapping[str, Any] | None
-    """What it printed; None if it failed."""
+    """Output of the trial; None if it failed."""
     failure: str = ""
     """Why it failed, in a line."""
 
@@ -162,7 +162,7 @@ def compiled(trial: Trial) -> Finding:
 
 
 def places() -> Finding:
-    """Tell whether results can be written here."""
+    """Return whether results can be written here."""
     try:
         with tempfile.TemporaryDirectory(dir=Path.cwd(), prefix=".suchus-"):
             return Finding(heading="results", told=("this folder can be written to",))
@@ -192,7 +192,7 @@ def installed(name: str) -> str | None:
 
 
 def tried(*names: str) -> list[Trial]:
-    """Return what trials came to, side by side, each in a process of its own."""
+    """Return the results of trials, side by side, each in a process of its own."""
     command = [sys.executable, "-P", "-m", "suchus.cli.trial"]
     with ExitStack() as stack:
         running = []

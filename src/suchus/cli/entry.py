@@ -1,10 +1,12 @@
 """Where the command line begins and ends: words in, an exit code out."""
 
 import sys
-from collections.abc import Sequence
+import warnings
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 
 from suchus.cli.commands import COMMANDS, BadCommand
-from suchus.cli.streams import drop_output, printable, settle
+from suchus.cli.streams import drop_output, prepare_streams, printable
 from suchus.errors import Diverged, NotConverged, SuchusError, UnknownName, Unwritable
 
 _EXAMPLES = (
@@ -19,16 +21,17 @@ _EXAMPLES = (
 def main(words: Sequence[str] | None = None) -> int:
     """Carry out a command line and return the exit code.
 
-    0: sound, whatever the verdicts. 1: an experiment failed. 2: bad input, told in one sentence on standard
+    0: sound, whatever the verdicts. 1: an experiment failed. 2: bad input, reported in one sentence on standard
     error. 130: stopped by Ctrl-C.
 
     Args:
         words: what follows ``suchus``; by default those of this process.
     """
     words = list(sys.argv[1:] if words is None else words)
-    settle()
+    prepare_streams()
     try:
-        return _flushed(words)
+        with _plain_warnings():
+            return _flushed(words)
     except (Diverged, NotConverged) as error:
         return _complain(str(error), 1)
     except SuchusError as error:
@@ -38,6 +41,14 @@ def main(words: Sequence[str] | None = None) -> int:
     except BrokenPipeError:  # the reader of our output has gone, as in `suchus list | head -1`
         drop_output()
         return 0
+
+
+@contextmanager
+def _plain_warnings() -> Iterator[None]:
+    """Write warnings as sentences on standard error, without the place in the code."""
+    with warnings.catch_warnings():
+        warnings.showwarning = lambda message, *_, **__: print(f"suchus: {message}", file=sys.stderr)
+        yield
 
 
 def _flushed(words: list[str]) -> int:
@@ -92,7 +103,7 @@ def _help() -> str:
             "examples:",
             *(f"  {example:<{right}}  {text}" for example, text in _EXAMPLES),
             "",
-            "suchus COMMAND --help says more about a command; --version tells the version.",
+            "suchus COMMAND --help describes a command; --version prints the version.",
         )
     )
 

@@ -19,17 +19,17 @@ from suchus.robots import ROBOTS
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Options:
-    """What can be said after ``suchus export``."""
+class ExportOptions:
+    """Options of ``suchus export``."""
 
     format: Format = "mjcf"
     """MJCF for MuJoCo, USD for Isaac, Newton and Omniverse (extra usd), URDF for nearly everything else."""
     robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
-    """Which robot."""
+    """The robot that is exported."""
     home: AnyGait | None = None
     """Gait whose mid-stance is the home posture of the MJCF; by default the robot's own."""
     timestep: Annotated[float, tyro.conf.arg(metavar="SECONDS")] = 0.002
-    """Of the physics in the MJCF."""
+    """Time step of the physics in the MJCF [s]."""
     out: Path | None = None
     """The folder; by default export/ROBOT_FORMAT. An older export there is replaced, anything else is refused."""
 
@@ -42,7 +42,9 @@ def export_robot(words: Sequence[str]) -> int:
     """
     about = "Write a robot for other tools: model, scene, home posture, and a README of what the format leaves out."
     _check_format(words)
-    options: Options = parse(Options, "suchus export", words, about, [f.name for f in fields(Options)])
+    options: ExportOptions = parse(
+        ExportOptions, "suchus export", words, about, [f.name for f in fields(ExportOptions)]
+    )
     if options.out is None:
         check_name(options.robot.name, "robot")
     folder = options.out or Path("export") / f"{options.robot.name}_{options.format}"

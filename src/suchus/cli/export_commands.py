@@ -17,7 +17,7 @@ from suchus.design.checks import require
 from suchus.errors import OutsideLimits
 from suchus.gaits import GAITS, own_gait, suits
 from suchus.hardware import (
-    Load,
+    ServoLoad,
     check_commands,
     check_loads,
     commands,
@@ -38,23 +38,23 @@ MARK = "suchus_commands.json"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Options:
-    """What can be said after ``suchus export-commands``."""
+class ExportCommandsOptions:
+    """Options of ``suchus export-commands``."""
 
     gait: Annotated[AnyGait, tyro.conf.Positional] = field(default_factory=lambda: GAITS["belly_crawl"])
-    """Which gait; where none is named and the robot cannot follow this one, the robot's own."""
+    """The gait; by default, if the robot cannot follow this one, the robot's own."""
     robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
-    """Whose joints and servos."""
+    """Robot whose joints and servos are commanded."""
     map: Path | None = None
     """Servo map; by default 270 degree servos mounted in the middle, channels in order."""
     write_map: Path | None = None
-    """Only write that default map to this TOML file, to start your own from."""
+    """Only write the default map to this TOML file, as a start for your own."""
     cycles: int = 1
-    """How many cycles; one can be repeated, its last sample is its first."""
+    """Number of cycles; one can be repeated, since its last sample equals its first."""
     at_limit: float = AT_LIMIT
-    """Share of the walk from which on a servo counts as standing at its torque limit."""
+    """Fraction of the walk at the torque limit beyond which a servo counts as overloaded [-]."""
     tracking: float = TRACKING
-    """How far such a servo may be from its commanded angle [rad]; beyond, the gait is refused."""
+    """Greatest error of an overloaded servo against its commanded angle [rad]; beyond it the gait is refused."""
     out: Path | None = None
     """The folder; by default export/GAIT_commands. An older one there is replaced, anything else is refused."""
 
@@ -66,10 +66,18 @@ def export_commands(words: Sequence[str]) -> int:
         SuchusError: the words make no sense, the servos cannot do it, or the place cannot be written to.
     """
     about = "Write a gait as timed servo angles: CSV with pulses, and a ROS trajectory_msgs/JointTrajectory."
-    options: Options = parse(
-        Options, "suchus export-commands", _gait_first(words), about, [f.name for f in fields(Options)]
+    options: ExportCommandsOptions = parse(
+        ExportCommandsOptions,
+        "suchus export-commands",
+        _gait_first(words),
+        about,
+        [f.name for f in fields(ExportCommandsOptions)],
     )
-    if options.gait == Options().gait and options.gait.name not in words and not suits(options.robot, options.gait):
+    if (
+        options.gait == ExportCommandsOptions().gait
+        and options.gait.name not in words
+        and not suits(options.robot, options.gait)
+    ):
         options = replace(options, gait=own_gait(options.robot))
     if options.write_map is not None:
         print(f"servo map: {write_map(straight(options.robot), options.write_map)}")
@@ -103,7 +111,7 @@ def export_commands(words: Sequence[str]) -> int:
     load = borne[hardest]
     print(f"{len(told.time)} samples over {told.time[-1]:g} s: {folder}")
     print(
-        f"hardest worked in simulation: {hardest}, {load.torque:.2f} of {load.limit:g} N m, "
+        f"highest-loaded in simulation: {hardest}, {load.torque:.2f} of {load.limit:g} N m, "
         f"at the limit for {100 * load.at_limit:.1f} % of the walk"
     )
     for sentence in overloaded(borne, options.at_limit):
@@ -111,7 +119,7 @@ def export_commands(words: Sequence[str]) -> int:
     return 0
 
 
-def _write_loads(options: Options, borne: Mapping[str, Load], draft: Path) -> None:
+def _write_loads(options: ExportCommandsOptions, borne: Mapping[str, ServoLoad], draft: Path) -> None:
     """Write what the servos bear, and of which robot and gait."""
     origin = {"gait": digest({"gait": options.gait}), "robot": digest({"robot": options.robot}), "versions": versions()}
     (draft / "loads.csv").write_text(_loads_text(borne, options.at_limit), encoding="utf-8")
@@ -131,7 +139,7 @@ def _gait_first(words: Sequence[str]) -> list[str]:
     return words
 
 
-def _loads_text(borne: Mapping[str, Load], at_limit: float) -> str:
+def _loads_text(borne: Mapping[str, ServoLoad], at_limit: float) -> str:
     lines = ["servo,peak_torque_Nm,torque_limit_Nm,share_at_limit,first_at_s,off_rad,needed_Nm,would_do"]
     for name, load in borne.items():
         first = "" if load.first != load.first else f"{load.first:.2f}"

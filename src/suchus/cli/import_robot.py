@@ -20,8 +20,8 @@ _METRES = Annotated[float | None, tyro.conf.arg(metavar="METRES")]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Options:
-    """What can be said after ``suchus import``."""
+class ImportOptions:
+    """Options of ``suchus import``."""
 
     file: Annotated[Path, tyro.conf.Positional]
     """URDF or MJCF, a tree of hinges drawn upright and straight at zero posture."""
@@ -30,15 +30,15 @@ class Options:
     front: str | None = None
     """A body at the front end. By default guessed from names, else along the file's x axis."""
     heading: Annotated[float | None, tyro.conf.arg(metavar="DEGREES")] = None
-    """Of the front, from the file's x axis to the left; say it where a body is as long as it is wide."""
+    """Direction of the front, from the file's x axis to the left; needed if a body is as long as it is wide."""
     neck: str | None = None
     """Body in which the axis ends in front, where it forks, as into a jaw or an arm on the back."""
     tail: str | None = None
     """Body in which the axis ends behind, where it forks."""
     leave: tuple[str, ...] = ()
-    """Bodies to leave out with all that hangs on them, as arms or fins; their mass goes to what carries them."""
+    """Bodies to leave out with all that is attached to them, such as arms or fins; their mass goes to their parent."""
     foot_radius: _METRES = None
-    """Of every foot, where the file's shapes do not say it."""
+    """Radius of every foot, if the shapes in the file do not give it."""
 
 
 def import_file(words: Sequence[str]) -> int:
@@ -48,10 +48,12 @@ def import_file(words: Sequence[str]) -> int:
         SuchusError: the words make no sense, or the file is no robot that can be taken.
     """
     about = (
-        "Read a robot from a URDF or an MJCF: a draft in which every guess is commented, and a gait to begin with. "
+        "Read a robot from a URDF or an MJCF: a draft in which every guess has a comment, and a gait to begin with. "
         "Nothing in the file is executed; what it includes is read from its own folder only."
     )
-    options: Options = parse(Options, "suchus import", words, about, [f.name for f in fields(Options)])
+    options: ImportOptions = parse(
+        ImportOptions, "suchus import", words, about, [f.name for f in fields(ImportOptions)]
+    )
     out = options.out or Path(f"{options.file.stem}.toml")
     if out.suffix != ".toml":
         raise BadCommand(f"the robot goes into a .toml file; --out is {str(out)!r}.")

@@ -11,36 +11,38 @@ import tyro
 from suchus.cli.options import SCHEDULER, parse
 from suchus.cli.terminal import Bars, working
 from suchus.errors import UnknownName
-from suchus.optimise import AIMS, READY, Optimisation, Told, read_optimisation, write_results
+from suchus.optimise import AIMS, READY, Optimisation, SearchProgress, read_optimisation, write_results
 from suchus.optimise import optimise as conduct
 from suchus.record import check_name, check_writable, there
 from suchus.study import at_scheduler
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Options:
-    """What can be said after ``suchus optimise``."""
+class OptimiseOptions:
+    """Options of ``suchus optimise``."""
 
     what: Annotated[str, tyro.conf.Positional]
     """A ready-made search, or a TOML file; see docs/optimise.md."""
     out: Path | None = None
-    """Where it goes; by default out/optimise/NAME. A search that began there goes on."""
+    """Folder of results; by default out/optimise/NAME. A search that began there is continued."""
     evaluations: int | None = None
-    """How many candidates each arm may try; more than before continues an earlier search."""
+    """Number of candidates that each condition may try; more than before continues an earlier search."""
     seed: int | None = None
-    """Of the search."""
+    """Seed of the search."""
     scheduler: SCHEDULER = None
 
 
 def optimise(words: Sequence[str]) -> int:
-    """Search, or finish a search, say what came of it, and return 0.
+    """Search, or finish a search, print the result, and return 0.
 
     Raises:
         SuchusError: the words or the file make no sense, or nothing can be written.
     """
-    ready = "; ".join(f"{name}: {made.__doc__}" for name, made in READY.items())
-    about = f"Search for a better gait or body. Started again it goes on where it stopped. Ready-made: {ready}"
-    options: Options = parse(Options, "suchus optimise", words, about, [f.name for f in fields(Options)])
+    ready = "\n".join(f"  {name}: {made.__doc__}" for name, made in READY.items())
+    about = f"Search for a better gait or body. A search that was stopped is continued. Ready-made:\n{ready}"
+    options: OptimiseOptions = parse(
+        OptimiseOptions, "suchus optimise", words, about, [f.name for f in fields(OptimiseOptions)]
+    )
     spec = _asked(options)
     folder = options.out or Path("out") / "optimise" / spec.name
     check_writable(folder)
@@ -61,7 +63,7 @@ def optimise(words: Sequence[str]) -> int:
     return 0
 
 
-def _asked(options: Options) -> Optimisation:
+def _asked(options: OptimiseOptions) -> Optimisation:
     """Return the search that is asked for."""
     if options.what in READY:
         spec = READY[options.what]()
@@ -76,7 +78,7 @@ def _asked(options: Options) -> Optimisation:
     return spec if options.seed is None else replace(spec, seed=options.seed)
 
 
-def _shown(bars: Bars, spec: Optimisation) -> Callable[[Told], None]:
-    """Return what moves a bar for each arm."""
+def _shown(bars: Bars, spec: Optimisation) -> Callable[[SearchProgress], None]:
+    """Return what moves a bar for each condition."""
     tells = {arm.name: bars.told(f"{spec.name} {arm.name}") for arm in spec.arms}
     return lambda told: tells[told.arm](told, min(told.done / told.budget, 1.0))

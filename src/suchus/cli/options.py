@@ -22,6 +22,7 @@ from suchus.experiment import Experiment
 from suchus.gaits import GAITS
 from suchus.motion import AngleTable, AnyGait, Gait, Pattern
 from suchus.record import there
+from suchus.renamed import new_name
 from suchus.robots import ROBOTS
 
 QUICK = Annotated[
@@ -40,13 +41,13 @@ CSV = Annotated[
 
 SCHEDULER = Annotated[
     str | None,
-    tyro.conf.arg(help="Address of a Dask scheduler whose workers run it, as tcp://127.0.0.1:8786; the same bytes."),
+    tyro.conf.arg(help="Address of a Dask scheduler whose workers run it, as tcp://127.0.0.1:8786."),
 ]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Choice:
-    """What the words ask for."""
+class RunRequest:
+    """The experiment and the output that a command line asks for."""
 
     experiment: Experiment
     """The question with its fields set."""
@@ -58,7 +59,7 @@ class Choice:
     """Whether the record is wanted as CSV too."""
 
 
-def choose(experiment: Experiment, name: str, words: Sequence[str]) -> Choice:
+def choose(experiment: Experiment, name: str, words: Sequence[str]) -> RunRequest:
     """Return what the words after ``suchus run NAME`` ask for.
 
     Raises:
@@ -71,6 +72,7 @@ def choose(experiment: Experiment, name: str, words: Sequence[str]) -> Choice:
     if robot is not None:
         start = start.on(robot)
     prog = f"suchus run {name}"
+    words = [_today(word, type(start)) for word in words]
     options = make_dataclass(
         "Options",
         [
@@ -82,7 +84,16 @@ def choose(experiment: Experiment, name: str, words: Sequence[str]) -> Choice:
     )
     names = ["quick", "out", "csv", *(f.name for f in fields(start))]  # type: ignore[arg-type]
     chosen = parse(options, prog, words, f"{start.title}\n\nAnswers: {start.shows}", names)
-    return Choice(experiment=chosen.experiment, quick=quick, out=chosen.out, csv=chosen.csv)
+    return RunRequest(experiment=chosen.experiment, quick=quick, out=chosen.out, csv=chosen.csv)
+
+
+def _today(word: str, kind: type) -> str:
+    """Return an option by the name that it has today; of an old one it warns."""
+    option, equals, value = word.partition("=")
+    if not option.startswith("--"):
+        return word
+    new = new_name(kind, option.removeprefix("--").replace("-", "_"))
+    return f"--{new.replace('_', '-')}{equals}{value}" if new in {f.name for f in fields(kind)} else word
 
 
 def _robot(words: Sequence[str]) -> AnyRobot | None:

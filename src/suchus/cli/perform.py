@@ -17,14 +17,14 @@ from suchus.report import check_place, save_outcome
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Done:
-    """What came of an experiment."""
+    """An experiment that was run and saved."""
 
     outcome: Outcome
     """Its outcome."""
     folder: Path
-    """Where its files are."""
+    """Folder of its files."""
     seconds: float
-    """How long running and drawing took [s]."""
+    """Duration of running and drawing [s]."""
 
 
 def perform(experiment: Experiment, name: str, out: Path, progress: Progress, command: str) -> Done:
@@ -34,11 +34,11 @@ def perform(experiment: Experiment, name: str, out: Path, progress: Progress, co
         experiment: the question.
         name: its name on the shelf.
         out: the folder for results.
-        progress: told how far the run has come.
+        progress: called with the share that is done, 0 to 1.
         command: what makes the same result again.
 
     Raises:
-        Unwritable: the results cannot be saved; told before the run where it can be known.
+        Unwritable: the results cannot be saved; reported before the run where it can be known.
     """
     start = time.perf_counter()
     check_place(out / name)

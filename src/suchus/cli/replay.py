@@ -18,17 +18,17 @@ from suchus.robots import ROBOTS
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Options:
-    """What can be said after ``suchus replay``."""
+class ReplayOptions:
+    """Options of ``suchus replay``."""
 
     file: Annotated[Path, tyro.conf.Positional]
     """The record of a run on land, a NetCDF file, such as out/displacement/record.nc."""
     run: str | None = None
-    """Which run of the record, by its label or its number from 0; needed where it holds several."""
+    """The run of the record, by its label or its number from 0; needed if it holds several."""
     ghost: str | None = None
     """Another run of the record, for comparison, by its label or its number."""
     robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
-    """Whose it is; by default the robot of the shelf that the record names."""
+    """Robot of the record; by default the one that the record names."""
     title: str = ""
     """Heading of the page; by default robot and gait."""
     out: Path | None = None
@@ -42,7 +42,9 @@ def make_replay(words: Sequence[str]) -> int:
         SuchusError: the words or the record make no sense, or the place cannot be written to.
     """
     about = "Turn a stored run on land into one HTML file: three-dimensional, plays offline, can be mailed."
-    options: Options = parse(Options, "suchus replay", words, about, [f.name for f in fields(Options)])
+    options: ReplayOptions = parse(
+        ReplayOptions, "suchus replay", words, about, [f.name for f in fields(ReplayOptions)]
+    )
     check_file(options.file)
     out = options.out or options.file.with_suffix(".html")
     if out.suffix.lower() not in (".html", ".htm"):

@@ -8,10 +8,10 @@ from typing import Annotated
 import tyro
 
 from suchus import threads
-from suchus.cli.attempt import Came, Task, attempt
+from suchus.cli.attempt import Job, JobResult, attempt
 from suchus.cli.commands import BadCommand
-from suchus.cli.crew import side_by_side
 from suchus.cli.options import OUT, QUICK, parse
+from suchus.cli.processes import side_by_side
 from suchus.cli.terminal import Bars, working
 from suchus.experiments import EXPERIMENTS
 from suchus.record import check_writable
@@ -34,8 +34,8 @@ _LONG = (
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Options:
-    """What can be said after ``suchus reproduce``."""
+class ReproduceOptions:
+    """Options of ``suchus reproduce``."""
 
     out: OUT = Path("out")
     quick: QUICK = False
@@ -50,9 +50,9 @@ def reproduce(words: Sequence[str]) -> int:
     Raises:
         SuchusError: the words make no sense, or the results cannot be saved.
     """
-    told = "Run every experiment and write one page with everything that came out, DIR/report.html."
-    options: Options = parse(Options, "suchus reproduce", words, told, ("out", "quick", "jobs"))
-    tasks = [Task(name=name, out=options.out, quick=options.quick) for name in EXPERIMENTS]
+    told = "Run every experiment and write one page with all results, DIR/report.html."
+    options: ReproduceOptions = parse(ReproduceOptions, "suchus reproduce", words, told, ("out", "quick", "jobs"))
+    tasks = [Job(name=name, out=options.out, quick=options.quick) for name in EXPERIMENTS]
     if not tasks:
         raise BadCommand("there is no experiment on the shelf.")
     if options.jobs is not None and options.jobs < 1:
@@ -70,8 +70,8 @@ def reproduce(words: Sequence[str]) -> int:
     return 1 if failures else 0
 
 
-def _came_of(tasks: Sequence[Task], jobs: int, bars: Bars) -> list[Came]:
-    """Return what came of each task, in their order."""
+def _came_of(tasks: Sequence[Job], jobs: int, bars: Bars) -> list[JobResult]:
+    """Return the result of each task, in their order."""
     if jobs > 1:
         came = side_by_side(sorted(tasks, key=_place), jobs, bars)
         return [came[task.name] for task in tasks]
@@ -82,5 +82,5 @@ def _came_of(tasks: Sequence[Task], jobs: int, bars: Bars) -> list[Came]:
     return done
 
 
-def _place(task: Task) -> int:
+def _place(task: Job) -> int:
     return _LONG.index(task.name) if task.name in _LONG else len(_LONG)

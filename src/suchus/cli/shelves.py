@@ -1,4 +1,4 @@
-"""``suchus list``: what stands on the shelves, told without importing any of it."""
+"""``suchus list``: what stands on the shelves, listed without importing any of it."""
 
 import ast
 from collections.abc import Sequence

@@ -8,7 +8,7 @@ from shutil import get_terminal_size
 _NARROWEST, _WIDEST = 40, 500  # columns of a terminal that a help is set for
 
 
-def settle() -> None:
+def prepare_streams() -> None:
     """Make sure that there are streams that take every letter, a width that text can be set in, and a way to draw.
 
     A stream that is closed becomes one that swallows everything: the next file that is opened must not take its

@@ -12,37 +12,44 @@ from suchus.cli.commands import BadCommand
 from suchus.cli.options import CSV, SCHEDULER, TABLES, parse
 from suchus.cli.terminal import working
 from suchus.record import check_name, there, write_tables
-from suchus.study import Claims, Told, answer_finished, at_scheduler, conduct, conduct_claims, read_study, write_claims
+from suchus.study import Claims, StudyProgress, answer_finished, at_scheduler, conduct, conduct_claims, read_study
+from suchus.study.claims_page import write_claims
 from suchus.study.store import RESULTS, TABLE
 
 CLAIMS = "claims"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Options:
-    """What can be said after ``suchus study``."""
+class StudyOptions:
+    """Options of ``suchus study``."""
 
     file: Annotated[Path, tyro.conf.Positional]
     """The study, a TOML file, or ``claims``, the article's claims over plausible designs; see docs/studies.md."""
     scheduler: SCHEDULER = None
+    jobs: int = 1
+    """How many processes run it, which share the threads; each takes a batch at a time. The same bytes."""
     samples: int | None = None
-    """How many points a sampled study has; other than before is another study."""
+    """Number of points of a sampled study; with another number than before it is another study."""
     out: Path | None = None
-    """The store; by default out/studies/NAME. One that this study began is finished, anything else is refused."""
+    """Folder of the store; by default out/studies/NAME. A store of the same study is continued, any other refused."""
     finished: bool = False
-    """Only for ``claims``: run nothing, answer from what the store holds, of a power of two of samples."""
+    """Only for ``claims``: run nothing, answer from the samples in the store, as many as are a power of two."""
     csv: CSV = False
     """Write the results as CSV files with units in the header too, into the folder csv in the store."""
 
 
 def study(words: Sequence[str]) -> int:
-    """Conduct a study, or finish it, say what came of it, and return 0.
+    """Conduct a study, or finish it, print the result, and return 0.
 
     Raises:
         SuchusError: the words or the file make no sense, or the store cannot be written to.
     """
-    about = "Run many variants of one run, and keep what is measured. Started again it goes on where it stopped."
-    options: Options = parse(Options, "suchus study", words, about, [f.name for f in fields(Options)])
+    about = "Run many variants of one run, and store what is measured. A study that was stopped is continued."
+    options: StudyOptions = parse(StudyOptions, "suchus study", words, about, [f.name for f in fields(StudyOptions)])
+    if options.jobs < 1:
+        raise BadCommand(f"--jobs is {options.jobs}; at least 1 process is needed.")
+    if options.jobs > 1 and options.scheduler is not None:
+        raise BadCommand("--jobs and --scheduler exclude each other: the workers of a cluster are started with it.")
     if str(options.file) == CLAIMS and not there(options.file):
         return _claims(options)
     asked = read_study(options.file)
@@ -55,7 +62,9 @@ def study(words: Sequence[str]) -> int:
     folder = options.out or Path("out") / "studies" / asked.name
     with at_scheduler(options.scheduler) as client, working() as bars:
         tell = bars.told(asked.name)
-        results = conduct(asked, folder, progress=lambda told: tell(told, told.done / told.total), client=client)
+        results = conduct(
+            asked, folder, progress=lambda told: tell(told, told.done / told.total), client=client, jobs=options.jobs
+        )
     failed = {sample: str(error) for sample, error in enumerate(results.error.values) if error}
     print(f"{results.sizes['sample']} runs, {len(failed)} failed: {folder / RESULTS}, {folder / TABLE}")
     if options.csv:
@@ -65,7 +74,7 @@ def study(words: Sequence[str]) -> int:
     return 0
 
 
-def _claims(options: Options) -> int:
+def _claims(options: StudyOptions) -> int:
     """Conduct the ready-made study of the claims, or finish it."""
     asked = Claims() if options.samples is None else Claims(samples=options.samples)
     folder = options.out or Path("out") / "studies" / CLAIMS
@@ -74,12 +83,12 @@ def _claims(options: Options) -> int:
     with at_scheduler(options.scheduler) as client, working() as bars:
         shown: dict[str, Callable[[object, float], None]] = {}
 
-        def show(place: str, told: Told) -> None:
+        def show(place: str, told: StudyProgress) -> None:
             if place not in shown:
                 shown[place] = bars.told(f"{CLAIMS} {place.replace('_', ' ')}")
             shown[place](told, told.done / told.total)
 
-        record = conduct_claims(asked, folder, progress=show, client=client)
+        record = conduct_claims(asked, folder, progress=show, client=client, jobs=options.jobs)
         return _answered(record, folder)
 
 

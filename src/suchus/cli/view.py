@@ -28,14 +28,14 @@ _LOOPBACK = ("127.0.0.1", "localhost", "::1")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Where:
-    """On which address people find it."""
+    """Address and port of the server."""
 
     host: str = "127.0.0.1"
     """Address to listen on; by default only this computer can look."""
     port: int = 8080
     """Port to listen on; 0 for any that is free."""
     most: int = 4
-    """How many browsers are served at once, each with a walk or a player of its own."""
+    """Number of browsers that are served at once, each with a walk or a player of its own, 1 to 64."""
 
     def __post_init__(self) -> None:
         require("view", "port", self.port, 0, 65535, "")
@@ -43,34 +43,34 @@ class Where:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Walking(Where):
-    """What can be said after ``suchus view`` to see a walk."""
+class ViewWalkOptions(Where):
+    """Options of ``suchus view`` for a live walk."""
 
     robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
-    """Who walks."""
+    """The robot that walks."""
     gait: AnyGait | None = None
-    """How, at the beginning; by default the robot's own gait."""
+    """Gait at the beginning; by default the robot's own."""
     timestep: float | None = None
-    """Of the physics [s], a whole part of the control period; by default half of it, 0.005 s for the caiman."""
+    """Time step of the physics [s], a whole fraction of the control period; by default half of the period."""
     lake: tyro.conf.FlagCreatePairsOff[bool] = False
-    """Whether it swims in a lake; the floating caiman if no robot is named."""
+    """Let the robot swim in a lake; the floating caiman if no robot is named."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Replaying(Where):
-    """What can be said after ``suchus view`` to see a record."""
+    """Options of ``suchus view`` for a record."""
 
     record: Annotated[Path, tyro.conf.Positional]
     """The record.nc of an experiment on land."""
     ghost: Path | None = None
     """Another record, or the same one, shown pale beside it."""
     robot: AnyRobot | None = None
-    """Who walks in it; by default the robot of the shelf that the record names."""
+    """Robot of the record; by default the one that the record names."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Swimming(Where):
-    """What can be said after ``suchus view swim``."""
+class ViewSwimOptions(Where):
+    """Options of ``suchus view swim``."""
 
     record: Annotated[Path, tyro.conf.Positional]
     """The record.nc of the experiment swimming."""
@@ -97,17 +97,19 @@ def _is_record(word: str) -> bool:
 
 
 def _walk(words: Sequence[str]) -> int:
-    about = "A robot walks live in the browser: turn its gait, break its joints, push it."
+    about = "A robot walks live in the browser: change its gait, make joints fail, push it."
     first = list(takewhile(lambda word: not word.startswith("-"), words[:2]))
     named = [part for option, word in zip(("--robot", "--gait"), first, strict=False) for part in (option, word)]
     told = [*named, *words[len(first) :]]
-    options: Walking = parse(Walking, "suchus view", told, about, [f.name for f in fields(Walking)])
+    options: ViewWalkOptions = parse(
+        ViewWalkOptions, "suchus view", told, about, [f.name for f in fields(ViewWalkOptions)]
+    )
     if options.lake and not first and "--robot" not in told:
         options = replace(options, robot=ROBOTS["floating_caiman"])
     return serve_walk(options)
 
 
-def serve_walk(options: Walking, opened: Callable[[str], object] | None = None) -> int:
+def serve_walk(options: ViewWalkOptions, opened: Callable[[str], object] | None = None) -> int:
     """Let a robot walk in the browser until interrupted, and return 0.
 
     Args:
@@ -152,8 +154,10 @@ def _replay(words: Sequence[str]) -> int:
 
 
 def _swim(words: Sequence[str]) -> int:
-    about = "A swim played back in the browser, with vorticity and pressure of the water."
-    options: Swimming = parse(Swimming, "suchus view swim", words, about, [f.name for f in fields(Swimming)])
+    about = "Play a swim back in the browser, with vorticity and pressure of the flow."
+    options: ViewSwimOptions = parse(
+        ViewSwimOptions, "suchus view swim", words, about, [f.name for f in fields(ViewSwimOptions)]
+    )
     swims, curves = films(options.record)
     pages = _pages()
     return _serve(
@@ -204,16 +208,16 @@ _HELP = """usage: suchus view [ROBOT] [GAIT] [--lake] [--host HOST] [--port PORT
        suchus view RECORD.nc [--ghost RECORD2.nc]
        suchus view swim RECORD.nc
 
-In the browser: a robot that walks live, a record played back, a swim with the water around it.
+Show in the browser a robot that walks live, a record played back, or a swim with the flow around it.
 
-  ROBOT, GAIT      names on the shelves, or TOML files; the caiman and its belly_crawl by default
-  RECORD.nc        the record of an experiment, as out/displacement/record.nc
-  --ghost FILE     another record, or the same one, shown pale beside it
-  --robot ROBOT    who walks in a record, where that robot is not on the shelf
-  --lake           it swims in a lake, with sliders for the level and for its breath
-  --timestep S     of the physics of a live walk; 0.005 by default
+  ROBOT, GAIT      names that `suchus list` shows, or TOML files; by default caiman and belly_crawl
+  RECORD.nc        the record of an experiment, such as out/displacement/record.nc
+  --ghost FILE     another record, or the same one, shown half transparent beside it
+  --robot ROBOT    robot of a record, if `suchus list` does not show the one that the record names
+  --lake           the robot swims in a lake, with sliders for the water level and the air in its hull
+  --timestep S     time step of the physics of a live walk [s]; 0.005 by default
   --host HOST      address to listen on; 127.0.0.1 by default: only this computer can look
-  --port PORT      port to listen on; 8080 by default, 0 for any that is free
+  --port PORT      port to listen on; 8080 by default, 0 for any free port
   --most N         browsers served at once; 4 by default
 
 Each browser has a walk of its own; several do not disturb each other."""

@@ -1,4 +1,4 @@
-"""From what the robot senses to what its servos are told, for a whole batch at once."""
+"""From what the robot senses to the commands of its servos, for a whole batch at once."""
 
 from suchus.control.amphibious import Amphibious
 from suchus.control.attitude import AttitudeRule
@@ -9,7 +9,7 @@ from suchus.control.holding import DepthHold, HeadingHold
 from suchus.control.limbs import LAWS, LimbLaw
 from suchus.control.open_loop import OpenLoop
 from suchus.control.oscillators import Oscillators
-from suchus.control.pattern_generator import Generator, Oscillation, PatternGenerator, oscillate
+from suchus.control.pattern_generator import Generator, OscillatorStates, PatternGenerator, oscillate
 from suchus.control.rolling import Rolling
 from suchus.control.sensed import Sensed
 from suchus.control.shared import OWNERS, Shared
@@ -20,6 +20,7 @@ from suchus.control.switching import SwitchRule
 from suchus.control.tail import TailRule
 from suchus.control.turning import CURVES, TurningCurve, turn
 from suchus.control.walking import Change, Walking
+from suchus.renamed import old_exports
 
 __all__ = [
     "BALANCE",
@@ -42,7 +43,7 @@ __all__ = [
     "Kick",
     "LimbLaw",
     "OpenLoop",
-    "Oscillation",
+    "OscillatorStates",
     "Oscillators",
     "PatternGenerator",
     "Rolling",
@@ -58,3 +59,5 @@ __all__ = [
     "oscillate",
     "turn",
 ]
+
+__getattr__ = old_exports(__name__, Oscillation="OscillatorStates")

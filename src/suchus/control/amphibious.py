@@ -11,6 +11,7 @@ from suchus.control.controller import Command, Controller
 from suchus.control.heading import Heading, HeadingRule
 from suchus.control.sensed import Sensed, finite, keep
 from suchus.control.swimming import Swimming
+from suchus.control.walking import Groups, grouped
 from suchus.design import GRAVITY, AnyRobot, general, layout
 from suchus.design.checks import Checks
 from suchus.errors import InvalidDesign
@@ -24,9 +25,12 @@ _GROWS = 0.5  # [cycle]; over which stroke and bends grow when the walk begins
 class Amphibious:
     """Swims where the water carries the robot and walks in the run's gait where the ground does.
 
-    Felt is what feet, belly and tail carry, in shares of the robot's weight, through a low pass. Above ``touch`` the
-    robot walks, below ``afloat`` it swims, between the two it goes on as before; a change takes ``change``, in which
-    nothing else is decided, and ``patience`` must pass before the next. While it swims its limbs' phases stand still.
+    Felt is what feet, belly and tail carry, in shares of the robot's weight, through a low pass. Where together they
+    carry more than ``touch`` it lands: it walks in the gait ``wade``, with its air let out, until the ground carries
+    ``aground``; then it takes the air in again and goes on in the run's gait. It swims again when its feet have
+    carried less than ``afloat`` for a whole cycle, in which each had its stance: a tail or a belly that drags on the
+    bottom does not walk. A change takes ``change``, in which nothing else is decided, and ``patience`` must pass before
+    the next. While it swims its limbs' phases stand still.
     """
 
     swim: Swimming
@@ -35,8 +39,13 @@ class Amphibious:
     """In what it begins."""
     touch: float = 0.02
     """Share of the weight on the ground from which it walks [-]; a snout on the sand carries 0.035 to 0.05."""
-    afloat: float = 0.004
-    """Share of the weight on the ground below which it swims [-]."""
+    afloat: float = 0.02
+    """Share of the weight on the feet below which they do not push [-]; at a friction of 0.6 a share of 0.02 holds
+    against 0.4 N on the floating caiman, the drag of its walking posture at 0.2 m/s."""
+    aground: float = 0.8
+    """Share of the weight on the ground from which it has landed [-]; on dry land it is 1 in the mean, with dips."""
+    wade: Gait | Pattern | None = None
+    """In which it walks while it lands; None for the run's gait."""
     memory: float = 0.4
     """Time constant of the low pass [s]."""
     change: float = 1.2
@@ -44,7 +53,7 @@ class Amphibious:
     patience: float = 1.0
     """Least time between the end of a change and the next [s]."""
     breathe_out: float = 0.0
-    """Share of the air of the hull that it lets out when it begins to walk, and takes in when it swims [-]."""
+    """Share of the air of the hull that it lets out while it lands [-]."""
     pump: float = 0.25
     """Rate at which the share of the air changes [1/s]."""
     heading: HeadingRule | None = None
@@ -54,10 +63,11 @@ class Amphibious:
         with Checks("amphibious", self) as check:
             check.number("touch", 0.0, 1.0, "")
             check.number("afloat", 0.0, 1.0, "")
+            check.number("aground", 0.0, 1.0, "")
             check.that(
-                self.afloat < self.touch,
-                f"amphibious.afloat is {self.afloat:g} and amphibious.touch {self.touch:g}; afloat must be less, "
-                "so that the robot does not change to and fro",
+                max(self.afloat, self.touch) < self.aground,
+                f"amphibious.aground is {self.aground:g}, amphibious.touch {self.touch:g} and amphibious.afloat "
+                f"{self.afloat:g}; aground must be the greatest, so that it lands before it has landed",
             )
             check.number("memory", 0.0, 60.0, "s")
             check.number("change", 0.05, 60.0, "s")
@@ -100,7 +110,9 @@ class Amphibious:
             UnsuitedRobot: a robot does not swim by trunk and cable.
             InvalidDesign: a robot that is to breathe out has no air.
         """
-        ours = [steerable(gait, "a walk that begins and ends in water") for gait in gaits]
+        needed = "a walk that begins and ends in water"
+        ours = [steerable(gait, needed) for gait in gaits]
+        wades = [steerable(control.wade or gait, needed) for control, gait in zip(controls, gaits, strict=True)]
         for control, robot in zip(controls, robots, strict=True):
             hull = general(robot).hull
             if control.breathe_out > 0.0 and (hull is None or hull.air == 0.0):
@@ -109,7 +121,7 @@ class Amphibious:
                     "could let out: leave it at 0, or give the robot a design.Hull with air."
                 )
         swims = Swimming.start_together([one.swim for one in controls], robots, gaits, seeds, ticks, period)
-        return Amphibian(controls, robots, ours, swims, period)
+        return Amphibian(controls, robots, ours, wades, swims, period)
 
 
 class Amphibian:
@@ -120,13 +132,14 @@ class Amphibian:
         controls: Sequence[Amphibious],
         robots: Sequence[AnyRobot],
         gaits: Sequence[Gait | Pattern],
+        wades: Sequence[Gait | Pattern],
         swims: Controller,
         period: float,
     ) -> None:
-        self._period, self._swims, self._gaits = period, swims, list(gaits)
-        self._touch, self._afloat, self._change, self._patience, self._out, self._pump = (
+        self._period, self._swims = period, swims
+        self._touch, self._afloat, self._aground, self._change, self._patience, self._out, self._pump = (
             np.array([getattr(control, name) for control in controls])
-            for name in ("touch", "afloat", "change", "patience", "breathe_out", "pump")
+            for name in ("touch", "afloat", "aground", "change", "patience", "breathe_out", "pump")
         )
         self._kept = np.array([keep(control.memory, period) for control in controls])
         self._weight = np.array([robot.mass * GRAVITY for robot in robots])
@@ -134,18 +147,20 @@ class Amphibian:
         self.walking: Bool[np.ndarray, " run"] = np.array([control.begins == "walking" for control in controls])
         """Which robots walk, or are about to."""
         self._blend = self.walking.astype(float)  # 0 swims, 1 walks
+        self.landing: Bool[np.ndarray, " run"] = np.zeros(n, dtype=bool)
+        """Which robots walk, and are not yet carried by the ground."""
+        self._landed = np.ones(n)  # 0 wades, 1 walks in the run's gait
         self._load = self._blend.copy()  # [-]; so that a robot on land does not begin by swimming
+        self._feet = self._load.copy()  # [-]; of the weight on the feet
+        self._lifted = np.zeros(n)  # how long the feet have carried next to nothing [s]
         self._since = np.where(self.walking, np.inf, 0.0)  # the last change [s]
         self._cycles = np.zeros(n)  # walked so far [cycle]
         self._grown = np.zeros(n)  # walked without a break [cycle]
-        self._breath = 1.0 - self._out * self._blend
-        self._cycle = np.array([gait.period for gait in gaits])
-        self._phases = np.array([gait.limb_phases for gait in gaits])
+        self._breath = np.ones(n)
+        self._cycle, self._wade_cycle = (np.array([gait.period for gait in some]) for some in (gaits, wades))
+        self._phases, self._wade_phases = (np.array([gait.limb_phases for gait in some]) for some in (gaits, wades))
         self._heading = Heading([one.heading for one in controls], robots, gaits, period)
-        members: dict[object, list[int]] = {}
-        for run, pair in enumerate(zip(robots, gaits, strict=True)):
-            members.setdefault(pair, []).append(run)
-        self._groups = [(robots[runs[0]], gaits[runs[0]], np.array(runs)) for runs in members.values()]
+        self._groups, self._wade_groups = grouped(robots, gaits), grouped(robots, wades)
         self._stroke, self._trunk = np.ones((n, limbs)), np.zeros(n)
 
     @property
@@ -173,30 +188,41 @@ class Amphibian:
 
     @property
     def _phase(self) -> np.ndarray:
-        return self._cycles[:, None] + self._phases
+        return self._cycles[:, None] + self._wade_phases + self._landed[:, None] * (self._phases - self._wade_phases)
 
     def _feel(self, sensed: Sensed) -> None:
         feet, belly = finite(sensed.foot_pressure), finite(sensed.belly_pressure)
-        load = (feet.sum(axis=1) + belly.sum(axis=1) + finite(sensed.tail_pressure)) / self._weight
+        stands = feet.sum(axis=1) / self._weight
+        load = stands + (belly.sum(axis=1) + finite(sensed.tail_pressure)) / self._weight
         self._load = load + self._kept * (self._load - load)
+        self._feet = stands + self._kept * (self._feet - stands)
         walks = self._blend >= 1.0
         steer = self._heading.step(sensed, walking=walks)
         self._stroke, self._trunk = 1.0 + steer.stroke, steer.trunk
 
     def _decide(self) -> None:
-        free = self._since >= self._change + self._patience
-        other = np.where(self.walking, self._load < self._afloat, self._load > self._touch)
-        turns = free & other
+        self._lifted = np.where(self._feet < self._afloat, self._lifted + self._period, 0.0)
+        other = np.where(self.walking, self._lifted >= 1.0 / self._rate, self._load > self._touch)
+        turns = other & (self._since >= self._change + self._patience)
+        self.landing = np.where(turns, ~self.walking, self.landing & (self._load < self._aground))
         self.walking = self.walking ^ turns
         self._since = np.where(turns, 0.0, self._since + self._period)
 
+    @property
+    def _rate(self) -> np.ndarray:
+        """Return cycles over time, shape (run,) [1/s]."""
+        return np.asarray((1.0 - self._landed) / self._wade_cycle + self._landed / self._cycle)
+
     def _advance(self) -> None:
-        step = np.where(self.walking, 1.0, -1.0) * self._period / self._change
+        """Go one control period on: postures, clocks and air."""
+        step = self._period / self._change
         walks = self._blend >= 1.0
-        self._blend = np.clip(self._blend + step, 0.0, 1.0)
-        self._cycles = self._cycles + walks * self._period / self._cycle
-        self._grown = np.where(walks, self._grown + self._period / self._cycle, 0.0)
-        asked = 1.0 - self._out * self.walking
+        self._cycles = self._cycles + walks * self._rate * self._period
+        self._grown = np.where(walks, self._grown + self._rate * self._period, 0.0)
+        self._blend = np.clip(self._blend + np.where(self.walking, step, -step), 0.0, 1.0)
+        landed = np.clip(self._landed + np.where(self.landing, -step, step), 0.0, 1.0)
+        self._landed = np.where(walks | ~self.walking, landed, 1.0 - self.landing)  # it stands up to wade
+        asked = 1.0 - self._out * self.landing
         most = self._pump * self._period
         self._breath = self._breath + np.clip(asked - self._breath, -most, most)
 
@@ -204,12 +230,29 @@ class Amphibian:
         """Return the posture between that of the swim and that of the walk, shape (run, servo) [rad]."""
         if not self._blend.any():
             return swum
-        phase, none, walked = self._phase, np.zeros_like(self._stroke), np.zeros_like(swum)
+        walked = self._walked(self._groups)
+        if (self._landed < 1.0).any():
+            waded = self._walked(self._wade_groups)
+            walked = waded + _eased(self._landed) * (walked - waded)
+        return np.asarray(swum + _eased(self._blend) * (walked - swum))
+
+    def _walked(self, groups: Groups) -> np.ndarray:
+        """Return the postures of gaits at the present phases, shape (run, servo) [rad]."""
+        phase, none = self._phase, np.zeros_like(self._stroke)
         size = np.clip(self._grown / _GROWS, 0.0, 1.0)
-        for robot, gait, runs in self._groups:
-            walked[runs] = steered(
+        parts = [
+            steered(
                 robot, gait, phase[runs], trunk=self._trunk[runs], size=size[runs], stroke=self._stroke[runs],
                 lower=none[runs],
-            )  # fmt: skip
-        share = (self._blend**2 * (3.0 - 2.0 * self._blend))[:, None]
-        return np.asarray(swum + share * (walked - swum))
+            )
+            for robot, gait, runs in groups
+        ]  # fmt: skip
+        out = np.zeros((len(phase), parts[0].shape[1]))
+        for (_, _, runs), part in zip(groups, parts, strict=True):
+            out[runs] = part
+        return out
+
+
+def _eased(share: np.ndarray) -> np.ndarray:
+    """Return shares that begin and end without a jump of their rate, shape (run, 1)."""
+    return np.asarray(share**2 * (3.0 - 2.0 * share))[:, None]

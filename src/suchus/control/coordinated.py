@@ -13,8 +13,8 @@ from suchus.control.limbs import LAWS, LimbLaw, Limbs, in_pairs
 from suchus.control.open_loop import OpenLoop
 from suchus.control.sensed import Sensed
 from suchus.control.shared import silence
-from suchus.control.spine import Spine, SpineRule
-from suchus.control.tail import Tail, TailRule
+from suchus.control.spine import SpineController, SpineRule
+from suchus.control.tail import TailController, TailRule
 from suchus.design import AnyRobot, layout
 from suchus.design.checks import Checks, require
 from suchus.errors import InvalidDesign, UnsuitedRobot
@@ -28,9 +28,9 @@ class Kick:
     """A disturbance of the clock: limbs that jump ahead."""
 
     at: float
-    """When [s]."""
+    """Time of the kick [s]."""
     ahead: tuple[float, ...]
-    """How far each limb jumps, in the order of the robot's limbs, LF, RF, LH, RH of the article's [cycle]."""
+    """Phase by which each limb jumps, in the order of the robot's limbs, LF, RF, LH, RH of the article's [cycle]."""
 
     def __post_init__(self) -> None:
         require("kick", "at", self.at, 0.0, 86400.0, "s")
@@ -54,7 +54,7 @@ class Coordinated:
     tail: TailRule | None = field(default_factory=TailRule)
     """Tail to tail; None for none: the tail still follows the trunk."""
     heading: HeadingRule | None = None
-    """Which keeps the direction of the walk; None for none."""
+    """Rule that keeps the heading of the walk; None for none."""
     sharing: bool = True
     """Whether spine and tail hear of the limbs' phases; if not they follow the clock, each for itself."""
     random_start: bool = False
@@ -147,8 +147,8 @@ class Coordinator:
                 self._kicks.setdefault(int(np.ceil(kick.at / period - _SLACK)), []).append((run, np.array(kick.ahead)))
         self._hears = np.array([control.sharing for control in controls])[:, None]
         self._limbs = Limbs([control.limbs for control in controls], robots, gaits, ahead, period)
-        self._spine = Spine([control.spine for control in controls], robots, self._groups, period)
-        self._tail = Tail([control.tail for control in controls], robots, paths, self._groups, period)
+        self._spine = SpineController([control.spine for control in controls], robots, self._groups, period)
+        self._tail = TailController([control.tail for control in controls], robots, paths, self._groups, period)
         steered = any(control.heading is not None for control in controls)
         self._heading = Heading([control.heading for control in controls], robots, paths, period) if steered else None
         self._shared = silence(len(robots), limbs)

@@ -36,7 +36,7 @@ def members(keys: Sequence[Any]) -> list[tuple[Any, np.ndarray]]:
 
 
 def number(value: Any, low: float, high: float) -> bool:
-    """Tell whether something is a finite number within bounds."""
+    """Return whether something is a finite number within bounds."""
     return isinstance(value, (int, float)) and not isinstance(value, bool) and low <= value <= high
 
 

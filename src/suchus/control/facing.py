@@ -1,4 +1,4 @@
-"""Which way robots face, without the swinging of their own cycle."""
+"""The heading of robots, without the swinging of their own cycle."""
 
 from collections.abc import Sequence
 from math import pi

@@ -29,7 +29,7 @@ class HeadingRule:
     gain: float = 3.0
     """Answer to the error [1/rad]; a unit of u turns the crawl by 0.3 to 0.5 rad a cycle, so 3 mends in one."""
     integral_gain: float = 1.0
-    """Answer to the error that stays, per cycle [1/rad]; a limp leg needs a lasting u of almost 2."""
+    """Answer to the error that stays, per cycle [1/rad]; a limp leg needs a constant u of almost 2."""
     most: float = 2.0
     """Most that u becomes [-]; beyond 1 the shorter side strides backward. A leg's reach may allow less."""
     trunk: float = 0.4
@@ -48,7 +48,7 @@ class Steering(NamedTuple):
     """What the heading loop adds to the posture."""
 
     stroke: Float[np.ndarray, "run limb"]
-    """By how much each leg's stroke is longer, as a part of it [-]."""
+    """Fraction by which each leg's stroke is longer [-]."""
     trunk: Float[np.ndarray, " run"]
     """Lasting bend of the trunk [rad]."""
 
@@ -83,7 +83,7 @@ class Heading:
         self._most = np.array([_most(*those) for those in zip(settings, robots, gaits, strict=True)])
         self._facing = Facing(robots, [int(cycle) for cycle in self._cycle])
         self._left = np.array([limb.side for limb in layout(robots[0]).limbs])
-        self._lasting = np.zeros(len(gaits))
+        self._offset = np.zeros(len(gaits))
 
     def step(self, sensed: Sensed, *, walking: bool | Bool[np.ndarray, " run"]) -> Steering:
         """Answer to the direction that is felt now.
@@ -96,15 +96,15 @@ class Heading:
         if walking is False:
             return Steering.none(len(self._runs), len(self._left))
         error = self._facing.feel(sensed) - self._direction
-        lasting = np.clip(self._lasting - self._integral_gain * error / self._cycle, -self._most, self._most)
-        self._lasting = np.where(walking, lasting, 0.0)
-        steer = np.where(walking, np.clip(self._lasting - self._gain * error, -self._most, self._most), 0.0)
+        offset = np.clip(self._offset - self._integral_gain * error / self._cycle, -self._most, self._most)
+        self._offset = np.where(walking, offset, 0.0)
+        steer = np.where(walking, np.clip(self._offset - self._gain * error, -self._most, self._most), 0.0)
         return Steering(-self._left * steer[:, None], self._trunk * steer)
 
     def take_over(self, before: "Heading") -> None:
         """Go on from where the loops of the same runs stand; the mean over the last cycle begins anew."""
         self._facing.take_over(before._facing)
-        self._lasting = np.clip(before._lasting, -self._most, self._most)
+        self._offset = np.clip(before._offset, -self._most, self._most)
 
 
 def _most(rule: HeadingRule, robot: AnyRobot, gait: Gait | Pattern) -> float:

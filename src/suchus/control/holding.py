@@ -102,13 +102,13 @@ class Headings:
             for name in ("direction", "gain", "integral_gain", "turn", "trunk_turn")
         )
         self._facing, self._period = Facing(robots, cycle), period
-        self._lasting = np.zeros(len(some))
+        self._offset = np.zeros(len(some))
 
     def bend(self, sensed: Sensed) -> tuple[Float[np.ndarray, " run"], Float[np.ndarray, " run"]]:
         """Return the mean bends of tail and trunk, left positive [rad]."""
         error = self._facing.feel(sensed) - self._direction
-        self._lasting = np.clip(self._lasting - self._integral * error * self._period, -1.0, 1.0)
-        share = np.clip(self._lasting - self._gain * error, -1.0, 1.0)
+        self._offset = np.clip(self._offset - self._integral * error * self._period, -1.0, 1.0)
+        share = np.clip(self._offset - self._gain * error, -1.0, 1.0)
         return self._turn * share, self._trunk * share
 
 
@@ -125,7 +125,7 @@ class Depths:
         )
         self._period, self._kept = period, keep(0.2, period)
         self._last: np.ndarray | None = None
-        self._sinking, self._lasting = np.zeros(len(some)), np.zeros(len(some))
+        self._sinking, self._offset = np.zeros(len(some)), np.zeros(len(some))
         self._breath = np.ones(len(some))
 
     def breath(self, sensed: Sensed) -> Float[np.ndarray, " run"] | None:
@@ -137,10 +137,10 @@ class Depths:
         self._last = depth
         self._sinking = speed + self._kept * (self._sinking - speed)
         error = depth - rule["depth"]
-        lasting = self._lasting + rule["integral_gain"] * error * self._period
-        asked = self._neutral + rule["gain"] * error + rule["rate_gain"] * self._sinking + lasting
+        offset = self._offset + rule["integral_gain"] * error * self._period
+        asked = self._neutral + rule["gain"] * error + rule["rate_gain"] * self._sinking + offset
         within = (asked >= 0.0) & (asked <= 1.0)  # what stays adds up only where the air can answer
-        self._lasting = np.where(within, lasting, self._lasting)
+        self._offset = np.where(within, offset, self._offset)
         most = rule["pump"] * self._period
         self._breath = self._breath + np.clip(np.clip(asked, 0.0, 1.0) - self._breath, -most, most)
         return np.where(self._on, self._breath, np.nan)

@@ -80,7 +80,7 @@ LAWS: Mapping[str, LimbLaw] = MappingProxyType(
 )
 """The laws by name.
 
-``off``: the clock alone. ``own_load``: each limb feels its own foot and nobody tells it anything (Owaki and Ishiguro
+``off``: the clock alone. ``own_load``: each limb feels its own foot and receives nothing else (Owaki and Ishiguro
 2017); coordination is then mechanical. ``cross_load``: the loads of the two diagonal pairs against each other.
 ``body_limb``: the limbs feel the trunk's torque, in the spirit of Suzuki et al. 2021 (our own form: theirs is for
 another body). ``wrong_sign``: the cross-load law reversed, which must fail.
@@ -88,7 +88,7 @@ another body). ``wrong_sign``: the cross-load law reversed, which must fail.
 
 
 class Loads:
-    """What the feet and the trunk of a batch of equal bodies tell their limbs, of any number.
+    """What the limbs of a batch of equal bodies receive from feet and trunk, of any number.
 
     Args:
         laws: one for each run.
@@ -193,7 +193,7 @@ def _trunk_torque(robot: AnyRobot) -> float:
 
 
 def in_pairs(place: Layout, gait: AnyGait) -> bool:
-    """Tell whether diagonal limbs of a gait step together and those of a girdle take turns."""
+    """Return whether diagonal limbs of a gait step together and those of a girdle take turns."""
     return _off_pairs(place, gait) <= _DIAGONAL
 
 

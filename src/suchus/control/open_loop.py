@@ -28,7 +28,7 @@ class OpenLoop:
         seeds: Sequence[int],
         ticks: int,
         period: float,
-    ) -> "Table":
+    ) -> "GaitTable":
         """Tabulate every gait; runs with the same robot and gait share their rows."""
         del seeds
         pairs = list(zip(robots, gaits, strict=True))
@@ -36,10 +36,10 @@ class OpenLoop:
         time = np.arange(ticks) * period
         found = [intended(robot, gait, time) for robot, gait in unique]
         phase, targets = np.stack([one.phase for one in found]), np.stack([one.targets for one in found])
-        return Table(targets, phase, np.array([unique[pair] for pair in pairs]))
+        return GaitTable(targets, phase, np.array([unique[pair] for pair in pairs]))
 
 
-class Table:
+class GaitTable:
     """Servo angles and limb phases of every distinct gait of a batch, by tick."""
 
     def __init__(

@@ -42,15 +42,16 @@ class Oscillators:
     """
 
     rate: float = 20.0
-    """How fast an amplitude comes to its own, critically damped: a of the equations [1/s]."""
+    """Rate at which an amplitude approaches its own, critically damped: a of the equations [1/s]."""
     axis_weight: float = 10.0
-    """Of the coupling between neighbours on the same side of the axis, in both directions [1/s]."""
+    """Weight of the coupling between neighbours on the same side of the axis, in both directions [1/s]."""
     sides_weight: float = 10.0
-    """Of the coupling between left and right of a segment of the axis [1/s]."""
+    """Weight of the coupling between left and right of a segment of the axis [1/s]."""
     limb_axis_weight: float = 30.0
-    """Of the coupling from a limb to its part of the axis, one way [1/s]."""
+    """Weight of the coupling from a limb to its part of the axis, in that direction only [1/s]."""
     limb_weight: float = 10.0
-    """Of the coupling between the limbs of a girdle, and between those of a side on neighbouring girdles [1/s]."""
+    """Weight of the coupling between the limbs of a girdle, and between those of a side on neighbouring girdles
+    [1/s]."""
     axis_frequency: Line = (0.3, 0.2)
     """Own frequency of the axis at drive 0, and its slope over the drive [Hz]."""
     axis_amplitude: Line = (0.196, 0.065)
@@ -93,7 +94,7 @@ class Couplings(NamedTuple):
     """Who drives whom; one entry for each direction of a coupling, sorted by who is driven."""
 
     names: tuple[str, ...]
-    """Of the oscillators: ``axis_1_left`` from the head, then those on the right, then the limbs."""
+    """Names of the oscillators: ``axis_1_left`` from the head, then those on the right, then the limbs."""
     receiver: Int[np.ndarray, " edge"]
     """Number of the oscillator that is driven."""
     sender: Int[np.ndarray, " edge"]
@@ -101,7 +102,7 @@ class Couplings(NamedTuple):
     weight: Float[np.ndarray, " edge"]
     """[1/s]."""
     bias: Float[np.ndarray, " edge"]
-    """By how much the sender is ahead where the coupling is content [rad]."""
+    """Phase lead of the sender at which the coupling vanishes [rad]."""
 
 
 class AxisPart(NamedTuple):
@@ -109,8 +110,8 @@ class AxisPart(NamedTuple):
 
     girdle: int
     """Number of the girdle whose limbs drive it; -1 without limbs."""
-    late: float
-    """How late it bends against those limbs [cycle]."""
+    phase_lag: float
+    """Phase lag of its bend behind those limbs [cycle]."""
 
 
 def couple(
@@ -153,7 +154,7 @@ def couple(
         for limb in range(len(limbs)):  # those of other girdles too, without weight: equal bodies have equal edges
             girdle, side = divmod(limb, 2)
             weight = stiff * numbers.limb_axis_weight if girdle == part.girdle else 0.0
-            found.append((side * n + k, 2 * n + limb, weight, 2 * pi * part.late))
+            found.append((side * n + k, 2 * n + limb, weight, 2 * pi * part.phase_lag))
     found.sort()
     receiver, sender, weights, biases = (np.array(column) for column in zip(*found, strict=True))
     names = [f"axis_{k + 1}_{side}" for side in ("left", "right") for k in range(n)]

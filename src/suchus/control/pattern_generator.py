@@ -45,11 +45,11 @@ class PatternGenerator:
     asymmetry: Course = 0.0
     """Drive of the right side minus that of the left one, -4 to 4 [-]; with the published numbers it hardly turns."""
     steering: Course = 0.0
-    """How far to turn, -1 to 1, to the left where positive [-]."""
+    """Turning command, -1 to 1, to the left where positive [-]."""
     steering_gain: float = radians(8)
     """Steady bend of each joint ahead of the hindmost limbs at ``steering`` 1 [rad]; of all joints without limbs."""
     lag: float | None = None
-    """Of each segment of the axis behind the one ahead of it [cycle]; None for one wave on the whole axis."""
+    """Phase lag of each segment of the axis behind the one ahead of it [cycle]; None for one wave on the whole axis."""
     gradient: tuple[tuple[float, float], ...] = ((0.0, 1.0), (1.0, 1.0))
     """Place along the body, 0 at the snout and 1 at the tip of the tail, and factor on the bends there [-]."""
     lesions: tuple[tuple[str, str], ...] = ()
@@ -63,7 +63,7 @@ class PatternGenerator:
     silent: str = "folded"
     """What silent limbs do: ``folded`` back along the body, or ``standing`` in the middle of their path."""
     pace: float | None = None
-    """How many times faster than published everything goes [-]; None: the gait's period at the drive in the middle."""
+    """Factor on the published rates [-]; None: the gait's period at the drive in the middle."""
     limbs: LimbLaw = LAWS["off"]
     """Limb to limb: how loads and the trunk's torque slow the limbs' oscillators; ``LAWS["off"]`` for not at all."""
     spine: SpineRule | None = None
@@ -189,7 +189,7 @@ class Generator:
 
     @property
     def wave(self) -> Float[np.ndarray, "run segment"]:
-        """How far each segment of the axis bends to the left, in amplitudes of the gait [-]."""
+        """Bend of each segment of the axis to the left, in amplitudes of the gait [-]."""
         out = self.amplitude * (1.0 + np.cos(self._rhythm.phase))
         n = self._limbs.start // 2
         return waves(out[:, :n], out[:, n : 2 * n], self._full) * self._gradient
@@ -295,19 +295,19 @@ def _initial(
     return initial_phases(posture.segments, limbs, lag, driven=driven)
 
 
-class Oscillation(NamedTuple):
-    """What oscillators do without a body."""
+class OscillatorStates(NamedTuple):
+    """Phases and amplitudes of oscillators that are integrated without a body."""
 
     time: Float[np.ndarray, " time"]
     """Since the beginning of the run [s]."""
     phase: Float[np.ndarray, "run time oscillator"]
-    """Of the oscillators, not wrapped [cycle]."""
+    """Phase of the oscillators, not wrapped [cycle]."""
     amplitude: Float[np.ndarray, "run time oscillator"]
-    """Of the oscillators [-]."""
+    """Amplitude of the oscillators [-]."""
     wave: Float[np.ndarray, "run time segment"]
-    """How far each segment of the axis bends to the left, in amplitudes of the gait [-]."""
+    """Bend of each segment of the axis to the left, in amplitudes of the gait [-]."""
     names: tuple[str, ...]
-    """Of the oscillators."""
+    """Names of the oscillators."""
 
 
 def oscillate(
@@ -319,7 +319,7 @@ def oscillate(
     seeds: Sequence[int] | None = None,
     every: int = 1,
     progress: Callable[[float], None] | None = None,
-) -> Oscillation:
+) -> OscillatorStates:
     """Let pattern generators turn without a body, from the time at which a walk begins.
 
     Args:
@@ -343,7 +343,7 @@ def oscillate(
             if progress is not None:
                 progress((tick - first) / max(ticks, 1))
     time, phase, amplitude, wave = zip(*found, strict=True)
-    return Oscillation(
+    return OscillatorStates(
         time=np.array(time),
         phase=np.stack(phase, axis=1),
         amplitude=np.stack(amplitude, axis=1),

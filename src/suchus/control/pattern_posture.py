@@ -23,13 +23,13 @@ class AxisSegment:
     place: float
     """Along the body, 0 at the snout, 1 at the tip of the tail [-]."""
     servo: int
-    """Which bends it."""
+    """Index of the servo that bends it [-]."""
     left: float
     """1 where a positive angle of the servo bends to the left, -1 where to the right [-]."""
     amplitude: float
-    """Of its bend in the gait [rad]."""
+    """Amplitude of its bend in the gait [rad]."""
     part: AxisPart
-    """Which limbs drive it, and how late."""
+    """The limbs that drive it, and its phase lag behind them."""
     steers: bool
     """Whether an offset on it turns the robot: it lies ahead of the hindmost limbs, or there are none."""
 
@@ -50,8 +50,8 @@ def axis_segments(robot: AnyRobot, gait: AnyGait) -> tuple[AxisSegment, ...]:
 
     def add(at: float, servo: int, left: float) -> None:
         behind = [number for number, hip in enumerate(hips) if hip <= at]
-        amplitude, late = _wave(place, gait, at, servo)
-        part = AxisPart(-1 if not hips else behind[-1] if behind else 0, late)
+        amplitude, lag = _wave(place, gait, at, servo)
+        part = AxisPart(-1 if not hips else behind[-1] if behind else 0, lag)
         steers = not hips or at < hips[-1]
         found.append(AxisSegment(place=at, servo=servo, left=left, amplitude=amplitude, part=part, steers=steers))
 
@@ -136,16 +136,16 @@ def _followed(gait: AnyGait) -> Gait | Pattern:
 
 
 def _wave(place: Layout, gait: Gait | Pattern, at: float, servo: int) -> tuple[float, float]:
-    """Return with which amplitude [rad] and how late [cycle] a gait bends a hinge of the axis."""
+    """Return the amplitude [rad] and the phase lag [cycle] with which a gait bends a hinge of the axis."""
     if not isinstance(gait, Gait):
         places, angles = zip(*gait.wave.amplitude, strict=True)
         return abs(float(np.interp(at, places, angles))), gait.wave.phase
     if servo in place.trunk_yaw:
         return gait.trunk_bend / len(place.trunk_yaw), gait.spine_phase
-    late = gait.spine_phase + gait.tail_phase
+    lag = gait.spine_phase + gait.tail_phase
     if servo in place.tail_yaw:
-        return gait.tail_bend / len(place.tail_yaw), late
-    return (gait.tail_bend / place.cable(servo).joints, late) if servo in place.cables else (0.0, 0.0)
+        return gait.tail_bend / len(place.tail_yaw), lag
+    return (gait.tail_bend / place.cable(servo).joints, lag) if servo in place.cables else (0.0, 0.0)
 
 
 def _folded(place: Layout, gait: Gait | Pattern, middle: np.ndarray) -> np.ndarray:
@@ -164,7 +164,7 @@ def _folded(place: Layout, gait: Gait | Pattern, middle: np.ndarray) -> np.ndarr
 
 
 def _cranked(place: Layout, gait: Gait | Pattern, limb: int) -> bool:
-    """Tell whether a limb turns all round, so that it stops where it is."""
+    """Return whether a limb turns all round, so that it stops where it is."""
     return not isinstance(gait, Gait) and isinstance(gait.girdles[place.limbs[limb].number], Sweep)
 
 
@@ -193,7 +193,7 @@ def initial_phases(
         driven: whether the limbs are active.
     """
     if driven and limbs:
-        sides = [[limbs[2 * one.part.girdle + side] - one.part.late for one in segments] for side in (0, 1)]
+        sides = [[limbs[2 * one.part.girdle + side] - one.part.phase_lag for one in segments] for side in (0, 1)]
     else:
         first = limbs[0] if limbs else 0.0
         sides = [[first - lag * k + 0.5 * side for k in range(len(segments))] for side in (0, 1)]

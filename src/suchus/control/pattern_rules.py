@@ -7,8 +7,8 @@ import numpy as np
 from jaxtyping import Float
 
 from suchus.control.sensed import Sensed
-from suchus.control.spine import Spine, SpineRule
-from suchus.control.tail import Tail, TailRule
+from suchus.control.spine import SpineController, SpineRule
+from suchus.control.tail import TailController, TailRule
 from suchus.design import AnyRobot, layout
 from suchus.errors import UnsuitedRobot
 from suchus.motion import AnyGait, Gait
@@ -28,17 +28,19 @@ class Rules:
         self._yaw = list(layout(robots[0]).trunk_yaw)
         self._spined = [i for i, one in enumerate(spines) if one is not None]
         self._tailed = [i for i, one in enumerate(tails) if one is not None]
-        self._spine: Spine | None = None
-        self._tail: Tail | None = None
+        self._spine: SpineController | None = None
+        self._tail: TailController | None = None
         if self._spined:
             if not self._yaw:
                 raise UnsuitedRobot(
                     f"the rule spine to spine needs servos that bend the trunk sideways; robot {robots[0].name!r} "
                     "lacks them: leave spine out."
                 )
-            self._spine = Spine([spines[i] for i in self._spined], [robots[i] for i in self._spined], [], period)
+            self._spine = SpineController(
+                [spines[i] for i in self._spined], [robots[i] for i in self._spined], [], period
+            )
         if self._tailed:
-            self._tail = Tail(
+            self._tail = TailController(
                 [tails[i] for i in self._tailed],
                 [robots[i] for i in self._tailed],
                 [_with_tail(robots[i], gaits[i]) for i in self._tailed],

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from suchus.control.open_loop import Table
+from suchus.control.open_loop import GaitTable
 from suchus.control.suited import crocodiles
 from suchus.design import AnyRobot, layout
 from suchus.motion import AnyGait, Roll, check_roll, roll_targets
@@ -30,7 +30,7 @@ class Rolling:
         seeds: Sequence[int],
         ticks: int,
         period: float,
-    ) -> Table:
+    ) -> GaitTable:
         """Tabulate the roll for every robot.
 
         Raises:
@@ -46,7 +46,7 @@ class Rolling:
         seeds: Sequence[int],
         ticks: int,
         period: float,
-    ) -> Table:
+    ) -> GaitTable:
         """Tabulate the rolls of a batch, one per run.
 
         Raises:
@@ -63,4 +63,4 @@ class Rolling:
             check_roll(robot, roll)
             targets[i] = roll_targets(robot, roll, time)
             phase[i] = (roll.frequency * time)[:, None]
-        return Table(targets, phase, np.array([unique[pair] for pair in pairs]))
+        return GaitTable(targets, phase, np.array([unique[pair] for pair in pairs]))

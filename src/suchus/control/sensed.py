@@ -26,17 +26,17 @@ class Sensed:
     tail_pressure: Float[np.ndarray, " run"]
     """Normal force under the tail [N]."""
     orientation: Float[np.ndarray, "run 4"]
-    """Of the IMU in the root, as a quaternion wxyz [-]."""
+    """Orientation of the IMU in the root, as a quaternion wxyz [-]."""
     angular_velocity: Float[np.ndarray, "run 3"]
-    """Of the IMU, in its own frame [rad/s]."""
+    """Angular velocity of the IMU, in its own frame [rad/s]."""
     acceleration: Float[np.ndarray, "run 3"]
-    """Of the IMU with gravity, in its own frame [m/s2]."""
+    """Acceleration of the IMU with gravity, in its own frame [m/s2]."""
     depth: Float[np.ndarray, " run"] | None = None
-    """Of the root below the level of the water by a pressure sensor, 0 above it [m]; None on dry land."""
+    """Depth of the root below the level of the water by a pressure sensor, 0 above it [m]; None on dry land."""
 
 
 def finite(values: Float[np.ndarray, "*any"]) -> Float[np.ndarray, "*any"]:
-    """Return readings with zero where a run that came apart left nothing to read."""
+    """Return readings with zero where a run that diverged left nothing to read."""
     return np.where(np.isfinite(values), values, 0.0)
 
 

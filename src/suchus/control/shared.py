@@ -1,4 +1,4 @@
-"""What the controllers of limbs, spine and tail tell each other: five quantities, each with one owner."""
+"""What the controllers of limbs, spine and tail exchange: five quantities, each with one owner."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -25,8 +25,8 @@ OWNERS: Mapping[str, str] = MappingProxyType(
 class Shared:
     """The shared variables of a batch, as the article lists them; nothing else passes between the controllers.
 
-    A direction says whereto something is bending: it is the bend to be reached a quarter of a cycle from now, so
-    that its sign is the side and bend and direction together are the whole wave.
+    A direction says in which direction something is bending: it is the bend to be reached a quarter of a cycle from
+    now, so that its sign is the side and bend and direction together are the whole wave.
 
     Paper: section III.D.
     """

@@ -18,7 +18,7 @@ class SpineRule:
     """Every yaw joint of the trunk takes over a part of what all of them together lack.
 
     With B the bend that the limbs' phases ask for and q the sensed yaw angles, e is the low-passed B - sum(q), and
-    each joint is told its part of B, a third in the article's robot, and share e. A joint that is stuck, weak or
+    each joint is commanded its part of B, a third in the article's robot, and share e. A joint that is stuck, weak or
     sagging is so made up for by the others.
     """
 
@@ -33,7 +33,7 @@ class SpineRule:
             checks.number("delay", 0.0, 10.0, "s")
 
 
-class Spine:
+class SpineController:
     """The trunks of a batch."""
 
     def __init__(
@@ -60,7 +60,7 @@ class Spine:
             direction[runs] = axis_bends(robot, gait, shared.limb_phase[runs] + 0.25)[0]
         return shared.written_by("spine", trunk_bend=bend, trunk_direction=direction)
 
-    def take_over(self, before: "Spine") -> None:
+    def take_over(self, before: "SpineController") -> None:
         """Go on from where the trunks of the same runs stand."""
         self._lacking = before._lacking
 

@@ -38,11 +38,11 @@ class Balance:
     trunk_per_rate: float
     """[s]."""
     washout: float
-    """Over which the pitch is compared with its own mean [s]."""
+    """Time constant of the mean with which the pitch is compared [s]."""
     tail_share: float
     """Share of the weight that the tail is meant to carry [-]."""
     hips_per_tail: float
-    """How fast the hips creep back per share that the tail lacks [m/s]."""
+    """Rate at which the hips creep back per share that the tail lacks [m/s]."""
     hips_most: float
     """Greatest correction of the hips [m]."""
     trunk_most: float
@@ -86,17 +86,17 @@ class Standing:
     """Crawl, stand up, stand, sit down and crawl on."""
 
     at: float
-    """When the crawl stops and standing up begins [s]."""
+    """Time at which the crawl stops and standing up begins [s]."""
     hold: float
-    """How long it stands [s]."""
+    """Duration of standing [s]."""
     blend: float = 1.5
-    """From the posture of the gait to the first key, and back [s]."""
+    """Duration from the posture of the gait to the first key, and back [s]."""
     balance: Balance | None = BALANCE
-    """How it keeps its balance; None: it does not, it follows the keys blindly."""
+    """Rule by which it keeps its balance; None: it follows the keys without feedback."""
     rise: Keyed | None = None
-    """The way up; ``motion.rising`` of each robot if None."""
+    """The course of rising; ``motion.rising`` of each robot if None."""
     slower_down: float = 1.0
-    """The way down takes so many times as long as the way up [-]."""
+    """Duration of lying down over duration of rising [-]."""
 
     def __post_init__(self) -> None:
         with Checks("standing", self) as check:
@@ -111,11 +111,11 @@ class Standing:
         return self.balance is not None
 
     def upright_from(self, robot: AnyRobot) -> float:
-        """Return when the way up ends [s]."""
+        """Return when rising ends [s]."""
         return self.at + self.blend + self._rise(robot).duration
 
     def upright_until(self, robot: AnyRobot) -> float:
-        """Return when the way down begins [s]."""
+        """Return when lying down begins [s]."""
         return self.upright_from(robot) + self.hold
 
     def down_from(self, robot: AnyRobot) -> float:
@@ -128,7 +128,7 @@ class Standing:
     def start(
         self, robots: Sequence[AnyRobot], gaits: Sequence[AnyGait], seeds: Sequence[int], ticks: int, period: float
     ) -> "Stander":
-        """Plan the whole way of every distinct pair of robot and gait.
+        """Plan the whole course of every distinct pair of robot and gait.
 
         Raises:
             OutsideLimits: a robot cannot take the postures.
@@ -180,13 +180,13 @@ class Course(NamedTuple):
     targets: Float[np.ndarray, "*row tick servo"]
     """Servo angles [rad]."""
     phase: Float[np.ndarray, "*row tick 4"]
-    """Of the limbs [cycle]."""
+    """Phase of the limbs [cycle]."""
     pitch: Float[np.ndarray, "*row tick"]
-    """Of the pelvis, front end up positive [rad]."""
+    """Pitch of the pelvis, front end up positive [rad]."""
     feet: Float[np.ndarray, "*row tick 3"]
     """The left hind foot from its hip in the world: outward, forward, down [m]."""
     rate: Float[np.ndarray, "*row tick"]
-    """How fast the pelvis is meant to pitch up [rad/s]."""
+    """Rate at which the pelvis is meant to pitch up [rad/s]."""
 
 
 class Stander:

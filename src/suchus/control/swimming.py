@@ -33,15 +33,16 @@ class Swimming:
     trunk_turn: float = 0.0
     """Mean bend of the trunk, front end to the left positive [rad]."""
     limb_yaw: float = -pi / 2
-    """How far all limbs point forward of straight out [rad]; back along the body at -90 degrees."""
+    """Angle by which all limbs point forward of straight out [rad]; back along the body at -90 degrees."""
     limb_pitch: float = -0.3
-    """How far all limbs point down [rad]; up to the surface where negative: foam on them keeps the body upright."""
+    """Angle by which all limbs point down [rad]; up to the surface where negative: foam on them keeps the body
+    upright."""
     ramp: float = 1.0
-    """Over which the amplitudes grow [s]."""
+    """Duration over which the amplitudes grow [s]."""
     heading: HeadingHold | None = None
-    """Which keeps the direction; None for none."""
+    """Rule that keeps the heading; None for none."""
     depth: DepthHold | None = None
-    """Which keeps the depth; None for none."""
+    """Rule that keeps the depth; None for none."""
 
     def __post_init__(self) -> None:
         with Checks("swimming", self) as check:
@@ -53,7 +54,7 @@ class Swimming:
 
     @property
     def feels(self) -> bool:
-        """Whether heading or depth are held."""
+        """Whether heading or depth are controlled."""
         return self.heading is not None or self.depth is not None
 
     def targets(self, robot: Crocodile, time: Float[np.ndarray, " time"]) -> Float[np.ndarray, "time servo"]:
@@ -76,12 +77,12 @@ class Swimming:
         seeds: Sequence[int],
         ticks: int,
         period: float,
-    ) -> "Swimmer":
+    ) -> "SwimmingController":
         """Start the swim for every robot.
 
         Raises:
             OutsideLimits: a robot cannot follow it.
-            InvalidDesign: a robot whose depth is held has too little air.
+            InvalidDesign: a robot whose depth is controlled has too little air.
         """
         return self.start_together([self] * len(robots), robots, gaits, seeds, ticks, period)
 
@@ -93,18 +94,18 @@ class Swimming:
         seeds: Sequence[int],
         ticks: int,
         period: float,
-    ) -> "Swimmer":
+    ) -> "SwimmingController":
         """Start the swims of a batch, one per run.
 
         Raises:
             OutsideLimits: a robot cannot follow its swim.
-            InvalidDesign: a robot whose depth is held has too little air.
+            InvalidDesign: a robot whose depth is controlled has too little air.
         """
         del gaits, seeds
-        return Swimmer(controls, crocodiles(robots, "swimming by trunk and cable"), ticks, period)
+        return SwimmingController(controls, crocodiles(robots, "swimming by trunk and cable"), ticks, period)
 
 
-class Swimmer:
+class SwimmingController:
     """The running swims of a batch: a table for each, to which what is felt adds."""
 
     def __init__(self, controls: Sequence[Swimming], robots: Sequence[Crocodile], ticks: int, period: float) -> None:

@@ -38,7 +38,7 @@ class SwitchRule:
     calm: float = 0.016
     """Mean tilt below which the ground counts as calm [rad]; 0.012 on even ground, 0.018 on bumps of 20 mm."""
     memory: float = 0.8
-    """Over which is averaged [s]; about a cycle."""
+    """Time over which is averaged [s]; about a cycle."""
     patience: float = 3.0
     """Least time in a posture before it goes down again, and of calm before it goes home [s]."""
 

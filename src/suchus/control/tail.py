@@ -21,7 +21,7 @@ class TailRule:
     """
 
     rate: float = 0.3
-    """How fast it gives way [rad/(s N m)]; faster gains more uphill, this drifts least on slopes to the side."""
+    """Rate at which it gives way [rad/(s N m)]; faster gains more uphill, this drifts least on slopes to the side."""
     lowest: float = 0.55
     """Farthest down [rad]; beyond, the tail would lift the hind feet."""
     highest: float = -0.05
@@ -35,7 +35,7 @@ class TailRule:
             checks.that(self.highest <= self.lowest, "highest must be at most lowest: down is positive")
 
 
-class Tail:
+class TailController:
     """The tails of a batch."""
 
     def __init__(
@@ -62,23 +62,23 @@ class Tail:
         self._low, self._high = low, high
 
     def step(self, shared: Shared) -> Shared:
-        """Let the bend follow the trunk, as late as the gait wants it; where no trunk bends, it follows the limbs."""
+        """Let the bend follow the trunk, with the gait's phase lag; where no trunk bends, it follows the limbs."""
         bend, direction = np.empty_like(shared.tail_bend), np.empty_like(shared.tail_bend)
         for robot, gait, runs in self._groups:
             if isinstance(gait, Pattern):  # its tail is a part of one wave along the axis
                 bend[runs] = axis_bends(robot, gait, shared.limb_phase[runs])[1]
                 direction[runs] = axis_bends(robot, gait, shared.limb_phase[runs] + 0.25)[1]
             elif gait.trunk_bend > 0.0:
-                scale, late = gait.tail_bend / gait.trunk_bend, 2 * np.pi * gait.tail_phase
+                scale, lag = gait.tail_bend / gait.trunk_bend, 2 * np.pi * gait.tail_phase
                 now, later = shared.trunk_bend[runs], shared.trunk_direction[runs]
-                bend[runs] = scale * (np.cos(late) * now - np.sin(late) * later)
-                direction[runs] = scale * (np.cos(late) * later + np.sin(late) * now)
+                bend[runs] = scale * (np.cos(lag) * now - np.sin(lag) * later)
+                direction[runs] = scale * (np.cos(lag) * later + np.sin(lag) * now)
             else:
                 bend[runs] = tail_bend(gait, shared.limb_phase[runs])
                 direction[runs] = tail_bend(gait, shared.limb_phase[runs] + 0.25)
         return shared.written_by("tail", tail_bend=bend, tail_direction=direction)
 
-    def take_over(self, before: "Tail") -> None:
+    def take_over(self, before: "TailController") -> None:
         """Go on from where the tails of the same runs stand, as far as the gait asks for the same pitch."""
         self._pitch = np.where(self._on & (self._asked == before._asked), before._pitch, self._asked)
 

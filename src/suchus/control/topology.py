@@ -10,14 +10,14 @@ from suchus.control.heading import Heading, HeadingRule
 from suchus.control.limbs import Limbs
 from suchus.control.sensed import Sensed
 from suchus.control.shared import OWNERS, Shared, silence
-from suchus.control.spine import Spine
-from suchus.control.tail import Tail
+from suchus.control.spine import SpineController
+from suchus.control.tail import TailController
 from suchus.design import AnyRobot, Layout, layout
 from suchus.design.scale import control_period
 from suchus.motion import AnyGait, steerable
 
 
-class Part(NamedTuple):
+class ControlPart(NamedTuple):
     """One controller of the topology."""
 
     name: str
@@ -30,7 +30,7 @@ class Part(NamedTuple):
     """Shared variables that it wrote."""
 
 
-def topology(robot: AnyRobot, gait: AnyGait, control: Coordinated | None = None) -> tuple[Part, ...]:
+def topology(robot: AnyRobot, gait: AnyGait, control: Coordinated | None = None) -> tuple[ControlPart, ...]:
     """Return what each controller reads and writes when it takes a step, in the order in which they act.
 
     Args:
@@ -48,8 +48,8 @@ def topology(robot: AnyRobot, gait: AnyGait, control: Coordinated | None = None)
     place, period = layout(robot), control_period(robot)
     robots, gaits, groups = [robot], [gait], [(robot, gait, np.array([0]))]
     limbs = Limbs([control.limbs], robots, gaits, np.zeros((1, len(place.limbs))), period)
-    spine = Spine([control.spine], robots, groups, period)
-    tail = Tail([control.tail], robots, gaits, groups, period)
+    spine = SpineController([control.spine], robots, groups, period)
+    tail = TailController([control.tail], robots, gaits, groups, period)
     clock, targets = np.array([gait.limb_phases]), np.zeros((1, len(place.servos)))
 
     def heading(_: Any, sensed: Any) -> None:
@@ -73,12 +73,12 @@ def topology(robot: AnyRobot, gait: AnyGait, control: Coordinated | None = None)
     return tuple(_watched(name, step, place) for name, step in steps.items())
 
 
-def _watched(name: str, step: Callable[[Any, Any], Shared | None], place: Layout) -> Part:
+def _watched(name: str, step: Callable[[Any, Any], Shared | None], place: Layout) -> ControlPart:
     """Return what one step read and wrote."""
     before, heard, felt = silence(1, len(place.limbs)), set[str](), set[str]()
     after = step(_watching(before, heard), _watching(_quiet(place), felt))
     written = [] if after is None else [v for v in OWNERS if getattr(after, v) is not getattr(before, v)]
-    return Part(name, frozenset(felt) - {"time"}, frozenset(heard) & frozenset(OWNERS), frozenset(written))
+    return ControlPart(name, frozenset(felt) - {"time"}, frozenset(heard) & frozenset(OWNERS), frozenset(written))
 
 
 def _watching(value: object, read: set[str]) -> Any:

@@ -24,7 +24,7 @@ class TurningCurve:
     mixtures: tuple[float, ...]
     """Shares of both, increasing from 0 to 1 [-]."""
     curvatures: tuple[float, ...]
-    """Curvature of the way at each share, left positive, increasing [1/m]."""
+    """Curvature of the path at each share, left positive, increasing [1/m]."""
 
     def __post_init__(self) -> None:
         with Checks("turning_curve", self) as checks:

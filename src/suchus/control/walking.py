@@ -16,6 +16,8 @@ from suchus.errors import OutsideLimits
 from suchus.motion import START, AnyGait, Gait, Pattern, steerable, steered, trunk_amplitude
 from suchus.motion.transition import Transition, transition
 
+Groups = list[tuple[AnyRobot, Gait | Pattern, np.ndarray]]
+"""Robot, gait, and the runs of a batch that have both."""
 _SLACK = 1e-9  # [s]
 _GROWS = 0.5  # [cycle]; over which stroke and bends grow after a change of gait
 
@@ -25,9 +27,9 @@ class Change:
     """A change of gait at a time of its own."""
 
     at: float
-    """When it begins [s]."""
+    """Time at which it begins [s]."""
     gait: Gait | Pattern
-    """To which gait."""
+    """Gait to which the walk changes."""
 
     def __post_init__(self) -> None:
         require("change", "at", self.at, 0.0, 86400.0, "s")
@@ -41,11 +43,11 @@ class Walking:
     """
 
     attitude: AttitudeRule | None = None
-    """Which keeps the body level; None for none."""
+    """Rule that keeps the body level; None for none."""
     changes: tuple[Change, ...] = ()
     """Changes of gait that are asked for, in the order of their times."""
     switching: SwitchRule | None = None
-    """Which changes the gait by what is felt; None for none."""
+    """Rule that changes the gait by what the sensors read; None for none."""
     bend: float = 0.0
     """Lasting bend of the trunk, left positive [rad]; it steers to the left."""
     asymmetry: float = 0.0
@@ -131,7 +133,7 @@ class Walker:
         self._attitude = Attitude([control.attitude for control in controls], robots, period)
         self._switcher = Switcher([control.switching for control in controls], robots, gaits, period)
         self._lower = np.zeros((n, len(place.limbs)))
-        self._groups = _grouped(self._robots, self._gaits)
+        self._groups = grouped(self._robots, self._gaits)
         self._last = self._walk(0.0)
 
     def rest(self) -> Float[np.ndarray, "run servo"]:
@@ -146,13 +148,13 @@ class Walker:
         self._finish(time)
         now = self._walk(time)
         for run, asked in self._asked(time, sensed, now.phase):
-            way = transition(self._robots[run], self._gaits[run], asked)
-            self._script[run] = (time, way, self._last.targets[run].copy())
+            course = transition(self._robots[run], self._gaits[run], asked)
+            self._script[run] = (time, course, self._last.targets[run].copy())
             self._cycles[run] += np.ceil((time - self._began[run]) / self._gaits[run].period)
             self._gaits[run] = asked
-            self._groups = _grouped(self._robots, self._gaits)
-        for run, (begun, way, start) in self._script.items():
-            now.targets[run] = way.at(time - begun, start)
+            self._groups = grouped(self._robots, self._gaits)
+        for run, (begun, course, start) in self._script.items():
+            now.targets[run] = course.at(time - begun, start)
             now.phase[run] = self._last.phase[run]
         self._last = now
         return Command(now.targets.copy(), now.phase.copy())
@@ -174,8 +176,8 @@ class Walker:
         return asked
 
     def _finish(self, time: float) -> None:
-        for run, (begun, way, _) in list(self._script.items()):
-            if time >= begun + way.duration - _SLACK:
+        for run, (begun, course, _) in list(self._script.items()):
+            if time >= begun + course.duration - _SLACK:
                 del self._script[run]
                 self._began[run] = time
                 self._full[run] = _GROWS * self._gaits[run].period
@@ -201,9 +203,7 @@ class Walker:
         return Command(targets, phases)
 
 
-def _grouped(
-    robots: Sequence[AnyRobot], gaits: Sequence[Gait | Pattern]
-) -> list[tuple[AnyRobot, Gait | Pattern, np.ndarray]]:
+def grouped(robots: Sequence[AnyRobot], gaits: Sequence[Gait | Pattern]) -> Groups:
     """Return who walks alike; to find it at every period takes as long as the walking."""
     members: dict[tuple[AnyRobot, Gait | Pattern], list[int]] = {}
     for run, pair in enumerate(zip(robots, gaits, strict=True)):

@@ -26,19 +26,19 @@ class Robot:
     """
 
     name: str
-    """How it is called."""
+    """Name, as messages, tables and files show it."""
     root: str
     """The segment that carries the free joint: that of the hindmost girdle, or any one of a body without limbs."""
     axis: tuple[Segment, ...]
-    """From the snout to the tip of the tail."""
+    """Segments of the axis, from the snout to the tip of the tail."""
     girdles: tuple[Girdle, ...]
-    """From the front to the hind one."""
+    """Girdles, from the front to the hind one."""
     cables: tuple[Cable, ...]
     """Cables, each over hinges with springs that follow each other."""
     contact: Contact
-    """How its surfaces meet the ground."""
+    """Friction, stiffness and damping of the contact of its surfaces with the ground."""
     hull: Hull | None = None
-    """What makes it float; None for a robot without foam."""
+    """Foam and air that make it float; None for a robot without."""
 
     def __post_init__(self) -> None:
         with Checks("robot", self) as check:
@@ -67,7 +67,7 @@ class Robot:
 
     @property
     def root_place(self) -> int:
-        """Where the root stands in the axis [-]."""
+        """Index of the root among the segments of the axis [-]."""
         return [segment.name for segment in self.axis].index(self.root)
 
     def servo(self, name: str) -> Servo:

@@ -72,7 +72,7 @@ class Checks:
         """Refuse a row that has not one finite number of ``low`` to ``high`` for each name."""
         row = getattr(self._design, field)
         if not isinstance(row, (tuple, list)):
-            return  # told as a misfit
+            return  # reported as a misfit
         if len(row) != len(names):
             self._complain(field, f"has {len(row)} numbers; {', '.join(names)} need one each")
             return

@@ -7,6 +7,7 @@ from typing import Any, TypeVar
 
 from suchus.design.meaning import meanings, unit
 from suchus.errors import UnknownName
+from suchus.renamed import names_of, new_name
 
 T = TypeVar("T")
 _STEP = re.compile(r"(\w+)|\[(\d+)\]")
@@ -37,7 +38,7 @@ def value_at(design: Any, path: str) -> Any:
         UnknownName: there is no such field.
     """
     for step in _steps(path):
-        design = _step(design, step)
+        design = _step(design, _today(design, step))
     return design
 
 
@@ -55,6 +56,7 @@ def with_values(design: T, values: Mapping[str, Any]) -> T:
     branches: dict[str | int, dict[str, Any]] = {}
     for path, value in values.items():
         first, *rest = _steps(path)
+        first = _today(design, first)
         _step(design, first)
         branches.setdefault(first, {})["".join(f"[{s}]" if isinstance(s, int) else f".{s}" for s in rest)] = value
     changed = {
@@ -77,8 +79,9 @@ def unit_at(design: Any, path: str) -> str:
     """
     value_at(design, path)
     above, _, name = path.rpartition(".")
-    told = meanings(type(value_at(design, above)))
-    return unit(told.get(name.partition("[")[0], "")) or "-"
+    owner = type(value_at(design, above))
+    name = name.partition("[")[0]
+    return unit(meanings(owner).get(names_of(owner).get(name, name), "")) or "-"
 
 
 def _steps(path: str) -> list[str | int]:
@@ -86,6 +89,11 @@ def _steps(path: str) -> list[str | int]:
     if not steps:
         raise UnknownName("field", path, ())
     return steps
+
+
+def _today(design: Any, step: str | int) -> str | int:
+    """Return a step by the name that its field has today."""
+    return step if isinstance(step, int) else new_name(type(design), step)
 
 
 def _step(design: Any, step: str | int) -> Any:

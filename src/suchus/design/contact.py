@@ -14,7 +14,7 @@ class Contact:
     skin_friction: float
     """Friction coefficient of belly, head and tail [-]."""
     time_constant: float
-    """How fast penetration is corrected, MuJoCo's ``solref[0]`` [s]."""
+    """Time constant of the correction of penetration, MuJoCo's ``solref[0]`` [s]."""
     torsion: float = 0.005
     """Torsional friction over the sliding one [m]; 5 thousandths of a body length."""
     rolling: float = 0.0001

@@ -1,4 +1,4 @@
-"""Ground: how it tilts, what stands up from it, how it grips."""
+"""Ground: how it tilts, what stands up from it, how much friction it has."""
 
 from dataclasses import dataclass
 
@@ -7,30 +7,32 @@ from jaxtyping import Float
 
 from suchus.design.checks import Checks
 from suchus.design.relief import Relief
+from suchus.renamed import old_names
 from suchus.rotation import about, multiply
 
 
+@old_names(grip="friction_scale")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Ground:
     """Ground: even or with relief, possibly tilted."""
 
-    grip: float = 1.0
-    """Factor on the friction of all the robot's surfaces [-]."""
+    friction_scale: float = 1.0
+    """Factor on the friction coefficients of all the robot's surfaces [-], 0.01 to 10."""
     uphill: float = 0.0
-    """Slope along the walk, up positive [rad]."""
+    """Slope along the walk, up positive [rad], -1 to 1."""
     sideways: float = 0.0
-    """Slope across the walk, left side up positive [rad]."""
+    """Slope across the walk, left side up positive [rad], -1 to 1."""
     relief: Relief | None = None
-    """What stands up from it; None where it is even."""
+    """Step, stone or bumps on it; None where it is even."""
 
     def __post_init__(self) -> None:
         with Checks("ground", self) as check:
-            check.number("grip", 0.01, 10.0, "")
+            check.number("friction_scale", 0.01, 10.0, "")
             check.number("uphill", -1.0, 1.0, "rad")
             check.number("sideways", -1.0, 1.0, "rad")
 
     def looks_like(self, other: "Ground") -> bool:
-        """Tell whether another ground has the same slopes and relief, however it grips."""
+        """Return whether another ground has the same slopes and relief, whatever its friction."""
         return (self.uphill, self.sideways, self.relief) == (other.uphill, other.sideways, other.relief)
 
 

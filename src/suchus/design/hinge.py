@@ -54,7 +54,7 @@ class Hinge:
     turn: Turn
     """``yaw``, ``pitch`` or ``roll``."""
     drive: Servo | Spring | Crank
-    """What moves it."""
+    """Its drive: a servo, a spring or a crank."""
     range: tuple[float, float] | None = None
     """Limits [rad]; None for a crank, which has none."""
 
@@ -76,23 +76,23 @@ class Hinge:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Cable:
-    """Two cords over one wheel that bend hinges which follow each other, all by the same angle where nothing resists.
+    """Two cords over one pulley that bend hinges which follow each other, all by the same angle where nothing resists.
 
     Paper: Eqs (16) to (18).
     """
 
     name: str
-    """Of the servo and the tendon."""
+    """Name of the servo and the cable."""
     hinges: tuple[str, ...]
     """The hinges that it bends, from its servo to its end."""
     cord_spacing: float
-    """Between the two cords, the article's d [m]."""
+    """Distance between the two cords, the article's d [m]."""
     pulley: float
-    """Radius of the servo's wheel, the article's r [m]."""
+    """Radius of the servo's pulley, the article's r [m]."""
     bend_limit: float
     """Greatest sum of the hinges' angles to either side [rad]."""
     servo: Servo
-    """The servo that turns the wheel; torque and angle are those of its own shaft."""
+    """The servo that turns the pulley; torque and angle are those of its own shaft."""
 
     def __post_init__(self) -> None:
         with Checks(f"cable {self.name}", self) as check:

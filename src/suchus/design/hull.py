@@ -14,7 +14,7 @@ class Foam:
     volume: float
     """[m3]."""
     raised: float = 0.0
-    """How far its centre lies above that of the body, all joints at zero [m]."""
+    """Distance by which its centre lies above that of the body, all joints at zero [m]."""
 
     def __post_init__(self) -> None:
         with Checks(f"foam on {self.body}", self) as check:
@@ -30,9 +30,9 @@ class Hull:
     """
 
     foam: tuple[Foam, ...]
-    """Of every body that has some."""
+    """Foam of every body that has some."""
     density: float = 40.0
-    """Of the foam [kg/m3]; extruded polystyrene and closed-cell polyethylene have 25 to 60."""
+    """Density of the foam [kg/m3]; extruded polystyrene and closed-cell polyethylene have 25 to 60."""
     air: float = 0.0
     """So much of the foam on the axis is a bladder whose air can be let out [m3]; water takes its place."""
 

@@ -28,13 +28,13 @@ class Body:
     """A moving body: a segment of the axis or a link of a limb."""
 
     name: str
-    """Of the body in the model."""
+    """Name of the body in the model."""
     parent: int
     """Its place among the bodies; -1 for the root."""
     offset: Axis
     """Its origin in the frame of its parent, all hinges at zero [m]."""
     shift: float
-    """How far ahead of its frame, which stands at its hinges, the origin of its segment lies [m]."""
+    """Distance by which the origin of its segment lies ahead of its frame, which stands at its hinges [m]."""
     hinges: tuple[tuple[Hinge, str, Axis], ...]
     """Its hinges in the order in which they turn it: the design, the full name, the axis in its own frame."""
 
@@ -46,9 +46,9 @@ class LimbPlace:
     name: str
     """As ``LF``."""
     girdle: Girdle
-    """On which it sits."""
+    """Index of the girdle on which it sits [-]."""
     number: int
-    """Of the girdle, from the front [-]."""
+    """Number of the girdle, from the front [-]."""
     side: float
     """1 left, -1 right [-]."""
     hinges: slice
@@ -192,7 +192,7 @@ def layout(robot: AnyRobot) -> Layout:
 def servo_ranges(robot: AnyRobot) -> np.ndarray:
     """Return the range of what each servo turns, shape (servo, 2) [rad]; a crank has none, for a cable see the pulley.
 
-    A wheel that bends N hinges by b together turns by N d sin(b / (2 N)) / r.
+    A pulley that bends N hinges by b together turns by N d sin(b / (2 N)) / r.
     """
     found, place = [], layout(robot)
     by_name = {name: hinge for body in place.bodies for hinge, name, _ in body.hinges}
@@ -228,10 +228,10 @@ def hips_ahead(robot: AnyRobot, girdle: int) -> float:
     body = general(robot)
     if girdle == len(body.girdles) - 1:
         return 0.0
-    names, way = [segment.name for segment in body.axis], -body.girdles[-1].at
+    names, distance = [segment.name for segment in body.axis], -body.girdles[-1].at
     for place in range(body.root_place, names.index(body.girdles[girdle].segment), -1):
-        way += body.axis[place].front + body.axis[place - 1].rear
-    return way + body.girdles[girdle].at
+        distance += body.axis[place].front + body.axis[place - 1].rear
+    return distance + body.girdles[girdle].at
 
 
 def _pairs(robot: Robot) -> list[tuple[Girdle, str, float]]:
@@ -309,9 +309,9 @@ def _within(robot: Robot, ahead: list[str]) -> list[str]:
 
 def _place(robot: Robot, hinge: str) -> float:
     """Return where a hinge of the axis is, as a share of the length from the snout."""
-    way = 0.0
+    distance = 0.0
     for segment in robot.axis:
-        way += segment.front + segment.rear
+        distance += segment.front + segment.rear
         if any(one.name == hinge for one in segment.hinges):
-            return way / robot.length
+            return distance / robot.length
     raise UnknownName("hinge", hinge, [h.name for h in robot.axis_hinges])

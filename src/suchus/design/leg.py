@@ -19,17 +19,17 @@ class Leg:
     """
 
     hip_offset: float
-    """From the midline to the hip's yaw axis, the table's a0 [m]."""
+    """Distance from the midline to the hip's yaw axis, the table's a0 [m]."""
     femur: float
-    """From hip to knee, the table's a2 [m]."""
+    """Length from hip to knee, the table's a2 [m]."""
     tibia: float
-    """From knee to the foot's centre, the table's a3 [m]."""
+    """Length from knee to the foot's centre, the table's a3 [m]."""
     foot_radius: float
     """Radius of the spherical foot [m]."""
     radius: float
     """Radius of femur and tibia [m]."""
     mass: float
-    """Of one leg with its servos [kg]: 60 % in the femur, 35 % in the tibia, 5 % in the foot."""
+    """Mass of one leg with its servos [kg]: 60 % in the femur, 35 % in the tibia, 5 % in the foot."""
     yaw_range: tuple[float, float]
     """Limits of the yaw joint, forward positive [rad]."""
     pitch_range: tuple[float, float]

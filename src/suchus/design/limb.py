@@ -55,9 +55,9 @@ class Limb:
     """The left limb of a girdle; the right one is its mirror image."""
 
     links: tuple[Link, ...]
-    """From the hip to the foot."""
+    """Links, from the hip to the foot."""
     foot: Foot
-    """At the end of the last link."""
+    """Foot at the end of the last link."""
 
     def __post_init__(self) -> None:
         with Checks("limb", self) as check:
@@ -84,18 +84,18 @@ class Limb:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Girdle:
-    """Where a pair of limbs sits."""
+    """The place along the axis at which a pair of limbs is attached."""
 
     name: str
     """Ending of the limbs' names: ``F`` makes ``LF`` and ``RF``."""
     segment: str
-    """Of the axis, on which it sits."""
+    """Name of the segment of the axis to which it is attached."""
     at: float
-    """From the segment's origin forward to the hips [m]."""
+    """Distance from the segment's origin forward to the hips [m]."""
     aside: float
-    """From the midline to the hip [m]."""
+    """Distance from the midline to the hip [m]."""
     above: float
-    """From the axis up to the hips [m]."""
+    """Distance from the axis up to the hips [m]."""
     limb: Limb
     """The left limb."""
 

@@ -21,7 +21,7 @@ class Profile(NamedTuple):
     half_height: Float[np.ndarray, " station"]
     """Half from the lowest to the highest point [m]."""
     area: Float[np.ndarray, " station"]
-    """Of the union of the shapes [m2]."""
+    """Area of the union of the shapes [m2]."""
     middle: Float[np.ndarray, " station"]
     """Centre of the area above the axis [m]."""
 

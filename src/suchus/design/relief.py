@@ -25,7 +25,7 @@ class Step:
     """A single step up across the path; the ground stays high behind it."""
 
     at: float
-    """Of its edge, ahead of the hips at the start [m]."""
+    """Position of its edge, ahead of the hips at the start [m]."""
     height: float
     """[m]."""
 
@@ -40,13 +40,13 @@ class Stone:
     """A block in the path."""
 
     at: float
-    """Of its middle, ahead of the hips at the start [m]."""
+    """Position of its middle, ahead of the hips at the start [m]."""
     aside: float
-    """Of its middle, to the left of the hips at the start [m]."""
+    """Position of its middle, to the left of the hips at the start [m]."""
     height: float
     """[m]."""
     length: float
-    """Along the path [m]."""
+    """Length along the path [m]."""
     width: float
     """Across it [m]."""
 
@@ -64,13 +64,13 @@ class Bumps:
     """A field of random bumps ahead of even ground: smoothed noise."""
 
     height: float
-    """From low to high: between them lie 96 % of the field [m]."""
+    """Height from low to high: between them lie 96 % of the field [m]."""
     correlation: float
     """Distance over which heights lose their correlation, to 1/e [m]."""
     start: float
-    """Where the field begins, ahead of the hips at the start [m]."""
+    """Position at which the field begins, ahead of the hips at the start [m]."""
     seed: int
-    """Of the noise."""
+    """Seed of the noise."""
     scale: float = 1.0
     """Factor on the extent of the field, on the distance of its points and on the ramp before it [-]; for robots much
     smaller or larger than the article's."""
@@ -82,7 +82,7 @@ class Bumps:
 
     @property
     def aside(self) -> float:
-        """How far it extends to either side [m]."""
+        """Half-width, to either side [m]."""
         return ASIDE * self.scale
 
     @property
@@ -100,7 +100,7 @@ class Bumps:
 
 
 Relief = Step | Stone | Bumps
-"""Whatever stands up from even ground."""
+"""Anything that rises above even ground."""
 
 
 @lru_cache(maxsize=64)

@@ -21,7 +21,7 @@ class Crocodile:
     """
 
     name: str
-    """How it is called."""
+    """Name, as messages, tables and files show it."""
     hind_leg: Leg
     """The left hind leg; the right one mirrors it."""
     front_leg: Leg
@@ -37,9 +37,9 @@ class Crocodile:
     tail: Tail
     """The tail."""
     contact: Contact
-    """How its surfaces meet the ground."""
+    """Friction, stiffness and damping of the contact of its surfaces with the ground."""
     hull: Hull | None = None
-    """What makes it float; None for a robot without foam."""
+    """Foam and air that make it float; None for a robot without."""
 
     def __post_init__(self) -> None:
         with Checks("robot", self) as check:

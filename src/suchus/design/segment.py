@@ -43,7 +43,7 @@ class Rod:
 
     @property
     def bottom(self) -> float:
-        """How far it reaches below the axis [m]."""
+        """Depth of its lowest point below the axis [m]."""
         return self.radius - min(self.start[2], self.end[2])
 
 
@@ -77,7 +77,7 @@ class Shell:
 
     @property
     def bottom(self) -> float:
-        """How far it reaches below the axis [m]."""
+        """Depth of its lowest point below the axis [m]."""
         return self.half[2] - self.at[2]
 
 
@@ -91,9 +91,9 @@ class Segment:
     name: str
     """Unique in the robot."""
     front: float
-    """From the origin forward to the joint with the segment ahead, or to the tip [m]."""
+    """Distance from the origin forward to the joint with the segment ahead, or to the tip [m]."""
     rear: float
-    """From the origin back to the joint with the segment behind, or to the tip [m]."""
+    """Distance from the origin back to the joint with the segment behind, or to the tip [m]."""
     shapes: tuple[Rod | Shell, ...]
     """What it is made of; the masses are theirs."""
     hinges: tuple[Hinge, ...] = ()

@@ -19,13 +19,13 @@ class Spine:
     """
 
     base: float
-    """From the hind girdle's axis to the first joint, the table's a0 [m]."""
+    """Distance from the hind girdle's axis to the first joint, the table's a0 [m]."""
     link: float
-    """From each joint to the next, the table's a1 to a4 [m]."""
+    """Length from each joint to the next, the table's a1 to a4 [m]."""
     radius: float
     """Radius of the trunk's links [m]."""
     link_mass: float
-    """Of each of the links between the joints [kg]."""
+    """Mass of each of the links between the joints [kg]."""
     yaw_range: tuple[float, float]
     """Limits of each yaw joint [rad]."""
     pitch_range: tuple[float, float]

@@ -22,9 +22,9 @@ class Tail:
     """
 
     offset: float
-    """From the hind girdle's axis back to the pitch joint [m]."""
+    """Distance from the hind girdle's axis back to the pitch joint [m]."""
     root: float
-    """From the pitch joint to the middle of the first plate, where the cable section begins [m]."""
+    """Distance from the pitch joint to the middle of the first plate, where the cable section begins [m]."""
     joints: int
     """Number of cable joints, the article's N [-]."""
     plate: float
@@ -32,9 +32,9 @@ class Tail:
     gap: float
     """Gap between plates, the article's h [m]."""
     cord_spacing: float
-    """Between the two cords, the article's d [m]."""
+    """Distance between the two cords, the article's d [m]."""
     pulley: float
-    """Radius of the servo's wheel, the article's r [m]."""
+    """Radius of the servo's pulley, the article's r [m]."""
     joint_stiffness: float
     """Lateral spring at each cable joint [N m/rad]."""
     joint_damping: float
@@ -54,7 +54,7 @@ class Tail:
     radius_tip: float
     """Radius at the tip [m]."""
     mass: float
-    """Of the whole tail, spread in proportion to volume [kg]."""
+    """Mass of the whole tail, spread in proportion to volume [kg]."""
     pitch_range: tuple[float, float]
     """Limits of the pitch joint, down positive [rad]."""
     bend_limit: float

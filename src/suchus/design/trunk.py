@@ -12,7 +12,7 @@ class Pelvis:
     mass: float
     """[kg]."""
     length: float
-    """Along the body [m]."""
+    """Length along the body [m]."""
     width: float
     """Across the body [m]."""
     height: float
@@ -32,7 +32,7 @@ class Thorax:
     mass: float
     """[kg]."""
     shoulder: float
-    """From the last spine joint forward to the front girdle's axis [m]."""
+    """Distance from the last spine joint forward to the front girdle's axis [m]."""
     width: float
     """Across the body [m]."""
     height: float
@@ -58,11 +58,11 @@ class Head:
     mass: float
     """[kg]."""
     snout: float
-    """From the last spine joint forward to the tip of the snout [m]."""
+    """Distance from the last spine joint forward to the tip of the snout [m]."""
     width: float
-    """At the jaw joint [m]."""
+    """Width at the jaw joint [m]."""
     height: float
-    """At the jaw joint [m]."""
+    """Height at the jaw joint [m]."""
 
     def __post_init__(self) -> None:
         with Checks("head", self) as check:

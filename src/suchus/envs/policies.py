@@ -11,7 +11,7 @@ from suchus.envs.registering import STEPS
 from suchus.envs.senses import part, turning
 from suchus.envs.task import Task
 from suchus.envs.vector import CrocodileVectorEnv
-from suchus.motion import AnyGait, Gait, pattern_targets, servo_targets
+from suchus.motion import AnyGait, cycle_targets
 
 Policy = Callable[[Float[np.ndarray, "run n"]], Float[np.ndarray, "run servo"]]
 """From observations to actions."""
@@ -59,10 +59,7 @@ class Follow:
         task, gait, robot = self.task, self.gait, self.task.robot
         sine, cosine = part(seen, "clock", robot).astype(float).T
         clock = np.arctan2(sine, cosine) / (2 * np.pi) + task.decision / task.gait.period
-        if isinstance(gait, Gait):
-            targets = servo_targets(robot, gait, clock[:, None] + np.array(gait.limb_phases))
-        else:
-            targets = pattern_targets(robot, gait, clock)
+        targets = cycle_targets(robot, gait, clock)
         actions = (targets - np.array(self.centre)) / task.span
         cranks = turning(robot)
         if cranks.any():

@@ -28,7 +28,7 @@ class Published(NamedTuple):
     unit: str
     """``-`` for none."""
     source: str
-    """Where it comes from."""
+    """Publication, or the simulation, that it is from."""
 
 
 _KINEMATICS = "Pleurodeles waltl; Karakasiliotis et al. 2013, Biol. Cybern. 107, 529"
@@ -59,18 +59,18 @@ Forces are those at the instant of the greatest net force on one foot, means ove
 
 
 class Window(NamedTuple):
-    """Whole cycles of one run."""
+    """Window of whole cycles in one run."""
 
     start: float
-    """When the first begins [s]."""
+    """Time at which the first cycle begins [s]."""
     period: float
-    """Of a cycle [s]."""
+    """Period of a cycle [s]."""
     cycles: int
-    """How many [-]."""
+    """Number of cycles [-]."""
 
     @property
     def end(self) -> float:
-        """When the last ends [s]."""
+        """Time at which the last cycle ends [s]."""
         return self.start + self.cycles * self.period
 
 
@@ -128,7 +128,7 @@ def _turned(force: xr.DataArray, record: xr.Dataset, when: Window) -> xr.DataArr
     return xr.concat(parts, xr.DataArray(list(PARTS), dims="part", name="part"))
 
 
-class Step(NamedTuple):
+class FootStep(NamedTuple):
     """What the ground does to one foot in its mean stance."""
 
     net: float
@@ -141,7 +141,7 @@ class Step(NamedTuple):
     """Duration of the stance that holds it [cycle]."""
 
 
-def step(force: xr.DataArray, least: float) -> Step:
+def step(force: xr.DataArray, least: float) -> FootStep:
     """Return what stands out in the force on one foot over a cycle.
 
     Args:
@@ -155,7 +155,7 @@ def step(force: xr.DataArray, least: float) -> Step:
     after = count if stands.all() else int(np.argmin(stands))
     before = 0 if stands.all() else int(np.argmin(stands[::-1]))
     length = min(after + before, count)
-    return Step(
+    return FootStep(
         net=float(net[top]),
         parts={name: float(one[top]) for name, one in parts.items()},
         time=before / length if length else nan,

@@ -8,7 +8,7 @@ import xarray as xr
 from scipy import stats
 
 from suchus.experiment import Measure
-from suchus.land import KINDS, LEGS_LOST
+from suchus.land import KINDS, LEGS_FAILED
 from suchus.metrics import loss
 from suchus.paper import CLAIMS
 from suchus.verdict import Reading, compared, listed
@@ -52,10 +52,10 @@ def measures(record: xr.Dataset) -> Mapping[str, Measure]:
 
 
 def _readings(record: xr.Dataset) -> dict[str, Measure]:
-    """Return what every reading of every loss costs in both arms."""
+    """Return what every reading of every failure costs in both conditions."""
     change = _changes(record)
     found: dict[str, Measure] = {}
-    for cell in product(record.joint.values, KINDS, LEGS_LOST, ARMS):
+    for cell in product(record.joint.values, KINDS, LEGS_FAILED, ARMS):
         at, name = dict(zip(_CELLS, cell, strict=True)), "_".join(cell)
         found |= _ranged(f"loss_{name}", change["forward"].sel(at), "-")
         found[f"net_loss_{name}"] = Measure(float(change["net"].sel(at).median()), "-")
@@ -81,8 +81,8 @@ def tolerance(record: xr.Dataset) -> dict[str, Measure]:
     The variations are independent of each other, the faults within one of them are not: the exact sign test counts
     variations, by the mean over all faults of the article's joints.
     """
-    lost = record.lost.values if "lost" in record.coords else record.joint.values
-    kept = _kept(record).sel(joint=lost)
+    failed = record.lost.values if "lost" in record.coords else record.joint.values
+    kept = _kept(record).sel(joint=failed)
     ours, bare = (kept.sel(arm=arm, drop=True) for arm in ARMS)
     better, gain = ours > bare, (ours - bare).mean(("joint", "kind", "legs"))
     won, told = int((gain > 0).sum()), int((gain != 0).sum())
@@ -92,11 +92,11 @@ def tolerance(record: xr.Dataset) -> dict[str, Measure]:
         "share_spine_and_tail_bear_better": Measure(float(better.mean()), "-"),
         "share_variations_bear_better": Measure(won / kept.sizes["variation"], "-"),
         "chance_spine_and_tail_bear_better": Measure(chance, "-"),
-        "share_spine_and_tail_ahead": Measure(float(ahead.sel(joint=lost).mean()), "-"),
+        "share_spine_and_tail_ahead": Measure(float(ahead.sel(joint=failed).mean()), "-"),
         "share_limbs_only_beyond_intact": Measure(float((bare > 1.0).mean()), "-"),
         "greatest_limbs_only_over_intact": Measure(float(bare.median("variation").max()), "-"),
     }
-    for joint in lost:
+    for joint in failed:
         found[f"share_bear_better_{joint}"] = Measure(float(better.sel(joint=joint).mean()), "-")
     return found
 
@@ -125,13 +125,13 @@ def explained(measures: Mapping[str, float], kind: str, legs: str) -> str:
 
     Args:
         measures: every number of the experiment.
-        kind: the reading of 'lost' that is steered.
+        kind: the reading of the article's 'lost' that is steered.
         legs: whether one leg or both of a girdle are steered.
     """
     m = {name: Reading(value) for name, value in measures.items()}
     effects = {
         "what 'lost' means (limp or locked)": m["effect_of_kind"],
-        "which joint is lost": m["effect_of_joint"],
+        "which joint fails": m["effect_of_joint"],
         "whether one leg or both lose it": m["effect_of_legs"],
     }
     most = max(effects, key=lambda name: effects[name])
@@ -153,13 +153,13 @@ def _steering(m: Mapping[str, Reading], kind: str, legs: str) -> str:
         name = f"loss_{joint}_{kind}_{legs}"
         alone, steered = m[f"{name}_coordinated"], m[f"{name}_steered"]
         word = compared(steered, alone, less="more", more="less", same="as much", within=0.05)
-        told.append(f"{joint.replace('_', ' ')} {alone:+.0%} to {steered:+.0%} ({word} lost)")
+        told.append(f"{joint.replace('_', ' ')} {alone:+.0%} to {steered:+.0%} ({word} failed)")
     return f"Steering changes the loss from: {'; '.join(told)}." if told else "A table of angles cannot be steered."
 
 
 def _others(m: Mapping[str, Reading]) -> str:
     """Return what the joints cost, limp in one leg, that lie farther from the hip."""
-    ends = f"_{KINDS[0]}_{LEGS_LOST[0]}_coordinated"
+    ends = f"_{KINDS[0]}_{LEGS_FAILED[0]}_coordinated"
     main = _joints_of(m, f"{ends}_repeated_low")
     others = [joint for joint in _joints_of(m, ends) if joint not in main]
     costs = listed([f"{joint.replace('_', ' ')} {m[f'loss_{joint}{ends}']:+.0%}" for joint in others])
@@ -177,11 +177,11 @@ def _joints_of(m: Mapping[str, Reading], ends: str) -> list[str]:
 
 
 def table(record: xr.Dataset) -> str:
-    """Return one row per fault and arm: medians over the variations, with ranges where a paper needs them."""
+    """Return one row per fault and condition: medians over the variations, with ranges where a paper needs them."""
     change, own = _changes(record), loss(record.forward, record.intact_forward)
     head = "joint,kind,legs,arm,forward_m,change,change_low,change_high,change_of_own_intact,net_change,path_change,"
     rows = [head + "turn_deg,printed_change"]
-    for cell in product(record.joint.values, KINDS, LEGS_LOST, ARMS):
+    for cell in product(record.joint.values, KINDS, LEGS_FAILED, ARMS):
         at = dict(zip(_CELLS, cell, strict=True))
         forward = change["forward"].sel(at)
         numbers = (
@@ -210,7 +210,7 @@ def _changes(record: xr.Dataset) -> dict[str, xr.DataArray]:
 
 
 def _kept(record: xr.Dataset) -> xr.DataArray:
-    """Return the part of its own intact displacement that each arm keeps; going backwards is keeping nothing [-]."""
+    """Return the part of its own intact displacement that each condition keeps [-]; going backwards is 0."""
     return (record.forward / record.intact_forward).clip(min=0.0)
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from suchus.land import KINDS, LEGS_LOST
+from suchus.land import KINDS, LEGS_FAILED
 from suchus.metrics import swing_height, swing_lift, swing_loads, swing_unloaded
 
 
@@ -11,7 +11,7 @@ def lay(data: xr.Dataset, name: str, values: np.ndarray, more: tuple[str, ...], 
     """Put values of shape (variation, arm, 1 + fault, ...) into a dataset: the intact apart from the faults."""
     about = {"units": unit, "long_name": what}
     data[f"intact_{name}"] = (("variation", "arm", *more), values[:, :, 0], about)
-    shape = (*values.shape[:2], data.sizes["joint"], len(KINDS), len(LEGS_LOST), *values.shape[3:])
+    shape = (*values.shape[:2], data.sizes["joint"], len(KINDS), len(LEGS_FAILED), *values.shape[3:])
     data[name] = (("variation", "arm", "joint", "kind", "legs", *more), values[:, :, 1:].reshape(shape), about)
 
 

@@ -43,17 +43,17 @@ def start_measures(record: xr.Dataset, gait: AnyGait, hold: float, cycles: int) 
     shares = [float(group.mean()) for group in np.array_split(came, max(came.size // _GROUP, 1))]
     measures["converged_cross_load_low"] = Measure(min(shares), "-")
     measures["converged_cross_load_high"] = Measure(max(shares), "-")
-    ways = _ending(record.start_way.rename(start_time="time"), hold * period)
-    ways = (ways.isel(time=-1) - ways.isel(time=0)) / hold
+    distances = _ending(record.start_way.rename(start_time="time"), hold * period)
+    distances = (distances.isel(time=-1) - distances.isel(time=0)) / hold
     for name, law in (("shared", "closed_noisy"), ("isolated", "isolated_noisy")):
-        measures[f"way_{name}"] = Measure(float(ways.sel(law=law).mean()), "m")
-        measures[f"way_{name}_least"] = Measure(float(ways.sel(law=law).min()), "m")
-        measures[f"way_{name}_most"] = Measure(float(ways.sel(law=law).max()), "m")
+        measures[f"way_{name}"] = Measure(float(distances.sel(law=law).mean()), "m")
+        measures[f"way_{name}_least"] = Measure(float(distances.sel(law=law).min()), "m")
+        measures[f"way_{name}_most"] = Measure(float(distances.sel(law=law).max()), "m")
     return measures
 
 
 def disturbed_measures(record: xr.Dataset, gait: AnyGait, hold: float, after: int) -> dict[str, Measure]:
-    """Return ways and turns after each disturbance, and what the rules make of them.
+    """Return distances and turns after each disturbance, and what the rules make of them.
 
     Args:
         record: what happened.
@@ -65,25 +65,25 @@ def disturbed_measures(record: xr.Dataset, gait: AnyGait, hold: float, after: in
     part = record.sel(time=slice(at - 1e-9, None))
     change = part.isel(time=-1) - part.isel(time=0)
     moved = {(d, a): change.sel(disturbance=d, arm=a) for d in record.disturbance.values for a in record.arm.values}
-    way = {key: float(value.x) for key, value in moved.items()}
+    distance = {key: float(value.x) for key, value in moved.items()}
     measures = {}
     for name in record.disturbance.values:
         for arm in SHOWN:
-            measures[f"recovery_{name}_{arm}"] = Measure(way[name, arm], "m")
+            measures[f"recovery_{name}_{arm}"] = Measure(distance[name, arm], "m")
             measures[f"heading_{name}_{arm}"] = Measure(float(moved[name, arm].heading), "rad")
     error = phase_error(record.limb_phase.sel(disturbance="kick", arm="closed"), gait)
     back = float(cycles_until(error, gait.period, start=at, hold=min(hold, 0.5)))
     shares = {
-        "kick_kept_open": way["kick", "open"] / way["none", "open"],
-        "kick_kept_closed": way["kick", "closed"] / way["none", "closed"],
+        "kick_kept_open": distance["kick", "open"] / distance["none", "open"],
+        "kick_kept_closed": distance["kick", "closed"] / distance["none", "closed"],
         "cycles_after_kick": min(back, float(after)),
-        "locked_spine_loss_open": 1.0 - way["locked_spine", "open"] / way["none", "open"],
-        "locked_spine_loss_closed": 1.0 - way["locked_spine", "closed"] / way["none", "open"],
-        "locked_spine_loss_of_own": 1.0 - way["locked_spine", "closed"] / way["none", "closed"],
-        "uphill_gain_closed": way["uphill", "closed"] / way["uphill", "open"] - 1.0,
+        "locked_spine_loss_open": 1.0 - distance["locked_spine", "open"] / distance["none", "open"],
+        "locked_spine_loss_closed": 1.0 - distance["locked_spine", "closed"] / distance["none", "open"],
+        "locked_spine_loss_of_own": 1.0 - distance["locked_spine", "closed"] / distance["none", "closed"],
+        "uphill_gain_closed": distance["uphill", "closed"] / distance["uphill", "open"] - 1.0,
     }
-    if ("uphill", "tail") in way:
-        shares["uphill_gain_tail"] = way["uphill", "tail"] / way["uphill", "open"] - 1.0
+    if ("uphill", "tail") in distance:
+        shares["uphill_gain_tail"] = distance["uphill", "tail"] / distance["uphill", "open"] - 1.0
     measures |= {name: Measure(value, "-") for name, value in shares.items()}
     last = part.heading.sel(time=part.time[-1] - gait.period, method="nearest")
     turning = (part.heading.isel(time=-1) - last).sel(disturbance="limp_yaw")
@@ -148,19 +148,19 @@ def _undisturbed_measures(record: xr.Dataset, gait: AnyGait) -> dict[str, Measur
     """Return what the rules do to a robot whose phases are right, over the first two cycles."""
     part = record.sel(time=slice(START - 1e-9, START + 2 * gait.period + 1e-9), disturbance="none")
     change = part.isel(time=-1) - part.isel(time=0)
-    way = {arm: float(change.x.sel(arm=arm)) for arm in record.arm.values}
+    distance = {arm: float(change.x.sel(arm=arm)) for arm in record.arm.values}
     clock = change.limb_phase.mean("leg")
     found = {
-        "distortion": Measure(abs(way["limbs"] / way["open"] - 1.0), "-"),
-        "kept_undisturbed_spine": Measure(way["spine"] / way["open"], "-"),
-        "way_gained": Measure(way["closed"] / way["open"] - 1.0, "-"),
+        "distortion": Measure(abs(distance["limbs"] / distance["open"] - 1.0), "-"),
+        "kept_undisturbed_spine": Measure(distance["spine"] / distance["open"], "-"),
+        "way_gained": Measure(distance["closed"] / distance["open"] - 1.0, "-"),
         "clock_closed": Measure(float(clock.sel(arm="closed")) / float(clock.sel(arm="open")), "-"),
     }
     if "tail_pitch" not in record:
         return found
     pitch = record.tail_pitch.sel(arm="closed").isel(time=-1)
     return found | {
-        "kept_undisturbed_tail": Measure(way["tail"] / way["open"], "-"),
+        "kept_undisturbed_tail": Measure(distance["tail"] / distance["open"], "-"),
         "tail_pitch_level": Measure(float(pitch.sel(disturbance="none")), "rad"),
         "tail_pitch_uphill": Measure(float(pitch.sel(disturbance="uphill")), "rad"),
     }

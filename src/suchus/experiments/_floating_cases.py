@@ -13,7 +13,7 @@ from suchus import rotation
 from suchus.design import GRAVITY
 from suchus.design.water import Water
 from suchus.hydro import FORCE
-from suchus.land.float_body import FloatBody, Integrator, Pool
+from suchus.land.float_body import FloatBody, FloatTank, Integrator
 from suchus.land.lake import Lake
 
 WATER = Water()
@@ -45,18 +45,18 @@ The issue gives the acceleration and not the hull; any under water whose centre 
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Draft:
+class KnownDraft:
     """A body with its exact draft."""
 
     name: str
-    """Of the body."""
+    """Name of the body."""
     body: FloatBody
     """The body."""
     exact: float
     """Depth of its lowest point [m]."""
 
 
-def drafts() -> list[Draft]:
+def drafts() -> list[KnownDraft]:
     """Return a sphere, a lying cylinder and a box of several densities with their drafts in closed form."""
     r, found = 0.1, []
     sphere = FloatBody(shape="ellipsoid", half=(r, r, r), mass=1, inertia=_ONE)
@@ -70,13 +70,13 @@ def drafts() -> list[Draft]:
     return found
 
 
-def _draft(name: str, body: FloatBody, share: float, exact: float) -> Draft:
-    return Draft(name=name, body=replace(body, mass=share * WATER.density * body.volume), exact=exact)
+def _draft(name: str, body: FloatBody, share: float, exact: float) -> KnownDraft:
+    return KnownDraft(name=name, body=replace(body, mass=share * WATER.density * body.volume), exact=exact)
 
 
 def draft_of(body: FloatBody) -> float:
     """Return the draft at which the water carries a body in a physics step [m]."""
-    pool = Pool(body, SURFACE)
+    pool = FloatTank(body, SURFACE)
 
     def net(depth: float) -> float:
         pool.place((0.0, 0.0, -depth))
@@ -99,7 +99,7 @@ def heave(added: float, amplitude: float, periods: int, timestep: float) -> tupl
     # half under, the box weighs the water that it displaces, and so much of the added mass of the whole counts
     body = replace(BOX, added=(0.0, 0.0, added), centre=(0.0, 0.0, 0.0), mass=0.5 * WATER.density * BOX.volume)
     exact = 2 * pi * sqrt((1 + added) * body.mass / (WATER.density * GRAVITY * side))
-    pool = Pool(body, SURFACE, timestep=timestep)
+    pool = FloatTank(body, SURFACE, timestep=timestep)
     pool.place((0.0, 0.0, amplitude))
     return pool.watch(periods * exact, timestep), exact
 
@@ -114,7 +114,7 @@ def period_of(watched: xr.Dataset) -> float:
 
 def rocking(duration: float, integrator: Integrator, timestep: float) -> xr.Dataset:
     """Return the motion of a box that is let go heeled and pitched, without drag and added mass."""
-    pool = Pool(BOX, SURFACE, timestep=timestep, integrator=integrator)
+    pool = FloatTank(BOX, SURFACE, timestep=timestep, integrator=integrator)
     turn = rotation.multiply(
         rotation.about(np.array([0.0, 1.0, 0.0]), 0.1), rotation.about(np.array([1.0, 0.0, 0.0]), 0.4)
     )
@@ -127,7 +127,7 @@ def gained_energy(watched: xr.Dataset) -> float:
 
     It rests where its potential energy is least: BOX upright and half under.
     """
-    rest = Pool(BOX, SURFACE)
+    rest = FloatTank(BOX, SURFACE)
     rest.place((0.0, 0.0, 0.0))
     energy = watched.energy.values
     return float((energy.max() - energy[0]) / (energy[0] - rest.energy()))
@@ -135,7 +135,7 @@ def gained_energy(watched: xr.Dataset) -> float:
 
 def drifting(integrator: Integrator, timestep: float, duration: float = 2.0) -> xr.Dataset:
     """Return the motion of a spheroid in ideal water without gravity, turning and moving about all axes."""
-    pool = Pool(SPHEROID, DEEP, timestep=timestep, integrator=integrator)
+    pool = FloatTank(SPHEROID, DEEP, timestep=timestep, integrator=integrator)
     pool.model.opt.gravity[:] = 0.0
     pool.place((0.0, 0.0, 0.0), velocity=(0.5, 0.2, 0.1), spin=(0.8, 0.5, -1.0))
     return pool.watch(duration, 0.1)
@@ -176,7 +176,7 @@ def volume_errors(body: FloatBody, poses: int, points: int) -> np.ndarray:
         "box": lambda p: np.full(len(p), True),
     }
     cloud = cube[inside[body.shape](cube)] * body.half
-    pool, found = Pool(body, SURFACE), []
+    pool, found = FloatTank(body, SURFACE), []
     for turn, depth in zip(rng.normal(size=(poses, 4)), rng.uniform(-0.12, 0.12, poses), strict=True):
         quaternion = turn / np.linalg.norm(turn)
         pool.place((0.0, 0.0, -depth), quaternion)
@@ -190,13 +190,13 @@ def public_table() -> dict[str, float]:
 
     ``neutral`` [m/s2], ``ballast`` [N], ``keel`` [rad/s2].
     """
-    neutral = Pool(SPHEROID_PLAIN, DEEP)
+    neutral = FloatTank(SPHEROID_PLAIN, DEEP)
     neutral.place((0.0, 0.0, 0.0))
     float_ = FloatBody(shape="box", half=(0.15, 0.15, 0.15), mass=WATER.density * 0.027 + BALLAST, inertia=_ONE)
-    loaded = Pool(float_, DEEP)
+    loaded = FloatTank(float_, DEEP)
     loaded.place((0.0, 0.0, 0.0))
     hull = keeled()
-    keel = Pool(hull, DEEP)
+    keel = FloatTank(hull, DEEP)
     keel.place((0.0, 0.0, 0.0), rotation.about(np.array([1.0, 0.0, 0.0]), radians(45)))
     return {
         "neutral": float(neutral.acceleration[0][2]),

@@ -18,7 +18,7 @@ class Searched:
     servo_speed: float
     """No-load speed of the servos with which it was searched [rad/s]."""
     gait: Gait
-    """How the feet move."""
+    """Gait that gives the paths of the feet."""
     trunk_mean: float
     """Mean vertical bend of the trunk, down positive [rad]."""
     trunk_amplitude: float

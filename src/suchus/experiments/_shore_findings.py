@@ -12,6 +12,14 @@ from suchus.experiment import Measure
 from suchus.land import Run
 from suchus.land.bench import up
 
+METRES = {
+    "land": "on level dry land",
+    "ashore": "up the shore, out of the water",
+    "wading": "up the shore, wading",
+    "surface": "at the surface",
+    "deep": "at a depth that is held",
+}
+"""Endings of the measures of what a metre costs, and in words where that is, from land to depth."""
 FALLEN = np.radians(60)
 """Tilt of the body against gravity beyond which it has fallen [rad]."""
 AFLOAT = 0.01
@@ -19,7 +27,7 @@ AFLOAT = 0.01
 LAST = 2.0
 """How long it must float free at the end to count as in the water [s]."""
 _UNITS = {
-    "ahead": ("m", "centre of mass beyond the water line, up the shore"),
+    "ahead": ("m", "centre of mass beyond the water line, up the shore; less than 0 on the water's side"),
     "aside": ("m", "centre of mass to the left of where it began"),
     "under": ("1", "volume under water over the whole volume"),
     "feet": ("1", "of the weight that the feet carry"),
@@ -40,11 +48,12 @@ def paths(record: xr.Dataset, runs: list[Run], every: int) -> xr.Dataset:
     """
     ups = np.array([up(run.ground) for run in runs])
     line = np.array([water_line(run) for run in runs])
+    ashore = np.sign([run.ground.uphill for run in runs])  # whether the land is ahead of the line or behind it
     shares = _ground_share(record, ups)
     walks = walking(record.limb_phase.isel(leg=0).values)
     high = rotation.rotate(record.orientation.values, np.array([0.0, 0.0, 1.0]))
     values = {
-        "ahead": record.centre_of_mass.sel(xyz="x").values - line[:, None],
+        "ahead": ashore[:, None] * (record.centre_of_mass.sel(xyz="x").values - line[:, None]),
         "aside": record.centre_of_mass.sel(xyz="y").values,
         "under": record.share_under.values,
         "feet": record.feet_share.values,
@@ -96,6 +105,24 @@ def times_ashore(record: xr.Dataset) -> Float[np.ndarray, " case"]:
     reached = record.ahead.values >= record.attrs["beyond"]
     first = record.moment.values[reached.argmax(axis=1)]
     return np.where(reached.any(axis=1) & ~fallen(record), first, np.nan)
+
+
+def ending(record: xr.Dataset) -> str:
+    """Return what became of the case that is drawn, in words."""
+    case = record.isel(case=[record.attrs["shown"]])
+    walked, found = case.walks.values[0] > 0, []
+    if walked.any():
+        found.append(f"after {float(case.moment[walked.argmax()]):.0f} s it walks")
+    else:
+        found.append("it does not begin to walk")
+    time = float(times_ashore(case)[0])
+    if np.isfinite(time):
+        found.append(f"after {time:.0f} s it is {record.attrs['beyond']:g} m beyond the water line")
+    elif fallen(case)[0]:
+        found.append("it falls")
+    else:
+        found.append(f"it does not come {record.attrs['beyond']:g} m beyond the water line")
+    return ", and ".join(found)
 
 
 def in_water(record: xr.Dataset) -> Bool[np.ndarray, " case"]:
@@ -180,9 +207,13 @@ def _metre_costs(record: xr.Dataset) -> dict[str, Measure]:
 
 
 def _costs(record: xr.Dataset) -> dict[str, Measure]:
-    """Return speed [m/s] and work of the servos over distance [J/m] while it swims, wades and walks ashore."""
-    step = float(record.moment[1] - record.moment[0])
-    speed = np.gradient(record.ahead.values, step, axis=1)
+    """Return speed [m/s] and work of the servos over distance [J/m] while it swims, wades and walks ashore.
+
+    Both along its course, which need not be straight up the shore.
+    """
+    step, course = float(record.moment[1] - record.moment[0]), record.attrs["approach"]
+    along = np.cos(course) * record.ahead.values + np.sin(course) * record.aside.values
+    speed = np.gradient(along, step, axis=1)
     walks, under = record.walks.values > 0, record.under.values
     late = (record.moment.values > 3.0)[None, :]
     found = {}

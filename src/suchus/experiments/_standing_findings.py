@@ -73,9 +73,9 @@ def _pushes(record: xr.Dataset) -> dict[str, Measure]:
         some = record.repeat_reach.sel(feedback=feedback, repeat_time=slice(up, leave))
         stays = (some > record.attrs["least"]).all("repeat_time")
         found[f"stays_up_{feedback}"] = Measure(float(stays.mean()), "-")
-        for way in record.way.values:
-            force = record.push.sel(feedback=feedback, commanded=LEAD, way=way)
-            found[f"push_{way}_{feedback}"] = Measure(float(force), "N")
+        for direction in record.direction.values:
+            force = record.push.sel(feedback=feedback, commanded=LEAD, direction=direction)
+            found[f"push_{direction}_{feedback}"] = Measure(float(force), "N")
     return found
 
 
@@ -97,12 +97,12 @@ def explained(measures: Mapping[str, float]) -> str:
     m = {name: Reading(value) for name, value in measures.items()}
     enough = compared(m["pitch_torque"], m["cantilever_torque"], less="too little for", more="enough for")
     helped = [
-        f"{way} {m[f'push_{way}_off']:.1f} N without feedback, {m[f'push_{way}_on']:.1f} N with it"
-        for way in ("fore", "aft", "lateral")
+        f"{direction} {m[f'push_{direction}_off']:.1f} N without feedback, {m[f'push_{direction}_on']:.1f} N with it"
+        for direction in ("fore", "aft", "lateral")
     ]
     return (
         f"The first pitch joint of the trunk must lift the level forebody as a cantilever, which takes "
-        f"{m['cantilever_torque']:.2f} N m; its servo gives {m['pitch_torque']:g} N m, {enough} it. That alone tells "
+        f"{m['cantilever_torque']:.2f} N m; its servo gives {m['pitch_torque']:g} N m, {enough} it. That alone decides "
         f"for {m['map_told_by_cantilever']:.0%} of the robots on the map of torque and mass whether they stand up. "
         f"From lifting the front to standing the centre of mass is at least {m['margin_rising']:mm.0f} mm behind the "
         f"feet. Hind leg, spine and head in one line are {m['stretched_length']:.3f} m; the stand reaches "
@@ -129,7 +129,7 @@ def _distance(place: xr.DataArray, since: float) -> float:
 
 
 def _told(record: xr.Dataset) -> float:
-    """Return for which share of the robots on the map the cantilever's torque alone tells whether they stand [-]."""
+    """Return for which share of the robots on the map the cantilever's torque alone decides whether they stand [-]."""
     stands = record.map_reach > record.attrs["up"]
     return float((stands == (record.torque > record.map_cantilever)).mean())
 

@@ -76,8 +76,8 @@ def _rough(rough: xr.Dataset) -> dict[str, Measure]:
     """Return on which share of the rough grounds erect legs get farther; no number where anybody met too little."""
     met = float(rough.met.sel(arm=list(_COMPARED)).mean("seed").min()) if rough.sizes["ground"] else 0.0
     ahead = (rough.forward.sel(arm="high_walk_level") > rough.forward.sel(arm="low_crawl")).mean("ground")
-    way = rough.forward.mean("seed")
-    crawl, semi, erect, level = (way.sel(arm=arm) for arm in SINGLE)
+    distance = rough.forward.mean("seed")
+    crawl, semi, erect, level = (distance.sel(arm=arm) for arm in SINGLE)
     told = met >= 1.0
     return {
         "met_judged": Measure(met, "-"),
@@ -124,5 +124,5 @@ def explain(measures: Mapping[str, float]) -> str:
 
 def _share_of_best(record: xr.Dataset) -> xr.DataArray:
     """Return the displacement of the switching robot over that of the best single posture, by ground [-]."""
-    way = record.forward.mean("seed")
-    return way.sel(arm="switching", drop=True) / way.sel(arm=list(SINGLE)).max("arm")
+    distance = record.forward.mean("seed")
+    return distance.sel(arm="switching", drop=True) / distance.sel(arm=list(SINGLE)).max("arm")

@@ -29,7 +29,7 @@ from suchus.robots import ROBOTS
 
 _COARSE = 0.005  # [s]; time step of sweeps; reach and limits agree with those at 2 ms
 _UP = 0.6  # of the stretched length: who reaches less has not stood up, or has fallen
-_WAYS = {"fore": (1.0, 0.0, 0.0), "aft": (-1.0, 0.0, 0.0), "lateral": (0.0, 1.0, 0.0)}
+_DIRECTIONS = {"fore": (1.0, 0.0, 0.0), "aft": (-1.0, 0.0, 0.0), "lateral": (0.0, 1.0, 0.0)}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -52,11 +52,12 @@ class BipedalReach(Experiment):
     gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
     """The crawl before and after."""
     straight: Gait = field(default_factory=lambda: GAITS["limbs_only"])
-    """From whose first posture it stands up in the sweeps: the trunk is straight, so that pushes come from ahead."""
+    """Gait from whose first posture it stands up in the sweeps: the trunk is straight, so that pushes come from
+    ahead."""
     balance: Balance = BALANCE
     """The feedback by which it keeps its balance when it stands."""
     hold: float = 60.0
-    """How long it stands [s]."""
+    """Duration of standing [s]."""
     least: float = 0.64
     """Reach that counts as standing for the time that it is held [m]; what an earlier study of this robot reached."""
     repeats: int = 4
@@ -76,11 +77,11 @@ class BipedalReach(Experiment):
     finer: int = 4
     """Number of forces between two of them [-]."""
     wait: float = 3.0
-    """How long a robot is left alone before a push and after it [s]; a fall takes less than 2 s."""
+    """Duration for which a robot is left alone before a push and after it [s]; a fall takes less than 2 s."""
     timestep: float = 0.002
-    """Of the physics in the run of the figures [s]; sweeps take 5 ms."""
+    """Time step of the physics in the run of the figures [s]; sweeps take 5 ms."""
     longer: float = 0.05
-    """By which part legs, spine and head are lengthened, one after another [-]."""
+    """Fraction by which legs, spine and head are lengthened, one after another [-]."""
 
     def __post_init__(self) -> None:
         with Checks(self.name(), self) as check:
@@ -223,7 +224,7 @@ class BipedalReach(Experiment):
         ]
         forces = smallest_pushes(
             runs,
-            list(_WAYS.values()),
+            list(_DIRECTIONS.values()),
             at=round(up_at(self.robot) + self.wait, 2),
             levels=self.pushes,
             finer=self.finer,
@@ -231,15 +232,19 @@ class BipedalReach(Experiment):
             fell=lambda record: record.snout.sel(xyz="z").isel(time=-1) < _UP * stretched(self.robot),
             timestep=_COARSE,
             progress=lambda share: progress(0.1 + 0.9 * share),
-        ).reshape(len(balances), len(leads), len(_WAYS))
+        ).reshape(len(balances), len(leads), len(_DIRECTIONS))
         stands = stood.reach.values > _UP * stretched(self.robot)
         return xr.Dataset(
             {
-                "push": (("feedback", "commanded", "way"), np.where(stands[:, None], forces, 0.0), {"units": "N"}),
+                "push": (
+                    ("feedback", "commanded", "direction"),
+                    np.where(stands[:, None], forces, 0.0),
+                    {"units": "N"},
+                ),
                 "lead_reach": ("commanded", np.where(stands, stood.reach, np.nan), {"units": "m"}),
                 "lead_found": ("commanded", np.where(stands, stood.lead, np.nan), {"units": "m"}),
             },
-            coords={"way": list(_WAYS), "commanded": leads, "feedback": list(balances)},
+            coords={"direction": list(_DIRECTIONS), "commanded": leads, "feedback": list(balances)},
         )
 
     def _lengths(self, progress: Any) -> xr.Dataset:
@@ -262,13 +267,13 @@ class BipedalReach(Experiment):
             [length(robot, part) - length(self.robot, part) for robot, part in zip(robots[1:], PARTS, strict=True)]
         )
         changes = np.stack([walking[1:] - walking[0], stood.reach.values[1:] - stood.reach.values[0]], axis=-1)
-        way = record.centre_of_mass.sel(xyz="x")
+        ahead = record.centre_of_mass.sel(xyz="x")
         return xr.Dataset(
             {
                 "crawl_reach": ("hip_height", heights[: len(self.hips)], {"units": "m"}),
                 "crawl_way": (
                     "hip_height",
-                    (way[: len(self.hips), -1] - way[: len(self.hips), 0]).values,
+                    (ahead[: len(self.hips), -1] - ahead[: len(self.hips), 0]).values,
                     {"units": "m"},
                 ),
                 "gain": (("part", "pose"), changes / longer[:, None], {"units": "1"}),

@@ -30,6 +30,7 @@ from suchus.metrics import (
 )
 from suchus.motion import START, AnyGait, FootPath, Gait, Pattern, longest_stroke, longest_strokes, with_strokes
 from suchus.paper import CYCLES, SNAPSHOT_TIMES
+from suchus.renamed import old_names
 from suchus.replay import replay
 from suchus.robots import ROBOTS
 from suchus.verdict import Reading, compared
@@ -59,6 +60,7 @@ _PARTS = (
 """How the parts are called, their change, and what is said further of one more."""
 
 
+@old_names(grip_spread="friction_spread")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CrawlStability(Experiment):
     """The height of the centre of mass over time, for every combination of spine and tail.
@@ -82,13 +84,13 @@ class CrawlStability(Experiment):
     control: AnyGait = field(default_factory=lambda: GAITS["limbs_only"])
     """The crawl of the control group, with the same legs."""
     cycles: int = int(CYCLES)
-    """How many cycles are measured [-]."""
+    """Number of cycles that are measured [-]."""
     repeats: int = 8
     """Runs per condition with noise on the servos and another friction, for the spread [-]."""
     noise: float = 0.01
     """Standard deviation of the noise on every commanded angle in the repeats [rad]; a hobby servo's dead band."""
-    grip_spread: float = 0.1
-    """Half-width of the uniform spread of the friction in the repeats, as a part of it [-]."""
+    friction_spread: float = 0.1
+    """Half-width of the uniform spread of the friction in the repeats, as a fraction of it [-]."""
     seed: int = 0
     """Seed of noise and friction [-]."""
 
@@ -97,7 +99,7 @@ class CrawlStability(Experiment):
             check.whole("cycles", 1, 1000)
             check.whole("repeats", 1, 1000)
             check.number("noise", 0.0, 1.0, "rad")
-            check.number("grip_spread", 0.0, 0.9, "")
+            check.number("friction_spread", 0.0, 0.9, "")
             check.whole("seed", 0, 2**31)
 
     def quick(self) -> "CrawlStability":
@@ -163,11 +165,12 @@ class CrawlStability(Experiment):
 
     def _repeated(self, runs: list[Run], end: float, progress: Any) -> xr.Dataset:
         """Return the fluctuation of every condition in repeats with noise and another friction."""
-        grips = np.random.default_rng(self.seed).uniform(1 - self.grip_spread, 1 + self.grip_spread, self.repeats)
+        rng = np.random.default_rng(self.seed)
+        scales = rng.uniform(1 - self.friction_spread, 1 + self.friction_spread, self.repeats)
         noisy = [
-            replace(run, ground=Ground(grip=float(grip)), noise=self.noise, seed=self.seed + 1 + i)
+            replace(run, ground=Ground(friction_scale=float(scale)), noise=self.noise, seed=self.seed + 1 + i)
             for run in runs
-            for i, grip in enumerate(grips)
+            for i, scale in enumerate(scales)
         ]
         record = simulate(noisy, duration=end, timestep=coarse_step(self.robot), every=2, progress=progress)
         shape = (len(runs), self.repeats)

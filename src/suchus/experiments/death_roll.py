@@ -50,17 +50,17 @@ class DeathRoll(Experiment):
     tail_vertical: float = radians(40)
     """Amplitude of the tail's pitch joint [rad]; the cable's end bends no more than this at the root."""
     cycles: int = 3
-    """How many cycles are simulated; the first, in which the bends grow, is not measured [-]."""
+    """Number of cycles that are simulated; the first, in which the bends grow, is not measured [-]."""
     phases: tuple[float, ...] = (-0.25, -0.125, 0.0, 0.125, 0.25, 0.375, 0.5)
-    """How late the vertical bend of the trunk comes, for the curve [cycle]."""
+    """Phase lags of the trunk's vertical bend behind its lateral one, for the curve [cycle]."""
     bends: tuple[float, ...] = (radians(30), radians(60), radians(90))
     """Amplitudes of the trunk's bends, for the curve [rad]."""
     frequencies: tuple[float, ...] = (0.7, 1.0, 1.5, 2.0)
-    """Of the trunk's bends, for the curve [Hz]; at 60 degrees the pitch servos allow 2.1 Hz."""
+    """Frequencies of the trunk's bends, for the curve [Hz]; at 60 degrees the pitch servos allow 2.1 Hz."""
     timestep: float = 0.001
-    """Of the physics [s]; the cable's servo is stiff, and beyond 1 ms Runge-Kutta steps do not hold it."""
+    """Time step of the physics [s]; the cable's servo is stiff, and beyond 1 ms Runge-Kutta steps do not hold it."""
     coarse_timestep: float = 0.002
-    """Where only the trunk bends [s]."""
+    """Time step of the runs in which only the trunk bends [s]."""
     timesteps: tuple[float, ...] = (0.0025, 0.00125, 0.000625)
     """For the check of the angular momentum and the rate, falling [s]."""
 
@@ -104,8 +104,8 @@ class DeathRoll(Experiment):
             trunk_vertical=self.trunk,
             tail_lateral=0.0,
             tail_vertical=0.0,
-            late=0.25,
-            tail_late=0.0,
+            lag=0.25,
+            tail_lag=0.0,
         )
         return replace(plain, **changes)
 
@@ -115,10 +115,10 @@ class DeathRoll(Experiment):
             "trunk": self._roll(),
             "tail": self._roll(trunk_lateral=0.0, trunk_vertical=0.0, **tail),
             "c_shape": self._roll(**tail),
-            "s_shape": self._roll(tail_late=0.5, **tail),
+            "s_shape": self._roll(tail_lag=0.5, **tail),
             "lateral_only": self._roll(trunk_vertical=0.0),
             "vertical_only": self._roll(trunk_lateral=0.0),
-            "reversed": self._roll(late=-0.25),
+            "reversed": self._roll(lag=-0.25),
         }
 
     def _simulate(
@@ -144,10 +144,10 @@ class DeathRoll(Experiment):
 
     def _curves(self, progress: Any) -> xr.Dataset:
         """Return the rate over phase, amplitude and frequency of the trunk's bends [Hz]."""
-        phases = {f"phase {p}": self._roll(late=p) for p in self.phases}
+        phases = {f"phase {p}": self._roll(lag=p) for p in self.phases}
         bends = {f"bend {b}": self._roll(trunk_lateral=b, trunk_vertical=b) for b in self.bends}
         speeds = {f"frequency {f}": self._roll(frequency=f) for f in self.frequencies}
-        late = self._simulate(phases, self.coarse_timestep, lambda s: progress(0.25 * s), ("vacuum",))
+        lagging = self._simulate(phases, self.coarse_timestep, lambda s: progress(0.25 * s), ("vacuum",))
         both = self._simulate(bends | speeds, self.coarse_timestep, lambda s: progress(0.25 + 0.75 * s))
         by_medium = [both.isel(run=both.medium.values == medium) for medium in _MEDIA]
         count = len(bends)
@@ -158,7 +158,7 @@ class DeathRoll(Experiment):
         ]
         data = xr.Dataset(
             {
-                "rate_by_phase": ("late", self._rates(late, self.frequency), {"units": "Hz"}),
+                "rate_by_phase": ("late", self._rates(lagging, self.frequency), {"units": "Hz"}),
                 "rate_by_bend": (("fluid", "bend"), np.array(bent), {"units": "Hz"}),
                 "rate_by_frequency": (("fluid", "frequency"), np.array(fast), {"units": "Hz"}),
             },

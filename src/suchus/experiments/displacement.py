@@ -21,8 +21,9 @@ from suchus.gaits import CONDITIONS, GAITS, conditions_of, suits
 from suchus.land import Ground, Run, simulate
 from suchus.metrics import cost_of_transport, duty_factor, foot_clearance, heading_change, slip, two_feet_share
 from suchus.metrics import displacement as displacement_of
-from suchus.motion import START, AnyGait, Gait, strides, with_bends, with_late_axis, with_strokes
+from suchus.motion import START, AnyGait, Gait, strides, with_axis_lag, with_bends, with_strokes
 from suchus.paper import CLAIMS, CYCLES
+from suchus.renamed import old_names
 from suchus.replay import replay
 from suchus.robots import ROBOTS
 from suchus.verdict import Reading
@@ -31,6 +32,7 @@ _GROUPS = CONDITIONS[:2]
 _LEAST = 0.00198  # [body length]; below this displacement a ratio means nothing
 
 
+@old_names(grip_spread="friction_spread")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Displacement(Experiment):
     """The article's two groups side by side, what each part of spine and tail adds, and the map of what decides.
@@ -54,13 +56,13 @@ class Displacement(Experiment):
     control: AnyGait = field(default_factory=lambda: GAITS["limbs_only"])
     """The crawl of the control group, with the same legs."""
     cycles: int = int(CYCLES)
-    """How many cycles are measured [-]."""
+    """Number of cycles that are measured [-]."""
     repeats: int = 8
     """Runs per condition with noise on the servos and another friction, for the spread [-]."""
     noise: float = 0.01
     """Standard deviation of the noise on every commanded angle in the repeats [rad]; a hobby servo's dead band."""
-    grip_spread: float = 0.1
-    """Half-width of the uniform spread of the friction in the repeats, as a part of it [-]."""
+    friction_spread: float = 0.1
+    """Half-width of the uniform spread of the friction in the repeats, as a fraction of it [-]."""
     strokes: tuple[float, ...] = (0.01, 0.02, 0.027, 0.04, 0.055, 0.07, 0.085)
     """Half strokes of the legs on the map [m]."""
     bends: tuple[float, ...] = (0.0, 0.3, 0.6, 0.9, 1.2217304763960306, 1.5)
@@ -80,7 +82,7 @@ class Displacement(Experiment):
             check.whole("repeats", 1, 1000)
             check.whole("seed", 0, 2**31)
             check.number("noise", 0.0, 1.0, "rad")
-            check.number("grip_spread", 0.0, 0.9, "")
+            check.number("friction_spread", 0.0, 0.9, "")
             check.rising("strokes", 0.0, 0.3, "m")
             check.rising("bends", 0.0, 3.0, "rad")
             check.rising("pitches", -1.0, 1.0, "rad")
@@ -122,18 +124,20 @@ class Displacement(Experiment):
 
     def _repeats(self, gaits: Mapping[str, AnyGait]) -> list[Run]:
         """Return the repeats of all conditions; the i-th has the same noise and friction in each."""
-        grips = np.random.default_rng(self.seed).uniform(1 - self.grip_spread, 1 + self.grip_spread, self.repeats)
+        scales = np.random.default_rng(self.seed).uniform(
+            1 - self.friction_spread, 1 + self.friction_spread, self.repeats
+        )
         return [
             Run(
                 robot=self.robot,
                 gait=gait,
-                ground=Ground(grip=float(grip)),
+                ground=Ground(friction_scale=float(scale)),
                 noise=self.noise,
                 seed=self.seed + 1 + i,
                 label=arm,
             )
             for arm, gait in gaits.items()
-            for i, grip in enumerate(grips)
+            for i, scale in enumerate(scales)
         ]
 
     def _mapped(self, duration: float, progress: Any) -> xr.Dataset:
@@ -144,8 +148,8 @@ class Displacement(Experiment):
         pitched = [
             replace(gait, tail_pitch=p) for gait in (self.gait, self.control) for p in pitches if isinstance(gait, Gait)
         ]
-        late = [self._late(p) for p in self.phases]
-        runs = [Run(robot=self.robot, gait=gait) for gait in (*limbs, *bent, *pitched, *late)]
+        lagging = [self._lagging(p) for p in self.phases]
+        runs = [Run(robot=self.robot, gait=gait) for gait in (*limbs, *bent, *pitched, *lagging)]
         reached = _forward(
             simulate(runs, duration=duration, timestep=coarse_step(self.robot), every=100, progress=progress)
         ).values
@@ -191,10 +195,10 @@ class Displacement(Experiment):
     def _bent(self, gait: AnyGait, bend: float) -> AnyGait:
         return replace(gait, trunk_bend=bend) if isinstance(gait, Gait) else with_bends(self.robot, gait, bend)
 
-    def _late(self, phase: float) -> AnyGait:
+    def _lagging(self, phase: float) -> AnyGait:
         if isinstance(self.gait, Gait):
             return replace(self.gait, spine_phase=phase)
-        return with_late_axis(self.robot, self.gait, phase)
+        return with_axis_lag(self.robot, self.gait, phase)
 
     def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
         """Return displacements with their spread, what the feet did, and what each part adds."""
@@ -315,8 +319,8 @@ class Displacement(Experiment):
         return captioned(
             figure,
             "What each part of spine and tail adds. Points: one run without noise; bars: the range of "
-            f"{record.sizes['repeat']} repeats with noise on the servos and {self.grip_spread:.0%} of spread in the "
-            "friction. All conditions command the same legs.",
+            f"{record.sizes['repeat']} repeats with noise on the servos and {self.friction_spread:.0%} of spread in "
+            "the friction. All conditions command the same legs.",
         )
 
     def _drawn_course(self, record: xr.Dataset) -> Any:
@@ -343,7 +347,7 @@ class Displacement(Experiment):
         return captioned(
             figure,
             f"Displacement of the centre of mass over {cycles:.3g} cycles with identical leg commands.{diamonds} "
-            f"Bands: repeats with noise on the servos and {self.grip_spread:.0%} of spread in the friction.",
+            f"Bands: repeats with noise on the servos and {self.friction_spread:.0%} of spread in the friction.",
         )
 
     def _article(self) -> bool:

@@ -61,9 +61,10 @@ class Feedback(Experiment):
     """Random limb phases under every law, then nine disturbances with and without the rules.
 
     Converged: the largest of the four phase errors (two diagonal pairs, two girdles) is within 0.1 cycle at every
-    sample from some time on until the end of the run, and for at least ``hold`` cycles. Recovery is the way forward,
-    along the direction faced at the start, over ``after`` cycles from the disturbance on. Drift is the way down a slope
-    to the side, the mean of both sides. The rule of the tail is left out of a body without a servo that pitches it.
+    sample from some time on until the end of the run, and for at least ``hold`` cycles. Recovery is the distance
+    forward, along the heading at the start, over ``after`` cycles from the disturbance on. Drift is the distance down a
+    slope to the side, the mean of both sides. The rule of the tail is left out of a body without a servo that pitches
+    it.
     """
 
     title = "Do three feedback rules coordinate limbs, spine and tail, and what do they help against?"
@@ -79,22 +80,22 @@ class Feedback(Experiment):
     starts: int = 32
     """Random initial limb phases, the same for all laws [-]."""
     cycles: int = 12
-    """How long each start is followed [cycle]."""
+    """Duration for which each start is followed [cycle]."""
     hold: float = 2.0
-    """For how long the limbs must stay coordinated until the end [cycle]."""
+    """Duration for which the limbs must stay coordinated until the end [cycle]."""
     after: int = 5
-    """How long a disturbed robot is followed from the disturbance on [cycle]."""
+    """Duration for which a disturbed robot is followed from the disturbance on [cycle]."""
     kick: tuple[float, ...] = (0.5, 0.0, 0.0, 0.2)
-    """How far each limb jumps ahead, in the order of the robot's limbs [cycle]; together almost the farthest from the
-    gait."""
+    """Phase by which each limb jumps ahead, in the order of the robot's limbs [cycle]; together almost the farthest
+    from the gait."""
     slope: float = radians(10)
-    """Of the ground [rad]."""
+    """Slope of the ground [rad]."""
     push: tuple[float, float, float] = (0.0, 20.0, 0.0)
     """Force on the foremost girdle's segment for 0.3 s [N]; 5 N does nothing even without feedback."""
     noise: float = 0.3
     """Standard deviation of the noise on what the feet feel, as a part of the load [-]."""
     seed: int = 0
-    """Of the first start; the others follow."""
+    """Seed of the first start; the others follow."""
 
     def __post_init__(self) -> None:
         with Checks(self.name(), self) as check:
@@ -179,11 +180,11 @@ class Feedback(Experiment):
 
     @property
     def _at(self) -> float:
-        """When the disturbance comes [s]."""
+        """Time at which the disturbance begins [s]."""
         return START + self.gait.period
 
     def _starts(self, progress: Any) -> tuple[xr.Dataset, xr.Dataset]:
-        """Return limb phases and way over time for every law and start, and one start as a record under two laws."""
+        """Return limb phases and distances for every law and start, and one start as a record under two laws."""
         runs = [
             Run(robot=self.robot, gait=self.gait, control=self._suited(control), seed=self.seed + i)
             for control in STARTS.values()
@@ -194,12 +195,16 @@ class Feedback(Experiment):
         shape = (len(STARTS), self.starts, record.sizes["time"])
         dims = ("law", "start", "start_time")
         phase = record.limb_phase.transpose("run", "time", "leg").values.reshape(*shape, -1)
-        way = record.centre_of_mass.sel(xyz="x").transpose("run", "time").values.reshape(shape)
+        distance = record.centre_of_mass.sel(xyz="x").transpose("run", "time").values.reshape(shape)
         pair = record.isel(run=[self.starts * list(STARTS).index(law) for law in ("cross_load", "off")])
         data = xr.Dataset(
             {
                 "start_phase": ((*dims, "leg"), phase, {"units": "1", "long_name": "phase of each limb [cycle]"}),
-                "start_way": (dims, way, {"units": "m", "long_name": "way of the centre of mass along x"}),
+                "start_way": (
+                    dims,
+                    distance,
+                    {"units": "m", "long_name": "displacement of the centre of mass along x"},
+                ),
             },
             coords={
                 "law": list(STARTS),
@@ -210,7 +215,7 @@ class Feedback(Experiment):
         return data, pair
 
     def _disturbed(self, progress: Any) -> xr.Dataset:
-        """Return track, direction, limb phases and tail pitch over time for every disturbance and arm."""
+        """Return track, direction, limb phases and tail pitch over time for every disturbance and condition."""
         arms, place = self._arms, layout(self.robot)
         runs = [self._disturb(control, name) for name in DISTURBANCES for control in arms.values()]
         duration = self._at + self.after * self.gait.period
@@ -223,8 +228,8 @@ class Feedback(Experiment):
         lacking = axis_bends(self.robot, steerable(self.gait, self.name()), phase)[0] - bent
         data = xr.Dataset(
             {
-                "x": (dims, track[..., 0].reshape(shape), {"units": "m", "long_name": "way forward"}),
-                "y": (dims, track[..., 1].reshape(shape), {"units": "m", "long_name": "way to the left"}),
+                "x": (dims, track[..., 0].reshape(shape), {"units": "m", "long_name": "distance forward"}),
+                "y": (dims, track[..., 1].reshape(shape), {"units": "m", "long_name": "distance to the left"}),
                 "heading": (dims, facing.reshape(shape), {"units": "rad", "long_name": "direction of the body"}),
                 "lacking": (dims, lacking.reshape(shape), {"units": "rad", "long_name": "bend missing in the trunk"}),
                 "limb_phase": ((*dims, "leg"), phase.reshape(*shape, -1), {"units": "1", "long_name": "[cycle]"}),

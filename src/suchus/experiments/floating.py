@@ -24,7 +24,7 @@ from suchus.replay import replay
 from suchus.robots import ROBOTS
 from suchus.verdict import Reading, compared
 
-STILL = Swim(name="still", frequency=1.0, yaw=(0, 0, 0), yaw_late=(0, 0, 0), tail=0.0, tail_late=0.0)
+STILL = Swim(name="still", frequency=1.0, yaw=(0, 0, 0), yaw_lag=(0, 0, 0), tail=0.0, tail_lag=0.0)
 """No motion."""
 _UPRIGHT = 0.035
 """Heel within which it counts as upright [rad]; 2 degrees."""
@@ -50,9 +50,9 @@ class Floating(Experiment):
     heels: tuple[float, ...] = (radians(60), radians(120), radians(150))
     """Angles of heel from which the robot is let go [rad]; the last one is the measure."""
     duration: float = 20.0
-    """How long the robot is watched [s]; the mean of the last quarter counts as its rest."""
+    """Duration for which the robot is watched [s]; the mean of the last quarter counts as its rest."""
     energy_time: float = 60.0
-    """How long the box is watched [s]."""
+    """Duration over which the energy of the box is followed [s]."""
     periods: int = 10
     """Periods of heave that are watched [-]."""
     poses: int = 16
@@ -62,7 +62,7 @@ class Floating(Experiment):
     angles: int = 37
     """Angles of heel from 0 to 180 degrees at which the righting lever is computed [-]."""
     timestep: float = 0.002
-    """Of the physics of boxes and spheroids [s]."""
+    """Time step of the physics of boxes and spheroids [s]."""
 
     def __post_init__(self) -> None:
         with Checks(self.name(), self) as check:

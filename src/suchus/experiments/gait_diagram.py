@@ -37,7 +37,7 @@ _CAPTION = "The crawl of the gait diagram: thick tracks are feet that stand."
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GaitDiagram(Experiment):
-    """The article's Fig. 12 for our crawl: as commanded, and as foot pressure and joint angles tell.
+    """The article's Fig. 12 for our crawl: as commanded, and as foot pressure and joint angles show.
 
     A foot stands when its pressure exceeds a seventieth of the weight, half a newton for the caiman. Phases are those
     of the first harmonic of stance. Bends are sums of joint angles, of the tail those that servos and cables bend, up
@@ -56,7 +56,7 @@ class GaitDiagram(Experiment):
     gait: AnyGait = field(default_factory=lambda: GAITS["belly_crawl"])
     """The gait that is shown."""
     cycles: int = int(CYCLES)
-    """How many cycles are shown [-]."""
+    """Number of cycles that are shown [-]."""
 
     def __post_init__(self) -> None:
         with Checks(self.name(), self) as check:
@@ -135,8 +135,8 @@ class GaitDiagram(Experiment):
         diagonal = m["diagonal_phase_error"]
         apart = f"; the stances of diagonal pairs are up to {diagonal:.2f} cycle apart" if diagonal >= 0 else ""
         return (
-            f"Commanded are limb phases and bends; what the feet make of them is felt by their pressure. Feet are told "
-            f"to stand {m['duty_factor_commanded']:.0%} of the cycle and stand {duties}{apart}."
+            f"Commanded are limb phases and bends; what the feet make of them is felt by their pressure. Feet are "
+            f"commanded to stand {m['duty_factor_commanded']:.0%} of the cycle and stand {duties}{apart}."
             f"{' ' if bends else ''}{bends[:1].upper()}{bends[1:]}{'.' if bends else ''}{_upright(m)}"
         )
 
@@ -193,7 +193,7 @@ def _sensed(robot: AnyRobot, record: xr.Dataset) -> dict[str, np.ndarray]:
 
 
 def _commanded(robot: AnyRobot, record: xr.Dataset) -> dict[str, np.ndarray]:
-    """Return the angles that the servos are told to make, of those parts that a servo bends [rad]."""
+    """Return the commanded angles of those parts that a servo bends [rad]."""
     place, told = layout(robot), record.servo_target.transpose("time", "servo").values
     found: dict[str, np.ndarray] = {}
     if place.trunk_yaw:

@@ -62,7 +62,7 @@ class GallopLimits(Experiment):
     noise: float = 0.01
     """Standard deviation of the noise on every commanded angle [rad]: what only works without it does not count."""
     seconds: float = 3.0
-    """How long each run is measured, after a second more [s]."""
+    """Duration for which each run is measured, after a second more [s]."""
     timestep: float = 0.002
     """Time step of the physics [s]."""
 

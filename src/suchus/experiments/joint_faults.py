@@ -1,4 +1,4 @@
-"""How far does the robot still get when joints of its legs are lost?"""
+"""How far does the robot still get when joints of its legs fail?"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -20,8 +20,20 @@ from suchus.experiments._fault_findings import ARMS
 from suchus.experiments._fault_records import lay, support
 from suchus.figures.faults import draw_held, draw_losses, draw_over_time, draw_tracks
 from suchus.gaits import GAITS, conditions_of, suits
-from suchus.land import KINDS, LEGS_LOST, Fault, Ground, Limp, Locked, Run, angle_at, lost, lost_joints, simulate
-from suchus.land.lost import Kind, Legs
+from suchus.land import (
+    KINDS,
+    LEGS_FAILED,
+    Fault,
+    Ground,
+    Limp,
+    Locked,
+    Run,
+    angle_at,
+    failing_joints,
+    joint_failure,
+    simulate,
+)
+from suchus.land.failed import Kind, Legs
 from suchus.metrics import (
     between,
     displacement,
@@ -31,6 +43,7 @@ from suchus.metrics import (
 )
 from suchus.motion import START, AngleTable, AnyGait, Gait, straightened, with_bends, with_strokes
 from suchus.paper import CYCLES
+from suchus.renamed import old_names
 from suchus.replay import replay
 from suchus.robots import ROBOTS
 
@@ -38,25 +51,27 @@ _TRUNK = ("trunk_bend", "spine_phase", "tail_bend", "tail_phase", "tail_pitch") 
 _OF_A_LIMB = 2  # hinges of a limb, from the hip on, whose loss is repeated and steered; the article's yaw and pitch
 
 
+@old_names(grip_spread="friction_spread", repeat_grip="repeat_friction_spread")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class JointFaults(Experiment):
     """Front and hind; yaw, pitch and knee; limp and locked; one leg and both; with spine and tail and with limbs only.
 
     All of it over variations of gait and friction. A change of displacement is measured against the intact run with
     spine and tail of the same variation, as the article does; ``faults.csv`` has it against the intact run of the same
-    arm too. Two more arms are run in the judged reading: ``steered`` with the feedback rules and the heading loop, and
-    ``limbs_tail_lifted``, limbs only with the tail in the air, where a servo lifts it. Displacement is forward, along
-    the direction that the body faced at the start. The limbs of another body lose the joints that they have.
+    condition too. Two more conditions are run in the judged reading: ``steered`` with the feedback rules and the
+    heading loop, and ``limbs_tail_lifted``, limbs only with the tail in the air, where a servo lifts it. Displacement
+    is forward, along the direction that the body faced at the start. The limbs of another body lose the joints that
+    they have.
     """
 
-    title = "How far does it still crawl when joints of its legs are lost?"
+    title = "How far does it still crawl when joints of its legs fail?"
     shows = "Section IV.C, Figs 18 to 21"
     needs = ("limbs",)
     judged_with = ("robot", "gait", "control", "lifted", "cycles", "hold", "kind", "legs")
     judged_from: ClassVar[Mapping[str, float]] = {"variations": 8, "repeats": 4}
 
     robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
-    """The robot whose joints are lost."""
+    """The robot whose joints fail."""
     gait: AnyGait = field(default_factory=lambda: GAITS["belly_crawl"])
     """The crawl with spine and tail."""
     control: AnyGait = field(default_factory=lambda: GAITS["limbs_only"])
@@ -64,19 +79,19 @@ class JointFaults(Experiment):
     lifted: AnyGait = field(default_factory=lambda: GAITS["limbs_tail_lifted"])
     """The control group with its tail in the air, for comparison; its legs follow those of ``gait``."""
     cycles: int = int(CYCLES)
-    """How many cycles are measured [-]."""
+    """Number of cycles that are measured [-]."""
     variations: int = 8
     """Gaits and frictions [-]; the first is the gait as given, without noise."""
     spread: float = 0.25
     """Part of each plausible range of the gait's numbers that the variations cover, about the number given [-]."""
-    grip_spread: float = 0.2
-    """Half-width of the uniform spread of the friction, as a part of it [-]."""
+    friction_spread: float = 0.2
+    """Half-width of the uniform spread of the friction, as a fraction of it [-]."""
     noise: float = 0.01
     """Standard deviation of the noise on every commanded angle [rad]; a hobby servo's dead band."""
     repeats: int = 4
     """Runs of the judged reading in the gait as given, with noise and another friction, for the spread [-]."""
-    repeat_grip: float = 0.1
-    """Half-width of the uniform spread of the friction in the repeats, as a part of it [-]."""
+    repeat_friction_spread: float = 0.1
+    """Half-width of the uniform spread of the friction in the repeats, as a fraction of it [-]."""
     hold: float = 0.5
     """Where a locked joint holds in the range that the gait asks of it: 0 least, 1 greatest [-].
 
@@ -87,7 +102,7 @@ class JointFaults(Experiment):
     holds: tuple[float, ...] = (0.0, 0.25, 0.5, 0.75, 1.0)
     """Places in that range at which one leg's joint is locked, for the curve [-]."""
     kind: Kind = "limp"
-    """The reading of 'lost' that is judged.
+    """The reading of the article's 'lost' that is judged.
 
     Not in the paper; limp, because a servo that 'cannot receive and execute commands' gets no pulses, and gives way.
     """
@@ -95,7 +110,7 @@ class JointFaults(Experiment):
     """Whether one leg or both of a girdle are judged; one, because the text speaks of individual joints."""
     timestep: float = 0.005
     """Time step of the physics [s]; 2 ms were measured to move no median by more than 3 points of a hundred, while
-    10 ms move some by 6 and change what steering does to a lost hind yaw joint."""
+    10 ms move some by 6 and change what steering does to a failed hind yaw joint."""
     seed: int = 0
     """Seed of the variations and their noise [-]."""
 
@@ -104,9 +119,9 @@ class JointFaults(Experiment):
             check.whole("cycles", 1, 1000)
             check.whole("variations", 1, 10_000)
             check.number("spread", 0.0, 1.0, "")
-            check.number("grip_spread", 0.0, 0.9, "")
+            check.number("friction_spread", 0.0, 0.9, "")
             check.whole("repeats", 1, 10_000)
-            check.number("repeat_grip", 0.0, 0.9, "")
+            check.number("repeat_friction_spread", 0.0, 0.9, "")
             check.number("noise", 0.0, 1.0, "rad")
             check.number("hold", 0.0, 1.0, "")
             check.rising("holds", 0.0, 1.0, "")
@@ -143,7 +158,7 @@ class JointFaults(Experiment):
         return START + self.cycles * self.gait.period
 
     def _varied(self) -> list[tuple[dict[str, AnyGait], float]]:
-        """Return the gaits of both arms and the grip of each variation."""
+        """Return the gaits of both conditions and the friction scale of each variation."""
         if not isinstance(self.gait, Gait):
             return self._varied_patterns()
         chosen: tuple[Chosen, ...] = GAITS.beside("belly_crawl", "chosen", ())
@@ -156,8 +171,8 @@ class JointFaults(Experiment):
                 low, high = max(given - reach, min(one.low, given)), min(given + reach, max(one.high, given))
                 values[one.field] = float(low + share * (high - low))
             gait = with_values(self.gait, values)
-            grip = float(1.0 + self.grip_spread * (2.0 * point[-1] - 1.0))
-            varied.append((self._arms(gait), grip))
+            scale = float(1.0 + self.friction_spread * (2.0 * point[-1] - 1.0))
+            varied.append((self._arms(gait), scale))
         return varied
 
     def _varied_patterns(self) -> list[tuple[dict[str, AnyGait], float]]:
@@ -168,13 +183,13 @@ class JointFaults(Experiment):
             stroke, bend = 1.0 + 0.5 * self.spread * (2.0 * point[:2] - 1.0)
             gait = with_bends(self.robot, with_strokes(self.gait, float(stroke)), float(bend))
             gait = gait if suits(self.robot, gait) else self.gait
-            varied.append((self._arms(gait), float(1.0 + self.grip_spread * (2.0 * point[-1] - 1.0))))
+            varied.append((self._arms(gait), float(1.0 + self.friction_spread * (2.0 * point[-1] - 1.0))))
         return varied
 
     @property
     def _joints(self) -> tuple[str, ...]:
-        """The joints that are lost."""
-        return lost_joints(self.robot)
+        """Names of the joints that fail."""
+        return failing_joints(self.robot)
 
     @property
     def _lost(self) -> tuple[str, ...]:
@@ -187,7 +202,7 @@ class JointFaults(Experiment):
         return "limbs_tail_lifted" in conditions_of(self.robot, self.gait, self.control)
 
     def _arms(self, gait: AnyGait) -> dict[str, AnyGait]:
-        """Return the gaits of all arms with the legs of one gait."""
+        """Return the gaits of all conditions with the legs of one gait."""
         if not isinstance(gait, Gait):
             return {"coordinated": gait, "limbs_only": straightened(self.robot, gait, name="limbs_only")}
         limbs: dict[str, AnyGait] = {
@@ -199,48 +214,48 @@ class JointFaults(Experiment):
 
     def _broken(self, gait: AnyGait, joint: str) -> tuple[Fault, ...]:
         """Return the faults of a joint in the judged reading."""
-        return lost(self.robot, gait, joint, self.kind, self.legs, hold=self.hold)
+        return joint_failure(self.robot, gait, joint, self.kind, self.legs, hold=self.hold)
 
     def _campaign(self, progress: Any) -> xr.Dataset:
         """Run everything in one batch and keep how far each got over time."""
         varied = self._varied()
-        cells = list(product(self._joints, KINDS, LEGS_LOST))
+        cells = list(product(self._joints, KINDS, LEGS_FAILED))
         runs = [
             Run(
                 robot=self.robot,
                 gait=gaits[arm],
-                ground=Ground(grip=grip),
+                ground=Ground(friction_scale=scale),
                 faults=faults,
                 noise=self.noise if i else 0.0,
                 seed=self.seed + i,
             )
-            for i, (gaits, grip) in enumerate(varied)
+            for i, (gaits, scale) in enumerate(varied)
             for arm in ARMS
-            for faults in ((), *(lost(self.robot, gaits[arm], *cell, hold=self.hold) for cell in cells))
+            for faults in ((), *(joint_failure(self.robot, gaits[arm], *cell, hold=self.hold) for cell in cells))
         ]
         record = whole(simulate(runs, duration=self._duration, timestep=self.timestep, every=10, progress=progress))
         net = (displacement(record).sel(xyz=["x", "y"]) ** 2).sum("xyz") ** 0.5
         numbers = {
             "forward": (displacement(record).sel(xyz="x"), "m", "displacement forward"),
             "net": (net, "m", "displacement on the ground"),
-            "path": (path_length(record), "m", "length of the way, cycle by cycle"),
+            "path": (path_length(record), "m", "path length, cycle by cycle"),
             "turn": (heading_change(record), "rad", "how far the body turned, left positive"),
         }
-        way = between(record).centre_of_mass.sel(xyz=["x", "y"])
-        tracks = (way - way.isel(time=0)).transpose("run", "time", "xyz").values
+        distance = between(record).centre_of_mass.sel(xyz=["x", "y"])
+        tracks = (distance - distance.isel(time=0)).transpose("run", "time", "xyz").values
         shape = (len(varied), len(ARMS), 1 + len(cells))
-        data = xr.Dataset(coords={"variation": range(shape[0]), "arm": list(ARMS), "time": way.time.values})
+        data = xr.Dataset(coords={"variation": range(shape[0]), "arm": list(ARMS), "time": distance.time.values})
         data = data.assign_coords(
-            joint=list(self._joints), kind=list(KINDS), legs=list(LEGS_LOST), on_ground=["x", "y"]
+            joint=list(self._joints), kind=list(KINDS), legs=list(LEGS_FAILED), on_ground=["x", "y"]
         )
         for name, (some, unit, what) in numbers.items():
             lay(data, name, some.values.reshape(shape), (), unit, what)
-        lay(data, "track", tracks.reshape(*shape, -1, 2), ("time", "on_ground"), "m", "way of the centre of mass")
+        lay(data, "track", tracks.reshape(*shape, -1, 2), ("time", "on_ground"), "m", "track of the centre of mass")
         told = meaning.meanings(Gait)
         for one in GAITS.beside("belly_crawl", "chosen", ()) if isinstance(self.gait, Gait) else ():
             values = [value_at(gaits["coordinated"], one.field) for gaits, _ in varied]
             data[f"gait_{one.field}"] = ("variation", values, {"units": meaning.unit(told[one.field])})
-        data["grip"] = ("variation", [grip for _, grip in varied], {"units": "1", "long_name": "of all friction"})
+        data["grip"] = ("variation", [scale for _, scale in varied], {"units": "1", "long_name": "friction scale"})
         data["time"].attrs["units"] = "s"
         data["period"] = ((), self.gait.period, {"units": "s"})
         return data
@@ -248,26 +263,27 @@ class JointFaults(Experiment):
     def _spread(self, progress: Any) -> xr.Dataset:
         """Repeat the judged reading in the gait as given, with noise on the servos and other friction."""
         gaits, _ = self._varied()[0]
-        grips = np.random.default_rng(self.seed).uniform(1 - self.repeat_grip, 1 + self.repeat_grip, self.repeats)
+        spread = self.repeat_friction_spread
+        scales = np.random.default_rng(self.seed).uniform(1 - spread, 1 + spread, self.repeats)
         runs = [
             Run(
                 robot=self.robot,
                 gait=gaits[arm],
-                ground=Ground(grip=float(grip)),
+                ground=Ground(friction_scale=float(scale)),
                 faults=faults,
                 noise=self.noise,
                 seed=self.seed + 1 + i,
             )
-            for i, grip in enumerate(grips)
+            for i, scale in enumerate(scales)
             for arm in ARMS
             for faults in ((), *(self._broken(gaits[arm], joint) for joint in self._lost))
         ]
-        way = self._forward(runs, progress).reshape(self.repeats, len(ARMS), 1 + len(self._lost))
+        distance = self._forward(runs, progress).reshape(self.repeats, len(ARMS), 1 + len(self._lost))
         metre = {"units": "m", "long_name": "displacement forward, repeated"}
         data = xr.Dataset(
             {
-                "repeat_intact_forward": (("repeat", "arm"), way[:, :, 0], metre),
-                "repeat_forward": (("repeat", "arm", "lost"), way[:, :, 1:], metre),
+                "repeat_intact_forward": (("repeat", "arm"), distance[:, :, 0], metre),
+                "repeat_forward": (("repeat", "arm", "lost"), distance[:, :, 1:], metre),
             }
         )
         return data.assign_coords(arm=list(ARMS), lost=list(self._lost))
@@ -282,11 +298,11 @@ class JointFaults(Experiment):
         gaits, _ = self._varied()[0]
         points = list(product(ARMS, self._lost, self.holds))
         runs = [
-            Run(robot=self.robot, gait=gaits[a], faults=lost(self.robot, gaits[a], j, "locked", hold=h))
+            Run(robot=self.robot, gait=gaits[a], faults=joint_failure(self.robot, gaits[a], j, "locked", hold=h))
             for a, j, h in points
         ]
-        way = self._forward(runs, progress).reshape(len(ARMS), len(self._lost), len(self.holds))
-        data = xr.Dataset({"held_forward": (("arm", "lost", "hold"), way, {"units": "m"})})
+        distance = self._forward(runs, progress).reshape(len(ARMS), len(self._lost), len(self.holds))
+        data = xr.Dataset({"held_forward": (("arm", "lost", "hold"), distance, {"units": "m"})})
         return data.assign_coords(arm=list(ARMS), lost=list(self._lost), hold=list(self.holds))
 
     def _lost_pitch(self, progress: Any) -> xr.Dataset:
@@ -320,7 +336,7 @@ class JointFaults(Experiment):
         """Run the judged reading of the article's joints steered, and with limbs only and the tail in the air."""
         joints, steers = self._lost, not isinstance(self.gait, AngleTable)
         varied, runs = self._varied(), []
-        for i, (gaits, grip) in enumerate(varied):
+        for i, (gaits, scale) in enumerate(varied):
             cases: list[tuple[AnyGait, tuple[Fault, ...], Control]] = []
             if steers:
                 ours = gaits["coordinated"]
@@ -333,7 +349,7 @@ class JointFaults(Experiment):
                 Run(
                     robot=self.robot,
                     gait=gait,
-                    ground=Ground(grip=grip),
+                    ground=Ground(friction_scale=scale),
                     faults=faults,
                     control=law,
                     noise=self.noise if i else 0.0,
@@ -345,20 +361,20 @@ class JointFaults(Experiment):
         if not runs:
             return data
         record = whole(simulate(runs, duration=self._duration, timestep=self.timestep, every=10, progress=progress))
-        way = displacement(record).sel(xyz="x").values.reshape(len(varied), -1)
+        distance = displacement(record).sel(xyz="x").values.reshape(len(varied), -1)
         turned = heading_change(record).values.reshape(len(varied), -1)
         both, metre, many = ("variation", "lost"), {"units": "m"}, len(joints)
         if steers:
-            data["steered_forward"] = (both, way[:, :many], metre | {"long_name": "forward, steered"})
+            data["steered_forward"] = (both, distance[:, :many], metre | {"long_name": "forward, steered"})
             data["steered_turn"] = (both, turned[:, :many], {"units": "rad", "long_name": "turned, steered"})
         if self._lifts:
-            intact, broken = way[:, -many - 1], way[:, -many:]
+            intact, broken = distance[:, -many - 1], distance[:, -many:]
             data["lifted_intact_forward"] = ("variation", intact, metre | {"long_name": "tail lifted, intact"})
             data["lifted_forward"] = (both, broken, metre | {"long_name": "forward, tail lifted"})
         return data
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
-        """Draw the losses, the way over time for both kinds of fault, the tracks, and the places of locking."""
+        """Draw the losses, the distance over time for both kinds of fault, the tracks, and the places of locking."""
         record = outcome.record
         return {
             "fault_losses": draw_losses(record),

@@ -26,7 +26,7 @@ from suchus.robots import ROBOTS
 from suchus.verdict import Reading, compared
 
 TESTS = ("step", "load", "let_go")
-"""A step without load, a load without a step, and a step while the joint is gripped, which then lets go."""
+"""A step without load, a load without a step, and a step while the joint is clamped, which is then released."""
 _GRIPPED = 100  # [control period]; long enough for the integral to reach its limit
 
 
@@ -54,9 +54,9 @@ class JointLoops(Experiment):
     step: float = radians(10.0)
     """Height of the step [rad]."""
     seconds: float = 4.0
-    """How long the joint is watched after each change [s]."""
+    """Duration for which the joint is watched after each change [s]."""
     cycles: int = int(CYCLES)
-    """How many cycles of the crawl are measured [-]."""
+    """Number of cycles of the crawl that are measured [-]."""
 
     def __post_init__(self) -> None:
         with Checks(self.name(), self) as check:
@@ -97,7 +97,7 @@ class JointLoops(Experiment):
 
     @property
     def _gripped(self) -> float:
-        """How long the joint is held fast, a second for the article's robot [s]."""
+        """Duration for which the joint is clamped, a second for the article's robot [s]."""
         return _GRIPPED * control_period(self.robot)
 
     def _crawled(self, number: int, robot: AnyRobot, progress: Progress) -> xr.Dataset:
@@ -178,7 +178,7 @@ class JointLoops(Experiment):
             f"Under the {_load(m['load'])} N m that the crawl asks of {self.joint} the joint sags by "
             f"{m[f'droop_{first}']:deg.2f} degrees without an integral term and ends {m[f'droop_{last}']:deg.2f} "
             f"degrees off with {self.integrals[-1]:g} N m/(rad s). A free step overshoots by "
-            f"{m[f'overshoot_{first}']:.0%} without and {m[f'overshoot_{last}']:.0%} with it; after a grip of "
+            f"{m[f'overshoot_{first}']:.0%} without and {m[f'overshoot_{last}']:.0%} with it; after being clamped for "
             f"{self._gripped:g} s, in which it winds up, by {m[f'overshoot_let_go_{first}']:.0%} and "
             f"{m[f'overshoot_let_go_{last}']:.0%}. In the crawl droop makes {m['tracking_by_droop']:.0%} of the mean "
             f"square of the tracking error, damping {m['tracking_by_damping']:.0%}. With the integral term the joints "
@@ -192,8 +192,8 @@ class JointLoops(Experiment):
         return {
             "joint_on_stand": captioned(
                 pictures.on_stand(outcome.record),
-                f"{self.joint} with the pelvis held in the air, with several integral gains. Left: a step. Middle: a "
-                "load as the crawl asks for, from time zero on. Right: let go after it was held fast at zero, "
+                f"{self.joint} with the pelvis fixed in the air, with several integral gains. Left: a step. Middle: a "
+                "load as the crawl asks for, from time zero on. Right: let go after it was clamped at zero, "
                 "commanded to the step's height; an integral term has wound up meanwhile.",
             ),
             "tracking_in_crawl": captioned(

@@ -138,10 +138,10 @@ class LegKinematics(Experiment):
 def _shell(hind: Leg, count: int, seed: int) -> np.ndarray:
     """Return points spread evenly over what the foot can reach, joint limits aside [m]."""
     rng = np.random.default_rng(seed)
-    way = rng.normal(size=(count, 3))
-    way /= np.linalg.norm(way, axis=1, keepdims=True)
+    direction = rng.normal(size=(count, 3))
+    direction /= np.linalg.norm(direction, axis=1, keepdims=True)
     near, far = hind.reach
-    return np.array([hind.hip_offset, 0, 0]) + way * np.cbrt(rng.uniform(near**3, far**3, (count, 1)))
+    return np.array([hind.hip_offset, 0, 0]) + direction * np.cbrt(rng.uniform(near**3, far**3, (count, 1)))
 
 
 def _misses(hind: Leg, foot: np.ndarray, *, knee: int, side: int) -> np.ndarray:
@@ -292,9 +292,9 @@ def _sweep(hind: Leg) -> xr.Dataset:
 
 
 def _postures(hind: Leg) -> xr.Dataset:
-    """Draw the leg sprawled, half erect and erect."""
+    """Draw the leg sprawled, semi-erect and erect."""
     a0 = hind.hip_offset
-    named = {"sprawled": (0, 0, 90), "half erect": (0, 35, 70), "erect": (0, 66, 42)}  # [deg]
+    named = {"sprawled": (0, 0, 90), "semi-erect": (0, 35, 70), "erect": (0, 66, 42)}  # [deg]
     angles = np.radians(list(named.values()))
     hip = np.broadcast_to([a0, 0.0, 0.0], (len(named), 3))
     points = np.stack([hip, leg.knee_point(hind, angles), leg.forward(hind, angles)], axis=1)

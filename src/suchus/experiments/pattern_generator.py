@@ -48,7 +48,7 @@ class PatternGeneratorExperiment(Experiment):
     robot: AnyRobot = field(default_factory=lambda: ROBOTS["salamander"])
     """The robot, with limbs and an axis that bends sideways."""
     gait: AnyGait = field(default_factory=lambda: GAITS["salamander_walk"])
-    """Whose foot paths, bends and period the oscillators drive."""
+    """Gait whose foot paths, bends and period the oscillators drive."""
     drives: tuple[float, ...] = (1.0, 1.5, 2.0, 2.5, 3.0, 3.25, 3.5, 4.0, 4.5, 5.0)
     """Drives of the sweep [-]."""
     walk: float = 2.0
@@ -58,19 +58,19 @@ class PatternGeneratorExperiment(Experiment):
     starts: int = 32
     """Random initial phases of all oscillators, the same at both drives [-]."""
     followed: float = 12.0
-    """How long each start is followed, in cycles of its drive [cycle]."""
+    """Duration for which each start is followed, in cycles of its drive [cycle]."""
     within: float = 0.1
-    """How close to its place an oscillator counts as locked [rad]."""
+    """Greatest phase error with which an oscillator counts as locked [rad]."""
     hold: float = 2.0
-    """For how long all must stay locked until the end [cycle]."""
+    """Duration for which all must stay locked until the end [cycle]."""
     asymmetry: float = 1.0
     """Drive of the right side minus that of the left one, for steering by it [-]."""
     cycles: int = 5
-    """How long each walk on land is, in periods of the gait [-]."""
+    """Duration of each walk on land, in periods of the gait [-]."""
     ramp: float = 14.0
-    """How long the drive rises from 1 to 5 and falls again, in periods of the gait [-]."""
+    """Duration over which the drive rises from 1 to 5 and falls again, in periods of the gait [-]."""
     seed: int = 0
-    """Of the first start; the others follow [-]."""
+    """Seed of the first start; the others follow [-]."""
 
     def __post_init__(self) -> None:
         low, middle, high = *_NUMBERS.limb_drives, _NUMBERS.axis_drives[1]
@@ -236,7 +236,7 @@ class PatternGeneratorExperiment(Experiment):
         )
 
     def _land(self, progress: Progress) -> tuple[xr.Dataset, xr.Dataset]:
-        """Return how far and whereto it walks under each control, and the run under the ramp."""
+        """Return how far and in which direction it walks under each control, and the run under the ramp."""
         low, high = _NUMBERS.limb_drives
         arms = {
             "drive_low": PatternGenerator(drive=low),
@@ -312,7 +312,7 @@ def _swept(record: xr.Dataset) -> dict[str, Measure]:
 
 
 def _lags(phase: np.ndarray) -> np.ndarray:
-    """Return how late each segment is behind the one ahead of it, from -0.5 to 0.5 [cycle]; 0 of a single segment."""
+    """Return the phase lag of each segment behind the one ahead of it, -0.5 to 0.5 [cycle]; 0 of a single segment."""
     if len(phase) < 2:
         return np.zeros(1)
     return np.asarray(np.mod(-np.diff(phase) + 0.5, 1.0) - 0.5)

@@ -19,6 +19,7 @@ from suchus.gaits import GAITS
 from suchus.land import Ground, Run, simulate
 from suchus.metrics import displacement, heading_change
 from suchus.motion import START, AngleTable
+from suchus.renamed import old_names
 from suchus.replay import replay
 from suchus.robots import ROBOTS
 from suchus.verdict import Reading, compared
@@ -26,6 +27,7 @@ from suchus.verdict import Reading, compared
 _WALK, _STRAIGHT = "the animal's angles", "axis held straight"
 
 
+@old_names(grips="friction_scales")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Salamander(Experiment):
     """The mean walking cycle of Pleurodeles waltl, played on the robot built after it; nothing is fitted.
@@ -46,7 +48,7 @@ class Salamander(Experiment):
     """Cycles that are walked before anything is measured [-]."""
     cycles: int = 8
     """Cycles that are measured [-]."""
-    grips: tuple[float, ...] = (0.7, 1.4)
+    friction_scales: tuple[float, ...] = (0.7, 1.4)
     """Factors on the friction of the ground in further runs [-]."""
     loaded: float = 0.15
     """Vertical force from which a foot stands [body weight]; hind feet trail with a tenth of the weight in swing."""
@@ -55,12 +57,12 @@ class Salamander(Experiment):
         with Checks(self.name(), self) as check:
             check.whole("settle", 0, 1000)
             check.whole("cycles", 1, 1000)
-            check.rising("grips", 0.05, 10.0, "")
+            check.rising("friction_scales", 0.05, 10.0, "")
             check.number("loaded", 0.001, 1.0, "body weight")
 
     def quick(self) -> "Salamander":
         """Return two cycles after the first one, on one further ground."""
-        return replace(self, settle=1, cycles=2, grips=(0.7,))
+        return replace(self, settle=1, cycles=2, friction_scales=(0.7,))
 
     def simulate(self, progress: Progress = silent) -> Simulated:
         """Walk with the animal's angles, with a straight axis, and on other ground."""
@@ -75,8 +77,10 @@ class Salamander(Experiment):
             Run(robot=self.robot, gait=self.gait, label=_WALK),
             Run(robot=self.robot, gait=straight, label=_STRAIGHT),
             *(
-                Run(robot=self.robot, gait=self.gait, ground=Ground(grip=grip), label=f"friction x {grip:g}")
-                for grip in self.grips
+                Run(
+                    robot=self.robot, gait=self.gait, ground=Ground(friction_scale=scale), label=f"friction x {scale:g}"
+                )
+                for scale in self.friction_scales
             ),
         ]
         duration = START + (self.settle + self.cycles) * self.gait.period

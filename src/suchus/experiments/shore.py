@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from suchus.control import Amphibious, Control, DepthHold, HeadingHold, OpenLoop, Swimming
+from suchus.control import Amphibious, Control, DepthHold, HeadingHold, HeadingRule, OpenLoop, Swimming
 from suchus.design import Crocodile
 from suchus.design.checks import Checks
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
@@ -27,11 +27,13 @@ _LIMBS = -0.15
 """How far the limbs, which lie back along the body, point down while it swims [rad]."""
 _DRY, _DEEP = -10.0, 3.0
 """Levels of the water far below dry land, and far above the ground [m]."""
-_METRES = (
-    ("land", "on level dry land"), ("ashore", "up the shore above the line"), ("wading", "wading"),
-    ("surface", "at the surface"), ("deep", "at a depth that is held"),
+_WADE = replace(
+    GAITS["semi_erect"], name="wade", period=1.6, duty_factor=0.5, limb_phases=(0.0, 0.5, 0.5, 0.0), stroke=0.05,
+    hip_height=0.09, trunk_bend=0.0, tail_pitch=-0.1,
 )  # fmt: skip
-"""Endings of the measures of what a metre costs, and in words where that is."""
+"""A walk for feet that carry little: with a duty factor of a half the feet come forward no faster than they go back, so
+that the water does not drive the robot back more than it drives it on; the slower, the less that counts beside what
+holds on the ground. The tail is lifted, since pressed on the ground it lifts the hind feet. The trunk is straight."""
 _SAMPLE, _KEPT = 4, 5
 """Control periods between the samples of the runs, and those of them between the samples of the paths that are kept."""
 
@@ -41,8 +43,9 @@ class Shore(Experiment):
     """The floating robot swims to a shore, feels ground, changes to its gait and walks out; and back into the water.
 
     It swims by the wave of (20) with its heading held, decides between swimming and walking by the load that feet,
-    belly and tail carry, and lets out air when it begins to walk. Main runs: every slope with every grip, ``seeds``
-    times, with noise on the servos. Beside them other gaits on every slope with one grip, other amounts of air let out
+    belly and tail carry, and lands with air let out in the gait ``wade``. It comes in aslant, so that its body lies on
+    less of a slope than the shore has. Main runs: every slope with every grip, ``seeds`` times, with noise on the
+    servos. Beside them other gaits on every slope with one grip, other amounts of air let out
     on the steepest slope with every grip, and walks from land into the water on every slope. It came ashore if its
     centre of mass got ``beyond`` the water line without falling; it is in the water if it swims at the end, floats
     free, and did not fall. What a metre costs is read from three more runs: the gait on level dry land, and the swim at
@@ -57,10 +60,14 @@ class Shore(Experiment):
     """The robot; it must float, and have air to let out."""
     gait: Gait = field(default_factory=lambda: GAITS["semi_erect"])
     """In which it walks ashore."""
+    wade: Gait = field(default_factory=lambda: _WADE)
+    """In which it lands."""
+    approach: float = 0.85
+    """Direction in which it comes, against straight up the shore, left positive [rad]: 15 degrees are 10 along it."""
     others: tuple[Gait, ...] = field(
         default_factory=lambda: tuple(GAITS[name] for name in ("belly_crawl", "low_crawl", "high_walk"))
     )
-    """Gaits beside it."""
+    """Gaits beside it, in which it also lands."""
     slopes: tuple[float, ...] = (radians(5), radians(8), radians(12), radians(15))
     """Of the shore [rad]."""
     grips: tuple[float, ...] = (0.6, 0.75, 0.9, 1.0)
@@ -69,9 +76,9 @@ class Shore(Experiment):
     """Runs of each slope with each grip [-]."""
     noise: float = 0.01
     """Standard deviation of the noise on every commanded angle [rad]."""
-    breathe_out: float = 0.5
-    """Share of the air of the hull that it lets out when it begins to walk [-]."""
-    breaths: tuple[float, ...] = (0.0, 0.25, 1.0)
+    breathe_out: float = 1.0
+    """Share of the air of the hull that it lets out while it lands [-]."""
+    breaths: tuple[float, ...] = (0.0, 0.5)
     """Other shares, on the steepest slope [-]."""
     frequency: float = 1.0
     """Of the swim [Hz]."""
@@ -81,7 +88,7 @@ class Shore(Experiment):
     """How far the water line is ahead of where it begins to walk into the water [m]."""
     beyond: float = 1.0
     """How far the centre of mass must come beyond the water line [m]."""
-    duration: float = 24.0
+    duration: float = 50.0
     """Of every run to the shore or into the water [s]."""
     cycles: int = 16
     """Cycles of the gait over which the cost of a metre is measured, after as many to settle [-]."""
@@ -97,6 +104,7 @@ class Shore(Experiment):
             check.whole("seeds", 1, 1000)
             check.number("noise", 0.0, 1.0, "rad")
             check.number("breathe_out", 0.0, 1.0, "")
+            check.number("approach", -1.2, 1.2, "rad")
             if self.breaths:
                 check.rising("breaths", 0.0, 1.0, "")
             check.number("frequency", 0.05, 10.0, "Hz")
@@ -129,7 +137,7 @@ class Shore(Experiment):
             ("kind", [kind for kind, _, _ in cases], "1"),
             ("walk", [run.gait.name for run in runs], "1"),
             ("slope", [abs(run.ground.uphill) for run in runs], "rad"),
-            ("grip", [run.ground.grip for run in runs], "1"),
+            ("grip", [run.ground.friction_scale for run in runs], "1"),
             ("breathed_out", [out for _, out, _ in cases], "1"),
         ):
             kept[name] = ("case", np.array(values), {"units": unit})
@@ -138,7 +146,7 @@ class Shore(Experiment):
         whole = xr.merge([record.isel(run=[shown]), kept, metres], combine_attrs="override", compat="no_conflicts")
         whole.attrs.update(
             record.attrs, beyond=self.beyond, shown=shown, line=findings.water_line(runs[shown]),
-            breathe_out=self.breathe_out, depth=self.depth,
+            breathe_out=self.breathe_out, depth=self.depth, approach=self.approach,
         )  # fmt: skip
         return Simulated(record=whole, replays=self._replays(whole))
 
@@ -167,15 +175,18 @@ class Shore(Experiment):
     def _run(self, gait: Gait, uphill: float, grip: float, out: float, seed: int) -> Run:
         """Return a run: up a shore from the water, or down into it where the slope falls."""
         offshore = self.robot.length / 2 + self.clearance / tan(uphill) if uphill > 0 else self.inland
+        course = self.approach if uphill > 0 else 0.0
         control = Amphibious(
-            swim=Swimming(swim=self._swim(), limb_pitch=_LIMBS, heading=HeadingHold()),
+            swim=Swimming(swim=self._swim(), limb_pitch=_LIMBS, heading=HeadingHold(direction=course)),
             begins="swimming" if uphill > 0 else "walking",
+            wade=self.wade if gait == self.gait else None,
             breathe_out=out,
+            heading=HeadingRule(direction=course),
         )
         return Run(
             robot=self.robot,
             gait=gait,
-            ground=Ground(uphill=uphill, grip=grip),
+            ground=Ground(uphill=uphill, friction_scale=grip),
             lake=Lake(level=offshore * sin(uphill)),
             control=control,
             noise=self.noise,
@@ -205,10 +216,8 @@ class Shore(Experiment):
         return int(np.flatnonzero(mine)[0])
 
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
-        caption = (
-            "It swims in with its limbs held back, feels ground, lets out air and walks out. Seen in the frame of the "
-            "shore."
-        )
+        end = findings.ending(record)
+        caption = f"It swims to the shore with its limbs held back; {end}. Seen in the frame of the shore."
         page = partial(replay, record.isel(run=0), self.robot, title="From the water onto the shore", caption=caption)
         return {"shore_replay.html": Replay(caption=caption, make=page)}
 
@@ -229,14 +238,14 @@ class Shore(Experiment):
                         same="as many as")  # fmt: skip
         costs = [
             f"{m[f'work_per_metre_{ending}']:.1f} J {where}"
-            for ending, where in _METRES
+            for ending, where in findings.METRES.items()
             if m[f"work_per_metre_{ending}"] == m[f"work_per_metre_{ending}"]
         ]
         by_gait = f"Of all slopes at one friction: {listed(walked)}. " if walked else ""
         when = f", half of these within {m['time_ashore']:.0f} s" if m["time_ashore"] == m["time_ashore"] else ""
         return (
-            f"{m['ashore_share']:.0%} of the runs came ashore{when}; {m['falls']:.0f} fell, and none changed between "
-            f"swimming and walking more than {m['switches']:.0f} times. On the steepest slope it is "
+            f"{m['ashore_share']:.0%} of the runs came ashore{when}; {m['falls']:.0f} fell. The most changes between "
+            f"swimming and walking in one run are {m['switches']:.0f}. On the steepest slope it is "
             f"{m['ashore_share_steepest']:.0%}: {listed(breaths)}. With the greatest friction {grip} "
             f"with the least come ashore ({m['ashore_share_most_grip']:.0%} and {m['ashore_share_least_grip']:.0%}). "
             f"{by_gait}From land {m['into_water_share']:.0%} went into the water and swam "

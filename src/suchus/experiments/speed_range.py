@@ -54,7 +54,7 @@ class SpeedRange(Experiment):
     slower: tuple[float, ...] = (0.6, 0.75, 0.875, 1.0, 1.3, 1.8)
     """Factors on the cycle time of each gait [-]."""
     cycles: int = 3
-    """How many cycles are measured, after one more [-]."""
+    """Number of cycles that are measured, after one more [-]."""
     timestep: float = 0.005
     """Time step of the physics [s], at most 0.01; speeds at 2 ms are the same within 2 %."""
 

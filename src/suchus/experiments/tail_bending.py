@@ -176,7 +176,7 @@ def _cords(plates: Tail, bend: np.ndarray) -> xr.Dataset:
                 part | {"long_name": "h/d tan(theta / 4N)"},
             ),
             "deficit": ("bend", bend - _reached(plates, kept_away), {"units": "rad", "long_name": "bend missing"}),
-            "servo": ("bend", tail.servo_angle(plates, bend), {"units": "rad", "long_name": "wheel angle"}),
+            "servo": ("bend", tail.servo_angle(plates, bend), {"units": "rad", "long_name": "pulley angle"}),
         },
         coords={"bend": ("bend", bend, {"units": "rad", "long_name": "bend of the tail"})},
     )

@@ -74,7 +74,7 @@ class Terrain(Experiment):
     surfaces: tuple[Surface, ...] = ("even", "bumps")
     """Grounds on which postures turn into each other; the bumps are 30 mm high."""
     transitions: int = 6
-    """How many of the six transitions between the three postures are tried [-]."""
+    """Number of the six transitions between the three postures that are tried [-]."""
     thrifty: bool = False
     """Whether a robot that begins in the crawl and rises when its belly touches walks too."""
     seeds: int = 4
@@ -82,7 +82,7 @@ class Terrain(Experiment):
     noise: float = 0.01
     """Standard deviation of the noise on every commanded angle in the repeats on even ground [rad]."""
     walked: float = 8.0
-    """How long each run walks [s], 0.5 to 3600."""
+    """Duration for which each run walks [s], 0.5 to 3600."""
     timestep: float = 0.005
     """Time step of the physics [s], at most 0.01."""
 
@@ -170,7 +170,7 @@ class Terrain(Experiment):
         return Bumps(height=height, correlation=correlation, start=BEFORE * size, seed=seed, scale=size)
 
     def arms(self) -> Mapping[str, tuple[Gait | Pattern, Control]]:
-        """Return gait and control of every arm."""
+        """Return gait and control of every condition."""
         ladder, level = (self.crawl, self.semi_erect, self.high_walk), AttitudeRule()
         arms: dict[str, tuple[Gait | Pattern, Control]] = {
             "low_crawl": (self.crawl, Walking()),
@@ -299,7 +299,7 @@ class Terrain(Experiment):
         return record.merge(shown)
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
-        """Draw the postures on bumps, and the way on every ground."""
+        """Draw the postures on bumps, and the distance on every ground."""
         record = outcome.record
         said = "the sprawled crawl, semi-erect legs, and erect legs with elbows behind and knees ahead"
         if not isinstance(self.crawl, Gait):
@@ -312,10 +312,10 @@ _UNITS = {"forward": "m", "aside": "m", "turned": "rad", "fell": "1", "cost": "1
 
 def _look(record: xr.Dataset, met: Sequence[bool]) -> np.ndarray:
     """Return what ``_UNITS`` names, shape (run, 7)."""
-    part, way = between(record), displacement(record)
+    part, displaced = between(record), displacement(record)
     columns: Sequence[Any] = (
-        way.sel(xyz="x"),
-        way.sel(xyz="y"),
+        displaced.sel(xyz="x"),
+        displaced.sel(xyz="y"),
         heading_change(record),
         _most_tilt(record) > FALLEN,
         cost_of_transport(record),

@@ -26,9 +26,9 @@ _STRAIGHT = 1e-3  # [1/m]; no radius beyond a kilometre
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Turning(Experiment):
-    """Curvature of the way against a lasting bend, against unequal strokes, and against both; then circles on command.
+    """Curvature of the path against curvature offset, unequal strokes, and both; then circles on command.
 
-    The curvature is the change of heading over the length of the way, over whole cycles from the second on. The way is
+    The curvature is the change of heading over the path length, over whole cycles from the second on. The path is
     measured from cycle to cycle, so that the swaying within one does not count. Bends stop where the trunk's joints do.
     """
 
@@ -45,13 +45,13 @@ class Turning(Experiment):
     bends: tuple[float, ...] = (0.0, 0.17, 0.35, 0.52, 0.79)
     """Lasting bends of the trunk [rad]."""
     asymmetries: tuple[float, ...] = (0.0, 0.25, 0.5, 0.75, 1.0)
-    """By how much left strokes are shorter and right ones longer [-]."""
+    """Fractions by which left strokes are shorter and right ones longer [-]."""
     mixtures: tuple[float, ...] = (0.0, 0.1, 0.2, 0.3, 0.45, 0.6, 0.8, 1.0)
     """Shares of the last bend together with, on sprawled legs, the last asymmetry [-]."""
     asked: tuple[float, ...] = (0.6, 0.8, 1.2, 2.0, 3.0)
     """Radii of the circles on command [m]."""
     cycles: int = 10
-    """How many cycles are measured, after one more [-]."""
+    """Number of cycles that are measured, after one more [-]."""
     timestep: float = 0.005
     """Time step of the physics [s], at most 0.01."""
 
@@ -157,13 +157,13 @@ class Turning(Experiment):
         return simulate(runs, duration=self._end(gait), timestep=self.timestep, progress=progress)
 
     def _curvatures(self, gait: AnyGait, record: xr.Dataset) -> np.ndarray:
-        """Return the curvature of each way [1/m]."""
+        """Return the curvature of each path [1/m]."""
         end = self._end(gait)
         part = between(record, START + gait.period, end)
         every = round(gait.period / float(part.time[1] - part.time[0]))
         points = part.centre_of_mass.sel(xyz=["x", "y"]).isel(time=slice(None, None, every))
-        way = ((points.diff("time") ** 2).sum("xyz") ** 0.5).sum("time")
-        return np.asarray(heading_change(record, START + gait.period, end) / way)
+        length = ((points.diff("time") ** 2).sum("xyz") ** 0.5).sum("time")
+        return np.asarray(heading_change(record, START + gait.period, end) / length)
 
     def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
         """Return the tightest radius of every gait by bend, by stroke and by both, and how well circles come out."""
@@ -186,9 +186,9 @@ class Turning(Experiment):
         m = {name: Reading(value) for name, value in measures.items()}
         names = [gait.name for gait in self.gaits]
         told = [
-            f"the {name.replace('_', ' ')} in {m[f'tightest_bend_{name}']:.2f} m by a lasting bend, "
-            f"{m[f'tightest_asymmetry_{name}']:.2f} m by unequal strokes and {m[f'tightest_both_{name}']:.2f} m by the "
-            "mixture of both"
+            f"the {name.replace('semi_', 'semi-').replace('_', ' ')} in {m[f'tightest_bend_{name}']:.2f} m by a "
+            f"curvature offset, {m[f'tightest_asymmetry_{name}']:.2f} m by unequal strokes and "
+            f"{m[f'tightest_both_{name}']:.2f} m by the mixture of both"
             for name in names
         ]
         walked = sum(m[f"circles_walked_{name}"] for name in names)

@@ -38,7 +38,7 @@ class WorkingSpace(Experiment):
     robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that reaches."""
     gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
-    """Where its feet stand."""
+    """Gait whose stance gives the places of the feet."""
     crawling: int = 2**19
     """Configurations that are drawn on four feet; one in two hundred can be [-]."""
     standing: int = 2**18
@@ -46,7 +46,7 @@ class WorkingSpace(Experiment):
     cell: float = 0.025
     """Edge of the cells that are counted [m]."""
     seed: int = 0
-    """Of the drawing [-]."""
+    """Seed of the drawing [-]."""
 
     def __post_init__(self) -> None:
         with Checks(self.name(), self) as check:

@@ -18,9 +18,9 @@ class Backlash(ServoFault):
     joint: str
     """Name of the servo."""
     gap: float = 0.1
-    """From one end of the play to the other [rad]; 0 to 1."""
+    """Play from one end to the other [rad]; 0 to 1."""
     at: float = 0.0
-    """When it happens [s]."""
+    """Time at which the fault begins [s], at least 0."""
 
     def refuse(self, robot: AnyRobot) -> None:
         """Refuse a gap that no gear has, too."""

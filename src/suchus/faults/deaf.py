@@ -16,7 +16,7 @@ class Deaf(Fault):
     sensor: str
     """Name of the group, as ``foot_pressure``."""
     at: float = 0.0
-    """When it happens [s]."""
+    """Time at which the fault begins [s], at least 0."""
     acts_on = "sensor"
 
     @property

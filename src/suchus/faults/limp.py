@@ -12,7 +12,7 @@ class Limp(ServoFault):
     joint: str
     """Name of the servo, as ``LF_yaw``."""
     at: float = 0.0
-    """When it happens [s]."""
+    """Time at which the fault begins [s], at least 0."""
 
     def apply(self, plant: Plant) -> None:
         """Take the torque away."""

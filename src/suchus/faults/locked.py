@@ -15,7 +15,7 @@ class Locked(ServoFault):
     joint: str
     """Name of the servo, as ``LH_pitch``."""
     at: float = 0.0
-    """When it happens [s]."""
+    """Time at which the fault begins [s], at least 0."""
     angle: float | None = None
     """The angle it holds [rad]; None: the one it has at that time."""
 

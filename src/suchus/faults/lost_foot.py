@@ -18,7 +18,7 @@ class LostFoot(Fault):
     limb: str
     """Name of the leg, as ``LF``."""
     at: float = 0.0
-    """When it happens [s]."""
+    """Time at which the fault begins [s], at least 0."""
     acts_on = "limb"
 
     @property

@@ -21,9 +21,9 @@ class Offset(ServoFault):
     joint: str
     """Name of the servo."""
     angle: float = TOOTH
-    """Of the joint beyond the servo [rad]; -pi to pi."""
+    """Angle of the joint beyond the servo [rad]; -pi to pi."""
     at: float = 0.0
-    """When it happens [s]."""
+    """Time at which the fault begins [s], at least 0."""
 
     def refuse(self, robot: AnyRobot) -> None:
         """Refuse an angle beyond half a turn, too."""

@@ -19,7 +19,7 @@ class Slow(ServoFault):
     speed: float = 1.0
     """The new speed limit [rad/s]; more than 0, at most the limit of the intact servo."""
     at: float = 0.0
-    """When it happens [s]."""
+    """Time at which the fault begins [s], at least 0."""
 
     def refuse(self, robot: AnyRobot) -> None:
         """Refuse a speed that is not a limit of this servo, too."""

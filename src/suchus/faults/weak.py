@@ -14,9 +14,9 @@ class Weak(ServoFault):
     joint: str
     """Name of the servo."""
     fraction: float = 0.5
-    """What is left of the torque limit [-]."""
+    """Fraction of the torque limit that is left [-], 0 to 1."""
     at: float = 0.0
-    """When it happens [s]."""
+    """Time at which the fault begins [s], at least 0."""
 
     def refuse(self, robot: AnyRobot) -> None:
         """Refuse a fraction outside 0 to 1, too."""

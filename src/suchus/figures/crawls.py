@@ -28,11 +28,11 @@ def draw_crawls(robot: AnyRobot, record: xr.Dataset, arms: Sequence[str]) -> Fig
     with styled(axes__grid=False):
         figure, axes = panels(1, 1, width=10.5, height=5.2)
         ax = axes[0, 0]
-        way = record.centre_of_mass.sel(xyz="x")
+        ahead = record.centre_of_mass.sel(xyz="x")
         for i, role in enumerate(arms):
             run, aside = record.isel(run=i), -apart * i
             draw_strip(ax, robot, run, times, role=role, aside=aside)
-            start, stop = (float(way.isel(run=i).sel(time=t, method="nearest")) for t in (START, end))
+            start, stop = (float(ahead.isel(run=i).sel(time=t, method="nearest")) for t in (START, end))
             dim = aside - 0.21 * size
             ax.annotate(
                 "", (start, dim), (stop, dim), arrowprops={"arrowstyle": "|-|", "color": COLOURS[role], "lw": 2}

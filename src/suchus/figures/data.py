@@ -1,7 +1,7 @@
 """The numbers behind a figure, read from what is drawn in it: one table with quantity and unit in its header.
 
 A row is a point of a series in a panel. Each quantity, as the axes name it, has one column, which panels that show the
-same quantity share. Bars tell their own length, bands and outlines their corners, fields the value of each cell.
+same quantity share. Bars give their length, bands and outlines their corners, fields the value of each cell.
 """
 
 import csv

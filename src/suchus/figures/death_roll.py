@@ -96,8 +96,8 @@ def draw_rates(record: xr.Dataset) -> Figure:
             ax.set_title(letter, fontweight="bold")
     return captioned(
         figure,
-        "What decides the rate. a: turns over time; thick in vacuum, thin in water. b: how late the "
-        "vertical bend comes, trunk in vacuum. c, d: amplitude and frequency of the trunk's bends; the triangles are "
+        "What decides the rate. a: turns over time; thick in vacuum, thin in water. b: over the phase lag of "
+        "the vertical bend, trunk in vacuum. c, d: amplitude and frequency of the trunk's bends; the triangles are "
         "the C of trunk and tail, and the dashed line is what juvenile alligators do.",
     )
 
@@ -155,7 +155,7 @@ def _by_phase(ax: Axes, record: xr.Dataset) -> None:
     amplitude = float(abs(record.rate_by_phase).max())
     fine = np.linspace(float(record.late.min()), float(record.late.max()), 100)
     ax.plot(fine, amplitude * np.sin(_TURN * fine), color=COLOURS["neutral"], linestyle=(0, (4, 2)), label="sine")
-    ax.set_xlabel("how late the vertical bend comes [cycle]")
+    ax.set_xlabel("phase lag of the vertical bend [cycle]")
     ax.set_ylabel("rate of roll [turns/s]")
     ax.legend(loc="lower right")
 

@@ -97,10 +97,10 @@ def _tail(ax: Axes, robot: Crocodile, height: float, tip_height: float) -> None:
     tail = robot.tail
     total = tail.length - tail.offset
 
-    def at(way: float) -> tuple[float, float, float]:
-        share = way / total
+    def at(distance: float) -> tuple[float, float, float]:
+        share = distance / total
         radius = tail.radius_root + (tail.radius_tip - tail.radius_root) * share
-        return -tail.offset - way, height + (tip_height - height) * share, radius
+        return -tail.offset - distance, height + (tip_height - height) * share, radius
 
     driven = tail.root + tail.joints * tail.pitch
     for start, end, colour in ((0.0, driven, _BODY), (driven, total, _FIN)):

@@ -1,4 +1,4 @@
-"""What lost joints cost: displacements over time, changes against the intact robot, tracks on the ground."""
+"""What failed joints cost: displacements over time, changes against the intact robot, tracks on the ground."""
 
 import itertools
 from collections.abc import Sequence
@@ -92,9 +92,10 @@ def draw_losses(record: xr.Dataset) -> Figure:
         figure.legend(handles=keys, loc="outside upper center", ncols=3, frameon=False)
     return captioned(
         figure,
-        "What a lost joint costs, for every reading of 'lost': median and range over the variations of gait and "
-        "friction. Dotted: as printed; of the knees the article says nothing. Orange line and band: the intact robot "
-        f"with limbs only.{_outwalked(record)} Yellow: limbs only with the tail in the air, in the judged reading.",
+        "What a failed joint costs, for every reading of the article's 'lost': median and range over the variations of "
+        "gait and friction. Dotted: as printed; of the knees the article says nothing. Orange line and band: the "
+        f"intact robot with limbs only.{_outwalked(record)} Yellow: limbs only with the tail in the air, in the judged "
+        f"reading.",
     )
 
 
@@ -107,7 +108,7 @@ def _outwalked(record: xr.Dataset) -> str:
         return ""
     return (
         f" The article's own intact robot with limbs only is at {intact:+.0%}; its "
-        f"{listed([f'{p:+.0%}' for p in less])} with a joint lost let a damaged robot out-walk it."
+        f"{listed([f'{p:+.0%}' for p in less])} with a failed joint let a damaged robot out-walk it."
     )
 
 
@@ -125,7 +126,7 @@ def draw_over_time(record: xr.Dataset, kind: str, legs: str) -> Figure:
         kind: ``limp`` or ``locked``.
         legs: ``one`` or ``both``.
     """
-    way, intact = record.track.sel(on_ground="x"), record.intact_track.sel(on_ground="x")
+    path, intact = record.track.sel(on_ground="x"), record.intact_track.sel(on_ground="x")
     end, period = float(record.time[-1]), float(record.period)
     of = "one leg" if legs == "one" else "both legs"
     with styled():
@@ -135,7 +136,7 @@ def draw_over_time(record: xr.Dataset, kind: str, legs: str) -> Figure:
             ax.set_axis_off()
         for number, (ax, joint) in enumerate(zip(axes.flat, record.lost.values, strict=False)):
             for arm in _ARMS:
-                some = way.sel(joint=joint, kind=kind, legs=legs, arm=arm).rename(variation="run")
+                some = path.sel(joint=joint, kind=kind, legs=legs, arm=arm).rename(variation="run")
                 draw_band(ax, some, arm)
                 ax.plot(record.time, some.median("run"), **LINES[arm])
                 whole = intact.sel(arm=arm).median("variation")
@@ -193,9 +194,9 @@ def draw_tracks(record: xr.Dataset) -> Figure:
             _arrow(ax, whole[:, -1], float(given.intact_turn), "#333333")
             for (kind, legs), look in looks.items():
                 some = given.sel(joint=joint, kind=kind, legs=legs)
-                way = some.track.transpose("on_ground", "time").values
-                ax.plot(*way, **look)
-                _arrow(ax, way[:, -1], float(some.turn), look["color"])
+                path = some.track.transpose("on_ground", "time").values
+                ax.plot(*path, **look)
+                _arrow(ax, path[:, -1], float(some.turn), look["color"])
             ax.set_title(_named(str(joint)))
             ax.set_aspect("equal")
         for ax in axes[:, 0]:
@@ -205,8 +206,8 @@ def draw_tracks(record: xr.Dataset) -> Figure:
         figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=5, frameon=False)
     return captioned(
         figure,
-        "Tracks of the centre of mass seen from above, with spine and tail, the left joint or both lost; arrows show "
-        "whereto the body faces at the end.",
+        "Tracks of the centre of mass seen from above, with spine and tail, the left joint or both failed; arrows show "
+        "the heading at the end.",
     )
 
 
@@ -227,7 +228,7 @@ def draw_held(record: xr.Dataset) -> Figure:
     """Draw how the change depends on where a locked joint holds.
 
     Args:
-        record: of the campaign: ``held_forward`` over arm, lost joint and hold.
+        record: of the campaign: ``held_forward`` over condition, failed joint and hold.
     """
     whole = float(record.intact_forward.sel(arm="coordinated")[0])
     change = 100 * (record.held_forward / whole - 1.0)

@@ -121,13 +121,13 @@ def _bars(ax: Axes, time: np.ndarray, stands: np.ndarray, legs: Sequence[str]) -
     ax.set_xlim(max(0.0, float(time[0])), float(time[-1]))
 
 
-def draw_gain(way: xr.DataArray) -> Figure:
-    """Draw the way after each disturbance under each rule, as a part of the undisturbed way without feedback.
+def draw_gain(distance: xr.DataArray) -> Figure:
+    """Draw the distance after each disturbance under each rule, over the undisturbed distance without feedback.
 
     Args:
-        way: with the dimensions ``disturbance`` and ``arm`` [m].
+        distance: with the dimensions ``disturbance`` and ``arm`` [m].
     """
-    share = (way / way.sel(disturbance="none", arm="open").item()).transpose("disturbance", "arm")
+    share = (distance / distance.sel(disturbance="none", arm="open").item()).transpose("disturbance", "arm")
     rules = [rule for rule in _RULES if rule in share.arm.values]
     share = share.sel(arm=rules, disturbance=list(_WORDS))
     with styled(axes__grid=False):

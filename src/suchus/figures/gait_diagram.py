@@ -1,4 +1,4 @@
-"""The gait diagram: who stands when, and whereto spine and tail bend meanwhile. The form of the article's Fig. 12."""
+"""The gait diagram: which feet stand when, and how spine and tail bend meanwhile, as in Fig. 12."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -35,7 +35,7 @@ class GaitTrack:
     tail: np.ndarray | None
     """Lateral angle of the tail in the article's sign, right positive, shape (time,) [rad]; None where none bends."""
     label: str
-    """What it is, for the legend."""
+    """Label in the legend."""
     legs: tuple[str, ...] = LEGS
     """Names of the limbs."""
     spine_vertical: np.ndarray | None = None

@@ -8,7 +8,7 @@ from suchus.figures.style import COLOURS, panels, styled
 
 _DASHES = ("-", (0, (5, 2)), (0, (1, 1.2)), (0, (5, 1.5, 1, 1.5)))
 _SHADES = ("#333333", COLOURS["coordinated"], COLOURS["limbs_only"], COLOURS["tail_drag"])
-_TITLES = {"step": "a step", "load": "a load", "let_go": "let go after a grip"}
+_TITLES = {"step": "a step", "load": "a load", "let_go": "released after a clamp"}
 _KINDS = {
     "yaw": "leg yaw",
     "pitch": "leg pitch",

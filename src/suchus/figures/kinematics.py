@@ -94,7 +94,7 @@ def leg_workspace(record: xr.Dataset) -> Figure:
         "Where the hind foot reaches within the joints' limits, from the front (through the hip) and from above "
         "(in the plane on which a sprawled foot stands, dotted). Grey: out of reach; dashed: the reach without "
         "limits. Dark: the leg is near a singularity, straight, folded or with the foot on the yaw axis. Legs: "
-        "sprawled, half erect and erect.",
+        "sprawled, semi-erect and erect.",
     )
 
 

@@ -97,15 +97,15 @@ def draw_sweep(record: xr.Dataset, numbers: Oscillators) -> Any:
         axes[0, 0].legend(loc="upper left")
         for state, marker in (("walk", "o"), ("swim", "s")):
             one = record.sel(drive=record.attrs[state], method="nearest")
-            late = -np.unwrap(2 * np.pi * one.phase_axis.values) / (2 * np.pi)
-            axes[0, 2].plot(record.segment, late, marker=marker, label=f"drive {record.attrs[state]:g}")
+            lag = -np.unwrap(2 * np.pi * one.phase_axis.values) / (2 * np.pi)
+            axes[0, 2].plot(record.segment, lag, marker=marker, label=f"drive {record.attrs[state]:g}")
         axes[0, 2].set_xlabel("segment, from the head")
         axes[0, 2].set_ylabel("behind the first [cycle]")
         axes[0, 2].legend(loc="upper left")
     return captioned(
         figure,
         "Settled oscillators over the drive. Points: together; dotted lines: each alone. Left: frequencies; middle: "
-        "amplitudes; right: how late each segment of the axis is behind the first one at two drives.",
+        "amplitudes; right: phase lag of each segment of the axis behind the first one at two drives.",
     )
 
 
@@ -135,7 +135,7 @@ def draw_locks(record: xr.Dataset) -> Any:
 
 
 def draw_land(record: xr.Dataset) -> Any:
-    """Return stride over the drive, and turning by each way to steer."""
+    """Return stride over the drive, and turning by each kind of steering."""
     strides = ("drive_low", "straight", "drive_high")
     turns = ("straight", "asymmetry", "steering", "steering_right")
     with styled():

@@ -15,7 +15,7 @@ from suchus import rotation
 from suchus.design import GRAVITY, AnyRobot, Layout, LimbPlace, layout
 from suchus.figures.silhouette import Silhouette, silhouette
 from suchus.figures.style import COLOURS
-from suchus.kinematics.tree import Frames, frames, landmarks
+from suchus.kinematics.tree import BodyFrames, frames, landmarks
 from suchus.metrics import loaded, support_polygon
 from suchus.metrics.gait import LOADED_SHARE
 from suchus.skin import poses, skin
@@ -28,11 +28,12 @@ class Skeleton(NamedTuple):
     """Points of the body in the world."""
 
     trunk: np.ndarray
-    """From the first joint of the tail over the root and the joints ahead of it to front girdle and snout [m]."""
+    """Points from the first joint of the tail over the root and the joints ahead of it to front girdle and snout
+    [m]."""
     joints: np.ndarray
     """Those of them that are joints ahead of the root, (joint, 3) [m]."""
     tail: np.ndarray
-    """From its first joint to the tip, (point, 3) [m]."""
+    """Points from its first joint to the tip, (point, 3) [m]."""
     legs: tuple[np.ndarray, ...]
     """Midline, hip, joints and foot of each limb, (point, 3) [m]."""
 
@@ -64,7 +65,7 @@ def skeleton(robot: AnyRobot, record: xr.Dataset, time: float) -> Skeleton:
     )
 
 
-def _leg(place: Layout, limb: LimbPlace, found: Frames, foot: np.ndarray) -> np.ndarray:
+def _leg(place: Layout, limb: LimbPlace, found: BodyFrames, foot: np.ndarray) -> np.ndarray:
     """Return midline, hip, joints and foot of a limb in the frame of the root, (point, 3) [m]."""
     first = limb.tip - len(limb.girdle.limb.links) + 1
     parent = place.bodies[first].parent

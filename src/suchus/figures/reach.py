@@ -179,26 +179,26 @@ def draw_pushes(record: xr.Dataset, commanded: float) -> Figure:
     with styled():
         figure, axes = panels(1, 2, width=12.0, height=4.3)
         ax = axes[0, 0]
-        ways = [str(w) for w in record.way.values]
+        directions = [str(w) for w in record.direction.values]
         shown = record.push.isel(commanded=int(np.argmin(np.abs(record.commanded.values - commanded))))
         for shift, feedback in ((-0.2, "off"), (0.2, "on")):
             forces = shown.sel(feedback=feedback).values
             heights = np.where(np.isfinite(forces), forces, 0.0)
             colour = _FEEDBACK[feedback]
-            bars = ax.bar(np.arange(len(ways)) + shift, heights, 0.36, color=colour, label=f"feedback {feedback}")
+            bars = ax.bar(np.arange(len(directions)) + shift, heights, 0.36, color=colour, label=f"feedback {feedback}")
             ax.bar_label(bars, [f"{f:.1f}" if np.isfinite(f) else "none" for f in forces], padding=2)
-        ax.set_xticks(range(len(ways)), ways)
+        ax.set_xticks(range(len(directions)), directions)
         ax.grid(axis="x", visible=False)
         ax.set_ylabel("smallest push that topples [N]")
         ax.set_title("push of 0.2 s on the thorax")
         ax.margins(y=0.18)
         ax.legend(loc="upper left")
         ax = axes[0, 1]
-        for way, marker in zip(ways, "osD", strict=False):
+        for direction, marker in zip(directions, "osD", strict=False):
             for feedback, colour in _FEEDBACK.items():
-                some = record.push.sel(way=way, feedback=feedback)
+                some = record.push.sel(direction=direction, feedback=feedback)
                 dashes = (0, (3, 1.5)) if feedback == "off" else "-"
-                label = f"{way}, feedback {feedback}"
+                label = f"{direction}, feedback {feedback}"
                 ax.plot(
                     1000 * record.lead_found,
                     some.where(np.isfinite(some)),

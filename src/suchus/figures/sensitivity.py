@@ -58,7 +58,7 @@ def draw_shares(
         figure,
         "In which share of the plausible designs and gaits the statement of each claim holds, with 95 % intervals. In "
         f"the grey bands at least {ROBUST:.0%} of the designs agree; beside other claims stands the free number that "
-        "best tells where the statement holds, and on which side, where one does beyond chance.",
+        "best predicts where the statement holds, and on which side, where one does beyond chance.",
     )
 
 
@@ -109,7 +109,7 @@ def _numbers(ax: Axes, number: np.ndarray, holds: np.ndarray, claim: str) -> Non
     ax.set_ylabel("samples [-]")
     ax.yaxis.set_major_locator(MaxNLocator(integer=True))
     ax.grid(False, axis="x")
-    ax.set_title(f"the sentence is true in {100 * holds.mean():.0f} %" if holds.size else "nothing to tell")
+    ax.set_title(f"the sentence is true in {100 * holds.mean():.0f} %" if holds.size else "no predictor")
     ax.legend(loc="best", fontsize=10)
 
 

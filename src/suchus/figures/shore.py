@@ -74,9 +74,15 @@ def draw_ashore(robot: AnyRobot, record: xr.Dataset) -> Figure:
         ax.legend(loc="center left")
     return captioned(
         figure,
-        f"A robot swims to a shore of {np.degrees(steep):.0f} degrees, feels the ground and walks out; below, the "
-        "share of its weight that the feet carry (mean of 1.5 s in bold) and of its volume under water.",
+        f"A robot between the water and a shore of {np.degrees(steep):.0f} degrees, seen along the shore"
+        f"{_aslant(record.attrs['approach'])}; below, the share of its weight that the feet carry (mean of 1.5 s in "
+        "bold) and of its volume under water.",
     )
+
+
+def _aslant(course: float) -> str:
+    """Return how a picture from the side is to be read where a robot does not come straight, in words."""
+    return f" (it comes aslant by {abs(np.degrees(course)):.0f} degrees, and so looks shorter)" if course else ""
 
 
 def _times(path: xr.Dataset) -> list[float]:

@@ -87,7 +87,7 @@ def _owners(surface: Skin, starts: np.ndarray) -> list[int]:
 
 
 def _sides(part: np.ndarray, around: int) -> np.ndarray:
-    """Return the outline of a loft: on each ring the two points farthest across its way, and both ends."""
+    """Return the outline of a loft: on each ring the two points farthest across its axis, and both ends."""
     rings, first, last = part[:-2].reshape(-1, around, 2)[::2], part[-2], part[-1]
     middle = rings.mean(axis=1)
     ahead = np.gradient(middle, axis=0)

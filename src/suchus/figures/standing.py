@@ -18,7 +18,7 @@ _GAP = 0.06  # [m] between two robots of the strip
 
 
 def draw_side_views(robot: Crocodile, record: xr.Dataset) -> Figure:
-    """Draw the robot from its right side at five times of its way up, with mass, support and reach.
+    """Draw the robot from its right side at five times while it rises, with mass, support and reach.
 
     Args:
         robot: whose record it is.
@@ -111,7 +111,7 @@ def _mark_support(ax: Axes, now: xr.Dataset) -> None:
 
 
 def draw_angles(robot: Crocodile, record: xr.Dataset) -> Figure:
-    """Draw the angles of pelvis, trunk and tail over time, up positive, on the way up and on the way down.
+    """Draw the angles of pelvis, trunk and tail over time, up positive, while it rises and while it lies down.
 
     Args:
         robot: who stands up.

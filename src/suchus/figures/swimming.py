@@ -1,4 +1,4 @@
-"""Swimming: the fields around the held body, forces over a cycle, the free swim, and its films."""
+"""Swimming: the fields around the tethered body, forces over a cycle, the free swim, and its films."""
 
 import xarray as xr
 from matplotlib.axes import Axes
@@ -25,7 +25,7 @@ _FILM_SECONDS = 2.4
 
 
 def draw_quarters(record: xr.Dataset) -> Figure:
-    """Draw pressure, vorticity and streamlines around the held body at the four quarters of a cycle, as Fig. 17.
+    """Draw pressure, vorticity and streamlines around the tethered body at the four quarters of a cycle, as Fig. 17.
 
     Args:
         record: of the experiment ``swimming``.

@@ -81,9 +81,9 @@ def tail_cord_error(record: xr.Dataset) -> Figure:
     return captioned(
         figure,
         "What (17) leaves out. Above: its relative error for both cords over the bend; the neglected term is exactly "
-        "h/d tan(theta / 4N) of the kept one. Below: the cord that hangs loose because both cords sit on one wheel, "
+        "h/d tan(theta / 4N) of the kept one. Below: the cord that hangs loose because both cords sit on one pulley, "
         "and "
-        "how much bend is missing when the wheel turns by (18).",
+        "how much bend is missing when the pulley turns by (18).",
     )
 
 
@@ -104,7 +104,7 @@ def tail_cords(record: xr.Dataset) -> Figure:
         left.legend(loc="upper left", fontsize=10)
         left.set_ylim(top=1.45 * _MM * float(record.shortened.max()))
         right.plot(bend, np.degrees(record.servo), color=COLOURS["tail"])
-        right.set_ylabel("wheel angle [deg]")
+        right.set_ylabel("pulley angle [deg]")
         right.set_title("servo, (18)")
         for ax in (left, right):
             ax.set_xlabel("bend of the tail [deg]")
@@ -114,7 +114,7 @@ def tail_cords(record: xr.Dataset) -> Figure:
     return captioned(
         figure,
         "Cords and servo of the tail. Left: change in length of both cords over all joints, exact and shortened. "
-        "Right: how far the wheel turns.",
+        "Right: how far the pulley turns.",
     )
 
 
@@ -148,8 +148,8 @@ def tail_joints(record: xr.Dataset, alike: float) -> Figure:
     shares = [float((spread.sel(crawl=crawl) > alike).mean()) for crawl in names]
     return captioned(
         figure,
-        "Whether all joints of the tail turn alike, as the formulas of III.C have it. Above: their angles in the "
-        "crawl, from the root (1) to the tip, with spine and tail and with the trunk straight. Below: the greatest "
-        f"difference between two of them; it is beyond the dotted {np.degrees(alike):.0f} degrees for "
+        "Whether all joints of the tail turn by the same angle, as the formulas of III.C assume. Above: their angles "
+        "in the crawl, from the root (1) to the tip, with spine and tail and with the trunk straight. Below: the "
+        f"greatest difference between two of them; it is beyond the dotted {np.degrees(alike):.0f} degrees for "
         f"{shares[0]:.0%} and {shares[1]:.0%} of the time.",
     )

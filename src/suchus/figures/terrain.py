@@ -130,7 +130,7 @@ def draw_turning(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]]) -> 
 
 
 def draw_rough(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]]) -> Figure:
-    """Draw the way on bumps, steps and stones over their height, or as bars where they are few; falls as crosses."""
+    """Draw the distance on bumps, steps and stones over height, or as bars where they are few; falls as crosses."""
     kinds = [str(kind) for kind in dict.fromkeys(record.kind.values)]
     if record.sizes["ground"] <= 1 + len(kinds):
         return _rough_bars(record, lines)
@@ -169,18 +169,20 @@ def _farthest(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]]) -> str
 
 
 def _rough_bars(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]]) -> Figure:
-    """Draw the way of every arm on every ground as a bar: one height of a kind makes no line."""
+    """Draw the distance of every condition on every ground as a bar: one height of a kind makes no line."""
     arms = [str(arm) for arm in record.arm.values]
     with styled(axes__grid=False):
         figure, axes = panels(1, record.sizes["ground"], width=11.5, height=3.6, sharex=True, sharey=True)
         for ax, ground in zip(axes[0], range(record.sizes["ground"]), strict=True):
             one = record.isel(ground=ground)
-            ways, height = one.forward.mean("seed").values, 1000 * float(one.height)
-            ax.barh(range(len(arms)), ways, color=[lines[arm]["color"] for arm in arms], height=0.65)
-            for row, (way, fell) in enumerate(zip(ways, one.fell.mean("seed").values, strict=True)):
-                ax.annotate(f"{way:.2f}", (max(way, 0.0), row), (4, 0), textcoords="offset points", va="center")
+            distances, height = one.forward.mean("seed").values, 1000 * float(one.height)
+            ax.barh(range(len(arms)), distances, color=[lines[arm]["color"] for arm in arms], height=0.65)
+            for row, (distance, fell) in enumerate(zip(distances, one.fell.mean("seed").values, strict=True)):
+                ax.annotate(
+                    f"{distance:.2f}", (max(distance, 0.0), row), (4, 0), textcoords="offset points", va="center"
+                )
                 if fell > 0:
-                    ax.plot(way, row, "x", color=COLOURS["alarm"], markersize=11, markeredgewidth=2)
+                    ax.plot(distance, row, "x", color=COLOURS["alarm"], markersize=11, markeredgewidth=2)
             ax.set_title(f"{_KINDS[str(one.kind.item())]}, {height:.0f} mm" if height else "even ground")
             ax.set_xlabel(f"displacement in {float(record.walked):g} s [m]")
         axes[0, 0].set_yticks(range(len(arms)), [str(lines[arm]["label"]) for arm in arms])

@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from suchus.control.shared import OWNERS
-from suchus.control.topology import Part
+from suchus.control.topology import ControlPart
 from suchus.figures.style import COLOURS, captioned, new, styled
 
 _ROLES = {"limbs": "LF", "spine": "spine", "tail": "tail", "heading": "RH"}
@@ -15,7 +15,7 @@ _SENSORS, _CONTROLLERS, _SHARED = 2.0, 1.0, 0.0  # heights of the three rows
 _BOX = {"boxstyle": "round,pad=0.45", "facecolor": "white", "linewidth": 1.4}
 
 
-def draw_topology(parts: Sequence[Part]) -> Figure:
+def draw_topology(parts: Sequence[ControlPart]) -> Figure:
     """Draw which sensors each controller feels, which shared variables it writes, and whose it hears.
 
     Args:
@@ -46,13 +46,13 @@ def draw_topology(parts: Sequence[Part]) -> Figure:
     return captioned(figure, _caption(parts))
 
 
-def _caption(parts: Sequence[Part]) -> str:
+def _caption(parts: Sequence[ControlPart]) -> str:
     deaf = [part.name for part in parts if not part.hears and not part.writes]
     apart = f" Apart from the shared variables: {', '.join(deaf)}." if deaf else ""
     return (
-        "Who feels and tells what, in the form of the article's Fig. 10. Arrows from sensors: what a controller reads; "
-        "solid arrows down: the shared variables that it writes; dashed arrows up: those of others that it reads."
-        + apart
+        "What each controller reads and writes, in the form of the article's Fig. 10. Arrows from sensors: what it "
+        "senses; solid arrows down: the shared variables that it writes; dashed arrows up: those of others that it "
+        "reads." + apart
     )
 
 

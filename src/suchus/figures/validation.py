@@ -45,50 +45,9 @@ def _draw_started(rows: list[dict[str, Any]]) -> Figure:
     return figure
 
 
-def _draw_cavity(rows: list[dict[str, Any]]) -> Figure:
-    figure = Figure(figsize=(8.0, 3.4), layout="constrained")
-    left, right = figure.subplots(1, 2)
-    for reynolds, colour, dashes in ((100, _LINE, "-"), (1000, _OTHER, "--")):
-        curves = _curves(rows, "lid-driven cavity", f"Re {reynolds}")
-        if curves:
-            left.plot(curves["u"], curves["y"], color=colour, linestyle=dashes, label=f"Re {reynolds}")
-            left.plot(curves["data_u"], curves["data_y"], "k.", label="Ghia et al. 1982" if reynolds == 1000 else None)
-            right.plot(curves["x"], curves["v"], color=colour, linestyle=dashes)
-            right.plot(curves["data_x"], curves["data_v"], "k.")
-    left.set(xlabel="u over the speed of the lid [-]", ylabel="y over the width [-]", title="on the line x = 0.5")
-    right.set(xlabel="x over the width [-]", ylabel="v over the speed of the lid [-]", title="on the line y = 0.5")
-    if left.lines:
-        left.legend(**_SMALL)
-    return figure
-
-
-def _draw_oscillated(rows: list[dict[str, Any]]) -> Figure:
-    figure = Figure(figsize=(9.6, 3.8), layout="constrained")
-    panels = figure.subplots(1, 3)
-    curves = _curves(rows, "cylinder Re 185", "shaken")
-    labels = ("mean drag coefficient [-]", "rms lift coefficient [-]", "phase of lift before motion [deg]")
-    for axes, name, label in zip(panels, ("cd", "cl", "phase"), labels, strict=True):
-        if curves:
-            axes.plot(curves["ratio"], curves[name], "o-", color=_LINE, label="mean")
-            low, high = np.transpose(curves[f"{name}_range"])
-            axes.vlines(curves["ratio"], low, high, color=_LINE, alpha=0.4, lw=3, label="range of periods")
-            if name != "phase":
-                axes.axhline(curves[f"held_{name}"], color="k", ls=":", lw=1.2, label="fixed cylinder")
-        axes.axvspan(1.1, 1.12, color="0.85", zorder=0, label="published jump")
-        axes.set(xlabel="frequency ratio [-]", ylabel=label)
-    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside upper center", ncols=4, frameon=False, **_SMALL)
-    return figure
-
-
-def _draw_oscillating(rows: list[dict[str, Any]]) -> Figure:
-    figure = Figure(figsize=(8.0, 3.6), layout="constrained")
-    force, energy = figure.subplots(1, 2)
-    curves = _curves(rows, "oscillating cylinder, Re 100, KC 5", "force")
-    if curves:
-        force.plot(curves["phase"], curves["force"], color=_LINE, label="from body to water")
-        force.plot(curves["data_phase"], curves["data_force"], "k.", label="Duetsch et al. 1998")
-        force.legend(loc="upper left", **_SMALL)
-    force.set(xlabel="time over the period [-]", ylabel="force / ($\\rho U^2 D$) [-]", title="Re 100, KC 5")
+def _draw_energy(rows: list[dict[str, Any]]) -> Figure:
+    figure = Figure(figsize=(5.6, 3.6), layout="constrained")
+    energy = figure.subplots()
     found = {r["quantity"]: r["curves"] for r in rows if r["case"] == "energy budget" and "share" in r["curves"]}
     base: np.ndarray = np.zeros(1)
     for quantity, part in found.items():
@@ -149,9 +108,7 @@ def _draw_convergence(rows: list[dict[str, Any]]) -> Figure:
 DRAWN: Final[Mapping[str, Callable[[list[dict[str, Any]]], Figure]]] = MappingProxyType(
     {
         "started": _draw_started,
-        "cavity": _draw_cavity,
-        "shaken": _draw_oscillated,
-        "oscillating": _draw_oscillating,
+        "energy": _draw_energy,
         "convergence": _draw_convergence,
     }
 )

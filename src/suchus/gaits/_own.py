@@ -34,7 +34,7 @@ def gait_of(shelf: Catalog[AnyGait], robot: AnyRobot) -> AnyGait:
 
 
 def suits(robot: AnyRobot, gait: AnyGait) -> bool:
-    """Tell whether a robot's joints can follow a gait."""
+    """Return whether a robot's joints can follow a gait."""
     try:
         check_limits(robot, gait)
     except (InvalidDesign, NotConverged, OutsideLimits, UnknownName, Unreachable):

@@ -35,7 +35,7 @@ _ROWS: tuple[tuple[str, float, float, str], ...] = (
     ("limb_phases[3]", -0.125, 0.0, _AFTER),
     ("duty_factor", 0.65, 0.72, "below 0.65 the body rolls more than 9 degrees; longer stance asks for faster swings"),
     ("stroke", 0.033, 0.045, "longer ones ask the knee for more than 8 rad/s"),
-    ("lift", 0.022, 0.045, "clears bumps of 40 mm on the way up and down; on even ground it costs power alone"),
+    ("lift", 0.022, 0.045, "clears bumps of 40 mm up and down; on even ground it costs power alone"),
     ("front_reach", 0.0, 0.0, "erect feet stand below their hips"),
     ("hind_reach", 0.0, 0.0, "erect feet stand below their hips"),
     ("front_ahead", -0.04, -0.016, "feet a little behind the hips: the body rolls 4 instead of 14 degrees"),

@@ -2,13 +2,22 @@
 
 from suchus.hardware.commands import Commands, commands
 from suchus.hardware.files import csv_text, trajectory_text
-from suchus.hardware.limits import Load, check_commands, check_loads, loads, loads_of_each, overloaded, share_at_limit
+from suchus.hardware.limits import (
+    ServoLoad,
+    check_commands,
+    check_loads,
+    loads,
+    loads_of_each,
+    overloaded,
+    share_at_limit,
+)
 from suchus.hardware.servo_map import ServoLine, ServoMap, read_map, straight, write_map
+from suchus.renamed import old_exports
 
 __all__ = [
     "Commands",
-    "Load",
     "ServoLine",
+    "ServoLoad",
     "ServoMap",
     "check_commands",
     "check_loads",
@@ -23,3 +32,5 @@ __all__ = [
     "trajectory_text",
     "write_map",
 ]
+
+__getattr__ = old_exports(__name__, Load="ServoLoad")

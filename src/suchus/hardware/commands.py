@@ -14,16 +14,16 @@ from suchus.motion import START, AnyGait, check_limits, intended
 
 
 class Commands(NamedTuple):
-    """What the servos are told, in the order of the robot's layout; the last sample equals the first."""
+    """Commanded angles of the servos [rad], in the order of the robot's layout; the last sample equals the first."""
 
     time: Float[np.ndarray, " sample"]
     """From the beginning of the first cycle [s]."""
     angles: Float[np.ndarray, "sample servo"]
-    """Of the joints; of the pulley for the cable [rad]."""
+    """Angles of the joints; of the pulley for the cable [rad]."""
     speeds: Float[np.ndarray, "sample servo"]
-    """How fast the angles change: central differences over the periodic gait [rad/s]."""
+    """Rate at which the angles change: central differences over the periodic gait [rad/s]."""
     pulses: Float[np.ndarray, "sample servo"]
-    """What the map makes of the angles [us]."""
+    """Pulse widths to which the servo map converts the angles [us]."""
     servos: tuple[str, ...]
     """Names of the servos."""
 

@@ -21,7 +21,7 @@ TRACKING = 0.35
 """How far a servo at its limit may be from its commanded angle for all but 2 % of a walk [rad], 20 degrees.
 
 Chosen with the shelf's gaits in view: the crawl and ``spine_only`` leave 14 and 16 degrees at the first yaw joint and
-lose 1 and 3 % of their way against servos that reach their angles. A joint farther off makes another gait.
+lose 1 and 3 % of their distance against servos that reach their angles. A joint farther off makes another gait.
 """
 CLASSES: Mapping[str, float] = {
     f"{kg} kg cm": round(kg * 0.0980665, 3) for kg in (5, 10, 15, 20, 25, 30, 35, 40, 45, 60, 80, 100, 150)
@@ -32,21 +32,21 @@ _STRONG = 4.0  # times as strong are the servos whose torques show what a walk a
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Load:
-    """What a servo bears in a walk."""
+class ServoLoad:
+    """Load of one servo over a walk."""
 
     torque: float
     """Greatest torque [N m]."""
     limit: float
-    """Of its torque [N m]."""
+    """Limit of its torque [N m]."""
     at_limit: float
     """Share of the walk that it spends at the limit [-]."""
     first: float
-    """When it first gets there, from the beginning of the walk [s]; NaN if it does not."""
+    """Time at which it first reaches its limit, from the beginning of the walk [s]; NaN if it does not."""
     off: float
-    """How far it is from its commanded angle at most, but for the worst 2 % of the walk [rad]."""
+    """Greatest error against its commanded angle, but for the worst 2 % of the walk [rad]."""
     needed: float
-    """Torque that a servo four times as strong stays below, but for the hardest 2 % of the same walk [N m]."""
+    """98th percentile of the torque of a servo four times as strong in the same walk [N m]."""
     tried: float = 0.0
     """Torque of the strongest class of servos that was tried and is at its limit for more than 2 % too [N m]."""
 
@@ -58,7 +58,7 @@ class Load:
 
     @property
     def stock(self) -> str:
-        """What is said of that class."""
+        """Description of that class of servos."""
         most = max(CLASSES.values())
         return f"{self.named} ({CLASSES[self.named]:.3g} N m)" if self.named else f"none up to {most:.3g} N m"
 
@@ -90,7 +90,7 @@ def check_commands(robot: AnyRobot, gait: AnyGait, servo_map: ServoMap, told: Co
 
 def loads(
     robot: AnyRobot, gait: AnyGait, *, cycles: int = 2, progress: Callable[[float], None] | None = None
-) -> Mapping[str, Load]:
+) -> Mapping[str, ServoLoad]:
     """Return what each servo bears in a simulated walk on level ground.
 
     Args:
@@ -100,7 +100,7 @@ def loads(
         progress: called with the share that is done.
 
     Raises:
-        Diverged: the physics came apart.
+        Diverged: the simulation diverged.
         OutsideLimits: the joints cannot follow the gait.
     """
     (borne,) = loads_of_each(robot, (gait,), cycles=cycles, progress=progress)
@@ -114,7 +114,7 @@ def loads_of_each(
     cycles: int = 2,
     timestep: float | None = None,
     progress: Callable[[float], None] | None = None,
-) -> list[Mapping[str, Load]]:
+) -> list[Mapping[str, ServoLoad]]:
     """Return what each servo bears in each of several gaits, simulated in one batch on level ground.
 
     Args:
@@ -125,7 +125,7 @@ def loads_of_each(
         progress: called with the share that is done.
 
     Raises:
-        Diverged: the physics came apart.
+        Diverged: the simulation diverged.
         OutsideLimits: the joints cannot follow a gait.
     """
     strong = with_servos(robot, lambda servo: replace(servo, torque=_STRONG * servo.torque))
@@ -142,7 +142,7 @@ def loads_of_each(
     return every
 
 
-def _borne(robot: AnyRobot, walk: xr.Dataset) -> Mapping[str, Load]:
+def _borne(robot: AnyRobot, walk: xr.Dataset) -> Mapping[str, ServoLoad]:
     """Return what each servo bears in a walk of the robot, and of the same with strong servos."""
     shares, first = share_at_limit(robot, walk.isel(run=0)), walk.time.values - START
     torques, off = np.abs(walk.servo_torque), np.abs(walk.servo_target - walk.servo_angle).isel(run=0)
@@ -150,7 +150,7 @@ def _borne(robot: AnyRobot, walk: xr.Dataset) -> Mapping[str, Load]:
     for name in layout(robot).servos:
         own, limit = torques.sel(servo=name).values, servo_of(robot, name).torque
         full = own[0] >= _FULL * limit
-        borne[name] = Load(
+        borne[name] = ServoLoad(
             torque=float(own[0].max()),
             limit=limit,
             at_limit=float(shares.sel(servo=name)),
@@ -161,14 +161,14 @@ def _borne(robot: AnyRobot, walk: xr.Dataset) -> Mapping[str, Load]:
     return borne
 
 
-def _weak(borne: Mapping[str, Load]) -> dict[str, Load]:
+def _weak(borne: Mapping[str, ServoLoad]) -> dict[str, ServoLoad]:
     """Return the servos at their limits for too long for which a class is named."""
     return {name: load for name, load in borne.items() if load.at_limit > AT_LIMIT and load.named}
 
 
 def _tried(
-    robot: AnyRobot, walks: Sequence[tuple[AnyGait, float, Mapping[str, Load]]], timestep: float | None
-) -> list[Mapping[str, Load]]:
+    robot: AnyRobot, walks: Sequence[tuple[AnyGait, float, Mapping[str, ServoLoad]]], timestep: float | None
+) -> list[Mapping[str, ServoLoad]]:
     """Return loads that know which of the servos that they name were at their limits for too long in the same walk.
 
     Args:
@@ -179,7 +179,7 @@ def _tried(
     robots = [stronger(robot, borne) for _, _, borne in walks]
     runs = [Run(robot=one, gait=gait) for one, (gait, _, _) in zip(robots, walks, strict=True)]
     record = simulate(runs, duration=max(end for _, end, _ in walks), timestep=timestep)
-    found: list[Mapping[str, Load]] = []
+    found: list[Mapping[str, ServoLoad]] = []
     for i, (one, (_, end, borne)) in enumerate(zip(robots, walks, strict=True)):
         walk = record.isel(run=i)
         shares = share_at_limit(one, between(walk, end=end))
@@ -192,7 +192,7 @@ def _tried(
     return found
 
 
-def stronger(robot: AnyRobot, borne: Mapping[str, Load]) -> AnyRobot:
+def stronger(robot: AnyRobot, borne: Mapping[str, ServoLoad]) -> AnyRobot:
     """Return a robot whose servos are of the classes that are named, wherever it has the same servo as there."""
     torques: dict[int, float] = {}
     for name, load in _weak(borne).items():
@@ -212,7 +212,7 @@ def share_at_limit(robot: AnyRobot, record: xr.Dataset) -> xr.DataArray:
     return (np.abs(record.servo_torque) >= _FULL * limits).mean("time")
 
 
-def overloaded(borne: Mapping[str, Load], at_limit: float = AT_LIMIT) -> list[str]:
+def overloaded(borne: Mapping[str, ServoLoad], at_limit: float = AT_LIMIT) -> list[str]:
     """Return a sentence for each servo that stands at its torque limit for more than a share of the walk."""
     return [
         f"{name} is at its torque limit of {load.limit:g} N m for {100 * load.at_limit:.0f} % of the walk, first at "
@@ -224,7 +224,11 @@ def overloaded(borne: Mapping[str, Load], at_limit: float = AT_LIMIT) -> list[st
 
 
 def check_loads(
-    robot: AnyRobot, gait: AnyGait, borne: Mapping[str, Load], at_limit: float = AT_LIMIT, tracking: float = TRACKING
+    robot: AnyRobot,
+    gait: AnyGait,
+    borne: Mapping[str, ServoLoad],
+    at_limit: float = AT_LIMIT,
+    tracking: float = TRACKING,
 ) -> None:
     """Refuse a gait that a servo cannot follow since it stands at its torque limit.
 

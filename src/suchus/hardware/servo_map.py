@@ -22,7 +22,7 @@ class ServoLine:
     name: str
     """Name of the servo, as ``LF_yaw``; the angle of ``tail_cable`` is that of its pulley."""
     channel: int
-    """Of the servo board, from 0 [-]."""
+    """Channel of the servo board, from 0 [-]."""
     direction: int
     """1 if longer pulses turn the joint in its positive sense, -1 if they turn it the other way [-]."""
     offset: float
@@ -59,9 +59,9 @@ class ServoMap:
     """All servos of a robot."""
 
     name: str
-    """How it is called."""
+    """Name, as messages, tables and files show it."""
     rate: float
-    """How often commands are sent [Hz]."""
+    """Rate of commands [Hz]."""
     servos: tuple[ServoLine, ...]
     """One for each of the robot's servos, in any order."""
 

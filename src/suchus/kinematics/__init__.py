@@ -2,11 +2,12 @@
 
 from suchus.kinematics import body, dh, leg, limb, mass, printed, spine, tail, tree, wave
 from suchus.kinematics.body import Landmarks, landmarks
-from suchus.kinematics.wave import Wave
+from suchus.kinematics.wave import TravellingWave
+from suchus.renamed import old_exports
 
 __all__ = [
     "Landmarks",
-    "Wave",
+    "TravellingWave",
     "body",
     "dh",
     "landmarks",
@@ -19,3 +20,5 @@ __all__ = [
     "tree",
     "wave",
 ]
+
+__getattr__ = old_exports(__name__, Wave="TravellingWave")

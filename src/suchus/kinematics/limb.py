@@ -30,11 +30,11 @@ class PlainLeg(NamedTuple):
     """A limb of yaw, pitch and knee, its links straight out, as ``suchus.kinematics.leg`` takes it."""
 
     hip_offset: float
-    """From the midline to the yaw axis [m]."""
+    """Distance from the midline to the yaw axis [m]."""
     femur: float
-    """From hip to knee [m]."""
+    """Length from hip to knee [m]."""
     tibia: float
-    """From knee to the foot's centre [m]."""
+    """Length from knee to the foot's centre [m]."""
     foot_radius: float
     """Of the ball [m]."""
     above: float
@@ -51,7 +51,7 @@ Kind = Literal["leg", "arm", "other"]
 
 
 def kind(limb: Limb) -> Kind:
-    """Return which way of solving a limb takes."""
+    """Return the method by which a limb is solved."""
     turns = [[hinge.turn for hinge in link.hinges] for link in limb.links]
     straight = all(link.end[0] == link.end[2] == 0.0 and link.end[1] > 0.0 for link in limb.links)
     if straight and turns == [["yaw", "pitch"], ["pitch"]]:

@@ -52,7 +52,7 @@ class Cords(Protocol):
 
     @property
     def pulley(self) -> float:
-        """Radius of the servo's wheel, r [m]."""
+        """Radius of the servo's pulley, r [m]."""
 
 
 @runtime_checkable

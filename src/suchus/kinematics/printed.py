@@ -109,7 +109,7 @@ def cable_changes_shortened(tail: TailPlates, bend: Numbers) -> tuple[np.ndarray
 
 
 def servo_angle_deg(tail: TailPlates, bend: Numbers) -> np.ndarray:
-    """Return the wheel's angle as printed, in degrees for a bend in radians.
+    """Return the pulley's angle as printed, in degrees for a bend in radians.
 
     Paper: Eq. (18).
     """

@@ -47,7 +47,7 @@ def cable_changes(tail: TailPlates, bend: Numbers) -> tuple[Float[np.ndarray, "*
 
 
 def slack(tail: TailPlates, bend: Numbers) -> Float[np.ndarray, "*batch"]:
-    """Return the cord that a bend sets free [m]: both cords on one wheel cannot stay taut.
+    """Return the cord that a bend sets free [m]: both cords on one pulley cannot stay taut.
 
     Args:
         tail: the measures of the cable section.
@@ -61,7 +61,7 @@ def slack(tail: TailPlates, bend: Numbers) -> Float[np.ndarray, "*batch"]:
 
 
 def servo_angle(tail: Cords, bend: Numbers) -> Float[np.ndarray, "*batch"]:
-    """Return how far the servo's wheel turns for a bend [rad].
+    """Return how far the servo's pulley turns for a bend [rad].
 
     Args:
         tail: the measures of the cable section.
@@ -74,22 +74,22 @@ def servo_angle(tail: Cords, bend: Numbers) -> Float[np.ndarray, "*batch"]:
 
 
 def bend_of_servo(tail: Cords, angle: Numbers) -> Float[np.ndarray, "*batch"]:
-    """Return the bend that the servo's wheel makes [rad]: the inverse of ``servo_angle``.
+    """Return the bend that the servo's pulley makes [rad]: the inverse of ``servo_angle``.
 
     Args:
         tail: the measures of the cable section.
-        angle: of the wheel [rad].
+        angle: of the pulley [rad].
 
     Raises:
-        OutsideLimits: the wheel would pull more cord than any bend of the tail takes up.
+        OutsideLimits: the pulley would pull more cord than any bend of the tail takes up.
     """
-    sine = numbers(angle, "the wheel's angle") * tail.pulley / (tail.joints * tail.cord_spacing)
+    sine = numbers(angle, "the pulley's angle") * tail.pulley / (tail.joints * tail.cord_spacing)
     if not np.all(np.abs(sine) <= 1.0):
         limit = tail.joints * tail.cord_spacing / tail.pulley
         worst = float(np.asarray(angle).flat[np.argmax(~(np.abs(sine.ravel()) <= 1.0))])
         raise OutsideLimits(
-            f"a wheel angle of {worst:.4g} rad pulls more cord than the tail takes up; -{limit:.4g} to "
-            f"{limit:.4g} rad is allowed: turn it less or choose a smaller wheel."
+            f"a pulley angle of {worst:.4g} rad pulls more cord than the tail takes up; -{limit:.4g} to "
+            f"{limit:.4g} rad is allowed: turn it less or choose a smaller pulley."
         )
     return np.asarray(2 * tail.joints * np.arcsin(sine))
 

@@ -15,7 +15,7 @@ from suchus.design.layout import Axis
 from suchus.kinematics.given import numbers, rows, spread_over
 
 
-class Frames(NamedTuple):
+class BodyFrames(NamedTuple):
     """The frames of all bodies of ``layout(robot).bodies``, in the frame of the root."""
 
     places: Float[np.ndarray, "*batch body 3"]
@@ -35,7 +35,7 @@ class Landmarks(NamedTuple):
     """Tip of the tail [m]."""
 
 
-def frames(robot: AnyRobot, angles: Float[np.ndarray, "*batch joint"]) -> Frames:
+def frames(robot: AnyRobot, angles: Float[np.ndarray, "*batch joint"]) -> BodyFrames:
     """Return where every body is.
 
     Args:
@@ -60,7 +60,7 @@ def frames(robot: AnyRobot, angles: Float[np.ndarray, "*batch joint"]) -> Frames
         for _, name, axis in body.hinges:
             turn = turn @ rotation(axis, angles[..., where[name]])
         turns[..., i, :, :] = turn
-    return Frames(places, turns)
+    return BodyFrames(places, turns)
 
 
 def rotation(axis: Axis, angle: Float[np.ndarray, "*batch"]) -> Float[np.ndarray, "*batch 3 3"]:
@@ -124,5 +124,5 @@ def _masses(robot: AnyRobot) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return np.array([row[0] for row in rows]), np.array([row[1] for row in rows]), np.array([row[2] for row in rows])
 
 
-def _point(found: Frames, body: int, at: Axis) -> np.ndarray:
+def _point(found: BodyFrames, body: int, at: Axis) -> np.ndarray:
     return np.asarray(found.places[..., body, :] + found.turns[..., body, :, :] @ np.array(at))

@@ -26,7 +26,7 @@ _MOST = 1e12  # of a wave's numbers in SI units
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Wave:
+class TravellingWave:
     """A travelling wave under a growing envelope, in SI units."""
 
     linear: float
@@ -48,11 +48,11 @@ class Wave:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Reading:
-    """One way to give the printed constants their units."""
+class UnitReading:
+    """One choice of units for the printed constants."""
 
     meaning: str
-    """Which units, and where x begins."""
+    """Units of the constants, and origin of x."""
     envelope_unit: float
     """Unit of x and y in the envelope [m]; zero stands for one body length."""
     wave_number: float
@@ -60,15 +60,15 @@ class Reading:
     tail_only: bool
     """Whether x begins at the root of the tail instead of the snout."""
     verdict: str
-    """What speaks for or against it."""
+    """Evidence for or against it."""
 
 
 PER_MM, PER_CM = K / MILLIMETRE, K / CENTIMETRE
 CYCLES_PER_CM, DEG_PER_MM = 2 * pi * PER_CM, pi / 180 * PER_MM
 
-READINGS: Mapping[str, Reading] = MappingProxyType(
+READINGS: Mapping[str, UnitReading] = MappingProxyType(
     {
-        name: Reading(meaning=meaning, envelope_unit=unit, wave_number=k, tail_only=tail, verdict=verdict)
+        name: UnitReading(meaning=meaning, envelope_unit=unit, wave_number=k, tail_only=tail, verdict=verdict)
         for name, meaning, unit, k, tail, verdict in (
             ("A", "all SI, x from the snout", 1.0, K, False, "consistent, but a sway: 0.004 waves per body"),
             ("B", "envelope SI, k in rad/mm", 1.0, PER_MM, False, "impossible: slopes of 82 deg"),
@@ -87,7 +87,9 @@ READINGS: Mapping[str, Reading] = MappingProxyType(
 """The readings of (20) that were tried, by letter."""
 
 
-def reading(name: str, *, length: float, angular_frequency: float, sign: int = -1, waves_per_body: float = 1.0) -> Wave:
+def reading(
+    name: str, *, length: float, angular_frequency: float, sign: int = -1, waves_per_body: float = 1.0
+) -> TravellingWave:
     """Return the wave of (20) under one of ``READINGS``.
 
     Args:
@@ -114,21 +116,21 @@ def reading(name: str, *, length: float, angular_frequency: float, sign: int = -
     else:
         wavelength = 2 * pi / PER_MM  # the body of 0.273 m for which c2 would have been found [m]
         quadratic, k = C2 * wavelength / length, 2 * pi * waves_per_body / length
-    return Wave(linear=C1, quadratic=quadratic, wave_number=k, angular_frequency=angular_frequency, sign=sign)
+    return TravellingWave(linear=C1, quadratic=quadratic, wave_number=k, angular_frequency=angular_frequency, sign=sign)
 
 
-def as_printed(*, angular_frequency: float) -> Wave:
+def as_printed(*, angular_frequency: float) -> TravellingWave:
     """Return (20) letter by letter: reading A, running from tail to head."""
     return reading("A", length=1.0, angular_frequency=angular_frequency, sign=1)
 
 
-def envelope(wave: Wave, x: Numbers) -> Float[np.ndarray, "*batch"]:
+def envelope(wave: TravellingWave, x: Numbers) -> Float[np.ndarray, "*batch"]:
     """Return the amplitude [m] at ``x`` [m], measured from the head towards the tail."""
     place = numbers(x, "the place", finite=False)
     return np.asarray((wave.linear + wave.quadratic * place) * place)
 
 
-def displacement(wave: Wave, x: Numbers, t: Numbers) -> Float[np.ndarray, "*batch"]:
+def displacement(wave: TravellingWave, x: Numbers, t: Numbers) -> Float[np.ndarray, "*batch"]:
     """Return how far the midline lies off the axis.
 
     Args:
@@ -144,20 +146,20 @@ def displacement(wave: Wave, x: Numbers, t: Numbers) -> Float[np.ndarray, "*batc
     return np.asarray(envelope(wave, x) * np.sin(_phase(wave, x, t)))
 
 
-def slope(wave: Wave, x: Numbers, t: Numbers) -> Float[np.ndarray, "*batch"]:
+def slope(wave: TravellingWave, x: Numbers, t: Numbers) -> Float[np.ndarray, "*batch"]:
     """Return the midline's slope dy/dx [-]; arguments as for ``displacement``."""
     place, phase = numbers(x, "the place", finite=False), _phase(wave, x, t)
     growth = wave.linear + 2 * wave.quadratic * place
     return np.asarray(growth * np.sin(phase) + wave.wave_number * envelope(wave, place) * np.cos(phase))
 
 
-def speed(wave: Wave, x: Numbers, t: Numbers) -> Float[np.ndarray, "*batch"]:
+def speed(wave: TravellingWave, x: Numbers, t: Numbers) -> Float[np.ndarray, "*batch"]:
     """Return the midline's sideways speed dy/dt [m/s]; arguments as for ``displacement``."""
     rate = wave.sign * wave.angular_frequency
     return np.asarray(rate * envelope(wave, x) * np.cos(_phase(wave, x, t)))
 
 
-def _phase(wave: Wave, x: Numbers, t: Numbers) -> np.ndarray:
+def _phase(wave: TravellingWave, x: Numbers, t: Numbers) -> np.ndarray:
     place, time = numbers(x, "the place", finite=False), numbers(t, "the time", finite=False)
     together(place, time, what="place and time")
     return np.asarray(wave.wave_number * place + wave.sign * wave.angular_frequency * time)

@@ -5,22 +5,23 @@ from suchus.fault import Fault
 from suchus.faults import Backlash, Deaf, Limp, Locked, LostFoot, Offset, Slow, Weak
 from suchus.land.arenas import ARENAS
 from suchus.land.crawling import crawl
+from suchus.land.failed import FAILED_JOINTS, KINDS, KNEES, LEGS_FAILED, angle_at, failing_joints, joint_failure
 from suchus.land.lake import Lake, Wave
 from suchus.land.live import Live
 from suchus.land.loop import CONTROL_PERIOD
-from suchus.land.lost import KINDS, KNEES, LEGS_LOST, LOST, angle_at, lost, lost_joints
 from suchus.land.push import Push
 from suchus.land.run import VACUUM, WATER, Afloat, Run
 from suchus.land.simulation import simulate
 from suchus.land.toppling import smallest_pushes
+from suchus.renamed import old_exports
 
 __all__ = [
     "ARENAS",
     "CONTROL_PERIOD",
+    "FAILED_JOINTS",
     "KINDS",
     "KNEES",
-    "LEGS_LOST",
-    "LOST",
+    "LEGS_FAILED",
     "VACUUM",
     "WATER",
     "Afloat",
@@ -41,8 +42,12 @@ __all__ = [
     "Weak",
     "angle_at",
     "crawl",
-    "lost",
-    "lost_joints",
+    "failing_joints",
+    "joint_failure",
     "simulate",
     "smallest_pushes",
 ]
+
+__getattr__ = old_exports(
+    __name__, LEGS_LOST="LEGS_FAILED", LOST="FAILED_JOINTS", lost="joint_failure", lost_joints="failing_joints"
+)

@@ -15,14 +15,14 @@ from suchus.design.pieces import pieces
 from suchus.design.relief import Relief
 from suchus.land import wetting
 from suchus.land.afloat import surfaced
-from suchus.land.alike import Alike
+from suchus.land.deduplication import Deduplication
 from suchus.land.lake import Lake
 from suchus.land.run import Afloat, Run
 from suchus.model import activations, compile_model, force_sensors, standing
 from suchus.model.wet import wet_model
 from suchus.motion import hip_height
 
-_TOO_FAST = 1e3  # [rad/s] or [m/s]; nothing on a robot moves so fast: the physics has come apart
+_TOO_FAST = 1e3  # [rad/s] or [m/s]; nothing on a robot moves so fast: the physics has diverged
 _CURRENT = mujoco.mjtStage.mjSTAGE_VEL  # after a step, positions and velocities describe the new state
 
 
@@ -100,8 +100,8 @@ class Bench:
 
     def _lay_ground(self, runs: Sequence[Run]) -> None:
         for sim, run in enumerate(runs):
-            if run.ground.grip != 1.0:
-                self.field("geom_friction", sim)[1:, 0] *= run.ground.grip
+            if run.ground.friction_scale != 1.0:
+                self.field("geom_friction", sim)[1:, 0] *= run.ground.friction_scale
             if run.ground.uphill or run.ground.sideways:
                 self.tilt(sim, run.ground)
             if run.afloat is not None:
@@ -166,7 +166,7 @@ class Bench:
         return angles
 
     def tilt(self, sim: int, ground: Ground) -> None:
-        """Let a ground slope as it says from now on; its grip and relief are not looked at."""
+        """Let a ground slope as it says from now on; its friction and relief are not looked at."""
         self.field("opt.gravity", sim)[:] = _gravity(ground)
         if sim in self._lakes:
             self._ups[sim] = up(ground)
@@ -206,7 +206,7 @@ class Bench:
         if self._lakes:
             self.worked[:, :4] = self.water[:, hydro.FORCE : hydro.FORCE + 4]
 
-    def advance(self, targets: np.ndarray, steps: int, time: float, alike: Alike | None = None) -> None:
+    def advance(self, targets: np.ndarray, steps: int, time: float, alike: Deduplication | None = None) -> None:
         """Command servo angles and advance the living by some steps; who diverges dies, with the time and the cause.
 
         On return ``readings`` holds what the sensors say: contact forces as their mean over the steps, as a pressure

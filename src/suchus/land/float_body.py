@@ -29,7 +29,7 @@ class FloatBody:
     """A rigid body: an ellipsoid, an elliptic cylinder along its forward axis, or a box, its mass anywhere in it."""
 
     shape: Literal["ellipsoid", "cylinder", "box"]
-    """What it looks like."""
+    """Shape of the body."""
     half: Point
     """Half of its length, width and height [m]."""
     mass: float
@@ -80,7 +80,7 @@ class FloatBody:
         return table
 
 
-class Pool:
+class FloatTank:
     """A body in a lake without a bottom.
 
     Args:
@@ -134,7 +134,7 @@ class Pool:
 
     @property
     def middle(self) -> Float[np.ndarray, "3"]:
-        """Where the middle of the shape is [m]."""
+        """Position of the middle of the shape in the world [m]."""
         return np.array(self.data.xpos[1] + self.data.xmat[1].reshape(3, 3) @ _ASIDE)
 
     @property
@@ -169,11 +169,11 @@ class Pool:
         """Let some steps pass.
 
         Raises:
-            Diverged: the physics came apart.
+            Diverged: the simulation diverged.
         """
         mujoco.mj_step(self.model, self.data, count)
         if not np.isfinite(self.data.qpos).all():
-            raise Diverged(f"the float came apart at {self.data.time:.3f} s.", time=float(self.data.time))
+            raise Diverged(f"the float diverged at {self.data.time:.3f} s.", time=float(self.data.time))
 
     def watch(self, duration: float, period: float) -> xr.Dataset:
         """Let time pass and return place, orientation, energy and momenta, sample by sample.
@@ -202,4 +202,4 @@ class Pool:
 
 
 _ASIDE = np.array([0.01, 0.0, 0.0])
-"""The middle of the shape in the frame of the body [m]; see ``Pool``."""
+"""The middle of the shape in the frame of the body [m]; see ``FloatTank``."""

@@ -15,7 +15,7 @@ _KINDS = {"actuator": "actuator", "geom": "geom", "body": "body", "jnt": "joint"
 
 
 class Injector:
-    """What is broken in the runs of a batch: the one way of faults into batches, live walks and environments.
+    """What is broken in the runs of a batch: the one entry of faults into batches, live walks and environments.
 
     Args:
         bench: the batch.

@@ -30,13 +30,13 @@ class Wave:
     """Plane waves of small height on deep water, after Airy."""
 
     height: float
-    """From trough to crest [m]."""
+    """Height from trough to crest [m]."""
     length: float
-    """From crest to crest [m]."""
+    """Length from crest to crest [m]."""
     heading: float = 0.0
-    """Where they run, forward 0, to the left positive [rad]."""
+    """Direction in which they run, forward 0, to the left positive [rad]."""
     phase: float = 0.0
-    """At the world's origin at time 0, a crest at 0 [cycle]."""
+    """Phase at the world's origin at time 0, a crest at 0 [cycle]."""
 
     def __post_init__(self) -> None:
         with Checks("wave", self) as check:
@@ -65,13 +65,13 @@ class Lake:
     """
 
     level: Course
-    """Of the surface above the world's origin, against gravity [m]; the ground passes through the origin."""
+    """Level of the surface above the world's origin, against gravity [m]; the ground passes through the origin."""
     water: Water = field(default_factory=Water)
     """Density, viscosity, and what sections of a body feel."""
     current: tuple[float, float] = (0.0, 0.0)
     """Velocity of the water, forward and to the left [m/s]."""
     wave: Wave | None = None
-    """On the surface; None where it is flat."""
+    """Waves on the surface; None where it is flat."""
     breath: Course = 1.0
     """Share of the air of the robot's hull that is kept, 0 to 1 [-]."""
     heel: float = 0.0
@@ -95,7 +95,7 @@ class Lake:
         return _now(self.level, time), _now(self.breath, time)
 
     def changes(self) -> bool:
-        """Tell whether level or breath change while the run goes."""
+        """Return whether level or breath change while the run goes."""
         return not isinstance(self.level, (int, float)) or not isinstance(self.breath, (int, float))
 
     def numbers(self, up: Float[np.ndarray, "3"], time: float = 0.0) -> Float[np.ndarray, " n"]:

@@ -19,7 +19,7 @@ from suchus.motion import START, AnyGait, check_limits
 
 
 class Live:
-    """One robot that walks until told otherwise, one control period at a time.
+    """One robot that walks until commanded otherwise, one control period at a time.
 
     The controller hears of one cycle again and again; so the period of a gait or a swim is rounded to whole control
     periods. With an unchanged gait of such a period, all goes as in ``simulate``, up to rounding.
@@ -75,12 +75,12 @@ class Live:
         """Let one control period pass.
 
         Raises:
-            Diverged: the physics came apart, now or before.
+            Diverged: the simulation diverged, now or before.
         """
         self._loop.advance(self._tick, self._command.targets)
         if not self._loop.bench.alive[0]:
             time, cause = float(self._loop.bench.ended[0]), self._loop.bench.cause[0]
-            raise Diverged(f"the walk came apart at {time:.2f} s: {cause}.", time=time)
+            raise Diverged(f"the walk diverged at {time:.2f} s: {cause}.", time=time)
         self._tick += 1
         self._beat += 1
         if self._beat >= self._start + self._cycle(self.run):
@@ -132,7 +132,7 @@ class Live:
         self._loop.troubles.push(0, push)
 
     def tilt(self, ground: Ground) -> None:
-        """Let the ground slope as another one does; grip and relief stay."""
+        """Let the ground slope as another one does; friction and relief stay."""
         self._loop.bench.tilt(0, ground)
 
     def fill(self, lake: Lake) -> None:

@@ -8,11 +8,11 @@ from suchus.control import Command, Controller, Joinable
 from suchus.design.checks import require
 from suchus.design.scale import control_period
 from suchus.errors import InvalidDesign
-from suchus.land.alike import Alike
 from suchus.land.bench import Bench
+from suchus.land.deduplication import Deduplication
+from suchus.land.disturbances import Disturbances
 from suchus.land.readings import Readings
 from suchus.land.run import Run
-from suchus.land.troubles import Troubles
 
 CONTROL_PERIOD = 0.01
 """Of the article's robot [s]: 100 Hz, what a bus of hobby servos sustains; ``design.scale`` has those of others."""
@@ -70,12 +70,12 @@ class Loop:
         self.controller = start(runs, ticks, period)
         first = self.controller.rest()
         self.bench.place(runs, first)
-        self._alike = Alike(runs, first, period)
-        self.troubles = Troubles(runs, self.bench, ticks, period)
+        self._alike = Deduplication(runs, first, period)
+        self.troubles = Disturbances(runs, self.bench, ticks, period)
         self.readings = Readings(self.bench, runs, samples)
 
     def decide(self, tick: int, beat: int | None = None) -> Command:
-        """Let happen what is due and return what the controller commands; ``disturb`` says what comes of it.
+        """Let happen what is due and return what the controller commands; ``disturb`` returns the result.
 
         Args:
             tick: number of the control period.
@@ -93,7 +93,7 @@ class Loop:
         return command._replace(targets=self.troubles.disturb(tick, command.targets))
 
     def advance(self, tick: int, targets: np.ndarray) -> None:
-        """Let one control period pass in which the servos are told these angles, shape (run, servo) [rad]."""
+        """Let one control period pass in which the servos are commanded these angles, shape (run, servo) [rad]."""
         self._alike.part(tick, targets if self._breath is None else np.column_stack([targets, self._breath]))
         self.bench.flood(tick * self._period, self._breath)
         self.bench.advance(targets, self._steps, tick * self._period, self._alike)

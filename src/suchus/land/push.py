@@ -20,11 +20,11 @@ class Push:
     """
 
     force: tuple[float, float, float]
-    """In the world: forward, left, up [N]."""
+    """Force in the world frame: forward, left, up [N]."""
     at: float
-    """When it begins [s]."""
+    """Time at which the push begins [s]."""
     duration: float = 0.2
-    """How long it lasts [s]."""
+    """Duration of the push [s]."""
     body: str = "thorax"
     """Name of the body that is pushed, as ``pelvis``, ``thorax``, ``LF_tibia`` or ``tail_root``."""
 

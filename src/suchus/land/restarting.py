@@ -10,7 +10,7 @@ from suchus.land.bench import Bench
 
 
 class Beginning(NamedTuple):
-    """How a robot begins."""
+    """State in which a robot begins."""
 
     qpos: Float[np.ndarray, " q"]
     """Generalised positions [m], [rad]."""
@@ -19,7 +19,7 @@ class Beginning(NamedTuple):
     act: Float[np.ndarray, " a"]
     """Inner states of the servos: slew-limited targets and integrals."""
     told: Float[np.ndarray, " servo"]
-    """What the servos were told last [rad]."""
+    """Last commanded angle of each servo [rad]."""
 
 
 def restart(bench: Bench, sim: int, begin: Beginning) -> None:

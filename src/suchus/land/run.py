@@ -24,7 +24,7 @@ class Afloat:
     """
 
     density: float
-    """Of the fluid [kg/m3]; 0 in vacuum."""
+    """Density of the fluid [kg/m3]; 0 in vacuum."""
     viscosity: float
     """Dynamic viscosity of the fluid [Pa s]; 0 in vacuum."""
 
@@ -34,7 +34,7 @@ class Afloat:
 
 
 VACUUM = Afloat(density=0.0, viscosity=0.0)
-"""Where nothing acts from outside."""
+"""Surroundings that exert no force."""
 WATER = Afloat(density=WATER_DENSITY, viscosity=WATER_VISCOSITY)
 """Fresh water of 20 degrees Celsius."""
 
@@ -44,27 +44,27 @@ class Run:
     """One run of a batch; robot and gait may be given by their names on the shelves."""
 
     robot: AnyRobot
-    """Who walks."""
+    """The robot that walks: a body of any kind, as ``suchus.ROBOTS`` names them."""
     gait: AnyGait
-    """How."""
+    """Its periodic movement, as ``suchus.GAITS`` names them."""
     ground: Ground = field(default_factory=Ground)
-    """On what."""
+    """Ground: its friction scale, slopes and relief."""
     afloat: Afloat | None = None
-    """In what it floats, instead of lying on the ground; None for the ground."""
+    """Fluid in which it floats, far from any surface; None where it stands on the ground."""
     lake: Lake | None = None
     """The water that it walks and swims in; None on dry land."""
     faults: tuple[Fault, ...] = ()
-    """What breaks, and when."""
+    """Faults, each with the time at which it begins; none by default."""
     pushes: tuple[Push, ...] = ()
     """Forces from outside; their sum acts where they overlap."""
     control: Control = field(default_factory=OpenLoop)
-    """What turns the gait and the senses into servo angles."""
+    """Controller that turns the gait and what the robot senses into servo angles."""
     noise: float = 0.0
     """Standard deviation of noise on every servo angle commanded [rad]."""
     seed: int = 0
-    """Of the noise."""
+    """Seed of the noise [-]."""
     label: str = ""
-    """For tables and legends."""
+    """Name in tables and legends."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "robot", ROBOTS.resolve(self.robot))

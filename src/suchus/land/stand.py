@@ -1,4 +1,4 @@
-"""One joint of a robot that is held on a stand: what its servo does with steps, loads and a grip."""
+"""One joint of a robot fixed on a stand: the response of its servo to steps, loads and a clamp."""
 
 from typing import NamedTuple
 
@@ -11,18 +11,18 @@ from suchus.errors import Diverged, InvalidDesign, UnknownName
 from suchus.model import activations, build
 
 _HEIGHT = 2.0  # [m]; of the stand: nothing touches the ground
-_GRIP = "grip"
+_GRIP = "clamp"
 
 
 class Response(NamedTuple):
-    """What a servo did, sample by sample."""
+    """Response of a servo over time, one entry for each physics step."""
 
     time: Float[np.ndarray, " time"]
-    """When, from the first command on [s]."""
+    """Time since the first command [s]."""
     angle: Float[np.ndarray, " time"]
-    """Of the joint [rad]."""
+    """Angle of the joint [rad]."""
     torque: Float[np.ndarray, " time"]
-    """Of the servo [N m]."""
+    """Torque of the servo [N m]."""
 
 
 def on_stand(
@@ -36,14 +36,14 @@ def on_stand(
 ) -> Response:
     """Return what a joint does while the root, the pelvis, is fixed in the air, without gravity.
 
-    All other servos hold zero. The joint starts at rest at zero; a grip holds it at zero whatever its servo does.
+    All other servos hold zero. The joint starts at rest at zero; a clamp holds it at zero whatever its servo does.
 
     Args:
         robot: the design.
         joint: name of a servo that turns a joint of its own, as ``LH_pitch``.
         target: commanded angle at each step [rad].
         load: torque that acts on the joint from outside at each step [N m].
-        gripped: whether the joint is held fast at each step.
+        gripped: whether the joint is clamped at each step.
         timestep: of the physics, and of all samples [s].
 
     Raises:
@@ -69,7 +69,7 @@ def on_stand(
         mujoco.mj_step(model, data)
         angle[i], torque[i] = data.qpos[at.qposadr[0]], data.actuator_force[servo]
         if not np.isfinite(angle[i]):
-            raise Diverged(f"{joint} on the stand came apart at {data.time:.3f} s.", time=float(data.time), record=None)
+            raise Diverged(f"{joint} on the stand diverged at {data.time:.3f} s.", time=float(data.time), record=None)
     return Response(timestep * np.arange(1, len(target) + 1), angle, torque)
 
 

@@ -22,7 +22,7 @@ def smallest_pushes(
     levels: Sequence[float],
     fell: Callable[[xr.Dataset], xr.DataArray],
     finer: int = 4,
-    lasting: float = 0.2,
+    duration: float = 0.2,
     body: str = "thorax",
     wait: float = 3.0,
     timestep: float = 0.005,
@@ -39,10 +39,10 @@ def smallest_pushes(
         directions: unit vectors in the world: forward, left, up.
         at: when the push begins [s].
         levels: forces to try, increasing [N].
-        fell: tells from a record which runs fell, along the dimension ``run``; its last sample is ``wait`` after the
+        fell: returns from a record which runs fell, along the dimension ``run``; its last sample is ``wait`` after the
             push.
         finer: number of forces of the second batch; the answer is off by at most the gap between two of them.
-        lasting: how long the push lasts [s].
+        duration: of the push [s].
         body: what is pushed.
         wait: how long is waited for the fall [s].
         timestep: of the physics [s].
@@ -55,7 +55,7 @@ def smallest_pushes(
     if len(scan) < 2 or np.any(np.diff(scan) <= 0):
         raise InvalidDesign(f"levels are {tuple(levels)}; increasing forces above 0 N are needed.")
     topples = _Trial(
-        runs, directions, Push(force=(0.0, 0.0, 0.0), at=at, duration=lasting, body=body), fell, wait, timestep
+        runs, directions, Push(force=(0.0, 0.0, 0.0), at=at, duration=duration, body=body), fell, wait, timestep
     )
     forces = np.broadcast_to(scan[1:], (len(runs), len(directions), len(levels)))
     coarse = topples(forces, lambda share: progress(0.6 * share))
@@ -86,9 +86,9 @@ class _Trial(NamedTuple):
     ) -> Bool[np.ndarray, "run direction force"]:
         """Tell which of the forces topple [N]."""
         batch = [
-            replace(run, pushes=(replace(self.push, force=_along(way, force)),))
-            for run, ways in zip(self.runs, forces, strict=True)
-            for way, some in zip(self.directions, ways, strict=True)
+            replace(run, pushes=(replace(self.push, force=_along(toward, force)),))
+            for run, of_run in zip(self.runs, forces, strict=True)
+            for toward, some in zip(self.directions, of_run, strict=True)
             for force in some
         ]
         end = self.push.at + self.push.duration + self.wait

@@ -1,4 +1,7 @@
-"""From a record to numbers: pure, and along whatever dimensions the record has besides time."""
+"""From a record to numbers: pure, and along whatever dimensions the record has besides time.
+
+``metrics.decisive`` is asked for by its own name: it needs ``scipy.stats``, a fifth of the time of a command's start.
+"""
 
 from suchus.metrics.bends import (
     bend_swings,
@@ -11,7 +14,6 @@ from suchus.metrics.bends import (
     tail_swings,
     vertical_bend,
 )
-from suchus.metrics.decisive import Border, border, rank_correlation
 from suchus.metrics.energy import cost_of_transport, peak_torque, work
 from suchus.metrics.gait import (
     diagonal_phase_error,
@@ -40,12 +42,11 @@ from suchus.metrics.stability import (
 )
 from suchus.metrics.tail import tail_joint_spread, tail_joint_spread_max
 from suchus.metrics.window import between, whole
+from suchus.renamed import old_exports
 
 __all__ = [
-    "Border",
     "bend_swings",
     "between",
-    "border",
     "cost_of_transport",
     "diagonal_phase_error",
     "displacement",
@@ -68,7 +69,6 @@ __all__ = [
     "mean_cycle",
     "path_length",
     "peak_torque",
-    "rank_correlation",
     "reach",
     "roll_angle",
     "roll_peak_to_peak",
@@ -98,3 +98,10 @@ __all__ = [
     "whole",
     "work",
 ]
+
+__getattr__ = old_exports(
+    __name__,
+    Border="decisive.DecisionBoundary",
+    border="decisive.border",
+    rank_correlation="decisive.rank_correlation",
+)

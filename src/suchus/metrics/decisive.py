@@ -1,4 +1,4 @@
-"""Which parameters decide: rank correlations, and the border between where a statement holds and where it does not."""
+"""Which parameters decide: rank correlations, and the decision boundary between true and false."""
 
 from typing import NamedTuple
 
@@ -11,11 +11,11 @@ SURE = 0.01
 _FEW = 5  # samples on one side; fewer say nothing about a border
 
 
-class Border(NamedTuple):
-    """The value of one parameter that best tells where a statement holds."""
+class DecisionBoundary(NamedTuple):
+    """The value of one parameter that best predicts where a statement holds."""
 
     parameter: int
-    """Which."""
+    """Index of the parameter, from 0 [-]."""
     at: float
     """Its value there, in the parameter's unit."""
     above: bool
@@ -23,7 +23,7 @@ class Border(NamedTuple):
     separation: float
     """Share of the samples where it holds, less that where it does not, on the side where it rather holds [-].
 
-    The statistic of Kolmogorov and Smirnov: 1 if the border tells everything, 0 if nothing.
+    The statistic of Kolmogorov and Smirnov: 1 if the boundary predicts every design, 0 if none.
     """
     chance: float
     """How probable so great a separation of this parameter is by chance [-]."""
@@ -44,8 +44,10 @@ def rank_correlation(
     return np.array([each.statistic for each in found]), np.array([each.pvalue for each in found])
 
 
-def border(parameters: Float[np.ndarray, "sample parameter"], holds: Bool[np.ndarray, " sample"]) -> Border | None:
-    """Return the border that best tells where a statement holds.
+def border(
+    parameters: Float[np.ndarray, "sample parameter"], holds: Bool[np.ndarray, " sample"]
+) -> DecisionBoundary | None:
+    """Return the boundary that best predicts where a statement holds.
 
     None where it nearly always or never holds, and where the best of so many parameters would separate as well by
     chance once in a hundred times.
@@ -58,4 +60,6 @@ def border(parameters: Float[np.ndarray, "sample parameter"], holds: Bool[np.nda
     if float(one.pvalue) * len(found) > SURE:
         return None
     # the sign is positive where more of the first sample lies below the location
-    return Border(best, float(one.statistic_location), one.statistic_sign < 0, float(one.statistic), float(one.pvalue))
+    return DecisionBoundary(
+        best, float(one.statistic_location), one.statistic_sign < 0, float(one.statistic), float(one.pvalue)
+    )

@@ -1,4 +1,4 @@
-"""What it costs."""
+"""Mechanical work and cost of transport."""
 
 import xarray as xr
 
@@ -16,9 +16,9 @@ def work(record: xr.Dataset, start: float = START, end: float | None = None) -> 
 
 
 def cost_of_transport(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
-    """Return the work per weight and way on the ground [-]."""
-    way = displacement(record, start, end).sel(xyz=["x", "y"])
-    return work(record, start, end) / (record.mass * GRAVITY * (way**2).sum("xyz") ** 0.5)
+    """Return the work per weight and displacement along the ground, the cost of transport [-]."""
+    displaced = displacement(record, start, end).sel(xyz=["x", "y"])
+    return work(record, start, end) / (record.mass * GRAVITY * (displaced**2).sum("xyz") ** 0.5)
 
 
 def peak_torque(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:

@@ -45,8 +45,8 @@ def path_length(record: xr.Dataset, start: float = START, end: float | None = No
     The swaying within a cycle does not count: the path is sampled once per cycle.
     """
     if "run" in record.dims:  # each run is sampled at its own period
-        ways = [path_length(record.isel(run=i), start, end) for i in range(record.sizes["run"])]
-        return xr.concat(ways, "run", coords="different", compat="equals")
+        lengths = [path_length(record.isel(run=i), start, end) for i in range(record.sizes["run"])]
+        return xr.concat(lengths, "run", coords="different", compat="equals")
     part = between(record, start, end)
     period = float(part.period)
     every = max(1, round(period / float(part.time[1] - part.time[0])))
@@ -65,5 +65,5 @@ def slip(record: xr.Dataset, start: float = START, end: float | None = None) -> 
     steps = part.foot_position.sel(xyz=["x", "y"]).diff("time")
     carried = part.foot_force.sel(xyz="z").isel(time=slice(1, None)) / (part.mass * GRAVITY)
     slid = ((steps**2).sum("xyz") ** 0.5 * carried).sum(["time", "leg"])
-    way = displacement(part, start, end).sel(xyz=["x", "y"])
-    return slid / (way**2).sum("xyz") ** 0.5
+    displaced = displacement(part, start, end).sel(xyz=["x", "y"])
+    return slid / (displaced**2).sum("xyz") ** 0.5

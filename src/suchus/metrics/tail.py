@@ -1,4 +1,4 @@
-"""How alike the joints of the tail turn."""
+"""How equally the joints of the tail turn."""
 
 from collections.abc import Sequence
 

@@ -36,14 +36,14 @@ def whole(record: xr.Dataset) -> xr.Dataset:
         record: of several runs.
 
     Raises:
-        Diverged: the physics of a run came apart; the error carries the time and the record of that run so far.
+        Diverged: the simulation of a run diverged; the error carries the time and the record of that run so far.
     """
     for i, cause in enumerate(record.cause.values):
         if cause:
             one = record.isel(run=i)
             time = float(one.ended)
             raise Diverged(
-                f"run {i} of {record.sizes['run']}, {one.label.item()}, came apart at {time:.2f} s: {cause}. "
+                f"run {i} of {record.sizes['run']}, {one.label.item()}, diverged at {time:.2f} s: {cause}. "
                 "A shorter timestep may help.",
                 time=time,
                 record=one.sel(time=slice(None, time + _SLACK)),

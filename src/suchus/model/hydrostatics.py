@@ -37,7 +37,7 @@ class Hydrostatics:
     surplus: float
     """Mass by which it is too heavy; negative where it could carry more [kg]."""
     draft: float
-    """From the surface down to its lowest point, upright; NaN if it sinks [m]."""
+    """Distance from the surface down to its lowest point, upright; NaN if it sinks [m]."""
     trim: float
     """Pitch at rest, upright, nose up positive; NaN if it sinks [rad]."""
     metacentric_height: float

@@ -4,8 +4,8 @@ from suchus.motion.altered import (
     longest_strokes,
     straightened,
     strides,
+    with_axis_lag,
     with_bends,
-    with_late_axis,
     with_strokes,
 )
 from suchus.motion.angle_table import AngleTable, Curve
@@ -13,11 +13,13 @@ from suchus.motion.any_body import (
     AnyGait,
     Intended,
     check_limits,
+    cycle_targets,
     hip_height,
     intended,
     limb_targets,
     middle_stance,
     pattern_targets,
+    shortest_period,
 )
 from suchus.motion.draft import draft_gait
 from suchus.motion.gait import Gait, Legs
@@ -32,6 +34,7 @@ from suchus.motion.swim import Bends, Swim, bends, check_swim, swim_targets
 from suchus.motion.tabled import as_table
 from suchus.motion.targets import foot_targets, longest_stroke, servo_targets, within_reach
 from suchus.motion.timing import START
+from suchus.renamed import old_exports
 
 __all__ = [
     "START",
@@ -58,6 +61,7 @@ __all__ = [
     "check_limits",
     "check_roll",
     "check_swim",
+    "cycle_targets",
     "draft_gait",
     "foot_targets",
     "hip_height",
@@ -71,6 +75,7 @@ __all__ = [
     "plan",
     "roll_targets",
     "servo_targets",
+    "shortest_period",
     "stance",
     "stand_up",
     "steerable",
@@ -83,8 +88,10 @@ __all__ = [
     "tallest",
     "trunk_amplitude",
     "trunk_bend",
+    "with_axis_lag",
     "with_bends",
-    "with_late_axis",
     "with_strokes",
     "within_reach",
 ]
+
+__getattr__ = old_exports(__name__, with_late_axis="with_axis_lag")

@@ -69,23 +69,23 @@ def with_bends(robot: AnyRobot, gait: AnyGait, share: float) -> AnyGait:
     return replace(gait, curves=tuple(curves))
 
 
-def with_late_axis(robot: AnyRobot, gait: AnyGait, late: float) -> AnyGait:
-    """Return a movement whose axis bends so much later against the limbs than it does now [cycle]."""
+def with_axis_lag(robot: AnyRobot, gait: AnyGait, lag: float) -> AnyGait:
+    """Return a movement whose axis lags the limbs by so much more than it does now [cycle]."""
     if isinstance(gait, Gait):
-        return replace(gait, spine_phase=_wrapped(gait.spine_phase + late))
+        return replace(gait, spine_phase=_wrapped(gait.spine_phase + lag))
     if isinstance(gait, Pattern):
-        return replace(gait, wave=replace(gait.wave, phase=_wrapped(gait.wave.phase + late)))
+        return replace(gait, wave=replace(gait.wave, phase=_wrapped(gait.wave.phase + lag)))
     axial = _axial(robot)
     curves = []
     for curve in gait.curves:
         count = len(curve.angles)
-        shifted = tuple(float(angle) for angle in curve.at(np.arange(count) / count - late))
+        shifted = tuple(float(angle) for angle in curve.at(np.arange(count) / count - lag))
         curves.append(replace(curve, angles=shifted) if curve.servo in axial else curve)
     return replace(gait, curves=tuple(curves))
 
 
 def strides(gait: AnyGait) -> bool:
-    """Tell whether a movement has strokes that can be changed."""
+    """Return whether a movement has strokes that can be changed."""
     if isinstance(gait, Gait):
         return gait.stroke != 0.0
     if not isinstance(gait, Pattern):
@@ -130,6 +130,6 @@ def _axial(robot: AnyRobot) -> set[str]:
     return {place.servos[i] for i in (*place.axial_yaw, *place.axial_pitch, *place.cables)}
 
 
-def _wrapped(late: float) -> float:
+def _wrapped(lag: float) -> float:
     """Return a lag between minus half and half a cycle."""
-    return (late + 0.5) % 1.0 - 0.5 if abs(late) > 1.0 else late
+    return (lag + 0.5) % 1.0 - 0.5 if abs(lag) > 1.0 else lag

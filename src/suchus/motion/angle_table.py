@@ -51,9 +51,9 @@ class AngleTable:
     """
 
     name: str
-    """How it is called."""
+    """Name, as messages, tables and files show it."""
     period: float
-    """Of one cycle [s]."""
+    """Period of one cycle [s]."""
     duty_factor: float
     """Share of the cycle in which a foot stands [-]; it moves nothing, measures and diagrams read it."""
     limb_phases: tuple[float, ...]

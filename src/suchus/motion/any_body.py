@@ -21,13 +21,14 @@ from suchus.motion.timing import START
 AnyGait = Gait | Pattern | AngleTable
 """A periodic movement: the article's kind of gait, one of any body, or a table of servo angles."""
 _SAMPLES = 128  # of a cycle, to check it
+_SPEED_SAMPLES = 200  # of a cycle, to see how fast servos turn in it
 
 
 class Intended(NamedTuple):
-    """What is meant to happen over time."""
+    """Intended motion over time."""
 
     phase: Float[np.ndarray, "*batch limb"]
-    """Of each limb, without wrapping [cycle]."""
+    """Phase of each limb, without wrapping [cycle]."""
     targets: Float[np.ndarray, "*batch servo"]
     """Servo angles [rad]."""
 
@@ -50,6 +51,39 @@ def intended(robot: AnyRobot, gait: AnyGait, time: Float[np.ndarray, "*batch"]) 
     clock = np.maximum(time - START, 0.0) / gait.period
     phase = clock[..., None] + np.array(gait.limb_phases)
     return Intended(phase, pattern_targets(robot, gait, clock))
+
+
+def cycle_targets(
+    robot: AnyRobot, gait: AnyGait, clock: Float[np.ndarray, "*batch"]
+) -> Float[np.ndarray, "*batch servo"]:
+    """Return the servo angles of a movement that has begun [rad].
+
+    Args:
+        robot: the design, whose limbs the movement is for.
+        gait: the movement.
+        clock: since it began [cycle].
+
+    Raises:
+        OutsideLimits: a foot's path is out of reach.
+    """
+    if isinstance(gait, Gait):
+        return servo_targets(robot, gait, np.asarray(clock)[..., None] + np.array(gait.limb_phases))
+    return pattern_targets(robot, gait, clock)
+
+
+def shortest_period(robot: AnyRobot, gait: AnyGait) -> tuple[float, str]:
+    """Return the period below which a servo would have to turn faster than it can [s], and which servo that is.
+
+    Args:
+        robot: the design, whose limbs the movement is for.
+        gait: the movement; its own period is not looked at.
+    """
+    targets = cycle_targets(robot, gait, np.arange(_SPEED_SAMPLES + 1) / _SPEED_SAMPLES)
+    turns = np.abs(np.diff(targets, axis=0)).max(axis=0) * _SPEED_SAMPLES  # [rad/cycle]
+    servos = layout(robot).servos
+    needed = turns / np.array([layout(robot).robot.servo(servo).speed for servo in servos])
+    slowest = int(np.argmax(needed))
+    return float(needed[slowest]), servos[slowest]
 
 
 def hip_height(robot: AnyRobot, gait: AnyGait) -> float:

@@ -13,8 +13,8 @@ from suchus.design.scale import gravity_time
 from suchus.errors import NotConverged, OutsideLimits, Unreachable
 from suchus.kinematics import limb as limb_kinematics
 from suchus.motion.angle_table import AngleTable
-from suchus.motion.any_body import check_limits, path, pattern_targets
-from suchus.motion.draft_table import table_walk
+from suchus.motion.any_body import check_limits, path, shortest_period
+from suchus.motion.draft_table import is_upright, table_walk
 from suchus.motion.pattern import AxialWave, FootPath, Pattern, Sweep
 
 _STROKES = (0.2, 0.15, 0.1, 0.06)  # of the limb's reach, the longest that all girdles can take is taken
@@ -38,7 +38,7 @@ def draft_gait(robot: AnyRobot, name: str) -> Pattern | AngleTable:
     """Return a walk that a robot's limbs can follow, in lengths of its own; of a body without limbs, an undulation.
 
     Diagonal limbs go together; trunk joints bend a little with them. It is a beginning, not the best. Limbs of
-    two hinges, whose feet move on a surface only, get a table of angles.
+    two hinges and upright ones, whose feet move on a surface only, get a table of angles.
 
     Args:
         robot: any.
@@ -53,7 +53,7 @@ def draft_gait(robot: AnyRobot, name: str) -> Pattern | AngleTable:
     gait: Pattern | AngleTable
     if not girdles:
         gait = _undulation(robot, name, period)
-    elif all(len(girdle.limb.hinges) > _PLANAR or _is_crank(girdle.limb) for girdle in girdles):
+    elif all(_is_crank(girdle.limb) or _walks_by_paths(girdle.limb) for girdle in girdles):
         gait = _walk(robot, name, phases, period)
     else:
         gait = table_walk(
@@ -165,7 +165,7 @@ def _cycle() -> np.ndarray:
 
 
 def _follows(limb: Limb, feet: np.ndarray) -> bool:
-    """Tell whether a limb brings its foot along a path within its ranges and without a jump."""
+    """Return whether a limb brings its foot along a path within its ranges and without a jump."""
     try:
         angles = limb_kinematics.inverse(limb, feet, tries=_TRIES)
     except (Unreachable, NotConverged):
@@ -184,6 +184,10 @@ def _cloud(limb: Limb) -> cKDTree:
 
 def _is_crank(limb: Limb) -> bool:
     return len(limb.hinges) == 1 and isinstance(limb.hinges[0].drive, Crank)
+
+
+def _walks_by_paths(limb: Limb) -> bool:
+    return len(limb.hinges) > _PLANAR and not is_upright(limb)
 
 
 def _down(limb: Limb) -> tuple[float, float]:
@@ -206,8 +210,4 @@ def _wave(robot: AnyRobot) -> AxialWave:
 
 def _slow_enough(robot: AnyRobot, gait: Pattern | AngleTable) -> Pattern | AngleTable:
     """Return a gait with a period at which no servo is asked for more speed than it has to spare."""
-    clock = np.arange(256) / 256
-    step = np.abs(np.diff(pattern_targets(robot, gait, clock), axis=0)).max(axis=0) * 256
-    place = layout(robot)
-    spare = np.array([_SPEED * place.robot.servo(name).speed for name in place.servos])
-    return replace(gait, period=float(np.round(max(gait.period, (step / spare).max()), 4)))
+    return replace(gait, period=float(np.round(max(gait.period, shortest_period(robot, gait)[0] / _SPEED), 4)))

@@ -1,6 +1,8 @@
 """A first walk for limbs that cannot put their feet on any path, as those of two hinges: a table of servo angles.
 
-The foot's place ahead and its height follow a path; how far outside it stands is left to the limb.
+The foot's place ahead and its height follow a path; how far outside it stands is left to the limb. Upright limbs,
+all of whose hinges swing the foot fore and aft as hip and knee of a dog do, stand with the feet below the hips and
+trot: with feet ahead of the hips the mass lies behind the feet that stand, and the body falls back onto the others.
 """
 
 from collections.abc import Callable
@@ -13,11 +15,15 @@ from suchus.design import AnyRobot, Crank, Girdle, Limb, layout
 from suchus.errors import OutsideLimits
 from suchus.kinematics import limb as limb_kinematics
 from suchus.motion.angle_table import AngleTable, Curve
-from suchus.motion.any_body import pattern_targets
+from suchus.motion.any_body import check_limits, pattern_targets
 from suchus.motion.pattern import AxialWave, Held, Pattern
 
 _STROKES = (0.25, 0.18, 0.12, 0.08)  # of the limb's reach, the longest that all girdles can take is taken
 _DEPTHS = (0.5, 0.6, 0.4, 0.7, 0.3, 0.8, 0.2, 0.9)  # of the hindmost limbs' reach, the first that fits
+_UPRIGHT_STROKES = (0.2, 0.16, 0.12, 0.08)
+_UPRIGHT_DEPTHS = (0.75, 0.8, 0.7, 0.85, 0.9, 0.95, 0.65, 0.6, 0.5, 0.4)
+_UPRIGHT_PERIOD = 0.5  # of the walk's: two feet below the body hold it up only for as long as it takes to tip over
+_UNDER_HIP = 20.0  # weight of a foot's distance from below its hip, in reaches, beside angles from the middle in rad
 _LIFT = 0.6  # of the stroke
 _CLOUD = 4000  # postures among which the middle of the stance is looked for
 _FROM_MIDDLE = 1e-3  # weight of angles beside lengths in reaches: of two postures that do, the one near the middle
@@ -54,9 +60,10 @@ def table_walk(
     girdles = place.robot.girdles
     for girdle in girdles:
         _check_hinges(robot, girdle)
-    hind = girdles[-1]
-    for stroke in _STROKES:
-        for depth in _DEPTHS:
+    hind, upright = girdles[-1], any(is_upright(girdle.limb) for girdle in girdles)
+    period = period * _UPRIGHT_PERIOD if upright else period
+    for stroke in _UPRIGHT_STROKES if upright else _STROKES:
+        for depth in _UPRIGHT_DEPTHS if upright else _DEPTHS:
             hips = depth * hind.limb.reach + hind.limb.foot.radius - hind.above  # height of the root's axis
             found: list[np.ndarray] = []
             for girdle in girdles:
@@ -65,7 +72,9 @@ def table_walk(
                     break
                 found.append(angles)
             if len(found) == len(girdles):
-                return _tabled(robot, name, period, duty_factor, phases, wave, found)
+                table = _tabled(robot, name, period, duty_factor, phases, wave, found)
+                if _possible(robot, table):
+                    return table
     raise OutsideLimits(
         f"no walk was found for robot {robot.name!r}: its limbs bring their feet along no path of {_STROKES[-1]:g} of "
         "their reach within their ranges; widen the ranges, or write a gait of its own."
@@ -75,18 +84,32 @@ def table_walk(
 def _check_hinges(robot: AnyRobot, girdle: Girdle) -> None:
     driven = [hinge for hinge in girdle.limb.hinges if hinge.servo is not None]
     limbs = f"limbs L{girdle.name} and R{girdle.name}"
-    if len(driven) >= _NEEDED and not any(isinstance(hinge.drive, Crank) for hinge in driven):
-        if len(driven) == _NEEDED and len({hinge.turn for hinge in driven}) == 1:
-            raise OutsideLimits(
-                f"no walk was found for robot {robot.name!r}: {limbs} move in one plane, and what would be drafted for "
-                "them does not walk forward; write a gait of its own."
-            )
-        return
-    raise OutsideLimits(
-        f"no walk was found for robot {robot.name!r}: {limbs} have {len(driven)} driven hinges, cranks counted, and a "
-        f"foot needs {_NEEDED} without cranks to be lifted and brought forward; drive more of them, leave these limbs "
-        "out, or write a gait of its own."
-    )
+    if len(driven) < _NEEDED or any(isinstance(hinge.drive, Crank) for hinge in driven):
+        raise OutsideLimits(
+            f"no walk was found for robot {robot.name!r}: {limbs} have {len(driven)} driven hinges, cranks counted, "
+            f"and a foot needs {_NEEDED} without cranks to be lifted and brought forward; drive more of them, leave "
+            "these limbs out, or write a gait of its own."
+        )
+    turns = {hinge.turn for hinge in driven}
+    if turns in ({"yaw"}, {"pitch"}):
+        lacking = "lifts" if turns == {"yaw"} else "brings forward"
+        raise OutsideLimits(
+            f"no walk was found for robot {robot.name!r}: all hinges of {limbs} turn by {turns.pop()}, and none "
+            f"{lacking} the foot; give them a hinge that does, leave these limbs out, or write a gait of its own."
+        )
+
+
+def is_upright(limb: Limb) -> bool:
+    """Return whether all of a limb's hinges that move swing its foot fore and aft, as hip and knee of a dog do."""
+    return all(hinge.turn == "roll" for hinge in limb.hinges if hinge.servo is not None)
+
+
+def _possible(robot: AnyRobot, gait: AngleTable) -> bool:
+    try:
+        check_limits(robot, gait)
+    except OutsideLimits:
+        return False
+    return True
 
 
 def _followed(limb: Limb, path: np.ndarray, stroke: float, down: float) -> np.ndarray | None:
@@ -107,13 +130,14 @@ def _followed(limb: Limb, path: np.ndarray, stroke: float, down: float) -> np.nd
         whole[driven] = angles
         return np.asarray(limb_kinematics.forward(limb, whole[None])[0])
 
-    # the middle of the stance lies where the limb is near the middle of its ranges
+    # the middle of the stance lies where the limb is near the middle of its ranges, of an upright one below its hip
     apart = np.abs(feet[:, 2] + down) / limb.reach
-    cost = np.where(apart < _OFF, np.abs(cloud - middle).sum(axis=1), np.inf)
+    under = _UNDER_HIP * np.abs(feet[:, 0]) / limb.reach if is_upright(limb) else 0.0
+    cost = np.where(apart < _OFF, np.abs(cloud - middle).sum(axis=1) + under, np.inf)
     if not np.isfinite(cost).any():
         return None
     start = cloud[np.argmin(cost)][driven]
-    ahead = float(feet[np.argmin(cost), 0])
+    ahead = 0.0 if is_upright(limb) else float(feet[np.argmin(cost), 0])
     wanted = np.stack([ahead + stroke * limb.reach * path[0], _LIFT * stroke * limb.reach * path[1] - down], axis=1)
     return _solved(placed, wanted / limb.reach, limb.reach, start, (low, high), driven)
 

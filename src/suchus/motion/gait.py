@@ -40,25 +40,25 @@ class Gait:
     """
 
     name: str
-    """How it is called."""
+    """Name, as messages, tables and files show it."""
     period: float
-    """Of one cycle [s]."""
+    """Period of one cycle [s]."""
     duty_factor: float
     """Share of the cycle in which a foot stands [-]."""
     limb_phases: tuple[float, float, float, float]
     """Phase of LF, RF, LH, RH when the walk begins [cycle]."""
     stroke: float
-    """Half of the way that a foot goes back in stance, in its girdle's frame [m]."""
+    """Half of the distance that a foot moves back in stance, in its girdle's frame [m]."""
     lift: float
-    """How high a foot is lifted in swing [m]."""
+    """Height to which a foot is lifted in swing [m]."""
     front_reach: float
-    """How far a front foot stands outside its hip [m]."""
+    """Distance by which a front foot stands outside its hip [m]."""
     hind_reach: float
-    """How far a hind foot stands outside its hip [m]."""
+    """Distance by which a hind foot stands outside its hip [m]."""
     front_ahead: float
-    """How far the middle of a front foot's path lies ahead of its hip [m]."""
+    """Distance by which the middle of a front foot's path lies ahead of its hip [m]."""
     hind_ahead: float
-    """How far the middle of a hind foot's path lies ahead of its hip [m]."""
+    """Distance by which the middle of a hind foot's path lies ahead of its hip [m]."""
     legs: Legs
     """``sprawled`` or ``erect``; erect feet stand below their hips, so that both reaches are zero."""
     hip_height: float
@@ -66,11 +66,11 @@ class Gait:
     trunk_bend: float
     """Amplitude of the lateral bend of the whole trunk, the sum of its yaw angles [rad]."""
     spine_phase: float
-    """How late the trunk bends against the legs [cycle]; 0: each girdle carries its swing foot forward."""
+    """Phase lag of the trunk's bend behind the legs [cycle]; 0: each girdle carries its swing foot forward."""
     tail_bend: float
     """Amplitude of the lateral bend of the tail [rad]."""
     tail_phase: float
-    """How late the tail bends against the trunk [cycle]; 0: head and tail swing to opposite sides."""
+    """Phase lag of the tail's bend behind the trunk's [cycle]; 0: head and tail swing to opposite sides."""
     tail_pitch: float
     """Steady angle of the tail's pitch joint, down positive [rad]: the ground carries the tail, or it is lifted."""
 

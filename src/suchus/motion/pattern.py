@@ -19,13 +19,13 @@ class FootPath:
     """
 
     stroke: float
-    """Half of the way that a foot goes back in stance [limb reach]."""
+    """Half of the distance that a foot moves back in stance [limb reach]."""
     lift: float
-    """How high it is lifted in swing [limb reach]."""
+    """Height to which it is lifted in swing [limb reach]."""
     outward: float
-    """How far it stands outside its hip [limb reach]."""
+    """Distance by which it stands outside its hip [limb reach]."""
     ahead: float
-    """How far the middle of its path lies ahead of its hip [limb reach]."""
+    """Distance by which the middle of its path lies ahead of its hip [limb reach]."""
     plane: float = 0.0
     """Of a limb of four hinges: how far the elbow is turned forward about the line from hip to foot [rad]."""
 
@@ -73,7 +73,7 @@ class AxialWave:
     waves: float
     """Wavelengths along the body; the wave runs from head to tail where positive [-]."""
     phase: float
-    """How late it is; 0: concave on the right a quarter of a cycle before the first limb's mid-stance [cycle]."""
+    """Phase lag [cycle]; 0: concave on the right a quarter of a cycle before the first limb's mid-stance."""
     offset: float = 0.0
     """Steady bend of every hinge, concave on the left where positive, to turn left [rad]."""
 
@@ -98,19 +98,19 @@ class Pattern:
     """A periodic movement of any body. Phases run from 0 to 1 [cycle]; each limb swings first, then stands."""
 
     name: str
-    """How it is called."""
+    """Name, as messages, tables and files show it."""
     period: float
-    """Of one cycle [s]."""
+    """Period of one cycle [s]."""
     duty_factor: float
     """Share of the cycle in which a foot stands [-]."""
     limb_phases: tuple[float, ...]
     """Phase of each limb when the movement begins, in the order of the robot's limbs [cycle]."""
     girdles: tuple[FootPath | Sweep | Held, ...]
-    """What the limbs of each girdle do, from the front one."""
+    """Movement of the limbs of each girdle, from the front one."""
     height: float
     """Height of the hindmost girdle's hips above the ground [reach of its limb]; 0 for a body on its belly."""
     wave: AxialWave
-    """How the axis bends."""
+    """Wave by which the axis bends."""
 
     def __post_init__(self) -> None:
         with Checks("pattern", self) as check:

@@ -46,7 +46,7 @@ def tail_bend(gait: Gait, phase: Float[np.ndarray, "*b 4"]) -> Float[np.ndarray,
     return np.asarray(-gait.tail_bend * _pull(gait, phase, gait.spine_phase + gait.tail_phase))
 
 
-def _pull(gait: Gait, phase: Float[np.ndarray, "*b 4"], late: float) -> Float[np.ndarray, "*b"]:
+def _pull(gait: Gait, phase: Float[np.ndarray, "*b 4"], lag: float) -> Float[np.ndarray, "*b"]:
     before_touch_down = 0.75 - gait.duty_factor / 2  # a quarter cycle before mid-stance
-    angle = 2 * np.pi * (phase - before_touch_down - late)
+    angle = 2 * np.pi * (phase - before_touch_down - lag)
     return np.asarray(np.cos(angle) @ _SIDES / 4)

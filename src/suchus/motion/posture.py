@@ -31,25 +31,25 @@ class Posture:
     hip_height: float
     """Height of the hind girdle's axis above the ground [m]."""
     pelvis_pitch: float
-    """Of the pelvis against the level, front end up positive [rad]."""
+    """Pitch of the pelvis against the level, front end up positive [rad]."""
     lead: float
-    """How far the centre of mass lies behind the centres of the hind feet [m]."""
+    """Distance by which the centre of mass lies behind the centres of the hind feet [m]."""
     stance: float
-    """How far a hind foot stands outside its hip [m]."""
+    """Distance by which a hind foot stands outside its hip [m]."""
     lift: float
     """Height of the hind feet above the ground [m]; zero where they are planted."""
     trunk_first: float
-    """How far the trunk's first pitch joint bends the front end up [rad]."""
+    """Angle by which the trunk's first pitch joint bends the front end up [rad]."""
     trunk_second: float
-    """How far the second one does [rad]."""
+    """Angle of the second one [rad]."""
     tail_press: float
-    """How deep below the ground the tip of the straight tail is commanded [m]: its servo then presses it down."""
+    """Depth below the ground at which the tip of the straight tail is commanded [m]: its servo then presses it down."""
     arm_yaw: float
-    """Of the front legs, forward positive [rad]."""
+    """Yaw of the front legs, forward positive [rad]."""
     arm_pitch: float
-    """Of the front legs, foot down positive [rad]."""
+    """Pitch of the front legs, foot down positive [rad]."""
     arm_knee: float
-    """Of the front legs, shank down positive [rad]."""
+    """Knee angle of the front legs, shank down positive [rad]."""
 
     def __post_init__(self) -> None:
         with Checks("posture", self) as check:
@@ -72,9 +72,9 @@ class Keyed:
     """A sequence of postures with their times; each turns into the next without a jolt."""
 
     name: str
-    """How it is called."""
+    """Name, as messages, tables and files show it."""
     times: tuple[float, ...]
-    """When each posture is reached, from the beginning of the sequence, increasing from zero [s]."""
+    """Time at which each posture is reached, from the beginning of the sequence, increasing from zero [s]."""
     postures: tuple[Posture, ...]
     """The postures."""
 
@@ -94,7 +94,7 @@ class Keyed:
         return self.times[-1]
 
     def reversed(self, name: str, *, slower: float = 1.0) -> "Keyed":
-        """Return the way back, ``slower`` times as long."""
+        """Return the course back, ``slower`` times as long."""
         times = tuple(slower * (self.duration - t) for t in reversed(self.times))
         return replace(self, name=name, times=times, postures=tuple(reversed(self.postures)))
 
@@ -105,13 +105,13 @@ class Planned(NamedTuple):
     targets: Float[np.ndarray, "*batch servo"]
     """Servo angles in the order of ``design.servo_names()`` [rad]."""
     pitch: Float[np.ndarray, "*batch"]
-    """Of the pelvis, front end up positive [rad]."""
+    """Pitch of the pelvis, front end up positive [rad]."""
     feet: Float[np.ndarray, "*batch 3"]
     """Centre of the left hind foot from its hip in the world: outward, forward, down [m]."""
     lead: Float[np.ndarray, "*batch"]
-    """How far the centre of mass lies behind the centres of the hind feet [m]."""
+    """Distance by which the centre of mass lies behind the centres of the hind feet [m]."""
     tail: Float[np.ndarray, "*batch"]
-    """How far the tip of the tail lies behind the centres of the hind feet [m]."""
+    """Distance by which the tip of the tail lies behind the centres of the hind feet [m]."""
 
 
 def plan(robot: AnyRobot, sequence: Keyed, time: Float[np.ndarray, "*batch"]) -> Planned:

@@ -1,4 +1,4 @@
-"""The way from lying to standing on hind legs and tail, in six postures, and how high any posture could reach."""
+"""The course from lying to standing on hind legs and tail, in six postures, and how high any posture could reach."""
 
 from dataclasses import replace
 from math import radians
@@ -37,7 +37,7 @@ def stand_up(
     lead: float = LEAD,
     slower: float = 1.0,
 ) -> Keyed:
-    """Return the way up for a robot, beginning on the ground and ending on hind legs and tail.
+    """Return the course of rising of a robot, beginning on the ground and ending on hind legs and tail.
 
     1. It lies on its belly. 2. The hind feet swing ahead, past the centre of mass. 3. They take the load.
     4. The trunk bends up like a cobra's while the pelvis stays low: now the centre of mass is well behind the feet.

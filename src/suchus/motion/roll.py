@@ -10,21 +10,23 @@ from suchus.design.checks import Checks
 from suchus.errors import OutsideLimits
 from suchus.kinematics import tail as tail_kinematics
 from suchus.motion.targets import servo_range
+from suchus.renamed import old_names
 
 _LEGS_BACK = -np.pi / 2
 
 
+@old_names(late="lag", tail_late="tail_lag")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Roll:
     """A bend that goes around the body once in a cycle, legs folded back.
 
     With t in cycles the trunk's front end bends to the left by ``trunk_lateral cos(2 pi t)`` and down by
-    ``trunk_vertical cos(2 pi (t - late))``; the tail's tip the same with its own amplitudes, ``tail_late`` cycles
+    ``trunk_vertical cos(2 pi (t - lag))``; the tail's tip the same with its own amplitudes, ``tail_lag`` cycles
     later. In the first cycle the amplitudes grow from zero.
     """
 
     frequency: float
-    """Of the bends [Hz]."""
+    """Frequency of the bends [Hz], 0.02 to 10."""
     trunk_lateral: float
     """Amplitude of the sum of the trunk's yaw angles [rad]."""
     trunk_vertical: float
@@ -33,18 +35,18 @@ class Roll:
     """Amplitude of the bend of the cable section [rad]."""
     tail_vertical: float
     """Amplitude of the tail's pitch joint [rad]."""
-    late: float
-    """How late the vertical bend comes after the lateral one [cycle]: 0.25 goes around, -0.25 the other way."""
-    tail_late: float
-    """How late the tail bends after the trunk [cycle]: 0 makes a C of the body, 0.5 an S."""
+    lag: float
+    """Phase lag of the vertical bend behind the lateral one [cycle], -1 to 1; 0.25 and -0.25 roll oppositely."""
+    tail_lag: float
+    """Phase lag of the tail behind the trunk [cycle], -1 to 1: 0 makes a C of the body, 0.5 an S."""
 
     def __post_init__(self) -> None:
         with Checks("roll", self) as check:
             check.number("frequency", 0.02, 10.0, "Hz")
             for field in ("trunk_lateral", "trunk_vertical", "tail_lateral", "tail_vertical"):
                 check.number(field, 0.0, 3.1416, "rad")
-            check.number("late", -1.0, 1.0, "cycle")
-            check.number("tail_late", -1.0, 1.0, "cycle")
+            check.number("lag", -1.0, 1.0, "cycle")
+            check.number("tail_lag", -1.0, 1.0, "cycle")
 
 
 def roll_targets(robot: AnyRobot, roll: Roll, time: Float[np.ndarray, "*b"]) -> Float[np.ndarray, "*b servo"]:
@@ -63,13 +65,13 @@ def roll_targets(robot: AnyRobot, roll: Roll, time: Float[np.ndarray, "*b"]) -> 
     targets = np.zeros((*np.shape(time), len(place.servos)))
     targets[..., [limb.servos.start for limb in place.limbs]] = _LEGS_BACK
 
-    def bend(amplitude: float, late: float) -> np.ndarray:
-        return np.asarray(amplitude * grown * np.cos(2 * np.pi * (cycles - late)))
+    def bend(amplitude: float, lag: float) -> np.ndarray:
+        return np.asarray(amplitude * grown * np.cos(2 * np.pi * (cycles - lag)))
 
     targets[..., place.trunk_yaw] = bend(roll.trunk_lateral, 0.0)[..., None] / len(place.trunk_yaw)
-    targets[..., place.trunk_pitch] = bend(roll.trunk_vertical, roll.late)[..., None] / len(place.trunk_pitch)
-    targets[..., place.tail_pitch[0]] = bend(roll.tail_vertical, roll.late + roll.tail_late)
-    to_the_right = -bend(roll.tail_lateral, roll.tail_late)
+    targets[..., place.trunk_pitch] = bend(roll.trunk_vertical, roll.lag)[..., None] / len(place.trunk_pitch)
+    targets[..., place.tail_pitch[0]] = bend(roll.tail_vertical, roll.lag + roll.tail_lag)
+    to_the_right = -bend(roll.tail_lateral, roll.tail_lag)
     targets[..., place.cables[0]] = tail_kinematics.servo_angle(robot.tail, to_the_right)
     return targets
 

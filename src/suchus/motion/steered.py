@@ -128,18 +128,18 @@ def steerable(gait: AnyGait, what: str) -> Gait | Pattern:
 
 
 class _Wave:
-    """The wave along the axis by the limbs' phases: each limb tells what the clock is, and their mean counts."""
+    """The wave along the axis by the limbs' phases: each limb gives a value of the clock, and their mean counts."""
 
     def __init__(self, gait: Pattern, phase: np.ndarray) -> None:
         self._gait = gait
         first = gait.limb_phases[0] if gait.limb_phases else 0.0
         since = np.exp(2j * np.pi * (phase - np.array(gait.limb_phases) + first - (0.75 - gait.duty_factor / 2)))
-        # without limbs nobody tells the clock: what the axis does is the table's, and here it is none
+        # without limbs nothing gives the clock: what the axis does is the table's, and here it is none
         self._turn = since.mean(axis=-1) if since.shape[-1] else np.zeros(since.shape[:-1])
         self._places, self._angles = (np.array(column) for column in zip(*gait.wave.amplitude, strict=True))
 
     def at(self, place: float) -> np.ndarray:
         """Return how far a hinge at a place bends the body, concave on the left positive [rad]."""
         wave = self._gait.wave
-        late = np.exp(-2j * np.pi * (wave.phase + wave.waves * place))
-        return np.asarray(wave.offset - np.interp(place, self._places, self._angles) * (self._turn * late).real)
+        lag = np.exp(-2j * np.pi * (wave.phase + wave.waves * place))
+        return np.asarray(wave.offset - np.interp(place, self._places, self._angles) * (self._turn * lag).real)

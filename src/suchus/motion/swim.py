@@ -10,6 +10,7 @@ from suchus.design import AnyRobot, crocodile, layout
 from suchus.design.checks import Checks, require
 from suchus.errors import InvalidDesign, OutsideLimits
 from suchus.kinematics import tail as tail_kinematics
+from suchus.renamed import old_names
 
 
 def trunk_yaws(robot: AnyRobot) -> tuple[str, ...]:
@@ -18,29 +19,30 @@ def trunk_yaws(robot: AnyRobot) -> tuple[str, ...]:
     return tuple(place.servos[i] for i in place.trunk_yaw)
 
 
+@old_names(yaw_late="yaw_lag", tail_late="tail_lag")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Swim:
-    """A periodic swimming motion: every lateral angle is ``amplitude cos(2 pi (f t - late))``."""
+    """A periodic swimming motion: every lateral angle is ``amplitude cos(2 pi (f t - lag))``."""
 
     name: str
-    """How it is called."""
+    """Name, for messages and tables."""
     frequency: float
-    """Of the wave, f [Hz]."""
+    """Frequency of the wave, f [Hz], 0.01 to 20."""
     yaw: tuple[float, float, float]
-    """Amplitudes of the trunk's yaw joints from the pelvis forward, front end left [rad]."""
-    yaw_late: tuple[float, float, float]
-    """How late each of them bends [cycle]."""
+    """Amplitudes of the trunk's yaw joints from the pelvis forward, front end left [rad], 0 to pi."""
+    yaw_lag: tuple[float, float, float]
+    """Phase lag of each of them behind f t [cycle], -1 to 1."""
     tail: float
-    """Amplitude of the bend of the tail's cable section, tip to the right [rad]."""
-    tail_late: float
-    """How late the tail bends [cycle]."""
+    """Amplitude of the bend of the tail's cable section, tip to the right [rad], 0 to pi."""
+    tail_lag: float
+    """Phase lag of the tail's bend behind f t [cycle], -1 to 1."""
 
     def __post_init__(self) -> None:
         with Checks("swim", self) as check:
             check.number("frequency", 0.01, 20.0, "Hz")
             check.number("tail", 0.0, 3.1416, "rad")
-            check.number("tail_late", -1.0, 1.0, "cycle")
-        for field in ("yaw", "yaw_late"):
+            check.number("tail_lag", -1.0, 1.0, "cycle")
+        for field in ("yaw", "yaw_lag"):
             values = getattr(self, field)
             if len(values) != 3:
                 raise InvalidDesign(f"swim.{field} has {len(values)} numbers; three yaw joints need one each.")
@@ -49,9 +51,9 @@ class Swim:
                 require("swim", f"{field}[{i}]", value, low, high, unit)
 
     def reversed(self) -> "Swim":
-        """Return the motion played backwards: the wave runs the other way."""
-        first, second, third = self.yaw_late
-        return replace(self, yaw_late=(-first, -second, -third), tail_late=-self.tail_late)
+        """Return the motion played backwards: the wave runs in the other direction."""
+        first, second, third = self.yaw_lag
+        return replace(self, yaw_lag=(-first, -second, -third), tail_lag=-self.tail_lag)
 
     def trunk_only(self) -> "Swim":
         """Return the motion with the tail straight."""
@@ -83,8 +85,8 @@ def bends(swim: Swim, time: Float[np.ndarray, "*b"]) -> Bends:
         time: [s].
     """
     rate = 2 * np.pi * swim.frequency
-    yaw_phase = rate * time[..., None] - 2 * np.pi * np.array(swim.yaw_late)
-    tail_phase = rate * time - 2 * np.pi * swim.tail_late
+    yaw_phase = rate * time[..., None] - 2 * np.pi * np.array(swim.yaw_lag)
+    tail_phase = rate * time - 2 * np.pi * swim.tail_lag
     amplitude = np.array(swim.yaw)
     return Bends(
         np.asarray(amplitude * np.cos(yaw_phase)),

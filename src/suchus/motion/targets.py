@@ -33,7 +33,7 @@ def foot_targets(
         robot: the design.
         gait: the gait.
         phase: of the limbs [cycle].
-        stroke: half of the way of each foot [m]; the gait's own if None.
+        stroke: half of the distance that each foot moves [m]; the gait's own if None.
         lower: how much lower than the gait says each foot is [m]; no lower if None.
     """
     cycle = np.mod(phase, 1.0)
@@ -73,7 +73,7 @@ def servo_targets(
         phase: of the limbs [cycle].
         trunk: lateral bend of the trunk [rad]; the gait's own law if None.
         tail: lateral bend of the tail [rad]; the gait's own law if None.
-        stroke: half of the way of each foot [m]; the gait's own if None.
+        stroke: half of the distance that each foot moves [m]; the gait's own if None.
         lower: how much lower than the gait says each foot is [m]; no lower if None.
         clip: let a leg that is too short point to its foot.
 
@@ -122,7 +122,7 @@ def legs_for(robot: AnyRobot, gait: Gait) -> tuple[PlainLeg, ...]:
 
 
 def _leg_angles(leg: PlainLeg, name: str, gait: Gait, foot: np.ndarray, *, clip: bool) -> np.ndarray:
-    """Return yaw, pitch and knee that bring a foot to its place the way that the gait's legs stand [rad]."""
+    """Return yaw, pitch and knee that bring a foot to its place as the gait's legs stand [rad]."""
     if clip:
         foot = within_reach(leg, foot)
     if gait.legs == "sprawled":

@@ -30,7 +30,7 @@ class Transition(NamedTuple):
     """A sequence of postures, each reached from the one before without a jolt; it starts wherever the robot is."""
 
     times: Float[np.ndarray, " key"]
-    """When each posture is reached, since the beginning [s]."""
+    """Time at which each posture is reached, since the beginning [s]."""
     targets: Float[np.ndarray, "key servo"]
     """Servo angles [rad]."""
 
@@ -51,7 +51,7 @@ class Transition(NamedTuple):
 
 @lru_cache(maxsize=64)
 def transition(robot: AnyRobot, here: Gait | Pattern, there: Gait | Pattern, *, slower: float = 1.0) -> Transition:
-    """Return the way from one gait's posture to another's: 3.5 s for a body of a metre, less for a smaller one.
+    """Return the course from one gait's posture to another's: 3.5 s for a body of a metre, less for a smaller one.
 
     The robot stops and goes to a height at which both postures can stand. Then LF and RH, or the limbs of any body that
     swing in the first half of a cycle, are lifted, take their new posture and are put down; the others follow; then it

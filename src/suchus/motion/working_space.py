@@ -34,11 +34,11 @@ class Reached(NamedTuple):
     snout: Float[np.ndarray, "n 3"]
     """Tip of the snout in the world [m]."""
     angles: Float[np.ndarray, "n joint"]
-    """Of every hinge, in the order of ``joint_names(robot)`` [rad]."""
+    """Angles of every hinge, in the order of ``joint_names(robot)`` [rad]."""
     pelvis: Float[np.ndarray, "n 3"]
     """x, z of the pelvis in the world [m], and its pitch, front end up positive [rad]."""
     tried: int
-    """How many were drawn [-]."""
+    """Number of postures that were drawn [-]."""
 
 
 def reached(robot: Crocodile, gait: Gait, *, standing: bool, count: int, seed: int = 0) -> Reached:

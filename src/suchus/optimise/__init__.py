@@ -2,13 +2,14 @@
 
 from suchus.optimise.aims import AIMS, LIMITS
 from suchus.optimise.clearance import clearance
-from suchus.optimise.conduct import Told, optimise
+from suchus.optimise.conduct import SearchProgress, optimise
 from suchus.optimise.found import Found
 from suchus.optimise.page import read_optimisation
 from suchus.optimise.ready import READY
 from suchus.optimise.results import write_results
 from suchus.optimise.search import NoOptimiser
 from suchus.optimise.spec import Aim, Limit, Optimisation
+from suchus.renamed import old_exports
 
 __all__ = [
     "AIMS",
@@ -19,9 +20,11 @@ __all__ = [
     "Limit",
     "NoOptimiser",
     "Optimisation",
-    "Told",
+    "SearchProgress",
     "clearance",
     "optimise",
     "read_optimisation",
     "write_results",
 ]
+
+__getattr__ = old_exports(__name__, Told="SearchProgress")

@@ -24,13 +24,13 @@ class Kind:
     """A quantity that can be aimed at or limited."""
 
     measure: Measured
-    """How it is measured."""
+    """Function that measures it from a record."""
     unit: str
     """SI unit, ``-`` for none."""
     good: Literal["more", "less"]
     """What is better; a limit is the least value where more is better, the greatest where less is."""
     tells: str
-    """What it is."""
+    """Description of the quantity."""
     scale: float = 1.0
     """What counts as one unit of excess where the limit itself is zero, in the unit."""
 
@@ -71,7 +71,7 @@ def _slip(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:
 
 
 def _torque(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:
-    """Return the root mean square of the torque of the servo that works hardest, over its limit."""
+    """Return the root mean square of the torque of the highest-loaded servo, over its limit."""
     torque = metrics.between(record).servo_torque.transpose("run", "time", "servo").values
     names = [str(name) for name in record.servo.values]
     limits = np.array([[run.robot.servo(name).torque for name in names] for run in runs])
@@ -100,25 +100,25 @@ def _standing(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:
 
 AIMS: Mapping[str, Kind] = MappingProxyType(
     {
-        "displacement": Kind(_forward, "m", "more", "way of the centre of mass along the first heading"),
-        "cost_of_transport": Kind(_cost, "-", "less", "work of the servos per weight and way"),
+        "displacement": Kind(_forward, "m", "more", "displacement of the centre of mass along the first heading"),
+        "cost_of_transport": Kind(_cost, "-", "less", "work of the servos over weight times displacement"),
         "stability": Kind(_height_std, "m", "less", "standard deviation of the height of the centre of mass"),
         "roll": Kind(_roll, "rad", "less", "greatest less least roll of the pelvis"),
         "turning": Kind(_turn, "rad", "more", "change of heading, to whichever side"),
         "standing_reach": Kind(_standing, "m", "more", "least height reached while standing on hind legs and tail"),
     }
 )
-"""What can be aimed at, by name."""
+"""Quantities that a search can optimise, by name."""
 LIMITS: Mapping[str, Kind] = MappingProxyType(
     {
-        "torque": Kind(_torque, "-", "less", "root mean square torque of the hardest working servo over its limit"),
-        "slip": Kind(_slip, "-", "less", "sliding of loaded feet over the way"),
+        "torque": Kind(_torque, "-", "less", "root mean square torque of the highest-loaded servo over its limit"),
+        "slip": Kind(_slip, "-", "less", "sliding of loaded feet over displacement"),
         "clearance": Kind(_clearance, "m", "more", "least distance between parts of the body", 0.01),
         "turn": Kind(_turn, "rad", "less", "change of heading", 0.1),
-        "sideways": Kind(_sideways, "m", "less", "way across the first heading", 0.1),
+        "sideways": Kind(_sideways, "m", "less", "displacement across the first heading", 0.1),
         "roll": Kind(_roll, "rad", "less", "greatest less least roll of the pelvis", 0.1),
-        "cost_of_transport": Kind(_cost, "-", "less", "work of the servos per weight and way"),
-        "displacement": Kind(_forward, "m", "more", "way along the first heading", 0.1),
+        "cost_of_transport": Kind(_cost, "-", "less", "work of the servos over weight times displacement"),
+        "displacement": Kind(_forward, "m", "more", "displacement along the first heading", 0.1),
     }
 )
-"""What can be limited, by name."""
+"""Quantities that a search can limit, by name."""

@@ -19,25 +19,25 @@ _NEAR = (-0.1, -0.05, 0.0, 0.05, 0.1)  # of each range
 
 @dataclass(frozen=True, slots=True)
 class Condition:
-    """What is different from the search."""
+    """One condition of a check, and how it differs from the search."""
 
     tells: str
-    """In words."""
-    grip: float = 1.0
+    """Description of the condition."""
+    friction_scale: float = 1.0
     """Factor on the friction [-]."""
     noise: float = 0.0
-    """On every commanded angle [rad]."""
+    """Standard deviation of noise on every commanded angle [rad]."""
     seed: int = 0
-    """Of the noise."""
+    """Seed of the noise."""
     later: float = 0.0
-    """How much later in its cycle the walk begins [cycle]."""
+    """Phase by which the walk begins later in its cycle [cycle]."""
 
 
 CONDITIONS = (
     Condition("2 ms"),
-    Condition("foot friction 0.5", grip=0.625),
-    Condition("foot friction 0.65", grip=0.8125),
-    Condition("foot friction 1.0", grip=1.25),
+    Condition("foot friction 0.5", friction_scale=0.625),
+    Condition("foot friction 0.65", friction_scale=0.8125),
+    Condition("foot friction 1.0", friction_scale=1.25),
     Condition("servo noise 0.01 rad, seed 1", noise=0.01, seed=1),
     Condition("servo noise 0.01 rad, seed 2", noise=0.01, seed=2),
     Condition("begun a quarter of a cycle later", later=0.25),
@@ -50,8 +50,8 @@ def checked(spec: Optimisation, runs: Sequence[Run]) -> xr.Dataset:
     """Run the chosen, and where the search started, under every condition with 2 ms.
 
     Returns:
-        ``aim_...`` and ``limit_...`` along ``run`` (the chosen, then ``start``) and ``condition``; NaN where it came
-        apart.
+        ``aim_...`` and ``limit_...`` along ``run`` (the chosen, then ``start``) and ``condition``; NaN where it
+        diverged.
     """
     who = [*runs, replace(spec.run, label="start")]
     batch = [_under(run, condition) for run in who for condition in CONDITIONS]
@@ -71,7 +71,7 @@ def _under(run: Run, condition: Condition) -> Run:
     phases = tuple((phase + condition.later + 1.0) % 1.0 for phase in run.gait.limb_phases)
     gait = replace(run.gait, limb_phases=phases)  # type: ignore[arg-type]
     other = replace(run, gait=gait if condition.later else run.gait, noise=condition.noise, seed=condition.seed)
-    return with_values(other, {"ground.grip": run.ground.grip * condition.grip})
+    return with_values(other, {"ground.friction_scale": run.ground.friction_scale * condition.friction_scale})
 
 
 def around(spec: Optimisation, best: np.ndarray, tried: Evaluate = evaluate) -> xr.Dataset:

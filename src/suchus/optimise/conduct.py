@@ -27,24 +27,24 @@ from suchus.study.makers import deciding
 from suchus.study.store import Store
 
 LIBRARIES = ("cma", "comocma", "moarchiving")
-"""Whose versions decide what is asked for."""
+"""Packages whose versions decide which candidates are tried."""
 _DECIDING = partial(deciding, LIBRARIES, ROOMS)
 _CHECKED, _AROUND = 900_000, 950_000  # first numbers of the last parts; the budget's generations are added
 
 
-class Told(NamedTuple):
-    """How far a search is."""
+class SearchProgress(NamedTuple):
+    """Progress of a search."""
 
     arm: str
-    """Which."""
+    """Name of the condition."""
     done: float
-    """Candidates tried in this arm, parts of a generation included."""
+    """Candidates tried in this condition, parts of a generation included."""
     budget: int
     """Candidates that it may try."""
     best: float
     """First aim of the best so far, in its unit; NaN before there is one."""
     unit: str
-    """Of that aim."""
+    """Unit of that aim."""
     rate: float
     """Candidates per second of this start; 0 before the first."""
 
@@ -54,13 +54,13 @@ class Told(NamedTuple):
         return f"{int(self.done)} of {self.budget} tried, {self.rate:.1f}/s{left}{best}"
 
 
-Progress = Callable[[Told], None]
+Progress = Callable[[SearchProgress], None]
 
 
 def optimise(
     spec: Optimisation, folder: Path, *, progress: Progress | None = None, client: Any = None
 ) -> tuple[Found, ...]:
-    """Search each arm, check what was found, and return it.
+    """Search each condition, check what was found, and return it.
 
     Generations are stored as they are finished: whatever stops the program, at most the running one is lost. Started
     again it goes on, and ends with the same bytes as if nothing had happened. The best gait so far is always a file,
@@ -68,8 +68,8 @@ def optimise(
 
     Args:
         spec: the search; with more evaluations than before, an earlier one is continued.
-        folder: for its results and, below it, the store of each arm.
-        progress: told how far it is.
+        folder: for its results and, below it, the store of each condition.
+        progress: called with how far it is, after each piece of work.
         client: a ``distributed.Client``, among whose workers each generation is shared out; this process if None. The
             bytes are the same.
 
@@ -85,7 +85,7 @@ def optimise(
 
 
 def _arm(spec: Optimisation, folder: Path, progress: Progress, client: Any) -> Found:
-    """Search one arm."""
+    """Search one condition."""
     name = spec.arms[0].name
     with opened(spec, folder / name) as store:
         found = _searched(spec, store, folder, progress, client)
@@ -103,7 +103,7 @@ def _arm(spec: Optimisation, folder: Path, progress: Progress, client: Any) -> F
 
 @contextmanager
 def opened(spec: Optimisation, folder: Path) -> Iterator[Store]:
-    """Hold the store of one arm; the budget does not tell searches apart."""
+    """Hold the store of one condition; the budget does not distinguish searches."""
     with Store(folder, replace(spec, evaluations=1), kind="optimisation", versions=_DECIDING).opened() as store:
         yield store
 
@@ -166,7 +166,9 @@ class _Clock:
         seconds = time.perf_counter() - self._begun
         rate = tried / seconds if tried and seconds > 0 else 0.0
         unit = AIMS[self._spec.aims[0].name].unit
-        self._progress(Told(self._spec.arms[0].name, self.done + more, self._spec.evaluations, self.best, unit, rate))
+        self._progress(
+            SearchProgress(self._spec.arms[0].name, self.done + more, self._spec.evaluations, self.best, unit, rate)
+        )
 
 
 def _numbered(table: xr.Dataset, number: int) -> xr.Dataset:
@@ -199,5 +201,5 @@ def write_runs(spec: Optimisation, runs: Sequence[Run], folder: Path) -> None:
             blueprint.write(run.robot, folder / f"{run.label}_robot.toml")
 
 
-def _silent(told: Told) -> None:
+def _silent(told: SearchProgress) -> None:
     del told

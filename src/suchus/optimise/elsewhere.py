@@ -20,7 +20,7 @@ def evaluate_on(client: Any, spec: Optimisation, shares: np.ndarray, progress: P
 
     Args:
         client: a ``distributed.Client``.
-        spec: the search, of one arm.
+        spec: the search, of one condition.
         shares: as of ``evaluate``.
         progress: called with the share that is done.
 

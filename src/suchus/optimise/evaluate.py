@@ -15,7 +15,7 @@ from suchus.optimise.aims import AIMS, LIMITS, Kind
 from suchus.optimise.excess import excess
 from suchus.optimise.spec import Optimisation
 
-WALKED, REFUSED, APART = "walked", "refused", "came apart"
+WALKED, REFUSED, APART = "walked", "refused", "diverged"
 _EVERY = 2  # control periods; 50 looks a second
 Progress = Callable[[float], None]
 
@@ -26,7 +26,7 @@ def evaluate(
     """Try candidates, all that can be built in one batch.
 
     Args:
-        spec: the search, of one arm.
+        spec: the search, of one condition.
         shares: where each candidate's fields lie in their ranges, shape (candidate, field), 0 to 1.
         progress: called with the share that is done.
         timestep: of the physics [s]; that of the search if None.
@@ -75,16 +75,17 @@ def columns(spec: Optimisation) -> dict[str, Kind]:
 def _walked(
     spec: Optimisation, runs: Mapping[int, Run], progress: Progress | None, timestep: float
 ) -> dict[int, dict[str, float] | None]:
-    """Return what each candidate reached, None for one that came apart; on every ground, the worst limit counts."""
+    """Return what each candidate reached, None for one that diverged; on every ground, the worst limit counts."""
     if not runs:
         return {}
-    laid = [with_values(run, {"ground.grip": grip}) for run in runs.values() for grip in spec.grips]
+    scales = spec.friction_scales
+    laid = [with_values(run, {"ground.friction_scale": scale}) for run in runs.values() for scale in scales]
     record = simulate(laid, duration=spec.duration, timestep=timestep, every=_EVERY, progress=progress)
     measured = measure(spec, laid, record)
     broken = (record.cause.values != "").reshape(len(runs), -1).any(axis=1)
     found: dict[int, dict[str, float] | None] = {}
     for row, i in enumerate(runs):
-        at = slice(row * len(spec.grips), (row + 1) * len(spec.grips))
+        at = slice(row * len(scales), (row + 1) * len(scales))
         found[i] = None if broken[row] else {name: _joined(name, values[at]) for name, values in measured.items()}
     return found
 

@@ -1,4 +1,4 @@
-"""How far a gait asks for more than joints and servos give: what a search needs to find its way back."""
+"""How far a gait asks for more than joints and servos give: what a search needs to find back."""
 
 import numpy as np
 
@@ -15,8 +15,8 @@ _LENGTH, _ANGLE, _SPEED = 0.01, 0.1, 1.0  # [m], [rad], [rad/s]; what counts as 
 def excess(robot: AnyRobot, gait: AnyGait) -> float:
     """Return how far a gait is from what a robot can follow; zero where it can [-].
 
-    Counted are the way by which feet lie outside their legs' reach, in centimetres, the angles by which joints leave
-    their range, in tenths of a radian, and the speeds by which servos turn too fast, in radians a second.
+    Counted are the distance by which feet lie outside their legs' reach, in centimetres, the angles by which joints
+    leave their range, in tenths of a radian, and the speeds by which servos turn too fast, in radians a second.
     """
     if not isinstance(gait, Gait):
         raise UnsuitedRobot(f"the search is for gaits of four legs; {gait.name!r} is a pattern: choose another gait.")

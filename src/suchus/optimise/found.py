@@ -16,12 +16,12 @@ _SHOWN = 3  # points of a front whose gaits are written and checked: both ends a
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Found:
-    """What came of the search of one arm."""
+    """The result of the search in one condition."""
 
     spec: Optimisation
-    """The search, of this arm alone."""
+    """The search, of this condition alone."""
     start: xr.Dataset
-    """Where it started, as ``evaluate`` tells it."""
+    """Where it started, as ``evaluate`` returns it."""
     history: xr.Dataset
     """All candidates in order, the start first, with ``generation`` and ``score``."""
     checks: xr.Dataset | None = None
@@ -31,7 +31,7 @@ class Found:
 
     @property
     def arm(self) -> str:
-        """Which arm."""
+        """Name of the condition."""
         return self.spec.arms[0].name
 
     @property
@@ -62,7 +62,7 @@ class Found:
 
     @property
     def runs(self) -> list[Run]:
-        """The chosen, their gaits called after search and arm."""
+        """The chosen, their gaits called after search and condition."""
         return [
             titled(self.spec, self.spec.candidate(dict(zip(self.fields, share.tolist(), strict=True))), name)
             for share, name in zip(self.shares, self.names, strict=True)
@@ -70,7 +70,7 @@ class Found:
 
     @property
     def fields(self) -> list[str]:
-        """What varied."""
+        """Dotted paths of the fields that varied."""
         return [v.field for v in self.spec.vary]
 
     def values(self, which: int) -> dict[str, tuple[float, float]]:
@@ -111,7 +111,7 @@ class Found:
 
 
 def titled(spec: Optimisation, run: Run, name: str) -> Run:
-    """Return a run whose gait, and robot if it varies, is called after search and arm."""
+    """Return a run whose gait, and robot if it varies, is called after search and condition."""
     called = f"{spec.name}_{name}"
     varied = any(v.field.startswith("robot.") for v in spec.vary)
     robot = replace(run.robot, name=called) if varied else run.robot

@@ -25,25 +25,25 @@ TASKS: Mapping[str, Control] = MappingProxyType(
         "stand": Standing(at=1.1, hold=3.0),
     }
 )
-"""How the gait is carried out: as it is; with a lasting bend and unequal strokes, ``control.bend`` and
+"""How the gait is carried out: as it is; with a curvature offset and unequal strokes, ``control.bend`` and
 ``control.asymmetry``; standing up after it, for ``control.hold``."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Page(Search):
-    """What the file of a search can say."""
+class SearchFile(Search):
+    """The contents of the file of a search."""
 
     robot: str = "caiman"
     """Name on the shelf, or path of a TOML file beside this one."""
     gait: str = "belly_crawl"
     """Name on the shelf, or path of a TOML file beside this one."""
     task: Task = "crawl"
-    """What it does: ``crawl``, ``turn`` or ``stand``."""
+    """Task: ``crawl``, ``turn`` or ``stand``."""
     ground: Ground = field(default_factory=Ground)
-    """On what."""
+    """Ground: its friction scale, slopes and relief."""
 
 
-EXAMPLE = Page(
+EXAMPLE = SearchFile(
     name="example",
     vary=(Vary(field="gait.stroke", low=0.0, high=0.08),),
     aims=(Aim(name="displacement"),),
@@ -60,7 +60,7 @@ def read_optimisation(path: Path) -> Optimisation:
         UnknownName: a field, an aim, a limit, a robot or a gait that does not exist.
         InvalidDesign: a range that cannot be, or that the start is not in.
     """
-    page = blueprint.read(path, Page, {EXAMPLE.name: EXAMPLE})
+    page = blueprint.read(path, SearchFile, {EXAMPLE.name: EXAMPLE})
     run = Run(
         robot=find(page.robot, path.parent, Crocodile, ROBOTS),
         gait=find(page.gait, path.parent, Gait, GAITS),

@@ -25,7 +25,7 @@ _MM = {"m": (1000.0, "mm"), "rad": (180 / np.pi, "deg")}
 
 
 def role(number: int) -> str:
-    """Return the role of ``figures.COLOURS`` of an arm."""
+    """Return the role of ``figures.COLOURS`` of a condition."""
     return _ROLES[number % len(_ROLES)]
 
 
@@ -36,7 +36,7 @@ def label(name: str) -> str:
 
 
 def draw_convergence(found: Sequence[Found]) -> Figure:
-    """Draw the first aim of the best so far of every arm over the candidates tried."""
+    """Draw the first aim of the best so far of every condition over the candidates tried."""
     kind, name = AIMS[found[0].spec.aims[0].name], label(found[0].spec.aims[0].name)
     with styled():
         figure, axes = panels(1, 1, height=4.0)
@@ -101,7 +101,7 @@ def draw_front(found: Found) -> Figure:
 
 
 def draw_gaits(runs: Sequence[Run], record: xr.Dataset, told: Sequence[str]) -> Figure:
-    """Draw what every run does: from above at its beginning, half of its way and at its end; who stands from its side.
+    """Draw what every run does: from above at its beginning, half-way and at its end; who stands from its side.
 
     Args:
         runs: the start, and the best.

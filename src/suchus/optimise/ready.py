@@ -39,8 +39,8 @@ _WHY = (
     "half of it, so that it is a walk. Legs and trunk may go as far as joints and reach let them.",
     "Torque and slip may be a little more than in the article's crawl on this robot (0.60 and 0.46); parts of the "
     "body, whose contacts the physics does not know, stay 5 mm apart; it walks straight within 0.25 m.",
-    "Both arms have the same legs, ranges, limits, population and budget; limbs_only holds trunk and tail straight "
-    "and the tail off the ground.",
+    "Both conditions have the same legs, ranges, limits, population and budget; limbs_only holds trunk and tail "
+    "straight and the tail off the ground.",
 )
 
 
@@ -69,7 +69,7 @@ def crawl() -> Optimisation:
 
 
 def thrift() -> Optimisation:
-    """The front between way and cost of transport, with spine and tail."""
+    """The front between displacement and cost of transport, with spine and tail."""
     return Optimisation(
         name="thrift",
         run=Run(robot=ROBOTS["caiman"], gait=GAITS["belly_crawl"]),

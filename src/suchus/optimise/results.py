@@ -19,7 +19,7 @@ from suchus.optimise.found import Found
 from suchus.optimise.pictures import draw_around, draw_convergence, draw_front, draw_gaits, label, scaled
 from suchus.optimise.spec import Optimisation
 from suchus.replay import replay
-from suchus.study.sheet import Section, Table, write_sheet
+from suchus.study.result_table import ResultTable, Section, write_tables
 
 RESULT, OUTCOME, RECORD = "result", "outcome.json", "record.nc"
 _TOLD = 5  # fields that the sentence names
@@ -31,7 +31,7 @@ def write_results(spec: Optimisation, found: Sequence[Found], folder: Path) -> P
 
     Args:
         spec: the search.
-        found: of each arm.
+        found: of each condition.
         folder: of the search.
 
     Raises:
@@ -49,7 +49,7 @@ def write_results(spec: Optimisation, found: Sequence[Found], folder: Path) -> P
             if i:
                 _write_replay(shown, record, i, draft / f"{run.label}_replay.html")
         pictures = _pictures(spec, found, shown, record)
-        write_sheet(draft, f"Optimised: {spec.name}", _lead(found), _sections(spec, found, told, pictures), pictures)
+        write_tables(draft, f"Optimised: {spec.name}", _lead(found), _sections(spec, found, told, pictures), pictures)
         text = json.dumps(told, indent=2, ensure_ascii=False, allow_nan=False)
         (draft / OUTCOME).write_text(text + "\n", encoding="utf-8")
     return folder / RESULT
@@ -230,7 +230,7 @@ def _best_said(told: Mapping[str, Any]) -> list[str]:
     return [f"{label(name).capitalize()}. {each['sentence']}" for name, each in best]
 
 
-def _fields(one: Found, which: int) -> Table:
+def _fields(one: Found, which: int) -> ResultTable:
     rows = []
     ends = {v.field: (v.low, v.high) for v in one.spec.vary}
     for name, (start, best) in one.values(which).items():
@@ -240,7 +240,7 @@ def _fields(one: Found, which: int) -> Table:
         words = (label(name), unit, *(_round(factor * x) for x in (start, best)),
                  f"{_round(factor * low)} to {_round(factor * high)}", at)  # fmt: skip
         rows.append(words)
-    return Table(
+    return ResultTable(
         caption=f"{label(one.names[which])}: what the search changed",
         heads=("field", "unit", "start", "best", "range", ""),
         rows=rows,
@@ -248,7 +248,7 @@ def _fields(one: Found, which: int) -> Table:
     )
 
 
-def _limits(one: Found, which: int) -> Table:
+def _limits(one: Found, which: int) -> ResultTable:
     rows = [
         (
             label(name),
@@ -260,7 +260,7 @@ def _limits(one: Found, which: int) -> Table:
         )
         for name, (limit, has, active) in one.active(which).items()
     ]
-    return Table(
+    return ResultTable(
         caption=f"{label(one.names[which])}: limits; joint limits, reach and servo speeds hold besides",
         heads=("limit", "what it is", "unit", "allowed", "has", ""),
         rows=rows,
@@ -268,7 +268,7 @@ def _limits(one: Found, which: int) -> Table:
     )
 
 
-def _checks(one: Found) -> Table:
+def _checks(one: Found) -> ResultTable:
     assert one.checks is not None
     checks, names = one.checks, [str(run) for run in one.checks.run.values]
     columns = [(f"aim_{aim.name}", AIMS[aim.name]) for aim in one.spec.aims]
@@ -277,7 +277,7 @@ def _checks(one: Found) -> Table:
     for i, who in enumerate(names):
         for condition in checks.condition.values:
             cells = [checks[name].sel(condition=condition).isel(run=i) for name, _ in columns]
-            numbers = [f"{float(cell):.3g}" if np.isfinite(cell) else "came apart" for cell in cells]
+            numbers = [f"{float(cell):.3g}" if np.isfinite(cell) else "diverged" for cell in cells]
             rows.append((f"{label(who)}, {condition}", *numbers))
     heads = [f"{label(name.partition('_')[2])} [{kind.unit}]" for name, kind in columns]
-    return Table(caption=f"{label(one.arm)}: under other conditions", heads=("condition", *heads), rows=rows)
+    return ResultTable(caption=f"{label(one.arm)}: under other conditions", heads=("condition", *heads), rows=rows)

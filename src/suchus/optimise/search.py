@@ -16,8 +16,8 @@ class NoOptimiser(SuchusError, ImportError):
     """A library that the search needs and that is not installed."""
 
 
-class Search(Protocol):
-    """Asks for candidates and is told their losses."""
+class Strategy(Protocol):
+    """Asks for candidates and receives their losses."""
 
     def ask(self) -> np.ndarray:
         """Return the next generation, shape (candidate, field), each from 0 to 1."""
@@ -26,7 +26,7 @@ class Search(Protocol):
         """Tell the losses of what was asked for: one number each, or two for a front."""
 
 
-def search(spec: Optimisation) -> Search:
+def search(spec: Optimisation) -> Strategy:
     """Return the search that a spec asks for.
 
     Raises:

@@ -10,18 +10,19 @@ from suchus.design.checks import Checks, InvalidFields
 from suchus.errors import InvalidDesign, UnknownName
 from suchus.land import Run
 from suchus.optimise.aims import AIMS, LIMITS
+from suchus.renamed import old_names
 from suchus.study import Arm, Vary
 
 WHOLE = Arm(name="best")
-"""The only arm of a search without a comparison."""
+"""The only condition of a search without a comparison."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Aim:
-    """What is made better."""
+    """A quantity that the search optimises."""
 
     name: str
-    """Of ``AIMS``."""
+    """Name of the quantity, a key of ``AIMS``."""
     weight: float = 1.0
     """Beside the other aims of a sum, each counted in parts of what the start has [-]."""
 
@@ -37,9 +38,9 @@ class Limit:
     """What must not be exceeded, or undercut, whichever way the quantity goes wrong."""
 
     name: str
-    """Of ``LIMITS``."""
+    """Name of the quantity, a key of ``LIMITS``."""
     value: float
-    """In the quantity's unit."""
+    """Value of the limit, in the unit of the quantity."""
 
     def __post_init__(self) -> None:
         if self.name not in LIMITS:
@@ -48,38 +49,39 @@ class Limit:
             check.number("value", -1e6, 1e6, LIMITS[self.name].unit)
 
 
+@old_names(grips="friction_scales")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Search:
     """What a search is besides where it starts; a file says the same."""
 
     name: str
-    """How it is called."""
+    """Name, as messages, tables and files show it."""
     vary: tuple[Vary, ...]
-    """What may change, each with ``low`` and ``high``."""
+    """Fields that may change, each with ``low`` and ``high``."""
     aims: tuple[Aim, ...]
-    """What is made better."""
+    """Quantities that the search optimises; two or more give a front."""
     limits: tuple[Limit, ...] = ()
-    """What is allowed; joint limits, reach and servo speeds always hold."""
+    """Limits of other quantities; joint limits, reach and servo speeds always hold."""
     arms: tuple[Arm, ...] = (WHOLE,)
-    """Searched one after the other with the same budget; what an arm sets does not vary in it."""
+    """Searched one after the other with the same budget; what a condition sets does not vary in it."""
     pareto: bool = False
     """Whether two aims are weighed against each other as a front, rather than summed."""
     evaluations: int = 1200
-    """How many candidates each arm may try [-]; the generation in which they run out is finished."""
+    """Number of candidates that each condition may try [-]; the generation in which they run out is finished."""
     population: int = 16
     """Candidates of a generation, simulated in one batch; of each point of the front, where there is one [-]."""
     points: int = 6
-    """Of the front that are pushed forward together [-]."""
+    """Points of the front that are pushed forward together [-]."""
     sigma: float = 0.25
     """First standard deviation of the candidates, as a part of each range [-]."""
-    grips: tuple[float, ...] = (1.0,)
+    friction_scales: tuple[float, ...] = (1.0,)
     """Factors on the ground's friction: a candidate is run on each; aims are means, limits hold on the worst [-]."""
     seed: int = 0
-    """Of the search."""
+    """Seed of the search."""
     duration: float = 9.0
-    """Of each run [s]: two cycles of four seconds after the first second, in which the robot settles."""
+    """Duration of each run [s]: two cycles of four seconds after the first second, in which the robot settles."""
     timestep: float = 0.005
-    """Of the physics in the search [s]; the best are run again with 2 ms."""
+    """Time step of the physics in the search [s]; the best are run again with 2 ms."""
     reasons: tuple[str, ...] = ()
     """Why these fields, ranges and limits, for whoever reads the results."""
 
@@ -89,7 +91,7 @@ class Optimisation(Search):
     """A search for the best among the runs that differ from one in some fields."""
 
     run: Run
-    """Where the search starts."""
+    """Run from which the search starts."""
 
     def __post_init__(self) -> None:
         with Checks("optimisation", self) as check:
@@ -103,9 +105,9 @@ class Optimisation(Search):
             check.that(len(self.vary) > 0, "optimisation.vary is empty; name at least one field")
             check.that(len(self.aims) > 0, "optimisation.aims is empty; name at least one aim")
             check.that(len(self.arms) > 0, "optimisation.arms is empty; leave it out for a single search")
-            check.that(len(self.grips) > 0, "optimisation.grips is empty; leave it out for 1.0")
-            for grip in self.grips:
-                check.that(0.01 <= grip <= 10.0, f"optimisation.grips has {grip:g}; 0.01 to 10 is allowed")
+            check.that(len(self.friction_scales) > 0, "optimisation.friction_scales is empty; leave it out for 1.0")
+            for scale in self.friction_scales:
+                check.that(0.01 <= scale <= 10.0, f"optimisation.friction_scales has {scale:g}; 0.01 to 10 is allowed")
             names = [arm.name for arm in self.arms]
             check.that(len(set(names)) == len(names), f"optimisation.arms are called {', '.join(names)}; each once")
             two = len({aim.name for aim in self.aims}) == len(self.aims)
@@ -131,7 +133,7 @@ class Optimisation(Search):
         if isinstance(there, int):
             raise InvalidDesign(
                 f"optimisation {self.name!r} varies {vary.field}, which takes whole numbers; a search moves in real "
-                "ones: make an arm of each."
+                "ones: make a condition of each."
             )
         if not vary.low <= there <= vary.high:
             raise InvalidDesign(
@@ -148,7 +150,7 @@ class Optimisation(Search):
                 continue  # wrong together with the start; it may be right together with what varies
 
     def of(self, arm: Arm) -> "Optimisation":
-        """Return the search of one arm alone: what it sets is set, and does not vary.
+        """Return the search of one condition alone: what it sets is set, and does not vary.
 
         Raises:
             UnknownName: it sets a field that does not exist.

@@ -16,9 +16,9 @@ class Animal:
     key: str
     """Its name here."""
     quantity: str
-    """What was measured, in a few words."""
+    """Name of the quantity that was measured."""
     who: str
-    """Which animals."""
+    """Species, number and size of the animals."""
     low: float
     """The number, or the least of a range."""
     high: float
@@ -26,9 +26,9 @@ class Animal:
     unit: str
     """SI unit, ``-`` for none."""
     source: str
-    """Where it is published."""
+    """Publication: authors, year, journal."""
     note: str = ""
-    """What to mind when comparing."""
+    """Caveat for the comparison."""
 
 
 ANIMALS = (
@@ -97,7 +97,7 @@ ANIMALS = (
         high=0.790,
         unit="-",
         source="configuration files of Pleurobot, KM-RoBoTa 2016",
-        note="ours as foot pressure tells, mean of the four feet",
+        note="ours from foot pressure, mean of the four feet",
     ),
     Animal(
         key="death_roll",

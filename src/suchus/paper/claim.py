@@ -12,7 +12,7 @@ class Claim:
     where: str
     """Section and figure or equation."""
     quantity: str
-    """What is claimed, in a few words."""
+    """Name of the claimed quantity."""
     value: float | None
     """The number in SI units; None where the article states no number."""
     unit: str

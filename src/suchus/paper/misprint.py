@@ -12,8 +12,8 @@ class Misprint:
     where: str
     """Section, equation, table or figure."""
     printed: str
-    """What is printed."""
+    """The formula or the words as printed."""
     ours: str
-    """What suchus uses instead."""
+    """The form that suchus uses instead."""
     shows: str
-    """What shows that the printed form fails."""
+    """Evidence that the printed form fails."""

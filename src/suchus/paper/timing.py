@@ -5,8 +5,8 @@ CYCLE_PERIOD = 4.0
 CYCLES = 2
 """Number of cycles in an experiment [-]."""
 CRAWL_START = 1.0
-"""When the first cycle begins [s]."""
+"""Time at which the first cycle begins [s]."""
 CRAWL_END = CRAWL_START + CYCLES * CYCLE_PERIOD
-"""When the last cycle ends [s]."""
+"""Time at which the last cycle ends [s]."""
 SNAPSHOT_TIMES = (1.2, 1.5, 1.8)
-"""When Fig. 14 shows the robot [s]."""
+"""Times at which Fig. 14 shows the robot [s]."""

@@ -12,6 +12,8 @@ from suchus.errors import IncompatibleRecord, SuchusError
 
 NAME = "stands_on"
 """Of the variable along ``run`` that holds it; empty text where a run floats."""
+_KEYS = {"friction_scale": "grip"}
+"""Keys of records whose names are not those of the fields: files of earlier releases have them too."""
 _RELIEFS = {"step": Step, "stone": Stone, "bumps": Bumps}
 
 
@@ -19,13 +21,13 @@ def ground_text(ground: Ground | None) -> str:
     """Return a ground as text; the empty one stands for none."""
     if ground is None:
         return ""
-    told = asdict(ground)
+    text = {_KEYS.get(name, name): value for name, value in asdict(ground).items()}
     if ground.relief is not None:
         fields = asdict(ground.relief)
-        if fields.get("scale") == 1.0:  # as it was told before bumps had a scale
+        if fields.get("scale") == 1.0:  # as it was written before bumps had a scale
             del fields["scale"]
-        told["relief"] = {"kind": type(ground.relief).__name__.lower(), **fields}
-    return json.dumps(told, sort_keys=True)
+        text["relief"] = {"kind": type(ground.relief).__name__.lower(), **fields}
+    return json.dumps(text, sort_keys=True)
 
 
 def ground_of(record: xr.Dataset) -> Ground | None:
@@ -35,14 +37,15 @@ def ground_of(record: xr.Dataset) -> Ground | None:
         record: of one run, with or without the dimension ``run``.
 
     Raises:
-        IncompatibleRecord: what the record tells is no ground.
+        IncompatibleRecord: what the record says is no ground.
     """
     text = str(record[NAME].values.ravel()[0]) if NAME in record else ""
     if not text:
         return None
     try:
-        told: dict[str, Any] = json.loads(text)
-        relief = told.pop("relief")
-        return Ground(**told, relief=None if relief is None else _RELIEFS[relief.pop("kind")](**relief))
+        names = {key: name for name, key in _KEYS.items()}
+        fields: dict[str, Any] = {names.get(key, key): value for key, value in json.loads(text).items()}
+        relief = fields.pop("relief")
+        return Ground(**fields, relief=None if relief is None else _RELIEFS[relief.pop("kind")](**relief))
     except (ValueError, KeyError, TypeError, AttributeError, SuchusError) as error:
-        raise IncompatibleRecord(f"the record tells no ground that this suchus knows: {text[:120]!r}.") from error
+        raise IncompatibleRecord(f"the record holds no ground that this suchus knows: {text[:120]!r}.") from error

@@ -76,7 +76,7 @@ def new_folder(path: Path, *, mark: str) -> Iterator[Path]:
 
     Args:
         path: where the folder shall be.
-        mark: name of a file that tells our folders from others; one without it is never replaced.
+        mark: name of a file that marks our folders; one without it is never replaced.
 
     Raises:
         Unwritable: the place cannot be written to, or is taken by something else.
@@ -143,7 +143,7 @@ def _shelter(path: Path) -> Iterator[Path]:
 
 @contextmanager
 def _locked(folder: Path) -> Iterator[bool | None]:
-    """Hold a folder and tell whether we do: not where another has it or it is gone; None on a disk without locks."""
+    """Hold a folder and return whether we do: not where another has it or it is gone; None on a disk without locks."""
     try:
         held = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
     except OSError:

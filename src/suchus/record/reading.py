@@ -13,7 +13,7 @@ LARGEST = 64 * 2**20
 
 
 def there(path: Path) -> bool:
-    """Tell whether something is at a path, or would be if its folder let us look; never raises."""
+    """Return whether something is at a path, or would be if its folder let us look; never raises."""
     try:
         path.stat()
     except (FileNotFoundError, NotADirectoryError, ValueError):

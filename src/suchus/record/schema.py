@@ -150,7 +150,7 @@ def _per_run(variable: xr.DataArray) -> bool:
 
 
 def _in_pairs(legs: Sequence[str]) -> bool:
-    """Tell whether each left limb is followed by the right one of its girdle, and none stands twice."""
+    """Return whether each left limb is followed by the right one of its girdle, and none stands twice."""
     pairs = zip(legs[::2], legs[1::2], strict=False)
     paired = all(a[:1] == "L" and b[:1] == "R" and a[1:] == b[1:] for a, b in pairs)
     return len(legs) % 2 == 0 and len(set(legs)) == len(legs) and paired

@@ -15,7 +15,7 @@ def sealed(data: bytes) -> bytes:
 
 
 def holds(data: bytes) -> bool | None:
-    """Tell whether a file is as it was written; None where it has no seal."""
+    """Return whether a file is as it was written; None where it has no seal."""
     body, end = data[:-_LENGTH], data[-_LENGTH:]
     if not end.startswith(_MARK):
         return None

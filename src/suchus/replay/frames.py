@@ -21,7 +21,7 @@ _NEEDED = (
 
 
 class Frames(NamedTuple):
-    """What happened, at equal steps of time."""
+    """Poses, forces and water level of a run, sampled at equal steps of time."""
 
     start: float
     """Time of the first frame [s]."""
@@ -38,7 +38,7 @@ class Frames(NamedTuple):
     tail: np.ndarray
     """Tip of the tail [m] and the normal force of the ground on the tail [N], (frame, 4)."""
     level: np.ndarray | None
-    """Of the water above the world's origin, against gravity, (frame,) [m]; None on dry land."""
+    """Level of the water above the world's origin, against gravity, (frame,) [m]; None on dry land."""
 
 
 def checked(record: xr.Dataset, robot: AnyRobot) -> xr.Dataset:

@@ -8,7 +8,7 @@ import numpy as np
 _KINDS = {"int8", "uint8", "int16", "uint16", "float32"}
 
 
-class Pack:
+class PackedArrays:
     """Bytes that grow; every array begins at a multiple of four."""
 
     def __init__(self) -> None:

@@ -32,7 +32,7 @@ def replay(
 ) -> str:
     """Return a run as an HTML page that plays offline and needs nothing else.
 
-    The ground is the one that the record tells, level and even where it tells none.
+    The ground is the one that the record holds, level and even where it holds none.
 
     Args:
         record: of one run on land.
@@ -99,8 +99,8 @@ def _environment() -> Environment:
 def _on(grounds: Sequence[Ground]) -> str:
     """Return in words how the ground slopes, and whether the second run's is another one."""
     said = [
-        f"{'rises' if angle > 0 else 'falls'} by {abs(degrees(angle)):.3g}° {whereto}"
-        for angle, whereto in ((grounds[0].uphill, "ahead"), (grounds[0].sideways, "to the left"))
+        f"{'rises' if angle > 0 else 'falls'} by {abs(degrees(angle)):.3g}° {direction}"
+        for angle, direction in ((grounds[0].uphill, "ahead"), (grounds[0].sideways, "to the left"))
         if angle
     ]
     text = f"The ground {' and '.join(said)}." if said else ""
@@ -111,12 +111,12 @@ def _on(grounds: Sequence[Ground]) -> str:
 
 def _told(robot: AnyRobot, moving: Sequence[Frames], labels: Sequence[str]) -> str:
     """Return the replay in words, for those who cannot see it."""
-    ways = [
+    paths = [
         f"{label}: {one.mass[-1, 0] - one.mass[0, 0]:.2f} m forward in {(len(one.mass) - 1) / one.rate:.1f} s"
         for one, label in zip(moving, labels, strict=False)
     ]
     where = "on the ground" if moving[0].level is None else "in water"
-    return f"Three-dimensional replay of the robot {robot.name} {where}. {'; '.join(ways)}."
+    return f"Three-dimensional replay of the robot {robot.name} {where}. {'; '.join(paths)}."
 
 
 def _still(robot: AnyRobot, record: xr.Dataset) -> tuple[str, str]:

@@ -1,4 +1,4 @@
-"""What the player is told: skin, frames and ground, as JSON and one block of bytes."""
+"""What the player receives: skin, frames and ground, as JSON and one block of bytes."""
 
 from collections.abc import Sequence
 from math import ceil, floor
@@ -12,7 +12,7 @@ from suchus.design.relief import ASIDE, REACH, Bumps, Relief, Step, field
 from suchus.figures import COLOURS, limb_colours
 from suchus.metrics.gait import LOADED_SHARE
 from suchus.replay.frames import Frames
-from suchus.replay.pack import Pack, quantised
+from suchus.replay.pack import PackedArrays, quantised
 from suchus.rotation import rotate
 from suchus.skin import Skin, ankles, footed
 
@@ -42,7 +42,7 @@ def scene(
         ground: on what.
         overlaid: whether two runs begin in the same place.
     """
-    pack, surface, relief = Pack(), footed(robot), ground.relief
+    pack, surface, relief = PackedArrays(), footed(robot), ground.relief
     x = np.concatenate([one.mass[:, 0] for one in moving])
     meta = {
         "start": moving[0].start,
@@ -68,7 +68,7 @@ def scene(
     return meta, pack.text()
 
 
-def _packed_skin(surface: Skin, pack: Pack) -> dict[str, Any]:
+def _packed_skin(surface: Skin, pack: PackedArrays) -> dict[str, Any]:
     vertices, scale = quantised(surface.vertices, np.int16)
     assert (surface.weights[:, 2:] == 0).all()  # joints are so far apart that no vertex hangs on three bones
     return {
@@ -83,7 +83,7 @@ def _packed_skin(surface: Skin, pack: Pack) -> dict[str, Any]:
     }
 
 
-def _packed(robot: AnyRobot, one: Frames, label: str, relief: Relief | None, pack: Pack) -> dict[str, Any]:
+def _packed(robot: AnyRobot, one: Frames, label: str, relief: Relief | None, pack: PackedArrays) -> dict[str, Any]:
     bones = ankles(robot, one.bones, one.feet, relief)
     places = bones.positions
     origin = (places.max(axis=(0, 1)) + places.min(axis=(0, 1))) / 2
@@ -104,7 +104,7 @@ def _packed(robot: AnyRobot, one: Frames, label: str, relief: Relief | None, pac
     }
 
 
-def _packed_water(one: Frames, ground: Ground, pack: Pack) -> dict[str, Any] | None:
+def _packed_water(one: Frames, ground: Ground, pack: PackedArrays) -> dict[str, Any] | None:
     """Return the level of the water in each frame, and the direction against gravity in the frame of the ground."""
     if one.level is None:
         return None
@@ -113,7 +113,7 @@ def _packed_water(one: Frames, ground: Ground, pack: Pack) -> dict[str, Any] | N
     return {"levels": pack.add(one.level.astype(np.float32)), "up": np.round(up, 9).tolist()}
 
 
-def _packed_relief(relief: Relief, pack: Pack) -> dict[str, Any]:
+def _packed_relief(relief: Relief, pack: PackedArrays) -> dict[str, Any]:
     if isinstance(relief, Bumps):
         heights = field(relief)
         whole, largest = quantised(heights, np.int16)

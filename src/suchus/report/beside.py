@@ -12,7 +12,7 @@ from suchus.report.result import Result
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Beside:
+class ComparisonRow:
     """One row of the comparison."""
 
     animal: Animal
@@ -32,23 +32,23 @@ _DURATION = CRAWL_END - CRAWL_START
 _COORDINATED, _LIMBS_ONLY = CLAIMS["displacement_coordinated"].value, CLAIMS["displacement_limbs_only"].value
 
 
-def beside(robot: AnyRobot, results: Results) -> tuple[Beside, ...]:
+def beside(robot: AnyRobot, results: Results) -> tuple[ComparisonRow, ...]:
     """Return the rows whose experiment was run.
 
     Args:
         robot: the robot of the page.
-        results: what came out, by experiment.
+        results: by experiment.
     """
     rows = (_row(animal, robot, results) for animal in ANIMALS)
     return tuple(row for row in rows if row is not None)
 
 
-def _row(animal: Animal, robot: AnyRobot, results: Results) -> Beside | None:
+def _row(animal: Animal, robot: AnyRobot, results: Results) -> ComparisonRow | None:
     experiment, measure, printed = _OURS[animal.key]
     value = measure(robot, results)
     if value is None:
         return None
-    return Beside(
+    return ComparisonRow(
         animal=animal,
         article=quantity(printed, animal.unit, 2),
         ours=quantity(value, animal.unit, 2),

@@ -1,18 +1,13 @@
 """Two outcomes side by side: numbers with their difference, verdicts, settings, figures and replays."""
 
-import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
-from urllib.parse import quote
-
-from jinja2 import Environment, PackageLoader, StrictUndefined
-from markupsafe import Markup
 
 from suchus.errors import IncompatibleRecord
 from suchus.record import new_file
-from suchus.report.numbers import number, quantity
+from suchus.report.rendering import render
 from suchus.report.result import Moving, Picture, Result
 
 _SHOWN = 80
@@ -42,9 +37,9 @@ class Judged:
     """One claim, and what both outcomes say of it."""
 
     quantity: str
-    """What the claim is about."""
+    """Quantity that the claim is about."""
     where: str
-    """Where in the article."""
+    """Place in the article: section, figure or table."""
     first: str
     """Verdict of the first outcome; empty where it has none."""
     second: str
@@ -68,7 +63,7 @@ class Comparison:
     """What two outcomes have in common, and in what they differ."""
 
     names: tuple[str, str]
-    """What the two are called."""
+    """Names of the two outcomes."""
     results: tuple[Result, Result]
     """The two outcomes."""
     measures: tuple[Compared, ...]
@@ -134,24 +129,14 @@ def render_comparison(comparison: Comparison, place: Path) -> str:
         comparison: what to show.
         place: the folder of the page, from which it shows the replays.
     """
-    environment = Environment(
-        loader=PackageLoader("suchus.report"),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    link = {"link": lambda file: quote(Path(os.path.relpath(file, place)).as_posix())}
-    environment.filters |= {"quantity": quantity, "number": number} | link
     first, second = comparison.results
     content: dict[str, Any] = {
-        "style": Markup(environment.get_template("style.css").render()),
         "it": comparison,
         "titles": list(dict.fromkeys([first.told["title"], second.told["title"]])),
         "pictures": _pairs({p.name: p for p in first.pictures}, {p.name: p for p in second.pictures}),
         "replays": _pairs({r.file.name: r for r in first.replays}, {r.file.name: r for r in second.replays}),
     }
-    return environment.get_template("compare.html").render(**content) + "\n"
+    return render("compare.html", place, content)
 
 
 def _pairs(

@@ -1,20 +1,13 @@
-"""What a metre costs on land, at the surface and below, from the outcomes of a report."""
+"""Speed and cost of transport on land, at the surface and below, from the outcomes of a report."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from suchus.experiments._shore_findings import METRES
 from suchus.report.numbers import quantity
 from suchus.report.result import Result
 
 _MEASURES = ("speed", "work_per_metre", "cost_of_transport")
-_WHERE = (
-    ("land", "on level dry land"),
-    ("ashore", "up the shore, out of the water"),
-    ("wading", "up the shore, wading"),
-    ("surface", "at the surface"),
-    ("deep", "at a depth that is held"),
-)
-"""Endings of the measures, and in words where that is."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -22,21 +15,21 @@ class Metre:
     """A row of the table."""
 
     where: str
-    """In words."""
+    """Place, in words."""
     experiment: str
-    """Whose measures these are."""
+    """Name of the experiment that measured them."""
     speed: str
-    """With its unit."""
+    """Speed, with its unit."""
     work: str
-    """Of the servos over the distance, with its unit."""
+    """Work of the servos over the distance, with its unit."""
     cost: str
-    """Of transport: that work over the weight; empty where it was not measured."""
+    """Cost of transport: that work over the weight; empty where it was not measured."""
 
 
 def metres(results: Mapping[str, Result]) -> list[Metre]:
     """Return the rows that the outcomes allow, in the order from land to depth."""
     rows = []
-    for ending, where in _WHERE:
+    for ending, where in METRES.items():
         for name, result in results.items():
             told = result.told["measures"]
             speed, work, cost = (_told(told.get(f"{what}_{ending}")) for what in _MEASURES)

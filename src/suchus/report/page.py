@@ -1,16 +1,11 @@
 """Results become one HTML page that needs no network and no script; films and replays stand beside it."""
 
-import os
 import re
 import tempfile
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
-from urllib.parse import quote
-
-from jinja2 import Environment, PackageLoader, StrictUndefined
-from markupsafe import Markup
 
 from suchus import figures
 from suchus.design import AnyRobot
@@ -21,6 +16,7 @@ from suchus.report.beside import beside
 from suchus.report.embedding import embedded
 from suchus.report.metres import metres
 from suchus.report.numbers import number, quantity, tied
+from suchus.report.rendering import render
 from suchus.report.result import Failure, Result
 from suchus.report.robot import ARTICLES, robot_of
 from suchus.report.tables import choices, parts
@@ -70,25 +66,11 @@ def render_page(results: Sequence[Result], failures: Sequence[Failure], place: P
     """Return the page as text.
 
     Args:
-        results: what came out, in the order of the page.
+        results: in the order of the page.
         failures: what did not.
         place: the folder of the page, from which it links films and replays; None: the one that holds the results.
     """
-    environment = Environment(
-        loader=PackageLoader("suchus.report"),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    environment.filters |= {"quantity": quantity, "tied": tied, "gist": _gist, "link": lambda file: _link(file, place)}
-    style = Markup(environment.get_template("style.css").render())
-    return environment.get_template("page.html").render(style=style, **_content(results, failures)) + "\n"
-
-
-def _link(file: Path, place: Path | None) -> str:
-    start = file.parent.parent if place is None else place
-    return quote(Path(os.path.relpath(file, start)).as_posix())
+    return render("page.html", place, _content(results, failures), tied=tied, gist=_gist)
 
 
 def _gist(text: str) -> str:
@@ -112,7 +94,8 @@ def _share(verdict: Mapping[str, Any]) -> str:
         f"{share['designs']:,} plausible designs".replace(",", "\N{NO-BREAK SPACE}")
     )
     if share["turned_by"] and share["at"] is not None:
-        told += f"; best told by {share['turned_by']} {'above' if share['above'] else 'below'} {number(share['at'], 3)}"
+        side = "above" if share["above"] else "below"
+        told += f"; best predicted by {share['turned_by']} {side} {number(share['at'], 3)}"
     return f"{told}."
 
 

@@ -26,7 +26,7 @@ class Picture:
     name: str
     """Its file's name without the ending."""
     caption: str
-    """What it shows."""
+    """Caption: what the picture or replay shows."""
     source: Markup
     """The picture itself as a data URI."""
     wide: bool = False
@@ -38,19 +38,19 @@ class Moving:
     """A film or a replay that stands beside the page: it is linked, since it is too heavy to travel inside."""
 
     file: Path
-    """Where it is."""
+    """Path of the file."""
     caption: str
-    """What it shows."""
+    """Caption: what the picture or replay shows."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Result:
-    """What a folder of results holds."""
+    """The contents of a folder of results."""
 
     folder: Path
     """The folder."""
     told: Mapping[str, Any]
-    """What ``outcome.json`` says."""
+    """Contents of ``outcome.json``."""
     pictures: tuple[Picture, ...]
     """The figures."""
     tables: Mapping[str, str]
@@ -68,12 +68,12 @@ class Result:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Failure:
-    """An experiment that came to no result."""
+    """An experiment that failed."""
 
     name: str
     """Name of the experiment."""
     sentence: str
-    """What went wrong."""
+    """One sentence that says why it failed."""
     trace: str = ""
     """Where in the code, if it was none of our own errors."""
 

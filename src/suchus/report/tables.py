@@ -19,11 +19,11 @@ class Row:
     value: str
     """Its value with its unit."""
     meaning: str
-    """What it is."""
+    """Meaning of the number, from the docstring of its field."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Choice:
+class ChosenNumber:
     """One number that the article does not give."""
 
     field: str
@@ -63,12 +63,12 @@ def rows(design: Any, path: str = "") -> Iterator[Row]:
             yield Row(field=below, value=_shown(value, unit(meaning)), meaning=_plain(meaning))
 
 
-def choices(design: Any, chosen: Sequence[Chosen]) -> tuple[Choice, ...]:
+def choices(design: Any, chosen: Sequence[Chosen]) -> tuple[ChosenNumber, ...]:
     """Return a row for every number that the article does not give."""
     return tuple(_choice(design, one) for one in chosen)
 
 
-def _choice(design: Any, one: Chosen) -> Choice:
+def _choice(design: Any, one: Chosen) -> ChosenNumber:
     value, meaning = design, ""
     for name, index in re.findall(r"(\w+)|\[(\d+)\]", one.field):
         if index:
@@ -76,7 +76,7 @@ def _choice(design: Any, one: Chosen) -> Choice:
         else:
             meaning = meanings(type(value)).get(name, "")
             value = getattr(value, name)
-    return Choice(
+    return ChosenNumber(
         field=one.field, value=_shown(value, unit(meaning)), low=number(one.low), high=number(one.high), why=one.why
     )
 

@@ -4,15 +4,18 @@ from typing import Any
 
 from suchus.catalog import Catalog
 from suchus.design import AnyRobot
-from suchus.robots._size import Beside, beside
+from suchus.renamed import old_exports
+from suchus.robots._size import RelativeSize, beside
 
 ROBOTS: Catalog[Any] = Catalog("robot", "suchus.robots", "suchus.design:AnyRobot")
 """Of either kind; who needs one of them says so by the type of its field."""
 
 
-def beside_article(robot: AnyRobot) -> Beside:
+def beside_article(robot: AnyRobot) -> RelativeSize:
     """Return the size of a robot over that of the article's robot."""
     return beside(ROBOTS, robot)
 
 
-__all__ = ["ROBOTS", "Beside", "beside_article"]
+__all__ = ["ROBOTS", "RelativeSize", "beside_article"]
+
+__getattr__ = old_exports(__name__, Beside="RelativeSize")

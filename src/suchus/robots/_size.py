@@ -8,16 +8,16 @@ from suchus.design import AnyRobot
 _ARTICLE = "caiman"
 
 
-class Beside(NamedTuple):
+class RelativeSize(NamedTuple):
     """A robot's size over that of the article's robot."""
 
     length: float
-    """Of the body [-]."""
+    """Length of the body [-]."""
     weight: float
     """Of the body [-]."""
 
 
-def beside(shelf: Catalog[AnyRobot], robot: AnyRobot) -> Beside:
+def beside(shelf: Catalog[AnyRobot], robot: AnyRobot) -> RelativeSize:
     """Return the size of a robot over that of the article's.
 
     Args:
@@ -25,4 +25,4 @@ def beside(shelf: Catalog[AnyRobot], robot: AnyRobot) -> Beside:
         robot: on the shelf or not.
     """
     article = shelf[_ARTICLE]
-    return Beside(robot.length / article.length, robot.mass / article.mass)
+    return RelativeSize(robot.length / article.length, robot.mass / article.mass)

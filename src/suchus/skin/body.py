@@ -14,7 +14,7 @@ from suchus.skin.paint import hide
 
 
 @dataclass(frozen=True, slots=True)
-class Shape:
+class BodyShape:
     """Half width, height above and depth below the axis at a place x of the straight body [m]."""
 
     back: float
@@ -29,13 +29,13 @@ class Shape:
     """Depth below the axis over x."""
 
 
-def shape(robot: Crocodile, look: Look) -> Shape:
+def shape(robot: Crocodile, look: Look) -> BodyShape:
     """Return the outline of a robot's body; on the head it is that of the skull without the lower jaw."""
     knots = [*_tail_knots(robot, look), *_trunk_knots(robot, look), *head_knots(robot, look)]
     knots = [knot for i, knot in enumerate(knots) if i == 0 or knot[0] > max(k[0] for k in knots[:i]) + 1e-6]
     x = [knot[0] for knot in knots]
     width, top, bottom = (curve([(knot[0], knot[i]) for knot in knots]) for i in (1, 2, 3))
-    return Shape(x[0], x[-1], width, top, bottom)
+    return BodyShape(x[0], x[-1], width, top, bottom)
 
 
 def _tail_knots(robot: Crocodile, look: Look) -> list[Knot]:

@@ -14,7 +14,7 @@ from suchus.rotation import about, multiply, rotate
 
 
 class Poses(NamedTuple):
-    """Where every bone is."""
+    """Pose of every bone."""
 
     positions: np.ndarray
     """Origins, (..., bone, 3) [m]."""

@@ -42,14 +42,14 @@ _SKULL_WIDTH, _MOUTH = (curve([(row[0], row[i]) for row in (_NECK[-1], *_SKULL)]
 
 
 class Frame(NamedTuple):
-    """What the head is measured in."""
+    """Frame and units in which the head is measured."""
 
     joint: float
     """x of the jaw joint [m]."""
     reach: float
-    """From there to the tip of the snout [m]."""
+    """Distance from there to the tip of the snout [m]."""
     neck: float
-    """From the shoulders to the jaw joint [m]."""
+    """Distance from the shoulders to the jaw joint [m]."""
     w: float
     """Half width [m]."""
     h: float

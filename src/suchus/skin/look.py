@@ -10,7 +10,7 @@ class Look:
     around: int = 28
     """Points around the body, a multiple of four [-]: edges of about 10 mm on the article's robot."""
     step: float = 0.0065
-    """Between rings along a body one metre long, longer on longer ones [m]."""
+    """Distance between rings along a body one metre long, longer on longer ones [m]."""
     roundness: float = 2.3
     """Exponent of the trunk's section [-]: crocodilians are flatter on back and belly than an ellipse."""
     margin: float = 1.04
@@ -20,7 +20,7 @@ class Look:
     fin: float = 2.3
     """Height of the tail above its axis over its radius, near the tip [-]: the animal's is a sculling blade."""
     gape: float = 0.075
-    """How far the lower jaw hangs open [rad]: enough to see the teeth."""
+    """Angle by which the lower jaw hangs open [rad]: enough to see the teeth."""
     skull: float = 0.30
     """Where the jaw joint lies from shoulders to snout [-]; ahead of it is head, behind it neck."""
     teeth: int = 13

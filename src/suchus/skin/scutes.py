@@ -3,13 +3,13 @@
 import numpy as np
 
 from suchus.design import Crocodile
-from suchus.skin.body import Shape
+from suchus.skin.body import BodyShape
 from suchus.skin.look import Look
 from suchus.skin.mesh import Mesh, ring, spike
 from suchus.skin.paint import SCUTE
 
 
-def middle_scutes(robot: Crocodile, outline: Shape) -> list[Mesh]:
+def middle_scutes(robot: Crocodile, outline: BodyShape) -> list[Mesh]:
     """Return the crests on the midline of the rear part of the tail."""
     fork, spacing = _fork(robot), _spacing(robot)
     found = []
@@ -20,7 +20,7 @@ def middle_scutes(robot: Crocodile, outline: Shape) -> list[Mesh]:
     return found
 
 
-def left_scutes(robot: Crocodile, outline: Shape, look: Look) -> list[Mesh]:
+def left_scutes(robot: Crocodile, outline: BodyShape, look: Look) -> list[Mesh]:
     """Return the left rows: crests on the root of the tail, plates on back and neck."""
     fork, spacing = _fork(robot), _spacing(robot)
     nape = robot.spine.length + robot.thorax.shoulder + 0.8 * look.skull * (robot.head.snout - robot.thorax.shoulder)
@@ -50,7 +50,7 @@ def _spacing(robot: Crocodile) -> float:
     return (robot.tail.length + robot.spine.length) / 28
 
 
-def _seated(outline: Shape, look: Look, x: float, aside: float, long: float, wide: float, tall: float) -> Mesh:
+def _seated(outline: BodyShape, look: Look, x: float, aside: float, long: float, wide: float, tall: float) -> Mesh:
     """Return a scute on the body's surface at a share of its half width."""
     at = np.array(x)
     w, h, n = float(outline.width(at)), float(outline.top(at)), look.roundness

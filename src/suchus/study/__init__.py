@@ -1,11 +1,14 @@
-"""Many runs: what varies, what is measured, and a store that a kill cannot spoil."""
+"""Many runs: what varies, what is measured, and a store that a kill cannot spoil.
 
+The page of the claims, ``study.claims_page``, is asked for by its own name: batches need no figures.
+"""
+
+from suchus.renamed import old_exports
 from suchus.study.arm import Arm
 from suchus.study.chunk import run_chunk
 from suchus.study.claims import Claims, answer_finished, conduct_claims
-from suchus.study.claims_page import write_claims
 from suchus.study.cluster import NoCluster, at_scheduler, connected
-from suchus.study.conduct import Told, conduct, conducted
+from suchus.study.conduct import StudyProgress, conduct, conducted
 from suchus.study.measures import MEASURES
 from suchus.study.page import read_study
 from suchus.study.plan import Plan
@@ -21,7 +24,7 @@ __all__ = [
     "Plan",
     "Store",
     "Study",
-    "Told",
+    "StudyProgress",
     "Vary",
     "answer_finished",
     "at_scheduler",
@@ -32,5 +35,6 @@ __all__ = [
     "connected",
     "read_study",
     "run_chunk",
-    "write_claims",
 ]
+
+__getattr__ = old_exports(__name__, Told="StudyProgress", write_claims="claims_page.write_claims")

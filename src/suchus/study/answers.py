@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 from scipy import stats
 
-from suchus.metrics import border, rank_correlation
+from suchus.metrics.decisive import border, rank_correlation
 from suchus.study.claim_measures import asked_rules, held, measures_of
 
 _BINS, _RESAMPLED, _SURE = 8, 400, 0.95
@@ -16,7 +16,7 @@ class Index(NamedTuple):
     """How much of a quantity each parameter decides alone."""
 
     share: np.ndarray
-    """Of the variance of its ranks, shape (parameter,) [-]; chance alone gives about zero."""
+    """Fraction of the variance of its ranks, shape (parameter,) [-]; chance alone gives about zero."""
     low: np.ndarray
     """Lower end of the 95 % interval [-]."""
     high: np.ndarray
@@ -112,7 +112,7 @@ class Agreement(NamedTuple):
     """How two answers about the same samples agree."""
 
     same: float
-    """Share of the samples and claims that both can tell which they tell alike [-]."""
+    """Share of the samples and claims that both can judge and judge alike [-]."""
     forward: float
     """Median difference of the displacement forward [m]."""
     wide: float
@@ -120,7 +120,7 @@ class Agreement(NamedTuple):
     shares: float
     """Greatest difference of a claim's share of truth [-]."""
     claim: str
-    """Which claim's share that is."""
+    """Key of the claim whose share that is."""
     chance: float
     """How likely chance alone turns one of the claims so much more often one way than the other [-]."""
 

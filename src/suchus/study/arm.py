@@ -1,4 +1,4 @@
-"""An arm of a comparison: what it sets differently from all others."""
+"""An arm, a condition of a comparison: the fields that it sets differently from all others."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -12,9 +12,9 @@ class Arm:
     """One side of a comparison; every sample is run with each of them."""
 
     name: str
-    """How it is called in tables and folders."""
+    """Name in tables and folders."""
     values: Mapping[str, Any] = field(default_factory=dict)
-    """What it sets, by field, after everything else; it wins over what varies."""
+    """Values that it sets, by field, after everything else; they win over what varies."""
 
     def __post_init__(self) -> None:
         with Checks("arm", self) as check:

@@ -20,7 +20,7 @@ Progress = Callable[[float], None]
 def run_chunk(study: Study, number: int, progress: Progress | None = None) -> xr.Dataset:
     """Run one batch of a study; it depends on nothing but the study and the number.
 
-    A run that cannot be built, refuses to walk or comes apart has NaN for numbers and says why in ``error``.
+    A run that cannot be built, refuses to walk or diverges has NaN for numbers and says why in ``error``.
 
     Args:
         study: the study.
@@ -29,7 +29,7 @@ def run_chunk(study: Study, number: int, progress: Progress | None = None) -> xr
 
     Returns:
         A table along ``sample``: a column for each field that varies, one or more for each measure, ``seed``, ``arm``
-        where there are arms, ``error``.
+        where there are conditions, ``error``.
     """
     plan = Plan(study)
     samples = plan.chunk(number)
@@ -73,7 +73,7 @@ def _walk(
     for i, sample in enumerate(runs):
         if i not in sound:
             one = record.isel(run=i)
-            errors[sample] = f"Diverged: the physics came apart at {float(one.ended):.2f} s: {one.cause.item()}"
+            errors[sample] = f"Diverged: the simulation diverged at {float(one.ended):.2f} s: {one.cause.item()}"
     if len(sound):
         _measure(study, record.isel(run=sound), [list(runs)[i] for i in sound], rows, errors)
 

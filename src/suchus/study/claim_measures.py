@@ -8,13 +8,13 @@ import xarray as xr
 from suchus.design import LEGS
 from suchus.errors import IncompatibleRecord
 from suchus.gaits import CONDITIONS
-from suchus.land import LOST
+from suchus.land import FAILED_JOINTS
 from suchus.verdict import RULES, Rule
 
 FAULTY = ("coordinated", "limbs_only")
-"""Conditions in which joints are lost, too: the article's two groups."""
-RUNS = (*CONDITIONS, *(f"{condition}_{joint}" for condition in FAULTY for joint in LOST))
-"""The runs of each sample: every condition intact, the two groups with each joint lost."""
+"""Conditions in which joints fail, too: the article's two groups."""
+RUNS = (*CONDITIONS, *(f"{condition}_{joint}" for condition in FAULTY for joint in FAILED_JOINTS))
+"""The runs of each sample: every condition intact, the two groups with each failed joint."""
 _IN_EACH = {
     "forward": "displacement_x",
     "com_height_pp": "height_peak_to_peak",
@@ -58,7 +58,7 @@ METRICS = (
 )  # fmt: skip
 """What a study of the claims measures of every run."""
 _LEAST_RATIO = 0.02  # a displacement with limbs only below this part of that with spine and tail makes a ratio of 50
-_STANDS = 0.01  # [m]; an intact robot that gets no farther has nothing to keep when a joint is lost
+_STANDS = 0.01  # [m]; an intact robot that gets no farther has nothing to keep when a joint fails
 
 
 def asked_rules() -> tuple[Rule, ...]:
@@ -98,10 +98,10 @@ def measures_of(record: xr.Dataset, least: float) -> Mapping[str, np.ndarray]:
 
 
 def _faults(forward: Mapping[str, np.ndarray], able: np.ndarray) -> dict[str, np.ndarray]:
-    """Return what each lost joint costs, and in how many of them spine and tail keep more of their own displacement."""
+    """Return what each failed joint costs, and in how many spine and tail keep more of their own displacement."""
     found: dict[str, np.ndarray] = {}
     better = []
-    for joint in LOST:
+    for joint in FAILED_JOINTS:
         kept = []
         for condition in FAULTY:
             got, own = forward[f"{condition}_{joint}"], forward[condition]

@@ -13,14 +13,14 @@ from suchus.design import Crocodile, unit_at, value_at
 from suchus.design.checks import Checks
 from suchus.errors import UnreadableFile
 from suchus.gaits import GAITS, conditions
-from suchus.land import LOST, Run, lost
+from suchus.land import FAILED_JOINTS, Run, joint_failure
 from suchus.motion import START, Gait
 from suchus.paper import CYCLES
 from suchus.robots import ROBOTS
 from suchus.study.answers import agreement, answers
 from suchus.study.arm import Arm
 from suchus.study.claim_measures import FAULTY, METRICS, RUNS, asked_rules, held, measures_of
-from suchus.study.conduct import Told, conduct, finished
+from suchus.study.conduct import StudyProgress, conduct, finished
 from suchus.study.makers import deciding
 from suchus.study.store import made_by
 from suchus.study.study import Study, Vary
@@ -28,7 +28,7 @@ from suchus.study.study import Study, Vary
 FINE = 0.002  # [s]; the time step of results
 _TRUNK = ("trunk_bend", "tail_bend", "tail_pitch")  # what the conditions differ in; the rest of a gait is its legs
 
-Progress = Callable[[str, Told], None]
+Progress = Callable[[str, StudyProgress], None]
 """Called with which of the studies runs, and how far it is."""
 
 
@@ -46,9 +46,9 @@ class Claims:
     gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
     """The crawl whose other fields all samples share."""
     samples: int = 2048
-    """How many designs and gaits, best a power of two, as Sobol's sequence asks [-]; about a quarter cannot walk."""
+    """Number of designs and gaits, best a power of two, as Sobol's sequence asks [-]; about a quarter cannot walk."""
     together: int = 16
-    """How many samples are simulated together, and lost when the study is killed [-]."""
+    """Number of samples that are simulated together, and lost when the study is killed [-]."""
     coarse: tuple[float, ...] = (0.01, 0.005)
     """Time steps that are tried, the first that agrees with 2 ms is taken; 2 ms if none does [s]."""
     compared: int = 64
@@ -61,7 +61,7 @@ class Claims:
     least: float = 0.05
     """An intact robot with spine and tail that gets no farther cannot lose anything that could be measured [m]."""
     cycles: int = int(CYCLES)
-    """How many cycles are measured [-]."""
+    """Number of cycles that are measured [-]."""
     seed: int = 0
     """Seed of the Sobol sequence's scrambling [-]."""
 
@@ -102,9 +102,9 @@ class Claims:
             of = {one: (value_at(gait, one), value_at(crawl, one)) for one in _TRUNK}
             sets[name] = {f"gait.{one}": there for one, (there, here) in of.items() if there != here}
         sets |= {
-            f"{name}_{joint}": {**sets[name], "faults": lost(self.robot, self.gait, joint, "limp")}
+            f"{name}_{joint}": {**sets[name], "faults": joint_failure(self.robot, self.gait, joint, "limp")}
             for name in FAULTY
-            for joint in LOST
+            for joint in FAILED_JOINTS
         }
         return tuple(Arm(name=name, values=sets[name]) for name in RUNS)
 
@@ -137,7 +137,9 @@ class Claims:
         )
 
 
-def conduct_claims(asked: Claims, folder: Path, *, progress: Progress | None = None, client: Any = None) -> xr.Dataset:
+def conduct_claims(
+    asked: Claims, folder: Path, *, progress: Progress | None = None, client: Any = None, jobs: int = 1
+) -> xr.Dataset:
     """Find the time step that agrees with the full one, run what is not in the stores yet, and answer.
 
     Args:
@@ -145,6 +147,7 @@ def conduct_claims(asked: Claims, folder: Path, *, progress: Progress | None = N
         folder: for its stores, one below it for each time step that is compared and one for the runs.
         progress: called with which study runs, and how far it is.
         client: a ``distributed.Client``, whose workers then run the batches; this process if None.
+        jobs: number of processes of this machine, see ``conduct``.
 
     Returns:
         See ``Claims.record``; attributes say which time step was taken, as JSON how it and the others agreed, and
@@ -162,7 +165,7 @@ def conduct_claims(asked: Claims, folder: Path, *, progress: Progress | None = N
     def run(samples: int, timestep: float, place: str) -> xr.Dataset:
         study = replace(asked.study(samples, timestep), name=f"claims_{place}")
         shown = None if progress is None else (lambda told: progress(place, told))
-        return asked.record(study, conduct(study, folder / place, progress=shown, client=client))
+        return asked.record(study, conduct(study, folder / place, progress=shown, client=client, jobs=jobs))
 
     full = run(asked.compared, FINE, _compared(FINE))
     taken, agreed = FINE, []

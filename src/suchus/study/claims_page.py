@@ -12,7 +12,7 @@ from suchus import record as records
 from suchus.figures.sensitivity import draw_claim, draw_shares, spoken
 from suchus.paper import CLAIMS
 from suchus.study.claims_table import finite, shipped, table, told, turned
-from suchus.study.sheet import Section, Table, write_sheet
+from suchus.study.result_table import ResultTable, Section, write_tables
 
 OUTCOME, TABLE, RECORD, SHARES = "outcome.json", "claims.csv", "claims.nc", "claims.json"
 
@@ -35,7 +35,7 @@ def write_claims(record: xr.Dataset, folder: Path) -> Path:
         pictures = {f"claim_{row['claim']}": draw_claim(record, row["claim"]) for row in rows}
         pictures["shares"] = draw_shares(rows, turned(rows))
         sections = _sections(record, rows)
-        write_sheet(draft, "The article's claims over plausible designs", _lead(record), sections, pictures)
+        write_tables(draft, "The article's claims over plausible designs", _lead(record), sections, pictures)
         text = json.dumps(outcome(record, rows), indent=2, ensure_ascii=False, allow_nan=False)
         (draft / OUTCOME).write_text(text + "\n", encoding="utf-8")
     return folder
@@ -68,8 +68,8 @@ def _lead(record: xr.Dataset) -> str:
     parts = ", ".join(f"{number} {name}" for name, number in sorted(count.items(), key=lambda item: -item[1]))
     return (
         f"{record.sizes['sample']} designs and gaits ({parts}), each in six conditions of spine and tail, and with "
-        f"each of four joints lost in two of them, over {record.sizes['parameter']} numbers that the article does not "
-        "give."
+        f"each of four joints failed in two of them, over {record.sizes['parameter']} numbers that the article does "
+        f"not give."
     )
 
 
@@ -79,7 +79,7 @@ def _sections(record: xr.Dataset, rows: Sequence[dict[str, Any]]) -> list[Sectio
          f"{1000 * a['wide']:.0f} mm", f"{100 * a['shares']:.1f} points", _short(a["claim"]), f"{a['chance']:.2g}")
         for a in agreements(record)
     ]  # fmt: skip
-    agreed = Table(
+    agreed = ResultTable(
         caption="Coarser time steps beside 2 ms, on the first samples",
         heads=(
             "time step",
@@ -93,7 +93,7 @@ def _sections(record: xr.Dataset, rows: Sequence[dict[str, Any]]) -> list[Sectio
         rows=tried,
         words=(0, 5),
     )
-    shares = Table(
+    shares = ResultTable(
         caption="Each claim",
         heads=("claim", "samples", "true", "95 % interval", "number: 5, 50, 95 %", "what decides it", "border"),
         rows=[_row(row) for row in rows],
@@ -102,7 +102,7 @@ def _sections(record: xr.Dataset, rows: Sequence[dict[str, Any]]) -> list[Sectio
     how = (
         "What decides: the share of the variance of the claim's number (of its ranks) that one parameter explains "
         "alone, with its 95 % interval, and whether the number rises or falls with it. Border: the value of the "
-        "parameter that best tells where the sentence is true, and how well (1: it tells everything)."
+        "parameter that best predicts where the sentence is true, and how well (1: always)."
     )
     each = [
         Section(title=_short(row["claim"]), texts=(CLAIMS[row["claim"]].sense,), figures=(f"claim_{row['claim']}",))

@@ -5,7 +5,7 @@ import re
 import socket
 import ssl
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pickle import PickleError
 from typing import Any, TypeVar
@@ -97,8 +97,8 @@ def spread(
     name: str,
     versions: Versions = deciding,
     patience: float = _PATIENCE,
-) -> Iterator[tuple[int, xr.Dataset]]:
-    """Do one piece of work for each item on a cluster, and yield what comes of it as it is finished, in any order.
+) -> Generator[tuple[int, xr.Dataset], None, None]:
+    """Do one piece of work for each item on a cluster, and yield the results as they are finished, in any order.
 
     A worker that is lost loses its piece, which another one begins again.
 
@@ -107,11 +107,11 @@ def spread(
         items: what differs between the pieces.
         client: a ``distributed.Client``.
         name: what the pieces are called on Dask's own pages.
-        versions: tells what decides the bytes; it must tell the same on a worker as here.
+        versions: returns what decides the bytes; it must return the same on a worker as here.
         patience: how long to wait for a first worker [s].
 
     Yields:
-        The index of an item, and what came of it.
+        The index of an item, and its result.
 
     Raises:
         NoCluster: no worker comes, too many are lost, or the scheduler is.
@@ -192,7 +192,7 @@ def _reach(address: str, patience: float) -> None:
 
 
 def _speaks(wire: socket.socket, secret: bool) -> bool:
-    """Tell whether a scheduler is at the other end; Dask would wait for one that says nothing, whatever its timeout.
+    """Return whether a scheduler is at the other end; Dask would wait for one that says nothing, whatever its timeout.
 
     A scheduler speaks first, with the length of what it says; behind TLS it answers the handshake.
     """
@@ -221,7 +221,9 @@ def _check_versions(client: Any) -> None:
         others = {"the scheduler": _packages(told["scheduler"])}
         others |= {f"the worker {name}": _packages(worker) for name, worker in told["workers"].items()}
     except (OSError, TimeoutError, KeyError, TypeError, ValueError, ImportError, AttributeError) as error:
-        raise NoCluster("the cluster does not tell its versions; start it with the versions that are here.") from error
+        raise NoCluster(
+            "the cluster does not report its versions; start it with the versions that are here."
+        ) from error
     for who, theirs in others.items():
         other = [f"{name} {theirs[name]} (here {ours[name]})" for name in _ALIKE if theirs[name] != ours[name]]
         if other:

@@ -1,23 +1,25 @@
 """Conducting a study: every batch that is not there yet, then all results together."""
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Generator
+from contextlib import closing
 from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import xarray as xr
 
-from suchus.errors import UnreadableFile
+from suchus.errors import OutsideLimits, SuchusError, UnreadableFile
 from suchus.study.chunk import run_chunk
 from suchus.study.cluster import here, spread
 from suchus.study.plan import Plan
 from suchus.study.store import Store, together
 from suchus.study.study import Study
+from suchus.workers import Begun, Died, Done, Tell, side_by_side
 
 
-class Told(NamedTuple):
-    """How far a study is."""
+class StudyProgress(NamedTuple):
+    """Progress of a study."""
 
     done: float
     """Runs that are done, parts of a batch included."""
@@ -39,10 +41,18 @@ class Told(NamedTuple):
         return f"{int(self.done)} of {self.total} runs, {self.rate:.1f}/s{left}{failures}"
 
 
-Progress = Callable[[Told], None]
+Progress = Callable[[StudyProgress], None]
+
+_TRIES = 3  # how often a batch is begun whose process dies
 
 
-def conduct(study: Study, folder: Path, *, progress: Progress | None = None, client: Any = None) -> xr.Dataset:
+class Lost(SuchusError, RuntimeError):
+    """A batch whose processes died again and again."""
+
+
+def conduct(
+    study: Study, folder: Path, *, progress: Progress | None = None, client: Any = None, jobs: int = 1
+) -> xr.Dataset:
     """Run what of a study is not in its store yet, and return all results.
 
     Batches are stored as they are finished: whatever stops the program, at most the running batch is lost. Started
@@ -51,9 +61,12 @@ def conduct(study: Study, folder: Path, *, progress: Progress | None = None, cli
     Args:
         study: the study.
         folder: its store.
-        progress: told how far it is.
+        progress: called with how far it is, after each piece of work.
         client: a ``distributed.Client``, whose workers then run the batches; this process if None. The bytes are the
             same.
+        jobs: number of processes of this machine that run the batches, and share the threads; with 1 this process
+            does. The bytes are the same. Each imports the module that was started, as all of Python's own processes
+            do: a script that asks for more than one needs its ``if __name__ == "__main__":``.
 
     Returns:
         A table along ``sample``, as ``run_chunk`` describes it; also in the store as NetCDF and CSV.
@@ -62,17 +75,50 @@ def conduct(study: Study, folder: Path, *, progress: Progress | None = None, cli
         Unwritable: the store cannot be written to.
         IncompatibleRecord: the store is another study's or another version's, or a worker has another version.
         NoCluster: the cluster was lost.
+        Lost: the processes at a batch died again and again.
+        OutsideLimits: less than one process is asked for, or several beside a cluster.
     """
+    if jobs < 1:
+        raise OutsideLimits(f"a study in {jobs} processes cannot be; at least 1 is needed.")
+    if jobs > 1 and client is not None:
+        raise OutsideLimits(f"a study takes a cluster or {jobs} processes of this machine, not both; choose one.")
     plan = Plan(study)
     with Store(folder, study).opened() as store, here(client):
         missing = [number for number in range(plan.chunks) if not store.has(number)]
         counter = _Counter(store, plan, missing, progress or _silent)
-        here_alone = ((i, run_chunk(study, number, counter.within(number))) for i, number in enumerate(missing))
-        elsewhere = spread(partial(run_chunk, study), missing, client, name=study.name)
-        for i, table in here_alone if client is None else elsewhere:
-            store.put(missing[i], table)
-            counter.finished(missing[i], table)
+        if client is not None:
+            tables = spread(partial(run_chunk, study), missing, client, name=study.name)
+        elif min(jobs, len(missing)) > 1:
+            tables = _in_processes(study, missing, jobs, counter)
+        else:
+            tables = ((i, run_chunk(study, number, counter.within(number))) for i, number in enumerate(missing))
+        with closing(tables):
+            for i, table in tables:
+                store.put(missing[i], table)
+                counter.finished(missing[i], table)
         return store.gather(plan.chunks)
+
+
+def _in_processes(
+    study: Study, numbers: list[int], jobs: int, counter: "_Counter"
+) -> Generator[tuple[int, xr.Dataset], None, None]:
+    """Run batches in processes of this machine, and yield them as they are finished, in any order."""
+    with closing(side_by_side(partial(_batch, study), numbers, jobs, tries=_TRIES)) as heard:
+        for i, said in heard:
+            if isinstance(said, Done):
+                yield i, said.value
+            elif isinstance(said, Died):
+                raise Lost(
+                    f"the process at batch {numbers[i]} of study {study.name!r} ended with exit code {said.exit_code}, "
+                    f"{_TRIES} times; what was finished is kept: where memory was short, ask for fewer --jobs or a "
+                    "smaller chunk."
+                )
+            elif not isinstance(said, Begun):
+                counter.within(numbers[i])(said.share)
+
+
+def _batch(study: Study, number: int, tell: Tell) -> xr.Dataset:
+    return run_chunk(study, number, lambda share: tell("", share))
 
 
 def conducted(study: Study, progress: Callable[[float], None]) -> xr.Dataset:
@@ -123,21 +169,29 @@ class _Counter:
         self._done = self._before
         self._failed = store.failures(set(range(plan.chunks)) - set(missing))
         self._start = time.perf_counter()
+        self._shares: dict[int, float] = {}
 
     def within(self, number: int) -> Callable[[float], None]:
-        """Return what tells of the share of a batch."""
-        return lambda share: self._tell(self._done + share * len(self._plan.chunk(number)))
+        """Return what tells of the share of a batch; several may be run at once."""
+
+        def tell(share: float) -> None:
+            self._shares[number] = share
+            self._tell()
+
+        return tell
 
     def finished(self, number: int, table: xr.Dataset) -> None:
         """Count a batch."""
+        self._shares.pop(number, None)
         self._done += len(self._plan.chunk(number))
         self._failed += int((table.error != "").sum())
-        self._tell(self._done)
+        self._tell()
 
-    def _tell(self, done: float) -> None:
+    def _tell(self) -> None:
+        done = self._done + sum(share * len(self._plan.chunk(number)) for number, share in self._shares.items())
         seconds = time.perf_counter() - self._start
         rate = (done - self._before) / seconds if seconds > 0 else 0.0
-        self._progress(Told(done, len(self._plan), self._failed, rate))
+        self._progress(StudyProgress(done, len(self._plan), self._failed, rate))
 
 
 def _duration(seconds: float) -> str:
@@ -146,5 +200,5 @@ def _duration(seconds: float) -> str:
     return f"{seconds / 60:.0f} min" if seconds < 5400 else f"{seconds / 3600:.1f} h"
 
 
-def _silent(told: Told) -> None:
+def _silent(told: StudyProgress) -> None:
     del told

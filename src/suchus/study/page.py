@@ -21,13 +21,13 @@ from suchus.study.study import Design, Study, Vary
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Page:
-    """What a study file can say; see ``Study``."""
+class StudyFile:
+    """The contents of a study file; see ``Study``."""
 
     name: str
-    """How it is called."""
+    """Name, as messages, tables and files show it."""
     vary: tuple[Vary, ...]
-    """What differs."""
+    """Fields that vary, and over which values."""
     measure: tuple[str, ...]
     """Names of ``suchus.metrics``."""
     robot: str = "caiman"
@@ -35,34 +35,34 @@ class Page:
     gait: str = "belly_crawl"
     """Name on the shelf, or path of a TOML file beside this one."""
     ground: Ground = field(default_factory=Ground)
-    """On what."""
+    """Ground: its friction scale, slopes and relief."""
     faults: tuple[dict[str, Any], ...] = ()
-    """What breaks, see ``faults.from_table``."""
+    """Faults as tables, see ``faults.from_table``."""
     noise: float = 0.0
     """Standard deviation of noise on every servo angle commanded [rad]."""
     design: Design = "factorial"
-    """How values are put together."""
+    """Sampling of the values."""
     samples: int | None = None
-    """How many points a Sobol sequence or a Latin hypercube has [-]."""
+    """Number of points of a Sobol sequence or a Latin hypercube [-]."""
     seed: int = 0
-    """Of the sampling, and of the first run's noise [-]."""
+    """Seed of the sampling, and of the first run's noise [-]."""
     seeds: int = 1
-    """How many runs each point gets [-]."""
+    """Number of runs at each point [-]."""
     duration: float = 9.0
-    """Of each run [s]."""
+    """Duration of each run [s]."""
     timestep: float = 0.005
-    """Of the physics [s]."""
+    """Time step of the physics [s]."""
     chunk: int = 32
-    """How many runs are simulated together [-]."""
+    """Number of runs that are simulated in one batch [-]."""
     arms: tuple[Arm, ...] = ()
-    """Sides of a comparison."""
+    """Conditions of a comparison."""
     every: int = 1
     """Measures look at one sample of so many control periods [-]."""
     reasons: tuple[str, ...] = ()
     """Why these fields and ranges."""
 
 
-EXAMPLE = Page(
+EXAMPLE = StudyFile(
     name="example",
     vary=(Vary(field="gait.stroke", low=0.0, high=0.08, steps=9),),
     measure=("displacement",),
@@ -79,7 +79,7 @@ def read_study(path: Path) -> Study:
         UnknownName: a field, a measure, a robot or a gait that does not exist.
         InvalidDesign: a field cannot take one of its values.
     """
-    page = blueprint.read(path, Page, {EXAMPLE.name: EXAMPLE})
+    page = blueprint.read(path, StudyFile, {EXAMPLE.name: EXAMPLE})
     run = Run(
         robot=find(page.robot, path.parent, Crocodile, ROBOTS),
         gait=find(page.gait, path.parent, Gait, GAITS),

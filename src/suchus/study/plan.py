@@ -24,7 +24,7 @@ class Point(NamedTuple):
     values: Mapping[str, Any]
     """By field."""
     seed: int
-    """Of the run."""
+    """Seed of the run."""
     arm: Arm | None = None
     """Of the comparison, where there is one."""
 
@@ -74,7 +74,7 @@ class Plan(Sequence[Point]):
 
     @property
     def chunks(self) -> int:
-        """How many batches it takes."""
+        """Number of batches [-]."""
         return -(-len(self) // self.study.chunk)
 
     def chunk(self, number: int) -> range:

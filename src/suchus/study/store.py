@@ -31,7 +31,7 @@ class Asked(Protocol):
 
     @property
     def name(self) -> str:
-        """How it is called."""
+        """Name, as messages, tables and files show it."""
 
 
 class Store:
@@ -41,7 +41,7 @@ class Store:
         folder: where they are, or shall be.
         study: whose they are, a dataclass.
         kind: what it is called in messages; also the name of the file that says what the store holds.
-        versions: tells what decides the bytes here, see ``makers.deciding``.
+        versions: returns what decides the bytes here, see ``makers.deciding``.
     """
 
     def __init__(
@@ -114,7 +114,7 @@ class Store:
         return self.folder / "parts" / f"{number:06d}.nc"
 
     def has(self, number: int) -> bool:
-        """Tell whether a batch is finished and as it was written; of one with a flipped bit we say so."""
+        """Return whether a batch is finished and as it was written; of one with a flipped bit we say so."""
         if not self.part(number).is_file():
             return False
         try:

@@ -23,7 +23,7 @@ class Vary:
     """A field of the run and what it takes: listed values, a range, or a normal distribution within a range."""
 
     field: str
-    """Dotted path from the run, as ``gait.stroke``, ``robot.contact.foot_friction``, ``ground.grip``, ``faults``."""
+    """Dotted path from the run, as ``gait.stroke``, ``robot.contact.foot_friction``, ``ground.friction_scale``."""
     values: tuple[Any, ...] | None = None
     """Values to choose from: numbers, or whole robots, gaits or tuples of faults."""
     low: float | None = None
@@ -33,9 +33,9 @@ class Vary:
     scale: Literal["linear", "log"] = "linear"
     """Whether a range is filled evenly in the value or in its logarithm."""
     steps: int | None = None
-    """How many values of the range a factorial study takes, both ends included [-]."""
+    """Number of values of the range that a factorial study takes, both ends included [-]."""
     mean: float | None = None
-    """Of a normal distribution, in the field's unit; ``low`` and ``high`` then cut it off."""
+    """Mean of a normal distribution, in the field's unit; ``low`` and ``high`` then cut it off."""
     spread: float | None = None
     """Standard deviation of that distribution, in the field's unit."""
     each: bool = False
@@ -86,29 +86,30 @@ class Study:
     """Many runs that differ from one in some fields."""
 
     name: str
-    """How it is called."""
+    """Name, as messages, tables and files show it."""
     run: Run
-    """What all runs have in common."""
+    """The run from which all differ."""
     vary: tuple[Vary, ...]
-    """What differs."""
+    """Fields that vary, and over which values."""
     measure: tuple[str, ...]
     """Names of ``suchus.metrics``."""
     design: Design = "factorial"
-    """How values are put together; with ``sobol`` and ``latin``, those taken with ``each`` are still combined."""
+    """Sampling of the values; with ``sobol`` and ``latin``, those taken with ``each`` are still combined."""
     samples: int | None = None
-    """How many points a Sobol sequence or a Latin hypercube has [-]."""
+    """Number of points that a Sobol sequence or a Latin hypercube has [-]."""
     seed: int = 0
-    """Of the sampling, and of the first run's noise [-]."""
+    """Seed of the sampling, and of the first run's noise [-]."""
     seeds: int = 1
-    """How many runs, with seeds that follow each other, each point gets; it matters with ``run.noise`` only [-]."""
+    """Number of runs of each point, with seeds that follow each other; it matters with ``run.noise`` only [-]."""
     duration: float = 9.0
-    """Of each run [s]; measures begin after the first second, in which the robot settles."""
+    """Duration of each run [s]; measures begin after the first second, in which the robot settles."""
     timestep: float = 0.005
-    """Of the physics [s]; up to 5 ms the crawl's displacement was measured to stay the same within 0.1 %."""
+    """Time step of the physics [s]; up to 5 ms the crawl's displacement was measured to stay the same within 0.1 %."""
     chunk: int = 32
-    """How many runs are simulated together, and lost when the study is killed [-]; about 3 MB of memory for each."""
+    """Number of runs that are simulated together, and lost when the study is killed [-]; about 3 MB of memory for
+    each."""
     arms: tuple[Arm, ...] = ()
-    """Sides of a comparison; every run is made in each of them."""
+    """Conditions of a comparison; every run is made in each of them."""
     every: int = 1
     """Measures look at one sample of so many control periods of 10 ms [-]; memory shrinks with it."""
     reasons: tuple[str, ...] = field(default=())
@@ -126,7 +127,7 @@ class Study:
             check.that(len(self.measure) > 0, "study.measure is empty; name at least one measure")
             design: object = self.design
             check.that(
-                not isinstance(design, str) or design in get_args(Design),  # another kind is told anyway
+                not isinstance(design, str) or design in get_args(Design),  # another kind is reported anyway
                 f"study.design is {self.design!r}; {', '.join(get_args(Design))} is allowed",
             )
             if self.design in ("sobol", "latin"):

@@ -24,10 +24,10 @@ FLOW = ("catalog.py", "design", "flow", "kinds.py", "kinematics", "motion", "pap
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Asked:
-    """What a store of a sweep holds."""
+    """Identity of a sweep, as its store keeps it."""
 
     name: str
-    """How the sweep is called."""
+    """Name of the sweep."""
     work: str
     """Fingerprint of the calculation."""
     items: tuple[str, ...]
@@ -55,9 +55,9 @@ def conduct_sweep(
 
     Args:
         name: how the sweep is called.
-        work: calculates from an item alone, and tells a function the share that is done. Its code and what it was made
-            with belong to the store, as the items do: written in other words it is another sweep's. For a cluster it
-            stands in a module that the workers can import, or in the script that is run.
+        work: calculates from an item alone, and reports the share that is done to a function. Its code and
+            what it was made with belong to the store, as the items do: rewritten it is another sweep's. For a cluster
+            it stands in a module that the workers can import, or in the script that is run.
         items: settings: numbers, arrays, frozen values, tuples of them.
         folder: the store.
         rooms: of suchus whose source decides the results, see ``record.code_digest``.

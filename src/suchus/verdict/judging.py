@@ -13,8 +13,8 @@ from suchus.verdict.shares import SHARES, Share
 Word = Literal["reproduced", "same sense", "contradicted", "not testable", "by construction", "fitted"]
 """``reproduced``: it came out, within the printed digits and the spread of repeats. ``same sense``: another number, but
 the statement holds; or the robot does what is said of animals. ``contradicted``: the statement does not hold.
-``not testable``: nothing was measured that could tell. ``by construction``: an input, a count or a commanded shape that
-is read back. ``fitted``: a free number was chosen so that it comes out.
+``not testable``: nothing was measured that could decide. ``by construction``: an input, a count or a commanded shape
+that is read back. ``fitted``: a free number was chosen so that it comes out.
 """
 WORDS: tuple[Word, ...] = get_args(Word)
 
@@ -24,9 +24,9 @@ class Verdict:
     """What became of one claim of the article."""
 
     claim: Claim
-    """What the article says."""
+    """The article's statement."""
     rule: Rule
-    """What decided."""
+    """The rule that was applied."""
     measured: float | None
     """What was measured, in the unit of ``unit``; None where nothing can be measured."""
     low: float | None
@@ -38,7 +38,7 @@ class Verdict:
     why: str
     """One or two sentences: what decided it."""
     share: Share | None
-    """In how many plausible designs the statement holds; None where that is not known."""
+    """Fraction of plausible designs for which the statement holds; None where that is not known."""
 
     @property
     def held(self) -> bool:

@@ -29,11 +29,11 @@ class Clause:
     measure: str
     """Name of the measure."""
     relation: Relation
-    """How it must stand to the bound."""
+    """Relation of the measure to the bound that is required."""
     bound: float | str
     """A number in the measure's unit, or the name of another measure."""
     why: str
-    """Where the bound comes from: a reason that was there before the result."""
+    """Reason for the bound, one that was there before the result."""
 
     def holds(self, measures: Mapping[str, float]) -> bool:
         """Return whether the comparison is true; a number that is not finite makes it false."""
@@ -55,7 +55,7 @@ class Band:
     high: str
     """Measure with the greatest value of the repeats."""
     of: str
-    """What was repeated, for people."""
+    """Description of the repeated runs, for people."""
 
     def spread(self, value: float, measures: Mapping[str, float]) -> tuple[float, float]:
         """Return the least and greatest value that repeats gave, the measured value itself included."""
@@ -71,9 +71,9 @@ class Rule:
     experiment: str
     """Name of the experiment whose measures it reads."""
     measure: str
-    """Which measure stands beside the printed number, or tells most about the statement."""
+    """Which measure stands beside the printed number, or says most about the statement."""
     kind: Kind = "measured"
-    """What the claim rests on."""
+    """Kind of evidence for the claim."""
     holds: tuple[Clause, ...] = ()
     """The statement apart from its number: all of these. None only where a printed number alone is read back."""
     band: Band | None = None

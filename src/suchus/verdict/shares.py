@@ -29,9 +29,9 @@ class Share:
     high: float
     """Upper end [-]."""
     designs: int
-    """How many designs could be judged [-]."""
+    """Number of designs that could be judged [-]."""
     turned_by: str
-    """The free number whose value best tells where it holds; empty where none does beyond chance."""
+    """The free number whose value best predicts where it holds; empty where none does beyond chance."""
     at: float | None
     """Its value there, in its own unit."""
     above: bool

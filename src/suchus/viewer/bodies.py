@@ -18,7 +18,7 @@ COLOURS = 7
 """Into how many colours the skin is cut; more look smoother and move slower [-]."""
 
 
-class Posture:
+class BodyPoses:
     """The bodies of a robot, set by an instant of a record.
 
     Args:
@@ -77,7 +77,7 @@ class Posture:
 
 
 @dataclass(frozen=True, slots=True)
-class Piece:
+class SkinPiece:
     """A part of the skin in one colour, with the bones that move it."""
 
     vertices: np.ndarray
@@ -95,7 +95,7 @@ class Piece:
 
 
 @lru_cache(maxsize=8)
-def pieces(robot: AnyRobot, count: int = COLOURS) -> tuple[Piece, ...]:
+def pieces(robot: AnyRobot, count: int = COLOURS) -> tuple[SkinPiece, ...]:
     """Return the skin of a robot cut by colour, since a browser's skinned mesh has but one.
 
     Args:
@@ -116,7 +116,7 @@ def pieces(robot: AnyRobot, count: int = COLOURS) -> tuple[Piece, ...]:
         used = np.flatnonzero(dense[kept].any(axis=0))
         red, green, blue = (round(float(value)) for value in centre)
         found.append(
-            Piece(
+            SkinPiece(
                 vertices=whole.vertices[kept],
                 faces=faces.reshape(-1, 3),
                 weights=dense[np.ix_(kept, used)],

@@ -10,7 +10,7 @@ from suchus.viewer.knobs import Knob, knobs_of, shown
 from suchus.viewer.session import Session, Switch, plain_knobs
 
 Say = Callable[[str], None]
-"""Tells people a sentence; an empty one is not told."""
+"""Shows people a sentence; an empty one is not shown."""
 
 _SWITCHES: tuple[tuple[Switch, str, str], ...] = (
     ("spine", "spine bends", "Off: the trunk is straight, as in the article's control group."),
@@ -30,7 +30,7 @@ class Controls:
     Args:
         gui: viser's interface of one browser.
         session: the walk.
-        say: tells people a sentence.
+        say: shows people a sentence.
     """
 
     def __init__(self, gui: Any, session: Session, say: Say) -> None:
@@ -51,7 +51,7 @@ class Controls:
         with gui.add_folder("Break a joint"):
             self._faults()
         with gui.add_folder("Push"):
-            for name in ("force", "direction", "lasting"):
+            for name in ("force", "direction", "push_duration"):
                 self._add_slider(name, knobs[name])
             self._on(gui.add_button("push the trunk", color="orange"), lambda _: session.push())
         with gui.add_folder("Ground"):
@@ -73,7 +73,7 @@ class Controls:
         self._pause.value = on
 
     def _on(self, handle: Any, act: Callable[[Any], object]) -> None:
-        """Let a control act, when a person moves it; what ``act`` returns is told where it is a sentence."""
+        """Let a control act, when a person moves it; what ``act`` returns is shown where it is a sentence."""
 
         def moved(event: Any) -> None:
             if event.client is None:  # set by ourselves
@@ -124,7 +124,7 @@ class Controls:
         self._on(menu, act)
 
     def _fits(self, gait: AnyGait) -> bool:
-        """Tell whether a gait of the shelf has the same sliders, and the robot can follow it where it is a pattern."""
+        """Return whether a gait of the shelf has the same sliders, and the robot can follow it if a pattern."""
         robot, mine = self._session.robot, self._session.settings.gait
         if isinstance(gait, Gait) and isinstance(mine, Gait):
             return True

@@ -10,12 +10,12 @@ from suchus.design import AnyRobot
 from suchus.design.relief import Relief
 from suchus.fault import Fault
 from suchus.robots import beside_article
-from suchus.viewer.bodies import Posture, pieces
+from suchus.viewer.bodies import BodyPoses, pieces
 
 Look = Literal["skin", "collision geoms"]
 _MARK, _WORD = 0.026, 0.035  # [m]; radius of a mark on the article's robot, and how far above it its word is
 LIMP, LOCKED = (225, 60, 45), (40, 40, 45)
-"""Colours of the marks on joints that are lost."""
+"""Colours of the marks on joints that have failed."""
 GHOST = (120, 140, 200)
 """Colour of a robot that is there for comparison."""
 
@@ -32,7 +32,7 @@ class DrawnRobot:
 
     def __init__(self, scene: Any, root: str, robot: AnyRobot, *, ghost: bool = False) -> None:
         self._scene, self._root, self._ghost = scene, root, ghost
-        self.posture = Posture(robot)
+        self.posture = BodyPoses(robot)
         self.relief: Relief | None = None
         self._marks: dict[str, Any] = {}
         self._size = beside_article(robot).length

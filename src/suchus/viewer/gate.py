@@ -36,7 +36,7 @@ class Gate:
         self._host = host
 
     def admits(self, request: Request) -> bool:
-        """Tell whether a request may be answered."""
+        """Return whether a request may be answered."""
         hosts, origins = (request.headers.get_all(name) for name in ("Host", "Origin"))
         if len(hosts) != 1 or not self._ours(hosts[0]) or len(origins) > 1:
             return False
@@ -46,7 +46,7 @@ class Gate:
         return secrets.compare_digest(first.encode(), self.token.encode())
 
     def _ours(self, host: str) -> bool:
-        """Tell whether a name in a request is one of this server; a name that others rebind is not."""
+        """Return whether a name in a request is one of this server; a name that others rebind is not."""
         name = host.rpartition(":")[0] if host.rpartition(":")[2].isdecimal() else host
         name = name.strip("[]").lower()
         if name == self._host.lower():

@@ -7,11 +7,11 @@ import numpy as np
 import xarray as xr
 
 WINDOW = 12.0
-"""How far back the plots look [s]."""
+"""Length of time that the plots show [s]."""
 
 
 def columns(limbs: Sequence[str]) -> tuple[str, ...]:
-    """Return the names of the columns: time [s], height and way of the centre of mass [m], then loads [N].
+    """Return the names of the columns: time [s], height and displacement of the centre of mass [m], then loads [N].
 
     Args:
         limbs: names of the limbs; the loads are those of their feet, of the belly and of the tail.
@@ -31,18 +31,18 @@ class History:
         self._every, self._columns = every, columns(limbs)
         self._rows: deque[list[float]] = deque(maxlen=round(WINDOW / every) + 1)
 
-    def note(self, time: float, now: Mapping[str, np.ndarray], way: tuple[float, float]) -> None:
+    def note(self, time: float, now: Mapping[str, np.ndarray], displaced: tuple[float, float]) -> None:
         """Keep an instant, if it is time for one.
 
         Args:
             time: [s].
             now: the instant, by the names of ``record.VARIABLES``.
-            way: forward and to the left since the walk began [m].
+            displaced: forward and to the left since the walk began [m].
         """
         if self._rows and time - self._rows[-1][0] < self._every - 1e-9:
             return
         feet = now["foot_force"][:, 2]
-        self._rows.append([time, float(now["centre_of_mass"][2]), *way, *map(float, feet),
+        self._rows.append([time, float(now["centre_of_mass"][2]), *displaced, *map(float, feet),
                            float(now["belly_force"][:, 2].sum()), float(now["tail_force"][2])])  # fmt: skip
 
     def table(self) -> dict[str, np.ndarray]:
@@ -56,11 +56,11 @@ def table_of(record: xr.Dataset, origin: np.ndarray) -> dict[str, np.ndarray]:
 
     Args:
         record: of one run.
-        origin: from where the way is counted, (3,) [m].
+        origin: from where the displacement is counted, (3,) [m].
     """
     com, feet = record.centre_of_mass.values, record.foot_force.sel(xyz="z").values
-    way = com - origin
-    found = [record.time.values, com[:, 2], way[:, 0], way[:, 1], *feet.T]
+    displaced = com - origin
+    found = [record.time.values, com[:, 2], displaced[:, 0], displaced[:, 1], *feet.T]
     found += [record.belly_force.sel(xyz="z").sum("segment").values, record.tail_force.sel(xyz="z").values]
     names = columns([str(limb) for limb in record.leg.values])
     return dict(zip(names, (np.asarray(column, dtype=float) for column in found), strict=True))

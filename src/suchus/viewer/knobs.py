@@ -11,7 +11,7 @@ from suchus.errors import InvalidDesign, NotConverged, OutsideLimits
 from suchus.motion import AnyGait, FootPath, Gait, Pattern, Sweep, check_limits, with_bends, with_strokes
 from suchus.robots import beside_article
 
-_HALVINGS = 14  # of the way to a value that the robot cannot reach: a ten-thousandth of it
+_HALVINGS = 14  # of the distance to a value that the robot cannot reach: a ten-thousandth of it
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -27,11 +27,11 @@ class Knob:
     high: float
     """Greatest value, in that unit."""
     step: float
-    """Of the slider, in that unit."""
+    """Step of the slider, in that unit."""
     scale: float = 1.0
     """SI value of one unit."""
     hint: str = ""
-    """What it does."""
+    """Explanation of its effect, for the page."""
 
     def __str__(self) -> str:
         return f"{self.label} [{self.unit}]" if self.unit else self.label
@@ -71,7 +71,7 @@ GAIT_KNOBS: Mapping[str, Knob] = MappingProxyType(
         ),
         "stroke": Knob(
             label="leg stroke", unit="mm", low=0.0, high=100.0, step=1.0, scale=1e-3,
-            hint="Half of the way that a foot goes back in stance.",
+            hint="Half of the distance that a foot moves back in stance.",
         ),
         "lift": Knob(label="foot lift", unit="mm", low=0.0, high=80.0, step=1.0, scale=1e-3, hint="In swing."),
         "hip_height": Knob(
@@ -84,7 +84,7 @@ GAIT_KNOBS: Mapping[str, Knob] = MappingProxyType(
         ),
         "spine_phase": Knob(
             label="spine phase", unit="cycle", low=-0.5, high=0.5, step=0.01,
-            hint="How late the trunk bends against the legs; half a cycle late it walks backwards.",
+            hint="Phase lag of the trunk's bend behind the legs; with half a cycle it walks backwards.",
         ),
         "tail_bend": Knob(
             label="tail bend", unit="deg", low=0.0, high=90.0, step=1.0, scale=_DEGREE,
@@ -92,7 +92,7 @@ GAIT_KNOBS: Mapping[str, Knob] = MappingProxyType(
         ),
         "tail_phase": Knob(
             label="tail phase", unit="cycle", low=-0.5, high=0.5, step=0.01,
-            hint="How late the tail bends against the trunk.",
+            hint="Phase lag of the tail's bend behind the trunk's.",
         ),
         "tail_pitch": Knob(
             label="tail pitch", unit="deg", low=-30.0, high=40.0, step=0.5, scale=_DEGREE,
@@ -109,7 +109,7 @@ PATTERN_KNOBS: Mapping[str, Knob] = MappingProxyType(
         "duty_factor": GAIT_KNOBS["duty_factor"],
         "strokes": Knob(
             label="limb stroke", unit="% of reach", low=1.0, high=60.0, step=1.0, scale=_SHARE,
-            hint="Half of the way that a foot goes back in stance, of the front limbs; others in proportion.",
+            hint="Half of the distance that a foot moves back in stance, of the front limbs; others in proportion.",
         ),
         "lifts": Knob(
             label="foot lift", unit="% of reach", low=1.0, high=60.0, step=1.0, scale=_SHARE,
@@ -127,9 +127,9 @@ PATTERN_KNOBS: Mapping[str, Knob] = MappingProxyType(
             label="axis bend", unit="deg", low=0.1, high=60.0, step=0.5, scale=_DEGREE,
             hint="Greatest amplitude of a joint of the axis; others in proportion.",
         ),
-        "late": Knob(
+        "lag": Knob(
             label="axis phase", unit="cycle", low=-0.5, high=0.5, step=0.01,
-            hint="How late the axis bends against the limbs.",
+            hint="Phase lag of the axis' bend behind the limbs.",
         ),
         "waves": Knob(
             label="waves along the body", unit="", low=-2.0, high=2.0, step=0.05,
@@ -155,7 +155,7 @@ BUMPS = Knob(
 SPEED = Knob(label="playback speed", unit="x", low=0.05, high=4.0, step=0.05, hint="1 is real time.")
 FORCE = Knob(label="force", unit="N", low=0.0, high=60.0, step=1.0)
 """For a robot as heavy as the article's; see ``force_on``."""
-LASTING = Knob(label="lasting", unit="s", low=0.02, high=2.0, step=0.02, hint="Duration of the push.")
+PUSH_DURATION = Knob(label="duration", unit="s", low=0.02, high=2.0, step=0.02, hint="Duration of the push.")
 DIRECTION = Knob(
     label="direction", unit="deg", low=-180.0, high=180.0, step=15.0, scale=_DEGREE,
     hint="0 pushes forward, 90 to the left, 180 backward.",
@@ -200,9 +200,9 @@ def knobs_of(robot: AnyRobot, gait: AnyGait) -> Mapping[str, Knob]:
         return {name: _resized(knob, share) if knob.unit == "mm" else knob for name, knob in GAIT_KNOBS.items()}
     if not isinstance(gait, Pattern):
         return {}
-    there = {name for name, value in _pattern(gait).items() if value != 0.0 or name in ("late", "waves", "offset")}
+    there = {name for name, value in _pattern(gait).items() if value != 0.0 or name in ("lag", "waves", "offset")}
     if not any(angle for _, angle in gait.wave.amplitude):
-        there -= {"late", "waves"}
+        there -= {"lag", "waves"}
     return {name: knob for name, knob in PATTERN_KNOBS.items() if name in there}
 
 
@@ -227,7 +227,7 @@ def _pattern(gait: Pattern) -> dict[str, float]:
         "height": gait.height if paths else 0.0,
         "turned": cranks[0].stance if cranks else 0.0,
         "bends": max((abs(angle) for _, angle in gait.wave.amplitude), default=0.0),
-        "late": gait.wave.phase,
+        "lag": gait.wave.phase,
         "waves": gait.wave.waves,
         "offset": gait.wave.offset,
     }
@@ -290,6 +290,6 @@ def _with(robot: AnyRobot, gait: AnyGait, name: str, value: float) -> AnyGait:
             replace(does, lift=share * does.lift) if isinstance(does, FootPath) else does for does in gait.girdles
         ]
         return replace(gait, girdles=tuple(lifted))
-    field = "phase" if name == "late" else name
+    field = "phase" if name == "lag" else name
     changed: dict[str, Any] = {field: value}
     return replace(gait, wave=replace(gait.wave, **changed))

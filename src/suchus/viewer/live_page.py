@@ -15,7 +15,7 @@ from suchus.viewer.stage import Stage
 FRAME = 1 / 20
 """Between two pictures [s]."""
 DRAWN = 3
-"""Pictures for one renewal of numbers and way, which are dearer to a browser than what merely moves."""
+"""Frames for one renewal of numbers and track, which cost more to a browser than what merely moves."""
 PLOT = 0.3
 """Between two redraws of the plots [s]."""
 IDLE = 900.0
@@ -110,12 +110,12 @@ class LivePage:
 _SHOWN = (
     ("forces", "forces on the feet"),
     ("support", "support and centre of mass"),
-    ("way", "way on the ground"),
+    ("track", "track on the ground"),
 )
 
 
 def status(instant: Instant, settings: Settings, *, rate: float, notice: str, paused: bool) -> str:
-    """Return the head of the page as HTML: numbers, what is lost, then trouble or a notice.
+    """Return the head of the page as HTML: numbers, failed joints, then trouble or a notice.
 
     Args:
         instant: what is seen.

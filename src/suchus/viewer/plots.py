@@ -1,4 +1,4 @@
-"""Plots beside the scene: height, way, loads over the last seconds, and the bars of the gait."""
+"""Plots beside the scene: height, displacement, loads over the last seconds, and the bars of the gait."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ _POINTS = 400  # of a line; more are not seen
 _PALE = "#c9ccd1"
 _LIGHT = 0.1  # [kg]; the loads of lighter bodies are shown in millinewtons
 AXIS = {"stroke": "#555555", "grid": {"stroke": "#e6e6e6", "width": 1}, "ticks": {"stroke": "#cccccc", "width": 1}}
-"""How axes are drawn, as uPlot has it."""
+"""Style of the axes, in the terms of uPlot."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,32 +34,32 @@ class Line:
 
 
 @dataclass(frozen=True, slots=True)
-class Plan:
+class PlotLayout:
     """A chart as it is meant to be."""
 
     title: str
     """Above it, with the unit."""
     lines: tuple[Line, ...]
-    """What it shows."""
+    """The lines that it draws."""
     scale: float = 1.0
     """From SI to the unit of the title."""
     mean: float = 0.0
     """Over how long values are averaged [s]; feet that touch down make spikes that hide the rest."""
 
 
-def plans(robot: AnyRobot) -> tuple[Plan, ...]:
+def plans(robot: AnyRobot) -> tuple[PlotLayout, ...]:
     """Return the charts of a robot, from above."""
     light = robot.mass < _LIGHT
     return (
-        Plan("height of the centre of mass [mm]", (Line("height", "height", COLOURS["ours"]),), 1e3),
-        Plan(
-            "way since the first step [m]",
+        PlotLayout("height of the centre of mass [mm]", (Line("height", "height", COLOURS["ours"]),), 1e3),
+        PlotLayout(
+            "displacement since the first step [m]",
             (
                 Line("forward", "forward", COLOURS["ours"]),
                 Line("to the left", "aside", COLOURS["limbs_only"], (6.0, 3.0)),
             ),
         ),
-        Plan(
+        PlotLayout(
             f"load on the ground [{'mN' if light else 'N'}], mean over 0.1 s",
             (
                 *(Line(limb, limb, colour) for limb, colour in limb_colours(robot)),
@@ -82,7 +82,7 @@ class Chart:
         compared: whether there is a second run, drawn pale.
     """
 
-    def __init__(self, gui: Any, plan: Plan, uplot: Any, *, compared: bool = False) -> None:
+    def __init__(self, gui: Any, plan: PlotLayout, uplot: Any, *, compared: bool = False) -> None:
         self._plan, self._compared = plan, compared
         drawn: list[Any] = [uplot.Series(label="t [s]")]
         if compared:

@@ -24,13 +24,13 @@ class Take:
     """One run of a record, ready to be shown."""
 
     label: str
-    """What it is called."""
+    """Name, for the page."""
     robot: AnyRobot
-    """Who walks in it."""
+    """The robot that walks in it."""
     record: xr.Dataset
     """The run, without the dimension ``run``."""
     ground: Ground
-    """On what; level and even where the record does not tell."""
+    """The ground; level and even where the record does not say."""
 
     @property
     def origin(self) -> np.ndarray:

@@ -91,7 +91,7 @@ class ReplayPage:
                 shown, plotted = now, 0.0
                 self._tables = take.table(), ghost.table() if ghost else None
                 self._stage.lay(take.ground.relief)
-                self._stage.draw_way(take.record.centre_of_mass.values[::5])
+                self._stage.draw_track(take.record.centre_of_mass.values[::5])
             self._show(take, ghost, everything=picture % DRAWN == 1)
             if start - plotted > PLOT:
                 plotted = start
@@ -116,11 +116,11 @@ def told(take: Take, ghost: Take | None, time: float) -> str:
     rows = []
     for name, one in (("", take), ("ghost", ghost)):
         if one is not None:
-            way = one.at(time)["centre_of_mass"] - one.origin
+            displaced = one.at(time)["centre_of_mass"] - one.origin
             rows.append(
                 f'<tr><td style="padding-right:14px">{escape(f"{name} {one.label}".strip())}</td>'
-                f'<td style="padding-right:14px;font-weight:600" data-suchus="forward">{way[0]:+.3f} m</td>'
-                f'<td style="font-weight:600">{way[1]:+.3f} m</td></tr>'
+                f'<td style="padding-right:14px;font-weight:600" data-suchus="forward">{displaced[0]:+.3f} m</td>'
+                f'<td style="font-weight:600">{displaced[1]:+.3f} m</td></tr>'
             )
     other = ghost is not None and not ghost.ground.looks_like(take.ground)
     note = "<div>The ghost went on other ground, which is not shown.</div>" if other else ""

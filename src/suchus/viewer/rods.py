@@ -13,18 +13,18 @@ _SIDES = 12  # of a rod's section
 
 
 @dataclass(frozen=True, slots=True)
-class Shape:
+class RodShape:
     """How thick a rod is, and whether it ends in a head."""
 
     radius: float
-    """Of the shaft [m]."""
+    """Radius of the shaft [m]."""
     head: float = 0.0
     """Length of the head [m]; 0 for a plain rod."""
     head_radius: float = 0.0
-    """Of the head [m]."""
+    """Radius of the head [m]."""
 
 
-def rod(shape: Shape) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def rod(shape: RodShape) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return vertices [m], faces and weights of a rod from 0 to 1 along z; its two bones are its ends.
 
     Args:
@@ -65,7 +65,7 @@ def upright(direction: np.ndarray) -> np.ndarray:
     return np.array([w, -y / (2 * w), x / (2 * w), 0.0])
 
 
-class Rod:
+class DrawnRod:
     """A rod in the scene of one browser, not seen until it is put somewhere.
 
     Args:
@@ -75,7 +75,7 @@ class Rod:
         colour: red, green, blue of 255.
     """
 
-    def __init__(self, scene: Any, name: str, shape: Shape, colour: tuple[int, int, int]) -> None:
+    def __init__(self, scene: Any, name: str, shape: RodShape, colour: tuple[int, int, int]) -> None:
         vertices, faces, weights = rod(shape)
         self._handle = scene.add_mesh_skinned(
             name,
@@ -92,12 +92,12 @@ class Rod:
 
     def put(self, start: np.ndarray, end: np.ndarray) -> None:
         """Show it from one point to another [m]."""
-        way = np.asarray(end, dtype=float) - start
-        length = float(np.linalg.norm(way))
+        along = np.asarray(end, dtype=float) - start
+        length = float(np.linalg.norm(along))
         if length < 1e-6:
             self.hide()
             return
-        turned = upright(way / length)
+        turned = upright(along / length)
         self._handle.visible = True
         for bone, place in zip(self._handle.bones, (start, end), strict=True):
             bone.position, bone.wxyz = place, turned

@@ -25,8 +25,8 @@ class CannotServe(SuchusError, OSError):
     """A place in the network that cannot be listened on."""
 
 
-class Page(Protocol):
-    """What one browser sees."""
+class BrowserPage(Protocol):
+    """The page that one browser shows."""
 
     def run(self) -> None:
         """Live until closed."""
@@ -59,7 +59,7 @@ class Viewer:
 
     def __init__(
         self,
-        open_page: Callable[[Any], Page],
+        open_page: Callable[[Any], BrowserPage],
         *,
         host: str = "127.0.0.1",
         port: int = 8080,
@@ -71,7 +71,7 @@ class Viewer:
         warnings.filterwarnings("ignore", message="Queued a .* on a closed connection")  # a browser left in mid-frame
         logging.getLogger("websockets.server").setLevel(logging.CRITICAL)  # a browser that leaves early is no error
         self._open, self._most = open_page, most
-        self._pages: dict[int, Page | None] = {}
+        self._pages: dict[int, BrowserPage | None] = {}
         self._lock = Lock()
         self._over = Event()
         gate = Gate(host)
@@ -92,7 +92,7 @@ class Viewer:
 
     @property
     def watching(self) -> int:
-        """How many browsers have a page."""
+        """Number of browsers that have a page [-]."""
         with self._lock:
             return len(self._pages)
 

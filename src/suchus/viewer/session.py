@@ -22,8 +22,8 @@ from suchus.viewer.history import History
 from suchus.viewer.knobs import (
     BREATH,
     DIRECTION,
-    LASTING,
     LEVEL,
+    PUSH_DURATION,
     SIDE_SLOPE,
     SLOPE,
     SPEED,
@@ -63,19 +63,19 @@ class Settings:
     size: float = 1.0
     """Length of the robot over that of the article's, which the length of the bumps follows [-]."""
     force: float = 15.0
-    """Of the next push [N]."""
-    lasting: float = 0.2
-    """Of the next push [s]."""
+    """Force of the next push [N]."""
+    push_duration: float = 0.2
+    """Duration of the next push [s]."""
     direction: float = 1.5707963267948966
-    """Of the next push, from forward to the left [rad]."""
+    """Direction of the next push, from forward to the left [rad]."""
     speed: float = 1.0
     """Simulated over real time [-]."""
     swim: Swim | None = None
-    """How it swims; None on dry land."""
+    """Its swimming motion; None on dry land."""
     swims: bool = True
     """Whether it swims or walks, where there is water."""
     level: float = 0.6
-    """Of the water above the ground where the walk begins [m]."""
+    """Level of the water above the ground where the walk begins [m]."""
     breath: float = 1.0
     """Share of the hull's air that is kept [-]."""
     broken: tuple[Fault, ...] = ()
@@ -102,14 +102,14 @@ class Settings:
 
     @property
     def ground(self) -> Ground:
-        """What it walks on."""
+        """The ground that it walks on."""
         length, start = (round(self.size * part, 9) for part in (_CORRELATION, BEFORE))
         bumps = Bumps(height=self.bumps, correlation=length, start=start, seed=0) if self.bumps else None
         return Ground(uphill=self.uphill, sideways=self.sideways, relief=bumps)
 
 
 _PLAIN: dict[str, Knob] = {
-    "uphill": SLOPE, "sideways": SIDE_SLOPE, "lasting": LASTING, "direction": DIRECTION, "speed": SPEED,
+    "uphill": SLOPE, "sideways": SIDE_SLOPE, "push_duration": PUSH_DURATION, "direction": DIRECTION, "speed": SPEED,
     "level": LEVEL, "breath": BREATH,
 }  # fmt: skip
 
@@ -121,7 +121,7 @@ def plain_knobs(robot: AnyRobot) -> dict[str, Knob]:
 
 @dataclass(slots=True)
 class Instant:
-    """What is seen at one instant."""
+    """State of the walk at one instant, for the page."""
 
     time: float = 0.0
     """Since the walk was begun [s]."""
@@ -134,7 +134,7 @@ class Instant:
     pushed: tuple[float, float, float] | None = None
     """The force of a push that lasts [N]."""
     level: float | None = None
-    """Of the water above the ground where the walk began, against gravity [m]; None on dry land."""
+    """Level of the water above the ground where the walk began, against gravity [m]; None on dry land."""
     trouble: str = ""
     """Why the walk has ended; empty while it has not."""
 
@@ -255,7 +255,7 @@ class Session:
         with self._lock:
             s = self.settings
             force = (s.force * cos(s.direction), s.force * sin(s.direction), 0.0)
-            push = Push(force=force, at=self._live.time, duration=s.lasting, body=front_segment(self.robot))
+            push = Push(force=force, at=self._live.time, duration=s.push_duration, body=front_segment(self.robot))
             self._live.push(push)
             self._push = push
 

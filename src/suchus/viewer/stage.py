@@ -1,4 +1,4 @@
-"""The scene of one browser: ground, robot, forces, support, way; the camera may follow."""
+"""The scene of one browser: ground, robot, forces, support, track; the camera may follow."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import fields
@@ -20,22 +20,22 @@ from suchus.robots import beside_article
 from suchus.rotation import rotate
 from suchus.viewer.bodies import support
 from suchus.viewer.drawn import DrawnRobot, Look
-from suchus.viewer.rods import Rod, Shape
+from suchus.viewer.rods import DrawnRod, RodShape
 
 CAMERA = (0.8, -1.4, 0.8)
 """Where the camera is at first, for a robot as long as the article's [m]."""
 LOOKS_AT = (-0.1, 0.0, 0.0)
 """Where it looks at first, for a robot as long as the article's [m]."""
 _WEIGHT = 0.276  # [m]; how long the weight of a robot as long as the article's is, as long as its trunk
-_TIP, _COM, _STEP = 0.06, 0.014, 0.005  # [m]; of a push above its body, radius of a ball, between points of the way
+_TIP, _COM, _STEP = 0.06, 0.014, 0.005  # [m]; of a push above its body, radius of a ball, between points of the track
 _ABOVE = 0.003  # [m]; what is painted on the ground lies so far above it
 _WORLD = "/world"
-_ARROW = Shape(radius=0.006, head=0.028, head_radius=0.014)
-_PUSH = Shape(radius=0.010, head=0.042, head_radius=0.021)
-_EDGE = Shape(radius=0.0035)
-_PLUMB = Shape(radius=0.0018)
+_ARROW = RodShape(radius=0.006, head=0.028, head_radius=0.014)
+_PUSH = RodShape(radius=0.010, head=0.042, head_radius=0.021)
+_EDGE = RodShape(radius=0.0035)
+_PLUMB = RodShape(radius=0.0018)
 _LAKE = 12.0  # [m]; how far the water reaches that is drawn
-_STEPS = 400  # pieces of the way that are kept
+_STEPS = 400  # pieces of the track that are kept
 
 
 def rgb(colour: str) -> tuple[int, int, int]:
@@ -86,16 +86,16 @@ class Stage:
         self._support = [self._rod(f"support_{i}", _EDGE, COLOURS["spine"]) for i in range(len(place.limbs))]
         self._com = scene.add_icosphere(f"{_WORLD}/centre_of_mass", self._size * _COM, color=rgb(COLOURS["tail"]))
         self._plumb = self._rod("plumb", _PLUMB, COLOURS["tail"])
-        self._way = scene.add_line_segments(
-            f"{_WORLD}/way", np.zeros((1, 2, 3)), rgb(COLOURS["neutral"]), thickness=0.004 * self._size, visible=False
+        self._track = scene.add_line_segments(
+            f"{_WORLD}/track", np.zeros((1, 2, 3)), rgb(COLOURS["neutral"]), thickness=0.004 * self._size, visible=False
         )
         self._water: Any = None
         self._path: list[np.ndarray] = []
-        self.shown = {"forces": True, "support": True, "way": True}
+        self.shown = {"forces": True, "support": True, "track": True}
 
-    def _rod(self, name: str, shape: Shape, colour: str) -> Rod:
+    def _rod(self, name: str, shape: RodShape, colour: str) -> DrawnRod:
         lengths = {field.name: self._size * getattr(shape, field.name) for field in fields(shape)}
-        return Rod(self._scene, f"{_WORLD}/{name}", Shape(**lengths), rgb(colour))
+        return DrawnRod(self._scene, f"{_WORLD}/{name}", RodShape(**lengths), rgb(colour))
 
     def lay(self, relief: Relief | None) -> None:
         """Lay the ground, even or with what stands up from it."""
@@ -202,25 +202,25 @@ class Stage:
             self._plumb.hide()
 
     def go(self, com: np.ndarray) -> None:
-        """Lengthen the way on the ground to where the centre of mass is now."""
+        """Lengthen the track on the ground to where the centre of mass is now."""
         here = np.array([com[0], com[1], 0.0])
         if self._path and np.linalg.norm(here - self._path[-1]) < self._size * _STEP:
             return
         self._path = [*self._path, here][-_STEPS:]
-        self.draw_way(np.array(self._path))
+        self.draw_track(np.array(self._path))
 
-    def draw_way(self, path: np.ndarray) -> None:
-        """Draw a way on the ground, (point, 3) [m], at whatever height its points are."""
-        self._way.visible = bool(self.shown["way"] and len(path) > 1)
+    def draw_track(self, path: np.ndarray) -> None:
+        """Draw a track on the ground, (point, 3) [m], at whatever height its points are."""
+        self._track.visible = bool(self.shown["track"] and len(path) > 1)
         if len(path) > 1:
             level = heights(self.robot.relief, path[:, 0], path[:, 1]) + self._size * _ABOVE
             path = np.column_stack([path[:, :2], level])
-            self._way.points = np.stack([path[:-1], path[1:]], axis=1).astype(np.float32)
+            self._track.points = np.stack([path[:-1], path[1:]], axis=1).astype(np.float32)
 
     def forget(self) -> None:
-        """Forget the way."""
+        """Forget the track."""
         self._path = []
-        self._way.visible = False
+        self._track.visible = False
 
     def mark(self, lost: Sequence[Fault]) -> None:
         """Mark the joints and legs that are broken."""

@@ -13,7 +13,7 @@ from suchus.record import load
 
 _FIELDS = ("vorticity", "pressure")
 _MAPS = {"vorticity": "RdBu_r", "pressure": "PuOr"}
-_CLIPPED = 0.985  # share of the values that the colours tell apart; a few at the tail's tip are far beyond
+_CLIPPED = 0.985  # share of the values that the colours resolve; a few at the tail's tip are far beyond
 _TITLES = {"held": "held at the snout", "free": "free, from rest", "printed": "the wave as printed"}
 
 
@@ -27,17 +27,17 @@ class Film:
     """One swim of a record, frame by frame."""
 
     title: str
-    """What it is called."""
+    """Title of the film."""
     phase: np.ndarray
-    """Of each frame, (frame,) [cycle]."""
+    """Phase of each frame, (frame,) [cycle]."""
     x: np.ndarray
-    """Of the points of the fields, along the body (x,) [m]."""
+    """Coordinates of the points of the fields, along the body (x,) [m]."""
     y: np.ndarray
     """Across it, (y,) [m]."""
     fields: Mapping[str, np.ndarray]
     """By name, (frame, y, x)."""
     units: Mapping[str, str]
-    """Of the fields."""
+    """Units of the fields."""
     sides: np.ndarray
     """Left and right side of the body, (frame, 2, station, 2) [m]."""
 
@@ -52,7 +52,7 @@ class Film:
 
 
 @dataclass(frozen=True, slots=True)
-class Curve:
+class PlottedCurve:
     """A measured course for a plot."""
 
     title: str
@@ -63,7 +63,7 @@ class Curve:
     """By name, each (n,)."""
 
 
-def films(path: Path) -> tuple[tuple[Film, ...], tuple[Curve, ...]]:
+def films(path: Path) -> tuple[tuple[Film, ...], tuple[PlottedCurve, ...]]:
     """Return what a record of swimming shows.
 
     Args:
@@ -113,7 +113,7 @@ def _film(record: xr.Dataset, prefix: str) -> Film | None:
 
 
 def _filmed(record: xr.Dataset, prefix: str, names: Sequence[str]) -> bool:
-    """Tell whether fields and midlines are numbers of sizes that go together."""
+    """Return whether fields and midlines are numbers of sizes that go together."""
     lines = [f"{prefix}midline_{part}" for part in ("x", "y", "heading", "half_width")]
     first = record[f"{prefix}{names[0]}"]
     axes = [str(dim) for dim in first.dims[-2:]]
@@ -134,16 +134,18 @@ def _lines(values: np.ndarray) -> np.ndarray:
     return values[None] if values.ndim == 1 else values
 
 
-def _curves(record: xr.Dataset) -> tuple[Curve, ...]:
+def _curves(record: xr.Dataset) -> tuple[PlottedCurve, ...]:
     curves = []
     for prefix, said in _TITLES.items():
         parts = {"forward": f"{prefix}_thrust", "to the side": f"{prefix}_aside"}
         if all(name in record for name in (*parts.values(), f"{prefix}_phase")):
             phase = record[f"{prefix}_phase"].values
             curves.append(
-                Curve(f"force [N/m] over the phase, {said}", phase, {k: record[v].values for k, v in parts.items()})
+                PlottedCurve(
+                    f"force [N/m] over the phase, {said}", phase, {k: record[v].values for k, v in parts.items()}
+                )
             )
     if "arm_speed" in record and set(record.arm_speed.dims) == {"arm", "cycle"} and "arm" in record.coords:
         lines = {str(arm): record.arm_speed.sel(arm=arm).values for arm in record.arm.values[:3]}
-        curves.append(Curve("speed [m/s] of each cycle", np.arange(1.0, record.sizes["cycle"] + 1), lines))
+        curves.append(PlottedCurve("speed [m/s] of each cycle", np.arange(1.0, record.sizes["cycle"] + 1), lines))
     return tuple(curves)

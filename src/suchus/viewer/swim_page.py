@@ -12,7 +12,7 @@ from viser import uplot
 from suchus.figures import COLOURS
 from suchus.viewer.plots import AXIS, Line, legend, series
 from suchus.viewer.stage import rgb
-from suchus.viewer.swim import Curve, Film, colours
+from suchus.viewer.swim import Film, PlottedCurve, colours
 
 CAMERA = ((0.75, -0.05, 3.3), (0.75, 0.0, 0.0))
 """Where the camera is at first and where it looks [m]."""
@@ -32,7 +32,7 @@ class SwimPage:
         curves: what was measured.
     """
 
-    def __init__(self, client: Any, films: Sequence[Film], curves: Sequence[Curve]) -> None:
+    def __init__(self, client: Any, films: Sequence[Film], curves: Sequence[PlottedCurve]) -> None:
         self._client, self._closed = client, Event()
         self._films = {film.title: film for film in films}
         self._place = 0.0
@@ -146,7 +146,7 @@ def told(film: Film, field: str, frame: int) -> str:
     )
 
 
-def _draw(gui: Any, curve: Curve) -> None:
+def _draw(gui: Any, curve: PlottedCurve) -> None:
     lines = tuple(Line(name, name, ink) for name, ink in zip(curve.lines, _INKS, strict=False))
     gui.add_uplot(
         data=(np.asarray(curve.x, dtype=float), *(np.asarray(curve.lines[line.column], dtype=float) for line in lines)),

@@ -1,13 +1,14 @@
 """The robot in water: its outline, waves fitted to its joints, and the models a designer calculates with."""
 
 from suchus.design.water import Water
+from suchus.renamed import old_exports
 from suchus.water.diary import portion
 from suchus.water.fit import Fit, fit, head_base
 from suchus.water.free import free_swim
 from suchus.water.held import tether
 from suchus.water.immersed import immersed
 from suchus.water.measures import Quarters, Sway, Swum, convex_higher, efficiency, level, swing, wave_form
-from suchus.water.outline import Base, Curve, Outline, Silhouette, silhouette
+from suchus.water.outline import Base, BodySilhouette, MidlineCurve, Outline, silhouette
 from suchus.water.passive import sprung
 from suchus.water.readings import Attempt, attempts, readings_table
 from suchus.water.slender import Cruise, Effort, cruise, cycle, reactive, recoil, resistive
@@ -22,18 +23,18 @@ __all__ = [
     "MODELS",
     "Attempt",
     "Base",
+    "BodySilhouette",
     "BodyWave",
     "Cruise",
-    "Curve",
     "EelWave",
     "Effort",
     "ExactWave",
     "Fit",
+    "MidlineCurve",
     "Motion",
     "Outline",
     "PrintedWave",
     "Quarters",
-    "Silhouette",
     "Sway",
     "Swum",
     "Tether",
@@ -69,3 +70,5 @@ __all__ = [
     "wave_form",
     "wave_speed",
 ]
+
+__getattr__ = old_exports(__name__, Curve="MidlineCurve", Silhouette="BodySilhouette")

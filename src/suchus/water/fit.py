@@ -59,16 +59,16 @@ def fit(robot: Crocodile, wave: BodyWave, *, name: str = "wave", most: float = 0
     harmonic = 2.0 * turning @ heading / _TIMES
     basis = np.column_stack([np.ones_like(outline.s), outline.bending_at(outline.s)])
     found = np.linalg.lstsq(basis.astype(complex), harmonic, rcond=None)[0]
-    late = [float(round(-np.angle(value) / (2 * np.pi), 12)) for value in found[1:]]
+    lag = [float(round(-np.angle(value) / (2 * np.pi), 12)) for value in found[1:]]
     asked = _asked(outline, heading)
     _check_amplitudes(robot, name, np.abs(found[1:]))
     swim = Swim(
         name=name,
         frequency=1.0 / wave.period,
         yaw=(float(abs(found[1])), float(abs(found[2])), float(abs(found[3]))),
-        yaw_late=(late[0], late[1], late[2]),
+        yaw_lag=(lag[0], lag[1], lag[2]),
         tail=float(abs(found[4])),
-        tail_late=late[3],
+        tail_lag=lag[3],
     )
     misfit = _misfit(outline, swim, complex(found[0]), time, x, y)
     if not misfit <= most:

@@ -41,7 +41,7 @@ def free_swim(
 
 
 class _Free:
-    """What is seen of a free body."""
+    """Time series of a freely swimming body."""
 
     def __init__(self, pool: Pool) -> None:
         self._pool, self._view = pool, View(pool.grid, pool.robot.length, 2.25, 0.6)
@@ -79,7 +79,11 @@ class _Free:
                 "heading": ("sample", snout[:, 1], {"units": "rad"}),
                 "tail_y": ("sample", across[:, -1], {"units": "m"}),
                 "swing": ("station", swung.amplitude, {"units": "m"}),
-                "swing_late": ("station", swung.late, {"units": "1", "long_name": "phase lag of the swing [cycle]"}),
+                "swing_late": (
+                    "station",
+                    swung.phase_lag,
+                    {"units": "1", "long_name": "its phase lag [cycle]"},
+                ),
                 "sine_share": ("station", swung.share, {"units": "1"}),
                 "tip_share": ("single", [_share(tip[:-SAMPLES]), _share(tip[SAMPLES:])], {"units": "1"}),
                 "centre_x": ("moment", centre[0], {"units": "m", "long_name": "centre of mass, to the tail"}),

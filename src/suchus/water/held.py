@@ -1,4 +1,4 @@
-"""The robot in the resolved flow with its snout held, as the article's Fig. 17 shows it."""
+"""The tethered robot in two-dimensional CFD, its snout fixed, as the article's Fig. 17 shows it."""
 
 from pathlib import Path
 
@@ -40,7 +40,7 @@ def tether(
     checkpoint: Path | str | None = None,
     progress: Progress | None = None,
 ) -> xr.Dataset:
-    """Return the flow around a body whose snout is held: forces over the last cycle, fields at its four quarters.
+    """Return the flow around a body whose snout is fixed: forces over the last cycle, fields at its four quarters.
 
     ``quarter_*`` hold what was at the quarters of every cycle but the first, which sets the water in motion.
 
@@ -58,14 +58,14 @@ def tether(
         InvalidDesign: the boundary layer is too thin for the grid, or the box too small.
         UnreadableFile: the checkpoint is broken or belongs to another swim.
         Unwritable: the checkpoint cannot be written.
-        Diverged: the flow came apart.
+        Diverged: the flow diverged.
     """
     pool = Pool.filled(robot, motion, setting, BOX, turn)
     return pool.swum(_Held(pool), checkpoint=checkpoint, progress=progress)
 
 
 class _Held:
-    """What is seen of a held body."""
+    """Time series of a tethered body."""
 
     def __init__(self, pool: Pool) -> None:
         self._robot = pool.robot

@@ -23,7 +23,7 @@ def immersed(
     Args:
         outline: of the robot; stations about one cell apart serve well.
         motion: how it swims.
-        sway: harmonic of the snout's way to the right [m]; zero for a free body, which finds it by itself.
+        sway: harmonic of the snout's displacement to the right [m]; zero for a free body, which finds it by itself.
         turn: harmonic of the head's direction [rad].
         grow: time over which the motion grows from nothing [s].
         least: half-width below which the body is thickened, its ends made round [m].

@@ -1,4 +1,4 @@
-"""Numbers read from the records of a held and of a free swim; how each is defined stands here."""
+"""Numbers read from the records of a tethered and of a free swim; how each is defined stands here."""
 
 from typing import NamedTuple
 
@@ -57,24 +57,25 @@ def convex_higher(held: xr.Dataset) -> float:
 def level(track: np.ndarray) -> np.ndarray:
     """Return a track over whole cycles, first and last instant included, less its mean line.
 
-    The line's slope is the way from the first to the last instant: a line of least squares would lean with a sine.
+    The line's slope is the displacement from the first to the last instant: a line of least squares would lean with a
+    sine.
     """
     drift = (track[-1] - track[0]) * np.linspace(-0.5, 0.5, track.size)
     return np.asarray(track - drift - np.mean(track[:-1] - drift[:-1]))
 
 
-class Swing(NamedTuple):
+class LateralSwing(NamedTuple):
     """How each station of a body swings to either side, as a sine of one cycle."""
 
     amplitude: Float[np.ndarray, " station"]
-    """Of the sine [m]."""
-    late: Float[np.ndarray, " station"]
+    """Amplitude of the sine [m]."""
+    phase_lag: Float[np.ndarray, " station"]
     """Phase lag of the sine behind a cosine that begins with the samples, 0 to 1 [cycle]."""
     share: Float[np.ndarray, " station"]
-    """Of the variance about the mean line that the sine has [-]."""
+    """Fraction of the variance about the mean line that the sine has [-]."""
 
 
-def swing(across: Float[np.ndarray, "sample station"], cycles: int = 2) -> Swing:
+def swing(across: Float[np.ndarray, "sample station"], cycles: int = 2) -> LateralSwing:
     """Return how far each station swings to either side as a sine, and which share of its swing that sine is.
 
     Args:
@@ -84,15 +85,15 @@ def swing(across: Float[np.ndarray, "sample station"], cycles: int = 2) -> Swing
     swung = np.column_stack([level(track) for track in across.T])[:-1]
     harmonic = 2.0 * np.fft.rfft(swung, axis=0)[cycles] / len(swung)
     variance = np.maximum(np.mean(swung**2, axis=0), np.finfo(float).tiny)
-    late = np.mod(-np.angle(harmonic) / (2.0 * np.pi), 1.0)
-    return Swing(np.abs(harmonic), late, 0.5 * np.abs(harmonic) ** 2 / variance)
+    lag = np.mod(-np.angle(harmonic) / (2.0 * np.pi), 1.0)
+    return LateralSwing(np.abs(harmonic), lag, 0.5 * np.abs(harmonic) ** 2 / variance)
 
 
 class Sway(NamedTuple):
-    """A track's way to the side and back, once a cycle."""
+    """A track's displacement to the side and back, once a cycle."""
 
     amplitude: float
-    """Of the sine of one cycle [m]."""
+    """Amplitude of the sine of one cycle [m]."""
     noise: float
     """Twice the standard deviation of what is left of the track about its mean line without that sine [m]."""
     low: float
@@ -117,14 +118,14 @@ class Sway(NamedTuple):
 
 
 def wave_form(
-    s: Float[np.ndarray, " station"], amplitude: Float[np.ndarray, " station"], late: Float[np.ndarray, " station"]
+    s: Float[np.ndarray, " station"], amplitude: Float[np.ndarray, " station"], lag: Float[np.ndarray, " station"]
 ) -> tuple[float, float, float, float]:
     """Return the wave of the form (20) that comes nearest to a swinging midline, and which share of the swing it is.
 
     Args:
         s: arc length from the snout, over the length [-].
         amplitude: of each station [m].
-        late: its phase lag [cycle].
+        lag: its phase lag [cycle].
 
     Returns:
         c1 and c2 of the envelope c1 s + c2 s^2 [m], waves along the body (positive: from head to tail) [-], and the
@@ -132,7 +133,7 @@ def wave_form(
 
     Paper: Eq. (20).
     """
-    swung = amplitude * np.exp(-2j * np.pi * late)
+    swung = amplitude * np.exp(-2j * np.pi * lag)
 
     def left(guess: np.ndarray) -> np.ndarray:
         apart = (guess[0] * s + guess[1] * s**2) * np.exp(-2j * np.pi * (guess[2] * s + guess[3])) - swung
@@ -151,11 +152,11 @@ class Swum(NamedTuple):
     speed: float
     """Forward [m/s]."""
     gain: float
-    """Of the speed over the cycle before [-]."""
+    """Gain of the speed over the cycle before [-]."""
     slip: float
     """Speed over that of the body wave [-]."""
     strouhal: float
-    """Frequency times the way of the tail's tip from side to side, over speed [-]."""
+    """Frequency times the peak-to-peak amplitude of the tail's tip, over speed [-]."""
     cost_of_transport: float
     """Power over displaced weight and speed [-]."""
     head_yaw: float

@@ -20,16 +20,16 @@ STATIONS = 257
 """Points along the midline, 4 mm apart on a robot of 1 m [-]."""
 
 
-class Silhouette(NamedTuple):
+class BodySilhouette(NamedTuple):
     """The body along its straight midline, the union of its pieces."""
 
     half_width: Float[np.ndarray, " station"]
-    """To either side [m]."""
+    """Half-width, to either side [m]."""
     half_height: Float[np.ndarray, " station"]
     """Up and down [m]."""
 
 
-def silhouette(robot: AnyRobot, s: Float[np.ndarray, " station"]) -> Silhouette:
+def silhouette(robot: AnyRobot, s: Float[np.ndarray, " station"]) -> BodySilhouette:
     """Return how far the straight robot reaches sideways and upwards, limbs left out.
 
     Args:
@@ -37,11 +37,11 @@ def silhouette(robot: AnyRobot, s: Float[np.ndarray, " station"]) -> Silhouette:
         s: from the snout [m].
     """
     found = profile(general(crocodile(robot, "the outline in the water")), s)
-    return Silhouette(found.half_width, found.half_height)
+    return BodySilhouette(found.half_width, found.half_height)
 
 
 class Base(NamedTuple):
-    """Where the snout is and how the head points."""
+    """Position of the snout and direction of the head."""
 
     x: Float[np.ndarray, "*b"]
     """[m]."""
@@ -57,7 +57,7 @@ class Base(NamedTuple):
     """[rad/s]."""
 
 
-class Curve(NamedTuple):
+class MidlineCurve(NamedTuple):
     """A bent midline and how it moves; every array has the shape (*b, station)."""
 
     x: Float[np.ndarray, "*b station"]
@@ -84,7 +84,7 @@ class Outline:
     """
 
     robot: Crocodile
-    """Whose midline."""
+    """Robot whose midline it is."""
     stations: int = STATIONS
     """Points along it [-]."""
 
@@ -98,7 +98,7 @@ class Outline:
         return np.linspace(0.0, self.robot.length, self.stations)
 
     @cached_property
-    def silhouette(self) -> Silhouette:
+    def silhouette(self) -> BodySilhouette:
         """How wide and high the body is at the stations."""
         return silhouette(self.robot, self.s)
 
@@ -143,7 +143,7 @@ class Outline:
         along = np.clip((s[:, None] - self.places) / self.reaches, -1.0, 1.0)
         return np.asarray(0.5 * (1.0 + along + np.sin(np.pi * along) / np.pi))
 
-    def curve(self, bends: Bends, base: Base | None = None) -> Curve:
+    def curve(self, bends: Bends, base: Base | None = None) -> MidlineCurve:
         """Return the midline, its stations equally far apart along it whatever the bends.
 
         Args:
@@ -158,7 +158,7 @@ class Outline:
         spin = rates @ self.bending.T + base.heading_rate[..., None]
         step = self.robot.length / (self.stations - 1)
         at_stations = self.bending_at(self.s)
-        return Curve(
+        return MidlineCurve(
             summed(base.x, step * np.cos(middle)),
             summed(base.y, step * np.sin(middle)),
             angles @ at_stations.T + base.heading[..., None],

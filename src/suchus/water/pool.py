@@ -1,4 +1,4 @@
-"""What a held and a free swim share: the robot's body in a box of water, and how a swim is run, noted and kept."""
+"""What a tethered and a free swim share: the robot's body in a box of water, and how a swim is run, noted and kept."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -38,15 +38,15 @@ class Pool:
     """A robot's body in a box of water, snout at the origin."""
 
     robot: Crocodile
-    """Who swims."""
+    """The robot that swims."""
     motion: Motion
-    """How."""
+    """Its swimming motion."""
     setting: Tether
     """Grid, water and time."""
     turn: complex | None
-    """Harmonic of the direction of a held head; None if nothing holds the body [rad]."""
+    """Harmonic of the direction of a tethered head; None for a free body [rad]."""
     outline: Outline
-    """Of the robot, a station at every cell."""
+    """Outline of the robot, a station at every cell."""
     grid: flow.Grid
     """The cells."""
     shape: flow.Midline
@@ -63,7 +63,7 @@ class Pool:
             motion: how.
             setting: grid, water and time.
             box: length and width where the setting gives none [body length].
-            turn: harmonic of the direction of a held head; None if nothing holds the body [rad].
+            turn: harmonic of the direction of a tethered head; None for a free body [rad].
 
         Raises:
             OutsideLimits: the joints or servos cannot follow the motion.
@@ -91,7 +91,7 @@ class Pool:
 
     @property
     def end(self) -> float:
-        """When the last cycle ends [s]."""
+        """Time at which the last cycle ends [s]."""
         return self.setting.cycles * self.period
 
     def swum(self, witness: Witness, *, checkpoint: Path | str | None, progress: Progress | None) -> xr.Dataset:
@@ -105,7 +105,7 @@ class Pool:
         Raises:
             UnreadableFile: the checkpoint is broken or belongs to another swim.
             Unwritable: it cannot be written.
-            Diverged: the flow came apart.
+            Diverged: the flow diverged.
         """
         free = self.turn is None
         start = (0.5 * self.robot.length, 0.0)
@@ -126,7 +126,7 @@ class Pool:
 
 
 def _named(motion: Motion) -> object:
-    """Return what tells a motion from others, in full."""
+    """Return what identifies a motion, in full."""
     return motion if not hasattr(motion, "middles") else (motion.name, motion.frequency, motion.middles.tobytes())
 
 

@@ -14,7 +14,7 @@ class Attempt(NamedTuple):
     """A reading that was tried."""
 
     letter: str
-    """Of ``kinematics.wave.READINGS``."""
+    """Letter of ``kinematics.wave.READINGS``."""
     fitted: Fit | None
     """The nearest motion of the joints, None if they cannot make the wave."""
     refusal: str

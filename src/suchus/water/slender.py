@@ -1,4 +1,4 @@
-"""The cheap models of swimming: resistive after Taylor, reactive after Lighthill, on the robot's own midline.
+"""Slender-body models of swimming: resistive after Taylor, reactive after Lighthill, on the robot's own midline.
 
 Both take every section of the body for itself. The resistive model drags it by its own velocity; the reactive one
 gives it the momentum of the water beside it, which leaves at the tail. Neither knows the wake nor the flow around the
@@ -14,7 +14,7 @@ from scipy.optimize import brentq
 
 from suchus.design.water import Water
 from suchus.errors import NotConverged
-from suchus.water.outline import Curve, Outline, summed
+from suchus.water.outline import MidlineCurve, Outline, summed
 from suchus.water.undulation import Motion, undulation
 
 _TIMES = 96
@@ -29,14 +29,14 @@ class Effort(NamedTuple):
     thrust: float
     """Force forward [N]."""
     power: float
-    """Of the joints on the water [W]."""
+    """Power of the joints on the water [W]."""
 
 
-Model = Callable[[Outline, Curve, float, Water], Effort]
+Model = Callable[[Outline, MidlineCurve, float, Water], Effort]
 """From the midline's motion over a cycle, and the speed forward [m/s], to the effort."""
 
 
-def resistive(outline: Outline, curve: Curve, speed: float, water: Water) -> Effort:
+def resistive(outline: Outline, curve: MidlineCurve, speed: float, water: Water) -> Effort:
     """Return thrust and power after Taylor: drag square to the body, friction along it.
 
     Args:
@@ -58,7 +58,7 @@ def resistive(outline: Outline, curve: Curve, speed: float, water: Water) -> Eff
     return Effort(thrust, power)
 
 
-def reactive(outline: Outline, curve: Curve, speed: float, water: Water) -> Effort:
+def reactive(outline: Outline, curve: MidlineCurve, speed: float, water: Water) -> Effort:
     """Return thrust and power after Lighthill: the momentum that sheds at the tail, less the body's friction.
 
     The mean force is that of the water that passes the plane through the tail's tip, square to the body, with the
@@ -97,7 +97,8 @@ def recoil(outline: Outline, motion: Motion, speed: float, water: Water) -> tupl
         water: density.
 
     Returns:
-        Harmonics of the snout's way to the right [m] and of the head's direction [rad]: ``Re(h exp(2 pi i f t))``.
+        Harmonics of the snout's displacement to the right [m] and of the head's direction [rad]: ``Re(h exp(2 pi i f
+        t))``.
     """
     bent = undulation(outline, motion)
     omega = 2 * np.pi * bent.frequency
@@ -116,7 +117,7 @@ def recoil(outline: Outline, motion: Motion, speed: float, water: Water) -> tupl
     return complex(sway), complex(turn)
 
 
-def cycle(outline: Outline, motion: Motion, sway: complex = 0j, turn: complex = 0j) -> Curve:
+def cycle(outline: Outline, motion: Motion, sway: complex = 0j, turn: complex = 0j) -> MidlineCurve:
     """Return the midline over one cycle, shape (time, station), its snout swaying and its head turning as given."""
     bent = undulation(outline, motion)
     return bent.held(sway, turn).curve(np.arange(_TIMES) / _TIMES / bent.frequency)
@@ -128,9 +129,9 @@ class Cruise(NamedTuple):
     speed: float
     """Forward; negative if it goes tail first [m/s]."""
     power: float
-    """Of the joints on the water [W]."""
+    """Power of the joints on the water [W]."""
     sway: complex
-    """Harmonic of the snout's way to the side [m]."""
+    """Harmonic of the snout's displacement to the side [m]."""
     turn: complex
     """Harmonic of the head's direction [rad]."""
 
@@ -162,7 +163,7 @@ def cruise(outline: Outline, motion: Motion, model: Model, water: Water) -> Crui
     )
 
 
-def _velocities(curve: Curve, speed: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+def _velocities(curve: MidlineCurve, speed: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Return tangent and the velocity against the water across and along it."""
     tangent_x, tangent_y = np.cos(curve.heading), np.sin(curve.heading)
     x_rate = curve.x_rate - speed

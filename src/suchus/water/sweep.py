@@ -1,4 +1,4 @@
-"""Many swimming motions by the cheap models: speed, efficiency, Strouhal number and slip of each."""
+"""Many swimming motions by the slender-body models: speed, efficiency, Strouhal number and slip of each."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -17,7 +17,7 @@ from suchus.water.swimming import MODELS, displaced, wave_speed
 from suchus.water.undulation import STILL, undulation
 
 VALUES = {"speed": "m/s", "efficiency": "1", "cost_of_transport": "1", "strouhal": "1", "slip": "1"}
-"""What is found of each motion, with units."""
+"""Quantities that are computed for each motion, with units."""
 
 
 def scaled(motion: Swim, amplitude: float, frequency: float) -> Swim:
@@ -33,7 +33,7 @@ def scaled(motion: Swim, amplitude: float, frequency: float) -> Swim:
 
 
 def survey(robot: Crocodile, motions: Sequence[Swim], *, water: Water | None = None, stations: int = 65) -> xr.Dataset:
-    """Return what both cheap models say of motions, and which of them the robot can follow.
+    """Return what both slender-body models say of motions, and which of them the robot can follow.
 
     Args:
         robot: who swims.

@@ -7,7 +7,7 @@ from suchus.design import GRAVITY, WATER_DENSITY, Crocodile, crocodile
 from suchus.design.water import Water
 from suchus.motion import Swim, check_swim
 from suchus.robots import ROBOTS
-from suchus.water.outline import Curve, Outline
+from suchus.water.outline import MidlineCurve, Outline
 from suchus.water.slender import Model, cruise, cycle, reactive, recoil, resistive
 from suchus.water.undulation import Motion, undulation
 
@@ -60,14 +60,14 @@ _PER_MODEL = {
     "speed_lengths": ("1/s", "free swimming, in body lengths"),
     "power": ("W", "of the joints on the water"),
     "slip": ("1", "speed over that of the body wave"),
-    "strouhal": ("1", "frequency times the way of the tail's tip from side to side, over speed"),
+    "strouhal": ("1", "frequency times the peak-to-peak amplitude of the tail's tip, over speed"),
     "cost_of_transport": ("1", "power over displaced weight and speed"),
     "head_yaw": ("rad", "amplitude of the head's direction"),
 }
 
 
 def _numbers(
-    robot: Crocodile, motion: Motion, outline: Outline, curve: Curve, speed: float, power: float
+    robot: Crocodile, motion: Motion, outline: Outline, curve: MidlineCurve, speed: float, power: float
 ) -> dict[str, float]:
     swing = float(np.ptp(curve.y[:, -1]))
     weight = GRAVITY * displaced(outline)
@@ -89,7 +89,7 @@ def displaced(outline: Outline, density: float = WATER_DENSITY) -> float:
     return float(density * np.pi * np.trapezoid(wide * high, outline.s))
 
 
-def wave_speed(outline: Outline, motion: Motion, curve: Curve) -> float:
+def wave_speed(outline: Outline, motion: Motion, curve: MidlineCurve) -> float:
     """Return the speed of the body wave towards the tail, negative if it runs to the head [m/s].
 
     The phase of the sideways motion along the body is fitted with a straight line, each place weighted with the square
@@ -101,14 +101,14 @@ def wave_speed(outline: Outline, motion: Motion, curve: Curve) -> float:
     weight = np.abs(harmonic) ** 2
     if weight.sum() == 0.0:
         return float("inf")
-    late = -np.unwrap(np.angle(harmonic))
+    lag = -np.unwrap(np.angle(harmonic))
     s = outline.s - np.average(outline.s, weights=weight)
-    k = float(np.sum(weight * s * late) / np.sum(weight * s**2))
+    k = float(np.sum(weight * s * lag) / np.sum(weight * s**2))
     return 2 * np.pi * motion.frequency / k if k else float("inf")
 
 
 def _record(
-    outline: Outline, motion: Motion, water: Water, curves: list[Curve], per_model: dict[str, list[float]]
+    outline: Outline, motion: Motion, water: Water, curves: list[MidlineCurve], per_model: dict[str, list[float]]
 ) -> xr.Dataset:
     count = len(curves[0].x)
     data = xr.Dataset(

@@ -31,14 +31,14 @@ class Tether:
     viscosity: float
     """Kinematic viscosity of the water [m2/s]."""
     cycles: int
-    """How many cycles are simulated; the last is measured [-]."""
+    """Number of cycles that are simulated; the last is measured [-]."""
     blunt: float = 0.0
     """Least half-width: where the body is thinner it is thickened, its ends made round [cell]. With 1.75 cells the
     force has the least noise; with 0 the body stays as it is."""
     frames: int = 24
     """Instants of a free body's last cycle at which the fields are kept, for films [-]."""
     box: tuple[float, float] | None = None
-    """Length and width of the box [body length]; None gives a held body 2.75 by 1.5 and a free one 3.5 by 2."""
+    """Length and width of the box [body length]; None gives a tethered body 2.75 by 1.5 and a free one 3.5 by 2."""
 
     def __post_init__(self) -> None:
         with Checks("tether", self) as check:

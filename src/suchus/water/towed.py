@@ -14,17 +14,17 @@ from suchus.water.undulation import STILL
 
 
 def towed(robot: Crocodile, speed: float, setting: Tether, *, lengths: float = 4.0) -> float:
-    """Return the drag of the straight body in a stream, its mean over the last length of the way [N/m].
+    """Return the drag of the straight body in a stream, its mean over the last length of the distance [N/m].
 
     Args:
         robot: whose body.
         speed: of the stream, which grows over the first half length [m/s].
         setting: grid and water; its cycles do not matter.
-        lengths: way of the stream [body length].
+        lengths: distance that the stream moves [body length].
 
     Raises:
         InvalidDesign: the boundary layer is too thin for the grid.
-        Diverged: the flow came apart.
+        Diverged: the flow diverged.
     """
     length = robot.length
     outline = Outline(robot, setting.cells + 1)

@@ -12,7 +12,7 @@ from jaxtyping import Complex, Float
 
 from suchus.errors import InvalidDesign
 from suchus.motion import Swim
-from suchus.water.outline import Curve, Outline, summed
+from suchus.water.outline import MidlineCurve, Outline, summed
 from suchus.water.waves import BodyWave, along
 
 _INSTANTS = 96
@@ -24,9 +24,9 @@ class ExactWave:
     """A wave that the midline follows exactly, joints or not: a body that bends anywhere."""
 
     name: str
-    """How it is called."""
+    """Name, as messages, tables and files show it."""
     wave: BodyWave
-    """What it follows."""
+    """Wave that the midline follows."""
 
     def __post_init__(self) -> None:
         if not (np.isfinite(self.wave.period) and self.wave.period > 0):
@@ -43,11 +43,11 @@ class Undulation:
     """A periodic midline. Harmonic k of a value is ``Re(h[k] exp(2 pi i k f t))``, k from 0 on."""
 
     name: str
-    """How it is called."""
+    """Name, as messages, tables and files show it."""
     frequency: float
     """f [Hz]."""
     outline: Outline
-    """Whose midline."""
+    """Outline of the body whose midline it is."""
     middles: Complex[np.ndarray, "harmonic middle"]
     """Tangent angle halfway between the stations [rad]."""
     stations: Complex[np.ndarray, "harmonic station"]
@@ -56,14 +56,14 @@ class Undulation:
     """Way of the snout to the right [m]."""
 
     def held(self, sway: complex = 0j, turn: complex = 0j) -> "Undulation":
-        """Return the same with a first harmonic added to the snout's way [m] and to the head's direction [rad]."""
+        """Return the same with a first harmonic added to snout's displacement [m] and head's direction [rad]."""
         middles, stations, snout = self.middles.copy(), self.stations.copy(), self.sway.copy()
         middles[1] += turn
         stations[1] += turn
         snout[1] += sway
         return replace(self, middles=middles, stations=stations, sway=snout)
 
-    def curve(self, time: Float[np.ndarray, "*b"], grown: float = 1.0, growing: float = 0.0) -> Curve:
+    def curve(self, time: Float[np.ndarray, "*b"], grown: float = 1.0, growing: float = 0.0) -> MidlineCurve:
         """Return the midline at times.
 
         Args:
@@ -81,7 +81,7 @@ class Undulation:
         (middle, spin), (heading, rate), (y, y_rate) = at(self.middles), at(self.stations), at(self.sway[:, None])
         step = self.outline.robot.length / (self.outline.stations - 1)
         zero = np.zeros_like(y[..., 0])
-        return Curve(
+        return MidlineCurve(
             summed(zero, step * np.cos(middle)),
             summed(y[..., 0], step * np.sin(middle)),
             heading,
@@ -99,7 +99,7 @@ class Undulation:
 Motion = Swim | ExactWave | Undulation
 """What a body can be asked to do: bend its joints, follow a wave, or bend as was worked out before."""
 
-STILL = Swim(name="still", frequency=1.0, yaw=(0.0, 0.0, 0.0), yaw_late=(0.0, 0.0, 0.0), tail=0.0, tail_late=0.0)
+STILL = Swim(name="still", frequency=1.0, yaw=(0.0, 0.0, 0.0), yaw_lag=(0.0, 0.0, 0.0), tail=0.0, tail_lag=0.0)
 """A motion that is none."""
 
 
@@ -114,8 +114,8 @@ def undulation(outline: Outline, motion: Motion) -> Undulation:
         return motion
     if isinstance(motion, ExactWave):
         return _of_wave(outline, motion)
-    late = np.array([*motion.yaw_late, motion.tail_late])
-    angles = np.array([*motion.yaw, motion.tail]) * np.exp(-2j * np.pi * late)
+    lag = np.array([*motion.yaw_lag, motion.tail_lag])
+    angles = np.array([*motion.yaw, motion.tail]) * np.exp(-2j * np.pi * lag)
     middles, stations = outline.bending @ angles, outline.bending_at(outline.s) @ angles
     return Undulation(
         name=motion.name,

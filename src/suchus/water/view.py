@@ -8,7 +8,7 @@ import xarray as xr
 from suchus import flow
 
 SPINE = (("x", "m"), ("y", "m"), ("heading", "rad"), ("half_width", "m"))
-"""What is kept of a midline, with units."""
+"""Quantities of a midline that are stored, with units."""
 
 
 class View:

@@ -7,7 +7,7 @@ import numpy as np
 
 from suchus.design import Crocodile
 from suchus.kinematics import wave as wave_kinematics
-from suchus.kinematics.wave import READINGS, Wave
+from suchus.kinematics.wave import READINGS, TravellingWave
 
 _FINE = 2049
 """Points along a wave from which its arc length is found [-]."""
@@ -35,7 +35,7 @@ class PrintedWave:
     Paper: Eq. (20).
     """
 
-    wave: Wave
+    wave: TravellingWave
     """Its constants in SI units."""
     origin: float
     """Where x of the wave begins, from the snout [m]."""
@@ -63,7 +63,7 @@ class EelWave:
     """
 
     length: float
-    """Of the body [m]."""
+    """Length of the body [m]."""
     frequency: float
     """[Hz]."""
 

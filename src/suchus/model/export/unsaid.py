@@ -1,4 +1,4 @@
-"""What a format leaves out, told with the numbers of the robot that is written."""
+"""What a format leaves out, described with the numbers of the robot that is written."""
 
 from collections.abc import Sequence
 

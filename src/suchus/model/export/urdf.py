@@ -40,7 +40,7 @@ MUJOCO: Mapping[str, str] = {
     "boundmass": "1e-10",
     "boundinertia": "1e-14",
 }
-"""What MuJoCo needs to be told, others skip it: keep the root and the frames as bodies, and where the ball lies; links
+"""What MuJoCo needs to know; others skip it: keep the root and the frames as bodies, and where the ball lies; links
 between joints in one point have no mass, and MuJoCo wants some [kg, kg m2]."""
 _RINGS, _SECTORS = 24, 48
 _FREE_SPEED = 100.0  # [rad/s]; a limit must be given; nothing on the robot turns so fast

@@ -22,7 +22,7 @@ UNSAID = (
     "The cable. In the model one servo turns a pulley and a tendon bends all {cables} tail joints ({first} to {last}) "
     "at once; here each is a joint of its own. Set the targets of their drives to the bend of the tail over {cables}, "
     "and their stiffness to what your controller needs.",
-    "Springs are drives with a target of zero: {springs}. The schema has no springs of their own, and does not tell "
+    "Springs are drives with a target of zero: {springs}. The schema has no springs of their own, and does not say "
     "them from motors.",
     "Servos. A drive holds their proportional and derivative gains, torque limit and, as target, the home posture; "
     "integral gain and slew limit ({speeds} rad/s) are in robot.toml.",

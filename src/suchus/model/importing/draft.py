@@ -13,7 +13,7 @@ from suchus.model.importing.draft_hinges import Match
 from suchus.model.importing.draft_limbs import draft_girdle, lowest
 from suchus.model.importing.making import Making, making_of
 from suchus.model.importing.options import Words
-from suchus.model.importing.plan import Plan, without
+from suchus.model.importing.plan import BodyPlan, without
 
 _LEG = 0.03  # of the robot's length that a leg reaches below the axis, at least
 _CONTACT = {
@@ -37,7 +37,7 @@ class Draft:
     """Guesses, by the place of the number in the robot's file, as ``girdles[0].limb.foot.radius``."""
 
 
-def draft_of(plan: Plan, name: str, words: Words) -> Draft:
+def draft_of(plan: BodyPlan, name: str, words: Words) -> Draft:
     """Return the robot of a body plan.
 
     Args:
@@ -77,8 +77,8 @@ def draft_of(plan: Plan, name: str, words: Words) -> Draft:
     )
 
 
-def _legs(plan: Plan, words: Words) -> tuple[Plan, list[str]]:
-    """Return a plan without limbs that do not reach below the axis, and what is told of them."""
+def _legs(plan: BodyPlan, words: Words) -> tuple[BodyPlan, list[str]]:
+    """Return a plan without limbs that do not reach below the axis, and what is noted of them."""
     told = []
     for number in reversed(range(len(plan.pairs))):
         making = making_of(plan, words)

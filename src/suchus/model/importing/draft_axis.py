@@ -9,9 +9,9 @@ from suchus.design.hinge import Turn
 from suchus.errors import UnreadableFile
 from suchus.model.importing.draft_hinges import Match, axial_sign, axis_names, hinge_of, turn_of
 from suchus.model.importing.making import Making, point
-from suchus.model.importing.plan import Plan, links_between
-from suchus.model.importing.shapes import Piece
-from suchus.model.importing.tree import JOINED, Joint, Part
+from suchus.model.importing.plan import BodyPlan, links_between
+from suchus.model.importing.shapes import ShapePiece
+from suchus.model.importing.tree import JOINED, Joint, TreePart
 
 _END = "guess: the farthest point of its shapes, frames, joints and hips"
 _THIN = 0.1  # radius of a segment without a shape, over its length
@@ -68,7 +68,7 @@ def _hinges(making: Making, groups: Sequence[Sequence[Found]], root: int) -> lis
     return [tuple(group) for group in made]
 
 
-def _free_root(plan: Plan) -> int:
+def _free_root(plan: BodyPlan) -> int:
     return plan.axis.index(0) if 0 in plan.axis else len(plan.axis) // 2
 
 
@@ -78,13 +78,13 @@ def _joints(making: Making, i: int, root: int) -> list[Found]:
     near, far = (axis[i + 1], axis[i]) if ahead else (axis[i], axis[i + 1])
     found = []
     for joint, onward in links_between(making.plan, near, far):
-        turn, way = turn_of(joint, making.turned(joint.axis), making.told)
+        turn, sense = turn_of(joint, making.turned(joint.axis), making.told)
         off = 0.0 if turn == "yaw" else abs(float(making.into(joint.anchor)[2]))
-        found.append((joint, turn, axial_sign(turn, way, ahead=ahead, onward=onward), off))
+        found.append((joint, turn, axial_sign(turn, sense, ahead=ahead, onward=onward), off))
     return found
 
 
-def _ends(making: Making, parts: list[Part], places: list[float]) -> list[float]:
+def _ends(making: Making, parts: list[TreePart], places: list[float]) -> list[float]:
     """Return where segments begin and end along x, from the snout to the tip of the tail [m]."""
     limbs = [chain for pair in making.plan.pairs for chain in pair]
 
@@ -112,7 +112,7 @@ def _tell_offsets(making: Making, groups: Sequence[Sequence[Found]], places: lis
         )
 
 
-def _shapes(making: Making, part: Part, front: float, length: float, number: int) -> tuple[Rod | Shell, ...]:
+def _shapes(making: Making, part: TreePart, front: float, length: float, number: int) -> tuple[Rod | Shell, ...]:
     """Return a segment's shapes, its mass shared among them by volume."""
     start = np.array([front, 0.0, 0.0])
     place = f"axis[{number}].shapes"
@@ -138,12 +138,12 @@ def _shapes(making: Making, part: Part, front: float, length: float, number: int
     return tuple(found)
 
 
-def _half(making: Making, piece: Piece) -> tuple[float, float, float]:
+def _half(making: Making, piece: ShapePiece) -> tuple[float, float, float]:
     """Return half axes in the robot's frame; where that is turned, those of the box around [m]."""
     turned = np.abs(making.plan.plane.turn) @ piece.half
     return point(piece.half if len(piece.ends) == 2 else turned)
 
 
-def _overlaps(making: Making, piece: Piece, front: float, length: float) -> bool:
+def _overlaps(making: Making, piece: ShapePiece, front: float, length: float) -> bool:
     along = making.into(piece.corners)[:, 0]
     return bool(along.min() <= front and along.max() >= front - length)

@@ -31,17 +31,17 @@ class Match:
     sign: float
     """1 where positive angles turn the same way, else -1 [-]."""
     zero: float
-    """What the file calls our zero [rad]."""
+    """Angle of the file's hinge at our zero [rad]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Size:
-    """What servos and springs follow from."""
+    """Mass and length, from which servos and springs follow."""
 
     mass: float
-    """Of the robot [kg]."""
+    """Mass of the robot [kg]."""
     length: float
-    """Of the robot [m]."""
+    """Length of the robot [m]."""
 
 
 def turn_of(joint: Joint, axis: np.ndarray, told: list[str]) -> tuple[Turn, float]:
@@ -70,23 +70,23 @@ def turn_of(joint: Joint, axis: np.ndarray, told: list[str]) -> tuple[Turn, floa
 
 def limb_turn(joint: Joint, axis: np.ndarray, side: float, told: list[str]) -> tuple[Turn, float]:
     """Return what a hinge of a limb turns, and 1 where it turns as ours does, else -1."""
-    along, way = turn_of(joint, axis, told)
+    along, sense = turn_of(joint, axis, told)
     turn: Turn = {"roll": "pitch", "pitch": "roll", "yaw": "yaw"}[along]  # type: ignore[assignment]
     ours = LIMB_AXES[turn][("roll", "pitch", "yaw").index(along)]
-    return turn, way * ours * (side if turn != "roll" else 1.0)
+    return turn, sense * ours * (side if turn != "roll" else 1.0)
 
 
-def axial_sign(turn: Turn, way: float, *, ahead: bool, onward: bool) -> float:
+def axial_sign(turn: Turn, sense: float, *, ahead: bool, onward: bool) -> float:
     """Return 1 where a hinge of the axis turns as ours does, else -1.
 
     Args:
         turn: what it turns.
-        way: whether its axis points along that of the robot's frame.
+        sense: whether its axis points along that of the robot's frame.
         ahead: whether it lies ahead of the root.
         onward: whether a positive angle of the file moves the part farther from our root.
     """
     ours = 1.0 if ahead or turn == "yaw" else -1.0
-    return way * ours * (1.0 if onward else -1.0)
+    return sense * ours * (1.0 if onward else -1.0)
 
 
 def hinge_of(name: str, turn: Turn, sign: float, joint: Joint, size: Size, share: float, *, lone: bool) -> Hinge:

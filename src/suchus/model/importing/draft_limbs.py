@@ -10,15 +10,15 @@ from suchus.errors import UnreadableFile
 from suchus.kinematics import limb as limb_kinematics
 from suchus.model.importing.draft_hinges import Match, hinge_of, limb_names, limb_turn, numbered
 from suchus.model.importing.making import Making, point
-from suchus.model.importing.plan import Chain
-from suchus.model.importing.tree import Joint, Part
+from suchus.model.importing.plan import LimbChain
+from suchus.model.importing.tree import Joint, TreePart
 
 _NAMES = {1: "H", 2: "FH", 3: "FMH"}
 _THIN, _FOOT = 0.1, 0.08  # radius of a link whose shape is not known, over its length; of a foot, over the limb's reach
 _FOOT_SHARE = 0.1  # of the last link's mass
 _POINT = 1e-6  # m; hinges nearer to each other sit in one point
 _LEAST = 1e-5  # m; of a hip's distance from the midline
-_ALIKE = 0.01  # of the size, or rad; sides that differ by more are told
+_ALIKE = 0.01  # of the size, or rad; sides that differ by more are noted
 _POSTURES = 256
 
 
@@ -59,10 +59,10 @@ def lowest(girdle: Girdle) -> float:
     return float(limb_kinematics.forward(girdle.limb, angles)[:, 2].min()) + girdle.above
 
 
-def _limb(making: Making, chain: Chain, turns: list[tuple[Turn, float]], labels: list[str], place: str) -> Limb:
+def _limb(making: Making, chain: LimbChain, turns: list[tuple[Turn, float]], labels: list[str], place: str) -> Limb:
     """Return the left limb: hinges in one point share a link, whose mass is that of the parts up to the next point."""
     parts = [making.plan.part(i) for i in chain.parts]
-    stations: list[tuple[np.ndarray, list[tuple[int, Joint]], list[Part]]] = []
+    stations: list[tuple[np.ndarray, list[tuple[int, Joint]], list[TreePart]]] = []
     number = 0
     for part in parts:
         for joint in part.joints:
@@ -104,7 +104,7 @@ def _limb(making: Making, chain: Chain, turns: list[tuple[Turn, float]], labels:
     return Limb(links=tuple(links), foot=Foot(radius=radius, mass=feet))
 
 
-def _link_name(carried: list[Part], number: int, chain: Chain, making: Making) -> str:
+def _link_name(carried: list[TreePart], number: int, chain: LimbChain, making: Making) -> str:
     """Return the name of a link: that of its part without the limb's, if it is called so."""
     names = [making.plan.part(i).name for i in chain.parts]
     own = carried[-1].name if carried else ""
@@ -114,7 +114,7 @@ def _link_name(carried: list[Part], number: int, chain: Chain, making: Making) -
     return tail if found and tail and alike and unique else f"link_{number + 1}"
 
 
-def _foot(making: Making, parts: list[Part], knee: np.ndarray, place: str) -> tuple[np.ndarray, float]:
+def _foot(making: Making, parts: list[TreePart], knee: np.ndarray, place: str) -> tuple[np.ndarray, float]:
     """Return the foot's centre in the robot's frame [m] and its radius [m]."""
     last = parts[-1]
     balls = [(making.into(piece.centre), float(piece.half[0])) for piece in last.pieces if piece.ball]
@@ -144,7 +144,7 @@ def _foot(making: Making, parts: list[Part], knee: np.ndarray, place: str) -> tu
     return far_end, max(radius, 1e-5)
 
 
-def _radius(making: Making, carried: list[Part], length: float, place: str) -> float:
+def _radius(making: Making, carried: list[TreePart], length: float, place: str) -> float:
     """Return the radius of a link: of its thickest rod, else from the box around its shapes, else from its length."""
     pieces = [piece for part in carried for piece in part.pieces]
     rods = [float(piece.half[0]) for piece in pieces if len(piece.ends) == 2]

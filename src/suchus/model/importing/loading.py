@@ -27,13 +27,13 @@ class Loaded:
     """A model that MuJoCo made of a file, and what the file says beside it."""
 
     kind: Format
-    """What the file is."""
+    """Format of the file."""
     model: Any
     """The ``mujoco.MjModel``: bodies, hinges and shapes."""
     drives: dict[str, Drive]
     """What drives each hinge; empty where the file says nothing of drives."""
     told: tuple[str, ...]
-    """What was not taken, in sentences."""
+    """Notes on what was not taken over, a sentence each."""
 
 
 def load(path: Path) -> Loaded:

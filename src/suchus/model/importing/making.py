@@ -8,7 +8,7 @@ from suchus.design import Hinge, Spring
 from suchus.design.segment import Point
 from suchus.model.importing.draft_hinges import Match, Size
 from suchus.model.importing.options import Words
-from suchus.model.importing.plan import Chain, Plan, links_between
+from suchus.model.importing.plan import BodyPlan, LimbChain, links_between
 from suchus.model.importing.tree import Joint
 
 
@@ -16,14 +16,14 @@ from suchus.model.importing.tree import Joint
 class Making:
     """A draft in the making, its frame forward, left, up with the origin on the axis."""
 
-    plan: Plan
+    plan: BodyPlan
     """Axis and limbs."""
     words: Words
-    """What the user said."""
+    """The options that the user gave."""
     level: float
     """Height of the axis above the point of the mirror plane [m]."""
     size: Size
-    """What servos and springs follow from."""
+    """Mass and length, from which servos and springs follow."""
     heaviest: float
     """Mass of the heaviest part [kg]."""
     matches: list[Match] = field(default_factory=list)
@@ -41,7 +41,7 @@ class Making:
         """Return a direction of the file in the robot's frame, shape (3,) [-]."""
         return np.asarray(self.plan.plane.turn @ axis)
 
-    def hip(self, chain: Chain) -> np.ndarray:
+    def hip(self, chain: LimbChain) -> np.ndarray:
         """Return where a limb begins in the frame of the file, shape (3,) [m]."""
         return self.plan.part(chain.parts[0]).joints[0].anchor
 
@@ -63,7 +63,7 @@ class Making:
                 self.notes[f"{at}.{name}"] = "of the file"
 
 
-def making_of(plan: Plan, words: Words) -> Making:
+def making_of(plan: BodyPlan, words: Words) -> Making:
     """Return a draft that has not begun."""
     corners = plan.plane.into(np.concatenate([plan.part(i).corners for i in plan.axis]))
     length = max(float(np.ptp(corners[:, 0])), 0.2 * plan.tree.size)
@@ -81,7 +81,7 @@ def point(values: np.ndarray) -> Point:
     return float(values[0]), float(values[1]), float(values[2])
 
 
-def _level(plan: Plan) -> float:
+def _level(plan: BodyPlan) -> float:
     """Return the height of the axis: that of its pitch and roll hinges in the middle, else of the root's origin [m]."""
     heights = [
         float(plan.plane.into(joint.anchor)[2])

@@ -6,11 +6,11 @@ from dataclasses import dataclass, replace
 from suchus.errors import UnknownName, UnreadableFile
 from suchus.model.importing.options import Words
 from suchus.model.importing.symmetry import Plane, find_plane
-from suchus.model.importing.tree import Joint, Part, Tree
+from suchus.model.importing.tree import Joint, Tree, TreePart
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Chain:
+class LimbChain:
     """A limb: parts from the hip to the foot."""
 
     on: int
@@ -20,8 +20,8 @@ class Chain:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Plan:
-    """What is axis and what is limb."""
+class BodyPlan:
+    """The parts of the tree that form the axis, and those that form each limb."""
 
     tree: Tree
     """The tree; parts that were left out have lent their masses to those that carry them."""
@@ -29,17 +29,17 @@ class Plan:
     """The robot's frame."""
     axis: tuple[int, ...]
     """Places in the tree, from the front end to the rear end."""
-    pairs: tuple[tuple[Chain, Chain], ...]
+    pairs: tuple[tuple[LimbChain, LimbChain], ...]
     """Limbs, left and right, from the front."""
     told: tuple[str, ...]
     """What was guessed, and what was not taken."""
 
-    def part(self, place: int) -> Part:
+    def part(self, place: int) -> TreePart:
         """Return a part of the tree."""
         return self.tree.parts[place]
 
 
-def plan_of(tree: Tree, words: Words) -> Plan:
+def plan_of(tree: Tree, words: Words) -> BodyPlan:
     """Return the body plan of a tree.
 
     Raises:
@@ -57,7 +57,7 @@ def plan_of(tree: Tree, words: Words) -> Plan:
             lost += [(i, "hangs beside the axis") for i in (left, right)]
             continue
         one, two = (_main(tree, plane, first) for first in (left, right))
-        pairs.append((Chain(on=axis.index(where), parts=one), Chain(on=axis.index(where), parts=two)))
+        pairs.append((LimbChain(on=axis.index(where), parts=one), LimbChain(on=axis.index(where), parts=two)))
     if not pairs and len(axis) == 1:
         alone = ", ".join(tree.parts[i].name for i, _ in lost[:4])
         image = f"; {alone} have no mirror image" if alone else ""
@@ -70,13 +70,13 @@ def plan_of(tree: Tree, words: Words) -> Plan:
     why = dict(lost)
     for i in first:
         names = [tree.parts[k].name for k in tree.below(i) if k not in used]
-        reason = why.get(i) or ("in the middle, but not on the way from front to rear" if i in split.axis else "a fork")
+        reason = why.get(i) or ("in the middle, but not between front and rear" if i in split.axis else "a fork")
         told.append(
             f"{', '.join(names[:4])}{' ...' if len(names) > 4 else ''} was left out ({reason}); its mass went to the "
             f"part that carries it. {'See --neck and --tail.' if i in split.axis else ''}".rstrip()
         )
     hips = {pair: plane.into(tree.parts[pair[0].parts[0]].joints[0].anchor)[0] for pair in pairs}
-    return Plan(
+    return BodyPlan(
         tree=_lumped(tree, used),
         plane=plane,
         axis=axis,
@@ -85,14 +85,14 @@ def plan_of(tree: Tree, words: Words) -> Plan:
     )
 
 
-def without(plan: Plan, pair: tuple[Chain, Chain]) -> Plan:
+def without(plan: BodyPlan, pair: tuple[LimbChain, LimbChain]) -> BodyPlan:
     """Return a plan without a pair of limbs, whose mass goes to the part that carries them."""
     pairs = tuple(one for one in plan.pairs if one is not pair)
     used = {*plan.axis, *(i for one in pairs for chain in one for i in chain.parts)}
     return replace(plan, tree=_lumped(plan.tree, used), pairs=pairs)
 
 
-def links_between(plan: Plan, near: int, far: int) -> Iterator[tuple[Joint, bool]]:
+def links_between(plan: BodyPlan, near: int, far: int) -> Iterator[tuple[Joint, bool]]:
     """Yield the hinges between two neighbours of the axis from the one near our root on.
 
     Each comes with whether its positive turn moves the far part as in the file, and not the near one.
@@ -140,7 +140,7 @@ def _pruned(tree: Tree, names: Sequence[str]) -> tuple[Tree, list[str]]:
 
 
 def _chain(tree: Tree, plane: Plane, inside: Sequence[int], words: Words) -> tuple[int, ...]:
-    """Return the way through the parts in the plane from the foremost to the hindmost one."""
+    """Return the path through the parts in the plane from the foremost to the hindmost one."""
     ends = {i: plane.into(tree.parts[i].corners)[:, 0] for i in inside}
     front = _place(tree, words.neck, inside) if words.neck else max(inside, key=lambda i: float(ends[i].max()))
     rear = _place(tree, words.tail, inside) if words.tail else min(inside, key=lambda i: float(ends[i].min()))
@@ -164,11 +164,11 @@ def _upward(tree: Tree, place: int) -> list[int]:
 
 
 def _main(tree: Tree, plane: Plane, first: int) -> tuple[int, ...]:
-    """Return the way from a hip to the end of the branch that has most hinges, the lowest of those alike."""
+    """Return the path from a hip to the end of the branch that has most hinges, the lowest of those alike."""
 
     def rank(place: int) -> tuple[int, float]:
-        way = [i for i in _upward(tree, place) if i >= first]
-        hinges = sum(len(tree.parts[i].joints) for i in way)
+        path = [i for i in _upward(tree, place) if i >= first]
+        hinges = sum(len(tree.parts[i].joints) for i in path)
         return hinges, -float(plane.into(tree.parts[place].corners)[:, 2].min())
 
     below = tree.below(first)

@@ -11,7 +11,7 @@ _NEAR = 1e-6  # of a rod's size; a ball so near to its end is its round end
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Piece:
+class ShapePiece:
     """A rod, or an ellipsoid whose half axes are those of the frame; a ball has equal ones."""
 
     ends: np.ndarray
@@ -43,7 +43,7 @@ class Piece:
         return np.concatenate([end + signs * self.half for end in self.ends])
 
 
-def of_body(model: Any, data: Any, body: int) -> tuple[Piece, ...]:
+def of_body(model: Any, data: Any, body: int) -> tuple[ShapePiece, ...]:
     """Return the shapes of a body, those that touch others if there are any; a rod's round ends are its own."""
     first, count = int(model.body_geomadr[body]), int(model.body_geomnum[body])
     geoms = list(range(first, first + count))
@@ -60,32 +60,32 @@ def of_body(model: Any, data: Any, body: int) -> tuple[Piece, ...]:
     return (*rods, *(piece for piece in pieces if len(piece.ends) == 1 and not _is_cap(piece, rods)))
 
 
-def _piece(model: Any, data: Any, geom: int) -> Piece:
+def _piece(model: Any, data: Any, geom: int) -> ShapePiece:
     place, turn = data.geom_xpos[geom], data.geom_xmat[geom].reshape(3, 3)
     size, kind = model.geom_size[geom], mujoco.mjtGeom(int(model.geom_type[geom]))
     kinds = mujoco.mjtGeom
     if kind in (kinds.mjGEOM_CAPSULE, kinds.mjGEOM_CYLINDER) and size[1] > size[0]:
         along = size[1] * turn[:, 2]
-        return Piece(ends=np.array([place - along, place + along]), half=np.full(3, size[0]))
+        return ShapePiece(ends=np.array([place - along, place + along]), half=np.full(3, size[0]))
     if kind == kinds.mjGEOM_SPHERE:
-        return Piece(ends=place[None].copy(), half=np.full(3, size[0]))
+        return ShapePiece(ends=place[None].copy(), half=np.full(3, size[0]))
     if kind == kinds.mjGEOM_ELLIPSOID:
-        return Piece(ends=place[None].copy(), half=np.sqrt((turn * size) ** 2 @ np.ones(3)))
+        return ShapePiece(ends=place[None].copy(), half=np.sqrt((turn * size) ** 2 @ np.ones(3)))
     middle, half = model.geom_aabb[geom, :3], model.geom_aabb[geom, 3:]
-    return Piece(ends=(place + turn @ middle)[None], half=np.maximum(np.abs(turn) @ half, 1e-5))
+    return ShapePiece(ends=(place + turn @ middle)[None], half=np.maximum(np.abs(turn) @ half, 1e-5))
 
 
-def _shortened(rod: Piece, pieces: list[Piece]) -> Piece:
+def _shortened(rod: ShapePiece, pieces: list[ShapePiece]) -> ShapePiece:
     """Return a cylinder as a rod whose round ends stay inside it; one that ends in balls is a rod already."""
     if sum(_is_cap(piece, [rod]) for piece in pieces) >= 2:
         return rod
     length = float(np.linalg.norm(rod.ends[1] - rod.ends[0]))
     inward = (rod.ends[1] - rod.ends[0]) * min(rod.half[0] / length, 0.45)
-    return Piece(ends=np.array([rod.ends[0] + inward, rod.ends[1] - inward]), half=rod.half)
+    return ShapePiece(ends=np.array([rod.ends[0] + inward, rod.ends[1] - inward]), half=rod.half)
 
 
-def _is_cap(ball: Piece, rods: list[Piece]) -> bool:
-    """Tell whether a ball is the round end of a rod."""
+def _is_cap(ball: ShapePiece, rods: list[ShapePiece]) -> bool:
+    """Return whether a ball is the round end of a rod."""
     return ball.ball and any(
         bool(ball.half[0] <= rod.half[0] * (1 + 1e-9))
         and bool(np.linalg.norm(rod.ends - ball.centre, axis=1).min() <= _NEAR * max(rod.half[0], 1e-9))

@@ -7,14 +7,14 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from suchus.model.importing.draft_hinges import SKEW
-from suchus.model.importing.plan import Chain, Plan
-from suchus.model.importing.shapes import Piece
-from suchus.model.importing.tree import Joint, Part
+from suchus.model.importing.plan import BodyPlan, LimbChain
+from suchus.model.importing.shapes import ShapePiece
+from suchus.model.importing.tree import Joint, TreePart
 
 _NEAR = np.radians(10.0)  # two turns that differ by less are alike: the one that points the limb sideways is taken
 
 
-def straightened(plan: Plan) -> Plan:
+def straightened(plan: BodyPlan) -> BodyPlan:
     """Return a plan whose limbs are turned at their hinges until those that follow lie along the robot's axes.
 
     The leg of a hexapod that points forward and out by 45 degrees is turned at its yaw hinge until it points straight
@@ -27,7 +27,7 @@ def straightened(plan: Plan) -> Plan:
     return replace(plan, tree=replace(plan.tree, parts=tuple(parts)), told=tuple(told))
 
 
-def _straighten(plan: Plan, parts: list[Part], chain: Chain, told: list[str]) -> None:
+def _straighten(plan: BodyPlan, parts: list[TreePart], chain: LimbChain, told: list[str]) -> None:
     order = [(i, k) for i in chain.parts for k in range(len(parts[i].joints))]
     for number, (i, k) in enumerate(order[1:], 1):
         axis = plan.plane.turn @ parts[i].joints[k].axis
@@ -45,7 +45,7 @@ def _straighten(plan: Plan, parts: list[Part], chain: Chain, told: list[str]) ->
         )
 
 
-def _angle(plan: Plan, parts: list[Part], chain: Chain, pivot: Joint, axis: np.ndarray) -> float | None:
+def _angle(plan: BodyPlan, parts: list[TreePart], chain: LimbChain, pivot: Joint, axis: np.ndarray) -> float | None:
     """Return how far to turn at a hinge so that the next one's axis lies along one of the robot's [rad]."""
     about = plan.plane.turn @ pivot.axis
     along = int(np.argmax(np.abs(about)))
@@ -63,8 +63,8 @@ def _angle(plan: Plan, parts: list[Part], chain: Chain, pivot: Joint, axis: np.n
     return min((one for one in tried if one[0] < least + _NEAR), key=lambda one: one[1:])[2]
 
 
-def _turn(parts: list[Part], plan: Plan, place: int, which: int, angle: float) -> None:
-    """Turn all that a hinge carries, its own part included, and tell the hinge its new zero."""
+def _turn(parts: list[TreePart], plan: BodyPlan, place: int, which: int, angle: float) -> None:
+    """Turn all that a hinge carries, its own part included, and give the hinge its new zero."""
     pivot = parts[place].joints[which]
     rotation = Rotation.from_rotvec(angle * pivot.axis)
 
@@ -89,6 +89,6 @@ def _turn(parts: list[Part], plan: Plan, place: int, which: int, angle: float) -
         )
 
 
-def _moved(piece: Piece, moved: Callable[[np.ndarray], np.ndarray], rotation: Rotation) -> Piece:
+def _moved(piece: ShapePiece, moved: Callable[[np.ndarray], np.ndarray], rotation: Rotation) -> ShapePiece:
     half = piece.half if np.ptp(piece.half) == 0 else np.abs(rotation.as_matrix()) @ piece.half
-    return Piece(ends=moved(piece.ends), half=half)
+    return ShapePiece(ends=moved(piece.ends), half=half)

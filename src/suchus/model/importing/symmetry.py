@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from suchus.errors import UnknownName, UnreadableFile
-from suchus.model.importing.tree import Joint, Part, Tree
+from suchus.model.importing.tree import Joint, Tree, TreePart
 
 TOLERANCE = 0.02
 """Mirror images may miss each other by this share of the robot's size [-]."""
@@ -114,7 +114,7 @@ def _rank(tree: Tree, plane: Plane, split: Split) -> tuple[bool, int, float]:
 
 
 def _close(one: tuple[bool, int, float], two: tuple[bool, int, float]) -> bool:
-    """Tell whether nothing but a tenth of the length speaks for one plane against another."""
+    """Return whether nothing but a tenth of the length speaks for one plane against another."""
     return one[:2] == two[:2] and abs(one[2] - two[2]) <= 0.1 * max(one[2], two[2])
 
 
@@ -146,15 +146,15 @@ def split_by(tree: Tree, plane: Plane) -> Split:
     return Split(axis=tuple(axis), pairs=tuple(pairs), single=tuple(single))
 
 
-def _within(part: Part, plane: Plane, near: float) -> bool:
-    """Tell whether a part lies in the plane: its centre of mass, and its hinges but those across the plane."""
+def _within(part: TreePart, plane: Plane, near: float) -> bool:
+    """Return whether a part lies in the plane: its centre of mass, and its hinges but those across the plane."""
     if abs(plane.into(part.com)[1]) > near:
         return False
     return all(abs((plane.turn @ j.axis)[1]) > _LEVEL or abs(plane.into(j.anchor)[1]) <= near for j in part.joints)
 
 
 def _twins(tree: Tree, one: int, two: int, plane: Plane, near: float) -> bool:
-    """Tell whether two branches of one part mirror each other hinge by hinge."""
+    """Return whether two branches of one part mirror each other hinge by hinge."""
     if tree.parts[one].parent != tree.parts[two].parent:
         return False
     ours, theirs = ([tree.parts[i] for i in tree.below(b)] for b in (one, two))
@@ -165,7 +165,7 @@ def _twins(tree: Tree, one: int, two: int, plane: Plane, near: float) -> bool:
 
 
 def _mirrors(one: Joint, two: Joint, plane: Plane, near: float) -> bool:
-    """Tell whether the axis of a hinge, mirrored, is the line about which another one turns."""
+    """Return whether the axis of a hinge, mirrored, is the line about which another one turns."""
     place, line = plane.into(one.anchor) * _FLIP, plane.turn @ one.axis * _FLIP
     return bool(_meet(place[None], line[None], plane.into(two.anchor)[None], (plane.turn @ two.axis)[None], near)[0, 0])
 

@@ -10,10 +10,10 @@ from suchus.design.checks import require
 from suchus.errors import UnreadableFile
 from suchus.model.importing.drives import Drive
 from suchus.model.importing.loading import Loaded
-from suchus.model.importing.shapes import Piece, of_body
+from suchus.model.importing.shapes import ShapePiece, of_body
 
 NOTHING = 1e-9
-"""Masses up to this are none: MuJoCo was told to fill missing ones with a tenth of it [kg]."""
+"""Masses up to this are none: MuJoCo was asked to fill missing ones with a tenth of it [kg]."""
 JOINED = 1e-6
 """Hinges nearer than this share of a robot's size sit in one point [-]."""
 
@@ -41,11 +41,11 @@ class Joint:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Part:
+class TreePart:
     """What moves as one: bodies without hinges between them."""
 
     name: str
-    """Of its first body."""
+    """Name of its first body."""
     parent: int
     """Place of the part that carries it; -1 for the root."""
     joints: tuple[Joint, ...]
@@ -56,12 +56,12 @@ class Part:
     """Centre of mass, shape (3,) [m]."""
     origin: np.ndarray
     """Of its first body, shape (3,) [m]."""
-    pieces: tuple[Piece, ...]
+    pieces: tuple[ShapePiece, ...]
     """Its shapes."""
     points: np.ndarray
     """Origins of its bodies and sites, shape (n, 3) [m]."""
     names: tuple[str, ...]
-    """Of its bodies."""
+    """Names of its bodies."""
 
     @property
     def corners(self) -> np.ndarray:
@@ -74,10 +74,10 @@ class Part:
 class Tree:
     """Parts, a parent before its children."""
 
-    parts: tuple[Part, ...]
+    parts: tuple[TreePart, ...]
     """The first one is the root."""
     told: tuple[str, ...]
-    """What was not taken, in sentences."""
+    """Notes on what was not taken over, a sentence each."""
 
     @property
     def size(self) -> float:
@@ -118,7 +118,7 @@ def tree_of(loaded: Loaded) -> Tree:
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
     root, told = _root(model)
-    parts: list[Part] = []
+    parts: list[TreePart] = []
     part_of: dict[int, int] = {}
     for body in range(root, model.nbody):
         above = int(model.body_parentid[body])
@@ -159,12 +159,12 @@ def _root(model: Any) -> tuple[int, tuple[str, ...]]:
     return root, tuple(told)
 
 
-def _body(model: Any, data: Any, body: int, loaded: Loaded, *, root: bool) -> Part:
+def _body(model: Any, data: Any, body: int, loaded: Loaded, *, root: bool) -> TreePart:
     first, count = int(model.body_jntadr[body]), int(model.body_jntnum[body])
     joints = () if root else tuple(_joint(model, data, j, loaded) for j in range(first, first + count))
     sites = [data.site_xpos[s] for s in range(model.nsite) if model.site_bodyid[s] == body]
     name = model.body(body).name or f"body_{body}"
-    return Part(
+    return TreePart(
         name=name,
         parent=-1,
         joints=joints,
@@ -194,7 +194,7 @@ def _joint(model: Any, data: Any, joint: int, loaded: Loaded) -> Joint:
     )
 
 
-def _fused(one: Part, two: Part) -> Part:
+def _fused(one: TreePart, two: TreePart) -> TreePart:
     """Return two parts that move as one."""
     mass = one.mass + two.mass
     com = (one.mass * one.com + two.mass * two.com) / mass if mass > 0 else one.com
@@ -208,11 +208,11 @@ def _fused(one: Part, two: Part) -> Part:
     )
 
 
-def _joined(parts: list[Part]) -> list[Part]:
+def _joined(parts: list[TreePart]) -> list[TreePart]:
     """Put hinges in one point into one joint: of the parts between them nothing is left but those with mass."""
     size = max(float(np.ptp(np.concatenate([part.corners for part in parts]), axis=0).max()), 1e-9)
     kept: dict[int, int] = {}
-    found: list[Part] = []
+    found: list[TreePart] = []
     waiting: dict[int, tuple[int, tuple[Joint, ...]]] = {}
     for place, part in enumerate(parts):
         above, before = waiting.get(part.parent, (part.parent, ()))

@@ -15,6 +15,6 @@ RULES = (
         why="Said of crocodiles. With servos like the robot's own a bound goes {speed_bound:.2f} m/s, "
         "{flight_bound:.0%} of the time in flight, and the fastest walk {speed_walk:.2f} m/s; with the best servos "
         "tried the bound goes {speed_bound_best:.2f} m/s.",
-        unswept="Said of crocodiles; no design of a robot tells how fast they are.",
+        unswept="Said of crocodiles; no design of a robot says how fast they are.",
     ),
 )

@@ -1,4 +1,4 @@
-"""When the claims on lost joints count as what (section IV.C, Figs 18 to 21)."""
+"""When the claims on failed joints count as what (section IV.C, Figs 18 to 21)."""
 
 from suchus.paper import CLAIMS
 from suchus.verdict.rule import Band, Clause, Rule
@@ -54,7 +54,7 @@ def _bare(joint: str) -> str:
     text = (
         " The intact robot with limbs only is already at {loss_intact_limbs_only:+.0%}. With its tail in the air it "
         f"is at {{loss_intact_limbs_tail_lifted:+.0%}} intact and at {{loss_{joint}_limp_one_limbs_tail_lifted:+.0%}} "
-        "with the joint lost."
+        "with the joint failed."
     )
     printed = CLAIMS[f"fault_{joint}_limbs_only"].value or 0.0
     ours, bare = (CLAIMS[f"displacement_{arm}"].value or 0.0 for arm in ("coordinated", "limbs_only"))

@@ -3,7 +3,7 @@
 from suchus.verdict.rule import Band, Clause, Rule
 
 _KMH = 1 / 3.6
-_UNSWEPT = "Said of crocodiles; no design of a robot tells how fast or how they walk."
+_UNSWEPT = "Said of crocodiles; no design of a robot says how fast or how they walk."
 _MODELS = "both models of the legs' servos"
 _ROBOT = "; the robot resembles it if it walks as fast"
 _HALF = "about half: what is nearer to a half than to a fifth or to four fifths"
@@ -16,7 +16,7 @@ RULES = (
         kind="animals",
         holds=(Clause("speed_high_walk_slowest", ">=", 4.5 * _KMH, f"5 km/h, as rounded{_ROBOT}"),),
         band=Band(low="speed_high_walk_slowest_low", high="speed_high_walk_slowest_high", of=_MODELS),
-        why="Said of crocodiles, of which the article tells no size. Nile crocodiles of 1.5 to 7 kg walk high at "
+        why="Said of crocodiles, of which the article gives no size. Nile crocodiles of 1.5 to 7 kg walk high at "
         "{animals_high_walk_slowest:.1f} to {animals_high_walk_fastest:.1f} m/s (Michel). The robot, 1 m long, walks "
         "high at {speed_high_walk_slowest:.2f} to {speed_high_walk_fastest:.2f} m/s.",
         unswept=_UNSWEPT,
@@ -28,7 +28,7 @@ RULES = (
         kind="animals",
         holds=(Clause("speed_high_walk_fastest", ">=", 9.5 * _KMH, f"10 km/h, as rounded{_ROBOT}"),),
         band=Band(low="speed_high_walk_fastest_low", high="speed_high_walk_fastest_high", of=_MODELS),
-        why="Said of crocodiles, of which the article tells no size. Nile crocodiles of 1.5 to 7 kg walk high at up to "
+        why="Said of crocodiles, of which the article gives no size. Nile crocodiles of 1.5 to 7 kg walk high at up to "
         "{animals_high_walk_fastest:.1f} m/s (Michel), the robot at up to {speed_high_walk_fastest:.2f} m/s.",
         unswept=_UNSWEPT,
     ),

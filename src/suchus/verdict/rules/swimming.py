@@ -5,7 +5,7 @@ from math import atan
 from suchus.verdict.rule import Band, Clause, Rule
 
 _DIAGONAL = 0.1
-_HELD = "cycles of the held body after the first"
+_HELD = "cycles of the tethered body after the first"
 _LAST = "the last two cycles of the compared swims"
 _EACH = "in every measured cycle, not only in one"
 _UNSWEPT = "A swim in the resolved flow takes up to two minutes; no study runs it for other designs."

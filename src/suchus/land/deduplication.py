@@ -12,11 +12,11 @@ _EARLY = 1e-6
 """By how much too early rather than too late a trouble may be awaited [control period]."""
 
 
-class Alike:
+class Deduplication:
     """The runs of a batch in groups that differ in nothing that the physics has felt yet.
 
     Such are the runs of one robot that is pushed in many ways, up to the push. Members of a group have the same robot,
-    ground and first posture, and were told the same servo angles to the last bit; who is told another angle, or is
+    ground and first posture, and had the same commanded servo angles to the last bit; a run with another command, or is
     about to break or be pushed, leaves.
 
     Args:
@@ -40,11 +40,11 @@ class Alike:
         self._number()
 
     def part(self, tick: int, targets: np.ndarray) -> None:
-        """Let those leave whose first trouble is due, and those who are told something else than the others.
+        """Let those leave whose first trouble is due, and those that have other commands than the others.
 
         Args:
             tick: number of the control period.
-            targets: what the servos are told in it, shape (run, servo) [rad].
+            targets: commanded servo angles in it, shape (run, servo) [rad].
         """
         if not self._groups:
             return

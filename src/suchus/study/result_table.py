@@ -13,13 +13,13 @@ from suchus.record import versions
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Table:
+class ResultTable:
     """Rows of words and numbers."""
 
     caption: str
-    """What it shows."""
+    """Caption of the table."""
     heads: Sequence[str]
-    """Of the columns."""
+    """Headings of the columns."""
     rows: Sequence[Sequence[str]]
     """As they are to be read."""
     words: Sequence[int] = (0,)
@@ -27,7 +27,7 @@ class Table:
 
     @property
     def numeric(self) -> tuple[int, ...]:
-        """Which columns hold numbers."""
+        """Indices of the columns that hold numbers."""
         return tuple(i for i in range(len(self.heads)) if i not in self.words)
 
 
@@ -43,11 +43,11 @@ class Section:
     """Files beside the page and what they are called."""
     figures: Sequence[str] = ()
     """Names of figures."""
-    tables: Sequence[Table] = ()
+    tables: Sequence[ResultTable] = ()
     """After the figures."""
 
 
-def write_sheet(
+def write_tables(
     folder: Path, title: str, lead: str, sections: Sequence[Section], pictures: Mapping[str, Figure]
 ) -> Path:
     """Write ``index.html`` and its pictures into a folder and return the page's path; equal figures give equal bytes.
@@ -82,7 +82,7 @@ def write_sheet(
         for section in sections
     ]
     foot = f"suchus {versions()['suchus']}, MuJoCo {versions()['mujoco']}."
-    page = environment.get_template("sheet.html").render(title=title, lead=lead, sections=shown, foot=foot)
+    page = environment.get_template("result_table.html").render(title=title, lead=lead, sections=shown, foot=foot)
     path = folder / "index.html"
     path.write_text(page, encoding="utf-8")
     return path

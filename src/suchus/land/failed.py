@@ -1,4 +1,4 @@
-"""Joints lost as the article speaks of them: by girdle and hinge, in one leg or both, limp or locked."""
+"""Failed joints, the article's lost ones: by girdle and hinge, in one leg or both, limp or locked."""
 
 from typing import Literal
 
@@ -8,21 +8,21 @@ from suchus.design import AnyRobot, layout
 from suchus.errors import UnknownName
 from suchus.fault import Fault
 from suchus.faults import Limp, Locked
-from suchus.motion import AnyGait, Gait, pattern_targets, servo_targets
+from suchus.motion import AnyGait, cycle_targets
 
 Joint = Literal["front_yaw", "hind_yaw", "front_pitch", "hind_pitch", "front_knee", "hind_knee"]
 Kind = Literal["limp", "locked"]
 Legs = Literal["one", "both"]
-LOST: tuple[Joint, ...] = ("front_yaw", "hind_yaw", "front_pitch", "hind_pitch")
-"""The joints whose loss the article reports, in the order of Figs 18 to 21."""
+FAILED_JOINTS: tuple[Joint, ...] = ("front_yaw", "hind_yaw", "front_pitch", "hind_pitch")
+"""The joints whose failure the article reports, in the order of Figs 18 to 21."""
 KNEES: tuple[Joint, ...] = ("front_knee", "hind_knee")
-"""The second pitch joint of each leg (III.D), of whose loss the article says nothing."""
+"""The second pitch joint of each leg (III.D), of whose failure the article says nothing."""
 KINDS: tuple[Kind, ...] = ("limp", "locked")
-LEGS_LOST: tuple[Legs, ...] = ("one", "both")
+LEGS_FAILED: tuple[Legs, ...] = ("one", "both")
 
 
-def lost_joints(robot: AnyRobot) -> tuple[str, ...]:
-    """Return the joints of limbs that a robot can lose, hinge by hinge from the hip, girdle by girdle.
+def failing_joints(robot: AnyRobot) -> tuple[str, ...]:
+    """Return the joints of limbs that can fail, hinge by hinge from the hip, girdle by girdle.
 
     A girdle is ``front``, ``hind``, or ``middle`` with its number where there are several; only the hind one is there
     where there is one.
@@ -38,29 +38,29 @@ def lost_joints(robot: AnyRobot) -> tuple[str, ...]:
 
 
 def girdle_words(count: int) -> tuple[str, ...]:
-    """Return how girdles are called from the front to the hind one."""
+    """Return the names of girdles from the front to the hind one."""
     middle = ("middle",) if count == 3 else tuple(f"middle{i}" for i in range(1, count - 1))
     return ("front", *middle, "hind") if count > 1 else ("hind",) * count
 
 
-def lost(
+def joint_failure(
     robot: AnyRobot, gait: AnyGait, joint: str, kind: Kind, legs: Legs = "one", *, hold: float = 0.5
 ) -> tuple[Fault, ...]:
-    """Return the faults of a run in which joints are lost from the start; one leg is the left one.
+    """Return the faults of a run in which joints have failed from the start; one leg is the left one.
 
     Args:
         robot: whose joints they are.
         gait: that it walks in.
-        joint: one of ``lost_joints(robot)``.
-        kind: without torque, or held.
+        joint: one of ``failing_joints(robot)``.
+        kind: without torque, or locked.
         legs: one or both of the girdle.
         hold: where a locked joint holds in the range that the gait asks of it, see ``angle_at``.
 
     Raises:
         UnknownName: the robot has no such joint.
     """
-    if joint not in lost_joints(robot):
-        raise UnknownName("joint of a girdle", joint, lost_joints(robot))
+    if joint not in failing_joints(robot):
+        raise UnknownName("joint of a girdle", joint, failing_joints(robot))
     place = layout(robot)
     word, _, axis = joint.partition("_")
     girdle = place.robot.girdles[girdle_words(len(place.robot.girdles)).index(word)].name
@@ -73,9 +73,5 @@ def lost(
 def angle_at(robot: AnyRobot, gait: AnyGait, servo: str, share: float) -> float:
     """Return an angle in the range that a gait asks of a servo: 0 the least, 1 the greatest [rad]."""
     clock = np.arange(128) / 128
-    if isinstance(gait, Gait):
-        targets = servo_targets(robot, gait, clock[:, None] + np.array(gait.limb_phases))
-    else:
-        targets = pattern_targets(robot, gait, clock)
-    asked = targets[:, layout(robot).servos.index(servo)]
+    asked = cycle_targets(robot, gait, clock)[:, layout(robot).servos.index(servo)]
     return float(asked.min() + share * (asked.max() - asked.min()))

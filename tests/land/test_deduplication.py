@@ -8,7 +8,7 @@ import xarray as xr
 
 from suchus.control import Coordinated
 from suchus.land import Backlash, Ground, Limp, Locked, LostFoot, Offset, Push, Run, simulate
-from suchus.land.alike import Alike
+from suchus.land.deduplication import Deduplication
 
 COARSE = 0.01
 
@@ -18,7 +18,7 @@ def run(robot, crawl_gait) -> Run:
     return Run(robot=robot, gait=crawl_gait, control=Coordinated())
 
 
-def followers(alike: Alike) -> dict[int, int]:
+def followers(alike: Deduplication) -> dict[int, int]:
     return dict(zip(alike.others.tolist(), alike.whom.tolist(), strict=True))
 
 
@@ -52,13 +52,19 @@ def test_only_equal_robots_on_equal_grounds_begin_alike(run, long_tail):
     first = np.zeros((5, 19))
     first[4, 3] = 1e-16
     other = replace(run.gait, name="another", period=9.0)  # the physics knows no gait
-    runs = [run, replace(run, gait=other), replace(run, robot=long_tail), replace(run, ground=Ground(grip=0.9)), run]
-    assert followers(Alike(runs, first, 0.01)) == {1: 0}
+    runs = [
+        run,
+        replace(run, gait=other),
+        replace(run, robot=long_tail),
+        replace(run, ground=Ground(friction_scale=0.9)),
+        run,
+    ]
+    assert followers(Deduplication(runs, first, 0.01)) == {1: 0}
 
 
 def test_runs_part_where_they_are_told_something_else_and_where_trouble_comes(run):
     pushed = replace(run, pushes=(Push(force=(1.0, 0.0, 0.0), at=0.055),))
-    alike = Alike([run, run, run, pushed, pushed], np.zeros((5, 19)), 0.01)
+    alike = Deduplication([run, run, run, pushed, pushed], np.zeros((5, 19)), 0.01)
     targets = np.zeros((5, 19))
     alike.part(0, targets)
     assert followers(alike) == {1: 0, 2: 0, 3: 0, 4: 0}

@@ -12,7 +12,7 @@ from suchus.land.push import Push
 from suchus.land.run import Run
 
 
-class Troubles:
+class Disturbances:
     """The faults, the pushes and the noise of all runs of a batch."""
 
     def __init__(self, runs: Sequence[Run], bench: Bench, ticks: int, period: float) -> None:

@@ -1,0 +1,44 @@
+"""The atlas: published data of flows around bodies, many of which move, beside what the flow solver makes of them.
+
+A ``Case`` is a flow that is computed once; a ``Row`` is one published data set that it is compared with. The bound of
+a row follows from the scatter of its sources, before anything is computed.
+"""
+
+from suchus.atlas.case import Case, Curves, Effort, Row, Tell, bound
+from suchus.atlas.comparison import Comparison, compare, rms_over_peak
+from suchus.atlas.crew import Told, compute_all, finished
+from suchus.atlas.outcome import Outcome, compute, digest_of, load_outcome, save_outcome
+from suchus.atlas.published import Published, published
+from suchus.atlas.refine import refined
+from suchus.atlas.rows import CASES, GROUPS, LONGEST, ROWS, chosen
+from suchus.atlas.skin import Skin, read_skin
+
+__all__ = [
+    "CASES",
+    "GROUPS",
+    "LONGEST",
+    "ROWS",
+    "Case",
+    "Comparison",
+    "Curves",
+    "Effort",
+    "Outcome",
+    "Published",
+    "Row",
+    "Skin",
+    "Tell",
+    "Told",
+    "bound",
+    "chosen",
+    "compare",
+    "compute",
+    "compute_all",
+    "digest_of",
+    "finished",
+    "load_outcome",
+    "published",
+    "read_skin",
+    "refined",
+    "rms_over_peak",
+    "save_outcome",
+]

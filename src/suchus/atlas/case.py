@@ -1,0 +1,101 @@
+"""What a row of the atlas is: a flow to compute, published data to compare it with, and the bound, set before."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+Tell = Callable[[float], None]
+"""Takes the share of a run that is done [-]."""
+
+Curves = Mapping[str, np.ndarray]
+"""What a flow gave, by name: a curve of shape (2, point), abscissa and ordinate, or a number of shape ()."""
+
+UNKNOWN_SCATTER = 0.08
+"""Bound of the rms difference over the peak where only one source is known, whose own error nobody can say [-]."""
+
+FINEST = 0.02
+"""No bound is smaller: two sources may agree better than either is digitised [-]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Effort:
+    """How finely and how long a flow is computed."""
+
+    cells: int
+    """Cells per diameter, chord or width [-]."""
+    until: float
+    """How long the run lasts, in the units of the case [s]."""
+    coarse: int = 0
+    """Cells per diameter of the run before, in which the wake forms; 0 where there is none [-]."""
+    before: float = 0.0
+    """How long that lasts, in the units of the case [s]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Case:
+    """A flow that is computed once, for one row or for several."""
+
+    name: str
+    """Its name, also that of its outcome's file."""
+    setup: str
+    """Domain, motion and averaging in one or two sentences; ``{cells}`` stands for the cells."""
+    run: Callable[[Effort, Tell], Curves]
+    """Computes it."""
+    full: Effort
+    """The effort of a judged run."""
+    quick: Effort
+    """One small enough for a trial: what comes of it is drawn and not judged."""
+    code: tuple[str, ...]
+    """Files of this package that decide its curves, beside the flow solver itself."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Row:
+    """One published data set beside the same quantity of ours."""
+
+    name: str
+    """Its name on the command line."""
+    title: str
+    """What is compared, as a heading."""
+    case: str
+    """Name of the flow that it is read from."""
+    data: str
+    """Name of the table of published data."""
+    x: str = "x"
+    """Column of the abscissa."""
+    y: str = "y"
+    """Column of the ordinate."""
+    kind: Literal["curve", "loop", "numbers"] = "curve"
+    """Ordinate over abscissa, a closed curve, or single numbers by their names."""
+    ours: str = ""
+    """Name of our curve; numbers are found by their own names."""
+    labels: tuple[str, str] = ("", "")
+    """Abscissa and ordinate with their units."""
+    scale: tuple[float, float] = (1.0, 1.0)
+    """Factors on the published abscissa and ordinate that give ours [-]."""
+    shift: tuple[float, float] = (0.0, 0.0)
+    """What is added to them after that."""
+    window: tuple[float, float] = (-np.inf, np.inf)
+    """Our abscissae that are compared, both ends included."""
+    without: tuple[float, float] | None = None
+    """Spacing of abscissae, and the half-width around each multiple of it, that are left out."""
+    period: float | None = None
+    """Period of the abscissa; None for one that has none."""
+    others: tuple[tuple[str, str, str, float], ...] = ()
+    """Further sources of the same curve: table, its columns, factor on its abscissa; they give the scatter."""
+    skin: bool = False
+    """Whether it is read along the skin, where the reading has an error of its own."""
+    note: str = ""
+    """What a reader must know: why data were left out, or what the measured cause of a difference is."""
+
+
+def bound(scatter: float | None) -> float:
+    """Return the largest rms difference over the peak that counts as agreement, from the sources' own scatter [-].
+
+    Twice the scatter, at least ``FINEST`` and at most ``UNKNOWN_SCATTER``, unless the scatter itself is larger.
+    """
+    if scatter is None:
+        return UNKNOWN_SCATTER
+    return max(scatter, min(UNKNOWN_SCATTER, max(FINEST, 2 * scatter)))

@@ -1,0 +1,138 @@
+"""How far two curves, or two sets of numbers, are from each other."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from suchus.atlas.case import Curves, Row, bound
+from suchus.atlas.published import Published, published
+from suchus.errors import IncompatibleRecord
+
+LEAST_SHARE = 0.5
+"""Share of the published points that our curve must reach for a comparison [-]."""
+
+_FEWEST = 5  # points in common that two sources need for a scatter
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Comparison:
+    """A row's data beside ours."""
+
+    x: np.ndarray
+    """Abscissae of the published points that are compared, or the numbers' places, shape (point,)."""
+    theirs: np.ndarray
+    """Published ordinates, shape (point,)."""
+    ours: np.ndarray
+    """Ours at the same abscissae, shape (point,)."""
+    rms: float
+    """Root mean square of the difference over the largest published magnitude; of numbers, of the relative
+    differences [-]."""
+    scatter: float | None
+    """The same between the sources; None where there is one only [-]."""
+
+    @property
+    def bound(self) -> float:
+        """The largest difference that counts as agreement, which the scatter decides [-]."""
+        return bound(self.scatter)
+
+    @property
+    def agrees(self) -> bool:
+        """Whether the difference is within the bound."""
+        return self.rms <= self.bound
+
+
+def compare(row: Row, curves: Curves) -> Comparison:
+    """Return the published data of a row beside ours.
+
+    Raises:
+        IncompatibleRecord: our curve is not there or reaches fewer than half of the points.
+    """
+    table = published(row.data)
+    if row.kind == "numbers":
+        return _numbers(table, curves)
+    if row.ours not in curves:
+        raise IncompatibleRecord(f"the flow of {row.name} gave no curve named {row.ours!r}; compute it anew.")
+    x, y = points(row, table)
+    ours = curves[row.ours]
+    at = _on_loop(ours, x, y) if row.kind == "loop" else at_abscissae(ours, x, row.period)
+    there = np.isfinite(at)
+    if there.mean() < LEAST_SHARE:
+        raise IncompatibleRecord(
+            f"our curve of {row.name} reaches {there.sum()} of {x.size} published points, and at least half are "
+            f"needed; run longer."
+        )
+    x, y, at = x[there], y[there], at[there]
+    return Comparison(x=x, theirs=y, ours=at, rms=rms_over_peak(at, y), scatter=_scatter(row, x, y))
+
+
+def points(row: Row, table: Published) -> tuple[np.ndarray, np.ndarray]:
+    """Return the published points that a row compares, in our units, two arrays of shape (point,)."""
+    x = table.values(row.x) * row.scale[0] + row.shift[0]
+    y = table.values(row.y) * row.scale[1] + row.shift[1]
+    kept = (x >= row.window[0]) & (x <= row.window[1])
+    if row.without is not None:
+        spacing, half = row.without
+        kept &= np.abs(x - spacing * np.round(x / spacing)) > half
+    return x[kept], y[kept]
+
+
+def rms_over_peak(a: np.ndarray, b: np.ndarray) -> float:
+    """Return the root mean square of ``a - b`` over the largest magnitude of ``b`` [-]."""
+    return float(np.sqrt(np.mean((a - b) ** 2)) / np.abs(b).max())
+
+
+def at_abscissae(curve: np.ndarray, x: np.ndarray, period: float | None) -> np.ndarray:
+    """Return the ordinates of a curve of shape (2, point) at abscissae, linear in between, NaN beyond its ends."""
+    order = np.argsort(curve[0], kind="stable")
+    if period is not None:
+        return np.interp(x, curve[0][order], curve[1][order], period=period)
+    return np.interp(x, curve[0][order], curve[1][order], left=np.nan, right=np.nan)
+
+
+def _on_loop(curve: np.ndarray, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Return, of the ordinates that a closed curve has at each abscissa, the one nearest to ``y``.
+
+    Abscissae beyond the curve's own, by less than 1 % of its width, count as its ends.
+    """
+    low, high = curve[0].min(), curve[0].max()
+    slack = 0.01 * (high - low)
+    at = np.full(x.shape, np.nan)
+    start, end = curve, np.roll(curve, -1, axis=1)
+    for k, place in enumerate(x):
+        if not low - slack <= place <= high + slack:
+            continue
+        here = np.clip(place, low, high)
+        across = (np.minimum(start[0], end[0]) <= here) & (here <= np.maximum(start[0], end[0]))
+        run = np.where(end[0] == start[0], 1.0, end[0] - start[0])
+        found = (start[1] + (here - start[0]) / run * (end[1] - start[1]))[across]
+        at[k] = found[np.abs(found - y[k]).argmin()]
+    return at
+
+
+def _numbers(table: Published, curves: Curves) -> Comparison:
+    """Return the comparison of single numbers: theirs is the mean of the sources."""
+    names = table.columns["quantity"]
+    missing = [name for name in names if name not in curves]
+    if missing:
+        raise IncompatibleRecord(f"the flow gave no {', '.join(missing)}; compute it anew.")
+    sources = np.stack([table.values(column) for column in table.columns if column != "quantity"])
+    theirs = np.nanmean(sources, axis=0)
+    off = sources / theirs - 1
+    ours = np.array([float(curves[name]) for name in names])
+    return Comparison(
+        x=np.arange(len(names)), theirs=theirs, ours=ours, rms=float(np.sqrt(np.mean((ours / theirs - 1) ** 2))),
+        scatter=float(np.sqrt(np.nanmean(off**2))) if len(sources) > 1 else None,
+    )  # fmt: skip
+
+
+def _scatter(row: Row, x: np.ndarray, y: np.ndarray) -> float | None:
+    """Return the largest rms difference over the peak between a row's source and another one, where both are known."""
+    found = []
+    for name, abscissa, ordinate, factor in row.others:
+        table = published(name)
+        other = np.stack([table.values(abscissa) * factor, table.values(ordinate)])
+        at = at_abscissae(other, x, row.period)
+        there = np.isfinite(at)
+        if there.sum() >= _FEWEST:
+            found.append(rms_over_peak(at[there], y[there]))
+    return max(found) if found else None

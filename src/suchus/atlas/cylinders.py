@@ -1,0 +1,118 @@
+"""Flows around a cylinder that rests in a stream: diameter, speed and density are 1."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+
+from suchus import flow
+from suchus.atlas.case import Case, Curves, Effort, Tell
+from suchus.atlas.marching import march, middles, nudged, shedding
+from suchus.atlas.refine import refined
+from suchus.atlas.skin import Skin, read_skin
+
+_CODE = ("cylinders.py", "marching.py", "refine.py", "skin.py")
+_PERIODS = 5  # of shedding, over which the wake at Re 100 is averaged
+_READINGS = 0.1  # [s] between two readings of the skin
+_SETTLED = 8.0  # [s] on the finer grid until the wake is its own
+
+Stream = tuple[float, float] | Callable[[float], tuple[float, float]]
+
+
+def _cylinder(cells: int, reynolds: float, x: tuple[float, float], y: tuple[float, float]) -> flow.Setup:
+    return flow.Setup(
+        grid=flow.Grid.covering(x, y, cell=1 / cells), viscosity=1 / reynolds, stream=(1.0, 0.0), coarse=True,
+        bodies=(flow.Body(shape=flow.Cylinder(diameter=1.0)),),
+    )  # fmt: skip
+
+
+def wake_length(sim: flow.Simulation) -> float:
+    """Return the length of the recirculation behind a cylinder at the origin, from its rear; 0 if there is none [m]."""
+    x = sim.setup.grid.x
+    behind = x[(x > 0.5 + 1.5 * sim.setup.grid.cell) & (x < x[-2])]
+    u = sim.probe(np.stack([behind, np.zeros_like(behind)], axis=1)).velocity[:, 0]
+    back = np.flatnonzero(u < 0)
+    if not back.size or back[-1] + 1 == behind.size:
+        return 0.0
+    k = back[-1]
+    return float(behind[k] - u[k] * (behind[k + 1] - behind[k]) / (u[k + 1] - u[k]) - 0.5)
+
+
+def _started(effort: Effort, tell: Tell, *, reynolds: float, x: tuple[float, float], y: tuple[float, float]) -> Curves:
+    sim = flow.Simulation(_cylinder(effort.cells, reynolds, x, y))
+    lengths: list[tuple[float, float]] = []
+
+    def note(now: flow.Simulation) -> None:
+        lengths.append((now.time, wake_length(now)))
+
+    record = march(sim, effort.until, tell, watch=(note,), every=0.05)
+    return {"drag": np.stack([middles(record), 2 * record.force()[:, 0]]), "length": np.array(lengths).T}
+
+
+def _steady(effort: Effort, tell: Tell) -> Curves:
+    sim = _on_two_grids(effort, 40.0, (1.0, 0.0), tell)
+    record = march(sim, effort.until, lambda share: tell(0.5 + share / 2))
+    skin = read_skin(sim)
+    return {
+        "drag": np.array(2 * record.after(0.8 * effort.until).force()[:, 0].mean()),
+        "wake length": np.array(wake_length(sim)), "pressure": skin.curve("pressure"),
+    }  # fmt: skip
+
+
+def _shedding(effort: Effort, tell: Tell) -> Curves:
+    sim = _on_two_grids(effort, 100.0, nudged, tell)
+    skins: list[tuple[float, Skin]] = []
+
+    def note(now: flow.Simulation) -> None:
+        skins.append((now.time, read_skin(now)))
+
+    record = march(sim, effort.until, lambda share: tell(0.5 + share / 2), watch=(note,), every=_READINGS)
+    numbers = shedding(record.after(_SETTLED), _PERIODS)
+    since = effort.until - _PERIODS / float(numbers["Strouhal"])
+    late = [skin for time, skin in skins if time > since]
+    mean = np.mean([skin.pressure for skin in late], axis=0)
+    both = Skin(angle=late[0].angle, pressure=mean, vorticity=mean)
+    return {**numbers, "pressure": both.curve("pressure")}
+
+
+def _on_two_grids(effort: Effort, reynolds: float, stream: Stream, tell: Tell) -> flow.Simulation:
+    """Return a wake in 24 x 16 diameters that has formed on the coarse grid, at the start of its time on the fine."""
+    box = ((-8.0, 16.0), (-8.0, 8.0))
+    wake = flow.Simulation(replace(_cylinder(effort.coarse, reynolds, *box), stream=stream))
+    march(wake, effort.before, lambda share: tell(share / 2))
+    return refined(wake, _cylinder(effort.cells, reynolds, *box))
+
+
+CASES = (
+    Case(
+        name="started_re40", run=partial(_started, reynolds=40.0, x=(-5.0, 7.0), y=(-5.0, 5.0)),
+        full=Effort(cells=48, until=5.0), quick=Effort(cells=12, until=1.0), code=_CODE,
+        setup="A cylinder that starts at once in water at rest; {cells} cells a diameter, 12 x 10 diameters of water "
+        "without end. The length of the recirculation ends where the velocity on the axis is zero.",
+    ),
+    Case(
+        name="started_re550", run=partial(_started, reynolds=550.0, x=(-2.5, 4.0), y=(-2.5, 2.5)),
+        full=Effort(cells=96, until=3.5), quick=Effort(cells=16, until=1.0), code=_CODE,
+        setup="The same in 6.5 x 5 diameters, {cells} cells a diameter.",
+    ),
+    Case(
+        name="started_re3000", run=partial(_started, reynolds=3000.0, x=(-1.5, 2.5), y=(-1.5, 1.5)),
+        full=Effort(cells=192, until=3.0), quick=Effort(cells=24, until=0.8), code=_CODE,
+        setup="The same in 4 x 3 diameters, {cells} cells a diameter.",
+    ),
+    Case(
+        name="steady_re40", run=_steady, code=_CODE, full=Effort(cells=32, until=8.0, coarse=12, before=40.0),
+        quick=Effort(cells=12, until=1.0, coarse=6, before=2.0),
+        setup="A cylinder in a stream, 24 x 16 diameters of water without end; 40 diameters of travel with {coarse} "
+        "cells a diameter and eight with {cells}.",
+    ),
+    Case(
+        name="shedding_re100", run=_shedding, code=_CODE, full=Effort(cells=28, until=45.0, coarse=12, before=80.0),
+        quick=Effort(cells=10, until=45.0, coarse=8, before=50.0),
+        setup="A cylinder in a stream with a short gust at the start, 24 x 16 diameters of water without end; 80 "
+        "diameters of travel with {coarse} cells a diameter and 45 with {cells}, means over the last five periods of "
+        "shedding.",
+    ),
+)  # fmt: skip
+"""The flows of this module."""

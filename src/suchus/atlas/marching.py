@@ -1,0 +1,65 @@
+"""What the flows of the atlas share: marching with progress, mean values over periods, a nudge into asymmetry."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from suchus import flow
+from suchus.atlas.case import Tell
+from suchus.flow.signals import last_periods
+from suchus.flow.simulation import Watcher
+
+_TOLD = 200  # times per run that the progress is told
+
+
+def march(
+    sim: flow.Simulation, until: float, tell: Tell, *, end: float | None = None, watch: Sequence[Watcher] = (),
+    every: float | None = None,
+) -> flow.Record:  # fmt: skip
+    """Advance to a time, tell the share of the whole run that is done, and return the record.
+
+    Args:
+        sim: the simulation.
+        until: time to reach [s].
+        tell: takes the share.
+        end: when the whole run ends; None is ``until`` [s].
+        watch: called ``every`` seconds.
+        every: interval of ``watch`` [s]; None is a two-hundredth of the whole run.
+    """
+    whole = until if end is None else end
+    told: Sequence[Watcher] = (*watch, lambda now: tell(now.time / whole))
+    return sim.run(until, watch=told, every=whole / _TOLD if every is None else every, progress=False)
+
+
+def middles(record: flow.Record) -> np.ndarray:
+    """Return the times that the forces of a record belong to: they are means over the steps, shape (step,) [s]."""
+    return record.time - record.step / 2
+
+
+def nudged(time: float) -> tuple[float, float]:
+    """Return a stream of 1 along x with a short gust across it, which starts the shedding of vortices [m/s].
+
+    The gust lasts from 0.5 to 2.5 s, reaches 0.3 and is gone without a kink.
+    """
+    gust = 0.3 * np.sin(np.pi * (time - 0.5) / 2) ** 2 if 0.5 < time < 2.5 else 0.0
+    return 1.0, float(gust)
+
+
+def shedding(record: flow.Record, count: int) -> dict[str, np.ndarray]:
+    """Return mean drag, mean lift, amplitude of the lift and Strouhal number over the last ``count`` periods.
+
+    The coefficients are those of a body of size 1 in a stream of 1 with density 1.
+
+    Raises:
+        NotConverged: there are fewer periods.
+    """
+    drag, lift = 2 * record.force().T
+    kept = last_periods(record.time, lift, count)
+    time, weights = record.time[kept], record.step[kept]
+    mean_drag, mean_lift = (np.average(series[kept], weights=weights) for series in (drag, lift))
+    swing = np.sqrt(2 * np.average((lift[kept] - mean_lift) ** 2, weights=weights))
+    return {
+        "mean drag": np.array(mean_drag), "mean lift": np.array(mean_lift), "lift amplitude": np.array(swing),
+        "Strouhal": np.array(count / (time[-1] - time[0])), "largest drag": np.array(drag[kept].max()),
+        "largest lift": np.array(lift[kept].max()),
+    }  # fmt: skip

@@ -1,0 +1,210 @@
+"""The rows of the atlas and the flows that they are read from. The bounds follow from the sources: ``case.bound``."""
+
+from collections.abc import Mapping
+from types import MappingProxyType
+
+from suchus.atlas import cylinders, shaken, snake, still, walls
+from suchus.atlas.case import Case, Row
+from suchus.errors import UnknownName
+
+_ANGLE = "angle from the front, over the upper side [deg]"
+_TIME = "time x speed / diameter [-]"
+_FIRST = (0.1, 1e9)  # before, the drag of a body that starts at once has no bound and the first steps no meaning
+_COMPUTED_40 = (("koumoutsakos1995_drag_re40", "t_star", "cd", 0.5), ("taira2007_drag_re40", "t", "cd", 1.0))
+_DRAG_40 = (*_COMPUTED_40, ("barlev1975_drag_re40", "t", "cd", 1.0))  # the last is a theory, no measure of the others
+
+
+def _started() -> tuple[Row, ...]:
+    titles = {
+        "koumoutsakos1995_drag_re40": ("koumoutsakos_re40", "drag, Koumoutsakos and Leonard 1995"),
+        "taira2007_drag_re40": ("taira_re40", "drag, Taira and Colonius 2007"),
+        "barlev1975_drag_re40": ("barlev_re40", "drag for short times, Bar-Lev and Yang 1975"),
+    }
+    drags = tuple(
+        Row(
+            name=titles[data][0], title=f"Started cylinder, Re 40: {titles[data][1]}", case="started_re40", data=data,
+            x=x, y=y, scale=(factor, 1.0), window=_FIRST, ours="drag", labels=(_TIME, "drag coefficient [-]"),
+            others=tuple(one for one in _COMPUTED_40 if one[0] != data),
+        )
+        for data, x, y, factor in _DRAG_40
+    )  # fmt: skip
+    faster = tuple(
+        Row(
+            name=f"koumoutsakos_re{reynolds}", case=f"started_re{reynolds}",
+            title=f"Started cylinder, Re {reynolds}: drag, Koumoutsakos and Leonard 1995", x="t_star", y="cd",
+            data=f"koumoutsakos1995_drag_re{reynolds}", scale=(0.5, 1.0), window=_FIRST, ours="drag",
+            labels=(_TIME, "drag coefficient [-]"),
+        )
+        for reynolds in (550, 3000)
+    )  # fmt: skip
+    length = Row(
+        name="coutanceau_re40", title="Started cylinder, Re 40: recirculation, Coutanceau and Bouard 1977",
+        case="started_re40", data="coutanceau1977_length_re40", x="t", y="length", ours="length",
+        labels=(_TIME, "length of the recirculation / diameter [-]"),
+    )  # fmt: skip
+    return (*drags, length, *faster)
+
+
+def _shaken() -> tuple[Row, ...]:
+    rows = []
+    for ratio in shaken.RATIOS:
+        key = f"{ratio:g}".replace(".", "p") if ratio != 1 else "1p0"
+        case = f"shaken_{ratio:g}".replace(".", "p")
+        for quantity, label in (("pressure", "pressure coefficient [-]"), ("vorticity", "vorticity x D / U [-]")):
+            rows.append(
+                Row(
+                    name=f"guilmineau_{quantity}_{key}",
+                    case=case,
+                    x="angle",
+                    period=360.0,
+                    skin=True,
+                    title=f"Cylinder oscillated transversely at {ratio:g} of its frequency, Re 185: {quantity}, "
+                    "Guilmineau and Queutey 2002",
+                    data=f"guilmineau2002_{quantity}_{key}",
+                    y="cp" if quantity == "pressure" else quantity,
+                    ours=f"uppermost {quantity}",
+                    labels=(_ANGLE, label),
+                )
+            )
+    rows.append(
+        Row(name="re185_numbers", title="Cylinder at rest, Re 185: Strouhal number", case="held_re185",
+            data="re185_numbers", kind="numbers")
+    )  # fmt: skip
+    rows.append(
+        Row(
+            name="schneiders_drag",
+            title="Cylinder oscillated transversely at 0.8 of its frequency, Re 185: drag, Schneiders 2013",
+            case="shaken_0p8", data="schneiders2013_drag", x="y", y="cd", kind="loop", ours="drag loop",
+            labels=("displacement / diameter [-]", "drag coefficient [-]"),
+            note="A point is compared with the nearer of the two branches.",
+        )
+    )  # fmt: skip
+    rows.append(
+        Row(
+            name="schneiders_pressure", case="shaken_0p8", data="schneiders2013_pressure", x="angle", y="cp",
+            title="Cylinder oscillated transversely at 0.8 of its frequency, Re 185: pressure going down, "
+            "Schneiders 2013",
+            period=360.0, skin=True, ours="pressure going down", labels=(_ANGLE, "pressure coefficient [-]"),
+        )
+    )  # fmt: skip
+    return tuple(rows)
+
+
+def _resting() -> tuple[Row, ...]:
+    pressures = tuple(
+        Row(
+            name=f"li_pressure_re{reynolds}", case=case, data=f"li2016_pressure_re{reynolds}", x="angle", y="cp",
+            title=f"Cylinder, Re {reynolds}: {mean}pressure, Li et al. 2016", period=360.0, skin=True, ours="pressure",
+            labels=(_ANGLE, "pressure coefficient [-]"),
+        )
+        for reynolds, case, mean in ((40, "steady_re40", ""), (100, "shedding_re100", "mean "))
+    )  # fmt: skip
+    return (
+        Row(name="re40_numbers", title="Cylinder, Re 40: drag and length of the wake", case="steady_re40",
+            data="re40_numbers", kind="numbers"),
+        Row(name="re100_numbers", title="Cylinder, Re 100: drag, lift and Strouhal number", case="shedding_re100",
+            data="re100_numbers", kind="numbers"),
+        *pressures,
+    )  # fmt: skip
+
+
+def _still() -> tuple[Row, ...]:
+    strokes = tuple(
+        Row(
+            name=f"eldredge_{name}", title=f"Flapping ellipse, Re 75: {name}, Eldredge 2007", case="flapping",
+            data=f"eldredge2007_flapping_{name}", x="t_over_period", y=name, ours=name,
+            labels=("time / period [-]", f"{name} over its largest quasi-steady value [-]"),
+            others=((f"li2015_flapping_{name}", "t_over_period", name, 1.0),), without=apart, note=note,
+        )
+        for name, apart, note in (
+            ("drag", (0.5, 0.02), "Left out: a fiftieth of a period on each side of where the motion turns, and with "
+             "it the sign of what is called drag."), ("lift", None, ""),
+        )
+    )  # fmt: skip
+    return (
+        Row(
+            name="duetsch_force", title="Cylinder that oscillates in water at rest, Re 100, KC 5: force, Duetsch 1998",
+            case="in_line", data="duetsch1998_force", x="t_over_period", y="force", ours="force", period=1.0,
+            labels=("time / period [-]", "force / (density x speed^2 x diameter) [-]"),
+        ),
+        *strokes,
+    )  # fmt: skip
+
+
+def _walls() -> tuple[Row, ...]:
+    lines = tuple(
+        Row(
+            name=f"ghia_{line}_re{reynolds}", title=f"Lid-driven cavity, Re {reynolds}: {line}, Ghia et al. 1982",
+            case=f"cavity_re{reynolds}", data="ghia1982_cavity", x=place, y=f"{line}_re{reynolds}", ours=line,
+            window=(0.01, 0.99), labels=(f"{place} / width [-]", f"{line} / speed of the lid [-]"),
+            note="The walls themselves, where both have the wall's speed, are left out.",
+        )
+        for reynolds in (100, 1000)
+        for line, place in (("u", "y"), ("v", "x"))
+    )  # fmt: skip
+    return (
+        *lines,
+        Row(name="dfg_2d1", title="Cylinder in a channel, DFG 2D-1", case="dfg_2d1", data="dfg_2d1_numbers",
+            kind="numbers"),
+        Row(name="dfg_2d2", title="Cylinder in a channel, DFG 2D-2", case="dfg_2d2", data="dfg_2d2_numbers",
+            kind="numbers"),
+        Row(name="wachs_numbers", title="Settling cylinder: speed in the end, Wachs 2009", case="settling",
+            data="wachs2009_numbers", kind="numbers"),
+        Row(
+            name="wachs_path", title="Settling cylinder: path, Wachs 2009", case="settling", data="wachs2009_path",
+            x="y", y="x", shift=(0.0, -2.0), window=(-20.0, 40.0), ours="path",
+            labels=("height / diameter [-]", "distance from the middle / diameter [-]"),
+        ),
+    )  # fmt: skip
+
+
+def _snakes() -> tuple[Row, ...]:
+    return tuple(
+        Row(
+            name=f"snake_{degrees}_re{reynolds}", case=f"snake_{degrees}_re{reynolds}", kind="numbers",
+            title=f"Flying snake's cross-section at {degrees} degrees, Re {reynolds}, Krishnan et al. 2014",
+            data=f"snake_{degrees}_re{reynolds}_numbers",
+        )
+        for reynolds in (1000, 2000)
+        for degrees in (30, 35)
+    )  # fmt: skip
+
+
+GROUPS: Mapping[str, tuple[Row, ...]] = MappingProxyType(
+    {
+        "Boxes and channels": _walls(),
+        "Started cylinders": _started(),
+        "Cylinders at rest in a stream": _resting(),
+        "Bodies that move in water at rest": _still(),
+        "Cylinder oscillated across a stream": _shaken(),
+        "Flying snake": _snakes(),
+    }
+)
+"""The rows by what they have in common, in the order of the page."""
+
+ROWS: Mapping[str, Row] = MappingProxyType({row.name: row for rows in GROUPS.values() for row in rows})
+"""The rows by their names."""
+
+CASES: Mapping[str, Case] = MappingProxyType(
+    {case.name: case for room in (walls, cylinders, still, shaken, snake) for case in room.CASES}
+)
+"""The flows by their names."""
+
+
+LONGEST = (
+    *(f"snake_{degrees}_re{reynolds}" for reynolds in (2000, 1000) for degrees in (30, 35)),
+    *(case.name for case in shaken.CASES), "flapping", "shedding_re100", "dfg_2d2", "settling",
+)  # fmt: skip
+"""Flows that are begun first, so that no process idles in the end."""
+
+
+def chosen(names: tuple[str, ...]) -> tuple[Row, ...]:
+    """Return rows by their names, all if there are none.
+
+    Raises:
+        UnknownName: there is no such row.
+    """
+    for name in names:
+        if name not in ROWS:
+            raise UnknownName("row", name, ROWS)
+    return tuple(ROWS[name] for name in dict.fromkeys(names)) if names else tuple(ROWS.values())

@@ -1,0 +1,113 @@
+"""A cylinder at Re 185 that oscillates across a stream near its natural frequency, and one that rests."""
+
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+
+from suchus import flow
+from suchus.atlas.case import Case, Curves, Effort, Tell
+from suchus.atlas.marching import march, middles, nudged, shedding
+from suchus.atlas.refine import refined
+from suchus.atlas.skin import Skin, read_skin
+
+RATIOS = (0.8, 0.9, 1.0, 1.1, 1.12, 1.2)
+"""Frequencies of the motion over the natural one [-]."""
+
+NATURAL = 0.195
+"""Natural frequency that the sources use [Hz, for diameter and speed 1]."""
+
+AMPLITUDE = 0.2
+"""Amplitude of the motion [m]."""
+
+_CODE = ("shaken.py", "marching.py", "refine.py", "skin.py")
+_COARSE_SHARE = 0.2  # of the time that a run takes [-]
+_SETTLED = 6.0  # [s] on the finer grid until the wake is its own
+_PERIODS = 5  # of shedding
+
+
+def _shaken(effort: Effort, tell: Tell, *, ratio: float) -> Curves:
+    """Compute ``effort.before`` periods and then ``effort.until`` finer ones; all of these but the first are read."""
+    rate = 2 * np.pi * ratio * NATURAL
+    period = 2 * np.pi / rate
+    whole, first = round(effort.until), round(effort.before)
+    wake = flow.Simulation(_setup(effort.coarse, rate))
+    march(wake, first * period, lambda share: tell(_COARSE_SHARE * share))
+    sim = refined(wake, _setup(effort.cells, rate))
+    uppermost, down = list[Skin](), list[Skin]()
+
+    def onward(until: float) -> flow.Record:
+        return march(
+            sim, until * period, lambda share: tell(_COARSE_SHARE + (1 - _COARSE_SHARE) * share), end=whole * period
+        )
+
+    for turn in range(min(1, whole - 1), whole):
+        onward(turn + 0.5)
+        uppermost.append(read_skin(sim, (0.0, -(rate**2) * AMPLITUDE)))
+        onward(turn + 0.75)
+        down.append(read_skin(sim))
+    record = onward(whole)
+    time, (drag, lift) = middles(record), 2 * record.force().T
+    last = time > (whole - 1) * period
+    height = -AMPLITUDE * np.cos(rate * time[last])
+    beats = [skin.curve("pressure")[1] for skin in uppermost]
+    return {
+        "uppermost pressure": mean_skin(uppermost).curve("pressure"),
+        "uppermost vorticity": mean_skin(uppermost).curve("vorticity"),
+        "pressure going down": mean_skin(down).curve("pressure"), "drag loop": np.stack([height, drag[last]]),
+        "lift": np.stack([time[last], lift[last]]), "change of pressure": np.abs(beats[-1] - beats[0]).max(),
+    }  # fmt: skip
+
+
+def _setup(cells: int, rate: float) -> flow.Setup:
+    """Return the set-up with a motion that begins at its lowest place, or at rest for a rate of 0 [rad/s]."""
+    motion = flow.Oscillation(frequency=rate / (2 * np.pi), heave=(0.0, AMPLITUDE), phase=-np.pi / 2)
+    still = flow.Pose()
+    return flow.Setup(
+        grid=flow.Grid.covering((-4.0, 12.0), (-5.0, 5.0), cell=1 / cells), viscosity=1 / 185, stream=(1.0, 0.0),
+        bodies=(flow.Body(shape=flow.Cylinder(diameter=1.0), motion=motion if rate else still),), coarse=True,
+    )  # fmt: skip
+
+
+def _held(effort: Effort, tell: Tell) -> Curves:
+    """Compute the cylinder at rest, first on the coarse grid with a gust."""
+    wake = flow.Simulation(replace(_setup(effort.coarse, 0.0), stream=nudged))
+    march(wake, effort.before, lambda share: tell(_COARSE_SHARE * share))
+    sim = refined(wake, _setup(effort.cells, 0.0))
+    record = march(sim, effort.until, lambda share: tell(_COARSE_SHARE + (1 - _COARSE_SHARE) * share))
+    return shedding(record.after(_SETTLED), _PERIODS)
+
+
+def mean_skin(skins: list[Skin]) -> Skin:
+    """Return the mean over several readings at the same phase."""
+    pressure = np.mean([one.pressure for one in skins], axis=0)
+    return Skin(
+        angle=skins[0].angle, pressure=pressure, vorticity=np.mean([one.vorticity for one in skins], axis=0)
+    )  # fmt: skip
+
+
+CASES = (
+    *(
+        Case(
+            name=f"shaken_{ratio:g}".replace(".", "p"),
+            run=partial(_shaken, ratio=ratio),
+            full=Effort(cells=32, until=3.0, coarse=24, before=9.0),
+            quick=Effort(cells=16, until=1.0, coarse=8, before=1.0),
+            code=_CODE,
+            setup=f"Re 185, 0.2 diameters across the stream at {ratio:g} of 0.195 U/D, in 16 x 10 diameters of water "
+            "without end; nine periods from rest with {coarse} cells a diameter and three with {cells}, means over the "
+            "last two at the same phase.",
+        )
+        for ratio in RATIOS
+    ),
+    Case(
+        name="held_re185",
+        run=_held,
+        full=Effort(cells=32, until=36.0, coarse=12, before=60.0),
+        quick=Effort(cells=12, until=36.0, coarse=8, before=40.0),
+        code=_CODE,
+        setup="The same cylinder at rest, with a short gust at the start; 60 diameters of travel with {coarse} cells a "
+        "diameter and 36 with {cells}, the last five periods of shedding.",
+    ),
+)
+"""The flows of this module."""

@@ -1,0 +1,50 @@
+"""The cross-section of a flying snake in a stream: chord, speed and density are 1."""
+
+from functools import partial
+
+import numpy as np
+
+from suchus import flow
+from suchus.atlas.case import Case, Curves, Effort, Tell
+from suchus.atlas.marching import march, middles
+from suchus.atlas.published import published
+from suchus.atlas.refine import refined
+
+_CODE = ("snake.py", "marching.py", "published.py", "refine.py")
+_SETTLED = 3.0  # [s] on the finer grid until the wake is its own
+
+
+def _snake(effort: Effort, tell: Tell, *, reynolds: float, degrees: int) -> Curves:
+    wake = flow.Simulation(_setup(effort.coarse, reynolds, degrees))
+    march(wake, effort.before, lambda share: tell(0.2 * share))
+    sim = refined(wake, _setup(effort.cells, reynolds, degrees))
+    record = march(sim, effort.until, lambda share: tell(0.2 + 0.8 * share))
+    late = record.after(_SETTLED)
+    drag, lift = 2 * np.average(late.force(), axis=0, weights=late.step)
+    strouhal = flow.strouhal(middles(late), late.force()[:, 1], length=1.0, speed=1.0)
+    return {"mean drag": np.array(drag), "mean lift": np.array(lift), "Strouhal": np.array(strouhal)}
+
+
+def _setup(cells: int, reynolds: float, degrees: int) -> flow.Setup:
+    table = published(f"snake_{degrees}_outline")
+    outline = np.stack([table.values("x"), table.values("y")], axis=1)
+    return flow.Setup(
+        grid=flow.Grid.covering((-2.5, 6.5), (-3.0, 3.0), cell=1 / cells), viscosity=1 / reynolds, coarse=True,
+        stream=(1.0, 0.0), bodies=(flow.Body(shape=flow.from_outline(outline)),),
+    )  # fmt: skip
+
+
+CASES = tuple(
+    Case(
+        name=f"snake_{degrees}_re{reynolds}",
+        run=partial(_snake, reynolds=float(reynolds), degrees=degrees),
+        full=Effort(cells=64, until=24.0, coarse=32, before=24.0),
+        quick=Effort(cells=24, until=14.0, coarse=16, before=6.0),
+        code=_CODE,
+        setup="The cross-section of a flying snake in a stream, in 9 x 6 chords of water without end; 24 chords of "
+        "travel from rest with {coarse} cells a chord and 24 with {cells}, means over the last 21.",
+    )
+    for reynolds in (1000, 2000)
+    for degrees in (30, 35)
+)
+"""The flows of this module."""

@@ -1,0 +1,88 @@
+"""Bodies that move to and fro in water at rest."""
+
+import numpy as np
+
+from suchus import flow
+from suchus.atlas.case import Case, Curves, Effort, Tell
+from suchus.atlas.marching import march, middles
+
+_CODE = ("still.py", "marching.py")
+_KEULEGAN = 5.0  # [-]; largest speed over frequency and diameter
+_STROKE = 2.8  # [m]; of the flapping ellipse, from end to end, in chords
+_FREQUENCY = 0.25  # [Hz]
+_SWING = np.pi / 4  # [rad]
+
+
+def _in_line(effort: Effort, tell: Tell) -> Curves:
+    """Compute a cylinder that moves with ``-U cos(2 pi t / T)``; diameter and period are 1."""
+    speed = _KEULEGAN
+    motion = flow.Oscillation(frequency=1.0, heave=(-speed / (2 * np.pi), 0.0))
+    sim = flow.Simulation(
+        flow.Setup(
+            grid=flow.Grid.covering((-5.0, 5.0), (-4.0, 4.0), cell=1 / effort.cells), viscosity=speed / 100.0,
+            bodies=(flow.Body(shape=flow.Cylinder(diameter=1.0), motion=motion),), coarse=True,
+        )
+    )  # fmt: skip
+    late = march(sim, effort.until, tell).after(effort.until - 1.0)
+    return {"force": np.stack([middles(late) % 1.0, late.force()[:, 0] / speed**2])}
+
+
+def flapping(time: float) -> flow.Pose:
+    """Return the pose of an ellipse that flaps along x: ``A/2 cos(2 pi f t)``, upright at both ends of the stroke."""
+    turn = 2 * np.pi * _FREQUENCY * time
+    rate = 2 * np.pi * _FREQUENCY
+    return flow.Pose(
+        position=(_STROKE / 2 * np.cos(turn), 0.0), angle=np.pi / 2 + _SWING * np.sin(turn),
+        velocity=(-rate * _STROKE / 2 * np.sin(turn), 0.0), spin=rate * _SWING * np.cos(turn),
+    )  # fmt: skip
+
+
+def quasi_steady_peaks() -> tuple[float, float]:
+    """Return the largest quasi-steady drag and lift of the flapping ellipse, which its sources divide by [N/m].
+
+    ``1/2 u^2 (1.4 - cos 2a)`` and ``1/2 u^2 1.2 sin 2a`` with the angle of attack ``a`` and the fastest point's speed
+    ``u``, over a period.
+    """
+    drags, lifts = [], []
+    for time in np.linspace(0.0, 1 / _FREQUENCY, 2001):
+        pose = flapping(float(time))
+        (speed, _), spin = pose.velocity, pose.spin
+        reach = np.linspace(-0.5, 0.5, 101)
+        point = np.stack([reach * np.cos(pose.angle), reach * np.sin(pose.angle)])
+        square = float(((speed - spin * point[1]) ** 2 + (spin * point[0]) ** 2).max())
+        attack = np.pi - pose.angle if speed <= 0 else pose.angle
+        drags.append(0.5 * square * (1.4 - np.cos(2 * attack)))
+        lifts.append(0.5 * square * 1.2 * np.sin(2 * attack))
+    return max(drags), max(lifts)
+
+
+def _flapping(effort: Effort, tell: Tell) -> Curves:
+    speed = np.pi * _FREQUENCY * _STROKE
+    sim = flow.Simulation(
+        flow.Setup(
+            grid=flow.Grid.covering((-3.5, 3.5), (-4.5, 2.5), cell=1 / effort.cells), viscosity=speed / 75.0,
+            bodies=(flow.Body(shape=flow.Ellipse(length=1.0, width=0.1), motion=flapping),), coarse=True,
+        )
+    )  # fmt: skip
+    record = march(sim, effort.until, tell)
+    time, (along, across) = middles(record), record.force().T
+    drag, lift = quasi_steady_peaks()
+    against = np.sign(np.sin(2 * np.pi * _FREQUENCY * time))  # the motion begins towards -x: drag is then along x
+    strokes = time * _FREQUENCY
+    return {"drag": np.stack([strokes, against * along / drag]), "lift": np.stack([strokes, across / lift])}
+
+
+CASES = (
+    Case(
+        name="in_line", run=_in_line, full=Effort(cells=48, until=5.0), quick=Effort(cells=12, until=1.0), code=_CODE,
+        setup="A cylinder that oscillates in water at rest, Re 100, KC 5; 10 x 8 diameters of water without end, "
+        "{cells} cells a diameter; the last of five periods.",
+    ),
+    Case(
+        name="flapping", run=_flapping, full=Effort(cells=64, until=16.0), quick=Effort(cells=32, until=4.0),
+        code=_CODE,
+        setup="An ellipse 10:1 that flaps in water at rest with a stroke of 2.8 chords and a swing of 45 degrees, Re "
+        "75; 7 x 7 chords of water without end, {cells} cells a chord; four periods from rest.",
+    ),
+)  # fmt: skip
+"""The flows of this module."""

@@ -1,0 +1,135 @@
+"""Flows between walls: the lid-driven cavity, a cylinder in a channel, one that settles in a channel."""
+
+from functools import partial
+
+import numpy as np
+
+from suchus import flow
+from suchus.atlas.case import Case, Curves, Effort, Tell
+from suchus.atlas.marching import march, middles
+from suchus.flow.signals import last_periods
+
+_CODE = ("walls.py", "marching.py")
+_HEIGHT, _DIAMETER = 0.41, 0.1  # [m]; of the DFG channel and of its cylinder
+_SINKING = 2.1  # [m/s]; of the frame that a settling cylinder is seen from
+_VISCOSITY = 0.008088  # [m^2/s]; of the water that it settles in
+
+
+def _cavity(effort: Effort, tell: Tell, *, reynolds: float) -> Curves:
+    n = effort.cells
+    sides = flow.Sides(left=flow.Wall(), right=flow.Wall(), bottom=flow.Wall(), top=flow.Wall(speed=1.0))
+    sim = flow.Simulation(
+        flow.Setup(grid=flow.Grid(cells=(n, n), cell=1 / n), viscosity=1 / reynolds, sides=sides, coarse=True)
+    )
+    march(sim, effort.until, tell)
+    mids = (np.arange(n) + 0.5) / n
+    half = np.full(n, 0.5)
+    up, across = sim.probe(np.stack([half, mids], axis=1)), sim.probe(np.stack([mids, half], axis=1))
+    return {"u": np.stack([mids, up.velocity[:, 0]]), "v": np.stack([mids, across.velocity[:, 1]])}
+
+
+def _channel(effort: Effort, tell: Tell, *, mean_speed: float) -> Curves:
+    """Compute the DFG channel, 2.2 m long, from rest."""
+    rows = round(_HEIGHT / _DIAMETER * effort.cells / 16) * 16  # multigrid halves it
+    cell = _HEIGHT / rows
+    long = flow.Grid.covering((0.0, 2.2), (0.0, _HEIGHT), cell=cell).cells[0]
+    sides = flow.Sides(
+        left=flow.Inflow(profile=lambda y: 6 * mean_speed * y * (_HEIGHT - y) / _HEIGHT**2), right=flow.Outflow(),
+        bottom=flow.Wall(), top=flow.Wall(),
+    )  # fmt: skip
+    cylinder = flow.Body(shape=flow.Cylinder(diameter=_DIAMETER), motion=flow.Pose(position=(0.2, 0.2)))
+    sim = flow.Simulation(
+        flow.Setup(
+            grid=flow.Grid(cells=(long, rows), cell=cell), viscosity=1e-3, sides=sides, bodies=(cylinder,), coarse=True
+        )
+    )
+    record = march(sim, effort.until, tell)
+    drag, lift = (record.force() * 2 / (mean_speed**2 * _DIAMETER)).T
+    if mean_speed < 0.5:
+        late = record.time > effort.until - 0.5
+        return {
+            "drag": np.array(drag[late].mean()), "lift": np.array(lift[late].mean()),
+            "pressure drop": np.array(_pressure_drop(sim)),
+        }  # fmt: skip
+    time = middles(record)
+    kept = last_periods(time, lift, 5)
+    return {
+        "largest drag": np.array(drag[kept].max()), "largest lift": np.array(lift[kept].max()),
+        "Strouhal": np.array(flow.frequency(time[kept], lift[kept]) * _DIAMETER / mean_speed),
+        "lift": np.stack([time, lift]),
+    }  # fmt: skip
+
+
+def _pressure_drop(sim: flow.Simulation) -> float:
+    """Return the pressure between the front and the rear of the cylinder in the DFG channel [Pa]."""
+    surface = sim.surface()
+    angle = np.arctan2(surface.markers.y - 0.2, surface.markers.x - 0.2)
+    front, rear = np.interp([np.pi, 0.0], np.sort(angle), surface.pressure[np.argsort(angle)], period=2 * np.pi)
+    return float(front - rear)
+
+
+def _settling(effort: Effort, tell: Tell) -> Curves:
+    """Compute a cylinder of relative density 1.5 that settles from (1, 40) in a channel of width 4; gravity is 10.
+
+    In a frame that sinks with ``_SINKING`` the walls and the water go up, and 40 diameters of the channel are enough.
+    """
+    width, low, high = 4 * effort.cells, 16.0, 24.0  # of the cylinder's start above the bottom and below the top
+    grid = flow.Grid(
+        cells=(width, round((low + high) * effort.cells)), cell=4.0 / width, origin=(0.0, 40.0 - low)
+    )  # fmt: skip
+    wall = flow.Wall(speed=_SINKING)
+    sides = flow.Sides(
+        left=wall, right=wall, bottom=flow.Inflow(profile=lambda x: np.full_like(x, _SINKING)), top=flow.Outflow()
+    )
+    body = flow.FreeBody(
+        shape=flow.Cylinder(diameter=1.0), start=(1.0, 40.0), velocity=(0.0, _SINKING), density=1.5,
+        gravity=(0.0, -10.0),
+    )  # fmt: skip
+    sim = flow.Simulation(
+        flow.Setup(
+            grid=grid, viscosity=_VISCOSITY, sides=sides, bodies=(body,), stream=(0.0, _SINKING), coarse=True
+        )
+    )  # fmt: skip
+    record = march(sim, effort.until, tell)
+    x, y, speed = (record.column(name) for name in ("x", "y", "velocity_y"))
+    late = record.time > 0.6 * effort.until
+    steady = _SINKING - float(np.average(speed[late], weights=record.step[late]))
+    weight = (1.5 - 1.0) * 10.0 * np.pi / 4
+    return {
+        "path": np.stack([y - _SINKING * record.time, x - 2.0]), "Reynolds number": np.array(steady / _VISCOSITY),
+        "drag": np.array(weight / (0.5 * steady**2)),
+    }  # fmt: skip
+
+
+CASES = (
+    Case(
+        name="cavity_re100", run=partial(_cavity, reynolds=100.0), full=Effort(cells=96, until=25.0),
+        quick=Effort(cells=16, until=3.0), code=_CODE,
+        setup="A square box whose lid slides, from rest until it is steady; {cells} cells a side.",
+    ),
+    Case(
+        name="cavity_re1000", run=partial(_cavity, reynolds=1000.0), full=Effort(cells=128, until=50.0),
+        quick=Effort(cells=16, until=3.0), code=_CODE,
+        setup="A square box whose lid slides, from rest until it is steady; {cells} cells a side.",
+    ),
+    Case(
+        name="dfg_2d1", run=partial(_channel, mean_speed=0.2), full=Effort(cells=31, until=7.0),
+        quick=Effort(cells=8, until=0.7), code=_CODE,
+        setup="The DFG channel, 22 x 4.1 diameters, {cells} cells a diameter, from rest; the last half "
+        "second of seven.",
+    ),
+    Case(
+        name="dfg_2d2", run=partial(_channel, mean_speed=1.0), full=Effort(cells=31, until=8.0),
+        quick=Effort(cells=10, until=6.0), code=_CODE,
+        setup="The DFG channel, 22 x 4.1 diameters, {cells} cells a diameter, from rest; the last five periods of "
+        "eight seconds.",
+    ),
+    Case(
+        name="settling", run=_settling, code=_CODE, full=Effort(cells=24, until=46.0),
+        quick=Effort(cells=12, until=2.0),
+        setup="A cylinder of relative density 1.5 that settles from rest, one diameter from a wall, in a channel 4 "
+        "diameters wide, seen from a frame that sinks with 2.1 m/s: 40 diameters of the channel, {cells} cells a "
+        "diameter. Means over the last two fifths of the time.",
+    ),
+)  # fmt: skip
+"""The flows of this module."""

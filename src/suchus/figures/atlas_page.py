@@ -1,0 +1,166 @@
+"""The page of the atlas of flows: a summary of all rows, then each with its source, its set-up and what came of it."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from statistics import median
+
+from suchus.atlas import CASES, GROUPS, Comparison, Curves, Outcome, Row, compare, digest_of, published
+from suchus.errors import SuchusError
+from suchus.flow import ALONG_THE_SKIN
+
+_SKIN = (
+    "Of values along the skin the solver's documentation says: {solver} In these rows the vorticity is therefore not "
+    "read with the solver's own `Surface` but with the equation of motion at the wall (`suchus.atlas.read_skin`); what "
+    "that gains stands in [limits](flow_limits.md). Pressures count from that of the far stream, by Bernoulli's "
+    "equation from the inflow."
+)
+_HEAD = ("row", "rms over peak", "bound", "scatter of sources", "verdict", "cells", "processor time")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Entry:
+    """A row and what came of it."""
+
+    row: Row
+    """The row."""
+    outcome: Outcome | None
+    """That of its flow; None if it was not computed."""
+    comparison: Comparison | None = None
+    """None where there is nothing to compare."""
+    failed: str = ""
+    """Why there is nothing."""
+    curves: Curves = field(default_factory=dict)
+    """Ours."""
+
+    @property
+    def word(self) -> str:
+        """What became of it, in a word or two."""
+        if self.outcome is None:
+            return "not computed"
+        if self.comparison is None:
+            return "failed"
+        if self.outcome.quick:
+            return "trial"
+        return "agrees" if self.comparison.agrees else "above its bound"
+
+    @property
+    def bad(self) -> bool:
+        """Whether it is marked: a judged row above its bound, or one of which nothing came."""
+        return self.word in ("above its bound", "failed")
+
+
+def entries(rows: Sequence[Row], outcomes: Mapping[str, Outcome]) -> list[Entry]:
+    """Return each row with what came of it; outcomes are found by the names of the flows."""
+    told = []
+    for row in rows:
+        outcome = outcomes.get(row.case)
+        found, failed = None, ""
+        if outcome is not None:
+            failed = outcome.failed
+            try:
+                found = None if failed else compare(row, outcome.curves)
+            except SuchusError as error:
+                failed = str(error)
+        curves = {} if outcome is None else outcome.curves
+        told.append(Entry(row=row, outcome=outcome, comparison=found, failed=failed, curves=curves))
+    return told
+
+
+def picture(group: str) -> str:
+    """Return the path of a group's picture, beside the page."""
+    return f"pictures/atlas_{group.lower().replace(' ', '_')}.png"
+
+
+def summary(told: Sequence[Entry]) -> str:
+    """Return in a sentence or two how many rows agree, the median difference and the largest."""
+    judged = [(e, e.comparison) for e in told if e.comparison is not None and e.outcome and not e.outcome.quick]
+    if not judged:
+        return f"None of the {len(told)} rows has been computed in full."
+    above = [entry.row.name for entry, found in judged if not found.agrees]
+    worst, most = max(judged, key=lambda pair: pair[1].rms)
+    text = (
+        f"Of {len(told)} rows {len(judged)} were computed in full: the median rms difference is "
+        f"{100 * median(found.rms for _, found in judged):.1f} % of the peak, the largest {100 * most.rms:.1f} % "
+        f"({worst.row.name}); {len(judged) - len(above)} are within their bounds"
+    )
+    text += f", above are {', '.join(above)}." if above else "."
+    failed = [entry.row.name for entry in told if entry.word == "failed"]
+    return text + (f" No comparison came of {', '.join(failed)}." if failed else "")
+
+
+def page(told: Sequence[Entry]) -> str:
+    """Return the page as Markdown."""
+    costs = {e.outcome.case: e.outcome.seconds for e in told if e.outcome is not None}
+    lines = [
+        "# Atlas of flows", "",
+        "Published data of flows around bodies, many of which move, beside what `suchus.flow` makes of them. `suchus "
+        "flow-atlas` computes the flows and `make atlas` writes this page from what came; nothing on it is typed in by "
+        "hand. What has no published data, exact answers and budgets, stands in [validation](validation.md), what the "
+        "differences mean in [limits](flow_limits.md).", "",
+        summary(told) + f" All flows together took {sum(costs.values()) / 60:.0f} minutes of processor time.", "",
+        "The difference is the root mean square over the published points, over the largest published magnitude (of "
+        "single numbers: of the relative differences). Its bound was fixed before anything was computed: twice the "
+        "scatter, the same measure between the sources, at least 2 and at most 8 %, or the scatter itself if that is "
+        "larger; 8 % where there is one source only. Rows above their bound stay.", "",
+        f"![All points, ours over the published ones, and the difference of each row with its bound]"
+        f"({picture('parity')})",
+        "", f"| {' | '.join(_HEAD)} |", "|" + "---|" * len(_HEAD),
+        *(_summary_line(entry) for entry in told),
+    ]  # fmt: skip
+    for group, rows in GROUPS.items():
+        some = [entry for entry in told if entry.row in rows]
+        if some:
+            lines += ["", f"## {group}"]
+            if any(entry.outcome is not None for entry in some):
+                lines += ["", f"![{group}: published points and our curves]({picture(group)})"]
+            if any(entry.row.skin for entry in some):
+                lines += ["", _SKIN.format(solver=ALONG_THE_SKIN)]
+            for entry in some:
+                lines += _told(entry)
+    return "\n".join(lines) + "\n"
+
+
+def _summary_line(entry: Entry) -> str:
+    found, outcome = entry.comparison, entry.outcome
+    word = f"**{entry.word}**" if entry.bad else entry.word
+    cells = [f"[{entry.row.name}](#{entry.row.name})"]
+    cells += ["", "", ""] if found is None else [_percent(found.rms), _percent(found.bound), _percent(found.scatter)]
+    cells += [word, "", ""] if outcome is None else [word, str(outcome.cells), f"{outcome.seconds:.0f} s"]
+    return f"| {' | '.join(cells)} |"
+
+
+def _percent(value: float | None) -> str:
+    return "one source" if value is None else f"{100 * value:.1f} %"
+
+
+def _told(entry: Entry) -> list[str]:
+    """Return a row's own section."""
+    row, case, outcome = entry.row, CASES[entry.row.case], entry.outcome
+    effort = case.quick if outcome is not None and outcome.quick else case.full
+    lines = ["", f"### {row.title} {{#{row.name}}}", "", *_words(entry)]
+    found = entry.comparison
+    if found is not None and row.kind == "numbers":
+        lines += ["", "| quantity | ours | published | difference |", "|---|---|---|---|"]
+        for name, ours, theirs in zip(published(row.data).columns["quantity"], found.ours, found.theirs, strict=True):
+            lines.append(f"| {name} | {ours:.4g} | {theirs:.4g} | {100 * (ours / theirs - 1):+.1f} % |")
+    setup = case.setup.format(cells=effort.cells, coarse=effort.coarse)
+    about = " ".join(line if line.endswith(".") else f"{line}." for line in published(row.data).about)
+    return [*lines, "", f"Published: {about}", "", f"Ours: {setup}"]
+
+
+def _words(entry: Entry) -> list[str]:
+    outcome, found = entry.outcome, entry.comparison
+    if outcome is None:
+        return ["**Not computed.**"]
+    told = []
+    if found is None:
+        told.append(f"**Failed:** {entry.failed}")
+    else:
+        sign = "within" if found.agrees else "**above**"
+        judged = "a trial, which is not judged" if outcome.quick else f"{sign} its bound of {_percent(found.bound)}"
+        told.append(f"{_percent(found.rms)} over {found.x.size} points: {judged}.")
+    if entry.row.note:
+        told.append(entry.row.note)
+    if outcome.digest != digest_of(CASES[entry.row.case], quick=outcome.quick):
+        told.append("Computed by an earlier state of the solver or of this set-up.")
+    return [" ".join(told)]

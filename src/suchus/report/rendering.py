@@ -1,0 +1,36 @@
+"""Where the pages of results come from: templates that share a frame, a style and the way tables are written."""
+
+import os
+from pathlib import Path
+from typing import Any
+from urllib.parse import quote
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup
+
+from suchus.report.numbers import number, quantity
+
+
+def render(template: str, place: Path | None, content: dict[str, Any], **filters: Any) -> str:
+    """Return a page as text.
+
+    Args:
+        template: name of its file.
+        place: the folder of the page, from which it links files; None: the one that holds their folders.
+        content: what the template names.
+        filters: of the template, beside ``quantity``, ``number`` and ``link``.
+    """
+    environment = Environment(
+        loader=PackageLoader("suchus.report"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+
+    def link(file: Path) -> str:
+        return quote(Path(os.path.relpath(file, file.parent.parent if place is None else place)).as_posix())
+
+    environment.filters |= {"quantity": quantity, "number": number, "link": link} | filters
+    style = Markup(environment.get_template("style.css").render())
+    return environment.get_template(template).render(style=style, **content) + "\n"

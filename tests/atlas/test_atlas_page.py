@@ -1,0 +1,128 @@
+"""The page of the atlas: made of the outcomes, so that others make another one; failures stay in and are marked."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import atlas_page
+from suchus.atlas import CASES, ROWS, Outcome, compare, digest_of, published, save_outcome
+from suchus.atlas.comparison import points
+from suchus.errors import IncompatibleRecord
+from suchus.figures.atlas import draw_group, draw_parity, write_atlas
+from suchus.figures.atlas_page import entries, page, summary
+
+ROW, NUMBERS, LOOP = ROWS["duetsch_force"], ROWS["re100_numbers"], ROWS["schneiders_drag"]
+
+
+def outcome(row, factor=1.0, **changes):
+    """An outcome whose curve is the published one times a factor."""
+    table = published(row.data)
+    if row.kind == "numbers":
+        found = compare(row, {name: np.array(1.0) for name in table.columns["quantity"]})
+        pairs = zip(table.columns["quantity"], found.theirs, strict=True)
+        curves = {name: np.array(value * factor) for name, value in pairs}
+    else:
+        x, y = points(row, table)
+        curves = {row.ours: np.stack([x, factor * y])}
+    told = {
+        "case": row.case, "digest": digest_of(CASES[row.case], quick=False), "quick": False, "cells": 48,
+        "seconds": 61.0, "curves": curves,
+    }  # fmt: skip
+    return Outcome(**{**told, **changes})
+
+
+def told(*outcomes, rows=(ROW, NUMBERS)):
+    return entries(rows, {one.case: one for one in outcomes})
+
+
+def test_a_perfect_curve_agrees_and_a_worse_one_is_above_its_bound():
+    good, bad = page(told(outcome(ROW))), page(told(outcome(ROW, 1.2)))
+    assert "| [duetsch_force](#duetsch_force) | 0.0 % | 8.0 % | one source | agrees | 48 | 61 s |" in good
+    assert "**above its bound**" in bad
+    assert "above are duetsch_force" in bad
+    assert good != bad
+
+
+def test_a_row_on_each_side_of_its_bound():
+    scale = compare(ROW, outcome(ROW, 2.0).curves).rms  # of a factor of 2
+    for off, word in ((0.99, "agrees"), (1.01, "above its bound")):
+        assert told(outcome(ROW, 1 + off * 0.08 / scale))[0].word == word
+
+
+def test_numbers_stand_in_a_table_beside_the_published_ones():
+    text = page(told(outcome(NUMBERS, 1.01)))
+    assert "| mean drag | 1.348 | 1.335 | +1.0 % |" in text
+    assert "Liu, Zheng and Sung 1998" in text
+
+
+def test_what_was_not_computed_or_failed_stays_on_the_page():
+    missing = page(told())
+    assert missing.count("**Not computed.**") == 2
+    assert "None of the 2 rows has been computed in full." in missing
+    failed = page(told(outcome(ROW, failed="it diverged at t = 3 s.", curves={})))
+    assert "**Failed:** it diverged at t = 3 s." in failed
+    assert "| **failed** |" in failed
+    short = page(told(outcome(ROW, curves={"force": np.array([[0.0], [1.0]])}), outcome(NUMBERS, curves={})))
+    assert "**Failed:** the flow gave no mean drag" in short
+
+
+def test_a_trial_is_drawn_and_not_judged():
+    text = page(told(outcome(ROW, 1.5, quick=True)))
+    assert "a trial, which is not judged" in text
+    assert "above" not in text.partition("## Bodies")[2]
+    assert "None of the 2 rows" in text
+
+
+def test_an_outcome_of_other_code_says_so():
+    assert "earlier state" not in page(told(outcome(ROW)))
+    assert "earlier state" in page(told(outcome(ROW, digest="0")))
+
+
+def test_the_summary_counts_what_was_judged():
+    text = summary(told(outcome(ROW, 1.02), outcome(NUMBERS)))
+    assert text.startswith("Of 2 rows 2 were computed in full: the median rms difference is 0.")
+    assert "(duetsch_force); 2 are within their bounds." in text
+
+
+def test_what_is_read_along_the_skin_says_how_well():
+    skin = ROWS["li_pressure_re40"]
+    assert "the peak wall vorticity" in page(told(outcome(skin), rows=(skin,)))
+    assert "the peak wall vorticity" not in page(told(outcome(ROW)))
+
+
+def test_pictures_are_drawn_of_every_kind_of_row():
+    some = told(outcome(ROW), outcome(NUMBERS, 1.1), outcome(LOOP), rows=(ROW, NUMBERS, LOOP, ROWS["taira_re40"]))
+    assert len(draw_group(some).axes) == 6
+    assert len(draw_parity(some).axes) == 2
+    draw_parity(told())
+
+
+def test_the_tool_writes_page_and_pictures_from_a_folder(tmp_path):
+    save_outcome(outcome(ROW), tmp_path / "out")
+    first = atlas_page.main(tmp_path / "out", tmp_path / "docs").read_text()
+    assert {path.name for path in (tmp_path / "docs" / "pictures").iterdir()} == {
+        "atlas_parity.png", "atlas_bodies_that_move_in_water_at_rest.png"
+    }  # fmt: skip
+    save_outcome(outcome(ROW, 1.3), tmp_path / "out")
+    assert atlas_page.main(tmp_path / "out", tmp_path / "docs").read_text() != first
+
+
+def test_the_tool_takes_neither_nothing_nor_trials(tmp_path):
+    with pytest.raises(IncompatibleRecord, match="holds no outcomes of the atlas"):
+        atlas_page.main(tmp_path, tmp_path)
+    save_outcome(outcome(ROW, quick=True), tmp_path)
+    with pytest.raises(IncompatibleRecord, match=r"in_line in .* are quick trials"):
+        atlas_page.main(tmp_path, tmp_path)
+
+
+def test_only_the_rows_that_were_asked_for_are_on_the_page(tmp_path):
+    text = write_atlas({ROW.case: outcome(ROW)}, tmp_path, (ROW,)).read_text()
+    assert "duetsch_force" in text
+    assert "re100_numbers" not in text
+
+
+def test_replace_keeps_the_bound_out_of_reach():
+    """The bound follows from the sources: a row has no field that could be tuned."""
+    with pytest.raises(TypeError):
+        replace(ROW, bound=0.5)

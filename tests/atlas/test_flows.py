@@ -1,0 +1,131 @@
+"""The flows of the atlas: each can begin, and what they read off fields and motions is exact where it can be."""
+
+from importlib import import_module
+
+import numpy as np
+import pytest
+
+from suchus import flow
+from suchus.atlas import CASES
+from suchus.atlas.cylinders import wake_length
+from suchus.atlas.marching import march, nudged, shedding
+from suchus.atlas.shaken import mean_skin
+from suchus.atlas.skin import Skin
+from suchus.atlas.still import flapping, quasi_steady_peaks
+from suchus.flow.record import COLUMNS
+
+
+class Begun(Exception):
+    """Raised when a flow says for the first time how far it is."""
+
+
+def begin(case, effort):
+    def tell(share):
+        assert 0 < share <= 0.25
+        raise Begun
+
+    with pytest.raises(Begun):
+        case.run(effort, tell)
+
+
+BEGUN = [name for name in CASES if "snake" not in name or name == "snake_30_re1000"]  # 3 s for each snake to be placed
+
+
+@pytest.mark.parametrize("name", BEGUN)
+def test_a_trial_of_every_flow_begins(name):
+    begin(CASES[name], CASES[name].quick)
+
+
+@pytest.mark.parametrize("name", [name for name, case in CASES.items() if case.full.coarse and "snake" not in name])
+@pytest.mark.parametrize("quick", [True, False])
+def test_both_grids_of_a_flow_lie_at_the_same_place(name, quick, monkeypatch):
+    case, module = CASES[name], import_module(getattr(CASES[name].run, "func", CASES[name].run).__module__)
+
+    def go_on(coarse, setup):
+        ours, theirs = setup.grid, coarse.setup.grid
+        assert (*ours.origin, *ours.size) == pytest.approx((*theirs.origin, *theirs.size))
+        assert ours.cell < theirs.cell
+        raise Begun
+
+    monkeypatch.setattr(module, "march", lambda *words, **more: None)
+    monkeypatch.setattr(module, "refined", go_on)
+    with pytest.raises(Begun):
+        case.run(case.quick if quick else case.full, lambda share: None)
+
+
+@pytest.mark.parametrize("name", ["cavity_re1000", "dfg_2d1", "settling"])
+def test_flows_whose_grids_are_given_by_walls_begin_in_full(name):
+    begin(CASES[name], CASES[name].full)
+
+
+@pytest.mark.parametrize("time", [0.0, 0.3, 1.0, 2.7, 3.9])
+def test_the_flapping_ellipse_moves_as_its_rates_say(time):
+    step = 1e-6
+    before, now, after = (flapping(t) for t in (time - step, time, time + step))
+    for k in range(2):
+        rate = (after.position[k] - before.position[k]) / (2 * step)
+        assert now.velocity[k] == pytest.approx(rate, abs=1e-7)
+    assert now.spin == pytest.approx((after.angle - before.angle) / (2 * step), abs=1e-7)
+    assert flapping(0.0).position == (1.4, 0.0)
+
+
+def test_the_flapping_ellipse_s_sources_divide_by_forces_of_the_size_of_its_speed():
+    """At the middle of a stroke the angle of attack is 45 degrees and the ellipse does not turn."""
+    speed = flapping(1.0).velocity[0]
+    drag, lift = quasi_steady_peaks()
+    assert drag >= 0.5 * speed**2 * 1.4
+    assert lift >= 0.5 * speed**2 * 1.2
+    assert drag < 1.5 * 0.5 * speed**2 * 2.4
+
+
+def test_the_recirculation_ends_where_the_velocity_on_the_axis_is_zero():
+    grid = flow.Grid.covering((-1.0, 4.0), (-1.0, 1.0), cell=1 / 16)
+    body = flow.Body(shape=flow.Cylinder(diameter=1.0))
+    sim = flow.Simulation(flow.Setup(grid=grid, viscosity=0.1, stream=(1.0, 0.0), bodies=(body,)))
+    assert wake_length(sim) == 0.0
+    sim.water.u[:] = grid.faces(0, sim.water.u.shape[1], 0)[None, :] - 1.8
+    assert wake_length(sim) == pytest.approx(1.3, abs=1e-5)
+    sim.water.u[:] = -1.0  # it has no end in the domain
+    assert wake_length(sim) == 0.0
+
+
+def test_the_gust_ends_and_leaves_no_trace():
+    assert nudged(0.4) == nudged(2.6) == (1.0, 0.0)
+    assert nudged(1.5) == pytest.approx((1.0, 0.3))
+    assert nudged(0.5 + 1e-4)[1] < 1e-6
+
+
+def test_the_shedding_of_a_sine_is_exact():
+    step = 0.01
+    time = np.arange(step, 40.0, step)
+    middle = time - step / 2
+    bodies = np.zeros((time.size, 1, len(COLUMNS)))
+    bodies[:, 0, COLUMNS.index("force_x")] = 0.5 * (1.3 + 0.02 * np.cos(2 * np.pi * 0.4 * middle))
+    bodies[:, 0, COLUMNS.index("force_y")] = 0.5 * (0.1 + 0.4 * np.sin(2 * np.pi * 0.2 * middle))
+    record = flow.Record(
+        names=("body",), time=time, step=np.full(time.size, step), cycles=np.zeros((time.size, 2)),
+        divergence=np.zeros(time.size), bodies=bodies,
+    )  # fmt: skip
+    found = shedding(record, 5)
+    assert found["mean drag"] == pytest.approx(1.3, abs=1e-3)
+    assert found["mean lift"] == pytest.approx(0.1, abs=2e-3)
+    assert found["lift amplitude"] == pytest.approx(0.4, rel=2e-3)
+    assert found["Strouhal"] == pytest.approx(0.2, rel=5e-3)
+
+
+def test_a_march_tells_shares_that_rise_to_one():
+    sim = flow.Simulation(flow.Setup(grid=flow.Grid(cells=(16, 16), cell=1 / 16), viscosity=0.1))
+    said, seen = [], []
+    march(sim, 0.5, said.append, end=2.0, watch=(lambda now: seen.append(now.time),), every=0.25)
+    march(sim, 2.0, said.append, end=2.0)
+    assert said == sorted(said)
+    assert said[0] < 0.26
+    assert said[-1] == 1.0
+    assert seen[-1] == 0.5
+
+
+def test_the_mean_of_readings_is_taken_marker_by_marker():
+    one, two = (Skin(angle=np.arange(3.0), pressure=np.full(3, p), vorticity=np.arange(3.0) * p) for p in (1.0, 3.0))
+    mean = mean_skin([one, two])
+    assert mean.pressure.tolist() == [2.0, 2.0, 2.0]
+    assert mean.vorticity.tolist() == [0.0, 2.0, 4.0]

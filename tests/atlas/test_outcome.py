@@ -1,0 +1,161 @@
+"""Outcomes on disk, and flows that are computed only where they are not there yet."""
+
+import os
+import pickle
+import time
+from dataclasses import replace
+from multiprocessing import active_children, get_context
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import suchus.atlas
+from suchus.atlas import CASES, Case, Effort, compute, compute_all, digest_of, finished, load_outcome, save_outcome
+from suchus.errors import NotConverged, UnreadableFile, Unwritable
+
+pytestmark = pytest.mark.filterwarnings("ignore:.*fork.*:DeprecationWarning")
+
+
+def plain_run(effort, tell):
+    tell(0.5)
+    return {"curve": np.array([[0.0, 1.0], [1.0, effort.cells / 3]]), "drag": np.array(1.5)}
+
+
+def refusing_run(effort, tell):
+    raise NotConverged("the series has 1 rises; run longer.")
+
+
+def dying_run(effort, tell):
+    os._exit(3)
+
+
+def case(name="one", run=plain_run, cells=4):
+    return Case(
+        name=name, setup="{cells}", run=run, full=Effort(cells=cells, until=1.0), quick=Effort(cells=2, until=0.5),
+        code=("skin.py",),
+    )  # fmt: skip
+
+
+def quiet(told):
+    pass
+
+
+def test_an_outcome_comes_back_as_it_was_kept(tmp_path):
+    kept = compute(case(), quick=False, tell=lambda share: None)
+    save_outcome(kept, tmp_path)
+    back = load_outcome(tmp_path, "one")
+    assert replace(back, curves={}) == replace(kept, curves={})
+    assert back.curves["curve"] == pytest.approx(kept.curves["curve"], rel=1e-6)
+    assert float(back.curves["drag"]) == 1.5
+    assert load_outcome(tmp_path, "two") is None
+
+
+def test_every_part_of_a_set_up_is_in_its_digest():
+    one = case()
+    digests = {
+        digest_of(one, quick=False), digest_of(one, quick=True), digest_of(case(cells=5), quick=False),
+        digest_of(case("two"), quick=False), digest_of(replace(one, code=("refine.py",)), quick=False),
+        digest_of(replace(one, full=replace(one.full, coarse=2)), quick=False),
+        digest_of(replace(one, full=replace(one.full, before=2.0)), quick=False),
+    }  # fmt: skip
+    assert len(digests) == 7
+    assert digest_of(one, quick=False) == digest_of(case(), quick=False)
+
+
+def test_the_solver_s_code_is_in_the_digest(monkeypatch):
+    before = digest_of(case(), quick=False)
+    monkeypatch.setattr("suchus.atlas.outcome.code_digest", lambda *rooms: "other" if "flow" in rooms else "same")
+    assert digest_of(case(), quick=False) != before
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_the_files_that_decide_a_flow_s_curves_are_there(name):
+    assert all((Path(suchus.atlas.__file__).parent / file).is_file() for file in CASES[name].code)
+    function = getattr(CASES[name].run, "func", CASES[name].run)
+    assert f"{function.__module__.rpartition('.')[2]}.py" in CASES[name].code
+
+
+def test_a_flow_that_is_refused_is_an_outcome_with_its_sentence(tmp_path):
+    kept = compute_all([case(run=refusing_run)], tmp_path, jobs=1, quick=False, tell=quiet)["one"]
+    assert kept.failed == "the series has 1 rises; run longer."
+    assert load_outcome(tmp_path, "one").failed == kept.failed
+
+
+def test_what_is_finished_is_not_computed_again(tmp_path):
+    ran = []
+
+    def counted(effort, tell):
+        ran.append(effort.cells)
+        return plain_run(effort, tell)
+
+    for _ in range(2):
+        compute_all([case(run=counted)], tmp_path, jobs=1, quick=False, tell=quiet)
+    assert ran == [4]
+    compute_all([case(run=counted, cells=5)], tmp_path, jobs=1, quick=False, tell=quiet)
+    compute_all([case(run=counted, cells=5)], tmp_path, jobs=1, quick=True, tell=quiet)
+    assert ran == [4, 5, 2]
+    (tmp_path / "flows" / "one.json").write_text("{")
+    compute_all([case(run=counted)], tmp_path, jobs=1, quick=False, tell=quiet)
+    assert ran == [4, 5, 2, 4]
+    assert finished(case(), tmp_path, quick=False) is not None
+    assert finished(case(), tmp_path, quick=True) is None
+
+
+def test_ctrl_c_keeps_what_is_finished(tmp_path):
+    def stopped(effort, tell):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        compute_all([case(), case("two", stopped)], tmp_path, jobs=1, quick=False, tell=quiet)
+    assert [path.name for path in (tmp_path / "flows").iterdir()] == ["one.json"]
+
+
+def test_progress_ends_with_the_outcome(tmp_path):
+    said = []
+    compute_all([case()], tmp_path, jobs=1, quick=False, tell=said.append)
+    assert [told.share for told in said] == [0.5, 1.0]
+    assert [told.outcome is None for told in said] == [True, False]
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_a_flow_can_be_handed_to_another_process(name):
+    assert pickle.loads(pickle.dumps(CASES[name])).full == CASES[name].full
+
+
+def test_side_by_side_a_process_that_dies_takes_only_its_own_flow(tmp_path, monkeypatch):
+    """Forked here: a process that starts afresh imports for some seconds."""
+    monkeypatch.setattr("suchus.atlas.crew.get_context", lambda kind: get_context("fork"))
+    cases = [case(), case("dies", dying_run)]
+    came = compute_all(cases, tmp_path, jobs=2, quick=True, tell=quiet)
+    assert came["one"].curves["curve"][1, 1] == pytest.approx(2 / 3)
+    assert "exit code 3" in came["dies"].failed
+    assert load_outcome(tmp_path, "one") is not None
+    assert load_outcome(tmp_path, "dies") is None  # so that it is tried again
+
+
+def test_side_by_side_an_error_ends_the_processes(tmp_path, monkeypatch):
+    monkeypatch.setattr("suchus.atlas.crew.get_context", lambda kind: get_context("fork"))
+
+    def stop(told):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        compute_all([case(), case("two"), case("three")], tmp_path, jobs=2, quick=True, tell=stop)
+    deadline = time.monotonic() + 5.0
+    while active_children() and time.monotonic() < deadline:
+        time.sleep(0.01)
+    assert active_children() == []
+
+
+def test_a_file_of_something_else_is_refused(tmp_path):
+    (tmp_path / "flows").mkdir()
+    (tmp_path / "flows" / "one.json").write_text('{"case": "one"}')
+    with pytest.raises(UnreadableFile, match="holds no outcome of the atlas"):
+        load_outcome(tmp_path, "one")
+
+
+def test_a_place_that_takes_nothing_is_named(tmp_path):
+    (tmp_path / "flows").write_text("a file")
+    with pytest.raises(Unwritable, match="flows"):
+        compute_all([case()], tmp_path, jobs=1, quick=False, tell=quiet)

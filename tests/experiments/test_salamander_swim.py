@@ -1,0 +1,115 @@
+"""The animal's swim on its model: what is played, and what the measures mean."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from suchus.design import layout
+from suchus.errors import InvalidDesign, UnsuitedRobot
+from suchus.experiments import EXPERIMENTS
+from suchus.experiments._animal_swim import FREQUENCIES, STRIDE, envelope, played
+from suchus.kinematics.tree import landmarks
+from suchus.motion.angle_table import check_table, table_targets
+from suchus.robots import ROBOTS
+
+ROBOT, SWIM = ROBOTS["salamander"], EXPERIMENTS["salamander_swim"]
+
+
+def test_the_wave_runs_from_the_neck_to_the_tail_and_grows():
+    gait = played(ROBOT, 2.6)
+    check_table(ROBOT, gait)
+    place, clock = layout(ROBOT), np.arange(52) / 52
+    angles = table_targets(ROBOT, gait, clock)[:, list(place.axial_yaw)] * np.array(place.axial_left)
+    first = np.fft.rfft(angles, axis=0)[1]
+    names = [place.servos[i] for i in place.axial_yaw]
+    order = [
+        names.index(name)
+        for name in ("neck_yaw_1", "spine_yaw_2", "spine_yaw_1", *(f"tail_yaw_{i}" for i in range(1, 6)))
+    ]
+    late = -np.diff(np.unwrap(np.angle(first[order]))) / (2 * np.pi)
+    assert (late > 0.0).all()
+    assert late.sum() == pytest.approx(0.9, abs=0.15)  # about one wave on the body
+    size = np.abs(first[order]) / 26
+    assert size[-1] > 2.0 * size[0]
+
+
+def test_its_limbs_lie_back_along_the_body():
+    place, servos = layout(ROBOT), table_targets(ROBOT, played(ROBOT, 2.6), np.zeros(1))[0]
+    angles = np.zeros(len(place.hinges))
+    for i, name in enumerate(place.servos):
+        angles[list(place.hinges).index(name)] = servos[i]
+    straight, folded = landmarks(ROBOT, 0 * angles).feet, landmarks(ROBOT, angles).feet
+    assert (folded[:, 0] < straight[:, 0] - 0.005).all()
+
+
+def tracked(turn, ahead):
+    """Return two cycles of 1 s of a stiff body that turns to and fro by an angle while it goes straight ahead."""
+    time = np.linspace(0.0, 2.0, 201)
+    yaw = turn * np.sin(2 * np.pi * time)
+    way = np.stack([np.cos(0.3) * ahead * time, np.sin(0.3) * ahead * time, 0 * time], axis=1)
+    half = (yaw + 0.3) / 2
+    names = list(layout(ROBOT).hinges)
+    return xr.Dataset(
+        {
+            "joint_angle": (("time", "joint"), np.zeros((201, len(names)))),
+            "orientation": (("time", "wxyz"), np.stack([np.cos(half), 0 * half, 0 * half, np.sin(half)], axis=1)),
+            "position": (("time", "xyz"), way),
+            "centre_of_mass": (("time", "xyz"), way),
+        },
+        {"time": time, "joint": names},
+    )
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.1])
+def test_a_stiff_body_that_turns_about_its_root_swings_in_proportion_to_the_distance_from_it(turn):
+    found = envelope(ROBOT, tracked(turn, 0.2), 0.0, 1.0)
+    assert found.place[[0, -1]] == pytest.approx([0.0, 1.0])
+    root = landmarks(ROBOT, np.zeros(len(layout(ROBOT).hinges))).snout[0] / ROBOT.length
+    assert found.swing == pytest.approx(2 * np.sin(turn) * np.abs(found.place - root), abs=1e-3)
+
+
+@pytest.fixture(scope="module")
+def record():
+    """Return hand-made swims at two frequencies."""
+    return xr.Dataset(
+        {
+            "stride": ("swim", [0.2, 0.3]),
+            "stride_other": ("water", [0.3, 0.22, 0.4]),
+            "swing": (("swim", "point"), [[0.2, 0.1, 0.4], [0.2, 0.1, 0.6]]),
+            "missed": ("swim", [0.01, 0.02]),
+            "under": ("swim", [0.6, 0.7]),
+            "heel": ("swim", [0.5, 0.2]),
+        },
+        coords={"frequency": ("swim", [2.6, 3.0]), "place": ("point", [0.0, 0.4, 1.0])},
+    )
+
+
+def test_measures_are_read_from_strides_and_swings(record):
+    m = {name: one.value for name, one in SWIM.measure(record).items()}
+    assert m["stride_swim"] == pytest.approx(0.25)
+    assert m["stride_off"] == pytest.approx(0.25 / STRIDE - 1)
+    assert (m["stride_low"], m["stride_high"]) == (0.22, 0.4)
+    assert (m["strouhal_2_6"], m["strouhal_3"]) == pytest.approx((2.0, 2.0))
+    assert (m["swing_snout"], m["swing_tail"]) == pytest.approx((0.2, 0.5))
+    assert (m["swing_least"], m["swing_least_at"]) == pytest.approx((0.1, 0.4))
+    assert (m["heel"], m["angle_missed"]) == (0.5, 0.02)
+
+
+def test_it_says_on_which_side_of_the_animal_it_is(record):
+    for stride, side, within in ((0.3, "more than", "within"), (0.1, "less than", "within")):
+        m = {name: one.value for name, one in SWIM.measure(record.assign(stride=("swim", [stride] * 2))).items()}
+        assert side in SWIM.explain(m)
+        assert f"which is {within}" in SWIM.explain(m)
+        assert "which is outside" in SWIM.explain(m | {"stride_low": 0.3})
+
+
+def test_other_robots_and_settings_are_refused():
+    assert SWIM.frequencies == FREQUENCIES
+    with pytest.raises(UnsuitedRobot, match="needs the joints of the robot 'salamander'"):
+        replace(SWIM.quick(), robot=ROBOTS["strider"]).run()
+    with pytest.raises(InvalidDesign, match="frequencies is"):
+        replace(SWIM, frequencies=(3.0, 2.0))
+    with pytest.raises(InvalidDesign, match="cycles is 0"):
+        replace(SWIM, cycles=0)

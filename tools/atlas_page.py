@@ -1,0 +1,36 @@
+"""Write docs/atlas.md and its pictures from the outcomes of the atlas of flows.
+
+Usage: python tools/atlas_page.py OUT [DOCS]: reads OUT/flows/*.json, which `suchus flow-atlas --out OUT` left, and
+writes DOCS/atlas.md, by default docs/atlas.md, and DOCS/pictures/atlas_*.png.
+"""
+
+import sys
+from pathlib import Path
+
+from suchus.atlas import CASES, load_outcome
+from suchus.errors import IncompatibleRecord, SuchusError
+from suchus.figures.atlas import write_atlas
+
+DOCS = Path(__file__).parents[1] / "docs"
+
+
+def main(out: Path, docs: Path = DOCS) -> Path:
+    """Write the page and return its place.
+
+    Raises:
+        IncompatibleRecord: there is no outcome, or there are trials among them, which belong on no page.
+    """
+    found = {name: outcome for name in CASES if (outcome := load_outcome(out, name)) is not None}
+    if not found:
+        raise IncompatibleRecord(f"{out} holds no outcomes of the atlas; run suchus flow-atlas --out {out} first.")
+    trials = [name for name, outcome in found.items() if outcome.quick]
+    if trials:
+        raise IncompatibleRecord(f"{', '.join(trials)} in {out} are quick trials; run suchus flow-atlas in full first.")
+    return write_atlas(found, docs)
+
+
+if __name__ == "__main__":
+    try:
+        print(main(*(Path(word) for word in sys.argv[1:3])))
+    except (SuchusError, TypeError) as error:
+        sys.exit(f"atlas_page: {error if isinstance(error, SuchusError) else __doc__}")
