@@ -1,5 +1,7 @@
 """What there is to see of a flow: velocity, pressure and vorticity on plain grids."""
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from suchus.flow.compiled import PAD
@@ -36,24 +38,27 @@ class Fields:
         return read(self.water, np.asarray(points, float), self.frame, self.setup.density)
 
     @property
-    def velocity(self) -> tuple[np.ndarray, np.ndarray]:
-        """Velocity relative to the grid at the cell centres, two arrays of shape (ny, nx) [m/s]."""
-        u, v = self.water.u, self.water.v
-        inner = np.s_[PAD:-PAD, PAD:-PAD]
-        return (
-            0.5 * (u[inner] + u[PAD:-PAD, PAD + 1 : u.shape[1] - PAD + 1]),
-            0.5 * (v[inner] + v[PAD + 1 : v.shape[0] - PAD + 1, PAD:-PAD]),
-        )
+    def velocity(self) -> tuple[np.ndarray, ...]:
+        """Velocity relative to the grid at the cell centres, along each axis, shape (ny, nx) or (nz, ny, nx) [m/s]."""
+        return tuple(0.5 * (low + high) for low, high in self._faces(self.water.velocity))
+
+    @staticmethod
+    def _faces(a: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+        """Yield, axis by axis, the values on the faces before and behind the cells of a field on faces."""
+        axes, cells = len(a), slice(PAD, -PAD)
+        for d, part in enumerate(a):
+            behind = tuple(slice(PAD + 1, 1 - PAD) if axes - 1 - n == d else cells for n in range(axes))
+            yield part[(cells,) * axes], part[behind]
 
     @property
     def pressure(self) -> np.ndarray:
-        """Pressure at the cell centres, zero on the average along the sides, shape (ny, nx) [Pa]."""
+        """Pressure at the cell centres, zero on the average along the sides, shape (ny, nx) or (nz, ny, nx) [Pa]."""
         p = self.water.p
-        return self.setup.density * (p[PAD:-PAD, PAD:-PAD] - self.water.dtype(edge_mean(p)))
+        return self.setup.density * (p[(slice(PAD, -PAD),) * p.ndim] - self.water.dtype(edge_mean(p)))
 
     @property
     def vorticity(self) -> np.ndarray:
-        """Vorticity at the inner corners of the cells, shape (ny - 1, nx - 1) [1/s]."""
+        """Vorticity of a plane flow at the inner corners of the cells, shape (ny - 1, nx - 1) [1/s]."""
         u, v = self.water.u, self.water.v
         a, b = PAD + 1, -PAD
         return ((v[a:b, a:b] - v[a:b, a - 1 : b - 1]) - (u[a:b, a:b] - u[a - 1 : b - 1, a:b])) / self.setup.grid.cell
@@ -71,10 +76,9 @@ class Fields:
 
     @property
     def fluid_share(self) -> np.ndarray:
-        """Share of the fluid at the cell centres, 0 inside the bodies and 1 outside, shape (ny, nx) [-]."""
-        mu0_u, mu0_v = self.water.mu0
-        a, b = PAD, -PAD
-        return 0.25 * (
-            mu0_u[a:b, a:b] + mu0_u[a:b, a + 1 : mu0_u.shape[1] + b + 1]
-            + mu0_v[a:b, a:b] + mu0_v[a + 1 : mu0_v.shape[0] + b + 1, a:b]
-        )  # fmt: skip
+        """Share of the fluid at the cell centres, 0 inside the bodies and 1 outside, shape as the pressure's [-]."""
+        faces = list(self._faces(self.water.mu0))
+        total: np.ndarray = faces[0][0] + faces[0][1]
+        for low, high in faces[1:]:
+            total = total + low + high
+        return 0.5 / self.water.axes * total

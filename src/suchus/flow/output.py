@@ -62,7 +62,7 @@ def save_vti(sim: Fields, path: Path | str) -> None:
 
 def _vti(sim: Fields) -> bytes:
     data, grid, frame = snapshot(sim), sim.setup.grid, sim.frame[0]
-    nx, ny = grid.cells
+    nx, ny = grid.cells[:2]
     x, y, h = (float(value) for value in (*(np.array(grid.origin) + frame), grid.cell))
     arrays, blocks, offset = [], [], 0
     for name in _UNITS:
