@@ -26,12 +26,13 @@ def added_mass(
     Raises:
         NotConverged: the pressure solver got stuck.
     """
-    h, axes = water.grid.cell, water.axes
-    here, modes = water.here, _modes(water, about)
+    h, axes, cut = water.grid.cell, water.axes, water.cut[body]
+    here, kept = water.here, _symmetric(cut)
+    modes = [mode for mode, keep in zip(_modes(water, about), kept, strict=True) if keep]
     own = [owner == body for owner in water.owners]
     shares = [(1 - m[here].astype(np.float64)) * mine for m, mine in zip(water.passage, own, strict=True)]
     for share in shares:
-        _leave_images(share, water.cut[body])
+        _leave_images(share, cut)
     rises, shores, inward = [], [], []
     for mode in modes:
         scale = max(float(np.abs(part).max()) for part in mode)
@@ -45,8 +46,17 @@ def added_mass(
         prod([h] * axes) * np.array([[_work(mode, shares, parts) for parts in what] for mode in modes])
         for what in (rises, modes)
     )
-    whole = density * (_in_open_water(held, own_mass, shores, inward, h) + _rim(water, markers, about, water.cut[body]))
-    return _mirrored(whole, water.cut[body])
+    both = np.ix_(kept, kept)
+    whole = np.full((axes + 1, axes + 1), np.nan)
+    rim = _rim(water, markers, about, cut)[both]
+    whole[both] = 2 ** sum(cut) * density * (_in_open_water(held, own_mass, shores, inward, h) + rim)
+    return whole
+
+
+def _symmetric(cut: tuple[bool, ...]) -> list[bool]:
+    """Return which modes are symmetric about the mirrors that cut a body."""
+    across = [low or high for low, high in zip(cut[::2], cut[1::2], strict=True)]
+    return [not off for off in (*across, any(across[:2]))]
 
 
 def _modes(water: Water, about: tuple[float, ...]) -> list[list[np.ndarray]]:
@@ -97,16 +107,6 @@ def _rim(water: Water, markers: Markers | Skin, about: tuple[float, ...], cut: t
         [[*(skin if c == d else none for d in range(axes)), (-ry * skin, rx * skin, none)[c]] for c in range(axes)]
     )  # component, mode, marker
     return np.array([*rims.sum(axis=2), (rx * rims[1] - ry * rims[0]).sum(axis=1)])
-
-
-def _mirrored(mass: np.ndarray, cut: tuple[bool, ...]) -> np.ndarray:
-    """Return the added mass of the whole body from that of its part between the mirrors that cut it."""
-    whole = 2 ** sum(cut) * mass
-    across = [low or high for low, high in zip(cut[::2], cut[1::2], strict=True)]
-    for mode, off in enumerate([*across, any(across[:2])]):
-        if off:
-            whole[mode, :] = whole[:, mode] = np.nan
-    return whole
 
 
 def _in_open_water(
