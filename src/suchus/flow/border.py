@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from suchus.flow.compiled import PAD, Window, compiled
+from suchus.flow.farfield import FarField
 from suchus.flow.grid import Grid
 from suchus.flow.openwater import Fading, OpenWater
 from suchus.flow.pose import length
@@ -146,7 +147,9 @@ class Border:
     edges: list[Edge]
     """Left, right, bottom, top, and in space low and high."""
     water: OpenWater | None
-    """The water around the domain, if it has no end."""
+    """The water around a plane domain, if it has no end."""
+    far: FarField | None
+    """The same in space."""
     stream: tuple[float, ...] = (0.0, 0.0)
     """Velocity of the far water at the end of the step [m/s]."""
     steps: int = 0
@@ -163,8 +166,13 @@ class Border:
             prescribed: np.ndarray = np.zeros([n for d, n in enumerate(grid.cells) if d != axis][::-1], dtype)
             if isinstance(side, Inflow):
                 prescribed[:] = inflow(side, grid, axis)
-            edges.append(Edge(side, axis, name in NAMES[::2], grid.cells[axis], prescribed, endless))
-        return cls(edges, OpenWater.around(grid) if endless else None, (0.0,) * grid.axes)
+            moves = endless and isinstance(side, Stream)
+            edges.append(Edge(side, axis, name in NAMES[::2], grid.cells[axis], prescribed, moves))
+        plane = grid.axes == 2
+        return cls(
+            edges=edges, water=OpenWater.around(grid) if endless and plane else None,
+            far=FarField(grid) if endless and not plane else None, stream=(0.0,) * grid.axes,
+        )  # fmt: skip
 
     def state(self) -> dict[str, np.ndarray]:
         """Return all that changes, by name."""
@@ -173,6 +181,8 @@ class Border:
             for k, e in enumerate(self.edges)
             for name in ("prescribed", "induced", "seen")
         }
+        if self.far is not None:
+            edges["far"] = np.array([body.source for body in self.far.bodies])
         return {**edges, "stream": np.array(self.stream), "prepared": np.array([self.steps, self.span])}
 
     def resume(self, state: dict[str, np.ndarray]) -> None:
@@ -180,6 +190,9 @@ class Border:
         for k, edge in enumerate(self.edges):
             for name in ("prescribed", "induced", "seen"):
                 getattr(edge, name)[:] = state[f"edge{k}.{name}"]
+        if self.far is not None:
+            for body, source in zip(self.far.bodies, state["far"].tolist(), strict=True):
+                body.source = source
         self.stream = tuple(state["stream"].tolist())
         self.steps, self.span = int(state["prepared"][0]), float(state["prepared"][1])
 
@@ -196,7 +209,7 @@ class Border:
                 edge.leaves = min(max((outward - _LEAVES[0]) / (_LEAVES[1] - _LEAVES[0]), 0.0), 1.0)
             elif isinstance(edge.side, Outflow):
                 edge.leaves = 1.0
-        if self.steps == 0:
+        if self.steps == 0 or self.far is not None:
             for edge, induced in zip(self.edges, self._induced(velocity, window), strict=True):
                 edge.induced[:] = edge.seen[:] = induced
         grown = dt / self.span if self.span else 0.0
@@ -232,6 +245,8 @@ class Border:
         return change
 
     def _induced(self, velocity: np.ndarray, window: Window) -> list[np.ndarray]:
+        if self.far is not None:
+            return [self.far.inward(e.axis, e.low) if e.endless else np.zeros(e.prescribed.shape) for e in self.edges]
         if self.water is None:
             return [np.zeros(e.prescribed.shape) for e in self.edges]
         return self.water.inward(velocity, window, [Fading(e.axis, e.low, e.leaves) for e in self.edges if e.leaves])

@@ -17,8 +17,8 @@ class Stream:
 
     endless: bool = True
     """Whether, if all four sides are such, they also move as the flow in the domain makes water without end move
-    (``openwater``); False holds the stream itself, which the body's displacement then cannot widen. In space the stream
-    is always held."""
+    (``openwater``, in space ``farfield``); False holds the stream itself, which the body's displacement then cannot
+    widen. In space some of the six may be a Mirror."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -88,9 +88,9 @@ class Sides:
     """Side at the smallest y."""
     top: Side = Stream()
     """Side at the largest y."""
-    low: Side = Slip()
+    low: Side = Stream()
     """Side at the smallest z, of a grid in space."""
-    high: Side = Slip()
+    high: Side = Stream()
     """Side at the largest z, of a grid in space."""
 
     def __post_init__(self) -> None:
@@ -100,8 +100,9 @@ class Sides:
                 raise InvalidDesign(
                     f"of {first} and {second}, one side is periodic and the other is not; make both Periodic()."
                 )
-        every = self.around(3)
-        if any(isinstance(s, Inflow) for s in every) and not any(isinstance(s, Outflow | Stream) for s in every):
+        plane, ends = self.around(2), (self.low, self.high)
+        enters = any(isinstance(side, Inflow) for side in (*plane, *ends))
+        if enters and not any(isinstance(s, Outflow | Stream) for s in plane) and Outflow not in map(type, ends):
             raise InvalidDesign("water enters through an Inflow and cannot leave; make another side an Outflow().")
 
     def check(self, axes: int) -> None:
@@ -134,7 +135,9 @@ class Sides:
 
     def endless(self, axes: int) -> bool:
         """Return whether water without end is all around, and its sides move with the flow."""
-        return axes == 2 and all(isinstance(s, Stream) and s.endless for s in self.around(axes))
+        every = self.around(axes)
+        open_sides = [isinstance(s, Stream) and s.endless for s in every]
+        return any(open_sides) and all(o or isinstance(s, Mirror) for o, s in zip(open_sides, every, strict=True))
 
     def repeats(self, axes: int) -> tuple[bool, ...]:
         """Return whether the domain is periodic, along each axis."""

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from math import isfinite, prod
+from math import exp, isfinite, prod
 from pathlib import Path
 
 import numba
@@ -16,6 +16,8 @@ from suchus.flow.added import added_mass
 from suchus.flow.body import Body
 from suchus.flow.compiled import PAD
 from suchus.flow.consistency import Consistency
+from suchus.flow.exchange import Reaction
+from suchus.flow.farfield import FarBody, turned
 from suchus.flow.fields import Fields
 from suchus.flow.force import ControlVolume, Surface, sample
 from suchus.flow.free import FreeBody, Swimmer
@@ -27,7 +29,7 @@ from suchus.flow.progress import Bar
 from suchus.flow.record import Record
 from suchus.flow.setup import Setup
 from suchus.flow.shape import Markers
-from suchus.flow.solid import Skin
+from suchus.flow.solid import Skin, SpaceShape
 from suchus.flow.watch import EVERY, Watch
 from suchus.flow.water import Water
 
@@ -89,7 +91,39 @@ class Simulation(Fields):
         self._watch.layers(
             [setup.layer_error(b, m, stream, 0.0) for b, m in zip(setup.bodies, outlines, strict=True)]
         )  # fmt: skip
+        self._see_from_afar(outlines)
         self._motions = [self._watched(b) for b in setup.bodies if isinstance(b, Body) and callable(b.motion)]
+
+    def _see_from_afar(self, outlines: Sequence[Markers | Skin]) -> None:
+        """Measure what the bodies are from afar, if the sides of a domain in space ask for it."""
+        far = self.water.border.far
+        if far is None:
+            return
+        for k, (body, skin) in enumerate(zip(self.setup.bodies, outlines, strict=True)):
+            assert isinstance(body.shape, SpaceShape)
+            pose = self._in_frame(self.pose(body.name))
+            added, turn = added_mass(self.water, skin, pose.position, 1.0, k)[:3, :3], turned(pose.angle)
+            mass = body.shape.volume(0.0) * np.eye(3) + turn.T @ np.nan_to_num(added) @ turn
+            far.bodies.append(FarBody(np.zeros(3), np.zeros(3), mass))
+        self._move_afar([self._in_frame(self.pose(b.name)) for b in self.setup.bodies], self._stream(0.0))
+
+    def _move_afar(self, poses: list[Pose], stream: tuple[float, ...]) -> None:
+        """Tell the sides of a domain in space where the bodies are."""
+        far = self.water.border.far
+        if far is not None:
+            for body, pose in zip(far.bodies, poses, strict=True):
+                body.move(np.array(pose.position), pose.angle, np.array(pose.velocity) - stream)
+
+    def _drag_afar(self, poses: list[Pose], acts: Sequence[Reaction], outlines: Sequence[Markers | Skin]) -> None:
+        """Let the sides of a domain in space know the drag, from the second step on: the first has the start's jolt."""
+        far, dt = self.water.border.far, self._last
+        if far is None or not self._log.rows:
+            return
+        for body, pose, act, skin in zip(far.bodies, poses, acts, outlines, strict=True):
+            through = np.array(pose.velocity) - self.water.border.stream
+            extent = float(np.ptp(skin.points, axis=1).max())
+            share = 1 - exp(-dt * length(through) / extent)
+            body.drag(np.array(act.force) / self.setup.density, through, share)
 
     def _watched(self, body: Body) -> Consistency:
         pose = body.pose(0.0).along(self.axes)
@@ -189,6 +223,7 @@ class Simulation(Fields):
         ahead = length(self._stream(time))
         self._speed = max([self._speed, ahead] + [_fastest_marker(m) for m in markers])  # it may just start to move
         push = tuple(-(self.frame[1] - old_frame[1]) / dt)
+        self._move_afar(poses, self._stream(time))
         limits = (self.setup.tolerance * self._speed, 10 * self.setup.tolerance * self._speed)
         self.water.step(dt, self._stream(time), tuple(map(float, push)), limits)
         self.time, self._last = time, dt
@@ -232,6 +267,7 @@ class Simulation(Fields):
         about = [self._about(b.name, p) for b, p in zip(setup.bodies, poses, strict=True)]
         values, body_speed = [], 0.0
         acts = self._log.reactions(water, outlines, about, dt, push)
+        self._drag_afar(poses, acts, outlines)
         for k, (body, markers, point, act) in enumerate(zip(setup.bodies, outlines, about, acts, strict=True)):
             load = sample(water, markers, setup.density).load(point) if isinstance(markers, Markers) else None
             place = self.pose(body.name)
