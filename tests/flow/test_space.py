@@ -12,6 +12,7 @@ from suchus.flow.added import added_mass
 from suchus.flow.compiled import PAD
 from suchus.flow.exchange import Reaction
 from suchus.flow.farfield import FarBody, FarField
+from suchus.flow.watch import vorticity_size
 
 HELD = flow.Stream(endless=False)
 NAMES = (("left", "right"), ("bottom", "top"), ("low", "high"))
@@ -287,6 +288,27 @@ def test_the_record_says_its_units_and_takes_an_area():
         record.column("pressure_x")
 
 
+def test_the_fields_of_a_turning_flow_are_what_was_put_in(tmp_path):
+    """Water that turns as a rigid body about an oblique axis: the vorticity is twice the rate, in every cell."""
+    rate = np.array([0.3, -0.5, 0.8])
+    grid = flow.Grid(cells=(8, 10, 12), cell=0.25, origin=(-1.0, 0.5, 2.0))
+    sim = flow.Simulation(flow.Setup(grid=grid, viscosity=1.0))
+    for d, part in enumerate(sim.water.velocity):
+        at = [(grid.faces if c == d else grid.centres)(0, grid.cells[c] + 2 * PAD, c) for c in range(3)]
+        z, y, x = np.meshgrid(*at[::-1], indexing="ij")
+        part[:] = (rate[1] * z - rate[2] * y, rate[2] * x - rate[0] * z, rate[0] * y - rate[1] * x)[d]
+    assert sim.vorticity_at_centres.shape == (3, 12, 10, 8)
+    assert np.abs(sim.vorticity_at_centres - 2 * rate.reshape(3, 1, 1, 1)).max() < 1e-4
+    assert vorticity_size(sim.water.velocity) == pytest.approx(2 * np.abs(rate).sum() * 0.25, rel=1e-4)
+    fields = flow.snapshot(sim)
+    assert dict(fields.velocity.sizes) == {"component": 3, "z": 12, "y": 10, "x": 8}
+    corner = fields.velocity.sel(component="x").isel(z=-1, y=0, x=0)
+    assert float(corner) == pytest.approx(rate[1] * 4.875 - rate[2] * 0.625, rel=1e-5)
+    flow.save_vti(sim, tmp_path / "a.vti")
+    head = (tmp_path / "a.vti").read_bytes()[:400].decode("ascii", "ignore")
+    assert 'WholeExtent="0 8 0 10 0 12" Origin="-1.0 0.5 2.0" Spacing="0.25 0.25 0.25"' in head
+
+
 def moved(**pose):
     return (flow.Body(shape=SPHERE, motion=flow.Pose(**pose)),)
 
@@ -308,7 +330,9 @@ HALF = flow.Grid(cells=(24, 24, 12), cell=1 / 8, origin=(-1.5, -1.5, 0.0))
         (lambda: flow.FreeBody(shape=SPHERE), "a Shape is needed"),
         (lambda: ball(contact=flow.Contact(gap=0.1, pressure=1.0)), "contact acts between plane outlines"),
         (lambda: ball().surface(), "is for plane grids"),
-        (lambda: ball().control(0.1), "is for plane grids"),
+        (lambda: ball().control(0.1), "a control volume is for plane grids"),
+        (lambda: ball().probe((0.0, 0.0)), "take velocity and pressure at the cell centres"),
+        (lambda: ball().vorticity, "take vorticity_at_centres"),
         (lambda: ball(bodies=moved(position=(0.0, 0.0, 1.0))), r"z = 0.5 to 1.5 m, outside the domain.*enlarge"),
         (lambda: ball(grid=HALF, sides=CUT, bodies=moved(position=(0.0, 0.0, 0.1))), "middle of body is at z = 0.1 m"),
         (lambda: ball(grid=HALF, sides=CUT, bodies=moved(velocity=(0.0, 0.0, 0.1))), "moves with 0.1 m/s along z"),

@@ -9,7 +9,7 @@ import numba
 import numpy as np
 
 from suchus import threads
-from suchus.errors import InvalidDesign, OutsideLimits, UnknownName
+from suchus.errors import OutsideLimits, UnknownName
 from suchus.flow import checkpoint as store
 from suchus.flow import contact
 from suchus.flow.added import added_mass
@@ -376,7 +376,7 @@ class Simulation(Fields):
         Raises:
             InvalidDesign: in space.
         """
-        self._plane_only("a box of control")
+        self._plane_only("a control volume", "Record.force")
         if not self._placed:
             poses = [self._in_frame(self.pose(b.name)) for b in self.setup.bodies]
             self.water.place(list(self.setup.bodies), poses, self.time)
@@ -385,10 +385,6 @@ class Simulation(Fields):
         nx, ny = self.setup.grid.cells[:2]
         box = (max(j0 - k, PAD + 2), min(j1 + k, PAD + ny - 2), max(i0 - k, PAD + 2), min(i1 + k, PAD + nx - 2))
         self._log.controls = [ControlVolume(box)]
-
-    def _plane_only(self, what: str) -> None:
-        if self.axes == 3:
-            raise InvalidDesign(f"{what} is for plane grids, and this one has three axes; take Record.force.")
 
     @property
     def control_forces(self) -> np.ndarray:
@@ -404,7 +400,7 @@ class Simulation(Fields):
             UnknownName: there is no such body, or none at all.
             InvalidDesign: in space.
         """
-        self._plane_only("pressure and friction along an outline")
+        self._plane_only("the pressure and friction along an outline", "Record.force")
         names = [b.name for b in self.setup.bodies]
         if not names or name not in (None, *names):
             raise UnknownName("body", "" if name is None else name, names or ("none",))
