@@ -160,4 +160,4 @@ def test_a_part_names_all_its_impossible_fields_when_built_in_python():
 
 
 def test_written_files_tell_what_each_number_means():
-    assert "femur = 0.086  # From hip to knee, the table's a2 [m]." in render(CAIMAN)
+    assert "femur = 0.086  # Length from hip to knee, the table's a2 [m]." in render(CAIMAN)

@@ -24,7 +24,7 @@ from suchus.gaits import GAITS, own_gait  # noqa: E402
 from suchus.motion import limb_phase, servo_targets  # noqa: E402
 from suchus.robots import ROBOTS  # noqa: E402
 
-CRAWL, STAND, FAULT = envs.TASKS.values()
+CRAWL, STAND, FAULT = (envs.TASKS[name] for name in ("Crawl", "Stand", "Fault"))
 DOCS = Path(__file__).parents[2] / "docs" / "environments.md"
 
 
@@ -39,7 +39,8 @@ def acting(env, steps, seed=0):
 def test_an_environment_passes_gymnasium_s_own_check_without_a_warning(name):
     pictures = name == envs.IDS[0]  # they are drawn the same way for all
     check_env(gymnasium.make(name).unwrapped, skip_render_check=not pictures)  # pytest turns warnings into errors
-    assert gymnasium.spec(name).max_episode_steps == envs.STEPS
+    task = name.removeprefix("suchus/").removesuffix("-v0")
+    assert gymnasium.spec(name).max_episode_steps == envs.LONGER.get(task, envs.STEPS)
 
 
 @pytest.mark.parametrize("mode", [AutoresetMode.NEXT_STEP, AutoresetMode.SAME_STEP])
@@ -175,10 +176,14 @@ def test_the_reward_is_the_weighted_sum_of_what_happened():
         upright=np.array([0.05]),
         work=np.array([2.0]),
         haste=np.array([4.0]),
+        approach=np.array([0.125]),
+        goal=np.array([True]),
         fall=np.array([True]),
     )
-    weights = envs.Rewards(forward=1.0, astray=2.0, upright=20.0, work=-0.5, haste=-1.0, fall=-8.0)
-    assert terms.reward(weights).tolist() == [0.5 + 0.5 + 1.0 - 1.0 - 4.0 - 8.0]
+    weights = envs.Rewards(
+        forward=1.0, astray=2.0, upright=20.0, work=-0.5, haste=-1.0, fall=-8.0, approach=8.0, goal=16.0
+    )
+    assert terms.reward(weights).tolist() == [0.5 + 0.5 + 1.0 - 1.0 - 4.0 - 8.0 + 1.0 + 16.0]
 
 
 def test_the_terms_add_up_over_an_episode():
@@ -335,7 +340,7 @@ def test_tasks_are_varied_by_naming_their_fields():
         ({"span": -1.0}, InvalidDesign, "0.01 to 3.2 rad is allowed"),
         ({"decision": 0.025}, InvalidDesign, "must fit the control period of 0.01 s"),
         ({"timestep": 0.003}, InvalidDesign, "must fit the control period of 0.01 s"),
-        ({"start": "flying"}, InvalidDesign, "lying or upright is allowed"),
+        ({"start": "flying"}, InvalidDesign, "lying or upright or swimming is allowed"),
         ({"render_mode": "human"}, UnknownName, "there is rgb_array"),
         ({"shoves": envs.Shoves(body="nose")}, UnknownName, "there is no body named 'nose'"),
     ],

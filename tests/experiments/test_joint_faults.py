@@ -227,9 +227,9 @@ def test_variations_that_are_alike_tell_nothing():
 def test_what_decides_follows_from_the_numbers(campaign, outcome):
     found = {name: measure.value for name, measure in outcome.measures.items()}
     told = campaign.explain(found | {"effect_of_kind": 0.4, "effect_of_joint": 0.1, "effect_of_legs": 0.1})
-    assert "depends most on what 'lost' means" in told
+    assert "depends most on what 'failed' means" in told
     told = campaign.explain(found | {"effect_of_kind": 0.1, "effect_of_joint": 0.4, "effect_of_legs": 0.1})
-    assert "depends most on which joint is lost" in told
+    assert "depends most on which joint fails" in told
     steered = {"loss_hind_yaw_limp_one_coordinated": -0.07, "loss_hind_yaw_limp_one_steered": -0.15}
     assert "hind yaw -7% to -15% (more lost)" in campaign.explain(found | steered)
     steered |= {"loss_hind_yaw_limp_one_steered": -0.03}

@@ -17,6 +17,7 @@ import pytest
 from suchus import flow
 from suchus.figures.validation import write_table, write_validation
 from suchus.flow import signals
+from suchus.flow.resolution import SKIN_SUM
 
 pytestmark = pytest.mark.validate
 
@@ -131,6 +132,8 @@ def test_momentum_budget():
     where = ("24 cells/D", "10 D x 8 D", "-")
     note("momentum budget", "force less that through a box, mean over mean", off, "at most 0.01", *where)
     assert off < 0.01
+    along = 2 * record.surface_force()[late, 0].mean() / box[:, 0].mean()
+    assert SKIN_SUM[0] <= 1 - along <= SKIN_SUM[1]
 
 
 def test_energy_budget():

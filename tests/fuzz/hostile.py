@@ -410,6 +410,7 @@ def commands(self: Range, dice: Random) -> None:
         "replay",
         "demo",
         "doctor",
+        "flow-atlas",
     ):
         words += ["--no-such-option"]
     told(main, [command.name if dice.random() < 0.95 else dice.choice(WORDS), *words])

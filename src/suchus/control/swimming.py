@@ -123,7 +123,7 @@ class SwimmingController:
                 for side in (-1.0, 1.0):
                     hold = control.heading
                     trunk, tail = np.array([side * hold.trunk_turn]), np.array([side * hold.turn])
-                    _check(robot, _bent(targets, robot, tail, trunk))
+                    _check(robot, bent(targets, robot, tail, trunk))
         self._robots = [(robot, np.flatnonzero([r == robot for r in robots])) for robot in dict.fromkeys(robots)]
         self._feels = any(control.feels for control in controls)
         cycle = [max(1, round(1.0 / (one * period))) for one in frequency]
@@ -140,13 +140,20 @@ class SwimmingController:
         if sensed is not None and self._feels:
             tail, trunk = self._headings.bend(sensed)
             for robot, runs in self._robots:
-                targets[runs] = _bent(targets[runs], robot, tail[runs], trunk[runs])
+                targets[runs] = bent(targets[runs], robot, tail[runs], trunk[runs])
             breath = self._depths.breath(sensed)
         return Command(targets, self._frequency * (tick * self._period), breath)
 
 
-def _bent(targets: np.ndarray, robot: Crocodile, tail: np.ndarray, trunk: np.ndarray) -> np.ndarray:
-    """Return servo angles, shape (row, servo), with mean bends of tail and trunk besides, left positive [rad]."""
+def bent(targets: np.ndarray, robot: Crocodile, tail: np.ndarray, trunk: np.ndarray) -> np.ndarray:
+    """Return servo angles with mean bends of tail and trunk besides, within the tail's limit, shape (row, servo) [rad].
+
+    Args:
+        targets: shape (row, servo) [rad].
+        robot: a robot with a cable tail.
+        tail: its mean bend, tip to the left positive, shape (row,) [rad].
+        trunk: its mean bend, front end to the left positive, shape (row,) [rad].
+    """
     place, out = layout(robot), np.array(targets)
     cable = place.cables[0]
     most = robot.tail.bend_limit

@@ -1,35 +1,44 @@
 """Robots as Gymnasium environments; importing this room registers them. The extra ``gym`` installs gymnasium."""
 
 from suchus.envs.spaces import action_space, observation_space  # isort: skip  # says what is missing, if it is
-from suchus.envs.policies import Anything, Follow, Played, Policy, Still, play
-from suchus.envs.registering import IDS, STEPS, register
+from suchus.envs.goals import AnyGoal, Goal, Landing, remaining
+from suchus.envs.policies import Anything, Controlled, Follow, Played, Policy, Still, SwimToGoal, play
+from suchus.envs.registering import IDS, LONGER, STEPS, register
 from suchus.envs.senses import SENSES, part, senses
+from suchus.envs.shelf import TASKS
 from suchus.envs.single import CrocodileEnv
-from suchus.envs.task import TASKS, Breaks, Rewards, Shoves, Task
+from suchus.envs.task import Breaks, Rewards, Shoves, Task
 from suchus.envs.vector import CrocodileVectorEnv
 
 register()
 
 __all__ = [
     "IDS",
+    "LONGER",
     "SENSES",
     "STEPS",
     "TASKS",
+    "AnyGoal",
     "Anything",
     "Breaks",
+    "Controlled",
     "CrocodileEnv",
     "CrocodileVectorEnv",
     "Follow",
+    "Goal",
+    "Landing",
     "Played",
     "Policy",
     "Rewards",
     "Shoves",
     "Still",
+    "SwimToGoal",
     "Task",
     "action_space",
     "observation_space",
     "part",
     "play",
     "register",
+    "remaining",
     "senses",
 ]

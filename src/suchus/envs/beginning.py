@@ -1,7 +1,9 @@
-"""Where an episode begins: lying in a gait's mid-stance, or standing on hind legs and tail."""
+"""Where an episode begins: lying in a gait's mid-stance, standing on hind legs and tail, or floating."""
 
+from dataclasses import replace
 from functools import lru_cache
 from math import ceil
+from typing import Any
 
 import numpy as np
 
@@ -9,15 +11,17 @@ from suchus.control import Standing
 from suchus.design import Crocodile, crocodile
 from suchus.design.scale import control_period
 from suchus.envs.task import Task
-from suchus.errors import Diverged
+from suchus.envs.water import swimming
+from suchus.errors import Diverged, InvalidDesign
 from suchus.gaits import GAITS
 from suchus.land import Ground, Run
-from suchus.land.bench import Bench
+from suchus.land.afloat import surfaced
+from suchus.land.bench import Bench, up
 from suchus.land.readings import Readings
 from suchus.land.restarting import Beginning
 from suchus.model import activations, compile_model, standing
 from suchus.model.export import home
-from suchus.motion import hip_height
+from suchus.motion import check_swim, hip_height
 
 STILL = 3.0
 """How long a robot has stood before an episode of standing begins [s]; it has settled after two."""
@@ -31,10 +35,14 @@ def begin(task: Task) -> Beginning:
     Raises:
         OutsideLimits: the robot cannot take the posture.
         Diverged: it does not stand up.
+        InvalidDesign: it touches the ground where it should float.
+        OutsideLimits: its joints cannot follow its swimming motion.
     """
     if task.start == "upright":
         return _upright(crocodile(task.body, "standing up"), task.ground, task.timestep)
     model = compile_model(task.body, task.timestep)
+    if task.start == "swimming":
+        return _afloat(task, model)
     qpos, servos = home(model, task.body, task.gait)
     return Beginning(qpos, np.zeros(model.nv), activations(model, servos), servos)
 
@@ -50,6 +58,23 @@ def off_by(task: Task, at: Beginning, jitter: np.ndarray) -> Beginning:
     qpos = at.qpos.copy()
     qpos[model.jnt_qposadr[model.actuator_trnid[:-1, 0]]] += jitter[:-1]
     return at._replace(qpos=qpos)
+
+
+def _afloat(task: Task, model: Any) -> Beginning:
+    """Put a robot on the water in the mean posture of its swimming motion."""
+    assert task.lake is not None  # see ``Task``
+    motion, robot = swimming(task.robot, task.swim), crocodile(task.robot, "a swim")
+    check_swim(robot, motion.swim)
+    servos = replace(motion, ramp=1.0).targets(robot, np.zeros(1))[0]  # amplitudes that grow are zero at first
+    stands = standing(model, task.robot, hip_height(task.robot, task.gait), servos)
+    qpos = surfaced(task.body, task.lake, up(task.ground), stands, task.timestep)
+    if np.array_equal(qpos, stands):
+        raise InvalidDesign(
+            f"robot {task.robot.name!r} touches the ground where its episode begins, at the world's origin with the "
+            f"level at {task.lake.at(0.0)[0]:g} m; a task that begins swimming needs deeper water: raise "
+            "task.lake.level."
+        )
+    return Beginning(qpos, np.zeros(model.nv), activations(model, servos), servos)
 
 
 @lru_cache(maxsize=16)

@@ -12,6 +12,7 @@ from suchus.control import Sensed
 from suchus.design import layout, servo_ranges
 from suchus.design.scale import control_period
 from suchus.envs.beginning import begin, off_by
+from suchus.envs.goals import AnyGoal, remaining
 from suchus.envs.reward import Terms
 from suchus.envs.senses import observations, turning
 from suchus.envs.task import Task
@@ -40,6 +41,8 @@ class Chance:
     """Of the push [N]."""
     pushed: int = -1
     """In which control period it begins; -1: never."""
+    bearing: float = 0.0
+    """Of the goal from straight ahead, left positive [rad]."""
     period: float
     """Of control [s]."""
 
@@ -69,11 +72,12 @@ class Pack:
         self._low, self._high = servo_ranges(task.robot).T
         self._cranks = turning(task.robot)
         self._turn = task.decision * np.array([task.robot.servo(name).speed for name in place.servos])
-        self._runs = [Run(robot=task.body, gait=task.gait, ground=task.ground)] * count
+        self._runs = [Run(robot=task.body, gait=task.gait, ground=task.ground, lake=task.lake)] * count
         self._bench = Bench(self._runs, task.timestep)
         self._readings = Readings(self._bench, self._runs, 1)
         self._steps = round(self._period / task.timestep)
         self._check_body()
+        self._goals = np.zeros((count, 2))
         self._told = np.tile(self._begin.told, (count, 1))
         self._turned = np.zeros_like(self._told)
         self._injector = Injector(self._bench, self._period, task.robot)
@@ -95,7 +99,7 @@ class Pack:
     @property
     def phase(self) -> Float[np.ndarray, " run"]:
         """Of each robot's clock [cycle]."""
-        return np.array([chance.phase for chance in self.chances]) + self.time / self.task.gait.period
+        return np.array([chance.phase for chance in self.chances]) + self.time / self.task.period
 
     def restart(self, robots: Sequence[int], chances: Sequence[np.random.Generator]) -> None:
         """Begin new episodes.
@@ -110,11 +114,13 @@ class Pack:
             restart(self._bench, i, off_by(self.task, self._begin, jitter))
             self._told[i], self._turned[i], self._tick[i] = self._begin.told, 0.0, 0
             self.chances[i], self.causes[i] = draw(self.task, random), ""
+            self._set_goal(i)
 
     def feel(self) -> Float[np.ndarray, "run n"]:
         """Return what each robot feels, see ``senses``."""
         told = np.where(self._cranks, self._turned / self._turn, (self._told - self.centre) / self.task.span)
-        return observations(self.task.robot, self._sensed(), self.phase, told)
+        goal = None if self.task.goal is None else (self._offset(self.task.goal), self.remaining)
+        return observations(self.task.robot, self._sensed(), self.phase, told, goal)
 
     def act(self, actions: Float[np.ndarray, "run servo"], who: Bool[np.ndarray, " run"]) -> Terms:
         """Let some robots act for one step; the terms of the others mean nothing.
@@ -129,7 +135,7 @@ class Pack:
         there = np.clip(self.centre + self.task.span * shares, self._low, self._high)
         goal = np.where(self._cranks, self._told + self._turn * shares, there)
         goal = np.where(who[:, None], goal, self._told)
-        before, work = self._read("centre_of_mass"), np.zeros(self.count)
+        before, work, far = self._read("centre_of_mass"), np.zeros(self.count), self.remaining
         self._bench.alive[:] = who
         periods = round(self.task.decision / self._period)
         for k in range(periods):
@@ -142,7 +148,7 @@ class Pack:
         turned = goal - self._told
         haste = (turned**2).sum(axis=1)
         self._told, self._turned = goal, np.where(who[:, None], turned, self._turned)
-        return self._terms(who, before, work, haste)
+        return self._terms(who, before, far, work, haste)
 
     def record(self, robot: int) -> xr.Dataset:
         """Return one robot as it is now, as a record of one sample."""
@@ -150,21 +156,45 @@ class Pack:
         self._readings.store(0, self.phase[:, None] + np.array(self.task.gait.limb_phases), self._told)
         return self._readings.record(np.zeros(1)).isel(run=robot).copy(deep=True)
 
-    def _terms(self, who: np.ndarray, before: np.ndarray, work: np.ndarray, haste: np.ndarray) -> Terms:
+    @property
+    def remaining(self) -> Float[np.ndarray, " run"]:
+        """Distance that remains from each centre of mass to its goal; 0 without a goal [m]."""
+        goal = self.task.goal
+        return np.zeros(self.count) if goal is None else remaining(goal, self._offset(goal))
+
+    def _offset(self, goal: AnyGoal) -> np.ndarray:
+        """Return the vector in the world from each centre of mass to its goal, shape (run, 2) [m]."""
+        return goal.offset(self._read("centre_of_mass")[:, :2], self._goals)
+
+    def _set_goal(self, robot: int) -> None:
+        task = self.task
+        if task.goal is not None:
+            begin = self._read("centre_of_mass")[robot, :2]
+            self._goals[robot] = task.goal.place(begin, self.chances[robot].bearing, task.ground, task.lake)
+
+    def _terms(
+        self, who: np.ndarray, before: np.ndarray, far: np.ndarray, work: np.ndarray, haste: np.ndarray
+    ) -> Terms:
         after, apart = self._read("centre_of_mass"), who & ~self._bench.alive
         way = np.where(apart[:, None], 0.0, after - before)
         aside = np.where(apart, 0.0, np.abs(after[:, 1]) - np.abs(before[:, 1]))
         height, level = self._read("snout_position")[:, 2], rotation.upward(self._read("imu_orientation"))[:, 2]
         low = (height < self.task.least_height) & (self.task.least_height > 0.0)
         fell = low | (level < self.task.least_level)
+        left = self.remaining
+        there = who & (left <= 0.0) & ~(fell | apart) & (self.task.goal is not None)
         for i in np.flatnonzero(who & (fell | apart)):
             self.causes[i] = self._why(int(i), bool(apart[i]), float(height[i]), float(level[i]))
+        for i in np.flatnonzero(there):
+            self.causes[i] = f"it reached the goal at {self.time[i]:.2f} s"
         return Terms(
             forward=way[:, 0],
             astray=aside,
             upright=np.where(fell | apart, 0.0, self.task.decision),
             work=np.where(apart, 0.0, work),
             haste=haste,
+            approach=np.where(apart, 0.0, far - left),
+            goal=there,
             fall=fell | apart,
         )
 
@@ -217,6 +247,8 @@ def draw(task: Task, random: np.random.Generator) -> Chance:
     """Leave an episode to chance: the clock's phase, what breaks and who pushes."""
     period = control_period(task.robot)
     chance = {"phase": float(random.uniform()), "period": period}
+    if task.goal is not None:
+        chance["bearing"] = task.goal.draw(random)
     fault, push = task.breaks, task.shoves
     told: dict[str, object] = {}
     if fault is not None:

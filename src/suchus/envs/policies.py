@@ -1,16 +1,20 @@
 """What a learner has to beat: doing nothing, doing anything, and the shelf's gait through the same door."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
-from suchus.design import layout
+from suchus.control import Control, Controller, HeadingHold
+from suchus.control.swimming import bent
+from suchus.design import crocodile, layout
+from suchus.design.scale import control_period
 from suchus.envs.registering import STEPS
-from suchus.envs.senses import part, turning
+from suchus.envs.senses import felt, part, turning
 from suchus.envs.task import Task
 from suchus.envs.vector import CrocodileVectorEnv
+from suchus.envs.water import swimming
 from suchus.motion import AnyGait, cycle_targets
 
 Policy = Callable[[Float[np.ndarray, "run n"]], Float[np.ndarray, "run servo"]]
@@ -71,6 +75,65 @@ class Follow:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class SwimToGoal:
+    """The task's swimming motion by the clock of the observation, steered towards the goal by a mean bend."""
+
+    task: Task
+    """Whose actions they are; it begins swimming and has a goal."""
+    centre: tuple[float, ...]
+    """Servo angles of an action of zero, ``Pack.centre`` [rad]."""
+    hold: HeadingHold = field(default_factory=HeadingHold)
+    """Its gain and its bends steer, by the bearing of the goal in the present step; its memory is not used."""
+
+    def __call__(self, seen: Float[np.ndarray, "run n"]) -> Float[np.ndarray, "run servo"]:
+        """Look up where the servos shall be when the step ends, and steer."""
+        task = self.task
+        robot = crocodile(task.robot, "a swim")
+        sine, cosine = part(seen, "clock", robot).astype(float).T
+        time = task.period * np.arctan2(sine, cosine) / (2 * np.pi) + task.decision
+        targets = swimming(robot, task.swim).targets(robot, time)
+        direction = part(seen, "goal_direction", robot).astype(float)
+        share = np.clip(self.hold.gain * np.arctan2(direction[:, 1], direction[:, 0]), -1.0, 1.0)
+        targets = bent(targets, robot, self.hold.turn * share, self.hold.trunk_turn * share)
+        return np.clip((targets - np.array(self.centre)) / task.span, -1.0, 1.0)
+
+
+class Controlled:
+    """A controller of the shelf, which feels what the observation holds; for one ``play``, since it remembers.
+
+    It decides in every control period and feels anew in every step; what it does with air or phases is not asked.
+
+    Args:
+        task: whose actions they are.
+        centre: servo angles of an action of zero, ``Pack.centre`` [rad].
+        control: the controller, as ``Run.control`` takes it.
+        steps: of the episodes, at most.
+
+    Raises:
+        SuchusError: on the first call, if the controller does not suit the robot or its gait.
+    """
+
+    def __init__(self, task: Task, centre: tuple[float, ...], control: Control, *, steps: int) -> None:
+        self._task, self._centre, self._control = task, np.array(centre), control
+        self._period = control_period(task.robot)
+        self._per_step = round(task.decision / self._period)
+        self._ticks, self._tick = steps * self._per_step, 0
+        self._controller: Controller | None = None
+
+    def __call__(self, seen: Float[np.ndarray, "run n"]) -> Float[np.ndarray, "run servo"]:
+        """Feel once, decide for every control period of the step, and return the last angles commanded."""
+        task, count = self._task, len(seen)
+        if self._controller is None:
+            robots, gaits, seeds = [task.robot] * count, [task.gait] * count, [0] * count
+            self._controller = self._control.start(robots, gaits, seeds, self._ticks, self._period)
+        sensed = felt(seen, task.robot, self._tick * self._period)
+        for _ in range(self._per_step):
+            targets = self._controller.command(self._tick, sensed).targets
+            self._tick += 1
+        return np.asarray(np.clip((targets - self._centre) / task.span, -1.0, 1.0))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Played:
     """What came of some episodes, one entry for each."""
 
@@ -80,6 +143,10 @@ class Played:
     """How long it lasted [s]."""
     forward: Float[np.ndarray, " episode"]
     """Way along the world's x axis [m]."""
+    approach: Float[np.ndarray, " episode"]
+    """Decrease of the distance that remains to the goal; 0 without a goal [m]."""
+    goal: Bool[np.ndarray, " episode"]
+    """Whether the goal was reached [-]."""
 
 
 def play(task: Task, policy: Policy, *, episodes: int = 32, seed: int = 0, steps: int = STEPS) -> Played:
@@ -95,11 +162,14 @@ def play(task: Task, policy: Policy, *, episodes: int = 32, seed: int = 0, steps
     env = CrocodileVectorEnv(episodes, task, max_episode_steps=steps)
     seen, _ = env.reset(seed=seed)
     going = np.ones(episodes, dtype=bool)
-    returns, lasted, forward = np.zeros((3, episodes))
+    returns, lasted, forward, approach = np.zeros((4, episodes))
+    goal = np.zeros(episodes, dtype=bool)
     while going.any():
         seen, rewards, terminated, truncated, infos = env.step(policy(seen))
         returns += np.where(going, rewards, 0.0)
         lasted += going * task.decision
         forward += np.where(going, infos["forward"], 0.0)
+        approach += np.where(going, infos["approach"], 0.0)
+        goal |= going & infos["goal"]
         going &= ~(terminated | truncated)
-    return Played(returns=returns, lasted=lasted, forward=forward)
+    return Played(returns=returns, lasted=lasted, forward=forward, approach=approach, goal=goal)

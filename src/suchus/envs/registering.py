@@ -1,11 +1,17 @@
-"""The environments by name: ``suchus/Crawl-v0``, ``suchus/Stand-v0``, ``suchus/Fault-v0``."""
+"""The environments by name: ``suchus/Crawl-v0`` and so on, one for each task."""
+
+from collections.abc import Mapping
+from types import MappingProxyType
 
 import gymnasium
 
-from suchus.envs.task import TASKS
+from suchus.envs.shelf import TASKS
 
 STEPS = 200
 """Of an episode: 10 s, two and a half cycles of the article's crawl."""
+LONGER: Mapping[str, int] = MappingProxyType({"Swim": 400, "Shore": 1000})
+"""Steps of an episode of the tasks that take longer [-]: 20 s, three times what the steered swim to the goal
+takes; 50 s, as in the experiment ``shore``."""
 IDS = tuple(f"suchus/{name}-v0" for name in TASKS)
 """Their names."""
 
@@ -18,6 +24,6 @@ def register() -> None:
                 identity,
                 entry_point="suchus.envs.single:CrocodileEnv",
                 vector_entry_point="suchus.envs.vector:CrocodileVectorEnv",
-                max_episode_steps=STEPS,
+                max_episode_steps=LONGER.get(name, STEPS),
                 kwargs={"task": name},
             )

@@ -22,8 +22,17 @@ class Terms:
     """Sum of torque times speed over all servos, braking counted as much as driving [J]."""
     haste: Float[np.ndarray, " run"]
     """Sum of the squares of the changes of all commanded angles [rad2]."""
+    approach: Float[np.ndarray, " run"]
+    """Decrease of the distance that remains to the goal; 0 without a goal [m]."""
+    goal: Bool[np.ndarray, " run"]
+    """Whether the goal is reached [-]."""
     fall: Bool[np.ndarray, " run"]
     """Whether it fell, or the physics came apart [-]."""
+
+    @property
+    def over(self) -> Bool[np.ndarray, " run"]:
+        """Whether the episode ends here: by a fall, or at the goal [-]."""
+        return np.asarray(self.fall | self.goal)
 
     def reward(self, weights: Rewards) -> Float[np.ndarray, " run"]:
         """Return the weighted sum [-]."""

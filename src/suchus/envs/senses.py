@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Bool, Float
+from scipy.spatial.transform import Rotation
 
 from suchus import rotation
 from suchus.control import Sensed
@@ -24,6 +25,10 @@ ACCELERATION = 4 * GRAVITY
 """Scale of the accelerometer [m/s2]; the range that a cheap one is set to."""
 
 
+FAR = 4.0
+"""Scale of the distance to a goal, over the robot's length [-]."""
+
+
 class Sense(NamedTuple):
     """Some columns of an observation."""
 
@@ -38,13 +43,18 @@ class Sense(NamedTuple):
 
 
 @lru_cache(maxsize=64)
-def senses(robot: AnyRobot) -> tuple[Sense, ...]:
-    """Return the columns of an observation of a robot, in order."""
+def senses(robot: AnyRobot, *, goal: bool = False) -> tuple[Sense, ...]:
+    """Return the columns of an observation of a robot, in order.
+
+    Args:
+        robot: whose.
+        goal: whether its task has a goal, which adds the last two readings.
+    """
     place, pace = layout(robot), 1.0 / sqrt(beside_article(robot).length)
     servos, cranks = len(place.servos), bool(turning(robot).any())
     angle = "angle of each servo" + (", of a crank within half a turn to either side" if cranks else "")
     told = "angle that each servo was told last, from its centre: the last action"
-    rows = (
+    rows: tuple[tuple[str, int, str, str], ...] = (
         ("servo_position", servos, "pi rad", angle),
         ("servo_velocity", servos, f"{SPEED * pace:.3g} rad/s", "speed of each servo"),
         ("servo_torque", servos, "its limit, N m", "torque of each servo"),
@@ -63,6 +73,10 @@ def senses(robot: AnyRobot) -> tuple[Sense, ...]:
         ("clock", 2, "1", "sine and cosine of the phase of a clock with the gait's period"),
         ("told", servos, "span, rad", told),
     )
+    if goal:
+        towards = f"level direction to the goal in the {place.robot.root}, as a beacon and the IMU give it"
+        rows += (("goal_direction", 3, "1", towards),)
+        rows += (("goal_distance", 1, f"{FAR:g} L, m", "distance that remains to the goal, L the robot's length"),)
     ends = np.cumsum([count for _, count, _, _ in rows]).tolist()
     return tuple(
         Sense(name, slice(end - count, end), scale, what)
@@ -92,7 +106,10 @@ def part(
     Raises:
         UnknownName: there is no such reading.
     """
-    columns = {sense.name: sense.columns for sense in senses(ROBOTS.resolve(robot))}
+    known = senses(ROBOTS.resolve(robot))
+    if observations.shape[-1] > known[-1].columns.stop:
+        known = senses(ROBOTS.resolve(robot), goal=True)
+    columns = {sense.name: sense.columns for sense in known}
     if name not in columns:
         raise UnknownName("reading", name, columns)
     return observations[..., columns[name]]
@@ -103,6 +120,7 @@ def observations(
     sensed: Sensed,
     phase: Float[np.ndarray, " run"],
     told: Float[np.ndarray, "run servo"],
+    goal: tuple[Float[np.ndarray, "run 2"], Float[np.ndarray, " run"]] | None = None,
 ) -> Float[np.ndarray, "run n"]:
     """Return one row for each robot; readings beyond their scales are cut off at -1 and 1, lost ones are 0.
 
@@ -111,6 +129,8 @@ def observations(
         sensed: the readings.
         phase: of the clock [cycle].
         told: from the centre, over the span [-].
+        goal: vector in the world from each centre of mass to its goal, and the distance that remains [m]; None if the
+            task has none.
     """
     limits = np.array([robot.servo(name).torque for name in layout(robot).servos])
     weight, slow = robot.mass * GRAVITY, sqrt(beside_article(robot).length)
@@ -118,6 +138,7 @@ def observations(
     position = np.where(turned, np.mod(sensed.servo_position + np.pi, 2 * np.pi) - np.pi, sensed.servo_position)
     upward, ahead = rotation.upward(sensed.orientation), rotation.ahead(sensed.orientation)
     turn = 2 * np.pi * phase
+    towards = [] if goal is None else _towards(*goal, upward, ahead, robot.length)
     rows = np.concatenate(
         [
             position / ANGLE,
@@ -132,7 +153,44 @@ def observations(
             sensed.acceleration / ACCELERATION,
             np.stack([np.sin(turn), np.cos(turn)], axis=1),
             told,
+            *towards,
         ],
         axis=1,
     )
     return np.clip(np.where(np.isfinite(rows), rows, 0.0), -1.0, 1.0).astype(np.float32)
+
+
+def felt(observations: Float[np.ndarray, "run n"], robot: AnyRobot, time: float) -> Sensed:
+    """Return the readings of which observations were made, what was cut off at the ends of the scales being lost.
+
+    Args:
+        observations: one row for each robot.
+        robot: whose they are.
+        time: [s].
+    """
+    seen = {sense.name: part(observations, sense.name, robot).astype(float) for sense in senses(robot)}
+    weight, pace = robot.mass * GRAVITY, 1.0 / sqrt(beside_article(robot).length)
+    limits = np.array([robot.servo(name).torque for name in layout(robot).servos])
+    rows = np.stack([seen["ahead"], np.cross(seen["upward"], seen["ahead"]), seen["upward"]], axis=1)
+    return Sensed(
+        time=time,
+        servo_position=ANGLE * seen["servo_position"],
+        servo_velocity=SPEED * pace * seen["servo_velocity"],
+        servo_torque=limits * seen["servo_torque"],
+        foot_pressure=weight * seen["foot_pressure"],
+        belly_pressure=weight * seen["belly_pressure"],
+        tail_pressure=weight * seen["tail_pressure"][:, 0],
+        orientation=Rotation.from_matrix(rows).as_quat(scalar_first=True),
+        angular_velocity=RATE * pace * seen["angular_velocity"],
+        acceleration=ACCELERATION * seen["acceleration"],
+    )
+
+
+def _towards(
+    offset: np.ndarray, remaining: np.ndarray, upward: np.ndarray, ahead: np.ndarray, length: float
+) -> list[np.ndarray]:
+    """Return the direction to the goal in the root, shape (run, 3), 0 at the goal, and its distance over the scale."""
+    far = np.linalg.norm(offset, axis=1, keepdims=True)
+    unit = np.divide(offset, far, out=np.zeros_like(offset), where=far > 0.0)
+    direction = unit[:, :1] * ahead + unit[:, 1:] * np.cross(upward, ahead)
+    return [direction, remaining[:, None] / (FAR * length)]

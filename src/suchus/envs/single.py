@@ -9,8 +9,9 @@ import numpy as np
 from suchus.envs.pack import Pack
 from suchus.envs.picture import picture
 from suchus.envs.reward import Terms
+from suchus.envs.shelf import chosen
 from suchus.envs.spaces import RENDER_MODES, action_space, check_render_mode, checked, observation_space
-from suchus.envs.task import Task, chosen
+from suchus.envs.task import Task
 
 
 class CrocodileEnv(gymnasium.Env):  # type: ignore[misc]  # gymnasium is not read by mypy
@@ -32,7 +33,8 @@ class CrocodileEnv(gymnasium.Env):  # type: ignore[misc]  # gymnasium is not rea
         check_render_mode(render_mode)
         self.task = chosen(task, changes)
         self.pack = Pack(self.task, 1)
-        self.action_space, self.observation_space = action_space(self.task.robot), observation_space(self.task.robot)
+        self.action_space = action_space(self.task.robot)
+        self.observation_space = observation_space(self.task.robot, goal=self.task.goal is not None)
         self.render_mode = render_mode
         self.metadata = metadata(self.task)
 
@@ -60,15 +62,15 @@ class CrocodileEnv(gymnasium.Env):  # type: ignore[misc]  # gymnasium is not rea
             action: one number of -1 to 1 for each servo; what is beyond counts as -1 or 1.
 
         Returns:
-            Observation; reward; whether it fell; False, since time limits are a wrapper's; and the terms of the
-            reward, ``time``, ``fault`` and ``cause``, the sentence that says why the episode ended.
+            Observation; reward; whether it fell or reached its goal; False, since time limits are a wrapper's; and the
+            terms of the reward, ``time``, ``fault`` and ``cause``, the sentence that says why the episode ended.
 
         Raises:
             OutsideLimits: an action of another shape, or not finite.
         """
         terms = self.pack.act(checked(action, self.action_space.shape)[None], np.ones(1, dtype=bool))
         info = {name: values.tolist()[0] for name, values in told(self.pack, terms).items()}
-        return self.pack.feel()[0], float(terms.reward(self.task.rewards)[0]), bool(terms.fall[0]), False, info
+        return self.pack.feel()[0], float(terms.reward(self.task.rewards)[0]), bool(terms.over[0]), False, info
 
     def render(self) -> np.ndarray | None:
         """Return a picture of (480, 640, 3) for ``rgb_array``, else None."""

@@ -27,9 +27,9 @@ def action_space(robot: AnyRobot) -> Any:
     return gymnasium.spaces.Box(-1.0, 1.0, (len(layout(robot).servos),), np.float32)
 
 
-def observation_space(robot: AnyRobot) -> Any:
-    """Return the ``gymnasium.spaces.Box`` of what a robot is given: see ``senses.senses``."""
-    return gymnasium.spaces.Box(-1.0, 1.0, (senses(robot)[-1].columns.stop,), np.float32)
+def observation_space(robot: AnyRobot, *, goal: bool = False) -> Any:
+    """Return the ``gymnasium.spaces.Box`` of what a robot is given, with or without a goal: see ``senses.senses``."""
+    return gymnasium.spaces.Box(-1.0, 1.0, (senses(robot, goal=goal)[-1].columns.stop,), np.float32)
 
 
 def checked(actions: Any, shape: tuple[int, ...]) -> Float[np.ndarray, "*b servo"]:

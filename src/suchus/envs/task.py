@@ -10,17 +10,23 @@ import numpy as np
 from suchus.design import AnyRobot, check_needs, front_segment, layout, with_speed_lines
 from suchus.design.checks import Checks
 from suchus.design.scale import control_period, scaled, scaled_fields
-from suchus.errors import InvalidDesign, UnknownName
+from suchus.envs.goals import AnyGoal
+from suchus.envs.water import check_floats, check_water, swimming
+from suchus.errors import UnknownName
 from suchus.fault import Fault
 from suchus.faults import FAULTS
 from suchus.gaits import GAITS, own_gait, suits
-from suchus.land import Ground
-from suchus.motion import AnyGait
+from suchus.land import Ground, Lake
+from suchus.motion import AnyGait, Swim
 from suchus.robots import ROBOTS
 
-Start = Literal["lying", "upright"]
+Start = Literal["lying", "upright", "swimming"]
 NEEDED: Mapping[str, tuple[str, ...]] = MappingProxyType(
-    {"lying": (), "upright": ("tables", "article_spine", "cable_tail")}
+    {
+        "lying": (),
+        "upright": ("tables", "article_spine", "cable_tail"),
+        "swimming": ("tables", "article_spine", "cable_tail"),
+    }
 )
 """What a beginning needs of a robot: names of ``design.NEEDS``."""
 
@@ -45,6 +51,10 @@ class Rewards:
     """Per square of the change of every commanded angle from one step to the next; negative [1/rad2]."""
     fall: float
     """Once, when the episode ends by a fall or because the physics came apart; negative [-]."""
+    approach: float = 0.0
+    """Per decrease of the distance that remains to ``Task.goal`` [1/m]."""
+    goal: float = 0.0
+    """Once, when the episode ends at the goal [-]."""
 
     def __post_init__(self) -> None:
         with Checks("rewards", self) as check:
@@ -174,7 +184,8 @@ class Task:
     ground: Ground = field(default_factory=Ground)
     """On what."""
     start: Start = "lying"
-    """How an episode begins: in the gait's mid-stance, or standing as the shelf's way up leaves the robot."""
+    """How an episode begins: in the gait's mid-stance, standing as the shelf's way up leaves the robot, or floating at
+    the surface, straight and with its limbs back along the body."""
     span: float = 0.8
     """How far an action of one turns a servo from its centre [rad]; the shelf's crawl asks for 0.78 at its pulley."""
     decision: float = 0.05
@@ -198,11 +209,24 @@ class Task:
     """What breaks; None: nothing."""
     shoves: Shoves | None = None
     """Who pushes; None: nobody."""
+    lake: Lake | None = None
+    """Water in which the robot swims or wades, its level and breath numbers; None on dry land."""
+    swim: Swim | None = None
+    """Swimming motion of a ``swimming`` start, whose wave the clock follows; None: that of (20) at 1 Hz, fitted."""
+    goal: AnyGoal | None = None
+    """What ends the episode when it is reached; None: nothing."""
 
     @property
     def body(self) -> AnyRobot:
         """The robot as its physics has it: with the torque-speed lines if ``speed_lines`` is true."""
         return with_speed_lines(self.robot) if self.speed_lines else self.robot
+
+    @property
+    def period(self) -> float:
+        """Period of the clock, that of the swimming motion or of the gait [s]."""
+        if self.start == "swimming":
+            return 1.0 / swimming(self.robot, self.swim).swim.frequency
+        return self.gait.period
 
     def on(self, robot: AnyRobot, gait: AnyGait | None = None) -> "Task":
         """Return the same task for another robot.
@@ -227,7 +251,7 @@ class Task:
         if not suits(robot, self.gait):
             changes |= scaled_fields(self, ["least_height"], length=longer, mass=heavier)
             changes |= {"gait": gait or own_gait(robot)}
-            for name in ("rewards", "breaks", "shoves"):
+            for name in ("rewards", "breaks", "shoves", "goal"):
                 if getattr(self, name) is not None:
                     changes[name] = scaled(getattr(self, name), length=longer, mass=heavier)
         return replace(self, robot=robot, **(changes | ({"gait": gait} if gait is not None else {})))
@@ -244,6 +268,10 @@ class Task:
             check.that(
                 self.start in get_args(Start),
                 f"task.start is {self.start!r}; {' or '.join(get_args(Start))} is allowed",
+            )
+            check.that(
+                not (self.start == "swimming" and self.lake is None),
+                "task.lake is None; a task that begins swimming needs water: give it a land.Lake",
             )
             check.number("span", 0.01, 3.2, "rad")
             check.number("decision", period, 100 * period, "s")
@@ -263,65 +291,9 @@ class Task:
                 )
         if self.breaks is not None:
             self.breaks.among(self.robot)
-
-
-STANDING_SPAN = 0.3
-"""Of the actions in the task Stand [rad]: a hop, not another posture."""
-_CRAWL = Task()
-TASKS: Mapping[str, Task] = MappingProxyType(
-    {
-        "Crawl": _CRAWL,
-        "Stand": replace(
-            _CRAWL,
-            start="upright",
-            span=STANDING_SPAN,
-            jitter=0.01,
-            least_level=-1.0,
-            least_height=0.45,
-            rewards=Rewards(forward=0.0, astray=0.0, upright=1.0, work=-0.01, haste=-0.002, fall=-5.0),
-            shoves=Shoves(),
-        ),
-        "Fault": replace(_CRAWL, breaks=Breaks()),
-    }
-)
-"""The tasks by name; vary one with ``dataclasses.replace``, or by naming its fields to ``gymnasium.make``."""
-
-
-def chosen(task: Task | str, changes: Mapping[str, Any]) -> Task:
-    """Return a task, given itself or by its name, with some fields changed.
-
-    A robot or a gait may be given by its name on the shelf; a robot brings its gait and its size, see ``Task.on``.
-
-    Raises:
-        UnknownName: there is no such task, field, robot, gait or servo; the message lists those that are.
-        InvalidDesign: a value makes no sense.
-        UnsuitedRobot: the robot lacks what the task needs.
-    """
-    if isinstance(task, str):
-        if task not in TASKS:
-            raise UnknownName("task", task, TASKS)
-        task = TASKS[task]
-    names = [f.name for f in fields(Task)]
-    for name in changes:
-        if name not in names:
-            raise UnknownName("field of a task", name, names)
-    shelves: Mapping[str, Mapping[str, Any]] = {"robot": ROBOTS, "gait": GAITS}
-    found = {
-        name: shelves[name][value] if name in shelves and isinstance(value, str) else value
-        for name, value in changes.items()
-    }
-    kinds: Mapping[str, tuple[type, ...]] = {
-        "robot": get_args(AnyRobot),
-        "gait": get_args(AnyGait),
-        "ground": (Ground,),
-        "rewards": (Rewards,),
-        "breaks": (Breaks, type(None)),
-        "shoves": (Shoves, type(None)),
-    }
-    for name, value in found.items():
-        if name in kinds and not isinstance(value, kinds[name]):
-            wanted = " or ".join("None" if kind is type(None) else kind.__name__ for kind in kinds[name])
-            raise InvalidDesign(f"task.{name} is {str(value)[:80]!r}; a {wanted} is needed.")
-    if "robot" in found:
-        task = task.on(found.pop("robot"), found.pop("gait", None))
-    return replace(task, **found)
+        if self.lake is not None:
+            check_water(self.robot, self.lake)
+            if self.start == "swimming":
+                check_floats(self.robot, self.lake)
+        if self.goal is not None:
+            self.goal.check(self.ground, self.lake)

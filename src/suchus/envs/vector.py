@@ -11,9 +11,10 @@ from gymnasium.vector.utils import batch_space
 
 from suchus.design.checks import require
 from suchus.envs.pack import Pack
+from suchus.envs.shelf import chosen
 from suchus.envs.single import metadata, portrait, told
 from suchus.envs.spaces import action_space, check_render_mode, checked, observation_space
-from suchus.envs.task import Task, chosen
+from suchus.envs.task import Task
 from suchus.errors import InvalidDesign
 
 _AT_RESET = ("time", "fault")  # what is said when an episode begins
@@ -52,7 +53,8 @@ class CrocodileVectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[misc]  # g
         self.autoreset_mode = _mode(autoreset_mode)
         self.metadata = {**metadata(self.task), "autoreset_mode": self.autoreset_mode}
         robot = self.task.robot
-        self.single_action_space, self.single_observation_space = action_space(robot), observation_space(robot)
+        self.single_action_space = action_space(robot)
+        self.single_observation_space = observation_space(robot, goal=self.task.goal is not None)
         self.action_space = batch_space(self.single_action_space, num_envs)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self._randoms = [seeding.np_random()[0] for _ in range(num_envs)]
@@ -94,7 +96,7 @@ class CrocodileVectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[misc]  # g
         terms = self.pack.act(numbers, ~again)
         self._steps[~again] += 1
         rewards = np.where(again, 0.0, terms.reward(self.task.rewards))
-        terminated = ~again & terms.fall
+        terminated = ~again & terms.over
         late = self._steps >= (self.max_episode_steps or np.inf)
         truncated = ~again & late
         said = told(self.pack, terms)

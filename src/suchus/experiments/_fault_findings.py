@@ -130,7 +130,7 @@ def explained(measures: Mapping[str, float], kind: str, legs: str) -> str:
     """
     m = {name: Reading(value) for name, value in measures.items()}
     effects = {
-        "what 'lost' means (limp or locked)": m["effect_of_kind"],
+        "what 'failed' means (limp or locked)": m["effect_of_kind"],
         "which joint fails": m["effect_of_joint"],
         "whether one leg or both lose it": m["effect_of_legs"],
     }
@@ -153,7 +153,7 @@ def _steering(m: Mapping[str, Reading], kind: str, legs: str) -> str:
         name = f"loss_{joint}_{kind}_{legs}"
         alone, steered = m[f"{name}_coordinated"], m[f"{name}_steered"]
         word = compared(steered, alone, less="more", more="less", same="as much", within=0.05)
-        told.append(f"{joint.replace('_', ' ')} {alone:+.0%} to {steered:+.0%} ({word} failed)")
+        told.append(f"{joint.replace('_', ' ')} {alone:+.0%} to {steered:+.0%} ({word} lost)")
     return f"Steering changes the loss from: {'; '.join(told)}." if told else "A table of angles cannot be steered."
 
 

@@ -12,14 +12,6 @@ from suchus.experiment import Measure
 from suchus.land import Run
 from suchus.land.bench import up
 
-METRES = {
-    "land": "on level dry land",
-    "ashore": "up the shore, out of the water",
-    "wading": "up the shore, wading",
-    "surface": "at the surface",
-    "deep": "at a depth that is held",
-}
-"""Endings of the measures of what a metre costs, and in words where that is, from land to depth."""
 FALLEN = np.radians(60)
 """Tilt of the body against gravity beyond which it has fallen [rad]."""
 AFLOAT = 0.01

@@ -17,6 +17,7 @@ from suchus.experiments import _shore_findings as findings
 from suchus.figures.shore import draw_ashore, draw_decides
 from suchus.gaits import GAITS
 from suchus.land import Ground, Lake, Run, simulate
+from suchus.metrics.energy import METRES
 from suchus.motion import Gait, Swim
 from suchus.replay import replay
 from suchus.robots import ROBOTS
@@ -238,7 +239,7 @@ class Shore(Experiment):
                         same="as many as")  # fmt: skip
         costs = [
             f"{m[f'work_per_metre_{ending}']:.1f} J {where}"
-            for ending, where in findings.METRES.items()
+            for ending, where in METRES.items()
             if m[f"work_per_metre_{ending}"] == m[f"work_per_metre_{ending}"]
         ]
         by_gait = f"Of all slopes at one friction: {listed(walked)}. " if walked else ""

@@ -11,10 +11,16 @@ a wake that the grid cannot carry, nor about the domain.
 
 from math import inf, sqrt
 
+SKIN_SUM = 0.02, 0.05
+"""How much the sum of pressure and friction along the skin is low [-]; ``make validate`` checks it on a cylinder."""
+
+SKIN_PEAK = 0.2
+"""How much the peak wall vorticity of a cylinder at Re 185 is low on 24 cells a diameter [-]; docs/flow_limits.md."""
+
 ALONG_THE_SKIN = (
-    "Read from points one to three cells off the wall: pressure and friction are 2 to 5 % low in sum and more where "
-    "they peak (the peak wall vorticity of a cylinder at Re 185 by 20 % at 24 cells a diameter). Forces from the "
-    "momentum exchanged are not."
+    f"Read from points one to three cells off the wall: pressure and friction are {100 * SKIN_SUM[0]:.0f} to "
+    f"{SKIN_SUM[1]:.0%} low in sum and more where they peak (the peak wall vorticity of a cylinder at Re 185 by "
+    f"{SKIN_PEAK:.0%} at 24 cells a diameter). Forces from the momentum exchanged are not."
 )
 """What is known of the error of ``Surface`` and ``Record.surface_force``, to stand beside each plot of them."""
 

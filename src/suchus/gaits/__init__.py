@@ -4,6 +4,7 @@ from typing import Any
 
 from suchus.catalog import Catalog
 from suchus.design import AnyRobot
+from suchus.gaits._animal_swim import ANIMAL_SWIM
 from suchus.gaits._conditions import CONDITIONS, conditions, conditions_of
 from suchus.gaits._own import gait_of, suits
 from suchus.motion import AnyGait
@@ -21,4 +22,4 @@ def own_gait(robot: AnyRobot) -> AnyGait:
     return gait_of(GAITS, robot)
 
 
-__all__ = ["CONDITIONS", "GAITS", "conditions", "conditions_of", "own_gait", "suits"]
+__all__ = ["ANIMAL_SWIM", "CONDITIONS", "GAITS", "conditions", "conditions_of", "own_gait", "suits"]

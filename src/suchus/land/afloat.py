@@ -14,6 +14,18 @@ from suchus.model.wet import wet_model
 from suchus.rotation import about, multiply
 
 
+def capacity(robot: AnyRobot, lake: Lake) -> tuple[float, float]:
+    """Return the volume of a robot wholly under water with the air that it keeps, and that of its weight [m3].
+
+    Args:
+        robot: the design; it floats if the first is greater.
+        lake: the water, as it is at the beginning.
+    """
+    table = pieces(robot)
+    lost = (1 - lake.at(0.0)[1]) * column(table, "air").sum()
+    return float(column(table, "volume").sum() - lost), robot.mass / lake.water.density
+
+
 def surfaced(
     robot: AnyRobot, lake: Lake, up: Float[np.ndarray, "3"], qpos: Float[np.ndarray, " q"], timestep: float
 ) -> Float[np.ndarray, " q"]:
@@ -30,8 +42,8 @@ def surfaced(
     """
     level, breath = lake.at(0.0)
     table = np.array(pieces(robot))
-    weight = robot.mass / lake.water.density
-    if column(table, "volume").sum() - (1 - breath) * column(table, "air").sum() <= weight:
+    volume, weight = capacity(robot, lake)
+    if volume <= weight:
         return qpos
     model = wet_model(robot, timestep, None, len(table))
     data = mujoco.MjData(model)

@@ -58,8 +58,8 @@ class Bench:
         self.water = self.batch.bind("userdata") if self._lakes else np.zeros((len(runs), 0))
         if self._lakes:
             wetting.install()
-            for sim, lake in self._lakes.items():
-                self.water[sim] = lake.numbers(self._ups[sim])
+            for sim in self._lakes:
+                self.refill(sim)
         forces = force_sensors(runs[0].robot)
         self._forces = slice(int(shared.sensor(forces[0]).adr[0]), int(shared.sensor(forces[-1]).adr[0]) + 3)
         servos = [shared.sensor(f"{name}_position") for name in layout(runs[0].robot).servos]
@@ -153,6 +153,11 @@ class Bench:
         self._lakes[sim] = lake
         self.water[sim, : hydro.FORCE] = lake.numbers(self._ups[sim], time)[: hydro.FORCE]
 
+    def refill(self, sim: int) -> None:
+        """Write the water of a run anew, as it is at the beginning; a reset of the physics drains it."""
+        if sim in self._lakes:
+            self.water[sim] = self._lakes[sim].numbers(self._ups[sim])
+
     def depths(self) -> np.ndarray | None:
         """Return how deep the roots are below the level of their water, 0 above it, shape (run,) [m]; None if dry."""
         if not self._lakes:
@@ -202,9 +207,13 @@ class Bench:
                 self.qpos[sim] = surfaced(run.robot, run.lake, up(run.ground), self.qpos[sim], self._timestep)
             self.ctrl[sim] = first[sim]
         self.batch.forward()
-        self.readings[:] = self.sensors
+        self.read(slice(None))
+
+    def read(self, who: int | slice) -> None:
+        """Take the readings of some runs at rest in their present state, which has been brought up to date."""
+        self.readings[who], self.worked[who] = self.sensors[who], 0.0
         if self._lakes:
-            self.worked[:, :4] = self.water[:, hydro.FORCE : hydro.FORCE + 4]
+            self.worked[who, :4] = self.water[who, hydro.FORCE : hydro.FORCE + 4]
 
     def advance(self, targets: np.ndarray, steps: int, time: float, alike: Deduplication | None = None) -> None:
         """Command servo angles and advance the living by some steps; who diverges dies, with the time and the cause.

@@ -36,6 +36,7 @@ def restart(bench: Bench, sim: int, begin: Beginning) -> None:
     batch.reset(who, stage=mujoco.mjtStage.mjSTAGE_NONE)
     bench.qpos[sim], bench.qvel[sim], bench.ctrl[sim] = begin.qpos, begin.qvel, begin.told
     batch.bind("act")[sim] = begin.act
+    bench.refill(sim)
     batch.forward(who)
-    bench.readings[sim] = bench.sensors[sim]
+    bench.read(sim)
     bench.alive[sim], bench.ended[sim], bench.cause[sim] = True, np.inf, ""

@@ -7,6 +7,15 @@ from suchus.metrics.progress import displacement
 from suchus.metrics.window import between
 from suchus.motion import START
 
+METRES = {
+    "land": "on level dry land",
+    "ashore": "up the shore, out of the water",
+    "wading": "up the shore, wading",
+    "surface": "at the surface",
+    "deep": "at a depth that is held",
+}
+"""Endings of the measures of what a metre costs, and in words where that is, from land to depth."""
+
 
 def work(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
     """Return the work of all servos, braking counted as much as driving [J]."""

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from suchus.experiments._shore_findings import METRES
+from suchus.metrics.energy import METRES
 from suchus.report.numbers import quantity
 from suchus.report.result import Result
 

@@ -1,0 +1,103 @@
+"""The tasks by name, and how one is varied by naming its fields."""
+
+from collections.abc import Mapping
+from dataclasses import fields, replace
+from math import radians, sin
+from types import MappingProxyType
+from typing import Any, get_args
+
+from suchus.design import AnyRobot
+from suchus.envs.goals import AnyGoal, Goal, Landing
+from suchus.envs.task import Breaks, Rewards, Shoves, Task
+from suchus.errors import InvalidDesign, UnknownName
+from suchus.gaits import GAITS
+from suchus.land import Ground, Lake
+from suchus.motion import AnyGait, Swim
+from suchus.robots import ROBOTS
+
+STANDING_SPAN = 0.3
+"""Of the actions in the task Stand [rad]: a hop, not another posture."""
+SWIM_SPAN = 1.4
+"""Of the actions in the task Swim [rad]: 0.75 for the wave on the tail's cable and 0.6 to steer."""
+SHORE_SPAN = 2.5
+"""Of the actions in the task Shore [rad]: from limbs that lie back along the body to the forward end of a stride."""
+_SLOPE, _OFFSHORE = radians(8), 1.6  # distance of the water line from the beginning [m], where the robot floats free
+_CRAWL = Task()
+_SWIM = replace(
+    _CRAWL,
+    robot=ROBOTS["floating_caiman"],
+    start="swimming",
+    lake=Lake(level=0.5),
+    goal=Goal(),
+    span=SWIM_SPAN,
+    rewards=Rewards(forward=0.0, astray=0.0, upright=0.0, work=-0.01, haste=-0.002, fall=-5.0, approach=10.0, goal=5.0),
+)
+TASKS: Mapping[str, Task] = MappingProxyType(
+    {
+        "Crawl": _CRAWL,
+        "Stand": replace(
+            _CRAWL,
+            start="upright",
+            span=STANDING_SPAN,
+            jitter=0.01,
+            least_level=-1.0,
+            least_height=0.45,
+            rewards=Rewards(forward=0.0, astray=0.0, upright=1.0, work=-0.01, haste=-0.002, fall=-5.0),
+            shoves=Shoves(),
+        ),
+        "Fault": replace(_CRAWL, breaks=Breaks()),
+        "Swim": _SWIM,
+        "Shore": replace(
+            _SWIM,
+            ground=Ground(uphill=_SLOPE),
+            lake=Lake(level=_OFFSHORE * sin(_SLOPE)),
+            gait=GAITS["semi_erect"],
+            span=SHORE_SPAN,
+            goal=Landing(),
+        ),
+    }
+)
+"""The tasks by name; vary one with ``dataclasses.replace``, or by naming its fields to ``gymnasium.make``."""
+
+
+def chosen(task: Task | str, changes: Mapping[str, Any]) -> Task:
+    """Return a task, given itself or by its name, with some fields changed.
+
+    A robot or a gait may be given by its name on the shelf; a robot brings its gait and its size, see ``Task.on``.
+
+    Raises:
+        UnknownName: there is no such task, field, robot, gait or servo; the message lists those that are.
+        InvalidDesign: a value makes no sense.
+        UnsuitedRobot: the robot lacks what the task needs.
+    """
+    if isinstance(task, str):
+        if task not in TASKS:
+            raise UnknownName("task", task, TASKS)
+        task = TASKS[task]
+    names = [f.name for f in fields(Task)]
+    for name in changes:
+        if name not in names:
+            raise UnknownName("field of a task", name, names)
+    shelves: Mapping[str, Mapping[str, Any]] = {"robot": ROBOTS, "gait": GAITS}
+    found = {
+        name: shelves[name][value] if name in shelves and isinstance(value, str) else value
+        for name, value in changes.items()
+    }
+    kinds: Mapping[str, tuple[type, ...]] = {
+        "robot": get_args(AnyRobot),
+        "gait": get_args(AnyGait),
+        "ground": (Ground,),
+        "rewards": (Rewards,),
+        "breaks": (Breaks, type(None)),
+        "shoves": (Shoves, type(None)),
+        "lake": (Lake, type(None)),
+        "swim": (Swim, type(None)),
+        "goal": (*get_args(AnyGoal), type(None)),
+    }
+    for name, value in found.items():
+        if name in kinds and not isinstance(value, kinds[name]):
+            wanted = " or ".join("None" if kind is type(None) else kind.__name__ for kind in kinds[name])
+            raise InvalidDesign(f"task.{name} is {str(value)[:80]!r}; a {wanted} is needed.")
+    if "robot" in found:
+        task = task.on(found.pop("robot"), found.pop("gait", None))
+    return replace(task, **found)
