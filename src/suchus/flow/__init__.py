@@ -1,4 +1,4 @@
-"""Two-dimensional incompressible flow around bodies that move and bend."""
+"""Incompressible flow around bodies that move and bend, in the plane and in space."""
 
 from suchus.flow.added import added_mass
 from suchus.flow.body import Body
@@ -17,9 +17,10 @@ from suchus.flow.record import Coefficients, Record
 from suchus.flow.resolution import ALONG_THE_SKIN
 from suchus.flow.setup import Setup
 from suchus.flow.shape import Cylinder, Ellipse, Field, Markers, Plate, Shape, Solid
-from suchus.flow.sides import Inflow, Outflow, Periodic, Side, Sides, Slip, Stream, Wall
+from suchus.flow.sides import Inflow, Mirror, Outflow, Periodic, Side, Sides, Slip, Stream, Wall
 from suchus.flow.signals import frequency, morison, noise, strouhal
 from suchus.flow.simulation import Simulation
+from suchus.flow.solid import Ellipsoid, Skin, SpaceField, SpaceShape, Sphere
 
 __all__ = [
     "ALONG_THE_SKIN",
@@ -28,6 +29,7 @@ __all__ = [
     "Contact",
     "Cylinder",
     "Ellipse",
+    "Ellipsoid",
     "Field",
     "FieldSeries",
     "FreeBody",
@@ -39,6 +41,7 @@ __all__ = [
     "Markers",
     "Mass",
     "Midline",
+    "Mirror",
     "Motion",
     "Oscillation",
     "Outflow",
@@ -54,8 +57,12 @@ __all__ = [
     "Side",
     "Sides",
     "Simulation",
+    "Skin",
     "Slip",
     "Solid",
+    "SpaceField",
+    "SpaceShape",
+    "Sphere",
     "Spine",
     "Stream",
     "Surface",

@@ -1,48 +1,112 @@
 """Added mass of a body, from the pressure equation that the solver itself uses."""
 
+from math import prod
+
 import numpy as np
 
 from suchus.flow.shape import Markers
+from suchus.flow.solid import Skin
 from suchus.flow.water import Water
 
 _LIMIT = 1e-5
 """Divergence left over, relative to the accelerations [-]."""
 
 
-def added_mass(water: Water, markers: Markers, about: tuple[float, float], density: float, body: int = 0) -> np.ndarray:
-    """Return the added mass for accelerations along x, along y and about a point, shape (3, 3).
+def added_mass(
+    water: Water, markers: Markers | Skin, about: tuple[float, ...], density: float, body: int = 0
+) -> np.ndarray:
+    """Return the added mass for accelerations along each axis and about a point, shape (axes + 1, axes + 1).
 
     The bodies must have been placed; ``body`` counts them. The force of mode k is ``-Ma[:, k]`` per unit
-    acceleration; other bodies stay still. It is what ``exchange`` would find: the momentum that the immersion gives
-    to the water. Units: kg/m for the first two rows and columns, kg between them and the turning, kg m for the last.
+    acceleration; other bodies stay still. In space the turning is that about z. It is what ``exchange`` would find: the
+    momentum that the immersion gives to the water. Units: kg/m in the plane and kg in space for the translations, times
+    m between them and the turning, times m^2 for the turning. In space the sides are held; what lies beyond mirrors is
+    counted, and motions through a mirror that cuts the body, which are not symmetric, have NaN.
 
     Raises:
         NotConverged: the pressure solver got stuck.
     """
-    grid, h = water.grid, water.grid.cell
-    j0, j1, i0, i1 = water.window
-    here, own = np.s_[j0 : j1 + 1, i0 : i1 + 1], [owner == body for owner in water.owners]
-    x_mid, y_mid = grid.centres(i0, i1 + 1, 0) - about[0], grid.centres(j0, j1 + 1, 1) - about[1]
-    shape = (j1 + 1 - j0, i1 + 1 - i0)
-    arm_u, arm_v = np.broadcast_to(-y_mid[:, None], shape), np.broadcast_to(x_mid[None, :], shape)
-    modes = ((np.ones(shape), np.zeros(shape)), (np.zeros(shape), np.ones(shape)), (arm_u, arm_v))
-    share_u, share_v = ((1 - m[here].astype(np.float64)) * mine for m, mine in zip(water.passage, own, strict=True))
-    rx, ry, skin = markers.x - about[0], markers.y - about[1], water.offset * h * markers.length
-    rims = np.array([[skin, 0 * skin, -ry * skin], [0 * skin, skin, rx * skin]])  # component, mode, marker
-    rim = np.array([*rims.sum(axis=2), (rx * rims[1] - ry * rims[0]).sum(axis=1)])
+    h, axes, cut = water.grid.cell, water.axes, water.cut[body]
+    here, kept = water.here, _symmetric(cut)
+    modes = [mode for mode, keep in zip(_modes(water, about), kept, strict=True) if keep]
+    own = [owner == body for owner in water.owners]
+    shares = [(1 - m[here].astype(np.float64)) * mine for m, mine in zip(water.passage, own, strict=True)]
+    for share in shares:
+        _leave_images(share, cut)
     rises, shores, inward = [], [], []
-    for au, av in modes:
-        scale = max(float(np.abs(au).max()), float(np.abs(av).max()))
-        potential = water.potential(np.stack([share_u * au, share_v * av]) / scale, _LIMIT)
+    for mode in modes:
+        scale = max(float(np.abs(part).max()) for part in mode)
+        given = np.stack([share * part for share, part in zip(shares, mode, strict=True)]) / scale
+        potential = water.potential(given, _LIMIT)
         shores.append([scale * line.astype(np.float64) for line in water.along_sides(potential)])
-        near = potential[j0 - 1 : j1 + 1, i0 - 1 : i1 + 1].astype(np.float64)
-        rises.append((scale * (near[1:, 1:] - near[1:, :-1]), scale * (near[1:, 1:] - near[:-1, 1:])))
-        inward.append([scale * side for side in water.answer(np.stack([share_u * au, share_v * av]) / scale)])
+        near = potential[tuple(slice(s.start - 1, s.stop) for s in here)].astype(np.float64)
+        rises.append([scale * _rise(near, axes - 1 - c) for c in range(axes)])
+        inward.append([scale * side for side in water.answer(given)])
     held, own_mass = (
-        h * h * np.array([[(a * share_u * p).sum() + (b * share_v * q).sum() for p, q in what] for a, b in modes])
+        prod([h] * axes) * np.array([[_work(mode, shares, parts) for parts in what] for mode in modes])
         for what in (rises, modes)
     )
-    return density * (_in_open_water(held, own_mass, shores, inward, h) + rim)
+    both = np.ix_(kept, kept)
+    whole = np.full((axes + 1, axes + 1), np.nan)
+    rim = _rim(water, markers, about, cut)[both]
+    whole[both] = 2 ** sum(cut) * density * (_in_open_water(held, own_mass, shores, inward, h) + rim)
+    return whole
+
+
+def _symmetric(cut: tuple[bool, ...]) -> list[bool]:
+    """Return which modes are symmetric about the mirrors that cut a body."""
+    across = [low or high for low, high in zip(cut[::2], cut[1::2], strict=True)]
+    return [not off for off in (*across, any(across[:2]))]
+
+
+def _modes(water: Water, about: tuple[float, ...]) -> list[list[np.ndarray]]:
+    """Return the velocity of each mode on the faces of the window, mode by mode and component by component."""
+    axes, here = water.axes, water.here
+    shape = tuple(s.stop - s.start for s in here)
+    x, y = (
+        np.expand_dims(water.grid.centres(s.start, s.stop, d) - about[d], [n for n in range(axes) if n != axes - 1 - d])
+        for d, s in zip(range(2), reversed(here), strict=False)
+    )
+    ones, none = np.ones(shape), np.zeros(shape)
+    shifts = [[ones if c == d else none for c in range(axes)] for d in range(axes)]
+    return [*shifts, [np.broadcast_to(-y, shape), np.broadcast_to(x, shape), *(none,) * (axes - 2)]]
+
+
+def _leave_images(share: np.ndarray, cut: tuple[bool, ...]) -> None:
+    """Set to nothing what lies beyond the mirrors that cut a body."""
+    for k, is_cut in enumerate(cut):
+        lines = np.moveaxis(share, share.ndim - 1 - k // 2, 0)
+        if is_cut and k % 2 == 0:
+            lines[0] = 0
+        elif is_cut:
+            lines[-2:] = 0
+
+
+def _rise(near: np.ndarray, axis: int) -> np.ndarray:
+    """Return how much a field rises from cell to cell along an axis, without the first cell along each."""
+    inner = (slice(1, None),) * near.ndim
+    rise: np.ndarray = near[inner] - near[tuple(slice(None, -1) if n == axis else s for n, s in enumerate(inner))]
+    return rise
+
+
+def _work(mode: list[np.ndarray], shares: list[np.ndarray], parts: list[np.ndarray]) -> float:
+    """Return what a mode does against a field, on the body's share of the faces."""
+    total = 0.0
+    for a, share, part in zip(mode, shares, parts, strict=True):
+        total += (a * share * part).sum()
+    return total
+
+
+def _rim(water: Water, markers: Markers | Skin, about: tuple[float, ...], cut: tuple[bool, ...]) -> np.ndarray:
+    """Return the mass over the density of the skin that the immersion holds with the body, per mode and mode."""
+    axes, points = water.axes, markers.points
+    rx, ry = points[0] - about[0], points[1] - about[1]
+    skin = water.offset * water.grid.cell * 0.5 ** sum(cut) * markers.share
+    none = 0 * skin
+    rims = np.array(
+        [[*(skin if c == d else none for d in range(axes)), (-ry * skin, rx * skin, none)[c]] for c in range(axes)]
+    )  # component, mode, marker
+    return np.array([*rims.sum(axis=2), (rx * rims[1] - ry * rims[0]).sum(axis=1)])
 
 
 def _in_open_water(
@@ -54,8 +118,8 @@ def _in_open_water(
     further solve: by Green's theorem it is the potential along the sides times their velocity.
 
     Args:
-        held: added mass with the sides held, over the density, shape (3, 3).
-        own: mass of the body's region, over the density, shape (3, 3).
+        held: added mass with the sides held, over the density, shape (mode, mode).
+        own: mass of the body's region, over the density, shape (mode, mode).
         shores: potential along each side, per mode [m/s^2 cells].
         inward: velocity that each mode induces on each side, per mode; empty in other water [m/s^2].
         h: cell [m].
@@ -64,5 +128,5 @@ def _in_open_water(
         return held
     gain = np.array([[sum(float((p * q).sum()) for p, q in zip(a, b, strict=True)) for b in inward] for a in shores])
     answer = np.linalg.solve((held + own).T, h * h * gain.T).T  # per momentum of the mode
-    open_water: np.ndarray = np.linalg.solve(np.eye(3) - answer, held + answer @ own)
+    open_water: np.ndarray = np.linalg.solve(np.eye(len(held)) - answer, held + answer @ own)
     return open_water

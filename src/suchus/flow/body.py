@@ -1,6 +1,7 @@
 """Bodies in the water: a shape with a motion, and what several of them say together on the grid."""
 
-from dataclasses import dataclass, field, fields
+from collections.abc import Callable
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -11,13 +12,14 @@ from suchus.flow.grid import Grid
 from suchus.flow.immerse import REACH, THINNEST, THINNEST_SHEET
 from suchus.flow.pose import Motion, Pose
 from suchus.flow.shape import Field, Shape
+from suchus.flow.solid import SpaceField, SpaceShape
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Body:
     """A shape that moves as it is told."""
 
-    shape: Shape
+    shape: Shape | SpaceShape
     """What it looks like in its own frame."""
     motion: Pose | Motion = field(default_factory=Pose)
     """Where its frame is: a fixed pose, or a pose for every time [s]."""
@@ -38,27 +40,75 @@ class Body:
 AnyBody = Body | FreeBody
 
 
-def window_of(body: AnyBody, pose: Pose, grid: Grid, time: float) -> Window:
-    """Return the cells around a body that it acts on.
+MIDDLE = 1e-6
+"""Distance of a body's middle from a mirror, over a cell, up to which the body is symmetric about it [-]."""
+
+
+def window_of(body: AnyBody, pose: Pose, grid: Grid, time: float, mirrors: tuple[bool, ...] = ()) -> Window:
+    """Return the cells around a body that it acts on; a cell beyond a mirror that cuts the body is one of them.
+
+    ``mirrors`` says whether there is a mirror at the low and at the high end of each axis, if any; see
+    ``Sides.mirrors``.
 
     Raises:
-        InvalidDesign: the body touches a side of the domain or lies beyond it.
+        InvalidDesign: the body touches a side of the domain or lies beyond it, or a mirror does not cut it in half.
     """
-    x0, x1, y0, y1 = body.shape.bounds(time, pose)
-    margin = (REACH + 2) * grid.cell
-    ox, oy = grid.origin
-    wide, high = grid.size
-    if not (x0 - margin > ox and y0 - margin > oy and x1 + margin < ox + wide and y1 + margin < oy + high):
+    bounds = body.shape.bounds(time, pose)
+    ends, h, margin = list(zip(bounds[::2], bounds[1::2], strict=True)), grid.cell, (REACH + 2) * grid.cell
+    mirrors, window = mirrors or (False,) * (2 * grid.axes), []
+    for d in reversed(range(grid.axes)):
+        (low, high), start, end = ends[d], grid.origin[d], grid.origin[d] + grid.size[d]
+        cut = mirrors[2 * d] and low < start < high, mirrors[2 * d + 1] and low < end < high
+        if not ((cut[0] or low - margin > start) and (cut[1] or high + margin < end)):
+            raise _outside(body, grid, ends, time)
+        for plane in [plane for plane, is_cut in zip((start, end), cut, strict=True) if is_cut]:
+            check_cut(body, pose, d, plane, h, time)
+        last = min(int((high + margin - start) / h) + 2, grid.cells[d])
+        window += [
+            PAD - 1 if cut[0] else int((low - margin - start) / h) + PAD,
+            PAD + (grid.cells[d] + 1 if cut[1] else last),
+        ]
+    return tuple(window)
+
+
+def _outside(body: AnyBody, grid: Grid, ends: list[tuple[float, float]], time: float) -> InvalidDesign:
+    reach = ", ".join(f"{axis} = {low:.4g} to {high:.4g} m" for axis, (low, high) in zip("xyz", ends, strict=False))
+    domain = ", ".join(
+        f"{axis} = {low:.4g} to {low + size:.4g} m"
+        for axis, low, size in zip("xyz", grid.origin, grid.size, strict=False)
+    )
+    return InvalidDesign(
+        f"at t = {time:.4g} s, {body.name} reaches over {reach}, outside the domain {domain} "
+        f"(less {(REACH + 2) * grid.cell:.2g} m on each side); enlarge the grid, or let the frame follow the body."
+    )
+
+
+def check_cut(body: AnyBody, pose: Pose, axis: int, plane: float, h: float, time: float) -> None:
+    """Refuse a body that a mirror across an axis cuts anywhere but in its middle.
+
+    Raises:
+        InvalidDesign: its middle lies off the plane, it moves through the plane, or its axes are oblique to it.
+    """
+    place, name = pose.along(3), "xyz"[axis]
+    if abs(place.position[axis] - plane) > MIDDLE * h or place.velocity[axis] != 0:
         raise InvalidDesign(
-            f"at t = {time:.4g} s, {body.name} reaches over x = {x0:.4g} to {x1:.4g} m, y = {y0:.4g} to {y1:.4g} m, "
-            f"outside the domain x = {ox:.4g} to {ox + wide:.4g} m, y = {oy:.4g} to {oy + high:.4g} m "
-            f"(less {margin:.2g} m on each side); enlarge the grid, or let the frame follow the body."
+            f"at t = {time:.4g} s the middle of {body.name} is at {name} = {place.position[axis]:.4g} m and moves with "
+            f"{place.velocity[axis]:.4g} m/s along {name}; the Mirror that cuts it, at {name} = {plane:.4g} m, needs "
+            f"it to stay there. Move the body or the grid, or take another side."
         )
-    h, (nx, ny) = grid.cell, grid.cells
-    return (
-        int((y0 - margin - oy) / h) + PAD, min(int((y1 + margin - oy) / h) + 2, ny) + PAD,
-        int((x0 - margin - ox) / h) + PAD, min(int((x1 + margin - ox) / h) + 2, nx) + PAD,
-    )  # fmt: skip
+    if axis < 2 and (place.spin != 0 or abs(np.sin(2 * place.angle)) > MIDDLE):
+        raise InvalidDesign(
+            f"at t = {time:.4g} s {body.name} stands at an angle of {place.angle:.4g} rad and turns with "
+            f"{place.spin:.4g} rad/s; the Mirror that cuts it across {name} needs its axes along those of the grid. "
+            f"Take another side there."
+        )
+
+
+def cuts(window: Window, grid: Grid) -> tuple[bool, ...]:
+    """Return whether a mirror cuts the bodies of a window at the low and at the high end of each axis."""
+    ends = list(zip(window[::2], window[1::2], strict=True))[::-1]
+    pairs = [(first < PAD, last > n + PAD) for (first, last), n in zip(ends, grid.cells, strict=True)]
+    return tuple(end for pair in pairs for end in pair)
 
 
 def unite(windows: list[Window], axes: int) -> Window:
@@ -70,20 +120,38 @@ def unite(windows: list[Window], axes: int) -> Window:
 
 def measure_all(
     bodies: list[AnyBody], poses: list[Pose], points: list[np.ndarray], time: float, h: float
-) -> tuple[Field, np.ndarray]:
+) -> tuple[SpaceField, np.ndarray]:
     """Return the field of all bodies on a window, at every point that of the nearest body, and which one it is.
 
     ``points`` are the coordinates of the window along each axis [m].
     """
-    x, y = points
-    first = bodies[0].shape.measure(x, y, time, poses[0], (REACH + 1) * h)
-    owner = np.zeros(first.distance.shape, np.int8)
-    for k, (body, pose) in enumerate(zip(bodies[1:], poses[1:], strict=True), start=1):
-        other = body.shape.measure(x, y, time, pose, (REACH + 1) * h)
+    first, owner = None, np.zeros([p.size for p in reversed(points)], np.int8)
+    for k, (body, pose) in enumerate(zip(bodies, poses, strict=True)):
+        measure: Callable[..., Field | SpaceField] = body.shape.measure
+        f = measure(*points, time, pose, (REACH + 1) * h)
+        other = SpaceField(f.distance, f.normal, f.velocity, f.thickness)
+        if first is None:
+            first = other
+            continue
         nearer = other.distance < first.distance
-        first = Field(*(np.where(nearer, getattr(other, f.name), getattr(first, f.name)) for f in fields(Field)))
+        first = _chosen(nearer, other, first)
         owner[nearer] = k
+    assert first is not None  # there is a window around bodies only
     return first, owner
+
+
+def _chosen(where: np.ndarray, a: SpaceField, b: SpaceField) -> SpaceField:
+    """Return the one field at some points and the other elsewhere."""
+
+    def choose(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        return np.where(where, x, y)
+
+    return SpaceField(
+        choose(a.distance, b.distance),
+        tuple(map(choose, a.normal, b.normal)),
+        tuple(map(choose, a.velocity, b.velocity)),
+        choose(a.thickness, b.thickness),
+    )
 
 
 def thin_share(body: AnyBody, grid: Grid, time: float) -> float:

@@ -9,9 +9,11 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from suchus.flow.compiled import PAD, Window, compiled
+from suchus.flow.farfield import FarField
 from suchus.flow.grid import Grid
 from suchus.flow.openwater import Fading, OpenWater
-from suchus.flow.sides import Inflow, Outflow, Periodic, Side, Sides, Slip, Stream, Wall
+from suchus.flow.pose import length
+from suchus.flow.sides import NAMES, Inflow, Mirror, Outflow, Periodic, Side, Sides, Slip, Stream, Wall, inflow
 
 _LEAVES = 0.2, 0.4
 """Shares of the stream's speed along the normal between which a Stream side begins to carry the wake out [-]."""
@@ -47,6 +49,16 @@ def _fill_side(n, t, face, inner, step, prescribed, straight, how, value):  # ty
                 t[to, i] = t[source, i]
 
 
+def _fill_planes(n, t, face, inner, step, prescribed, straight, how, value):  # type: ignore[no-untyped-def]
+    """Do in space what ``_fill_side`` does in the plane, where ``n`` and ``t`` have planes for lines."""
+    n[(face, *(slice(PAD, -PAD),) * prescribed.ndim)] = step * prescribed
+    for k in range(1, 3 if step > 0 else 2):
+        n[face - k * step] = 2 * n[face] - n[face + k * step] if straight else n[face]
+    for k in range(1, 3):
+        source = t[inner + (k - 1) * step]
+        t[inner - k * step] = 2 * value - source if how == _MIRRORED else value if how == _GIVEN else source
+
+
 @dataclass(slots=True)
 class Edge:
     """One side of the domain at work."""
@@ -54,13 +66,13 @@ class Edge:
     side: Side
     """What the side is."""
     axis: int
-    """Axis of the normal: 0 is x, 1 is y."""
+    """Axis of the normal: 0 is x, 1 is y, 2 is z."""
     low: bool
     """Whether the side is at the smallest coordinate."""
     cells: int
     """Cells along the normal [-]."""
     prescribed: np.ndarray
-    """Velocity into the domain on the side's faces [m/s]."""
+    """Velocity into the domain on the side's faces, the last axis first [m/s]."""
     endless: bool
     """Whether the side is one of water without end."""
     leaves: float = 0.0
@@ -71,7 +83,7 @@ class Edge:
     """The same one step earlier [m/s]."""
 
     def __post_init__(self) -> None:
-        self.induced, self.seen = np.zeros(self.prescribed.size), np.zeros(self.prescribed.size)
+        self.induced, self.seen = np.zeros(self.prescribed.shape), np.zeros(self.prescribed.shape)
 
     @property
     def sign(self) -> int:
@@ -83,47 +95,62 @@ class Edge:
         """Index of the side's faces along the normal."""
         return PAD if self.low else PAD + self.cells
 
-    def normal(self, u: np.ndarray, v: np.ndarray) -> np.ndarray:
+    @property
+    def inside(self) -> tuple[slice, ...]:
+        """The part of a plane or line parallel to the side that lies in the domain."""
+        return (slice(PAD, -PAD),) * self.prescribed.ndim
+
+    def normal(self, velocity: np.ndarray) -> np.ndarray:
         """Return the velocity along the normal, normal index first."""
-        return u.T if self.axis == 0 else v
+        return self.across(velocity[self.axis])
 
-    def tangent(self, u: np.ndarray, v: np.ndarray) -> np.ndarray:
-        """Return the velocity along the side, normal index first."""
-        return v.T if self.axis == 0 else u
+    def across(self, a: np.ndarray) -> np.ndarray:
+        """Return an array of the padded grid with the normal index first."""
+        return np.moveaxis(a, self.prescribed.ndim - self.axis, 0)
 
-    def fill(self, u: np.ndarray, v: np.ndarray, stream: tuple[float, float]) -> None:
+    def fill(self, velocity: np.ndarray, stream: tuple[float, ...]) -> None:
         """Write this side's values to the cells and faces around the domain."""
-        n, t, f, step = self.normal(u, v), self.tangent(u, v), self.face, self.sign
+        n, f, step = self.normal(velocity), self.face, self.sign
+        others = [d for d in range(len(velocity)) if d != self.axis]
         inner = PAD if self.low else PAD + self.cells - 1
         if isinstance(self.side, Periodic):
+            lines = [n, *(self.across(velocity[d]) for d in others)]
             for k in range(1, PAD + 1):
-                if self.low:
-                    n[f - k], t[f - k] = n[f - k + self.cells], t[f - k + self.cells]
-                else:
-                    n[f + k - 1], t[f + k - 1] = n[f + k - 1 - self.cells], t[f + k - 1 - self.cells]
+                to, source = (f - k, f - k + self.cells) if self.low else (f + k - 1, f + k - 1 - self.cells)
+                for a in lines:
+                    a[to] = a[source]
             return
-        straight = isinstance(self.side, Wall | Slip) or (self.endless and not self.leaves)
-        how, value = _AS_INSIDE, 0.0
+        straight = isinstance(self.side, Wall | Slip | Mirror) or (self.endless and not self.leaves)
+        fill = _fill_side if len(others) == 1 else _fill_planes
+        for k, d in enumerate(others):
+            how, value = self._along(k, d, step, stream)
+            t = self.across(velocity[d])
+            fill(n, t, f, inner, step, self.prescribed, straight, how, n.dtype.type(value))
+
+    def _along(self, k: int, axis: int, step: int, stream: tuple[float, ...]) -> tuple[int, float]:
+        """Return what the velocity along an axis in the side, the one of number ``k``, is beyond it."""
         if isinstance(self.side, Wall):
-            how, value = _MIRRORED, self.side.speed
-        elif isinstance(self.side, Inflow):
-            how = _MIRRORED
-        elif self.endless and not self.leaves:
-            how = _FREE_OF_VORTICITY
-        elif isinstance(self.side, Stream) and step * stream[self.axis] > 0:
-            how, value = _GIVEN, stream[1 - self.axis]
-        _fill_side(n, t, f, inner, step, self.prescribed, straight, how, n.dtype.type(value))
+            return _MIRRORED, self.side.along(len(stream))[k]
+        if isinstance(self.side, Inflow):
+            return _MIRRORED, 0.0
+        if self.endless and not self.leaves:
+            return _FREE_OF_VORTICITY, 0.0
+        if isinstance(self.side, Stream) and step * stream[self.axis] > 0:
+            return _GIVEN, stream[axis]
+        return _AS_INSIDE, 0.0
 
 
 @dataclass(slots=True)
 class Border:
-    """The four sides at work; ``prepare`` once a step, ``fill`` whenever the velocity changed."""
+    """The sides at work; ``prepare`` once a step, ``fill`` whenever the velocity changed."""
 
     edges: list[Edge]
-    """Left, right, bottom, top."""
+    """Left, right, bottom, top, and in space low and high."""
     water: OpenWater | None
-    """The water around the domain, if it has no end."""
-    stream: tuple[float, float] = (0.0, 0.0)
+    """The water around a plane domain, if it has no end."""
+    far: FarField | None
+    """The same in space."""
+    stream: tuple[float, ...] = (0.0, 0.0)
     """Velocity of the far water at the end of the step [m/s]."""
     steps: int = 0
     """Steps prepared so far [-]."""
@@ -133,15 +160,19 @@ class Border:
     @classmethod
     def of(cls, sides: Sides, grid: Grid, dtype: type) -> "Border":
         """Return the border of a grid."""
-        edges = []
-        for name, axis, low in (("left", 0, True), ("right", 0, False), ("bottom", 1, True), ("top", 1, False)):
-            along = grid.cells[1 - axis]
-            side = getattr(sides, name)
-            prescribed: np.ndarray = np.zeros(along, dtype)
+        edges, endless = [], sides.endless(grid.axes)
+        for k, (name, side) in enumerate(zip(NAMES, sides.around(grid.axes), strict=False)):
+            axis = k // 2
+            prescribed: np.ndarray = np.zeros([n for d, n in enumerate(grid.cells) if d != axis][::-1], dtype)
             if isinstance(side, Inflow):
-                prescribed[:] = side.profile(grid.centres(PAD, PAD + along, 1 - axis))
-            edges.append(Edge(side, axis, low, grid.cells[axis], prescribed, sides.endless))
-        return cls(edges, OpenWater.around(grid) if sides.endless else None)
+                prescribed[:] = inflow(side, grid, axis)
+            moves = endless and isinstance(side, Stream)
+            edges.append(Edge(side, axis, name in NAMES[::2], grid.cells[axis], prescribed, moves))
+        plane = grid.axes == 2
+        return cls(
+            edges=edges, water=OpenWater.around(grid) if endless and plane else None,
+            far=FarField(grid) if endless and not plane else None, stream=(0.0,) * grid.axes,
+        )  # fmt: skip
 
     def state(self) -> dict[str, np.ndarray]:
         """Return all that changes, by name."""
@@ -150,6 +181,8 @@ class Border:
             for k, e in enumerate(self.edges)
             for name in ("prescribed", "induced", "seen")
         }
+        if self.far is not None:
+            edges["far"] = np.array([body.source for body in self.far.bodies])
         return {**edges, "stream": np.array(self.stream), "prepared": np.array([self.steps, self.span])}
 
     def resume(self, state: dict[str, np.ndarray]) -> None:
@@ -157,23 +190,26 @@ class Border:
         for k, edge in enumerate(self.edges):
             for name in ("prescribed", "induced", "seen"):
                 getattr(edge, name)[:] = state[f"edge{k}.{name}"]
-        self.stream = (float(state["stream"][0]), float(state["stream"][1]))
+        if self.far is not None:
+            for body, source in zip(self.far.bodies, state["far"].tolist(), strict=True):
+                body.source = source
+        self.stream = tuple(state["stream"].tolist())
         self.steps, self.span = int(state["prepared"][0]), float(state["prepared"][1])
 
-    def prepare(self, velocity: np.ndarray, window: Window, dt: float, stream: tuple[float, float]) -> None:
+    def prepare(self, velocity: np.ndarray, window: Window, dt: float, stream: tuple[float, ...]) -> None:
         """Fix the velocity on all sides at the end of the step from the fields at its start.
 
         On return as much water leaves as enters.
         """
         before, self.stream = self.stream, stream
-        size = max(float(np.hypot(*stream)), 1e-30)
+        size = max(length(stream), 1e-30)
         for edge in self.edges:
             if isinstance(edge.side, Stream):
                 outward = -edge.sign * stream[edge.axis] / size
                 edge.leaves = min(max((outward - _LEAVES[0]) / (_LEAVES[1] - _LEAVES[0]), 0.0), 1.0)
             elif isinstance(edge.side, Outflow):
                 edge.leaves = 1.0
-        if self.steps == 0:
+        if self.steps == 0 or self.far is not None:
             for edge, induced in zip(self.edges, self._induced(velocity, window), strict=True):
                 edge.induced[:] = edge.seen[:] = induced
         grown = dt / self.span if self.span else 0.0
@@ -181,7 +217,7 @@ class Border:
             ahead = grown * (edge.induced - edge.seen)
             if isinstance(edge.side, Stream | Outflow):
                 rise = edge.sign * (stream[edge.axis] - before[edge.axis]) if isinstance(edge.side, Stream) else 0.0
-                carried = self._carried(edge, velocity[0], velocity[1], dt) + (rise + ahead)
+                carried = self._carried(edge, velocity, dt) + (rise + ahead)
                 held = edge.sign * stream[edge.axis] + edge.induced + ahead
                 edge.prescribed[:] = edge.leaves * carried + (1 - edge.leaves) * held
             edge.seen[:] = edge.induced
@@ -209,16 +245,18 @@ class Border:
         return change
 
     def _induced(self, velocity: np.ndarray, window: Window) -> list[np.ndarray]:
+        if self.far is not None:
+            return [self.far.inward(e.axis, e.low) if e.endless else np.zeros(e.prescribed.shape) for e in self.edges]
         if self.water is None:
-            return [np.zeros(e.prescribed.size) for e in self.edges]
+            return [np.zeros(e.prescribed.shape) for e in self.edges]
         return self.water.inward(velocity, window, [Fading(e.axis, e.low, e.leaves) for e in self.edges if e.leaves])
 
     @staticmethod
-    def _carried(edge: Edge, u: np.ndarray, v: np.ndarray, dt: float) -> np.ndarray:
+    def _carried(edge: Edge, velocity: np.ndarray, dt: float) -> np.ndarray:
         """Return the velocity on a side to which the water comes that moves out of the domain."""
-        n = edge.normal(u, v)
-        at = edge.sign * n[edge.face, PAD:-PAD]
-        inner = edge.sign * n[edge.face + edge.sign, PAD:-PAD]
+        n = edge.normal(velocity)
+        at = edge.sign * n[edge.face][edge.inside]
+        inner = edge.sign * n[edge.face + edge.sign][edge.inside]
         speed = max(-float(at.mean(dtype=np.float64)), 0.0)
         carried: np.ndarray = at - min(speed * dt, 1.0) * (at - inner)
         return carried
@@ -237,4 +275,4 @@ class Border:
     def fill(self, velocity: np.ndarray) -> None:
         """Write all boundary values around the domain."""
         for edge in self.edges:
-            edge.fill(velocity[0], velocity[1], self.stream)
+            edge.fill(velocity, self.stream)

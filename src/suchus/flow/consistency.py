@@ -68,13 +68,16 @@ class Consistency:
         self.strikes += 1
         if self.strikes < PATIENCE:
             return
-        turning = abs(told[2] - seen[2]) * self.reach > hypot(*(told - seen)[:2])
+        turning = abs(told[-1] - seen[-1]) * self.reach > hypot(*(told - seen)[:-1])
         what, of = ("spin", "angle") if turning else ("velocity", "position")
-        numbers = "{2:.4g} rad/s" if turning else "({0:.4g}, {1:.4g}) m/s"
+
+        def numbers(rate: np.ndarray) -> str:
+            return f"{rate[-1]:.4g} rad/s" if turning else f"({', '.join(f'{part:.4g}' for part in rate[:-1])}) m/s"
+
         raise InvalidDesign(
-            f"at t = {time:.4g} s the motion of {self.name} gives the {what} {numbers.format(*told)}, and its "
-            f"{of} changes by {numbers.format(*seen)}; give a Pose whose {what} is the rate of its {of}."
+            f"at t = {time:.4g} s the motion of {self.name} gives the {what} {numbers(told)}, and its "
+            f"{of} changes by {numbers(seen)}; give a Pose whose {what} is the rate of its {of}."
         )
 
     def _speed(self, rate: np.ndarray) -> float:
-        return max(hypot(rate[0], rate[1]), abs(rate[2]) * self.reach)
+        return max(hypot(*rate[:-1]), abs(rate[-1]) * self.reach)

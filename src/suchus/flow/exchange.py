@@ -17,6 +17,7 @@ import numpy as np
 from suchus.flow.compiled import PAD, compiled, signed
 from suchus.flow.shape import Markers
 from suchus.flow.slab import row_length
+from suchus.flow.solid import Skin
 
 
 def sums_of(axes: int) -> int:
@@ -116,36 +117,51 @@ def contents(sums, b, mu0, owner, component, place, inner):
                     sums[m, axes + 5] += part_of * (j - PAD + (0.0 if component == 2 else 0.5))
 
 
-def skin(markers: Markers, offset: float, origin: tuple[float, float], h: float) -> np.ndarray:
-    """Return what ``contents`` counts too much: the skin ``offset`` cells thick, which is water, shape (7,)."""
-    w = offset * markers.length / h
-    x, y = (markers.x - origin[0]) / h, (markers.y - origin[1]) / h
-    u, v = markers.velocity_x, markers.velocity_y
-    columns = (u, v, x * v - y * u, 0.5 * (u**2 + v**2), np.ones(w.size), x, y)
+def skin(markers: Markers | Skin, offset: float, origin: tuple[float, ...], h: float) -> np.ndarray:
+    """Return what ``contents`` counts too much: the skin ``offset`` cells thick, which is water, (``contents_of``,)."""
+    axes = len(origin)
+    w = offset * markers.share / h ** (axes - 1)
+    place = [(p - start) / h for p, start in zip(markers.points, origin, strict=True)]
+    v = markers.velocities
+    square = v[0] ** 2 + v[1] ** 2
+    if axes == 3:
+        square = square + v[2] ** 2
+    columns = (*v, place[0] * v[1] - place[1] * v[0], 0.5 * square, np.ones(w.size), *place)
     return np.array([(w * column).sum() for column in columns])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Reaction:
-    """What the water does to a body, mean over a step, per metre of depth."""
+    """What the water does to a body, mean over a step; in the plane per metre of depth."""
 
-    force: tuple[float, float]
-    """Force (x, y) [N/m]."""
+    force: tuple[float, ...]
+    """Force (x, y) or (x, y, z) [N/m, N]."""
     torque: float
-    """Torque about the asked point, counter-clockwise [N]."""
+    """Torque about the z axis through the asked point, counter-clockwise [N, N m]."""
     power: float
-    """Power that the body's surface gives to the water, in the frame of the grid [W/m]."""
+    """Power that the body's surface gives to the water, in the frame of the grid [W/m, W]."""
+
+    def whole(self, cut: tuple[bool, ...]) -> "Reaction":
+        """Return that of the whole body, of which this is the part between the mirrors that cut it; see ``body.cuts``.
+
+        Forces through a mirror, and a torque about an axis in it, vanish.
+        """
+        times, across = 2 ** sum(cut), [low or high for low, high in zip(cut[::2], cut[1::2], strict=True)]
+        return Reaction(
+            force=tuple(0.0 if off else times * part for part, off in zip(self.force, across, strict=True)),
+            torque=0.0 if any(across[:2]) else times * self.torque, power=times * self.power,
+        )  # fmt: skip
 
 
 def reaction(
-    given: np.ndarray, before: np.ndarray, now: np.ndarray, *, dt: float, push: tuple[float, float], about: np.ndarray,
-    origin: tuple[float, float], h: float, density: float,
+    given: np.ndarray, before: np.ndarray, now: np.ndarray, *, dt: float, push: tuple[float, ...], about: np.ndarray,
+    origin: tuple[float, ...], h: float, density: float,
 ) -> Reaction:  # fmt: skip
     """Return the water's action on one body over a step.
 
     Args:
-        given: what the immersion gave over the step, the ``SUMS`` [m/s and so on].
-        before: contents of the body's region at the start of the step, shape (7,).
+        given: what the immersion gave over the step, shape (``sums_of``,) [m/s and so on].
+        before: contents of the body's region at the start of the step, shape (``contents_of``,).
         now: the same at its end.
         dt: the step [s].
         push: uniform acceleration of the water [m/s^2].
@@ -154,11 +170,14 @@ def reaction(
         h: cell [m].
         density: of the water [kg/m^3].
     """
-    change, middle = now[:4] - before[:4], 0.5 * (now + before)
-    cx, cy = (about - np.array(origin)) / h
-    area, sx, sy = middle[4:]
-    fx, fy = (change[:2] - given[:2]) / dt - area * np.array(push)
-    torque = (change[2] - given[2]) / dt - (sx * push[1] - sy * push[0]) - (cx * fy - cy * fx)
-    power = (given[3] - change[3]) / dt + push[0] * middle[0] + push[1] * middle[1]
-    scale = density * h * h
-    return Reaction(force=(scale * fx, scale * fy), torque=scale * h * torque, power=scale * power)
+    axes = len(origin)
+    change, middle = now[: axes + 2] - before[: axes + 2], 0.5 * (now + before)
+    cx, cy = ((about - np.array(origin)) / h)[:2]
+    size, sx, sy = middle[axes + 2 : axes + 5]
+    force = (change[:axes] - given[:axes]) / dt - size * np.array(push)
+    torque = (change[axes] - given[axes]) / dt - (sx * push[1] - sy * push[0]) - (cx * force[1] - cy * force[0])
+    power, scale = (given[axes + 1] - change[axes + 1]) / dt, density
+    for part, momentum in zip(push, middle, strict=False):
+        power += part * momentum
+        scale *= h
+    return Reaction(force=tuple(scale * part for part in force), torque=scale * h * torque, power=scale * power)

@@ -1,7 +1,10 @@
 """What there is to see of a flow: velocity, pressure and vorticity on plain grids."""
 
+from collections.abc import Iterator
+
 import numpy as np
 
+from suchus.errors import InvalidDesign
 from suchus.flow.compiled import PAD
 from suchus.flow.force import edge_mean
 from suchus.flow.log import Log
@@ -31,50 +34,78 @@ class Fields:
         """Return velocity and pressure at points of the world, shape (point, 2) or one (x, y) [m].
 
         Raises:
-            InvalidDesign: a point that is not in the domain.
+            InvalidDesign: a point that is not in the domain, or a grid in space.
         """
+        self._plane_only("a probe", "velocity and pressure at the cell centres")
         return read(self.water, np.asarray(points, float), self.frame, self.setup.density)
 
     @property
-    def velocity(self) -> tuple[np.ndarray, np.ndarray]:
-        """Velocity relative to the grid at the cell centres, two arrays of shape (ny, nx) [m/s]."""
-        u, v = self.water.u, self.water.v
-        inner = np.s_[PAD:-PAD, PAD:-PAD]
-        return (
-            0.5 * (u[inner] + u[PAD:-PAD, PAD + 1 : u.shape[1] - PAD + 1]),
-            0.5 * (v[inner] + v[PAD + 1 : v.shape[0] - PAD + 1, PAD:-PAD]),
-        )
+    def velocity(self) -> tuple[np.ndarray, ...]:
+        """Velocity relative to the grid at the cell centres, along each axis, shape (ny, nx) or (nz, ny, nx) [m/s]."""
+        return tuple(0.5 * (low + high) for low, high in self._faces(self.water.velocity))
+
+    @staticmethod
+    def _faces(a: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+        """Yield, axis by axis, the values on the faces before and behind the cells of a field on faces."""
+        axes, cells = len(a), slice(PAD, -PAD)
+        for d, part in enumerate(a):
+            behind = tuple(slice(PAD + 1, 1 - PAD) if axes - 1 - n == d else cells for n in range(axes))
+            yield part[(cells,) * axes], part[behind]
 
     @property
     def pressure(self) -> np.ndarray:
-        """Pressure at the cell centres, zero on the average along the sides, shape (ny, nx) [Pa]."""
+        """Pressure at the cell centres, zero on the average along the sides, shape (ny, nx) or (nz, ny, nx) [Pa]."""
         p = self.water.p
-        return self.setup.density * (p[PAD:-PAD, PAD:-PAD] - self.water.dtype(edge_mean(p)))
+        return self.setup.density * (p[(slice(PAD, -PAD),) * p.ndim] - self.water.dtype(edge_mean(p)))
 
     @property
     def vorticity(self) -> np.ndarray:
-        """Vorticity at the inner corners of the cells, shape (ny - 1, nx - 1) [1/s]."""
+        """Vorticity of a plane flow at the inner corners of the cells, shape (ny - 1, nx - 1) [1/s].
+
+        Raises:
+            InvalidDesign: in space, where ``vorticity_at_centres`` has it.
+        """
+        self._plane_only("the vorticity at corners", "vorticity_at_centres")
         u, v = self.water.u, self.water.v
         a, b = PAD + 1, -PAD
         return ((v[a:b, a:b] - v[a:b, a - 1 : b - 1]) - (u[a:b, a:b] - u[a - 1 : b - 1, a:b])) / self.setup.grid.cell
 
     @property
     def vorticity_at_centres(self) -> np.ndarray:
-        """Vorticity at the cell centres, mean of the four corners, shape (ny, nx) [1/s]."""
-        u, v = self.water.u, self.water.v
-        a, b = PAD, -PAD
-        here, low = np.s_[a : b + 1], np.s_[a - 1 : b]
-        corners = (v[here, here] - v[here, low]) - (u[here, here] - u[low, here])
-        sums = (corners[1:, 1:] + corners[1:, :-1]) + (corners[:-1, 1:] + corners[:-1, :-1])
-        values: np.ndarray = sums / (4 * self.setup.grid.cell)
+        """Vorticity at the cell centres, mean of the four corners or edges around them [1/s].
+
+        Shape (ny, nx) in the plane; in space the component comes first, (3, nz, ny, nx).
+        """
+        if self.water.axes == 2:
+            return self._vorticity_about(0, 1)
+        return np.stack([self._vorticity_about(d, e) for d, e in ((1, 2), (2, 0), (0, 1))])
+
+    def _vorticity_about(self, d: int, e: int) -> np.ndarray:
+        """Return the vorticity about the axis that a turn from axis d to axis e goes around."""
+        velocity = self.water.velocity
+        axes = len(velocity)
+        cells = [slice(PAD, 1 - PAD) if axes - 1 - n in (d, e) else slice(PAD, -PAD) for n in range(axes)]
+
+        def corners(a: np.ndarray, back: int) -> np.ndarray:
+            """Return the values at the low corners, or one cell before them along an axis."""
+            return a[tuple(slice(PAD - 1, -PAD) if axes - 1 - n == back else s for n, s in enumerate(cells))]
+
+        u, v = velocity[d], velocity[e]
+        spin = (corners(v, -1) - corners(v, d)) - (corners(u, -1) - corners(u, e))
+        spin = np.moveaxis(spin, (axes - 1 - e, axes - 1 - d), (0, 1))
+        sums = (spin[1:, 1:] + spin[1:, :-1]) + (spin[:-1, 1:] + spin[:-1, :-1])
+        values: np.ndarray = np.moveaxis(sums, (0, 1), (axes - 1 - e, axes - 1 - d)) / (4 * self.setup.grid.cell)
         return values
+
+    def _plane_only(self, what: str, instead: str) -> None:
+        if self.water.axes == 3:
+            raise InvalidDesign(f"{what} is for plane grids, and this one has three axes; take {instead}.")
 
     @property
     def fluid_share(self) -> np.ndarray:
-        """Share of the fluid at the cell centres, 0 inside the bodies and 1 outside, shape (ny, nx) [-]."""
-        mu0_u, mu0_v = self.water.mu0
-        a, b = PAD, -PAD
-        return 0.25 * (
-            mu0_u[a:b, a:b] + mu0_u[a:b, a + 1 : mu0_u.shape[1] + b + 1]
-            + mu0_v[a:b, a:b] + mu0_v[a + 1 : mu0_v.shape[0] + b + 1, a:b]
-        )  # fmt: skip
+        """Share of the fluid at the cell centres, 0 inside the bodies and 1 outside, shape as the pressure's [-]."""
+        faces = list(self._faces(self.water.mu0))
+        total: np.ndarray = faces[0][0] + faces[0][1]
+        for low, high in faces[1:]:
+            total = total + low + high
+        return 0.5 / self.water.axes * total

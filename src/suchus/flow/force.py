@@ -54,7 +54,7 @@ class Surface:
         """Force per area (x, y), shape (2, marker) [Pa]."""
         return self.shear - self.pressure * np.stack([self.markers.normal_x, self.markers.normal_y])
 
-    def load(self, about: tuple[float, float]) -> Load:
+    def load(self, about: tuple[float, ...]) -> Load:
         """Return the integral over the outline, torque about a point [m]."""
         m = self.markers
         push_x, push_y = -self.pressure * m.normal_x * m.length, -self.pressure * m.normal_y * m.length
@@ -91,8 +91,8 @@ def sample(water: Water, markers: Markers, density: float) -> Surface:
 
 def edge_mean(p: np.ndarray) -> float:
     """Return the mean along the outermost cells of the domain: the level from which pressures count."""
-    a, b = PAD, -PAD
-    edges = (p[a, a:b], p[b - 1, a:b], p[a:b, a], p[a:b, b - 1])
+    cells = p[(slice(PAD, -PAD),) * p.ndim]
+    edges = [np.moveaxis(cells, axis, 0)[end] for axis in range(p.ndim) for end in (0, -1)]
     return float(sum(e.sum(dtype=np.float64) for e in edges) / sum(e.size for e in edges))
 
 
@@ -142,7 +142,7 @@ class ControlVolume:
     before: np.ndarray | None = None
     """Momentum of water and bodies, and flow through the sides, at the last step, shape (3, 2)."""
 
-    def force(self, water: Water, dt: float, push: tuple[float, float], density: float) -> tuple[float, float]:
+    def force(self, water: Water, dt: float, push: tuple[float, ...], density: float) -> tuple[float, float]:
         """Return the mean force on the bodies in the box over the step that just ended [N/m].
 
         Not a number in the first step.

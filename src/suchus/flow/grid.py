@@ -1,4 +1,4 @@
-"""The grid: square cells in a rectangle, and where its staggered values sit."""
+"""The grid: square cells in a rectangle or cubic ones in a box, and where its staggered values sit."""
 
 from dataclasses import dataclass
 from math import ceil, isfinite
@@ -15,19 +15,24 @@ MOST = 2**16
 """Cells along a side [-]; the fields of a square of so many would take a hundred gigabytes."""
 
 
-def _coarsest(nx: int, ny: int) -> tuple[int, int]:
-    while nx % 2 == 0 and ny % 2 == 0 and min(nx, ny) > 4:
-        nx, ny = nx // 2, ny // 2
-    return nx, ny
+def _coarsest(cells: tuple[int, ...]) -> tuple[int, ...]:
+    while all(n % 2 == 0 for n in cells) and min(cells) > 4:
+        cells = tuple(n // 2 for n in cells)
+    return cells
 
 
-def _fitting(nx: int, ny: int) -> tuple[int, int]:
+def _fitting(cells: tuple[int, ...]) -> tuple[int, ...]:
     """Return the next sizes that can be halved until at most ``COARSEST`` cells are left along each side."""
     halvings = 0
-    while ceil(max(nx, ny) / 2**halvings) > COARSEST:
+    while ceil(max(cells) / 2**halvings) > COARSEST:
         halvings += 1
     step = 2**halvings
-    return step * max(4, ceil(nx / step)), step * max(4, ceil(ny / step))
+    return tuple(step * max(4, ceil(n / step)) for n in cells)
+
+
+def _times(values: tuple[object, ...]) -> str:
+    """Return numbers or pairs as the size of a rectangle or box is written."""
+    return " x ".join(str(value) for value in values)
 
 
 def _is_number(value: object) -> bool:
@@ -47,65 +52,78 @@ def check_kinds(value: object) -> None:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Grid:
-    """A rectangle of square cells.
+    """A rectangle of square cells, or a box of cubic ones.
 
     Raises:
         InvalidDesign: on creation, for sizes that cannot be or that the multigrid cannot halve far enough.
     """
 
-    cells: tuple[int, int]
-    """Number of cells along x and y [-]."""
+    cells: tuple[int, int] | tuple[int, int, int]
+    """Number of cells along x and y, or along x, y and z [-]."""
     cell: float
     """Side of a cell [m]."""
-    origin: tuple[float, float] = (0.0, 0.0)
-    """Lower left corner of the domain (x, y) [m]."""
+    origin: tuple[float, ...] = ()
+    """Corner of the domain with the smallest coordinates, one for each axis; all 0 if it is not given [m]."""
 
     def __post_init__(self) -> None:
         check_kinds(self)
+        if not self.origin:
+            object.__setattr__(self, "origin", (0.0,) * len(self.cells))
         if not (isfinite(self.cell) and self.cell > 0):
             raise InvalidDesign(f"cell is {self.cell} m; a cell has a positive side. Give the side in metres.")
-        if not all(isfinite(place) for place in self.origin):
-            raise InvalidDesign(f"the origin is {self.origin} m; two finite numbers are needed.")
-        nx, ny = self.cells
-        if max(nx, ny) > MOST:
+        if len(self.origin) != len(self.cells) or not all(isfinite(place) for place in self.origin):
+            count = "two" if self.axes == 2 else "three"
+            raise InvalidDesign(f"the origin is {show(self.origin)} m; {count} finite numbers are needed.")
+        told = _times(self.cells)
+        if max(self.cells) > MOST:
             raise InvalidDesign(f"the grid has {show(self.cells)} cells; up to {MOST} along each side are allowed.")
-        if min(nx, ny) < 8:
-            raise InvalidDesign(f"the grid has {nx} x {ny} cells; at least 8 x 8 are needed.")
-        if max(_coarsest(nx, ny)) > COARSEST:
-            good = _fitting(nx, ny)
+        if min(self.cells) < 8:
+            raise InvalidDesign(f"the grid has {told} cells; at least {_times((8,) * self.axes)} are needed.")
+        if max(_coarsest(self.cells)) > COARSEST:
             raise InvalidDesign(
-                f"a grid of {nx} x {ny} cells cannot be halved down to {COARSEST} cells a side, as multigrid needs; "
-                f"take {good[0]} x {good[1]}, or let Grid.covering choose."
+                f"a grid of {told} cells cannot be halved down to {COARSEST} cells a side, as multigrid needs; "
+                f"take {_times(_fitting(self.cells))}, or let Grid.covering choose."
             )
 
     @classmethod
-    def covering(cls, x: tuple[float, float], y: tuple[float, float], *, cell: float) -> "Grid":
-        """Return the smallest fitting grid that covers [x0, x1] x [y0, y1], grown evenly on both sides [m].
+    def covering(
+        cls, x: tuple[float, float], y: tuple[float, float], z: tuple[float, float] | None = None, *, cell: float
+    ) -> "Grid":
+        """Return the smallest fitting grid that covers [x0, x1] x [y0, y1] (x [z0, z1]), grown evenly on all sides [m].
 
         Raises:
-            InvalidDesign: an empty rectangle or a cell that is not positive.
+            InvalidDesign: an empty rectangle or box, or a cell that is not positive.
         """
-        ends: tuple[object, ...] = (x, y, (0.0, cell))
+        pairs = (x, y) if z is None else (x, y, z)
+        what, count = ("rectangle", "two") if z is None else ("box", "three")
+        ends: tuple[object, ...] = (*pairs, (0.0, cell))
         if not all(isinstance(end, (tuple, list)) and len(end) == 2 and all(map(_is_number, end)) for end in ends):
             raise InvalidDesign(
-                f"the rectangle is {show(x)} x {show(y)} m and the cell {show(cell)} m; two pairs of finite "
-                "numbers and one more are needed."
+                f"the {what} is {_times(tuple(show(pair) for pair in pairs))} m and the cell {show(cell)} m; {count} "
+                "pairs of finite numbers and one more are needed."
             )
-        wide, high = x[1] - x[0], y[1] - y[0]
-        if cell > 0 and max(wide, high) / MOST > cell:
-            raise InvalidDesign(f"cells of {cell} m make a side of {max(wide, high) / cell:.3g}; {MOST} are allowed.")
-        if not (cell > 0 and wide > 0 and high > 0):
+        sides = [end - start for start, end in pairs]
+        if cell > 0 and max(sides) / MOST > cell:
+            raise InvalidDesign(f"cells of {cell} m make a side of {max(sides) / cell:.3g}; {MOST} are allowed.")
+        if not (cell > 0 and min(sides) > 0):
             raise InvalidDesign(
-                f"the rectangle {x} x {y} m with cells of {cell} m is empty; give rising limits and a positive cell."
+                f"the {what} {_times(pairs)} m with cells of {cell} m is empty; give rising limits and a positive cell."
             )
-        cells = _fitting(max(8, ceil(wide / cell - 1e-6)), max(8, ceil(high / cell - 1e-6)))
-        origin = (x[0] - (cells[0] * cell - wide) / 2, y[0] - (cells[1] * cell - high) / 2)
-        return cls(cells=cells, cell=cell, origin=origin)
+        cells = _fitting(tuple(max(8, ceil(side / cell - 1e-6)) for side in sides))
+        origin = tuple(
+            start - (n * cell - side) / 2 for (start, _), n, side in zip(pairs, cells, sides, strict=True)
+        )  # fmt: skip
+        return cls(cells=cells, cell=cell, origin=origin)  # type: ignore[arg-type]
 
     @property
-    def size(self) -> tuple[float, float]:
-        """Width and height of the domain [m]."""
-        return self.cells[0] * self.cell, self.cells[1] * self.cell
+    def axes(self) -> int:
+        """Number of dimensions: 2 in the plane, 3 in space [-]."""
+        return len(self.cells)
+
+    @property
+    def size(self) -> tuple[float, ...]:
+        """Length of the domain along each axis [m]."""
+        return tuple(n * self.cell for n in self.cells)
 
     @property
     def x(self) -> np.ndarray:
@@ -116,6 +134,11 @@ class Grid:
     def y(self) -> np.ndarray:
         """Cell centres along y, shape (ny,) [m]."""
         return self.origin[1] + self.cell * (np.arange(self.cells[1]) + 0.5)
+
+    @property
+    def z(self) -> np.ndarray:
+        """Cell centres along z of a grid in space, shape (nz,) [m]."""
+        return self.origin[2] + self.cell * (np.arange(self.cells[-1]) + 0.5)
 
     def faces(self, first: int, end: int, axis: int) -> np.ndarray:
         """Return the coordinates of the padded face indices ``first`` to ``end`` along an axis [m]."""

@@ -134,7 +134,7 @@ class Fading:
 class OpenWater:
     """Open water around a grid, all four sides of it."""
 
-    cells: tuple[int, int]
+    cells: tuple[int, ...]
     """Cells along x and y."""
     points: np.ndarray = field(init=False)
     """Where the sides are summed up, side after side, shape (2, point) [cells]."""

@@ -29,15 +29,19 @@ _NAMES = {
 
 
 def snapshot(sim: Fields) -> xr.Dataset:
-    """Return the fields at the cell centres now, dimensions ``y`` and ``x`` (and ``component`` of the velocity) [m].
+    """Return the fields at the cell centres now, dimensions (``z``,) ``y`` and ``x`` [m].
 
+    The velocity has the dimension ``component`` as well, and so has the vorticity in space.
     The coordinates are those of the world: those of a grid that follows a body travel.
     """
     grid, (place, drift) = sim.setup.grid, sim.frame
     velocity = np.stack([w + d for w, d in zip(sim.velocity, drift, strict=True)])
+    names = tuple("xyz"[: grid.axes])
+    cells = names[::-1]
+    spin = cells if grid.axes == 2 else ("component", *cells)
     values = {
-        "velocity": (("component", "y", "x"), velocity), "pressure": (("y", "x"), sim.pressure),
-        "vorticity": (("y", "x"), sim.vorticity_at_centres), "fluid_share": (("y", "x"), sim.fluid_share),
+        "velocity": (("component", *cells), velocity), "pressure": (cells, sim.pressure),
+        "vorticity": (spin, sim.vorticity_at_centres), "fluid_share": (cells, sim.fluid_share),
     }  # fmt: skip
     return xr.Dataset(
         {
@@ -45,8 +49,8 @@ def snapshot(sim: Fields) -> xr.Dataset:
             for name, (dims, value) in values.items()
         },
         coords={
-            "x": ("x", grid.x + place[0], {"units": "m"}), "y": ("y", grid.y + place[1], {"units": "m"}),
-            "component": ["x", "y"], "time": ((), sim.time, {"units": "s"}),
+            **{name: (name, getattr(grid, name) + own, {"units": "m"}) for name, own in zip(names, place, strict=True)},
+            "component": list(names), "time": ((), sim.time, {"units": "s"}),
         },
     )  # fmt: skip
 
@@ -62,29 +66,32 @@ def save_vti(sim: Fields, path: Path | str) -> None:
 
 def _vti(sim: Fields) -> bytes:
     data, grid, frame = snapshot(sim), sim.setup.grid, sim.frame[0]
-    nx, ny = grid.cells
-    x, y, h = (float(value) for value in (*(np.array(grid.origin) + frame), grid.cell))
+    flat, h = grid.axes == 2, float(grid.cell)
+    x, y, z = (*(float(value) for value in np.array(grid.origin) + frame), 0)[:3]
+    nx, ny, nz = (*grid.cells, 0)[:3]
     arrays, blocks, offset = [], [], 0
     for name in _UNITS:
         values = data[name].to_numpy()
-        if name == "velocity":  # VTK's vectors have three components, each point's side by side
-            values = np.stack([*values, np.zeros_like(values[0])], axis=-1)
+        vector = "component" in data[name].dims
+        if vector:  # VTK's vectors have three components, each point's side by side
+            values = np.stack([*values, *[np.zeros_like(values[0])] * flat], axis=-1)
         block = values.astype("<f4").tobytes()
-        parts = 3 if name == "velocity" else 1
+        parts = 3 if vector else 1
         arrays.append(
             f'<DataArray type="Float32" Name="{name}" NumberOfComponents="{parts}" format="appended" '
             f'offset="{offset}"/>'
         )
         blocks.append(struct.pack("<Q", len(block)) + block)
         offset += len(blocks[-1])
-    extent = f"0 {nx} 0 {ny} 0 0"
+    extent = f"0 {nx} 0 {ny} 0 {nz}"
+    lead = 'Scalars="vorticity" Vectors="velocity"' if flat else 'Scalars="pressure" Vectors="velocity"'
     head = (
         '<?xml version="1.0"?>\n'
         '<VTKFile type="ImageData" version="1.0" byte_order="LittleEndian" header_type="UInt64">\n'
-        f'<ImageData WholeExtent="{extent}" Origin="{x!r} {y!r} 0" Spacing="{h!r} {h!r} 1">\n'
+        f'<ImageData WholeExtent="{extent}" Origin="{x!r} {y!r} {z!r}" Spacing="{h!r} {h!r} {1 if flat else h!r}">\n'
         '<FieldData><DataArray type="Float64" Name="TimeValue" NumberOfTuples="1" format="ascii">'
         f"{float(sim.time)!r}</DataArray></FieldData>\n"
-        f'<Piece Extent="{extent}"><CellData Scalars="vorticity" Vectors="velocity">\n'
+        f'<Piece Extent="{extent}"><CellData {lead}>\n'
         + "\n".join(arrays)
         + '\n</CellData></Piece></ImageData>\n<AppendedData encoding="raw">\n_'
     )
@@ -138,10 +145,10 @@ class FieldSeries:
 def _add_to_netcdf(sim: Fields, path: Path) -> None:
     new = snapshot(sim)
     if sim.setup.follow is not None:  # a grid that travels: places relative to it, and where it is
-        new = new.assign_coords(
-            x=new.x - sim.frame[0, 0], y=new.y - sim.frame[0, 1],
-            grid_x=((), sim.frame[0, 0], {"units": "m"}), grid_y=((), sim.frame[0, 1], {"units": "m"}),
-        )  # fmt: skip
+        travelled = dict(zip("xyz", sim.frame[0], strict=False))
+        places: dict[str, object] = {name: new[name] - own for name, own in travelled.items()}
+        places |= {f"grid_{name}": ((), own, {"units": "m"}) for name, own in travelled.items()}
+        new = new.assign_coords(places)
     new = new.expand_dims("time")
     if path.exists():
         try:
@@ -153,7 +160,7 @@ def _add_to_netcdf(sim: Fields, path: Path) -> None:
             raise UnreadableFile(
                 f"{path} holds no fields of this run, so none are added to it; give another name or delete it."
             ) from error
-    for name in ("x", "y", "time"):
+    for name in (*"xyz"[: sim.setup.grid.axes], "time"):
         new[name].attrs["units"] = "s" if name == "time" else "m"
     _write(path, bytes(new.to_netcdf(engine="h5netcdf")))
 

@@ -1,23 +1,54 @@
 """Where a body is and how it moves: a pose, and motions that give a pose at every time."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from itertools import zip_longest
 
 import numpy as np
+
+from suchus.errors import InvalidDesign
+from suchus.kinds import show
+
+
+def length(parts: Sequence[float] | np.ndarray) -> float:
+    """Return the length of a vector of two or three parts, in their unit."""
+    return float(speeds(np.asarray(parts, float)))
+
+
+def speeds(velocity: np.ndarray) -> np.ndarray:
+    """Return the lengths of vectors, shape (axis, ...), of two or three axes, in their unit."""
+    size: np.ndarray = np.hypot(velocity[0], velocity[1])
+    return size if len(velocity) == 2 else np.hypot(size, velocity[2])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Pose:
-    """Position, attitude and their rates of a body's own frame."""
+    """Position, attitude and their rates of a body's own frame; in space it turns about z."""
 
-    position: tuple[float, float] = (0.0, 0.0)
-    """Origin of the body's frame (x, y) [m]."""
+    position: tuple[float, ...] = (0.0, 0.0)
+    """Origin of the body's frame (x, y) or (x, y, z); without it, z is 0 in space [m]."""
     angle: float = 0.0
-    """Angle of the body's x axis, counter-clockwise [rad]."""
-    velocity: tuple[float, float] = (0.0, 0.0)
-    """Velocity of the origin [m/s]."""
+    """Angle of the body's x axis, counter-clockwise about z [rad]."""
+    velocity: tuple[float, ...] = (0.0, 0.0)
+    """Velocity of the origin (x, y) or (x, y, z) [m/s]."""
     spin: float = 0.0
     """Rate of the angle [rad/s]."""
+
+    def along(self, axes: int) -> "Pose":
+        """Return the same pose with as many numbers in position and velocity as there are axes.
+
+        Raises:
+            InvalidDesign: it has other than two or three, or three in the plane.
+        """
+        position, velocity = (
+            (*part, 0.0) if len(part) == 2 and axes == 3 else part for part in (self.position, self.velocity)
+        )
+        if len(position) != axes or len(velocity) != axes:
+            raise InvalidDesign(
+                f"a pose has the position {show(self.position)} m and the velocity {show(self.velocity)} m/s; "
+                f"{'two numbers are needed in the plane' if axes == 2 else 'three numbers are needed in space'}."
+            )
+        return replace(self, position=position, velocity=velocity)
 
     def to_world(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return points of the body's frame in the world [m]."""
@@ -53,10 +84,10 @@ class Oscillation:
 
     frequency: float
     """Frequency f [Hz]."""
-    centre: tuple[float, float] = (0.0, 0.0)
+    centre: tuple[float, ...] = (0.0, 0.0)
     """Mean position [m]."""
-    heave: tuple[float, float] = (0.0, 0.0)
-    """Amplitude along x and y [m]."""
+    heave: tuple[float, ...] = (0.0, 0.0)
+    """Amplitude along x and y (and z) [m]."""
     pitch: float = 0.0
     """Amplitude of the angle [rad]."""
     mean_angle: float = 0.0
@@ -71,12 +102,11 @@ class Oscillation:
         rate = 2 * np.pi * self.frequency
         heave, pitch = rate * time + self.phase, rate * time + self.pitch_phase
         return Pose(
-            position=(
-                self.centre[0] + self.heave[0] * np.sin(heave),
-                self.centre[1] + self.heave[1] * np.sin(heave),
+            position=tuple(
+                mean + part * np.sin(heave) for mean, part in zip_longest(self.centre, self.heave, fillvalue=0.0)
             ),
             angle=self.mean_angle + self.pitch * np.sin(pitch),
-            velocity=(rate * self.heave[0] * np.cos(heave), rate * self.heave[1] * np.cos(heave)),
+            velocity=tuple(rate * part * np.cos(heave) for part in self.heave),
             spin=rate * self.pitch * np.cos(pitch),
         )
 
@@ -85,14 +115,16 @@ class Oscillation:
 class Glide:
     """Steady translation from a starting point."""
 
-    start: tuple[float, float]
+    start: tuple[float, ...]
     """Position at time 0 [m]."""
-    velocity: tuple[float, float]
+    velocity: tuple[float, ...]
     """Velocity [m/s]."""
 
     def __call__(self, time: float) -> Pose:
         """Return the pose at a time [s]."""
         return Pose(
-            position=(self.start[0] + self.velocity[0] * time, self.start[1] + self.velocity[1] * time),
+            position=tuple(
+                start + part * time for start, part in zip_longest(self.start, self.velocity, fillvalue=0.0)
+            ),
             velocity=self.velocity,
         )

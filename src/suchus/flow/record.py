@@ -17,6 +17,14 @@ COLUMNS = (
 ``resolution``.
 """
 
+SPACE_COLUMNS = (
+    "torque", "power", "x", "y", "z", "angle", "velocity_x", "velocity_y", "velocity_z", "spin", "force_x", "force_y",
+    "force_z", "layer_error",
+)  # fmt: skip
+"""The same in space, where no pressure and friction are read along the skin."""
+
+_UNITS = {"power": "W", "x": "m", "y": "m", "z": "m", "angle": "rad", "spin": "rad s-1", "layer_error": "1"}
+
 HEAD = 5
 """Numbers at the start of a row: time, step, two counts of cycles, divergence [-]."""
 
@@ -28,7 +36,7 @@ class Coefficients:
     time: np.ndarray
     """Middles of the steps, which the means belong to, shape (step,) [s]."""
     drag: np.ndarray
-    """Force along the stream over ``density speed^2 length / 2``."""
+    """Force along the stream over ``density speed^2 length / 2``, in space with the area for the length."""
     lift: np.ndarray
     """Force across it, a quarter turn counter-clockwise from the drag, over the same."""
     moment: np.ndarray
@@ -39,7 +47,7 @@ class Coefficients:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Record:
-    """Time series of a simulation, per metre of depth."""
+    """Time series of a simulation: in the plane per metre of depth, in space of whole bodies."""
 
     names: tuple[str, ...]
     """Names of the bodies."""
@@ -52,12 +60,21 @@ class Record:
     divergence: np.ndarray
     """Largest divergence left over, in fastest speed per cell, shape (step,) [-]."""
     bodies: np.ndarray
-    """The ``COLUMNS`` of each body, shape (step, body, column) [N/m, N, W/m, m, rad, m/s, rad/s]."""
+    """The ``columns`` of each body, shape (step, body, column); see ``units``."""
+    columns: tuple[str, ...] = COLUMNS
+    """Names of the columns that ``column`` knows: ``COLUMNS`` in the plane, ``SPACE_COLUMNS`` in space."""
 
     @property
-    def columns(self) -> tuple[str, ...]:
-        """Names of the columns that ``column`` knows."""
-        return COLUMNS
+    def axes(self) -> int:
+        """Number of dimensions: 2 in the plane, 3 in space [-]."""
+        return 3 if "force_z" in self.columns else 2
+
+    @property
+    def units(self) -> dict[str, str]:
+        """The unit of each column, as CF conventions write it; forces in the plane are per metre of depth."""
+        force, torque = ("N", "N m") if self.axes == 3 else ("N m-1", "N")
+        own = {**_UNITS, "torque": torque, "power": "W" if self.axes == 3 else "W m-1"}
+        return {n: own.get(n, "m s-1" if n.startswith("velocity") else force) for n in self.columns}
 
     def column(self, name: str, body: str | int = 0) -> np.ndarray:
         """Return one of the ``columns`` of one body, by its name or number, shape (step,).
@@ -65,9 +82,9 @@ class Record:
         Raises:
             UnknownName: there is no such column or body; it lists those that there are.
         """
-        if name not in COLUMNS:
-            raise UnknownName("column", str(name), COLUMNS)
-        return self.bodies[:, self._number(body), COLUMNS.index(name)]
+        if name not in self.columns:
+            raise UnknownName("column", str(name), self.columns)
+        return self.bodies[:, self._number(body), self.columns.index(name)]
 
     def _number(self, body: str | int) -> int:
         if isinstance(body, str) and body in self.names:
@@ -77,11 +94,21 @@ class Record:
         return body
 
     def force(self, body: str | int = 0) -> np.ndarray:
-        """Return the force on a body, mean over each step, from the momentum it exchanges, shape (step, 2) [N/m]."""
-        return np.stack([self.column(f"force_{a}", body) for a in ("x", "y")], axis=1)
+        """Return the force on a body, mean over each step, from the momentum it exchanges, shape (step, axis).
+
+        In N/m in the plane, in N in space.
+        """
+        return np.stack([self.column(f"force_{a}", body) for a in "xyz"[: self.axes]], axis=1)
 
     def coefficients(
-        self, body: str | int = 0, *, length: float, speed: float, density: float = 1.0, along: float = 0.0
+        self,
+        body: str | int = 0,
+        *,
+        length: float,
+        speed: float,
+        density: float = 1.0,
+        along: float = 0.0,
+        area: float | None = None,
     ) -> Coefficients:
         """Return the coefficients of a body's force, torque and power by a reference.
 
@@ -90,22 +117,29 @@ class Record:
             length: of the reference, say the diameter or chord [m].
             speed: of the reference, say that of the stream [m/s].
             density: of the water; ``Setup`` has the same default [kg/m^3].
-            along: direction of the stream, counter-clockwise from x [rad].
+            along: direction of the stream, counter-clockwise from x in the plane of x and y [rad].
+            area: of the reference, in space and only there, say the frontal area [m^2].
 
         Raises:
             UnknownName: there is no such body.
-            OutsideLimits: a reference that is not a positive number.
+            OutsideLimits: a reference that is not a positive number, an area in the plane or none in space.
         """
-        for name, value, unit in (("length", length, "m"), ("speed", speed, "m/s"), ("density", density, "kg/m3")):
+        if (area is None) != (self.axes == 2):
+            what = "a body in the plane has no area; leave it out" if area else "in space an area is needed; give it"
+            raise OutsideLimits(f"the area of the reference is {area}: {what}.")
+        size = length if area is None else area
+        for name, value, unit in (
+            ("length", length, "m"), ("speed", speed, "m/s"), ("density", density, "kg/m3"), ("area", size, "m2"),
+        ):  # fmt: skip
             if not (isfinite(value) and value > 0):
                 raise OutsideLimits(f"the {name} of the reference is {value} {unit}; give a positive number.")
         pressure = 0.5 * density * speed**2
-        fx, fy = self.force(body).T / (pressure * length)
+        fx, fy = self.force(body).T[:2] / (pressure * size)
         c, s = np.cos(along), np.sin(along)
         return Coefficients(
             time=self.time - self.step / 2, drag=c * fx + s * fy, lift=c * fy - s * fx,
-            moment=self.column("torque", body) / (pressure * length**2),
-            power=self.column("power", body) / (pressure * speed * length),
+            moment=self.column("torque", body) / (pressure * (length**2 if area is None else area * length)),
+            power=self.column("power", body) / (pressure * speed * size),
         )  # fmt: skip
 
     def surface_force(self, body: str | int = 0) -> np.ndarray:
@@ -122,5 +156,5 @@ class Record:
         k = self.time > time
         return Record(
             names=self.names, time=self.time[k], step=self.step[k], cycles=self.cycles[k],
-            divergence=self.divergence[k], bodies=self.bodies[k],
+            divergence=self.divergence[k], bodies=self.bodies[k], columns=self.columns,
         )  # fmt: skip

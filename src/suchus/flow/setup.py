@@ -12,9 +12,13 @@ from suchus.flow.body import Body, thin_share, window_of
 from suchus.flow.contact import Contact
 from suchus.flow.free import FreeBody, Swimmer
 from suchus.flow.grid import Grid, check_kinds
+from suchus.flow.memory import check_memory
+from suchus.flow.pose import speeds
 from suchus.flow.resolution import DOUBTED, REFUSED, cells_across, estimate, needed
 from suchus.flow.shape import Markers
 from suchus.flow.sides import Sides
+from suchus.flow.solid import Skin
+from suchus.kinds import show
 
 LAYER_CELLS = needed(REFUSED)
 """Fewest cells across a boundary layer of thickness L / sqrt(Re) [-]."""
@@ -34,8 +38,8 @@ class Setup:
     """Kinematic viscosity of the water [m^2/s]."""
     density: float = 1.0
     """Density of the water, 1 unless it is given: forces then come in units of speed squared times length [kg/m^3]."""
-    stream: tuple[float, float] | Callable[[float], tuple[float, float]] = (0.0, 0.0)
-    """Velocity of the far water, fixed or for every time [m/s]."""
+    stream: tuple[float, float] | tuple[float, float, float] | Callable[[float], tuple[float, ...]] = (0.0, 0.0)
+    """Velocity of the far water (x, y) or (x, y, z), fixed or for every time; without it, that along z is 0 [m/s]."""
     sides: Sides = field(default_factory=Sides)
     """What happens on the sides of the domain."""
     bodies: tuple[Body | FreeBody, ...] = ()
@@ -45,7 +49,7 @@ class Setup:
     follow: str | None = None
     """Name of the body whose centre the grid travels with; None keeps the grid where it is."""
     follow_axes: tuple[bool, bool] = (True, True)
-    """Whether the grid travels along x and along y."""
+    """Whether the grid travels along x and along y; along z it stays."""
     courant: float = 0.8
     """Share of a cell that the water may cross in one step [-]."""
     step: float | None = None
@@ -86,24 +90,48 @@ class Setup:
             raise InvalidDesign(f"bodies are named {names}; give each its own name.")
         if self.follow is not None and self.follow not in names:
             raise InvalidDesign(f"the grid is to follow {self.follow!r}, and the bodies are named {names}.")
+        self._check_dimension()
+        check_memory(self.grid, self.dtype)
+
+    def _check_dimension(self) -> None:
+        """Refuse what is plane in a grid in space, and the reverse."""
+        axes = self.grid.axes
+        self.sides.check(axes)
+        for body in self.bodies:
+            if body.shape.axes == axes:
+                continue
+            shape = type(body.shape).__name__
+            if axes == 3:
+                raise InvalidDesign(
+                    f"{body.name} is a {shape}, which is plane, and the grid has three axes; give a shape in space, "
+                    f"say a Sphere, or a grid of two axes."
+                )
+            raise InvalidDesign(
+                f"{body.name} is a {shape}, which is a shape in space, and the grid has two axes; give the grid a "
+                f"third pair, or a plane shape."
+            )
+        if axes == 3 and self.contact is not None:
+            raise InvalidDesign("contact acts between plane outlines, and the grid has three axes; leave it None.")
 
     @property
     def dtype(self) -> type:
         """Type of the fields."""
         return np.float32 if self.precision == "single" else np.float64
 
-    def far(self, time: float) -> tuple[float, float]:
-        """Return the velocity of the far water at a time [m/s]."""
-        if not callable(self.stream):
-            return self.stream
-        stream = self.stream(time)
-        self._check_stream(stream, f" at t = {time:.4g} s")
-        return stream
+    def far(self, time: float) -> tuple[float, ...]:
+        """Return the velocity of the far water at a time, along every axis [m/s]."""
+        if callable(self.stream):
+            stream = self.stream(time)
+            self._check_stream(stream, f" at t = {time:.4g} s")
+        else:
+            stream = self.stream
+        return stream if len(stream) == self.grid.axes else (*stream, 0.0)
 
-    @staticmethod
-    def _check_stream(stream: Any, when: str) -> None:
-        if np.shape(stream) != (2,) or not np.isfinite(np.asarray(stream, float)).all():
-            raise InvalidDesign(f"stream is {stream}{when}; give two finite velocities (x, y) in m/s.")
+    def _check_stream(self, stream: Any, when: str) -> None:
+        allowed = [(2,), (self.grid.axes,)]
+        if np.shape(stream) not in allowed or not np.isfinite(np.asarray(stream, float)).all():
+            what = "two finite velocities (x, y)" if self.grid.axes == 2 else "finite velocities (x, y) or (x, y, z)"
+            raise InvalidDesign(f"stream is {show(stream)}{when}; give {what} in m/s.")
 
     def check(self) -> dict[str, float]:
         """Return, per body, the share of its length that is too thin for the grid.
@@ -115,19 +143,26 @@ class Setup:
         thin = {}
         for body in self.bodies:
             pose = body.pose(0.0) if isinstance(body, Body) else Swimmer.of(body).pose(body.shape.mass(0.0))
-            window_of(body, pose, self.grid, 0.0)
+            pose = pose.along(self.grid.axes)
+            window_of(body, pose, self.grid, 0.0, self.sides.mirrors(self.grid.axes))
             thin[body.name] = thin_share(body, self.grid, 0.0)
             self.layer_error(body, body.shape.markers(0.0, pose, self.grid.cell), self.far(0.0), 0.0)
         return thin
 
     def layer_error(
-        self, body: Body | FreeBody, markers: Markers, stream: tuple[float, float], time: float, *, slack: float = 1.0
+        self,
+        body: Body | FreeBody,
+        markers: Markers | Skin,
+        stream: tuple[float, ...],
+        time: float,
+        *,
+        slack: float = 1.0,
     ) -> float:
         """Return the estimated error of a body's force by the cells across its boundary layer; see ``resolution``.
 
         Args:
             body: the body.
-            markers: its outline at that time.
+            markers: its outline or skin at that time.
             stream: velocity of the far water, in the frame of the markers [m/s].
             time: when [s].
             slack: factor on the speed that is let through [-].
@@ -135,13 +170,13 @@ class Setup:
         Raises:
             InvalidDesign: the estimate is above ``REFUSED``, naming the cell that would carry it.
         """
-        length = max(float(np.ptp(markers.x)), float(np.ptp(markers.y)))
-        speed = float(np.hypot(markers.velocity_x - stream[0], markers.velocity_y - stream[1]).max())
-        cells = cells_across(length, speed, self.viscosity, self.grid.cell)
+        extent = float(np.ptp(markers.points, axis=1).max())
+        speed = float(speeds(markers.velocities - np.array(stream)[:, None]).max())
+        cells = cells_across(extent, speed, self.viscosity, self.grid.cell)
         if not self.coarse and cells * slack**0.5 < LAYER_CELLS:
             layer = cells * self.grid.cell
             raise InvalidDesign(
-                f"at t = {time:.4g} s and Reynolds number {speed * length / self.viscosity:.4g} the boundary layer of "
+                f"at t = {time:.4g} s and Reynolds number {speed * extent / self.viscosity:.4g} the boundary layer of "
                 f"{body.name} is {layer:.3g} m thin and a cell {self.grid.cell:.3g} m: its force would be off by some "
                 f"{100 * estimate(cells):.0f} %; take cells of at most {layer / LAYER_CELLS:.3g} m, better "
                 f"{layer / needed(DOUBTED):.3g} m, a lower Reynolds number, or coarse=True to go on anyway."

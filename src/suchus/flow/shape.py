@@ -7,6 +7,7 @@ Distances are negative inside; normals point into the water.
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from math import isfinite
+from typing import ClassVar
 
 import numpy as np
 
@@ -68,9 +69,26 @@ class Markers:
     side: np.ndarray
     """+1 on the left of the midline, -1 on the right, 0 where there is no midline [-]."""
 
+    @property
+    def points(self) -> np.ndarray:
+        """Position, shape (2, marker) [m]."""
+        return np.stack([self.x, self.y])
+
+    @property
+    def share(self) -> np.ndarray:
+        """Length of outline that the marker stands for [m]."""
+        return self.length
+
+    @property
+    def velocities(self) -> np.ndarray:
+        """Velocity of the surface, shape (2, marker) [m/s]."""
+        return np.stack([self.velocity_x, self.velocity_y])
+
 
 class Shape(ABC):
-    """A body's shape in its own frame; it may change with time."""
+    """A body's shape in its own frame, in the plane; it may change with time."""
+
+    axes: ClassVar[int] = 2
 
     @abstractmethod
     def measure(self, x: np.ndarray, y: np.ndarray, time: float, pose: Pose, reach: float) -> Field:

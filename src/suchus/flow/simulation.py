@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from math import isfinite
+from math import exp, isfinite, prod
 from pathlib import Path
 
 import numba
@@ -16,17 +16,20 @@ from suchus.flow.added import added_mass
 from suchus.flow.body import Body
 from suchus.flow.compiled import PAD
 from suchus.flow.consistency import Consistency
+from suchus.flow.exchange import Reaction
+from suchus.flow.farfield import FarBody, turned
 from suchus.flow.fields import Fields
 from suchus.flow.force import ControlVolume, Surface, sample
 from suchus.flow.free import FreeBody, Swimmer
 from suchus.flow.immerse import wall_offset
 from suchus.flow.log import Log, columns
 from suchus.flow.pace import due_after, even
-from suchus.flow.pose import Pose
+from suchus.flow.pose import Pose, length, speeds
 from suchus.flow.progress import Bar
 from suchus.flow.record import Record
 from suchus.flow.setup import Setup
 from suchus.flow.shape import Markers
+from suchus.flow.solid import Skin, SpaceShape
 from suchus.flow.watch import EVERY, Watch
 from suchus.flow.water import Water
 
@@ -40,9 +43,9 @@ OFFSET_CHANGE = 1e-3
 """Change of the wall's offset from which bodies that stand still are placed anew [cells]: 0.04 % of a force."""
 
 
-def _fastest_marker(markers: Markers) -> float:
+def _fastest_marker(markers: Markers | Skin) -> float:
     """Return the fastest speed of a body's surface in the frame of the grid [m/s]."""
-    return float(np.hypot(markers.velocity_x, markers.velocity_y).max())
+    return float(speeds(markers.velocities).max())
 
 
 Watcher = Callable[["Simulation"], None]
@@ -67,18 +70,20 @@ class Simulation(Fields):
         self.thin = setup.check()
         self.time = 0.0
         self.water = Water(setup.grid, setup.sides, setup.viscosity, setup.dtype)
-        self.frame = np.zeros((2, 2))  # position and velocity of the grid
+        self.axes = setup.grid.axes
+        self.frame = np.zeros((2, self.axes))  # position and velocity of the grid
         self.swimmers = {b.name: Swimmer.of(b) for b in setup.bodies if isinstance(b, FreeBody)}
         self._threads = threads.count() if thread_count is None else thread_count
         self._log, self._watch = Log(setup), Watch(setup)
         self._last = 0.0
         self._frame_velocity_at(0.0)
         stream = self._stream(0.0)
-        self.water.u[:], self.water.v[:] = stream
+        for component, part in zip(self.water.velocity, stream, strict=True):
+            component[:] = part
         self.water.border.stream = stream
         self._placed = False
         outlines = [b.shape.markers(0.0, self._in_frame(self.pose(b.name)), setup.grid.cell) for b in setup.bodies]
-        self._speed = max([float(np.hypot(*stream)), 1e-12] + [_fastest_marker(m) for m in outlines])
+        self._speed = max([length(stream), 1e-12] + [_fastest_marker(m) for m in outlines])
         self._fastest = 0.0  # fastest water after the last step
         self._reference = 0.0  # fastest stream, body or wall so far
         self.water.place(list(setup.bodies), [self._in_frame(self.pose(b.name)) for b in setup.bodies], 0.0)
@@ -86,12 +91,45 @@ class Simulation(Fields):
         self._watch.layers(
             [setup.layer_error(b, m, stream, 0.0) for b, m in zip(setup.bodies, outlines, strict=True)]
         )  # fmt: skip
+        self._see_from_afar(outlines)
         self._motions = [self._watched(b) for b in setup.bodies if isinstance(b, Body) and callable(b.motion)]
 
+    def _see_from_afar(self, outlines: Sequence[Markers | Skin]) -> None:
+        """Measure what the bodies are from afar, if the sides of a domain in space ask for it."""
+        far = self.water.border.far
+        if far is None:
+            return
+        for k, (body, skin) in enumerate(zip(self.setup.bodies, outlines, strict=True)):
+            assert isinstance(body.shape, SpaceShape)
+            pose = self._in_frame(self.pose(body.name))
+            added, turn = added_mass(self.water, skin, pose.position, 1.0, k)[:3, :3], turned(pose.angle)
+            mass = body.shape.volume(0.0) * np.eye(3) + turn.T @ np.nan_to_num(added) @ turn
+            far.bodies.append(FarBody(np.zeros(3), np.zeros(3), mass))
+        self._move_afar([self._in_frame(self.pose(b.name)) for b in self.setup.bodies], self._stream(0.0))
+
+    def _move_afar(self, poses: list[Pose], stream: tuple[float, ...]) -> None:
+        """Tell the sides of a domain in space where the bodies are."""
+        far = self.water.border.far
+        if far is not None:
+            for body, pose in zip(far.bodies, poses, strict=True):
+                body.move(np.array(pose.position), pose.angle, np.array(pose.velocity) - stream)
+
+    def _drag_afar(self, poses: list[Pose], acts: Sequence[Reaction], outlines: Sequence[Markers | Skin]) -> None:
+        """Let the sides of a domain in space know the drag, from the second step on: the first has the start's jolt."""
+        far, dt = self.water.border.far, self._last
+        if far is None or not self._log.rows:
+            return
+        for body, pose, act, skin in zip(far.bodies, poses, acts, outlines, strict=True):
+            through = np.array(pose.velocity) - self.water.border.stream
+            extent = float(np.ptp(skin.points, axis=1).max())
+            share = 1 - exp(-dt * length(through) / extent)
+            body.drag(np.array(act.force) / self.setup.density, through, share)
+
     def _watched(self, body: Body) -> Consistency:
-        outline, pose = body.shape.markers(0.0, body.pose(0.0), self.setup.grid.cell), body.pose(0.0)
-        reach = float(np.hypot(outline.x - pose.position[0], outline.y - pose.position[1]).max())
-        motion = Consistency(body.name, body.pose, reach, self.setup.grid.cell)
+        pose = body.pose(0.0).along(self.axes)
+        outline = body.shape.markers(0.0, pose, self.setup.grid.cell)
+        reach = float(speeds(outline.points - np.array(pose.position)[:, None]).max())
+        motion = Consistency(body.name, lambda time: body.pose(time).along(self.axes), reach, self.setup.grid.cell)
         motion.start(0.0, self.setup.step or self._limit(max(self.water.fastest(), self._speed)))
         return motion
 
@@ -103,26 +141,25 @@ class Simulation(Fields):
         if body is None:
             raise UnknownName("body", name, [b.name for b in self.setup.bodies] or ("none",))
         if isinstance(body, Body):
-            return body.pose(self.time if time is None else time)
+            return body.pose(self.time if time is None else time).along(self.axes)
         return self.swimmers[name].pose(body.shape.mass(self.time if time is None else time))
 
     def _in_frame(self, pose: Pose) -> Pose:
-        (fx, fy), (fu, fv) = self.frame
-        return Pose(
-            position=(pose.position[0] - fx, pose.position[1] - fy), angle=pose.angle,
-            velocity=(pose.velocity[0] - fu, pose.velocity[1] - fv), spin=pose.spin,
-        )  # fmt: skip
+        position, velocity = (
+            tuple(a - b for a, b in zip(part, frame, strict=True))
+            for part, frame in zip((pose.position, pose.velocity), self.frame, strict=True)
+        )
+        return Pose(position=position, angle=pose.angle, velocity=velocity, spin=pose.spin)
 
-    def _stream(self, time: float) -> tuple[float, float]:
-        u, v = self.setup.far(time)
-        return float(u - self.frame[1, 0]), float(v - self.frame[1, 1])
+    def _stream(self, time: float) -> tuple[float, ...]:
+        return tuple(float(part - own) for part, own in zip(self.setup.far(time), self.frame[1], strict=True))
 
     def _frame_velocity_at(self, time: float) -> None:
         if self.setup.follow is None:
             return
         name = self.setup.follow
         velocity = self.swimmers[name].rate[:2] if name in self.swimmers else np.array(self.pose(name, time).velocity)
-        self.frame[1] = np.where(self.setup.follow_axes, velocity, 0.0)
+        self.frame[1, :2] = np.where(self.setup.follow_axes, velocity[:2], 0.0)
 
     # --- one step ----------------------------------------------------------------------------------------------
 
@@ -144,7 +181,7 @@ class Simulation(Fields):
         return self.setup.step
 
     def _limit(self, fastest: float) -> float:
-        return self.setup.grid.cell / (fastest + 4 * float(self.water.nu))
+        return self.setup.grid.cell / (fastest + 2 * self.axes * float(self.water.nu))
 
     def advance(self, dt: float | None = None) -> None:
         """Advance by one step [s].
@@ -183,11 +220,12 @@ class Simulation(Fields):
                 for b, m in zip(self.setup.bodies, markers, strict=True)
             ]
         )
-        ahead = float(np.hypot(*self._stream(time)))
+        ahead = length(self._stream(time))
         self._speed = max([self._speed, ahead] + [_fastest_marker(m) for m in markers])  # it may just start to move
         push = tuple(-(self.frame[1] - old_frame[1]) / dt)
+        self._move_afar(poses, self._stream(time))
         limits = (self.setup.tolerance * self._speed, 10 * self.setup.tolerance * self._speed)
-        self.water.step(dt, self._stream(time), (float(push[0]), float(push[1])), limits)
+        self.water.step(dt, self._stream(time), tuple(map(float, push)), limits)
         self.time, self._last = time, dt
         self._note(dt, poses, markers, push, 0.5 * (old_frame[1] + self.frame[1]))
 
@@ -199,6 +237,7 @@ class Simulation(Fields):
         outlines, centres = [], []
         for body in setup.bodies:
             outline = body.shape.markers(self.time, self.pose(body.name), setup.grid.cell)
+            assert isinstance(outline, Markers)  # contact is for plane grids
             ahead = 0.5 * dt
             outlines.append(
                 replace(outline, x=outline.x + ahead * outline.velocity_x, y=outline.y + ahead * outline.velocity_y)
@@ -208,7 +247,7 @@ class Simulation(Fields):
         found = contact.forces(setup.contact, outlines, centres)
         return dict(zip([b.name for b in setup.bodies], found, strict=True))
 
-    def _about(self, name: str, pose: Pose) -> tuple[float, float]:
+    def _about(self, name: str, pose: Pose) -> tuple[float, ...]:
         """Return the point that a body's torque is about, in the frame of the grid [m]."""
         if name not in self.swimmers:
             return pose.position
@@ -216,16 +255,22 @@ class Simulation(Fields):
         return float(x), float(y)
 
     def _note(
-        self, dt: float, poses: list[Pose], outlines: list[Markers], push: tuple[float, ...], drift: np.ndarray
+        self,
+        dt: float,
+        poses: list[Pose],
+        outlines: Sequence[Markers | Skin],
+        push: tuple[float, ...],
+        drift: np.ndarray,
     ) -> None:
         water, setup = self.water, self.setup
         fastest = self._fastest = water.fastest()
-        shift = push[0], push[1]
         about = [self._about(b.name, p) for b, p in zip(setup.bodies, poses, strict=True)]
         values, body_speed = [], 0.0
-        acts = self._log.reactions(water, outlines, about, dt, shift)
+        acts = self._log.reactions(water, outlines, about, dt, push)
+        self._drag_afar(poses, acts, outlines)
         for k, (body, markers, point, act) in enumerate(zip(setup.bodies, outlines, about, acts, strict=True)):
-            load, place = sample(water, markers, setup.density).load(point), self.pose(body.name)
+            load = sample(water, markers, setup.density).load(point) if isinstance(markers, Markers) else None
+            place = self.pose(body.name)
             swimmer = self.swimmers.get(body.name)
             if swimmer is not None:
                 place = swimmer.place_and_rate
@@ -234,17 +279,15 @@ class Simulation(Fields):
                     swimmer.added = added_mass(water, markers, point, setup.density, k)
             values += columns(load, act, drift, place, self._watch.errors[k])
             body_speed = max(body_speed, _fastest_marker(markers))
-        self._speed = max(float(np.hypot(*water.border.stream)), body_speed, min(fastest, 10 * self._speed), 1e-12)
-        self._reference = max(
-            self._reference, float(np.hypot(*water.border.stream)), body_speed, setup.sides.fastest(setup.grid)
-        )
+        self._speed = max(length(water.border.stream), body_speed, min(fastest, 10 * self._speed), 1e-12)
+        self._reference = max(self._reference, length(water.border.stream), body_speed, setup.sides.fastest(setup.grid))
         solves = water.solves
         row = np.array(
             [self.time, dt, solves[0].cycles, solves[1].cycles, solves[1].largest / self._speed, *values]
         )  # fmt: skip
-        good = dict(zip("uv", water.before, strict=True))
+        good = dict(zip("uvw", water.before, strict=False))
         self._log.refuse_nonsense(fastest, self._reference, row, good)
-        self._log.control(water, dt, shift)
+        self._log.control(water, dt, push)
         self._log.rows.append(row)
         if len(self._log.rows) % EVERY == 0:
             self._watch.sides(water, self.time)
@@ -306,7 +349,7 @@ class Simulation(Fields):
         path = None if checkpoint is None else Path(checkpoint)
         if path is not None and path.exists():
             store.load(self, path)
-        cells = self.setup.grid.cells[0] * self.setup.grid.cells[1]
+        cells = prod(self.setup.grid.cells)
         watchers = () if watch is None else (watch,) if callable(watch) else tuple(watch)
         due = due_after(self.time, every)
         saver = store.Saver(path, checkpoint_every)
@@ -328,13 +371,18 @@ class Simulation(Fields):
         return self.record
 
     def control(self, margin: float) -> None:
-        """Follow the momentum through a box ``margin`` [m] around the bodies; see ``control_forces``."""
+        """Follow the momentum through a box ``margin`` [m] around the bodies; see ``control_forces``.
+
+        Raises:
+            InvalidDesign: in space.
+        """
+        self._plane_only("a control volume", "Record.force")
         if not self._placed:
             poses = [self._in_frame(self.pose(b.name)) for b in self.setup.bodies]
             self.water.place(list(self.setup.bodies), poses, self.time)
         j0, j1, i0, i1 = self.water.window
         k = round(margin / self.setup.grid.cell)
-        nx, ny = self.setup.grid.cells
+        nx, ny = self.setup.grid.cells[:2]
         box = (max(j0 - k, PAD + 2), min(j1 + k, PAD + ny - 2), max(i0 - k, PAD + 2), min(i1 + k, PAD + nx - 2))
         self._log.controls = [ControlVolume(box)]
 
@@ -350,10 +398,14 @@ class Simulation(Fields):
 
         Raises:
             UnknownName: there is no such body, or none at all.
+            InvalidDesign: in space.
         """
+        self._plane_only("the pressure and friction along an outline", "Record.force")
         names = [b.name for b in self.setup.bodies]
         if not names or name not in (None, *names):
             raise UnknownName("body", "" if name is None else name, names or ("none",))
         body = self.setup.bodies[0 if name is None else names.index(name)]
         pose = self._in_frame(self.pose(body.name))
-        return sample(self.water, body.shape.markers(self.time, pose, self.setup.grid.cell), self.setup.density)
+        outline = body.shape.markers(self.time, pose, self.setup.grid.cell)
+        assert isinstance(outline, Markers)
+        return sample(self.water, outline, self.setup.density)

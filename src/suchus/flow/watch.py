@@ -8,7 +8,7 @@ import numpy as np
 from suchus.errors import Doubtful
 from suchus.flow.compiled import PAD
 from suchus.flow.setup import Setup
-from suchus.flow.sides import Stream
+from suchus.flow.sides import NAMES, Stream
 from suchus.flow.water import Water
 
 EVERY = 256
@@ -19,6 +19,26 @@ STRONG = 0.05
 
 FELT = 0.02
 """Speed that the vortex gives a cell at the side, over the fastest water, below which nothing is said [-]."""
+
+
+def vorticity_size(velocity: np.ndarray) -> np.ndarray:
+    """Return the summed sizes of the vorticity's components beside the low corners of the cells [m/s per cell].
+
+    The shape is one less than the cells along each axis of the grid, the last axis first.
+    """
+    axes, here = len(velocity), slice(PAD + 1, -PAD)
+
+    def shifted(part: np.ndarray, axis: int) -> np.ndarray:
+        """Return the values one cell lower along an axis."""
+        return part[tuple(slice(PAD, -PAD - 1) if axes - 1 - n == axis else here for n in range(axes))]
+
+    inner = (here,) * axes
+    total: np.ndarray = np.zeros(velocity[0][inner].shape, velocity.dtype)
+    for d in range(axes):
+        for e in range(d):
+            u, v = velocity[e], velocity[d]
+            total += np.abs((v[inner] - shifted(v, e)) - (u[inner] - shifted(u, d)))
+    return total
 
 
 @dataclass(slots=True)
@@ -42,17 +62,17 @@ class Watch:
     def sides(self, water: Water, time: float) -> None:
         """Warn of vortices at a side that is held to the far stream, which they should move."""
         held = [
-            (edge, name) for edge, name in zip(water.border.edges, ("left", "right", "bottom", "top"), strict=True)
+            (edge, name) for edge, name in zip(water.border.edges, NAMES, strict=False)
             if isinstance(edge.side, Stream) and not edge.endless and edge.leaves < 0.5
         ]  # fmt: skip
         if not held:
             return
-        a, b = PAD + 1, -PAD
-        u, v = water.u, water.v
-        spin = np.abs((v[a:b, a:b] - v[a:b, a - 1 : b - 1]) - (u[a:b, a:b] - u[a - 1 : b - 1, a:b]))
-        largest, fastest = float(spin.max()), float(max(np.abs(u[a:b, a:b]).max(), np.abs(v[a:b, a:b]).max()))
+        inner = (slice(PAD + 1, -PAD),) * water.axes
+        spin = vorticity_size(water.velocity)
+        largest, fastest = float(spin.max()), max(float(np.abs(part[inner]).max()) for part in water.velocity)
         for edge, name in held:
-            near = (spin.T if edge.axis == 0 else spin)[:2] if edge.low else (spin.T if edge.axis == 0 else spin)[-2:]
+            lines = edge.across(spin)
+            near = lines[:2] if edge.low else lines[-2:]
             at = float(near.max())
             if at > STRONG * largest and at > FELT * fastest:
                 self._say(

@@ -12,7 +12,7 @@ import numpy as np
 from suchus.errors import NotConverged
 from suchus.flow import multigrid, patch, poisson
 from suchus.flow.advect import advance
-from suchus.flow.body import AnyBody, measure_all, unite, window_of
+from suchus.flow.body import AnyBody, cuts, measure_all, unite, window_of
 from suchus.flow.border import Border
 from suchus.flow.compiled import PAD, Window
 from suchus.flow.exchange import collect, contents, contents_of, sums_of, swelling
@@ -71,7 +71,8 @@ class Water:
         mu1: half the first moment of the kernel along each axis on these faces, shape (face's axis, axis, ...) [cells].
         b: velocity of the bodies on these faces, shape (axis, ...) [m/s].
         source: divergence of the bodies' own motion, times the body's share [m/s per cell].
-        window: padded cell indices around the bodies.
+        window: padded cell indices around the bodies; a cell beyond a mirror that cuts one is one of them.
+        cut: for each body, which mirrors cut it; see ``body.cuts``.
         owners: for each component, which body is nearest to the points of the window.
         given: what the immersion gave to the water in the last step, per body; see ``exchange.collect``.
         solves: how the last two pressure solves went.
@@ -79,7 +80,7 @@ class Water:
 
     def __init__(self, grid: Grid, sides: Sides, viscosity: float, dtype: type) -> None:
         self.grid, self.sides, self.dtype = grid, sides, dtype
-        self.axes = len(grid.cells)
+        self.axes, self.repeats = grid.axes, sides.repeats(grid.axes)
         self.inner = inner_strides(grid.cells)
         self.nu = dtype(viscosity / grid.cell)
         self.border = Border.of(sides, grid, dtype)
@@ -107,6 +108,7 @@ class Water:
         self._room: np.ndarray = np.zeros((patch.FACES + self.axes, 0), dtype)
         self._sums = np.zeros((shape[0], 4))
         self.window: Window = (PAD,) * (2 * self.axes)
+        self.cut: list[tuple[bool, ...]] = []
         self.offset = 0.0
         self.solves: list[poisson.Solve] = []
         self.given = np.zeros((0, sums_of(self.axes)))
@@ -131,6 +133,11 @@ class Water:
     def _flat(self, a: np.ndarray) -> np.ndarray:
         """Return a field as the kernels see it: slabs, and components before them."""
         return a.reshape(*a.shape[: a.ndim - self.axes], *self._slabs)
+
+    @property
+    def here(self) -> tuple[slice, ...]:
+        """The window of an array, with the faces behind its last cells."""
+        return self._here(self.window)
 
     def _here(self, window: Window) -> tuple[slice, ...]:
         """Return the window of an array, with the faces behind its last cells."""
@@ -169,7 +176,9 @@ class Water:
             InvalidDesign: a body reaches out of the domain.
         """
         old = self.window
-        new = unite([window_of(b, p, self.grid, time) for b, p in zip(bodies, poses, strict=True)], self.axes)
+        mirrors = self.sides.mirrors(self.axes)
+        windows = [window_of(b, p, self.grid, time, mirrors) for b, p in zip(bodies, poses, strict=True)]
+        self.cut, new = [cuts(window, self.grid) for window in windows], unite(windows, self.axes)
         before = self.b[:, *self._here(new)].copy()
         self._clear(old)
         self.window = new
@@ -208,7 +217,8 @@ class Water:
             self.mu0[c][here] = self.passage[c][here] = mu0.reshape(near.shape)
             self.mu1[c][:, *here] = mu1.reshape(self.axes, *near.shape)
             self.b[c][here] = f.velocity[c]
-        for sheet in [b.shape.sheet(time, p) for b, p in zip(bodies, poses, strict=True)]:
+        for body, pose in zip(bodies, poses, strict=True):
+            sheet = body.shape.sheet(time, pose)
             if sheet is not None:
                 x, y = (grid.centres(*ends[d], d)[0] for d in range(2))
                 close(self.passage[0][here], sheet[0], sheet[1], x - h, y, h)
@@ -220,9 +230,7 @@ class Water:
         fastest(self._flat(self.velocity), self.inner, self._sums)
         return float(self._sums[PAD:-PAD, 0].max())
 
-    def step(
-        self, dt: float, stream: tuple[float, float], push: tuple[float, float], limits: tuple[float, float]
-    ) -> None:
+    def step(self, dt: float, stream: tuple[float, ...], push: tuple[float, ...], limits: tuple[float, float]) -> None:
         """Advance velocity and pressure by ``dt`` [s] around the bodies placed at its end.
 
         Args:
@@ -280,9 +288,11 @@ class Water:
         out, blend, base, rate = (self._flat(a) for a in stage[:4])
         place, raw, p = self._layout[0], self._flat(self._raw), self._flat(self.p)
         advance(
-            out, blend, base, rate, p, raw, place, self.inner, self.sides.repeats, step, self.nu, push, stage.keep
+            out, blend, base, rate, p, raw, place, self.inner, self.repeats, step, self.nu, push, stage.keep
         )  # fmt: skip
         if self.window[1] > self.window[0]:
+            self._mirror_raw()
+            place = self._near
             b, mu0, mu1, passage = (self._flat(a) for a in (self.b, self.mu0, self.mu1, self.passage))
             for c in range(self.axes):
                 immerse(
@@ -292,11 +302,40 @@ class Water:
         self.border.fill(stage.out)
         return stage
 
+    @property
+    def _near(self) -> np.ndarray:
+        """The finest level's ``place`` with the cells beyond mirrors in its window, which the immersion reads."""
+        place = self._layout[0].copy()
+        place[1 + self.axes :] = self.window
+        return place
+
+    def _inside(self, a: np.ndarray) -> np.ndarray:
+        """Return the part in the domain of values of the window, slab by slab."""
+        ends = zip(self.window[::2], self.window[1::2], reversed(self.grid.cells), strict=True)
+        part = a[tuple(slice(max(PAD - s, 0), min(e, n + PAD) + 1 - s) for s, e, n in ends)]
+        return part.reshape(len(part), -1)
+
+    def _mirror_raw(self) -> None:
+        """Fill the bare update beyond the mirrors that cut bodies with its image."""
+        for k, cut in enumerate(cuts(self.window, self.grid)):
+            if not cut:
+                continue
+            axis, low = k // 2, k % 2 == 0
+            for c, component in enumerate(self._raw):
+                planes = np.moveaxis(component, self.axes - 1 - axis, 0)
+                n = self.grid.cells[axis] + PAD
+                if c == axis:  # across the mirror, which lies on these faces
+                    face, image, source = (PAD, PAD - 1, PAD + 1) if low else (n, n + 1, n - 1)
+                    planes[face], planes[image] = 0, -planes[source]
+                else:
+                    image, source = (PAD - 1, PAD) if low else (n, n - 1)
+                    planes[image] = planes[source]
+
     def _collect(self, stage: Stage, step: float) -> None:
         """Add half of what the immersion gave in this stage: the step is the mean of its two stages."""
         if self.window[1] <= self.window[0]:
             return
-        dt, keep, place, inner = float(step), float(stage.keep), self._layout[0], self.inner
+        dt, keep, place, inner = float(step), float(stage.keep), self._near, self.inner
         sums, p = np.zeros_like(self.given), self._flat(self.p)
         out, blend, raw, passage, mu1 = (
             self._flat(a) for a in (stage.out, stage.blend, self._raw, self.passage, self.mu1)
@@ -307,7 +346,7 @@ class Water:
                 sums, out[c], blend[c], raw[c], mean.reshape(len(mean), -1), passage[c], mu1[c], p, owners[c], c, place,
                 inner, dt, keep,
             )  # fmt: skip
-        swelling(sums, p, self._flat(self.source), owners[0], place, inner, dt)
+        swelling(sums, p, self._flat(self.source), self._inside(self.owners[0]), self._layout[0], inner, dt)
         self.given += 0.5 * sums
 
     def contents(self) -> np.ndarray:
@@ -316,7 +355,7 @@ class Water:
         if self.window[1] > self.window[0]:
             b, mu0 = self._flat(self.b), self._flat(self.mu0)
             for c, owner in enumerate(self.owners):
-                contents(sums, b[c], mu0[c], owner.reshape(len(owner), -1), c, self._layout[0], self.inner)
+                contents(sums, b[c], mu0[c], self._inside(owner), c, self._layout[0], self.inner)
         return sums
 
     def _project(self, velocity: np.ndarray, dt: float, limits: tuple[float, float]) -> None:
@@ -324,7 +363,7 @@ class Water:
         r, u, source, place = self._part(multigrid.B), self._flat(velocity), self._flat(self.source), self._layout[0]
         mean = mean_residual(u, source, place, self.inner)
         residual(
-            r, u, source, self._part(multigrid.DINV), place, self.dtype(mean), self.inner, self.sides.repeats,
+            r, u, source, self._part(multigrid.DINV), place, self.dtype(mean), self.inner, self.repeats,
             self._sums,
         )  # fmt: skip
         sums = self._sums[PAD:-PAD]
@@ -340,7 +379,7 @@ class Water:
 
     def _seal(self, x: np.ndarray) -> None:
         """Fill the cells beside the domain with those inside it, or with those at its other end."""
-        for axis, again in zip(reversed(range(self.axes)), self.sides.repeats, strict=True):
+        for axis, again in zip(reversed(range(self.axes)), self.repeats, strict=True):
             lines, n = np.moveaxis(x, axis, 0), x.shape[axis]
             lines[PAD - 1] = lines[n - PAD - 1 if again else PAD]
             lines[n - PAD] = lines[PAD if again else n - PAD - 1]
@@ -357,7 +396,11 @@ class Water:
         r[:] = 0
         net = sum(np.moveaxis(_inflow(part, self.axes - 1 - c), 0, self.axes - 1 - c) for c, part in enumerate(given))
         inside = tuple(slice(a, b) for a, b in zip(self.window[::2], self.window[1::2], strict=True))
-        r.reshape(self.p.shape)[inside] = net
+        field = r.reshape(self.p.shape)
+        field[inside] = net
+        for axis in range(self.axes):  # a body that a mirror cuts has cells beyond it
+            lines = np.moveaxis(field, axis, 0)
+            lines[:PAD], lines[-PAD:] = 0, 0
         r[self._part(multigrid.DINV) == 0] = 0
         _, (a, b) = self._solve((limit, 10 * limit))
         np.multiply(self._d, a, out=self._x)
@@ -389,7 +432,7 @@ class Water:
         """Return how the solve went, and what the solution is made of; see ``poisson.solve``."""
         *told, a, b = poisson.solve(
             self._x, self._d, self._q, self._store, self._layout, self._room, self._patches, self.inner,
-            self.sides.repeats, self._sums, *limits, MOST_CYCLES,
+            self.repeats, self._sums, *limits, MOST_CYCLES,
         )  # fmt: skip
         went = poisson.Solve(*told)
         if not (went.mean <= STUCK * limits[0] and went.largest <= STUCK * limits[1]):

@@ -79,7 +79,7 @@ class _Held:
         if phase <= SLACK and not turn:
             return
         surface = sim.surface()
-        midline = sim.setup.bodies[0].shape.spine(sim.time)  # type: ignore[attr-defined]
+        midline = sim.setup.bodies[0].shape.spine(sim.time)  # type: ignore[union-attr]
         sides = tail_sides(self._outline, surface)
         seen = {
             "difference": convex_less_concave(self._outline, surface, midline),

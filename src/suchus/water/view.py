@@ -60,7 +60,7 @@ class View:
 def midline(sim: flow.Simulation) -> flow.Spine:
     """Return the midline of the only body, in the frame of the grid."""
     body, (position, _) = sim.setup.bodies[0], sim.frame
-    placed = body.shape.spine(sim.time).placed(sim.pose(body.name))  # type: ignore[attr-defined]
+    placed = body.shape.spine(sim.time).placed(sim.pose(body.name))  # type: ignore[union-attr]
     return flow.Spine(
         x=placed.x - position[0],
         y=placed.y - position[1],
