@@ -191,3 +191,29 @@ def test_names_that_are_not_there_are_answered_with_those_that_are():
         empty.surface()
     assert record.columns[-3:] == ("force_x", "force_y", "layer_error")
     assert all(record.column(name).shape == (1,) for name in record.columns)
+
+
+@pytest.mark.parametrize(
+    ("sides", "axes"),
+    [
+        ({"top": flow.Wall()}, (True, False)),  # it would travel along itself, and drag the water
+        ({"left": flow.Wall(speed=1.0)}, (True, False)),
+        ({"top": flow.Slip()}, (True, True)),
+        ({"left": flow.Inflow(profile=np.ones_like), "right": flow.Outflow()}, (False, True)),
+    ],
+)
+def test_a_grid_that_would_take_its_walls_along_is_refused(sides, axes):
+    with pytest.raises(InvalidDesign, match=f"follow 'body' and would take its {next(iter(sides))} side along"):
+        still_setup(sides=flow.Sides(**sides), follow="body", follow_axes=axes)
+
+
+@pytest.mark.parametrize(
+    ("sides", "axes"),
+    [
+        ({"top": flow.Slip(), "bottom": flow.Slip()}, (True, False)),
+        ({"top": flow.Wall()}, (False, False)),
+        ({"left": flow.Periodic(), "right": flow.Periodic()}, (True, True)),
+    ],
+)
+def test_a_grid_may_travel_along_sides_that_look_alike_everywhere(sides, axes):
+    still_setup(sides=flow.Sides(**sides), follow="body", follow_axes=axes)

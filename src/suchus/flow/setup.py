@@ -91,6 +91,8 @@ class Setup:
         if self.follow is not None and self.follow not in names:
             raise InvalidDesign(f"the grid is to follow {self.follow!r}, and the bodies are named {names}.")
         self._check_dimension()
+        if self.follow is not None:
+            self.sides.check_travel(self.grid.axes, (*self.follow_axes, False), self.follow)
         check_memory(self.grid, self.dtype)
 
     def _check_dimension(self) -> None:

@@ -119,6 +119,29 @@ class Sides:
                     f"the speed of the wall at the {name} side is {side.speed} m/s; a plane grid needs one number."
                 )
 
+    def check_travel(self, axes: int, travels: tuple[bool, bool, bool], body: str) -> None:
+        """Refuse sides that stand still in the world, if the grid travels and would take them along.
+
+        A side without friction may travel along itself, and open and periodic ones anywhere.
+
+        Args:
+            axes: of the domain.
+            travels: whether the grid travels along x, y and z.
+            body: name of the body that it travels with.
+
+        Raises:
+            InvalidDesign: a wall, an inflow or a mirror would travel.
+        """
+        for number, name in enumerate(NAMES[: 2 * axes]):
+            side = getattr(self, name)
+            sticks = isinstance(side, Wall | Inflow) and any(travels)
+            if sticks or (isinstance(side, Slip | Mirror) and travels[number // 2]):
+                raise InvalidDesign(
+                    f"the grid is to follow {body!r} and would take its {name} side along; the place of a side of the "
+                    f"kind {type(side).__name__} is fixed: make it a Stream(), or leave follow None in a domain that "
+                    f"is long enough."
+                )
+
     @classmethod
     def box(cls) -> "Sides":
         """Return walls all around that the water sticks to."""
