@@ -50,7 +50,8 @@ _OPTIONS = {"fastmath": _FAST, "error_model": "numpy", "nogil": True, "no_cfunc_
 
 linking.install()
 
-_FOLDER = cache.folder()
+FOLDER = cache.folder()
+"""Where the machine code is kept between runs; None where no place can be written to."""
 
 
 class _Notice(event.Listener):  # type: ignore[misc]
@@ -86,10 +87,10 @@ event.register("numba:compile", _Notice())
 
 
 def _compile(function: Callable[P, R], parallel: bool) -> Callable[P, R]:
-    if _FOLDER is None:  # compile anew every time
+    if FOLDER is None:  # compile anew every time
         made: Callable[P, R] = numba.njit(parallel=parallel, **_OPTIONS)(function)
         return made
-    asked, numba.config.CACHE_DIR = numba.config.CACHE_DIR, str(_FOLDER)  # read when a kernel is made, for it alone
+    asked, numba.config.CACHE_DIR = numba.config.CACHE_DIR, str(FOLDER)  # read when a kernel is made, for it alone
     try:
         made = numba.njit(cache=True, parallel=parallel, **_OPTIONS)(function)
     finally:

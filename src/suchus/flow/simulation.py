@@ -13,6 +13,7 @@ from suchus.errors import OutsideLimits, UnknownName
 from suchus.flow import checkpoint as store
 from suchus.flow import contact
 from suchus.flow.added import added_mass
+from suchus.flow.ahead import compile_ahead
 from suchus.flow.body import Body
 from suchus.flow.compiled import PAD
 from suchus.flow.consistency import Consistency
@@ -68,6 +69,7 @@ class Simulation(Fields):
     def __init__(self, setup: Setup, *, thread_count: int | None = None) -> None:
         self.setup = setup
         self.thin = setup.check()
+        compile_ahead(setup.grid.axes, setup.dtype)
         self.time = 0.0
         self.water = Water(setup.grid, setup.sides, setup.viscosity, setup.dtype)
         self.axes = setup.grid.axes

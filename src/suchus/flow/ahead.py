@@ -1,0 +1,92 @@
+"""The kernels' first compilation in two processes at once: the pressure's solver in one, all others in the other.
+
+numba compiles in one thread, and on a new machine that would be the whole wait for a first picture. The solver takes
+half of it.
+"""
+
+import subprocess
+import sys
+from contextlib import suppress
+
+import numba
+import numpy as np
+
+from suchus import threads
+from suchus.flow import compiled, poisson
+from suchus.flow.body import Body
+from suchus.flow.grid import Grid
+from suchus.flow.pose import Pose
+from suchus.flow.shape import Cylinder
+from suchus.flow.sides import Sides
+from suchus.flow.solid import Sphere
+from suchus.flow.water import Water
+
+_CELLS = 32
+"""Cells of the small domain along each axis [-]."""
+_LIMITS = 1e-5, 1e-4  # what a pressure solve leaves [m/s per cell]
+
+
+class _Unsolved(Water):
+    """Water whose pressure is not solved for."""
+
+    def _solve(self, limits: tuple[float, float]) -> tuple[poisson.Solve, tuple[float, float]]:
+        return poisson.Solve(1, *limits), (self.dtype(0), self.dtype(0))
+
+
+class _Solved(Water):
+    """Water whose pressure can be solved for by itself."""
+
+    def solve(self) -> poisson.Solve:
+        """Solve for the pressure of water at rest."""
+        return self._solve(_LIMITS)[0]
+
+
+def compile_ahead(axes: int, dtype: type) -> None:
+    """Compile what a flow with a body needs, if this is the first flow of its kind with these sources on this machine.
+
+    It is left to the flow itself where only one thread is to be used, where no place can be written to, and where
+    another process has begun with it.
+
+    Args:
+        axes: of the grid, 2 or 3.
+        dtype: type of the fields.
+    """
+    folder = compiled.FOLDER
+    if folder is None or numba.config.DISABLE_JIT or threads.count() == 1:
+        return
+    try:
+        (folder / f"begun-{axes}-{dtype.__name__}").touch(exist_ok=False)
+    except OSError:  # most often: it is there
+        return
+    words = [sys.executable, "-c", f"from {__name__} import compile_solver; compile_solver({axes}, '{dtype.__name__}')"]
+    with subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as other:
+        try:
+            _step(_Unsolved(*_domain(axes), dtype))
+            other.wait()
+        finally:
+            with suppress(OSError):
+                other.kill()
+
+
+def compile_solver(axes: int, name: str) -> None:
+    """Compile the pressure's solver, for a grid with so many axes and fields of the type of this name."""
+    water = _Solved(*_domain(axes), getattr(np, name))
+    _placed(water)
+    water.solve()
+
+
+def _domain(axes: int) -> tuple[Grid, Sides, float]:
+    return Grid.covering(*[(-2.0, 2.0)] * axes, cell=4.0 / _CELLS), Sides(), 0.05
+
+
+def _placed(water: Water) -> None:
+    shape = Cylinder(diameter=1.0) if water.axes == 2 else Sphere(diameter=1.0)
+    water.place([Body(shape=shape)], [Pose().along(water.axes)], 0.0)
+
+
+def _step(water: Water) -> None:
+    still = (0.0,) * water.axes
+    _placed(water)
+    water.step(0.01, still, still, _LIMITS)
+    water.fastest()
+    water.contents()
