@@ -81,7 +81,7 @@ def test_with_a_browser_the_walk_is_live(short, capsys, opener, monkeypatch):
     [
         (["--out", "walk.txt"], "say --out FILE.html"),
         (["--out", "/dev/null/walk.html"], "cannot be written"),
-        (["--port", "99999"], "0 to 65535 is allowed"),
+        (["--port", "99999"], "suchus: demo.port is 99999; 0 to 65535 is allowed"),
         (["--gait", "trot"], "no option named '--gait'"),
         (["now"], "one word too many"),
     ],

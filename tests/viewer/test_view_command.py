@@ -13,7 +13,7 @@ from suchus.cli import main
         (["caiman", "trot"], "no gait named 'trot'"),
         (["caiman", "belly_crawl", "more"], "one word too many"),
         (["--timestep", "0.003"], "must divide the control period"),
-        (["--port", "99999"], "0 to 65535 is allowed"),
+        (["--port", "99999"], "suchus: view.port is 99999; 0 to 65535 is allowed"),
         (["none.nc"], "there is no file none.nc"),
         (["swim", "none.nc"], "there is no file none.nc"),
         (["--hots", "here"], "no option named '--hots'"),

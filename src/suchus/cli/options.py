@@ -145,7 +145,7 @@ def parse(options: type, prog: str, words: Sequence[str], description: str, name
         raise UnknownName("option", (unknown or ["-"])[0], [f"--{n.replace('_', '-')}" for n in names]) from None
     except SystemExit as error:
         if error.code:
-            raise BadCommand(f"{_sentence(box.getvalue())}; see {prog} --help.") from None
+            raise BadCommand(f"{_sentence(box.getvalue(), options.__name__)}; see {prog} --help.") from None
         raise
     except ValueError as error:
         raise error if isinstance(error, SuchusError) else BadCommand(f"{str(error).rstrip('.')}.") from error
@@ -228,8 +228,13 @@ def named(kind: Any) -> str:
     return " or ".join(one.__name__ for one in get_args(kind) or (kind,) if one is not NoneType)
 
 
-def _sentence(box: str) -> str:
-    """What tyro draws as a titled box, up to its first line across, as a sentence without a stop."""
+def _sentence(box: str, owner: str) -> str:
+    """What tyro draws as a titled box, up to its first line across, as a sentence without a stop.
+
+    Args:
+        box: what tyro wrote.
+        owner: name of the options' class, which the user has never heard of.
+    """
     lines: list[str] = []
     for line in re.sub(r"\x1b\[[0-9;]*m", "", box).splitlines()[1:]:
         text = line.strip(" │╰╯")
@@ -237,7 +242,7 @@ def _sentence(box: str) -> str:
             lines.append(text)
         elif lines:
             break
-    sentence = " ".join(lines).removeprefix("Error parsing ").rstrip(".")
+    sentence = " ".join(lines).removeprefix("Error parsing ").removeprefix(f"{owner}: ").rstrip(".")
     for pattern, plain in _PLAIN:
         sentence = re.sub(pattern, plain, sentence)
     return re.sub(r"^[A-Z]|\. [A-Z]", lambda start: start[0].lower().replace(".", ";"), sentence)
