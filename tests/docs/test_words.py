@@ -59,7 +59,6 @@ MEANT = {
     "docs/glossary.md": tuple(OLD),
     "src/suchus/experiments/joint_faults.py": (_GRIP,),
     "src/suchus/experiments/sensitivity.py": (_APART,),
-    "src/suchus/experiments/_shore_findings.py": (_GRIP,),
     "src/suchus/experiments/shore.py": (_GRIP,),
     "src/suchus/figures/shore.py": (_GRIP,),
     "src/suchus/figures/validation_page.py": (_HELD,),
