@@ -11,7 +11,7 @@ from suchus.control import OpenLoop
 from suchus.errors import InvalidDesign
 from suchus.experiments import EXPERIMENTS
 from suchus.experiments import _shore_findings as findings
-from suchus.figures.shore import _aslant, levelled
+from suchus.figures.shore import _obliquely, levelled
 from suchus.land import Ground, simulate
 from suchus.record import ground_text
 from suchus.rotation import about, rotate
@@ -185,10 +185,10 @@ def test_the_water_line_is_where_the_slope_meets_the_level(uphill):
     assert run.control.begins == ("swimming" if uphill > 0.0 else "walking")
 
 
-def test_the_caption_says_that_a_robot_which_comes_aslant_looks_shorter():
-    assert "obliquely, at 49 degrees" in _aslant(0.85)
-    assert "obliquely, at 49 degrees" in _aslant(-0.85)
-    assert _aslant(0.0) == ""
+def test_the_caption_says_that_a_robot_which_comes_obliquely_looks_shorter():
+    assert "obliquely, at 49 degrees" in _obliquely(0.85)
+    assert "obliquely, at 49 degrees" in _obliquely(-0.85)
+    assert _obliquely(0.0) == ""
 
 
 def test_a_levelled_run_stands_on_a_slope_whose_water_line_is_the_origin():

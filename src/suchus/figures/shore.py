@@ -91,12 +91,12 @@ def draw_ashore(robot: AnyRobot, record: xr.Dataset) -> Figure:
     return captioned(
         figure,
         f"A robot between the water and a shore of {np.degrees(steep):.0f} degrees, seen along the shore"
-        f"{_aslant(record.attrs['approach'])}; below, the share of its weight that the feet carry "
+        f"{_obliquely(record.attrs['approach'])}; below, the share of its weight that the feet carry "
         "(thin; bold: mean over 1.5 s) and the share of its volume under water.",
     )
 
 
-def _aslant(course: float) -> str:
+def _obliquely(course: float) -> str:
     """Return what a view from the side shows of an oblique approach, in words."""
     return (
         f" (it approaches obliquely, at {abs(np.degrees(course)):.0f} degrees, and so looks shorter)" if course else ""
