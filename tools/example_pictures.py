@@ -25,9 +25,9 @@ CAIMAN, CRAWL = suchus.ROBOTS["caiman"], suchus.GAITS["belly_crawl"]
 
 
 def broken_joints() -> Figure:
-    """Draw the ways of an intact and of a broken robot, from above."""
+    """Draw the tracks of an intact robot and of one with a failed joint, from above."""
     limp = suchus.Limp("LF_yaw")
-    return _ways(
+    return _tracks(
         {"intact": suchus.crawl(CAIMAN, CRAWL), "left front yaw limp": suchus.crawl(CAIMAN, CRAWL, faults=[limp])}
     )
 
@@ -48,7 +48,7 @@ def heading() -> Figure:
     limp = (suchus.Limp("LF_yaw", at=5.0),)
     closed = suchus.Coordinated()
     steered = replace(closed, heading=suchus.HeadingRule())
-    return _ways(
+    return _tracks(
         {
             name: suchus.crawl(CAIMAN, CRAWL, control=control, faults=limp, duration=33.0, timestep=0.005)
             for name, control in {"three rules": closed, "and the heading loop": steered}.items()
@@ -126,13 +126,13 @@ def _bars(distances: Mapping[str, Sequence[float]]) -> Figure:
     return figure
 
 
-def _ways(records: Mapping[str, xr.Dataset]) -> Figure:
+def _tracks(records: Mapping[str, xr.Dataset]) -> Figure:
     colours = (COLOURS["coordinated"], COLOURS["limbs_only"])
     with styled():
         figure, axes = panels(1, 1, height=3.6)
         for (name, record), colour, dashes in zip(records.items(), colours, ("-", "--"), strict=True):
-            distance = record.centre_of_mass
-            x, y = distance.sel(xyz="x"), distance.sel(xyz="y")
+            centre = record.centre_of_mass
+            x, y = centre.sel(xyz="x"), centre.sel(xyz="y")
             axes[0, 0].plot(x, y, dashes, color=colour, label=name)
             axes[0, 0].plot(x[-1], y[-1], "o", color=colour)
         axes[0, 0].set(xlabel="forward [m]", ylabel="to the left [m]", aspect="equal")

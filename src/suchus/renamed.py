@@ -48,12 +48,16 @@ def old_exports(package: str, **new: str) -> Callable[[str], Any]:
     def find(name: str) -> Any:
         if name not in new:
             raise AttributeError(f"module {package!r} has no attribute {name!r}")
-        text = f"{package}.{name} is now called {new[name]}; the old name works for one more release."
-        warnings.warn(text, OldName, stacklevel=2)
+        warnings.warn(sentence(f"{package}.{name}", new[name]), OldName, stacklevel=2)
         place, _, now = f"{package}.{new[name]}".rpartition(".")
         return getattr(import_module(place), now)
 
     return find
+
+
+def sentence(old: str, new: str) -> str:
+    """Return the sentence of the warning about an old name, given with its owner, and the new name."""
+    return f"{old} is now called {new}; the old name works for one more release."
 
 
 def names_of(kind: Any) -> Mapping[str, str]:
@@ -73,8 +77,7 @@ def new_name(kind: Any, name: str, category: type[Warning] = OldKey, *, stacklev
     """
     new = names_of(kind).get(name, name)
     if new != name:
-        text = f"{kind.__name__}.{name} is now called {new}; the old name works for one more release."
-        warnings.warn(text, category, stacklevel=stacklevel)
+        warnings.warn(sentence(f"{kind.__name__}.{name}", new), category, stacklevel=stacklevel)
     return new
 
 

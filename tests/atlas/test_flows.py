@@ -9,7 +9,7 @@ from suchus import flow
 from suchus.atlas import CASES
 from suchus.atlas.cylinders import wake_length
 from suchus.atlas.marching import march, nudged, shedding
-from suchus.atlas.shaken import mean_skin
+from suchus.atlas.oscillated import mean_skin
 from suchus.atlas.skin import Skin
 from suchus.atlas.still import flapping, quasi_steady_peaks
 from suchus.flow.record import COLUMNS

@@ -98,7 +98,7 @@ def test_what_is_exactly_straight_has_no_phase(caiman, walker, clean, bends):
     assert "tail_lag" not in walk.numbers
     assert "(it does not bend)" in " ".join(told(walk))
     notes = " ".join(to_gait(walk, caiman, GAITS["belly_crawl"], name="x").notes)
-    assert "its phase means nothing" in notes
+    assert "its phase has no meaning" in notes
 
 
 def test_noise_is_not_refused_and_more_cycles_narrow_its_intervals(walker, sharp):

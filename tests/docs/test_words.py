@@ -43,32 +43,24 @@ OLD = {
 """What a stranger would not find in a textbook, and what stands there instead."""
 
 NOT_DONE = (
-    "src/suchus/atlas/",
-    "src/suchus/figures/atlas_page.py",
     "src/suchus/flow/",
-    "src/suchus/envs/",
-    "src/suchus/capture/retarget.py",
-    "src/suchus/experiments/_shore_findings.py",
     "src/suchus/experiments/_swimming_findings.py",
-    "src/suchus/experiments/shore.py",
     "src/suchus/experiments/swim_sweep.py",
     "src/suchus/experiments/swimming.py",
-    "src/suchus/figures/shore.py",
-    "src/suchus/figures/validation.py",
-    "src/suchus/figures/validation_page.py",
-    "docs/amphibious.md",
-    "docs/validation.md",
-    "docs/environments.md",
     "docs/flow.md",
     "docs/flow_limits.md",
 )
-"""Rooms that still have old words, one by one, some of which are being written; what is done comes off."""
+"""Rooms of the flow solver and of swimming that still have old words, while they are being changed."""
 
+_HELD = r"\b(?:held|endless) (?:body|swim|swimmer|eel|head|water)\b"
 _GRIP, _APART, _LOST = r"\bgrips?\b", r"\b(?:came|comes?) apart\b", r"\blost joints?\b|\bjoints? (?:is |are )?lost\b"
 MEANT = {
     "docs/glossary.md": tuple(OLD),
     "src/suchus/experiments/joint_faults.py": (_GRIP,),
     "src/suchus/experiments/sensitivity.py": (_APART,),
+    "src/suchus/experiments/shore.py": (_GRIP,),
+    "src/suchus/figures/shore.py": (_GRIP,),
+    "src/suchus/figures/validation_page.py": (_HELD,),
     "src/suchus/paper/claims_land.py": (_LOST,),
     "src/suchus/paper/errata_words.py": (_LOST,),
     "src/suchus/record/ground.py": (_GRIP,),

@@ -18,7 +18,7 @@ from suchus import envs, rotation  # noqa: E402
 from suchus.design import layout, leg_joints, servo_names  # noqa: E402
 from suchus.envs.pack import Pack, draw  # noqa: E402
 from suchus.envs.reward import Terms  # noqa: E402
-from suchus.errors import InvalidDesign, OutsideLimits, SuchusError, UnknownName  # noqa: E402
+from suchus.errors import InvalidDesign, OldName, OutsideLimits, SuchusError, UnknownName  # noqa: E402
 from suchus.faults import Locked, Weak  # noqa: E402
 from suchus.gaits import GAITS, own_gait  # noqa: E402
 from suchus.motion import limb_phase, servo_targets  # noqa: E402
@@ -127,18 +127,18 @@ def test_the_shelf_s_gait_fits_into_the_actions_and_comes_out_of_them():
     np.testing.assert_allclose(env.pack.centre + CRAWL.span * actions, expected, atol=1e-12)
 
 
-def test_an_action_is_what_the_servos_are_told():
+def test_an_action_is_the_last_commanded_angle():
     env = envs.CrocodileVectorEnv(1, replace(CRAWL, jitter=0.0))
     env.reset(seed=0)
     action = np.linspace(-0.5, 0.5, 19)[None]
     for _ in range(12):
         seen, *_ = env.step(action)
-    np.testing.assert_allclose(envs.part(seen, "told"), action, atol=1e-6)
+    np.testing.assert_allclose(envs.part(seen, "last_action"), action, atol=1e-6)
     low, high = env.pack._low, env.pack._high
     angles = np.pi * envs.part(seen, "servo_position")[0]
-    told = np.clip(env.pack.centre + CRAWL.span * action[0], low, high)
+    commanded = np.clip(env.pack.centre + CRAWL.span * action[0], low, high)
     arms = np.array(["yaw" in name for name in servo_names()])  # these carry no weight
-    np.testing.assert_allclose(angles[arms], told[arms], atol=0.03)
+    np.testing.assert_allclose(angles[arms], commanded[arms], atol=0.03)
 
 
 def test_what_presses_on_the_ground_is_the_weight():
@@ -172,16 +172,16 @@ def test_readings_off_their_scale_are_cut_and_lost_ones_are_zero():
 def test_the_reward_is_the_weighted_sum_of_what_happened():
     terms = Terms(
         forward=np.array([0.5]),
-        astray=np.array([0.25]),
+        lateral_drift=np.array([0.25]),
         upright=np.array([0.05]),
         work=np.array([2.0]),
-        haste=np.array([4.0]),
+        action_rate=np.array([4.0]),
         approach=np.array([0.125]),
         goal=np.array([True]),
         fall=np.array([True]),
     )
     weights = envs.Rewards(
-        forward=1.0, astray=2.0, upright=20.0, work=-0.5, haste=-1.0, fall=-8.0, approach=8.0, goal=16.0
+        forward=1.0, lateral_drift=2.0, upright=20.0, work=-0.5, action_rate=-1.0, fall=-8.0, approach=8.0, goal=16.0
     )
     assert terms.reward(weights).tolist() == [0.5 + 0.5 + 1.0 - 1.0 - 4.0 - 8.0 + 1.0 + 16.0]
 
@@ -190,14 +190,16 @@ def test_the_terms_add_up_over_an_episode():
     env = gymnasium.make("suchus/Crawl-v0").unwrapped
     env.reset(seed=2)
     begin = env.pack.record(0).centre_of_mass.values
-    forward = astray = total = weighted = 0.0
+    forward = lateral_drift = total = weighted = 0.0
     for _, reward, fell, _, info in acting(env, 4):
         assert not fell
-        forward, astray, total = forward + info["forward"], astray + info["astray"], total + reward
-        weighted += sum(getattr(CRAWL.rewards, name) * info[name] for name in ("forward", "astray", "work", "haste"))
+        forward, lateral_drift, total = forward + info["forward"], lateral_drift + info["lateral_drift"], total + reward
+        weighted += sum(
+            getattr(CRAWL.rewards, name) * info[name] for name in ("forward", "lateral_drift", "work", "action_rate")
+        )
     end = env.pack.record(0).centre_of_mass.values
     assert forward == pytest.approx(end[0, 0] - begin[0, 0], abs=1e-12)
-    assert astray == pytest.approx(abs(end[0, 1]) - abs(begin[0, 1]), abs=1e-12)
+    assert lateral_drift == pytest.approx(abs(end[0, 1]) - abs(begin[0, 1]), abs=1e-12)
     assert total == pytest.approx(weighted, abs=1e-12)
 
 
@@ -227,11 +229,11 @@ def test_faults_are_drawn_from_all_that_are_named():
 
 
 def test_a_standing_robot_stays_up_unless_it_is_pushed_too_hard():
-    pushed = envs.Shoves(most=40.0, earliest=0.2, latest=0.2)
-    calm = envs.play(replace(STAND, shoves=None), envs.Still(STAND), episodes=1, steps=60)
+    pushed = envs.Pushes(most=40.0, earliest=0.2, latest=0.2)
+    calm = envs.play(replace(STAND, pushes=None), envs.Still(STAND), episodes=1, steps=60)
     assert calm.lasted.tolist() == pytest.approx([3.0])
     assert calm.returns[0] > 2.5
-    env = gymnasium.make("suchus/Stand-v0", shoves=pushed).unwrapped
+    env = gymnasium.make("suchus/Stand-v0", pushes=pushed).unwrapped
     env.reset(seed=1)
     for _ in range(60):
         _, reward, fell, _, info = env.step(np.zeros(19))
@@ -253,7 +255,7 @@ def test_a_robot_that_comes_apart_ends_its_episode_with_a_sentence_and_the_other
     seen, rewards, fell, _, infos = env.step(zero)
     theirs, *_ = alone.step(zero[:1])
     assert fell.tolist() == [True, False]
-    assert "the physics came apart at 0.05 s" in infos["cause"][0]
+    assert "the simulation diverged at 0.05 s" in infos["cause"][0]
     assert infos["cause"][1] == ""
     assert np.isfinite(seen).all()
     assert rewards[0] == pytest.approx(CRAWL.rewards.fall)
@@ -342,7 +344,7 @@ def test_tasks_are_varied_by_naming_their_fields():
         ({"timestep": 0.003}, InvalidDesign, "must fit the control period of 0.01 s"),
         ({"start": "flying"}, InvalidDesign, "lying or upright or swimming is allowed"),
         ({"render_mode": "human"}, UnknownName, "there is rgb_array"),
-        ({"shoves": envs.Shoves(body="nose")}, UnknownName, "there is no body named 'nose'"),
+        ({"pushes": envs.Pushes(body="nose")}, UnknownName, "there is no body named 'nose'"),
     ],
 )
 def test_what_cannot_be_is_said_in_a_sentence(changes, error, text):
@@ -365,7 +367,7 @@ def test_bad_breaks_and_shoves_are_refused():
     with pytest.raises(InvalidDesign, match="must not decrease"):
         envs.Breaks(earliest=5.0, latest=1.0)
     with pytest.raises(InvalidDesign, match="must not decrease"):
-        envs.Shoves(earliest=5.0, latest=1.0)
+        envs.Pushes(earliest=5.0, latest=1.0)
 
 
 def test_bad_actions_seeds_and_sizes_are_refused():
@@ -433,19 +435,21 @@ def test_the_open_loop_gait_of_another_body_walks_through_the_environment(name, 
     assert abs(held.forward[0]) < 0.02 * task.robot.length
 
 
-def test_a_crank_turns_on_by_what_it_is_told_and_its_angle_is_told_within_a_turn():
+def test_a_crank_turns_by_its_action_and_its_angle_is_given_within_a_turn():
     env = envs.CrocodileVectorEnv(1, "Crawl", robot="salamandra", jitter=0.0)
     env.reset(seed=0)
     cranks = [place.servos.start for place in layout(env.task.robot).limbs]
     speed = env.task.robot.servo("LF_crank").speed
     action = np.zeros((1, env.single_action_space.shape[0]))
     action[0, cranks[0]], action[0, cranks[1]] = 0.9, 3.0
-    before = env.pack._told.copy()
+    before = env.pack._commanded.copy()
     seen = [env.step(action)[0][0] for _ in range(30)]
-    turned = (env.pack._told - before)[0]
+    turned = (env.pack._commanded - before)[0]
     assert turned[cranks[:2]] == pytest.approx([0.9 * speed * 1.5, speed * 1.5])
     assert turned[cranks[0]] > 2 * np.pi
-    assert envs.part(np.array(seen), "told", "salamandra")[-1, cranks].tolist() == pytest.approx([0.9, 1.0, 0.0, 0.0])
+    assert envs.part(np.array(seen), "last_action", "salamandra")[-1, cranks].tolist() == pytest.approx(
+        [0.9, 1.0, 0.0, 0.0]
+    )
     angles = np.pi * envs.part(np.array(seen), "servo_position", "salamandra")[:, cranks[0]].astype(float)
     assert np.abs(angles).max() <= np.pi
     assert np.ptp(angles) > 5.0
@@ -459,10 +463,10 @@ def test_a_task_follows_the_size_of_the_robot():
     assert (task.decision, task.timestep) == (0.025, 0.0025)
     assert task.rewards.forward == pytest.approx(CRAWL.rewards.forward / longer)
     assert task.rewards.work == pytest.approx(CRAWL.rewards.work / (heavier * longer))
-    assert task.rewards.haste == CRAWL.rewards.haste
-    pushed = replace(CRAWL, shoves=envs.Shoves()).on(ROBOTS["strider"])
-    assert pushed.shoves.most == pytest.approx(15.0 * 3.0 / ROBOTS["caiman"].mass)
-    assert (pushed.shoves.where(pushed.robot), envs.Shoves().where(CRAWL.robot)) == ("front", "thorax")
+    assert task.rewards.action_rate == CRAWL.rewards.action_rate
+    pushed = replace(CRAWL, pushes=envs.Pushes()).on(ROBOTS["strider"])
+    assert pushed.pushes.most == pytest.approx(15.0 * 3.0 / ROBOTS["caiman"].mass)
+    assert (pushed.pushes.where(pushed.robot), envs.Pushes().where(CRAWL.robot)) == ("front", "thorax")
     assert CRAWL.on(ROBOTS["long_tail"]) == replace(CRAWL, robot=ROBOTS["long_tail"])
     rates = {sense.name: sense.scale for sense in envs.senses(ROBOTS["salamander"])}
     assert rates["servo_velocity"] == f"{10 / np.sqrt(longer):.3g} rad/s"
@@ -494,3 +498,29 @@ def test_what_another_body_cannot_do_is_refused_in_a_sentence(changes, text):
     with pytest.raises(SuchusError, match=text) as told:
         envs.CrocodileEnv(**changes)
     assert str(told.value).count(". ") <= 1
+
+
+def test_old_names_of_a_task_work_and_say_the_new_ones():
+    with pytest.warns(OldName, match=r"suchus\.envs\.Shoves is now called Pushes"):
+        pushes = envs.Shoves(most=1.0)
+    with pytest.warns(OldName, match=r"Task\.shoves is now called pushes"):
+        env = gymnasium.make("suchus/Crawl-v0", shoves=pushes).unwrapped
+    assert env.task.pushes == pushes
+    with pytest.warns(OldName, match=r"Rewards\.haste is now called action_rate"):
+        assert replace(CRAWL.rewards, haste=-1.0).action_rate == -1.0
+
+
+def test_observations_and_info_are_read_by_their_old_names():
+    env = envs.CrocodileVectorEnv(1, CRAWL)
+    env.reset(seed=0)
+    seen, *_, infos = env.step(np.full(env.action_space.shape, 0.5))
+    with pytest.warns(OldName, match="'told' is now called 'last_action'"):
+        assert np.array_equal(envs.part(seen, "told"), envs.part(seen, "last_action"))
+    with pytest.warns(OldName, match="lateral_drift"):
+        assert infos["astray"] == infos["lateral_drift"]
+    with pytest.raises(KeyError, match="speed"):
+        infos["speed"]
+    single = envs.CrocodileEnv(CRAWL)
+    single.reset(seed=0)
+    with pytest.warns(OldName, match="action_rate"):
+        assert single.step(np.full(single.action_space.shape, 0.5))[-1]["haste"] > 0.0

@@ -11,7 +11,7 @@ from suchus.control import OpenLoop
 from suchus.errors import InvalidDesign
 from suchus.experiments import EXPERIMENTS
 from suchus.experiments import _shore_findings as findings
-from suchus.figures.shore import _aslant, levelled
+from suchus.figures.shore import _obliquely, levelled
 from suchus.land import Ground, simulate
 from suchus.record import ground_text
 from suchus.rotation import about, rotate
@@ -62,7 +62,7 @@ def test_who_tilts_by_more_than_sixty_degrees_has_fallen_and_is_not_ashore(degre
     record = kept(tilt=tilt)
     assert findings.fallen(record)[0] == fell
     assert np.isnan(findings.times_ashore(record)[0]) == fell
-    tilt[0, 5] = np.nan  # came apart
+    tilt[0, 5] = np.nan  # diverged
     assert findings.fallen(kept(tilt=tilt))[0]
 
 
@@ -118,7 +118,7 @@ def test_a_metre_is_measured_along_the_course():
     [
         (0, "after 3 s it walks, and after 8 s it is 1 m beyond the water line"),
         (1, "after 3 s it walks, and it falls"),
-        (2, "it walks, and it does not come 1 m beyond the water line"),
+        (2, "it walks, and it does not get 1 m beyond the water line"),
     ],
 )
 def test_what_is_shown_is_said_as_it_came(shown, said):
@@ -185,10 +185,10 @@ def test_the_water_line_is_where_the_slope_meets_the_level(uphill):
     assert run.control.begins == ("swimming" if uphill > 0.0 else "walking")
 
 
-def test_the_caption_says_that_a_robot_which_comes_aslant_looks_shorter():
-    assert "aslant by 49 degrees" in _aslant(0.85)
-    assert "aslant by 49 degrees" in _aslant(-0.85)
-    assert _aslant(0.0) == ""
+def test_the_caption_says_that_a_robot_which_comes_obliquely_looks_shorter():
+    assert "obliquely, at 49 degrees" in _obliquely(0.85)
+    assert "obliquely, at 49 degrees" in _obliquely(-0.85)
+    assert _obliquely(0.0) == ""
 
 
 def test_a_levelled_run_stands_on_a_slope_whose_water_line_is_the_origin():
@@ -212,7 +212,7 @@ def test_a_levelled_run_stands_on_a_slope_whose_water_line_is_the_origin():
     [
         ({"slopes": (0.2, 0.1)}, "slopes is"),
         ({"slopes": (0.0,)}, "slopes is"),
-        ({"grips": ()}, "grips is \\(\\)"),
+        ({"friction_scales": ()}, "friction_scales is \\(\\)"),
         ({"seeds": 0}, "seeds is 0"),
         ({"breathe_out": 1.5}, "breathe_out is 1.5"),
         ({"approach": 1.5}, "approach is 1.5"),

@@ -318,7 +318,15 @@ def test_force_noise_of_a_held_eel():
             ("of power", last.column("power")),
         ):
             off = flow.noise(cases.middle(last), series, window=1 / 12)
-            note("held eel", f"force noise {quantity}, {name}", off, "below 0.01", "128 cells/L", "2.5 L x 1.2 L", "-")
+            note(
+                "tethered eel",
+                f"force noise {quantity}, {name}",
+                off,
+                "below 0.01",
+                "128 cells/L",
+                "2.5 L x 1.2 L",
+                "-",
+            )
             assert off < (0.3 if least == 0 else 0.01)
 
 

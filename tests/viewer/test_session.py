@@ -1,11 +1,14 @@
+from contextlib import nullcontext
 from dataclasses import replace
 from math import inf, nan
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from suchus.blueprint import read
 from suchus.design import layout
 from suchus.design.scale import control_period, scaled
 from suchus.errors import OutsideLimits
@@ -16,10 +19,12 @@ from suchus.motion import Gait, check_limits
 from suchus.robots import ROBOTS
 from suchus.viewer import Session
 from suchus.viewer.bodies import BodyPoses, pieces
+from suchus.viewer.controls import Controls
 from suchus.viewer.history import columns
 from suchus.viewer.knobs import BUMPS, FORCE, GAIT_KNOBS, bumps_under, force_on, knobs_of, shown, tuned
 from suchus.viewer.live_page import status
 from suchus.viewer.plots import gait_bars, plans
+from suchus.viewer.saving import gait_file, robot_file
 from suchus.viewer.session import _PLAIN
 
 ROBOT, CRAWL = ROBOTS["caiman"], GAITS["belly_crawl"]
@@ -323,3 +328,46 @@ def test_a_body_without_limbs_is_watched_but_has_no_heading_loop():
     assert session.settings.heading is False
     session.advance(0.05)
     assert not session.look().trouble
+
+
+def test_a_saved_gait_reads_back_as_the_gait_that_is_walked(tmp_path):
+    session = Session(ROBOT, CRAWL)
+    assert session.tune("stroke", 41.0) == ""
+    session.switch("spine", False)
+    file = gait_file(ROBOT, session.settings)
+    (tmp_path / file.name).write_bytes(file.content)
+    read_back = read(tmp_path / file.name, Gait, GAITS)
+    assert file.name == "belly_crawl_tuned.toml"
+    assert read_back == replace(session.settings.walked(ROBOT), name="belly_crawl_tuned")
+    assert (read_back.stroke, read_back.trunk_bend) == (pytest.approx(0.041), 0.0)
+
+
+def test_a_gait_as_on_the_shelf_keeps_its_name_and_the_robot_reads_back_equal(tmp_path):
+    session = Session(ROBOT, CRAWL)
+    assert gait_file(ROBOT, session.settings).name == "belly_crawl.toml"
+    file = robot_file(ROBOT)
+    (tmp_path / file.name).write_bytes(file.content)
+    assert read(tmp_path / file.name, type(ROBOT), ROBOTS) == ROBOT
+
+
+def test_the_buttons_give_the_browser_gait_and_robot():
+    pressed, files = {}, []
+
+    def button(label, **_):
+        return SimpleNamespace(on_click=lambda act: pressed.setdefault(label, act), value=True)
+
+    def other(*_, **__):
+        return SimpleNamespace(on_update=lambda act: None, value="")
+
+    gui = SimpleNamespace(add_button=button, add_folder=lambda *_, **__: nullcontext())
+    for kind in ("checkbox", "slider", "number"):
+        setattr(gui, f"add_{kind}", other)
+    gui.add_dropdown = lambda *_, initial_value="", **__: SimpleNamespace(
+        on_update=lambda act: None, value=initial_value, options=()
+    )
+    session = Session(ROBOT, CRAWL)
+    Controls(gui, session, say=files.append, save=files.append)
+    session.tune("stroke", 41.0)
+    for label in ("save the gait", "save the robot"):
+        pressed[label](SimpleNamespace(client=object()))
+    assert [file.name for file in files] == ["belly_crawl_tuned.toml", "caiman.toml"]

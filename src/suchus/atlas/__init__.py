@@ -1,4 +1,4 @@
-"""The atlas: published data of flows around bodies, many of which move, beside what the flow solver makes of them.
+"""The atlas: published data of flows around bodies, many of which move, beside the results of the flow solver.
 
 A ``Case`` is a flow that is computed once; a ``Row`` is one published data set that it is compared with. The bound of
 a row follows from the scatter of its sources, before anything is computed.

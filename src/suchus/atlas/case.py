@@ -1,4 +1,4 @@
-"""What a row of the atlas is: a flow to compute, published data to compare it with, and the bound, set before."""
+"""A row of the atlas: a flow to compute, published data to compare it with, and the bound, set beforehand."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -10,27 +10,27 @@ Tell = Callable[[float], None]
 """Takes the share of a run that is done [-]."""
 
 Curves = Mapping[str, np.ndarray]
-"""What a flow gave, by name: a curve of shape (2, point), abscissa and ordinate, or a number of shape ()."""
+"""Results of a flow by name: a curve of shape (2, point), abscissa and ordinate, or a number of shape ()."""
 
 UNKNOWN_SCATTER = 0.08
-"""Bound of the rms difference over the peak where only one source is known, whose own error nobody can say [-]."""
+"""Bound of the rms difference over the peak where only one source is known, whose own error is unknown [-]."""
 
 FINEST = 0.02
-"""No bound is smaller: two sources may agree better than either is digitised [-]."""
+"""Smallest bound: two sources may agree better than the accuracy to which either was digitised [-]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Effort:
-    """How finely and how long a flow is computed."""
+    """Resolution and duration of the computation of a flow."""
 
     cells: int
     """Cells per diameter, chord or width [-]."""
     until: float
-    """How long the run lasts, in the units of the case [s]."""
+    """Duration of the run, in the units of the case [s]."""
     coarse: int = 0
     """Cells per diameter of the run before, in which the wake forms; 0 where there is none [-]."""
     before: float = 0.0
-    """How long that lasts, in the units of the case [s]."""
+    """Duration of that run, in the units of the case [s]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -38,15 +38,15 @@ class Case:
     """A flow that is computed once, for one row or for several."""
 
     name: str
-    """Its name, also that of its outcome's file."""
+    """Name of the flow, and of the file of its outcome."""
     setup: str
     """Domain, motion and averaging in one or two sentences; ``{cells}`` stands for the cells."""
     run: Callable[[Effort, Tell], Curves]
-    """Computes it."""
+    """Function that computes its curves."""
     full: Effort
     """The effort of a judged run."""
     quick: Effort
-    """One small enough for a trial: what comes of it is drawn and not judged."""
+    """The effort of a quick trial, whose result is drawn and not judged."""
     code: tuple[str, ...]
     """Files of this package that decide its curves, beside the flow solver itself."""
 
@@ -56,9 +56,9 @@ class Row:
     """One published data set beside the same quantity of ours."""
 
     name: str
-    """Its name on the command line."""
+    """Name of the row on the command line."""
     title: str
-    """What is compared, as a heading."""
+    """Heading: the flow, the quantity and the source."""
     case: str
     """Name of the flow that it is read from."""
     data: str
@@ -76,9 +76,9 @@ class Row:
     scale: tuple[float, float] = (1.0, 1.0)
     """Factors on the published abscissa and ordinate that give ours [-]."""
     shift: tuple[float, float] = (0.0, 0.0)
-    """What is added to them after that."""
+    """Offsets that are added to them after that."""
     window: tuple[float, float] = (-np.inf, np.inf)
-    """Our abscissae that are compared, both ends included."""
+    """Range of our abscissae that is compared, both ends included."""
     without: tuple[float, float] | None = None
     """Spacing of abscissae, and the half-width around each multiple of it, that are left out."""
     period: float | None = None
@@ -88,7 +88,7 @@ class Row:
     skin: bool = False
     """Whether it is read along the skin, where the reading has an error of its own."""
     note: str = ""
-    """What a reader must know: why data were left out, or what the measured cause of a difference is."""
+    """Note on the page: why data were left out, or the measured cause of a difference."""
 
 
 def bound(scatter: float | None) -> float:

@@ -16,14 +16,14 @@ _STAGE = "computing"  # a flow has one stage
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FlowProgress:
-    """How far a flow is."""
+    """Progress of the computation of a flow."""
 
     case: str
-    """Its name."""
+    """Name of the flow."""
     share: float
     """Share of it that is done [-]."""
     outcome: Outcome | None = None
-    """Its outcome, at its end."""
+    """Its outcome, when it has ended; before None."""
 
 
 def compute_all(

@@ -104,15 +104,15 @@ CASES = (
     Case(
         name="steady_re40", run=_steady, code=_CODE, full=Effort(cells=32, until=8.0, coarse=12, before=40.0),
         quick=Effort(cells=12, until=1.0, coarse=6, before=2.0),
-        setup="A cylinder in a stream, 24 x 16 diameters of water without end; 40 diameters of travel with {coarse} "
-        "cells a diameter and eight with {cells}.",
+        setup="A cylinder in a stream, in an unbounded domain, of which 24 x 16 diameters are computed; 40 diameters "
+        "of travel with {coarse} cells a diameter and eight with {cells}.",
     ),
     Case(
         name="shedding_re100", run=_shedding, code=_CODE, full=Effort(cells=28, until=45.0, coarse=12, before=80.0),
         quick=Effort(cells=10, until=45.0, coarse=8, before=50.0),
-        setup="A cylinder in a stream with a short gust at the start, 24 x 16 diameters of water without end; 80 "
-        "diameters of travel with {coarse} cells a diameter and 45 with {cells}, means over the last five periods of "
-        "shedding.",
+        setup="A cylinder in a stream with a short gust at the start, in an unbounded domain, of which 24 x 16 "
+        "diameters are computed; 80 diameters of travel with {coarse} cells a diameter and 45 with {cells}, means "
+        "over the last five periods of shedding.",
     ),
 )  # fmt: skip
 """The flows of this module."""

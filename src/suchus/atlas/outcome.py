@@ -1,4 +1,4 @@
-"""What came of a flow, on disk: a JSON file for each, whole or not at all, with the digest of what decided it."""
+"""Results of the flows on disk: one JSON file for each, written whole or not at all, with the digest of its causes."""
 
 import json
 import time
@@ -17,12 +17,12 @@ _DIGITS = 7  # of the numbers that are kept: single precision
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Outcome:
-    """What came of a flow."""
+    """Result of the computation of a flow."""
 
     case: str
     """Name of the flow."""
     digest: str
-    """Of its set-up and of all code that decides its curves."""
+    """Digest of its set-up and of all code that decides its curves."""
     quick: bool
     """Whether it was the quick trial."""
     cells: int
@@ -30,9 +30,9 @@ class Outcome:
     seconds: float
     """Processor time [s]."""
     failed: str = ""
-    """Why there are no curves; empty if there are."""
+    """The error, if there are no curves; else empty."""
     curves: Curves = field(default_factory=dict)
-    """See ``case.Curves``."""
+    """Its curves and numbers by name, see ``case.Curves``."""
 
 
 def digest_of(case: Case, *, quick: bool) -> str:
@@ -43,7 +43,7 @@ def digest_of(case: Case, *, quick: bool) -> str:
 
 
 def compute(case: Case, *, quick: bool, tell: Tell) -> Outcome:
-    """Compute a flow; what the solver refuses or cannot finish is an outcome too, with its sentence."""
+    """Compute a flow; an error of the solver is kept as an outcome too, with its sentence."""
     effort = case.quick if quick else case.full
     began = time.process_time()
     curves, failed = dict[str, np.ndarray](), ""
@@ -69,9 +69,9 @@ def save_outcome(outcome: Outcome, folder: Path) -> None:
         Unwritable: the place cannot be written to.
     """
     curves = {name: _short(curve) for name, curve in outcome.curves.items()}
-    told = {name: getattr(outcome, name) for name in Outcome.__dataclass_fields__}
+    values = {name: getattr(outcome, name) for name in Outcome.__dataclass_fields__}
     with new_file(place(folder, outcome.case)) as draft:
-        draft.write_text(json.dumps({**told, "curves": curves}) + "\n", encoding="utf-8")
+        draft.write_text(json.dumps({**values, "curves": curves}) + "\n", encoding="utf-8")
 
 
 def _short(curve: np.ndarray) -> object:
@@ -88,8 +88,8 @@ def load_outcome(folder: Path, case: str) -> Outcome | None:
     path = place(folder, case)
     if not path.is_file():
         return None
-    told = read_json(path)
-    if not isinstance(told, Mapping) or set(told) != set(Outcome.__dataclass_fields__):
+    values = read_json(path)
+    if not isinstance(values, Mapping) or set(values) != set(Outcome.__dataclass_fields__):
         raise UnreadableFile(f"{path} holds no outcome of the atlas; delete it and compute the row anew.")
-    curves = {name: np.array(curve, float) for name, curve in told["curves"].items()}
-    return Outcome(**{**told, "curves": curves})
+    curves = {name: np.array(curve, float) for name, curve in values["curves"].items()}
+    return Outcome(**{**values, "curves": curves})

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from suchus.atlas import cylinders, shaken, snake, still, walls
+from suchus.atlas import cylinders, oscillated, snake, still, walls
 from suchus.atlas.case import Case, Row
 from suchus.errors import UnknownName
 
@@ -45,9 +45,9 @@ def _started() -> tuple[Row, ...]:
     return (*drags, length, *faster)
 
 
-def _shaken() -> tuple[Row, ...]:
+def _oscillated() -> tuple[Row, ...]:
     rows = []
-    for ratio in shaken.RATIOS:
+    for ratio in oscillated.RATIOS:
         key = f"{ratio:g}".replace(".", "p") if ratio != 1 else "1p0"
         case = f"shaken_{ratio:g}".replace(".", "p")
         for quantity, label in (("pressure", "pressure coefficient [-]"), ("vorticity", "vorticity x D / U [-]")):
@@ -58,8 +58,8 @@ def _shaken() -> tuple[Row, ...]:
                     x="angle",
                     period=360.0,
                     skin=True,
-                    title=f"Cylinder oscillated transversely at {ratio:g} of its frequency, Re 185: {quantity}, "
-                    "Guilmineau and Queutey 2002",
+                    title=f"Cylinder oscillated transversely at {ratio:g} times its natural frequency, Re 185: "
+                    f"{quantity}, Guilmineau and Queutey 2002",
                     data=f"guilmineau2002_{quantity}_{key}",
                     y="cp" if quantity == "pressure" else quantity,
                     ours=f"uppermost {quantity}",
@@ -73,7 +73,8 @@ def _shaken() -> tuple[Row, ...]:
     rows.append(
         Row(
             name="schneiders_drag",
-            title="Cylinder oscillated transversely at 0.8 of its frequency, Re 185: drag, Schneiders 2013",
+            title="Cylinder oscillated transversely at 0.8 times its natural frequency, Re 185: drag, "
+            "Schneiders 2013",
             case="shaken_0p8", data="schneiders2013_drag", x="y", y="cd", kind="loop", ours="drag loop",
             labels=("displacement / diameter [-]", "drag coefficient [-]"),
             note="A point is compared with the nearer of the two branches.",
@@ -82,8 +83,8 @@ def _shaken() -> tuple[Row, ...]:
     rows.append(
         Row(
             name="schneiders_pressure", case="shaken_0p8", data="schneiders2013_pressure", x="angle", y="cp",
-            title="Cylinder oscillated transversely at 0.8 of its frequency, Re 185: pressure going down, "
-            "Schneiders 2013",
+            title="Cylinder oscillated transversely at 0.8 times its natural frequency, Re 185: "
+            "pressure going down, Schneiders 2013",
             period=360.0, skin=True, ours="pressure going down", labels=(_ANGLE, "pressure coefficient [-]"),
         )
     )  # fmt: skip
@@ -148,7 +149,7 @@ def _walls() -> tuple[Row, ...]:
             kind="numbers"),
         Row(name="dfg_2d2", title="Cylinder in a channel, DFG 2D-2", case="dfg_2d2", data="dfg_2d2_numbers",
             kind="numbers"),
-        Row(name="wachs_numbers", title="Settling cylinder: speed in the end, Wachs 2009", case="settling",
+        Row(name="wachs_numbers", title="Settling cylinder: terminal speed, Wachs 2009", case="settling",
             data="wachs2009_numbers", kind="numbers"),
         Row(
             name="wachs_path", title="Settling cylinder: path, Wachs 2009", case="settling", data="wachs2009_path",
@@ -176,7 +177,7 @@ GROUPS: Mapping[str, tuple[Row, ...]] = MappingProxyType(
         "Started cylinders": _started(),
         "Cylinders at rest in a stream": _resting(),
         "Bodies that move in water at rest": _still(),
-        "Cylinder oscillated across a stream": _shaken(),
+        "Cylinder oscillated across a stream": _oscillated(),
         "Flying snake": _snakes(),
     }
 )
@@ -186,14 +187,14 @@ ROWS: Mapping[str, Row] = MappingProxyType({row.name: row for rows in GROUPS.val
 """The rows by their names."""
 
 CASES: Mapping[str, Case] = MappingProxyType(
-    {case.name: case for room in (walls, cylinders, still, shaken, snake) for case in room.CASES}
+    {case.name: case for room in (walls, cylinders, still, oscillated, snake) for case in room.CASES}
 )
 """The flows by their names."""
 
 
 LONGEST = (
     *(f"snake_{degrees}_re{reynolds}" for reynolds in (2000, 1000) for degrees in (30, 35)),
-    *(case.name for case in shaken.CASES), "flapping", "shedding_re100", "dfg_2d2", "settling",
+    *(case.name for case in oscillated.CASES), "flapping", "shedding_re100", "dfg_2d2", "settling",
 )  # fmt: skip
 """Flows that are begun first, so that no process idles in the end."""
 

@@ -42,7 +42,7 @@ class Skin:
 
 
 def read_skin(sim: flow.Simulation, acceleration: tuple[float, float] = (0.0, 0.0)) -> Skin:
-    """Return what a cylinder's skin feels now.
+    """Return pressure and vorticity along a cylinder's surface at the present time.
 
     Args:
         sim: a simulation of a single cylinder of diameter 1 in a stream of 1 with density 1, in a grid that rests.

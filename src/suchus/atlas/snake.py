@@ -41,8 +41,9 @@ CASES = tuple(
         full=Effort(cells=64, until=24.0, coarse=32, before=24.0),
         quick=Effort(cells=24, until=14.0, coarse=16, before=6.0),
         code=_CODE,
-        setup="The cross-section of a flying snake in a stream, in 9 x 6 chords of water without end; 24 chords of "
-        "travel from rest with {coarse} cells a chord and 24 with {cells}, means over the last 21.",
+        setup="The cross-section of a flying snake in a stream, in an unbounded domain, of which 9 x 6 chords are "
+        "computed; 24 chords of travel from rest with {coarse} cells a chord and 24 with {cells}, means over the last "
+        "21.",
     )
     for reynolds in (1000, 2000)
     for degrees in (30, 35)

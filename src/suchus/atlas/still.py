@@ -75,14 +75,14 @@ def _flapping(effort: Effort, tell: Tell) -> Curves:
 CASES = (
     Case(
         name="in_line", run=_in_line, full=Effort(cells=48, until=5.0), quick=Effort(cells=12, until=1.0), code=_CODE,
-        setup="A cylinder that oscillates in water at rest, Re 100, KC 5; 10 x 8 diameters of water without end, "
-        "{cells} cells a diameter; the last of five periods.",
+        setup="A cylinder that oscillates in water at rest, Re 100, KC 5; unbounded domain, of which 10 x 8 diameters "
+        "are computed; {cells} cells a diameter; the last of five periods.",
     ),
     Case(
         name="flapping", run=_flapping, full=Effort(cells=64, until=16.0), quick=Effort(cells=32, until=4.0),
         code=_CODE,
         setup="An ellipse 10:1 that flaps in water at rest with a stroke of 2.8 chords and a swing of 45 degrees, Re "
-        "75; 7 x 7 chords of water without end, {cells} cells a chord; four periods from rest.",
+        "75; unbounded domain, of which 7 x 7 chords are computed; {cells} cells a chord; four periods from rest.",
     ),
 )  # fmt: skip
 """The flows of this module."""

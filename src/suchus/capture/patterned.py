@@ -1,4 +1,4 @@
-"""From a walk that was seen to a pattern that any body with four limbs and foot paths can walk."""
+"""From a measured walk to a pattern that any body with four limbs and foot paths can walk."""
 
 from dataclasses import replace
 from math import degrees
@@ -13,23 +13,23 @@ from suchus.errors import InvalidDesign, NotConverged, OutsideLimits, Unreachabl
 from suchus.motion import AxialWave, FootPath, Pattern, check_limits
 
 NEEDED = ("four_limbs", "foot_paths")
-"""What a walk of a four-limbed animal needs of a robot: names of ``design.NEEDS``."""
+"""What the walk of a four-limbed animal requires of a robot: names of ``design.NEEDS``."""
 _PAIRS = (LEGS[:2], LEGS[2:])
 
 
 def to_pattern(walk: Walk, robot: AnyRobot, base: Pattern, *, name: str, duty: Duty = "retraction") -> Captured:
-    """Return the pattern by which a body of its own walks as was seen.
+    """Return the pattern by which a robot walks as was measured.
 
     Phases and angles are taken as they are, lengths in proportion to the trunk from hip to shoulder. The bend of the
     trunk is shared evenly among its joints, that of the tail among the tail's; the lag between the two makes the wave.
-    What was not seen is the base's, and what the robot's limits refuse is changed as little as needed.
+    Quantities that were not measured are the base's, and what the robot's limits forbid is changed as little as needed.
 
     Args:
-        walk: what was seen.
-        robot: who shall walk.
-        base: pattern of foot paths that lends what was not seen.
-        name: of the new pattern.
-        duty: what its duty factor is.
+        walk: the measured walk.
+        robot: the robot that shall walk.
+        base: pattern of foot paths, from which quantities that were not measured are taken.
+        name: name of the new pattern.
+        duty: which share of the cycle becomes its duty factor.
 
     Raises:
         UnsuitedRobot: the robot lacks four limbs with foot paths.
@@ -39,7 +39,7 @@ def to_pattern(walk: Walk, robot: AnyRobot, base: Pattern, *, name: str, duty: D
     check_limits(robot, base)
     if not all(isinstance(does, FootPath) for does in base.girdles):
         raise OutsideLimits(
-            f"a captured walk borrows what was not seen from a pattern of foot paths; gait {base.name!r} holds limbs "
+            f"a captured walk takes what was not measured from a pattern of foot paths; gait {base.name!r} holds limbs "
             "or turns cranks: name another one with --base."
         )
     notes: list[str] = []
@@ -62,7 +62,7 @@ def to_pattern(walk: Walk, robot: AnyRobot, base: Pattern, *, name: str, duty: D
 
 
 def _bent(walk: Walk, robot: AnyRobot, duty: float, notes: list[str]) -> AxialWave:
-    """Return the wave whose first harmonics at trunk and tail are those that were seen.
+    """Return the wave whose first harmonics at trunk and tail are the measured ones.
 
     A hinge at s bends the body to the left by -a cos 2 pi (p - c - phase - waves s) at phase p of the first limb, with
     c = 0.75 - duty / 2; the article's signs are right positive.
@@ -107,7 +107,7 @@ def _bent(walk: Walk, robot: AnyRobot, duty: float, notes: list[str]) -> AxialWa
 
 
 def _shaped(walk: Walk, robot: AnyRobot, gait: Pattern, base: Pattern, notes: list[str]) -> Pattern:
-    """Take lengths over in proportion to the trunk, and from the base what was not seen."""
+    """Scale lengths in proportion to the trunk, and take from the base what was not measured."""
     trunk = hips_ahead(robot, 0)
     paths = []
     for legs, girdle, does in zip(_PAIRS, layout(robot).robot.girdles, base.girdles, strict=True):
@@ -129,7 +129,7 @@ def _shaped(walk: Walk, robot: AnyRobot, gait: Pattern, base: Pattern, notes: li
 
 
 def _share(length: float, reach: float) -> float:
-    """Return a length as a share of a limb's reach, of which it can be no more than all."""
+    """Return a length as a share of a limb's reach, at most 1 [-]."""
     return _rounded(float(np.clip(length / reach, -1.0, 1.0)))
 
 
@@ -149,7 +149,7 @@ def _within_limits(robot: AnyRobot, gait: Pattern, base: Pattern, notes: list[st
         shorter = replace(gait, girdles=tuple(paths))
         if _fits(robot, shorter):
             if share < 1.0:
-                notes.append(f"the strokes that were seen are beyond the limbs; {share:.2f} of them was taken")
+                notes.append(f"the measured strokes are beyond the limbs' reach; {share:.2f} of them was taken")
             return shorter
     check_limits(robot, shorter)
     return shorter

@@ -1,4 +1,4 @@
-"""From a walk that was seen to a gait that a robot can walk, with everything that got lost on the way named."""
+"""From a measured walk to a gait that a robot can walk, with a note on everything that the gait cannot keep."""
 
 from dataclasses import dataclass, replace
 from math import degrees
@@ -14,7 +14,7 @@ from suchus.errors import OutsideLimits, UnsuitedRobot
 from suchus.motion import Gait, Pattern, check_limits, tail_bend, trunk_bend
 
 Duty = Literal["retraction", "contact"]
-"""Which share of the cycle becomes the duty factor: feet going back along the body, or feet at rest on the ground.
+"""Share of the cycle that becomes the duty factor: feet going back along the body, or feet at rest on the ground.
 
 A gait commands the first. On a film of our own crawl, which commands 0.5, feet go back for 0.47 of the cycle but rest
 for 0.61, because the body sags onto feet that should have left the ground.
@@ -30,24 +30,25 @@ class Captured:
     """A gait read from a walk."""
 
     gait: Gait | Pattern
-    """What the robot is told to do."""
+    """The gait for the robot."""
     notes: tuple[str, ...]
-    """What was seen and the gait does not hold, what it holds and was not seen, and what was changed."""
+    """Sentences on what was measured and is not in the gait, what is in it without a measurement, and what was
+    changed."""
 
 
 def to_gait(walk: Walk, robot: AnyRobot, base: Gait, *, name: str, duty: Duty = "retraction") -> Captured:
-    """Return the gait by which a robot walks as was seen.
+    """Return the gait by which a robot walks as was measured.
 
     Phases and angles are taken as they are, lengths in proportion to the trunk from hip to shoulder. The bends are
-    first harmonics, so that their amplitudes and phases are those of the gait's cosines. What was not seen is the
-    base's. What the robot's limits refuse is changed as little as needed.
+    first harmonics, so that their amplitudes and phases are those of the gait's cosines. Quantities that were not
+    measured are the base's. What the robot's limits refuse is changed as little as needed.
 
     Args:
-        walk: what was seen.
-        robot: who shall walk.
-        base: gait that lends what was not seen.
-        name: of the new gait.
-        duty: what its duty factor is.
+        walk: the measured walk.
+        robot: the robot that shall walk.
+        base: gait from which quantities that were not measured are taken.
+        name: name of the new gait.
+        duty: which share of the cycle becomes its duty factor.
 
     Raises:
         OutsideLimits: the robot cannot follow even with the base's posture and a small stroke.
@@ -101,31 +102,32 @@ def _timed(walk: Walk, gait: Gait, duty: Duty, notes: list[str]) -> Gait:
 
 
 def _bent(walk: Walk, gait: Gait, notes: list[str]) -> Gait:
-    """Set the bends so that the gait's own law gives the first harmonics that were seen."""
+    """Set the bends so that the gait's own law gives the measured first harmonics."""
     # both clocks have LF's mid-stance in common: the gait's begins half the difference of the duty factors off
     clock = np.exp(1j * np.pi * (gait.duty_factor - mean_of(walk, "duty")))
     unit = replace(gait, trunk_bend=1.0, tail_bend=1.0, spine_phase=0.0, tail_phase=0.0)
-    # the gait's laws speak in joint angles, what was seen in the article's signs
-    spine, late = _solve(-clock * walk.bends["spine_lateral"], _harmonic(unit, "trunk"))
-    tail, tail_late = _solve(clock * walk.bends["tail_lateral"], _harmonic(unit, "tail"))
+    # the gait's laws give joint angles; the measured bends have the article's signs
+    spine, lag = _solve(-clock * walk.bends["spine_lateral"], _harmonic(unit, "trunk"))
+    tail, tail_lag = _solve(clock * walk.bends["tail_lateral"], _harmonic(unit, "tail"))
     carried = abs(_harmonic(unit, "trunk"))
     if carried < _HOLDS:
         seen = degrees(walk.value("spine_lateral")), degrees(walk.value("tail_lateral"))
         notes.append(
-            f"in this footfall the pulls of the limbs on trunk and tail cancel ({carried:.2f} is left of 1); the bends "
-            f"that were seen, trunk {seen[0]:.0f} and tail {seen[1]:.0f} degrees, cannot be held and are zero"
+            f"in this footfall the pulls of the limbs on trunk and tail cancel ({carried:.2f} is left of 1); the "
+            f"bends that were measured, trunk {seen[0]:.0f} and tail {seen[1]:.0f} degrees, cannot be followed and "
+            "are set to zero"
         )
         return replace(gait, trunk_bend=0.0, tail_bend=0.0, spine_phase=0.0, tail_phase=0.0)
     for part, amplitude in (("spine", walk.value("spine_lateral")), ("tail", walk.value("tail_lateral"))):
         if amplitude < _STILL:
-            notes.append(f"the {part} hardly bends ({degrees(amplitude):.1f} degrees): its phase means nothing")
-    late = late if walk.value("spine_lateral") >= _STILL else 0.0
-    tail_phase = _within_half(tail_late - late) if walk.value("tail_lateral") >= _STILL else 0.0
+            notes.append(f"the {part} hardly bends ({degrees(amplitude):.1f} degrees): its phase has no meaning")
+    lag = lag if walk.value("spine_lateral") >= _STILL else 0.0
+    tail_phase = _within_half(tail_lag - lag) if walk.value("tail_lateral") >= _STILL else 0.0
     return replace(
         gait,
         trunk_bend=_rounded(spine),
         tail_bend=_rounded(tail),
-        spine_phase=_rounded(late),
+        spine_phase=_rounded(lag),
         tail_phase=_rounded(tail_phase),
     )
 
@@ -139,12 +141,12 @@ def _harmonic(gait: Gait, part: str) -> complex:
 
 
 def _solve(seen: complex, unit: complex) -> tuple[float, float]:
-    """Return amplitude, and how late [cycle], that turn the law's unit answer into what was seen."""
+    """Return the amplitude [rad] and phase lag [cycle] from the law's unit response to the measured bend."""
     return abs(seen) / max(abs(unit), 1e-9), _within_half(float(np.angle(unit / seen)) / (2 * np.pi)) if seen else 0.0
 
 
 def _shaped(walk: Walk, robot: Crocodile, gait: Gait, base: Gait, notes: list[str]) -> Gait:
-    """Take lengths over in proportion to the trunk, and from the base what was not seen."""
+    """Scale lengths in proportion to the trunk, and take from the base what was not measured."""
     trunk = robot.spine.length + robot.thorax.shoulder
     stroke = trunk * mean_of(walk, "stroke")
     sides = (("front", LEGS[:2]), ("hind", LEGS[2:]))
@@ -218,7 +220,7 @@ def _fits(robot: Crocodile, gait: Gait) -> bool:
 
 
 def _unheld(walk: Walk) -> list[str]:
-    """Name what was seen and no gait of this kind can hold."""
+    """Note what was measured and no gait of this kind can have."""
     notes = []
     for part in ("trunk", "tail"):
         index = walk.value(f"standing_{part}")

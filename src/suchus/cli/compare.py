@@ -84,7 +84,7 @@ def _show(found: Comparison) -> None:
         )
         for one in found.measures[:_MOST]
     ]
-    _print(console, ("measure", "A", "B", "B less A", "of A"), rows)
+    _print(console, ("measure", "A", "B", "B minus A", "relative to A"), rows)
 
 
 def _print(console: Console, head: Sequence[str], rows: Sequence[Sequence[str]]) -> None:

@@ -7,8 +7,9 @@ from suchus.envs.registering import IDS, LONGER, STEPS, register
 from suchus.envs.senses import SENSES, part, senses
 from suchus.envs.shelf import TASKS
 from suchus.envs.single import CrocodileEnv
-from suchus.envs.task import Breaks, Rewards, Shoves, Task
+from suchus.envs.task import Breaks, Pushes, Rewards, Task
 from suchus.envs.vector import CrocodileVectorEnv
+from suchus.renamed import old_exports
 
 register()
 
@@ -29,8 +30,8 @@ __all__ = [
     "Landing",
     "Played",
     "Policy",
+    "Pushes",
     "Rewards",
-    "Shoves",
     "Still",
     "SwimToGoal",
     "Task",
@@ -42,3 +43,5 @@ __all__ = [
     "remaining",
     "senses",
 ]
+
+__getattr__ = old_exports(__name__, Shoves="Pushes")

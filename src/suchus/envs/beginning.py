@@ -48,13 +48,13 @@ def begin(task: Task) -> Beginning:
 
 
 def off_by(task: Task, at: Beginning, jitter: np.ndarray) -> Beginning:
-    """Return a beginning with its servos off their places, shape (servo,) [rad]; they are told their places still.
+    """Return a beginning with its its joints displaced by ``jitter``, shape (servo,) [rad]; the commanded angles stay.
 
     A lying robot is put on the ground again. One that stands keeps its tail, whose bend is no joint's alone.
     """
     model = compile_model(task.body, task.timestep)
     if task.start == "lying":
-        return at._replace(qpos=standing(model, task.robot, hip_height(task.robot, task.gait), at.told + jitter))
+        return at._replace(qpos=standing(model, task.robot, hip_height(task.robot, task.gait), at.commanded + jitter))
     qpos = at.qpos.copy()
     qpos[model.jnt_qposadr[model.actuator_trnid[:-1, 0]]] += jitter[:-1]
     return at._replace(qpos=qpos)

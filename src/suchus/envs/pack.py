@@ -1,4 +1,4 @@
-"""A pack: many robots at one task, each in an episode of its own, one batch of physics."""
+"""A pack: many robots at one task, each in an episode of its own, simulated as one batch."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -29,37 +29,37 @@ from suchus.motion import check_limits
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Chance:
-    """What was drawn for one episode."""
+    """Random values that were drawn for one episode."""
 
     phase: float = 0.0
-    """Of the clock at the beginning [cycle]."""
+    """Phase of the clock at the beginning [cycle]."""
     broken: Fault | None = None
-    """What breaks; None: nothing."""
+    """The fault; None: no fault."""
     breaks: int = -1
-    """In which control period; -1: never."""
+    """Index of the control period in which the fault begins; -1: never."""
     force: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    """Of the push [N]."""
+    """Force of the push in the world [N]."""
     pushed: int = -1
-    """In which control period it begins; -1: never."""
+    """Index of the control period in which the push begins; -1: never."""
     bearing: float = 0.0
-    """Of the goal from straight ahead, left positive [rad]."""
+    """Bearing of the goal from straight ahead, left positive [rad]."""
     period: float
-    """Of control [s]."""
+    """Control period [s]."""
 
     @property
     def fault(self) -> str:
-        """In words; empty if nothing breaks."""
+        """Sentence that says what fails and when; empty without a fault."""
         if self.broken is None:
             return ""
         return f"{self.broken.part} {self.broken.kind()} from {self.breaks * self.period:.2f} s"
 
 
 class Pack:
-    """Some robots at one task. What becomes of one does not depend on how many others there are.
+    """Robots at one task. The result of one robot does not depend on the number of the others.
 
     Args:
         task: the task.
-        count: how many robots.
+        count: number of robots.
     """
 
     def __init__(self, task: Task, count: int) -> None:
@@ -78,8 +78,8 @@ class Pack:
         self._steps = round(self._period / task.timestep)
         self._check_body()
         self._goals = np.zeros((count, 2))
-        self._told = np.tile(self._begin.told, (count, 1))
-        self._turned = np.zeros_like(self._told)
+        self._commanded = np.tile(self._begin.commanded, (count, 1))
+        self._turned = np.zeros_like(self._commanded)
         self._injector = Injector(self._bench, self._period, task.robot)
         self._tick = np.zeros(count, dtype=int)
         self._periods = 0
@@ -89,71 +89,71 @@ class Pack:
     @property
     def centre(self) -> Float[np.ndarray, " servo"]:
         """Servo angles of an action of zero [rad]."""
-        return self._begin.told
+        return self._begin.commanded
 
     @property
     def time(self) -> Float[np.ndarray, " run"]:
-        """Since the beginning of each episode [s]."""
+        """Time since the beginning of each episode [s]."""
         return self._tick * self._period
 
     @property
     def phase(self) -> Float[np.ndarray, " run"]:
-        """Of each robot's clock [cycle]."""
+        """Phase of each robot's clock [cycle]."""
         return np.array([chance.phase for chance in self.chances]) + self.time / self.task.period
 
     def restart(self, robots: Sequence[int], chances: Sequence[np.random.Generator]) -> None:
         """Begin new episodes.
 
         Args:
-            robots: whose.
-            chances: for each of them, what leaves its episode to chance.
+            robots: indices of the robots.
+            chances: for each of them the random generator of its episode.
         """
         for i, random in zip(robots, chances, strict=True):
-            jitter = self.task.jitter * np.asarray(random.uniform(-1.0, 1.0, self._told.shape[1]))
+            jitter = self.task.jitter * np.asarray(random.uniform(-1.0, 1.0, self._commanded.shape[1]))
             self._injector.mend(i)
             restart(self._bench, i, off_by(self.task, self._begin, jitter))
-            self._told[i], self._turned[i], self._tick[i] = self._begin.told, 0.0, 0
+            self._commanded[i], self._turned[i], self._tick[i] = self._begin.commanded, 0.0, 0
             self.chances[i], self.causes[i] = draw(self.task, random), ""
             self._set_goal(i)
 
     def feel(self) -> Float[np.ndarray, "run n"]:
-        """Return what each robot feels, see ``senses``."""
-        told = np.where(self._cranks, self._turned / self._turn, (self._told - self.centre) / self.task.span)
+        """Return the observation of each robot, see ``senses``."""
+        commanded = np.where(self._cranks, self._turned / self._turn, (self._commanded - self.centre) / self.task.span)
         goal = None if self.task.goal is None else (self._offset(self.task.goal), self.remaining)
-        return observations(self.task.robot, self._sensed(), self.phase, told, goal)
+        return observations(self.task.robot, self._sensed(), self.phase, commanded, goal)
 
     def act(self, actions: Float[np.ndarray, "run servo"], who: Bool[np.ndarray, " run"]) -> Terms:
-        """Let some robots act for one step; the terms of the others mean nothing.
+        """Let the chosen robots act for one step; the terms of the others have no meaning.
 
-        A crank has no centre: an action turns it on from where it was told to be, at most at its no-load speed.
+        A crank has no centre: an action turns it on from its last commanded angle, at most at its no-load speed.
 
         Args:
-            actions: -1 to 1; what is beyond counts as the end that it is beyond [-].
-            who: which robots.
+            actions: -1 to 1, values beyond are clipped [-].
+            who: whether each robot acts [-].
         """
         shares = np.clip(np.asarray(actions, dtype=float), -1.0, 1.0)
         there = np.clip(self.centre + self.task.span * shares, self._low, self._high)
-        goal = np.where(self._cranks, self._told + self._turn * shares, there)
-        goal = np.where(who[:, None], goal, self._told)
+        target = np.where(self._cranks, self._commanded + self._turn * shares, there)
+        target = np.where(who[:, None], target, self._commanded)
         before, work, far = self._read("centre_of_mass"), np.zeros(self.count), self.remaining
         self._bench.alive[:] = who
         periods = round(self.task.decision / self._period)
         for k in range(periods):
             self._happen(who)
-            targets = self._told + (k + 1) / periods * (goal - self._told)
+            targets = self._commanded + (k + 1) / periods * (target - self._commanded)
             self._bench.advance(self._injector.command(self._periods, targets), self._steps, 0.0)
             self._periods += 1
             work += self._power() * self._period
             self._tick[who] += 1
-        turned = goal - self._told
-        haste = (turned**2).sum(axis=1)
-        self._told, self._turned = goal, np.where(who[:, None], turned, self._turned)
-        return self._terms(who, before, far, work, haste)
+        turned = target - self._commanded
+        action_rate = (turned**2).sum(axis=1)
+        self._commanded, self._turned = target, np.where(who[:, None], turned, self._turned)
+        return self._terms(who, before, far, work, action_rate)
 
     def record(self, robot: int) -> xr.Dataset:
         """Return one robot as it is now, as a record of one sample."""
         self._bench.alive[:] = True
-        self._readings.store(0, self.phase[:, None] + np.array(self.task.gait.limb_phases), self._told)
+        self._readings.store(0, self.phase[:, None] + np.array(self.task.gait.limb_phases), self._commanded)
         return self._readings.record(np.zeros(1)).isel(run=robot).copy(deep=True)
 
     @property
@@ -173,35 +173,35 @@ class Pack:
             self._goals[robot] = task.goal.place(begin, self.chances[robot].bearing, task.ground, task.lake)
 
     def _terms(
-        self, who: np.ndarray, before: np.ndarray, far: np.ndarray, work: np.ndarray, haste: np.ndarray
+        self, who: np.ndarray, before: np.ndarray, far: np.ndarray, work: np.ndarray, action_rate: np.ndarray
     ) -> Terms:
-        after, apart = self._read("centre_of_mass"), who & ~self._bench.alive
-        way = np.where(apart[:, None], 0.0, after - before)
-        aside = np.where(apart, 0.0, np.abs(after[:, 1]) - np.abs(before[:, 1]))
+        after, diverged = self._read("centre_of_mass"), who & ~self._bench.alive
+        moved = np.where(diverged[:, None], 0.0, after - before)
+        drift = np.where(diverged, 0.0, np.abs(after[:, 1]) - np.abs(before[:, 1]))
         height, level = self._read("snout_position")[:, 2], rotation.upward(self._read("imu_orientation"))[:, 2]
         low = (height < self.task.least_height) & (self.task.least_height > 0.0)
         fell = low | (level < self.task.least_level)
         left = self.remaining
-        there = who & (left <= 0.0) & ~(fell | apart) & (self.task.goal is not None)
-        for i in np.flatnonzero(who & (fell | apart)):
-            self.causes[i] = self._why(int(i), bool(apart[i]), float(height[i]), float(level[i]))
+        there = who & (left <= 0.0) & ~(fell | diverged) & (self.task.goal is not None)
+        for i in np.flatnonzero(who & (fell | diverged)):
+            self.causes[i] = self._why(int(i), bool(diverged[i]), float(height[i]), float(level[i]))
         for i in np.flatnonzero(there):
             self.causes[i] = f"it reached the goal at {self.time[i]:.2f} s"
         return Terms(
-            forward=way[:, 0],
-            astray=aside,
-            upright=np.where(fell | apart, 0.0, self.task.decision),
-            work=np.where(apart, 0.0, work),
-            haste=haste,
-            approach=np.where(apart, 0.0, far - left),
+            forward=moved[:, 0],
+            lateral_drift=drift,
+            upright=np.where(fell | diverged, 0.0, self.task.decision),
+            work=np.where(diverged, 0.0, work),
+            action_rate=action_rate,
+            approach=np.where(diverged, 0.0, far - left),
             goal=there,
-            fall=fell | apart,
+            fall=fell | diverged,
         )
 
-    def _why(self, robot: int, apart: bool, height: float, level: float) -> str:
+    def _why(self, robot: int, diverged: bool, height: float, level: float) -> str:
         when = f"at {self.time[robot]:.2f} s"
-        if apart:
-            return f"the physics came apart {when}: {self._bench.cause[robot]}"
+        if diverged:
+            return f"the simulation diverged {when}: {self._bench.cause[robot]}"
         if 0.0 < self.task.least_height > height:
             return f"it fell {when}: the snout is at {height:.3f} m, below {self.task.least_height:g} m"
         tilt, most = (float(np.degrees(np.arccos(np.clip(c, -1, 1)))) for c in (level, self.task.least_level))
@@ -209,16 +209,16 @@ class Pack:
         return f"it rolled over {when}: the {root} is tilted by {tilt:.0f} degrees, beyond {most:.0f}"
 
     def _happen(self, who: np.ndarray) -> None:
-        """Break and push those whose time has come."""
+        """Begin the faults and begin and end the pushes that are due."""
         for i in np.flatnonzero(who):
             chance, tick = self.chances[i], self._tick[i]
             if tick == chance.breaks and chance.broken is not None:
                 self._injector.begin(int(i), chance.broken)
-            if chance.pushed >= 0 and self.task.shoves is not None:
-                lasting = round(self.task.shoves.lasting / self._period)
+            if chance.pushed >= 0 and self.task.pushes is not None:
+                lasting = round(self.task.pushes.lasting / self._period)
                 if tick in (chance.pushed, chance.pushed + lasting):
                     force = np.array(chance.force) * (tick == chance.pushed)
-                    self._bench.push(int(i), self.task.shoves.where(self.task.robot), force)
+                    self._bench.push(int(i), self.task.pushes.where(self.task.robot), force)
 
     def _sensed(self) -> Sensed:
         return self._injector.sense(self._readings.sensed(0.0))
@@ -234,29 +234,29 @@ class Pack:
         return np.array(self._bench.readings[:, first : first + int(where.dim[0])])
 
     def _check_body(self) -> None:
-        if self.task.shoves is None:
+        if self.task.pushes is None:
             return
         model = compile_model(self.task.body, self.task.timestep)
         bodies = [model.body(i).name for i in range(1, model.nbody)]
-        where = self.task.shoves.where(self.task.robot)
+        where = self.task.pushes.where(self.task.robot)
         if where not in bodies:
             raise UnknownName("body", where, bodies)
 
 
 def draw(task: Task, random: np.random.Generator) -> Chance:
-    """Leave an episode to chance: the clock's phase, what breaks and who pushes."""
+    """Draw the random values of an episode: the phase of the clock, the bearing of the goal, the fault and the push."""
     period = control_period(task.robot)
     chance = {"phase": float(random.uniform()), "period": period}
     if task.goal is not None:
         chance["bearing"] = task.goal.draw(random)
-    fault, push = task.breaks, task.shoves
-    told: dict[str, object] = {}
+    fault, push = task.breaks, task.pushes
+    drawn: dict[str, object] = {}
     if fault is not None:
         broken = fault.draw(random, task.robot)
-        told["breaks"] = int(np.ceil(random.uniform(fault.earliest, fault.latest) / period))
-        told["broken"] = broken
+        drawn["breaks"] = int(np.ceil(random.uniform(fault.earliest, fault.latest) / period))
+        drawn["broken"] = broken
     if push is not None:
-        told["pushed"] = int(np.ceil(random.uniform(push.earliest, push.latest) / period))
-        way, force = random.uniform(-np.pi, np.pi), random.uniform(0.0, push.most)
-        told["force"] = (float(force * np.cos(way)), float(force * np.sin(way)), 0.0)
-    return Chance(**chance, **told)  # type: ignore[arg-type]
+        drawn["pushed"] = int(np.ceil(random.uniform(push.earliest, push.latest) / period))
+        direction, force = random.uniform(-np.pi, np.pi), random.uniform(0.0, push.most)
+        drawn["force"] = (float(force * np.cos(direction)), float(force * np.sin(direction)), 0.0)
+    return Chance(**chance, **drawn)  # type: ignore[arg-type]

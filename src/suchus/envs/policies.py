@@ -1,4 +1,4 @@
-"""What a learner has to beat: doing nothing, doing anything, and the shelf's gait through the same door."""
+"""Policies to compare with what is learned: holding still, random actions, and the shelf's gait by actions."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -26,7 +26,7 @@ class Still:
     """All actions are zero: the posture in which the episode begins is held."""
 
     task: Task
-    """Whose actions they are."""
+    """The task, for whose robot the actions are."""
 
     def __call__(self, seen: Float[np.ndarray, "run n"]) -> Float[np.ndarray, "run servo"]:
         """Return zeros."""
@@ -35,15 +35,15 @@ class Still:
 
 @dataclass(slots=True)
 class Anything:
-    """Actions drawn evenly from all that there are."""
+    """Actions drawn uniformly from -1 to 1."""
 
     task: Task
-    """Whose actions they are."""
+    """The task, for whose robot the actions are."""
     random: np.random.Generator
-    """What draws."""
+    """Random generator."""
 
     def __call__(self, seen: Float[np.ndarray, "run n"]) -> Float[np.ndarray, "run servo"]:
-        """Draw."""
+        """Return random actions."""
         return self.random.uniform(-1.0, 1.0, (len(seen), len(layout(self.task.robot).servos)))
 
 
@@ -52,14 +52,14 @@ class Follow:
     """A gait that follows the clock of the observation and, where limbs are cranks, the angles of the cranks."""
 
     task: Task
-    """Whose actions they are."""
+    """The task, for whose robot the actions are."""
     centre: tuple[float, ...]
     """Servo angles of an action of zero, ``Pack.centre`` [rad]."""
     gait: AnyGait
-    """Which gait; its period should be the task's, or it goes at that one's pace."""
+    """The gait; it is played with the period of the task's gait."""
 
     def __call__(self, seen: Float[np.ndarray, "run n"]) -> Float[np.ndarray, "run servo"]:
-        """Look up where the servos shall be when the step ends."""
+        """Return the actions that bring the servos to the gait's angles at the end of the step."""
         task, gait, robot = self.task, self.gait, self.task.robot
         sine, cosine = part(seen, "clock", robot).astype(float).T
         clock = np.arctan2(sine, cosine) / (2 * np.pi) + task.decision / task.gait.period
@@ -79,14 +79,14 @@ class SwimToGoal:
     """The task's swimming motion by the clock of the observation, steered towards the goal by a mean bend."""
 
     task: Task
-    """Whose actions they are; it begins swimming and has a goal."""
+    """The task; it begins swimming and has a goal."""
     centre: tuple[float, ...]
     """Servo angles of an action of zero, ``Pack.centre`` [rad]."""
     hold: HeadingHold = field(default_factory=HeadingHold)
-    """Its gain and its bends steer, by the bearing of the goal in the present step; its memory is not used."""
+    """Its gain and its bends steer, by the bearing of the goal in the present step; its state is not used."""
 
     def __call__(self, seen: Float[np.ndarray, "run n"]) -> Float[np.ndarray, "run servo"]:
-        """Look up where the servos shall be when the step ends, and steer."""
+        """Return the actions that bring the servos to the steered swim's angles at the end of the step."""
         task = self.task
         robot = crocodile(task.robot, "a swim")
         sine, cosine = part(seen, "clock", robot).astype(float).T
@@ -101,13 +101,13 @@ class SwimToGoal:
 class Controlled:
     """A controller of the shelf, which feels what the observation holds; for one ``play``, since it remembers.
 
-    It decides in every control period and feels anew in every step; what it does with air or phases is not asked.
+    It is called in every control period with the observation of the present step; its commands for air are ignored.
 
     Args:
-        task: whose actions they are.
+        task: the task.
         centre: servo angles of an action of zero, ``Pack.centre`` [rad].
         control: the controller, as ``Run.control`` takes it.
-        steps: of the episodes, at most.
+        steps: greatest number of steps of an episode.
 
     Raises:
         SuchusError: on the first call, if the controller does not suit the robot or its gait.
@@ -121,7 +121,7 @@ class Controlled:
         self._controller: Controller | None = None
 
     def __call__(self, seen: Float[np.ndarray, "run n"]) -> Float[np.ndarray, "run servo"]:
-        """Feel once, decide for every control period of the step, and return the last angles commanded."""
+        """Call the controller for every control period of the step and return the last commanded angles as actions."""
         task, count = self._task, len(seen)
         if self._controller is None:
             robots, gaits, seeds = [task.robot] * count, [task.gait] * count, [0] * count
@@ -135,14 +135,14 @@ class Controlled:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Played:
-    """What came of some episodes, one entry for each."""
+    """Results of episodes, one entry for each."""
 
     returns: Float[np.ndarray, " episode"]
     """Sum of the rewards [-]."""
     lasted: Float[np.ndarray, " episode"]
-    """How long it lasted [s]."""
+    """Duration of the episode [s]."""
     forward: Float[np.ndarray, " episode"]
-    """Way along the world's x axis [m]."""
+    """Displacement along the world's x axis [m]."""
     approach: Float[np.ndarray, " episode"]
     """Decrease of the distance that remains to the goal; 0 without a goal [m]."""
     goal: Bool[np.ndarray, " episode"]
@@ -150,14 +150,14 @@ class Played:
 
 
 def play(task: Task, policy: Policy, *, episodes: int = 32, seed: int = 0, steps: int = STEPS) -> Played:
-    """Play episodes side by side and return what came of them.
+    """Play episodes side by side and return their results.
 
     Args:
         task: the task.
-        policy: what acts.
-        episodes: how many.
-        seed: of the first, the others following by one.
-        steps: after how many an episode ends.
+        policy: function from observations to actions.
+        episodes: number of episodes.
+        seed: seed of the first episode; each further one has the next number.
+        steps: number of steps after which an episode ends.
     """
     env = CrocodileVectorEnv(episodes, task, max_episode_steps=steps)
     seen, _ = env.reset(seed=seed)

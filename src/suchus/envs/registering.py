@@ -8,12 +8,12 @@ import gymnasium
 from suchus.envs.shelf import TASKS
 
 STEPS = 200
-"""Of an episode: 10 s, two and a half cycles of the article's crawl."""
+"""Greatest number of steps of an episode [-]: 10 s, two and a half cycles of the article's crawl."""
 LONGER: Mapping[str, int] = MappingProxyType({"Swim": 400, "Shore": 1000})
 """Steps of an episode of the tasks that take longer [-]: 20 s, three times what the steered swim to the goal
 takes; 50 s, as in the experiment ``shore``."""
 IDS = tuple(f"suchus/{name}-v0" for name in TASKS)
-"""Their names."""
+"""Names of the environments."""
 
 
 def register() -> None:

@@ -1,4 +1,4 @@
-"""What a step is worth: quantities in SI units, and their weighted sum."""
+"""The reward of a step: the quantities that it is made of, in SI units, and their weighted sum."""
 
 from dataclasses import dataclass, fields
 
@@ -10,24 +10,24 @@ from suchus.envs.task import Rewards
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Terms:
-    """What came of one step, for each robot; the weights of the same names are in ``Rewards``."""
+    """Terms of the reward of one step, for each robot; the weights of the same names are in ``Rewards``."""
 
     forward: Float[np.ndarray, " run"]
-    """Way of the centre of mass along the world's x axis [m]."""
-    astray: Float[np.ndarray, " run"]
-    """By how much the centre of mass went away from that axis, to whichever side [m]."""
+    """Displacement of the centre of mass along the world's x axis [m]."""
+    lateral_drift: Float[np.ndarray, " run"]
+    """Increase of the distance of the centre of mass from that axis, on either side [m]."""
     upright: Float[np.ndarray, " run"]
     """Time with the snout high enough at the end of the step: the whole step or nothing [s]."""
     work: Float[np.ndarray, " run"]
     """Sum of torque times speed over all servos, braking counted as much as driving [J]."""
-    haste: Float[np.ndarray, " run"]
+    action_rate: Float[np.ndarray, " run"]
     """Sum of the squares of the changes of all commanded angles [rad2]."""
     approach: Float[np.ndarray, " run"]
     """Decrease of the distance that remains to the goal; 0 without a goal [m]."""
     goal: Bool[np.ndarray, " run"]
     """Whether the goal is reached [-]."""
     fall: Bool[np.ndarray, " run"]
-    """Whether it fell, or the physics came apart [-]."""
+    """Whether it fell, or the simulation diverged [-]."""
 
     @property
     def over(self) -> Bool[np.ndarray, " run"]:

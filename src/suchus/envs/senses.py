@@ -1,7 +1,10 @@
-"""What a learner is given: readings that the robot has, each over its scale, as one row of -1 to 1."""
+"""Observations: what the sensors of the robot measure, each divided by its scale, as one row of -1 to 1."""
 
+import warnings
+from collections.abc import Mapping
 from functools import lru_cache
 from math import sqrt
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -11,12 +14,13 @@ from scipy.spatial.transform import Rotation
 from suchus import rotation
 from suchus.control import Sensed
 from suchus.design import GRAVITY, AnyRobot, layout, servo_ranges
-from suchus.errors import UnknownName
+from suchus.errors import OldName, UnknownName
+from suchus.renamed import sentence
 from suchus.robots import ROBOTS, beside_article
 
 _CAIMAN = ROBOTS["caiman"]
 ANGLE = float(np.pi)
-"""Scale of angles [rad]: no joint turns so far, and the angle of a crank is told within half a turn."""
+"""Scale of angles [rad]: no joint turns further, and the angle of a crank is given within half a turn."""
 SPEED = 10.0
 """Scale of servos' speeds [rad/s] for a body as long as the article's; their no-load speed is 7."""
 RATE = 10.0
@@ -27,19 +31,21 @@ ACCELERATION = 4 * GRAVITY
 
 FAR = 4.0
 """Scale of the distance to a goal, over the robot's length [-]."""
+OLD_SENSES: Mapping[str, str] = MappingProxyType({"told": "last_action"})
+"""Today's names of readings by their old ones, which work for one more release."""
 
 
 class Sense(NamedTuple):
-    """Some columns of an observation."""
+    """Columns of an observation that belong together."""
 
     name: str
-    """What they are."""
+    """Name of the reading."""
     columns: slice
-    """Where they are."""
+    """Its columns in an observation."""
     scale: str
-    """What a reading is divided by."""
+    """Scale by which it is divided, with its unit."""
     what: str
-    """In words."""
+    """What it measures, in words."""
 
 
 @lru_cache(maxsize=64)
@@ -47,13 +53,13 @@ def senses(robot: AnyRobot, *, goal: bool = False) -> tuple[Sense, ...]:
     """Return the columns of an observation of a robot, in order.
 
     Args:
-        robot: whose.
+        robot: the robot.
         goal: whether its task has a goal, which adds the last two readings.
     """
     place, pace = layout(robot), 1.0 / sqrt(beside_article(robot).length)
     servos, cranks = len(place.servos), bool(turning(robot).any())
     angle = "angle of each servo" + (", of a crank within half a turn to either side" if cranks else "")
-    told = "angle that each servo was told last, from its centre: the last action"
+    last = "last commanded angle of each servo, relative to its centre: the last action"
     rows: tuple[tuple[str, int, str, str], ...] = (
         ("servo_position", servos, "pi rad", angle),
         ("servo_velocity", servos, f"{SPEED * pace:.3g} rad/s", "speed of each servo"),
@@ -71,7 +77,7 @@ def senses(robot: AnyRobot, *, goal: bool = False) -> tuple[Sense, ...]:
         ("angular_velocity", 3, f"{RATE * pace:.3g} rad/s", f"of the IMU in the {place.robot.root}, in its own frame"),
         ("acceleration", 3, f"{ACCELERATION:.1f} m/s2", "of the IMU with gravity, in its own frame"),
         ("clock", 2, "1", "sine and cosine of the phase of a clock with the gait's period"),
-        ("told", servos, "span, rad", told),
+        ("last_action", servos, "span, rad", last),
     )
     if goal:
         towards = f"level direction to the goal in the {place.robot.root}, as a beacon and the IMU give it"
@@ -96,12 +102,12 @@ SENSES = senses(_CAIMAN)
 def part(
     observations: Float[np.ndarray, "*b n"], name: str, robot: AnyRobot | str = _CAIMAN
 ) -> Float[np.ndarray, "*b m"]:
-    """Return some columns of observations by their name in ``senses``.
+    """Return the columns of one reading of ``senses``.
 
     Args:
         observations: as an environment returns them.
         name: of the reading, as ``clock``.
-        robot: whose they are, or its name on the shelf.
+        robot: the robot that they belong to, or its name on the shelf.
 
     Raises:
         UnknownName: there is no such reading.
@@ -109,6 +115,9 @@ def part(
     known = senses(ROBOTS.resolve(robot))
     if observations.shape[-1] > known[-1].columns.stop:
         known = senses(ROBOTS.resolve(robot), goal=True)
+    if name in OLD_SENSES:
+        warnings.warn(sentence(f"The reading {name!r}", repr(OLD_SENSES[name])), OldName, stacklevel=2)
+        name = OLD_SENSES[name]
     columns = {sense.name: sense.columns for sense in known}
     if name not in columns:
         raise UnknownName("reading", name, columns)
@@ -119,16 +128,16 @@ def observations(
     robot: AnyRobot,
     sensed: Sensed,
     phase: Float[np.ndarray, " run"],
-    told: Float[np.ndarray, "run servo"],
+    commanded: Float[np.ndarray, "run servo"],
     goal: tuple[Float[np.ndarray, "run 2"], Float[np.ndarray, " run"]] | None = None,
 ) -> Float[np.ndarray, "run n"]:
-    """Return one row for each robot; readings beyond their scales are cut off at -1 and 1, lost ones are 0.
+    """Return one row for each robot; readings beyond their scales are clipped to -1 and 1, missing ones are 0.
 
     Args:
-        robot: whose limits, weight and length are the scales.
-        sensed: the readings.
+        robot: the robot; its limits, weight and length are the scales.
+        sensed: the readings of its sensors.
         phase: of the clock [cycle].
-        told: from the centre, over the span [-].
+        commanded: angles of the servos relative to their centres, over the span [-].
         goal: vector in the world from each centre of mass to its goal, and the distance that remains [m]; None if the
             task has none.
     """
@@ -152,7 +161,7 @@ def observations(
             sensed.angular_velocity / (RATE / slow),
             sensed.acceleration / ACCELERATION,
             np.stack([np.sin(turn), np.cos(turn)], axis=1),
-            told,
+            commanded,
             *towards,
         ],
         axis=1,
@@ -161,12 +170,12 @@ def observations(
 
 
 def felt(observations: Float[np.ndarray, "run n"], robot: AnyRobot, time: float) -> Sensed:
-    """Return the readings of which observations were made, what was cut off at the ends of the scales being lost.
+    """Return the readings that observations were made of; readings beyond their scales stay clipped.
 
     Args:
         observations: one row for each robot.
-        robot: whose they are.
-        time: [s].
+        robot: the robot that they belong to.
+        time: time of the readings [s].
     """
     seen = {sense.name: part(observations, sense.name, robot).astype(float) for sense in senses(robot)}
     weight, pace = robot.mass * GRAVITY, 1.0 / sqrt(beside_article(robot).length)

@@ -8,19 +8,20 @@ from typing import Any, get_args
 
 from suchus.design import AnyRobot
 from suchus.envs.goals import AnyGoal, Goal, Landing
-from suchus.envs.task import Breaks, Rewards, Shoves, Task
-from suchus.errors import InvalidDesign, UnknownName
+from suchus.envs.task import Breaks, Pushes, Rewards, Task
+from suchus.errors import InvalidDesign, OldName, UnknownName
 from suchus.gaits import GAITS
 from suchus.land import Ground, Lake
 from suchus.motion import AnyGait, Swim
+from suchus.renamed import new_name
 from suchus.robots import ROBOTS
 
 STANDING_SPAN = 0.3
-"""Of the actions in the task Stand [rad]: a hop, not another posture."""
+"""Span of the actions in the task Stand [rad]: enough for a hop, too little for another posture."""
 SWIM_SPAN = 1.4
-"""Of the actions in the task Swim [rad]: 0.75 for the wave on the tail's cable and 0.6 to steer."""
+"""Span of the actions in the task Swim [rad]: 0.75 for the wave on the tail's cable and 0.6 to steer."""
 SHORE_SPAN = 2.5
-"""Of the actions in the task Shore [rad]: from limbs that lie back along the body to the forward end of a stride."""
+"""Span of the actions in the task Shore [rad]: from limbs folded back to the forward end of a stride."""
 _SLOPE, _OFFSHORE = radians(8), 1.6  # distance of the water line from the beginning [m], where the robot floats free
 _CRAWL = Task()
 _SWIM = replace(
@@ -30,7 +31,9 @@ _SWIM = replace(
     lake=Lake(level=0.5),
     goal=Goal(),
     span=SWIM_SPAN,
-    rewards=Rewards(forward=0.0, astray=0.0, upright=0.0, work=-0.01, haste=-0.002, fall=-5.0, approach=10.0, goal=5.0),
+    rewards=Rewards(
+        forward=0.0, lateral_drift=0.0, upright=0.0, work=-0.01, action_rate=-0.002, fall=-5.0, approach=10.0, goal=5.0
+    ),
 )
 TASKS: Mapping[str, Task] = MappingProxyType(
     {
@@ -42,8 +45,8 @@ TASKS: Mapping[str, Task] = MappingProxyType(
             jitter=0.01,
             least_level=-1.0,
             least_height=0.45,
-            rewards=Rewards(forward=0.0, astray=0.0, upright=1.0, work=-0.01, haste=-0.002, fall=-5.0),
-            shoves=Shoves(),
+            rewards=Rewards(forward=0.0, lateral_drift=0.0, upright=1.0, work=-0.01, action_rate=-0.002, fall=-5.0),
+            pushes=Pushes(),
         ),
         "Fault": replace(_CRAWL, breaks=Breaks()),
         "Swim": _SWIM,
@@ -74,6 +77,7 @@ def chosen(task: Task | str, changes: Mapping[str, Any]) -> Task:
         if task not in TASKS:
             raise UnknownName("task", task, TASKS)
         task = TASKS[task]
+    changes = {new_name(Task, name, OldName): value for name, value in changes.items()}
     names = [f.name for f in fields(Task)]
     for name in changes:
         if name not in names:
@@ -89,7 +93,7 @@ def chosen(task: Task | str, changes: Mapping[str, Any]) -> Task:
         "ground": (Ground,),
         "rewards": (Rewards,),
         "breaks": (Breaks, type(None)),
-        "shoves": (Shoves, type(None)),
+        "pushes": (Pushes, type(None)),
         "lake": (Lake, type(None)),
         "swim": (Swim, type(None)),
         "goal": (*get_args(AnyGoal), type(None)),

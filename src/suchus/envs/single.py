@@ -11,7 +11,20 @@ from suchus.envs.picture import picture
 from suchus.envs.reward import Terms
 from suchus.envs.shelf import chosen
 from suchus.envs.spaces import RENDER_MODES, action_space, check_render_mode, checked, observation_space
-from suchus.envs.task import Task
+from suchus.envs.task import Rewards, Task
+from suchus.errors import OldName
+from suchus.renamed import new_name
+
+
+class StepInfo(dict[str, Any]):
+    """Entries of ``info``, which can also be read by the old names of rewards for one more release."""
+
+    def __missing__(self, key: str) -> Any:
+        """Return an entry by its old name, with a warning."""
+        name = new_name(Rewards, key, OldName)
+        if name == key:
+            raise KeyError(key)
+        return self[name]
 
 
 class CrocodileEnv(gymnasium.Env):  # type: ignore[misc]  # gymnasium is not read by mypy
@@ -69,7 +82,7 @@ class CrocodileEnv(gymnasium.Env):  # type: ignore[misc]  # gymnasium is not rea
             OutsideLimits: an action of another shape, or not finite.
         """
         terms = self.pack.act(checked(action, self.action_space.shape)[None], np.ones(1, dtype=bool))
-        info = {name: values.tolist()[0] for name, values in told(self.pack, terms).items()}
+        info = StepInfo((name, values.tolist()[0]) for name, values in step_info(self.pack, terms).items())
         return self.pack.feel()[0], float(terms.reward(self.task.rewards)[0]), bool(terms.over[0]), False, info
 
     def render(self) -> np.ndarray | None:
@@ -77,8 +90,8 @@ class CrocodileEnv(gymnasium.Env):  # type: ignore[misc]  # gymnasium is not rea
         return portrait(self.pack, 0) if self.render_mode == "rgb_array" else None
 
 
-def told(pack: Pack, terms: Terms) -> dict[str, np.ndarray]:
-    """Return what is said about a step besides its reward, one entry for each robot."""
+def step_info(pack: Pack, terms: Terms) -> dict[str, np.ndarray]:
+    """Return the entries of ``info`` after a step, each with one value for each robot."""
     said = {f.name: np.array(getattr(terms, f.name)) for f in fields(Terms) if f.name != "fall"}
     return {
         **said,

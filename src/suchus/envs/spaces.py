@@ -1,4 +1,4 @@
-"""The spaces of one robot, and what is refused at their door."""
+"""The spaces of one robot, and the checks of what users give."""
 
 from typing import Any
 
@@ -28,7 +28,7 @@ def action_space(robot: AnyRobot) -> Any:
 
 
 def observation_space(robot: AnyRobot, *, goal: bool = False) -> Any:
-    """Return the ``gymnasium.spaces.Box`` of what a robot is given, with or without a goal: see ``senses.senses``."""
+    """Return the ``gymnasium.spaces.Box`` of a robot's observations, with or without a goal: see ``senses.senses``."""
     return gymnasium.spaces.Box(-1.0, 1.0, (senses(robot, goal=goal)[-1].columns.stop,), np.float32)
 
 

@@ -1,4 +1,4 @@
-"""What is to be learned: a frozen value that says who acts, on what ground, what goes wrong and what is rewarded."""
+"""A task as a frozen value: the robot, the ground, faults and pushes, and the weights of the reward."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields, replace
@@ -18,6 +18,7 @@ from suchus.faults import FAULTS
 from suchus.gaits import GAITS, own_gait, suits
 from suchus.land import Ground, Lake
 from suchus.motion import AnyGait, Swim
+from suchus.renamed import old_names
 from suchus.robots import ROBOTS
 
 Start = Literal["lying", "upright", "swimming"]
@@ -31,6 +32,7 @@ NEEDED: Mapping[str, tuple[str, ...]] = MappingProxyType(
 """What a beginning needs of a robot: names of ``design.NEEDS``."""
 
 
+@old_names(astray="lateral_drift", haste="action_rate")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Rewards:
     """Weights of the terms of the reward; each term is a quantity of one step in SI units, see ``envs.reward``.
@@ -40,21 +42,22 @@ class Rewards:
     """
 
     forward: float
-    """Per way of the centre of mass along the world's x axis, whereto the robot faces at first [1/m]."""
-    astray: float
-    """Per change of the centre of mass's distance from that axis; negative, since away is bad [1/m]."""
+    """Weight of the displacement of the centre of mass along the world's x axis, the robot's first heading [1/m]."""
+    lateral_drift: float
+    """Weight of the increase of the distance of the centre of mass from that axis; negative, a penalty [1/m]."""
     upright: float
-    """Per time with the snout above ``Task.least_height`` [1/s]."""
+    """Weight of the time with the snout above ``Task.least_height`` [1/s]."""
     work: float
-    """Per work of all servos, braking counted as much as driving; negative [1/J]."""
-    haste: float
-    """Per square of the change of every commanded angle from one step to the next; negative [1/rad2]."""
+    """Weight of the work of all servos, braking counted as much as driving; negative, a penalty [1/J]."""
+    action_rate: float
+    """Weight of the sum of the squared changes of all commanded angles between two steps; negative, a penalty
+    [1/rad2]."""
     fall: float
-    """Once, when the episode ends by a fall or because the physics came apart; negative [-]."""
+    """Added once, when the episode ends by a fall or because the simulation diverged; negative, a penalty [-]."""
     approach: float = 0.0
-    """Per decrease of the distance that remains to ``Task.goal`` [1/m]."""
+    """Weight of the decrease of the distance that remains to ``Task.goal`` [1/m]."""
     goal: float = 0.0
-    """Once, when the episode ends at the goal [-]."""
+    """Added once, when the goal is reached [-]."""
 
     def __post_init__(self) -> None:
         with Checks("rewards", self) as check:
@@ -76,9 +79,9 @@ class Breaks:
     """Faults one of which is drawn instead, with all their numbers but the time; ``joints`` and ``kinds`` then do
     nothing."""
     earliest: float = 0.0
-    """From when on it may happen [s]."""
+    """Earliest time of the fault [s]."""
     latest: float = 4.0
-    """Until when [s]; half of the episode remains to do without it."""
+    """Latest time of the fault [s]; half of the episode then remains without the joint."""
 
     def __post_init__(self) -> None:
         with Checks("breaks", self) as check:
@@ -125,25 +128,26 @@ class Breaks:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Shoves:
-    """One push of every episode, level, from anywhere, drawn anew each time."""
+class Pushes:
+    """One horizontal push in every episode; its force, direction and time are drawn anew each time."""
 
     most: float = 15.0
-    """Greatest force [N]; it is drawn evenly from zero, and four episodes of ten knock over who holds still."""
+    """Greatest force [N]; the force is drawn uniformly from 0 to it. A robot that holds still falls in four of ten
+    episodes."""
     earliest: float = 1.0
-    """From when on it may begin [s]."""
+    """Earliest time at which the push begins [s]."""
     latest: float = 4.0
-    """Until when [s]; a fall takes less than 2 s, so that it still shows."""
+    """Latest time at which the push begins [s]; a fall takes less than 2 s, so that it still shows."""
     lasting: float = 0.2
-    """How long it lasts [s], as in the experiments on standing."""
+    """Duration of the push [s], as in the experiments on standing."""
     body: str | None = None
-    """What is pushed; None: the segment of the front girdle, or the root of a robot without limbs."""
+    """Body that is pushed; None: the segment of the front girdle, or the root of a robot without limbs."""
 
     def __post_init__(self) -> None:
-        with Checks("shoves", self) as check:
+        with Checks("pushes", self) as check:
             check.number("most", 0.0, 1e3, "N")
             check.number("lasting", 1e-3, 60.0, "s")
-            _check_when(check, "shoves", self.earliest, self.latest)
+            _check_when(check, "pushes", self.earliest, self.latest)
 
     def where(self, robot: AnyRobot) -> str:
         """Return the body of a robot that is pushed."""
@@ -161,18 +165,19 @@ def _check_when(check: Checks, owner: str, earliest: float, latest: float) -> No
     )
 
 
+@old_names(shoves="pushes")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Task:
     """What is to be learned.
 
-    An action is one number of -1 to 1 for each servo: it is told the angle ``centre + span action``, within its range.
-    Angles of servos were chosen rather than changes to a gait, because with these the shelf's gait would be the action
-    zero, and nothing would be left to learn; ``span`` keeps even random actions near a posture that carries the robot.
-    An action turns a crank on, at most at its servo's no-load speed.
+    An action is one number from -1 to 1 for each servo: its commanded angle is ``centre + span * action``, within its
+    range. The actions are servo angles rather than changes to a gait, because with changes the shelf's gait would be
+    the action zero, and nothing would be left to learn; ``span`` keeps even random actions near a posture that carries
+    the robot. An action turns a crank further, at most at its servo's no-load speed.
     """
 
     robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
-    """Who acts; what its servos give while they turn is said by ``speed_lines``."""
+    """The robot; ``speed_lines`` says whether the torque of its servos falls with their speed."""
     speed_lines: bool = True
     """Whether the torque of every servo falls linearly to nothing at its no-load speed, as that of a motor does.
 
@@ -180,9 +185,9 @@ class Task:
     ``docs/environments.md``.
     """
     gait: AnyGait = field(default_factory=lambda: GAITS["belly_crawl"])
-    """Gait whose mid-stance is the centre of the actions of a lying robot, and whose period the clock tells."""
+    """Gait whose mid-stance is the centre of the actions of a lying robot, and whose period is the clock's."""
     ground: Ground = field(default_factory=Ground)
-    """On what."""
+    """The ground: its slope, friction and surface."""
     start: Start = "lying"
     """How an episode begins: in the gait's mid-stance, standing as the shelf's way up leaves the robot, or floating at
     the surface, straight and with its limbs back along the body."""
@@ -194,27 +199,29 @@ class Task:
     Meanwhile the commanded angles go in a straight line from the old to the new, one control period after another.
     """
     timestep: float = 0.005
-    """Of the physics [s]; displacements agree with those at 2 ms within 1 %."""
+    """Time step of the physics [s]; displacements agree with those at 2 ms within 1 %."""
     jitter: float = 0.05
-    """Joints begin off their places by up to so much [rad], so that no two episodes are alike."""
+    """Greatest random offset of each joint at the beginning [rad], so that no two episodes are the same."""
     least_level: float = 0.3
     """Cosine of the pelvis's tilt below which a robot has fallen [-]; -1: it cannot fall. A crawl stays above 0.9."""
     least_height: float = 0.0
     """Height of the snout below which a robot has fallen [m]; 0: it cannot fall."""
     rewards: Rewards = field(
-        default_factory=lambda: Rewards(forward=10.0, astray=-5.0, upright=0.0, work=-0.01, haste=-0.002, fall=-5.0)
+        default_factory=lambda: Rewards(
+            forward=10.0, lateral_drift=-5.0, upright=0.0, work=-0.01, action_rate=-0.002, fall=-5.0
+        )
     )
-    """What is good and what is bad."""
+    """Weights of the terms of the reward."""
     breaks: Breaks | None = None
-    """What breaks; None: nothing."""
-    shoves: Shoves | None = None
-    """Who pushes; None: nobody."""
+    """The fault of each episode; None: no fault."""
+    pushes: Pushes | None = None
+    """The push of each episode; None: no push."""
     lake: Lake | None = None
     """Water in which the robot swims or wades, its level and breath numbers; None on dry land."""
     swim: Swim | None = None
     """Swimming motion of a ``swimming`` start, whose wave the clock follows; None: that of (20) at 1 Hz, fitted."""
     goal: AnyGoal | None = None
-    """What ends the episode when it is reached; None: nothing."""
+    """The goal, at which the episode ends; None: no goal."""
 
     @property
     def body(self) -> AnyRobot:
@@ -251,7 +258,7 @@ class Task:
         if not suits(robot, self.gait):
             changes |= scaled_fields(self, ["least_height"], length=longer, mass=heavier)
             changes |= {"gait": gait or own_gait(robot)}
-            for name in ("rewards", "breaks", "shoves", "goal"):
+            for name in ("rewards", "breaks", "pushes", "goal"):
                 if getattr(self, name) is not None:
                     changes[name] = scaled(getattr(self, name), length=longer, mass=heavier)
         return replace(self, robot=robot, **(changes | ({"gait": gait} if gait is not None else {})))

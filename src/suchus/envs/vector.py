@@ -12,7 +12,7 @@ from gymnasium.vector.utils import batch_space
 from suchus.design.checks import require
 from suchus.envs.pack import Pack
 from suchus.envs.shelf import chosen
-from suchus.envs.single import metadata, portrait, told
+from suchus.envs.single import StepInfo, metadata, portrait, step_info
 from suchus.envs.spaces import action_space, check_render_mode, checked, observation_space
 from suchus.envs.task import Task
 from suchus.errors import InvalidDesign
@@ -24,9 +24,9 @@ class CrocodileVectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[misc]  # g
     """Robots at a task, each in an episode of its own, with the numbers of as many single environments.
 
     Args:
-        num_envs: how many robots.
+        num_envs: number of robots.
         task: the task, or its name.
-        max_episode_steps: after how many steps an episode is truncated; None: never.
+        max_episode_steps: number of steps after which an episode is truncated; None: never.
         autoreset_mode: how episodes begin anew, see gymnasium: ``NextStep``, ``SameStep`` or ``Disabled``.
         render_mode: None or ``rgb_array``.
         **changes: fields of the task to change; ``robot`` and ``gait`` also by name.
@@ -99,9 +99,9 @@ class CrocodileVectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[misc]  # g
         terminated = ~again & terms.over
         late = self._steps >= (self.max_episode_steps or np.inf)
         truncated = ~again & late
-        said = told(self.pack, terms)
+        said = step_info(self.pack, terms)
         self._over = terminated | truncated
-        infos: dict[str, Any] = {}
+        infos = StepInfo()
         begun = again
         if self.autoreset_mode is AutoresetMode.SAME_STEP and self._over.any():
             begun = self._over.copy()
@@ -128,7 +128,7 @@ class CrocodileVectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[misc]  # g
         return dict(zip(_AT_RESET, (np.array(self.pack.time), faults), strict=True))
 
     def _say(self, infos: dict[str, Any], said: dict[str, np.ndarray], who: np.ndarray) -> None:
-        """Put what is said of some robots into ``infos``, each name with the mask of those of whom it is said."""
+        """Put the values of some robots into ``infos``, and beside each name the mask of these robots."""
         if not who.any():
             return
         for name, values in said.items():

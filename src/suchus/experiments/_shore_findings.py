@@ -1,4 +1,4 @@
-"""What the experiment ``shore`` keeps of its runs, and every number that it reads from that."""
+"""The kept paths of the experiment ``shore``, and the measures that are computed from them."""
 
 from collections.abc import Sequence
 
@@ -17,26 +17,26 @@ FALLEN = np.radians(60)
 AFLOAT = 0.01
 """Share of the weight on the ground below which it floats free [-]."""
 LAST = 2.0
-"""How long it must float free at the end to count as in the water [s]."""
+"""Duration at the end over which it must float free to count as in the water [s]."""
 _UNITS = {
     "ahead": ("m", "centre of mass beyond the water line, up the shore; less than 0 on the water's side"),
-    "aside": ("m", "centre of mass to the left of where it began"),
+    "aside": ("m", "displacement of the centre of mass to the left"),
     "under": ("1", "volume under water over the whole volume"),
-    "feet": ("1", "of the weight that the feet carry"),
-    "ground": ("1", "of the weight that feet, belly and tail carry"),
+    "feet": ("1", "share of the weight that the feet carry"),
+    "ground": ("1", "share of the weight that feet, belly and tail carry"),
     "walks": ("1", "1 where the limbs' phases advance, else 0"),
-    "tilt": ("rad", "of the body against gravity"),
-    "power": ("W", "of all servos on the joints"),
+    "tilt": ("rad", "angle of the body's upward axis to the vertical"),
+    "power": ("W", "power of all servos on the joints"),
 }
 
 
 def paths(record: xr.Dataset, runs: list[Run], every: int) -> xr.Dataset:
-    """Return what is kept of each run, every so many samples, and how often it changed between swimming and walking.
+    """Return the kept path of each run, and how often it changed between swimming and walking.
 
     Args:
         record: of the runs.
         runs: on even slopes in lakes of constant level.
-        every: keep one sample of so many; powers and shares are means over them.
+        every: number of samples of which one is kept; powers and shares are means over them.
     """
     ups = np.array([up(run.ground) for run in runs])
     line = np.array([water_line(run) for run in runs])
@@ -70,13 +70,13 @@ def paths(record: xr.Dataset, runs: list[Run], every: int) -> xr.Dataset:
 
 
 def water_line(run: Run) -> float:
-    """Return where the level meets the slope, ahead of where the robot begins [m]."""
+    """Return the distance from the robot's beginning to where the surface meets the slope [m]."""
     assert run.lake is not None
     return run.lake.shore(run.ground.uphill)
 
 
 def walking(phase: Float[np.ndarray, "run time"]) -> Bool[np.ndarray, "run time"]:
-    """Tell when a limb's phase advances; of the first sample what the second says."""
+    """Return when a limb's phase advances; the first sample has the value of the second [-]."""
     moves = np.diff(phase, axis=1) > 1e-9
     return np.concatenate([moves[:, :1], moves], axis=1)
 
@@ -87,19 +87,19 @@ def _ground_share(record: xr.Dataset, ups: np.ndarray) -> np.ndarray:
 
 
 def fallen(record: xr.Dataset) -> Bool[np.ndarray, " case"]:
-    """Tell which cases tilted too far, or came apart."""
+    """Return which cases tilted too far, or diverged [-]."""
     return np.asarray(~(record.tilt < FALLEN).all("moment").values)
 
 
 def times_ashore(record: xr.Dataset) -> Float[np.ndarray, " case"]:
-    """Return when each case was first so far beyond the water line as is asked, NaN for never or fallen [s]."""
+    """Return the time at which each case was first ashore, NaN for one that never was or fell [s]."""
     reached = record.ahead.values >= record.attrs["beyond"]
     first = record.moment.values[reached.argmax(axis=1)]
     return np.where(reached.any(axis=1) & ~fallen(record), first, np.nan)
 
 
 def ending(record: xr.Dataset) -> str:
-    """Return what became of the case that is drawn, in words."""
+    """Return how the case that is drawn ended, in words."""
     case = record.isel(case=[record.attrs["shown"]])
     walked, found = case.walks.values[0] > 0, []
     if walked.any():
@@ -112,31 +112,31 @@ def ending(record: xr.Dataset) -> str:
     elif fallen(case)[0]:
         found.append("it falls")
     else:
-        found.append(f"it does not come {record.attrs['beyond']:g} m beyond the water line")
+        found.append(f"it does not get {record.attrs['beyond']:g} m beyond the water line")
     return ", and ".join(found)
 
 
 def in_water(record: xr.Dataset) -> Bool[np.ndarray, " case"]:
-    """Tell which cases swim at the end, on the water's side of the line, and float free for the last seconds."""
+    """Return which cases swim at the end on the water's side of the line and float free for the last seconds [-]."""
     end = record.sel(moment=slice(float(record.moment[-1]) - LAST, None))
     free = (end.ground.mean("moment") < AFLOAT) & (end.walks.max("moment") == 0.0)
     return np.asarray((free & (end.ahead < 0).all("moment")).values) & ~fallen(record)
 
 
 def measures(record: xr.Dataset) -> dict[str, Measure]:
-    """Return every number of the experiment, from its record."""
+    """Return the measures of the experiment from its record."""
     kind = record.kind.values
     times, fell = times_ashore(record), fallen(record)
     main, into = kind == "ashore", kind == "into_water"
-    came = times[main][np.isfinite(times[main])]
+    ashore = times[main][np.isfinite(times[main])]
     slope, grip = record.slope.values, record.grip.values
     steep = main & np.isclose(slope, slope[main].max())
     found = {
         "ashore_share": Measure(_share(times, main), "-"),
         "falls": Measure(float(fell[main].sum()), "-"),
         "switches": Measure(float(record.switches.values[main].max()), "-"),
-        "time_ashore": Measure(float(np.median(came)) if came.size else float("nan"), "s"),
-        "time_ashore_longest": Measure(float(came.max()) if came.size else float("nan"), "s"),
+        "time_ashore": Measure(float(np.median(ashore)) if ashore.size else float("nan"), "s"),
+        "time_ashore_longest": Measure(float(ashore.max()) if ashore.size else float("nan"), "s"),
         "into_water_share": Measure(float(in_water(record)[into].mean()), "-"),
         "falls_into_water": Measure(float(fell[into].sum()), "-"),
         "switches_into_water": Measure(float(record.switches.values[into].max()), "-"),
@@ -166,16 +166,16 @@ def metres(record: xr.Dataset, names: Sequence[str], last: float) -> xr.Dataset:
     """Return speed along its course, power of the servos and error of the depth of each run, over its last seconds.
 
     Args:
-        record: of one run for each name.
-        names: where they were.
-        last: over how long [s].
+        record: record with one run for each name.
+        names: names of the conditions, in the order of the runs.
+        last: duration of the end that is measured [s].
     """
     part = record.sel(time=slice(float(record.time[-1]) - last - 1e-9, None))
-    way = (part.centre_of_mass.isel(time=-1) - part.centre_of_mass.isel(time=0)).sel(xyz=["x", "y"])
+    moved = (part.centre_of_mass.isel(time=-1) - part.centre_of_mass.isel(time=0)).sel(xyz=["x", "y"])
     deep = (part.water_level - part.position.sel(xyz="z")).mean("time")
     return xr.Dataset(
         {
-            "metre_speed": ("where", np.hypot(*way.transpose("xyz", "run").values) / last, {"units": "m/s"}),
+            "metre_speed": ("where", np.hypot(*moved.transpose("xyz", "run").values) / last, {"units": "m/s"}),
             "metre_power": ("where", part.servo_power.mean("time").values, {"units": "W"}),
             "metre_depth": ("where", deep.values, {"units": "m"}),
             "metre_weight": ("where", GRAVITY * record.mass.values, {"units": "N"}),
@@ -200,7 +200,7 @@ def _metre_costs(record: xr.Dataset) -> dict[str, Measure]:
 def _costs(record: xr.Dataset) -> dict[str, Measure]:
     """Return speed [m/s] and work of the servos over distance [J/m] while it swims, wades and walks ashore.
 
-    Both along its course, which need not be straight up the shore.
+    Both along its heading, which need not be straight up the shore.
     """
     step, course = float(record.moment[1] - record.moment[0]), record.attrs["approach"]
     along = np.cos(course) * record.ahead.values + np.sin(course) * record.aside.values

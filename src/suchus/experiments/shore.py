@@ -19,6 +19,7 @@ from suchus.gaits import GAITS
 from suchus.land import Ground, Lake, Run, simulate
 from suchus.metrics.energy import METRES
 from suchus.motion import Gait, Swim
+from suchus.renamed import old_names
 from suchus.replay import replay
 from suchus.robots import ROBOTS
 from suchus.verdict import Reading, compared, listed
@@ -32,25 +33,27 @@ _WADE = replace(
     GAITS["semi_erect"], name="wade", period=1.6, duty_factor=0.5, limb_phases=(0.0, 0.5, 0.5, 0.0), stroke=0.05,
     hip_height=0.09, trunk_bend=0.0, tail_pitch=-0.1,
 )  # fmt: skip
-"""A walk for feet that carry little: with a duty factor of a half the feet come forward no faster than they go back, so
-that the water does not drive the robot back more than it drives it on; the slower, the less that counts beside what
-holds on the ground. The tail is lifted, since pressed on the ground it lifts the hind feet. The trunk is straight."""
+"""A walk for feet that carry little weight. With a duty factor of a half the feet swing forward no faster than they
+move back in stance, so that over a cycle the water pushes the robot back no more than forward; the slower the cycle,
+the smaller the forces of the water are beside the friction of the ground. The tail is lifted, since pressed on the
+ground it lifts the hind feet. The trunk is straight."""
 _SAMPLE, _KEPT = 4, 5
-"""Control periods between the samples of the runs, and those of them between the samples of the paths that are kept."""
+"""Control periods between two samples of a run, and samples of a run between two samples of the kept paths [-]."""
 
 
+@old_names(grips="friction_scales")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Shore(Experiment):
     """The floating robot swims to a shore, feels ground, changes to its gait and walks out; and back into the water.
 
     It swims by the wave of (20) with its heading held, decides between swimming and walking by the load that feet,
-    belly and tail carry, and lands with air let out in the gait ``wade``. It comes in aslant, so that its body lies on
-    less of a slope than the shore has. Main runs: every slope with every grip, ``seeds`` times, with noise on the
-    servos. Beside them other gaits on every slope with one grip, other amounts of air let out
-    on the steepest slope with every grip, and walks from land into the water on every slope. It came ashore if its
-    centre of mass got ``beyond`` the water line without falling; it is in the water if it swims at the end, floats
-    free, and did not fall. What a metre costs is read from three more runs: the gait on level dry land, and the swim at
-    the surface and at a depth that is held.
+    belly and tail carry, and lands with air let out in the gait ``wade``. It approaches obliquely, so that along its
+    body the slope is less than that of the shore. Main runs: every slope with every friction scale, ``seeds`` times,
+    with noise on the servos. Beside them other gaits on every slope with one friction scale, other amounts of air let
+    out on the steepest slope with every friction scale, and walks from land into the water on every slope. It has come
+    ashore if its centre of mass is ``beyond`` the water line without falling; it is in the water if it swims at the
+    end, floats free, and did not fall. The work per metre is measured in three more runs: the gait on level dry land,
+    and the swim at the surface and at a constant depth.
     """
 
     title = "Does it swim in, touch ground, stand and walk out, and go back into the water?"
@@ -60,48 +63,49 @@ class Shore(Experiment):
     robot: Crocodile = field(default_factory=lambda: ROBOTS["floating_caiman"])
     """The robot; it must float, and have air to let out."""
     gait: Gait = field(default_factory=lambda: GAITS["semi_erect"])
-    """In which it walks ashore."""
+    """Gait in which it walks ashore."""
     wade: Gait = field(default_factory=lambda: _WADE)
-    """In which it lands."""
+    """Gait in which it lands, while the ground carries little of its weight."""
     approach: float = 0.85
-    """Direction in which it comes, against straight up the shore, left positive [rad]: 15 degrees are 10 along it."""
+    """Heading of the approach relative to straight up the shore, left positive [rad]; at 0.85 rad a slope of 15 degrees
+    is 10 degrees along the body."""
     others: tuple[Gait, ...] = field(
         default_factory=lambda: tuple(GAITS[name] for name in ("belly_crawl", "low_crawl", "high_walk"))
     )
-    """Gaits beside it, in which it also lands."""
+    """Other gaits in which it walks ashore, and in which it also lands."""
     slopes: tuple[float, ...] = (radians(5), radians(8), radians(12), radians(15))
-    """Of the shore [rad]."""
-    grips: tuple[float, ...] = (0.6, 0.75, 0.9, 1.0)
+    """Slopes of the shore [rad]."""
+    friction_scales: tuple[float, ...] = (0.6, 0.75, 0.9, 1.0)
     """Factors on the friction of all the robot's surfaces [-]."""
     seeds: int = 2
-    """Runs of each slope with each grip [-]."""
+    """Runs of each slope with each friction scale [-]."""
     noise: float = 0.01
     """Standard deviation of the noise on every commanded angle [rad]."""
     breathe_out: float = 1.0
     """Share of the air of the hull that it lets out while it lands [-]."""
     breaths: tuple[float, ...] = (0.0, 0.5)
-    """Other shares, on the steepest slope [-]."""
+    """Other values of ``breathe_out``, simulated on the steepest slope [-]."""
     frequency: float = 1.0
-    """Of the swim [Hz]."""
+    """Frequency of the swimming wave [Hz]."""
     clearance: float = 0.15
     """Depth of the water half a body length ahead of where it begins to swim [m]."""
     inland: float = 0.4
-    """How far the water line is ahead of where it begins to walk into the water [m]."""
+    """Distance from the beginning of the walk into the water to the water line [m]."""
     beyond: float = 1.0
-    """How far the centre of mass must come beyond the water line [m]."""
+    """Distance beyond the water line at which the centre of mass counts as ashore [m]."""
     duration: float = 50.0
-    """Of every run to the shore or into the water [s]."""
+    """Duration of every run to the shore or into the water [s]."""
     cycles: int = 16
-    """Cycles of the gait over which the cost of a metre is measured, after as many to settle [-]."""
+    """Cycles of the gait over which the work per metre is measured, after as many cycles of settling [-]."""
     depth: float = 0.6
-    """Of the root, in the dive [m]."""
+    """Depth of the root in the swim below the surface [m]."""
     timestep: float = 0.005
-    """Of the physics [s]."""
+    """Time step of the physics [s]."""
 
     def __post_init__(self) -> None:
         with Checks(self.name(), self) as check:
             check.rising("slopes", 0.01, pi / 4, "rad")
-            check.rising("grips", 0.01, 10.0, "")
+            check.rising("friction_scales", 0.01, 10.0, "")
             check.whole("seeds", 1, 1000)
             check.number("noise", 0.0, 1.0, "rad")
             check.number("breathe_out", 0.0, 1.0, "")
@@ -118,12 +122,12 @@ class Shore(Experiment):
             check.number("timestep", 1e-5, 0.01, "s")
 
     def quick(self) -> "Shore":
-        """Return one slope with one grip, no other gaits, the first seconds."""
-        some = replace(self, slopes=self.slopes[1:2], grips=(1.0,), seeds=1, others=(), breaths=())
+        """Return one slope with one friction scale, no other gaits, the first seconds."""
+        some = replace(self, slopes=self.slopes[1:2], friction_scales=(1.0,), seeds=1, others=(), breaths=())
         return replace(some, duration=2.0, cycles=1)
 
     def simulate(self, progress: Progress = silent) -> Simulated:
-        """Swim ashore, with other gaits and other breaths too, and walk into the water, all at once."""
+        """Simulate all runs as one batch: to the shore, with other gaits and other breaths, and into the water."""
         cases = self._cases()
         runs = [run for _, _, run in cases]
         record = simulate(
@@ -143,7 +147,7 @@ class Shore(Experiment):
         ):
             kept[name] = ("case", np.array(values), {"units": unit})
         shown = self._shown(kept)
-        metres = self._metres(staged(progress, "metres on land, at the surface and below", 0.9, 1.0))
+        metres = self._metres(staged(progress, "work per metre on land, at the surface and below", 0.9, 1.0))
         whole = xr.merge([record.isel(run=[shown]), kept, metres], combine_attrs="override", compat="no_conflicts")
         whole.attrs.update(
             record.attrs, beyond=self.beyond, shown=shown, line=findings.water_line(runs[shown]),
@@ -152,28 +156,34 @@ class Shore(Experiment):
         return Simulated(record=whole, replays=self._replays(whole))
 
     def _cases(self) -> list[tuple[str, float, Run]]:
-        """Return kind of case, share of the air let out, and run."""
+        """Return of each case its kind, the share of the air that is let out, and its run."""
         out = self.breathe_out
         cases: list[tuple[str, float, Run]] = []
         for slope in self.slopes:
-            for grip in self.grips:
+            for scale in self.friction_scales:
                 for _ in range(self.seeds):
-                    cases.append(("ashore", out, self._run(self.gait, slope, grip, out, len(cases))))
-        middle = self.grips[len(self.grips) // 2]
+                    cases.append(("ashore", out, self._run(self.gait, slope, scale, out, len(cases))))
+        middle = self.friction_scales[len(self.friction_scales) // 2]
         cases += [
             ("gait", out, self._run(gait, slope, middle, out, 0)) for gait in self.others for slope in self.slopes
         ]
         steep = self.slopes[-1]
-        cases += [("breath", b, self._run(self.gait, steep, g, b, 0)) for b in self.breaths for g in self.grips]
-        ends = dict.fromkeys((self.grips[0], self.grips[-1]))
-        cases += [("into_water", out, self._run(self.gait, -slope, g, out, 0)) for slope in self.slopes for g in ends]
+        cases += [
+            ("breath", b, self._run(self.gait, steep, scale, b, 0))
+            for b in self.breaths
+            for scale in self.friction_scales
+        ]
+        ends = dict.fromkeys((self.friction_scales[0], self.friction_scales[-1]))
+        cases += [
+            ("into_water", out, self._run(self.gait, -slope, scale, out, 0)) for slope in self.slopes for scale in ends
+        ]
         return cases
 
     def _swim(self) -> Swim:
         robot = replace(self.robot, hull=None)
         return fit(robot, printed_wave(robot, "I", frequency=self.frequency, sign=-1)).swim
 
-    def _run(self, gait: Gait, uphill: float, grip: float, out: float, seed: int) -> Run:
+    def _run(self, gait: Gait, uphill: float, scale: float, out: float, seed: int) -> Run:
         """Return a run: up a shore from the water, or down into it where the slope falls."""
         offshore = self.robot.length / 2 + self.clearance / tan(uphill) if uphill > 0 else self.inland
         course = self.approach if uphill > 0 else 0.0
@@ -187,12 +197,12 @@ class Shore(Experiment):
         return Run(
             robot=self.robot,
             gait=gait,
-            ground=Ground(uphill=uphill, friction_scale=grip),
+            ground=Ground(uphill=uphill, friction_scale=scale),
             lake=Lake(level=offshore * sin(uphill)),
             control=control,
             noise=self.noise,
             seed=seed,
-            label=f"{np.degrees(abs(uphill)):.0f} degrees, grip {grip:g}",
+            label=f"{np.degrees(abs(uphill)):.0f} degrees, friction scale {scale:g}",
         )
 
     def _metres(self, progress: Callable[[float], None]) -> xr.Dataset:
@@ -210,10 +220,10 @@ class Shore(Experiment):
         return findings.metres(record, list(controls), last)
 
     def _shown(self, kept: xr.Dataset) -> int:
-        """Return which case is drawn: on the second slope with the greatest grip."""
+        """Return the index of the case that is drawn: on the second slope with the greatest friction scale."""
         main = kept.kind.values == "ashore"
         slope = self.slopes[min(1, len(self.slopes) - 1)]
-        mine = main & np.isclose(kept.slope, slope) & np.isclose(kept.grip, self.grips[-1])
+        mine = main & np.isclose(kept.slope, slope) & np.isclose(kept.grip, self.friction_scales[-1])
         return int(np.flatnonzero(mine)[0])
 
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
@@ -223,11 +233,11 @@ class Shore(Experiment):
         return {"shore_replay.html": Replay(caption=caption, make=page)}
 
     def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
-        """Return who came ashore and how soon, who fell, what else was tried, and what each metre costs."""
+        """Return how many runs come ashore and when, by gait and by breath, the falls, and the work per metre."""
         return findings.measures(record)
 
     def explain(self, measures: Mapping[str, float]) -> str:
-        """Say how many came ashore, what decides, and what a metre costs."""
+        """Say how many runs came ashore, what this depends on, and the work per metre."""
         m = {name: Reading(value) for name, value in measures.items()}
         breaths = [
             f"{m[f'ashore_share_breathed_out_{i}']:.0%} with {m[f'breathed_out_{i}']:.0%} of its air let out"
@@ -235,8 +245,13 @@ class Shore(Experiment):
         ]
         gaits = {name.removeprefix("ashore_share_"): share for name, share in m.items() if name in _gait_names(m)}
         walked = [f"{share:.0%} by {name.replace('_', ' ')}" for name, share in gaits.items()]
-        grip = compared(m["ashore_share_most_grip"], m["ashore_share_least_grip"], less="fewer than", more="more than",
-                        same="as many as")  # fmt: skip
+        by_friction = compared(
+            m["ashore_share_most_grip"],
+            m["ashore_share_least_grip"],
+            less="fewer than",
+            more="more than",
+            same="as many as",
+        )
         costs = [
             f"{m[f'work_per_metre_{ending}']:.1f} J {where}"
             for ending, where in METRES.items()
@@ -247,19 +262,19 @@ class Shore(Experiment):
         return (
             f"{m['ashore_share']:.0%} of the runs came ashore{when}; {m['falls']:.0f} fell. The most changes between "
             f"swimming and walking in one run are {m['switches']:.0f}. On the steepest slope it is "
-            f"{m['ashore_share_steepest']:.0%}: {listed(breaths)}. With the greatest friction {grip} "
+            f"{m['ashore_share_steepest']:.0%}: {listed(breaths)}. With the greatest friction {by_friction} "
             f"with the least come ashore ({m['ashore_share_most_grip']:.0%} and {m['ashore_share_least_grip']:.0%}). "
             f"{by_gait}From land {m['into_water_share']:.0%} went into the water and swam "
-            f"on. A metre costs {listed(costs)}; the depth is held to {m['depth_error']:mm.0f} mm."
+            f"on. The work per metre is {listed(costs)}; the depth is held to {m['depth_error']:mm.0f} mm."
         )
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
-        """Draw one way out of the water from the side, and what decides."""
+        """Draw one run out of the water from the side, and how the time ashore depends on slope, friction and air."""
         return {"ashore": draw_ashore(self.robot, outcome.record), "decides": draw_decides(outcome.record)}
 
 
 def _gait_names(measures: Mapping[str, float]) -> list[str]:
-    """Return the names of the measures that tell how many come ashore by each gait."""
+    """Return the names of the measures with the share of runs that come ashore by each gait."""
     other = ("steepest", "least_grip", "most_grip", "breathed_out")
     names = [name for name in measures if name.startswith("ashore_share_")]
     return [name for name in names if not name.removeprefix("ashore_share_").startswith(other)]

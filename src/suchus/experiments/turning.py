@@ -91,7 +91,7 @@ class Turning(Experiment):
 
     def _replays(self, pair: tuple[xr.Dataset, xr.Dataset]) -> Mapping[str, Replay]:
         """Return the replay of the gait that turns tightest, and of its first circle."""
-        asked = f"on a circle of {self.asked[0]:g} m, or the tightest it can walk on command"
+        asked = f"on a circle of {self.asked[0]:.3g} m, or the tightest it can walk on command"
         caption = f"Turning as tightly as it can, and, half transparent, {asked}."
         page = partial(
             replay,

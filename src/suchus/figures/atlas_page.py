@@ -1,4 +1,4 @@
-"""The page of the atlas of flows: a summary of all rows, then each with its source, its set-up and what came of it."""
+"""The page of the atlas of flows: a summary of all rows, then each with its source, its set-up and its result."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -9,32 +9,32 @@ from suchus.errors import SuchusError
 from suchus.flow import ALONG_THE_SKIN
 
 _SKIN = (
-    "Of values along the skin the solver's documentation says: {solver} In these rows the vorticity is therefore not "
-    "read with the solver's own `Surface` but with the equation of motion at the wall (`suchus.atlas.read_skin`); what "
-    "that gains stands in [limits](flow_limits.md). Pressures count from that of the far stream, by Bernoulli's "
-    "equation from the inflow."
+    "About values along the surface of a body the solver's documentation says: {solver} In these rows the vorticity "
+    "is therefore not read with the solver's own `Surface` but from the equation of motion at the wall "
+    "(`suchus.atlas.read_skin`); [limits](flow_limits.md) says how much more accurate that is. Pressures are relative "
+    "to that of the far stream, by Bernoulli's equation from the inflow."
 )
 _HEAD = ("row", "rms over peak", "bound", "scatter of sources", "verdict", "cells", "processor time")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Entry:
-    """A row and what came of it."""
+    """A row and its result."""
 
     row: Row
     """The row."""
     outcome: Outcome | None
-    """That of its flow; None if it was not computed."""
+    """Outcome of its flow; None if it was not computed."""
     comparison: Comparison | None = None
-    """None where there is nothing to compare."""
+    """Difference from the published data; None if there is nothing to compare."""
     failed: str = ""
-    """Why there is nothing."""
+    """The error, if there is no comparison; else empty."""
     curves: Curves = field(default_factory=dict)
-    """Ours."""
+    """Curves of the flow solver."""
 
     @property
     def word(self) -> str:
-        """What became of it, in a word or two."""
+        """Its verdict, in a word or two."""
         if self.outcome is None:
             return "not computed"
         if self.comparison is None:
@@ -45,12 +45,12 @@ class Entry:
 
     @property
     def bad(self) -> bool:
-        """Whether it is marked: a judged row above its bound, or one of which nothing came."""
+        """Whether it is marked: a judged row above its bound, or one that failed."""
         return self.word in ("above its bound", "failed")
 
 
 def entries(rows: Sequence[Row], outcomes: Mapping[str, Outcome]) -> list[Entry]:
-    """Return each row with what came of it; outcomes are found by the names of the flows."""
+    """Return each row with its result; outcomes are found by the names of the flows."""
     told = []
     for row in rows:
         outcome = outcomes.get(row.case)
@@ -85,7 +85,7 @@ def summary(told: Sequence[Entry]) -> str:
     )
     text += f", above are {', '.join(above)}." if above else "."
     failed = [entry.row.name for entry in told if entry.word == "failed"]
-    return text + (f" No comparison came of {', '.join(failed)}." if failed else "")
+    return text + (f" There is no comparison for {', '.join(failed)}, which failed." if failed else "")
 
 
 def page(told: Sequence[Entry]) -> str:
@@ -93,16 +93,17 @@ def page(told: Sequence[Entry]) -> str:
     costs = {e.outcome.case: e.outcome.seconds for e in told if e.outcome is not None}
     lines = [
         "# Atlas of flows", "",
-        "Published data of flows around bodies, many of which move, beside what `suchus.flow` makes of them. `suchus "
-        "flow-atlas` computes the flows and `make atlas` writes this page from what came; nothing on it is typed in by "
-        "hand. What has no published data, exact answers and budgets, stands in [validation](validation.md), what the "
-        "differences mean in [limits](flow_limits.md).", "",
+        "Published data of flows around bodies, many of which move, beside the results of `suchus.flow`. `suchus "
+        "flow-atlas` computes the flows and `make atlas` writes this page from the results; nothing on it is typed in "
+        "by hand. Exact answers and budgets, which have no published data, are on the page "
+        "[validation](validation.md); [limits](flow_limits.md) says what the differences mean.", "",
         summary(told) + f" All flows together took {sum(costs.values()) / 60:.0f} minutes of processor time.", "",
-        "The difference is the root mean square over the published points, over the largest published magnitude (of "
-        "single numbers: of the relative differences). Its bound was fixed before anything was computed: twice the "
-        "scatter, the same measure between the sources, at least 2 and at most 8 %, or the scatter itself if that is "
-        "larger; 8 % where there is one source only. Rows above their bound stay.", "",
-        f"![All points, ours over the published ones, and the difference of each row with its bound]"
+        "The difference of a row is the root mean square (rms) over the published points, divided by the largest "
+        "published magnitude; for single numbers it is the rms of the relative differences. The scatter is the same "
+        "measure between two sources. The bound was fixed before anything was computed: twice the scatter, at least 2 "
+        "and at most 8 %, or the scatter itself if that is larger; 8 % where there is only one source. Rows above "
+        "their bound are kept and marked.", "",
+        f"![All points, computed over published values, and the difference of each row with its bound]"
         f"({picture('parity')})",
         "", f"| {' | '.join(_HEAD)} |", "|" + "---|" * len(_HEAD),
         *(_summary_line(entry) for entry in told),
@@ -140,12 +141,12 @@ def _told(entry: Entry) -> list[str]:
     lines = ["", f"### {row.title} {{#{row.name}}}", "", *_words(entry)]
     found = entry.comparison
     if found is not None and row.kind == "numbers":
-        lines += ["", "| quantity | ours | published | difference |", "|---|---|---|---|"]
+        lines += ["", "| quantity | computed | published | difference |", "|---|---|---|---|"]
         for name, ours, theirs in zip(published(row.data).columns["quantity"], found.ours, found.theirs, strict=True):
             lines.append(f"| {name} | {ours:.4g} | {theirs:.4g} | {100 * (ours / theirs - 1):+.1f} % |")
     setup = case.setup.format(cells=effort.cells, coarse=effort.coarse)
     about = " ".join(line if line.endswith(".") else f"{line}." for line in published(row.data).about)
-    return [*lines, "", f"Published: {about}", "", f"Ours: {setup}"]
+    return [*lines, "", f"Published: {about}", "", f"Computed: {setup}"]
 
 
 def _words(entry: Entry) -> list[str]:

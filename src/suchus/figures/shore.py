@@ -1,4 +1,4 @@
-"""A robot that swims in and walks out: side views with the water line, loads over distance, and what decides."""
+"""A robot that swims in and walks out: side views with the water line, loads over distance, and times ashore."""
 
 from typing import Any
 
@@ -23,7 +23,7 @@ def levelled(record: xr.Dataset) -> xr.Dataset:
     """Return a run with the surface of its water level and at height 0, the water line at the origin.
 
     Args:
-        record: of one run on a slope in a lake; its attribute ``line`` says where the water line is [m].
+        record: record of one run on a slope in a lake; its attribute ``line`` says where the water line is [m].
     """
     ground = ground_of(record)
     assert ground is not None
@@ -38,11 +38,12 @@ def levelled(record: xr.Dataset) -> xr.Dataset:
 
 
 def draw_ashore(robot: AnyRobot, record: xr.Dataset) -> Figure:
-    """Draw a robot from the side as it comes ashore, and what its feet and the water carry over the distance.
+    """Draw a robot from the side as it comes ashore, and the shares of weight on the feet and of volume under water.
 
     Args:
-        robot: whose record it is.
-        record: of one run (``run`` of size 1), and the paths of all cases; its attribute ``shown`` is the case drawn.
+        robot: the robot of the record.
+        record: record of one run (``run`` of size 1) with the paths of all cases; its attribute ``shown`` is the case
+            drawn.
     """
     whole = record.isel(run=0)
     one, path = levelled(whole), record.isel(case=record.attrs["shown"])
@@ -55,38 +56,55 @@ def draw_ashore(robot: AnyRobot, record: xr.Dataset) -> Figure:
             draw_posture(ax, robot, one, time, view="side", support=False, ground=False)
             here = float(one.centre_of_mass.sel(xyz="x").sel(time=time, method="nearest"))
             ax.annotate(f"{time:.0f} s", (here, 0.0), (here, 0.42), ha="center", color="#333333")
-        ax.set_ylabel("above the water [m]")
+        ax.set_ylabel("height above the water [m]")
         ax.set_ylim(-0.42, 0.6)
         ax = axes[1, 0]
         across = ahead * np.cos(steep)
         ax.plot(across, path.feet, color=COLOURS["limbs_only"], linewidth=0.8, alpha=0.35)
         wide = max(round(1.5 / float(path.moment[1] - path.moment[0])), 1)
-        ax.plot(across, _smooth(path.feet.values, wide), color=COLOURS["limbs_only"], label="weight on the feet")
-        ax.plot(across, path.under, color=COLOURS["coordinated"], linestyle=(0, (5, 2)), label="volume under water")
+        ax.plot(
+            across,
+            _smooth(path.feet.values, wide),
+            color=COLOURS["limbs_only"],
+            label="share of the weight on the feet",
+        )
+        ax.plot(
+            across,
+            path.under,
+            color=COLOURS["coordinated"],
+            linestyle=(0, (5, 2)),
+            label="share of the volume under water",
+        )
         changes = np.flatnonzero(np.diff(path.walks.values) != 0)
         for i in changes:
             ax.axvline(across[i], color=COLOURS["neutral"], linewidth=0.9)
         if changes.size:
             ax.annotate("feels ground, walks", (across[changes[0]], 1.05), ha="right", color=COLOURS["neutral"])
         ax.axvline(0.0, color=COLOURS["water"], linewidth=0.9)
-        ax.set(xlabel="centre of mass beyond the water line, level [m]", ylabel="share [-]", ylim=(-0.05, 1.2))
+        ax.set(
+            xlabel="horizontal distance of the centre of mass beyond the water line [m]",
+            ylabel="share [-]",
+            ylim=(-0.05, 1.2),
+        )
         ax.set_xlim(*_VIEW)
         ax.legend(loc="center left")
     return captioned(
         figure,
         f"A robot between the water and a shore of {np.degrees(steep):.0f} degrees, seen along the shore"
-        f"{_aslant(record.attrs['approach'])}; below, the share of its weight that the feet carry (mean of 1.5 s in "
-        "bold) and of its volume under water.",
+        f"{_obliquely(record.attrs['approach'])}; below, the share of its weight that the feet carry "
+        "(thin; bold: mean over 1.5 s) and the share of its volume under water.",
     )
 
 
-def _aslant(course: float) -> str:
-    """Return how a picture from the side is to be read where a robot does not come straight, in words."""
-    return f" (it comes aslant by {abs(np.degrees(course)):.0f} degrees, and so looks shorter)" if course else ""
+def _obliquely(course: float) -> str:
+    """Return what a view from the side shows of an oblique approach, in words."""
+    return (
+        f" (it approaches obliquely, at {abs(np.degrees(course)):.0f} degrees, and so looks shorter)" if course else ""
+    )
 
 
 def _times(path: xr.Dataset) -> list[float]:
-    """Return times at which the robot is drawn, evenly over the distance."""
+    """Return times at which the robot is drawn, at equal steps of the distance [s]."""
     ahead, moment = path.ahead.values, path.moment.values
     end = min(float(np.nanmax(ahead)), _VIEW[1] - 0.55)
     return [float(moment[np.argmax(ahead >= x)]) for x in np.linspace(float(ahead[0]) + 0.02, end, _POSTURES)]
@@ -108,10 +126,10 @@ def _smooth(values: np.ndarray, wide: int) -> np.ndarray:
 
 
 def draw_decides(record: xr.Dataset) -> Figure:
-    """Draw how soon it comes ashore over slope and friction, and over air let out and friction on the steepest slope.
+    """Draw the time until ashore over slope and friction, and over air let out and friction on the steepest slope.
 
     Args:
-        record: of the paths of all cases, with ``kind``, ``slope``, ``grip`` and ``breathed_out``.
+        record: paths of all cases, with ``kind``, ``slope``, ``grip`` (the friction scale) and ``breathed_out``.
     """
     reached = record.ahead.values >= record.attrs["beyond"]
     time = np.where(reached.any(axis=1), record.moment.values[reached.argmax(axis=1)], np.nan)
@@ -123,31 +141,34 @@ def draw_decides(record: xr.Dataset) -> Figure:
         figure, axes = panels(1, 2, width=12.0, height=4.4)
         for ax, mine, rows, label in (
             (axes[0, 0], main, slopes, "slope [deg]"),
-            (axes[0, 1], steep | (kind == "breath"), 100 * record.breathed_out.values, "air let out at touch-down [%]"),
+            (axes[0, 1], steep | (kind == "breath"), 100 * record.breathed_out.values, "air let out while landing [%]"),
         ):
             image = _map(ax, time[mine], record.grip.values[mine], rows[mine], most)
-            ax.set(xlabel="factor on friction [-]", ylabel=label)
-        axes[0, 1].set_title(f"on {slopes[main].max():.0f} degrees")
+            ax.set(xlabel="friction scale [-]", ylabel=label)
+        axes[0, 1].set_title(f"on a slope of {slopes[main].max():.0f} degrees")
         axes[0, 0].set_title(f"{record.attrs['breathe_out']:.0%} of the air let out")
         figure.colorbar(image, ax=axes[0, 1], label="time until ashore [s]")
     return captioned(
         figure,
-        "Mean time until the centre of mass is ashore, over slope and friction, and over the air that is let out and "
-        "friction on the steepest slope; in each field the runs that came ashore, of how many.",
+        "Mean time until the centre of mass is ashore. Left: over slope and friction scale. Right: over the "
+        "air that is let out and friction scale, on the steepest slope. Each field gives how many of its runs came "
+        "ashore.",
     )
 
 
-def _map(ax: Axes, time: np.ndarray, grip: np.ndarray, row: np.ndarray, most: float) -> Any:
-    """Draw a field for each pair of grip and row: its mean time, and how many of its runs came ashore."""
-    columns, rows = np.unique(grip), np.unique(np.round(row, 6))
+def _map(ax: Axes, time: np.ndarray, scale: np.ndarray, row: np.ndarray, most: float) -> Any:
+    """Draw a field for each pair of friction scale and row, with its mean time and how many of its runs came ashore."""
+    columns, rows = np.unique(scale), np.unique(np.round(row, 6))
     shown = np.full((len(rows), len(columns)), np.nan)
     for i, one in enumerate(rows):
         for j, other in enumerate(columns):
-            here = time[np.isclose(row, one) & (grip == other)]
-            came = here[np.isfinite(here)]
-            shown[i, j] = came.mean() if came.size else np.nan
-            dark = came.size > 0 and shown[i, j] < 0.6 * most
-            ax.text(j, i, f"{came.size} of {here.size}", ha="center", va="center", color="white" if dark else "#333333")
+            here = time[np.isclose(row, one) & (scale == other)]
+            ashore = here[np.isfinite(here)]
+            shown[i, j] = ashore.mean() if ashore.size else np.nan
+            dark = ashore.size > 0 and shown[i, j] < 0.6 * most
+            ax.text(
+                j, i, f"{ashore.size} of {here.size}", ha="center", va="center", color="white" if dark else "#333333"
+            )
     image = ax.imshow(shown, origin="lower", aspect="auto", cmap=SEQUENTIAL, vmin=0.0, vmax=most)
     ax.set_xticks(range(len(columns)), [f"{one:g}" for one in columns])
     ax.set_yticks(range(len(rows)), [f"{one:.0f}" for one in rows])

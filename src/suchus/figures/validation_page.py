@@ -9,7 +9,7 @@ from typing import Any
 from suchus.errors import IncompatibleRecord
 
 UNKNOWN = "-"
-"""What stands for ``theirs`` in a row that has nothing to compare with: its curves are drawn, and no table names it."""
+"""Value of ``theirs`` in a row without anything to compare with: its curves are drawn, and it is in no table."""
 
 Row = Mapping[str, Any]
 """One comparison: ``case``, ``quantity``, ``ours``, ``theirs``, ``grid``, ``domain``, ``source``, ``curves``."""
@@ -22,7 +22,7 @@ class Group:
     title: str
     """Heading on the page."""
     about: str
-    """What the cases show, in a sentence or two."""
+    """What the cases show, in one or two sentences."""
     cases: tuple[str, ...]
     """Prefixes of the names of its cases."""
     figures: tuple[tuple[str, str], ...] = ()
@@ -32,8 +32,8 @@ class Group:
 GROUPS = (
     Group(
         title="Exact answers",
-        about="Flows with a solution on paper, and budgets that must close. They show that the equations are solved, "
-        "and with which order of accuracy.",
+        about="Flows with a known exact solution, and budgets that must close. They show that the equations are "
+        "solved, and with which order of accuracy.",
         cases=(
             "Taylor-Green",
             "turning cylinder",
@@ -43,28 +43,31 @@ GROUPS = (
             "energy budget",
         ),
         figures=(
-            ("convergence", "Errors against the number of cells, for fields, forces and the free eel"),
-            ("energy", "Where the work of a body that shakes in a box goes"),
+            (
+                "convergence",
+                "Errors against the number of cells, for velocity and force, and the speed of the free eel",
+            ),
+            ("energy", "Energy budget: shares of the work of a body that oscillates in a box"),
         ),
     ),
     Group(
         title="Started cylinder",
-        about="Drag of a cylinder that starts at once, beside a solver that shares nothing with this one, with "
-        "vorticity in polar coordinates.",
+        about="Drag of an impulsively started cylinder, beside an independent solver for the vorticity in polar "
+        "coordinates, which shares no code with this one.",
         cases=("impulsively started cylinder",),
         figures=(("started", "Drag of an impulsively started cylinder over time"),),
     ),
     Group(
         title="Swimming bodies",
-        about="An eel of the literature, swimming freely or fixed. Force noise is the part of the force that changes "
+        about="The swimming eel of the literature, free or tethered. Force noise is the part of the force that changes "
         "from step to step.",
-        cases=("free eel", "held eel"),
+        cases=("free eel", "tethered eel", "held eel"),
     ),
 )
-"""The groups of the page in their order; a case that none of them names stands in a last group."""
+"""The groups of the page in their order; a case that none of them names is in a last group."""
 
 _OTHERS = Group(title="Other cases", about="Cases that belong to none of the groups above.", cases=("",))
-_HEAD = ("quantity", "ours", "published or exact", "difference", "grid", "domain", "source")
+_HEAD = ("quantity", "computed", "published or exact", "difference", "grid", "domain", "source")
 
 
 def load_rows(folder: Path) -> list[dict[str, Any]]:
@@ -91,10 +94,10 @@ def page(rows: Sequence[Row], sources: Sequence[str] = ()) -> str:
     contents = [f"- [{group.title}](#{_anchor(group.title)}): {_count(grouped)}" for group, grouped in groups]
     lines = [
         "# Validation of the flow solver", "",
-        "What `suchus.flow` computes beside exact solutions, budgets that must close and bounds that were asked for. "
-        "`make validate` runs every case (`tests/flow/test_validate_flow.py`) and writes this page; every row is a run "
-        "of this code. Published data stand in the [atlas](atlas.md). What the rows mean, and where the solver falls "
-        "short, stands in [limits](flow_limits.md).", "",
+        "Results of `suchus.flow` beside exact solutions, budgets that must close and required bounds. `make "
+        "validate` runs every case (`tests/flow/test_validate_flow.py`) and writes this page; every row is a run of "
+        "this code. Comparisons with published data are in the [atlas](atlas.md). [Limits](flow_limits.md) says what "
+        "the rows mean, and where the solver falls short.", "",
         "Grids are given in cells per diameter D or body length L. Re is the Reynolds number, Cd and Ci are the "
         "coefficients of drag and inertia, KC is the Keulegan-Carpenter number.", "",
         *contents,
@@ -122,10 +125,10 @@ def _grouped(rows: Sequence[Row]) -> Iterator[tuple[Group, list[Row]]]:
 def _table(case: str, rows: Sequence[Row]) -> list[str]:
     """Return a case's heading, what all its rows have in common, and the table of the rest."""
     common = [name for name in ("grid", "domain", "source") if len({row[name] for row in rows}) == 1]
-    told = [f"{name.capitalize()}: {rows[0][name]}." for name in common if rows[0][name] != "-"]
+    shared = [f"{name.capitalize()}: {rows[0][name]}." for name in common if rows[0][name] != "-"]
     columns = [name for name in _HEAD if name not in common]
     lines = ["", f"### {case}", ""]
-    lines += [" ".join(told), ""] if told else []
+    lines += [" ".join(shared), ""] if shared else []
     lines += [f"| {' | '.join(columns)} |", "|" + "---|" * len(columns)]
     return lines + [f"| {' | '.join(_cells(row)[name] for name in columns)} |" for row in rows]
 
@@ -135,7 +138,7 @@ def _cells(row: Row) -> dict[str, str]:
     number = isinstance(theirs, int | float)
     return {
         "quantity": str(row["quantity"]),
-        "ours": f"{row['ours']:.4g}",
+        "computed": f"{row['ours']:.4g}",
         "published or exact": f"{theirs:.4g}" if number else str(theirs),
         "difference": f"{100 * (row['ours'] / theirs - 1):+.1f} %" if number and theirs else "",
         **{name: str(row[name]) for name in ("grid", "domain", "source")},

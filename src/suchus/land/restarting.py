@@ -1,4 +1,4 @@
-"""Robots of a running batch put back to a beginning, one by one: what learning in many episodes needs."""
+"""Restart of single robots of a running batch, as learning in many episodes needs it."""
 
 from typing import NamedTuple
 
@@ -18,23 +18,23 @@ class Beginning(NamedTuple):
     """Generalised velocities [m/s], [rad/s]."""
     act: Float[np.ndarray, " a"]
     """Inner states of the servos: slew-limited targets and integrals."""
-    told: Float[np.ndarray, " servo"]
+    commanded: Float[np.ndarray, " servo"]
     """Last commanded angle of each servo [rad]."""
 
 
 def restart(bench: Bench, sim: int, begin: Beginning) -> None:
-    """Put one robot of a batch into a state, not pushed, whatever became of it before; faults are the injector's.
+    """Put one robot of a batch into a state, without a push, also after it has diverged; faults are the injector's.
 
     The others stay as they are. From then on it moves as a robot of a fresh batch does, to the last bit.
 
     Args:
         bench: the batch; its runs must be of one robot on one relief.
-        sim: which.
-        begin: the state.
+        sim: index of the robot in the batch.
+        begin: the state in which it begins.
     """
     batch, who = bench.batch, np.array([sim])
     batch.reset(who, stage=mujoco.mjtStage.mjSTAGE_NONE)
-    bench.qpos[sim], bench.qvel[sim], bench.ctrl[sim] = begin.qpos, begin.qvel, begin.told
+    bench.qpos[sim], bench.qvel[sim], bench.ctrl[sim] = begin.qpos, begin.qvel, begin.commanded
     batch.bind("act")[sim] = begin.act
     bench.refill(sim)
     batch.forward(who)

@@ -7,19 +7,23 @@ from suchus.faults import FAULTS, Limp, numbers
 from suchus.gaits import GAITS, suits
 from suchus.motion import AnyGait, Gait
 from suchus.viewer.knobs import Knob, knobs_of, shown
+from suchus.viewer.saving import SavedFile, gait_file, robot_file
 from suchus.viewer.session import Session, Switch, plain_knobs
 
 Say = Callable[[str], None]
 """Shows people a sentence; an empty one is not shown."""
 
+Save = Callable[[SavedFile], None]
+"""Gives the browser a file to download."""
+
 _SWITCHES: tuple[tuple[Switch, str, str], ...] = (
     ("spine", "spine bends", "Off: the trunk is straight, as in the article's control group."),
     ("tail", "tail swings on the ground", "Off: the tail is straight and lifted."),
-    ("coordination", "feedback: three rules", "Limbs feel their loads, trunk and tail what they lack."),
+    ("coordination", "feedback: three rules", "Limbs respond to their loads; trunk and tail to what the limbs lack."),
     (
         "heading",
         "feedback: heading loop",
-        "Keeps the direction it has when switched on, by longer strokes on one side.",
+        "Keeps the heading at which it is switched on, by longer strokes on one side.",
     ),
 )
 
@@ -31,22 +35,24 @@ class Controls:
         gui: viser's interface of one browser.
         session: the walk.
         say: shows people a sentence.
+        save: gives the browser a file to download.
     """
 
-    def __init__(self, gui: Any, session: Session, say: Say) -> None:
+    def __init__(self, gui: Any, session: Session, say: Say, save: Save) -> None:
         self._gui, self._session, self._say = gui, session, say
         self.touched = 0
         self._switches: dict[str, Any] = {}
         self._sliders: dict[str, Any] = {}
         self._turned: list[str] = []
         self._playback()
-        with gui.add_folder("Arms and feedback"):
+        with gui.add_folder("Conditions and feedback"):
             for switch, label, hint in _SWITCHES:
                 self._add_switch(switch, label, hint)
         with gui.add_folder("Gait"):
             self._gaits()
             for name, knob in knobs_of(session.robot, session.settings.gait).items():
                 self._add_gait_slider(name, knob)
+        self._files(save)
         knobs = plain_knobs(session.robot)
         with gui.add_folder("Break a joint"):
             self._faults()
@@ -122,6 +128,15 @@ class Controls:
             return notice
 
         self._on(menu, act)
+
+    def _files(self, save: Save) -> None:
+        """Offer gait and robot as TOML files, which every command takes in the place of a name."""
+        gui, session = self._gui, self._session
+        with gui.add_folder("Save"):
+            gait = gui.add_button("save the gait", hint="A TOML file, with spine and tail as they are switched.")
+            self._on(gait, lambda _: save(gait_file(session.robot, session.settings)))
+            robot = gui.add_button("save the robot", hint="A TOML file, to be changed by hand.")
+            self._on(robot, lambda _: save(robot_file(session.robot)))
 
     def _fits(self, gait: AnyGait) -> bool:
         """Return whether a gait of the shelf has the same sliders, and the robot can follow it if a pattern."""

@@ -9,15 +9,16 @@ from viser import uplot
 
 from suchus.viewer.controls import Controls
 from suchus.viewer.plots import Plots
+from suchus.viewer.saving import SavedFile
 from suchus.viewer.session import Instant, Session, Settings
 from suchus.viewer.stage import Stage
 
 FRAME = 1 / 20
-"""Between two pictures [s]."""
+"""Time between two pictures [s]."""
 DRAWN = 3
 """Frames for one renewal of numbers and track, which cost more to a browser than what merely moves."""
 PLOT = 0.3
-"""Between two redraws of the plots [s]."""
+"""Time between two redraws of the plots [s]."""
 IDLE = 900.0
 """After so long without a touch the walk pauses, so that a forgotten window costs nothing [s]."""
 _LATE = 0.25  # [s]; a slow machine simulates at most so much at once, and so goes slower than real time
@@ -38,7 +39,7 @@ class LivePage:
         gui = client.gui
         self._status = gui.add_html("")
         self._notice = ""
-        self._controls = Controls(gui, session, self._say)
+        self._controls = Controls(gui, session, self._say, self._save)
         with gui.add_folder("Look", expand_by_default=False):
             self._skin = gui.add_checkbox("skin", initial_value=True, hint="Off: the shapes that touch the ground.")
             self._follow = gui.add_checkbox("camera follows", initial_value=True)
@@ -50,6 +51,9 @@ class LivePage:
         self._stage.look("skin")
         self._skin.on_update(lambda _: self._stage.look("skin" if self._skin.value else "collision geoms"))
         self._switches = switches
+
+    def _save(self, file: SavedFile) -> None:
+        self._client.send_file_download(file.name, file.content, save_immediately=True)
 
     def close(self) -> None:
         """End the walk."""
@@ -129,7 +133,7 @@ def status(instant: Instant, settings: Settings, *, rate: float, notice: str, pa
     if not paused and rate < 0.9 * settings.speed:
         state += f" at {rate:.2f} x real time, as fast as this machine can"
     cells = "".join(
-        f'<td style="padding:0 14px 0 0"><div style="font-size:11px;color:#666">{label}</div>'
+        f'<td style="padding:0 12px 0 0;white-space:nowrap"><div style="font-size:11px;color:#666">{label}</div>'
         f'<div style="font-size:17px;font-weight:600" data-suchus="{label}">{value}</div></td>'
         for label, value in (
             ("time", f"{instant.time:.1f} s"),

@@ -42,10 +42,10 @@ _CORRELATION = 0.06  # [m]; of the bumps, as on the shelf of arenas
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Settings:
-    """Everything that was chosen; what it makes of the walk is in ``Session``."""
+    """All settings of a live walk."""
 
     gait: AnyGait
-    """As the sliders say."""
+    """The gait, as the sliders set it."""
     spine: bool = True
     """Whether the trunk bends; if not, it is straight as in the article's control group."""
     tail: bool = True
@@ -79,7 +79,7 @@ class Settings:
     breath: float = 1.0
     """Share of the hull's air that is kept [-]."""
     broken: tuple[Fault, ...] = ()
-    """What is broken, each from the beginning of the next walk on."""
+    """Faults, each from the beginning of the next walk on."""
 
     def walked(self, robot: AnyRobot) -> AnyGait:
         """Return the gait of a robot with the switches of spine and tail."""
@@ -124,11 +124,11 @@ class Instant:
     """State of the walk at one instant, for the page."""
 
     time: float = 0.0
-    """Since the walk was begun [s]."""
+    """Time since the walk was begun [s]."""
     now: dict[str, np.ndarray] = field(default_factory=dict)
-    """By the names of ``record.VARIABLES``, without run and time."""
+    """Values by the names of ``record.VARIABLES``, without run and time."""
     forward: float = 0.0
-    """Way of the centre of mass since the first cycle began [m]."""
+    """Displacement of the centre of mass since the first cycle began [m]."""
     aside: float = 0.0
     """The same to the left [m]."""
     pushed: tuple[float, float, float] | None = None
@@ -143,10 +143,10 @@ class Session:
     """One watched walk. All methods may be called from any thread; none raises for what a person typed.
 
     Args:
-        robot: who walks.
-        gait: how.
-        timestep: of the physics [s]; for many runs of a robot of its size if None.
-        swim: how it swims, in a lake; None on dry land.
+        robot: the robot.
+        gait: the gait at the beginning.
+        timestep: time step of the physics [s]; the one for many runs of a robot of its size if None.
+        swim: its swimming motion, in a lake; None on dry land.
 
     Raises:
         OutsideLimits: the robot's joints cannot follow the gait, or the swim.

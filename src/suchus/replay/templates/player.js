@@ -169,7 +169,8 @@
   const asked = new URLSearchParams(location.hash.slice(1));
   const state = { time: 0, playing: !calm && !asked.has("t") && !framed, speed: 1, forces: true, support: true, tracks: true,
     follow: true, compare: meta.actors.length < 2 ? "hidden" : meta.overlaid ? "over" : "beside", dark: matchMedia("(prefers-color-scheme: dark)").matches };
-  const camera = { azimuth: -0.95, elevation: 0.36, distance: 2.2 * meta.length, target: [0, 0, 0.06], moved: [0, 0, 0] };
+  const bodyLength = meta.length; // sizes of marks [m] were chosen for a robot as long as the article's, 1 m
+  const camera = { azimuth: -0.95, elevation: 0.36, distance: 2.2 * meta.length, target: [0, 0, 0.06 * meta.length], moved: [0, 0, 0] };
   let dirty = true, last = 0, shown = null;
 
   const actors = meta.actors.map((actor) => {
@@ -208,17 +209,17 @@
   // ---- shapes made anew ----------------------------------------------------------------------------------------
   function arrow(to, from, along, colour) {
     const long = Math.hypot(...along);
-    if (long < 0.006) return;
+    if (long < 0.006 * bodyLength) return;
     const d = unit(along), u = unit(cross(d, Math.abs(d[2]) > 0.9 ? [1, 0, 0] : [0, 0, 1])), v = cross(d, u);
-    const head = Math.min(0.028, 0.5 * long), neck = long - head, n = 10;
+    const head = Math.min(0.028 * bodyLength, 0.5 * long), neck = long - head, n = 10;
     const ring = (k, r, at) => { const a = 2 * Math.PI * k / n;
       return add(add(add(from, d, at), u, r * Math.cos(a)), v, r * Math.sin(a)); };
     const away = (k) => { const a = 2 * Math.PI * k / n; return add(u.map((c) => c * Math.cos(a)), v, Math.sin(a)); };
     const facet = (a, b, c, na, nb, nc) => to.push(...a, ...na, ...colour, ...b, ...nb, ...colour, ...c, ...nc, ...colour);
     for (let k = 0; k < n; k++) {
-      const a = ring(k, 0.0045, 0), b = ring(k + 1, 0.0045, 0), c = ring(k + 1, 0.0045, neck), e = ring(k, 0.0045, neck);
+      const a = ring(k, 0.0045 * bodyLength, 0), b = ring(k + 1, 0.0045 * bodyLength, 0), c = ring(k + 1, 0.0045 * bodyLength, neck), e = ring(k, 0.0045 * bodyLength, neck);
       facet(a, b, c, away(k), away(k + 1), away(k + 1)); facet(a, c, e, away(k), away(k + 1), away(k));
-      push(to, ring(k, 0.0115, neck), ring(k + 1, 0.0115, neck), add(from, d, long), colour);
+      push(to, ring(k, 0.0115 * bodyLength, neck), ring(k + 1, 0.0115 * bodyLength, neck), add(from, d, long), colour);
     }
   }
   function disc(to, at, radius, colour, n = 20) {
@@ -257,28 +258,28 @@
     for (let leg = 0; leg < meta.radii.length; leg++) {
       const colour = [...meta.colours.legs[leg], faint ? 0.35 : 0.85];
       const at = (i) => { const k = limbs * i + 3 * leg;
-        return under([actor.feet[k], actor.feet[k + 1] + actor.side, actor.feet[k + 2]], meta.radii[leg], 0.0011); };
+        return under([actor.feet[k], actor.feet[k + 1] + actor.side, actor.feet[k + 2]], meta.radii[leg], 0.0011 * bodyLength); };
       for (let i = 0; i + step <= until; i += step) {
         const stands = actor.forces[limbs * i + 3 * leg + 2] > meta.loaded;
         const a = at(i), b = at(i + step);
         if (!stands && rough) continue; // where the ground lies under a swinging foot is not recorded
-        if (!stands) a[2] = b[2] = 0.0011;
-        ribbon(to, a, b, stands ? 0.008 : 0.0025, colour);
+        if (!stands) a[2] = b[2] = 0.0011 * bodyLength;
+        ribbon(to, a, b, stands ? 0.008 * bodyLength : 0.0025 * bodyLength, colour);
       }
     }
-    const mass = (i) => [actor.mass[3 * i], actor.mass[3 * i + 1] + actor.side, 0.0012];
-    for (let i = 0; i + step <= until; i += step) ribbon(to, mass(i), mass(i + step), 0.003, [...meta.colours.mass, faint ? 0.3 : 0.8]);
+    const mass = (i) => [actor.mass[3 * i], actor.mass[3 * i + 1] + actor.side, 0.0012 * bodyLength];
+    for (let i = 0; i + step <= until; i += step) ribbon(to, mass(i), mass(i + step), 0.003 * bodyLength, [...meta.colours.mass, faint ? 0.3 : 0.8]);
   }
   function support(to, actor, now) {
-    const standing = now.feet.map((foot, leg) => [under(foot, meta.radii[leg], 0.0014), now.forces[leg][2] > meta.loaded])
+    const standing = now.feet.map((foot, leg) => [under(foot, meta.radii[leg], 0.0014 * bodyLength), now.forces[leg][2] > meta.loaded])
       .filter(([, stands]) => stands).map(([at]) => at);
-    if (now.tail[3] > meta.loaded) standing.push(under(now.tail, rough ? 0 : now.tail[2], 0.0014)); // its tip, as in metrics
+    if (now.tail[3] > meta.loaded) standing.push(under(now.tail, rough ? 0 : now.tail[2], 0.0014 * bodyLength)); // its tip, as in metrics
     const corners = hull(standing), colour = meta.colours.support;
     for (let i = 1; i + 1 < corners.length; i++) push(to, corners[0], corners[i], corners[i + 1], [...colour, 0.40], [0, 0, 0]);
-    for (let i = 0; i < corners.length; i++) ribbon(to, corners[i], corners[(i + 1) % corners.length], 0.005, [...colour, 0.95]);
-    const shadow = [now.mass[0], now.mass[1], 0.0018];
-    disc(to, shadow, 0.012, [...meta.colours.mass, 1]);
-    disc(to, add(shadow, [0, 0, 0.0002]), 0.007, [1, 1, 1, 1]);
+    for (let i = 0; i < corners.length; i++) ribbon(to, corners[i], corners[(i + 1) % corners.length], 0.005 * bodyLength, [...colour, 0.95]);
+    const shadow = [now.mass[0], now.mass[1], 0.0018 * bodyLength];
+    disc(to, shadow, 0.012 * bodyLength, [...meta.colours.mass, 1]);
+    disc(to, add(shadow, [0, 0, 0.0002 * bodyLength]), 0.007 * bodyLength, [1, 1, 1, 1]);
   }
 
   // ---- drawing -------------------------------------------------------------------------------------------------
@@ -291,7 +292,7 @@
     const right = unit(cross(aground([0, 0, 1]), away)), up = cross(away, right);
     const look = new Float32Array([right[0], up[0], away[0], 0, right[1], up[1], away[1], 0, right[2], up[2], away[2], 0,
       -dot(right, eye), -dot(up, eye), -dot(away, eye), 1]);
-    const aspect = canvas.width / canvas.height, f = 1 / Math.tan(0.30 * Math.max(1, 0.75 / aspect)), near = 0.02, far = 60;
+    const aspect = canvas.width / canvas.height, f = 1 / Math.tan(0.30 * Math.max(1, 0.75 / aspect)), near = 0.02 * bodyLength, far = 60;
     const lens = new Float32Array([f / aspect, 0, 0, 0, 0, f, 0, 0, 0, 0, (far + near) / (near - far), -1, 0, 0, 2 * far * near / (near - far), 0]);
     return { matrix: times(lens, look), eye, right, up };
   }
@@ -370,7 +371,7 @@
     const now = seenActors.map((actor) => frame(actor, state.time));
     if (state.follow) {
       const sum = now.reduce((at, one) => add(at, one.mass, 1 / now.length), [0, 0, 0]);
-      camera.target = [sum[0], sum[1], Math.max(0.06, 0.8 * sum[2])];
+      camera.target = [sum[0], sum[1], Math.max(0.06 * meta.length, 0.8 * sum[2])];
     }
     const seen = view(), back = state.dark ? [0.085, 0.098, 0.106] : [0.925, 0.925, 0.905];
     gl.viewport(0, 0, canvas.width, canvas.height);
@@ -402,7 +403,7 @@
       if (state.support && !i) support(flat, actor, now[i]);
       if (state.forces) now[i].forces.forEach((force, leg) =>
         arrow(solids, under(now[i].feet[leg], meta.radii[leg], 0), force.map((f) => f * meta.metres_per_newton), [...meta.colours.force, 1]));
-      if (state.support && !i) ball(solids, now[i].mass, 0.009, [...meta.colours.mass, 1]);
+      if (state.support && !i) ball(solids, now[i].mass, 0.009 * bodyLength, [...meta.colours.mass, 1]);
     });
     gl.enable(gl.POLYGON_OFFSET_FILL);
     gl.polygonOffset(-1, -4);
@@ -420,8 +421,8 @@
   function hoop(to, at, seen) { // the centre of mass is inside the body: a ring seen through it
     for (let k = 0; k < 24; k++) {
       const p = (i, r) => add(add(at, seen.right, r * Math.cos(Math.PI * i / 12)), seen.up, r * Math.sin(Math.PI * i / 12));
-      push(to, p(k, 0.008), p(k + 1, 0.008), p(k + 1, 0.012), [...meta.colours.mass, 0.95], [0, 0, 0]);
-      push(to, p(k, 0.008), p(k + 1, 0.012), p(k, 0.012), [...meta.colours.mass, 0.95], [0, 0, 0]);
+      push(to, p(k, 0.008 * bodyLength), p(k + 1, 0.008 * bodyLength), p(k + 1, 0.012 * bodyLength), [...meta.colours.mass, 0.95], [0, 0, 0]);
+      push(to, p(k, 0.008 * bodyLength), p(k + 1, 0.012 * bodyLength), p(k, 0.012 * bodyLength), [...meta.colours.mass, 0.95], [0, 0, 0]);
     }
   }
 
@@ -443,9 +444,10 @@
   }
   function labels(seen) {
     for (const { mark, at } of marks) put(mark, at, seen);
-    actors.forEach((actor, i) => put(names[i], add(frame(actor, state.time).mass, [0, 0, i && state.compare === "over" ? 0.22 : 0.16]), seen, i === 0 || state.compare !== "hidden"));
+    actors.forEach((actor, i) => put(names[i], add(frame(actor, state.time).mass, [0, 0, i && state.compare === "over" ? 0.22 * bodyLength : 0.16 * bodyLength]), seen, i === 0 || state.compare !== "hidden"));
   }
-  const metres = (v) => `${v.toFixed(2).replace("-", "−")} m`;
+  const places = meta.length < 0.5 ? 3 : 2;
+  const metres = (v) => `${v.toFixed(places).replace("-", "−")} m`;
   function readout(now) {
     $("clock").textContent = `${state.time.toFixed(2)} s`;
     $("time").value = state.time;

@@ -1,4 +1,4 @@
-"""A cylinder at Re 185 that oscillates across a stream near its natural frequency, and one that rests."""
+"""A cylinder at Re 185 that oscillates across a stream near its natural frequency, and one at rest."""
 
 from dataclasses import replace
 from functools import partial
@@ -15,22 +15,22 @@ RATIOS = (0.8, 0.9, 1.0, 1.1, 1.12, 1.2)
 """Frequencies of the motion over the natural one [-]."""
 
 NATURAL = 0.195
-"""Natural frequency that the sources use [Hz, for diameter and speed 1]."""
+"""Natural frequency of vortex shedding that the sources use, for diameter and speed 1 [Hz]."""
 
 AMPLITUDE = 0.2
 """Amplitude of the motion [m]."""
 
-_CODE = ("shaken.py", "marching.py", "refine.py", "skin.py")
+_CODE = ("oscillated.py", "marching.py", "refine.py", "skin.py")
 _COARSE = 24
 """Cells a diameter of the run in which the wake forms [-]. Chosen after a first result: on 16 cells the wake at a ratio
 of 1.0 switches its state too early, and does not switch back on the finer grid; see docs/flow_limits.md."""
 _COARSE_SHARE = 0.2  # of the time that a run takes [-]
 _SETTLED = 6.0  # [s] on the finer grid until the wake is its own
-_PERIODS = 5  # of shedding
+_PERIODS = 5  # of vortex shedding, over which is averaged
 
 
-def _shaken(effort: Effort, tell: Tell, *, ratio: float) -> Curves:
-    """Compute ``effort.before`` periods and then ``effort.until`` finer ones; all of these but the first are read."""
+def _oscillated(effort: Effort, tell: Tell, *, ratio: float) -> Curves:
+    """Compute ``effort.before`` periods and then ``effort.until`` finer ones, of which all but the first are used."""
     rate = 2 * np.pi * ratio * NATURAL
     period = 2 * np.pi / rate
     whole, first = round(effort.until), round(effort.before)
@@ -72,7 +72,7 @@ def _setup(cells: int, rate: float) -> flow.Setup:
     )  # fmt: skip
 
 
-def _held(effort: Effort, tell: Tell) -> Curves:
+def _at_rest(effort: Effort, tell: Tell) -> Curves:
     """Compute the cylinder at rest, first on the coarse grid with a gust."""
     wake = flow.Simulation(replace(_setup(effort.coarse, 0.0), stream=nudged))
     march(wake, effort.before, lambda share: tell(_COARSE_SHARE * share))
@@ -93,19 +93,19 @@ CASES = (
     *(
         Case(
             name=f"shaken_{ratio:g}".replace(".", "p"),
-            run=partial(_shaken, ratio=ratio),
+            run=partial(_oscillated, ratio=ratio),
             full=Effort(cells=32, until=3.0, coarse=_COARSE, before=9.0),
             quick=Effort(cells=16, until=1.0, coarse=8, before=1.0),
             code=_CODE,
-            setup=f"Re 185, 0.2 diameters across the stream at {ratio:g} of 0.195 U/D, in 16 x 10 diameters of water "
-            "without end; nine periods from rest with {coarse} cells a diameter and three with {cells}, means over the "
-            "last two at the same phase.",
+            setup=f"Re 185, amplitude 0.2 diameters across the stream, frequency {ratio:g} times 0.195 U/D; unbounded "
+            "domain, of which 16 x 10 diameters are computed; nine periods from rest with {coarse} cells a diameter "
+            "and three with {cells}, means over the last two at the same phase.",
         )
         for ratio in RATIOS
     ),
     Case(
         name="held_re185",
-        run=_held,
+        run=_at_rest,
         full=Effort(cells=32, until=36.0, coarse=12, before=60.0),
         quick=Effort(cells=12, until=36.0, coarse=8, before=40.0),
         code=_CODE,
