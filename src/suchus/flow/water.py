@@ -104,7 +104,7 @@ class Water:
         self._q: np.ndarray = np.zeros(self._slabs, dtype)
         self._layout = poisson.levels(grid.cells)
         self._store = poisson.make_store(self._layout, dtype)
-        self._patches = patch.rects(self._layout)
+        self._patches = patch.rects(self._layout, self.repeats)
         self._room: np.ndarray = np.zeros((patch.FACES + self.axes, 0), dtype)
         self._sums = np.zeros((shape[0], 4))
         self.window: Window = (PAD,) * (2 * self.axes)
@@ -192,7 +192,7 @@ class Water:
         self._layout[0] = both
         multigrid.coarsen(self._store, self._layout, self.inner)
         poisson.place_window(self._layout, new)
-        self._patches = patch.rects(self._layout)
+        self._patches = patch.rects(self._layout, self.repeats)
         self._room = patch.room_for(self._room, self._patches)
         multigrid.spread(self._store, self._layout, self._room, self._patches, self.inner)
 
