@@ -102,8 +102,12 @@ class FarField:
 
     def inward(self, axis: int, low: bool) -> np.ndarray:
         """Return the velocity into the domain that the bodies induce on a side's faces, the last axis first [m/s]."""
-        points = self.points[axis, low]
-        total = np.zeros(points.shape[1:])
+        total = np.zeros(self.points[axis, low].shape[1:])
         for body in self.bodies:
-            total += body.velocity(points)[axis]
-        return total if low else -total
+            total += self.of(body, axis, low)
+        return total
+
+    def of(self, body: FarBody, axis: int, low: bool) -> np.ndarray:
+        """Return the same of one body, which need not be among them."""
+        velocity = body.velocity(self.points[axis, low])[axis]
+        return velocity if low else -velocity
