@@ -5,6 +5,7 @@ Ratios travel, times do not. ``--pieces`` says where the time goes, piece by pie
 
 import argparse
 from collections import defaultdict
+from math import prod
 from time import perf_counter
 
 import numba
@@ -96,7 +97,26 @@ def eel(cells, threads):
     return sim
 
 
-def tell_pieces(cells, threads, steps):
+def in_space(moving):
+    """Return what makes a flow in space from cells along x and threads: around a body at rest or one that swings."""
+
+    def make(cells, threads):
+        size = cells, cells // 2, cells // 2
+        grid = flow.Grid(cells=size, cell=4 / size[1], origin=(-2.0, -2.0, -2.0))
+        body = flow.Body(shape=flow.Sphere(diameter=1.0))
+        if moving:
+            swing = flow.Oscillation(frequency=0.3, heave=(0.0, 0.1, 0.0), pitch=0.2)
+            body = flow.Body(shape=flow.Ellipsoid(length=3.0, width=0.5, height=0.7), motion=swing)
+        setup = flow.Setup(grid=grid, viscosity=0.005, stream=(1.0, 0.0, 0.0), bodies=(body,), coarse=True)
+        sim = flow.Simulation(setup, thread_count=threads)
+        for _ in range(12):
+            sim.advance()
+        return sim
+
+    return make
+
+
+def tell_pieces(make, cells, threads, steps):
     """Print what each piece of a step takes, the faster half of its calls counting, and those of a pressure solve."""
     calls, inside, kept = defaultdict(list), [], []
 
@@ -113,7 +133,7 @@ def tell_pieces(cells, threads, steps):
 
         return call
 
-    sim = eel(cells, threads)
+    sim = make(cells, threads)
     for place, names in PIECES:
         for name in names.split():
             kept.append((place, name, getattr(place, name)))
@@ -124,13 +144,14 @@ def tell_pieces(cells, threads, steps):
     finally:
         for place, name, function in kept:
             setattr(place, name, function)
-    nx, ny = sim.setup.grid.cells
-    per_cell = 1e9 / (nx * ny)
-    print(f"{nx} x {ny}, {threads} thread(s), ns per cell and step; calls a step")
+    size = sim.setup.grid.cells
+    per_cell = 1e9 / prod(size)
+    print(f"{' x '.join(map(str, size))}, {threads} thread(s), ns per cell and step; calls a step")
     for label, spent in sorted(calls.items(), key=lambda item: -sum(item[1])):
         half = np.mean(np.sort(spent)[: max(len(spent) // 2, 1)])
         print(f"  {per_cell * half * len(spent) / steps:7.2f}  {label} ({len(spent) / steps:.0f})")
-    tell_solve(sim.water, per_cell)
+    if sim.axes == 2:
+        tell_solve(sim.water, per_cell)
 
 
 def tell_solve(w, per_cell):
@@ -142,7 +163,7 @@ def tell_solve(w, per_cell):
             multigrid._down_threaded, multigrid._up_threaded, poisson._measure, poisson._first_step, poisson._step
         )
     )  # fmt: skip
-    store, layout, room, patches, inner, sides = w._store, w._layout, w._room, w._patches, w.inner, w.sides.repeats
+    store, layout, room, patches, inner, sides = w._store, w._layout, w._room, w._patches, w.inner, w.repeats
     print("one iteration of the pressure solver, ns per cell of the finest level; best of 20")
 
     def tell(label, function):
@@ -172,41 +193,51 @@ def main():
     chosen = options.parse_args()
     steps = chosen.steps
     many = min(2, numba.config.NUMBA_NUM_THREADS)
+    far = {}
     for threads in sorted({1, many}):
-        far, near = bandwidth(16_000_000, threads), bandwidth(500_000, threads)
-        print(f"memory, {threads} thread(s): {far:.1f} GB/s far, {near:.1f} GB/s near")
+        far[threads], near = bandwidth(16_000_000, threads), bandwidth(500_000, threads)
+        print(f"memory, {threads} thread(s): {far[threads]:.1f} GB/s far, {near:.1f} GB/s near")
     if many > 1:
         print(f"arithmetic alone: two threads over one {gain_of_two():.2f}")
-    for cells in (128, 256):
-        if chosen.pieces:
-            for threads in sorted({1, many}):
-                tell_pieces(cells, threads, steps)
-        else:
-            tell_speed(cells, steps, many)
+    for label, make, sizes in FLOWS:
+        for cells in sizes:
+            if chosen.pieces:
+                for threads in sorted({1, many}):
+                    tell_pieces(make, cells, threads, steps)
+            else:
+                tell_speed(label, make, cells, steps, far)
 
 
-def tell_speed(cells, steps, many):
-    """Print cells a second on one thread and on ``many``."""
+def tell_speed(label, make, cells, steps, far):
+    """Print cells a second on each number of threads in ``far``, the speed of the memory with so many [GB/s]."""
     rates = {}
-    for threads in sorted({1, many}):
-        sim = eel(cells, threads)
-        count = sim.setup.grid.cells[0] * sim.setup.grid.cells[1]
+    for threads in far:
+        sim = make(cells, threads)
+        size, count = " x ".join(map(str, sim.setup.grid.cells)), prod(sim.setup.grid.cells)
 
         def batch(sim=sim):
             for _ in range(steps):
                 sim.advance()
 
-        spent = best(batch) / steps
+        spent = best(batch, 3 if sim.axes == 3 else 5) / steps
         rates[threads] = count / spent / 1e6
-        cycle = spent / sim.record.step[-steps:].mean()
-        solves = sim.record.cycles[-steps:].mean()
+        solves, memory = sim.record.cycles[-steps:].mean(), sim.water.arrays * sim.water.p.nbytes / count
         print(
-            f"{4 * cells} x {2 * cells}, moving eel, single precision, tolerance {sim.setup.tolerance:g}, "
-            f"{threads} thread(s): {rates[threads]:.1f} M cells/s, {1e3 * spent:.1f} ms a step, "
-            f"{cycle:.2f} s a swim cycle, {solves:.1f} multigrid cycles a solve, {sim.water.arrays:.1f} arrays"
+            f"{size}, {label}, single precision, tolerance {sim.setup.tolerance:g}, {threads} thread(s): "
+            f"{rates[threads]:.1f} M cells/s, {1e3 * spent:.1f} ms a step, what the memory gives for "
+            f"{1e3 * far[threads] / rates[threads]:.0f} bytes; {1 / sim.record.step[-steps:].mean():.0f} steps a "
+            f"second of flow, {solves:.1f} multigrid cycles a solve, {memory:.0f} bytes a cell"
         )
-    if many > 1:
-        print(f"{4 * cells} x {2 * cells}: two threads over one {rates[many] / rates[1]:.2f}")
+    if len(rates) > 1:
+        print(f"{size}, {label}: two threads over one {rates[max(rates)] / rates[1]:.2f}")
+
+
+FLOWS = (
+    ("moving eel", eel, (128, 256)),
+    ("sphere at rest", in_space(moving=False), (128, 192)),
+    ("moving ellipsoid", in_space(moving=True), (128, 192)),
+)
+"""What is timed: what it is, how it is made from a number of cells and of threads, and for which numbers of cells."""
 
 
 if __name__ == "__main__":

@@ -69,8 +69,10 @@ class Spy:
     def __call__(self, stage, dt):
         w = self.water
         self.collect(stage, dt)
-        inside = [(mu0 < 1) | (mu1 != 0).any(axis=0) for mu0, mu1 in zip(w.mu0, w.mu1, strict=True)]
-        swelling = float((w.p.astype(float) * w.source).sum())
+        inside = list(w.mu0 < 1)
+        for touched, mu1 in zip(inside, w.mu1, strict=True):
+            touched[w.here] |= (mu1 != 0).any(axis=0)
+        swelling = float((w.p[w.here].astype(float) * w.source).sum())
         copies = [list(vector.astype(float)) for vector in (stage.out, stage.blend)]
         self.stages.append(Stage(*copies, w.p.astype(float), swelling, float(dt), float(stage.keep), inside))
 

@@ -78,7 +78,7 @@ def test_the_pressure_solver_solves(thin):
         _body(*faces, thin)
         poisson.place_window(layout, (20, 50, 20, 82))
         multigrid.coarsen(store, layout, inner)
-    patches = patch.rects(layout)
+    patches = patch.rects(layout, repeats)
     room = patch.room_for(np.zeros((patch.FACES + 2, 0)), patches)
     multigrid.spread(store, layout, room, patches, inner)
     rng = np.random.default_rng(0)

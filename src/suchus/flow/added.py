@@ -4,6 +4,7 @@ from math import prod
 
 import numpy as np
 
+from suchus.flow.farfield import FarBody
 from suchus.flow.shape import Markers
 from suchus.flow.solid import Skin
 from suchus.flow.water import Water
@@ -20,8 +21,9 @@ def added_mass(
     The bodies must have been placed; ``body`` counts them. The force of mode k is ``-Ma[:, k]`` per unit
     acceleration; other bodies stay still. In space the turning is that about z. It is what ``exchange`` would find: the
     momentum that the immersion gives to the water. Units: kg/m in the plane and kg in space for the translations, times
-    m between them and the turning, times m^2 for the turning. In space the sides are held; what lies beyond mirrors is
-    counted, and motions through a mirror that cuts the body, which are not symmetric, have NaN.
+    m between them and the turning, times m^2 for the turning. Where the sides move as in open water it is that of open
+    water, in space with the body as a dipole in ``about``. What lies beyond mirrors is counted, and motions through a
+    mirror that cuts the body, which are not symmetric, have NaN.
 
     Raises:
         NotConverged: the pressure solver got stuck.
@@ -46,10 +48,13 @@ def added_mass(
         prod([h] * axes) * np.array([[_work(mode, shares, parts) for parts in what] for mode in modes])
         for what in (rises, modes)
     )
+    if axes == 3:
+        momenta = 2 ** sum(cut) * (held + own_mass).T
+        inward = [_from_afar(water, about, np.compress(kept, np.eye(4), axis=0).T @ momentum) for momentum in momenta]
     both = np.ix_(kept, kept)
     whole = np.full((axes + 1, axes + 1), np.nan)
     rim = _rim(water, markers, about, cut)[both]
-    whole[both] = 2 ** sum(cut) * density * (_in_open_water(held, own_mass, shores, inward, h) + rim)
+    whole[both] = 2 ** sum(cut) * density * (_in_open_water(held, own_mass, shores, inward, prod([h] * axes)) + rim)
     return whole
 
 
@@ -109,8 +114,22 @@ def _rim(water: Water, markers: Markers | Skin, about: tuple[float, ...], cut: t
     return np.array([*rims.sum(axis=2), (rx * rims[1] - ry * rims[0]).sum(axis=1)])
 
 
+def _from_afar(water: Water, about: tuple[float, ...], momentum: np.ndarray) -> list[np.ndarray]:
+    """Return the velocity into the domain that a body in space induces on each side; empty if the sides are held.
+
+    ``momentum`` is that of body and water over the density per mode, shape (4,); the sum over all faces is zero.
+    """
+    far, edges = water.border.far, water.border.edges
+    if far is None:
+        return []
+    body = FarBody(np.array(about, float), momentum[:3], np.zeros((3, 3)))
+    sides = [far.of(body, e.axis, e.low) if e.endless else np.zeros(e.prescribed.shape) for e in edges]
+    level = sum(float(side.sum()) for side in sides) / sum(e.prescribed.size for e in edges if e.endless)
+    return [side - e.endless * level for side, e in zip(sides, edges, strict=True)]
+
+
 def _in_open_water(
-    held: np.ndarray, own: np.ndarray, shores: list[list[np.ndarray]], inward: list[list[np.ndarray]], h: float
+    held: np.ndarray, own: np.ndarray, shores: list[list[np.ndarray]], inward: list[list[np.ndarray]], volume: float
 ) -> np.ndarray:
     """Return the added mass in open water from that with the sides held.
 
@@ -122,11 +141,11 @@ def _in_open_water(
         own: mass of the body's region, over the density, shape (mode, mode).
         shores: potential along each side, per mode [m/s^2 cells].
         inward: velocity that each mode induces on each side, per mode; empty in other water [m/s^2].
-        h: cell [m].
+        volume: of a cell [m^2, m^3].
     """
     if not inward[0]:
         return held
     gain = np.array([[sum(float((p * q).sum()) for p, q in zip(a, b, strict=True)) for b in inward] for a in shores])
-    answer = np.linalg.solve((held + own).T, h * h * gain.T).T  # per momentum of the mode
+    answer = np.linalg.solve((held + own).T, volume * gain.T).T  # per momentum of the mode
     open_water: np.ndarray = np.linalg.solve(np.eye(len(held)) - answer, held + answer @ own)
     return open_water

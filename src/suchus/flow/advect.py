@@ -14,7 +14,7 @@ import numpy as np
 from numba import prange
 
 from suchus.flow.compiled import PAD, UNIT, part, signed, threaded, unsigned
-from suchus.flow.slab import NONE, block_of, meets, row_length, run_of, window_columns, window_rows
+from suchus.flow.slab import NONE, block_of, meets, near_shift, row_length, run_of, window_columns, window_rows
 
 
 @part
@@ -71,17 +71,19 @@ def _update_slab(out, blend, base, flux, low, high, p, slab, start, stop, inner,
 
 
 @part
-def _raw_slab(raw, base, flux, low, high, slab, place, inner, dt, push):
+def _raw_slab(raw, base, flux, low, high, slab, place, near, inner, dt, push):
     """Write ``base + dt * (net flux + push)`` in the window: what the body is then immersed in."""
     j, low, high = unsigned(slab), unsigned(low), unsigned(high)
-    wide, (r0, r1), (s, e) = row_length(inner, raw.shape[1]), window_rows(place, inner), window_columns(place, inner)
+    wide, (r0, r1), (s, e) = row_length(inner, base.shape[1]), window_rows(place, inner), window_columns(place, inner)
+    o = j - unsigned(near[len(inner) + 2])
     for row in range(r0, r1):
+        shift = near_shift(near, inner, row, wide)
         for k in range(row * wide + s, row * wide + e):
-            raw[j, k] = base[j, k] + dt * (_net(flux, low, high, k, inner) + push)
+            raw[o, k - shift] = base[j, k] + dt * (_net(flux, low, high, k, inner) + push)
 
 
 @part
-def _advance(out, blend, base, w, rate, p, raw, place, inner, j0, j1, s, e, ej, ei, dt, nu, push, keep):
+def _advance(out, blend, base, w, rate, p, raw, place, near, inner, j0, j1, s, e, ej, ei, dt, nu, push, keep):
     """Advance slabs ``j0`` to ``j1``, cells ``s`` to ``e`` of one component ``w``, whose axis is (``ej``, ``ei``)."""
     up = len(inner)
     flux = np.empty((up + 2, w.shape[1]), w.dtype)
@@ -94,16 +96,17 @@ def _advance(out, blend, base, w, rate, p, raw, place, inner, j0, j1, s, e, ej, 
         _fluxes(flux, high, w, rate[up], j + 1, s, e, UNIT, NONE, ej, ei, nu)
         _update_slab(out, blend, base, flux, low, high, p, j, s, e, inner, ej, ei, dt, push, keep)
         if meets(place, inner, j):
-            _raw_slab(raw, base, flux, low, high, j, place, inner, dt, push)
+            _raw_slab(raw, base, flux, low, high, j, place, near, inner, dt, push)
 
 
 @threaded
-def advance(out, blend, base, rate, p, raw, place, inner, repeats, dt, nu, push, keep):
+def advance(out, blend, base, rate, p, raw, place, near, inner, repeats, dt, nu, push, keep):
     """Advance all components of the velocity by ``dt`` with the rates at ``rate`` and the pressure ``p``.
 
     ``out = keep * blend + (1 - keep) * (base + dt * rate)``. In the bodies' window the bare ``base + dt * rate``
-    without the pressure goes to ``raw`` as well. ``repeats`` says which axes are periodic, ``push`` is a uniform
-    acceleration, one number for each axis. Faces on the sides and beyond them are for the caller to fill.
+    without the pressure goes to ``raw`` as well, an array of the window ``near``. ``repeats`` says which axes are
+    periodic, ``push`` is a uniform acceleration, one number for each axis. Faces on the sides and beyond them are for
+    the caller to fill.
     """
     size, block = out.shape[1] - 2 * PAD, block_of(inner)
     for n in prange((size + block - 1) // block):
@@ -119,6 +122,6 @@ def advance(out, blend, base, rate, p, raw, place, inner, repeats, dt, nu, push,
                 ei = inner[c]
                 s = s if repeats[c] else s + inner[c]
             _advance(
-                out[c], blend[c], base[c], rate[c], rate, p, raw[c], place, inner, j0, j1, s, e, ej, ei, dt, nu,
+                out[c], blend[c], base[c], rate[c], rate, p, raw[c], place, near, inner, j0, j1, s, e, ej, ei, dt, nu,
                 push[c], keep,
             )  # fmt: skip

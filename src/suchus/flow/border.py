@@ -49,14 +49,28 @@ def _fill_side(n, t, face, inner, step, prescribed, straight, how, value):  # ty
                 t[to, i] = t[source, i]
 
 
-def _fill_planes(n, t, face, inner, step, prescribed, straight, how, value):  # type: ignore[no-untyped-def]
-    """Do in space what ``_fill_side`` does in the plane, where ``n`` and ``t`` have planes for lines."""
-    n[(face, *(slice(PAD, -PAD),) * prescribed.ndim)] = step * prescribed
-    for k in range(1, 3 if step > 0 else 2):
-        n[face - k * step] = 2 * n[face] - n[face + k * step] if straight else n[face]
-    for k in range(1, 3):
-        source = t[inner + (k - 1) * step]
-        t[inner - k * step] = 2 * value - source if how == _MIRRORED else value if how == _GIVEN else source
+@compiled
+def _fill_planes(n, first, second, face, inner, step, prescribed, straight, how, values):  # type: ignore[no-untyped-def]
+    """Do in space what ``_fill_side`` does in the plane, with both velocities along the side and planes for lines.
+
+    Points of the side one by one: the planes beyond a side across x lie in the same lines of the memory.
+    """
+    two, sign = n.dtype.type(2), n.dtype.type(step)
+    for j in range(n.shape[1]):
+        for i in range(n.shape[2]):
+            if PAD <= j < n.shape[1] - PAD and PAD <= i < n.shape[2] - PAD:
+                n[face, j, i] = sign * prescribed[j - PAD, i - PAD]
+            on = n[face, j, i]
+            for k in range(1, 3 if step > 0 else 2):
+                n[face - k * step, j, i] = two * on - n[face + k * step, j, i] if straight else on
+            for k in range(1, 3):
+                to, source = inner - k * step, inner + (k - 1) * step
+                a, b = first[source, j, i], second[source, j, i]
+                if how == _MIRRORED:
+                    a, b = two * values[0] - a, two * values[1] - b
+                elif how == _GIVEN:
+                    a, b = values
+                first[to, j, i], second[to, j, i] = a, b
 
 
 @dataclass(slots=True)
@@ -121,14 +135,19 @@ class Edge:
                     a[to] = a[source]
             return
         straight = isinstance(self.side, Wall | Slip | Mirror) or (self.endless and not self.leaves)
-        fill = _fill_side if len(others) == 1 else _fill_planes
-        for k, d in enumerate(others):
-            how, value = self._along(k, d, step, stream)
-            t = self.across(velocity[d])
-            fill(n, t, f, inner, step, self.prescribed, straight, how, n.dtype.type(value))
+        beyond = [self._along(k, d, step, stream) for k, d in enumerate(others)]
+        along, how = [self.across(velocity[d]) for d in others], beyond[0][0]
+        values = tuple(n.dtype.type(value) for _, value in beyond)
+        if len(others) == 1:
+            _fill_side(n, along[0], f, inner, step, self.prescribed, straight, how, values[0])
+        else:
+            _fill_planes(n, *along, f, inner, step, self.prescribed, straight, how, values)
 
     def _along(self, k: int, axis: int, step: int, stream: tuple[float, ...]) -> tuple[int, float]:
-        """Return what the velocity along an axis in the side, the one of number ``k``, is beyond it."""
+        """Return what the velocity along an axis in the side, the one of number ``k``, is beyond it.
+
+        What kind of value that is does not depend on the axis.
+        """
         if isinstance(self.side, Wall):
             return _MIRRORED, self.side.along(len(stream))[k]
         if isinstance(self.side, Inflow):

@@ -36,7 +36,8 @@ def collect(sums, out, blend, raw, mean, passage, mu1, p, owner, component, plac
 
     ``mean`` is the body's velocity in the window, mean of the step's start and end: with that of the end alone the
     power is too large by half the work of the added mass in a step. The sums are of m/s per cell; lengths for the
-    moments are in cells from the grid's corner. ``mean`` and ``owner`` hold the window alone, slab by slab.
+    moments are in cells from the grid's corner. ``mean``, ``raw``, ``mu1`` and ``owner`` are arrays of the window; see
+    ``slab``.
     """
     up, w = len(inner), len(inner) + 2
     wide, columns = signed(row_length(inner, p.shape[1])), place[3 * up + 3] - place[3 * up + 2] + 1
@@ -46,9 +47,10 @@ def collect(sums, out, blend, raw, mean, passage, mu1, p, owner, component, plac
         for row in range(r0 + 1, r1 - 1):
             for i in range(c0 + 1, c1 - 1):
                 k = row * wide + i
+                at = (row - r0) * columns + i - c0 if up > 1 else i - c0
                 touched = passage[j, k] < 1
                 for d in range(up + 1):
-                    touched = touched or mu1[d, j, k] != 0
+                    touched = touched or mu1[d, j - place[w], at] != 0
                 if not touched:
                     continue
                 before = p[j - 1, k]
@@ -56,8 +58,7 @@ def collect(sums, out, blend, raw, mean, passage, mu1, p, owner, component, plac
                     before = p[j, k - signed(inner[d])] if component == d else before
                 rise = np.float64(p[j, k]) - before
                 moved = (np.float64(out[j, k]) - keep * np.float64(blend[j, k])) / (1.0 - keep)
-                given = moved - raw[j, k] + dt * rise
-                at = (row - r0) * columns + i - c0 if up > 1 else i - c0
+                given = moved - raw[j - place[w], at] + dt * rise
                 m, y = owner[j - place[w], at], (row if up > 1 else j) - PAD + 0.5
                 sums[m, component] += given
                 if component == 0:
@@ -77,19 +78,21 @@ def swelling(sums, p, source, owner, place, inner, dt):
     for j in range(place[w], place[w + 1]):
         for row in range(r0, r1):
             for i in range(c0, c1):
-                if source[j, row * wide + i] != 0:
-                    m = owner[j - place[w], (row - r0) * columns + i - c0]
-                    sums[m, up + 2] += dt * np.float64(p[j, row * wide + i]) * source[j, row * wide + i]
+                o, at = j - place[w], (row - r0) * columns + i - c0
+                if source[o, at] != 0:
+                    sums[owner[o, at], up + 2] += dt * np.float64(p[j, row * wide + i]) * source[o, at]
 
 
 @compiled
-def contents(sums, b, mu0, owner, component, place, inner):
+def contents(sums, b, mu0, owner, component, place, near, inner):
     """Add to ``sums`` (body, ``contents_of``) what the region of each body holds of one component of the velocity.
 
-    Columns: the sums of its motion, its volume and first moments [m/s, m^2/s^2, cells].
+    Columns: the sums of its motion, its volume and first moments [m/s, m^2/s^2, cells]. What lies in the window of
+    ``place`` counts; ``b`` and ``owner`` are arrays of the window ``near``.
     """
     up, w = len(inner), len(inner) + 2
-    wide, columns = signed(row_length(inner, b.shape[1])), place[3 * up + 3] - place[3 * up + 2] + 1
+    wide, columns = signed(row_length(inner, mu0.shape[1])), near[3 * up + 3] - near[3 * up + 2] + 1
+    n0, n1 = near[w + 2] if up > 1 else 0, near[3 * up + 2]
     r0, r1 = (place[w + 2], place[w + 3]) if up > 1 else (0, 1)
     c0, c1 = place[3 * up + 2], place[3 * up + 3]
     axes = up + 1
@@ -100,16 +103,17 @@ def contents(sums, b, mu0, owner, component, place, inner):
                 share = 1.0 - np.float64(mu0[j, k])
                 if share == 0.0:
                     continue
-                m = owner[j - place[w], (row - r0) * columns + i - c0]
+                o, at = j - near[w], (row - n0) * columns + i - n1
+                m = owner[o, at]
                 x = i - PAD + (0.0 if component == 0 else 0.5)
                 y = (row if up > 1 else j) - PAD + (0.0 if component == 1 else 0.5)
-                held, part_of = share * b[j, k], share / axes
+                held, part_of = share * b[o, at], share / axes
                 sums[m, component] += held
                 if component == 0:
                     sums[m, axes] += -y * held
                 elif component == 1:
                     sums[m, axes] += x * held
-                sums[m, axes + 1] += 0.5 * held * b[j, k]
+                sums[m, axes + 1] += 0.5 * held * b[o, at]
                 sums[m, axes + 2] += part_of
                 sums[m, axes + 3] += part_of * x
                 sums[m, axes + 4] += part_of * y

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from suchus.flow.compiled import compiled
 from suchus.flow.grid import Grid
 
 
@@ -18,6 +19,21 @@ def turned(angle: float) -> np.ndarray:
     """Return the matrix that turns a vector about z by an angle [rad], shape (3, 3)."""
     c, s = np.cos(angle), np.sin(angle)
     return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+
+
+@compiled
+def _induce(points, place, dipole, source, out):  # type: ignore[no-untyped-def]
+    """Write the velocity that a source and a dipole at ``place`` induce at ``points``, both of shape (3, point)."""
+    for k in range(points.shape[1]):
+        square, along = 0.0, 0.0
+        for d in range(3):
+            r = points[d, k] - place[d]
+            square += r * r
+            along += dipole[d] * r
+        near = 1.0 / (4.0 * np.pi * square * np.sqrt(square))
+        spread = source + 3.0 * along / square
+        for d in range(3):
+            out[d, k] = near * (spread * (points[d, k] - place[d]) - dipole[d])
 
 
 @dataclass(slots=True)
@@ -35,13 +51,9 @@ class FarBody:
 
     def velocity(self, points: np.ndarray) -> np.ndarray:
         """Return the velocity that it induces at points, both of shape (3, ...) [m, m/s]."""
-        r = points - self.place.reshape(3, *(1,) * (points.ndim - 1))
-        square = (r * r).sum(axis=0)
-        along = np.tensordot(self.dipole, r, axes=1)
-        spread = self.source + 3 * along / square
-        moment = self.dipole.reshape(3, *(1,) * (points.ndim - 1))
-        induced: np.ndarray = (spread * r - moment) / (4 * np.pi * square**1.5)
-        return induced
+        out = np.empty((3, points[0].size))
+        _induce(points.reshape(3, -1), self.place, self.dipole, self.source, out)
+        return out.reshape(points.shape)
 
     def move(self, place: np.ndarray, angle: float, through: np.ndarray) -> None:
         """Take the body's motion.
@@ -75,15 +87,27 @@ class FarField:
     """The grid inside the sides."""
     bodies: list[FarBody] = field(default_factory=list)
     """What induces."""
+    points: dict[tuple[int, bool], np.ndarray] = field(init=False)
+    """Middles of the faces of each side, by its axis and whether it is the low one, the last axis first [m]."""
 
-    def inward(self, axis: int, low: bool) -> np.ndarray:
-        """Return the velocity into the domain that the bodies induce on a side's faces, the last axis first [m/s]."""
+    def __post_init__(self) -> None:
+        self.points = {(axis, low): self._faces(axis, low) for axis in range(3) for low in (True, False)}
+
+    def _faces(self, axis: int, low: bool) -> np.ndarray:
         grid = self.grid
         plane = grid.origin[axis] + (0.0 if low else grid.size[axis])
         lines = [np.array([plane]) if d == axis else at for d, at in enumerate((grid.x, grid.y, grid.z))]
         z, y, x = np.meshgrid(*reversed(lines), indexing="ij")
-        points = np.squeeze(np.stack([x, y, z]), axis=3 - axis)
-        total = np.zeros(points.shape[1:])
+        return np.ascontiguousarray(np.squeeze(np.stack([x, y, z]), axis=3 - axis))
+
+    def inward(self, axis: int, low: bool) -> np.ndarray:
+        """Return the velocity into the domain that the bodies induce on a side's faces, the last axis first [m/s]."""
+        total = np.zeros(self.points[axis, low].shape[1:])
         for body in self.bodies:
-            total += body.velocity(points)[axis]
-        return total if low else -total
+            total += self.of(body, axis, low)
+        return total
+
+    def of(self, body: FarBody, axis: int, low: bool) -> np.ndarray:
+        """Return the same of one body, which need not be among them."""
+        velocity = body.velocity(self.points[axis, low])[axis]
+        return velocity if low else -velocity

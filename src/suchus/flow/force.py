@@ -149,7 +149,7 @@ class ControlVolume:
         """
         h = water.grid.cell
         mu0_u = water.mu0[0]
-        inner_u, inner_v = (1 - water.mu0) * water.b
+        inner_u, inner_v = water.carried
         nu = float(water.nu)
         now = np.array(
             [

@@ -13,7 +13,16 @@ import numpy as np
 from numba import prange
 
 from suchus.flow.compiled import UNIT, compiled, ordered_part, part, signed, threaded, unsigned
-from suchus.flow.slab import NONE, block_of, meets, row_length, window_columns, window_rows
+from suchus.flow.slab import (
+    NONE,
+    block_of,
+    meets,
+    near_shift,
+    near_strides,
+    row_length,
+    window_columns,
+    window_rows,
+)
 
 REACH = 3.0
 """Distance from the surface up to which normals and velocities are needed [cells]."""
@@ -114,63 +123,72 @@ def close(passage, x, y, x0, y0, h):
 
 
 @ordered_part
-def _source_row(source, b, mu0, slab, start, stop, inner):
-    j, up = unsigned(slab), unsigned(len(inner))
+def _source_row(source, b, mu0, slab, o, start, stop, shift, inner, own):
+    j, o, up = unsigned(slab), unsigned(o), unsigned(len(inner))
     one, share = source.dtype.type(1.0), source.dtype.type(0.5 / (len(inner) + 1))
     for k in range(start, stop):
         wet, before, behind = source.dtype.type(0), source.dtype.type(0), source.dtype.type(0)
         for d in range(len(inner)):
             wet = wet + mu0[d, j, k]
-            before = before + b[d, j, k]
-            behind = behind + b[d, j, k + inner[d]]
+            before = before + b[d, o, k - shift]
+            behind = behind + b[d, o, k - shift + own[d]]
         wet = wet + mu0[up, j, k] + mu0[up, j + UNIT, k]
         for d in range(len(inner)):
             wet = wet + mu0[d, j, k + inner[d]]
-        source[j, k] = (one - share * wet) * ((behind + b[up, j + UNIT, k]) - (before + b[up, j, k]))
+        spread = (behind + b[up, o + UNIT, k - shift]) - (before + b[up, o, k - shift])
+        source[o, k - shift] = (one - share * wet) * spread
 
 
 @compiled
-def fill_source(source, b, mu0, place, inner):
-    """Write ``(1 - mu0) div V``: the divergence of the body's own motion, which the pressure leaves alone."""
-    wide, (r0, r1), (s, e) = row_length(inner, source.shape[1]), window_rows(place, inner), window_columns(place, inner)
-    for j in range(source.shape[0]):
+def fill_source(source, b, mu0, place, near, inner):
+    """Write ``(1 - mu0) div V``: the divergence of the body's own motion, which the pressure leaves alone.
+
+    ``source`` and ``b`` are arrays of the window ``near``.
+    """
+    wide, (r0, r1), (s, e) = row_length(inner, mu0.shape[2]), window_rows(place, inner), window_columns(place, inner)
+    own, first = near_strides(near, inner), near[len(inner) + 2]
+    for j in range(mu0.shape[1]):
         if meets(place, inner, j):
             for row in range(r0, r1):
-                _source_row(source, b, mu0, j, row * wide + s, row * wide + e, inner)
+                shift = near_shift(near, inner, row, wide)
+                _source_row(source, b, mu0, j, j - first, row * wide + s, row * wide + e, shift, inner, own)
 
 
 @ordered_part
-def _immerse_slab(out, blend, raw, b, mu0, passage, mu1, p, slab, start, stop, inner, ej, ei, dt, keep):
-    j, up = unsigned(slab), unsigned(len(inner))
-    low, high = j - UNIT, j + UNIT
+def _immerse_slab(out, blend, raw, b, mu0, passage, mu1, p, slab, o, start, stop, shift, own, ej, ei, dt, keep):
+    j, o, up = unsigned(slab), unsigned(o), unsigned(len(own))
+    low, high = o - UNIT, o + UNIT
     for k in range(start, stop):
-        moved = mu0[j, k] * (raw[j, k] - b[j, k]) + b[j, k] - passage[j, k] * (dt * (p[j, k] - p[j - ej, k - ei]))
-        for d in range(len(inner)):
-            s = inner[d]
-            moved = moved + mu1[d, j, k] * (raw[j, k + s] - (b[j, k + s] + raw[j, k - s]) + b[j, k - s])
-        moved = moved + mu1[up, j, k] * (raw[high, k] - (b[high, k] + raw[low, k]) + b[low, k])
+        n = k - shift
+        moved = mu0[j, k] * (raw[o, n] - b[o, n]) + b[o, n] - passage[j, k] * (dt * (p[j, k] - p[j - ej, k - ei]))
+        for d in range(len(own)):
+            s = own[d]
+            moved = moved + mu1[d, o, n] * (raw[o, n + s] - (b[o, n + s] + raw[o, n - s]) + b[o, n - s])
+        moved = moved + mu1[up, o, n] * (raw[high, n] - (b[high, n] + raw[low, n]) + b[low, n])
         out[j, k] = keep * (blend[j, k] - moved) + moved
 
 
 @threaded
-def immerse(out, blend, raw, b, mu0, passage, mu1, p, component, place, inner, dt, keep):
+def immerse(out, blend, raw, b, mu0, passage, mu1, p, component, near, inner, dt, keep):
     """Write the immersed velocity of one component to the inner cells of the window.
 
     ``raw`` is the fluid's own update without the pressure, ``b`` the body's velocity, ``mu1[d]`` the kernel's moment
-    along axis d; ``out = keep * blend + (1 - keep) * (immersed - dt passage grad p)``.
+    along axis d, all arrays of the window ``near``;
+    ``out = keep * blend + (1 - keep) * (immersed - dt passage grad p)``.
     """
     ej = UNIT if component == len(inner) else NONE
     ei = NONE
     for d in range(len(inner)):
         ei = inner[d] if d == component else ei
     w, block = len(inner) + 2, block_of(inner)
-    wide, (r0, r1), (s, e) = row_length(inner, p.shape[1]), window_rows(place, inner), window_columns(place, inner)
+    wide, (r0, r1), (s, e) = row_length(inner, p.shape[1]), window_rows(near, inner), window_columns(near, inner)
+    own = near_strides(near, inner)
     r0, r1 = (r0 + UNIT, r1 - UNIT) if len(inner) > 1 else (r0, r1)
-    for n in prange((place[w + 1] - place[w] + block - 1) // block):
-        first = place[w] + signed(n) * block
-        for j in range(max(first, place[w] + 1), min(first + block, place[w + 1] - 1)):
+    for n in prange((near[w + 1] - near[w] + block - 1) // block):
+        first = near[w] + signed(n) * block
+        for j in range(max(first, near[w] + 1), min(first + block, near[w + 1] - 1)):
             for row in range(r0, r1):
+                start, stop, shift = row * wide + s + UNIT, row * wide + e - UNIT, near_shift(near, inner, row, wide)
                 _immerse_slab(
-                    out, blend, raw, b, mu0, passage, mu1, p, j, row * wide + s + UNIT, row * wide + e - UNIT, inner,
-                    ej, ei, dt, keep,
+                    out, blend, raw, b, mu0, passage, mu1, p, j, j - near[w], start, stop, shift, own, ej, ei, dt, keep
                 )  # fmt: skip

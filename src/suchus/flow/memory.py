@@ -12,10 +12,10 @@ from suchus.flow.grid import Grid
 def arrays_of(axes: int) -> float:
     """Return how many numbers are kept per cell, those of the coarser levels with them [-].
 
-    Velocity three times, pressure; the bodies' share, its moments, their velocity and what the water would do without
-    them; their source; three work arrays; and, on all levels, solution, right side, inverse diagonal and faces.
+    Velocity three times, pressure, the bodies' share; three work arrays; and, on all levels, solution, right side,
+    inverse diagonal and faces. What counts around the bodies only is kept there alone and comes on top.
     """
-    return 3 * axes + 1 + axes * (3 + axes) + 1 + 3 + (3 + axes) / (1 - 0.5**axes)
+    return 3 * axes + 1 + axes + 3 + (3 + axes) / (1 - 0.5**axes)
 
 
 def needed_memory(grid: Grid, dtype: type) -> int:

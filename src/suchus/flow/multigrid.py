@@ -382,4 +382,5 @@ def spread(store, layout, room, rects, inner):
     for k in range(layout.shape[0] - 1):
         if rects[k, 1] < rects[k, 2]:
             dinv = level(store, layout, inner, DINV, k)
-            take_coefficients(room, rects[k], faces_of(store, layout, inner, k), dinv, _strides(layout, inner, k))
+            faces = faces_of(store, layout, inner, k)
+            take_coefficients(room, rects[k], layout[k], faces, dinv, _strides(layout, inner, k))

@@ -4,8 +4,8 @@
 
 A level's patch is its window and ``RIM`` cells around it, as far as they lie in the domain. Its cells lie end to end,
 so that a smoothing step is one long loop; the cells at the rim keep their value, because their inverse diagonal counts
-as 0. A row of ``rects`` is a patch: where it starts in the room, and its padded cell indices, first and end along each
-axis, the last axis first.
+as 0. A row of ``rects`` is a patch: where it starts in the room, its padded cell indices, first and end along each
+axis, the last axis first, and how many pairs of smoothing steps it gets before and after.
 """
 
 import numpy as np
@@ -18,29 +18,41 @@ ONE, TWO, RIGHT, INVERSE, FACES = range(5)
 """What ``room[kind]`` holds: solution, its second copy, right side, inverse diagonal, and from there on face
 coefficients."""
 
-RIM = 8
-"""Cells around a window that its patch takes in: its rim jumps, and near a tail's end that must not be seen [-]."""
+RIM = 8, 2
+"""Cells around a window that its patch takes in, in the plane and in space: the patch's rim jumps, and near a tail's
+end that must not be seen. In space 8 would make the patches of the coarser levels as large as the levels [-]."""
 
-EXTRA = 6
-"""Pairs of smoothing steps in the patches, before and after: there the coefficients vary [-]."""
+EXTRA = (6,), (6, 3, 1, 0)
+"""Pairs of smoothing steps in the patches, before and after, in the plane and in space, from the finest level on; the
+last number is that of all further levels. There the coefficients vary [-]."""
 
 
-def rects(layout: np.ndarray) -> np.ndarray:
-    """Return the patches of a layout whose windows are placed, shape (level, 1 + 2 axes)."""
+def rects(layout: np.ndarray, repeats: tuple[bool, ...]) -> np.ndarray:
+    """Return the patches of a layout whose windows are placed, shape (level, 2 + 2 axes).
+
+    In space a patch takes in the cells beyond a side that its window comes near, but for periodic sides: there its rim
+    must not lie where a mirror cuts a body.
+
+    Args:
+        layout: of the levels.
+        repeats: which axes are periodic.
+    """
     rows, offset, axes = [], 0, layout.shape[1] // 3
-    for place in layout:
+    rim, pairs = RIM[axes - 2], EXTRA[axes - 2]
+    beyond = ~np.array(repeats)[::-1] & (axes == 3)
+    for k, place in enumerate(layout):
         cells, window = place[1 : 1 + axes], place[1 + axes :].reshape(axes, 2).copy()
         if window[0, 1] > window[0, 0]:
-            window[:, 0] = np.maximum(window[:, 0] - RIM, PAD)
-            window[:, 1] = np.minimum(window[:, 1] + RIM, cells + PAD)
-        rows.append([offset, *window.ravel()])
+            window[:, 0] = np.maximum(window[:, 0] - rim, PAD - beyond)
+            window[:, 1] = np.minimum(window[:, 1] + rim, cells + PAD + beyond)
+        rows.append([offset, *window.ravel(), pairs[min(k, len(pairs) - 1)]])
         offset += int(np.prod(window[:, 1] - window[:, 0]))
     return np.array(rows, dtype=np.int64)
 
 
 def room_for(room: np.ndarray, patches: np.ndarray) -> np.ndarray:
     """Return a room in which the patches have place, the old one if it will do."""
-    ends = patches[-1, 1:].reshape(-1, 2)
+    ends = patches[-1, 1:-1].reshape(-1, 2)
     size = int(patches[-1, 0] + np.prod(ends[:, 1] - ends[:, 0]))
     return room if size <= room.shape[1] else np.zeros((FACES + len(ends), size + size // 4), room.dtype)
 
@@ -81,10 +93,30 @@ def _take(to, rect, a, inner):
 
 
 @part
-def take_coefficients(room, rect, faces, dinv, inner):
-    """Copy the coefficients of a patch from its level to the room."""
+def _close_sides(room, rect, place, inner):
+    """Close the faces on the sides of the domain that a patch in space reaches beyond."""
+    _, length, wide = _sizes(rect, inner)
+    for d in range(len(inner) + 1):
+        face, r = patch(room, rect, inner, FACES + d), 5 - 2 * d
+        step = 1 if d == 0 else wide
+        for low in range(2):
+            if rect[r] >= PAD if low else rect[r + 1] <= place[3 - d] + PAD:
+                continue
+            line = 1 if low else rect[r + 1] - rect[r] - 1
+            for j in range(face.shape[0]):
+                for i in range(length):
+                    at = j if d == len(inner) else i // step % wide if d == 0 else i // step
+                    if at == line:
+                        face[j, i] = 0
+
+
+@part
+def take_coefficients(room, rect, place, faces, dinv, inner):
+    """Copy the coefficients of a patch from its level, whose place is given, to the room."""
     for d in range(len(inner) + 1):
         _take(patch(room, rect, inner, FACES + d), rect, faces[d], inner)
+    if len(inner) > 1:
+        _close_sides(room, rect, place, inner)
     inverse = patch(room, rect, inner, INVERSE)
     _take(inverse, rect, dinv, inner)
     _, length, wide = _sizes(rect, inner)
@@ -108,7 +140,7 @@ def _relax(room, rect, inner, first, second):
     x, y, b = x.reshape(-1), y.reshape(-1), patch(room, rect, inner, RIGHT).reshape(-1)
     faces, at = room[FACES:], unsigned(rect[0])
     dinv = patch(room, rect, inner, INVERSE).reshape(-1)
-    for _ in range(EXTRA):
+    for _ in range(rect[-1]):
         relax_patch(y, x, b, faces, at, dinv, strides, first)
         relax_patch(x, y, b, faces, at, dinv, strides, second)
 

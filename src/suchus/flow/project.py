@@ -6,7 +6,17 @@ import numpy as np
 from numba import prange
 
 from suchus.flow.compiled import PAD, UNIT, compiled, part, signed, threaded, unsigned
-from suchus.flow.slab import EDGE, block_of, meets, row_count, row_length, run_of, window_columns, window_rows
+from suchus.flow.slab import (
+    EDGE,
+    block_of,
+    meets,
+    near_shift,
+    row_count,
+    row_length,
+    run_of,
+    window_columns,
+    window_rows,
+)
 from suchus.flow.stencil import LANES, largest_size, seal_slab, summed_size
 
 
@@ -23,10 +33,10 @@ def _divergence_slab(r, velocity, slab, mean, inner):
 
 
 @threaded
-def residual(r, velocity, source, dinv, place, mean, inner, repeats, sums):
+def residual(r, velocity, source, dinv, place, near, mean, inner, repeats, sums):
     """Write ``source - div u - mean`` to ``r``; ``sums`` gets its summed size and largest size, slab by slab.
 
-    Cells that lie wholly inside the body get 0: no pressure acts there.
+    Cells that lie wholly inside the body get 0: no pressure acts there. ``source`` is an array of the window ``near``.
     """
     end, block = r.shape[0] - PAD, block_of(inner)
     for n in prange((end - PAD + block - 1) // block):
@@ -36,17 +46,18 @@ def residual(r, velocity, source, dinv, place, mean, inner, repeats, sums):
             _divergence_slab(r, velocity, j, mean, inner)
             if meets(place, inner, j):
                 c, wide, (r0, r1) = unsigned(j), row_length(inner, r.shape[1]), window_rows(place, inner)
-                s, e = window_columns(place, inner)
+                (s, e), o = window_columns(place, inner), c - unsigned(near[len(inner) + 2])
                 for row in range(r0, r1):
+                    shift = near_shift(near, inner, row, wide)
                     for i in range(row * wide + s, row * wide + e):
-                        r[c, i] = r[c, i] + source[c, i] if dinv[c, i] > 0 else 0
+                        r[c, i] = r[c, i] + source[o, i - shift] if dinv[c, i] > 0 else 0
             seal_slab(r, j, inner, repeats)
             sums[j, 0] = summed_size(r, j, inner)
             sums[j, 1] = largest_size(r, j, inner, top)
 
 
 @part
-def _mean_of_plane(u, v, source, place):
+def _mean_of_plane(u, v, source, place, near):
     s, t, b = PAD, u.shape[0] - PAD, u.shape[1] - PAD
     total = 0.0
     for j in range(s, t):
@@ -55,14 +66,14 @@ def _mean_of_plane(u, v, source, place):
         total += np.float64(v[s, i]) - np.float64(v[t, i])
     for j in range(place[3], place[4]):
         for i in range(place[5], place[6]):
-            total += source[j, i]
+            total += source[j - near[3], i - near[5]]
     return total / ((t - s) * (b - s))
 
 
 @part
-def _mean_in_space(velocity, source, place, inner):
-    end, wide, total = source.shape[0] - PAD, signed(row_length(inner, source.shape[1])), 0.0
-    rows, columns = signed(row_count(inner, source.shape[1])), wide - 2 * PAD
+def _mean_in_space(velocity, source, place, near, inner):
+    end, wide, total = velocity.shape[1] - PAD, signed(row_length(inner, velocity.shape[2])), 0.0
+    rows, columns = signed(row_count(inner, velocity.shape[2])), wide - 2 * PAD
     for row in range(PAD, rows + PAD):
         for j in range(PAD, end):
             k = row * wide + PAD
@@ -74,17 +85,17 @@ def _mean_in_space(velocity, source, place, inner):
             total += np.float64(velocity[1, j, i]) - np.float64(velocity[1, j, i + rows * wide])
     for j in range(place[4], place[5]):
         for row in range(place[6], place[7]):
-            for i in range(row * wide + place[8], row * wide + place[9]):
-                total += source[j, i]
+            for i in range(place[8], place[9]):
+                total += source[j - near[4], (row - near[6]) * (near[9] - near[8] + 1) + i - near[8]]
     return total / ((end - PAD) * rows * columns)
 
 
 @compiled
-def mean_residual(velocity, source, place, inner):
+def mean_residual(velocity, source, place, near, inner):
     """Return the mean of ``source - div u``: what flows in through the sides, and what the bodies push out."""
     if len(inner) == 1:
-        return _mean_of_plane(velocity[0], velocity[1], source, place)
-    return _mean_in_space(velocity, source, place, inner)
+        return _mean_of_plane(velocity[0], velocity[1], source, place, near)
+    return _mean_in_space(velocity, source, place, near, inner)
 
 
 @part

@@ -9,6 +9,10 @@ type. So ``for d in range(len(inner))`` inside a loop over cells is unrolled, an
 
 A ``place`` is a row of the multigrid's layout: where a level starts, its cells along the axes, the last axis first, and
 then the window around the bodies, first and end along each axis, the last axis first.
+
+What counts around the bodies only is kept for the window alone, with the faces behind its last cells: a slab of such a
+*near* array has one cell more along each axis than the window. Which one, the ``near`` says, a place whose window may
+reach beyond mirrors, where that of a level ends.
 """
 
 import numpy as np
@@ -86,3 +90,18 @@ def window_columns(place, inner):
     """Return first and end of the cells of a row that meet the window."""
     w = 3 * len(inner) + 2
     return unsigned(place[w]), unsigned(place[w + 1])
+
+
+@part
+def near_strides(near, inner):
+    """Return the strides within a slab of the arrays of a window."""
+    w = 3 * len(inner) + 2
+    return strides_like(inner, unsigned(near[w + 1] - near[w] + 1))
+
+
+@part
+def near_shift(near, inner, row, wide):
+    """Return by how much cells of a row come later in a slab than in one of the arrays of a window."""
+    w, first = 3 * len(inner) + 2, unsigned(near[len(inner) + 4]) if len(inner) > 1 else NONE
+    columns = unsigned(near[w + 1] - near[w] + 1)
+    return row * wide + unsigned(near[w]) - (row - first) * columns

@@ -1,8 +1,9 @@
 """The water's fields and one time step: predict, project, correct, project.
 
-All arrays have the padded shape of the grid, the last axis first: (ny + 2 PAD, nx + 2 PAD), and vectors the component
-before that; kernels see them slab by slab (``slab``). Inside, lengths are in cells: a time step is ``dt / cell``, a
-viscosity ``viscosity / cell``, a pressure that over the density [m^2/s^2].
+Arrays have the padded shape of the grid, the last axis first: (ny + 2 PAD, nx + 2 PAD), and vectors the component
+before that; what counts around the bodies only has the shape of their window. Kernels see them slab by slab (``slab``).
+Inside, lengths are in cells: a time step is ``dt / cell``, a viscosity ``viscosity / cell``, a pressure that over the
+density [m^2/s^2].
 """
 
 from typing import NamedTuple
@@ -68,9 +69,10 @@ class Water:
         velocity: on the faces before the cells along each axis, shape (axis, ...) [m/s].
         p: pressure over density at the cell centres [m^2/s^2].
         mu0: share of the fluid on these faces, shape (axis, ...) [-].
-        mu1: half the first moment of the kernel along each axis on these faces, shape (face's axis, axis, ...) [cells].
-        b: velocity of the bodies on these faces, shape (axis, ...) [m/s].
-        source: divergence of the bodies' own motion, times the body's share [m/s per cell].
+        mu1: half the first moment of the kernel along each axis on these faces, in the window, shape
+            (face's axis, axis, ...) [cells].
+        b: velocity of the bodies on these faces, in the window, shape (axis, ...) [m/s].
+        source: divergence of the bodies' own motion, times the body's share, in the window [m/s per cell].
         window: padded cell indices around the bodies; a cell beyond a mirror that cuts one is one of them.
         cut: for each body, which mirrors cut it; see ``body.cuts``.
         owners: for each component, which body is nearest to the points of the window.
@@ -85,29 +87,25 @@ class Water:
         self.nu = dtype(viscosity / grid.cell)
         self.border = Border.of(sides, grid, dtype)
         shape = tuple(n + 2 * PAD for n in reversed(grid.cells))
-        self._slabs = shape[0], int(np.prod(shape[1:]))
+        slabs = shape[0], int(np.prod(shape[1:]))
         vector = (self.axes, *shape)
         # Fluid: now, predicted, corrected; pressure
         self.velocity: np.ndarray = np.zeros(vector, dtype)
         self._predicted: np.ndarray = np.zeros(vector, dtype)
         self._corrected: np.ndarray = np.zeros(vector, dtype)
         self.p: np.ndarray = np.zeros(shape, dtype)
-        # Body: its velocity, kernel moments, own divergence; and the fluid's bare update in its window
         self.mu0: np.ndarray = np.ones(vector, dtype)
-        self.mu1: np.ndarray = np.zeros((self.axes, *vector), dtype)
-        self.b: np.ndarray = np.zeros(vector, dtype)
-        self._raw: np.ndarray = np.zeros(vector, dtype)
-        self.source: np.ndarray = np.zeros(shape, dtype)
         # Pressure solver
-        self._x: np.ndarray = np.zeros(self._slabs, dtype)
-        self._d: np.ndarray = np.zeros(self._slabs, dtype)
-        self._q: np.ndarray = np.zeros(self._slabs, dtype)
+        self._x: np.ndarray = np.zeros(slabs, dtype)
+        self._d: np.ndarray = np.zeros(slabs, dtype)
+        self._q: np.ndarray = np.zeros(slabs, dtype)
         self._layout = poisson.levels(grid.cells)
         self._store = poisson.make_store(self._layout, dtype)
-        self._patches = patch.rects(self._layout)
+        self._patches = patch.rects(self._layout, self.repeats)
         self._room: np.ndarray = np.zeros((patch.FACES + self.axes, 0), dtype)
         self._sums = np.zeros((shape[0], 4))
-        self.window: Window = (PAD,) * (2 * self.axes)
+        self._near = self._layout[0].copy()
+        self._look_at((PAD,) * (2 * self.axes))
         self.cut: list[tuple[bool, ...]] = []
         self.offset = 0.0
         self.solves: list[poisson.Solve] = []
@@ -131,8 +129,41 @@ class Water:
         return self._corrected
 
     def _flat(self, a: np.ndarray) -> np.ndarray:
-        """Return a field as the kernels see it: slabs, and components before them."""
-        return a.reshape(*a.shape[: a.ndim - self.axes], *self._slabs)
+        """Return a field or values of the window as the kernels see them: slabs, and components before them."""
+        ahead = a.ndim - self.axes
+        return a.reshape(*a.shape[: ahead + 1], -1)
+
+    def _look_at(self, window: Window) -> None:
+        """Make room for what counts around the bodies only: kernel moments, velocity, divergence and bare update."""
+        self.window: Window = window
+        self._near[1 + self.axes :] = window
+        shape = tuple(end - first + 1 for first, end in zip(window[::2], window[1::2], strict=True))
+        self.mu1: np.ndarray = np.zeros((self.axes, self.axes, *shape), self.dtype)
+        self.b: np.ndarray = np.zeros((self.axes, *shape), self.dtype)
+        self._raw: np.ndarray = np.zeros((self.axes, *shape), self.dtype)
+        self.source: np.ndarray = np.zeros(shape, self.dtype)
+
+    def _in_window(self, values: np.ndarray, window: Window) -> np.ndarray:
+        """Return values of another window, shape (axis, ...), in the present one, 0 where that one does not reach."""
+        out = np.zeros_like(self.b)
+        both = [
+            (max(a, c), min(b, d) + 1)
+            for a, b, c, d in zip(window[::2], window[1::2], self.window[::2], self.window[1::2], strict=True)
+        ]
+        to, source = (
+            tuple(slice(max(a - first, 0), max(b - first, 0)) for (a, b), first in zip(both, w[::2], strict=True))
+            for w in (self.window, window)
+        )
+        if all(a < b for a, b in both):
+            out[:, *to] = values[:, *source]
+        return out
+
+    @property
+    def carried(self) -> np.ndarray:
+        """Velocity of the bodies times their share on the faces before the cells, shape (axis, ...) [m/s]."""
+        out = np.zeros_like(self.velocity)
+        out[:, *self.here] = (1 - self.mu0[:, *self.here]) * self.b
+        return out
 
     @property
     def here(self) -> tuple[slice, ...]:
@@ -179,20 +210,20 @@ class Water:
         mirrors = self.sides.mirrors(self.axes)
         windows = [window_of(b, p, self.grid, time, mirrors) for b, p in zip(bodies, poses, strict=True)]
         self.cut, new = [cuts(window, self.grid) for window in windows], unite(windows, self.axes)
-        before = self.b[:, *self._here(new)].copy()
         self._clear(old)
-        self.window = new
+        was = self.b
+        self._look_at(new)
         poisson.place_window(self._layout, unite([w for w in (old, new) if w[1] > w[0]], self.axes))
         self.given = np.zeros((len(bodies), sums_of(self.axes)))
         both = self._layout[0].copy()
         poisson.place_window(self._layout[:1], new)
         if new[1] > new[0]:
             self._measure(bodies, poses, time)
-            self.mean = [0.5 * (was + b) for was, b in zip(before, self.b[:, *self._here(new)], strict=True)]
+            self.mean = list(0.5 * (self._in_window(was, old) + self.b))
         self._layout[0] = both
         multigrid.coarsen(self._store, self._layout, self.inner)
         poisson.place_window(self._layout, new)
-        self._patches = patch.rects(self._layout)
+        self._patches = patch.rects(self._layout, self.repeats)
         self._room = patch.room_for(self._room, self._patches)
         multigrid.spread(self._store, self._layout, self._room, self._patches, self.inner)
 
@@ -200,9 +231,6 @@ class Water:
         here = self._here(window)
         for share in (self.mu0, self.passage):
             share[:, *here] = 1
-        self.b[:, *here] = 0
-        self.mu1[:, :, *here] = 0
-        self.source[here] = 0
 
     def _measure(self, bodies: list[AnyBody], poses: list[Pose], time: float) -> None:
         h, grid, here = self.grid.cell, self.grid, self._here(self.window)
@@ -215,15 +243,16 @@ class Water:
             mu1: np.ndarray = np.empty((self.axes, near.size), self.dtype)
             fill(near.ravel(), np.stack([n.ravel() for n in f.normal]), thickness.ravel(), mu0, mu1)
             self.mu0[c][here] = self.passage[c][here] = mu0.reshape(near.shape)
-            self.mu1[c][:, *here] = mu1.reshape(self.axes, *near.shape)
-            self.b[c][here] = f.velocity[c]
+            self.mu1[c] = mu1.reshape(self.axes, *near.shape)
+            self.b[c] = f.velocity[c]
         for body, pose in zip(bodies, poses, strict=True):
             sheet = body.shape.sheet(time, pose)
             if sheet is not None:
                 x, y = (grid.centres(*ends[d], d)[0] for d in range(2))
                 close(self.passage[0][here], sheet[0], sheet[1], x - h, y, h)
                 close(self.passage[1][here].T, sheet[1], sheet[0], y - h, x, h)
-        fill_source(self._flat(self.source), self._flat(self.b), self._flat(self.mu0), self._layout[0], self.inner)
+        source, b, mu0 = (self._flat(a) for a in (self.source, self.b, self.mu0))
+        fill_source(source, b, mu0, self._layout[0], self._near, self.inner)
 
     def fastest(self) -> float:
         """Return the largest sum of the sizes of the components in a cell [m/s]."""
@@ -288,32 +317,18 @@ class Water:
         out, blend, base, rate = (self._flat(a) for a in stage[:4])
         place, raw, p = self._layout[0], self._flat(self._raw), self._flat(self.p)
         advance(
-            out, blend, base, rate, p, raw, place, self.inner, self.repeats, step, self.nu, push, stage.keep
+            out, blend, base, rate, p, raw, place, self._near, self.inner, self.repeats, step, self.nu, push, stage.keep
         )  # fmt: skip
         if self.window[1] > self.window[0]:
             self._mirror_raw()
-            place = self._near
             b, mu0, mu1, passage = (self._flat(a) for a in (self.b, self.mu0, self.mu1, self.passage))
             for c in range(self.axes):
                 immerse(
-                    out[c], blend[c], raw[c], b[c], mu0[c], passage[c], mu1[c], p, c, place, self.inner, step,
+                    out[c], blend[c], raw[c], b[c], mu0[c], passage[c], mu1[c], p, c, self._near, self.inner, step,
                     stage.keep,
                 )  # fmt: skip
         self.border.fill(stage.out)
         return stage
-
-    @property
-    def _near(self) -> np.ndarray:
-        """The finest level's ``place`` with the cells beyond mirrors in its window, which the immersion reads."""
-        place = self._layout[0].copy()
-        place[1 + self.axes :] = self.window
-        return place
-
-    def _inside(self, a: np.ndarray) -> np.ndarray:
-        """Return the part in the domain of values of the window, slab by slab."""
-        ends = zip(self.window[::2], self.window[1::2], reversed(self.grid.cells), strict=True)
-        part = a[tuple(slice(max(PAD - s, 0), min(e, n + PAD) + 1 - s) for s, e, n in ends)]
-        return part.reshape(len(part), -1)
 
     def _mirror_raw(self) -> None:
         """Fill the bare update beyond the mirrors that cut bodies with its image."""
@@ -321,32 +336,33 @@ class Water:
             if not cut:
                 continue
             axis, low = k // 2, k % 2 == 0
+            start = self.window[2 * (self.axes - 1 - axis)]
             for c, component in enumerate(self._raw):
                 planes = np.moveaxis(component, self.axes - 1 - axis, 0)
-                n = self.grid.cells[axis] + PAD
+                n = self.grid.cells[axis] + PAD - start
                 if c == axis:  # across the mirror, which lies on these faces
-                    face, image, source = (PAD, PAD - 1, PAD + 1) if low else (n, n + 1, n - 1)
+                    face, image, source = (PAD - start, PAD - 1 - start, PAD + 1 - start) if low else (n, n + 1, n - 1)
                     planes[face], planes[image] = 0, -planes[source]
                 else:
-                    image, source = (PAD - 1, PAD) if low else (n, n - 1)
+                    image, source = (PAD - 1 - start, PAD - start) if low else (n, n - 1)
                     planes[image] = planes[source]
 
     def _collect(self, stage: Stage, step: float) -> None:
         """Add half of what the immersion gave in this stage: the step is the mean of its two stages."""
         if self.window[1] <= self.window[0]:
             return
-        dt, keep, place, inner = float(step), float(stage.keep), self._near, self.inner
+        dt, keep, near, inner = float(step), float(stage.keep), self._near, self.inner
         sums, p = np.zeros_like(self.given), self._flat(self.p)
         out, blend, raw, passage, mu1 = (
             self._flat(a) for a in (stage.out, stage.blend, self._raw, self.passage, self.mu1)
         )
-        owners = [owner.reshape(len(owner), -1) for owner in self.owners]
+        owners = [self._flat(owner) for owner in self.owners]
         for c, mean in enumerate(self.mean):
             collect(
-                sums, out[c], blend[c], raw[c], mean.reshape(len(mean), -1), passage[c], mu1[c], p, owners[c], c, place,
-                inner, dt, keep,
+                sums, out[c], blend[c], raw[c], self._flat(mean), passage[c], mu1[c], p, owners[c], c, near, inner, dt,
+                keep,
             )  # fmt: skip
-        swelling(sums, p, self._flat(self.source), self._inside(self.owners[0]), self._layout[0], inner, dt)
+        swelling(sums, p, self._flat(self.source), owners[0], near, inner, dt)
         self.given += 0.5 * sums
 
     def contents(self) -> np.ndarray:
@@ -355,15 +371,15 @@ class Water:
         if self.window[1] > self.window[0]:
             b, mu0 = self._flat(self.b), self._flat(self.mu0)
             for c, owner in enumerate(self.owners):
-                contents(sums, b[c], mu0[c], self._inside(owner), c, self._layout[0], self.inner)
+                contents(sums, b[c], mu0[c], self._flat(owner), c, self._layout[0], self._near, self.inner)
         return sums
 
     def _project(self, velocity: np.ndarray, dt: float, limits: tuple[float, float]) -> None:
         """On return the divergence of ``velocity`` is that of the bodies, to ``limits``; ``p`` has what that took."""
         r, u, source, place = self._part(multigrid.B), self._flat(velocity), self._flat(self.source), self._layout[0]
-        mean = mean_residual(u, source, place, self.inner)
+        mean = mean_residual(u, source, place, self._near, self.inner)
         residual(
-            r, u, source, self._part(multigrid.DINV), place, self.dtype(mean), self.inner, self.repeats,
+            r, u, source, self._part(multigrid.DINV), place, self._near, self.dtype(mean), self.inner, self.repeats,
             self._sums,
         )  # fmt: skip
         sums = self._sums[PAD:-PAD]
@@ -419,12 +435,12 @@ class Water:
         """
         if self.border.water is None:
             return []
-        here, x = self._here(self.window), self._x.reshape(self.p.shape)
-        for c, work in enumerate(self._raw):
+        here, x, gained = self._here(self.window), self._x.reshape(self.p.shape), np.zeros_like(self.velocity)
+        for c, work in enumerate(gained):
             axis = self.axes - 1 - c
             np.moveaxis(work, axis, 0)[1:] = -np.moveaxis(np.diff(x, axis=axis), axis, 0)
             work[here] = given[c] + self.passage[c][here] * work[here]
-        sides = self.border.water.inward(self._raw, self.window, [])
+        sides = self.border.water.inward(gained, self.window, [])
         level = sum(float(s.sum()) for s in sides) / sum(s.size for s in sides)
         return [s - level for s in sides]
 
