@@ -93,8 +93,11 @@ def tried(row: str, robot: str) -> str:
     with tempfile.TemporaryDirectory() as folder:
         words = command(row, robot, Path(folder))
         out, err = io.StringIO(), io.StringIO()
-        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
-            code = suchus(words)
+        try:
+            with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+                code = suchus(words)
+        except Exception as error:
+            return f"exit 1: {type(error).__name__}: {error}"
     if code == 0:
         return ""
     said = err.getvalue().strip().splitlines()[-1:] or [""]

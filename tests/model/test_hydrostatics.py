@@ -111,3 +111,15 @@ def test_bad_hydrostatics_are_refused(given, message):
 def test_heel_is_told_all_round():
     angles = np.radians([-170, -90, -10, 0, 10, 90, 170])
     assert heel_of(about(np.array([1.0, 0.0, 0.0]), angles)) == pytest.approx(angles)
+
+
+@pytest.mark.parametrize("name", sorted(ROBOTS))
+def test_every_robot_that_floats_displaces_its_weight(name):
+    """Also one that is smaller than the height at which its model begins."""
+    robot = ROBOTS[name]
+    found = hydrostatics(robot, heels=3)
+    assert np.isfinite(found.lever).all()
+    assert found.floats == (found.missing < 0)
+    if found.floats:
+        assert 0 < found.draft < robot.length
+        assert abs(found.lever[0]) < 1e-6 * robot.length

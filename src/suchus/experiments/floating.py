@@ -16,7 +16,7 @@ from suchus.design.checks import Checks
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.experiments import _floating_cases as cases
 from suchus.figures.floating import draw_checks, draw_righting
-from suchus.gaits import GAITS
+from suchus.gaits import GAITS, own_gait, suits
 from suchus.land import Lake, Run, simulate
 from suchus.model.hydrostatics import hydrostatics
 from suchus.motion import Swim
@@ -42,6 +42,7 @@ class Floating(Experiment):
 
     title = "Does it float as Archimedes says, and does it right itself?"
     shows = "Beyond the article, whose robot is amphibious and whose body is not said to float"
+    needs = ("tables", "cable_tail")  # as the controller that holds the limbs out
 
     robot: AnyRobot = field(default_factory=lambda: ROBOTS["floating_caiman"])
     """The robot that floats."""
@@ -153,7 +154,8 @@ class Floating(Experiment):
         return Swimming(swim=STILL).targets(robot, np.zeros(1))[0] if isinstance(robot, Crocodile) else None
 
     def _let_go(self, progress: Any) -> xr.Dataset:
-        gait = GAITS["belly_crawl"]
+        crawl = GAITS["belly_crawl"]
+        gait = crawl if suits(self.robot, crawl) else own_gait(self.robot)
         runs = [
             Run(
                 robot=self.robot,

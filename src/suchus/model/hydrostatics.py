@@ -68,6 +68,7 @@ class _Rigid:
         table = np.array(pieces(robot))
         model = wet_model(robot, TIMESTEP, None, len(table))
         self.data = data = mujoco.MjData(model)
+        data.qpos[:3] = 0.0  # the model begins at a height that may be beyond the reach of a small robot
         _bend(model, data, robot, servos)
         mujoco.mj_fwdPosition(model, data)
         self.table = model.numeric_data[HEADER : HEADER + table.size].reshape(table.shape)
