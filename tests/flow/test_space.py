@@ -168,6 +168,52 @@ def test_the_added_mass_of_a_sphere_is_that_of_potential_flow():
     assert np.isnan(mass[2]).all()  # not symmetric about the mirror
 
 
+def test_added_mass_in_open_water_does_not_know_the_box():
+    """In boxes of 3 and 4 diameters, by the sides' dipole; where they are held it differs by the box."""
+    open_sides, held = flow.Sides(low=flow.Mirror()), flow.Sides(low=flow.Mirror(), high=HELD)
+    mass = {}
+    for size in (3, 4):
+        grid = flow.Grid(cells=(8 * size, 8 * size, 4 * size), cell=1 / 8, origin=(-size / 2, -size / 2, 0.0))
+        for sides in (open_sides, held):
+            found = np.diag(added(ball(grid=grid, sides=sides, steps=0)))
+            assert found[1] == pytest.approx(found[0], rel=1e-4)
+            mass[sides, size] = found[0]
+    assert mass[open_sides, 3] == pytest.approx(mass[open_sides, 4], rel=0.005)
+    assert mass[held, 3] > 1.03 * mass[held, 4] > 1.03 * mass[open_sides, 4]
+
+
+def test_a_mirror_does_not_hinder_the_pressure_solver():
+    """The half of a body that a mirror cuts takes at most half as many cycles more as the whole one."""
+    move = flow.Oscillation(frequency=0.3, heave=(0.0, 0.1, 0.0), pitch=0.2)
+    fish = flow.Body(shape=flow.Ellipsoid(length=1.8, width=0.5, height=0.6), motion=move)
+    settings = {"bodies": (fish,), "cells": 32, "steps": 8, "stream": (0.3, 0.0, 0.0), "tolerance": 1e-5, "step": None}
+    full, half = (ball(mirrors=(False, False, cut), **settings) for cut in (False, True))
+    assert half.record.cycles[1:].sum() <= 1.5 * full.record.cycles[1:].sum()
+
+
+def test_what_counts_around_bodies_is_kept_there_alone():
+    """A larger domain around the same sphere costs what memory counts for water, not the bodies' own arrays."""
+    small, large = (ball(grid=flow.Grid(cells=(n, 24, 24), cell=1 / 8, origin=(-1.5,) * 3), steps=0) for n in (24, 48))
+    grown = [sim.water.arrays * sim.water.p.size for sim in (small, large)]
+    assert (grown[1] - grown[0]) / (large.water.p.size - small.water.p.size) == pytest.approx(
+        memory.arrays_of(3), rel=0.05
+    )
+    assert large.water.mu1.shape == (3, 3, *(end - first + 1 for first, end in np.reshape(large.water.window, (3, 2))))
+
+
+@given(st.lists(st.tuples(st.integers(2, 9), st.integers(1, 5)), min_size=6, max_size=6))
+def test_values_of_one_window_are_found_in_another(ends):
+    """As if both were parts of one whole array, which is 0 outside of the first window."""
+    water = ball(steps=0, bodies=()).water
+    old, new = (tuple(n for first, size in part for n in (first, first + size)) for part in (ends[:3], ends[3:]))
+    whole = np.zeros((3, 20, 20, 20), np.float32)
+    water._look_at(old)
+    values = np.arange(1, water.b.size + 1, dtype=np.float32).reshape(water.b.shape)
+    whole[:, *water.here] = values
+    water._look_at(new)
+    assert np.array_equal(water._in_window(values, old), whole[:, *water.here])
+
+
 def test_the_force_on_a_body_that_starts_is_its_added_mass():
     """The first step from rest, without friction: the momentum exchanged is the added mass times the velocity."""
 
