@@ -6,7 +6,7 @@ from typing import Protocol
 import numpy as np
 import xarray as xr
 
-from suchus.design import Crocodile
+from suchus.design import GRAVITY, Crocodile
 from suchus.experiment import Measure
 from suchus.verdict import Reading
 
@@ -94,7 +94,7 @@ def _body(record: xr.Dataset, robot: Crocodile, frequency: float) -> Iterator[tu
     yield "reynolds_of_speed", Measure(float(record.reynolds) * abs(speed) / (frequency * robot.length), "-")
     yield "cells_per_length", Measure(float(record.cells[-1]), "-")
     yield "cycles", Measure(float(record.sizes["cycle"]), "-")
-    yield "mass", Measure(weight / 9.81, "kg")
+    yield "mass", Measure(weight / GRAVITY, "kg")
     yield "speed", Measure(speed, "m/s")
     yield "speed_lengths", Measure(speed / robot.length, "1/s")
     yield "speed_gain", Measure(speed / float(speeds[-2]) - 1.0, "-")

@@ -124,7 +124,7 @@ class Swim3d(Experiment):
         runs = [(f"{cells} cells", ours, basin(cells, self.cycles)) for cells in self.cells]
         if self.compared_cells not in self.cells or self.compared_cycles > self.cycles:
             runs.append(("compared", ours, compared))
-        runs.append(("held", ours, basin(self.compared_cells, 2, moves_on=False)))
+        runs.append(("held", ours, basin(self.compared_cells, min(3, self.compared_cycles), moves_on=False)))
         if self.tail_heights:
             arms = {"trunk only": ours.trunk_only(), "tail only": ours.tail_only(), "as printed": printed}
             runs += [(name, motion, compared) for name, motion in arms.items()]
