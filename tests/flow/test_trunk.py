@@ -105,7 +105,7 @@ def test_the_volume_of_a_bent_trunk_is_what_it_fills():
     window = [np.arange(low - 0.1, high + 0.1, h) for low, high in
               ((spine.x.min(), spine.x.max()), (spine.y.min(), spine.y.max()), (0.0, 0.0))]  # fmt: skip
     inside = trunk.measure(*window, time, flow.Pose(), 2 * h).distance < 0
-    z, y, x = np.meshgrid(*window[::-1], indexing="ij")
+    _, y, x = np.meshgrid(*window[::-1], indexing="ij")
     mass, filled = trunk.mass(time), inside.sum() * h**3
     centre = x[inside].mean(), y[inside].mean()
     assert mass.volume == pytest.approx(filled, rel=0.01)

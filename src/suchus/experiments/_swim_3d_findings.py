@@ -97,7 +97,7 @@ def _body(record: xr.Dataset, robot: Crocodile, frequency: float) -> Iterator[tu
     yield "mass", Measure(weight / GRAVITY, "kg")
     yield "speed", Measure(speed, "m/s")
     yield "speed_lengths", Measure(speed / robot.length, "1/s")
-    yield "speed_gain", Measure(speed / float(speeds[-2]) - 1.0, "-")
+    yield "speed_gain", Measure(_gain(speeds), "-")
     yield "power", Measure(power, "W")
     yield "cost_of_transport", Measure(power / (weight * abs(speed)), "-")
     yield "strouhal", Measure(frequency * float(record["swing"]) / abs(speed), "-")
@@ -135,9 +135,14 @@ def _compared(record: xr.Dataset) -> Iterator[tuple[str, Measure]]:
         one, key = record.sel(compared=name), _key(str(name))
         speed, power = one.compared_speed.values, float(one.compared_power[-1])
         yield f"speed_{key}", Measure(float(speed[-1]), "m/s")
-        yield f"speed_gain_{key}", Measure(float(speed[-1] / speed[-2] - 1.0), "-")
+        yield f"speed_gain_{key}", Measure(_gain(speed), "-")
         yield f"power_{key}", Measure(power, "W")
         yield f"cost_of_transport_{key}", Measure(power / (float(one.weight_compared) * abs(float(speed[-1]))), "-")
+
+
+def _gain(speeds: np.ndarray) -> float:
+    """Return by how much the last cycle is faster than the one before; NaN where that stood still [-]."""
+    return float(speeds[-1] / speeds[-2] - 1.0) if speeds[-2] != 0.0 else float("nan")
 
 
 def _key(name: str) -> str:

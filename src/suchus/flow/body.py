@@ -155,14 +155,13 @@ def measure_all(
         f = measure(*points, time, pose, (REACH + 1) * h)
         other = SpaceField(f.distance, f.normal, f.velocity, f.thickness)
         part = getattr(f, "part", None)
-        mine = rows.start if part is None else rows.start + part
         if first is None:
             first = other
             owner = owner if part is None else part.astype(np.int8)
             continue
         nearer = other.distance < first.distance
         first = _chosen(nearer, other, first)
-        owner[nearer] = mine if part is None else mine[nearer]
+        owner[nearer] = rows.start if part is None else rows.start + part[nearer]
     assert first is not None  # there is a window around bodies only
     return first, owner
 

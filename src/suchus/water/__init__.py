@@ -12,7 +12,7 @@ from suchus.water.outline import Base, BodySilhouette, MidlineCurve, Outline, si
 from suchus.water.passive import sprung
 from suchus.water.readings import Attempt, attempts, readings_table
 from suchus.water.slender import Cruise, Effort, cruise, cycle, reactive, recoil, resistive
-from suchus.water.space import Basin, half_heights, swim_in_space, trunk
+from suchus.water.space import Basin, check_swim_in_space, half_heights, swim_in_space, trunk
 from suchus.water.sweep import greatest, scaled, survey
 from suchus.water.swimming import MODELS, displaced, swim, wave_speed
 from suchus.water.tank import Tether
@@ -43,6 +43,7 @@ __all__ = [
     "Undulation",
     "Water",
     "attempts",
+    "check_swim_in_space",
     "convex_higher",
     "cruise",
     "cycle",

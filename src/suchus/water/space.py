@@ -85,6 +85,19 @@ def trunk(outline: Outline, motion: Motion, *, grow: float = 0.0, tail_height: f
     return flow.Trunk(spine=spine, half_height=half_heights(outline, tail_height), cuts=cuts)
 
 
+def check_swim_in_space(robot: Crocodile, motion: Motion, basin: Basin) -> None:
+    """Refuse what joints, servos or grid cannot follow, before anything runs.
+
+    Raises:
+        OutsideLimits: the joints or servos cannot follow the motion.
+        InvalidDesign: the boundary layer is too thin for the grid.
+    """
+    outline = Outline(robot, basin.cells + 1)
+    sway, turn = recoil(outline, motion, 0.0, Water(viscosity=basin.viscosity))
+    resolved = Tether(cells=basin.cells, viscosity=basin.viscosity, cycles=basin.cycles)
+    check_motion(outline, motion, resolved, sway, turn)
+
+
 def swim_in_space(
     robot: Crocodile,
     motion: Motion,
@@ -113,10 +126,9 @@ def swim_in_space(
         InvalidDesign: the boundary layer is too thin for the grid.
         Diverged: the flow diverged.
     """
+    check_swim_in_space(robot, motion, basin)
     outline, period = Outline(robot, basin.cells + 1), 1.0 / motion.frequency
     sway, turn = recoil(outline, motion, 0.0, Water(viscosity=basin.viscosity))
-    held = Tether(cells=basin.cells, viscosity=basin.viscosity, cycles=basin.cycles)
-    check_motion(outline, motion, held, sway, turn)
     body = flow.FreeBody(
         shape=trunk(outline, motion, grow=GROWS * period, tail_height=basin.tail_height),
         start=(0.5 * robot.length, 0.0, 0.0), free=(basin.moves_on, True, True),
