@@ -147,6 +147,8 @@ def water(shape, *, half=True, free=True, cells=32, thread_count=1, **changes):
     return flow.Simulation(replace(setup, **changes), thread_count=thread_count)
 
 
+SPHERE = flow.Sphere(diameter=0.3)
+UPPER = flow.Grid(cells=(48, 24, 24), cell=1 / 32, origin=(-0.75, 0.0, -0.375))
 CUTS = (0.2, 0.45, 0.8)
 
 
@@ -301,6 +303,13 @@ def test_what_does_not_fit_is_refused_in_use():
         water(thin, free=False)
     with pytest.raises(InvalidDesign, match=r"takes .* million cells"):
         water(eel(taper=False), viscosity=1e-6, coarse=False).run(0.2, progress=False)
+    across_y = flow.Sides(bottom=flow.Mirror())
+    with pytest.raises(InvalidDesign, match="no images of each other"):
+        water(egg(0.8, 0.3, 0.3), free=False, half=False, sides=across_y, grid=UPPER)
+    assert water(SPHERE, free=False, half=False, sides=across_y, grid=UPPER).thin == {"body": 0.0}
+    body = flow.FreeBody(shape=flow.Cylinder(diameter=0.3), start=(0.5, 0.0, 0.0))
+    with pytest.raises(InvalidDesign, match=r"starts at \(0.5, 0.0, 0.0\) m, and the grid has two axes"):
+        flow.Setup(grid=flow.Grid(cells=(32, 32), cell=1 / 16), viscosity=0.01, bodies=(body,))
     many = [flow.Body(shape=egg(1.0, 0.5, 0.5, cuts=tuple(np.linspace(0.01, 0.9, 60))), name=str(k)) for k in range(3)]
     assert len(bodies.rows_of(many[:2])) == 2
     with pytest.raises(InvalidDesign, match="183 parts"):

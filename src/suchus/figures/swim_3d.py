@@ -47,8 +47,9 @@ def draw_wake(record: xr.Dataset) -> Figure:
     """
     limit = span(record.vorticity.values, 0.985)
     strong = float(np.quantile(record.vortices_above.values, 0.985))
+    wide, high = float(np.ptp(record.y.values)), 2.0 * float(record.z.max())  # one scale in all panels
     with styled(axes__grid=False):
-        figure, axes = panels(3, 1, width=9.0, height=10.5, sharex=True, height_ratios=[1.3, 1.3, 1.0])
+        figure, axes = panels(3, 1, width=9.0, height=10.5, sharex=True, height_ratios=[wide, wide, high])
         ax = axes[0, 0]
         image = ax.pcolormesh(record.x, record.y, record.vorticity, vmin=-limit, vmax=limit, cmap=VORTICITY)
         figure.colorbar(image, ax=ax, label="vorticity about z [1/s]", extend="both")
@@ -60,7 +61,7 @@ def draw_wake(record: xr.Dataset) -> Figure:
             places = record[str(across)].values
             if across == "z":  # the other half is the image
                 values, places = np.concatenate([values[::-1], values]), np.concatenate([-places[::-1], places])
-            image = ax.pcolormesh(record.x, places, values, vmin=0.0, vmax=strong, cmap="magma_r")
+            image = ax.pcolormesh(record.x, places, values, vmin=0.0, vmax=strong, cmap="Purples")
             figure.colorbar(image, ax=ax, label="Q [1/s²]", extend="max")
             ax.set_title(title, fontsize=12)
         for ax in axes[:2, 0]:

@@ -99,9 +99,15 @@ def check_cut(body: AnyBody, pose: Pose, axis: int, plane: float, h: float, time
     """Refuse a body that a mirror across an axis cuts anywhere but in its middle.
 
     Raises:
-        InvalidDesign: its middle lies off the plane, it moves through the plane, or its axes are oblique to it.
+        InvalidDesign: its halves differ, its middle lies off the plane, it moves through the plane, or its axes are
+            oblique to it.
     """
     place, name = pose.along(3), "xyz"[axis]
+    if isinstance(body.shape, SpaceShape) and not body.shape.even[axis]:
+        raise InvalidDesign(
+            f"the Mirror at {name} = {plane:.4g} m cuts {body.name}, whose two halves there are no images of each "
+            f"other; move the body or the grid, or take another side. A Trunk may be cut across z."
+        )
     if abs(place.position[axis] - plane) > MIDDLE * h or place.velocity[axis] != 0:
         raise InvalidDesign(
             f"at t = {time:.4g} s the middle of {body.name} is at {name} = {place.position[axis]:.4g} m and moves with "

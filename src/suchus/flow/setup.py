@@ -98,6 +98,8 @@ class Setup:
         axes = self.grid.axes
         self.sides.check(axes)
         for body in self.bodies:
+            if isinstance(body, FreeBody) and len(body.start) > axes:
+                raise InvalidDesign(f"{body.name} starts at {body.start} m, and the grid has two axes; give (x, y).")
             if body.shape.axes == axes:
                 continue
             shape = type(body.shape).__name__

@@ -58,6 +58,8 @@ class SpaceShape(ABC):
     """A body's shape in space in its own frame; it may change with time."""
 
     axes: ClassVar[int] = 3
+    even: ClassVar[tuple[bool, bool, bool]] = (True, True, True)
+    """Whether the planes through the origin across x, y and z cut it into halves that are images of each other."""
 
     @abstractmethod
     def measure(self, x: np.ndarray, y: np.ndarray, z: np.ndarray, time: float, pose: Pose, reach: float) -> SpaceField:

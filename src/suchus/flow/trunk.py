@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from math import isfinite
+from typing import ClassVar
 
 import numpy as np
 
@@ -31,6 +32,8 @@ class Trunk(SpaceShape):
         InvalidDesign: on creation or at its first use, for half-heights that are negative, not finite or other than
             the midline's stations, and for cuts that do not rise.
     """
+
+    even: ClassVar[tuple[bool, bool, bool]] = (False, False, True)
 
     spine: Callable[[float], Spine]
     """The midline at every time, with the half-widths in the plane [s]."""
