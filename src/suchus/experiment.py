@@ -102,6 +102,8 @@ class Experiment(ABC):
     """Which sections, figures or equations of the article it answers."""
     needs: ClassVar[tuple[str, ...]] = ()
     """What it needs of a robot: names of ``design.NEEDS``; written out, so that ``suchus list`` can show it."""
+    reproduces: ClassVar[bool] = True
+    """Whether ``suchus reproduce`` runs it; False for what takes minutes and judges none of the article's claims."""
     judged_with: ClassVar[tuple[str, ...]] = ("robot",)
     """Fields that must be as on the shelf for a verdict: another robot is not judged by the article's metres."""
     judged_from: ClassVar[Mapping[str, float]] = {}

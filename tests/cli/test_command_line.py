@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+import suchus.experiments
 from suchus import blueprint
 from suchus.cli import main
 from suchus.cli.commands import COMMANDS
@@ -163,6 +164,14 @@ def test_reproduce_ends_with_the_path_of_the_page(capsys, tmp_path):
     assert main(["reproduce", "--out", str(tmp_path)]) == 0
     assert capsys.readouterr().out.splitlines()[-1] == str(tmp_path / "report.html")
     assert "How high is a wave?" in (tmp_path / "report.html").read_text()
+
+
+@pytest.mark.usefixtures("broken")
+def test_reproduce_leaves_out_what_does_not_reproduce_the_article(capsys, tmp_path, monkeypatch):
+    monkeypatch.setattr(type(suchus.experiments.EXPERIMENTS["broken"]), "reproduces", False)
+    assert main(["reproduce", "--out", str(tmp_path)]) == 0
+    assert "broken" not in (tmp_path / "report.html").read_text()
+    assert capsys.readouterr().err.count("wave") == 1
 
 
 @pytest.mark.usefixtures("broken")

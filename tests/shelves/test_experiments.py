@@ -38,6 +38,7 @@ LONG = (
     "pattern_generator",
     "shore",
     "speed_range",
+    "swim_3d",
     "swim_free",
     "swimming",
     "terrain",

@@ -6,10 +6,12 @@ from suchus.paper import CLAIMS
 
 def page() -> str:
     """Return the page of all experiments."""
+    apart = ", ".join(f"`{name}`" for name, one in EXPERIMENTS.items() if not one.reproduces)
     lines = [
         "# Questions",
         "",
-        "Each experiment is a question with parameters. `suchus run NAME` answers one, `suchus reproduce` all of them;",
+        "Each experiment is a question with parameters. `suchus run NAME` answers one, `suchus reproduce` all but",
+        "those that take minutes and judge nothing of the article (" + apart + ");",
         "`suchus run NAME --help` lists what can be changed.",
         "",
         "| experiment | question | article |",

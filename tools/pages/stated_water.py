@@ -108,10 +108,47 @@ def _animal(m: Mapping[str, float]) -> str:
     )
 
 
+def _space(m: Mapping[str, float]) -> str:
+    """Return the table of speeds in three dimensions beside the slice and the models, and the motions beside them."""
+    grids = sorted(int(name.split("_")[1]) for name in m if name.startswith("speed_") and name.endswith("_cells"))
+    millimetres = {name: f"{1e3 * value:.1f} mm/s" for name, value in m.items() if name.startswith("speed_")}
+    rows = [
+        (f"body in three dimensions, {cells} cells a length", millimetres[f"speed_{cells}_cells"],
+         f"{m[f'power_{cells}_cells']:.2f} W") for cells in grids
+    ]  # fmt: skip
+    rows += [(f"{model} model", millimetres[f"speed_{model}"], f"{m[f'power_{model}']:.2g} W")
+             for model in ("resistive", "reactive")]  # fmt: skip
+    rows += [("slice of unlimited depth", millimetres["speed_slice"], "")]
+    number = f"f L^2 / nu = {m['reynolds']:.0f}"
+    lines = [f"| (20), reading I, 1 Hz, {number} | speed, cycle {m['cycles']:.0f} | power |", "|---|---|---|"]
+    lines += [f"| {' | '.join(row)} |" for row in rows]
+    lines += ["", f"| on one grid, {number} | speed | on the cycle before | energy over weight and distance |",
+              "|---|---|---|---|"]  # fmt: skip
+    motions = {"trunk_and_tail": "trunk and tail", "trunk_only": "trunk only", "tail_only": "tail only",
+               "as_printed": "as printed"}  # fmt: skip
+    tails = [name.removeprefix("speed_") for name in m if name.startswith("speed_tail_") and name != "speed_tail_only"]
+    high = {name: f"last third {name.removeprefix('tail_').replace('_', '.')} m high" for name in sorted(tails)}
+    for name, called in (motions | high).items():
+        cells = millimetres[f"speed_{name}"], f"{m[f'speed_gain_{name}']:+.0%}", f"{m[f'cost_of_transport_{name}']:.2g}"
+        lines.append(f"| {called} | {' | '.join(cells)} |")
+    most = max(value for name, value in m.items() if name.startswith("servo_load_peak"))
+    return "\n".join(lines) + (
+        f"\n\nOn the finest grid the last cycle is {m['speed_gain']:+.1%} on the one before, and "
+        f"{m['speed_over_grids']:+.1%} on the next coarser grid in speed, {m['power_over_grids']:+.1%} in power; the "
+        f"Reynolds number of speed and length is {m['reynolds_of_speed']:.0f}, the Strouhal number "
+        f"{m['strouhal']:.1f}, the slip {m['slip']:.3f}, the cost of transport {m['cost_of_transport']:.2f}. Kept from "
+        f"moving on, the body pushes with {m['thrust_held']:.3f} N (resistive {m['thrust_held_resistive']:.3f} N, "
+        f"reactive {m['thrust_held_reactive']:.3f} N). The water alone asks a servo for {most:.0%} of its limit at "
+        f"most. In real water the models say {m['speed_resistive_real_water']:.2f} and "
+        f"{m['speed_reactive_real_water']:.2f} m/s.\n"
+    )
+
+
 PASSAGES: Mapping[str, Mapping[str, Callable[[Mapping[str, float]], str]]] = {
     "floating": {"checks": _checks, "hull": _hull},
     "swim_free": {"swims": _swims},
     "salamander_swim": {"animal_swim": _animal},
+    "swim_3d": {"space": _space},
     "shore": {"ashore": _ashore},
 }
 """What makes each passage, by experiment."""

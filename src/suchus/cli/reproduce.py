@@ -45,14 +45,16 @@ class ReproduceOptions:
 
 
 def reproduce(words: Sequence[str]) -> int:
-    """Run every experiment, write the page, print its path; return 1 if an experiment failed, else 0.
+    """Run every experiment of the article, write the page, print its path; return 1 if an experiment failed, else 0.
 
     Raises:
         SuchusError: the words make no sense, or the results cannot be saved.
     """
     told = "Run every experiment and write one page with all results, DIR/report.html."
     options: ReproduceOptions = parse(ReproduceOptions, "suchus reproduce", words, told, ("out", "quick", "jobs"))
-    tasks = [Job(name=name, out=options.out, quick=options.quick) for name in EXPERIMENTS]
+    tasks = [
+        Job(name=name, out=options.out, quick=options.quick) for name, one in EXPERIMENTS.items() if one.reproduces
+    ]
     if not tasks:
         raise BadCommand("there is no experiment on the shelf.")
     if options.jobs is not None and options.jobs < 1:

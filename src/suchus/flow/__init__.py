@@ -7,7 +7,7 @@ from suchus.flow.eel import eel
 from suchus.flow.force import Load, Surface
 from suchus.flow.free import FreeBody
 from suchus.flow.grid import Grid
-from suchus.flow.mass import Mass
+from suchus.flow.mass import Mass, SpaceMass
 from suchus.flow.midline import Midline, Spine, foil
 from suchus.flow.outline import Implicit, Polygon, difference, from_outline, from_sdf, scaled, union
 from suchus.flow.output import FieldSeries, save_vti, snapshot
@@ -21,6 +21,7 @@ from suchus.flow.sides import Inflow, Mirror, Outflow, Periodic, Side, Sides, Sl
 from suchus.flow.signals import frequency, morison, noise, strouhal
 from suchus.flow.simulation import Simulation
 from suchus.flow.solid import Ellipsoid, Skin, SpaceField, SpaceShape, Sphere
+from suchus.flow.trunk import Trunk
 
 __all__ = [
     "ALONG_THE_SKIN",
@@ -61,11 +62,13 @@ __all__ = [
     "Slip",
     "Solid",
     "SpaceField",
+    "SpaceMass",
     "SpaceShape",
     "Sphere",
     "Spine",
     "Stream",
     "Surface",
+    "Trunk",
     "Wall",
     "added_mass",
     "difference",

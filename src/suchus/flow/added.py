@@ -31,7 +31,8 @@ def added_mass(
     h, axes, cut = water.grid.cell, water.axes, water.cut[body]
     here, kept = water.here, _symmetric(cut)
     modes = [mode for mode, keep in zip(_modes(water, about), kept, strict=True) if keep]
-    own = [owner == body for owner in water.owners]
+    rows = water.rows[body]
+    own = [(owner >= rows.start) & (owner < rows.stop) for owner in water.owners]
     shares = [(1 - m[here].astype(np.float64)) * mine for m, mine in zip(water.passage, own, strict=True)]
     for share in shares:
         _leave_images(share, cut)

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 import numpy as np
 
@@ -39,6 +40,9 @@ class Body:
 
 AnyBody = Body | FreeBody
 
+
+MOST_ROWS = 127
+"""Parts of all bodies together, at most: what a byte counts [-]."""
 
 MIDDLE = 1e-6
 """Distance of a body's middle from a mirror, over a cell, up to which the body is symmetric about it [-]."""
@@ -83,13 +87,27 @@ def _outside(body: AnyBody, grid: Grid, ends: list[tuple[float, float]], time: f
     )
 
 
+def middle_of(body: AnyBody, pose: Pose, time: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return where the centre of a body's volume is and how fast it moves, along every axis [m, m/s]."""
+    mass = body.shape.mass(time)
+    (x, y), (u, v) = pose.to_world(*map(np.asarray, mass.centre)), pose.turn(*map(np.asarray, mass.centre_rate))
+    carried = pose.carry(x, y)
+    return np.array([x, y, *pose.position[2:]]), np.array([carried[0] + u, carried[1] + v, *pose.velocity[2:]])
+
+
 def check_cut(body: AnyBody, pose: Pose, axis: int, plane: float, h: float, time: float) -> None:
     """Refuse a body that a mirror across an axis cuts anywhere but in its middle.
 
     Raises:
-        InvalidDesign: its middle lies off the plane, it moves through the plane, or its axes are oblique to it.
+        InvalidDesign: its halves differ, its middle lies off the plane, it moves through the plane, or its axes are
+            oblique to it.
     """
     place, name = pose.along(3), "xyz"[axis]
+    if isinstance(body.shape, SpaceShape) and not body.shape.even[axis]:
+        raise InvalidDesign(
+            f"the Mirror at {name} = {plane:.4g} m cuts {body.name}, whose two halves there are no images of each "
+            f"other; move the body or the grid, or take another side. A Trunk may be cut across z."
+        )
     if abs(place.position[axis] - plane) > MIDDLE * h or place.velocity[axis] != 0:
         raise InvalidDesign(
             f"at t = {time:.4g} s the middle of {body.name} is at {name} = {place.position[axis]:.4g} m and moves with "
@@ -118,24 +136,38 @@ def unite(windows: list[Window], axes: int) -> Window:
     return tuple((max if k % 2 else min)(w[k] for w in windows) for k in range(2 * axes))
 
 
+def rows_of(bodies: list[AnyBody]) -> list[range]:
+    """Return the rows of each body where sums are kept for every part of every body.
+
+    Raises:
+        InvalidDesign: there are more of them than a byte counts.
+    """
+    ends = np.cumsum([0] + [getattr(body.shape, "parts", 1) for body in bodies]).tolist()
+    if ends[-1] > MOST_ROWS:
+        raise InvalidDesign(f"the bodies have {ends[-1]} parts together; up to {MOST_ROWS} are allowed. Cut them less.")
+    return [range(first, end) for first, end in pairwise(ends)]
+
+
 def measure_all(
     bodies: list[AnyBody], poses: list[Pose], points: list[np.ndarray], time: float, h: float
 ) -> tuple[SpaceField, np.ndarray]:
-    """Return the field of all bodies on a window, at every point that of the nearest body, and which one it is.
+    """Return the field of all bodies on a window, at every point that of the nearest body, and whose row it is.
 
     ``points`` are the coordinates of the window along each axis [m].
     """
     first, owner = None, np.zeros([p.size for p in reversed(points)], np.int8)
-    for k, (body, pose) in enumerate(zip(bodies, poses, strict=True)):
+    for rows, body, pose in zip(rows_of(bodies), bodies, poses, strict=True):
         measure: Callable[..., Field | SpaceField] = body.shape.measure
         f = measure(*points, time, pose, (REACH + 1) * h)
         other = SpaceField(f.distance, f.normal, f.velocity, f.thickness)
+        part = getattr(f, "part", None)
         if first is None:
             first = other
+            owner = owner if part is None else part.astype(np.int8)
             continue
         nearer = other.distance < first.distance
         first = _chosen(nearer, other, first)
-        owner[nearer] = k
+        owner[nearer] = rows.start if part is None else rows.start + part[nearer]
     assert first is not None  # there is a window around bodies only
     return first, owner
 

@@ -1,10 +1,11 @@
-"""Bodies that swim: three degrees of freedom under the water's forces.
+"""Bodies that swim: three degrees of freedom under the water's forces, in the plane or in space.
 
 The pressure answers a body's acceleration at once, ``F = F0 - Ma a``; the added mass ``Ma`` comes from three
 solves of the pressure equation itself and goes to the left side, ``(M + Ma) a = F0``. Without it the coupling
 of a light body is unstable. A body's deformation carries no momentum of its own: its frame moves so that the
 centre of mass and the angular momentum change by outer forces alone: the water's, the body's weight less its buoyancy,
-its springs and dampers, and what else it is given.
+its springs and dampers, and what else it is given. In space bodies move in their plane of symmetry, along x and y and
+about z.
 """
 
 from collections.abc import Callable
@@ -15,24 +16,25 @@ import numpy as np
 
 from suchus.errors import InvalidDesign
 from suchus.flow.grid import check_kinds
-from suchus.flow.mass import Mass
+from suchus.flow.mass import Mass, SpaceMass
 from suchus.flow.pose import Pose
 from suchus.flow.shape import Shape
+from suchus.flow.solid import SpaceShape
 from suchus.kinds import show
 
 Force = Callable[[float, Pose], tuple[float, float, float]]
-"""Force along x and y [N/m] and torque about the centre of mass [N], counter-clockwise and per metre of depth, from the
-time [s] and the state: a ``Pose`` with the centre of mass, the angle and their rates."""
+"""Force along x and y [N/m] and torque about the centre of mass [N], counter-clockwise and per metre of depth, in space
+[N, N m], from the time [s] and the state: a ``Pose`` with the centre of mass, the angle and their rates."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FreeBody:
     """A shape that the water moves, and weight, springs, dampers and other forces, if it has any."""
 
-    shape: Shape
+    shape: Shape | SpaceShape
     """What it looks like in its own frame, at every time."""
-    start: tuple[float, float] = (0.0, 0.0)
-    """Centre of mass at time 0 [m]."""
+    start: tuple[float, float] | tuple[float, float, float] = (0.0, 0.0)
+    """Centre of mass at time 0 (x, y), in space (x, y, z) too; z, which is 0 if it is not given, stays as it is [m]."""
     angle: float = 0.0
     """Angle of the body's frame at time 0 [rad]."""
     velocity: tuple[float, float] = (0.0, 0.0)
@@ -46,9 +48,11 @@ class FreeBody:
     gravity: tuple[float, float] = (0.0, 0.0)
     """Acceleration of gravity (x, y); it acts on the mass of the body less that of the water displaced [m/s^2]."""
     springs: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    """Stiffness along x, along y and about the centre of mass, per metre of depth [N/m^2, N/m^2, N/rad]."""
+    """Stiffness along x, along y and about the centre of mass, per metre of depth [N/m^2, N/m^2, N/rad], in space
+    [N/m, N/m, N m/rad]."""
     dampers: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    """Damping along x, along y and about the centre of mass, per metre of depth [N s/m^2, N s/m^2, N s/rad]."""
+    """Damping along x, along y and about the centre of mass, per metre of depth [N s/m^2, N s/m^2, N s/rad], in space
+    [N s/m, N s/m, N m s/rad]."""
     anchor: tuple[float, float, float] | None = None
     """Centre of mass and angle at which the springs are slack; None is the start [m, m, rad]."""
     force: Force | None = None
@@ -87,7 +91,7 @@ REPAID = 0.5
 
 @dataclass(slots=True)
 class Swimmer:
-    """A free body under way. Vectors are (x, y, turning)."""
+    """A free body under way. Vectors are (x, y, turning); in the plane per metre of depth."""
 
     body: FreeBody
     """Which body."""
@@ -98,9 +102,9 @@ class Swimmer:
     push: np.ndarray = field(default_factory=lambda: np.zeros(3))
     """Acceleration in the last step, shape (3,) [m/s^2, rad/s^2]."""
     load: np.ndarray = field(default_factory=lambda: np.zeros(3))
-    """Force and torque of the water in the last step [N/m, N]."""
+    """Force and torque of the water in the last step [N/m, N; in space N, N m]."""
     added: np.ndarray = field(default_factory=lambda: np.zeros((3, 3)))
-    """Added mass [kg/m, kg, kg m]."""
+    """Added mass [kg/m, kg, kg m; in space kg, kg m, kg m^2]."""
     momentum: np.ndarray = field(default_factory=lambda: np.zeros(3))
     """Momentum and angular momentum before the last step [kg/s, kg m/s]."""
     owed: np.ndarray = field(default_factory=lambda: np.zeros(3))
@@ -115,25 +119,33 @@ class Swimmer:
     @classmethod
     def of(cls, body: FreeBody) -> "Swimmer":
         """Return the body at its start."""
-        return cls(body, np.array([*body.start, body.angle]), np.array([*body.velocity, body.spin]))
+        return cls(body, np.array([*body.start[:2], body.angle]), np.array([*body.velocity, body.spin]))
 
-    def pose(self, mass: Mass) -> Pose:
+    def pose(self, mass: Mass | SpaceMass) -> Pose:
         """Return the pose of the body's frame, whose deformation it has taken out of the motion."""
         angle = self.place[2]
         c, s = np.cos(angle), np.sin(angle)
         spin = self.rate[2] - mass.swirl / mass.moment if self.body.free[2] else 0.0
         rx, ry = c * mass.centre[0] - s * mass.centre[1], s * mass.centre[0] + c * mass.centre[1]
         ux, uy = (c * mass.centre_rate[0] - s * mass.centre_rate[1], s * mass.centre_rate[0] + c * mass.centre_rate[1])
-        return Pose(
+        return self._at(
             position=(self.place[0] - rx, self.place[1] - ry), angle=angle,
             velocity=(self.rate[0] - ux + spin * ry, self.rate[1] - uy - spin * rx), spin=spin,
         )  # fmt: skip
+
+    def _at(
+        self, *, position: tuple[float, float], angle: float, velocity: tuple[float, float], spin: float
+    ) -> Pose:  # fmt: skip
+        """Return a pose in the plane or, for a shape in space, at the height where the body started."""
+        height = self.body.start[2:] or (0.0,) * (self.body.shape.axes - 2)
+        still = (0.0,) * len(height)
+        return Pose(position=(*position, *height), angle=angle, velocity=(*velocity, *still), spin=spin)
 
     @property
     def place_and_rate(self) -> Pose:
         """Centre of mass and angle, with the velocities that the water's forces change."""
         (x, y, angle), (u, v, spin) = self.place.tolist(), self.rate.tolist()
-        return Pose(position=(x, y), angle=angle, velocity=(u, v), spin=spin)
+        return self._at(position=(x, y), angle=angle, velocity=(u, v), spin=spin)
 
     def state(self) -> dict[str, np.ndarray]:
         """Return all that changes, by name."""
@@ -162,8 +174,8 @@ class Swimmer:
         shape = self.body.shape
         density = water_density if self.body.density is None else self.body.density
         now, then = shape.mass(time), shape.mass(time + dt)
-        inertia = np.diag([density * then.area, density * then.area, density * then.moment])
-        momentum = density * np.array([now.area, now.area, now.moment]) * self.rate
+        inertia = np.diag([density * then.size, density * then.size, density * then.moment])
+        momentum = density * np.array([now.size, now.size, now.moment]) * self.rate
         guess = self.load + self.added @ self.push
         if self.steps:
             self.owed = self.owed + self.span * (self.load + self.applied) - (momentum - self.momentum)
@@ -176,7 +188,7 @@ class Swimmer:
         guess = guess - np.array([0, 0, density * (then.moment - now.moment) / dt * self.rate[2]])
         go = np.array(self.body.free)
         recoil = np.array([0.0, 0.0, (now.swirl / now.moment + then.swirl / then.moment) if go[2] else 0.0])
-        outer, yielding = self._outer(time, dt, (density - water_density) * now.area, recoil)
+        outer, yielding = self._outer(time, dt, (density - water_density) * now.size, recoil)
         if contact is not None:
             outer = outer + contact
         push = np.zeros(3)
@@ -205,16 +217,16 @@ class Swimmer:
         """
         body = self.body
         middle = self.place + 0.5 * dt * (self.rate - 0.5 * recoil)
-        slack = np.array([*body.start, body.angle] if body.anchor is None else body.anchor)
+        slack = np.array([*body.start[:2], body.angle] if body.anchor is None else body.anchor)
         stiff, viscous = np.array(body.springs), np.array(body.dampers)
         outer = weight * np.array([*body.gravity, 0.0]) - stiff * (middle - slack) - viscous * self.rate
         if body.force is not None:
             (x, y, angle), (u, v, spin) = middle.tolist(), self.rate.tolist()
-            given = body.force(time + 0.5 * dt, Pose(position=(x, y), angle=angle, velocity=(u, v), spin=spin))
+            given = body.force(time + 0.5 * dt, self._at(position=(x, y), angle=angle, velocity=(u, v), spin=spin))
             if np.shape(given) != (3,) or not np.isfinite(np.asarray(given, float)).all():
                 raise InvalidDesign(
                     f"the force of {body.name} at t = {time:.4g} s is {show(given)}; give three finite numbers, the "
-                    f"force along x and y in N/m and the torque in N."
+                    f"force along x and y in N/m and the torque in N (in space N and N m)."
                 )
             outer = outer + np.asarray(given, float)
         return outer, 0.5 * dt * viscous + 0.25 * dt**2 * stiff

@@ -6,10 +6,11 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from suchus.errors import Diverged
+from suchus.flow.body import rows_of
 from suchus.flow.exchange import Reaction, contents_of, reaction, skin
 from suchus.flow.force import ControlVolume, Load
 from suchus.flow.pose import Pose
-from suchus.flow.record import COLUMNS, HEAD, SPACE_COLUMNS, Record
+from suchus.flow.record import COLUMNS, HEAD, PART_COLUMNS, SPACE_COLUMNS, Record
 from suchus.flow.setup import Setup
 from suchus.flow.shape import Markers
 from suchus.flow.solid import Skin
@@ -28,7 +29,7 @@ class Log:
     rows: list[np.ndarray] = field(default_factory=list)
     """One row per step."""
     held: np.ndarray = field(init=False)
-    """What each body's region held at the end of the last step; see ``exchange.contents``."""
+    """What the region of each part of each body held at the end of the last step; see ``exchange.contents``."""
     controls: list[ControlVolume] = field(default_factory=list)
     """Boxes whose momentum is followed."""
     control_rows: list[tuple[float, float]] = field(default_factory=list)
@@ -44,8 +45,9 @@ class Log:
         """
         grid, before = self.setup.grid, self.held
         skins = [
-            0.5 ** sum(cut) * skin(m, water.offset, grid.origin, grid.cell)
-            for m, cut in zip(outlines, water.cut, strict=True)
+            0.5 ** sum(cut) * skin(part, water.offset, grid.origin, grid.cell)
+            for m, cut, rows in zip(outlines, water.cut, water.rows, strict=True)
+            for part in _parts(m, len(rows))
         ]
         self.held = water.contents() - np.array(skins).reshape(-1, contents_of(grid.axes))
         return before
@@ -53,17 +55,25 @@ class Log:
     def reactions(
         self, water: Water, outlines: Sequence[Markers | Skin], about: list[tuple[float, ...]], dt: float,
         push: tuple[float, ...],
-    ) -> list[Reaction]:  # fmt: skip
-        """Return what the water did to each whole body in the step that just ended."""
-        before = self.hold(water, outlines)
-        grid = self.setup.grid
-        return [
-            reaction(
+    ) -> list[list[Reaction]]:  # fmt: skip
+        """Return, per body, what the water did to the whole body in the step that just ended, and to its parts."""
+        before, grid = self.hold(water, outlines), self.setup.grid
+
+        def act(rows: Sequence[int], point: tuple[float, ...], cut: tuple[bool, ...]) -> Reaction:
+            first, *others = rows
+            given, was, now = (
+                sums[first] + sums[others].sum(axis=0) if others else sums[first]
+                for sums in (water.given, before, self.held)
+            )
+            return reaction(
                 given, was, now, dt=dt, push=push, about=np.array(point), origin=grid.origin, h=grid.cell,
                 density=self.setup.density,
-            ).whole(cut)
-            for given, was, now, point, cut in zip(water.given, before, self.held, about, water.cut, strict=True)
-        ]  # fmt: skip
+            ).whole(cut)  # fmt: skip
+
+        return [
+            [act(rows, point, cut), *(act([row], point, cut) for row in rows if len(rows) > 1)]
+            for rows, point, cut in zip(water.rows, about, water.cut, strict=True)
+        ]
 
     def control(self, water: Water, dt: float, push: tuple[float, ...]) -> None:
         """Note the force from the box, if there is one."""
@@ -95,11 +105,25 @@ class Log:
     def record(self) -> Record:
         """The time series so far."""
         bodies, names = self.setup.bodies, COLUMNS if self.setup.grid.axes == 2 else SPACE_COLUMNS
-        rows = np.array(self.rows).reshape(len(self.rows), HEAD + len(bodies) * len(names))
+        counts = [len(rows) for rows in rows_of(list(bodies))]
+        own, parts = len(bodies) * len(names), sum(n for n in counts if n > 1)
+        rows = np.array(self.rows).reshape(len(self.rows), HEAD + own + parts * len(PART_COLUMNS))
         return Record(
             names=tuple(b.name for b in bodies), time=rows[:, 0], step=rows[:, 1], cycles=rows[:, 2:4].astype(int),
-            divergence=rows[:, 4], bodies=rows[:, HEAD:].reshape(len(rows), len(bodies), len(names)), columns=names,
+            divergence=rows[:, 4], bodies=rows[:, HEAD : HEAD + own].reshape(len(rows), len(bodies), len(names)),
+            columns=names, parts=rows[:, HEAD + own :].reshape(len(rows), parts, len(PART_COLUMNS)),
+            divided=tuple(n if n > 1 else 0 for n in counts),
         )  # fmt: skip
+
+
+def _parts(outline: Markers | Skin, count: int) -> list[Markers | Skin]:
+    """Return the skin of each part of a body, or its whole outline where there is one part."""
+    if count == 1 or not isinstance(outline, Skin) or outline.part is None:
+        return [outline]
+    return [
+        Skin(outline.points[:, mine], outline.share[mine], outline.velocities[:, mine])
+        for mine in (outline.part == k for k in range(count))
+    ]
 
 
 def columns(load: Load | None, act: Reaction, frame: np.ndarray, place: Pose, error: float) -> list[float]:

@@ -1,6 +1,7 @@
 """Area, centre and moments of a body's shape, and the momentum that its deformation alone would carry."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -20,6 +21,32 @@ class Mass:
     swirl: float
     """Angular momentum of the deformation about the centre [m^4/s]."""
 
+    @property
+    def size(self) -> float:
+        """What the density multiplies to the mass: the area [m^2]."""
+        return self.area
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SpaceMass:
+    """What a body of density 1 in space weighs, in its own frame, for motions along x and y and about z."""
+
+    volume: float
+    """Volume [m^3]."""
+    centre: tuple[float, float]
+    """Centre of the volume; it lies in the plane z = 0 [m]."""
+    centre_rate: tuple[float, float]
+    """Velocity that the deformation gives to the centre [m/s]."""
+    moment: float
+    """Second moment of volume about the axis along z through the centre [m^5]."""
+    swirl: float
+    """Angular momentum of the deformation about that axis [m^5/s]."""
+
+    @property
+    def size(self) -> float:
+        """What the density multiplies to the mass: the volume [m^3]."""
+        return self.volume
+
 
 def of_outline(x: np.ndarray, y: np.ndarray) -> Mass:
     """Return the mass of a rigid polygon, counter-clockwise [m]."""
@@ -38,23 +65,40 @@ def of_midline(spine: np.ndarray) -> Mass:
     Rows: x, y, heading, half-width and the rates of x, y and heading, at the stations [m, rad, s]. Each
     cross-section is a rod; where the midline bends, its outer half counts for more than its inner one.
     """
+    w = (spine[3, 1:] + spine[3, :-1]) / 2
+    area, *rest = _of_sections(spine, 2 * w, 2 * w**3 / 3)
+    return Mass(area=area, **dict(zip(("centre", "centre_rate", "moment", "swirl"), rest, strict=True)))
+
+
+def of_trunk(spine: np.ndarray, half_height: np.ndarray) -> SpaceMass:
+    """Return the mass of a body with elliptic sections, from the rows of its midline and its half-heights [m]."""
+    w, h = (spine[3, 1:] + spine[3, :-1]) / 2, (half_height[1:] + half_height[:-1]) / 2
+    volume, *rest = _of_sections(spine, np.pi * w * h, np.pi * w**3 * h / 4)
+    return SpaceMass(volume=volume, **dict(zip(("centre", "centre_rate", "moment", "swirl"), rest, strict=True)))
+
+
+def _of_sections(spine: np.ndarray, size: np.ndarray, second: np.ndarray) -> tuple[Any, ...]:
+    """Return size, centre, its rate, moment and swirl of sections between the stations.
+
+    Args:
+        spine: rows of the midline; see ``of_midline``.
+        size: of each section: its length or area.
+        second: its second moment about the midline, across the plane.
+    """
     ds = np.hypot(np.diff(spine[0]), np.diff(spine[1]))
     bend = np.diff(spine[2])
-    x, y, heading, w, u, v, turn = (spine[:, 1:] + spine[:, :-1]) / 2
+    x, y, heading, _, u, v, turn = (spine[:, 1:] + spine[:, :-1]) / 2
     nx, ny = -np.sin(heading), np.cos(heading)
-    slice_area, slice_moment = 2 * w * ds, 2 * w**3 / 3 * ds
-    lean = -2 * w**3 / 3 * bend  # first moment across the section: the area element is (1 - curvature r) dr ds
-    area = slice_area.sum()
-    cx = ((x * slice_area).sum() + (nx * lean).sum()) / area
-    cy = ((y * slice_area).sum() + (ny * lean).sum()) / area
-    px = (u * slice_area).sum() - (ny * turn * lean).sum()
-    py = (v * slice_area).sum() + (nx * turn * lean).sum()
-    ux, uy = px / area, py / area
+    slice_size, slice_moment = size * ds, second * ds
+    lean = -second * bend  # first moment across the section: the element is (1 - curvature r) dr ds
+    total = slice_size.sum()
+    cx = ((x * slice_size).sum() + (nx * lean).sum()) / total
+    cy = ((y * slice_size).sum() + (ny * lean).sum()) / total
+    px = (u * slice_size).sum() - (ny * turn * lean).sum()
+    py = (v * slice_size).sum() + (nx * turn * lean).sum()
+    ux, uy = px / total, py / total
     dx, dy, du, dv = x - cx, y - cy, u - ux, v - uy
-    moment = ((dx**2 + dy**2) * slice_area).sum() + slice_moment.sum() + 2 * ((dx * nx + dy * ny) * lean).sum()
-    swirl = ((dx * dv - dy * du) * slice_area).sum() + (turn * slice_moment).sum()
+    moment = ((dx**2 + dy**2) * slice_size).sum() + slice_moment.sum() + 2 * ((dx * nx + dy * ny) * lean).sum()
+    swirl = ((dx * dv - dy * du) * slice_size).sum() + (turn * slice_moment).sum()
     swirl += ((nx * dv - ny * du + turn * (dx * nx + dy * ny)) * lean).sum()
-    return Mass(
-        area=float(area), centre=(float(cx), float(cy)), centre_rate=(float(ux), float(uy)), moment=float(moment),
-        swirl=float(swirl),
-    )  # fmt: skip
+    return float(total), (float(cx), float(cy)), (float(ux), float(uy)), float(moment), float(swirl)

@@ -1,6 +1,6 @@
 """What a simulation tells: one row per time step."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import isfinite
 
 import numpy as np
@@ -22,6 +22,15 @@ SPACE_COLUMNS = (
     "force_z", "layer_error",
 )  # fmt: skip
 """The same in space, where no pressure and friction are read along the skin."""
+
+PART_COLUMNS = ("force_x", "force_y", "torque", "power", "torque_behind")
+"""Values kept of each part of a divided body, in the order of the last axis of ``Record.parts``.
+
+Force along x and y [N]; torque about z through the point that the torque of the whole body is about [N m]; power that
+the part gives to the water [W]; and the torque about z of all that lies behind the part's front end, about the midline
+there [N m]: what the water asks of a joint at that place. The pressure inside the body acts across a cut on both of its
+parts. It cancels in their sum, and since it acts along the midline a joint does not feel it.
+"""
 
 _UNITS = {"power": "W", "x": "m", "y": "m", "z": "m", "angle": "rad", "spin": "rad s-1", "layer_error": "1"}
 
@@ -63,6 +72,10 @@ class Record:
     """The ``columns`` of each body, shape (step, body, column); see ``units``."""
     columns: tuple[str, ...] = COLUMNS
     """Names of the columns that ``column`` knows: ``COLUMNS`` in the plane, ``SPACE_COLUMNS`` in space."""
+    parts: np.ndarray = field(default_factory=lambda: np.zeros((0, 0, len(PART_COLUMNS))))
+    """``PART_COLUMNS`` of the parts of all divided bodies, shape (step, part, column)."""
+    divided: tuple[int, ...] = ()
+    """Parts of each body, 0 for one that is not divided [-]."""
 
     @property
     def axes(self) -> int:
@@ -85,6 +98,21 @@ class Record:
         if name not in self.columns:
             raise UnknownName("column", str(name), self.columns)
         return self.bodies[:, self._number(body), self.columns.index(name)]
+
+    def along(self, name: str, body: str | int = 0) -> np.ndarray:
+        """Return one of ``PART_COLUMNS`` of the parts of a divided body, front to back, shape (step, part).
+
+        Raises:
+            UnknownName: there is no such column or body; it lists those that there are.
+            OutsideLimits: the body is not divided.
+        """
+        if name not in PART_COLUMNS:
+            raise UnknownName("column", str(name), PART_COLUMNS)
+        number = self._number(body)
+        if not any(self.divided[number:][:1]):
+            raise OutsideLimits(f"body {self.names[number]!r} is not divided; give its Trunk some cuts.")
+        first = sum(self.divided[:number])
+        return self.parts[:, first : first + self.divided[number], PART_COLUMNS.index(name)]
 
     def _number(self, body: str | int) -> int:
         if isinstance(body, str) and body in self.names:
@@ -157,4 +185,5 @@ class Record:
         return Record(
             names=self.names, time=self.time[k], step=self.step[k], cycles=self.cycles[k],
             divergence=self.divergence[k], bodies=self.bodies[k], columns=self.columns,
+            parts=self.parts[k] if len(self.parts) == len(k) else self.parts, divided=self.divided,
         )  # fmt: skip

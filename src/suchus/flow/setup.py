@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from math import isfinite
+from math import isfinite, prod
 from typing import Any, Literal
 
 import numpy as np
@@ -100,6 +100,8 @@ class Setup:
         axes = self.grid.axes
         self.sides.check(axes)
         for body in self.bodies:
+            if isinstance(body, FreeBody) and len(body.start) > axes:
+                raise InvalidDesign(f"{body.name} starts at {body.start} m, and the grid has two axes; give (x, y).")
             if body.shape.axes == axes:
                 continue
             shape = type(body.shape).__name__
@@ -177,10 +179,12 @@ class Setup:
         cells = cells_across(extent, speed, self.viscosity, self.grid.cell)
         if not self.coarse and cells * slack**0.5 < LAYER_CELLS:
             layer = cells * self.grid.cell
+            least = prod(self.grid.cells) * (LAYER_CELLS / cells) ** self.grid.axes / 1e6
+            size = f" (this domain then takes {least:.3g} million cells)" if self.grid.axes == 3 else ""
             raise InvalidDesign(
                 f"at t = {time:.4g} s and Reynolds number {speed * extent / self.viscosity:.4g} the boundary layer of "
                 f"{body.name} is {layer:.3g} m thin and a cell {self.grid.cell:.3g} m: its force would be off by some "
-                f"{100 * estimate(cells):.0f} %; take cells of at most {layer / LAYER_CELLS:.3g} m, better "
+                f"{100 * estimate(cells):.0f} %; take cells of at most {layer / LAYER_CELLS:.3g} m{size}, better "
                 f"{layer / needed(DOUBTED):.3g} m, a lower Reynolds number, or coarse=True to go on anyway."
             )
         return estimate(cells)

@@ -14,7 +14,7 @@ from suchus.flow import checkpoint as store
 from suchus.flow import contact
 from suchus.flow.added import added_mass
 from suchus.flow.ahead import compile_ahead
-from suchus.flow.body import Body
+from suchus.flow.body import Body, middle_of
 from suchus.flow.compiled import PAD
 from suchus.flow.consistency import Consistency
 from suchus.flow.exchange import Reaction
@@ -25,6 +25,7 @@ from suchus.flow.free import FreeBody, Swimmer
 from suchus.flow.immerse import wall_offset
 from suchus.flow.log import Log, columns
 from suchus.flow.pace import due_after, even
+from suchus.flow.parts import columns_of
 from suchus.flow.pose import Pose, length, speeds
 from suchus.flow.progress import Bar
 from suchus.flow.record import Record
@@ -51,6 +52,9 @@ def _fastest_marker(markers: Markers | Skin) -> float:
 
 Watcher = Callable[["Simulation"], None]
 """What looks at a simulation on its way."""
+
+_MODES = {2: [0, 1, 2], 3: [0, 1, 3]}
+"""Which modes of the added mass a free body has: along x, along y, turning; those through a mirror count as none."""
 
 _CHANGING = ("time", "_last", "_speed", "_reference")
 
@@ -107,25 +111,26 @@ class Simulation(Fields):
             added, turn = added_mass(self.water, skin, pose.position, 1.0, k)[:3, :3], turned(pose.angle)
             mass = body.shape.volume(0.0) * np.eye(3) + turn.T @ np.nan_to_num(added) @ turn
             far.bodies.append(FarBody(np.zeros(3), np.zeros(3), mass))
-        self._move_afar([self._in_frame(self.pose(b.name)) for b in self.setup.bodies], self._stream(0.0))
+        self._move_afar([self._in_frame(self.pose(b.name)) for b in self.setup.bodies], self._stream(0.0), 0.0)
 
-    def _move_afar(self, poses: list[Pose], stream: tuple[float, ...]) -> None:
+    def _move_afar(self, poses: list[Pose], stream: tuple[float, ...], time: float) -> None:
         """Tell the sides of a domain in space where the bodies are."""
         far = self.water.border.far
         if far is not None:
-            for body, pose in zip(far.bodies, poses, strict=True):
-                body.move(np.array(pose.position), pose.angle, np.array(pose.velocity) - stream)
+            for one, body, pose in zip(far.bodies, self.setup.bodies, poses, strict=True):
+                place, velocity = middle_of(body, pose, time)
+                one.move(place, pose.angle, velocity - stream)
 
     def _drag_afar(self, poses: list[Pose], acts: Sequence[Reaction], outlines: Sequence[Markers | Skin]) -> None:
         """Let the sides of a domain in space know the drag, from the second step on: the first has the start's jolt."""
         far, dt = self.water.border.far, self._last
         if far is None or not self._log.rows:
             return
-        for body, pose, act, skin in zip(far.bodies, poses, acts, outlines, strict=True):
-            through = np.array(pose.velocity) - self.water.border.stream
+        for one, body, pose, act, skin in zip(far.bodies, self.setup.bodies, poses, acts, outlines, strict=True):
+            through = middle_of(body, pose, self.time)[1] - self.water.border.stream
             extent = float(np.ptp(skin.points, axis=1).max())
             share = 1 - exp(-dt * length(through) / extent)
-            body.drag(np.array(act.force) / self.setup.density, through, share)
+            one.drag(np.array(act.force) / self.setup.density, through, share)
 
     def _watched(self, body: Body) -> Consistency:
         pose = body.pose(0.0).along(self.axes)
@@ -225,7 +230,7 @@ class Simulation(Fields):
         ahead = length(self._stream(time))
         self._speed = max([self._speed, ahead] + [_fastest_marker(m) for m in markers])  # it may just start to move
         push = tuple(-(self.frame[1] - old_frame[1]) / dt)
-        self._move_afar(poses, self._stream(time))
+        self._move_afar(poses, self._stream(time), time)
         limits = (self.setup.tolerance * self._speed, 10 * self.setup.tolerance * self._speed)
         self.water.step(dt, self._stream(time), tuple(map(float, push)), limits)
         self.time, self._last = time, dt
@@ -253,8 +258,7 @@ class Simulation(Fields):
         """Return the point that a body's torque is about, in the frame of the grid [m]."""
         if name not in self.swimmers:
             return pose.position
-        x, y = self.swimmers[name].place[:2] - self.frame[0]
-        return float(x), float(y)
+        return tuple((np.array(self.swimmers[name].place_and_rate.position) - self.frame[0]).tolist())
 
     def _note(
         self,
@@ -268,24 +272,28 @@ class Simulation(Fields):
         fastest = self._fastest = water.fastest()
         about = [self._about(b.name, p) for b, p in zip(setup.bodies, poses, strict=True)]
         values, body_speed = [], 0.0
-        acts = self._log.reactions(water, outlines, about, dt, push)
-        self._drag_afar(poses, acts, outlines)
-        for k, (body, markers, point, act) in enumerate(zip(setup.bodies, outlines, about, acts, strict=True)):
+        reactions, along = self._log.reactions(water, outlines, about, dt, push), []
+        self._drag_afar(poses, [act for act, *_ in reactions], outlines)
+        for k, (body, markers, point, (act, *parts)) in enumerate(
+            zip(setup.bodies, outlines, about, reactions, strict=True)
+        ):
             load = sample(water, markers, setup.density).load(point) if isinstance(markers, Markers) else None
             place = self.pose(body.name)
             swimmer = self.swimmers.get(body.name)
             if swimmer is not None:
                 place = swimmer.place_and_rate
-                swimmer.load = np.array([*act.force, act.torque])
+                swimmer.load = np.array([*act.force[:2], act.torque])
                 if swimmer.steps % ADDED_EVERY == 1:
-                    swimmer.added = added_mass(water, markers, point, setup.density, k)
+                    added = added_mass(water, markers, point, setup.density, k)
+                    swimmer.added = np.nan_to_num(added[np.ix_(_MODES[self.axes], _MODES[self.axes])])
             values += columns(load, act, drift, place, self._watch.errors[k])
+            along += columns_of(body, parts, point, poses[k], self.time, drift)
             body_speed = max(body_speed, _fastest_marker(markers))
         self._speed = max(length(water.border.stream), body_speed, min(fastest, 10 * self._speed), 1e-12)
         self._reference = max(self._reference, length(water.border.stream), body_speed, setup.sides.fastest(setup.grid))
         solves = water.solves
         row = np.array(
-            [self.time, dt, solves[0].cycles, solves[1].cycles, solves[1].largest / self._speed, *values]
+            [self.time, dt, solves[0].cycles, solves[1].cycles, solves[1].largest / self._speed, *values, *along]
         )  # fmt: skip
         good = dict(zip("uvw", water.before, strict=False))
         self._log.refuse_nonsense(fastest, self._reference, row, good)

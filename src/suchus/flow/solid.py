@@ -11,6 +11,7 @@ from typing import ClassVar
 import numpy as np
 
 from suchus.flow.compiled import compiled
+from suchus.flow.mass import SpaceMass
 from suchus.flow.pose import Pose
 from suchus.flow.shape import positive
 
@@ -77,6 +78,8 @@ class SpaceField:
     """Velocity of the body, carried on smoothly a few cells into the water, along each axis [m/s]."""
     thickness: np.ndarray
     """Thickness of the body behind the nearest point of its surface, infinite where it is thick [m]."""
+    part: np.ndarray | None = None
+    """Which of the body's parts a point belongs to, counted from 0; None for a body of one part [-]."""
 
 
 @dataclass(slots=True)
@@ -89,12 +92,16 @@ class Skin:
     """Area that each point stands for, shape (point,) [m^2]."""
     velocities: np.ndarray
     """Velocity of the surface, shape (3, point) [m/s]."""
+    part: np.ndarray | None = None
+    """Which of the body's parts a point belongs to, counted from 0, shape (point,); None for a body of one part [-]."""
 
 
 class SpaceShape(ABC):
     """A body's shape in space in its own frame; it may change with time."""
 
     axes: ClassVar[int] = 3
+    even: ClassVar[tuple[bool, bool, bool]] = (True, True, True)
+    """Whether the planes through the origin across x, y and z cut it into halves that are images of each other."""
 
     @abstractmethod
     def measure(self, x: np.ndarray, y: np.ndarray, z: np.ndarray, time: float, pose: Pose, reach: float) -> SpaceField:
@@ -118,6 +125,15 @@ class SpaceShape(ABC):
     @abstractmethod
     def volume(self, time: float) -> float:
         """Return the volume [m^3]."""
+
+    @abstractmethod
+    def mass(self, time: float) -> SpaceMass:
+        """Return what a body of density 1 weighs, for motions in the plane z = 0."""
+
+    @property
+    def parts(self) -> int:
+        """Parts that the record tells of one by one [-]."""
+        return 1
 
     def sheet(self, time: float, pose: Pose) -> np.ndarray | None:
         """Return None: no body in space is taken for a sheet."""
@@ -193,6 +209,12 @@ class Ellipsoid(SpaceShape):
     def volume(self, time: float) -> float:
         """Return the volume."""
         return 4 / 3 * np.pi * float(np.prod(self.half))
+
+    def mass(self, time: float) -> SpaceMass:
+        """Return volume and moment; the centre is the origin."""
+        volume, (a, b, _) = self.volume(time), self.half.tolist()
+        moment = volume * (a * a + b * b) / 5
+        return SpaceMass(volume=volume, centre=(0.0, 0.0), centre_rate=(0.0, 0.0), moment=moment, swirl=0.0)
 
 
 class Sphere(Ellipsoid):

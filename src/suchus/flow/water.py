@@ -13,7 +13,7 @@ import numpy as np
 from suchus.errors import NotConverged
 from suchus.flow import multigrid, patch, poisson
 from suchus.flow.advect import advance
-from suchus.flow.body import AnyBody, cuts, measure_all, unite, window_of
+from suchus.flow.body import AnyBody, cuts, measure_all, rows_of, unite, window_of
 from suchus.flow.border import Border
 from suchus.flow.compiled import PAD, Window
 from suchus.flow.exchange import collect, contents, contents_of, sums_of, swelling
@@ -75,8 +75,9 @@ class Water:
         source: divergence of the bodies' own motion, times the body's share, in the window [m/s per cell].
         window: padded cell indices around the bodies; a cell beyond a mirror that cuts one is one of them.
         cut: for each body, which mirrors cut it; see ``body.cuts``.
-        owners: for each component, which body is nearest to the points of the window.
-        given: what the immersion gave to the water in the last step, per body; see ``exchange.collect``.
+        rows: for each body the rows of its parts, where sums are kept; one for a body that is not divided.
+        owners: for each component, the row of the part that is nearest to the points of the window.
+        given: what the immersion gave to the water in the last step, per row; see ``exchange.collect``.
         solves: how the last two pressure solves went.
     """
 
@@ -109,6 +110,7 @@ class Water:
         self.cut: list[tuple[bool, ...]] = []
         self.offset = 0.0
         self.solves: list[poisson.Solve] = []
+        self.rows: list[range] = []
         self.given = np.zeros((0, sums_of(self.axes)))
         self.mean: list[np.ndarray] = [np.zeros((0,) * self.axes, dtype)] * self.axes
         self.owners = [np.zeros((0,) * self.axes, np.int8)] * self.axes
@@ -214,7 +216,8 @@ class Water:
         was = self.b
         self._look_at(new)
         poisson.place_window(self._layout, unite([w for w in (old, new) if w[1] > w[0]], self.axes))
-        self.given = np.zeros((len(bodies), sums_of(self.axes)))
+        self.rows = rows_of(bodies)
+        self.given = np.zeros((sum(map(len, self.rows)), sums_of(self.axes)))
         both = self._layout[0].copy()
         poisson.place_window(self._layout[:1], new)
         if new[1] > new[0]:
@@ -366,7 +369,7 @@ class Water:
         self.given += 0.5 * sums
 
     def contents(self) -> np.ndarray:
-        """Return what the region of each placed body holds, shape (body, ``exchange.contents_of``)."""
+        """Return what the region of each part of each placed body holds, shape (row, ``exchange.contents_of``)."""
         sums = np.zeros((len(self.given), contents_of(self.axes)))
         if self.window[1] > self.window[0]:
             b, mu0 = self._flat(self.b), self._flat(self.mu0)

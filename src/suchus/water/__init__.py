@@ -12,6 +12,7 @@ from suchus.water.outline import Base, BodySilhouette, MidlineCurve, Outline, si
 from suchus.water.passive import sprung
 from suchus.water.readings import Attempt, attempts, readings_table
 from suchus.water.slender import Cruise, Effort, cruise, cycle, reactive, recoil, resistive
+from suchus.water.space import Basin, check_swim_in_space, half_heights, swim_in_space, trunk
 from suchus.water.sweep import greatest, scaled, survey
 from suchus.water.swimming import MODELS, displaced, swim, wave_speed
 from suchus.water.tank import Tether
@@ -23,6 +24,7 @@ __all__ = [
     "MODELS",
     "Attempt",
     "Base",
+    "Basin",
     "BodySilhouette",
     "BodyWave",
     "Cruise",
@@ -41,6 +43,7 @@ __all__ = [
     "Undulation",
     "Water",
     "attempts",
+    "check_swim_in_space",
     "convex_higher",
     "cruise",
     "cycle",
@@ -49,6 +52,7 @@ __all__ = [
     "fit",
     "free_swim",
     "greatest",
+    "half_heights",
     "head_base",
     "immersed",
     "level",
@@ -63,9 +67,11 @@ __all__ = [
     "sprung",
     "survey",
     "swim",
+    "swim_in_space",
     "swing",
     "tether",
     "towed",
+    "trunk",
     "undulation",
     "wave_form",
     "wave_speed",

@@ -8,6 +8,7 @@ one that was stopped ends with the same bytes as one that was not.
 from collections.abc import Callable
 from hashlib import sha256
 from io import BytesIO
+from math import prod
 from pathlib import Path
 
 import numpy as np
@@ -130,7 +131,7 @@ def run_on(
     if path is not None and notes is not None and path.exists():
         store.load(sim, path)
         diary.load(notes, sim.time, about)
-    cells = sim.setup.grid.cells[0] * sim.setup.grid.cells[1]
+    cells = prod(sim.setup.grid.cells)
     with Bar(sim.time, end, cells, show=progress is None) as bar:
 
         def watch(sim: flow.Simulation) -> None:

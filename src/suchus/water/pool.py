@@ -118,14 +118,14 @@ class Pool:
             follow="body" if free else None,
         )
         sim = flow.Simulation(setup)
-        about = repr((self.turn, self.robot, _named(self.motion), self.setting))
+        about = repr((self.turn, self.robot, motion_key(self.motion), self.setting))
         diary = run_on(
             sim, self.end, self.period / 4, witness.look, about=about, checkpoint=checkpoint, progress=progress
         )
         return witness.record(sim, diary)
 
 
-def _named(motion: Motion) -> object:
+def motion_key(motion: Motion) -> object:
     """Return what identifies a motion, in full."""
     return motion if not hasattr(motion, "middles") else (motion.name, motion.frequency, motion.middles.tobytes())
 

@@ -1,0 +1,168 @@
+"""How does the robot's own body swim in the water of three dimensions, and what would a higher tail do?"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any, ClassVar
+
+import numpy as np
+import xarray as xr
+
+from suchus.design import Crocodile
+from suchus.design.checks import Checks
+from suchus.design.water import Water
+from suchus.experiment import Experiment, Measure, Outcome, Progress, Simulated, silent, staged
+from suchus.experiments import _swim_3d_findings as findings
+from suchus.figures.swim_3d import draw_joints, draw_speeds, draw_tails, draw_wake
+from suchus.kinematics.wave import READINGS
+from suchus.robots import ROBOTS
+from suchus.water import Basin, Motion, Tether, check_swim_in_space, fit, free_swim, printed_wave, swim, swim_in_space
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Swim3d(Experiment):
+    """The robot free in three dimensions, from rest, its joints fitted to (20); no article's claim is judged by it.
+
+    The body has elliptic sections as wide and high as the robot's pieces, its limbs are left out, and it moves in its
+    plane of symmetry: along, to the side and about the vertical. It swims on several grids, in a water so thick that
+    ``reynolds``, the frequency times the length squared over the viscosity, is what the grids carry; the same number
+    holds for the slice of the experiment ``swimming`` and the slender-body models beside it. Nothing here is in newtons
+    or watts of the robot in real water, whose number is some 150 times as large.
+
+    ``speed`` is the mean of the last cycle on the finest grid and ``speed_gain`` by how much that is above the cycle
+    before: a body so light for its power takes tens of cycles to its last speed. ``speed_over_grids`` is by how much
+    the finest grid is faster than the next coarser one in the same cycle. ``thrust_held`` is the mean force forward on
+    a body that sways and turns but is kept from moving on. ``servo_load_peak`` is the greatest torque that the water
+    alone asks of a servo, over its limit. Trunk only, tail only, the printed direction and higher tails swim on
+    ``compared_cells``.
+    """
+
+    title = "How does the robot's own body swim in three dimensions, and what does a higher tail do?"
+    shows = "Beyond the article: Section IV.B, whose flow is a slice"
+    needs = ("tables", "article_spine", "cable_tail")
+    reproduces: ClassVar[bool] = False
+
+    robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
+    """The robot that swims."""
+    reading: str = "I"
+    """Letter of the reading of (20), see ``kinematics.wave.READINGS``."""
+    frequency: float = 1.0
+    """Frequency of the wave, which the article does not give [Hz], 0.01 to 20."""
+    reynolds: float = 7000.0
+    """Frequency times length squared over viscosity [-]; the robot's own would be 1e6, beyond any affordable grid."""
+    cells: tuple[int, ...] = (68, 80, 96)
+    """Cells per body length of the grids, rising [-]."""
+    cycles: int = 6
+    """Cycles of the free body; numbers are of the last [-]."""
+    compared_cells: int = 68
+    """Cells per body length where motions and tails are compared, and the body is held [-]."""
+    compared_cycles: int = 6
+    """Cycles of these [-]."""
+    tail_heights: tuple[float, ...] = (0.06, 0.1)
+    """Heights to which the last third of the body is raised, as a fin as thick as the tail; rising [m]."""
+    slice_cells: int = 96
+    """Cells per body length of the slice [-]."""
+    limbs: str = "none"
+    """Limbs in the water: ``none``; folded ones are not resolved."""
+    keep: str = ""
+    """Folder for what is finished of an interrupted run, from which it goes on; empty keeps nothing."""
+
+    def __post_init__(self) -> None:
+        with Checks(self.name(), self) as check:
+            check.number("frequency", 0.01, 20.0, "Hz")
+            check.number("reynolds", 10.0, 2e4, "")
+            check.that(self.reading in READINGS, f"{self.name()}.reading is {self.reading!r}; there are "
+                       f"{', '.join(READINGS)}")  # fmt: skip
+            check.that(self.limbs == "none", f"{self.name()}.limbs is {self.limbs!r}; there is 'none' only")
+            check.rising("cells", 32, 512, "cells")
+            for name in ("compared_cells", "slice_cells"):
+                check.whole(name, 32, 512)
+            for name in ("cycles", "compared_cycles"):
+                check.whole(name, 2, 100)
+            if self.tail_heights:
+                check.rising("tail_heights", 1e-3, 1.0, "m")
+
+    def quick(self) -> "Swim3d":
+        """A coarse grid, a thick water, two cycles."""
+        return replace(
+            self, cells=(56,), compared_cells=56, slice_cells=40, cycles=2, compared_cycles=2, reynolds=3000.0,
+            tail_heights=(),
+        )  # fmt: skip
+
+    def simulate(self, progress: Progress = silent) -> Simulated:
+        """Swim on every grid, held, in other motions and with higher tails; the slice and the models beside them."""
+        ours, printed = (self._motion(sign) for sign in (-1, 1))
+        runs = self._runs(ours, printed)
+        for _, motion, basin in runs:
+            check_swim_in_space(self.robot, motion, basin)
+        work = np.cumsum([0.0, *(basin.cells**4 * basin.cycles for _, _, basin in runs)])
+        found, ends = {}, 0.05 + 0.95 * work / work[-1]
+        beside = self._beside(ours, staged(progress, "the slice", 0.0, 0.05))
+        for (name, motion, basin), start, end in zip(runs, ends, ends[1:], strict=False):
+            told = staged(progress, name, float(start), float(end))
+            kept = Path(self.keep) / f"{name.replace(' ', '_')}.npz" if self.keep else None
+            found[name] = swim_in_space(self.robot, motion, basin, checkpoint=kept, progress=told)
+        record = findings.record(found, beside, self)
+        for path in Path(self.keep).glob("*.npz*") if self.keep else ():
+            path.unlink()
+        return Simulated(record=record)
+
+    def _motion(self, sign: int) -> Motion:
+        wave = printed_wave(self.robot, self.reading, frequency=self.frequency, sign=sign)
+        return fit(self.robot, wave, name=f"(20), reading {self.reading}").swim
+
+    @property
+    def viscosity(self) -> float:
+        """Kinematic viscosity of the water [m2/s]."""
+        return self.frequency * self.robot.length**2 / self.reynolds
+
+    def _runs(self, ours: Any, printed: Motion) -> Sequence[tuple[str, Motion, Basin]]:
+        """Return name, motion, grid and time of every swim in space."""
+
+        def basin(cells: int, cycles: int, **other: Any) -> Basin:
+            return Basin(cells=cells, viscosity=self.viscosity, cycles=cycles, **other)
+
+        compared = basin(self.compared_cells, self.compared_cycles)
+        runs = [(f"{cells} cells", ours, basin(cells, self.cycles)) for cells in self.cells]
+        if self.compared_cells not in self.cells or self.compared_cycles > self.cycles:
+            runs.append(("compared", ours, compared))
+        runs.append(("held", ours, basin(self.compared_cells, min(3, self.compared_cycles), moves_on=False)))
+        if self.tail_heights:
+            arms = {"trunk only": ours.trunk_only(), "tail only": ours.tail_only(), "as printed": printed}
+            runs += [(name, motion, compared) for name, motion in arms.items()]
+        return runs + [(f"tail {high:g} m", ours, replace(compared, tail_height=high)) for high in self.tail_heights]
+
+    def _beside(self, ours: Any, progress: Any) -> xr.Dataset:
+        """Return the speed of the slice and of the slender-body models at the same Reynolds number."""
+        setting = Tether(cells=self.slice_cells, viscosity=self.viscosity, cycles=self.cycles)
+        kept = Path(self.keep) / "slice.npz" if self.keep else None
+        plane = free_swim(self.robot, ours, setting, checkpoint=kept, progress=progress)
+        models, real = swim(self.robot, ours, water=Water(viscosity=self.viscosity)), swim(self.robot, ours)
+        return xr.Dataset(
+            {
+                "slice_speed": ("cycle", plane.speed.values, {"units": "m/s"}),
+                "model_speed": models.speed, "model_power": models.power, "model_thrust": models.thrust_held,
+                "real_model_speed": real.speed,
+            }
+        )  # fmt: skip
+
+    def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
+        """Return what the body did on every grid, and beside it slice, models, motions and tails."""
+        return findings.measures(record, self.robot, self.frequency)
+
+    def explain(self, measures: Mapping[str, float]) -> str:
+        """Set body, slice and models beside each other."""
+        return findings.explain(measures)
+
+    def draw(self, outcome: Outcome) -> Mapping[str, Any]:
+        """Draw speeds over the cycles, the wake, the tails and the joints' torques."""
+        record = outcome.record
+        figures = {
+            "swim_3d_speeds": draw_speeds(record),
+            "swim_3d_wake": draw_wake(record),
+            "swim_3d_joints": draw_joints(record),
+        }
+        return figures | ({"swim_3d_tails": draw_tails(record)} if record.sizes["compared"] > 1 else {})
+
+
+experiment = Swim3d()

@@ -1,0 +1,163 @@
+"""A body in space given by its midline and elliptic sections along it: fish, robots, fins."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from math import isfinite
+from typing import ClassVar
+
+import numpy as np
+
+from suchus.errors import InvalidDesign
+from suchus.flow.mass import SpaceMass, of_trunk
+from suchus.flow.midline import Spine
+from suchus.flow.paint import ring
+from suchus.flow.pose import Pose
+from suchus.flow.sections import PAINTED, paint_sections
+from suchus.flow.solid import Skin, SpaceField, SpaceShape
+
+MOST_PARTS = 64
+"""Parts that a body may be divided into [-]; those of all bodies are counted in one byte."""
+
+_FEWEST = 12
+"""Points around a section, at least [-]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Trunk(SpaceShape):
+    """A body whose midline bends in the plane z = 0; its sections are ellipses, square to the midline.
+
+    A fin is a stretch whose half-heights are large and whose half-widths are small.
+
+    Raises:
+        InvalidDesign: on creation or at its first use, for half-heights that are negative, not finite or other than
+            the midline's stations, and for cuts that do not rise.
+    """
+
+    even: ClassVar[tuple[bool, bool, bool]] = (False, False, True)
+
+    spine: Callable[[float], Spine]
+    """The midline at every time, with the half-widths in the plane [s]."""
+    half_height: np.ndarray
+    """Half of the height across the plane at the stations, shape (station,) [m]."""
+    cuts: tuple[float, ...] = ()
+    """Arc lengths at which the body is divided into the parts that ``Record.parts`` tells of, from the first station
+    [m]."""
+    deforms: bool = True
+    """Whether the midline changes with time; False saves work."""
+
+    def __post_init__(self) -> None:
+        heights = self.half_height
+        if heights.ndim != 1 or not np.isfinite(heights).all() or (heights < 0).any():
+            raise InvalidDesign(
+                f"the half-heights of a trunk have shape {heights.shape} and go from {heights.min():.4g} to "
+                f"{heights.max():.4g} m; give one row of finite numbers, none negative."
+            )
+        if not all(isfinite(cut) for cut in self.cuts) or (np.diff((0.0, *self.cuts)) <= 0).any():
+            raise InvalidDesign(f"the cuts of a trunk are at {self.cuts} m; give rising arc lengths above 0.")
+        if len(self.cuts) >= MOST_PARTS:
+            raise InvalidDesign(f"a trunk has {len(self.cuts)} cuts; up to {MOST_PARTS - 1} are allowed.")
+
+    @property
+    def rigid(self) -> bool:
+        """Whether the shape never changes."""
+        return not self.deforms
+
+    @property
+    def parts(self) -> int:
+        """Parts that the cuts leave [-]."""
+        return len(self.cuts) + 1
+
+    def placed(self, time: float, pose: Pose) -> Spine:
+        """Return the midline in the world at a time [s].
+
+        Raises:
+            InvalidDesign: it has other stations than the half-heights.
+        """
+        return self._spine(time).placed(pose)
+
+    def _spine(self, time: float) -> Spine:
+        spine = self.spine(time)
+        if spine.x.size != self.half_height.size:
+            raise InvalidDesign(
+                f"the midline of a trunk has {spine.x.size} stations at t = {time:.4g} s and there are "
+                f"{self.half_height.size} half-heights; give as many."
+            )
+        return spine
+
+    def measure(self, x: np.ndarray, y: np.ndarray, z: np.ndarray, time: float, pose: Pose, reach: float) -> SpaceField:
+        """Return the field on the points of a window."""
+        spine, place = self.placed(time, pose), pose.along(3)
+        h = float(x[-1] - x[0]) / (x.size - 1)
+        out = np.zeros((PAINTED, z.size, y.size, x.size))
+        out[0], out[6] = reach, np.inf
+        rows = np.stack([*spine.rows, self.half_height, spine.swell, spine.arc])
+        paint_sections(
+            out, rows, np.cos(spine.heading), np.sin(spine.heading), float(x[0]), float(y[0]),
+            float(z[0]) - place.position[2], h, float(reach),
+        )  # fmt: skip
+        lift = np.full(out[0].shape, place.velocity[2])
+        part = np.searchsorted(self.cuts, out[7], side="right") if self.cuts else None
+        return SpaceField(out[0], (out[1], out[2], out[3]), (out[4], out[5], lift), out[6], part)
+
+    def markers(self, time: float, pose: Pose, spacing: float) -> Skin:
+        """Return the middles of patches between stations, as many around as the widest section needs."""
+        spine, place = self.placed(time, pose), pose.along(3)
+        wide, high = (np.concatenate([[0.0], part, [0.0]]) for part in (spine.half_width, self.half_height))
+        station = np.clip(np.arange(-1, spine.x.size + 1), 0, spine.x.size - 1)  # the ends' faces too
+        largest = float(np.hypot(spine.half_width, self.half_height).max())
+        angle = np.linspace(0.0, 2 * np.pi, max(_FEWEST, int(np.ceil(2 * np.pi * largest / spacing))) + 1)
+        aside = np.outer(wide, np.cos(angle))
+        nx, ny = -np.sin(spine.heading)[station, None], np.cos(spine.heading)[station, None]
+        corner = np.stack([
+            spine.x[station, None] + aside * nx, spine.y[station, None] + aside * ny,
+            place.position[2] + np.outer(high, np.sin(angle)),
+        ])  # fmt: skip
+        turn = spine.heading_rate[station, None]
+        swell = np.outer(np.concatenate([[0.0], spine.swell, [0.0]]), np.cos(angle))
+        rate = np.stack([
+            spine.x_rate[station, None] + swell * nx - turn * aside * ny,
+            spine.y_rate[station, None] + swell * ny + turn * aside * nx,
+            np.full(aside.shape, place.velocity[2]),
+        ])  # fmt: skip
+        first, second = corner[:, 1:, 1:] - corner[:, :-1, :-1], corner[:, 1:, :-1] - corner[:, :-1, 1:]
+        share = 0.5 * np.sqrt((np.cross(first, second, axis=0) ** 2).sum(axis=0))
+        arc = np.broadcast_to(spine.arc[station, None], aside.shape)
+        at = _middles(arc[None])[0]
+        part = np.searchsorted(self.cuts, at.ravel(), side="right") if self.cuts else None
+        return Skin(_middles(corner).reshape(3, -1), share.ravel(), _middles(rate).reshape(3, -1), part)
+
+    def bounds(self, time: float, pose: Pose) -> tuple[float, ...]:
+        """Return the box around the body."""
+        outline, middle = ring(self.placed(time, pose).rows), pose.along(3).position[2]
+        ends = [end for line in outline for end in (float(line.min()), float(line.max()))]
+        high = float(self.half_height.max())
+        return (*ends, middle - high, middle + high)
+
+    def thickness(self, time: float) -> tuple[np.ndarray, np.ndarray]:
+        """Return arc length and the smaller axis of the section at the stations."""
+        spine = self._spine(time)
+        return spine.arc, 2 * np.minimum(spine.half_width, self.half_height)
+
+    def volume(self, time: float) -> float:
+        """Return the volume."""
+        return self.mass(time).volume
+
+    def mass(self, time: float) -> SpaceMass:
+        """Return volume, centre and moments, section by section."""
+        return of_trunk(self._spine(time).rows, self.half_height)
+
+    def at(self, time: float, pose: Pose, arc: np.ndarray) -> np.ndarray:
+        """Return where the midline is at arc lengths [m], in the world, shape (point, 2) [m]."""
+        spine = self.placed(time, pose)
+        return np.column_stack([np.interp(arc, spine.arc, spine.x), np.interp(arc, spine.arc, spine.y)])
+
+    def divided(self, cuts: tuple[float, ...]) -> "Trunk":
+        """Return the same body divided at other arc lengths [m]."""
+        return replace(self, cuts=cuts)
+
+
+def _middles(corners: np.ndarray) -> np.ndarray:
+    """Return the means over the four corners of each patch, shape (..., station - 1, angle - 1)."""
+    pairs = corners[:, 1:] + corners[:, :-1]
+    middles: np.ndarray = 0.25 * (pairs[:, :, 1:] + pairs[:, :, :-1])
+    return middles

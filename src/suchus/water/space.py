@@ -1,0 +1,249 @@
+"""The robot's own body in the water of three dimensions: free, or kept from moving on."""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from suchus import flow
+from suchus.design import GRAVITY, Crocodile, cable_joints, layout
+from suchus.design.checks import Checks
+from suchus.design.water import Water
+from suchus.motion.swim import trunk_yaws
+from suchus.water.diary import Diary, Progress, run_on
+from suchus.water.immersed import immersed
+from suchus.water.outline import Outline
+from suchus.water.pool import SLACK, cycle_means, motion_key
+from suchus.water.slender import cycle, recoil
+from suchus.water.swimming import wave_speed
+from suchus.water.tank import DENSITY, GROWS, Tether, check_motion
+from suchus.water.undulation import Motion
+from suchus.water.view import SPINE, midline
+
+AHEAD, BEHIND, BESIDE, ABOVE = 0.15, 0.35, 0.2, 0.15
+"""Water ahead of the snout, behind the tail, beside the widest swing and above the back [body length]."""
+FIN_STARTS, FIN_RISES = 2 / 3, 0.05
+"""Where a raised tail begins, from the snout, and over which length it rises [body length]."""
+OUTSIDE = 0.99
+"""Share of the fluid from which a cell counts as outside the body [-]."""
+_WATER = 0.05
+"""Swing to a side that the box leaves to a body that draws to the side and turns, beside its own [body length]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Basin:
+    """How finely and how long a swim in three dimensions is resolved."""
+
+    cells: int
+    """Cells per body length [-]."""
+    viscosity: float
+    """Kinematic viscosity of the water [m2/s]."""
+    cycles: int
+    """Number of cycles that are simulated; the last is measured [-]."""
+    tail_height: float = 0.0
+    """Height of the last third of the body, as a fin as thick as the tail is; 0 leaves the tail as it is [m]."""
+    moves_on: bool = True
+    """Whether the body may move along its course; it always sways and turns freely."""
+    tolerance: float = 1e-4
+    """Mean divergence left over, in fastest speed per cell [-]."""
+
+    def __post_init__(self) -> None:
+        with Checks("basin", self) as check:
+            check.whole("cells", 32, 1024)
+            check.whole("cycles", 1, 1000)
+            check.number("viscosity", 1e-7, 10.0, "m2/s")
+            check.number("tail_height", 0.0, 1.0, "m")
+            check.number("tolerance", 5e-7, 1e-2, "")
+
+
+def half_heights(outline: Outline, tail_height: float = 0.0) -> np.ndarray:
+    """Return half of the body's height at the stations, limbs left out, with a raised tail if it is asked for [m].
+
+    Args:
+        outline: of the robot.
+        tail_height: height that the last third is raised to, where it is not as high [m].
+    """
+    share = outline.s / outline.robot.length
+    rise = np.clip((share - FIN_STARTS) / FIN_RISES, 0.0, 1.0)
+    fall = np.clip((1.0 - share) / FIN_RISES, 0.0, 1.0)
+    fin = 0.5 * tail_height * np.sqrt(rise * (2.0 - rise) * fall * (2.0 - fall))
+    return np.maximum(outline.silhouette.half_height, fin)
+
+
+def trunk(outline: Outline, motion: Motion, *, grow: float = 0.0, tail_height: float = 0.0) -> flow.Trunk:
+    """Return the robot as a bending body in space, its sections ellipses, divided at its joints; limbs left out.
+
+    Args:
+        outline: of the robot; stations about one cell apart serve well.
+        motion: how it swims.
+        grow: time over which the motion grows from nothing [s].
+        tail_height: see ``half_heights`` [m].
+    """
+    spine = immersed(outline, motion, grow=grow).spine
+    cuts = tuple(sorted(outline.places.tolist()))
+    return flow.Trunk(spine=spine, half_height=half_heights(outline, tail_height), cuts=cuts)
+
+
+def check_swim_in_space(robot: Crocodile, motion: Motion, basin: Basin) -> None:
+    """Refuse what joints, servos or grid cannot follow, before anything runs.
+
+    Raises:
+        OutsideLimits: the joints or servos cannot follow the motion.
+        InvalidDesign: the boundary layer is too thin for the grid.
+    """
+    outline = Outline(robot, basin.cells + 1)
+    sway, turn = recoil(outline, motion, 0.0, Water(viscosity=basin.viscosity))
+    resolved = Tether(cells=basin.cells, viscosity=basin.viscosity, cycles=basin.cycles)
+    check_motion(outline, motion, resolved, sway, turn)
+
+
+def swim_in_space(
+    robot: Crocodile,
+    motion: Motion,
+    basin: Basin,
+    *,
+    checkpoint: Path | str | None = None,
+    progress: Progress | None = None,
+) -> xr.Dataset:
+    """Return a swim from rest in the plane of symmetry, the body as heavy as the water it displaces; limbs left out.
+
+    The upper half is computed: beyond the plane lies its image. The grid travels with the body's centre.
+
+    Args:
+        robot: who swims.
+        motion: how: with its joints, or as a wave that its midline follows exactly.
+        basin: grid, water and time.
+        checkpoint: file from which a run that was stopped goes on; None keeps nothing.
+        progress: called with the share that is done; None shows a progress bar.
+
+    Returns:
+        Per cycle ``speed`` forward and ``thrust`` of the water forward, ``power`` on it; ``joint_torque`` over the last
+        cycle, that of the water on what lies behind each place of ``Outline.places``; fields at the end.
+
+    Raises:
+        OutsideLimits: the joints or servos cannot follow the motion.
+        InvalidDesign: the boundary layer is too thin for the grid.
+        Diverged: the flow diverged.
+    """
+    check_swim_in_space(robot, motion, basin)
+    outline, period = Outline(robot, basin.cells + 1), 1.0 / motion.frequency
+    sway, turn = recoil(outline, motion, 0.0, Water(viscosity=basin.viscosity))
+    body = flow.FreeBody(
+        shape=trunk(outline, motion, grow=GROWS * period, tail_height=basin.tail_height),
+        start=(0.5 * robot.length, 0.0, 0.0), free=(basin.moves_on, True, True),
+    )  # fmt: skip
+    grid = _grid(robot.length, outline, motion, basin, sway, turn)
+    sim = flow.Simulation(
+        flow.Setup(
+            grid=grid, viscosity=basin.viscosity, density=DENSITY, bodies=(body,), follow="body",
+            sides=flow.Sides(low=flow.Mirror()), tolerance=basin.tolerance,
+        )
+    )  # fmt: skip
+    end, about = basin.cycles * period, repr((robot, motion_key(motion), basin))
+
+    def look(sim: flow.Simulation, diary: Diary) -> None:
+        if end - sim.time > period * (1.0 + SLACK):
+            return
+        spine, (position, _) = midline(sim), sim.frame
+        diary.note("track", sim.time, heading=spine.heading[0], tail=spine.y[-1] + position[1])
+
+    diary = run_on(sim, end, period / 4, look, about=about, checkpoint=checkpoint, progress=progress)
+    return _record(sim, diary, outline, motion, basin)
+
+
+def _grid(
+    length: float, outline: Outline, motion: Motion, basin: Basin, sway: complex, turn: complex
+) -> flow.Grid:  # fmt: skip
+    """Return the cells around the upper half of a body whose snout is near the origin."""
+    swing = float(np.abs(cycle(outline, motion, sway, turn).y).max()) / length + _WATER
+    high = max(outline.silhouette.half_height.max(), 0.5 * basin.tail_height) / length + ABOVE
+    grid = flow.Grid.covering(
+        (-AHEAD * length, (1.0 + BEHIND) * length),
+        (-(swing + BESIDE) * length, (swing + BESIDE) * length),
+        (0.0, high * length),
+        cell=length / basin.cells,
+    )
+    return replace(grid, origin=(*grid.origin[:2], 0.0))  # what it grew above and below lies above
+
+
+_PER_CYCLE = {"velocity_x": ("speed", "m/s"), "force_x": ("thrust", "N"), "power": ("power", "W")}
+
+
+def _record(sim: flow.Simulation, diary: Diary, outline: Outline, motion: Motion, basin: Basin) -> xr.Dataset:
+    period, series, robot = 1.0 / motion.frequency, sim.record, outline.robot
+    means = dict(zip(_PER_CYCLE, cycle_means(series, period, basin.cycles, tuple(_PER_CYCLE)), strict=True))
+    track, last = diary.page("track"), series.after((basin.cycles - 1) * period * (1.0 + SLACK))
+    torques = last.along("torque_behind")[:, 1 + np.argsort(np.argsort(outline.places))]
+    sign = {"velocity_x": -1.0, "force_x": -1.0, "power": 1.0}  # the body swims towards -x
+    data = xr.Dataset(
+        {name: ("cycle", sign[column] * means[column], {"units": unit}) for column, (name, unit) in _PER_CYCLE.items()}
+    )
+    data = data.assign(
+        moment=("moment", last.time, {"units": "s"}),
+        joint_torque=(("moment", "joint"), torques, {"units": "N m"}),
+        servo_torque=(("moment", "servo"), _at_servos(outline, torques), {"units": "N m"}),
+        servo_limit=("servo", [robot.servo(name).torque for name in _servos(robot)], {"units": "N m"}),
+        swing=((), float(np.ptp(track["tail"])), {"units": "m", "long_name": "of the tail's tip, peak to peak"}),
+        head_yaw=((), 0.5 * float(np.ptp(track["heading"])), {"units": "rad"}),
+        weight=((), DENSITY * GRAVITY * sim.setup.bodies[0].shape.mass(sim.time).size, {"units": "N"}),
+        wave_speed=((), wave_speed(outline, motion, cycle(outline, motion)), {"units": "m/s"}),
+        thin=((), sim.thin["body"], {"units": "1"}),
+        steps=((), float(len(last.time)), {"units": "1", "long_name": "in the last cycle"}),
+        million_cells=((), float(np.prod(sim.setup.grid.cells)) / 1e6, {"units": "1"}),
+        joint_place=("joint", outline.places, {"units": "m"}),
+    )
+    return data.assign_coords(servo=list(_servos(robot)), cycle=np.arange(1, basin.cycles + 1)).merge(_wake(sim))
+
+
+def _servos(robot: Crocodile) -> tuple[str, ...]:
+    place = layout(robot)
+    return (*trunk_yaws(robot), *(place.servos[i] for i in place.cables))
+
+
+def _at_servos(outline: Outline, torques: np.ndarray) -> np.ndarray:
+    """Return what the water asks of the yaw servos and of the cable's servo, shape (moment, servo) [N m].
+
+    The cable bends its joints alike, so that its servo takes the mean of their moments, over the ratio of half the
+    cords' distance to the pulley.
+    """
+    tail, last = outline.robot.tail, 3 + len(cable_joints(outline.robot))
+    cable = torques[:, 3:last].mean(axis=1) * tail.pulley / (0.5 * tail.cord_spacing)
+    return np.column_stack([torques[:, :3], cable])
+
+
+def _wake(sim: flow.Simulation) -> xr.Dataset:
+    """Return the midline, the vorticity in the plane of symmetry, and the strongest vortices over and beside it."""
+    grid, spine = sim.setup.grid, midline(sim)
+    shape = sim.setup.bodies[0].shape
+    assert isinstance(shape, flow.Trunk)
+    q = _second_invariant(np.stack(sim.velocity).astype(float), grid.cell) * (sim.fluid_share > OUTSIDE)
+    units = {"units": "1/s2", "long_name": "second invariant of the velocity's gradient, the greatest along the view"}
+    found = xr.Dataset(
+        {
+            "vorticity": (("y", "x"), sim.vorticity_at_centres[2, 0].astype(np.float32), {"units": "1/s"}),
+            "vortices_above": (("y", "x"), q.max(axis=0).astype(np.float32), units),
+            "vortices_beside": (("z", "x"), q.max(axis=1).astype(np.float32), units),
+            "half_height": ("station", shape.half_height, {"units": "m"}),
+        },
+        coords={axis: (axis, getattr(grid, axis), {"units": "m"}) for axis in "xyz"},
+    )
+    lines = {f"midline_{name}": ("station", getattr(spine, name), {"units": unit}) for name, unit in SPINE}
+    return found.assign(lines)
+
+
+def _second_invariant(velocity: np.ndarray, h: float) -> np.ndarray:
+    """Return Q = -1/2 d_i u_j d_j u_i at the cell centres, positive in vortices [1/s^2].
+
+    Args:
+        velocity: shape (3, z, y, x) [m/s].
+        h: cell [m].
+
+    Source: Hunt, Wray and Moin 1988, Center for Turbulence Research, CTR-S88, 193.
+    """
+    slopes = [np.gradient(part, h) for part in velocity]  # of each component along z, y, x
+    total: np.ndarray = np.zeros_like(velocity[0])
+    for i in range(3):
+        for j in range(3):
+            total -= 0.5 * slopes[j][2 - i] * slopes[i][2 - j]
+    return total

@@ -1,0 +1,145 @@
+"""The robot's body in three dimensions: its geometry, its swim, and what the measures mean."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from suchus import flow
+from suchus.errors import InvalidDesign, OutsideLimits
+from suchus.experiments import EXPERIMENTS
+from suchus.experiments import _swim_3d_findings as findings
+from suchus.robots import ROBOTS
+from suchus.water import Basin, Outline, displaced, fit, half_heights, printed_wave, swim_in_space, trunk
+
+ROBOT, ASKED = ROBOTS["caiman"], EXPERIMENTS["swim_3d"]
+MOTION = fit(ROBOT, printed_wave(ROBOT, "I", sign=-1)).swim
+
+
+def test_the_trunk_is_the_robots_own_body_divided_at_its_joints():
+    outline = Outline(ROBOT, 129)
+    body = trunk(outline, MOTION)
+    assert 1000.0 * body.volume(0.3) == pytest.approx(displaced(outline), rel=1e-3)
+    assert body.bounds(0.0, flow.Pose())[5] == pytest.approx(float(outline.silhouette.half_height.max()))
+    places = np.sort(outline.places)
+    assert body.cuts == pytest.approx(places)
+    assert body.parts == places.size + 1
+
+
+def test_a_raised_tail_is_as_high_as_asked_and_nowhere_lower_than_the_robot():
+    outline = Outline(ROBOT, 257)
+    own, raised = outline.silhouette.half_height, half_heights(outline, 0.1)
+    share = outline.s / ROBOT.length
+    assert (half_heights(outline) == own).all()
+    assert (raised >= own).all()
+    assert (raised[share < 0.66] == own[share < 0.66]).all()
+    middle = (share > 0.72) & (share < 0.95)
+    assert raised[middle] == pytest.approx(0.05)
+    assert raised[-1] == own[-1]
+    assert trunk(outline, MOTION, tail_height=0.1).volume(0.0) > trunk(outline, MOTION).volume(0.0)
+
+
+@pytest.mark.parametrize(
+    ("fields", "said"),
+    [
+        ({"reading": "Z"}, "reading is 'Z'"),
+        ({"limbs": "folded"}, "there is 'none' only"),
+        ({"cells": (96, 64)}, "increasing numbers"),
+        ({"cells": ()}, "at least one"),
+        ({"cycles": 1}, "cycles is 1"),
+        ({"reynolds": 1e6}, "reynolds is"),
+        ({"tail_heights": (0.1, 0.05)}, "increasing numbers"),
+    ],
+)
+def test_impossible_settings_are_refused(fields, said):
+    with pytest.raises(InvalidDesign, match=said):
+        replace(ASKED, **fields)
+
+
+def test_a_motion_that_the_grid_or_the_joints_cannot_follow_is_refused():
+    with pytest.raises(InvalidDesign, match="boundary layer"):
+        swim_in_space(ROBOT, MOTION, Basin(cells=64, viscosity=1e-6, cycles=1))
+    with pytest.raises(InvalidDesign, match=r"cells is 8"):
+        Basin(cells=8, viscosity=1e-3, cycles=1)
+    with pytest.raises(OutsideLimits, match="spine_yaw"):
+        swim_in_space(ROBOT, replace(MOTION, yaw=(2.0, 0.1, 0.1)), Basin(cells=64, viscosity=1e-3, cycles=1))
+
+
+def test_a_swim_that_was_interrupted_goes_on_to_the_same_numbers(tmp_path):
+    basin, seen = Basin(cells=54, viscosity=2e-3, cycles=1), []
+
+    def stop(share):
+        if share > 0.6:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        swim_in_space(ROBOT, MOTION, basin, checkpoint=tmp_path / "swim", progress=stop)
+    found = swim_in_space(ROBOT, MOTION, basin, checkpoint=tmp_path / "swim", progress=seen.append)
+    assert min(seen) > 0.5
+    assert found.identical(swim_in_space(ROBOT, MOTION, basin, progress=lambda _: None))
+    assert found.sizes["z"] * found.sizes["y"] * found.sizes["x"] == pytest.approx(1e6 * float(found.million_cells))
+    assert float(found.power[-1]) > 0
+    assert np.isfinite(found.joint_torque.values).all()
+
+
+def one(speed, *, power=2.0, weight=20.0):
+    """A swim with these speeds in its cycles."""
+    count = len(speed)
+    return xr.Dataset(
+        {
+            "speed": ("cycle", speed, {"units": "m/s"}),
+            "thrust": ("cycle", [0.3] * count, {"units": "N"}),
+            "power": ("cycle", [power] * count, {"units": "W"}),
+            "servo_torque": (("moment", "servo"), [[0.2, -0.1], [-0.5, 0.1]], {"units": "N m"}),
+            "servo_limit": ("servo", [2.5, 1.0], {"units": "N m"}),
+            **{name: ((), value) for name, value in {
+                "swing": 0.2, "head_yaw": 0.1, "weight": weight, "wave_speed": 1.0, "thin": 0.5, "steps": 9.0,
+                "million_cells": 0.1,
+            }.items()},
+        },
+        coords={"cycle": np.arange(1, count + 1), "servo": ["a", "b"]},
+    )  # fmt: skip
+
+
+def made():
+    """The measures of swims by hand."""
+    asked = replace(ASKED, cells=(64, 96), cycles=2, compared_cycles=2, tail_heights=(0.1,))
+    swims = {"64 cells": one([0.01, 0.02]), "96 cells": one([0.02, 0.04], power=1.0), "held": one([0.0, 0.0]),
+             "trunk only": one([0.0, 0.01]), "tail only": one([0.0, 0.005]), "as printed": one([0.0, -0.01]),
+             "tail 0.1 m": one([0.02, 0.06], weight=30.0)}  # fmt: skip
+    models = ("model", [0.05, 0.04])
+    beside = xr.Dataset(
+        {"slice_speed": ("cycle", [0.1, 0.4]), "model_speed": models, "model_power": models, "model_thrust": models,
+         "real_model_speed": models}, coords={"model": ["resistive", "reactive"]},
+    )  # fmt: skip
+    return {k: v.value for k, v in findings.measures(findings.record(swims, beside, asked), ROBOT, 1.0).items()}
+
+
+def test_measures_are_of_the_finest_grid_and_its_last_cycle():
+    m = made()
+    assert m["speed"] == m["speed_96_cells"] == 0.04
+    assert m["speed_gain"] == pytest.approx(1.0)
+    assert m["speed_over_grids"] == pytest.approx(1.0)
+    assert m["power_over_grids"] == pytest.approx(-0.5)
+    assert m["cost_of_transport"] == pytest.approx(1.0 / (20.0 * 0.04))
+    assert m["strouhal"] == pytest.approx(0.2 / 0.04)
+    assert m["slip"] == pytest.approx(0.04)
+    assert m["reynolds_of_speed"] == pytest.approx(7000 * 0.04 / ROBOT.length)
+    assert m["thrust_held"] == 0.3
+    assert m["slice_over_body"] == pytest.approx(10.0)
+    assert m["servo_load_peak_a"] == pytest.approx(0.2)
+    assert m["servo_load_peak_b"] == pytest.approx(0.1)
+
+
+def test_motions_and_tails_are_compared_on_one_grid():
+    m = made()
+    assert (m["speed_trunk_and_tail"], m["speed_trunk_only"], m["speed_as_printed"]) == (0.02, 0.01, -0.01)
+    assert m["speed_tail_0_1"] == 0.06
+    assert m["cost_of_transport_tail_0_1"] == pytest.approx(2.0 / (30.0 * 0.06))
+    assert m["cost_of_transport_as_printed"] > 0
+    told = findings.explain(m)
+    assert "40.0 mm/s in cycle 2 on 96 cells a length" in told
+    assert "10 times as fast" in told
+    assert "0.1 m high" in told
+    assert "3.0 times as fast" in told
