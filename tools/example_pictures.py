@@ -38,7 +38,7 @@ def longer_tail() -> Figure:
 
 
 def workspace() -> Figure:
-    """Draw what a leg can reach."""
+    """Draw the workspace of a leg."""
     question = suchus.EXPERIMENTS["leg_kinematics"].quick()
     return question.draw(question.run())["workspace"]
 
@@ -57,7 +57,7 @@ def heading() -> Figure:
 
 
 def gait() -> Figure:
-    """Draw the gait diagram that a captured walk comes down to."""
+    """Draw the gait diagram of the article's crawl, in the form that a captured walk has too."""
     question = suchus.EXPERIMENTS["gait_diagram"]
     return question.draw(question.run())["gait_diagram"]
 
@@ -68,7 +68,7 @@ def policies() -> Figure:
     centre = tuple(envs.CrocodileVectorEnv(1, task).pack.centre)
     players = {
         "holding still": envs.Still(task),
-        "anything": envs.Anything(task, np.random.default_rng(0)),
+        "random actions": envs.Anything(task, np.random.default_rng(0)),
         "the shelf's crawl": envs.Follow(task=task, centre=centre, gait=task.gait),
     }
     return _bars({name: envs.play(task, player, episodes=8).forward.tolist() for name, player in players.items()})
@@ -76,7 +76,7 @@ def policies() -> Figure:
 
 def learned() -> Figure:
     """Draw what the twelfth example learned, as the page on environments shows it: training takes minutes."""
-    table = (PICTURES.parent / "environments.md").read_text(encoding="utf-8").partition("had learned then")[2]
+    table = (PICTURES.parent / "environments.md").read_text(encoding="utf-8").partition("The learned policy then")[2]
     rows = re.findall(r"^\| ([^|]+?) \|[^|]+\| ([+-]?[0-9.]+) m \|", table, re.M)[:6]
     return _bars({name: [float(distance)] for name, distance in rows})
 
@@ -122,7 +122,7 @@ def _bars(distances: Mapping[str, Sequence[float]]) -> Figure:
         ax.set_yticks(range(len(distances)), list(distances))
         ax.invert_yaxis()
         ax.margins(x=0.12)
-        ax.set_xlabel("forward in an episode, mean [m]")
+        ax.set_xlabel("displacement forward in an episode, mean [m]")
     return figure
 
 

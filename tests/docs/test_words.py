@@ -45,7 +45,6 @@ OLD = {
 NOT_DONE = (
     "src/suchus/flow/",
     "src/suchus/experiments/_swimming_findings.py",
-    "src/suchus/experiments/swim_sweep.py",
     "src/suchus/experiments/swimming.py",
     "docs/flow.md",
     "docs/flow_limits.md",

@@ -1,4 +1,4 @@
-"""Going on with a flow on a finer grid: the wake forms where cells are cheap, and the numbers come from fine ones."""
+"""Continuation of a flow on a finer grid: the wake forms on a coarse grid, the results are those of the fine one."""
 
 import numpy as np
 from scipy.ndimage import map_coordinates

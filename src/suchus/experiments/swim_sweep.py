@@ -30,11 +30,11 @@ _PEERS = (
 )  # fmt: skip
 
 _SWUM = {"speed": "m/s", "cost_of_transport": "1", "gain": "1", "strouhal": "1", "slip": "1"}
-"""What is kept of a swim in the resolved flow, with units; see ``water.Swum``."""
+"""What is kept of a swim by CFD, with units; see ``water.Swum``."""
 
 
 def swum_point(robot: Crocodile, setting: Tether, motion: Swim, progress: Callable[[float], None]) -> xr.Dataset:
-    """Return one swim from rest in the resolved flow in numbers.
+    """Return the numbers of one swim from rest by CFD.
 
     Args:
         robot: who swims.
@@ -50,8 +50,8 @@ def swum_point(robot: Crocodile, setting: Tether, motion: Swim, progress: Callab
 class SwimSweep(Experiment):
     """(20) fitted to the joints, every angle multiplied, at other frequencies and wavelengths.
 
-    The whole map by the two cheap models of the round body; some points in the resolved flow as a check, from rest,
-    their last cycle measured. In the resolved flow the frequency is no parameter of its own: at one Reynolds number
+    The whole map by the two slender-body models of the round body; some points by CFD as a check, from rest,
+    their last cycle measured. By CFD the frequency is no independent parameter: at one Reynolds number
     f L^2 / nu, speeds are proportional to it. ``efficiency`` is the power that towing the straight body takes over that
     of the joints, ``cost_of_transport`` that of the joints over displaced weight and speed. What joints or servos
     cannot follow is hatched.
@@ -68,21 +68,22 @@ class SwimSweep(Experiment):
     frequencies: tuple[float, ...] = (0.25, 0.5, 0.75, 1.0, 1.25, 1.5)
     """Frequencies of the map [Hz], 0.01 to 20."""
     amplitudes: tuple[float, ...] = (0.4, 0.7, 1.0, 1.3, 1.6)
-    """Factors of every angle [-]."""
+    """Factors on all angles of the motion [-]."""
     waves: tuple[float, ...] = (0.6, 0.8, 1.0, 1.2, 1.4)
-    """Waves per body; more than 1.4 ask the trunk for more than it has [-]."""
+    """Waves per body length, at most 1.4, beyond which the trunk's joints cannot follow [-]."""
     points: tuple[tuple[float, float], ...] = ((0.6, 1.0), (1.0, 1.0), (1.4, 1.0), (1.0, 1.3))
-    """Amplitude and waves per body of the points in the resolved flow [-]."""
+    """Amplitude and waves per body length of the points that are checked by CFD [-]."""
     reynolds: float = 7000.0
-    """Frequency times length squared over viscosity of these [-]."""
+    """Reynolds number of these points: frequency times length squared over viscosity [-]."""
     cells: int = 72
-    """Cells per body length of these [-]."""
+    """Cells per body length in these points [-]."""
     cycles: int = 6
-    """Cycles of these; the last is measured [-]."""
+    """Cycles of these points, of which the last is measured [-]."""
     keep: str = ""
-    """Folder for the points that are finished, from which an interrupted run goes on; empty keeps nothing."""
+    """Folder for finished points, from which an interrupted run continues; empty: none is kept."""
     scheduler: str = ""
-    """Address of a Dask scheduler whose workers swim the points, as tcp://127.0.0.1:8786; empty swims them here."""
+    """Address of a Dask scheduler whose workers compute the points, as tcp://127.0.0.1:8786; empty: they are computed
+    here."""
 
     def __post_init__(self) -> None:
         with Checks("swim_sweep", self) as check:
@@ -102,25 +103,25 @@ class SwimSweep(Experiment):
             check.whole("cycles", 2, 100)
 
     def quick(self) -> "SwimSweep":
-        """Few points, a coarse grid, a thick water."""
+        """Return few points, a coarse grid and a low Reynolds number."""
         return replace(
             self, frequencies=(0.4, 0.8, 1.2, 1.6), amplitudes=(0.5, 1.1, 1.7), waves=(0.6, 0.9, 1.2, 1.4),
             points=((1.0, 1.0), (1.4, 1.0)), reynolds=1000.0, cells=32, cycles=2,
         )  # fmt: skip
 
     def simulate(self, progress: Progress = silent) -> Simulated:
-        """Work out the maps, and swim the points in the resolved flow."""
-        with at_scheduler(self.scheduler or None) as client:  # told before anything is calculated
+        """Compute the maps by the slender-body models, and the points by CFD."""
+        with at_scheduler(self.scheduler or None) as client:  # refused before anything is computed
             return self._simulated(progress, client)
 
     def _simulated(self, progress: Progress, client: Any) -> Simulated:
-        told = staged(progress, "cheap models", 0.0, 0.3)
+        done = staged(progress, "slender-body models", 0.0, 0.3)
         fitted = {waves: self._fit(waves) for waves in {1.0, *self.waves}}
         by_frequency = self._map("frequency", self.frequencies, lambda a, f: scaled(fitted[1.0], a, f))
-        told(0.5)
+        done(0.5)
         by_waves = self._map("waves", self.waves, lambda a, w: scaled(fitted[w], a, 1.0))
-        told(1.0)
-        points = self._points(staged(progress, "resolved flow", 0.3, 1.0), client)
+        done(1.0)
+        points = self._points(staged(progress, "CFD", 0.3, 1.0), client)
         record = xr.merge([by_frequency, by_waves, points], join="exact", combine_attrs="no_conflicts")
         return Simulated(record=record, tables={"peers.md": self._peers(record)})
 
@@ -129,7 +130,7 @@ class SwimSweep(Experiment):
         return fit(self.robot, wave, name=f"(20), {waves:.2g} waves per body").swim
 
     def _map(self, axis: str, values: tuple[float, ...], motion: Callable[[float, float], Swim]) -> xr.Dataset:
-        """Return what the cheap models say on a grid of amplitude and another quantity."""
+        """Return the results of the slender-body models on a grid of amplitude and another quantity."""
         motions = [motion(amplitude, value) for amplitude in self.amplitudes for value in values]
         flat = survey(self.robot, motions)
         shape = (len(self.amplitudes), len(values))
@@ -149,26 +150,26 @@ class SwimSweep(Experiment):
         return xr.Dataset(data, coords=coords)
 
     def _points(self, progress: Callable[[float], None], client: Any) -> xr.Dataset:
-        """Return the points in the resolved flow, at 1 Hz, and what the cheap models say of them."""
+        """Return the points by CFD at 1 Hz, and their speeds by the slender-body models."""
         motions = [scaled(self._fit(waves), amplitude, 1.0) for amplitude, waves in self.points]
         setting = Tether(cells=self.cells, viscosity=self.robot.length**2 / self.reynolds, cycles=self.cycles, frames=1)
         work = partial(swum_point, self.robot, setting)
         with nullcontext(self.keep) if self.keep else TemporaryDirectory() as folder:
             swum = conduct_sweep(self.name(), work, motions, Path(folder), progress=progress, client=client)
-        cheap = survey(self.robot, motions)
+        slender = survey(self.robot, motions)
         data: dict[str, Any] = {
             **{
                 f"point_{name}": ("point", [float(one[name]) for one in swum], {"units": unit})
                 for name, unit in _SWUM.items()
             },
-            "point_model_speed": (("model", "point"), cheap.speed.values, {"units": "m/s"}),
+            "point_model_speed": (("model", "point"), slender.speed.values, {"units": "m/s"}),
             "point_amplitude": ("point", [amplitude for amplitude, _ in self.points], {"units": "1"}),
             "point_waves": ("point", [waves for _, waves in self.points], {"units": "1"}),
         }
         return xr.Dataset(data, attrs={"cells": self.cells, "cycles": self.cycles, "reynolds": self.reynolds})
 
     def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
-        """Return the best of the maps, how far the cheap models are off, and the speed of every point."""
+        """Return the best of the maps, the errors of the slender-body models, and the speed of every point."""
         found = {}
         possible = record.possible_by_frequency
         for model in record.model.values:
@@ -191,21 +192,21 @@ class SwimSweep(Experiment):
         return found
 
     def explain(self, measures: Mapping[str, float]) -> str:
-        """Say what the speed follows, and how far the cheap models stand from the resolved flow."""
+        """Say how the speed depends on frequency and amplitude, and how far the slender-body models are from CFD."""
         m = {name: Reading(value) for name, value in measures.items()}
-        told = [
+        said = [
             f"By the {model} model the speed grows as the frequency to the power of "
             f"{m[f'speed_power_of_frequency_{model}']:.2f} and as the amplitude to that of "
             f"{m[f'speed_power_of_amplitude_{model}']:.2f}; where joints and servos can follow it is "
             f"{m[f'speed_most_{model}']:.2f} m/s at most, the efficiency {m[f'efficiency_most_{model}']:.2f}. It puts "
-            f"{m[f'order_agrees_{model}']:.0%} of the pairs of points in the order of the resolved flow, and its "
+            f"{m[f'order_agrees_{model}']:.0%} of the pairs of points in the same order as CFD, and its "
             f"speeds are off by {m[f'error_mean_{model}']:+.0%} on the average."
             for model in MODELS
         ]
-        return " ".join(told)
+        return " ".join(said)
 
     def _peers(self, record: xr.Dataset) -> str:
-        """Return a table of what is known of crocodilians and robots beside ours."""
+        """Return a table of published motions of crocodilians and robots beside the caiman's."""
         motion = self._fit(1.0)
         slips = record.point_slip.values
         ours = (
@@ -235,10 +236,10 @@ def _power(along: xr.DataArray, speed: xr.DataArray) -> float:
 
 
 def _order(record: xr.Dataset, model: str) -> float:
-    """Return which share of the pairs of points a cheap model puts in the order of the resolved flow [-]."""
-    resolved, cheap = record.point_speed.values, record.point_model_speed.sel(model=model).values
-    pairs = [(i, j) for i in range(resolved.size) for j in range(i)]
-    agree = [(resolved[i] - resolved[j]) * (cheap[i] - cheap[j]) > 0.0 for i, j in pairs]
+    """Return the share of the pairs of points that a slender-body model puts in the same order as CFD [-]."""
+    cfd, slender = record.point_speed.values, record.point_model_speed.sel(model=model).values
+    pairs = [(i, j) for i in range(cfd.size) for j in range(i)]
+    agree = [(cfd[i] - cfd[j]) * (slender[i] - slender[j]) > 0.0 for i, j in pairs]
     return float(np.mean(agree)) if agree else float("nan")
 
 

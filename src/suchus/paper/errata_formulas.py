@@ -163,8 +163,8 @@ WAVE = (
         printed="sin(k x + omega t)",
         ours="sin(k x - omega t), x from head to tail",
         shows="The printed wave runs from tail to head, a fish's from head to tail. The resistive model of the round "
-        "body swims tail first with it, by 0.20 m/s at 1 Hz; in the resolved flow the robot still goes head first, at "
-        "about half the speed of the wave from head to tail.",
+        "body swims tail first with it, by 0.20 m/s at 1 Hz; by two-dimensional CFD the robot still goes head first, "
+        "at about half the speed of the wave from head to tail.",
     ),
     Misprint(
         key="eq_20_units",

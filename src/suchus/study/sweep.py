@@ -19,7 +19,7 @@ Progress = Callable[[float], None]
 KIND = "sweep"
 FLOW = ("catalog.py", "design", "flow", "kinds.py", "kinematics", "motion", "paper", "record", "robots",
         "rotation.py", "water")  # fmt: skip
-"""Whose code decides the numbers of a swim in the resolved flow."""
+"""Rooms whose code decides the numbers of a swim by CFD."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -71,14 +71,14 @@ def films(path: Path) -> tuple[tuple[Film, ...], tuple[PlottedCurve, ...]]:
 
     Raises:
         UnreadableFile: there is no such file.
-        IncompatibleRecord: it is no record of swimming in the resolved flow.
+        IncompatibleRecord: it is no record of swimming by CFD.
     """
     record = load(path)
     prefixes = [str(name).removesuffix("midline_x") for name in record if str(name).endswith("midline_x")]
     found = [film for prefix in prefixes if (film := _film(record, prefix)) is not None]
     if not found:
         raise IncompatibleRecord(
-            f"{path} holds no fields of water: only records of swimming in the resolved flow do, as the record.nc of "
+            f"{path} holds no fields of water: only records of swimming by CFD do, as the record.nc of "
             "suchus run swimming."
         )
     return tuple(found), _curves(record)

@@ -1,4 +1,4 @@
-"""The robot in the resolved flow on its own: from rest, in three degrees of freedom."""
+"""Free swimming of the robot by CFD: from rest, in three degrees of freedom."""
 
 from pathlib import Path
 

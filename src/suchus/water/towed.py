@@ -1,4 +1,4 @@
-"""The straight robot in a stream of the resolved flow: what it takes to tow it."""
+"""The straight robot in a stream by CFD: the force and power that tow it."""
 
 from dataclasses import replace
 

@@ -8,7 +8,7 @@ _DIAGONAL = 0.1
 _HELD = "cycles of the tethered body after the first"
 _LAST = "the last two cycles of the compared swims"
 _EACH = "in every measured cycle, not only in one"
-_UNSWEPT = "A swim in the resolved flow takes up to two minutes; no study runs it for other designs."
+_UNSWEPT = "A swim by CFD takes up to two minutes; no study runs it for other designs."
 
 
 def _cycles(measure: str, of: str) -> Band:
