@@ -117,12 +117,14 @@ def _wet(model: int, data: int, at: np.ndarray, numbers: np.ndarray) -> bool:
         else:
             for i in range(3):
                 user[FORCE + i] += force[b, 3 + i]
+    power = user[POWER]  # memory is not summed up in: the compiler cannot know that nothing else lies there
     for i in range(nv):
-        acts = 0.0
+        acts, b = 0.0, owner[i]
         for k in range(6):
-            acts += cdof[i, k] * force[owner[i], k]
+            acts += cdof[i, k] * force[b, k]
         passive[i] += acts
-        user[POWER] += acts * qvel[i]
+        power += acts * qvel[i]
+    user[POWER] = power
     if user[ADDED] <= 0.0:
         return False
     _burden(whole, state, at, inertia, cdof, owner)
@@ -142,11 +144,13 @@ def _taken(
 ) -> None:
     """Take from force and power of the water what the added mass takes by the accelerations of the last step."""
     acceleration = np.zeros((len(parent), 6))
+    power, pulled = user[POWER], three(user, FORCE)
     for b in range(1, len(parent)):
         for i in range(6):
-            acceleration[b, i] = acceleration[parent[b], i]
+            sum_ = acceleration[parent[b], i]
             for j in range(first[b], first[b] + dofs[b]):
-                acceleration[b, i] += cdof[j, i] * qacc[j]
+                sum_ += cdof[j, i] * qacc[j]
+            acceleration[b, i] = sum_
         if inertia[b, 9] + inertia[b, 14] + inertia[b, 20] <= 0.0:
             continue
         for i in range(6):
@@ -155,9 +159,16 @@ def _taken(
                 reaction += inertia[b, k + n] * acceleration[b, n]
             for n in range(i + 1, 6):
                 reaction += inertia[b, n * (n + 1) // 2 + i] * acceleration[b, n]
-            user[POWER] -= reaction * cvel[b, i]
-            if i > 2:
-                user[FORCE + i - 3] -= reaction
+            power -= reaction * cvel[b, i]
+            if i == 3:
+                pulled = pulled[0] - reaction, pulled[1], pulled[2]
+            elif i == 4:
+                pulled = pulled[0], pulled[1] - reaction, pulled[2]
+            elif i == 5:
+                pulled = pulled[0], pulled[1], pulled[2] - reaction
+    user[POWER] = power
+    for i in range(3):
+        user[FORCE + i] = pulled[i]
 
 
 @part
