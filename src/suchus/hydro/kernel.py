@@ -13,7 +13,7 @@ from numba.extending import intrinsic
 
 from suchus.hydro.forces import piece
 from suchus.hydro.table import ADDED, COLUMNS, FORCE, HEADER, LEVEL, MAGIC, NUMBERS, POWER, UNDER, WAVE, WIDTH
-from suchus.hydro.vectors import compiled, dot, part, row3, three, times
+from suchus.hydro.vectors import Vector, compiled, dot, part, row3, three, times
 
 FIELDS = (
     "nv", "nbody", "nnumericdata", "nuserdata", "opt.gravity", "numeric_data", "body_parentid", "body_rootid",
@@ -85,6 +85,15 @@ def _wet(model: int, data: int, at: np.ndarray, numbers: np.ndarray) -> bool:
     down = three(real, at[_GRAVITY] // 8)
     gravity = sqrt(dot(down, down))
     up = times(-1.0 / gravity, down) if gravity > 0.0 else (0.0, 0.0, 1.0)
+    table, surface = numbers[HEADER:], user[LEVEL] + abs(user[WAVE])
+    near = 0  # the first piece that is not far above the surface
+    while near < int(numbers[1]) and _dry(table, near, surface, up, xpos):
+        near += 1
+    for i in range(4):
+        user[FORCE + i] = 0.0
+    user[UNDER] = 0.0
+    if near == int(numbers[1]):
+        return False
     bias = np.zeros((nbody, 6))
     for b in range(1, nbody):
         for i in range(6):
@@ -92,16 +101,13 @@ def _wet(model: int, data: int, at: np.ndarray, numbers: np.ndarray) -> bool:
             for j in range(first[b], first[b] + dofs[b]):
                 bias[b, i] += cdof_dot[j, i] * qvel[j]
     force, inertia, under = np.zeros((nbody, 6)), np.zeros((nbody, 21)), 0.0
-    table = numbers[HEADER:]
-    for n in range(int(numbers[1])):
+    for n in range(near, int(numbers[1])):
+        if _dry(table, n, surface, up, xpos):
+            continue
         row = table[n * WIDTH : (n + 1) * WIDTH]
         b = int(row[0])
-        if user[LEVEL] + abs(user[WAVE]) - dot(up, row3(xpos, b, 0)) <= -row[_REACH]:
-            continue  # far above the surface
         poses = xpos, xmat, com[root[b]]
         under += piece(row, b, poses, cvel, bias, up, gravity, user, clock[at[_TIME] // 8], numbers[2], force, inertia)
-    for i in range(4):
-        user[FORCE + i] = 0.0
     user[UNDER] = under
     if under == 0.0:
         return False
@@ -129,6 +135,12 @@ def _wet(model: int, data: int, at: np.ndarray, numbers: np.ndarray) -> bool:
         return False
     _burden(whole, state, at, inertia, cdof, owner)
     return True
+
+
+@part
+def _dry(table: np.ndarray, n: int, surface: float, up: Vector, xpos: np.ndarray) -> bool:
+    """Return whether a piece is far above the surface."""
+    return surface - dot(up, row3(xpos, int(table[n * WIDTH]), 0)) <= -table[n * WIDTH + _REACH]
 
 
 @part
