@@ -176,7 +176,7 @@ def test_the_water_says_what_it_did():
 def test_every_robot_on_the_shelf_is_carried_by_what_it_displaces(name):
     robot = ROBOTS[name]
     wetting.install()
-    model = wet_model(robot, physics_step(robot), None, len(pieces(robot)) + 2)
+    model = wet_model(robot, physics_step(robot), None, len(pieces(robot)) + 2, acting=True)
     data = mujoco.MjData(model)
     data.userdata[:] = Lake(level=5.0, added_mass=0.0).numbers(np.array([0.0, 0.0, 1.0]))
     mujoco.mj_forward(model, data)

@@ -1,12 +1,12 @@
 """Runs in water: dry bytes, threads, records, what may change, and what is refused."""
 
-import ctypes
 from dataclasses import replace
 from math import inf, nan
 
 import mujoco
 import numpy as np
 import pytest
+from numba import cfunc, types
 
 from suchus.control import Swimming
 from suchus.errors import InvalidDesign, OtherMuJoCo, OutsideLimits
@@ -23,10 +23,7 @@ def runs(*lakes, **more):
 
 
 def test_water_far_below_changes_no_byte():
-    wetting.install()
     dry = crawl("caiman", "belly_crawl", duration=0.5)
-    wetting.remove()
-    assert crawl("caiman", "belly_crawl", duration=0.5).identical(dry)
     below = crawl("caiman", "belly_crawl", duration=0.5, lake=Lake(level=-5.0))
     for name in dry:
         assert np.array_equal(below[name], dry[name]), name
@@ -169,13 +166,35 @@ def test_a_missing_field_is_named():
         structs.offset("mjNothing", "nothing")
 
 
-def test_somebody_elses_callback_is_left_alone():
-    kind = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p)
-    theirs = kind(lambda model, data: None)
-    wetting.remove()
-    mujoco.set_mjcb_passive(theirs)
+def test_a_plugin_that_does_nothing_is_found(monkeypatch):
+    wetting.install()
+    monkeypatch.setattr(wetting, "LEVEL", 3)  # the level stays at the ball's middle
+    wetting._check_that_it_acts.cache_clear()
+    with pytest.raises(OtherMuJoCo, match=r"mjpPlugin.compute .* a ball of 4 l under water displaces 2 l"):
+        wetting.install()
+
+
+def test_a_header_without_the_plugin_is_named(monkeypatch, tmp_path):
+    structs.plugin_struct.cache_clear()
+    monkeypatch.setattr(structs.mujoco, "__file__", str(tmp_path / "__init__.py"))
+    with pytest.raises(OtherMuJoCo, match=r"mjpPlugin\.capabilityflags"):
+        structs.plugin_struct()
+    monkeypatch.undo()
+    fields = [name for name, _ in structs.plugin_struct()._fields_]
+    assert fields.index("compute") == fields.index("reset") + 1
+    assert fields[0] == "name"
+
+
+def test_water_acts_beside_somebody_elses_callback():
+    alone = crawl("caiman", "belly_crawl", duration=0.05, lake=Lake(level=0.06))
+
+    @cfunc(types.void(types.voidptr, types.voidptr), nopython=True)
+    def theirs(model, data):
+        return None
+
+    mujoco.set_mjcb_passive(theirs.ctypes)
     try:
-        with pytest.raises(InvalidDesign, match="another passive callback is installed"):
-            wetting.install()
+        beside = crawl("caiman", "belly_crawl", duration=0.05, lake=Lake(level=0.06))
     finally:
         mujoco.set_mjcb_passive(None)
+    assert beside.identical(alone)

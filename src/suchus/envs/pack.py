@@ -157,6 +157,11 @@ class Pack:
         return self._readings.record(np.zeros(1)).isel(run=robot).copy(deep=True)
 
     @property
+    def goals(self) -> Float[np.ndarray, "run 2"]:
+        """Where the goals are, forward and left in the world; zeros without a goal [m]."""
+        return self._goals.copy()
+
+    @property
     def remaining(self) -> Float[np.ndarray, " run"]:
         """Distance that remains from each centre of mass to its goal; 0 without a goal [m]."""
         goal = self.task.goal

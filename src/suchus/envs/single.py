@@ -7,12 +7,13 @@ import gymnasium
 import numpy as np
 
 from suchus.envs.pack import Pack
-from suchus.envs.picture import picture
+from suchus.envs.picture import Surroundings, picture
 from suchus.envs.reward import Terms
 from suchus.envs.shelf import chosen
 from suchus.envs.spaces import RENDER_MODES, action_space, check_render_mode, checked, observation_space
 from suchus.envs.task import Rewards, Task
 from suchus.errors import OldName
+from suchus.land.bench import up
 from suchus.renamed import new_name
 
 
@@ -104,7 +105,8 @@ def step_info(pack: Pack, terms: Terms) -> dict[str, np.ndarray]:
 def portrait(pack: Pack, robot: int) -> np.ndarray:
     """Return a picture of one robot of a pack."""
     text = f"{pack.time[robot]:.2f} s  {pack.chances[robot].fault}"
-    return picture(pack.task.robot, pack.record(robot), text)
+    around = Surroundings(up=up(pack.task.ground), goal=pack.task.goal, place=pack.goals[robot])
+    return picture(pack.task.robot, pack.record(robot), text, around)
 
 
 def metadata(task: Task) -> dict[str, Any]:

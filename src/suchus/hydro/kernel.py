@@ -13,7 +13,7 @@ from numba.extending import intrinsic
 
 from suchus.hydro.forces import piece
 from suchus.hydro.table import ADDED, COLUMNS, FORCE, HEADER, LEVEL, MAGIC, NUMBERS, POWER, UNDER, WAVE, WIDTH
-from suchus.hydro.vectors import compiled, dot, part, row3, three, times
+from suchus.hydro.vectors import Vector, compiled, dot, part, row3, three, times
 
 FIELDS = (
     "nv", "nbody", "nnumericdata", "nuserdata", "opt.gravity", "numeric_data", "body_parentid", "body_rootid",
@@ -85,6 +85,15 @@ def _wet(model: int, data: int, at: np.ndarray, numbers: np.ndarray) -> bool:
     down = three(real, at[_GRAVITY] // 8)
     gravity = sqrt(dot(down, down))
     up = times(-1.0 / gravity, down) if gravity > 0.0 else (0.0, 0.0, 1.0)
+    table, surface = numbers[HEADER:], user[LEVEL] + abs(user[WAVE])
+    near = 0  # the first piece that is not far above the surface
+    while near < int(numbers[1]) and _dry(table, near, surface, up, xpos):
+        near += 1
+    for i in range(4):
+        user[FORCE + i] = 0.0
+    user[UNDER] = 0.0
+    if near == int(numbers[1]):
+        return False
     bias = np.zeros((nbody, 6))
     for b in range(1, nbody):
         for i in range(6):
@@ -92,16 +101,13 @@ def _wet(model: int, data: int, at: np.ndarray, numbers: np.ndarray) -> bool:
             for j in range(first[b], first[b] + dofs[b]):
                 bias[b, i] += cdof_dot[j, i] * qvel[j]
     force, inertia, under = np.zeros((nbody, 6)), np.zeros((nbody, 21)), 0.0
-    table = numbers[HEADER:]
-    for n in range(int(numbers[1])):
+    for n in range(near, int(numbers[1])):
+        if _dry(table, n, surface, up, xpos):
+            continue
         row = table[n * WIDTH : (n + 1) * WIDTH]
         b = int(row[0])
-        if user[LEVEL] + abs(user[WAVE]) - dot(up, row3(xpos, b, 0)) <= -row[_REACH]:
-            continue  # far above the surface
         poses = xpos, xmat, com[root[b]]
         under += piece(row, b, poses, cvel, bias, up, gravity, user, clock[at[_TIME] // 8], numbers[2], force, inertia)
-    for i in range(4):
-        user[FORCE + i] = 0.0
     user[UNDER] = under
     if under == 0.0:
         return False
@@ -117,16 +123,24 @@ def _wet(model: int, data: int, at: np.ndarray, numbers: np.ndarray) -> bool:
         else:
             for i in range(3):
                 user[FORCE + i] += force[b, 3 + i]
+    power = user[POWER]  # memory is not summed up in: the compiler cannot know that nothing else lies there
     for i in range(nv):
-        acts = 0.0
+        acts, b = 0.0, owner[i]
         for k in range(6):
-            acts += cdof[i, k] * force[owner[i], k]
+            acts += cdof[i, k] * force[b, k]
         passive[i] += acts
-        user[POWER] += acts * qvel[i]
+        power += acts * qvel[i]
+    user[POWER] = power
     if user[ADDED] <= 0.0:
         return False
     _burden(whole, state, at, inertia, cdof, owner)
     return True
+
+
+@part
+def _dry(table: np.ndarray, n: int, surface: float, up: Vector, xpos: np.ndarray) -> bool:
+    """Return whether a piece is far above the surface."""
+    return surface - dot(up, row3(xpos, int(table[n * WIDTH]), 0)) <= -table[n * WIDTH + _REACH]
 
 
 @part
@@ -142,11 +156,13 @@ def _taken(
 ) -> None:
     """Take from force and power of the water what the added mass takes by the accelerations of the last step."""
     acceleration = np.zeros((len(parent), 6))
+    power, pulled = user[POWER], three(user, FORCE)
     for b in range(1, len(parent)):
         for i in range(6):
-            acceleration[b, i] = acceleration[parent[b], i]
+            sum_ = acceleration[parent[b], i]
             for j in range(first[b], first[b] + dofs[b]):
-                acceleration[b, i] += cdof[j, i] * qacc[j]
+                sum_ += cdof[j, i] * qacc[j]
+            acceleration[b, i] = sum_
         if inertia[b, 9] + inertia[b, 14] + inertia[b, 20] <= 0.0:
             continue
         for i in range(6):
@@ -155,9 +171,16 @@ def _taken(
                 reaction += inertia[b, k + n] * acceleration[b, n]
             for n in range(i + 1, 6):
                 reaction += inertia[b, n * (n + 1) // 2 + i] * acceleration[b, n]
-            user[POWER] -= reaction * cvel[b, i]
-            if i > 2:
-                user[FORCE + i - 3] -= reaction
+            power -= reaction * cvel[b, i]
+            if i == 3:
+                pulled = pulled[0] - reaction, pulled[1], pulled[2]
+            elif i == 4:
+                pulled = pulled[0], pulled[1] - reaction, pulled[2]
+            elif i == 5:
+                pulled = pulled[0], pulled[1], pulled[2] - reaction
+    user[POWER] = power
+    for i in range(3):
+        user[FORCE + i] = pulled[i]
 
 
 @part

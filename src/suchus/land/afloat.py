@@ -9,6 +9,7 @@ from suchus.design import AnyRobot
 from suchus.design.pieces import pieces
 from suchus.hydro import HEADER, column
 from suchus.hydro.forces import hydrostatic
+from suchus.land import wetting
 from suchus.land.lake import Lake
 from suchus.model.wet import wet_model
 from suchus.rotation import about, multiply
@@ -45,7 +46,8 @@ def surfaced(
     volume, weight = capacity(robot, lake)
     if volume <= weight:
         return qpos
-    model = wet_model(robot, timestep, None, len(table))
+    wetting.install()
+    model = wet_model(robot, timestep, None, len(table), acting=True)
     data = mujoco.MjData(model)
     here = np.array(qpos)
     here[3:7] = multiply(multiply(_raising(up), about(np.array([1.0, 0.0, 0.0]), lake.heel)), qpos[3:7])

@@ -36,7 +36,10 @@ class Bench:
     def __init__(self, runs: Sequence[Run], timestep: float) -> None:
         bodies = [(run.robot, run.ground.relief) for run in runs]
         self._lakes = {sim: run.lake for sim, run in enumerate(runs) if run.lake is not None}
+        self._changing = {sim: lake for sim, lake in self._lakes.items() if lake.changes()}
         self._ups = np.array([up(run.ground) for run in runs])
+        if self._lakes:
+            wetting.install()
         room = max(len(pieces(run.robot)) for run in runs) if self._lakes else 0
         models = {body: _model(body[0], timestep, body[1], room) for body in dict.fromkeys(bodies)}
         shared = models[bodies[0]]
@@ -56,10 +59,8 @@ class Bench:
         )
         self.readings = self.sensors.copy()
         self.water = self.batch.bind("userdata") if self._lakes else np.zeros((len(runs), 0))
-        if self._lakes:
-            wetting.install()
-            for sim in self._lakes:
-                self.refill(sim)
+        for sim in self._lakes:
+            self.refill(sim)
         forces = force_sensors(runs[0].robot)
         self._forces = slice(int(shared.sensor(forces[0]).adr[0]), int(shared.sensor(forces[-1]).adr[0]) + 3)
         servos = [shared.sensor(f"{name}_position") for name in layout(runs[0].robot).servos]
@@ -135,9 +136,8 @@ class Bench:
             time: [s].
             breath: what controllers command, shape (run,), NaN where they leave it to the lake [-]; None for all.
         """
-        for sim, lake in self._lakes.items():
-            if lake.changes():
-                self.water[sim, hydro.LEVEL], self.water[sim, hydro.BREATH] = lake.at(time)
+        for sim, lake in self._changing.items():
+            self.water[sim, hydro.LEVEL], self.water[sim, hydro.BREATH] = lake.at(time)
         if breath is not None and self._lakes:
             asked = np.isfinite(breath)
             self.water[asked, hydro.BREATH] = breath[asked]
@@ -151,6 +151,7 @@ class Bench:
             time: [s].
         """
         self._lakes[sim] = lake
+        self._changing = {one: lake for one, lake in self._lakes.items() if lake.changes()}
         self.water[sim, : hydro.FORCE] = lake.numbers(self._ups[sim], time)[: hydro.FORCE]
 
     def refill(self, sim: int) -> None:
@@ -195,6 +196,7 @@ class Bench:
         """
         act = self.batch.bind("act")
         found: dict[object, tuple[np.ndarray, np.ndarray]] = {}
+        afloat: dict[object, np.ndarray] = {}
         for sim, run in enumerate(runs):
             height = hip_height(run.robot, run.gait)
             key = (run.robot, height, first[sim].tobytes())
@@ -204,7 +206,10 @@ class Bench:
                 found[key] = posture, activations(model, first[sim])
             self.qpos[sim], act[sim] = found[key]
             if run.lake is not None:
-                self.qpos[sim] = surfaced(run.robot, run.lake, up(run.ground), self.qpos[sim], self._timestep)
+                alike = (key, run.lake, run.ground)
+                if alike not in afloat:
+                    afloat[alike] = surfaced(run.robot, run.lake, up(run.ground), self.qpos[sim], self._timestep)
+                self.qpos[sim] = afloat[alike]
             self.ctrl[sim] = first[sim]
         self.batch.forward()
         self.read(slice(None))
@@ -242,8 +247,8 @@ class Bench:
         felt = self.sensors[:, self._forces]
         pressed = np.zeros_like(felt)
         going = self._going(who)
-        meter = _Meter(self) if self._lakes else None
-        for _ in range(steps):
+        meter = _Meter(self, steps) if self._lakes else None
+        for step in range(steps):
             try:
                 self.batch.step(going, stage=_CURRENT)
             except SimulationError as error:
@@ -252,10 +257,10 @@ class Bench:
                 going = self._going(who)
             pressed += felt
             if meter is not None:
-                meter.read()
+                meter.read(step)
         if meter is not None:
             some = slice(None) if who is None else who
-            self.worked[some] = meter.mean(steps)[some]
+            self.worked[some] = meter.mean()[some]
         self.readings[:] = self.sensors
         self.readings[:, self._forces] = pressed / steps
         fastest = np.abs(self.qvel).max(axis=1)
@@ -288,24 +293,27 @@ class Bench:
 
 
 class _Meter:
-    """Adds up step by step what the water does to the robots and what their servos do; both jitter within a period."""
+    """Keeps step by step what the water does to the robots and what their servos do; both jitter within a period."""
 
-    def __init__(self, bench: Bench) -> None:
+    def __init__(self, bench: Bench, steps: int) -> None:
         self._bench = bench
-        self._before = bench.sensors[:, bench.velocities].copy()
-        self._sum = np.zeros_like(bench.worked)
+        self._water = np.empty((steps, len(bench.water), 4))
+        self._felt = np.empty((steps + 1, *bench.sensors.shape))
+        self._felt[0] = bench.sensors
 
-    def read(self) -> None:
-        """Add one physics step: the torque in it times the mean of the speeds before and after."""
-        bench = self._bench
-        now, torque = bench.sensors[:, bench.velocities], bench.sensors[:, bench.torques]
-        self._sum[:, :4] += bench.water[:, hydro.FORCE : hydro.FORCE + 4]
-        self._sum[:, 4] += 0.5 * np.einsum("ij,ij->i", torque, self._before + now)
-        self._before = now.copy()
+    def read(self, step: int) -> None:
+        """Keep what a physics step has left."""
+        self._water[step] = self._bench.water[:, hydro.FORCE : hydro.FORCE + 4]
+        self._felt[step + 1] = self._bench.sensors
 
-    def mean(self, steps: int) -> np.ndarray:
-        """Return force and power of the water and power of the servos, shape (run, 5)."""
-        return self._sum / steps
+    def mean(self) -> np.ndarray:
+        """Return force and power of the water and power of the servos, shape (run, 5).
+
+        The power of a servo in a step is its torque times the mean of its speeds before and after.
+        """
+        speed, torque = self._felt[..., self._bench.velocities], self._felt[1:, :, self._bench.torques]
+        power = 0.5 * np.einsum("kij,kij->i", torque, speed[:-1] + speed[1:]) / len(torque)
+        return np.column_stack([self._water.mean(axis=0), power])
 
 
 def _model(robot: AnyRobot, timestep: float, relief: Relief | None, room: int) -> Any:
@@ -313,7 +321,8 @@ def _model(robot: AnyRobot, timestep: float, relief: Relief | None, room: int) -
 
     A robot is one island, so that the bytes are the same, and a step takes a sixteenth less time.
     """
-    model = copy.copy(wet_model(robot, timestep, relief, room) if room else compile_model(robot, timestep, relief))
+    made = wet_model(robot, timestep, relief, room, acting=True) if room else compile_model(robot, timestep, relief)
+    model = copy.copy(made)
     model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_ISLAND)
     return model
 

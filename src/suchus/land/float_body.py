@@ -106,8 +106,8 @@ class FloatTank:
         frame.add_freejoint()
         table = body.table()
         column(table, "at")[:] += _ASIDE
-        self.model = with_pieces(spec, table, 2 * max(body.half))
         wetting.install()
+        self.model = with_pieces(spec, table, 2 * max(body.half), acting=True)
         self.data = mujoco.MjData(self.model)
         self.data.userdata[:] = lake.numbers(_UP)
         self._table = self.model.numeric_data[HEADER:].reshape(-1, WIDTH)

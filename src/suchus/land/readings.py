@@ -1,6 +1,7 @@
 """Reading a batch's sensors: for the controller at every period, for the record at every sample."""
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -187,8 +188,10 @@ def alike(records: Sequence[xr.Dataset]) -> list[xr.Dataset]:
 
 
 def _put(record: xr.Dataset, values: Mapping[str, np.ndarray], lakes: Sequence[str]) -> xr.Dataset:
-    for name, (dims, unit, what) in WATER.items():
-        record[name] = (("run", *dims), values[name], {"units": unit, "long_name": what})
+    """Return a record with what the water does beside the rest."""
     about = {"units": "1", "long_name": "the lake as JSON; empty on dry land"}
-    record["swims_in"] = ("run", np.array(lakes, dtype=object).astype(str), about)
-    return record
+    wet: dict[str, Any] = {
+        name: (("run", *dims), values[name], {"units": unit, "long_name": what})
+        for name, (dims, unit, what) in WATER.items()
+    }
+    return record.assign(wet | {"swims_in": ("run", np.array(lakes, dtype=object).astype(str), about)})

@@ -1,8 +1,10 @@
 """Where the fields of MuJoCo's structs lie: derived from its own description, verified against its bindings."""
 
 import ctypes
+import re
 from collections.abc import Iterator, Sequence
 from functools import lru_cache
+from pathlib import Path
 from typing import Any
 
 import mujoco
@@ -49,6 +51,31 @@ def offset(struct: str, field: str) -> int:
     members: Any = kind._fields_
     inner = next(one[1] for one in members if one[0] == first)
     return here + offset(inner.__name__, rest)
+
+
+@lru_cache(maxsize=1)
+def plugin_struct() -> type[ctypes.Structure]:
+    """Return the struct of a plugin with its members in the order of the header that comes with MuJoCo.
+
+    ``mujoco.introspect`` does not describe it. Functions are addresses.
+
+    Raises:
+        OtherMuJoCo: there is no such header, or the struct lacks what a plugin of passive forces needs.
+    """
+    header = Path(mujoco.__file__).parent / "include" / "mujoco" / "mjplugin.h"
+    text = re.sub(r"//[^\n]*", "", header.read_text(encoding="utf-8")) if header.is_file() else ""
+    found = re.search(r"typedef struct mjpPlugin_ \{(.*?)\} mjpPlugin;", text, re.DOTALL)
+    fields: list[tuple[str, Any]] = []
+    for told in found.group(1).split(";") if found else ():
+        function, plain = re.search(r"\(\*(\w+)\)|(\w+)\s*$", told.strip()).groups() if told.strip() else ("", "")
+        if function or "*" in told:
+            fields.append((function or plain, ctypes.c_char_p if plain == "name" else ctypes.c_void_p))
+        elif plain:
+            fields.append((plain, ctypes.c_int))
+    missing = {"name", "capabilityflags", "nstate", "init", "reset", "compute"} - {name for name, _ in fields}
+    if missing:
+        raise OtherMuJoCo(f"mjpPlugin.{min(missing)}", mujoco.__version__, "its header has no such field")
+    return type("mjpPlugin", (ctypes.Structure,), {"_fields_": fields})
 
 
 @lru_cache(maxsize=32)

@@ -1,8 +1,9 @@
-"""Water inside the physics step: a compiled callback, installed once in a process and only where a run has water.
+"""Water inside the physics step: a plugin of passive forces, registered once in a process, where a run has water.
 
-MuJoCo calls it at every evaluation of the passive forces, on whatever thread, without Python's lock. The kernel
-(``hydro.kernel``) is kept on disk; the thin callback around it is not, since it freezes what it refers to, the offsets
-of this MuJoCo among it.
+MuJoCo calls it at every evaluation of the passive forces of a model that names it, on whatever thread, without Python's
+lock. It is no callback (``mjcb_passive``): that acts in every model, and a batch whose process has one computes positions
+and velocities twice in a step. The kernel (``hydro.kernel``) is kept on disk; the thin function around it is not, since
+it freezes what it refers to, the offsets of this MuJoCo among it.
 """
 
 import ctypes
@@ -16,43 +17,28 @@ import numpy as np
 from llvmlite import binding
 from numba import cfunc, types
 
-from suchus.errors import InvalidDesign, OtherMuJoCo
+from suchus.errors import OtherMuJoCo
+from suchus.hydro import BALL, BREATH, DENSITY, LEVEL, UNDER, column
 from suchus.hydro.kernel import DATA_FIELDS, FIELDS, wet
-from suchus.land.structs import offset, verify
+from suchus.hydro.table import WIDTH
+from suchus.land.structs import offset, plugin_struct, verify
+from suchus.model.wet import PLUGIN, with_pieces
 
-_FACTOR = "mj_factorM"
-_installed: list[Any] = []
+_FACTOR, _DEFAULT, _REGISTER = "mj_factorM", "mjp_defaultPlugin", "mjp_registerPlugin"
+_kept: list[Any] = []
 _lock = Lock()
 
 
 def install() -> None:
-    """Let water act in every simulation of this process whose model carries a table of pieces.
-
-    A model without one returns from the callback after a branch, and its bytes stay the same.
+    """Let water act in every simulation of this process whose model is made for it (``model.wet``, ``acting``).
 
     Raises:
-        OtherMuJoCo: a field that the kernel needs is not where MuJoCo's own description says.
-        InvalidDesign: another passive callback is installed.
+        OtherMuJoCo: what the kernel needs is not where MuJoCo's own description says.
     """
     with _lock:
-        if _installed:
-            return
-        if mujoco.get_mjcb_passive() is not None:
-            raise InvalidDesign(
-                "another passive callback is installed in this process (mujoco.set_mjcb_passive), and MuJoCo takes "
-                "one: remove it with mujoco.set_mjcb_passive(None) before a run with water."
-            )
-        callback = _callback()
-        mujoco.set_mjcb_passive(callback.ctypes)
-        _installed.append(callback)
-
-
-def remove() -> None:
-    """Take the callback away again; ``install`` puts it back."""
-    with _lock:
-        if _installed:
-            mujoco.set_mjcb_passive(None)
-            _installed.clear()
+        if not _kept:
+            _kept.append(_register(offsets()))
+        _check_that_it_acts()
 
 
 def offsets() -> np.ndarray:
@@ -75,20 +61,71 @@ def offsets() -> np.ndarray:
     return at
 
 
-@lru_cache(maxsize=1)
-def _callback() -> Any:
-    """Compile the callback around the kernel."""
-    at = offsets()
-    address = ctypes.cast(getattr(_library(), _FACTOR), ctypes.c_void_p).value
-    binding.add_symbol(f"suchus_{_FACTOR}", address)
-    pair = types.voidptr, types.voidptr
+def _register(at: np.ndarray) -> list[Any]:
+    """Compile the functions of the plugin, register it, and return what must stay in memory."""
+    library = _library()
+    binding.add_symbol(f"suchus_{_FACTOR}", _address(library, _FACTOR))
+    pair, number = (types.voidptr, types.voidptr), types.int32
     factor = types.ExternalFunction(f"suchus_{_FACTOR}", types.void(*pair))
 
-    def act(model: Any, data: Any) -> None:
+    @cfunc(types.void(*pair, number, number), nopython=True)
+    def act(model: Any, data: Any, instance: int, capability: int) -> None:
         if wet(model, data, at):
             factor(model, data)
 
-    return cfunc(types.void(*pair), nopython=True)(act)
+    @cfunc(number(types.voidptr, number), nopython=True)
+    def no_state(model: Any, instance: int) -> int:
+        return 0
+
+    @cfunc(number(*pair, number), nopython=True)
+    def begin(model: Any, data: Any, instance: int) -> int:
+        return 0
+
+    @cfunc(types.void(*pair, types.voidptr, number), nopython=True)
+    def reset(model: Any, state: Any, plugin_data: Any, instance: int) -> None:
+        return None
+
+    plugin = plugin_struct()()
+    _address(library, _DEFAULT), _address(library, _REGISTER)
+    getattr(library, _DEFAULT)(ctypes.byref(plugin))
+    plugin.name = PLUGIN.encode()
+    plugin.capabilityflags = int(mujoco.mjtPluginCapabilityBit.mjPLUGIN_PASSIVE)
+    plugin.nstate, plugin.init, plugin.reset = no_state.address, begin.address, reset.address
+    plugin.compute = act.address
+    getattr(library, _REGISTER)(ctypes.byref(plugin))
+    return [act, no_state, begin, reset, plugin, at]
+
+
+@lru_cache(maxsize=1)
+def _check_that_it_acts() -> None:
+    """Put a ball under water and look whether the kernel saw it there; once, if it did."""
+    spec = mujoco.MjSpec()
+    ball = spec.worldbody.add_body()
+    ball.add_freejoint()
+    ball.add_geom(size=[0.1, 0, 0])
+    table = np.zeros((1, WIDTH))
+    column(table, "body")[:], column(table, "kind")[:] = 1, BALL
+    for name, axis in (("across", 0), ("upward", 1), ("forward", 2)):
+        column(table, name)[:, axis] = 1.0
+    column(table, "half")[:], column(table, "volume")[:] = 0.1, 0.004
+    model = with_pieces(spec, table, 1.0, acting=True)
+    data = mujoco.MjData(model)
+    data.userdata[[LEVEL, DENSITY, BREATH]] = 5.0, 1000.0, 1.0
+    mujoco.mj_forward(model, data)
+    if data.userdata[UNDER] != 0.004:
+        why = f"a ball of 4 l under water displaces {1000 * data.userdata[UNDER]:g} l"
+        raise OtherMuJoCo("mjpPlugin.compute", mujoco.__version__, why)
+
+
+def _address(library: ctypes.CDLL, name: str) -> int:
+    """Return where a function of MuJoCo's library begins.
+
+    Raises:
+        OtherMuJoCo: it has no such function.
+    """
+    if not hasattr(library, name):
+        raise OtherMuJoCo(name, mujoco.__version__, "its library has no such function")
+    return int(ctypes.cast(getattr(library, name), ctypes.c_void_p).value or 0)
 
 
 def _library() -> ctypes.CDLL:

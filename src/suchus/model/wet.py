@@ -16,8 +16,12 @@ NUMERIC = "water"
 """Name of the custom number that holds the table; see ``hydro.packed``."""
 
 
+PLUGIN = "suchus.water"
+"""Name of MuJoCo's plugin that lets the water act; ``land.wetting`` registers it."""
+
+
 @lru_cache(maxsize=32)
-def wet_model(robot: AnyRobot, timestep: float, relief: Relief | None, room: int) -> Any:
+def wet_model(robot: AnyRobot, timestep: float, relief: Relief | None, room: int, *, acting: bool = False) -> Any:
     """Compile a robot for the water; the same values give the same ``mujoco.MjModel`` again: copy it before an edit.
 
     Args:
@@ -25,34 +29,38 @@ def wet_model(robot: AnyRobot, timestep: float, relief: Relief | None, room: int
         timestep: of the physics [s].
         relief: what stands up from even ground.
         room: pieces that the table has room for, alike in all models of a batch.
+        acting: whether the water acts in it; ``land.wetting.install`` goes before.
 
     Raises:
         InvalidDesign: MuJoCo cannot compile it.
     """
     try:
-        return carrying(build(robot, timestep=timestep, relief=relief), robot, room)
+        return carrying(build(robot, timestep=timestep, relief=relief), robot, room, acting=acting)
     except ValueError as error:
         raise InvalidDesign(f"robot {robot.name!r} does not compile: {error}") from error
 
 
-def carrying(spec: Any, robot: AnyRobot, room: int | None = None) -> Any:
+def carrying(spec: Any, robot: AnyRobot, room: int | None = None, *, acting: bool = False) -> Any:
     """Return a compiled ``mujoco.MjSpec`` that carries a robot's pieces.
 
     Args:
         spec: of a robot, perhaps with further edits that keep its bodies.
         robot: the design.
         room: see ``wet_model``; as much as needed if None.
+        acting: see ``wet_model``.
     """
     table = np.array(pieces(robot))
     names = [body.name for body in layout(robot).bodies]
-    model = with_pieces(spec, table, robot.length, room)
+    model = with_pieces(spec, table, robot.length, room, acting=acting)
     ids = np.array([model.body(name).id for name in names])
     rows = model.numeric_data[HEADER:].reshape(-1, table.shape[1])[: len(table)]
     column(rows, "body")[:, 0] = ids[table[:, 0].astype(int)]
     return model
 
 
-def with_pieces(spec: Any, table: np.ndarray, length: float, room: int | None = None) -> Any:
+def with_pieces(
+    spec: Any, table: np.ndarray, length: float, room: int | None = None, *, acting: bool = False
+) -> Any:
     """Return a compiled ``mujoco.MjSpec`` that carries a table of pieces.
 
     Args:
@@ -60,9 +68,13 @@ def with_pieces(spec: Any, table: np.ndarray, length: float, room: int | None = 
         table: of pieces; its bodies are numbered as MuJoCo numbers them.
         length: for the Reynolds number of friction [m].
         room: pieces that the table has room for; as many as there are if None.
+        acting: see ``wet_model``.
     """
     data = packed(table, length, room)
     numeric = spec.add_numeric(name=NUMERIC, size=len(data))
     numeric.data = data
     spec.nuserdata = NUMBERS
+    if acting:
+        spec.activate_plugin(PLUGIN)
+        spec.add_plugin(name=NUMERIC, plugin_name=PLUGIN, active=True)
     return spec.compile()
