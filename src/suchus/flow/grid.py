@@ -8,11 +8,15 @@ import numpy as np
 
 from suchus.errors import InvalidDesign
 from suchus.flow.compiled import PAD
-from suchus.flow.multigrid import COARSEST
+from suchus.flow.multigrid import COARSEST, LONGEST
 from suchus.kinds import misfits, show
 
 MOST = 2**16
 """Cells along a side [-]; the fields of a square of so many would take a hundred gigabytes."""
+
+
+NARROW = 8
+"""Most cells across a channel on the coarsest level that may be long [-]."""
 
 
 def _coarsest(cells: tuple[int, ...]) -> tuple[int, ...]:
@@ -22,9 +26,12 @@ def _coarsest(cells: tuple[int, ...]) -> tuple[int, ...]:
 
 
 def _fitting(cells: tuple[int, ...]) -> tuple[int, ...]:
-    """Return the next sizes that can be halved until at most ``COARSEST`` cells are left along each side."""
-    halvings = 0
-    while ceil(max(cells) / 2**halvings) > COARSEST:
+    """Return the next sizes that can be halved until at most ``COARSEST`` cells are left along each side.
+
+    Of a long channel up to ``LONGEST`` are left, rather than that it becomes wider.
+    """
+    halvings, short = 0, min(cells)
+    while ceil(max(cells) / 2**halvings) > (COARSEST if short > 4 * 2**halvings else LONGEST):
         halvings += 1
     step = 2**halvings
     return tuple(step * max(4, ceil(n / step)) for n in cells)
@@ -79,7 +86,8 @@ class Grid:
             raise InvalidDesign(f"the grid has {show(self.cells)} cells; up to {MOST} along each side are allowed.")
         if min(self.cells) < 8:
             raise InvalidDesign(f"the grid has {told} cells; at least {_times((8,) * self.axes)} are needed.")
-        if max(_coarsest(self.cells)) > COARSEST:
+        last = _coarsest(self.cells)
+        if max(last) > (LONGEST if min(last) <= NARROW else COARSEST):
             raise InvalidDesign(
                 f"a grid of {told} cells cannot be halved down to {COARSEST} cells a side, as multigrid needs; "
                 f"take {_times(_fitting(self.cells))}, or let Grid.covering choose."

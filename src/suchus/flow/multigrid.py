@@ -45,6 +45,9 @@ X, B, DINV, FACES = range(4)
 COARSEST = 32
 """Most cells along a side of the last level, which is solved by smoothing alone [-]."""
 
+LONGEST = 16 * COARSEST
+"""Largest number of cells along a side of the coarsest level of a long channel, which takes more sweeps there [-]."""
+
 
 @part
 def _shape(layout, k, inner):
@@ -225,6 +228,15 @@ def _live_mean(b, dinv, inner):
 
 
 @part
+def _sweeps(longest):
+    """Return how many smoothing steps the coarsest level takes, whose smoothest error decays with its length squared.
+
+    A multiple of the length was enough for short ones; results keep their bytes.
+    """
+    return 2 * longest if longest <= COARSEST + PAD else longest * longest // 16
+
+
+@part
 def _solve_coarsest(x, b, faces, dinv, place, inner, repeats):
     y = np.empty(x.shape, x.dtype)
     for j in range(x.shape[0]):
@@ -237,7 +249,7 @@ def _solve_coarsest(x, b, faces, dinv, place, inner, repeats):
             for k in range(s, s + wide - EDGE - EDGE):
                 b[unsigned(j), k] -= mean
     one, two = weights(inner, x.dtype.type)
-    for k in range(2 * (max(x.shape[0], signed(wide)) - PAD)):
+    for k in range(_sweeps(max(x.shape[0], signed(wide)) - PAD)):
         smooth(y, x, b, faces, dinv, place, one if k % 2 == 0 else two, inner, repeats)
         seal_ends(y, repeats[len(inner)])
         x, y = y, x
