@@ -66,7 +66,7 @@ def take(name: str) -> Path:
     try:
         with sync_playwright() as driver:
             browser = driver.chromium.launch(executable_path=shutil.which("chromium"), args=_SOFTWARE)
-            tab = browser.new_page(viewport=SIZE)  # type: ignore[arg-type]
+            tab = browser.new_page(viewport=SIZE)
             tab.set_default_timeout(1000 * _PATIENCE)
             tab.goto(viewer.url, wait_until="commit")
             tab.get_by_text("feet that stand").wait_for(state="attached")
