@@ -1,5 +1,7 @@
 """Three dimensions: exact flows, symmetries, bodies and what is refused; published numbers in the validation."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -13,6 +15,7 @@ from suchus.flow.compiled import PAD
 from suchus.flow.exchange import Reaction
 from suchus.flow.farfield import FarBody, FarField
 from suchus.flow.watch import vorticity_size
+from suchus.flow.water import Water
 
 HELD = flow.Stream(endless=False)
 NAMES = (("left", "right"), ("bottom", "top"), ("low", "high"))
@@ -201,10 +204,15 @@ def test_what_counts_around_bodies_is_kept_there_alone():
     assert large.water.mu1.shape == (3, 3, *(end - first + 1 for first, end in np.reshape(large.water.window, (3, 2))))
 
 
+@cache
+def empty_water():
+    return Water(flow.Grid(cells=(16, 16, 16), cell=1.0), flow.Sides(), 1.0, np.float32)
+
+
 @given(st.lists(st.tuples(st.integers(2, 9), st.integers(1, 5)), min_size=6, max_size=6))
 def test_values_of_one_window_are_found_in_another(ends):
     """As if both were parts of one whole array, which is 0 outside of the first window."""
-    water = ball(steps=0, bodies=()).water
+    water = empty_water()
     old, new = (tuple(n for first, size in part for n in (first, first + size)) for part in (ends[:3], ends[3:]))
     whole = np.zeros((3, 20, 20, 20), np.float32)
     water._look_at(old)
