@@ -381,7 +381,7 @@ HALF = flow.Grid(cells=(24, 24, 12), cell=1 / 8, origin=(-1.5, -1.5, 0.0))
             ),
             "a shape in space, and the grid has two axes",
         ),
-        (lambda: flow.FreeBody(shape=1.0), "a Shape or SpaceShape is needed"),
+        (lambda: flow.FreeBody(shape=1.0), "a Shape or a SpaceShape is needed"),
         (lambda: ball(contact=flow.Contact(gap=0.1, pressure=1.0)), "contact acts between plane outlines"),
         (lambda: ball().surface(), "is for plane grids"),
         (lambda: ball().control(0.1), "a control volume is for plane grids"),
