@@ -1,9 +1,9 @@
 """Water inside the physics step: a plugin of passive forces, registered once in a process, where a run has water.
 
 MuJoCo calls it at every evaluation of the passive forces of a model that names it, on whatever thread, without Python's
-lock. It is no callback (``mjcb_passive``): that acts in every model, and a batch whose process has one computes positions
-and velocities twice in a step. The kernel (``hydro.kernel``) is kept on disk; the thin function around it is not, since
-it freezes what it refers to, the offsets of this MuJoCo among it.
+lock. It is no callback (``mjcb_passive``): that acts in every model, and a batch whose process has one computes
+positions and velocities twice in a step. The kernel (``hydro.kernel``) is kept on disk; the thin function around it is
+not, since it freezes what it refers to, the offsets of this MuJoCo among it.
 """
 
 import ctypes
@@ -69,24 +69,25 @@ def _register(at: np.ndarray) -> list[Any]:
     factor = types.ExternalFunction(f"suchus_{_FACTOR}", types.void(*pair))
 
     @cfunc(types.void(*pair, number, number), nopython=True)
-    def act(model: Any, data: Any, instance: int, capability: int) -> None:
+    def act(model: Any, data: Any, _instance: int, _capability: int) -> None:
         if wet(model, data, at):
             factor(model, data)
 
     @cfunc(number(types.voidptr, number), nopython=True)
-    def no_state(model: Any, instance: int) -> int:
+    def no_state(_model: Any, _instance: int) -> int:
         return 0
 
     @cfunc(number(*pair, number), nopython=True)
-    def begin(model: Any, data: Any, instance: int) -> int:
+    def begin(_model: Any, _data: Any, _instance: int) -> int:
         return 0
 
     @cfunc(types.void(*pair, types.voidptr, number), nopython=True)
-    def reset(model: Any, state: Any, plugin_data: Any, instance: int) -> None:
+    def reset(_model: Any, _state: Any, _plugin_data: Any, _instance: int) -> None:
         return None
 
     plugin = plugin_struct()()
-    _address(library, _DEFAULT), _address(library, _REGISTER)
+    for name in (_DEFAULT, _REGISTER):
+        _address(library, name)
     getattr(library, _DEFAULT)(ctypes.byref(plugin))
     plugin.name = PLUGIN.encode()
     plugin.capabilityflags = int(mujoco.mjtPluginCapabilityBit.mjPLUGIN_PASSIVE)

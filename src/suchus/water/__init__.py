@@ -14,6 +14,7 @@ from suchus.water.readings import Attempt, attempts, readings_table
 from suchus.water.slender import Cruise, Effort, cruise, cycle, reactive, recoil, resistive
 from suchus.water.sweep import greatest, scaled, survey
 from suchus.water.swimming import MODELS, displaced, swim, wave_speed
+from suchus.water.taken import taken, unevenness
 from suchus.water.tank import Tether
 from suchus.water.towed import towed
 from suchus.water.undulation import ExactWave, Motion, Undulation, undulation
@@ -64,9 +65,11 @@ __all__ = [
     "survey",
     "swim",
     "swing",
+    "taken",
     "tether",
     "towed",
     "undulation",
+    "unevenness",
     "wave_form",
     "wave_speed",
 ]
