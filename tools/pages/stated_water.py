@@ -114,8 +114,9 @@ def _drive(m: Mapping[str, float]) -> str:
     return (
         f"By the drive for walking alone the floating caiman swims at {m['drive_swim_speed']:.2f} m/s as long as it "
         f"feels no ground, {m['drive_afloat_share']:.0%} of the time, and walks at {m['drive_walk_speed']:.2f} m/s "
-        f"from then on, in the end with {m['drive_feet_walking']:.0%} of its weight on its feet. Its limbs fall silent "
-        f"or set in {m['drive_changes']:.0f} times. It ends {m['drive_ashore']:+.2f} m up the shore from the water "
+        f"from then on, in the end with {m['drive_feet_walking']:.0%} of its weight on its feet. The limbs change "
+        f"between silent and walking {m['drive_changes']:.0f} time(s). It ends {m['drive_ashore']:+.2f} m "
+        "up the shore from the water "
         f"line; without the load felt, at the same drive, {m['drive_ashore_unfelt']:+.2f} m.\n"
     )
 

@@ -37,7 +37,7 @@ class LoadRule:
 
 
 class FeltDrive:
-    """The load that each run of a batch feels, and the drive that comes of it."""
+    """The load that each run of a batch feels, and the drive that it adds."""
 
     def __init__(self, rules: Sequence[LoadRule | None], robots: Sequence[AnyRobot], period: float) -> None:
         self.felt = any(rule is not None for rule in rules)

@@ -164,8 +164,9 @@ class PatternGeneratorExperiment(Experiment):
             f"bend of the trunk turns the walk by {m['turn_steering']:deg+.1f} degrees a cycle and an asymmetric drive "
             f"by {m['turn_asymmetry']:deg+.1f} (straight: {m['turn_straight']:deg+.1f}): the bend turns {steer}. From "
             f"the water, by the drive for walking and what it feels of the ground, a floating robot swims at "
-            f"{m['drive_swim_speed']:.2f} m/s and walks at {m['drive_walk_speed']:.2f}; its limbs fall silent or set "
-            f"in {m['drive_changes']:.0f} times, and it ends {m['drive_ashore']:+.2f} m up the shore from the water "
+            f"{m['drive_swim_speed']:.2f} m/s and walks at {m['drive_walk_speed']:.2f}; its limbs change between "
+            f"silent and walking {m['drive_changes']:.0f} time(s), and it ends {m['drive_ashore']:+.2f} m up "
+            f"the shore from the water "
             f"line, without the load felt {m['drive_ashore_unfelt']:+.2f} m."
         )
 
