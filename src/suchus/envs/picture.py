@@ -123,4 +123,4 @@ def _draw_goal(above: Axes, side: Axes, goal: AnyGoal, place: Float[np.ndarray, 
     if beyond > 1.0:
         head = centre + towards / beyond
         tail = head - _ARROW * (right - left) * towards / np.hypot(*towards)
-        above.annotate("", head, tail, arrowprops={"arrowstyle": "-|>", "color": colour}, zorder=9)
+        above.annotate("", tuple(head), tuple(tail), arrowprops={"arrowstyle": "-|>", "color": colour}, zorder=9)

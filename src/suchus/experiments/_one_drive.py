@@ -1,6 +1,5 @@
 """One drive from the water onto the land: a pattern generator whose drive never changes, and the load that it feels."""
 
-from collections.abc import Mapping
 from math import sin
 
 import numpy as np
@@ -58,7 +57,7 @@ def reduced(record: xr.Dataset, line: float) -> xr.Dataset:
     )
 
 
-def measures(record: xr.Dataset) -> Mapping[str, Measure]:
+def measures(record: xr.Dataset) -> dict[str, Measure]:
     """Return how it swims and walks by one drive: speeds, changes, and how far it comes."""
     late = record.sel(shore_time=slice(START + _BEGUN - 1e-9, None))
     time, ahead = late.shore_time.values, late.shore_ahead.sel(shore_arm="felt").values
