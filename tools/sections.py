@@ -1,15 +1,36 @@
 """Compute the table of drag and added mass of elliptic sections that ``water.sections`` reads.
 
 ``python tools/sections.py FOLDER [JOBS]``: flows that are in the folder, of the same set-up by the same code, are kept,
-so that it may be stopped and begun again; then the table in the package is written anew.
+so that it may be stopped and begun again; then the table in the package and the page that states it are written anew.
 """
 
 import sys
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
+from pages.stated import keep
+from pages.stated import main as write_pages
 from suchus.atlas import sections
 from suchus.atlas.computing import FlowProgress, compute_all
-from suchus.water.sections import write_table
+from suchus.water.sections import attached, coefficients, held_out, table, write_table
+
+
+def stated() -> Mapping[str, Any]:
+    """Return what the page states of the shipped table."""
+    finer = {(one.aspect, one.keulegan): one for one in table()}  # the finer grid comes last
+    round_, high = (finer[point] for point in sections.FINER)
+    return {
+        "drag": [[coefficients(a, k)[0] for k in sections.KEULEGANS] for a in sections.ASPECTS],
+        "added": [[coefficients(a, k)[1] for k in sections.KEULEGANS] for a in sections.ASPECTS],
+        "attached": [attached(k)[0] for k in sections.KEULEGANS],
+        "attached_added": attached(1.0)[1],
+        "attached_robot": attached(5.0, 3600.0)[1],
+        "held_out": float(held_out().max()),
+        "fine_round": [round_.drag, round_.added],
+        "fine_high": [high.drag, high.added],
+        "left": max(one.left for one in table()),
+    }
 
 
 def main(folder: Path, jobs: int) -> None:
@@ -21,6 +42,8 @@ def main(folder: Path, jobs: int) -> None:
 
     outcomes = compute_all(sections.cases(), folder, jobs=jobs, quick=False, tell=tell)
     print(write_table(outcomes))
+    keep("sections", stated())
+    write_pages([])
 
 
 if __name__ == "__main__":

@@ -115,3 +115,30 @@ def test_the_erratum_on_the_sign_says_what_the_resistive_model_does(robot):
     printed = fit(robot, printed_wave(robot, "I", frequency=1.0, sign=1)).swim
     assert float(swim(robot, printed).speed.sel(model="resistive")) == pytest.approx(-0.20, abs=0.005)
     assert "tail first with it, by 0.20 m/s at 1 Hz" in ERRATA["eq_20_sign"].shows
+
+
+def test_midlines_as_taken_swim_beside_those_commanded(monkeypatch):
+    """The joints of six degrees of freedom bend otherwise than commanded, and these bends are what is let swim."""
+    swum = []
+
+    def free(self, name, motion, cells, cycles, progress):
+        swum.append((name, motion, cells, cycles))
+        return xr.Dataset({"speed": ("cycle", np.full(cycles, 0.1 * len(swum)))})
+
+    monkeypatch.setattr(Swimming, "_free", free)
+    for name in ("_SETTLE", "_AVERAGED"):  # of which the experiment itself takes more
+        monkeypatch.setattr(f"suchus.experiments.swimming.{name}", 2)
+    quick = replace(EXPERIMENTS["swimming"].quick(), taken=True, coarse_cells=64)
+    motion = quick._fit(-1).swim
+    (record,) = quick._taken(motion, lambda stage, share: None)
+    assert [one[0] for one in swum] == list(findings.TAKEN)
+    assert [one[2:] for one in swum] == [(64, quick.arm_cycles)] * 2
+    assert swum[0][1].frequency == quick.frequency
+    assert record.taken_speed.values[:, -1] == pytest.approx([0.1, 0.2])
+    # the tail alone folds more than the whole body; neither is what was commanded
+    assert 0.1 < float(record.taken_away[0]) < float(record.taken_away[1]) < 1.5
+    arms = _no_arms(quick, None, None, None, None)
+    told = dict(findings._compared(xr.merge([arms, record])))
+    assert told["speed_tail_only_as_taken"].value == pytest.approx(0.2)
+    assert told["misfit_trunk_and_tail_as_taken"].value == float(record.taken_away[0])
+    assert "speed_tail_only_as_taken" not in dict(findings._compared(arms))

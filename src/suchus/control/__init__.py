@@ -10,6 +10,7 @@ from suchus.control.limbs import LAWS, LimbLaw
 from suchus.control.open_loop import OpenLoop
 from suchus.control.oscillators import Oscillators
 from suchus.control.pattern_generator import Generator, OscillatorStates, PatternGenerator, oscillate
+from suchus.control.pattern_load import LoadRule
 from suchus.control.rolling import Rolling
 from suchus.control.sensed import Sensed
 from suchus.control.shared import OWNERS, Shared
@@ -42,6 +43,7 @@ __all__ = [
     "Joinable",
     "Kick",
     "LimbLaw",
+    "LoadRule",
     "OpenLoop",
     "OscillatorStates",
     "Oscillators",

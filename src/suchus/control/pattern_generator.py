@@ -12,6 +12,7 @@ from suchus.control.controller import Command
 from suchus.control.course import Course, Courses, members, mistake, number
 from suchus.control.limbs import LAWS, LimbLaw, Loads
 from suchus.control.oscillators import Oscillators, Rhythm, couple, cut
+from suchus.control.pattern_load import FeltDrive, LoadRule
 from suchus.control.pattern_posture import PatternPosture, initial_phases, waves
 from suchus.control.pattern_rules import Rules
 from suchus.control.sensed import Sensed
@@ -70,6 +71,8 @@ class PatternGenerator:
     """Spine to spine: what the trunk lacks of its commanded bend is shared out; None for none."""
     tail: TailRule | None = None
     """Tail to tail: the pitch of the tail gives way to the ground; None for none."""
+    load: LoadRule | None = None
+    """Load to drive: afloat the oscillators get more drive and swim; None for none."""
     oscillators: Oscillators = field(default_factory=Oscillators)
     """The numbers of the oscillators."""
 
@@ -99,7 +102,7 @@ class PatternGenerator:
     @property
     def feels(self) -> bool:
         """Whether any feedback rule is on."""
-        return self.limbs.feels or self.spine is not None or self.tail is not None
+        return self.limbs.feels or any(rule is not None for rule in (self.spine, self.tail, self.load))
 
     def start(
         self,
@@ -157,6 +160,7 @@ class Generator:
         self.couplings = []
         """Of each run; see ``oscillators.Couplings``."""
         phases = []
+        self._felt = FeltDrive([one.load for one in controls], robots, period)
         _, amplitude = self._own(START)
         for i, (control, robot, gait, seed) in enumerate(zip(controls, robots, gaits, seeds, strict=True)):
             parts = [one.part for one in self._posture[i].segments]
@@ -211,6 +215,8 @@ class Generator:
         """Let the oscillators turn, and say what the servos do."""
         if sensed is not None and self._loads.felt:
             self._loads.feel(sensed)
+        if sensed is not None and self._felt.felt:
+            self._felt.feel(sensed)
         self.advance(tick)
         targets = self._targets(tick * self._period)
         if sensed is not None and tick * self._period >= START - _SLACK:
@@ -219,7 +225,8 @@ class Generator:
 
     def _own(self, time: float) -> tuple[np.ndarray, np.ndarray]:
         """Return own frequencies [Hz] and amplitudes [-] of all oscillators at a time."""
-        drive = self._drive.at(time)[:, None] + self._asymmetry.at(time)[:, None] * self._sides
+        whole = self._drive.at(time) + self._felt.drive if self._felt.felt else self._drive.at(time)
+        drive = whole[:, None] + self._asymmetry.at(time)[:, None] * self._sides
         frequency, amplitude = np.empty_like(drive), np.empty_like(drive)
         axis = slice(0, self._limbs.start)
         for numbers, runs in self._numbers:

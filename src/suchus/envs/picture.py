@@ -114,11 +114,13 @@ def _draw_goal(above: Axes, side: Axes, goal: AnyGoal, place: Float[np.ndarray, 
             ax.axvline(float(place[0]), color=colour, linestyle=(0, (4, 2)))
     else:
         above.add_patch(Circle((float(place[0]), float(place[1])), goal.within, facecolor="none", edgecolor=colour))
-        side.axvspan(float(place[0]) - goal.within, float(place[0]) + goal.within, color=colour, alpha=_TINT, linewidth=0)
+        side.axvspan(
+            float(place[0]) - goal.within, float(place[0]) + goal.within, color=colour, alpha=_TINT, linewidth=0
+        )
     centre = np.array([left + right, low + high]) / 2
     towards = place - centre if not isinstance(goal, Landing) else np.array([place[0] - centre[0], 0.0])
     beyond = float((np.abs(towards) / (_EDGE * np.array([right - left, high - low]))).max())
     if beyond > 1.0:
         head = centre + towards / beyond
         tail = head - _ARROW * (right - left) * towards / np.hypot(*towards)
-        above.annotate("", head, tail, arrowprops={"arrowstyle": "-|>", "color": colour}, zorder=9)
+        above.annotate("", tuple(head), tuple(tail), arrowprops={"arrowstyle": "-|>", "color": colour}, zorder=9)

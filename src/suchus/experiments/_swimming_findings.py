@@ -12,6 +12,8 @@ from suchus.water import Quarters, Sway, Swum, convex_higher, efficiency, wave_f
 
 ARMS = ("trunk and tail", "trunk only", "tail only", "as printed", "exact wave", "exact wave as printed")
 """Motions that are compared swimming freely."""
+TAKEN = ("trunk and tail as taken", "tail only as taken")
+"""The same with the midline that the joints take in six degrees of freedom."""
 SETTLED = 4
 """Last cycles of the free swim over which its track is measured, fewer where it has fewer after the first [-]."""
 _GAINS = {"tail": "trunk only", "spine": "tail only"}
@@ -52,6 +54,14 @@ def part(record: xr.Dataset, name: str) -> xr.Dataset:
 def explain(measures: Mapping[str, float]) -> str:
     """Return what decided the outcome, from its measures."""
     m = {name: Reading(value) for name, value in measures.items()}
+    bent = (
+        f" On the midline that the joints take in six degrees of freedom, whose angles are "
+        f"{m['misfit_trunk_and_tail_as_taken']:.0%} off those commanded (tail alone: "
+        f"{m['misfit_tail_only_as_taken']:.0%}), they swim {m['speed_trunk_and_tail_as_taken']:.3f} m/s and the tail "
+        f"alone {m['speed_tail_only_as_taken']:.3f} m/s."
+        if "speed_trunk_and_tail_as_taken" in m
+        else ""
+    )
     return (
         f"Trunk and tail together swim {m['speed_trunk_and_tail']:.3f} m/s, the tail alone {m['speed_tail_only']:.3f} "
         f"and the trunk alone {m['speed_trunk_only']:.3f} m/s: the swing of the tail {_adds(m['gain_tail_swim'])}, "
@@ -60,7 +70,7 @@ def explain(measures: Mapping[str, float]) -> str:
         f"{m['speed_exact_wave_as_printed']:+.3f} m/s, head first positive; the resistive model of the round body says "
         f"{m['speed_as_printed_resistive']:+.3f} m/s. The few joints come as near to (20) as {m['misfit']:.0%} of the "
         f"tail's swing, and the swing of the free body falls back by up to {m['envelope_dip']:.0%} on its way to the "
-        "tip. The water is a slice of unlimited depth at a Reynolds number far below the robot's own."
+        f"tip.{bent} The water is a slice of unlimited depth at a Reynolds number far below the robot's own."
     )
 
 
@@ -143,6 +153,11 @@ def _compared(record: xr.Dataset) -> Iterator[tuple[str, Measure]]:
     last = {str(arm): record.arm_speed.sel(arm=arm).values[-2:] for arm in record.arm.values}
     for arm, speeds in last.items():
         yield f"speed_{arm.replace(' ', '_')}", Measure(float(speeds[-1]), "m/s")
+    if "taken_speed" in record:
+        for arm in record.taken_arm.values:
+            name, one = str(arm).replace(" ", "_"), record.sel(taken_arm=arm)
+            yield f"speed_{name}", Measure(float(one.taken_speed[-1]), "m/s")
+            yield f"misfit_{name}", Measure(float(one.taken_away), "-")
     both = last["trunk and tail"]
     for name, without in _GAINS.items():
         yield from _ranged(f"gain_{name}_swim", list(both - last[without]), "m/s")

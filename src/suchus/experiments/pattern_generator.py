@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
+from math import radians
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,7 @@ from suchus.design import AnyRobot, layout
 from suchus.design.checks import Checks
 from suchus.errors import UnsuitedRobot
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
+from suchus.experiments import _one_drive
 from suchus.figures.pattern_generator import draw_land, draw_locks, draw_ramp, draw_sweep
 from suchus.gaits import GAITS
 from suchus.land import Run, simulate
@@ -69,6 +71,16 @@ class PatternGeneratorExperiment(Experiment):
     """Duration of each walk on land, in periods of the gait [-]."""
     ramp: float = 14.0
     """Duration over which the drive rises from 1 to 5 and falls again, in periods of the gait [-]."""
+    swimmer: AnyRobot = field(default_factory=lambda: ROBOTS["floating_caiman"])
+    """The robot that goes from the water onto the land by one drive, ``walk``; it must float."""
+    swimmer_gait: AnyGait = field(default_factory=lambda: GAITS["belly_crawl"])
+    """Gait whose foot paths, bends and period its oscillators drive."""
+    slope: float = radians(5)
+    """Of the shore [rad]."""
+    water_line: float = 2.2
+    """Distance of the water line ahead of the robot, along the ground [m]."""
+    shore_time: float = 30.0
+    """Duration of the runs from the water [s]."""
     seed: int = 0
     """Seed of the first start; the others follow [-]."""
 
@@ -85,11 +97,16 @@ class PatternGeneratorExperiment(Experiment):
             check.number("asymmetry", 0.0, 2.0, "")
             check.whole("cycles", 1, 1000)
             check.number("ramp", 1.0, 1000.0, "")
+            check.number("slope", 0.01, 1.0, "rad")
+            check.number("water_line", 0.0, 100.0, "m")
+            check.number("shore_time", START + 1.5, 3600.0, "s")
             check.whole("seed", 0, 2**31)
 
     def quick(self) -> "PatternGeneratorExperiment":
         """Three drives, four starts, short walks."""
-        return replace(self, drives=(1.0, 3.0, 4.0), starts=4, followed=6.0, hold=0.5, cycles=1, ramp=2.0)
+        return replace(
+            self, drives=(1.0, 3.0, 4.0), starts=4, followed=6.0, hold=0.5, cycles=1, ramp=2.0, shore_time=3.0
+        )
 
     def simulate(self, progress: Progress = silent) -> Simulated:
         """Sweep the drive, start at random, ramp the drive, and walk."""
@@ -105,7 +122,10 @@ class PatternGeneratorExperiment(Experiment):
         ]
         parts.append(self._ramp())
         found, ramped = self._land(progress)
-        record = xr.merge([*parts, found]).assign_attrs(
+        told = staged(progress, "one drive across the shore", 0.85, 1.0)
+        across = _one_drive.runs(self.swimmer, self.swimmer_gait, self.walk, self.slope, self.water_line)
+        swum = simulate(across, duration=self.shore_time, every=_EVERY, progress=told)
+        record = xr.merge([*parts, found, _one_drive.reduced(swum, self.water_line)]).assign_attrs(
             within=self.within, hold=self.hold, silent_above=_NUMBERS.limb_drives[1], walk=self.walk, swim=self.swim
         )
         return Simulated(record=record, replays=self._replays(ramped))
@@ -118,7 +138,7 @@ class PatternGeneratorExperiment(Experiment):
             found[f"turn_{arm}"] = Measure(float(one.turned / one.walked), unit)
             if arm in STRAIGHT:
                 found[f"stride_{arm}"] = Measure(float(one.forward / one.walked / record.attrs["length"]), "L/cycle")
-        return found
+        return found | _one_drive.measures(record)
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Say what the drive does, what steers, and how order comes about."""
@@ -142,7 +162,12 @@ class PatternGeneratorExperiment(Experiment):
             f"segment to the next, and the frequency {jump} from {m['frequency_below']:.2f} to "
             f"{m['frequency_above']:.2f} Hz where the limbs fall silent. From random phases {walk}; {swim}. A steady "
             f"bend of the trunk turns the walk by {m['turn_steering']:deg+.1f} degrees a cycle and an asymmetric drive "
-            f"by {m['turn_asymmetry']:deg+.1f} (straight: {m['turn_straight']:deg+.1f}): the bend turns {steer}."
+            f"by {m['turn_asymmetry']:deg+.1f} (straight: {m['turn_straight']:deg+.1f}): the bend turns {steer}. From "
+            f"the water, by the drive for walking and what it feels of the ground, a floating robot swims at "
+            f"{m['drive_swim_speed']:.2f} m/s and walks at {m['drive_walk_speed']:.2f}; its limbs change between "
+            f"silent and walking {m['drive_changes']:.0f} time(s), and it ends {m['drive_ashore']:+.2f} m up "
+            f"the shore from the water "
+            f"line, without the load felt {m['drive_ashore_unfelt']:+.2f} m."
         )
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
@@ -248,7 +273,7 @@ class PatternGeneratorExperiment(Experiment):
         }
         runs = [Run(robot=self.robot, gait=self.gait, control=one, label=name) for name, one in arms.items()]
         duration = START + self.cycles * self.gait.period
-        told = staged(progress, "walks", 0.45, 0.75)
+        told = staged(progress, "walks", 0.45, 0.65)
         record = simulate(runs, duration=duration, every=_EVERY, progress=told)
         walked = record.limb_phase.isel(leg=0)
         begun = walked.sel(time=START, method="nearest")
@@ -264,7 +289,7 @@ class PatternGeneratorExperiment(Experiment):
         )
         ramped = Run(robot=self.robot, gait=self.gait, control=PatternGenerator(drive=self._ramped))
         end = START + self.ramp * self.gait.period
-        told = staged(progress, "drive ramp", 0.75, 1.0)
+        told = staged(progress, "drive ramp", 0.65, 0.85)
         return found, simulate([ramped], duration=end, every=2, progress=told)
 
     def _replays(self, ramped: xr.Dataset) -> Mapping[str, Replay]:

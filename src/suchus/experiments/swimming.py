@@ -8,18 +8,24 @@ from typing import Any, ClassVar
 import numpy as np
 import xarray as xr
 
+from suchus.control import Swimming as Waving
 from suchus.design import Crocodile
 from suchus.design.checks import Checks
+from suchus.design.flotation import float_hull
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Simulated, silent, staged
 from suchus.experiments import _swimming_findings as findings
 from suchus.experiments._swimming_findings import ARMS
 from suchus.figures.swimming import draw_forces, draw_free, draw_quarters, draw_sides, film_pressure, film_vorticity
+from suchus.gaits import GAITS
 from suchus.kinematics.wave import READINGS
+from suchus.land import Lake, Run, simulate
+from suchus.motion import Swim
 from suchus.robots import ROBOTS
 from suchus.water import (
     ExactWave,
     Fit,
     Motion,
+    Outline,
     Tether,
     attempts,
     fit,
@@ -28,9 +34,14 @@ from suchus.water import (
     printed_wave,
     readings_table,
     swim,
+    taken,
     tether,
     towed,
+    undulation,
+    unevenness,
 )
+
+_SETTLE, _AVERAGED = 5, 3  # [cycle]; in six degrees of freedom, before the joints' angles are taken and while they are
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,6 +62,8 @@ class Swimming(Experiment):
     swing that the nearest wave of the form (20) has. ``gain_tail_swim`` is the speed of trunk and tail less that of the
     trunk alone, ``gain_spine_swim`` less that of the tail alone.
     Trunk, tail, the printed direction, and the wave that the midline follows exactly are compared on a coarser grid.
+    With ``taken`` the midlines that the same commands give in six degrees of freedom at the surface, where the water
+    shares the cable's bend out among its joints, swim beside them; of these only yaw counts.
     Other readings of (20) are held in a thicker water, at ``readings_reynolds``. Everything is per metre of depth but
     ``servo_load_peak``, the torque at a servo's shaft over its limit: there every section is as high as the robot's and
     feels the flow's pressures.
@@ -92,6 +105,9 @@ class Swimming(Experiment):
     """Distance over which the straight body is towed, its drag the mean over the last length [body length]."""
     frames: int = 20
     """Pictures of each film, over one cycle [-], 1 to 200."""
+    taken: bool = False
+    """Whether the midline that the joints take in six degrees of freedom is let swim too, whole and tail alone: two
+    more swims as those of trunk and tail."""
     keep: str = ""
     """Folder for what is finished of an interrupted run, from which it goes on; empty keeps nothing."""
 
@@ -124,12 +140,13 @@ class Swimming(Experiment):
         held = self._held("ours", ours, staged(progress, "held", 0.0, 0.08))
         back = self._held("as printed", printed, staged(progress, "as printed", 0.08, 0.16))
         free = self._free("ours", ours.swim, self.cells, self.free_cycles, staged(progress, "free", 0.16, 0.5))
-        arms = self._arms(ours, printed, free, staged(progress, "trunk and tail apart", 0.5, 0.92))
+        arms = self._arms(ours, printed, free, staged(progress, "trunk and tail apart", 0.5, 0.8))
+        bent = self._taken(ours.swim, staged(progress, "as the joints take it", 0.8, 0.92)) if self.taken else []
         readings, table = self._readings(staged(progress, "readings of (20)", 0.92, 0.96))
         drag = self._drag(float(free.speed[-1]), staged(progress, "towed", 0.96, 1.0))
         told = back[["thrust", "aside", "power", "cycle_thrust"]]
         record = xr.merge(
-            [_prefixed(held, "held"), _prefixed(told, "printed"), _prefixed(free, "free"), arms, readings],
+            [_prefixed(held, "held"), _prefixed(told, "printed"), _prefixed(free, "free"), arms, readings, *bent],
             join="exact",
         )
         record["model_speed"] = swim(self.robot, ours.swim).speed
@@ -194,6 +211,30 @@ class Swimming(Experiment):
             speeds.append(swum.speed.values[: self.arm_cycles])
         data = xr.Dataset({"arm_speed": (("arm", "cycle"), np.array(speeds), {"units": "m/s"})})
         return data.assign_coords(arm=list(ARMS), cycle=np.arange(1, self.arm_cycles + 1))
+
+    def _taken(self, motion: Swim, progress: Callable[[float], None]) -> list[xr.Dataset]:
+        """Return speeds of the midlines that joints take in six degrees of freedom, and how far off they are."""
+        bare = replace(self.robot, hull=None)
+        floating = self.robot if self.robot.hull is not None else replace(bare, hull=float_hull(bare))
+        meant = (motion, motion.tail_only())
+        runs = [
+            Run(robot=floating, gait=GAITS["belly_crawl"], lake=Lake(level=2.0), control=Waving(swim=one))
+            for one in meant
+        ]
+        record = simulate(runs, duration=(_SETTLE + _AVERAGED) / self.frequency)
+        outline, speeds, away = Outline(bare, self.coarse_cells + 1), [], []
+        for i, (arm, one) in enumerate(zip(findings.TAKEN, meant, strict=True)):
+            bends = taken(outline, record.isel(run=i), frequency=self.frequency, cycles=_AVERAGED, name=arm)
+            told = portion(progress, i, len(meant))
+            speeds.append(self._free(arm, bends, self.coarse_cells, self.arm_cycles, told).speed.values)
+            away.append(unevenness(bends, undulation(outline, one)))
+        data = xr.Dataset(
+            {
+                "taken_speed": (("taken_arm", "cycle"), np.array(speeds), {"units": "m/s"}),
+                "taken_away": ("taken_arm", away, {"units": "1", "long_name": "rms angle off, over that commanded"}),
+            }
+        )
+        return [data.assign_coords(taken_arm=list(findings.TAKEN), cycle=np.arange(1, self.arm_cycles + 1))]
 
     def _readings(self, progress: Callable[[float], None]) -> tuple[xr.Dataset, str]:
         """Return the mean thrust of further readings, and a table of all of them."""

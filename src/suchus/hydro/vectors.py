@@ -28,9 +28,7 @@ def part(function: Callable[P, R]) -> Callable[P, R]:
     """Compile a part of these, which nothing else calls."""
     made: Callable[P, R] = njit(
         nogil=True, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True, forceinline=True
-    )(
-        function
-    )
+    )(function)
     return made
 
 

@@ -67,11 +67,11 @@ def plugin_struct() -> type[ctypes.Structure]:
     found = re.search(r"typedef struct mjpPlugin_ \{(.*?)\} mjpPlugin;", text, re.DOTALL)
     fields: list[tuple[str, Any]] = []
     for told in found.group(1).split(";") if found else ():
-        function, plain = re.search(r"\(\*(\w+)\)|(\w+)\s*$", told.strip()).groups() if told.strip() else ("", "")
-        if function or "*" in told:
-            fields.append((function or plain, ctypes.c_char_p if plain == "name" else ctypes.c_void_p))
-        elif plain:
-            fields.append((plain, ctypes.c_int))
+        name = re.search(r"(?<=\(\*)\w+(?=\))|\w+\s*$", told.strip())
+        if name is None:
+            continue
+        kind = ctypes.c_char_p if name.group() == "name" else ctypes.c_void_p if "*" in told else ctypes.c_int
+        fields.append((name.group(), kind))
     missing = {"name", "capabilityflags", "nstate", "init", "reset", "compute"} - {name for name, _ in fields}
     if missing:
         raise OtherMuJoCo(f"mjpPlugin.{min(missing)}", mujoco.__version__, "its header has no such field")

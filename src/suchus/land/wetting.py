@@ -1,9 +1,9 @@
 """Water inside the physics step: a plugin of passive forces, registered once in a process, where a run has water.
 
 MuJoCo calls it at every evaluation of the passive forces of a model that names it, on whatever thread, without Python's
-lock. It is no callback (``mjcb_passive``): that acts in every model, and a batch whose process has one computes positions
-and velocities twice in a step. The kernel (``hydro.kernel``) is kept on disk; the thin function around it is not, since
-it freezes what it refers to, the offsets of this MuJoCo among it.
+lock. It is no callback (``mjcb_passive``): that acts in every model, and a batch whose process has one computes
+positions and velocities twice in a step. The kernel (``hydro.kernel``) is kept on disk; the thin function around it is
+not, since it freezes what it refers to, the offsets of this MuJoCo among it.
 """
 
 import ctypes
@@ -68,32 +68,35 @@ def _register(at: np.ndarray) -> list[Any]:
     pair, number = (types.voidptr, types.voidptr), types.int32
     factor = types.ExternalFunction(f"suchus_{_FACTOR}", types.void(*pair))
 
-    @cfunc(types.void(*pair, number, number), nopython=True)
-    def act(model: Any, data: Any, instance: int, capability: int) -> None:
+    def act(model: Any, data: Any, _instance: int, _capability: int) -> None:
         if wet(model, data, at):
             factor(model, data)
 
-    @cfunc(number(types.voidptr, number), nopython=True)
-    def no_state(model: Any, instance: int) -> int:
+    def no_state(_model: Any, _instance: int) -> int:
         return 0
 
-    @cfunc(number(*pair, number), nopython=True)
-    def begin(model: Any, data: Any, instance: int) -> int:
+    def begin(_model: Any, _data: Any, _instance: int) -> int:
         return 0
 
-    @cfunc(types.void(*pair, types.voidptr, number), nopython=True)
-    def reset(model: Any, state: Any, plugin_data: Any, instance: int) -> None:
+    def reset(_model: Any, _state: Any, _plugin_data: Any, _instance: int) -> None:
         return None
 
+    made = {
+        "compute": cfunc(types.void(*pair, number, number), nopython=True)(act),
+        "nstate": cfunc(number(types.voidptr, number), nopython=True)(no_state),
+        "init": cfunc(number(*pair, number), nopython=True)(begin),
+        "reset": cfunc(types.void(*pair, types.voidptr, number), nopython=True)(reset),
+    }
     plugin = plugin_struct()()
-    _address(library, _DEFAULT), _address(library, _REGISTER)
+    for name in (_DEFAULT, _REGISTER):
+        _address(library, name)
     getattr(library, _DEFAULT)(ctypes.byref(plugin))
     plugin.name = PLUGIN.encode()
     plugin.capabilityflags = int(mujoco.mjtPluginCapabilityBit.mjPLUGIN_PASSIVE)
-    plugin.nstate, plugin.init, plugin.reset = no_state.address, begin.address, reset.address
-    plugin.compute = act.address
+    for name, function in made.items():
+        setattr(plugin, name, function.address)
     getattr(library, _REGISTER)(ctypes.byref(plugin))
-    return [act, no_state, begin, reset, plugin, at]
+    return [made, plugin, at]
 
 
 @lru_cache(maxsize=1)

@@ -58,9 +58,7 @@ def carrying(spec: Any, robot: AnyRobot, room: int | None = None, *, acting: boo
     return model
 
 
-def with_pieces(
-    spec: Any, table: np.ndarray, length: float, room: int | None = None, *, acting: bool = False
-) -> Any:
+def with_pieces(spec: Any, table: np.ndarray, length: float, room: int | None = None, *, acting: bool = False) -> Any:
     """Return a compiled ``mujoco.MjSpec`` that carries a table of pieces.
 
     Args:

@@ -15,6 +15,7 @@ from suchus.water.slender import Cruise, Effort, cruise, cycle, reactive, recoil
 from suchus.water.space import Basin, check_swim_in_space, half_heights, swim_in_space, trunk
 from suchus.water.sweep import greatest, scaled, survey
 from suchus.water.swimming import MODELS, displaced, swim, wave_speed
+from suchus.water.taken import taken, unevenness
 from suchus.water.tank import Tether
 from suchus.water.towed import towed
 from suchus.water.undulation import ExactWave, Motion, Undulation, undulation
@@ -69,10 +70,12 @@ __all__ = [
     "swim",
     "swim_in_space",
     "swing",
+    "taken",
     "tether",
     "towed",
     "trunk",
     "undulation",
+    "unevenness",
     "wave_form",
     "wave_speed",
 ]

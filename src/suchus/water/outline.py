@@ -131,17 +131,23 @@ class Outline:
 
         A trunk joint that turns the front end left turns what lies behind it right, seen from the front.
         """
-        steps, cables = self._steps(s), len(cable_joints(self.robot))
-        return np.column_stack([-steps[:, :3], steps[:, 3 : 3 + cables].mean(axis=1)])
+        each, cables = self.joints_at(s), len(cable_joints(self.robot))
+        return np.column_stack([each[:, :3], each[:, 3 : 3 + cables].mean(axis=1)])
 
     def passive_at(self, s: Float[np.ndarray, " point"]) -> Float[np.ndarray, "point fin"]:
         """Return how the heading at points grows with the bend of each passive joint, tip to the right [-]."""
-        return self._steps(s)[:, 3 + len(cable_joints(self.robot)) :]
+        return self.joints_at(s)[:, 3 + len(cable_joints(self.robot)) :]
 
-    def _steps(self, s: np.ndarray) -> np.ndarray:
-        """Return the share of each joint's bend that lies ahead of points, shape (point, joint)."""
+    def joints_at(self, s: Float[np.ndarray, " point"]) -> Float[np.ndarray, "point joint"]:
+        """Return how the heading at points grows with the angle of each joint, in the order of ``places`` [-].
+
+        It is the share of the joint's bend that lies ahead of the point; that of a trunk joint, which turns the front
+        end left, counts to the right behind it.
+        """
         along = np.clip((s[:, None] - self.places) / self.reaches, -1.0, 1.0)
-        return np.asarray(0.5 * (1.0 + along + np.sin(np.pi * along) / np.pi))
+        shares = np.asarray(0.5 * (1.0 + along + np.sin(np.pi * along) / np.pi))
+        shares[:, :3] *= -1.0
+        return shares
 
     def curve(self, bends: Bends, base: Base | None = None) -> MidlineCurve:
         """Return the midline, its stations equally far apart along it whatever the bends.
