@@ -14,7 +14,7 @@ test:
 	@$(MAKE) --no-print-directory -j2 -O check
 	@$(MAKE) --no-print-directory tests
 
-check: single double types lint contract
+check: single double space types lint contract
 
 lint: .venv/.dev
 	$(PY) -m ruff check .
@@ -26,7 +26,7 @@ types: .venv/.dev
 contract: .venv/.dev
 	$(PY) -c "from importlinter.cli import lint_imports_command; lint_imports_command()" --no-cache
 
-single double: .venv/.dev # the flow's kernels, compiled once; else every test worker would
+single double space: .venv/.dev # the flow's kernels, compiled once; else every test worker would
 	SUCHUS_THREADS=1 $(PY) tools/compile_flow.py $@
 
 tests: .venv/.dev
