@@ -22,7 +22,7 @@ for threads in (1, 2):
     numba.set_num_threads(threads)
     r, sums, out = np.zeros_like(u), np.zeros((68, 4)), np.zeros((2, 70))
     project.residual(
-        r, np.stack([u, v]), source, np.ones_like(u), where, np.float32(0.1), inner, (False, False), sums
+        r, np.stack([u, v]), source, np.ones_like(u), where, where, np.float32(0.1), inner, (False, False), sums
     )
     openwater.induce(points, place, strength, out)
     print(hashlib.sha256(r.tobytes() + sums.tobytes() + out.tobytes()).hexdigest())

@@ -141,7 +141,7 @@ class Edge:
         if len(others) == 1:
             _fill_side(n, along[0], f, inner, step, self.prescribed, straight, how, values[0])
         else:
-            _fill_planes(n, *along, f, inner, step, self.prescribed, straight, how, values)
+            _fill_planes(n, along[0], along[1], f, inner, step, self.prescribed, straight, how, values)
 
     def _along(self, k: int, axis: int, step: int, stream: tuple[float, ...]) -> tuple[int, float]:
         """Return what the velocity along an axis in the side, the one of number ``k``, is beyond it.
