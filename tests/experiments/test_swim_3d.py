@@ -10,6 +10,8 @@ from suchus import flow
 from suchus.errors import InvalidDesign, OutsideLimits
 from suchus.experiments import EXPERIMENTS
 from suchus.experiments import _swim_3d_findings as findings
+from suchus.figures import caption
+from suchus.figures.swim_3d import draw_tails
 from suchus.robots import ROBOTS
 from suchus.water import Basin, Outline, displaced, fit, half_heights, printed_wave, swim_in_space, trunk
 
@@ -102,10 +104,10 @@ def one(speed, *, power=2.0, weight=20.0):
     )  # fmt: skip
 
 
-def made():
-    """The measures of swims by hand."""
-    asked = replace(ASKED, cells=(64, 96), cycles=2, compared_cycles=2, tail_heights=(0.1,))
-    swims = {"64 cells": one([0.01, 0.02]), "96 cells": one([0.02, 0.04], power=1.0), "held": one([0.0, 0.0]),
+def swum():
+    """The record of swims by hand."""
+    asked = replace(ASKED, cells=(68, 96), cycles=2, compared_cycles=2, tail_heights=(0.1,))
+    swims = {"68 cells": one([0.01, 0.02]), "96 cells": one([0.02, 0.04], power=1.0), "held": one([0.0, 0.0]),
              "trunk only": one([0.0, 0.01]), "tail only": one([0.0, 0.005]), "as printed": one([0.0, -0.01]),
              "tail 0.1 m": one([0.02, 0.06], weight=30.0)}  # fmt: skip
     models = ("model", [0.05, 0.04])
@@ -113,7 +115,12 @@ def made():
         {"slice_speed": ("cycle", [0.1, 0.4]), "model_speed": models, "model_power": models, "model_thrust": models,
          "real_model_speed": models}, coords={"model": ["resistive", "reactive"]},
     )  # fmt: skip
-    return {k: v.value for k, v in findings.measures(findings.record(swims, beside, asked), ROBOT, 1.0).items()}
+    return findings.record(swims, beside, asked)
+
+
+def made():
+    """The measures of swims by hand."""
+    return {name: measure.value for name, measure in findings.measures(swum(), ROBOT, 1.0).items()}
 
 
 def test_measures_are_of_the_finest_grid_and_its_last_cycle():
@@ -143,3 +150,11 @@ def test_motions_and_tails_are_compared_on_one_grid():
     assert "10 times as fast" in told
     assert "0.1 m high" in told
     assert "3.0 times as fast" in told
+
+
+def test_the_figure_of_tails_and_motions_is_drawn_from_the_record_alone():
+    figure = draw_tails(swum())
+    left, right = (sorted(line.get_label() for line in ax.lines if line.get_label()[0] != "_") for ax in figure.axes)
+    assert left == ["last third 0.1 m high", "the robot's tail"]
+    assert right == ["as printed", "tail only", "the robot's tail", "trunk only"]
+    assert "on 68 cells a length at f L² / ν = 7000" in caption(figure)

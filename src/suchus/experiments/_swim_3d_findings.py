@@ -61,12 +61,12 @@ def record(swims: Mapping[str, xr.Dataset], beside: xr.Dataset, asked: Asked) ->
             "weight_compared": ("compared", [float(one.weight) for one in compared.values()], {"units": "N"}),
             "held_thrust": ((), float(held.thrust[-1]), {"units": "N"}),
             "held_power": ((), float(held.power[-1]), {"units": "W"}),
+            "compared_cells": ((), float(asked.compared_cells), {"units": "1"}),
             "reynolds": ((), asked.reynolds, {"units": "1"}),
         },
         coords={"cells": ("grid", list(asked.cells)), "compared": list(compared),
                 "cycle": grids[0].cycle.values, "compared_cycle": np.arange(1, n + 1)},
     )  # fmt: skip
-    data.attrs.update(compared_cells=asked.compared_cells, limbs="left out")
     return data.merge(finest).merge(beside)
 
 

@@ -111,7 +111,7 @@ def draw_tails(record: xr.Dataset) -> Figure:
         axes[0, 0].set_ylabel("mean speed [mm/s]")
     return captioned(
         figure,
-        f"Mean speed of each cycle on {record.attrs['compared_cells']} cells a length at f L² / ν = "
+        f"Mean speed of each cycle on {float(record.compared_cells):.0f} cells a length at f L² / ν = "
         f"{float(record.reynolds):.0f}. Left: the last third of the body raised to a fin as thick as the tail. Right: "
         "the motions of trunk and tail alone, and the printed direction of (20).",
     )

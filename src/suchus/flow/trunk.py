@@ -1,7 +1,7 @@
 """A body in space given by its midline and elliptic sections along it: fish, robots, fins."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import isfinite
 from typing import ClassVar
 
@@ -40,7 +40,7 @@ class Trunk(SpaceShape):
     half_height: np.ndarray
     """Half of the height across the plane at the stations, shape (station,) [m]."""
     cuts: tuple[float, ...] = ()
-    """Arc lengths at which the body is divided into the parts that ``Record.parts`` tells of, from the first station
+    """Arc lengths at which the body is divided into the parts that ``Record.along`` tells of, from the first station
     [m]."""
     deforms: bool = True
     """Whether the midline changes with time; False saves work."""
@@ -150,10 +150,6 @@ class Trunk(SpaceShape):
         """Return where the midline is at arc lengths [m], in the world, shape (point, 2) [m]."""
         spine = self.placed(time, pose)
         return np.column_stack([np.interp(arc, spine.arc, spine.x), np.interp(arc, spine.arc, spine.y)])
-
-    def divided(self, cuts: tuple[float, ...]) -> "Trunk":
-        """Return the same body divided at other arc lengths [m]."""
-        return replace(self, cuts=cuts)
 
 
 def _middles(corners: np.ndarray) -> np.ndarray:
