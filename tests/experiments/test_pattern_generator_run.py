@@ -69,6 +69,11 @@ def measures(**changes):
         "turn_steering": 0.08,
         "turn_asymmetry": 0.01,
         "turn_straight": 0.0,
+        "drive_swim_speed": 0.16,
+        "drive_walk_speed": 0.08,
+        "drive_changes": 1.0,
+        "drive_ashore": 0.6,
+        "drive_ashore_unfelt": -1.9,
     }
     for end in ("", "_swim"):
         found |= {f"locked_share{end}": 1.0, f"lock_cycles{end}": 1.0, f"lock_cycles{end}_most": 2.0}

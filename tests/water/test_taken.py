@@ -65,3 +65,9 @@ def test_runs_that_say_too_little_are_refused(more, cycles, message):
     with pytest.raises(InvalidDesign, match=message):
         taken(OUTLINE, record([1 / 6] * 6, **more), frequency=0.8, cycles=cycles)
     assert taken(OUTLINE, record([1 / 6] * 6, duration=2.5), frequency=0.8, cycles=2).frequency == 0.8
+
+
+def test_a_trunk_that_bends_its_front_to_the_left_turns_what_is_behind_to_the_right():
+    tip = OUTLINE.joints_at(OUTLINE.s)[-1]
+    assert tip[:3] == pytest.approx([-1.0] * 3)
+    assert tip[3:9] == pytest.approx([1.0] * 6)
