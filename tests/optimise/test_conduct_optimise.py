@@ -15,13 +15,15 @@ import xarray as xr
 from suchus import blueprint
 from suchus.cli import main
 from suchus.control import Walking
+from suchus.design.scale import coarse_step
 from suchus.errors import IncompatibleRecord, NotConverged, Unwritable
-from suchus.gaits import GAITS
+from suchus.gaits import GAITS, own_gait
 from suchus.land import Run, simulate
 from suchus.metrics import displacement, slip
 from suchus.motion import Gait
 from suchus.optimise import Limit, evaluate, optimise, read_optimisation
 from suchus.optimise.aims import LIMITS
+from suchus.robots import ROBOTS
 from suchus.study import Arm, Vary
 
 PAGE = """
@@ -201,3 +203,28 @@ def test_arms_of_one_have_no_comparison(small):
     assert [arm.name for arm in small.arms] == ["best"]
     assert small.of(small.arms[0]) is small
     assert small.of(Arm(name="other")).arms == (Arm(name="other"),)
+
+
+@pytest.mark.parametrize("name", ["salamander", "swimmer"])
+def test_a_body_of_its_own_is_searched_with_its_own_time_step(name, tmp_path):
+    """A small one, whose results need a finer step than the caiman's, and one without limbs to replay."""
+    own = own_gait(ROBOTS[name])
+    gait = next(key for key in GAITS if GAITS[key] == own)
+    page = tmp_path / "own.toml"
+    page.write_text(f"""
+name = "own"
+robot = "{name}"
+gait = "{gait}"
+population = 4
+evaluations = 4
+duration = {max(1.15 * own.period, 1.15)}
+timestep = {coarse_step(ROBOTS[name])}
+[[vary]]
+field = "gait.period"
+low = {0.9 * own.period}
+high = {1.1 * own.period}
+[[aims]]
+name = "displacement"
+""")
+    assert main(["optimise", str(page), "--out", str(tmp_path / "found")]) == 0
+    assert len(list((tmp_path / "found").rglob("*_replay.html"))) == 1

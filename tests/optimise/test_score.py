@@ -6,11 +6,15 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from suchus.design import servo_names
+from suchus.errors import SuchusError
+from suchus.gaits import own_gait
 from suchus.kinematics.tail import servo_angle
 from suchus.optimise import Aim, Limit
 from suchus.optimise.excess import excess
 from suchus.optimise.found import Found
 from suchus.optimise.score import allowed, excesses, losses, score, units
+from suchus.robots import ROBOTS
 
 
 def table(ways, clear, status=None, beyond=None):
@@ -85,3 +89,14 @@ def test_a_gait_that_can_be_followed_has_no_excess_and_others_more_the_farther_t
     turned = [float(servo_angle(robot.tail, np.float64(bend))) for bend in (1.7, robot.tail.bend_limit)]
     assert excess(robot, replace(crawl_gait, tail_bend=1.7)) == pytest.approx((turned[0] - turned[1]) / 0.1)
     assert excess(robot, replace(crawl_gait, period=0.1)) > 0.0  # too fast for the servos
+
+
+@pytest.mark.parametrize("name", ["salamander", "salamandra", "strider", "swimmer", "pleurobot"])
+def test_the_own_gait_of_any_body_has_no_excess_and_a_faster_one_has(name):
+    robot = ROBOTS[name]
+    own = own_gait(robot)
+    assert excess(robot, own) == 0.0
+    speed = min(robot.servo(servo).speed for servo in servo_names(robot))
+    assert excess(robot, replace(own, period=1e-3 * own.period)) > 0.1 * speed
+    with pytest.raises(SuchusError):
+        excess(ROBOTS["strider" if name != "strider" else "salamander"], own)

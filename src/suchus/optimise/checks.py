@@ -7,11 +7,11 @@ import numpy as np
 import xarray as xr
 
 from suchus.design import with_values
+from suchus.design.scale import physics_step
 from suchus.land import Run, simulate
 from suchus.optimise.evaluate import columns, evaluate, measure
 from suchus.optimise.spec import Optimisation
 
-FINE = 0.002  # [s]; the time step of results
 Evaluate = Callable[..., xr.Dataset]
 """Tries candidates; see ``evaluate.evaluate``."""
 _NEAR = (-0.1, -0.05, 0.0, 0.05, 0.1)  # of each range
@@ -43,11 +43,12 @@ CONDITIONS = (
     Condition("begun a quarter of a cycle later", later=0.25),
     Condition("begun 0.4 of a cycle later", later=0.4),
 )
-"""All with 2 ms. Frictions are those of the caiman, whose feet have 0.8: a rubber foot on floors from 0.5 to 1."""
+"""All with the robot's own time step, 2 ms for the caiman. Frictions are those of the caiman, whose feet have 0.8: a
+rubber foot on floors from 0.5 to 1."""
 
 
 def checked(spec: Optimisation, runs: Sequence[Run]) -> xr.Dataset:
-    """Run the chosen, and where the search started, under every condition with 2 ms.
+    """Run the chosen, and where the search started, under every condition with the robot's own time step.
 
     Returns:
         ``aim_...`` and ``limit_...`` along ``run`` (the chosen, then ``start``) and ``condition``; NaN where it
@@ -55,7 +56,7 @@ def checked(spec: Optimisation, runs: Sequence[Run]) -> xr.Dataset:
     """
     who = [*runs, replace(spec.run, label="start")]
     batch = [_under(run, condition) for run in who for condition in CONDITIONS]
-    record = simulate(batch, duration=spec.duration, timestep=FINE, every=2)
+    record = simulate(batch, duration=spec.duration, timestep=physics_step(spec.run.robot), every=2)
     shape = len(who), len(CONDITIONS)
     sound = record.cause.values == ""
     return xr.Dataset(

@@ -11,9 +11,9 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from suchus import record as records
+from suchus.design.scale import physics_step
 from suchus.land import Run, simulate
 from suchus.optimise.aims import AIMS, LIMITS
-from suchus.optimise.checks import FINE
 from suchus.optimise.conduct import write_runs
 from suchus.optimise.found import Found
 from suchus.optimise.pictures import draw_around, draw_convergence, draw_front, draw_gaits, label, scaled
@@ -39,7 +39,7 @@ def write_results(spec: Optimisation, found: Sequence[Found], folder: Path) -> P
     """
     runs = [run for one in found for run in one.runs]
     shown = [_start(spec), *runs]
-    record = simulate(shown, duration=spec.duration, timestep=FINE)
+    record = simulate(shown, duration=spec.duration, timestep=physics_step(spec.run.robot))
     told = outcome(spec, found)
     with records.new_folder(folder / RESULT, mark=OUTCOME) as draft:
         for one in found:
@@ -209,7 +209,8 @@ def _sections(
         Section(
             title="Is it an optimum?",
             texts=(
-                f"The search ran with {1000 * spec.timestep:g} ms; here the best is run again with 2 ms, on other "
+                f"The search ran with {1000 * spec.timestep:g} ms; here the best is run again with "
+                f"{1000 * physics_step(spec.run.robot):g} ms, on other "
                 "ground, with noise on its servos, and begun elsewhere in its cycle, beside the start.",
             ),
             figures=tuple(f"around_{one.arm}" for one in found),

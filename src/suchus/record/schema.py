@@ -130,7 +130,9 @@ def check_land(record: xr.Dataset, names: Sequence[str], where: str) -> None:
 
 def _as_said(record: xr.Dataset, name: str) -> bool:
     variable, dims = record[name], VARIABLES[name][0]
-    if set(variable.dims) not in ({*dims}, {"run", *dims}) or variable.dtype.kind not in "fiu" or not variable.size:
+    if set(variable.dims) not in ({*dims}, {"run", *dims}) or variable.dtype.kind not in "fiu":
+        return False
+    if not all(size for dim, size in variable.sizes.items() if dim != "leg"):  # a swimmer may have no limbs
         return False
     labels = all(record[dim].dims == (dim,) for dim in dims if dim in record.coords)
     named = all(dim in record.coords for dim in dims if dim in ("leg", "joint", "servo", "segment"))
