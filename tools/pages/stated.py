@@ -38,8 +38,12 @@ MADE: Mapping[str, tuple[str, Make]] = {
 
 
 def pages() -> list[Path]:
-    """Return the pages that have passages of ours."""
-    return [page for page in sorted(DOCS.glob("*.md")) if set(passages.names(page.read_text("utf-8"))) & set(MADE)]
+    """Return the pages that have passages of ours, README among them."""
+    return [
+        page
+        for page in [*sorted(DOCS.glob("*.md")), ROOT / "README.md"]
+        if set(passages.names(page.read_text("utf-8"))) & set(MADE)
+    ]
 
 
 def kept(source: str) -> dict[str, Any]:

@@ -145,6 +145,23 @@ def _space(m: Mapping[str, float]) -> str:
     )
 
 
+def _space_in_short(m: Mapping[str, float]) -> str:
+    """Return the speeds of body and slice beside each other."""
+    high = max((name for name in m if name.startswith("speed_tail_") and name != "speed_tail_only"), key=_height)
+    return (
+        f"Swimming at f L²/ν = {m['reynolds']:.0f}, the robot's body makes {m['speed']:.3f} m/s in three dimensions "
+        f"({m['cells_per_length']:.0f} cells a length), and its two-dimensional slice {m['speed_slice']:.2f} m/s. With "
+        f"the last third of the tail {_height(high):g} m high the body swims "
+        f"{m[high] / m['speed_trunk_and_tail']:.1f} times as fast. See [swimming](docs/water.md) and "
+        "`suchus run swim_3d`.\n"
+    )
+
+
+def _height(name: str) -> float:
+    """Return the height of the tail that the name of a speed says [m]."""
+    return float(name.removeprefix("speed_tail_").replace("_", "."))
+
+
 def _drive(m: Mapping[str, float]) -> str:
     """Return how one drive goes from the water onto the land."""
     return (
@@ -183,7 +200,7 @@ PASSAGES: Mapping[str, Mapping[str, Callable[[Mapping[str, Any]], str]]] = {
     "floating": {"checks": _checks, "hull": _hull},
     "swim_free": {"swims": _swims},
     "salamander_swim": {"animal_swim": _animal},
-    "swim_3d": {"space": _space},
+    "swim_3d": {"space": _space, "space_in_short": _space_in_short},
     "shore": {"ashore": _ashore},
     "pattern_generator": {"drive": _drive},
     "sections": {"sections": _sections},
