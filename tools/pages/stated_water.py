@@ -151,7 +151,7 @@ def _space_in_short(m: Mapping[str, float]) -> str:
     return (
         f"Swimming at f L²/ν = {m['reynolds']:.0f}, the robot's body makes {m['speed']:.3f} m/s in three dimensions "
         f"({m['cells_per_length']:.0f} cells a length), and its two-dimensional slice {m['speed_slice']:.2f} m/s. With "
-        f"the last third of the tail {_height(high):g} m high the body swims "
+        f"the last third of the tail {_height(high):g} m high the body swims, on one grid, "
         f"{m[high] / m['speed_trunk_and_tail']:.1f} times as fast. See [swimming](docs/water.md) and "
         "`suchus run swim_3d`.\n"
     )
