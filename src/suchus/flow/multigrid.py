@@ -290,6 +290,9 @@ def cycle(x, store, layout, room, rects, inner, repeats):
             _up_threaded(out, b, coarse, faces, dinv, place, room, rect, own, below, repeats)
         if rect[1] < rect[2]:
             end(room, rect, out, own)
+            if len(inner) > 1:  # there a patch has changed cells beside the sides
+                for j in range(max(rect[1], PAD), min(rect[2], out.shape[0] - PAD)):
+                    seal_slab(out, j, own, repeats)
         seal_ends(out, repeats[len(inner)])
 
 
