@@ -36,10 +36,11 @@ LEAST = {
     "joint_faults": "--cycles 1 --variations 1 --repeats 1 --holds 0.5",
     "joint_loops": "--integrals 0.0 20.0 --cycles 1",
     "speed_range": "--slower 1.0 --cycles 1",
+    "swim_3d": "--cells 64 --compared-cells 64",
     "terrain": "--bumps --steps --transitions 1 --seeds 1 --walked 1.0 --surfaces even",
     "turning": "--bends 0.0 0.2 --asymmetries 0.0 0.5 --mixtures 0.0 1.0 --asked 1.0 --cycles 1",
 }
-"""What is added to the quick form of experiments that take long."""
+"""What is added to the quick form of experiments that take long, or whose grid is too coarse for slender robots."""
 TOOLS = {
     "study": "`suchus study FILE.toml`",
     "optimise": "`suchus optimise FILE.toml`",
