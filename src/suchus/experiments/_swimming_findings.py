@@ -70,7 +70,8 @@ def explain(measures: Mapping[str, float]) -> str:
         f"{m['speed_exact_wave_as_printed']:+.3f} m/s, head first positive; the resistive model of the round body says "
         f"{m['speed_as_printed_resistive']:+.3f} m/s. The few joints come as near to (20) as {m['misfit']:.0%} of the "
         f"tail's swing, and the swing of the free body falls back by up to {m['envelope_dip']:.0%} on its way to the "
-        f"tip.{bent} The water is a slice of unlimited depth at a Reynolds number far below the robot's own."
+        f"tip.{bent} The water is a slice of unlimited depth at a Reynolds number far below the robot's own: "
+        "what the robot's own body does there, in three dimensions, suchus run swim_3d says."
     )
 
 
