@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
@@ -17,6 +16,7 @@ from suchus.figures.swim_3d import draw_joints, draw_speeds, draw_tails, draw_wa
 from suchus.kinematics.wave import READINGS
 from suchus.robots import ROBOTS
 from suchus.water import Basin, Motion, Tether, check_swim_in_space, fit, free_swim, printed_wave, swim, swim_in_space
+from suchus.water.diary import forget_kept, kept_in
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -100,11 +100,9 @@ class Swim3d(Experiment):
         beside = self._beside(ours, staged(progress, "the slice", 0.0, 0.05))
         for (name, motion, basin), start, end in zip(runs, ends, ends[1:], strict=False):
             told = staged(progress, name, float(start), float(end))
-            kept = Path(self.keep) / f"{name.replace(' ', '_')}.npz" if self.keep else None
-            found[name] = swim_in_space(self.robot, motion, basin, checkpoint=kept, progress=told)
+            found[name] = swim_in_space(self.robot, motion, basin, checkpoint=kept_in(self.keep, name), progress=told)
         record = findings.record(found, beside, self)
-        for path in Path(self.keep).glob("*.npz*") if self.keep else ():
-            path.unlink()
+        forget_kept(self.keep)
         return Simulated(record=record)
 
     def _motion(self, sign: int) -> Motion:
@@ -135,8 +133,7 @@ class Swim3d(Experiment):
     def _beside(self, ours: Any, progress: Any) -> xr.Dataset:
         """Return the speed of the slice and of the slender-body models at the same Reynolds number."""
         setting = Tether(cells=self.slice_cells, viscosity=self.viscosity, cycles=self.cycles)
-        kept = Path(self.keep) / "slice.npz" if self.keep else None
-        plane = free_swim(self.robot, ours, setting, checkpoint=kept, progress=progress)
+        plane = free_swim(self.robot, ours, setting, checkpoint=kept_in(self.keep, "slice"), progress=progress)
         models, real = swim(self.robot, ours, water=Water(viscosity=self.viscosity)), swim(self.robot, ours)
         return xr.Dataset(
             {

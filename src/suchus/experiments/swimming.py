@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
@@ -40,6 +39,7 @@ from suchus.water import (
     undulation,
     unevenness,
 )
+from suchus.water.diary import forget_kept, kept_in
 
 _SETTLE, _AVERAGED = 5, 3  # [cycle]; in six degrees of freedom, before the joints' angles are taken and while they are
 
@@ -157,7 +157,7 @@ class Swimming(Experiment):
         record.attrs["misfit"] = ours.misfit
         progress("films", 1.0)
         films = {"swimming_vorticity.gif": film_vorticity(record), "swimming_pressure.gif": film_pressure(record)}
-        self._forget()
+        forget_kept(self.keep)
         return Simulated(record=record, tables={"readings.md": table}, films=films)
 
     def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
@@ -176,22 +176,14 @@ class Swimming(Experiment):
         wave = printed_wave(self.robot, self.reading, frequency=self.frequency, sign=sign)
         return fit(self.robot, wave, name=f"(20), reading {self.reading}")
 
-    def _kept(self, name: str) -> Path | None:
-        return Path(self.keep) / f"{name.replace(' ', '_')}.npz" if self.keep else None
-
-    def _forget(self) -> None:
-        """Remove what was kept: everything is finished."""
-        for path in Path(self.keep).glob("*.npz*") if self.keep else ():
-            path.unlink()
-
     def _held(self, name: str, fitted: Fit, progress: Callable[[float], None]) -> xr.Dataset:
-        kept, setting = self._kept(f"held {name}"), self._setting(self.cells, self.cycles)
+        kept, setting = kept_in(self.keep, f"held {name}"), self._setting(self.cells, self.cycles)
         return tether(self.robot, fitted.swim, setting, turn=fitted.head, checkpoint=kept, progress=progress)
 
     def _free(
         self, name: str, motion: Motion, cells: int, cycles: int, progress: Callable[[float], None]
     ) -> xr.Dataset:
-        kept, setting = self._kept(f"free {name}"), self._setting(cells, cycles)
+        kept, setting = kept_in(self.keep, f"free {name}"), self._setting(cells, cycles)
         return free_swim(self.robot, motion, setting, checkpoint=kept, progress=progress)
 
     def _arms(self, ours: Fit, printed: Fit, free: xr.Dataset, progress: Callable[[float], None]) -> xr.Dataset:

@@ -23,6 +23,8 @@ from suchus.record.seal import holds, sealed
 Progress = Callable[[float], None]
 """Called with the share that is done."""
 
+_KEPT, _NOTES = ".kept-swim", ".notes"  # how the files of an unfinished swim end
+
 
 def portion(progress: Progress, number: int, count: int) -> Progress:
     """Return the progress of one run of several, counted from 0."""
@@ -101,6 +103,18 @@ def _short(about: str) -> str:
     return sha256(about.encode()).hexdigest()
 
 
+def kept_in(folder: str, name: str) -> Path | None:
+    """Return the file in which an experiment keeps an unfinished swim in a folder; None if that is empty."""
+    return Path(folder) / f"{name.replace(' ', '_')}{_KEPT}" if folder else None
+
+
+def forget_kept(folder: str) -> None:
+    """Remove the files that ``kept_in`` names in a folder, and their notes; whatever else lies there stays."""
+    for pattern in (f"*{_KEPT}", f"*{_KEPT}{_NOTES}") if folder else ():
+        for path in Path(folder).glob(pattern):
+            path.unlink()
+
+
 def run_on(
     sim: flow.Simulation,
     end: float,
@@ -127,7 +141,7 @@ def run_on(
         Unwritable: they cannot be written.
     """
     diary, path = Diary(), None if checkpoint is None else Path(checkpoint)
-    notes = None if path is None else path.with_name(f"{path.name}.notes")
+    notes = None if path is None else path.with_name(f"{path.name}{_NOTES}")
     if path is not None and notes is not None and path.exists():
         store.load(sim, path)
         diary.load(notes, sim.time, about)
