@@ -7,19 +7,25 @@ import numpy as np
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Mass:
-    """What a body of density 1 weighs, in its own frame and per metre of depth."""
+class _InPlane:
+    """Centre and moments of a body of density 1, in its own frame, for motions along x and y and about z."""
 
-    area: float
-    """Area of the cross-section [m^2]."""
     centre: tuple[float, float]
-    """Centre of the area [m]."""
+    """Centre of the area, in space of the volume, which lies in the plane z = 0 [m]."""
     centre_rate: tuple[float, float]
     """Velocity that the deformation gives to the centre [m/s]."""
     moment: float
-    """Polar second moment of area about the centre [m^4]."""
+    """Second moment about the axis along z through the centre, of the area [m^4], in space of the volume [m^5]."""
     swirl: float
-    """Angular momentum of the deformation about the centre [m^4/s]."""
+    """Angular momentum of the deformation about that axis [m^4/s], in space [m^5/s]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Mass(_InPlane):
+    """What a body of density 1 weighs per metre of depth."""
+
+    area: float
+    """Area of the cross-section [m^2]."""
 
     @property
     def size(self) -> float:
@@ -28,19 +34,11 @@ class Mass:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SpaceMass:
-    """What a body of density 1 in space weighs, in its own frame, for motions along x and y and about z."""
+class SpaceMass(_InPlane):
+    """What a body of density 1 weighs in space."""
 
     volume: float
     """Volume [m^3]."""
-    centre: tuple[float, float]
-    """Centre of the volume; it lies in the plane z = 0 [m]."""
-    centre_rate: tuple[float, float]
-    """Velocity that the deformation gives to the centre [m/s]."""
-    moment: float
-    """Second moment of volume about the axis along z through the centre [m^5]."""
-    swirl: float
-    """Angular momentum of the deformation about that axis [m^5/s]."""
 
     @property
     def size(self) -> float:
