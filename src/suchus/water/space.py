@@ -207,9 +207,10 @@ def _at_servos(outline: Outline, torques: np.ndarray) -> np.ndarray:
     The cable bends its joints alike, so that its servo takes the mean of their moments, over the ratio of half the
     cords' distance to the pulley.
     """
-    tail, last = outline.robot.tail, 3 + len(cable_joints(outline.robot))
-    cable = torques[:, 3:last].mean(axis=1) * tail.pulley / (0.5 * tail.cord_spacing)
-    return np.column_stack([torques[:, :3], cable])
+    robot, yaws = outline.robot, len(trunk_yaws(outline.robot))
+    behind = torques[:, yaws : yaws + len(cable_joints(robot))].mean(axis=1)
+    cable = behind * robot.tail.pulley / (0.5 * robot.tail.cord_spacing)
+    return np.column_stack([torques[:, :yaws], cable])
 
 
 def _wake(sim: flow.Simulation) -> xr.Dataset:
