@@ -7,6 +7,7 @@ import numpy as np
 import xarray as xr
 
 from suchus.design import GRAVITY, Crocodile
+from suchus.design.water import Water
 from suchus.experiment import Measure
 from suchus.verdict import Reading
 
@@ -91,6 +92,8 @@ def _body(record: xr.Dataset, robot: Crocodile, frequency: float) -> Iterator[tu
     speeds, power = record.speed.values[-1], float(record.power[-1, -1])
     speed, weight = float(speeds[-1]), float(record.weight)
     yield "reynolds", Measure(float(record.reynolds), "-")
+    real = frequency * robot.length**2 / Water().viscosity
+    yield "reynolds_real_water", Measure(real, "-")
     yield "reynolds_of_speed", Measure(float(record.reynolds) * abs(speed) / (frequency * robot.length), "-")
     yield "cells_per_length", Measure(float(record.cells[-1]), "-")
     yield "cycles", Measure(float(record.sizes["cycle"]), "-")
@@ -178,4 +181,8 @@ def explain(measures: Mapping[str, float]) -> str:
             f"swims {1e3 * high:.1f} mm/s on the grid where {1e3 * bare:.1f} mm/s is the robot's own: "
             f"{high / bare:.1f} times as fast. "
         )
-    return text + "All of it is water far thicker than the robot's own: no newton or watt here is the robot's."
+    return text + (
+        f"In real water f L^2 / nu would be {measures['reynolds_real_water']:.2g}, "
+        f"{measures['reynolds_real_water'] / measures['reynolds']:.3g} times as much: no newton or watt here is "
+        "that of the robot in it."
+    )

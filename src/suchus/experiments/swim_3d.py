@@ -27,7 +27,7 @@ class Swim3d(Experiment):
     plane of symmetry: along, to the side and about the vertical. It swims on several grids, in a water so thick that
     ``reynolds``, the frequency times the length squared over the viscosity, is what the grids carry; the same number
     holds for the slice of the experiment ``swimming`` and the slender-body models beside it. Nothing here is in newtons
-    or watts of the robot in real water, whose number is some 150 times as large.
+    or watts of the robot in real water, whose number is ``reynolds_real_water``.
 
     ``speed`` is the mean of the last cycle on the finest grid and ``speed_gain`` by how much that is above the cycle
     before: a body so light for its power takes tens of cycles to its last speed. ``speed_over_grids`` is by how much
@@ -49,7 +49,8 @@ class Swim3d(Experiment):
     frequency: float = 1.0
     """Frequency of the wave, which the article does not give [Hz], 0.01 to 20."""
     reynolds: float = 7000.0
-    """Frequency times length squared over viscosity [-]; the robot's own would be 1e6, beyond any affordable grid."""
+    """Frequency times length squared over viscosity [-], chosen for what the grids carry; in real water it is
+    ``reynolds_real_water``."""
     cells: tuple[int, ...] = (68, 80, 96)
     """Cells per body length of the grids, rising [-]."""
     cycles: int = 6
