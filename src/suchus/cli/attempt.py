@@ -29,7 +29,7 @@ class JobResult:
 
     result: Result | Failure
     """For the page."""
-    told: str
+    summary: str
     """The same in a line."""
 
 
@@ -49,9 +49,9 @@ def attempt(task: Job, progress: Progress) -> JobResult:
         return failed(task.name, str(error))
     except Exception as error:
         return failed(task.name, f"{type(error).__name__}: {error}", traceback.format_exc())
-    words = [verdict["verdict"] for verdict in result.told["verdicts"]]
-    told = ", ".join(f"{words.count(word)} {word}" for word in dict.fromkeys(words)) or "no verdict"
-    return JobResult(result=result, told=f"{task.name}: {told} ({done.seconds:.1f} s)")
+    words = [verdict["verdict"] for verdict in result.outcome["verdicts"]]
+    counts = ", ".join(f"{words.count(word)} {word}" for word in dict.fromkeys(words)) or "no verdict"
+    return JobResult(result=result, summary=f"{task.name}: {counts} ({done.seconds:.1f} s)")
 
 
 def failed(name: str, sentence: str, trace: str = "") -> JobResult:
@@ -62,4 +62,4 @@ def failed(name: str, sentence: str, trace: str = "") -> JobResult:
         sentence: what went wrong.
         trace: where in the code, if it was none of our own errors.
     """
-    return JobResult(result=Failure(name=name, sentence=sentence, trace=trace), told=f"{name}: failed: {sentence}")
+    return JobResult(result=Failure(name=name, sentence=sentence, trace=trace), summary=f"{name}: failed: {sentence}")

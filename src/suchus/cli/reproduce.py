@@ -50,8 +50,8 @@ def reproduce(words: Sequence[str]) -> int:
     Raises:
         SuchusError: the words make no sense, or the results cannot be saved.
     """
-    told = "Run every experiment and write one page with all results, DIR/report.html."
-    options: ReproduceOptions = parse(ReproduceOptions, "suchus reproduce", words, told, ("out", "quick", "jobs"))
+    about = "Run every experiment and write one page with all results, DIR/report.html."
+    options: ReproduceOptions = parse(ReproduceOptions, "suchus reproduce", words, about, ("out", "quick", "jobs"))
     tasks = [
         Job(name=name, out=options.out, quick=options.quick) for name, one in EXPERIMENTS.items() if one.reproduces
     ]
@@ -64,23 +64,23 @@ def reproduce(words: Sequence[str]) -> int:
         check_place(options.out / task.name)
     jobs = min(threads.count(), _MOST) if options.jobs is None else options.jobs
     with working() as bars:
-        came = _came_of(tasks, min(jobs, len(tasks)), bars)
-        results = [one.result for one in came if isinstance(one.result, Result)]
-        failures = [one.result for one in came if isinstance(one.result, Failure)]
+        done = [job.result for job in _results_of(tasks, min(jobs, len(tasks)), bars)]
+        results = [result for result in done if isinstance(result, Result)]
+        failures = [result for result in done if isinstance(result, Failure)]
         page = write_page(results, failures, options.out / "report.html")
     print(page)
     return 1 if failures else 0
 
 
-def _came_of(tasks: Sequence[Job], jobs: int, bars: Bars) -> list[JobResult]:
+def _results_of(tasks: Sequence[Job], jobs: int, bars: Bars) -> list[JobResult]:
     """Return the result of each task, in their order."""
     if jobs > 1:
-        came = side_by_side(sorted(tasks, key=_place), jobs, bars)
-        return [came[task.name] for task in tasks]
+        by_name = side_by_side(sorted(tasks, key=_place), jobs, bars)
+        return [by_name[task.name] for task in tasks]
     done = []
     for task in tasks:
         done.append(attempt(task, bars.task(task.name)))
-        bars.say(done[-1].told)
+        bars.say(done[-1].summary)
     return done
 
 

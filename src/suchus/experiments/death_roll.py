@@ -177,9 +177,11 @@ class DeathRoll(Experiment):
         """Return what is left of the angular momentum in vacuum, and the rate, over the time step."""
         left, rate, count = [], [], len(self.timesteps)
         for i, step in enumerate(self.timesteps):
-            some = self._simulate({"trunk": self._roll()}, step, lambda s, i=i: progress((i + s) / count), ("vacuum",))
-            left.append(float(abs(some.angular_momentum).max()))
-            rate.append(float(self._rates(some, self.frequency)[0]))
+            rolled = self._simulate(
+                {"trunk": self._roll()}, step, lambda s, i=i: progress((i + s) / count), ("vacuum",)
+            )
+            left.append(float(abs(rolled.angular_momentum).max()))
+            rate.append(float(self._rates(rolled, self.frequency)[0]))
         data = xr.Dataset(
             {
                 "momentum_by_timestep": ("timestep", left, {"units": "kg m2/s"}),

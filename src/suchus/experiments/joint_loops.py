@@ -104,8 +104,8 @@ class JointLoops(Experiment):
         """Return the crawl with one of the gains; servos with and without an integral share no batch."""
         run = Run(robot=robot, gait=self.gait, label=f"ki {self.integrals[number]:g}")
         share = 0.7 / len(self.integrals)
-        told = staged(progress, "crawl", number * share, (number + 1) * share)
-        return simulate([run], duration=START + self.cycles * self.gait.period, progress=told)
+        stage = staged(progress, "crawl", number * share, (number + 1) * share)
+        return simulate([run], duration=START + self.cycles * self.gait.period, progress=stage)
 
     def _tested(self, robots: list[AnyRobot], load: float) -> list[list[np.ndarray]]:
         """Return the joint's angle in each test with each gain [rad]."""

@@ -122,9 +122,9 @@ class PatternGeneratorExperiment(Experiment):
         ]
         parts.append(self._ramp())
         found, ramped = self._land(progress)
-        told = staged(progress, "one drive across the shore", 0.85, 1.0)
+        stage = staged(progress, "one drive across the shore", 0.85, 1.0)
         across = _one_drive.runs(self.swimmer, self.swimmer_gait, self.walk, self.slope, self.water_line)
-        swum = simulate(across, duration=self.shore_time, every=_EVERY, progress=told)
+        swum = simulate(across, duration=self.shore_time, every=_EVERY, progress=stage)
         record = xr.merge([*parts, found, _one_drive.reduced(swum, self.water_line)]).assign_attrs(
             within=self.within, hold=self.hold, silent_above=_NUMBERS.limb_drives[1], walk=self.walk, swim=self.swim
         )
@@ -273,8 +273,8 @@ class PatternGeneratorExperiment(Experiment):
         }
         runs = [Run(robot=self.robot, gait=self.gait, control=one, label=name) for name, one in arms.items()]
         duration = START + self.cycles * self.gait.period
-        told = staged(progress, "walks", 0.45, 0.65)
-        record = simulate(runs, duration=duration, every=_EVERY, progress=told)
+        stage = staged(progress, "walks", 0.45, 0.65)
+        record = simulate(runs, duration=duration, every=_EVERY, progress=stage)
         walked = record.limb_phase.isel(leg=0)
         begun = walked.sel(time=START, method="nearest")
         units = {"forward": "m", "turned": "rad", "walked": "1"}
@@ -289,8 +289,8 @@ class PatternGeneratorExperiment(Experiment):
         )
         ramped = Run(robot=self.robot, gait=self.gait, control=PatternGenerator(drive=self._ramped))
         end = START + self.ramp * self.gait.period
-        told = staged(progress, "drive ramp", 0.65, 0.85)
-        return found, simulate([ramped], duration=end, every=2, progress=told)
+        stage = staged(progress, "drive ramp", 0.65, 0.85)
+        return found, simulate([ramped], duration=end, every=2, progress=stage)
 
     def _replays(self, ramped: xr.Dataset) -> Mapping[str, Replay]:
         caption = (

@@ -181,7 +181,7 @@ class SpeedRange(Experiment):
         """Say how fast and how dear each gait is, and what a torque-speed line changes."""
         m = {name: Reading(value) for name, value in measures.items()}
         names = [gait.name for gait in self.gaits]
-        told = [
+        walks = [
             f"the {name.replace('_', ' ')} {m[f'speed_{name}']:.2f} m/s at a cost of transport of "
             f"{m[f'cost_{name}']:.2f}, its fastest leg joint turning with {m[f'joint_speed_{name}']:.1f} rad/s"
             for name in names
@@ -192,7 +192,7 @@ class SpeedRange(Experiment):
         )
         changed = max(abs(m[f"speed_{name}_speed_line"] / m[f"speed_{name}"] - 1.0) for name in names)
         return (
-            f"At its own cycle time walks {listed(told)}. Over all cycle times the {fastest} is the fastest and "
+            f"At its own cycle time walks {listed(walks)}. Over all cycle times the {fastest} is the fastest and "
             f"{'also' if cheapest == fastest else f'the {cheapest}'} the cheapest. A torque-speed line in the servos "
             f"changes the speeds by at most {changed:.0%}. "
             f"{ANIMAL['high_walk_speed'].who} walk high at {m['animals_high_walk_slowest']:g} to "
@@ -236,15 +236,15 @@ def _lying(robot: AnyRobot, part: xr.Dataset) -> float:
     place = layout(robot)
     if not place.tail:
         return 0.0
-    some = part.isel(time=slice(None, None, 5))
-    found = frames(robot, some.joint_angle.transpose("time", "joint").values)
+    sampled = part.isel(time=slice(None, None, 5))
+    found = frames(robot, sampled.joint_angle.transpose("time", "joint").values)
     numbers = [i for i, body in enumerate(place.bodies) if body.name in place.tail]
     segments = [next(one for one in place.robot.axis if one.name == place.bodies[i].name) for i in numbers]
     last, ahead = numbers[-1], -(segments[-1].front + segments[-1].rear)
     tip = found.places[:, last] + ahead * found.turns[:, last, :, 0]
     points = np.concatenate([found.places[:, numbers], tip[:, None]], axis=1)
-    up = rotation.upward(some.orientation.transpose("time", "wxyz").values)
-    height = np.einsum("tk,tpk->tp", up, points) + some.position.sel(xyz="z").values[:, None]
+    up = rotation.upward(sampled.orientation.transpose("time", "wxyz").values)
+    height = np.einsum("tk,tpk->tp", up, points) + sampled.position.sel(xyz="z").values[:, None]
     lengths = np.array([segment.front + segment.rear for segment in segments])
     along = np.concatenate([[0.0], np.cumsum(lengths)])
     share = along / along[-1]

@@ -256,8 +256,8 @@ def _family(robot: Crocodile) -> xr.Dataset:
     cost = np.sum(spine.candidates(back, target, azimuth, first_yaw=first, branch=signs) ** 2, axis=-1)
     branch = 1 if best[3] >= 0 else -1
     open_to = first[np.isfinite(cost[0 if branch == 1 else 1])]
-    some = np.linspace(open_to[0], open_to[-1], 9)[1:-1]
-    family = spine.inverse(back, np.tile(target, (7, 1)), azimuth, first_yaw=some, branch=branch)
+    first_yaws = np.linspace(open_to[0], open_to[-1], 9)[1:-1]
+    family = spine.inverse(back, np.tile(target, (7, 1)), azimuth, first_yaw=first_yaws, branch=branch)
     return xr.Dataset(
         {
             "bending": (("branch", "first_yaw"), cost, {"units": "rad2", "long_name": "sum of the squared angles"}),

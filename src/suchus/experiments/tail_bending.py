@@ -209,8 +209,8 @@ def _shapes(plates: Tail, furthest: float) -> xr.Dataset:
 
 def _errors(plates: Tail, furthest: float) -> xr.Dataset:
     """Return cords and errors of (17) at a few bends, and the greater error at the greatest bend."""
-    some = [d for d in (30, 90, 180) if np.radians(d) <= furthest + 1e-9]
-    bend = np.append(np.radians(some), furthest)
+    degrees = [d for d in (30, 90, 180) if np.radians(d) <= furthest + 1e-9]
+    bend = np.append(np.radians(degrees), furthest)
     toward, away = tail.cable_changes(plates, bend)
     kept = plates.joints * printed.cable_changes_shortened(plates, bend)[1]
     wrong = np.stack([kept / -toward - 1, kept / away - 1])
@@ -223,7 +223,7 @@ def _errors(plates: Tail, furthest: float) -> xr.Dataset:
             "error_17_away": ("at", wrong[1, :-1], part),
             "error_at_end": ("cord", np.abs(wrong[:, -1]), part),
         },
-        coords={"at": ("at", some, {"units": "deg", "long_name": "bend of the tail"}), "cord": ["toward", "away"]},
+        coords={"at": ("at", degrees, {"units": "deg", "long_name": "bend of the tail"}), "cord": ["toward", "away"]},
     )
 
 

@@ -185,7 +185,7 @@ class Turning(Experiment):
         """Say by what each gait turns tightest, and how far commanded circles are off."""
         m = {name: Reading(value) for name, value in measures.items()}
         names = [gait.name for gait in self.gaits]
-        told = [
+        tightest = [
             f"the {name.replace('semi_', 'semi-').replace('_', ' ')} in {m[f'tightest_bend_{name}']:.2f} m by a "
             f"curvature offset, {m[f'tightest_asymmetry_{name}']:.2f} m by unequal strokes and "
             f"{m[f'tightest_both_{name}']:.2f} m by the mixture of both"
@@ -196,7 +196,8 @@ class Turning(Experiment):
         circles = f"of {len(names) * len(self.asked)} circles on command {walked:.0f} can be walked"
         how = f", and their radius is off by at most {off:.0%}" if walked else ""
         return (
-            f"Tightest turns {'; '.join(told)}. The mixture for a radius is read off a measured curve: {circles}{how}."
+            f"Tightest turns {'; '.join(tightest)}. "
+            f"The mixture for a radius is read off a measured curve: {circles}{how}."
         )
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
