@@ -111,14 +111,14 @@ def explain(measures: Mapping[str, float]) -> str:
     kinds = [kind for kind in _KINDS if m.get(f"kept_{kind}_low_crawl", Reading("nan")) > -1e9]
     arms = [arm for arm in _CALLED if f"falls_{arm}" in m]
     shares = {arm: listed([format(m[f"kept_{kind}_{arm}"], ".0%") for kind in kinds]) for arm in arms}
-    kept = "; ".join(f"{_CALLED[arm]} {shares[arm]}, falling {m[f'falls_{arm}']:.0f} times" for arm in arms)
+    kept = "; ".join(f"{_CALLED[arm]} {shares[arm]} (falls: {m[f'falls_{arm}']:.0f})" for arm in arms)
     met = ", ".join(f"{m[f'met_{kind}_low_crawl']:.0%} of the {_KINDS[kind]}" for kind in kinds)
     within = m["switching_grounds_within_5_percent"]
     return (
-        f"Of the displacement on even ground keep on {listed([_KINDS[kind] for kind in kinds])}: {kept}. The low "
-        f"crawl met {met}. On even ground it costs {m['flat_cost_ratio']:.2f} of the high walk's work over the same "
-        f"distance. The switching robot gets at least {m['switching_share_of_best_worst']:.0%} as far as the best "
-        f"single posture, and within 5 % of it on {within:.0f} of {m['grounds']:.0f} grounds."
+        f"On {listed([_KINDS[kind] for kind in kinds])} these shares of the displacement on even ground remain: "
+        f"{kept}. The low crawl met {met}. On even ground it costs {m['flat_cost_ratio']:.2f} of the high walk's work "
+        f"over the same distance. The switching robot gets at least {m['switching_share_of_best_worst']:.0%} as far as "
+        f"the best single posture, and within 5 % of it on {within:.0f} of {m['grounds']:.0f} grounds."
     )
 
 

@@ -232,11 +232,12 @@ class DeathRoll(Experiment):
         speed, torque = self._load(measures, "speed"), self._load(measures, "torque")
         nearer = compared(speed, torque, less="their torque is", more="their speed is", same="both are", within=0.01)
         return (
-            f"In vacuum the sideways bend alone rolls the body {m['rate_lateral_only_vacuum']:.3f} times a second, "
-            f"the vertical bend alone {m['rate_vertical_only_vacuum']:.3f}, the vertical one a quarter of a cycle "
-            f"later {m['rate_trunk_vacuum']:.2f} and earlier {m['rate_reversed_vacuum']:.2f}. Trunk and tail bent to "
-            f"the same side, as a C, roll it {m['rate_c_shape_vacuum']:.2f} times a second, to opposite sides, as an "
-            f"S, {m['rate_s_shape_vacuum']:.2f}; in water {m['rate_c_shape_water']:.2f} and "
+            f"In vacuum the body rolls {m['rate_lateral_only_vacuum']:.3f} times a second by the lateral bend of the "
+            f"trunk alone and {m['rate_vertical_only_vacuum']:.3f} times by its vertical bend alone; with both it "
+            f"rolls {m['rate_trunk_vacuum']:.2f} times a second if the vertical bend lags by a quarter of a cycle, and "
+            f"{m['rate_reversed_vacuum']:.2f} if it leads. With trunk and tail bent to the same side, as a C, it rolls "
+            f"{m['rate_c_shape_vacuum']:.2f} times a second, bent to opposite sides, as an S, "
+            f"{m['rate_s_shape_vacuum']:.2f}; in water {m['rate_c_shape_water']:.2f} and "
             f"{m['rate_s_shape_water']:.2f}. As a C the servos reach {speed:.0%} of their greatest speed and "
             f"{torque:.0%} of their torque: {nearer} nearer to the limit."
         )

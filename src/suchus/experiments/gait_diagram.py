@@ -135,8 +135,8 @@ class GaitDiagram(Experiment):
         diagonal = m["diagonal_phase_error"]
         apart = f"; the stances of diagonal pairs are up to {diagonal:.2f} cycle apart" if diagonal >= 0 else ""
         return (
-            f"Commanded are limb phases and bends; what the feet make of them is felt by their pressure. Feet are "
-            f"commanded to stand {m['duty_factor_commanded']:.0%} of the cycle and stand {duties}{apart}."
+            f"Limb phases and bends are commanded; which foot stands is measured by its contact force. The feet are "
+            f"commanded to stand for {m['duty_factor_commanded']:.0%} of the cycle and stand for {duties}{apart}."
             f"{' ' if bends else ''}{bends[:1].upper()}{bends[1:]}{'.' if bends else ''}{_upright(m)}"
         )
 

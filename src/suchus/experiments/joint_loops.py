@@ -175,7 +175,7 @@ class JointLoops(Experiment):
             m[f"forward_{last}"], m[f"forward_{first}"], less="less far", more="farther", same="as far", within=0.01
         )
         return (
-            f"Under the {_load(m['load'])} N m that the crawl asks of {self.joint} the joint sags by "
+            f"Under {_load(m['load'])} N m, the torque that {self.joint} bears in the crawl, the joint sags by "
             f"{m[f'droop_{first}']:deg.2f} degrees without an integral term and ends {m[f'droop_{last}']:deg.2f} "
             f"degrees off with {self.integrals[-1]:g} N m/(rad s). A free step overshoots by "
             f"{m[f'overshoot_{first}']:.0%} without and {m[f'overshoot_{last}']:.0%} with it; after being clamped for "

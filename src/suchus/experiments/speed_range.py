@@ -24,7 +24,7 @@ from suchus.motion import START, AnyGait, hip_height
 from suchus.paper.animals import ANIMAL
 from suchus.replay import replay
 from suchus.robots import ROBOTS
-from suchus.verdict import Reading, listed
+from suchus.verdict import Reading
 
 _TOUCHES = 0.00495  # [body length]; a tail this close to the ground lies on it
 _LOADED = 0.0029  # of the weight; a tail that presses more on the ground touches it
@@ -182,8 +182,8 @@ class SpeedRange(Experiment):
         m = {name: Reading(value) for name, value in measures.items()}
         names = [gait.name for gait in self.gaits]
         walks = [
-            f"the {name.replace('_', ' ')} {m[f'speed_{name}']:.2f} m/s at a cost of transport of "
-            f"{m[f'cost_{name}']:.2f}, its fastest leg joint turning with {m[f'joint_speed_{name}']:.1f} rad/s"
+            f"the {name.replace('semi_', 'semi-').replace('_', ' ')} walks at {m[f'speed_{name}']:.2f} m/s with a cost "
+            f"of transport of {m[f'cost_{name}']:.2f} and {m[f'joint_speed_{name}']:.1f} rad/s in its fastest leg joint"
             for name in names
         ]
         fastest, cheapest = (
@@ -192,7 +192,7 @@ class SpeedRange(Experiment):
         )
         changed = max(abs(m[f"speed_{name}_speed_line"] / m[f"speed_{name}"] - 1.0) for name in names)
         return (
-            f"At its own cycle time walks {listed(walks)}. Over all cycle times the {fastest} is the fastest and "
+            f"At its own cycle time {'; '.join(walks)}. Over all cycle times the {fastest} is the fastest and "
             f"{'also' if cheapest == fastest else f'the {cheapest}'} the cheapest. A torque-speed line in the servos "
             f"changes the speeds by at most {changed:.0%}. "
             f"{ANIMAL['high_walk_speed'].who} walk high at {m['animals_high_walk_slowest']:g} to "
