@@ -74,6 +74,16 @@ class Comparison:
     """Every setting in which they differ."""
 
     @property
+    def of_both(self) -> tuple[Compared, ...]:
+        """Measures of which both outcomes have a number."""
+        return tuple(one for one in self.measures if one.first is not None and one.second is not None)
+
+    @property
+    def of_one(self) -> tuple[Compared, ...]:
+        """Measures of which only one outcome has a number, or none."""
+        return tuple(one for one in self.measures if one.first is None or one.second is None)
+
+    @property
     def changed(self) -> tuple[Judged, ...]:
         """Claims that both judge, and differently."""
         return tuple(one for one in self.verdicts if one.first and one.second and one.first != one.second)
