@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
+from lighter import lighten
 from matplotlib.figure import Figure
 
 import suchus
@@ -146,4 +147,4 @@ if __name__ == "__main__":
         with styled():
             path = PICTURES / f"{name}.png"
             DRAWN[name]().savefig(path, dpi=130, metadata={"Software": None})
-        print(path)
+        print(lighten(path))

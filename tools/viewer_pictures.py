@@ -77,7 +77,7 @@ def take(name: str) -> Path:
             browser.close()
     finally:
         viewer.stop()
-    return PICTURES / file
+    return lighten(PICTURES / file)
 
 
 if __name__ == "__main__":
