@@ -11,10 +11,10 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
-from lighter import lighten
 from matplotlib.figure import Figure
 
 import suchus
+from lighter import lighten
 from suchus import envs
 from suchus.figures import COLOURS, dimension_drawing, panels, styled
 from suchus.figures.crawls import draw_crawls

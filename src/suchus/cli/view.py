@@ -8,6 +8,7 @@ from typing import Annotated, Any
 
 import tyro
 
+from suchus.capture import ReadingOptions, read_tracks
 from suchus.cli.commands import BadCommand
 from suchus.cli.options import parse
 from suchus.design import AnyRobot, crocodile
@@ -17,7 +18,8 @@ from suchus.motion import AnyGait, Swim
 from suchus.record import there
 from suchus.robots import ROBOTS
 from suchus.viewer import Session
-from suchus.viewer.replay import takes
+from suchus.viewer.animal import FilmedAnimal, beside
+from suchus.viewer.replay import Take, takes
 from suchus.viewer.swim import films
 from suchus.water import fit, printed_wave
 
@@ -64,6 +66,10 @@ class Replaying(Where):
     """The record.nc of an experiment on land."""
     ghost: Path | None = None
     """Another record, or the same one, shown pale beside it."""
+    animal: Path | None = None
+    """Tracked keypoints of a walking animal, which walks beside the robot at its size and pace."""
+    fps: float | None = None
+    """Frames per second of the animal's film [Hz], if its file does not say."""
     robot: AnyRobot | None = None
     """Robot of the record; by default the one that the record names."""
 
@@ -149,8 +155,17 @@ def _replay(words: Sequence[str]) -> int:
     options: Replaying = parse(Replaying, "suchus view", words, about, [f.name for f in fields(Replaying)])
     runs = takes(options.record, options.robot)
     ghosts = takes(options.ghost, options.robot) if options.ghost else ()
+    animals = _animals(options, runs)
     pages = _pages()
-    return _serve(lambda client: pages.ReplayPage(client, runs, ghosts), options, options.record.name)
+    return _serve(lambda client: pages.ReplayPage(client, runs, ghosts, animals), options, options.record.name)
+
+
+def _animals(options: Replaying, runs: Sequence[Take]) -> tuple[FilmedAnimal, ...]:
+    """Return the animal beside each run; nothing if none is asked for."""
+    if options.animal is None:
+        return ()
+    tracks = read_tracks(options.animal, ReadingOptions(rate=options.fps))
+    return tuple(beside(tracks, run) for run in runs)
 
 
 def _swim(words: Sequence[str]) -> int:
@@ -205,7 +220,7 @@ def _serve(
 
 
 _HELP = """usage: suchus view [ROBOT] [GAIT] [--lake] [--host HOST] [--port PORT]
-       suchus view RECORD.nc [--ghost RECORD2.nc]
+       suchus view RECORD.nc [--ghost RECORD2.nc] [--animal TRACKS]
        suchus view swim RECORD.nc
 
 Show in the browser a robot that walks live, a record played back, or a swim with the flow around it.
@@ -213,6 +228,8 @@ Show in the browser a robot that walks live, a record played back, or a swim wit
   ROBOT, GAIT      names that `suchus list` shows, or TOML files; by default caiman and belly_crawl
   RECORD.nc        the record of an experiment, such as out/displacement/record.nc
   --ghost FILE     another record, or the same one, shown half transparent beside it
+  --animal TRACKS  tracked keypoints of a walking animal, shown beside the robot at its size and pace
+  --fps N          frames per second of the animal's film, if its file does not say
   --robot ROBOT    robot of a record, if `suchus list` does not show the one that the record names
   --lake           the robot swims in a lake, with sliders for the water level and the air in its hull
   --timestep S     time step of the physics of a live walk [s]; 0.005 by default

@@ -8,11 +8,13 @@ from typing import Any
 
 from viser import uplot
 
+from suchus.viewer.animal import FilmedAnimal
+from suchus.viewer.drawn_animal import DrawnAnimal
 from suchus.viewer.knobs import SPEED
 from suchus.viewer.live_page import DRAWN, FRAME, PLOT
 from suchus.viewer.plots import Plots
 from suchus.viewer.replay import Player, Take
-from suchus.viewer.stage import Stage
+from suchus.viewer.stage import WORLD, Stage
 
 
 class ReplayPage:
@@ -22,13 +24,18 @@ class ReplayPage:
         client: viser's handle of the browser.
         takes: the runs of the record.
         ghosts: the runs of the record for comparison; may be none.
+        animals: a filmed animal beside each run, in their order; may be none.
     """
 
-    def __init__(self, client: Any, takes: Sequence[Take], ghosts: Sequence[Take] = ()) -> None:
+    def __init__(
+        self, client: Any, takes: Sequence[Take], ghosts: Sequence[Take] = (), animals: Sequence[FilmedAnimal] = ()
+    ) -> None:
         self._client, self._closed = client, Event()
         self._takes = {take.label: take for take in takes}
         self._ghosts = {take.label: take for take in ghosts}
         end = max(take.end for take in (*takes, *ghosts))
+        self._animals = {take.label: animal for take, animal in zip(takes, animals, strict=bool(animals))}
+        self._drawn: DrawnAnimal | None = None
         self._player = Player(float(takes[0].record.time[0]), end)
         gui = client.gui
         self._status = gui.add_html("")
@@ -91,12 +98,18 @@ class ReplayPage:
                 shown, plotted = now, 0.0
                 self._tables = take.table(), ghost.table() if ghost else None
                 self._stage.lay(take.ground.relief)
+                self._accompany(take)
                 self._stage.draw_track(take.record.centre_of_mass.values[::5])
             self._show(take, ghost, everything=picture % DRAWN == 1)
             if start - plotted > PLOT:
                 plotted = start
                 self._plots.draw(*self._tables, now=self._player.time)
             self._closed.wait(max(0.005, FRAME - (monotonic() - start)))
+
+    def _accompany(self, take: Take) -> None:
+        """Draw the animal that walks beside a run."""
+        if take.label in self._animals:
+            self._drawn = DrawnAnimal(self._client.scene, f"{WORLD}/animal", self._animals[take.label])
 
     def _show(self, take: Take, ghost: Take | None, *, everything: bool) -> None:
         time = self._player.time
@@ -106,13 +119,15 @@ class ReplayPage:
             self._stage.show(now)
             if ghost is not None and self._stage.ghost is not None:
                 self._stage.ghost.show(ghost.at(time))
+            if self._drawn is not None:
+                self._drawn.show(time)
             if everything:
                 self._slider.value = round(time, 2)
-                self._status.content = status_text(take, ghost, time)
+                self._status.content = status_text(take, ghost, time, self._animals.get(take.label))
 
 
-def status_text(take: Take, ghost: Take | None, time: float) -> str:
-    """Return the head of the page as HTML: who is where at this time."""
+def status_text(take: Take, ghost: Take | None, time: float, animal: FilmedAnimal | None = None) -> str:
+    """Return the head of the page as HTML: the displacement of each at this time."""
     rows = []
     for name, one in (("", take), ("ghost", ghost)):
         if one is not None:
@@ -124,6 +139,9 @@ def status_text(take: Take, ghost: Take | None, time: float) -> str:
             )
     other = ghost is not None and not ghost.ground.looks_like(take.ground)
     note = "<div>The ghost went on other ground, which is not shown.</div>" if other else ""
+    if animal is not None:
+        pace = "" if animal.pace == 1.0 else f", slowed down {animal.pace:.3g} times"
+        note += f"<div>Beside it the animal of {escape(animal.label)}, as long as the robot{pace}.</div>"
     return (
         '<div style="padding:4px 12px;font:13px sans-serif"><table><tr style="color:#666;font-size:11px">'
         f'<td data-suchus="time">at {time:.2f} s</td><td>forward</td><td>to the left</td></tr>{"".join(rows)}'

@@ -29,7 +29,8 @@ LOOKS_AT = (-0.1, 0.0, 0.0)
 _WEIGHT = 0.276  # [m]; how long the weight of a robot as long as the article's is, as long as its trunk
 _TIP, _COM, _STEP = 0.06, 0.014, 0.005  # [m]; of a push above its body, radius of a ball, between points of the track
 _ABOVE = 0.003  # [m]; what is painted on the ground lies so far above it
-_WORLD = "/world"
+WORLD = "/world"
+"""Node of the scene that turns and moves with the ground."""
 _ARROW = RodShape(radius=0.006, head=0.028, head_radius=0.014)
 _PUSH = RodShape(radius=0.010, head=0.042, head_radius=0.021)
 _EDGE = RodShape(radius=0.0035)
@@ -75,8 +76,8 @@ class Stage:
         self._radii = np.array([limb.girdle.limb.foot.radius for limb in place.limbs])
         self._front = front_segment(robot)
         light(scene)
-        self._world = scene.add_frame(_WORLD, show_axes=False)
-        self.robot = DrawnRobot(scene, f"{_WORLD}/robot", robot)
+        self._world = scene.add_frame(WORLD, show_axes=False)
+        self.robot = DrawnRobot(scene, f"{WORLD}/robot", robot)
         self.ghost: DrawnRobot | None = None
         self._relief: Any = None
         self._grid: Any = None
@@ -84,10 +85,10 @@ class Stage:
         self._forces = [self._rod(f"force_{limb}", _ARROW, colour) for limb, colour in limb_colours(robot)]
         self._push = self._rod("push", _PUSH, COLOURS["printed"])
         self._support = [self._rod(f"support_{i}", _EDGE, COLOURS["spine"]) for i in range(len(place.limbs))]
-        self._com = scene.add_icosphere(f"{_WORLD}/centre_of_mass", self._size * _COM, color=rgb(COLOURS["tail"]))
+        self._com = scene.add_icosphere(f"{WORLD}/centre_of_mass", self._size * _COM, color=rgb(COLOURS["tail"]))
         self._plumb = self._rod("plumb", _PLUMB, COLOURS["tail"])
         self._track = scene.add_line_segments(
-            f"{_WORLD}/track", np.zeros((1, 2, 3)), rgb(COLOURS["neutral"]), thickness=0.004 * self._size, visible=False
+            f"{WORLD}/track", np.zeros((1, 2, 3)), rgb(COLOURS["neutral"]), thickness=0.004 * self._size, visible=False
         )
         self._water: Any = None
         self._path: list[np.ndarray] = []
@@ -95,7 +96,7 @@ class Stage:
 
     def _rod(self, name: str, shape: RodShape, colour: str) -> DrawnRod:
         lengths = {field.name: self._size * getattr(shape, field.name) for field in fields(shape)}
-        return DrawnRod(self._scene, f"{_WORLD}/{name}", RodShape(**lengths), rgb(colour))
+        return DrawnRod(self._scene, f"{WORLD}/{name}", RodShape(**lengths), rgb(colour))
 
     def lay(self, relief: Relief | None) -> None:
         """Lay the ground, even or with what stands up from it."""
@@ -108,7 +109,7 @@ class Stage:
         model = compile_model(self.robot.posture.robot, relief=relief)
         decade = 10.0 ** round(log10(self._size))
         self._grid = self._scene.add_grid(
-            f"{_WORLD}/grid",
+            f"{WORLD}/grid",
             infinite_grid=True,
             cell_size=0.1 * decade,
             section_size=0.5 * decade,
@@ -125,7 +126,7 @@ class Stage:
             geom = model.geom("relief")
             mesh = create_primitive_mesh(model, geom.id)
             self._relief = self._scene.add_mesh_simple(
-                f"{_WORLD}/relief",
+                f"{WORLD}/relief",
                 np.asarray(mesh.vertices),
                 np.asarray(mesh.faces),
                 color=(214, 205, 186),
@@ -135,7 +136,7 @@ class Stage:
 
     def compare(self, robot: AnyRobot) -> None:
         """Add a ghost for comparison."""
-        self.ghost = DrawnRobot(self._scene, f"{_WORLD}/ghost", robot, ghost=True)
+        self.ghost = DrawnRobot(self._scene, f"{WORLD}/ghost", robot, ghost=True)
         self.ghost.relief = self.robot.relief
 
     def look(self, look: Look) -> None:
