@@ -21,10 +21,10 @@ def test_every_row_stands_in_the_group_of_its_case_and_a_new_case_in_the_last():
     )
     order = [
         told.index(f"\n### {case}\n")
-        for case in ("Taylor-Green", "impulsively started cylinder", "free eel, thick water")
+        for case in ("Taylor-Green", "Impulsively started cylinder", "Free eel, thick water")
     ]
     assert order == sorted(order)
-    assert told.index("## Other cases") < told.index("### a sphere")
+    assert told.index("## Other cases") < told.index("### A sphere")
 
 
 def test_groups_without_rows_are_left_out():
@@ -42,10 +42,27 @@ def test_what_all_rows_of_a_case_share_is_said_once_and_the_rest_in_the_table():
     alike = page([row("DFG 2D-1", "Cd"), row("DFG 2D-1", "Cl", theirs="at least 1")])
     assert "Grid: 16 cells/D. Domain: 8 D x 6 D. Source: Someone 1990." in alike
     assert "| Cd | 2.1 | 2 | +5.0 % |" in alike
-    assert "| Cl | 2.1 | at least 1 |  |" in alike
+    assert "| Cl | 2.1 | at least 1 | kept |" in alike
     assert "| Cl | 2.1 | 2 | +5.0 % | Other 2000 |" in page(
         [row("DFG 2D-1"), row("DFG 2D-1", "Cl", source="Other 2000")]
     )
+
+
+@pytest.mark.parametrize(
+    ("bound", "word"),
+    [("at least 2.1", "kept"), ("at least 2.2", "**missed**"), ("at most 2.1", "kept"), ("at most 2", "**missed**"),
+     ("below 2.1", "**missed**"), ("below 1e1", "kept"), ("above 2.1", "**missed**"), ("above 2", "kept")],
+)  # fmt: skip
+def test_a_bound_says_whether_it_is_kept(bound, word):
+    text = page([row("Taylor-Green", theirs=bound)])
+    assert f"| Cd | 2.1 | {bound} | {word} |" in text
+    assert ("1 number, 1 bound missed" in text) == (word != "kept")
+
+
+def test_a_column_without_a_word_is_left_out():
+    text = page([row("Taylor-Green", theirs=0.0)])
+    assert "difference" not in text
+    assert "| Cd | 2.1 | 0 |" in text
 
 
 def test_each_plot_of_a_group_is_one_that_is_drawn():

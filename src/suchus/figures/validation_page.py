@@ -1,6 +1,8 @@
 """The page of the flow solver's validation: its rows grouped by kind of case, each group with its plot."""
 
 import json
+import operator
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -67,6 +69,7 @@ GROUPS = (
 """The groups of the page in their order; a case that none of them names is in a last group."""
 
 _OTHERS = Group(title="Other cases", about="Cases that belong to none of the groups above.", cases=("",))
+_MISSED = "**missed**"
 _HEAD = ("quantity", "computed", "published or exact", "difference", "grid", "domain", "source")
 
 
@@ -97,7 +100,7 @@ def page(rows: Sequence[Row], sources: Sequence[str] = ()) -> str:
         "Results of `suchus.flow` beside exact solutions, budgets that must close and required bounds. `make "
         "validate` runs every case (`tests/flow/test_validate_flow.py`) and writes this page; every row is a run of "
         "this code. Comparisons with published data are in the [atlas](atlas.md). [Limits](flow_limits.md) says what "
-        "the rows mean, and where the solver falls short.", "",
+        "the rows mean, and where the solver falls short: a required bound that is not kept is marked.", "",
         "Grids are given in cells per diameter D or body length L. Re is the Reynolds number, Cd and Ci are the "
         "coefficients of drag and inertia, KC is the Keulegan-Carpenter number.", "",
         *contents,
@@ -126,11 +129,12 @@ def _table(case: str, rows: Sequence[Row]) -> list[str]:
     """Return a case's heading, what all its rows have in common, and the table of the rest."""
     common = [name for name in ("grid", "domain", "source") if len({row[name] for row in rows}) == 1]
     shared = [f"{name.capitalize()}: {rows[0][name]}." for name in common if rows[0][name] != "-"]
-    columns = [name for name in _HEAD if name not in common]
-    lines = ["", f"### {case}", ""]
+    cells = [_cells(row) for row in rows]
+    columns = [name for name in _HEAD if name not in common and any(cell[name] for cell in cells)]
+    lines = ["", f"### {case[:1].upper()}{case[1:]}", ""]
     lines += [" ".join(shared), ""] if shared else []
     lines += [f"| {' | '.join(columns)} |", "|" + "---|" * len(columns)]
-    return lines + [f"| {' | '.join(_cells(row)[name] for name in columns)} |" for row in rows]
+    return lines + [f"| {' | '.join(cell[name] for name in columns)} |" for cell in cells]
 
 
 def _cells(row: Row) -> dict[str, str]:
@@ -140,9 +144,20 @@ def _cells(row: Row) -> dict[str, str]:
         "quantity": str(row["quantity"]),
         "computed": f"{row['ours']:.4g}",
         "published or exact": f"{theirs:.4g}" if number else str(theirs),
-        "difference": f"{100 * (row['ours'] / theirs - 1):+.1f} %" if number and theirs else "",
+        "difference": _compared(float(row["ours"]), theirs),
         **{name: str(row[name]) for name in ("grid", "domain", "source")},
     }
+
+
+def _compared(ours: float, theirs: float | str) -> str:
+    """Return the difference from a number in per cent, or whether a bound is kept; empty where neither can be said."""
+    if isinstance(theirs, int | float):
+        return f"{100 * (ours / theirs - 1):+.1f} %" if theirs else ""
+    bound = re.fullmatch(r"(at least|at most|below|above) ([\d.e+-]+)", theirs)
+    if bound is None:
+        return ""
+    kept = {"at least": operator.ge, "at most": operator.le, "below": operator.lt, "above": operator.gt}[bound[1]]
+    return "kept" if kept(ours, float(bound[2])) else _MISSED
 
 
 def _anchor(title: str) -> str:
@@ -150,5 +165,6 @@ def _anchor(title: str) -> str:
 
 
 def _count(rows: Sequence[Row]) -> str:
-    cases = len({row["case"] for row in rows})
-    return f"{cases} case{'s' * (cases > 1)}, {len(rows)} number{'s' * (len(rows) > 1)}"
+    cases, missed = len({row["case"] for row in rows}), sum(_cells(row)["difference"] == _MISSED for row in rows)
+    bounds = f", {missed} bound{'s' * (missed > 1)} missed" if missed else ""
+    return f"{cases} case{'s' * (cases > 1)}, {len(rows)} number{'s' * (len(rows) > 1)}{bounds}"
