@@ -75,11 +75,11 @@ def result(table: dict[str, dict[str, Any]]) -> str:
         (
             f"* **{ours(ratio):.1f} times** as far with spine and tail as with limbs only, at identical leg commands "
             f"(article: {printed(ratio):.1f}): {word(ratio)}.",
-            f"* **{-ours(moving):.0%} or {-ours(still):.0%}** of the displacement is gone with a failed front yaw "
+            f"* **{-ours(moving):.0%} and {-ours(still):.0%}** of the displacement are lost with a failed front yaw "
             f"joint, with a moving and with a still trunk (article: {-printed(moving):.0%} and {-printed(still):.0%}): "
             f"{word(moving, still)}.",
-            f"* **{abs(spine):.2f} m/s {'faster' if spine > 0 else 'slower'}** is the free swim with the swing of the "
-            f"spine than without (article: the spine gives thrust): {word('swim_spine_thrust')}.",
+            f"* **{abs(spine):.2f} m/s** is what the swing of the spine {'adds to' if spine > 0 else 'takes from'} the "
+            f"speed of the free swim (article: the spine gives thrust): {word('swim_spine_thrust')}.",
         )
     )
 

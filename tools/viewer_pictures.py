@@ -66,7 +66,7 @@ def animal(client: Any) -> ReplayPage:
     with TemporaryDirectory() as folder:
         (take, _) = takes(save(_crawls(), Path(folder) / "crawl.nc"))
     page = ReplayPage(client, (take,), animals=(beside(tracks, take),))
-    page._player.seek(4.4)
+    page._player.seek(1.4)
     page._player.speed = _SLOWEST
     return page
 

@@ -119,7 +119,7 @@ def test_the_head_of_the_page_names_the_film_and_its_pace(take, tracks):
     animal = beside(replace(tracks, source="<lizard>.csv"), take)
     text = status_text(take, None, 1.0, animal)
     assert "&lt;lizard&gt;.csv" in text
-    assert "slowed down 5" in text
+    assert "slowed down by a factor of 5" in text
     assert "slowed down" not in status_text(take, None, 1.0)
 
 

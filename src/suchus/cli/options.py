@@ -7,6 +7,7 @@ from contextlib import redirect_stderr
 from dataclasses import dataclass, field, fields, make_dataclass
 from itertools import pairwise
 from pathlib import Path
+from textwrap import fill
 from types import NoneType
 from typing import Annotated, Any, get_args
 
@@ -24,6 +25,8 @@ from suchus.motion import AngleTable, AnyGait, Gait, Pattern
 from suchus.record import there
 from suchus.renamed import new_name
 from suchus.robots import ROBOTS
+
+_WIDE = 110  # characters of a line of the description in the help
 
 QUICK = Annotated[
     bool,
@@ -134,7 +137,7 @@ def parse(options: type, prog: str, words: Sequence[str], description: str, name
             chosen, unknown = tyro.cli(
                 options,
                 prog=prog,
-                description=description,
+                description="\n".join(fill(line, _WIDE) for line in description.splitlines()),
                 args=list(words),
                 registry=_registry(),
                 return_unknown_args=True,
@@ -177,12 +180,13 @@ def _registry() -> ConstructorRegistry:
 def _shelf_rule(
     kind: Any, shelf: Catalog[Any], metavar: str
 ) -> Callable[[PrimitiveTypeInfo], PrimitiveConstructorSpec[Any] | None]:
+    own = "own" if shelf is GAITS else "the record's"
     spec: PrimitiveConstructorSpec[Any] = PrimitiveConstructorSpec(
         nargs=1,
         metavar=f"{metavar}|FILE.toml",
         instance_from_str=lambda words: _find(_first(words), kind, shelf),
         is_instance=lambda value: isinstance(value, kind),
-        str_from_instance=lambda value: ["own" if value is None else str(value.name)],
+        str_from_instance=lambda value: [own if value is None else str(value.name)],
     )
     return lambda info: spec if info.type == kind else None
 

@@ -1,7 +1,7 @@
 """``suchus replay RECORD.nc``: a stored run as one HTML file that plays offline."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Annotated
 
@@ -27,7 +27,7 @@ class ReplayOptions:
     """The run of the record, by its label or its number from 0; needed if it holds several."""
     ghost: str | None = None
     """Another run of the record, for comparison, by its label or its number."""
-    robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
+    robot: AnyRobot | None = None
     """Robot of the record; by default the one that the record names."""
     title: str = ""
     """Heading of the page; by default robot and gait."""
@@ -52,8 +52,8 @@ def make_replay(words: Sequence[str]) -> int:
     stored = record.load(options.file)
     shown = _chosen(stored, options.run, "--run")
     ghost = None if options.ghost is None else _chosen(stored, options.ghost, "--ghost")
-    said = any(word.partition("=")[0] == "--robot" for word in words)
-    robot = options.robot if said or "robot" not in shown.coords else ROBOTS[str(shown.robot.item())]
+    named = str(shown.robot.item()) if "robot" in shown.coords else "caiman"
+    robot = ROBOTS[named] if options.robot is None else options.robot
     labels = [_label(one).replace("_", " ") for one in (shown, ghost) if one is not None]
     save(replay(shown, robot, ghost=ghost, labels=labels, title=options.title), out)
     print(f"{robot.name}, {' and '.join(labels)}: {out}, {out.stat().st_size / 1e6:.1f} MB")

@@ -27,13 +27,14 @@ class StudyOptions:
     """The study, a TOML file, or ``claims``, the article's claims over plausible designs; see docs/studies.md."""
     scheduler: SCHEDULER = None
     jobs: int = 1
-    """How many processes run it, which share the threads; each takes a batch at a time. The same bytes."""
+    """How many processes run it, which share the threads; each takes a batch at a time. The results are the
+    same."""
     samples: int | None = None
     """Number of points of a sampled study; with another number than before it is another study."""
     out: Path | None = None
     """Folder of the store; by default out/studies/NAME. A store of the same study is continued, any other refused."""
     finished: bool = False
-    """Only for ``claims``: run nothing, answer from the samples in the store, as many as are a power of two."""
+    """Only for ``claims``: run nothing, and answer from the samples in the store, the largest power of two of them."""
     csv: CSV = False
     """Write the results as CSV files with units in the header too, into the folder csv in the store."""
 

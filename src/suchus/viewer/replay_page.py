@@ -140,8 +140,8 @@ def status_text(take: Take, ghost: Take | None, time: float, animal: FilmedAnima
     other = ghost is not None and not ghost.ground.looks_like(take.ground)
     note = "<div>The ghost went on other ground, which is not shown.</div>" if other else ""
     if animal is not None:
-        pace = "" if animal.pace == 1.0 else f", slowed down {animal.pace:.3g} times"
-        note += f"<div>Beside it the animal of {escape(animal.label)}, as long as the robot{pace}.</div>"
+        pace = "" if animal.pace == 1.0 else f" and slowed down by a factor of {animal.pace:.3g}"
+        note += f"<div>Beside it: the animal in {escape(animal.label)}, scaled to the robot's length{pace}.</div>"
     return (
         '<div style="padding:4px 12px;font:13px sans-serif"><table><tr style="color:#666;font-size:11px">'
         f'<td data-suchus="time">at {time:.2f} s</td><td>forward</td><td>to the left</td></tr>{"".join(rows)}'
