@@ -26,6 +26,7 @@ def provenance(settings: Mapping[str, Any], *, seconds: float) -> dict[str, Any]
     return {
         "config_hash": digest(settings),
         "versions": versions(),
+        "code": package_digest(),
         "seed": plain(settings.get("seed")),
         "seconds": round(seconds, 3),
     }
@@ -83,6 +84,27 @@ def _docstrings(place: ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFu
             yield from _docstrings(part)
         elif isinstance(part, ast.Expr) and isinstance(part.value, ast.Constant) and isinstance(part.value.value, str):
             yield part.value
+
+
+@cache
+def package_digest() -> str:
+    """Return the first 12 digits of the SHA-256 of every file of suchus: another one may mean other results."""
+    text = hashlib.sha256()
+    for file in sorted(_PACKAGE.rglob("*")):
+        if "__pycache__" not in file.parts and file.is_file():
+            text.update(file.relative_to(_PACKAGE).as_posix().encode() + b"\0" + file.read_bytes() + b"\0")
+    return text.hexdigest()[:12]
+
+
+def made_alike(told: Mapping[str, Any], settings: Mapping[str, Any]) -> bool:
+    """Return whether a result came of these settings, this code and these versions, so that a run would repeat it.
+
+    Args:
+        told: what ``provenance`` returned for it.
+        settings: the fields of the experiment.
+    """
+    now = provenance(settings, seconds=0.0)
+    return all(told.get(name) == now[name] for name in ("config_hash", "versions", "code"))
 
 
 def plain(value: Any) -> Any:

@@ -13,7 +13,7 @@ from suchus.figures import WIDTH
 from suchus.record import read_json, read_text
 from suchus.report.described import check_described
 from suchus.report.embedding import embedded
-from suchus.report.saving import OUTCOME
+from suchus.report.saving import OUTCOME, RECORD
 
 _COLUMN = 1.15 * 72 * WIDTH
 """Width of a drawing beyond which it takes both columns of the page [pt]."""
@@ -108,6 +108,12 @@ def load_result(folder: Path) -> Result:
         raise IncompatibleRecord(f"{file} is no outcome of suchus: {error}.") from error
     check_described(told, file)
     return Result(folder=folder, told=told, pictures=pictures, tables=tables, films=films, replays=replays)
+
+
+def whole(result: Result) -> bool:
+    """Return whether every file that an outcome names is in its folder: record, films and replays too."""
+    names = [RECORD, *(one["name"] for part in ("films", "replays") for one in result.told.get(part, ()))]
+    return all(_inside(result.folder, name).is_file() for name in names)
 
 
 def _wide(svg: Path) -> bool:
