@@ -67,8 +67,8 @@ def attempt(task: Job, progress: Progress) -> JobResult:
 def kept(task: Job) -> JobResult | None:
     """Return the result that an earlier run left, if it is whole and a run would give the same again.
 
-    That is so if it came of the same settings, files of suchus and versions of libraries. An experiment that is no part
-    of suchus itself is always run again, since its own code is in no digest.
+    That is so if the settings, the files of suchus and the versions of libraries are the same. An experiment that is no
+    part of suchus itself is always run again, since its own code is in no digest.
     """
     try:
         experiment = task.experiment

@@ -97,7 +97,7 @@ def package_digest() -> str:
 
 
 def made_alike(told: Mapping[str, Any], settings: Mapping[str, Any]) -> bool:
-    """Return whether a result came of these settings, this code and these versions, so that a run would repeat it.
+    """Return whether a result has these settings, this code and these versions, so that a run would repeat it.
 
     Args:
         told: what ``provenance`` returned for it.
