@@ -66,18 +66,18 @@ def ours(count: int) -> None:
     report("leg.forward", best_of(lambda: leg.forward(HIND, angles)), count)
     report("leg.jacobian", best_of(lambda: leg.jacobian(HIND, angles), 3), count)
     arms(10_000)
-    some = count // 10
-    bends = np.random.default_rng(1).uniform(-0.7, 0.7, (some, 5))
+    fewer = count // 10
+    bends = np.random.default_rng(1).uniform(-0.7, 0.7, (fewer, 5))
     T = spine.forward(ROBOT.spine, bends)
     azimuth = np.arctan2(T[:, 1, 0], T[:, 0, 0])
-    report("spine.forward", best_of(lambda: spine.forward(ROBOT.spine, bends), 3), some)
+    report("spine.forward", best_of(lambda: spine.forward(ROBOT.spine, bends), 3), fewer)
     closed = best_of(lambda: spine.inverse(ROBOT.spine, T[:, :3, 3], azimuth, first_yaw=bends[:, 0]), 3)
-    report("spine.inverse", closed, some)
-    least = slice(0, max(some // 100, 1))
+    report("spine.inverse", closed, fewer)
+    least = slice(0, max(fewer // 100, 1))
     seconds = best_of(lambda: spine.least_bending(ROBOT.spine, T[least, :3, 3], azimuth[least]), 3)
     report("spine.least_bending", seconds, least.stop)
-    posture = np.random.default_rng(2).uniform(-0.5, 0.5, (some, len(joint_names(ROBOT))))
-    report("landmarks of a robot", best_of(lambda: landmarks(ROBOT, posture), 3), some)
+    posture = np.random.default_rng(2).uniform(-0.5, 0.5, (fewer, len(joint_names(ROBOT))))
+    report("landmarks of a robot", best_of(lambda: landmarks(ROBOT, posture), 3), fewer)
 
 
 def arms(count: int) -> None:

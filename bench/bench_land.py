@@ -1,6 +1,6 @@
 """Steps per second of the land simulation beside MuJoCo's own rollout: same model, commands, threads, one process.
 
-Every run has a noise of its own on its servos: equal runs would be simulated once (``land.alike``).
+Every run has a noise of its own on its servos: equal runs would be simulated once (``land.deduplication``).
 The time is that of the processors, all threads together, so that other work on the machine counts little.
 """
 

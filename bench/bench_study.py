@@ -92,8 +92,8 @@ def largest_step() -> float:
 def bare(timestep: float, runs: int = 32, duration: float = 3.0) -> tuple[Spent, float]:
     """Let MuJoCo's own rollout do the same crawl with as many threads; return what it took, and the steps."""
     model = compile_model(ROBOT, timestep)
-    told = simulate([Run(robot=ROBOT, gait=GAIT)], duration=duration, timestep=timestep).servo_target.values[0, :-1]
-    targets = np.repeat(told, round(0.01 / timestep), axis=0)
+    record = simulate([Run(robot=ROBOT, gait=GAIT)], duration=duration, timestep=timestep)
+    targets = np.repeat(record.servo_target.values[0, :-1], round(0.01 / timestep), axis=0)
     data = [mujoco.MjData(model) for _ in range(min(threads.count(), runs))]
     data[0].qpos[:] = standing(model, ROBOT, GAIT.hip_height, targets[0])
     data[0].act[:] = activations(model, targets[0])

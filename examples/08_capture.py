@@ -19,8 +19,8 @@ from suchus.capture import (
     film_animal,
     observe,
     read_tracks,
+    summary,
     to_gait,
-    told,
     write_gait,
     write_table,
 )
@@ -55,6 +55,6 @@ for name in ("crawl", "lizard"):
     captured = to_gait(walk, robot, crawl, name=f"{name}_walk")
     file = write_gait(captured, walk, folder / f"{name}_walk.toml")
     again = suchus.crawl(robot, captured.gait, duration=1.0 + 2 * captured.gait.period)
-    print(name, *told(walk), *(f"note: {note}" for note in captured.notes), sep="\n  ")
+    print(name, *summary(walk), *(f"note: {note}" for note in captured.notes), sep="\n  ")
     print(f"  {file}: the robot walks {float(displacement(again)[0]):.2f} m in two cycles\n")
 print(f"the crawl that was filmed: {float(displacement(record)[0]):.2f} m")

@@ -5,7 +5,7 @@ import numpy as np
 from suchus import flow
 from suchus.figures.flow import vorticity
 
-spine = flow.foil(1.0, thickness=0.12).spine(0.0).blunted(1.75 / 48)  # a round tail that the grid resolves
+spine = flow.foil(1.0, thickness=0.12).spine(0.0).thickened(1.75 / 48)  # a round tail that the grid resolves
 foil = flow.Body(
     shape=flow.Midline(spine=lambda _: spine, deforms=False),
     motion=flow.Oscillation(frequency=0.6, heave=(0.0, 0.4), pitch=np.radians(20), pitch_phase=-np.pi / 2),

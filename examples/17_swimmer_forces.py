@@ -6,7 +6,7 @@ from suchus import flow
 
 cells, speed = 64, 0.4
 waves = flow.eel(1.0, stations=2 * cells + 1)
-swimmer = flow.Midline(spine=lambda time: waves.spine(time).blunted(1.75 / cells))
+swimmer = flow.Midline(spine=lambda time: waves.spine(time).thickened(1.75 / cells))
 grid = flow.Grid.covering((-0.6, 1.8), (-0.6, 0.6), cell=1 / cells)
 
 

@@ -5,9 +5,11 @@ from dataclasses import asdict, dataclass, fields, replace
 from importlib import import_module
 from operator import attrgetter
 
+import numpy as np
 import pytest
 import xarray as xr
 
+from suchus import flow
 from suchus.blueprint import read
 from suchus.cli.entry import main
 from suchus.cli.options import choose
@@ -113,6 +115,15 @@ def test_the_command_line_says_it_in_one_sentence(capsys):
     assert ".py:" not in err
 
 
+def test_a_side_and_a_midline_of_the_flow_take_their_old_names():
+    with pytest.warns(OldName, match=r"Stream\.endless is now called unbounded"):
+        assert flow.Stream(endless=False) == flow.Stream(unbounded=False)
+    spine = flow.eel(1.0, stations=33).spine(0.0)
+    with pytest.warns(OldName, match=r"Spine\.blunted is now called thickened"):
+        blunted = spine.blunted(0.01)
+    assert np.array_equal(blunted.half_width, spine.thickened(0.01).half_width)
+
+
 def test_records_keep_their_key_in_both_directions():
     ground = Ground(friction_scale=0.5)
     assert '"grip": 0.5' in ground_text(ground)
@@ -131,6 +142,7 @@ def test_every_new_name_is_a_field_and_no_old_one_is(kind):
     ("room", "old", "new"),
     [
         ("capture", "Animal", "SyntheticAnimal"), ("capture", "Reading", "ReadingOptions"),
+        ("capture", "told", "summary"), ("optimise", "Found", "SearchResult"),
         ("control", "Oscillation", "OscillatorStates"), ("hardware", "Load", "ServoLoad"),
         ("land", "lost", "joint_failure"), ("land", "lost_joints", "failing_joints"), ("land", "LOST", "FAILED_JOINTS"),
         ("kinematics", "Wave", "TravellingWave"), ("metrics", "Border", "decisive.DecisionBoundary"),

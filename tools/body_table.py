@@ -79,11 +79,12 @@ def main() -> int:
             continue
         for robot in sorted(ROBOTS, key=lambda name: isinstance(ROBOTS[name], Crocodile)):  # they take long
             if row in asked.only or robot not in found.get(row, {}):
-                found.setdefault(row, {})[robot] = told = tried(row, robot)
+                found.setdefault(row, {})[robot] = answer = tried(row, robot)
                 FOUND.write_text(json.dumps(found, indent=1, sort_keys=True) + "\n")
-                print(f"{row} {robot}: {told}", flush=True)
+                print(f"{row} {robot}: {answer}", flush=True)
     write(found)
-    odd = [(row, robot) for row, cells in found.items() for robot, told in cells.items() if told.startswith("exit ")]
+    every = [(row, robot, answer) for row, cells in found.items() for robot, answer in cells.items()]
+    odd = [(row, robot) for row, robot, answer in every if answer.startswith("exit ")]
     for row, robot in odd:
         print(f"{row} on {robot}: {found[row][robot]}", file=sys.stderr)
     return bool(odd)
@@ -151,11 +152,11 @@ def table(found: dict[str, dict[str, str]]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def mark(told: str | None) -> str:
+def mark(answer: str | None) -> str:
     """Return what a cell shows."""
-    if told is None:
+    if answer is None:
         return "not tried"
-    return "answers" if not told else "failed" if told.startswith("exit ") else "refuses"
+    return "answers" if not answer else "failed" if answer.startswith("exit ") else "refuses"
 
 
 if __name__ == "__main__":

@@ -60,9 +60,9 @@ def _tried(wheel: Path, place: Path) -> None:
     user, work = Environment(place / "a user").make(), place / "an empty folder"
     work.mkdir()
     user.pip(wheel)
-    told, _ = user.suchus("--version", cwd=work)
-    if told.strip() != f"suchus {distributions.project()['version']}":
-        raise Failed(f"suchus --version says {told.strip()!r}.")
+    printed, _ = user.suchus("--version", cwd=work)
+    if printed.strip() != f"suchus {distributions.project()['version']}":
+        raise Failed(f"suchus --version says {printed.strip()!r}.")
     where = run([user.bin / "python", "-c", "import suchus; print(suchus.__file__)"], cwd=work).strip()
     if not Path(where).is_relative_to(place):
         raise Failed(f"what was tried is {where}, not what was built.")

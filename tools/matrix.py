@@ -46,7 +46,7 @@ class Cell:
 
     name: str
     """Python and versions, such as 3.12-lowest."""
-    told: str
+    line: str
     """In a line."""
     sound: bool
     """Whether it works, or cannot be had."""
@@ -77,7 +77,7 @@ def main(words: list[str] | None = None) -> int:
             if asked.only and name not in asked.only:
                 continue
             cells.append(_cell(name, interpreter, wheel, tools, place, asked.tests))
-            print(f"{cells[-1].name:12s} {cells[-1].told} {cells[-1].why}", flush=True)
+            print(f"{cells[-1].name:12s} {cells[-1].line} {cells[-1].why}", flush=True)
             keep(cells[-1])
     return 0 if all(cell.sound for cell in cells) else 1
 
@@ -85,8 +85,8 @@ def main(words: list[str] | None = None) -> int:
 def keep(cell: Cell) -> None:
     """Put the result in an environment into ``KEPT``, and the table of all into ``PAGE``."""
     every = json.loads(KEPT.read_text(encoding="utf-8"))
-    told = {name: value for name, value in asdict(cell).items() if name not in ("name", "why")}
-    every[cell.name] = {"date": date.today().isoformat(), **told}
+    values = {name: value for name, value in asdict(cell).items() if name not in ("name", "why")}
+    every[cell.name] = {"date": date.today().isoformat(), **values}
     KEPT.write_text(json.dumps(dict(sorted(every.items())), indent=1) + "\n", encoding="utf-8")
     PAGE.write_text(put(PAGE.read_text(encoding="utf-8"), {"matrix": table(every)}), encoding="utf-8")
 
@@ -94,15 +94,15 @@ def keep(cell: Cell) -> None:
 def table(every: dict[str, dict[str, Any]]) -> str:
     """Return what is kept of environments as a table, a row for each Python."""
     rows = [["Python", *VERSIONS], ["---"] * 3]
-    rows += [[python, *(_told(every.get(f"{python}-{versions}")) for versions in VERSIONS)] for python in PYTHONS]
+    rows += [[python, *(_in_words(every.get(f"{python}-{versions}")) for versions in VERSIONS)] for python in PYTHONS]
     return "".join(f"| {' | '.join(row)} |\n" for row in rows)
 
 
-def _told(cell: dict[str, Any] | None) -> str:
+def _in_words(cell: dict[str, Any] | None) -> str:
     if cell is None:
         return "not tried yet"
     names = ", ".join(f"{name} {version}" for name, version in cell["versions"].items())
-    return f"{cell['date']}{'' if cell['sound'] else ' **fails**'}: {cell['told']}{f' ({names})' if names else ''}"
+    return f"{cell['date']}{'' if cell['sound'] else ' **fails**'}: {cell['line']}{f' ({names})' if names else ''}"
 
 
 def found(python: str) -> str | None:
@@ -134,16 +134,16 @@ def _cell(name: str, interpreter: str | None, wheel: Path, tools: Environment, p
     except Failed as error:
         (place / f"{name}.log").write_text(str(error), encoding="utf-8")
         return Cell(name, f"cannot be installed, see build/matrix/{name}.log", sound=False, why=_reason(error))
-    steps = [told for _, told in _steps(environment, place / f"{name}.log", tests)]
-    wrong = [told for told in steps if not told.startswith("ok")]
-    told = f"{'; '.join(wrong or steps)} ({time.monotonic() - start:.0f} s)"
-    return Cell(name, told, sound=not wrong, versions=_versions(environment))
+    steps = [results for _, results in _steps(environment, place / f"{name}.log", tests)]
+    wrong = [results for results in steps if not results.startswith("ok")]
+    results = f"{'; '.join(wrong or steps)} ({time.monotonic() - start:.0f} s)"
+    return Cell(name, results, sound=not wrong, versions=_versions(environment))
 
 
 def _versions(environment: Environment) -> dict[str, str]:
     code = f"import importlib.metadata as m, json; print(json.dumps({{n: m.version(n) for n in {NAMED!r}}}))"
-    told: dict[str, str] = json.loads(run([environment.bin / "python", "-c", code], cwd=environment.folder))
-    return told
+    versions: dict[str, str] = json.loads(run([environment.bin / "python", "-c", code], cwd=environment.folder))
+    return versions
 
 
 def _install(environment: Environment, name: str, wheel: Path, tools: Environment) -> None:

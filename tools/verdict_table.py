@@ -23,7 +23,7 @@ START, END = "<!-- verdicts: made by tools/verdict_table.py -->", "<!-- /verdict
 QUESTIONS = "<!-- questions: made by tools/verdict_table.py -->", "<!-- /questions -->"
 RESULT = "<!-- result: made by tools/verdict_table.py -->", "<!-- /result -->"
 _KEPT = ("verdict", "measured", "low", "high", "unit", "fragile")
-_TOLD = ("fitted", "by construction")
+_PUT_IN = ("fitted", "by construction")
 
 
 def collected(out: Path) -> dict[str, dict[str, Any]]:
@@ -46,13 +46,13 @@ def summary(table: dict[str, dict[str, Any]]) -> str:
     """Return the counts of the words as a paragraph of the README."""
     count = Counter(row["verdict"] for row in table.values())
     fragile = sum(row["fragile"] for row in table.values())
-    judged = sum(count[word] for word in WORDS if word not in _TOLD)
-    measured = ", ".join(f"{count[word]} {word}" for word in WORDS if word not in _TOLD)
-    told = " and ".join(f"{count[word]} {word}" for word in _TOLD)
+    judged = sum(count[word] for word in WORDS if word not in _PUT_IN)
+    measured = ", ".join(f"{count[word]} {word}" for word in WORDS if word not in _PUT_IN)
+    counted = " and ".join(f"{count[word]} {word}" for word in _PUT_IN)
     return (
         f"Of {len(table)} claims of the article {judged} could come out either way: {measured}; {fragile} of these are "
-        f"fragile, since more than one in ten plausible designs say otherwise. {told} agree because they were put in, "
-        "and count for nothing."
+        f"fragile, since more than one in ten plausible designs say otherwise. {counted} agree because they were put "
+        "in, and count for nothing."
     )
 
 

@@ -182,13 +182,13 @@ def _work(pipe: Connection, work: Callable[[Any, Tell], Any], each: int) -> None
         while True:
             item = pipe.recv()
             try:
-                said: Done | _Refused = Done(work(item, _told(pipe)))
+                said: Done | _Refused = Done(work(item, _sender(pipe)))
             except SuchusError as error:
                 said = _Refused(error)
             pipe.send(said)
 
 
-def _told(pipe: Connection) -> Tell:
+def _sender(pipe: Connection) -> Tell:
     """Return what tells the other process now and then."""
     last_stage, last = "", -_EVERY
 

@@ -8,7 +8,7 @@ import pytest
 from menagerie import apart, drawn, held, hidden, jumping, truth
 from scipy.stats import binom
 
-from suchus.capture import Camera, UnusableTracks, film_animal, observe, to_gait, told
+from suchus.capture import Camera, UnusableTracks, film_animal, observe, summary, to_gait
 from suchus.design import LEGS
 from suchus.gaits import GAITS
 
@@ -96,7 +96,7 @@ def test_a_pair_that_is_exchanged_for_a_while_is_no_outlier(walker, sharp):
 def test_what_is_exactly_straight_has_no_phase(caiman, walker, clean, bends):
     walk = observe(film_animal(replace(walker, **bends), replace(clean, heights=False), cycles=4))
     assert "tail_lag" not in walk.numbers
-    assert "(it does not bend)" in " ".join(told(walk))
+    assert "(it does not bend)" in " ".join(summary(walk))
     notes = " ".join(to_gait(walk, caiman, GAITS["belly_crawl"], name="x").notes)
     assert "its phase has no meaning" in notes
 

@@ -59,6 +59,16 @@ def test_measures_have_their_difference_and_those_that_differ_most_come_first(tw
     assert [one.name for one in found.measures][:3] == ["load", "far", "same"]
 
 
+def test_measures_that_only_one_outcome_has_are_folded_away(two, tmp_path):
+    found = compare(load_result(two[0]), load_result(two[1]), ("a", "b"))
+    assert [one.name for one in found.of_both] == ["load", "far", "same"]
+    assert [one.name for one in found.of_one] == ["gone", "none"]
+    text = render_comparison(found, tmp_path)
+    assert text.index("<code>same</code>") < text.index("2 measures without a number") < text.index("<code>gone</code>")
+    same = compare(load_result(two[0]), load_result(two[0]), ("a", "a"))
+    assert "without a number on both sides" not in render_comparison(same, tmp_path)
+
+
 def test_no_difference_is_told_of_other_units(tmp_path):
     one, other = (
         write(tmp_path / "a", {"x": (1.0, "m"), "y": (1.0, "m")}),

@@ -24,7 +24,7 @@ def well(monkeypatch):
     """A machine on which all trials succeed."""
     trials = {"walk": WALKED, "swim": Trial(found=COMPILED), "draw": Trial(found=None, failure="no EGL")}
     monkeypatch.setattr(doctor, "tried", lambda *names: [trials[name] for name in names])
-    monkeypatch.setattr(doctor, "packages", lambda: Finding(heading="packages", told=("numpy 2.4.6",)))
+    monkeypatch.setattr(doctor, "packages", lambda: Finding(heading="packages", lines=("numpy 2.4.6",)))
     return trials
 
 
@@ -49,7 +49,7 @@ def test_a_walk_that_fails_is_the_sentence_and_exit_code_2(well, capsys):
 
 def test_packages_in_their_ranges_are_well_and_others_are_named():
     assert doctor.packages(REQUIRES, at(numpy="2.4.6", mujoco="3.17.0")).wrong == ""
-    assert doctor.packages(REQUIRES, at(numpy="2.4.6", mujoco="3.17.0")).told == ("numpy 2.4.6, mujoco 3.17.0",)
+    assert doctor.packages(REQUIRES, at(numpy="2.4.6", mujoco="3.17.0")).lines == ("numpy 2.4.6, mujoco 3.17.0",)
     low = doctor.packages(REQUIRES, at(numpy="2.1.9", mujoco="5.0"))
     assert "numpy is 2.1.9" in low.wrong
     assert "mujoco is 5.0" in low.wrong
@@ -57,11 +57,11 @@ def test_packages_in_their_ranges_are_well_and_others_are_named():
 
 
 def test_extras_are_there_or_it_is_said_how_to_get_them():
-    (viewer, *others) = doctor.extras(REQUIRES, at(viser="1.1.1", mjviser="0.0.14")).told
+    (viewer, *others) = doctor.extras(REQUIRES, at(viser="1.1.1", mjviser="0.0.14")).lines
     assert viewer.startswith("viewer    yes, viser 1.1.1, mjviser 0.0.14")
     assert all("no: pip install 'suchus[" in line for line in others)
-    assert "pip install 'suchus[viewer]'" in doctor.extras(REQUIRES, at(viser="1.1.1")).told[0]
-    assert "pip install 'suchus[viewer]'" in doctor.extras(REQUIRES, at(viser="2.0", mjviser="1")).told[0]
+    assert "pip install 'suchus[viewer]'" in doctor.extras(REQUIRES, at(viser="1.1.1")).lines[0]
+    assert "pip install 'suchus[viewer]'" in doctor.extras(REQUIRES, at(viser="2.0", mjviser="1")).lines[0]
 
 
 def test_every_extra_that_is_told_is_one_of_the_package():
@@ -82,7 +82,7 @@ def test_a_walk_must_end_in_numbers():
 
 def test_what_is_said_of_compiled_code():
     def told(**changes):
-        return " ".join(doctor.compiled(Trial(found=COMPILED | changes)).told)
+        return " ".join(doctor.compiled(Trial(found=COMPILED | changes)).lines)
 
     assert told() == ("numba compiles; its threads are those of omp compiled code is kept in /cache/kernels-1 (there)")
     assert "(not there yet" in told(compiled=0)
@@ -94,9 +94,9 @@ def test_what_is_said_of_compiled_code():
 
 def test_a_folder_that_takes_nothing_is_said(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    assert "can be written" in doctor.places().told[0]
+    assert "can be written" in doctor.places().lines[0]
     monkeypatch.setattr(doctor, "Path", SimpleNamespace(cwd=lambda: "/dev/null"))
-    assert "say --out DIR" in doctor.places().told[0]
+    assert "say --out DIR" in doctor.places().lines[0]
 
 
 @pytest.fixture

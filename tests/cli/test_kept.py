@@ -32,9 +32,9 @@ def task(first, tmp_path):
 
 def test_a_finished_experiment_is_kept_and_reads_as_the_run_did(task):
     again, anew = kept(task), attempt(task, silent)
-    assert again.told == anew.told.rpartition(" (")[0] + " (kept from an earlier run)"
+    assert again.summary == anew.summary.rpartition(" (")[0] + " (kept from an earlier run)"
     for name in ("measures", "verdicts", "command", "decides"):
-        assert again.result.told[name] == anew.result.told[name]
+        assert again.result.outcome[name] == anew.result.outcome[name]
     assert again.result.pictures == anew.result.pictures
 
 

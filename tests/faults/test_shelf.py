@@ -16,7 +16,7 @@ from suchus.fault import Fault, check_faults
 from suchus.faults import FAULTS, Backlash, Limp, Locked, Offset, Slow, Weak, from_table, numbers
 from suchus.gaits import GAITS
 from suchus.land import Live, Run, simulate
-from suchus.land.bench import Bench
+from suchus.land.batch import SimulationBatch
 from suchus.land.injector import Injector
 from suchus.robots import ROBOTS
 
@@ -165,36 +165,36 @@ def test_what_is_mended_at_once_was_never_broken(shelved):
 
 @pytest.mark.parametrize("robots", [[CAIMAN, CAIMAN], [CAIMAN, OTHER]], ids=["one robot", "several robots"])
 def test_mending_leaves_the_model_as_it_was_built_and_the_neighbour_alone(shelved, robots):
-    bench = Bench([Run(robot=robot, gait=GAIT) for robot in robots], STEP)
+    batch = SimulationBatch([Run(robot=robot, gait=GAIT) for robot in robots], STEP)
     names = ("actuator_forcerange", "actuator_dynprm", "geom_conaffinity")
-    injector = Injector(bench, 0.01, robots[0])
+    injector = Injector(batch, 0.01, robots[0])
     injector.begin(0, made(shelved))
     injector.command(0, np.zeros((2, len(servo_names()))))
     assert injector.broken(0) == (made(shelved),)
     assert injector.broken(1) == ()
     for name in names:
-        assert np.array_equal(bench.field(name, 1), getattr(bench.model, name))
+        assert np.array_equal(batch.field(name, 1), getattr(batch.model, name))
     injector.mend(0)
     assert injector.broken(0) == ()
     for name in names:
-        assert np.array_equal(bench.field(name, 0), getattr(bench.model, name)), name
-    own = bench._models[0].opt if robots[0] != robots[1] else None
-    flags = own.disableactuator if own else bench.batch.expand("opt.disableactuator")[0]
+        assert np.array_equal(batch.field(name, 0), getattr(batch.model, name)), name
+    own = batch._models[0].opt if robots[0] != robots[1] else None
+    flags = own.disableactuator if own else batch.physics.expand("opt.disableactuator")[0]
     assert int(flags) == 0
 
 
 @settings(max_examples=20)
 @given(kinds=st.lists(st.sampled_from(list(FAULTS)), min_size=1, unique_by=acts_on), seed=st.integers(0, 99))
 def test_faults_of_different_parts_end_in_any_order(kinds, seed):
-    bench = Bench([Run(robot=CAIMAN, gait=GAIT)], STEP)
-    injector, random = Injector(bench, 0.01, CAIMAN), np.random.default_rng(seed)
+    batch = SimulationBatch([Run(robot=CAIMAN, gait=GAIT)], STEP)
+    injector, random = Injector(batch, 0.01, CAIMAN), np.random.default_rng(seed)
     faults = [made(FAULTS[kind]) for kind in kinds]
     for fault in faults:
         injector.begin(0, fault)
     for i in random.permutation(len(faults)):
         injector.mend(0, faults[i].part)
     assert injector.broken(0) == ()
-    assert np.array_equal(bench.field("actuator_forcerange", 0), bench.model.actuator_forcerange)
+    assert np.array_equal(batch.field("actuator_forcerange", 0), batch.model.actuator_forcerange)
 
 
 def test_a_table_says_what_a_value_says(shelved):

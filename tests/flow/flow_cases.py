@@ -137,7 +137,7 @@ def turning(cells, *, viscosity=0.05, swing=0.2, periods=1.0, width=3.0):
 
 def straight_foil(cells, reynolds, until):
     """Drag coefficient of a NACA 0012 held straight along the stream, chord and speed 1, mean of the last second."""
-    spine = flow.foil(1.0, thickness=0.12, stations=2 * cells + 1).spine(0.0).blunted(1.75 / cells)
+    spine = flow.foil(1.0, thickness=0.12, stations=2 * cells + 1).spine(0.0).thickened(1.75 / cells)
     grid = flow.Grid.covering((-0.75, 2.25), (-0.75, 0.75), cell=1 / cells)
     body = flow.Body(shape=flow.Midline(spine=lambda time: spine))
     sim = flow.Simulation(flow.Setup(grid=grid, viscosity=1 / reynolds, density=1.0, stream=(1.0, 0.0), bodies=(body,)))
@@ -164,7 +164,7 @@ def wavy_foil(cells, speed, cycles):
         )  # fmt: skip
 
     def blunt(time):
-        return spine(time).blunted(1.75 / cells)
+        return spine(time).thickened(1.75 / cells)
 
     grid = flow.Grid.covering((-0.75, 2.25), (-0.75, 0.75), cell=1 / cells)
     body = flow.Body(shape=flow.Midline(spine=blunt))

@@ -123,7 +123,7 @@ def vortex(sides, at):
 
 
 def held(**others):
-    side = flow.Stream(endless=False)
+    side = flow.Stream(unbounded=False)
     return flow.Sides(**{"left": side, "right": side, "bottom": side, "top": side, **others})
 
 

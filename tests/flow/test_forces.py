@@ -62,7 +62,7 @@ def momentum_defect(record, mass):
 @pytest.mark.parametrize("endless", [False, True])
 def test_a_free_cylinder_gets_the_momentum_that_the_water_gives(endless):
     """The jolt of the start included, which alone is most of it."""
-    side = flow.Stream(endless=endless)
+    side = flow.Stream(unbounded=endless)
     setup = still_setup(
         bodies=(flow.FreeBody(shape=flow.Cylinder(diameter=1.0), density=2.0),), stream=(1.0, 0.0), viscosity=0.05,
         sides=flow.Sides(left=side, right=side, bottom=side, top=side),
@@ -105,7 +105,7 @@ def test_a_thin_plate_holds_the_water_back(cells, angle):
 
 def test_forces_do_not_jump_from_step_to_step():
     thick = 1.75 / 64
-    body = flow.Body(shape=flow.Midline(spine=lambda t: flow.eel(1.0, stations=129).spine(t).blunted(thick)))
+    body = flow.Body(shape=flow.Midline(spine=lambda t: flow.eel(1.0, stations=129).spine(t).thickened(thick)))
     grid = flow.Grid.covering((-0.7, 1.7), (-0.6, 0.6), cell=1 / 64)
     sim = flow.Simulation(
         flow.Setup(grid=grid, viscosity=5e-4, density=1.0, stream=(0.4, 0.0), bodies=(body,), tolerance=1e-6)

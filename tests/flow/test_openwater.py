@@ -87,7 +87,7 @@ def test_a_vortex_pair_travels_as_in_water_without_end():
     grid = flow.Grid(cells=(n, n), cell=2 / n, origin=(-1.0, -1.0))
     travelled = []
     for endless in (True, False):
-        side = flow.Stream(endless=endless)
+        side = flow.Stream(unbounded=endless)
         sides = flow.Sides(left=side, right=side, bottom=side, top=side)
         sim = flow.Simulation(flow.Setup(grid=grid, viscosity=1e-4, sides=sides, courant=0.5))
 
@@ -115,7 +115,7 @@ def test_added_mass_does_not_hang_on_the_domain(half):
 
 
 def started(half, endless, **changes):
-    side = flow.Stream(endless=endless)
+    side = flow.Stream(unbounded=endless)
     grid = flow.Grid.covering((-half, half), (-half, half), cell=1 / 32)
     settings = {"viscosity": 1e-6, "coarse": True, "stream": (1.0, 0.0), "tolerance": 1e-6, **changes}
     sim = flow.Simulation(

@@ -101,7 +101,7 @@ def test_a_turned_midline_is_the_turned_field(angle, px, py):
 
 def test_a_blunted_eel_keeps_its_head_and_gets_a_round_tail():
     sharp = _eel(0.3)
-    blunt = sharp.blunted(0.01)
+    blunt = sharp.thickened(0.01)
     assert (blunt.half_width[:100] == sharp.half_width[:100]).all()
     left = sharp.arc[-1] - sharp.arc
     assert blunt.half_width[(left > 0.01) & (sharp.arc > 0.5) & (sharp.half_width < 0.01)] == pytest.approx(0.01)
@@ -116,7 +116,7 @@ def test_the_sheet_of_a_tail_ends_where_its_tip_is_round():
     assert arc[-1] - np.interp(x[-1], _eel(0.3).x, arc) < 1e-3
     assert x[0] > 0.04  # the head is round
     least = 0.02
-    blunt = flow.Midline(spine=lambda t: _eel(t).blunted(least))
+    blunt = flow.Midline(spine=lambda t: _eel(t).thickened(least))
     spine, (x, _) = blunt.spine(0.3), blunt.sheet(0.3, STILL)
     assert spine.arc[-1] - np.interp(x[-1], spine.x, spine.arc) == pytest.approx(least, abs=2e-3)
     assert flow.Cylinder(diameter=1.0).sheet(0.0, STILL) is None

@@ -17,7 +17,7 @@ from suchus.flow.farfield import FarBody, FarField
 from suchus.flow.watch import vorticity_size
 from suchus.flow.water import Water
 
-HELD = flow.Stream(endless=False)
+HELD = flow.Stream(unbounded=False)
 NAMES = (("left", "right"), ("bottom", "top"), ("low", "high"))
 SPHERE = flow.Sphere(diameter=1.0)
 TAYLOR_GREEN = (0.125, 0.11748, 0.10905, 0.09879, 0.08682, 0.07397, 0.06125, 0.04969, 0.03999, 0.03224)

@@ -303,7 +303,7 @@ def test_travelling_wavy_foil():
 def test_force_noise_of_a_held_eel():
     cells = 128
     for name, least in (("sharp tail, as in the source", 0.0), ("half-width at least 1.75 cells, round end", 1.75)):
-        shape = flow.Midline(spine=lambda t, least=least / cells: flow.eel(1.0, stations=257).spine(t).blunted(least))
+        shape = flow.Midline(spine=lambda t, least=least / cells: flow.eel(1.0, stations=257).spine(t).thickened(least))
         grid = flow.Grid.covering((-0.5, 2.0), (-0.6, 0.6), cell=1 / cells)
         sim = flow.Simulation(
             flow.Setup(

@@ -34,7 +34,7 @@ def test_added_mass_of_a_sphere_over_three_grids():
     found = []
     for cells in (8, 16, 24):
         grid = flow.Grid(cells=(4 * cells, 4 * cells, 2 * cells), cell=1 / cells, origin=(-2.0, -2.0, -2.0))
-        held = dict.fromkeys(("left", "right", "bottom", "top", "low"), flow.Stream(endless=False))
+        held = dict.fromkeys(("left", "right", "bottom", "top", "low"), flow.Stream(unbounded=False))
         found.append(added(ball(grid=grid, sides=flow.Sides(**held, high=flow.Mirror()), steps=0))[0, 0])
     print(f"added mass of a sphere at 8, 16, 24 cells a diameter: {np.round(found, 4)}, potential flow 0.512")
     assert np.all(np.diff(np.abs(np.array(found) - 0.512)) < 0)

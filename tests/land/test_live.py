@@ -111,7 +111,7 @@ def test_impossible_commands_are_refused():
 def test_a_walk_that_comes_apart_says_when(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)  # where MuJoCo writes its warnings
     walk = until(live(), 0.5)
-    walk._loop.bench.qvel[0, 0] = np.nan
+    walk._loop.batch.qvel[0, 0] = np.nan
     with pytest.raises(Diverged) as error:
         until(walk, 1.0)
     assert abs(error.value.time - 0.5) < 0.02

@@ -34,7 +34,7 @@ def read(text, tmp_path, name="it", **words):
 
 
 def told(draft):
-    return " ".join(draft.told)
+    return " ".join(draft.remarks)
 
 
 def positions(model, matches, angles, ours):
@@ -124,7 +124,7 @@ def test_the_draft_says_what_becomes_of_a_cable(shelf):
 
 def test_the_written_file_is_the_draft_and_it_walks_with_its_own_gait(shelf, tmp_path):
     _, draft, kind = shelf
-    file = blueprint.write(draft.robot, tmp_path / "it.toml", notes=draft.notes, head=draft.told)
+    file = blueprint.write(draft.robot, tmp_path / "it.toml", notes=draft.notes, head=draft.remarks)
     assert blueprint.read(file, AnyRobot, ROBOTS) == draft.robot
     if kind == "mjcf" or not draft.robot.girdles:
         return
@@ -317,7 +317,7 @@ def test_the_right_side_is_compared_with_the_left_one(tmp_path):
 
 def test_every_guess_is_a_comment_beside_its_number(tmp_path):
     draft = read(quadruped(), tmp_path, foot_radius=0.03)
-    text = blueprint.render(draft.robot, notes=draft.notes, head=draft.told)
+    text = blueprint.render(draft.robot, notes=draft.notes, head=draft.remarks)
     lines = text.splitlines()
     guesses = [note for note in draft.notes.values() if note.startswith("guess")]
     assert sum("Guess:" in line for line in lines if not line.startswith("#")) == len(guesses) > 10

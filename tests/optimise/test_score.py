@@ -12,8 +12,8 @@ from suchus.gaits import own_gait
 from suchus.kinematics.tail import servo_angle
 from suchus.optimise import Aim, Limit
 from suchus.optimise.excess import excess
-from suchus.optimise.found import Found
 from suchus.optimise.score import allowed, excesses, losses, score, units
+from suchus.optimise.search_result import SearchResult
 from suchus.robots import ROBOTS
 
 
@@ -70,7 +70,8 @@ def test_the_front_is_what_nothing_betters_in_both(small):
     spec = replace(small, aims=(Aim(name="displacement"), Aim(name="cost_of_transport")), pareto=True)
     ways, costs = [1.0, 0.5, 0.7, 0.9, 2.0], [1.0, 0.4, 0.9, 0.7, 0.1]
     tried = table(ways, [0.02] * 4 + [0.0]).assign(aim_cost_of_transport=("candidate", np.array(costs)))
-    found = Found(spec=spec, start=tried.isel(candidate=[0]), history=tried.assign(score=("candidate", np.zeros(5))))
+    history = tried.assign(score=("candidate", np.zeros(5)))
+    found = SearchResult(spec=spec, start=tried.isel(candidate=[0]), history=history)
     assert set(found.front) == {0, 1, 3}  # 2 is bettered by 3; 4 breaks a limit
     assert set(found.chosen) == {0, 1, 3}
     areas = found.covered()

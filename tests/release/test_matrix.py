@@ -8,7 +8,7 @@ import pytest
 import matrix
 from pages.passages import put
 
-SOUND = {"date": "2026-01-02", "told": "ok: doctor", "sound": True, "versions": {"numpy": "2.2.0"}}
+SOUND = {"date": "2026-01-02", "line": "ok: doctor", "sound": True, "versions": {"numpy": "2.2.0"}}
 
 
 def test_the_page_shows_what_was_tried():
@@ -33,7 +33,7 @@ def test_what_was_tried_is_kept_beside_the_others_without_what_the_installer_sai
     matrix.keep(matrix.Cell("3.12-lowest", "cannot be installed", sound=False, why="/home/me has no wheel"))
     every, page = json.loads(matrix.KEPT.read_text(encoding="utf-8")), matrix.PAGE.read_text(encoding="utf-8")
     assert every["3.11-newest"] == SOUND
-    assert every["3.12-lowest"]["told"] == "cannot be installed"
+    assert every["3.12-lowest"]["line"] == "cannot be installed"
     assert "/home/me" not in str(every) + page
     assert page == f"a\n<!-- stated: matrix -->\n{matrix.table(every)}<!-- end -->\nb\n"
 

@@ -7,7 +7,7 @@ from suchus.report.metres import metres
 
 def result(**measures):
     told = {name: {"value": value, "unit": unit} for name, (value, unit) in measures.items()}
-    return SimpleNamespace(told={"measures": told})
+    return SimpleNamespace(outcome={"measures": told})
 
 
 SHORE = result(

@@ -141,7 +141,7 @@ def test_the_verdicts_stand_first_and_in_the_order_of_the_article(page):
 
 @pytest.mark.parametrize(("claims", "place"), [(("a", "c"), 2), (("b",), 1), ((), 3)])
 def test_a_result_stands_where_the_article_comes_to_its_last_claim(claims, place):
-    result = SimpleNamespace(told={"verdicts": [{"claim": claim} for claim in claims]})
+    result = SimpleNamespace(outcome={"verdicts": [{"claim": claim} for claim in claims]})
     assert _place(result, {"a": 0, "b": 1, "c": 2}) == place
 
 

@@ -14,7 +14,7 @@ from suchus.study import Claims, answer_finished, claims, conduct_claims
 from suchus.study.answers import first_order
 from suchus.study.claim_measures import RUNS, asked_rules
 from suchus.study.claims_page import OUTCOME, SHARES, TABLE, write_claims
-from suchus.study.claims_table import deciders, told, turned
+from suchus.study.claims_table import claim_row, deciders, turned
 from suchus.study.claims_table import shares as shares_of
 from suchus.study.makers import deciding
 from suchus.verdict.shares import Share, digest
@@ -139,7 +139,7 @@ def test_a_parameter_that_goes_with_a_stronger_one_is_not_named_beside_it():
 def test_rows_hold_what_the_record_holds(conducted):
     record = conducted[0]
     for claim in record.claim.values:
-        row = told(record, str(claim))
+        row = claim_row(record, str(claim))
         one = record.sel(claim=claim)
         assert row["samples"] == int(np.isfinite(one.number).sum())
         assert row["true"] == float(one.holds.mean())

@@ -230,7 +230,7 @@ def test_a_reset_begins_the_same_walk_anew(sound):
 def test_a_walk_that_comes_apart_says_so_and_can_be_begun_anew(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)  # where MuJoCo writes its warnings
     session = walked(seconds=0.3)
-    session._live._loop.bench.qvel[0, 3] = nan
+    session._live._loop.batch.qvel[0, 3] = nan
     session.advance(0.5)
     assert "diverged at 0.3" in session.look().trouble
     session.advance(0.5)

@@ -56,7 +56,7 @@ def test_a_take_knows_the_ground_it_was_walked_on(tmp_path):
     record = simulate(runs, duration=0.05, timestep=0.01)
     assert [take.ground for take in takes(save(record, tmp_path / "new.nc"))] == [ground, Ground()]
     sloped, level = takes(tmp_path / "new.nc")
-    told = pytest.importorskip("suchus.viewer.replay_page").told
+    told = pytest.importorskip("suchus.viewer.replay_page").status_text
     assert "other ground" in told(sloped, level, 0.0)
     assert "other ground" not in told(level, level, 0.0)
     old = save(record.isel(run=1).drop_vars("stands_on"), tmp_path / "old.nc")

@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from pages.code import Told, papers
+from pages.code import PaperReference, papers
 from pages.references import named
 from suchus.experiment import Experiment
 from suchus.experiments import EXPERIMENTS
@@ -71,10 +71,10 @@ def items() -> dict[str, str]:
     )
 
 
-def code_of(told: Iterable[Told]) -> dict[str, list[Told]]:
+def code_of(places: Iterable[PaperReference]) -> dict[str, list[PaperReference]]:
     """Return the docstrings that name an item, by item."""
-    found: dict[str, list[Told]] = {key: [] for key in items()}
-    for one in told:
+    found: dict[str, list[PaperReference]] = {key: [] for key in items()}
+    for one in places:
         for key in named(one.paper):
             found[key].append(one)
     return found
@@ -182,8 +182,8 @@ def _label(key: str) -> str:
     return shown.replace(" ", "\N{NO-BREAK SPACE}")
 
 
-def _code(told: Iterable[Told]) -> str:
-    return ", ".join(f"[`{one.shown}`][{one.name}]" for one in told)
+def _code(places: Iterable[PaperReference]) -> str:
+    return ", ".join(f"[`{one.shown}`][{one.name}]" for one in places)
 
 
 def _commands(names: Iterable[str]) -> str:

@@ -16,7 +16,7 @@ BY_MODULE = ("figures", "experiments", "robots", "gaits", "skin", "replay", "vie
 
 
 @dataclass(frozen=True, slots=True)
-class Told:
+class PaperReference:
     """A docstring that names a part of the article."""
 
     name: str
@@ -75,18 +75,18 @@ def public(module: str) -> list[str]:
     return [name for name in names if not name.startswith("_")]
 
 
-def papers() -> Iterator[Told]:
+def papers() -> Iterator[PaperReference]:
     """Yield every docstring that says ``Paper: ...``."""
     for file in sorted(SOURCE.rglob("*.py")):
         module = ".".join(["suchus", *file.relative_to(SOURCE).with_suffix("").parts]).removesuffix(".__init__")
         yield from _papers(_tree(file), module)
 
 
-def _papers(node: ast.AST, name: str) -> Iterator[Told]:
+def _papers(node: ast.AST, name: str) -> Iterator[PaperReference]:
     if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef):
         found = re.search(r"Paper: (.*?)(?:\n\n|\Z)", ast.get_docstring(node) or "", re.S)
         if found:
-            yield Told(_at_home(name), name.removeprefix("suchus."), " ".join(found[1].split()).rstrip("."))
+            yield PaperReference(_at_home(name), name.removeprefix("suchus."), " ".join(found[1].split()).rstrip("."))
         for child in node.body:
             if isinstance(child, ast.ClassDef | ast.FunctionDef) and not child.name.startswith("_"):
                 yield from _papers(child, f"{name}.{child.name}")

@@ -58,8 +58,8 @@ def pages() -> dict[str, str]:
 def _read(path: Path) -> Example:
     source = path.read_text(encoding="utf-8")
     tree = ast.parse(source)
-    told = ast.get_docstring(tree) or path.stem
-    title, _, text = told.partition("\n")
+    text_of = ast.get_docstring(tree) or path.stem
+    title, _, text = text_of.partition("\n")
     code = "\n".join(source.splitlines()[tree.body[0].end_lineno :]).strip()
     text = re.sub(r"^Usage: (.*)$", r"```sh\n\1\n```", text.strip(), flags=re.M)
     shared = [PICTURES / name for name in _SHARED.get(path.stem, ())]

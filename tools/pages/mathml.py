@@ -40,7 +40,7 @@ def mathml(latex: str, display: str) -> str:
     """Return a formula as MathML; its source is what is read out where MathML is not known."""
     source = latex.replace("{aligned}", "{align*}")
     made = convert(source, display=display)
-    told = made.replace("<math ", f'<math alttext="{escape(" ".join(latex.split()), quote=True)}" ', 1)
+    markup = made.replace("<math ", f'<math alttext="{escape(" ".join(latex.split()), quote=True)}" ', 1)
     if display == "inline":
-        return told
-    return f'<div class="formula" role="region" aria-label="Formula" tabindex="0">{told}</div>'
+        return markup
+    return f'<div class="formula" role="region" aria-label="Formula" tabindex="0">{markup}</div>'

@@ -32,7 +32,7 @@ PASSAGES: Mapping[str, Mapping[str, Make]] = {
 }
 """What makes each passage, by what was measured."""
 MADE: Mapping[str, tuple[str, Make]] = {
-    name: (source, make) for source, some in PASSAGES.items() for name, make in some.items()
+    name: (source, make) for source, makers in PASSAGES.items() for name, make in makers.items()
 }
 """By passage: what was measured, and what makes the passage of it."""
 

@@ -49,7 +49,7 @@ def _rough(measures: Mapping[str, float]) -> str:
         flat = f"{m[f'flat_forward_{arm}']:.2f} m", f"{m[f'flat_cost_{arm}']:.2f}"
         lines.append(f"| `{arm}` | {' | '.join((*flat, *kept))} | {m[f'falls_{arm}']:.0f} |")
     share, least, most = (m[f"erect_ahead_share{end}"] for end in ("", "_low", "_high"))
-    told = (
+    text = (
         "Erect legs on rough ground: with the IMU, which the article does not name, the high walk gets farther than "
         f"the low crawl on {share:.0%} of the {m['rough_grounds']:.0f} rough grounds ({least:.0%} to {most:.0%} over "
         f"the seeds), open loop on {m['erect_open_loop_ahead_share']:.0%}. The semi-erect walk gets farther than both "
@@ -59,7 +59,7 @@ def _rough(measures: Mapping[str, float]) -> str:
         f"transitions between two postures {m['transitions_upright']:.0%} stay upright, with tilts of up to "
         f"{m['transition_tilt']:deg.0f} degrees."
     )
-    return "\n".join(lines) + "\n\n" + fill(told, 118) + "\n"
+    return "\n".join(lines) + "\n\n" + fill(text, 118) + "\n"
 
 
 def _room(measures: Mapping[str, float]) -> str:

@@ -13,11 +13,11 @@ def table(measured: Mapping[str, Mapping[str, Any]]) -> str:
     """
     lines = ["| gait | servo | at its limit | off its command | would do | such a one is at its limit | exported |"]
     lines += ["|---|---|---|---|---|---|---|"]
-    for gait, told in measured.items():
+    for gait, load in measured.items():
         lines += [
             f"| `{gait}` | `{name}` | {100 * one['at_limit']:.0f} % | {degrees(one['off']):.0f} degrees | "
-            f"{one['would_do']} | {100 * one['then']:.1f} % | {'yes' if told['exported'] else 'refused'} |"
-            for name, one in told["servos"].items()
+            f"{one['would_do']} | {100 * one['then']:.1f} % | {'yes' if load['exported'] else 'refused'} |"
+            for name, one in load["servos"].items()
         ]
-    below = [f"`{gait}` {100 * told['most']:.1f} %" for gait, told in measured.items() if not told["servos"]]
+    below = [f"`{gait}` {100 * load['most']:.1f} %" for gait, load in measured.items() if not load["servos"]]
     return "\n".join(lines) + f"\n\nBelow 2 % in every servo, here the one that is there most: {', '.join(below)}.\n"

@@ -32,12 +32,12 @@ def _became(shares: Mapping[str, Any]) -> str:
 def _best(outcome: Mapping[str, Any]) -> str:
     """Return the best crawls of both conditions beside where they began, and what they do otherwise."""
     lines = ["| | the article's legs | the best legs | under the other conditions |", "|---|---|---|---|"]
-    reached, told = [], []
+    reached, results = [], []
     for arm, one in outcome["arms"].items():
         best = next(iter(one["best"].values()))
         tried = [float(checks["aim_displacement"]) for name, checks in best["checks"].items()]
         reached.append(best["aims"]["displacement"])
-        told.append((_CALLED[arm], one, best["sentence"]))
+        results.append((_CALLED[arm], one, best["sentence"]))
         lines.append(
             f"| {_CALLED[arm]} | {one['start']['displacement']:.2f} m | **{reached[-1]:.2f} m** "
             f"| {min(tried):.2f} to {max(tried):.2f} m |"
@@ -46,7 +46,7 @@ def _best(outcome: Mapping[str, Any]) -> str:
     lines.append(f"| ratio | {began[0] / began[1]:.1f} | **{reached[0] / reached[1]:.1f}** | |")
     items = [
         fill(f"{name} ({one['tried']} candidates, {one['walked']} walked): {text}", 118, initial_indent="* ",
-             subsequent_indent="  ") for name, one, text in told
+             subsequent_indent="  ") for name, one, text in results
     ]  # fmt: skip
     return "\n".join(lines) + "\n\n" + "\n".join(item[:2] + item[2].upper() + item[3:] for item in items) + "\n"
 

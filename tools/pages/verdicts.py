@@ -41,21 +41,21 @@ all.
 
 def page() -> str:
     """Return the page of all rules and verdicts."""
-    came: dict[str, Any] = json.loads(_TABLE.read_text(encoding="utf-8")) if _TABLE.is_file() else {}
+    shares: dict[str, Any] = json.loads(_TABLE.read_text(encoding="utf-8")) if _TABLE.is_file() else {}
     lines = [_INTRODUCTION]
     for name, experiment in EXPERIMENTS.items():
         if rules := rules_of(name):
             lines += [f"## {experiment.title}", "", f"`suchus run {name}`", ""]
             for rule in rules:
-                lines += _entry(rule, came.get(rule.claim))
+                lines += _entry(rule, shares.get(rule.claim))
     return "\n".join([*lines, ""])
 
 
-def _entry(rule: Rule, came: dict[str, Any] | None) -> list[str]:
+def _entry(rule: Rule, shares: dict[str, Any] | None) -> list[str]:
     claim = CLAIMS[rule.claim]
     lines = [f"### {claim.quantity} {{#{rule.claim}}}", "", f"> {claim.quote} ({claim.where})", "", claim.sense, ""]
-    if came:
-        word = came["verdict"] + (", fragile" if came["fragile"] else "")
+    if shares:
+        word = shares["verdict"] + (", fragile" if shares["fragile"] else "")
         lines += [f"**{word}**", ""]
     printed = "" if claim.value is None else f"; printed {claim.value:g} ± {claim.rounding:g} {claim.unit}"
     lines += [f"* `{rule.measure}`, {_KINDS[rule.kind]}{printed}"]

@@ -35,11 +35,11 @@ def run(words: Sequence[str | Path], *, cwd: Path, env: dict[str, str] | None = 
     Raises:
         Failed: its exit code is not 0.
     """
-    told = [str(word) for word in words]
-    done = subprocess.run(told, cwd=cwd, env=env or clean(), capture_output=True, text=True, check=False)
+    command = [str(word) for word in words]
+    done = subprocess.run(command, cwd=cwd, env=env or clean(), capture_output=True, text=True, check=False)
     if done.returncode:
         tail = "\n".join((done.stdout + done.stderr).splitlines()[-25:])
-        raise Failed(f"{shlex.join(told)} ended with {done.returncode}:\n{tail}")
+        raise Failed(f"{shlex.join(command)} ended with {done.returncode}:\n{tail}")
     return done.stdout
 
 
@@ -78,5 +78,5 @@ class Environment:
     def suchus(self, *words: str, cwd: Path) -> tuple[str, float]:
         """Run a command of suchus; return what it printed, and how long it took [s]."""
         start = time.monotonic()
-        told = run([self.bin / "suchus", *words], cwd=cwd, env=clean(str(self.bin)))
-        return told, time.monotonic() - start
+        printed = run([self.bin / "suchus", *words], cwd=cwd, env=clean(str(self.bin)))
+        return printed, time.monotonic() - start

@@ -9,7 +9,7 @@ from suchus.atlas.case import Tell
 from suchus.flow.signals import last_periods
 from suchus.flow.simulation import Watcher
 
-_TOLD = 200  # times per run that the progress is told
+_REPORTS = 200  # times per run that the progress is reported
 
 
 def march(
@@ -27,8 +27,8 @@ def march(
         every: interval of ``watch`` [s]; None is a two-hundredth of the whole run.
     """
     whole = until if end is None else end
-    told: Sequence[Watcher] = (*watch, lambda now: tell(now.time / whole))
-    return sim.run(until, watch=told, every=whole / _TOLD if every is None else every, progress=False)
+    watchers: Sequence[Watcher] = (*watch, lambda now: tell(now.time / whole))
+    return sim.run(until, watch=watchers, every=whole / _REPORTS if every is None else every, progress=False)
 
 
 def middles(record: flow.Record) -> np.ndarray:

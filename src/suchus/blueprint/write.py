@@ -38,7 +38,7 @@ def _table(
     value: Any, path: tuple[str, ...], notes: Mapping[str, str], place: str = "", *, row: bool = False
 ) -> list[str]:
     """A table's own values first, then the tables below it, as TOML wants it; a row of tables has double brackets."""
-    told = meanings(type(value))
+    about = meanings(type(value))
     items = {f.name: getattr(value, f.name) for f in fields(value)}
     name = ".".join(path)
     lines = ["", f"[[{name}]]" if row else f"[{name}]"] if path else []
@@ -50,7 +50,7 @@ def _table(
             for i, one in enumerate(item):
                 below += _table(one, (*path, name), notes, f"{place}{name}[{i}].", row=True)
         elif item is not None:
-            meaning = _plain(f"{told.get(name, '')} {_sentence(notes.get(place + name, ''))}")
+            meaning = _plain(f"{about.get(name, '')} {_sentence(notes.get(place + name, ''))}")
             lines.append(f"{name} = {_inline(item)}" + (f"  # {meaning}" if meaning else ""))
     return lines + below
 

@@ -5,7 +5,7 @@ from suchus.capture.animal import SyntheticAnimal, film_animal
 from suchus.capture.film import Camera, film, keypoints
 from suchus.capture.patterned import NEEDED, to_pattern
 from suchus.capture.played import to_angle_table
-from suchus.capture.reading import ReadingOptions, read_tracks, told, write_gait
+from suchus.capture.reading import ReadingOptions, read_tracks, summary, write_gait
 from suchus.capture.retarget import Captured, driven_share, to_gait
 from suchus.capture.table import write_table
 from suchus.capture.tracks import Tracks, UnusableTracks
@@ -33,12 +33,12 @@ __all__ = [
     "read_angles",
     "read_tracks",
     "standing_index",
+    "summary",
     "to_angle_table",
     "to_gait",
     "to_pattern",
-    "told",
     "write_gait",
     "write_table",
 ]
 
-__getattr__ = old_exports(__name__, Animal="SyntheticAnimal", Reading="ReadingOptions")
+__getattr__ = old_exports(__name__, Animal="SyntheticAnimal", Reading="ReadingOptions", told="summary")

@@ -23,8 +23,8 @@ def without_jumps(tracks: Tracks) -> Tracks:
     windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * _AROUND + 1, axis=0)
     seen = np.isfinite(windows).all(axis=2).sum(axis=-1)  # (frame, point)
     usual = np.full_like(position, np.nan)
-    some = seen >= _AROUND
-    usual[some] = np.nanmedian(windows[some], axis=-1)
+    known = seen >= _AROUND
+    usual[known] = np.nanmedian(windows[known], axis=-1)
     apart = np.linalg.norm(position - usual, axis=-1)
     for i in range(position.shape[1]):
         far = apart[:, i]

@@ -98,8 +98,8 @@ def _bent(walk: Walk, robot: AnyRobot, duty: float, notes: list[str]) -> AxialWa
         asked = abs(seen[part]) / max(abs(sum(turns)), 1e-9)  # joints that bend one after the other cancel a little
         knots |= {where: sign[part] * min(asked, most) for where, most in hinges}
         if asked > min(most for _, most in hinges):
-            told = degrees(abs(seen[part]))
-            notes.append(f"the {part} would bend by {told:.0f} degrees; its joints' ranges were taken")
+            bend = degrees(abs(seen[part]))
+            notes.append(f"the {part} would bend by {bend:.0f} degrees; its joints' ranges were taken")
     first = next(iter(late), "")
     phase = _within_half(late[first] - waves * middle[first]) if first else 0.0
     shape = tuple((where, _rounded(angle)) for where, angle in sorted(knots.items())) or ((0.0, 0.0),)

@@ -70,14 +70,14 @@ def write_gait(captured: Captured, walk: Walk, path: Path) -> Path:
     Raises:
         Unwritable: the place cannot be written to.
     """
-    head = [f"A gait read from {walk.source}.", *told(walk), *(f"Note: {note}." for note in captured.notes)]
+    head = [f"A gait read from {walk.source}.", *summary(walk), *(f"Note: {note}." for note in captured.notes)]
     text = "".join(f"# {' '.join(line.split())}\n" for line in head) + "\n" + blueprint.render(captured.gait)
     with new_file(path) as draft:
         draft.write_text(text, encoding="utf-8")
     return path
 
 
-def told(walk: Walk) -> list[str]:
+def summary(walk: Walk) -> list[str]:
     """Return what was seen, in lines that people read."""
 
     def one(name: str, digits: int = 2, scale: float = 1.0) -> str:

@@ -90,8 +90,8 @@ def _timed(walk: Walk, gait: Gait, duty: Duty, notes: list[str]) -> Gait:
         )
     apart = {leg: walk.value(f"{stem}_{leg}") for leg in LEGS}
     if np.ptp(list(apart.values())) > 0.05:
-        told = ", ".join(f"{leg} {value:.2f}" for leg, value in apart.items())
-        notes.append(f"the legs' {duty} shares differ ({told}); the gait holds their mean")
+        shares = ", ".join(f"{leg} {value:.2f}" for leg, value in apart.items())
+        notes.append(f"the legs' {duty} shares differ ({shares}); the gait holds their mean")
     phases = tuple(_rounded((walk.value(f"phase_{leg}") + 0.05) % 1.0 - 0.05) for leg in LEGS)
     return replace(
         gait,
@@ -152,8 +152,8 @@ def _shaped(walk: Walk, robot: Crocodile, gait: Gait, base: Gait, notes: list[st
     sides = (("front", LEGS[:2]), ("hind", LEGS[2:]))
     pairs = {girdle: trunk * mean_of(walk, "stroke", legs) for girdle, legs in sides}
     if abs(pairs["front"] - pairs["hind"]) > 0.1 * stroke:
-        told = " and ".join(f"{girdle} {1000 * value:.0f} mm" for girdle, value in pairs.items())
-        notes.append(f"the feet's half strokes differ, {told} at the robot's size; the gait holds their mean")
+        strokes = " and ".join(f"{girdle} {1000 * value:.0f} mm" for girdle, value in pairs.items())
+        notes.append(f"the feet's half strokes differ, {strokes} at the robot's size; the gait holds their mean")
     if not walk.upright:
         notes.append(f"heights were not seen: lift, hip_height and tail_pitch are those of {base.name}")
     else:

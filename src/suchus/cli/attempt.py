@@ -43,7 +43,7 @@ class JobResult:
 
     result: Result | Failure
     """For the page."""
-    told: str
+    summary: str
     """The same in a line."""
 
 
@@ -61,7 +61,7 @@ def attempt(task: Job, progress: Progress) -> JobResult:
         return failed(task.name, str(error))
     except Exception as error:
         return failed(task.name, f"{type(error).__name__}: {error}", traceback.format_exc())
-    return JobResult(result=result, told=f"{_told(result)} ({done.seconds:.1f} s)")
+    return JobResult(result=result, summary=f"{_summary(result)} ({done.seconds:.1f} s)")
 
 
 def kept(task: Job) -> JobResult | None:
@@ -73,12 +73,12 @@ def kept(task: Job) -> JobResult | None:
     try:
         experiment = task.experiment
         result = load_result(task.out / task.name)
-        same = made_alike(result.told["provenance"], experiment.settings())
+        same = made_alike(result.outcome["provenance"], experiment.settings())
     except (UnreadableFile, IncompatibleRecord):
         return None
-    if not (same and whole(result) and result.told["command"] == task.command and _is_ours(experiment)):
+    if not (same and whole(result) and result.outcome["command"] == task.command and _is_ours(experiment)):
         return None
-    return JobResult(result=result, told=f"{_told(result)} (kept from an earlier run)")
+    return JobResult(result=result, summary=f"{_summary(result)} (kept from an earlier run)")
 
 
 def _is_ours(experiment: Experiment) -> bool:
@@ -86,8 +86,8 @@ def _is_ours(experiment: Experiment) -> bool:
     return file is not None and Path(file).is_relative_to(Path(suchus.__file__).parent)
 
 
-def _told(result: Result) -> str:
-    words = [verdict["verdict"] for verdict in result.told["verdicts"]]
+def _summary(result: Result) -> str:
+    words = [verdict["verdict"] for verdict in result.outcome["verdicts"]]
     return f"{result.name}: {', '.join(f'{words.count(word)} {word}' for word in dict.fromkeys(words)) or 'no verdict'}"
 
 
@@ -99,4 +99,4 @@ def failed(name: str, sentence: str, trace: str = "") -> JobResult:
         sentence: what went wrong.
         trace: where in the code, if it was none of our own errors.
     """
-    return JobResult(result=Failure(name=name, sentence=sentence, trace=trace), told=f"{name}: failed: {sentence}")
+    return JobResult(result=Failure(name=name, sentence=sentence, trace=trace), summary=f"{name}: failed: {sentence}")

@@ -19,10 +19,10 @@ from suchus.capture import (
     observe,
     read_angles,
     read_tracks,
+    summary,
     to_angle_table,
     to_gait,
     to_pattern,
-    told,
     write_gait,
 )
 from suchus.cli.commands import BadCommand
@@ -106,7 +106,7 @@ def capture(words: Sequence[str]) -> int:
         write_gait(captured, walk, options.out)
         picture = _draw(walk, options.out)
     who = "" if robot.name == _SHELF else f"--robot {robot.name} "
-    print(*told(walk), *(f"note: {note}" for note in captured.notes), sep="\n")
+    print(*summary(walk), *(f"note: {note}" for note in captured.notes), sep="\n")
     print(f"gait: {options.out}\ndiagram: {picture}\nrun it: suchus run displacement {who}--gait {options.out}")
     return 0
 

@@ -69,7 +69,7 @@ def _page(out: Path, opener: BaseBrowser | None, live: bool) -> int:
         raise BadCommand(f"the page would be {out}; say --out FILE.html.")
     check_writable(out.parent)
     with working() as bars:
-        move = bars.told("demo")
+        move = bars.reporter("demo")
         walks = _walks(lambda share: move("walking", 0.8 * share))
         move("drawing", 0.9)
         path = save(_drawn(walks), out).absolute()

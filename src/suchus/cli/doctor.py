@@ -47,7 +47,7 @@ class Finding:
 
     heading: str
     """Name of the thing that was checked."""
-    told: tuple[str, ...]
+    lines: tuple[str, ...]
     """Lines that describe what there is."""
     wrong: str = ""
     """What keeps suchus from running, and the remedy; empty if nothing does."""
@@ -89,7 +89,7 @@ def page(found: Iterable[Finding]) -> str:
     head = f"suchus {installed('suchus') or '(not installed)'}, Python {platform.python_version()}, "
     lines = [head + f"{platform.system()} {platform.machine()}", ""]
     for one in found:
-        for number, text in enumerate(one.told):
+        for number, text in enumerate(one.lines):
             label = one.heading if number == 0 else ""
             lines.append(fill(text, _WIDE, initial_indent=f"{label:<10} ", subsequent_indent=" " * 11))
     return "\n".join([*lines, ""])
@@ -109,20 +109,20 @@ def packages(requires: Iterable[str] | None = None, at: Callable[[str], str | No
         if present is None or not need.specifier.contains(present, prereleases=True):
             wrong.append(f"{need.name} is {present or 'missing'}, and {need.specifier or 'any version'} is needed")
     remedy = f"{', '.join(wrong)}: pip install --upgrade suchus" if wrong else ""
-    return Finding(heading="packages", told=(", ".join(there) or "unknown: suchus is not installed",), wrong=remedy)
+    return Finding(heading="packages", lines=(", ".join(there) or "unknown: suchus is not installed",), wrong=remedy)
 
 
 def extras(requires: Iterable[str] | None = None, at: Callable[[str], str | None] | None = None) -> Finding:
     """Tell which extras are there, and how to get the others; the arguments are those of ``packages``."""
-    told = []
+    lines = []
     for extra, use in _EXTRAS.items():
         needs = _needs(requires, extra)
         present = [(at or installed)(need.name) for need in needs]
         fits = all(p and n.specifier.contains(p, prereleases=True) for n, p in zip(needs, present, strict=True))
         have = ", ".join(f"{need.name} {p}" for need, p in zip(needs, present, strict=True) if p)
         state = f"yes, {have}" if needs and fits else f"no: pip install 'suchus[{extra}]'"
-        told.append(f"{extra:<9} {state} ({use})")
-    return Finding(heading="extras", told=tuple(told))
+        lines.append(f"{extra:<9} {state} ({use})")
+    return Finding(heading="extras", lines=tuple(lines))
 
 
 def cores() -> Finding:
@@ -130,57 +130,57 @@ def cores() -> Finding:
     asked = os.environ.get("SUCHUS_THREADS")
     said = "SUCHUS_THREADS is not set" if asked is None else f"SUCHUS_THREADS={asked}"
     try:
-        return Finding(heading="threads", told=(f"{threads.count()} of {os.cpu_count()} cores ({said})",))
+        return Finding(heading="threads", lines=(f"{threads.count()} of {os.cpu_count()} cores ({said})",))
     except SuchusError as error:
-        return Finding(heading="threads", told=(said,), wrong=str(error).rstrip("."))
+        return Finding(heading="threads", lines=(said,), wrong=str(error).rstrip("."))
 
 
 def walking(trial: Trial) -> Finding:
     """Judge the trial walk."""
     if trial.found is None:
-        return Finding(heading="walking", told=("failed",), wrong=f"a short walk failed ({trial.failure})")
+        return Finding(heading="walking", lines=("failed",), wrong=f"a short walk failed ({trial.failure})")
     if not trial.found["finite"]:
-        return Finding(heading="walking", told=("not a number",), wrong="a short walk gave what is no number")
-    return Finding(heading="walking", told=(f"0.2 s of a crawl in {trial.found['seconds']:.1f} s",))
+        return Finding(heading="walking", lines=("not a number",), wrong="a short walk gave what is no number")
+    return Finding(heading="walking", lines=(f"0.2 s of a crawl in {trial.found['seconds']:.1f} s",))
 
 
 def compiled(trial: Trial) -> Finding:
     """Judge how the flow solver is compiled, and whether the code can be kept."""
     if trial.found is None:
-        return Finding(heading="swimming", told=("failed",), wrong=f"a kernel cannot be compiled ({trial.failure})")
-    told = [f"numba compiles; its threads are those of {trial.found['layer']}"]
+        return Finding(heading="swimming", lines=("failed",), wrong=f"a kernel cannot be compiled ({trial.failure})")
+    lines = [f"numba compiles; its threads are those of {trial.found['layer']}"]
     if trial.found["layer"] == "workqueue":
-        told.append("workqueue serves one flow at a time: install libgomp (the package libgomp1) for several")
+        lines.append("workqueue serves one flow at a time: install libgomp (the package libgomp1) for several")
     if trial.found["missing"]:
-        told.append(f"this numba lacks {', '.join(trial.found['missing'])}: first runs may differ in their last bits")
+        lines.append(f"this numba lacks {', '.join(trial.found['missing'])}: first runs may differ in their last bits")
     if trial.found["folder"] is None:
-        told.append("compiled code cannot be kept, so every swim compiles for minutes: set NUMBA_CACHE_DIR")
+        lines.append("compiled code cannot be kept, so every swim compiles for minutes: set NUMBA_CACHE_DIR")
     else:
         state = "there" if trial.found["compiled"] else "not there yet, the first swim takes a minute or two longer"
-        told.append(f"compiled code is kept in {trial.found['folder']} ({state})")
-    return Finding(heading="swimming", told=tuple(told))
+        lines.append(f"compiled code is kept in {trial.found['folder']} ({state})")
+    return Finding(heading="swimming", lines=tuple(lines))
 
 
 def places() -> Finding:
     """Return whether results can be written here."""
     try:
         with tempfile.TemporaryDirectory(dir=Path.cwd(), prefix=".suchus-"):
-            return Finding(heading="results", told=("this folder can be written to",))
+            return Finding(heading="results", lines=("this folder can be written to",))
     except OSError as error:
-        return Finding(heading="results", told=(f"not into this folder ({error.strerror}): say --out DIR",))
+        return Finding(heading="results", lines=(f"not into this folder ({error.strerror}): say --out DIR",))
 
 
 def opengl(trial: Trial) -> Finding:
     """Tell of OpenGL, which suchus does without."""
     there = f"off-screen by {trial.found['by']}" if trial.found else "none off-screen"
-    return Finding(heading="OpenGL", told=(f"{there}; suchus needs none, browsers draw with WebGL 2",))
+    return Finding(heading="OpenGL", lines=(f"{there}; suchus needs none, browsers draw with WebGL 2",))
 
 
 def browsing() -> Finding:
     """Tell which browser opens."""
     found = browser()
-    told = "none with a window: suchus demo writes a page" if found is None else called(found)
-    return Finding(heading="browser", told=(told,))
+    line = "none with a window: suchus demo writes a page" if found is None else called(found)
+    return Finding(heading="browser", lines=(line,))
 
 
 def installed(name: str) -> str | None:

@@ -90,12 +90,12 @@ def export_commands(words: Sequence[str]) -> int:
     check_writable(folder.parent)
     check_replaceable(folder, mark=MARK)
     servo_map = straight(options.robot) if options.map is None else read_map(options.map, options.robot)
-    told = commands(options.robot, options.gait, servo_map, options.cycles)
+    samples = commands(options.robot, options.gait, servo_map, options.cycles)
     with working() as bars:
         move = bars.task(options.gait.name)
         borne = loads(options.robot, options.gait, progress=lambda share: move("walking", share))
     try:
-        check_commands(options.robot, options.gait, servo_map, told)
+        check_commands(options.robot, options.gait, servo_map, samples)
         check_loads(options.robot, options.gait, borne, options.at_limit, options.tracking)
     except OutsideLimits as error:
         with new_folder(folder, mark=MARK) as draft:
@@ -103,13 +103,13 @@ def export_commands(words: Sequence[str]) -> int:
         raise OutsideLimits(f"{error} What each servo bears stands in {folder / 'loads.csv'}.") from error
     with new_folder(folder, mark=MARK) as draft:
         _write_loads(options, borne, draft)
-        (draft / "commands.csv").write_text(csv_text(told), encoding="utf-8")
-        (draft / "trajectory.yaml").write_text(trajectory_text(options.robot, told), encoding="utf-8")
+        (draft / "commands.csv").write_text(csv_text(samples), encoding="utf-8")
+        (draft / "trajectory.yaml").write_text(trajectory_text(options.robot, samples), encoding="utf-8")
         write_map(servo_map, draft / "servo_map.toml")
         (draft / "gait.toml").write_text(blueprint.render(options.gait), encoding="utf-8")
     hardest = max(borne, key=lambda name: borne[name].torque / borne[name].limit)
     load = borne[hardest]
-    print(f"{len(told.time)} samples over {told.time[-1]:g} s: {folder}")
+    print(f"{len(samples.time)} samples over {samples.time[-1]:g} s: {folder}")
     print(
         f"highest-loaded in simulation: {hardest}, {load.torque:.2f} of {load.limit:g} N m, "
         f"at the limit for {100 * load.at_limit:.1f} % of the walk"
@@ -143,6 +143,6 @@ def _loads_text(borne: Mapping[str, ServoLoad], at_limit: float) -> str:
     lines = ["servo,peak_torque_Nm,torque_limit_Nm,share_at_limit,first_at_s,off_rad,needed_Nm,would_do"]
     for name, load in borne.items():
         first = "" if load.first != load.first else f"{load.first:.2f}"
-        told = f"{load.torque:.4f},{load.limit:g},{load.at_limit:.4f},{first},{load.off:.4f},{load.needed:.4f}"
-        lines.append(f"{name},{told},{load.stock if load.at_limit > at_limit else ''}")
+        cells = f"{load.torque:.4f},{load.limit:g},{load.at_limit:.4f},{first},{load.off:.4f},{load.needed:.4f}"
+        lines.append(f"{name},{cells},{load.stock if load.at_limit > at_limit else ''}")
     return "\n".join(lines) + "\n"

@@ -69,16 +69,16 @@ class _Teller:
         self._bars, self._count, self._done = bars, count, 0
         self._moved = dict[str, Callable[[object, float], None]]()
 
-    def __call__(self, told: FlowProgress) -> None:
-        if told.case not in self._moved:
-            self._moved[told.case] = self._bars.told(told.case)
-        if told.outcome is None:
-            self._moved[told.case](f"{told.share:.0%}", told.share)
+    def __call__(self, progress: FlowProgress) -> None:
+        if progress.case not in self._moved:
+            self._moved[progress.case] = self._bars.reporter(progress.case)
+        if progress.outcome is None:
+            self._moved[progress.case](f"{progress.share:.0%}", progress.share)
             return
         self._done += 1
-        self._bars.say(f"{self._done} of {self._count}: {_line(told.outcome)}")
+        self._bars.say(f"{self._done} of {self._count}: {_line(progress.outcome)}")
 
 
 def _line(outcome: Outcome) -> str:
-    came = f"failed: {outcome.failed}" if outcome.failed else "done"
-    return f"{outcome.case}, {came} ({outcome.seconds:.0f} s of processor time)"
+    ended = f"failed: {outcome.failed}" if outcome.failed else "done"
+    return f"{outcome.case}, {ended} ({outcome.seconds:.0f} s of processor time)"

@@ -67,9 +67,9 @@ def import_file(words: Sequence[str]) -> int:
         foot_radius=options.foot_radius,
     )
     draft = import_robot(options.file, name=out.stem, words=said)
-    print(*_plan(draft), *(f"note: {text}" for text in draft.told), sep="\n")
+    print(*_plan(draft), *(f"note: {text}" for text in draft.remarks), sep="\n")
     gait = _gait(draft, f"{out.stem}_walk")
-    head = (f"A draft that suchus read from {options.file.name}. Check it; what is guessed says so.", *draft.told)
+    head = (f"A draft that suchus read from {options.file.name}. Check it; what is guessed says so.", *draft.remarks)
     blueprint.write(draft.robot, out, notes=draft.notes, head=head)
     print(f"robot: {out}")
     if gait is not None:

@@ -80,5 +80,5 @@ def _asked(options: OptimiseOptions) -> Optimisation:
 
 def _shown(bars: Bars, spec: Optimisation) -> Callable[[SearchProgress], None]:
     """Return what moves a bar for each condition."""
-    tells = {arm.name: bars.told(f"{spec.name} {arm.name}") for arm in spec.arms}
-    return lambda told: tells[told.arm](told, min(told.done / told.budget, 1.0))
+    tells = {arm.name: bars.reporter(f"{spec.name} {arm.name}") for arm in spec.arms}
+    return lambda state: tells[state.arm](state, min(state.done / state.budget, 1.0))

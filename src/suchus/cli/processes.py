@@ -35,7 +35,7 @@ def side_by_side(tasks: Sequence[Job], jobs: int, bars: Bars) -> dict[str, JobRe
                     moves[number](*said)
                 else:
                     results[name] = said.value if isinstance(said, workers.Done) else _lost(tasks[number], said)
-                    bars.say(results[name].told)
+                    bars.say(results[name].summary)
     finally:
         for number in moves:
             if tasks[number].name not in results:

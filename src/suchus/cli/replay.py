@@ -69,14 +69,14 @@ def _chosen(stored: xr.Dataset, name: str | None, option: str) -> xr.Dataset:
     labels = [_label(stored.isel(run=i)) for i in range(stored.sizes["run"])]
     if name is None and len(labels) == 1:
         return stored.isel(run=0)
-    told = ", ".join(f"{i} {label}" for i, label in enumerate(labels))
+    choices = ", ".join(f"{i} {label}" for i, label in enumerate(labels))
     if name is None:
-        raise BadCommand(f"the record holds {len(labels)} runs ({told}); choose one with {option}.")
+        raise BadCommand(f"the record holds {len(labels)} runs ({choices}); choose one with {option}.")
     if name in labels:
         return stored.isel(run=labels.index(name))
     if name.isdecimal() and len(name) < 10 and int(name) < len(labels):
         return stored.isel(run=int(name))
-    raise BadCommand(f"{option} asks for {name!r}, but the record's runs are {told}.")
+    raise BadCommand(f"{option} asks for {name!r}, but the record's runs are {choices}.")
 
 
 def _label(one: xr.Dataset) -> str:

@@ -56,9 +56,9 @@ def reproduce(words: Sequence[str]) -> int:
     Raises:
         SuchusError: the words make no sense, or the results cannot be saved.
     """
-    told = "Run every experiment and write one page with all results, DIR/report.html."
+    about = "Run every experiment and write one page with all results, DIR/report.html."
     options: ReproduceOptions = parse(
-        ReproduceOptions, "suchus reproduce", words, told, ("out", "quick", "jobs", "anew")
+        ReproduceOptions, "suchus reproduce", words, about, ("out", "quick", "jobs", "anew")
     )
     tasks = [
         Job(name=name, out=options.out, quick=options.quick) for name, one in EXPERIMENTS.items() if one.reproduces
@@ -74,7 +74,7 @@ def reproduce(words: Sequence[str]) -> int:
     with working() as bars:
         done = {} if options.anew else {task.name: one for task in tasks if (one := kept(task)) is not None}
         for one in done.values():
-            bars.say(one.told)
+            bars.say(one.summary)
         done |= _run([task for task in tasks if task.name not in done], jobs, bars)
         outcomes = [done[task.name].result for task in tasks]
         results = [one for one in outcomes if isinstance(one, Result)]
@@ -92,7 +92,7 @@ def _run(tasks: Sequence[Job], jobs: int, bars: Bars) -> dict[str, JobResult]:
     done = {}
     for task in tasks:
         done[task.name] = attempt(task, bars.task(task.name))
-        bars.say(done[task.name].told)
+        bars.say(done[task.name].summary)
     return done
 
 

@@ -61,9 +61,13 @@ def study(words: Sequence[str]) -> int:
         check_name(asked.name, "study")
     folder = options.out or Path("out") / "studies" / asked.name
     with at_scheduler(options.scheduler) as client, working() as bars:
-        tell = bars.told(asked.name)
+        tell = bars.reporter(asked.name)
         results = conduct(
-            asked, folder, progress=lambda told: tell(told, told.done / told.total), client=client, jobs=options.jobs
+            asked,
+            folder,
+            progress=lambda state: tell(state, state.done / state.total),
+            client=client,
+            jobs=options.jobs,
         )
     failed = {sample: str(error) for sample, error in enumerate(results.error.values) if error}
     print(f"{results.sizes['sample']} runs, {len(failed)} failed: {folder / RESULTS}, {folder / TABLE}")
@@ -83,10 +87,10 @@ def _claims(options: StudyOptions) -> int:
     with at_scheduler(options.scheduler) as client, working() as bars:
         shown: dict[str, Callable[[object, float], None]] = {}
 
-        def show(place: str, told: StudyProgress) -> None:
+        def show(place: str, state: StudyProgress) -> None:
             if place not in shown:
-                shown[place] = bars.told(f"{CLAIMS} {place.replace('_', ' ')}")
-            shown[place](told, told.done / told.total)
+                shown[place] = bars.reporter(f"{CLAIMS} {place.replace('_', ' ')}")
+            shown[place](state, state.done / state.total)
 
         record = conduct_claims(asked, folder, progress=show, client=client, jobs=options.jobs)
         return _answered(record, folder)

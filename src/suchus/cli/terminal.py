@@ -45,7 +45,7 @@ class Bars:
         """Whether there is a terminal to show them on."""
         return self._progress.console.is_terminal
 
-    def told(self, name: str) -> Callable[[object, float], None]:
+    def reporter(self, name: str) -> Callable[[object, float], None]:
         """Add a bar and return what moves it, or says a line now and then where there is no terminal.
 
         What it returns takes what to show, which becomes text only where it is shown, and the share that is done.

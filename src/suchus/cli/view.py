@@ -100,11 +100,11 @@ def _walk(words: Sequence[str]) -> int:
     about = "A robot walks live in the browser: change its gait, make joints fail, push it."
     first = list(takewhile(lambda word: not word.startswith("-"), words[:2]))
     named = [part for option, word in zip(("--robot", "--gait"), first, strict=False) for part in (option, word)]
-    told = [*named, *words[len(first) :]]
+    given = [*named, *words[len(first) :]]
     options: ViewWalkOptions = parse(
-        ViewWalkOptions, "suchus view", told, about, [f.name for f in fields(ViewWalkOptions)]
+        ViewWalkOptions, "suchus view", given, about, [f.name for f in fields(ViewWalkOptions)]
     )
-    if options.lake and not first and "--robot" not in told:
+    if options.lake and not first and "--robot" not in given:
         options = replace(options, robot=ROBOTS["floating_caiman"])
     return serve_walk(options)
 

@@ -157,8 +157,8 @@ class Amphibian:
         self._cycles = np.zeros(n)  # walked so far [cycle]
         self._grown = np.zeros(n)  # walked without a break [cycle]
         self._breath = np.ones(n)
-        self._cycle, self._wade_cycle = (np.array([gait.period for gait in some]) for some in (gaits, wades))
-        self._phases, self._wade_phases = (np.array([gait.limb_phases for gait in some]) for some in (gaits, wades))
+        self._cycle, self._wade_cycle = (np.array([gait.period for gait in each]) for each in (gaits, wades))
+        self._phases, self._wade_phases = (np.array([gait.limb_phases for gait in each]) for each in (gaits, wades))
         self._heading = Heading([one.heading for one in controls], robots, gaits, period)
         self._groups, self._wade_groups = grouped(robots, gaits), grouped(robots, wades)
         self._stroke, self._trunk = np.ones((n, limbs)), np.zeros(n)

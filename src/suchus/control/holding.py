@@ -96,13 +96,13 @@ class Headings:
         self, rules: Sequence[HeadingHold | None], robots: Sequence[AnyRobot], cycle: Sequence[int], period: float
     ) -> None:
         off = HeadingHold(gain=0.0, integral_gain=0.0, turn=0.0, trunk_turn=0.0)
-        some = [rule or off for rule in rules]
+        given = [rule or off for rule in rules]
         self._direction, self._gain, self._integral, self._turn, self._trunk = (
-            np.array([getattr(rule, name) for rule in some])
+            np.array([getattr(rule, name) for rule in given])
             for name in ("direction", "gain", "integral_gain", "turn", "trunk_turn")
         )
         self._facing, self._period = Facing(robots, cycle), period
-        self._offset = np.zeros(len(some))
+        self._offset = np.zeros(len(given))
 
     def bend(self, sensed: Sensed) -> tuple[Float[np.ndarray, " run"], Float[np.ndarray, " run"]]:
         """Return the mean bends of tail and trunk, left positive [rad]."""
@@ -118,15 +118,17 @@ class Depths:
     def __init__(self, rules: Sequence[DepthHold | None], robots: Sequence[AnyRobot], period: float) -> None:
         self._on = np.array([rule is not None for rule in rules])
         off = DepthHold(depth=0.0)
-        some = [rule or off for rule in rules]
-        self._rule = {name: np.array([getattr(rule, name) for rule in some]) for name in DepthHold.__dataclass_fields__}
+        given = [rule or off for rule in rules]
+        self._rule = {
+            name: np.array([getattr(rule, name) for rule in given]) for name in DepthHold.__dataclass_fields__
+        }
         self._neutral = np.array(
             [1.0 if rule is None else neutral_breath(robot) for rule, robot in zip(rules, robots, strict=True)]
         )
         self._period, self._kept = period, keep(0.2, period)
         self._last: np.ndarray | None = None
-        self._sinking, self._offset = np.zeros(len(some)), np.zeros(len(some))
-        self._breath = np.ones(len(some))
+        self._sinking, self._offset = np.zeros(len(given)), np.zeros(len(given))
+        self._breath = np.ones(len(given))
 
     def breath(self, sensed: Sensed) -> Float[np.ndarray, " run"] | None:
         """Return the share of the air that each robot keeps, NaN where none is asked for [-]."""

@@ -240,8 +240,8 @@ class Generator:
         offset = self._steering.at(time)[:, None] * self._gain
         found = [(runs, one.targets(phase[runs], share[runs], wave[runs], offset[runs])) for one, runs in self._groups]
         targets = np.empty((len(phase), found[0][1].shape[1]))
-        for runs, some in found:
-            targets[runs] = some
+        for runs, angles in found:
+            targets[runs] = angles
         return targets
 
 

@@ -78,7 +78,7 @@ class SpineController:
             return targets
         lacking = asked - finite(sensed.servo_position[:, self._yaw]).sum(axis=1)
         self._lacking = lacking + self._keep * (self._lacking - lacking)
-        told = np.clip(targets[:, self._yaw] + self._part * self._lacking[:, None], self._low, self._high)
+        commanded = np.clip(targets[:, self._yaw] + self._part * self._lacking[:, None], self._low, self._high)
         corrected = targets.copy()
-        corrected[:, self._yaw] = np.where(self._on[:, None], told, targets[:, self._yaw])
+        corrected[:, self._yaw] = np.where(self._on[:, None], commanded, targets[:, self._yaw])
         return corrected

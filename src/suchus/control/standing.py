@@ -226,10 +226,10 @@ class Stander:
         targets = now.targets.copy()
         feet = now.feet + back[:, None] * np.array([0.0, 1.0, 0.0])
         for leg, who in self._legs:
-            some = who & upright
-            angles = hind_leg(leg, feet[some], now.pitch[some], clip=True)
+            balancing = who & upright
+            angles = hind_leg(leg, feet[balancing], now.pitch[balancing], clip=True)
             for servos in self._hind:
-                targets[some, servos] = angles
+                targets[balancing, servos] = angles
         targets[upright, self._first_pitch] -= bend[upright]
         return Command(targets, now.phase)
 

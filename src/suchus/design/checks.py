@@ -57,8 +57,8 @@ class Checks:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         if error is None or isinstance(error, (TypeError, ValueError, AttributeError, OverflowError)):
-            told = {complaint.field.partition("[")[0] for complaint in self._complaints}
-            self._complaints += [Complaint(*misfit) for misfit in misfits(self._design) if misfit[0] not in told]
+            complained = {complaint.field.partition("[")[0] for complaint in self._complaints}
+            self._complaints += [Complaint(*misfit) for misfit in misfits(self._design) if misfit[0] not in complained]
             if self._complaints:
                 raise InvalidFields(self._owner, tuple(self._complaints)) from error
 

@@ -159,10 +159,10 @@ def scaled_fields(design: Any, names: Iterable[str], *, length: float, mass: flo
         length: factor on lengths [-].
         mass: factor on masses [-].
     """
-    told = meanings(type(design))
+    about = meanings(type(design))
     found = {}
     for name in names:
-        value, factor = getattr(design, name), _factor(unit(told.get(name, "")), (mass, length, sqrt(length)))
+        value, factor = getattr(design, name), _factor(unit(about.get(name, "")), (mass, length, sqrt(length)))
         numbers = isinstance(value, float) or (_numbers(value) and any(isinstance(one, float) for one in value))
         if numbers and factor != 1.0:
             found[name] = tuple(factor * one for one in value) if isinstance(value, tuple) else factor * value
@@ -174,14 +174,14 @@ def _scaled(design: Any, factors: tuple[float, float, float]) -> Any:
         return tuple(_scaled(item, factors) for item in design)
     if not is_dataclass(design):
         return design
-    told = meanings(type(design))
+    about = meanings(type(design))
     changed = {}
     for field in fields(design):
         value = getattr(design, field.name)
         if is_dataclass(value) or (isinstance(value, tuple) and value and is_dataclass(value[0])):
             changed[field.name] = _scaled(value, factors)
         elif isinstance(value, float) or _numbers(value):
-            factor = _factor(unit(told.get(field.name, "")), factors)
+            factor = _factor(unit(about.get(field.name, "")), factors)
             if factor != 1.0:
                 changed[field.name] = tuple(factor * one for one in value) if _numbers(value) else factor * value
     return replace(design, **changed)  # type: ignore[type-var]

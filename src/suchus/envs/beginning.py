@@ -16,7 +16,7 @@ from suchus.errors import Diverged, InvalidDesign
 from suchus.gaits import GAITS
 from suchus.land import Ground, Run
 from suchus.land.afloat import surfaced
-from suchus.land.bench import Bench, up
+from suchus.land.batch import SimulationBatch, up
 from suchus.land.readings import Readings
 from suchus.land.restarting import Beginning
 from suchus.model import activations, compile_model, standing
@@ -84,18 +84,18 @@ def _upright(robot: Crocodile, ground: Ground, timestep: float) -> Beginning:
     control = Standing(at=_SOON, hold=STILL)
     run = Run(robot=robot, gait=gait, ground=ground, control=control)
     ticks = ceil((control.upright_from(robot) + STILL) / period)
-    bench = Bench([run], timestep)
-    readings = Readings(bench, [run], 1)
+    batch = SimulationBatch([run], timestep)
+    readings = Readings(batch, [run], 1)
     controller = control.start([robot], [gait], [0], ticks, period)
-    bench.place([run], controller.rest())
+    batch.place([run], controller.rest())
     targets = controller.rest()
     for tick in range(ticks):
         targets = controller.command(tick, readings.sensed(tick * period)).targets
-        bench.advance(targets, round(period / timestep), tick * period)
-    if not bench.alive.all():
+        batch.advance(targets, round(period / timestep), tick * period)
+    if not batch.alive.all():
         raise Diverged(
-            f"robot {robot.name!r} does not stand up: {bench.cause[0]}; an upright start needs one that does.",
-            time=float(bench.ended[0]),
+            f"robot {robot.name!r} does not stand up: {batch.cause[0]}; an upright start needs one that does.",
+            time=float(batch.ended[0]),
         )
-    qpos, qvel, act = (np.array(part[0]) for part in (bench.qpos, bench.qvel, bench.batch.bind("act")))
+    qpos, qvel, act = (np.array(part[0]) for part in (batch.qpos, batch.qvel, batch.physics.bind("act")))
     return Beginning(qpos, qvel, act, np.array(targets[0]))

@@ -19,7 +19,7 @@ from suchus.envs.task import Task
 from suchus.errors import UnknownName
 from suchus.fault import Fault, check_faults
 from suchus.land import Run
-from suchus.land.bench import Bench
+from suchus.land.batch import SimulationBatch
 from suchus.land.injector import Injector
 from suchus.land.readings import Readings
 from suchus.land.restarting import restart
@@ -73,14 +73,14 @@ class Pack:
         self._cranks = turning(task.robot)
         self._turn = task.decision * np.array([task.robot.servo(name).speed for name in place.servos])
         self._runs = [Run(robot=task.body, gait=task.gait, ground=task.ground, lake=task.lake)] * count
-        self._bench = Bench(self._runs, task.timestep)
-        self._readings = Readings(self._bench, self._runs, 1)
+        self._batch = SimulationBatch(self._runs, task.timestep)
+        self._readings = Readings(self._batch, self._runs, 1)
         self._steps = round(self._period / task.timestep)
         self._check_body()
         self._goals = np.zeros((count, 2))
         self._commanded = np.tile(self._begin.commanded, (count, 1))
         self._turned = np.zeros_like(self._commanded)
-        self._injector = Injector(self._bench, self._period, task.robot)
+        self._injector = Injector(self._batch, self._period, task.robot)
         self._tick = np.zeros(count, dtype=int)
         self._periods = 0
         self.chances = [Chance(period=self._period)] * count
@@ -111,7 +111,7 @@ class Pack:
         for i, random in zip(robots, chances, strict=True):
             jitter = self.task.jitter * np.asarray(random.uniform(-1.0, 1.0, self._commanded.shape[1]))
             self._injector.mend(i)
-            restart(self._bench, i, off_by(self.task, self._begin, jitter))
+            restart(self._batch, i, off_by(self.task, self._begin, jitter))
             self._commanded[i], self._turned[i], self._tick[i] = self._begin.commanded, 0.0, 0
             self.chances[i], self.causes[i] = draw(self.task, random), ""
             self._set_goal(i)
@@ -136,12 +136,12 @@ class Pack:
         target = np.where(self._cranks, self._commanded + self._turn * shares, there)
         target = np.where(who[:, None], target, self._commanded)
         before, work, far = self._read("centre_of_mass"), np.zeros(self.count), self.remaining
-        self._bench.alive[:] = who
+        self._batch.alive[:] = who
         periods = round(self.task.decision / self._period)
         for k in range(periods):
             self._happen(who)
             targets = self._commanded + (k + 1) / periods * (target - self._commanded)
-            self._bench.advance(self._injector.command(self._periods, targets), self._steps, 0.0)
+            self._batch.advance(self._injector.command(self._periods, targets), self._steps, 0.0)
             self._periods += 1
             work += self._power() * self._period
             self._tick[who] += 1
@@ -152,7 +152,7 @@ class Pack:
 
     def record(self, robot: int) -> xr.Dataset:
         """Return one robot as it is now, as a record of one sample."""
-        self._bench.alive[:] = True
+        self._batch.alive[:] = True
         self._readings.store(0, self.phase[:, None] + np.array(self.task.gait.limb_phases), self._commanded)
         return self._readings.record(np.zeros(1)).isel(run=robot).copy(deep=True)
 
@@ -180,7 +180,7 @@ class Pack:
     def _terms(
         self, who: np.ndarray, before: np.ndarray, far: np.ndarray, work: np.ndarray, action_rate: np.ndarray
     ) -> Terms:
-        after, diverged = self._read("centre_of_mass"), who & ~self._bench.alive
+        after, diverged = self._read("centre_of_mass"), who & ~self._batch.alive
         moved = np.where(diverged[:, None], 0.0, after - before)
         drift = np.where(diverged, 0.0, np.abs(after[:, 1]) - np.abs(before[:, 1]))
         height, level = self._read("snout_position")[:, 2], rotation.upward(self._read("imu_orientation"))[:, 2]
@@ -206,7 +206,7 @@ class Pack:
     def _why(self, robot: int, diverged: bool, height: float, level: float) -> str:
         when = f"at {self.time[robot]:.2f} s"
         if diverged:
-            return f"the simulation diverged {when}: {self._bench.cause[robot]}"
+            return f"the simulation diverged {when}: {self._batch.cause[robot]}"
         if 0.0 < self.task.least_height > height:
             return f"it fell {when}: the snout is at {height:.3f} m, below {self.task.least_height:g} m"
         tilt, most = (float(np.degrees(np.arccos(np.clip(c, -1, 1)))) for c in (level, self.task.least_level))
@@ -223,20 +223,20 @@ class Pack:
                 lasting = round(self.task.pushes.lasting / self._period)
                 if tick in (chance.pushed, chance.pushed + lasting):
                     force = np.array(chance.force) * (tick == chance.pushed)
-                    self._bench.push(int(i), self.task.pushes.where(self.task.robot), force)
+                    self._batch.push(int(i), self.task.pushes.where(self.task.robot), force)
 
     def _sensed(self) -> Sensed:
         return self._injector.sense(self._readings.sensed(0.0))
 
     def _power(self) -> Float[np.ndarray, " run"]:
         """Return torque times speed, summed over the servos [W]."""
-        read = self._bench.readings
-        return np.abs(read[:, self._bench.velocities] * read[:, self._bench.torques]).sum(axis=1)
+        read = self._batch.readings
+        return np.abs(read[:, self._batch.velocities] * read[:, self._batch.torques]).sum(axis=1)
 
     def _read(self, sensor: str) -> np.ndarray:
-        where = self._bench.model.sensor(sensor)
+        where = self._batch.model.sensor(sensor)
         first = int(where.adr[0])
-        return np.array(self._bench.readings[:, first : first + int(where.dim[0])])
+        return np.array(self._batch.readings[:, first : first + int(where.dim[0])])
 
     def _check_body(self) -> None:
         if self.task.pushes is None:

@@ -46,8 +46,8 @@ def measures(record: xr.Dataset) -> Mapping[str, Measure]:
         if lifts:
             found |= _ranged(f"{name}_limbs_tail_lifted", loss(record.lifted_forward, ours).sel(lost=joint), "-")
         for arm in ARMS:
-            some = loss(record.repeat_forward.sel(arm=arm), record.repeat_intact_forward.sel(arm="coordinated"))
-            found |= _ends(f"{name}_{arm}_repeated", some.sel(lost=joint), "-")
+            losses = loss(record.repeat_forward.sel(arm=arm), record.repeat_intact_forward.sel(arm="coordinated"))
+            found |= _ends(f"{name}_{arm}_repeated", losses.sel(lost=joint), "-")
     return found | _effects(record) | tolerance(record) | _support(record)
 
 
@@ -85,8 +85,8 @@ def tolerance(record: xr.Dataset) -> dict[str, Measure]:
     kept = _kept(record).sel(joint=failed)
     ours, bare = (kept.sel(arm=arm, drop=True) for arm in ARMS)
     better, gain = ours > bare, (ours - bare).mean(("joint", "kind", "legs"))
-    won, told = int((gain > 0).sum()), int((gain != 0).sum())
-    chance = float(stats.binomtest(won, told, 0.5, alternative="greater").pvalue) if told else 1.0
+    won, decided = int((gain > 0).sum()), int((gain != 0).sum())
+    chance = float(stats.binomtest(won, decided, 0.5, alternative="greater").pvalue) if decided else 1.0
     ahead = record.forward.sel(arm="coordinated") > record.forward.sel(arm="limbs_only")
     found = {
         "share_spine_and_tail_bear_better": Measure(float(better.mean()), "-"),
@@ -148,13 +148,15 @@ def explained(measures: Mapping[str, float], kind: str, legs: str) -> str:
 
 def _steering(m: Mapping[str, Reading], kind: str, legs: str) -> str:
     """Return what the feedback rules and the heading loop make of every loss."""
-    told = []
+    changes = []
     for joint in _joints_of(m, f"_{kind}_{legs}_steered"):
         name = f"loss_{joint}_{kind}_{legs}"
         alone, steered = m[f"{name}_coordinated"], m[f"{name}_steered"]
         word = compared(steered, alone, less="more", more="less", same="as much", within=0.05)
-        told.append(f"{joint.replace('_', ' ')} {alone:+.0%} to {steered:+.0%} ({word} lost)")
-    return f"Steering changes the loss from: {'; '.join(told)}." if told else "A table of angles cannot be steered."
+        changes.append(f"{joint.replace('_', ' ')} {alone:+.0%} to {steered:+.0%} ({word} lost)")
+    if not changes:
+        return "A table of angles cannot be steered."
+    return f"Steering changes the loss from: {'; '.join(changes)}."
 
 
 def _others(m: Mapping[str, Reading]) -> str:
@@ -193,11 +195,11 @@ def table(record: xr.Dataset) -> str:
             change["net"].sel(at).median(),
             change["path"].sel(at).median(),
         )
-        told = [f"{float(number):.3f}" for number in numbers]
+        medians = [f"{float(number):.3f}" for number in numbers]
         turned = f"{float(np.degrees(record.turn.sel(at).median())):.1f}"
         claim = CLAIMS.get(f"fault_{cell[0]}_{cell[3]}")  # of the knee the article says nothing
         printed = f"{claim.value:.2f}" if claim is not None else ""
-        rows.append(",".join((*cell, *told, turned, printed)))
+        rows.append(",".join((*cell, *medians, turned, printed)))
     return "\n".join(rows) + "\n"
 
 

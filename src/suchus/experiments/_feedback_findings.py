@@ -39,8 +39,8 @@ def start_measures(record: xr.Dataset, gait: AnyGait, hold: float, cycles: int) 
     measures["cycles_to_converge"] = measures.pop("cycles_to_converge_cross_load")
     measures["converged_closed"] = measures["converged_cross_load"]
     measures["converged_open"] = measures["converged_off"]
-    came = np.isfinite(found.sel(law="cross_load").values)
-    shares = [float(group.mean()) for group in np.array_split(came, max(came.size // _GROUP, 1))]
+    converged = np.isfinite(found.sel(law="cross_load").values)
+    shares = [float(group.mean()) for group in np.array_split(converged, max(converged.size // _GROUP, 1))]
     measures["converged_cross_load_low"] = Measure(min(shares), "-")
     measures["converged_cross_load_high"] = Measure(max(shares), "-")
     distances = _ending(record.start_way.rename(start_time="time"), hold * period)

@@ -45,7 +45,7 @@ def measures(record: xr.Dataset) -> dict[str, Measure]:
         "hips_at_printed_height": Measure(_hips_at(record, CLAIMS["height_crawl"].value or 0.0), "m"),
         "cantilever_torque": Measure(facts["cantilever"], "N m"),
         "pitch_torque": Measure(facts["pitch_torque"], "N m"),
-        "map_told_by_cantilever": Measure(_told(record), "-"),
+        "map_told_by_cantilever": Measure(_decided_by_torque(record), "-"),
     }
     for name, torque in zip(record.servo.values, peak_torque(record.isel(run=0), at, leave).values, strict=True):
         found[f"torque_rising_{name}"] = Measure(float(torque), "N m")
@@ -70,8 +70,8 @@ def _pushes(record: xr.Dataset) -> dict[str, Measure]:
     _, _, up, leave, _, _ = record.attrs["stages"]
     found = {}
     for feedback in ("on", "off"):
-        some = record.repeat_reach.sel(feedback=feedback, repeat_time=slice(up, leave))
-        stays = (some > record.attrs["least"]).all("repeat_time")
+        reach = record.repeat_reach.sel(feedback=feedback, repeat_time=slice(up, leave))
+        stays = (reach > record.attrs["least"]).all("repeat_time")
         found[f"stays_up_{feedback}"] = Measure(float(stays.mean()), "-")
         for direction in record.direction.values:
             force = record.push.sel(feedback=feedback, commanded=LEAD, direction=direction)
@@ -128,7 +128,7 @@ def _distance(place: xr.DataArray, since: float) -> float:
     return float(x[-1] - x[0])
 
 
-def _told(record: xr.Dataset) -> float:
+def _decided_by_torque(record: xr.Dataset) -> float:
     """Return for which share of the robots on the map the cantilever's torque alone decides whether they stand [-]."""
     stands = record.map_reach > record.attrs["up"]
     return float((stands == (record.torque > record.map_cantilever)).mean())

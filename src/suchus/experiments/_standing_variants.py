@@ -54,10 +54,10 @@ def fitted(gait: Gait, robot: Crocodile, original: Crocodile) -> Gait:
     return replace(gait, **sizes)
 
 
-def stand_soon(robot: Crocodile, some: float, balance: Balance | None) -> Standing | None:
+def stand_soon(robot: Crocodile, ahead: float, balance: Balance | None) -> Standing | None:
     """Return a control that stands up at once and stays, or None for a robot that cannot take the postures."""
     try:
-        rise = stand_up(robot, lead=some)
+        rise = stand_up(robot, lead=ahead)
         plan(robot, rise, np.linspace(0.0, rise.duration, 200))
     except OutsideLimits:
         return None

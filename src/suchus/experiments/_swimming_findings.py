@@ -1,4 +1,4 @@
-"""What the experiment ``swimming`` reads from its record: every number, and what decided."""
+"""The measures of the experiment ``swimming``, and the sentences that say what decided its outcome."""
 
 from collections.abc import Iterator, Mapping
 
@@ -11,21 +11,21 @@ from suchus.verdict import Reading
 from suchus.water import Quarters, Sway, Swum, convex_higher, efficiency, wave_form
 
 ARMS = ("trunk and tail", "trunk only", "tail only", "as printed", "exact wave", "exact wave as printed")
-"""Motions that are compared swimming freely."""
+"""Conditions: the motions that are compared while swimming freely."""
 TAKEN = ("trunk and tail as taken", "tail only as taken")
 """The same with the midline that the joints take in six degrees of freedom."""
 SETTLED = 4
 """Last cycles of the free swim over which its track is measured, fewer where it has fewer after the first [-]."""
 _GAINS = {"tail": "trunk only", "spine": "tail only"}
-"""Whose swing is missing, by the arm without it."""
+"""The condition that lacks the swing of a part, by the name of the part."""
 
 
 def measures(record: xr.Dataset, robot: Crocodile, frequency: float, reading: str) -> Mapping[str, Measure]:
     """Return every number of the experiment.
 
     Args:
-        record: what happened.
-        robot: who swam.
+        record: the swims.
+        robot: the robot that swam.
         frequency: of the wave [Hz].
         reading: of (20) that the joints were fitted to.
     """
@@ -68,10 +68,11 @@ def explain(measures: Mapping[str, float]) -> str:
         f"that of the trunk {_adds(m['gain_spine_swim'])}. Run as printed, from tail to head, the joints' motion swims "
         f"{m['speed_as_printed']:+.3f} m/s and a midline that follows the wave exactly "
         f"{m['speed_exact_wave_as_printed']:+.3f} m/s, head first positive; the resistive model of the round body says "
-        f"{m['speed_as_printed_resistive']:+.3f} m/s. The few joints come as near to (20) as {m['misfit']:.0%} of the "
-        f"tail's swing, and the swing of the free body falls back by up to {m['envelope_dip']:.0%} on its way to the "
+        f"{m['speed_as_printed_resistive']:+.3f} m/s. With its few joints the body follows (20) to within "
+        f"{m['misfit']:.0%} of the tail's swing, and the swing of the free body falls back by up to "
+        f"{m['envelope_dip']:.0%} on its way to the "
         f"tip.{bent} The water is a slice of unlimited depth at a Reynolds number far below the robot's own: "
-        "what the robot's own body does there, in three dimensions, suchus run swim_3d says."
+        "suchus run swim_3d shows what the robot's own body does there in three dimensions."
     )
 
 
@@ -117,7 +118,7 @@ def _free(record: xr.Dataset, free: xr.Dataset, robot: Crocodile, frequency: flo
 
 
 def _wave(free: xr.Dataset, robot: Crocodile) -> Iterator[tuple[str, Measure]]:
-    """Return how much of a sine the tail's swing is, and how much of (20) the midline's."""
+    """Return the share of a sine in the tail's swing, and the share of a wave of the form (20) in the midline's."""
     tip, swings, s = free.tip_share.values, free.swing.values, np.linspace(0.0, 1.0, free.swing.size)
     yield "tail_sine_share", Measure(float(free.sine_share[-1]), "-")
     yield "tail_sine_share_low", Measure(float(tip.min()), "-")
@@ -150,7 +151,7 @@ def _track(free: xr.Dataset, robot: Crocodile) -> Iterator[tuple[str, Measure]]:
 
 
 def _compared(record: xr.Dataset) -> Iterator[tuple[str, Measure]]:
-    """Return the speed of each arm in its last cycle, and what the swing of tail and spine adds in the last two."""
+    """Return the speed of each condition in its last cycle, and the gain by tail and spine in the last two."""
     last = {str(arm): record.arm_speed.sel(arm=arm).values[-2:] for arm in record.arm.values}
     for arm, speeds in last.items():
         yield f"speed_{arm.replace(' ', '_')}", Measure(float(speeds[-1]), "m/s")

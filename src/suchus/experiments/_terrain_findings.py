@@ -44,9 +44,9 @@ def measures(record: xr.Dataset) -> Mapping[str, Measure]:
             f"aside_{arm}": Measure(float(abs(one.aside).mean()), "m"),
         }
         for kind in dict.fromkeys(record.kind.values):
-            some = one.isel(ground=np.flatnonzero((record.kind.values == kind) & (record.height.values > 0)))
-            found[f"kept_{kind}_{arm}"] = Measure(float(some.forward.mean() / flat.forward), "-")
-            found[f"met_{kind}_{arm}"] = Measure(float(some.met.mean()), "-")
+            covered = one.isel(ground=np.flatnonzero((record.kind.values == kind) & (record.height.values > 0)))
+            found[f"kept_{kind}_{arm}"] = Measure(float(covered.forward.mean() / flat.forward), "-")
+            found[f"met_{kind}_{arm}"] = Measure(float(covered.met.mean()), "-")
     low = record.isel(ground=np.flatnonzero(record.height.values <= 0.04 * float(record.size_of_robot) + _EVEN))
     share = _share_of_best(record)
     return found | {
@@ -78,14 +78,14 @@ def _rough(rough: xr.Dataset) -> dict[str, Measure]:
     ahead = (rough.forward.sel(arm="high_walk_level") > rough.forward.sel(arm="low_crawl")).mean("ground")
     distance = rough.forward.mean("seed")
     crawl, semi, erect, level = (distance.sel(arm=arm) for arm in SINGLE)
-    told = met >= 1.0
+    met_enough = met >= 1.0
     return {
         "met_judged": Measure(met, "-"),
         "rough_grounds": Measure(float(rough.sizes["ground"]), "-"),
         "rough_runs": Measure(float(rough.sizes["ground"] * rough.sizes["seed"]), "-"),
-        "erect_ahead_share": Measure(float((level > crawl).mean()) if told else float("nan"), "-"),
-        "erect_ahead_share_low": Measure(float(ahead.min()) if told else float("nan"), "-"),
-        "erect_ahead_share_high": Measure(float(ahead.max()) if told else float("nan"), "-"),
+        "erect_ahead_share": Measure(float((level > crawl).mean()) if met_enough else float("nan"), "-"),
+        "erect_ahead_share_low": Measure(float(ahead.min()) if met_enough else float("nan"), "-"),
+        "erect_ahead_share_high": Measure(float(ahead.max()) if met_enough else float("nan"), "-"),
         "erect_open_loop_ahead_share": Measure(float((erect > crawl).mean()), "-"),
         "semi_erect_ahead_of_both_share": Measure(float(((semi > level) & (semi > crawl)).mean()), "-"),
     }
@@ -111,14 +111,14 @@ def explain(measures: Mapping[str, float]) -> str:
     kinds = [kind for kind in _KINDS if m.get(f"kept_{kind}_low_crawl", Reading("nan")) > -1e9]
     arms = [arm for arm in _CALLED if f"falls_{arm}" in m]
     shares = {arm: listed([format(m[f"kept_{kind}_{arm}"], ".0%") for kind in kinds]) for arm in arms}
-    kept = "; ".join(f"{_CALLED[arm]} {shares[arm]}, falling {m[f'falls_{arm}']:.0f} times" for arm in arms)
+    kept = "; ".join(f"{_CALLED[arm]} {shares[arm]} (falls: {m[f'falls_{arm}']:.0f})" for arm in arms)
     met = ", ".join(f"{m[f'met_{kind}_low_crawl']:.0%} of the {_KINDS[kind]}" for kind in kinds)
     within = m["switching_grounds_within_5_percent"]
     return (
-        f"Of the displacement on even ground keep on {listed([_KINDS[kind] for kind in kinds])}: {kept}. The low "
-        f"crawl met {met}. On even ground it costs {m['flat_cost_ratio']:.2f} of the high walk's work over the same "
-        f"distance. The switching robot gets at least {m['switching_share_of_best_worst']:.0%} as far as the best "
-        f"single posture, and within 5 % of it on {within:.0f} of {m['grounds']:.0f} grounds."
+        f"On {listed([_KINDS[kind] for kind in kinds])} these shares of the displacement on even ground remain: "
+        f"{kept}. The low crawl met {met}. On even ground it costs {m['flat_cost_ratio']:.2f} of the high walk's work "
+        f"over the same distance. The switching robot gets at least {m['switching_share_of_best_worst']:.0%} as far as "
+        f"the best single posture, and within 5 % of it on {within:.0f} of {m['grounds']:.0f} grounds."
     )
 
 

@@ -20,7 +20,7 @@ from suchus.figures.standing import draw_angles, draw_side_views
 from suchus.gaits import GAITS
 from suchus.kinematics.mass import cantilever_torque
 from suchus.land import Run, simulate
-from suchus.land.toppling import smallest_pushes
+from suchus.land.push_search import smallest_pushes
 from suchus.metrics import lead, reach, static_margin
 from suchus.motion import START, Gait
 from suchus.motion.rising import LEAD, stretched, tallest
@@ -176,7 +176,7 @@ class BipedalReach(Experiment):
 
     def _settled(self, robots: Sequence[Crocodile], leads: Sequence[float], progress: Any) -> xr.Dataset:
         """Return reach and lead of robots that stood up; zero where the postures are out of reach."""
-        controls = [stand_soon(robot, some, self.balance) for robot, some in zip(robots, leads, strict=True)]
+        controls = [stand_soon(robot, ahead, self.balance) for robot, ahead in zip(robots, leads, strict=True)]
         able = [control is not None for control in controls]
         found = {name: np.zeros(len(able)) for name in ("reach", "lead")}
         runs = [
@@ -218,9 +218,9 @@ class BipedalReach(Experiment):
         balances = {"on": self.balance, "off": None}
         stood = self._settled([self.robot] * len(leads), leads, lambda share: progress(0.1 * share))
         runs = [
-            Run(robot=self.robot, gait=self.straight, control=stand_soon(self.robot, some, balance) or OpenLoop())
+            Run(robot=self.robot, gait=self.straight, control=stand_soon(self.robot, lead, balance) or OpenLoop())
             for balance in balances.values()
-            for some in leads
+            for lead in leads
         ]
         forces = smallest_pushes(
             runs,

@@ -177,9 +177,11 @@ class DeathRoll(Experiment):
         """Return what is left of the angular momentum in vacuum, and the rate, over the time step."""
         left, rate, count = [], [], len(self.timesteps)
         for i, step in enumerate(self.timesteps):
-            some = self._simulate({"trunk": self._roll()}, step, lambda s, i=i: progress((i + s) / count), ("vacuum",))
-            left.append(float(abs(some.angular_momentum).max()))
-            rate.append(float(self._rates(some, self.frequency)[0]))
+            rolled = self._simulate(
+                {"trunk": self._roll()}, step, lambda s, i=i: progress((i + s) / count), ("vacuum",)
+            )
+            left.append(float(abs(rolled.angular_momentum).max()))
+            rate.append(float(self._rates(rolled, self.frequency)[0]))
         data = xr.Dataset(
             {
                 "momentum_by_timestep": ("timestep", left, {"units": "kg m2/s"}),
@@ -230,11 +232,12 @@ class DeathRoll(Experiment):
         speed, torque = self._load(measures, "speed"), self._load(measures, "torque")
         nearer = compared(speed, torque, less="their torque is", more="their speed is", same="both are", within=0.01)
         return (
-            f"In vacuum the sideways bend alone rolls the body {m['rate_lateral_only_vacuum']:.3f} times a second, "
-            f"the vertical bend alone {m['rate_vertical_only_vacuum']:.3f}, the vertical one a quarter of a cycle "
-            f"later {m['rate_trunk_vacuum']:.2f} and earlier {m['rate_reversed_vacuum']:.2f}. Trunk and tail bent to "
-            f"the same side, as a C, roll it {m['rate_c_shape_vacuum']:.2f} times a second, to opposite sides, as an "
-            f"S, {m['rate_s_shape_vacuum']:.2f}; in water {m['rate_c_shape_water']:.2f} and "
+            f"In vacuum the body rolls {m['rate_lateral_only_vacuum']:.3f} times a second by the lateral bend of the "
+            f"trunk alone and {m['rate_vertical_only_vacuum']:.3f} times by its vertical bend alone; with both it "
+            f"rolls {m['rate_trunk_vacuum']:.2f} times a second if the vertical bend lags by a quarter of a cycle, and "
+            f"{m['rate_reversed_vacuum']:.2f} if it leads. With trunk and tail bent to the same side, as a C, it rolls "
+            f"{m['rate_c_shape_vacuum']:.2f} times a second, bent to opposite sides, as an S, "
+            f"{m['rate_s_shape_vacuum']:.2f}; in water {m['rate_c_shape_water']:.2f} and "
             f"{m['rate_s_shape_water']:.2f}. As a C the servos reach {speed:.0%} of their greatest speed and "
             f"{torque:.0%} of their torque: {nearer} nearer to the limit."
         )

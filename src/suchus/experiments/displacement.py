@@ -100,9 +100,9 @@ class Displacement(Experiment):
         gaits = conditions_of(self.robot, self.gait, self.control)
         runs = [Run(robot=self.robot, gait=gait, label=arm) for arm, gait in gaits.items()]
         record = simulate(runs, duration=duration, progress=staged(progress, "conditions", 0.0, 0.1))
-        told = staged(progress, "repeats", 0.1, 0.5)
+        stage = staged(progress, "repeats", 0.1, 0.5)
         spread = simulate(
-            self._repeats(gaits), duration=duration, timestep=coarse_step(self.robot), every=10, progress=told
+            self._repeats(gaits), duration=duration, timestep=coarse_step(self.robot), every=10, progress=stage
         )
         found = self._mapped(duration, staged(progress, "map", 0.5, 1.0))
         record = record.merge(_renamed(spread, list(gaits), self.repeats)).merge(found)
@@ -330,8 +330,8 @@ class Displacement(Experiment):
             x = record.centre_of_mass.isel(run=[0, 1]).sel(xyz="x")
             x = x - x.sel(time=START, method="nearest")
             for arm in _GROUPS:
-                some = record.spread_over_time.sel(condition=arm)
-                band = some.rename(repeat="run", spread_time="time")
+                spread = record.spread_over_time.sel(condition=arm)
+                band = spread.rename(repeat="run", spread_time="time")
                 draw_band(ax, band, arm, label=f"repeats, {LINES[arm]['label']}")
             draw_lines(ax, x, _GROUPS)
             end = float(record.time[-1])

@@ -135,8 +135,8 @@ class GaitDiagram(Experiment):
         diagonal = m["diagonal_phase_error"]
         apart = f"; the stances of diagonal pairs are up to {diagonal:.2f} cycle apart" if diagonal >= 0 else ""
         return (
-            f"Commanded are limb phases and bends; what the feet make of them is felt by their pressure. Feet are "
-            f"commanded to stand {m['duty_factor_commanded']:.0%} of the cycle and stand {duties}{apart}."
+            f"Limb phases and bends are commanded; which foot stands is measured by its contact force. The feet are "
+            f"commanded to stand for {m['duty_factor_commanded']:.0%} of the cycle and stand for {duties}{apart}."
             f"{' ' if bends else ''}{bends[:1].upper()}{bends[1:]}{'.' if bends else ''}{_upright(m)}"
         )
 
@@ -194,14 +194,14 @@ def _sensed(robot: AnyRobot, record: xr.Dataset) -> dict[str, np.ndarray]:
 
 def _commanded(robot: AnyRobot, record: xr.Dataset) -> dict[str, np.ndarray]:
     """Return the commanded angles of those parts that a servo bends [rad]."""
-    place, told = layout(robot), record.servo_target.transpose("time", "servo").values
+    place, commanded = layout(robot), record.servo_target.transpose("time", "servo").values
     found: dict[str, np.ndarray] = {}
     if place.trunk_yaw:
-        found["spine"] = -told[:, list(place.trunk_yaw)].sum(axis=1)
+        found["spine"] = -commanded[:, list(place.trunk_yaw)].sum(axis=1)
     if place.tail_yaw or place.cables:
-        pulled = sum(bend_of_servo(place.cable(i), told[:, i]) for i in place.cables)
-        found["tail"] = told[:, list(place.tail_yaw)].sum(axis=1) + pulled
-    vertical = {f"{part}_vertical": told[:, list(pitch)].sum(axis=1) for part, pitch in _pitching(robot).items()}
+        pulled = sum(bend_of_servo(place.cable(i), commanded[:, i]) for i in place.cables)
+        found["tail"] = commanded[:, list(place.tail_yaw)].sum(axis=1) + pulled
+    vertical = {f"{part}_vertical": commanded[:, list(pitch)].sum(axis=1) for part, pitch in _pitching(robot).items()}
     return found | vertical
 
 

@@ -233,8 +233,8 @@ def fastest(record: xr.Dataset, *kinds: str) -> xr.Dataset:
         record: of the experiment.
         kinds: ``bound``, ``trot`` or ``walk``.
     """
-    some = record.isel(gait=np.isin(record.kind.values, kinds))
-    return some.isel(gait=some.speed.argmax("gait"))
+    chosen = record.isel(gait=np.isin(record.kind.values, kinds))
+    return chosen.isel(gait=chosen.speed.argmax("gait"))
 
 
 def _first(speeds: np.ndarray, pays: np.ndarray) -> float:

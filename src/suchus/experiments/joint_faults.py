@@ -248,13 +248,13 @@ class JointFaults(Experiment):
         data = data.assign_coords(
             joint=list(self._joints), kind=list(KINDS), legs=list(LEGS_FAILED), on_ground=["x", "y"]
         )
-        for name, (some, unit, what) in numbers.items():
-            lay(data, name, some.values.reshape(shape), (), unit, what)
+        for name, (array, unit, what) in numbers.items():
+            lay(data, name, array.values.reshape(shape), (), unit, what)
         lay(data, "track", tracks.reshape(*shape, -1, 2), ("time", "on_ground"), "m", "track of the centre of mass")
-        told = meaning.meanings(Gait)
+        about = meaning.meanings(Gait)
         for one in GAITS.beside("belly_crawl", "chosen", ()) if isinstance(self.gait, Gait) else ():
             values = [value_at(gaits["coordinated"], one.field) for gaits, _ in varied]
-            data[f"gait_{one.field}"] = ("variation", values, {"units": meaning.unit(told[one.field])})
+            data[f"gait_{one.field}"] = ("variation", values, {"units": meaning.unit(about[one.field])})
         data["grip"] = ("variation", [scale for _, scale in varied], {"units": "1", "long_name": "friction scale"})
         data["time"].attrs["units"] = "s"
         data["period"] = ((), self.gait.period, {"units": "s"})

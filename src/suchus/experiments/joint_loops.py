@@ -104,8 +104,8 @@ class JointLoops(Experiment):
         """Return the crawl with one of the gains; servos with and without an integral share no batch."""
         run = Run(robot=robot, gait=self.gait, label=f"ki {self.integrals[number]:g}")
         share = 0.7 / len(self.integrals)
-        told = staged(progress, "crawl", number * share, (number + 1) * share)
-        return simulate([run], duration=START + self.cycles * self.gait.period, progress=told)
+        stage = staged(progress, "crawl", number * share, (number + 1) * share)
+        return simulate([run], duration=START + self.cycles * self.gait.period, progress=stage)
 
     def _tested(self, robots: list[AnyRobot], load: float) -> list[list[np.ndarray]]:
         """Return the joint's angle in each test with each gain [rad]."""
@@ -175,7 +175,7 @@ class JointLoops(Experiment):
             m[f"forward_{last}"], m[f"forward_{first}"], less="less far", more="farther", same="as far", within=0.01
         )
         return (
-            f"Under the {_load(m['load'])} N m that the crawl asks of {self.joint} the joint sags by "
+            f"Under {_load(m['load'])} N m, the torque that {self.joint} bears in the crawl, the joint sags by "
             f"{m[f'droop_{first}']:deg.2f} degrees without an integral term and ends {m[f'droop_{last}']:deg.2f} "
             f"degrees off with {self.integrals[-1]:g} N m/(rad s). A free step overshoots by "
             f"{m[f'overshoot_{first}']:.0%} without and {m[f'overshoot_{last}']:.0%} with it; after being clamped for "

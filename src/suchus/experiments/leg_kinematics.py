@@ -114,12 +114,12 @@ class LegKinematics(Experiment):
         crawl, walk = m["printed_inverse_holds_crawl"], m["printed_inverse_holds_high_walk"]
         stays = "stay where it is exact" if crawl == 1.0 else f"are where it is exact {crawl:.1%} of the time"
         return (
-            "The quadrant decides: the printed arctan cannot tell a point from its opposite. Outboard of and below the "
-            f"hip (14) is exact at {m['printed_inverse_holds_outboard_below']:.0%} of the points, elsewhere at "
-            f"{m['printed_inverse_holds_elsewhere']:.0%}, over the whole reach at {m['printed_inverse_holds']:.0%}; "
-            f"where it fails it sets the foot {m['printed_foot_error_median']:mm.0f} mm off in the median. The feet of "
-            f"the sprawled crawl {stays}; erect feet, below their hips, are there {walk:.1%} of the time. With atan2 "
-            f"and both signs the worst error is {m['round_trip_error']:.0e} m."
+            "The printed arctan confuses a point with the one opposite to it, so that the quadrant of the foot "
+            f"decides. Outboard of and below the hip (14) is exact at {m['printed_inverse_holds_outboard_below']:.0%} "
+            f"of the points, elsewhere at {m['printed_inverse_holds_elsewhere']:.0%}, over the whole reach at "
+            f"{m['printed_inverse_holds']:.0%}; where it fails it sets the foot {m['printed_foot_error_median']:mm.0f} "
+            f"mm off in the median. The feet of the sprawled crawl {stays}; erect feet, below their hips, are there "
+            f"{walk:.1%} of the time. With atan2 and both signs the worst error is {m['round_trip_error']:.0e} m."
         )
 
     def draw(self, outcome: Outcome) -> dict[str, Any]:

@@ -122,9 +122,9 @@ class PatternGeneratorExperiment(Experiment):
         ]
         parts.append(self._ramp())
         found, ramped = self._land(progress)
-        told = staged(progress, "one drive across the shore", 0.85, 1.0)
+        stage = staged(progress, "one drive across the shore", 0.85, 1.0)
         across = _one_drive.runs(self.swimmer, self.swimmer_gait, self.walk, self.slope, self.water_line)
-        swum = simulate(across, duration=self.shore_time, every=_EVERY, progress=told)
+        swum = simulate(across, duration=self.shore_time, every=_EVERY, progress=stage)
         record = xr.merge([*parts, found, _one_drive.reduced(swum, self.water_line)]).assign_attrs(
             within=self.within, hold=self.hold, silent_above=_NUMBERS.limb_drives[1], walk=self.walk, swim=self.swim
         )
@@ -156,18 +156,19 @@ class PatternGeneratorExperiment(Experiment):
             for end, state in (("", "while walking"), ("_swim", "with silent limbs"))
         )
         return (
-            f"Limbs saturate at a lower drive than the axis. As long as they are active they draw it along: {kinds[0]} "
-            f"(index {m['standing_index_walk']:.2f}) at {m['frequency_walk']:.2f} Hz. Above, it is left to itself: "
+            f"The limbs' oscillators saturate at a lower drive than those of the axis. As long as the limbs are active "
+            f"they entrain the axis: {kinds[0]} (standing index {m['standing_index_walk']:.2f}) at "
+            f"{m['frequency_walk']:.2f} Hz. Above that drive the axis oscillates by itself: "
             f"{kinds[1]} (index {m['standing_index_swim']:.2f}) with a lag of {m['lag_swim']:.3f} cycle from one "
             f"segment to the next, and the frequency {jump} from {m['frequency_below']:.2f} to "
             f"{m['frequency_above']:.2f} Hz where the limbs fall silent. From random phases {walk}; {swim}. A steady "
             f"bend of the trunk turns the walk by {m['turn_steering']:deg+.1f} degrees a cycle and an asymmetric drive "
-            f"by {m['turn_asymmetry']:deg+.1f} (straight: {m['turn_straight']:deg+.1f}): the bend turns {steer}. From "
-            f"the water, by the drive for walking and what it feels of the ground, a floating robot swims at "
+            f"by {m['turn_asymmetry']:deg+.1f} (straight: {m['turn_straight']:deg+.1f}): the bend turns {steer}. In "
+            f"water, with the drive for walking and the loads of its feet as feedback, a floating robot swims at "
             f"{m['drive_swim_speed']:.2f} m/s and walks at {m['drive_walk_speed']:.2f}; its limbs change between "
             f"silent and walking {m['drive_changes']:.0f} time(s), and it ends {m['drive_ashore']:+.2f} m up "
             f"the shore from the water "
-            f"line, without the load felt {m['drive_ashore_unfelt']:+.2f} m."
+            f"line, and {m['drive_ashore_unfelt']:+.2f} m without that feedback."
         )
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
@@ -273,8 +274,8 @@ class PatternGeneratorExperiment(Experiment):
         }
         runs = [Run(robot=self.robot, gait=self.gait, control=one, label=name) for name, one in arms.items()]
         duration = START + self.cycles * self.gait.period
-        told = staged(progress, "walks", 0.45, 0.65)
-        record = simulate(runs, duration=duration, every=_EVERY, progress=told)
+        stage = staged(progress, "walks", 0.45, 0.65)
+        record = simulate(runs, duration=duration, every=_EVERY, progress=stage)
         walked = record.limb_phase.isel(leg=0)
         begun = walked.sel(time=START, method="nearest")
         units = {"forward": "m", "turned": "rad", "walked": "1"}
@@ -289,8 +290,8 @@ class PatternGeneratorExperiment(Experiment):
         )
         ramped = Run(robot=self.robot, gait=self.gait, control=PatternGenerator(drive=self._ramped))
         end = START + self.ramp * self.gait.period
-        told = staged(progress, "drive ramp", 0.65, 0.85)
-        return found, simulate([ramped], duration=end, every=2, progress=told)
+        stage = staged(progress, "drive ramp", 0.65, 0.85)
+        return found, simulate([ramped], duration=end, every=2, progress=stage)
 
     def _replays(self, ramped: xr.Dataset) -> Mapping[str, Replay]:
         caption = (

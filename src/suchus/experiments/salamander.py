@@ -95,8 +95,8 @@ class Salamander(Experiment):
             fore=[limb.name for limb in place.limbs if limb.number == 0],
             hind=[limb.name for limb in place.limbs if limb.number == last],
         )
-        told = {"beside_the_animal.csv": beside(self.measure(record))}
-        return Simulated(record=record, tables=told, replays=self._replays(record))
+        tables = {"beside_the_animal.csv": beside(self.measure(record))}
+        return Simulated(record=record, tables=tables, replays=self._replays(record))
 
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
         caption = "Joint angles of a walking salamander on its model; half transparent, with the axis held straight."
@@ -139,7 +139,7 @@ class Salamander(Experiment):
             f"the {m['stride_straight_axis']:.3f} with the axis held straight; over the other frictions it is "
             f"{m['stride_low']:.3f} to {m['stride_high']:.3f}. The axis bends with a standing index of "
             f"{m['standing_index_walk']:.2f} (animal: {ANIMAL['standing_index_walk'].value:.2f}). "
-            + " ".join(_told(m, pair) for pair in PAIRS)
+            + " ".join(_foot_forces(m, pair) for pair in PAIRS)
             + f" The belly carries {m['belly_load']:.1%} of the weight and the tail {m['tail_load']:.0%}."
         )
 
@@ -170,7 +170,7 @@ def _under_load(record: xr.Dataset, when: Window) -> dict[str, Measure]:
     }
 
 
-def _told(m: Mapping[str, Reading], pair: str) -> str:
+def _foot_forces(m: Mapping[str, Reading], pair: str) -> str:
     """Return a sentence on the forces under a pair of feet."""
     animal, net = ANIMAL[f"foot_force_net_{pair}"], m[f"foot_force_net_{pair}"]
     apart = abs(net - animal.value) / animal.spread

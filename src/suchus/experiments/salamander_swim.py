@@ -74,11 +74,11 @@ class SalamanderSwim(Experiment):
         records = []
         for i, frequency in enumerate(self.frequencies):
             gait = animal.played(self.robot, frequency)
-            some = waters if i == len(self.frequencies) - 1 else waters[:1]
-            runs = [Run(robot=self.robot, gait=gait, lake=one, label=f"{frequency:g} Hz") for one in some]
+            tried = waters if i == len(self.frequencies) - 1 else waters[:1]
+            runs = [Run(robot=self.robot, gait=gait, lake=one, label=f"{frequency:g} Hz") for one in tried]
             part = (i / len(self.frequencies), (i + 1) / len(self.frequencies))
-            told = staged(progress, f"swim at {frequency:g} Hz", *part)
-            records.append(simulate(runs, duration=(self.settle + self.cycles) / frequency, progress=told))
+            stage = staged(progress, f"swim at {frequency:g} Hz", *part)
+            records.append(simulate(runs, duration=(self.settle + self.cycles) / frequency, progress=stage))
         last = records[-1].isel(run=[0])
         whole = last.merge(self._swims(records), combine_attrs="override", compat="no_conflicts")
         return Simulated(record=whole, replays=self._replays(whole))
@@ -99,7 +99,7 @@ class SalamanderSwim(Experiment):
         units = {"units": "body length"}
         return xr.Dataset(
             {
-                "stride": ("swim", [some[0] for some in strides], units),
+                "stride": ("swim", [lengths[0] for lengths in strides], units),
                 "stride_other": ("water", strides[-1], units),
                 "swing": (("swim", "point"), [one.swing for one in envelopes], units),
                 "missed": ("swim", turned, {"units": "rad"}),

@@ -21,7 +21,7 @@ from suchus.paper import CLAIMS, CYCLES
 from suchus.robots import ROBOTS
 from suchus.study import Claims, conducted
 from suchus.study.answers import share_interval
-from suchus.study.claims_table import table, told, turned
+from suchus.study.claims_table import claim_row, table, turned
 from suchus.verdict import SHARES, listed
 from suchus.verdict.shares import ROBUST, Share
 
@@ -121,9 +121,9 @@ class Sensitivity(Experiment):
             "depend on the design": [k for k in keys if max(share[k], 1 - share[k]) < ROBUST],
         }
         sorted_out = "; ".join(
-            f"{len(some)} {words} ({listed([key.replace('_', ' ') for key in some])})"
-            for words, some in groups.items()
-            if some
+            f"{len(claims)} {words} ({listed([key.replace('_', ' ') for key in claims])})"
+            for words, claims in groups.items()
+            if claims
         )
         text = (
             f"Of {sum(measures[name] for name in _COUNTS.values()):.0f} designs "
@@ -155,7 +155,7 @@ class Sensitivity(Experiment):
 
 
 def _rows(record: xr.Dataset) -> list[dict[str, Any]]:
-    return [told(record, str(claim)) for claim in record.claim.values]
+    return [claim_row(record, str(claim)) for claim in record.claim.values]
 
 
 def _chance(true: int, judged: int, shipped: Share) -> float:

@@ -124,8 +124,8 @@ class Shore(Experiment):
 
     def quick(self) -> "Shore":
         """Return one slope with one friction scale, no other gaits, the first seconds."""
-        some = replace(self, slopes=self.slopes[1:2], friction_scales=(1.0,), seeds=1, others=(), breaths=())
-        return replace(some, duration=2.0, cycles=1)
+        smaller = replace(self, slopes=self.slopes[1:2], friction_scales=(1.0,), seeds=1, others=(), breaths=())
+        return replace(smaller, duration=2.0, cycles=1)
 
     def simulate(self, progress: Progress = silent) -> Simulated:
         """Simulate all runs as one batch: to the shore, with other gaits and other breaths, and into the water."""

@@ -24,7 +24,7 @@ from suchus.motion import START, AnyGait, hip_height
 from suchus.paper.animals import ANIMAL
 from suchus.replay import replay
 from suchus.robots import ROBOTS
-from suchus.verdict import Reading, listed
+from suchus.verdict import Reading
 
 _TOUCHES = 0.00495  # [body length]; a tail this close to the ground lies on it
 _LOADED = 0.0029  # of the weight; a tail that presses more on the ground touches it
@@ -181,9 +181,9 @@ class SpeedRange(Experiment):
         """Say how fast and how dear each gait is, and what a torque-speed line changes."""
         m = {name: Reading(value) for name, value in measures.items()}
         names = [gait.name for gait in self.gaits]
-        told = [
-            f"the {name.replace('_', ' ')} {m[f'speed_{name}']:.2f} m/s at a cost of transport of "
-            f"{m[f'cost_{name}']:.2f}, its fastest leg joint turning with {m[f'joint_speed_{name}']:.1f} rad/s"
+        walks = [
+            f"the {name.replace('semi_', 'semi-').replace('_', ' ')} walks at {m[f'speed_{name}']:.2f} m/s with a cost "
+            f"of transport of {m[f'cost_{name}']:.2f} and {m[f'joint_speed_{name}']:.1f} rad/s in its fastest leg joint"
             for name in names
         ]
         fastest, cheapest = (
@@ -192,7 +192,7 @@ class SpeedRange(Experiment):
         )
         changed = max(abs(m[f"speed_{name}_speed_line"] / m[f"speed_{name}"] - 1.0) for name in names)
         return (
-            f"At its own cycle time walks {listed(told)}. Over all cycle times the {fastest} is the fastest and "
+            f"At its own cycle time {'; '.join(walks)}. Over all cycle times the {fastest} is the fastest and "
             f"{'also' if cheapest == fastest else f'the {cheapest}'} the cheapest. A torque-speed line in the servos "
             f"changes the speeds by at most {changed:.0%}. "
             f"{ANIMAL['high_walk_speed'].who} walk high at {m['animals_high_walk_slowest']:g} to "
@@ -236,15 +236,15 @@ def _lying(robot: AnyRobot, part: xr.Dataset) -> float:
     place = layout(robot)
     if not place.tail:
         return 0.0
-    some = part.isel(time=slice(None, None, 5))
-    found = frames(robot, some.joint_angle.transpose("time", "joint").values)
+    sampled = part.isel(time=slice(None, None, 5))
+    found = frames(robot, sampled.joint_angle.transpose("time", "joint").values)
     numbers = [i for i, body in enumerate(place.bodies) if body.name in place.tail]
     segments = [next(one for one in place.robot.axis if one.name == place.bodies[i].name) for i in numbers]
     last, ahead = numbers[-1], -(segments[-1].front + segments[-1].rear)
     tip = found.places[:, last] + ahead * found.turns[:, last, :, 0]
     points = np.concatenate([found.places[:, numbers], tip[:, None]], axis=1)
-    up = rotation.upward(some.orientation.transpose("time", "wxyz").values)
-    height = np.einsum("tk,tpk->tp", up, points) + some.position.sel(xyz="z").values[:, None]
+    up = rotation.upward(sampled.orientation.transpose("time", "wxyz").values)
+    height = np.einsum("tk,tpk->tp", up, points) + sampled.position.sel(xyz="z").values[:, None]
     lengths = np.array([segment.front + segment.rear for segment in segments])
     along = np.concatenate([[0.0], np.cumsum(lengths)])
     share = along / along[-1]

@@ -94,11 +94,11 @@ class SpineKinematics(Experiment):
         upward = "is right" if m["printed_error_upward_max"] <= EXACT * long else "is wrong too"
         term = "explains it all" if m["mended_error_max"] <= EXACT * long else "does not explain it all"
         return (
-            f"(15) as printed is {m['printed_error_mean']:mm.0f} mm off Table II on average; Pz {upward}. One lost "
-            f"term {term}: with 60.5 C4 where 0.5 stands in Px and Py they differ by {m['mended_error_max']:.0e} m at "
-            "most. The inverse is ours; position and azimuth leave one joint free, and the least bending fixes it: in "
-            f"the median it saves {m['bending_saved_median']:.0%} of the squared angles. The straight spine can move "
-            f"in {m['straight_jacobian_rank']:.0f} of five directions."
+            f"The end of the spine by (15) as printed is {m['printed_error_mean']:mm.0f} mm from that by Table II on "
+            f"average; Pz {upward}. One missing term {term}: with 60.5 C4 where 0.5 stands in Px and Py they differ by "
+            f"{m['mended_error_max']:.0e} m at most. The inverse is ours; position and azimuth leave one joint free, "
+            f"and the least bending fixes it: in the median it saves {m['bending_saved_median']:.0%} of the squared "
+            f"angles. The straight spine can move in {m['straight_jacobian_rank']:.0f} of five directions."
         )
 
     def draw(self, outcome: Outcome) -> dict[str, Any]:
@@ -256,8 +256,8 @@ def _family(robot: Crocodile) -> xr.Dataset:
     cost = np.sum(spine.candidates(back, target, azimuth, first_yaw=first, branch=signs) ** 2, axis=-1)
     branch = 1 if best[3] >= 0 else -1
     open_to = first[np.isfinite(cost[0 if branch == 1 else 1])]
-    some = np.linspace(open_to[0], open_to[-1], 9)[1:-1]
-    family = spine.inverse(back, np.tile(target, (7, 1)), azimuth, first_yaw=some, branch=branch)
+    first_yaws = np.linspace(open_to[0], open_to[-1], 9)[1:-1]
+    family = spine.inverse(back, np.tile(target, (7, 1)), azimuth, first_yaw=first_yaws, branch=branch)
     return xr.Dataset(
         {
             "bending": (("branch", "first_yaw"), cost, {"units": "rad2", "long_name": "sum of the squared angles"}),

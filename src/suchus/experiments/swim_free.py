@@ -209,17 +209,18 @@ class SwimFree(Experiment):
         gain = compared(m["speed_whole_stiff"], m["speed_whole"], less="slower", more="faster", within=0.02)
         turns = compared(abs(m["turn_radius"]), 1.0, less="less", more="more")
         return (
-            f"The whole wave swims at {m['speed_whole']:.3f} m/s, the trunk alone at {m['speed_trunk_only']:.3f}, the "
-            f"tail alone at {m['speed_tail_only']:.3f}: {tail} than the {m['speed_tail_only_stiff']:.3f} with stiffer "
-            f"joints. The cable fixes the sum of its joints only, and the water shares it out anew, the largest bend "
-            f"being {m['tail_spread']:.1f} times the mean ({m['tail_spread_stiff']:.1f} with stiffer joints). Models "
-            f"whose midline is commanded say {m['speed_tail_only_resistive']:.2f} and "
-            f"{m['speed_tail_only_reactive']:.2f} m/s for the tail alone; they cannot see this. With stiffer joints "
-            f"the whole wave is {gain} ({m['speed_whole_stiff']:.3f} m/s). Reversed, it moves at "
-            f"{m['speed_reversed']:.3f} m/s. It rolls by {m['roll_amplitude']:deg.1f} degrees at most and, steered, "
-            f"turns on a radius of {abs(m['turn_radius']):.2f} m, {turns} than 1 m. Over the plausible coefficients of "
-            f"the water the speed is {m['speed_low']:.3f} to {m['speed_high']:.3f} m/s; half the time step changes it "
-            f"by {m['step_change']:.1%}. The servos take {m['servo_power']:.2f} W, of which the water gets "
+            f"With the whole wave it swims at {m['speed_whole']:.3f} m/s, with the trunk alone at "
+            f"{m['speed_trunk_only']:.3f} and with the tail alone at {m['speed_tail_only']:.3f} m/s, {tail} than the "
+            f"{m['speed_tail_only_stiff']:.3f} m/s of a tail with stiffer joints. The cable fixes the sum of its "
+            f"joints' angles only, and the water distributes it among them: the largest bend is {m['tail_spread']:.1f} "
+            f"times the mean ({m['tail_spread_stiff']:.1f} with stiffer joints). Models whose midline is commanded "
+            f"give {m['speed_tail_only_resistive']:.2f} and {m['speed_tail_only_reactive']:.2f} m/s for the tail "
+            f"alone, since they leave this out. With stiffer joints the whole wave is {gain} "
+            f"({m['speed_whole_stiff']:.3f} m/s). Reversed, it moves at {m['speed_reversed']:.3f} m/s. It rolls by "
+            f"{m['roll_amplitude']:deg.1f} degrees at most and, steered, turns on a radius of "
+            f"{abs(m['turn_radius']):.2f} m, {turns} than 1 m. Over the plausible coefficients of the water the speed "
+            f"is {m['speed_low']:.3f} to {m['speed_high']:.3f} m/s; half the time step changes it by "
+            f"{m['step_change']:.1%}. The servos take {m['servo_power']:.2f} W, of which the water gets "
             f"{m['water_power']:.2f}."
         )
 

@@ -48,25 +48,29 @@ _SETTLE, _AVERAGED = 5, 3  # [cycle]; in six degrees of freedom, before the join
 class Swimming(Experiment):
     """The robot's own outline in a two-dimensional flow, its joints fitted to (20).
 
-    Held, as the article's Fig. 17: the snout stays, and every cycle but the first is measured. ``pressure_difference``
-    is the mean pressure along the convex side of the tail less that along the concave side; which side is convex
-    follows from the bend between the tail's root and its tip. ``pressure_fall`` is by how much its size is smaller at
-    3T/4 than at T/4, ``pressure_moves`` by how many tail lengths its place, the mean along the tail weighted with the
-    size of the difference, moves towards the tip meanwhile. ``force_angle_1_quarter`` lies between the force at T/4 and
-    the direction forward; ``thrust_asymmetry`` is by how much the forces at T/4 and 3T/4, left and right swapped,
-    differ, over the greater part of the force. Values are those of the last cycle, ``_low`` and ``_high`` of all of
-    them. Free: from rest, in a grid that travels along; the speed is the mean of the last cycle, ``efficiency`` the
-    power that towing the straight body at that speed takes over the power of the joints. ``track_sway`` is the
-    amplitude to the side of the centre of mass, ``track_noise`` twice the standard deviation of what is no sine of one
-    cycle, both over the last four cycles and in body lengths. ``wave_share`` is the part of the midline's mean square
-    swing that the nearest wave of the form (20) has. ``gain_tail_swim`` is the speed of trunk and tail less that of the
-    trunk alone, ``gain_spine_swim`` less that of the tail alone.
+    Tethered, as in the article's Fig. 17: the snout is fixed, and every cycle but the first is measured. Values are
+    those of the last cycle, ``_low`` and ``_high`` those of all measured cycles. ``pressure_difference`` is the mean
+    pressure along the convex side of the tail less that along the concave side; the bend between the tail's root and
+    its tip says which side is convex. ``pressure_fall`` is by how much its size is smaller at 3T/4 than at T/4.
+    ``pressure_moves`` is by how many tail lengths its place moves towards the tip meanwhile: the mean position along
+    the tail, weighted with the size of the difference. ``force_angle_1_quarter`` is the angle between the force at T/4
+    and the forward direction. ``thrust_asymmetry`` is the difference between the forces at T/4 and 3T/4, left and right
+    swapped, over the greater part of the force.
+
+    Free: from rest, in a grid that travels along. The speed is the mean of the last cycle; ``efficiency`` is the power
+    that towing the straight body at that speed takes over the power of the joints. ``track_sway`` is the lateral
+    amplitude of the centre of mass, ``track_noise`` twice the standard deviation of what is no sine of one cycle, both
+    over the last four cycles and in body lengths. ``wave_share`` is the part of the midline's mean square swing that
+    the nearest wave of the form (20) has. ``gain_tail_swim`` is the speed of trunk and tail less that of the trunk
+    alone, ``gain_spine_swim`` less that of the tail alone.
+
     Trunk, tail, the printed direction, and the wave that the midline follows exactly are compared on a coarser grid.
     With ``taken`` the midlines that the same commands give in six degrees of freedom at the surface, where the water
-    shares the cable's bend out among its joints, swim beside them; of these only yaw counts.
-    Other readings of (20) are held in a thicker water, at ``readings_reynolds``. Everything is per metre of depth but
-    ``servo_load_peak``, the torque at a servo's shaft over its limit: there every section is as high as the robot's and
-    feels the flow's pressures.
+    distributes the cable's bend among its joints, swim as further conditions; of these midlines only yaw counts. Other
+    readings of (20) are tethered in more viscous water, at ``readings_reynolds``.
+
+    Everything is per metre of depth but ``servo_load_peak``, the torque at a servo's shaft over its limit: there every
+    section is as high as the robot's and feels the flow's pressures.
     """
 
     title = "How does it swim?"
@@ -86,15 +90,15 @@ class Swimming(Experiment):
     reynolds: float = 7000.0
     """Frequency times length squared over viscosity [-]; the robot's own would be 1e6, beyond any affordable grid."""
     cells: int = 128
-    """Cells per body length, held and free [-]."""
+    """Cells per body length, tethered and free [-]."""
     coarse_cells: int = 80
     """The same where trunk, tail, directions and the exact wave are compared, and of the towed body [-]."""
     cycles: int = 4
-    """Cycles of the held body; all but the first are measured, and fields shown of the last [-]."""
+    """Cycles of the tethered body; all but the first are measured, and the fields of the last are shown [-]."""
     free_cycles: int = 10
     """Cycles of the free body; speeds are of the last, the track of the last four [-]."""
     arm_cycles: int = 6
-    """Cycles after which trunk, tail, directions and exact wave are compared [-]."""
+    """Cycles after which the conditions (trunk, tail, directions, exact wave) are compared [-]."""
     readings: tuple[str, ...] = ("A", "C", "F", "H", "K")
     """Further readings of (20) whose thrust is measured [-]; the joints cannot make the others."""
     readings_reynolds: float = 1000.0
@@ -106,8 +110,8 @@ class Swimming(Experiment):
     frames: int = 20
     """Pictures of each film, over one cycle [-], 1 to 200."""
     taken: bool = False
-    """Whether the midline that the joints take in six degrees of freedom is let swim too, whole and tail alone: two
-    more swims as those of trunk and tail."""
+    """Whether the midline that the joints take in six degrees of freedom swims too, with trunk and tail and with the
+    tail alone: two more swims like those of trunk and tail."""
     keep: str = ""
     """Folder for what is finished of an interrupted run, from which it goes on; empty keeps nothing."""
 
@@ -128,25 +132,32 @@ class Swimming(Experiment):
                 check.whole(name, 2, 100)
 
     def quick(self) -> "Swimming":
-        """A coarse grid, a thick water, few cycles."""
+        """A coarse grid, viscous water, few cycles."""
         return replace(
             self, cells=32, coarse_cells=32, cycles=2, free_cycles=2, arm_cycles=2, reynolds=1000.0, readings=("H",),
             readings_cells=32, tow=2.0, frames=3,
         )  # fmt: skip
 
     def simulate(self, progress: Progress = silent) -> Simulated:
-        """Swim held and free, in every motion."""
+        """Swim tethered and free, in every motion."""
         ours, printed = (self._fit(sign) for sign in (-1, 1))
-        held = self._held("ours", ours, staged(progress, "held", 0.0, 0.08))
-        back = self._held("as printed", printed, staged(progress, "as printed", 0.08, 0.16))
+        held = self._tethered("ours", ours, staged(progress, "tethered", 0.0, 0.08))
+        printed_swim = self._tethered("as printed", printed, staged(progress, "as printed", 0.08, 0.16))
         free = self._free("ours", ours.swim, self.cells, self.free_cycles, staged(progress, "free", 0.16, 0.5))
-        arms = self._arms(ours, printed, free, staged(progress, "trunk and tail apart", 0.5, 0.8))
-        bent = self._taken(ours.swim, staged(progress, "as the joints take it", 0.8, 0.92)) if self.taken else []
+        conditions = self._conditions(ours, printed, free, staged(progress, "trunk and tail separately", 0.5, 0.8))
+        bent = self._taken(ours.swim, staged(progress, "midline of the joints", 0.8, 0.92)) if self.taken else []
         readings, table = self._readings(staged(progress, "readings of (20)", 0.92, 0.96))
         drag = self._drag(float(free.speed[-1]), staged(progress, "towed", 0.96, 1.0))
-        told = back[["thrust", "aside", "power", "cycle_thrust"]]
+        printed_forces = printed_swim[["thrust", "aside", "power", "cycle_thrust"]]
         record = xr.merge(
-            [_prefixed(held, "held"), _prefixed(told, "printed"), _prefixed(free, "free"), arms, readings, *bent],
+            [
+                _prefixed(held, "held"),
+                _prefixed(printed_forces, "printed"),
+                _prefixed(free, "free"),
+                conditions,
+                readings,
+                *bent,
+            ],
             join="exact",
         )
         record["model_speed"] = swim(self.robot, ours.swim).speed
@@ -161,7 +172,7 @@ class Swimming(Experiment):
         return Simulated(record=record, tables={"readings.md": table}, films=films)
 
     def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
-        """Return what the held and the free body did, and what each motion swims."""
+        """Return what the tethered and the free body did, and how fast each motion swims."""
         return findings.measures(record, self.robot, self.frequency, self.reading)
 
     def explain(self, measures: Mapping[str, float]) -> str:
@@ -176,7 +187,7 @@ class Swimming(Experiment):
         wave = printed_wave(self.robot, self.reading, frequency=self.frequency, sign=sign)
         return fit(self.robot, wave, name=f"(20), reading {self.reading}")
 
-    def _held(self, name: str, fitted: Fit, progress: Callable[[float], None]) -> xr.Dataset:
+    def _tethered(self, name: str, fitted: Fit, progress: Callable[[float], None]) -> xr.Dataset:
         kept, setting = kept_in(self.keep, f"held {name}"), self._setting(self.cells, self.cycles)
         return tether(self.robot, fitted.swim, setting, turn=fitted.head, checkpoint=kept, progress=progress)
 
@@ -186,8 +197,8 @@ class Swimming(Experiment):
         kept, setting = kept_in(self.keep, f"free {name}"), self._setting(cells, cycles)
         return free_swim(self.robot, motion, setting, checkpoint=kept, progress=progress)
 
-    def _arms(self, ours: Fit, printed: Fit, free: xr.Dataset, progress: Callable[[float], None]) -> xr.Dataset:
-        """Return the speed of every arm in each cycle; the first is the free swim itself where the grids are alike."""
+    def _conditions(self, ours: Fit, printed: Fit, free: xr.Dataset, progress: Callable[[float], None]) -> xr.Dataset:
+        """Return the speed in every condition and cycle; the first is the free swim itself on equal grids."""
         exact = [
             ExactWave(name=name, wave=printed_wave(self.robot, self.reading, frequency=self.frequency, sign=sign))
             for name, sign in zip(ARMS[4:], (-1, 1), strict=True)
@@ -198,14 +209,14 @@ class Swimming(Experiment):
         speeds = []
         for i, (arm, motion) in enumerate(zip(ARMS, motions, strict=True)):
             done = i == 0 and self.coarse_cells == self.cells and self.arm_cycles <= self.free_cycles
-            told = portion(progress, i, len(ARMS))
-            swum = free if done else self._free(arm, motion, self.coarse_cells, self.arm_cycles, told)
+            stage = portion(progress, i, len(ARMS))
+            swum = free if done else self._free(arm, motion, self.coarse_cells, self.arm_cycles, stage)
             speeds.append(swum.speed.values[: self.arm_cycles])
         data = xr.Dataset({"arm_speed": (("arm", "cycle"), np.array(speeds), {"units": "m/s"})})
         return data.assign_coords(arm=list(ARMS), cycle=np.arange(1, self.arm_cycles + 1))
 
     def _taken(self, motion: Swim, progress: Callable[[float], None]) -> list[xr.Dataset]:
-        """Return speeds of the midlines that joints take in six degrees of freedom, and how far off they are."""
+        """Return speeds of the midlines that joints take in six degrees of freedom, and the error of their angles."""
         bare = replace(self.robot, hull=None)
         floating = self.robot if self.robot.hull is not None else replace(bare, hull=float_hull(bare))
         meant = (motion, motion.tail_only())
@@ -217,8 +228,8 @@ class Swimming(Experiment):
         outline, speeds, away = Outline(bare, self.coarse_cells + 1), [], []
         for i, (arm, one) in enumerate(zip(findings.TAKEN, meant, strict=True)):
             bends = taken(outline, record.isel(run=i), frequency=self.frequency, cycles=_AVERAGED, name=arm)
-            told = portion(progress, i, len(meant))
-            speeds.append(self._free(arm, bends, self.coarse_cells, self.arm_cycles, told).speed.values)
+            stage = portion(progress, i, len(meant))
+            speeds.append(self._free(arm, bends, self.coarse_cells, self.arm_cycles, stage).speed.values)
             away.append(unevenness(bends, undulation(outline, one)))
         data = xr.Dataset(
             {
@@ -236,12 +247,12 @@ class Swimming(Experiment):
             fitted, part = tried[letter].fitted, portion(progress, i, len(self.readings))
             held = None if fitted is None else tether(self.robot, fitted.swim, setting, turn=fitted.head, progress=part)
             thrust.append(float("nan") if held is None else float(held.cycle_thrust[1:].mean()))
-        told = {
+        thrusts = {
             letter: f"{value:.1f} N/m at Re {self.readings_reynolds:.0f}"
             for letter, value in zip(self.readings, thrust, strict=True)
         }
         data = xr.Dataset({"reading_thrust": ("reading", thrust, {"units": "N/m"})})
-        return data.assign_coords(reading=list(self.readings)), readings_table(tried.values(), told)
+        return data.assign_coords(reading=list(self.readings)), readings_table(tried.values(), thrusts)
 
     def _drag(self, speed: float, progress: Callable[[float], None]) -> float:
         progress(0.0)

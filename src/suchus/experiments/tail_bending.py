@@ -101,7 +101,7 @@ class TailBending(Experiment):
         return float(max(worst))
 
     def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
-        """Return errors of the formulas, what the cords do, counts, and how alike the joints turn."""
+        """Return errors of the formulas, what the cords do, counts, and how equally the joints turn."""
         facts = record.attrs
         miss = np.linalg.norm(record.joints_ours - record.joints_printed, axis=-1)[:, -1]
         bent = record.isel(bend=slice(1, None))
@@ -139,10 +139,10 @@ class TailBending(Experiment):
         already = f"already for a straight tail, by {straight:mm.0f} mm" if straight > 0 else "for a bent tail only"
         fails = f"fail {already}" if m["printed_last_joint_error_max"] > 0 else "are right"
         return (
-            "The ratio of gap to cord spacing decides: the term that (17) drops is h/d tan(theta / 4N) of the one that "
-            f"it keeps, at most {m['error_of_eq_17_max']:.1%} here and {m['error_of_eq_17_plausible']:.1%} at the ends "
-            f"of the plausible ranges. Where it is not zero one cord hangs loose, by up to {m['slack_max']:mm.1f} mm. "
-            f"The positions of (19) {fails}. {_crawling(m)}"
+            "The ratio of the plates' gap h to the cords' spacing d decides: the term that (17) drops is h/d "
+            f"tan(theta / 4N) of the one that it keeps, at most {m['error_of_eq_17_max']:.1%} here and "
+            f"{m['error_of_eq_17_plausible']:.1%} at the ends of the plausible ranges. Where it is not zero one cord "
+            f"hangs loose, by up to {m['slack_max']:mm.1f} mm. The positions of (19) {fails}. {_crawling(m)}"
         )
 
     def draw(self, outcome: Outcome) -> dict[str, Any]:
@@ -209,8 +209,8 @@ def _shapes(plates: Tail, furthest: float) -> xr.Dataset:
 
 def _errors(plates: Tail, furthest: float) -> xr.Dataset:
     """Return cords and errors of (17) at a few bends, and the greater error at the greatest bend."""
-    some = [d for d in (30, 90, 180) if np.radians(d) <= furthest + 1e-9]
-    bend = np.append(np.radians(some), furthest)
+    degrees = [d for d in (30, 90, 180) if np.radians(d) <= furthest + 1e-9]
+    bend = np.append(np.radians(degrees), furthest)
     toward, away = tail.cable_changes(plates, bend)
     kept = plates.joints * printed.cable_changes_shortened(plates, bend)[1]
     wrong = np.stack([kept / -toward - 1, kept / away - 1])
@@ -223,7 +223,7 @@ def _errors(plates: Tail, furthest: float) -> xr.Dataset:
             "error_17_away": ("at", wrong[1, :-1], part),
             "error_at_end": ("cord", np.abs(wrong[:, -1]), part),
         },
-        coords={"at": ("at", some, {"units": "deg", "long_name": "bend of the tail"}), "cord": ["toward", "away"]},
+        coords={"at": ("at", degrees, {"units": "deg", "long_name": "bend of the tail"}), "cord": ["toward", "away"]},
     )
 
 

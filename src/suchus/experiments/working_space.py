@@ -97,14 +97,15 @@ class WorkingSpace(Experiment):
         """Say how much larger the room is, and what is left out."""
         m = {name: Reading(value) for name, value in measures.items()}
         return (
-            f"Without a step, on four feet, the snout reaches {1000 * m['volume_crawling']:.1f} litres of space "
-            f"({1000 * m['volume_crawling_low']:.1f} to {1000 * m['volume_crawling_high']:.1f}), on hind feet and tail "
-            f"{1000 * m['volume_standing']:.0f} ({1000 * m['volume_standing_low']:.0f} to "
+            f"While no foot is moved, the snout reaches on four feet {1000 * m['volume_crawling']:.1f} litres of space "
+            f"({1000 * m['volume_crawling_low']:.1f} to {1000 * m['volume_crawling_high']:.1f}) and on hind feet and "
+            f"tail {1000 * m['volume_standing']:.0f} ({1000 * m['volume_standing_low']:.0f} to "
             f"{1000 * m['volume_standing_high']:.0f}): {m['volume_ratio']:.0f} times as much, "
             f"{m['volume_ratio_low']:.1f} times at least. Seen from the side it is {m['area_ratio']:.1f} times the "
             f"area, and the snout comes up to {m['highest_standing']:.2f} against {m['highest_crawling']:.2f} m. Of "
             f"the configurations drawn {m['possible_crawling']:.1%} are possible on four feet and "
-            f"{m['possible_standing']:.1%} on two. Joint ranges, ground and balance are met; torques are not looked at."
+            f"{m['possible_standing']:.1%} on two. They keep joint ranges, ground and balance; torques are not "
+            "considered."
         )
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:

@@ -26,31 +26,31 @@ def write_atlas(outcomes: Mapping[str, Outcome], folder: Path, rows: Sequence[Ro
     Raises:
         Unwritable: the folder takes nothing.
     """
-    told = entries(rows, outcomes)
-    drawn = {"parity": draw_parity(told)}
+    listed = entries(rows, outcomes)
+    drawn = {"parity": draw_parity(listed)}
     for group in GROUPS:
-        some = [entry for entry in told if entry.row in GROUPS[group] and entry.outcome is not None]
-        if some:
-            drawn[group] = draw_group(some)
+        members = [entry for entry in listed if entry.row in GROUPS[group] and entry.outcome is not None]
+        if members:
+            drawn[group] = draw_group(members)
     for name, figure in drawn.items():
         path = folder / picture(name)
         with new_file(path) as draft, styled():
             figure.savefig(draft, dpi=100)
     with new_file(folder / "atlas.md") as draft:
-        draft.write_text(page(told), encoding="utf-8")
+        draft.write_text(page(listed), encoding="utf-8")
     return folder / "atlas.md"
 
 
-def draw_group(told: Sequence[Entry]) -> Figure:
+def draw_group(listed: Sequence[Entry]) -> Figure:
     """Return a panel for each row."""
-    high = -(-len(told) // _COLUMNS)
-    wide = min(len(told), _COLUMNS)
+    high = -(-len(listed) // _COLUMNS)
+    wide = min(len(listed), _COLUMNS)
     with styled():
         figure = Figure(figsize=(3.5 * wide + 0.3, 2.9 * high), layout="constrained")
         panels = np.ravel(figure.subplots(high, wide, squeeze=False))
-        for axes, entry in zip(panels, told, strict=False):
+        for axes, entry in zip(panels, listed, strict=False):
             _draw(axes, entry)
-        for axes in panels[len(told) :]:
+        for axes in panels[len(listed) :]:
             axes.axis("off")
     return figure
 
@@ -99,12 +99,12 @@ def _draw_numbers(axes: Axes, row: Row, found: Comparison) -> None:
     axes.legend(handles.values(), handles.keys(), loc="best", fontsize=7)
 
 
-def draw_parity(told: Sequence[Entry]) -> Figure:
+def draw_parity(listed: Sequence[Entry]) -> Figure:
     """Return all points, ours over theirs, each over the peak of its row, and the difference of each row."""
     with styled():
-        figure = Figure(figsize=(9.6, 0.17 * len(told) + 2.2), layout="constrained")
+        figure = Figure(figsize=(9.6, 0.17 * len(listed) + 2.2), layout="constrained")
         left, right = figure.subplots(1, 2)
-        shown = [(entry, entry.comparison) for entry in told if entry.comparison is not None]
+        shown = [(entry, entry.comparison) for entry in listed if entry.comparison is not None]
         for entry, found in shown:
             peak = np.abs(found.theirs).max()
             colour = _ABOVE if entry.bad else _OURS

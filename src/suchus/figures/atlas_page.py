@@ -51,7 +51,7 @@ class Entry:
 
 def entries(rows: Sequence[Row], outcomes: Mapping[str, Outcome]) -> list[Entry]:
     """Return each row with its result; outcomes are found by the names of the flows."""
-    told = []
+    listed = []
     for row in rows:
         outcome = outcomes.get(row.case)
         found, failed = None, ""
@@ -62,8 +62,8 @@ def entries(rows: Sequence[Row], outcomes: Mapping[str, Outcome]) -> list[Entry]
             except SuchusError as error:
                 failed = str(error)
         curves = {} if outcome is None else outcome.curves
-        told.append(Entry(row=row, outcome=outcome, comparison=found, failed=failed, curves=curves))
-    return told
+        listed.append(Entry(row=row, outcome=outcome, comparison=found, failed=failed, curves=curves))
+    return listed
 
 
 def picture(group: str) -> str:
@@ -71,33 +71,33 @@ def picture(group: str) -> str:
     return f"pictures/atlas_{group.lower().replace(' ', '_')}.png"
 
 
-def summary(told: Sequence[Entry]) -> str:
+def summary(listed: Sequence[Entry]) -> str:
     """Return in a sentence or two how many rows agree, the median difference and the largest."""
-    judged = [(e, e.comparison) for e in told if e.comparison is not None and e.outcome and not e.outcome.quick]
+    judged = [(e, e.comparison) for e in listed if e.comparison is not None and e.outcome and not e.outcome.quick]
     if not judged:
-        return f"None of the {len(told)} rows has been computed in full."
+        return f"None of the {len(listed)} rows has been computed in full."
     above = [entry.row.name for entry, found in judged if not found.agrees]
     worst, most = max(judged, key=lambda pair: pair[1].rms)
     text = (
-        f"Of {len(told)} rows {len(judged)} were computed in full: the median rms difference is "
+        f"Of {len(listed)} rows {len(judged)} were computed in full: the median rms difference is "
         f"{100 * median(found.rms for _, found in judged):.1f} % of the peak, the largest {100 * most.rms:.1f} % "
         f"({worst.row.name}); {len(judged) - len(above)} are within their bounds"
     )
     text += f", above are {', '.join(above)}." if above else "."
-    failed = [entry.row.name for entry in told if entry.word == "failed"]
+    failed = [entry.row.name for entry in listed if entry.word == "failed"]
     return text + (f" There is no comparison for {', '.join(failed)}, which failed." if failed else "")
 
 
-def page(told: Sequence[Entry]) -> str:
+def page(listed: Sequence[Entry]) -> str:
     """Return the page as Markdown."""
-    costs = {e.outcome.case: e.outcome.seconds for e in told if e.outcome is not None}
+    costs = {e.outcome.case: e.outcome.seconds for e in listed if e.outcome is not None}
     lines = [
         "# Atlas of flows", "",
         "Published data of flows around bodies, many of which move, beside the results of `suchus.flow`. `suchus "
         "flow-atlas` computes the flows and `make atlas` writes this page from the results; nothing on it is typed in "
         "by hand. Exact answers and budgets, which have no published data, are on the page "
         "[validation](validation.md); [limits](flow_limits.md) says what the differences mean.", "",
-        summary(told) + f" All flows together took {sum(costs.values()) / 60:.0f} minutes of processor time.", "",
+        summary(listed) + f" All flows together took {sum(costs.values()) / 60:.0f} minutes of processor time.", "",
         "The difference of a row is the root mean square (rms) over the published points, divided by the largest "
         "published magnitude; for single numbers it is the rms of the relative differences. The scatter is the same "
         "measure between two sources. The bound was fixed before anything was computed: twice the scatter, at least 2 "
@@ -106,18 +106,18 @@ def page(told: Sequence[Entry]) -> str:
         f"![All points, computed over published values, and the difference of each row with its bound]"
         f"({picture('parity')})",
         "", f"| {' | '.join(_HEAD)} |", "|" + "---|" * len(_HEAD),
-        *(_summary_line(entry) for entry in told),
+        *(_summary_line(entry) for entry in listed),
     ]  # fmt: skip
     for group, rows in GROUPS.items():
-        some = [entry for entry in told if entry.row in rows]
-        if some:
+        members = [entry for entry in listed if entry.row in rows]
+        if members:
             lines += ["", f"## {group}"]
-            if any(entry.outcome is not None for entry in some):
+            if any(entry.outcome is not None for entry in members):
                 lines += ["", f"![{group}: published points and our curves]({picture(group)})"]
-            if any(entry.row.skin for entry in some):
+            if any(entry.row.skin for entry in members):
                 lines += ["", _SKIN.format(solver=ALONG_THE_SKIN)]
-            for entry in some:
-                lines += _told(entry)
+            for entry in members:
+                lines += _section(entry)
     return "\n".join(lines) + "\n"
 
 
@@ -134,7 +134,7 @@ def _percent(value: float | None) -> str:
     return "one source" if value is None else f"{100 * value:.1f} %"
 
 
-def _told(entry: Entry) -> list[str]:
+def _section(entry: Entry) -> list[str]:
     """Return a row's own section."""
     row, case, outcome = entry.row, CASES[entry.row.case], entry.outcome
     effort = case.quick if outcome is not None and outcome.quick else case.full
@@ -153,15 +153,15 @@ def _words(entry: Entry) -> list[str]:
     outcome, found = entry.outcome, entry.comparison
     if outcome is None:
         return ["**Not computed.**"]
-    told = []
+    sentences = []
     if found is None:
-        told.append(f"**Failed:** {entry.failed}")
+        sentences.append(f"**Failed:** {entry.failed}")
     else:
         sign = "within" if found.agrees else "**above**"
         judged = "a trial, which is not judged" if outcome.quick else f"{sign} its bound of {_percent(found.bound)}"
-        told.append(f"{_percent(found.rms)} over {found.x.size} points: {judged}.")
+        sentences.append(f"{_percent(found.rms)} over {found.x.size} points: {judged}.")
     if entry.row.note:
-        told.append(entry.row.note)
+        sentences.append(entry.row.note)
     if outcome.digest != digest_of(CASES[entry.row.case], quick=outcome.quick):
-        told.append("Computed by an earlier state of the solver or of this set-up.")
-    return [" ".join(told)]
+        sentences.append("Computed by an earlier state of the solver or of this set-up.")
+    return [" ".join(sentences)]

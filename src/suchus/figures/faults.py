@@ -56,8 +56,8 @@ def draw_losses(record: xr.Dataset) -> Figure:
             ax.axhspan(top + 0.45, top - len(readings) + 0.45, color="#F4F4F4", zorder=0, linewidth=0)
             for i, (kind, legs) in enumerate(readings):
                 for arm in _ARMS:
-                    some = change.sel(joint=joint, kind=kind, legs=legs, arm=arm)
-                    _range(ax, some, top - i + _OFFSET[arm], arm)
+                    losses = change.sel(joint=joint, kind=kind, legs=legs, arm=arm)
+                    _range(ax, losses, top - i + _OFFSET[arm], arm)
                 judged = kind == record.attrs["judged_kind"] and legs == record.attrs["judged_legs"]
                 if judged and joint in record.lost and "lifted_forward" in record:
                     lifted = 100 * loss(record.lifted_forward.sel(lost=joint), ours)
@@ -136,9 +136,9 @@ def draw_over_time(record: xr.Dataset, kind: str, legs: str) -> Figure:
             ax.set_axis_off()
         for number, (ax, joint) in enumerate(zip(axes.flat, record.lost.values, strict=False)):
             for arm in _ARMS:
-                some = path.sel(joint=joint, kind=kind, legs=legs, arm=arm).rename(variation="run")
-                draw_band(ax, some, arm)
-                ax.plot(record.time, some.median("run"), **LINES[arm])
+                paths = path.sel(joint=joint, kind=kind, legs=legs, arm=arm).rename(variation="run")
+                draw_band(ax, paths, arm)
+                ax.plot(record.time, paths.median("run"), **LINES[arm])
                 whole = intact.sel(arm=arm).median("variation")
                 ax.plot(record.time, whole, color=COLOURS[arm], linewidth=1.3, linestyle=(0, (1, 1.5)))
                 printed = _printed(joint, arm)
@@ -193,10 +193,10 @@ def draw_tracks(record: xr.Dataset) -> Figure:
             ax.plot(*whole, color="#333333", linewidth=1.6, label="intact")
             _arrow(ax, whole[:, -1], float(given.intact_turn), "#333333")
             for (kind, legs), look in looks.items():
-                some = given.sel(joint=joint, kind=kind, legs=legs)
-                path = some.track.transpose("on_ground", "time").values
+                walks = given.sel(joint=joint, kind=kind, legs=legs)
+                path = walks.track.transpose("on_ground", "time").values
                 ax.plot(*path, **look)
-                _arrow(ax, path[:, -1], float(some.turn), look["color"])
+                _arrow(ax, path[:, -1], float(walks.turn), look["color"])
             ax.set_title(_named(str(joint)))
             ax.set_aspect("equal")
         for ax in axes[:, 0]:

@@ -67,10 +67,10 @@ def draw_fans(error: xr.DataArray, within: float) -> Figure:
     with styled():
         figure, axes = panels(2, 3, width=10.5, height=5.6, sharex=True, sharey=True)
         for ax, (law, (label, colour)) in zip(axes.flat, _LAWS.items(), strict=True):
-            some = error.sel(law=law).transpose("time", "start")
+            errors = error.sel(law=law).transpose("time", "start")
             ax.axhspan(0.0, within, color=COLOURS["grid"], linewidth=0)
-            ax.plot(error.time, some, color=colour, linewidth=0.8, alpha=0.5)
-            ax.plot(error.time, some.median("start"), color="black", linewidth=2.0)
+            ax.plot(error.time, errors, color=colour, linewidth=0.8, alpha=0.5)
+            ax.plot(error.time, errors.median("start"), color="black", linewidth=2.0)
             ax.set_title(label)
             ax.set_xlim(0.0, float(error.time[-1]))
             ax.set_ylim(0.0, 0.52)
@@ -97,9 +97,9 @@ def draw_onset(phase: xr.DataArray, gait: AnyGait, start: int = 0) -> Figure:
     with styled(axes__grid=False):
         figure, axes = panels(3, 1, height=5.4, sharex=True)
         for ax, law in zip(axes.flat, ("off", "own_load", "cross_load"), strict=True):
-            some = phase.sel(law=law).isel(start=start).transpose("start_time", "leg")
-            stands = np.mod(some.values, 1.0) >= 1.0 - gait.duty_factor
-            _bars(ax, some.start_time.values, stands, [str(leg) for leg in some.leg.values])
+            phases = phase.sel(law=law).isel(start=start).transpose("start_time", "leg")
+            stands = np.mod(phases.values, 1.0) >= 1.0 - gait.duty_factor
+            _bars(ax, phases.start_time.values, stands, [str(leg) for leg in phases.leg.values])
             ax.set_title(_LAWS[law][0])
         axes[-1, 0].set_xlabel("cycles since the start")
     return captioned(

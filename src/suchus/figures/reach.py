@@ -52,9 +52,9 @@ def draw_heights(record: xr.Dataset, hold: float) -> Figure:
 
 def _lay_heights(ax: Axes, record: xr.Dataset, begin: float, stop: float) -> None:
     """Draw the heights of the quiet run, and the range of the noisy ones, from one time to another."""
-    some = record.repeat_reach.sel(repeat_time=slice(begin, stop))
+    shown = record.repeat_reach.sel(repeat_time=slice(begin, stop))
     for feedback, colour in _FEEDBACK.items():
-        band = some.sel(feedback=feedback)
+        band = shown.sel(feedback=feedback)
         label = f"noisy servos, feedback {feedback}"
         ax.fill_between(
             band.repeat_time, band.min("repeat"), band.max("repeat"), color=colour, alpha=0.3, linewidth=0, label=label
@@ -196,12 +196,12 @@ def draw_pushes(record: xr.Dataset, commanded: float) -> Figure:
         ax = axes[0, 1]
         for direction, marker in zip(directions, "osD", strict=False):
             for feedback, colour in _FEEDBACK.items():
-                some = record.push.sel(direction=direction, feedback=feedback)
+                pushes = record.push.sel(direction=direction, feedback=feedback)
                 dashes = (0, (3, 1.5)) if feedback == "off" else "-"
                 label = f"{direction}, feedback {feedback}"
                 ax.plot(
                     1000 * record.lead_found,
-                    some.where(np.isfinite(some)),
+                    pushes.where(np.isfinite(pushes)),
                     color=colour,
                     linestyle=dashes,
                     marker=marker,

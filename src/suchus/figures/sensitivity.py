@@ -40,8 +40,8 @@ def draw_shares(
             of = [(i + apart, (row["true"], *row["interval"]), "ours", "o", "this run")]
             if shipped and row["claim"] in shipped:
                 of.append((i - apart, shipped[row["claim"]], "printed", "D", "shipped table"))
-            for y, told, colour, mark, label in of:
-                share, low, high = (100 * x for x in told)
+            for y, interval, colour, mark, label in of:
+                share, low, high = (100 * x for x in interval)
                 style = {"color": COLOURS[colour], "label": label if i == len(rows) - 1 and shipped else None}
                 ax.plot([low, high], [y, y], color=COLOURS[colour], linewidth=2.2, alpha=0.5)
                 ax.plot(share, y, mark, markersize=6, **style)
@@ -70,15 +70,15 @@ def draw_claim(record: xr.Dataset, claim: str) -> Figure:
             ``value`` over sample and parameter, and the border.
         claim: key of the claim.
     """
-    told = record.sel(claim=claim)
-    there = np.isfinite(told.number.values)
-    number, holds = told.number.values[there], told.holds.values[there].astype(bool)
+    claimed = record.sel(claim=claim)
+    there = np.isfinite(claimed.number.values)
+    number, holds = claimed.number.values[there], claimed.holds.values[there].astype(bool)
     with styled():
         figure, axes = panels(1, 3, width=13.0, height=4.3, width_ratios=[1.0, 0.8, 1.0])
         left, middle, right = axes[0]
         _numbers(left, number, holds, claim)
-        _correlations(middle, told, len(number))
-        _plane(right, told, there, holds)
+        _correlations(middle, claimed, len(number))
+        _plane(right, claimed, there, holds)
     share = f"{100 * holds.mean():.0f} %" if holds.size else "none"
     return captioned(
         figure,
@@ -125,12 +125,12 @@ def _short(claim: str) -> str:
     return short.get(claim, "displacement forward")
 
 
-def _correlations(ax: Axes, told: xr.Dataset, samples: int) -> None:
-    order = np.argsort(-abs(told.correlation.values))[:_SHOWN][::-1]
-    values = told.correlation.values[order]
+def _correlations(ax: Axes, claimed: xr.Dataset, samples: int) -> None:
+    order = np.argsort(-abs(claimed.correlation.values))[:_SHOWN][::-1]
+    values = claimed.correlation.values[order]
     ax.barh(range(len(order)), values, color=[_TRUE if v > 0 else _FALSE for v in values], height=0.65)
-    ax.set_yticks(range(len(order)), [spoken(str(told.parameter.values[i])) for i in order], fontsize=10)
-    limit = _chance(samples, told.sizes["parameter"])
+    ax.set_yticks(range(len(order)), [spoken(str(claimed.parameter.values[i])) for i in order], fontsize=10)
+    limit = _chance(samples, claimed.sizes["parameter"])
     ax.axvspan(-limit, limit, color="#BBBBBB", alpha=0.45, linewidth=0, zorder=3)
     ax.axvline(0.0, color="#555555", linewidth=0.9)
     ax.set_xlim(-1.0, 1.0)
@@ -154,24 +154,24 @@ def spoken(parameter: str) -> str:
     return words if of == "robot" else f"{words} (gait)"
 
 
-def _plane(ax: Axes, told: xr.Dataset, there: np.ndarray, holds: np.ndarray) -> None:
-    first = int(told.border_of)
-    order = [int(i) for i in np.argsort(-abs(told.correlation.values))]
+def _plane(ax: Axes, claimed: xr.Dataset, there: np.ndarray, holds: np.ndarray) -> None:
+    first = int(claimed.border_of)
+    order = [int(i) for i in np.argsort(-abs(claimed.correlation.values))]
     if first < 0:
         first = order[0]
     second = next(i for i in order if i != first)
-    x, y = (told.value.values[there][:, i] for i in (first, second))
+    x, y = (claimed.value.values[there][:, i] for i in (first, second))
     size = float(np.clip(1600 / len(x), 16, 60))
-    for some, colour, mark, label in ((holds, _TRUE, "o", "true"), (~holds, _FALSE, "X", "false")):
-        ax.scatter(x[some], y[some], s=size, color=colour, marker=mark, alpha=0.65, linewidth=0, label=label)
-    if int(told.border_of) >= 0:
-        at, edge = float(told.border_at), ax.get_xlim()
+    for members, colour, mark, label in ((holds, _TRUE, "o", "true"), (~holds, _FALSE, "X", "false")):
+        ax.scatter(x[members], y[members], s=size, color=colour, marker=mark, alpha=0.65, linewidth=0, label=label)
+    if int(claimed.border_of) >= 0:
+        at, edge = float(claimed.border_at), ax.get_xlim()
         ax.axvline(at, color="black", linewidth=1.4)
-        ax.axvspan(at, edge[1] if told.border_above else edge[0], color=_TRUE, alpha=0.08, linewidth=0, zorder=0)
+        ax.axvspan(at, edge[1] if claimed.border_above else edge[0], color=_TRUE, alpha=0.08, linewidth=0, zorder=0)
         ax.set_xlim(edge)
-        ax.set_title(f"decision boundary at {at:.3g}, separation {float(told.border_separation):.2f}")
+        ax.set_title(f"decision boundary at {at:.3g}, separation {float(claimed.border_separation):.2f}")
     else:
         ax.set_title("no decision boundary within the ranges")
     ax.xaxis.set_major_locator(MaxNLocator(4))
     for axis, i in ((ax.set_xlabel, first), (ax.set_ylabel, second)):
-        axis(f"{spoken(str(told.parameter.values[i]))} [{told.parameter_unit.values[i]}]")
+        axis(f"{spoken(str(claimed.parameter.values[i]))} [{claimed.parameter_unit.values[i]}]")

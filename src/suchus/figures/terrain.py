@@ -137,12 +137,12 @@ def draw_rough(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]]) -> Fi
     with styled():
         figure, axes = panels(1, len(kinds), width=11.5, height=4.6, sharey=True)
         for ax, kind in zip(axes[0], kinds, strict=True):
-            some = record.isel(ground=np.flatnonzero((record.kind.values == kind) | (record.height.values == 0)))
-            order = np.argsort(some.height.values)
-            some = some.isel(ground=order)
+            grounds = record.isel(ground=np.flatnonzero((record.kind.values == kind) | (record.height.values == 0)))
+            order = np.argsort(grounds.height.values)
+            grounds = grounds.isel(ground=order)
             for arm in record.arm.values:
-                one = some.sel(arm=arm)
-                x, y = 1000 * some.height.values, one.forward.mean("seed").values
+                one = grounds.sel(arm=arm)
+                x, y = 1000 * grounds.height.values, one.forward.mean("seed").values
                 ax.plot(x, y, **(dict(lines[str(arm)]) | {"markersize": 6}))
                 fell = one.fell.mean("seed").values
                 ax.plot(x[fell > 0], y[fell > 0], "x", color=COLOURS["alarm"], markersize=11, markeredgewidth=2)
@@ -164,8 +164,8 @@ def _farthest(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]]) -> str
     single = [arm for arm in record.arm.values if str(arm) not in ("switching", "thrifty")]
     best = record.forward.mean("seed").sel(arm=single).idxmax("arm").values
     counts = {str(arm): int((best == arm).sum()) for arm in single}
-    told = [f"{lines[arm]['label']} on {count}" for arm, count in counts.items() if count]
-    return f"{', '.join(told)} of {len(best)} grounds"
+    counted = [f"{lines[arm]['label']} on {count}" for arm, count in counts.items() if count]
+    return f"{', '.join(counted)} of {len(best)} grounds"
 
 
 def _rough_bars(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]]) -> Figure:

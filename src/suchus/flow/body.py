@@ -18,7 +18,7 @@ from suchus.flow.solid import SpaceField, SpaceShape
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Body:
-    """A shape that moves as it is told."""
+    """A shape whose motion is given."""
 
     shape: Shape | SpaceShape
     """What it looks like in its own frame."""

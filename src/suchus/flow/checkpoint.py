@@ -75,8 +75,8 @@ def load(sim: Resumable, path: Path) -> None:
         raise UnreadableFile(f"the checkpoint {path} cannot be read: {error.strerror}.") from error
     if not data.startswith(MARK):
         raise UnreadableFile(f"{path} is not a checkpoint of version {VERSION}; delete it to start anew.")
-    told, content = data[len(MARK) : len(MARK) + 32], data[len(MARK) + 32 :]
-    if sha256(content).digest() != told:
+    digest, content = data[len(MARK) : len(MARK) + 32], data[len(MARK) + 32 :]
+    if sha256(content).digest() != digest:
         raise UnreadableFile(
             f"the checkpoint {path} is damaged: its checksum is not that of what it holds. Delete it to start anew."
         )

@@ -59,8 +59,8 @@ class Consistency:
         span = _LOOK * dt
         now, soon, then = (self.motion(time + k * span) for k in range(3))
         places = [np.array([*p.position, p.angle]) for p in (now, soon, then)]
-        told, seen = np.array([*now.velocity, now.spin]), (4 * places[1] - 3 * places[0] - places[2]) / (2 * span)
-        size, moved, off = (self._speed(rate) for rate in (told, seen, told - seen))
+        given, seen = np.array([*now.velocity, now.spin]), (4 * places[1] - 3 * places[0] - places[2]) / (2 * span)
+        size, moved, off = (self._speed(rate) for rate in (given, seen, given - seen))
         self.top = max(self.top, size, moved)
         if not (off > SHARE * max(size, moved, QUIET * self.top) and off * dt > NOTHING * self.cell):
             self.strikes = 0
@@ -68,14 +68,14 @@ class Consistency:
         self.strikes += 1
         if self.strikes < PATIENCE:
             return
-        turning = abs(told[-1] - seen[-1]) * self.reach > hypot(*(told - seen)[:-1])
+        turning = abs(given[-1] - seen[-1]) * self.reach > hypot(*(given - seen)[:-1])
         what, of = ("spin", "angle") if turning else ("velocity", "position")
 
         def numbers(rate: np.ndarray) -> str:
             return f"{rate[-1]:.4g} rad/s" if turning else f"({', '.join(f'{part:.4g}' for part in rate[:-1])}) m/s"
 
         raise InvalidDesign(
-            f"at t = {time:.4g} s the motion of {self.name} gives the {what} {numbers(told)}, and its "
+            f"at t = {time:.4g} s the motion of {self.name} gives the {what} {numbers(given)}, and its "
             f"{of} changes by {numbers(seen)}; give a Pose whose {what} is the rate of its {of}."
         )
 

@@ -71,7 +71,7 @@ class _Walk:
             cells = [cell.cell_contents for cell in value.__closure__ or ()]
             names = _names(value.__code__)
             known = {name: value.__globals__[name] for name in names if name in value.__globals__}
-            own = {name: item for name, item in known.items() if _is_told(item, value.__module__)}
+            own = {name: item for name, item in known.items() if _decides(item, value.__module__)}
             self._code(value.__code__)
             self._parts("function", {"with": cells, "or": value.__defaults__, "and": value.__kwdefaults__, "of": own})
         elif isinstance(value, MethodType):
@@ -104,7 +104,7 @@ def _names(code: CodeType) -> list[str]:
     return sorted({*code.co_names, *inner})
 
 
-def _is_told(value: object, module: str) -> bool:
+def _decides(value: object, module: str) -> bool:
     """Return whether a global that a function reads is a part of what it does: a value, or a function beside it."""
     if isinstance(value, FunctionType):
         return value.__module__ == module

@@ -43,7 +43,7 @@ class Surface:
     """
 
     markers: Markers
-    """Where."""
+    """Points on the skin, where the values are given [m]."""
     pressure: np.ndarray
     """Pressure, zero on the average along the sides of the domain, shape (marker,) [Pa]."""
     shear: np.ndarray

@@ -81,15 +81,15 @@ class Grid:
         if len(self.origin) != len(self.cells) or not all(isfinite(place) for place in self.origin):
             count = "two" if self.axes == 2 else "three"
             raise InvalidDesign(f"the origin is {show(self.origin)} m; {count} finite numbers are needed.")
-        told = _times(self.cells)
+        size = _times(self.cells)
         if max(self.cells) > MOST:
             raise InvalidDesign(f"the grid has {show(self.cells)} cells; up to {MOST} along each side are allowed.")
         if min(self.cells) < 8:
-            raise InvalidDesign(f"the grid has {told} cells; at least {_times((8,) * self.axes)} are needed.")
+            raise InvalidDesign(f"the grid has {size} cells; at least {_times((8,) * self.axes)} are needed.")
         last = _coarsest(self.cells)
         if max(last) > (LONGEST if min(last) <= NARROW else COARSEST):
             raise InvalidDesign(
-                f"a grid of {told} cells cannot be halved down to {COARSEST} cells a side, as multigrid needs; "
+                f"a grid of {size} cells cannot be halved down to {COARSEST} cells a side, as multigrid needs; "
                 f"take {_times(_fitting(self.cells))}, or let Grid.covering choose."
             )
 

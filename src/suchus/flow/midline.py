@@ -10,8 +10,10 @@ from suchus.flow.mass import Mass, of_midline
 from suchus.flow.paint import paint, ring, sections
 from suchus.flow.pose import Pose
 from suchus.flow.shape import Field, Markers, Shape, positive
+from suchus.renamed import old_names
 
 
+@old_names(blunted="thickened")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Spine:
     """A midline at one time, in the body's own frame; arrays of shape (station,), from one end to the other.
@@ -68,11 +70,14 @@ class Spine:
         """Arc length from the first station, shape (station,) [m]."""
         return np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(self.x), np.diff(self.y)))])
 
-    def blunted(self, least: float) -> "Spine":
-        """Return the midline with half-widths of at least ``least`` [m] and round ends.
+    def thickened(self, least: float) -> "Spine":
+        """Return the midline with half-widths of at least ``least`` and round ends.
 
         A tail that tapers to nothing is thinner than any grid, and its force is noisy. The solver never thickens a
-        body by itself: this does, where it is asked to. With 1.75 cells the kernel fits between the two surfaces.
+        body by itself. With 1.75 cells the smoothing kernel fits between the two surfaces.
+
+        Args:
+            least: smallest half-width [m].
         """
         inward = np.minimum(self.arc, self.arc[-1] - self.arc)
         cap = np.sqrt(np.maximum(least**2 - np.maximum(least - inward, 0.0) ** 2, 0.0))

@@ -220,6 +220,6 @@ class OpenWater:
         source = turn * lost * defect
         here = np.stack([middle, np.full(middle.size, centre)])[:: 1 if axis == 0 else -1]
         none = np.zeros(middle.size)
-        some = source != 0
+        sheds = source != 0
         keep = weight(middle)
-        return strength * (keep if axis == 0 else keep[:, None]), np.stack([*here, source, none, none, none])[:, some]
+        return strength * (keep if axis == 0 else keep[:, None]), np.stack([*here, source, none, none, none])[:, sheds]

@@ -112,7 +112,7 @@ class FieldSeries:
     path: Path | str
     """``*.nc`` for NetCDF with all times, ``*.pvd`` for a series of .vti files beside it."""
     times: Sequence[float]
-    """When [s]."""
+    """Times at which the fields are written: at the end of the first step from each on [s]."""
     _next: int = field(default=0, init=False)
     _last: float = field(default=-np.inf, init=False)
 

@@ -9,16 +9,18 @@ import numpy as np
 from suchus.errors import InvalidDesign
 from suchus.flow.compiled import PAD
 from suchus.flow.grid import Grid, check_kinds
+from suchus.renamed import old_names
 
 
+@old_names(endless="unbounded")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Stream:
     """Open water that moves with the far stream; where the stream leaves, the wake is carried out."""
 
-    endless: bool = True
-    """Whether, if all four sides are such, they also move as the flow in the domain makes water without end move
-    (``openwater``, in space ``farfield``); False holds the stream itself, which the body's displacement then cannot
-    widen. In space some of the six may be a Mirror."""
+    unbounded: bool = True
+    """Whether, if all four sides are such, they also move as the flow moves there in an unbounded domain
+    (``openwater``, in space ``farfield``); False prescribes the far stream itself, which the body's displacement then
+    cannot widen. In space some of the six may be a Mirror."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -157,9 +159,9 @@ class Sides:
         return tuple(getattr(self, name) for name in NAMES[: 2 * axes])
 
     def endless(self, axes: int) -> bool:
-        """Return whether water without end is all around, and its sides move with the flow."""
+        """Return whether the domain is unbounded, so that its sides move with the flow."""
         every = self.around(axes)
-        open_sides = [isinstance(s, Stream) and s.endless for s in every]
+        open_sides = [isinstance(s, Stream) and s.unbounded for s in every]
         return any(open_sides) and all(o or isinstance(s, Mirror) for o, s in zip(open_sides, every, strict=True))
 
     def repeats(self, axes: int) -> tuple[bool, ...]:

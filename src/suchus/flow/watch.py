@@ -79,7 +79,7 @@ class Watch:
                     f"side {name}",
                     f"at t = {time:.4g} s there is a vortex at the {name} side of the domain ({100 * at / largest:.0f} "
                     f"% of the largest vorticity), which is held to the far stream and turns it back. Enlarge the "
-                    f"domain there, or leave all four sides Stream(), which then move as in water without end.",
+                    f"domain there, or leave all four sides Stream(), which then move as in an unbounded domain.",
                 )
 
     def _say(self, key: str, text: str) -> None:

@@ -63,7 +63,7 @@ class ServoLoad:
         return f"{self.named} ({CLASSES[self.named]:.3g} N m)" if self.named else f"none up to {most:.3g} N m"
 
 
-def check_commands(robot: AnyRobot, gait: AnyGait, servo_map: ServoMap, told: Commands) -> None:
+def check_commands(robot: AnyRobot, gait: AnyGait, servo_map: ServoMap, samples: Commands) -> None:
     """Refuse commands that are faster than a servo, or pulses outside the map's limits.
 
     Raises:
@@ -71,20 +71,21 @@ def check_commands(robot: AnyRobot, gait: AnyGait, servo_map: ServoMap, told: Co
     """
     for i, (name, line) in enumerate(zip(layout(robot).servos, servo_map.ordered(robot), strict=True)):
         limit = servo_of(robot, name).speed
-        steps = np.diff(told.angles[:, i]) / np.diff(told.time)
+        steps = np.diff(samples.angles[:, i]) / np.diff(samples.time)
         worst = int(np.argmax(np.abs(steps)))
         if abs(steps[worst]) > limit:
             raise OutsideLimits(
                 f"gait {gait.name!r} turns {name} of robot {robot.name!r} at {abs(steps[worst]):.3g} rad/s at "
-                f"{told.time[worst]:.2f} s; up to {limit:g} rad/s is allowed: lengthen the period."
+                f"{samples.time[worst]:.2f} s; up to {limit:g} rad/s is allowed: lengthen the period."
             )
-        pulses = told.pulses[:, i]
+        pulses = samples.pulses[:, i]
         worst = int(np.argmax(np.maximum(line.pulse_min - pulses, pulses - line.pulse_max)))
         if not line.pulse_min <= pulses[worst] <= line.pulse_max:
             raise OutsideLimits(
-                f"gait {gait.name!r} needs a pulse of {pulses[worst]:.0f} us for {name} at {told.time[worst]:.2f} s, "
-                f"an angle of {told.angles[worst, i]:.3f} rad; servo map {servo_map.name!r} allows "
-                f"{line.pulse_min:g} to {line.pulse_max:g} us: mount the horn with another offset."
+                f"gait {gait.name!r} needs a pulse of {pulses[worst]:.0f} us for {name} at "
+                f"{samples.time[worst]:.2f} s, an angle of {samples.angles[worst, i]:.3f} rad; "
+                f"servo map {servo_map.name!r} allows {line.pulse_min:g} to {line.pulse_max:g} us: "
+                "mount the horn with another offset."
             )
 
 

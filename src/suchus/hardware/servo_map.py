@@ -144,8 +144,8 @@ def write_map(servo_map: ServoMap, path: Path) -> Path:
     Raises:
         Unwritable: the place cannot be written to.
     """
-    told = meanings(ServoLine)
-    notes = [f"# {name}: {' '.join(told[name].split())}" for name in told]
+    about = meanings(ServoLine)
+    notes = [f"# {name}: {' '.join(about[name].split())}" for name in about]
     lines = [
         f"# A servo's pulse is pulse_centre + pulse_per_radian (direction angle + offset).\n{chr(10).join(notes)}\n",
         f"name = {_value(servo_map.name)}",

@@ -10,9 +10,9 @@ from suchus.land.lake import Lake, Wave
 from suchus.land.live import Live
 from suchus.land.loop import CONTROL_PERIOD
 from suchus.land.push import Push
+from suchus.land.push_search import smallest_pushes
 from suchus.land.run import VACUUM, WATER, Afloat, Run
 from suchus.land.simulation import simulate
-from suchus.land.toppling import smallest_pushes
 from suchus.renamed import old_exports
 
 __all__ = [

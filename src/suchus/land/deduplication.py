@@ -1,4 +1,4 @@
-"""Runs that have gone exactly alike so far: one of them is simulated for all, until they part."""
+"""Runs that have been identical so far: one of them is simulated for all, until they differ."""
 
 from collections.abc import Sequence
 from math import floor
@@ -51,10 +51,10 @@ class Deduplication:
         leaving = self._leaves.get(tick, ())
         parted: list[list[int]] = []
         for members in self._groups:
-            told: dict[object, list[int]] = {}
+            by_command: dict[object, list[int]] = {}
             for sim in members:
-                told.setdefault(sim if sim in leaving else targets[sim].tobytes(), []).append(sim)
-            parted += told.values()
+                by_command.setdefault(sim if sim in leaving else targets[sim].tobytes(), []).append(sim)
+            parted += by_command.values()
         if len(parted) > len(self._groups):
             self._groups = [members for members in parted if len(members) > 1]
             self._number()

@@ -6,7 +6,7 @@ import numpy as np
 
 from suchus.design import layout
 from suchus.fault import Fault
-from suchus.land.bench import Bench
+from suchus.land.batch import SimulationBatch
 from suchus.land.injector import Injector
 from suchus.land.push import Push
 from suchus.land.run import Run
@@ -15,8 +15,8 @@ from suchus.land.run import Run
 class Disturbances:
     """The faults, the pushes and the noise of all runs of a batch."""
 
-    def __init__(self, runs: Sequence[Run], bench: Bench, ticks: int, period: float) -> None:
-        self._bench = bench
+    def __init__(self, runs: Sequence[Run], batch: SimulationBatch, ticks: int, period: float) -> None:
+        self._batch = batch
         self._period = period
         self._pushes = [(sim, push) for sim, run in enumerate(runs) for push in run.pushes]
         self._due: dict[int, list[tuple[int, Fault]]] = {}
@@ -24,7 +24,7 @@ class Disturbances:
             for fault in run.faults:
                 self._due.setdefault(int(np.ceil(fault.at / period - 1e-9)), []).append((sim, fault))
         self._servos = layout(runs[0].robot).servos
-        self.injector = Injector(bench, period, runs[0].robot)
+        self.injector = Injector(batch, period, runs[0].robot)
         self._noise = {
             sim: run.noise * np.random.default_rng(run.seed).standard_normal((ticks, len(self._servos)))
             for sim, run in enumerate(runs)
@@ -49,7 +49,7 @@ class Disturbances:
             key = sim, push.body
             forces[key] = forces.get(key, np.zeros(3)) + share * np.array(push.force)
         for (sim, body), force in forces.items():
-            self._bench.push(sim, body, force)
+            self._batch.push(sim, body, force)
         self._pushes = [(sim, push) for sim, push in self._pushes if push.at + push.duration > tick * self._period]
 
     def disturb(self, tick: int, targets: np.ndarray) -> np.ndarray:

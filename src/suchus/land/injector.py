@@ -7,7 +7,7 @@ import numpy as np
 from suchus.control import Sensed
 from suchus.design import AnyRobot, layout
 from suchus.fault import Fault
-from suchus.land.bench import Bench
+from suchus.land.batch import SimulationBatch
 from suchus.model import SLEW
 
 _KINDS = {"actuator": "actuator", "geom": "geom", "body": "body", "jnt": "joint"}
@@ -18,13 +18,13 @@ class Injector:
     """What is broken in the runs of a batch: the one entry of faults into batches, live walks and environments.
 
     Args:
-        bench: the batch.
+        batch: the simulations.
         period: of control [s].
         robot: one of the batch's robots, which share a layout.
     """
 
-    def __init__(self, bench: Bench, period: float, robot: AnyRobot) -> None:
-        self._bench, self._period = bench, period
+    def __init__(self, batch: SimulationBatch, period: float, robot: AnyRobot) -> None:
+        self._batch, self._period = batch, period
         place = layout(robot)
         self._columns = {
             group: {name: i for i, name in enumerate(names)}
@@ -39,17 +39,17 @@ class Injector:
     def begin(self, sim: int, fault: Fault) -> None:
         """Let a fault of a run begin now, instead of what was wrong with the same part before."""
         self.mend(sim, fault.part)
-        site = Site(self._bench, sim, self._columns)
+        site = Site(self._batch, sim, self._columns)
         self._broken[sim, fault.part] = fault, site
         fault.apply(site)
-        self._bench.commit()
+        self._batch.commit()
 
     def mend(self, sim: int, part: str | None = None) -> None:
         """Mend a part of a run, or all of them; nothing happens where nothing is broken."""
         for key in [key for key in self._broken if key[0] == sim and part in (None, key[1])]:
             fault, site = self._broken.pop(key)
             fault.mend(site)
-        self._bench.commit()
+        self._batch.commit()
 
     def broken(self, sim: int) -> tuple[Fault, ...]:
         """Return the faults that a run has now, in the order in which they began."""
@@ -66,7 +66,7 @@ class Injector:
         for (sim, _), (fault, site) in self._broken.items():
             site.enter(tick, self._period, targets[sim])
             fault.command(site)
-        self._bench.commit()
+        self._batch.commit()
         return targets
 
     def sense(self, sensed: Sensed) -> Sensed:
@@ -81,13 +81,13 @@ class Site:
     """Where one fault acts: the ``fault.Plant`` of one run in a batch, with a list of what it changed there.
 
     Args:
-        bench: the batch.
+        batch: the simulations.
         sim: the run.
         columns: of servos, feet and bodies of the trunk in arrays, by group.
     """
 
-    def __init__(self, bench: Bench, sim: int, columns: Mapping[str, Mapping[str, int]]) -> None:
-        self._bench, self._sim, self._groups, self._columns = bench, sim, columns, columns["servo"]
+    def __init__(self, batch: SimulationBatch, sim: int, columns: Mapping[str, Mapping[str, int]]) -> None:
+        self._batch, self._sim, self._groups, self._columns = batch, sim, columns, columns["servo"]
         self._since: int | None = None
         self._before: dict[tuple[str, int], np.ndarray] = {}
         self._unpowered: list[str] = []
@@ -103,7 +103,7 @@ class Site:
 
     def angle(self, servo: str) -> float:
         """Return the angle of a joint at its servo's shaft [rad]."""
-        return float(self._bench.angles(self._sim)[self._columns[servo]])
+        return float(self._batch.angles(self._sim)[self._columns[servo]])
 
     def felt(self, group: str, of: str | None = None) -> np.ndarray:
         """Return readings for writing, see ``fault.Plant.felt``."""
@@ -116,9 +116,9 @@ class Site:
     def parameter(self, field: str, of: str) -> np.ndarray:
         """Return a row of a model field for writing, see ``fault.Plant.parameter``."""
         kind = _KINDS.get(field.partition("_")[0], "dof")
-        part = getattr(self._bench.model, "joint" if kind == "dof" else kind)(of)
+        part = getattr(self._batch.model, "joint" if kind == "dof" else kind)(of)
         row = int(part.dofadr[0]) if kind == "dof" else int(part.id)
-        view = self._bench.field(field, self._sim)[row : row + 1]
+        view = self._batch.field(field, self._sim)[row : row + 1]
         view = view[0] if view.ndim > 1 else view
         self._before.setdefault((field, row), view.copy())
         return view
@@ -130,14 +130,14 @@ class Site:
     def unpower(self, servo: str) -> None:
         """Take the torque from a servo."""
         self._unpowered.append(servo)
-        self._bench.power(self._sim, servo, on=False)
+        self._batch.power(self._sim, servo, on=False)
 
     def restore(self) -> None:
         """Undo what was written."""
         for (field, row), before in self._before.items():
-            self._bench.field(field, self._sim)[row : row + 1] = before
+            self._batch.field(field, self._sim)[row : row + 1] = before
         for servo in self._unpowered:
-            self._bench.power(self._sim, servo, on=True)
+            self._batch.power(self._sim, servo, on=True)
         self._before, self._unpowered = {}, []
 
 

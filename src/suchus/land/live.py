@@ -69,7 +69,7 @@ class Live:
     @property
     def positions(self) -> np.ndarray:
         """The generalised positions, as ``mujoco.MjData.qpos``."""
-        return np.array(self._loop.bench.qpos[0])
+        return np.array(self._loop.batch.qpos[0])
 
     def step(self) -> None:
         """Let one control period pass.
@@ -78,8 +78,8 @@ class Live:
             Diverged: the simulation diverged, now or before.
         """
         self._loop.advance(self._tick, self._command.targets)
-        if not self._loop.bench.alive[0]:
-            time, cause = float(self._loop.bench.ended[0]), self._loop.bench.cause[0]
+        if not self._loop.batch.alive[0]:
+            time, cause = float(self._loop.batch.ended[0]), self._loop.batch.cause[0]
             raise Diverged(f"the walk diverged at {time:.2f} s: {cause}.", time=time)
         self._tick += 1
         self._beat += 1
@@ -114,12 +114,12 @@ class Live:
             OutsideLimits: a joint held at an angle that it cannot reach.
         """
         check_faults([replace(fault, at=0.0)], self.run.robot, inf)  # type: ignore[type-var]  # all are dataclasses
-        self._loop.troubles.injector.begin(0, fault)
+        self._loop.disturbances.injector.begin(0, fault)
         self._read()
 
     def mend(self, part: str) -> None:
         """Repair a part."""
-        self._loop.troubles.injector.mend(0, part)
+        self._loop.disturbances.injector.mend(0, part)
         self._read()
 
     def push(self, push: Push) -> None:
@@ -129,11 +129,11 @@ class Live:
             UnknownName: the robot has no such body.
         """
         check_pushes([push], self.run.robot, inf)
-        self._loop.troubles.push(0, push)
+        self._loop.disturbances.push(0, push)
 
     def tilt(self, ground: Ground) -> None:
         """Let the ground slope as another one does; friction and relief stay."""
-        self._loop.bench.tilt(0, ground)
+        self._loop.batch.tilt(0, ground)
 
     def fill(self, lake: Lake) -> None:
         """Let the water be another one from now on: its level, its waves, the robot's breath.
@@ -145,7 +145,7 @@ class Live:
             raise InvalidDesign("this run is on dry land; begin one with a lake to change its water.")
         check_lake(self.run.robot, lake)
         self.run = replace(self.run, lake=lake)
-        self._loop.bench.fill(0, lake, self.time)
+        self._loop.batch.fill(0, lake, self.time)
 
     def _look(self) -> None:
         """Decide what the servos are commanded next, and read everything."""

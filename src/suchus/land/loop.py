@@ -8,7 +8,7 @@ from suchus.control import Command, Controller, Joinable
 from suchus.design.checks import require
 from suchus.design.scale import control_period
 from suchus.errors import InvalidDesign
-from suchus.land.bench import Bench
+from suchus.land.batch import SimulationBatch
 from suchus.land.deduplication import Deduplication
 from suchus.land.disturbances import Disturbances
 from suchus.land.readings import Readings
@@ -51,7 +51,7 @@ def start(runs: Sequence[Run], ticks: int, period: float = CONTROL_PERIOD) -> Co
 
 
 class Loop:
-    """Robots on their grounds, what steers them and what troubles them, for a group of runs that share a controller.
+    """Robots on their grounds, their controller, their faults and pushes, for a group of runs that share a controller.
 
     Args:
         runs: of the group.
@@ -65,14 +65,14 @@ class Loop:
         self._steps = steps
         self._breath: np.ndarray | None = None
         self._period = period = control_period(runs[0].robot)
-        self.bench = Bench(runs, timestep)
+        self.batch = SimulationBatch(runs, timestep)
         self.feels = any(run.control.feels for run in runs)
         self.controller = start(runs, ticks, period)
         first = self.controller.rest()
-        self.bench.place(runs, first)
-        self._alike = Deduplication(runs, first, period)
-        self.troubles = Disturbances(runs, self.bench, ticks, period)
-        self.readings = Readings(self.bench, runs, samples)
+        self.batch.place(runs, first)
+        self._deduplication = Deduplication(runs, first, period)
+        self.disturbances = Disturbances(runs, self.batch, ticks, period)
+        self.readings = Readings(self.batch, runs, samples)
 
     def decide(self, tick: int, beat: int | None = None) -> Command:
         """Let happen what is due and return what the controller commands; ``disturb`` returns the result.
@@ -81,8 +81,8 @@ class Loop:
             tick: number of the control period.
             beat: the one that the controller takes it for; the same if None.
         """
-        self.troubles.happen(tick)
-        injector = self.troubles.injector
+        self.disturbances.happen(tick)
+        injector = self.disturbances.injector
         sensed = injector.sense(self.readings.sensed(tick * self._period)) if self.feels else None
         command = self.controller.command(tick if beat is None else beat, sensed)
         self._breath = command.breath
@@ -90,10 +90,10 @@ class Loop:
 
     def disturb(self, tick: int, command: Command) -> Command:
         """Return what the servos are commanded in the end, with noise and faults."""
-        return command._replace(targets=self.troubles.disturb(tick, command.targets))
+        return command._replace(targets=self.disturbances.disturb(tick, command.targets))
 
     def advance(self, tick: int, targets: np.ndarray) -> None:
         """Let one control period pass in which the servos are commanded these angles, shape (run, servo) [rad]."""
-        self._alike.part(tick, targets if self._breath is None else np.column_stack([targets, self._breath]))
-        self.bench.flood(tick * self._period, self._breath)
-        self.bench.advance(targets, self._steps, tick * self._period, self._alike)
+        self._deduplication.part(tick, targets if self._breath is None else np.column_stack([targets, self._breath]))
+        self.batch.flood(tick * self._period, self._breath)
+        self.batch.advance(targets, self._steps, tick * self._period, self._deduplication)

@@ -11,7 +11,7 @@ from suchus.control import Sensed
 from suchus.design import GRAVITY, layout
 from suchus.design.pieces import pieces
 from suchus.hydro import column
-from suchus.land.bench import Bench, up
+from suchus.land.batch import SimulationBatch, up
 from suchus.land.lake import lake_text
 from suchus.land.run import Run
 from suchus.model import joint_addresses, sensor_names
@@ -21,11 +21,11 @@ from suchus.record import WATER, dataset, ground_text
 class Readings:
     """The sensors of a batch, and everything that was read."""
 
-    def __init__(self, bench: Bench, runs: Sequence[Run], samples: int) -> None:
-        self._bench = bench
+    def __init__(self, batch: SimulationBatch, runs: Sequence[Run], samples: int) -> None:
+        self._batch = batch
         self._runs = runs
         self._place = place = layout(runs[0].robot)
-        model = bench.model
+        model = batch.model
         self._at = {
             name: slice(int(model.sensor(name).adr[0]), int(model.sensor(name).adr[0] + model.sensor(name).dim[0]))
             for name in sensor_names(place.robot)
@@ -48,25 +48,25 @@ class Readings:
         self._qpos = np.full((n, samples, model.nq), np.nan)
         self._phase = np.full((n, samples, len(place.limbs)), np.nan)
         self._targets = np.full((n, samples, len(place.servos)), np.nan)
-        self._water = np.full((n, samples, bench.water.shape[1]), np.nan)
-        self._worked = np.full((n, samples, bench.worked.shape[1]), np.nan)
+        self._water = np.full((n, samples, batch.water.shape[1]), np.nan)
+        self._worked = np.full((n, samples, batch.worked.shape[1]), np.nan)
 
     def store(self, sample: int, phase: np.ndarray, targets: np.ndarray) -> None:
         """Keep one sample of the living."""
-        alive = slice(None) if self._bench.alive.all() else self._bench.alive
-        self._sensors[alive, sample] = self._bench.readings[alive]
-        self._qpos[alive, sample] = self._bench.qpos[alive]
+        alive = slice(None) if self._batch.alive.all() else self._batch.alive
+        self._sensors[alive, sample] = self._batch.readings[alive]
+        self._qpos[alive, sample] = self._batch.qpos[alive]
         self._phase[alive, sample] = phase[alive]
         self._targets[alive, sample] = targets[alive]
-        self._water[alive, sample] = self._bench.water[alive]
-        self._worked[alive, sample] = self._bench.worked[alive]
+        self._water[alive, sample] = self._batch.water[alive]
+        self._worked[alive, sample] = self._batch.worked[alive]
 
     def sensed(self, time: float) -> Sensed:
         """Return what the robots feel now."""
-        read = self._bench.readings
+        read = self._batch.readings
         felt = {name: read[:, where].copy() for name, where in self._felt.items()}
         pressed = {name: -read[:, where] for name, where in self._pressed.items()}
-        depth = self._bench.depths()
+        depth = self._batch.depths()
         return Sensed(time=time, **felt, **pressed, tail_pressure=-self._tail(read)[..., 2], depth=depth)
 
     def sample(self, run: int, sample: int) -> dict[str, np.ndarray]:
@@ -83,13 +83,13 @@ class Readings:
         robots = [run.robot for run in self._runs]
         # parts of a block of all sensors would keep the whole block
         arrays = {name: np.ascontiguousarray(values) for name, values in self._arrays().items()}
-        last = np.minimum(self._bench.ended, time[-1])
+        last = np.minimum(self._batch.ended, time[-1])
         per_run = {
             "mass": np.array([robot.mass for robot in robots]),
             "period": np.array([run.gait.period for run in self._runs]),
             "duty_factor": np.array([run.gait.duty_factor for run in self._runs]),
             "ended": last,
-            "cause": np.array(self._bench.cause),
+            "cause": np.array(self._batch.cause),
             "stands_on": np.array([ground_text(None if run.afloat else run.ground) for run in self._runs]),
         }
         coordinates: dict[str, Sequence[object] | np.ndarray] = {
@@ -172,7 +172,7 @@ class Readings:
         return slice(min(all_parts.start + 2, all_parts.stop), all_parts.stop, 3)
 
 
-def alike(records: Sequence[xr.Dataset]) -> list[xr.Dataset]:
+def with_equal_variables(records: Sequence[xr.Dataset]) -> list[xr.Dataset]:
     """Return records that hold the same variables: on dry land the water does nothing, and its level is NaN."""
     if len({"water_level" in record for record in records}) < 2:
         return list(records)

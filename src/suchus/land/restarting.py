@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 from jaxtyping import Float
 
-from suchus.land.bench import Bench
+from suchus.land.batch import SimulationBatch
 
 
 class Beginning(NamedTuple):
@@ -22,21 +22,21 @@ class Beginning(NamedTuple):
     """Last commanded angle of each servo [rad]."""
 
 
-def restart(bench: Bench, sim: int, begin: Beginning) -> None:
+def restart(batch: SimulationBatch, sim: int, begin: Beginning) -> None:
     """Put one robot of a batch into a state, without a push, also after it has diverged; faults are the injector's.
 
     The others stay as they are. From then on it moves as a robot of a fresh batch does, to the last bit.
 
     Args:
-        bench: the batch; its runs must be of one robot on one relief.
+        batch: the simulations; its runs must be of one robot on one relief.
         sim: index of the robot in the batch.
         begin: the state in which it begins.
     """
-    batch, who = bench.batch, np.array([sim])
-    batch.reset(who, stage=mujoco.mjtStage.mjSTAGE_NONE)
-    bench.qpos[sim], bench.qvel[sim], bench.ctrl[sim] = begin.qpos, begin.qvel, begin.commanded
-    batch.bind("act")[sim] = begin.act
-    bench.refill(sim)
-    batch.forward(who)
-    bench.read(sim)
-    bench.alive[sim], bench.ended[sim], bench.cause[sim] = True, np.inf, ""
+    physics, who = batch.physics, np.array([sim])
+    physics.reset(who, stage=mujoco.mjtStage.mjSTAGE_NONE)
+    batch.qpos[sim], batch.qvel[sim], batch.ctrl[sim] = begin.qpos, begin.qvel, begin.commanded
+    physics.bind("act")[sim] = begin.act
+    batch.refill(sim)
+    physics.forward(who)
+    batch.read(sim)
+    batch.alive[sim], batch.ended[sim], batch.cause[sim] = True, np.inf, ""

@@ -13,7 +13,7 @@ from suchus.fault import check_faults
 from suchus.land.lake import check_lake
 from suchus.land.loop import Loop, physics_steps
 from suchus.land.push import check_pushes
-from suchus.land.readings import alike
+from suchus.land.readings import with_equal_variables
 from suchus.land.run import Run
 from suchus.model import topology
 from suchus.motion import check_limits
@@ -59,15 +59,15 @@ def simulate(
     parts, order = [], []
     groups = _groups(runs)
     for number, members in enumerate(groups):
-        some = [runs[i] for i in members]
+        grouped = [runs[i] for i in members]
 
         def report(share: float, done: int = number) -> None:
             if progress is not None:
                 progress((done + share) / len(groups))
 
-        parts.append(_simulate_group(some, ticks, steps, timestep, every, report))
+        parts.append(_simulate_group(grouped, ticks, steps, timestep, every, report))
         order.extend(members)
-    parts = alike(parts)
+    parts = with_equal_variables(parts)
     record = parts[0] if len(parts) == 1 else xr.concat(parts, "run", join="exact", data_vars="minimal")
     if len(groups) > 1:
         record = record.isel(run=np.argsort(order))

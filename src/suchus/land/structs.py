@@ -66,11 +66,11 @@ def plugin_struct() -> type[ctypes.Structure]:
     text = re.sub(r"//[^\n]*", "", header.read_text(encoding="utf-8")) if header.is_file() else ""
     found = re.search(r"typedef struct mjpPlugin_ \{(.*?)\} mjpPlugin;", text, re.DOTALL)
     fields: list[tuple[str, Any]] = []
-    for told in found.group(1).split(";") if found else ():
-        name = re.search(r"(?<=\(\*)\w+(?=\))|\w+\s*$", told.strip())
+    for declaration in found.group(1).split(";") if found else ():
+        name = re.search(r"(?<=\(\*)\w+(?=\))|\w+\s*$", declaration.strip())
         if name is None:
             continue
-        kind = ctypes.c_char_p if name.group() == "name" else ctypes.c_void_p if "*" in told else ctypes.c_int
+        kind = ctypes.c_char_p if name.group() == "name" else ctypes.c_void_p if "*" in declaration else ctypes.c_int
         fields.append((name.group(), kind))
     missing = {"name", "capabilityflags", "nstate", "init", "reset", "compute"} - {name for name, _ in fields}
     if missing:
@@ -91,20 +91,20 @@ def _made(name: str, members: Sequence[Any]) -> type[ctypes.Structure]:
     return type(name, (ctypes.Structure,), {"_fields_": fields})
 
 
-def _type(where: str, told: Any) -> Any:
-    if isinstance(told, PointerType):
+def _type(where: str, declared: Any) -> Any:
+    if isinstance(declared, PointerType):
         return ctypes.c_void_p
-    if isinstance(told, ArrayType):
-        return _type(where, told.inner_type) * int(np.prod(told.extents))
-    if isinstance(told, AnonymousStructDecl):
-        return _made(where, told.fields)
-    if told.name in _PLAIN:
-        return _PLAIN[told.name]
-    if told.name in structs.STRUCTS:
-        return _struct(told.name)
-    if hasattr(mujoco, told.name):  # an enumeration
+    if isinstance(declared, ArrayType):
+        return _type(where, declared.inner_type) * int(np.prod(declared.extents))
+    if isinstance(declared, AnonymousStructDecl):
+        return _made(where, declared.fields)
+    if declared.name in _PLAIN:
+        return _PLAIN[declared.name]
+    if declared.name in structs.STRUCTS:
+        return _struct(declared.name)
+    if hasattr(mujoco, declared.name):  # an enumeration
         return ctypes.c_int
-    raise OtherMuJoCo(where, mujoco.__version__, f"its type {told.name} is not known")
+    raise OtherMuJoCo(where, mujoco.__version__, f"its type {declared.name} is not known")
 
 
 def verify(struct: str, instance: Any, fields: Sequence[str]) -> None:
@@ -139,10 +139,10 @@ def _found(struct: str, address: int, fields: Sequence[str]) -> Iterator[tuple[s
         while "." in name:
             first, _, name = name.partition(".")
             owner = structs.STRUCTS[next(one.type.name for one in owner.fields if one.name == first)]
-        told = next(one.type for one in owner.fields if one.name == name)
-        if isinstance(told, ArrayType):
+        declared = next(one.type for one in owner.fields if one.name == name)
+        if isinstance(declared, ArrayType):
             yield field, at
-        elif isinstance(told, PointerType):
+        elif isinstance(declared, PointerType):
             yield field, ctypes.c_size_t.from_address(at).value
         else:
-            yield field, _PLAIN[told.name].from_address(at).value
+            yield field, _PLAIN[declared.name].from_address(at).value

@@ -17,8 +17,8 @@ def tail_joint_spread(angles: xr.DataArray, joints: Sequence[str]) -> xr.DataArr
         angles: of joints by name, with the dimension ``joint`` [rad].
         joints: names of the cable joints; see ``design.cable_joints``.
     """
-    some = angles.sel(joint=list(joints))
-    return (some.max("joint") - some.min("joint")).assign_attrs(units="rad", long_name="spread of the tail's joints")
+    bends = angles.sel(joint=list(joints))
+    return (bends.max("joint") - bends.min("joint")).assign_attrs(units="rad", long_name="spread of the tail's joints")
 
 
 def tail_joint_spread_max(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:

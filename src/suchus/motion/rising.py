@@ -140,8 +140,8 @@ def tallest(
     root = place.behind.start  # of the tail
     s, c = np.sin(pitch), np.cos(pitch)
     heights = []
-    for some in np.ravel(lead):
-        behind, down = np.full(len(pitch), some), np.full(len(pitch), 0.9 * leg.reach[1])
+    for shift in np.ravel(lead):
+        behind, down = np.full(len(pitch), shift), np.full(len(pitch), 0.9 * leg.reach[1])
         for _ in range(4):  # the legs' own weight moves the centre of mass a little
             feet = np.stack([np.full(len(pitch), stance), behind, down], axis=-1)
             bent = hind_leg(leg, feet, pitch, clip=True)
@@ -151,7 +151,7 @@ def tallest(
             drop = (down + leg.foot_radius - tail.offset * s - tail.radius_tip) / (tail.length - tail.offset)
             angles[:, root] = np.arcsin(np.clip(drop, -1.0, 1.0)) - pitch
             com = centre_of_mass(robot, angles)
-            behind = c * com[:, 0] - s * com[:, 2] + some
+            behind = c * com[:, 0] - s * com[:, 2] + shift
             down = np.sqrt(np.maximum(leg.reach[1] ** 2 - behind**2 - stance**2, 0.0))
         snout = landmarks(robot, angles).snout
         fits = (angles[:, root] >= tail.pitch_range[0]) & (angles[:, root] <= tail.pitch_range[1]) & (down > 0)

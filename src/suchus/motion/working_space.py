@@ -58,7 +58,7 @@ def reached(robot: Crocodile, gait: Gait, *, standing: bool, count: int, seed: i
     shares = qmc.Sobol(len(low), rng=seed).random_base2(max(count - 1, 1).bit_length())
     drawn = low + (high - low) * shares
     parts = [_kept(robot, gait, drawn[at : at + _CHUNK], standing) for at in range(0, len(drawn), _CHUNK)]
-    snout, angles, pelvis = (np.concatenate(some) for some in zip(*parts, strict=True))
+    snout, angles, pelvis = (np.concatenate(fields) for fields in zip(*parts, strict=True))
     return Reached(snout, angles, pelvis, len(drawn))
 
 

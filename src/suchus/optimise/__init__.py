@@ -3,11 +3,11 @@
 from suchus.optimise.aims import AIMS, LIMITS
 from suchus.optimise.clearance import clearance
 from suchus.optimise.conduct import SearchProgress, optimise
-from suchus.optimise.found import Found
 from suchus.optimise.page import read_optimisation
 from suchus.optimise.ready import READY
 from suchus.optimise.results import write_results
 from suchus.optimise.search import NoOptimiser
+from suchus.optimise.search_result import SearchResult
 from suchus.optimise.spec import Aim, Limit, Optimisation
 from suchus.renamed import old_exports
 
@@ -16,15 +16,15 @@ __all__ = [
     "LIMITS",
     "READY",
     "Aim",
-    "Found",
     "Limit",
     "NoOptimiser",
     "Optimisation",
     "SearchProgress",
+    "SearchResult",
     "clearance",
     "optimise",
     "read_optimisation",
     "write_results",
 ]
 
-__getattr__ = old_exports(__name__, Told="SearchProgress")
+__getattr__ = old_exports(__name__, Found="SearchResult", Told="SearchProgress")

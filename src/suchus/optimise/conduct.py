@@ -18,9 +18,9 @@ from suchus.optimise.aims import AIMS
 from suchus.optimise.checks import Evaluate, around, checked
 from suchus.optimise.elsewhere import ROOMS, evaluate_on
 from suchus.optimise.evaluate import evaluate
-from suchus.optimise.found import Found, titled
 from suchus.optimise.score import allowed, losses, score, units
 from suchus.optimise.search import search
+from suchus.optimise.search_result import SearchResult, titled
 from suchus.optimise.spec import Optimisation
 from suchus.study.cluster import here
 from suchus.study.makers import deciding
@@ -59,7 +59,7 @@ Progress = Callable[[SearchProgress], None]
 
 def optimise(
     spec: Optimisation, folder: Path, *, progress: Progress | None = None, client: Any = None
-) -> tuple[Found, ...]:
+) -> tuple[SearchResult, ...]:
     """Search each condition, check what was found, and return it.
 
     Generations are stored as they are finished: whatever stops the program, at most the running one is lost. Started
@@ -84,7 +84,7 @@ def optimise(
         return tuple(_arm(spec.of(arm), folder, progress or _silent, client) for arm in spec.arms)
 
 
-def _arm(spec: Optimisation, folder: Path, progress: Progress, client: Any) -> Found:
+def _arm(spec: Optimisation, folder: Path, progress: Progress, client: Any) -> SearchResult:
     """Search one condition."""
     name = spec.arms[0].name
     with opened(spec, folder / name) as store:
@@ -113,7 +113,7 @@ def _tried(client: Any) -> Evaluate:
     return evaluate if client is None else partial(evaluate_on, client)
 
 
-def _searched(spec: Optimisation, store: Store, folder: Path, progress: Progress, client: Any) -> Found:
+def _searched(spec: Optimisation, store: Store, folder: Path, progress: Progress, client: Any) -> SearchResult:
     """Run what is not in the store yet; return all candidates."""
     tried = _tried(client)
     start = _generation(store, 0, np.array([spec.start]), lambda x: tried(spec, x))
@@ -135,7 +135,7 @@ def _searched(spec: Optimisation, store: Store, folder: Path, progress: Progress
                 write_runs(spec, [titled(spec, run, spec.arms[0].name)], folder)
         clock.end()
     whole = xr.concat(tables, "candidate")
-    return Found(spec=spec, start=start, history=whole.assign(score=("candidate", score(spec, whole, parts))))
+    return SearchResult(spec=spec, start=start, history=whole.assign(score=("candidate", score(spec, whole, parts))))
 
 
 class _Clock:
@@ -201,5 +201,5 @@ def write_runs(spec: Optimisation, runs: Sequence[Run], folder: Path) -> None:
             blueprint.write(run.robot, folder / f"{run.label}_robot.toml")
 
 
-def _silent(told: SearchProgress) -> None:
-    del told
+def _silent(progress: SearchProgress) -> None:
+    del progress

@@ -15,8 +15,8 @@ from suchus.figures.posture import draw_posture, draw_strip
 from suchus.land import Run
 from suchus.motion import START
 from suchus.optimise.aims import AIMS, Kind
-from suchus.optimise.found import Found
 from suchus.optimise.score import allowed
+from suchus.optimise.search_result import SearchResult
 from suchus.optimise.spec import at_share
 
 _ROLES = ("coordinated", "limbs_only", "tail_drag", "spine_only", "tail", "water")
@@ -35,7 +35,7 @@ def label(name: str) -> str:
     return f"{name.removeprefix('control, ')} (control)" if name.startswith("control, ") else name
 
 
-def draw_convergence(found: Sequence[Found]) -> Figure:
+def draw_convergence(found: Sequence[SearchResult]) -> Figure:
     """Draw the first aim of the best so far of every condition over the candidates tried."""
     kind, name = AIMS[found[0].spec.aims[0].name], label(found[0].spec.aims[0].name)
     with styled():
@@ -58,7 +58,7 @@ def draw_convergence(found: Sequence[Found]) -> Figure:
     )
 
 
-def _limit_axis(ax: Axes, found: Sequence[Found]) -> None:
+def _limit_axis(ax: Axes, found: Sequence[SearchResult]) -> None:
     """Leave wild candidates out of the picture."""
     shown = np.concatenate([one.best_so_far() for one in found])
     shown = shown[np.isfinite(shown)]
@@ -68,7 +68,7 @@ def _limit_axis(ax: Axes, found: Sequence[Found]) -> None:
         ax.set_ylim(low - pad, high + pad)
 
 
-def draw_front(found: Found) -> Figure:
+def draw_front(found: SearchResult) -> Figure:
     """Draw the two aims of every candidate that keeps all limits, and the front."""
     first, second = (f"aim_{aim.name}" for aim in found.spec.aims)
     kinds = [AIMS[aim.name] for aim in found.spec.aims]
@@ -100,16 +100,16 @@ def draw_front(found: Found) -> Figure:
     )
 
 
-def draw_gaits(runs: Sequence[Run], record: xr.Dataset, told: Sequence[str]) -> Figure:
+def draw_gaits(runs: Sequence[Run], record: xr.Dataset, texts: Sequence[str]) -> Figure:
     """Draw what every run does: from above at its beginning, half-way and at its end; who stands from its side.
 
     Args:
         runs: the start, and the best.
         record: of them.
-        told: what is written beside each.
+        texts: what is written beside each.
     """
     if all(isinstance(run.control, Standing) for run in runs):
-        return _draw_standing(runs, record, told)
+        return _draw_standing(runs, record, texts)
     end = float(record.time[-1])
     times = [START, (START + end) / 2, end]
     aside, depth = _lanes(runs, record, times)
@@ -122,7 +122,7 @@ def draw_gaits(runs: Sequence[Run], record: xr.Dataset, told: Sequence[str]) -> 
             beside = float(one.centre_of_mass.sel(xyz="y").sel(time=end, method="nearest")) + aside[i]
             right = float(_seen(one, times)[:, 0].max())
             ax.text(
-                right + _GAP, beside, f"{label(run.label)}\n{told[i]}", color=COLOURS[hue], va="center", fontsize=13
+                right + _GAP, beside, f"{label(run.label)}\n{texts[i]}", color=COLOURS[hue], va="center", fontsize=13
             )
         ax.set_xlim(right=float(_seen(record, times)[:, 0].max()) + 0.45)
         ax.set_axis_off()
@@ -149,7 +149,7 @@ def _lanes(runs: Sequence[Run], record: xr.Dataset, times: Sequence[float]) -> t
     return aside, -top
 
 
-def _draw_standing(runs: Sequence[Run], record: xr.Dataset, told: Sequence[str]) -> Figure:
+def _draw_standing(runs: Sequence[Run], record: xr.Dataset, texts: Sequence[str]) -> Figure:
     """Draw every run from its right side, half of the time that it is meant to stand."""
     with styled():
         figure, axes = panels(1, 1, width=3.0 + 2.6 * len(runs), height=5.6)
@@ -163,7 +163,7 @@ def _draw_standing(runs: Sequence[Run], record: xr.Dataset, told: Sequence[str])
                 {name: one[name] + _beside(one, _APART * i - hips) for name in ("position", "centre_of_mass")}
             )
             draw_posture(ax, run.robot, moved, time, view="side", support=False)
-            ax.text(_APART * i, -0.05, f"{label(run.label)}\n{told[i]}", ha="center", va="top", fontsize=12,
+            ax.text(_APART * i, -0.05, f"{label(run.label)}\n{texts[i]}", ha="center", va="top", fontsize=12,
                     color=COLOURS[_shade(run.label, i)])  # fmt: skip
         ax.set_ylim(bottom=-0.17)
         ax.set_xticks([])
@@ -180,7 +180,7 @@ def _shade(name: str, number: int) -> str:
     return "neutral" if name == "start" else role(number - 1)
 
 
-def draw_around(found: Found) -> Figure:
+def draw_around(found: SearchResult) -> Figure:
     """Draw the first aim as each field alone moves to both sides of the best; crosses break a limit."""
     near = found.near
     assert near is not None
@@ -212,7 +212,7 @@ def draw_around(found: Found) -> Figure:
     )
 
 
-def _kept(found: Found, near: xr.Dataset, row: int) -> np.ndarray:
+def _kept(found: SearchResult, near: xr.Dataset, row: int) -> np.ndarray:
     """Tell which of the points beside the best keep all limits."""
     part = near.isel(moved=row).rename(step="candidate")
     return allowed(found.spec, part)

@@ -15,8 +15,8 @@ from suchus.design.scale import physics_step
 from suchus.land import Run, simulate
 from suchus.optimise.aims import AIMS, LIMITS
 from suchus.optimise.conduct import write_runs
-from suchus.optimise.found import Found
 from suchus.optimise.pictures import draw_around, draw_convergence, draw_front, draw_gaits, label, scaled
+from suchus.optimise.search_result import SearchResult
 from suchus.optimise.spec import Optimisation
 from suchus.replay import replay
 from suchus.study.result_table import ResultTable, Section, write_tables
@@ -26,7 +26,7 @@ _TOLD = 5  # fields that the sentence names
 _END = 0.02  # of its range; a field that is nearer to an end is at it
 
 
-def write_results(spec: Optimisation, found: Sequence[Found], folder: Path) -> Path:
+def write_results(spec: Optimisation, found: Sequence[SearchResult], folder: Path) -> Path:
     """Write everything into ``folder/result``, which appears complete or not at all, and return that folder.
 
     Args:
@@ -40,7 +40,7 @@ def write_results(spec: Optimisation, found: Sequence[Found], folder: Path) -> P
     runs = [run for one in found for run in one.runs]
     shown = [_start(spec), *runs]
     record = simulate(shown, duration=spec.duration, timestep=physics_step(spec.run.robot))
-    told = outcome(spec, found)
+    numbers = outcome(spec, found)
     with records.new_folder(folder / RESULT, mark=OUTCOME) as draft:
         for one in found:
             write_runs(one.spec, one.runs, draft)
@@ -49,8 +49,9 @@ def write_results(spec: Optimisation, found: Sequence[Found], folder: Path) -> P
             if i:
                 _write_replay(shown, record, i, draft / f"{run.label}_replay.html")
         pictures = _pictures(spec, found, shown, record)
-        write_tables(draft, f"Optimised: {spec.name}", _lead(found), _sections(spec, found, told, pictures), pictures)
-        text = json.dumps(told, indent=2, ensure_ascii=False, allow_nan=False)
+        sections = _sections(spec, found, numbers, pictures)
+        write_tables(draft, f"Optimised: {spec.name}", _lead(found), sections, pictures)
+        text = json.dumps(numbers, indent=2, ensure_ascii=False, allow_nan=False)
         (draft / OUTCOME).write_text(text + "\n", encoding="utf-8")
     return folder / RESULT
 
@@ -71,7 +72,7 @@ def _write_replay(shown: Sequence[Run], record: xr.Dataset, i: int, path: Path) 
     path.write_text(page, encoding="utf-8")
 
 
-def outcome(spec: Optimisation, found: Sequence[Found]) -> dict[str, Any]:
+def outcome(spec: Optimisation, found: Sequence[SearchResult]) -> dict[str, Any]:
     """Return every number of a search as JSON holds it; what is not finite becomes null."""
     return {
         "optimisation": spec.name,
@@ -81,12 +82,12 @@ def outcome(spec: Optimisation, found: Sequence[Found]) -> dict[str, Any]:
         "population": spec.population,
         "duration": spec.duration,
         "timestep": spec.timestep,
-        "arms": {one.arm: _told(one) for one in found},
+        "arms": {one.arm: _numbers_of(one) for one in found},
         "versions": records.versions(),
     }
 
 
-def _told(one: Found) -> dict[str, Any]:
+def _numbers_of(one: SearchResult) -> dict[str, Any]:
     return {
         "tried": one.history.sizes["candidate"] - 1,
         "walked": int((one.history.status == "walked").sum()),
@@ -99,7 +100,7 @@ def _told(one: Found) -> dict[str, Any]:
     }
 
 
-def _best(one: Found, which: int) -> dict[str, Any]:
+def _best(one: SearchResult, which: int) -> dict[str, Any]:
     assert one.checks is not None
     candidate, ranges = one.chosen[which], {v.field: (v.low, v.high) for v in one.spec.vary}
     return {
@@ -128,7 +129,7 @@ def _finite(value: Any) -> float | None:
     return number if np.isfinite(number) else None
 
 
-def sentence(one: Found, which: int) -> str:
+def sentence(one: SearchResult, which: int) -> str:
     """Say what a chosen gait does otherwise than the start: the fields that moved farthest in their ranges."""
     ranges = {v.field: (float(v.low), float(v.high)) for v in one.spec.vary if v.low is not None and v.high is not None}
 
@@ -159,7 +160,7 @@ def _round(value: float) -> str:
 
 
 def _pictures(
-    spec: Optimisation, found: Sequence[Found], shown: Sequence[Run], record: xr.Dataset
+    spec: Optimisation, found: Sequence[SearchResult], shown: Sequence[Run], record: xr.Dataset
 ) -> dict[str, Figure]:
     values = [(AIMS[aim.name], AIMS[aim.name].measure(shown, record)) for aim in spec.aims]
     reached = [
@@ -176,23 +177,23 @@ def _pictures(
     return pictures
 
 
-def _lead(found: Sequence[Found]) -> str:
+def _lead(found: Sequence[SearchResult]) -> str:
     said = []
     for one in found:
         front = one.front if one.spec.pareto else []
-        told = []
+        changes = []
         for aim in one.spec.aims if front else one.spec.aims[:1]:
             ends = (front[0], front[-1]) if front else (0, one.chosen[0])
             first, last = (float(one.history[f"aim_{aim.name}"][i]) for i in ends)
-            told.append(f"{label(aim.name)} {first:.3g} to {last:.3g} {AIMS[aim.name].unit}".removesuffix(" -"))
+            changes.append(f"{label(aim.name)} {first:.3g} to {last:.3g} {AIMS[aim.name].unit}".removesuffix(" -"))
         what = f"a front of {len(front)}, " if front else ""
-        said.append(f"{label(one.arm)}: {what}{', '.join(told)}")
+        said.append(f"{label(one.arm)}: {what}{', '.join(changes)}")
     each = " each" if len(found) > 1 else ""
     return f"{'; '.join(said)}; {found[0].history.sizes['candidate'] - 1} candidates{each}."
 
 
 def _sections(
-    spec: Optimisation, found: Sequence[Found], told: Mapping[str, Any], pictures: Mapping[str, Figure]
+    spec: Optimisation, found: Sequence[SearchResult], numbers: Mapping[str, Any], pictures: Mapping[str, Figure]
 ) -> list[Section]:
     links = [
         (f"{name}_replay.html", f"Replay of {label(name)} beside the start") for one in found for name in one.names
@@ -201,7 +202,7 @@ def _sections(
     if any(vary.field.startswith("robot.") for vary in spec.vary):
         links += [(f"{n}_robot.toml", f"{n}_robot.toml: the robot as a file") for one in found for n in one.names]
     return [
-        Section(title="What it found", texts=[*_best_said(told), *_beyond(spec)], links=links, figures=("gaits",)),
+        Section(title="What it found", texts=[*_best_said(numbers), *_beyond(spec)], links=links, figures=("gaits",)),
         Section(title="How it converged", texts=spec.reasons,
                 figures=[name for name in pictures if name == "convergence" or name.startswith("front_")]),
         Section(title="The numbers", tables=[_fields(one, i) for one in found for i in range(len(one.chosen))]
@@ -226,12 +227,12 @@ def _beyond(spec: Optimisation) -> list[str]:
     return ["What is the control's is in the table below: a gait file holds the gait alone."]
 
 
-def _best_said(told: Mapping[str, Any]) -> list[str]:
-    best = [item for arm in told["arms"].values() for item in arm["best"].items()]
+def _best_said(numbers: Mapping[str, Any]) -> list[str]:
+    best = [item for arm in numbers["arms"].values() for item in arm["best"].items()]
     return [f"{label(name).capitalize()}. {each['sentence']}" for name, each in best]
 
 
-def _fields(one: Found, which: int) -> ResultTable:
+def _fields(one: SearchResult, which: int) -> ResultTable:
     rows = []
     ends = {v.field: (v.low, v.high) for v in one.spec.vary}
     for name, (start, best) in one.values(which).items():
@@ -249,7 +250,7 @@ def _fields(one: Found, which: int) -> ResultTable:
     )
 
 
-def _limits(one: Found, which: int) -> ResultTable:
+def _limits(one: SearchResult, which: int) -> ResultTable:
     rows = [
         (
             label(name),
@@ -269,7 +270,7 @@ def _limits(one: Found, which: int) -> ResultTable:
     )
 
 
-def _checks(one: Found) -> ResultTable:
+def _checks(one: SearchResult) -> ResultTable:
     assert one.checks is not None
     checks, names = one.checks, [str(run) for run in one.checks.run.values]
     columns = [(f"aim_{aim.name}", AIMS[aim.name]) for aim in one.spec.aims]

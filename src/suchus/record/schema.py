@@ -90,13 +90,13 @@ def dataset(
         attrs={"schema": "suchus land record 1"},
     )
     data.coords["time"].attrs["units"] = "s"
-    told = {
+    sampled = {
         name: (("run", *dims), arrays[name], {"units": unit, "long_name": what})
         for name, (dims, unit, what) in VARIABLES.items()
     }
-    one = {name: ("run", per_run[name], {"units": u, "long_name": what}) for name, (u, what) in PER_RUN.items()}
+    of_runs = {name: ("run", per_run[name], {"units": u, "long_name": what}) for name, (u, what) in PER_RUN.items()}
     # all at once: one at a time each copies and aligns what is there, a twentieth of the time of a run alone
-    return data.assign(told | one)
+    return data.assign(sampled | of_runs)
 
 
 def check_land(record: xr.Dataset, names: Sequence[str], where: str) -> None:
@@ -124,8 +124,8 @@ def check_land(record: xr.Dataset, names: Sequence[str], where: str) -> None:
         raise IncompatibleRecord(f"{where} has times that do not rise.")
     legs = [str(leg) for leg in record.leg.values.ravel()] if "leg" in record else []
     if not _in_pairs(legs):
-        told = ", ".join(legs[:8])
-        raise IncompatibleRecord(f"{where} has the legs {told}, not pairs of left and right, as {', '.join(LEGS)}.")
+        seen = ", ".join(legs[:8])
+        raise IncompatibleRecord(f"{where} has the legs {seen}, not pairs of left and right, as {', '.join(LEGS)}.")
 
 
 def _as_said(record: xr.Dataset, name: str) -> bool:

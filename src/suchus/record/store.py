@@ -70,12 +70,12 @@ def load(path: Path, *, whole: bool = False) -> xr.Dataset:
 
 def _attributes(text: object, path: Path) -> dict[str, Any]:
     try:
-        told = json.loads(text) if isinstance(text, str) else None
+        attributes = json.loads(text) if isinstance(text, str) else None
     except (ValueError, RecursionError):
-        told = None
-    if not isinstance(told, dict):
+        attributes = None
+    if not isinstance(attributes, dict):
         raise IncompatibleRecord(f"{path} has attributes that suchus did not write; make the record again.")
-    return told
+    return attributes
 
 
 def _is_text(variable: xr.Variable) -> bool:

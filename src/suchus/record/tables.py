@@ -38,7 +38,7 @@ def write_tables(record: xr.Dataset, folder: Path) -> Path:
             _write(
                 draft / f"{file}.csv", [_headed(record, name) for name in (*dims, *names)], _rows(record, dims, names)
             )
-            about += [(f"{file}.csv", _headed(record, name), *_told(record, name)) for name in (*dims, *names)]
+            about += [(f"{file}.csv", _headed(record, name), *_unit_and_name(record, name)) for name in (*dims, *names)]
         _write(draft / COLUMNS, ["file", "column", "unit", "meaning"], iter(about))
     return folder
 
@@ -59,8 +59,8 @@ def _rows(record: xr.Dataset, dims: Sequence[str], names: Sequence[str]) -> Iter
     labels = product(*(record[dim].values.tolist() for dim in dims))
     values = [record[name].variable.transpose(*dims).values.reshape(-1) for name in names]
     for start in range(0, len(values[0]), _ROWS):
-        some = zip(*(_plain(column[start : start + _ROWS]) for column in values), strict=True)
-        for row in some:
+        rows = zip(*(_plain(column[start : start + _ROWS]) for column in values), strict=True)
+        for row in rows:
             yield (*next(labels), *row)
 
 
@@ -69,11 +69,11 @@ def _plain(column: np.ndarray) -> list[Any]:
 
 
 def _headed(record: xr.Dataset, name: str) -> str:
-    unit = _told(record, name)[0]
+    unit = _unit_and_name(record, name)[0]
     return f"{name} [{unit}]" if unit and unit != "1" else name
 
 
-def _told(record: xr.Dataset, name: str) -> tuple[str, str]:
+def _unit_and_name(record: xr.Dataset, name: str) -> tuple[str, str]:
     attributes = record[name].attrs if name in record.variables else {}
     return str(attributes.get("units", "")), str(attributes.get("long_name", ""))
 

@@ -56,7 +56,7 @@ def replay(
     return _environment().get_template("replay.html").render(
         title=title or f"{robot.name}: {_text(record, 'gait', 'a run on land').replace('_', ' ')}",
         caption=" ".join(f"{caption} {_on(grounds)}".split()),
-        alt=_told(robot, moving, labels),
+        alt=_in_words(robot, moving, labels),
         still=Markup(still),
         still_time=still_time,
         ghost=labels[1] if ghost is not None else "",
@@ -109,7 +109,7 @@ def _on(grounds: Sequence[Ground]) -> str:
     return text
 
 
-def _told(robot: AnyRobot, moving: Sequence[Frames], labels: Sequence[str]) -> str:
+def _in_words(robot: AnyRobot, moving: Sequence[Frames], labels: Sequence[str]) -> str:
     """Return the replay in words, for those who cannot see it."""
     paths = [
         f"{label}: {one.mass[-1, 0] - one.mass[0, 0]:.2f} m forward in {(len(one.mass) - 1) / one.rate:.1f} s"

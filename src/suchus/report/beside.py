@@ -67,8 +67,8 @@ def _measured(results: Results, experiment: str, *names: str) -> list[float] | N
     """Measures of an experiment, or None if it was not run or did not come to all of them."""
     if experiment not in results:
         return None
-    told = results[experiment].told["measures"]
-    values = [told.get(name, {}).get("value") for name in names]
+    outcome = results[experiment].outcome["measures"]
+    values = [outcome.get(name, {}).get("value") for name in names]
     return None if any(value is None for value in values) else values
 
 

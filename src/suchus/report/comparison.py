@@ -74,6 +74,16 @@ class Comparison:
     """Every setting in which they differ."""
 
     @property
+    def of_both(self) -> tuple[Compared, ...]:
+        """Measures of which both outcomes have a number."""
+        return tuple(one for one in self.measures if one.first is not None and one.second is not None)
+
+    @property
+    def of_one(self) -> tuple[Compared, ...]:
+        """Measures of which only one outcome has a number, or none."""
+        return tuple(one for one in self.measures if one.first is None or one.second is None)
+
+    @property
     def changed(self) -> tuple[Judged, ...]:
         """Claims that both judge, and differently."""
         return tuple(one for one in self.verdicts if one.first and one.second and one.first != one.second)
@@ -90,16 +100,17 @@ def compare(first: Result, second: Result, names: tuple[str, str]) -> Comparison
     Raises:
         IncompatibleRecord: they have no measure in common.
     """
-    measures = [_compared(name, first.told["measures"], second.told["measures"]) for name in _union(first, second)]
+    given = first.outcome["measures"], second.outcome["measures"]
+    measures = [_compared(name, *given) for name in _union(first, second)]
     if not any(one.first is not None and one.second is not None for one in measures):
         raise IncompatibleRecord(
             f"{first.folder} ({first.name}) and {second.folder} ({second.name}) have no measure in common; compare two "
             "outcomes of one experiment."
         )
     measures.sort(key=lambda one: (one.difference is None, -_size(one)))  # equal ones stay in their order
-    judged = list(_judged(first.told["verdicts"], second.told["verdicts"]))
+    judged = list(_judged(first.outcome["verdicts"], second.outcome["verdicts"]))
     judged.sort(key=lambda one: (one.first == one.second, not (one.first and one.second)))
-    flat = [dict(_flat(one.told.get("settings", {}))) for one in (first, second)]
+    flat = [dict(_flat(one.outcome.get("settings", {}))) for one in (first, second)]
     differ = [name for name in dict.fromkeys([*flat[0], *flat[1]]) if flat[0].get(name) != flat[1].get(name)]
     return Comparison(
         names=names,
@@ -132,7 +143,7 @@ def render_comparison(comparison: Comparison, place: Path) -> str:
     first, second = comparison.results
     content: dict[str, Any] = {
         "it": comparison,
-        "titles": list(dict.fromkeys([first.told["title"], second.told["title"]])),
+        "titles": list(dict.fromkeys([first.outcome["title"], second.outcome["title"]])),
         "pictures": _pairs({p.name: p for p in first.pictures}, {p.name: p for p in second.pictures}),
         "replays": _pairs({r.file.name: r for r in first.replays}, {r.file.name: r for r in second.replays}),
     }
@@ -146,7 +157,7 @@ def _pairs(
 
 
 def _union(first: Result, second: Result) -> list[str]:
-    return list(dict.fromkeys([*first.told["measures"], *second.told["measures"]]))
+    return list(dict.fromkeys([*first.outcome["measures"], *second.outcome["measures"]]))
 
 
 def _compared(name: str, first: Mapping[str, Any], second: Mapping[str, Any]) -> Compared:
@@ -171,11 +182,11 @@ def _size(one: Compared) -> float:
 
 
 def _judged(first: Sequence[Mapping[str, Any]], second: Sequence[Mapping[str, Any]]) -> Iterator[Judged]:
-    before, after = ({verdict["claim"]: verdict for verdict in some} for some in (first, second))
+    before, after = ({verdict["claim"]: verdict for verdict in verdicts} for verdicts in (first, second))
     for claim in dict.fromkeys([*before, *after]):
-        told = before.get(claim) or after[claim]
-        words = [str(some[claim]["verdict"]) if claim in some else "" for some in (before, after)]
-        yield Judged(quantity=told["quantity"], where=told["where"], first=words[0], second=words[1])
+        judged = before.get(claim) or after[claim]
+        words = [str(by_claim[claim]["verdict"]) if claim in by_claim else "" for by_claim in (before, after)]
+        yield Judged(quantity=judged["quantity"], where=judged["where"], first=words[0], second=words[1])
 
 
 def _flat(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:

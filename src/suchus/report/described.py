@@ -8,16 +8,16 @@ from pydantic import BaseModel, ConfigDict, FiniteFloat, ValidationError
 from suchus.errors import IncompatibleRecord
 
 
-class _Told(BaseModel):
+class _Described(BaseModel):
     model_config = ConfigDict(strict=True, extra="allow")
 
 
-class _Measure(_Told):
+class _Measure(_Described):
     value: FiniteFloat | None
     unit: str
 
 
-class _Share(_Told):
+class _Share(_Described):
     share: FiniteFloat
     low: FiniteFloat
     high: FiniteFloat
@@ -27,7 +27,7 @@ class _Share(_Told):
     above: bool = False
 
 
-class _Verdict(_Told):
+class _Verdict(_Described):
     claim: str
     quantity: str
     statement: str
@@ -47,13 +47,13 @@ class _Verdict(_Told):
     unswept: str = ""
 
 
-class _Provenance(_Told):
+class _Provenance(_Described):
     config_hash: str
     seed: Any
     seconds: FiniteFloat
 
 
-class _Outcome(_Told):
+class _Outcome(_Described):
     experiment: str
     title: str
     shows: str
@@ -65,18 +65,18 @@ class _Outcome(_Told):
     unjudged: str = ""
 
 
-def check_described(told: Any, file: Path) -> None:
+def check_described(outcome: Any, file: Path) -> None:
     """Refuse what no outcome says.
 
     Args:
-        told: what a file says, as JSON is read.
+        outcome: what a file says, as JSON is read.
         file: which, for the message.
 
     Raises:
         IncompatibleRecord: naming the place and what is wrong there.
     """
     try:
-        _Outcome.model_validate(told)
+        _Outcome.model_validate(outcome)
     except ValidationError as error:
         first = error.errors(include_url=False, include_input=False)[0]
         place = ".".join(map(str, first["loc"]))

@@ -37,8 +37,8 @@ def as_drawing(svg: str) -> Markup:
     slim = re.sub(r">\s+<", "><", slim).strip()
     if "'" in slim or "&" in slim:
         return Markup(f"data:image/svg+xml;base64,{base64.b64encode(slim.encode()).decode()}")
-    told = re.sub(r"\s+", " ", slim).replace("%", "%25").replace("#", "%23").replace('"', "'")
-    return Markup(_PLAIN_TEXT + told.replace("<", "%3C").replace(">", "%3E"))
+    escaped = re.sub(r"\s+", " ", slim).replace("%", "%25").replace("#", "%23").replace('"', "'")
+    return Markup(_PLAIN_TEXT + escaped.replace("<", "%3C").replace(">", "%3E"))
 
 
 def as_pixels(png: bytes) -> Markup:

@@ -31,14 +31,14 @@ def metres(results: Mapping[str, Result]) -> list[Metre]:
     rows = []
     for ending, where in METRES.items():
         for name, result in results.items():
-            told = result.told["measures"]
-            speed, work, cost = (_told(told.get(f"{what}_{ending}")) for what in _MEASURES)
+            outcome = result.outcome["measures"]
+            speed, work, cost = (_with_unit(outcome.get(f"{what}_{ending}")) for what in _MEASURES)
             if speed and work:
                 rows.append(Metre(where=where, experiment=name, speed=speed, work=work, cost=cost))
     return rows
 
 
-def _told(measure: Mapping[str, object] | None) -> str:
+def _with_unit(measure: Mapping[str, object] | None) -> str:
     """Return a measure with its unit; empty where there is none, or no number."""
     if measure is None or not isinstance(measure["value"], (int, float)):
         return ""

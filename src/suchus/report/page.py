@@ -75,12 +75,12 @@ def render_page(results: Sequence[Result], failures: Sequence[Failure], place: P
 
 def _gist(text: str) -> str:
     """Return the first sentences of a text, as many as it takes to say something."""
-    told = ""
+    gist = ""
     for sentence in re.split(r"(?<=[.:;]) ", text):
-        told = f"{told} {sentence}".strip()
-        if len(told) > _ENOUGH and told.endswith("."):
+        gist = f"{gist} {sentence}".strip()
+        if len(gist) > _ENOUGH and gist.endswith("."):
             break
-    return told
+    return gist
 
 
 def _share(verdict: Mapping[str, Any]) -> str:
@@ -89,14 +89,14 @@ def _share(verdict: Mapping[str, Any]) -> str:
     if not share:
         unswept = str(verdict.get("unswept", ""))
         return f"Not tried on other designs: {unswept}." if unswept else ""
-    told = (
+    text = (
         f"The statement holds in {share['share']:.0%} ({share['low']:.0%} to {share['high']:.0%}) of "
         f"{share['designs']:,} plausible designs".replace(",", "\N{NO-BREAK SPACE}")
     )
     if share["turned_by"] and share["at"] is not None:
         side = "above" if share["above"] else "below"
-        told += f"; best predicted by {share['turned_by']} {side} {number(share['at'], 3)}"
-    return f"{told}."
+        text += f"; best predicted by {share['turned_by']} {side} {number(share['at'], 3)}"
+    return f"{text}."
 
 
 def _scatter(verdict: Mapping[str, Any]) -> str:
@@ -113,9 +113,9 @@ def _content(results: Sequence[Result], failures: Sequence[Failure]) -> dict[str
     robot, others = robot_of(results)
     judged = robot.name == ARTICLES  # the article's claims are about its robot, and no other page is about them
     verdicts = [
-        {**_LACKING, **verdict, "experiment": result.name, "told": _share(verdict), "scatter": _scatter(verdict)}
+        {**_LACKING, **verdict, "experiment": result.name, "of_designs": _share(verdict), "scatter": _scatter(verdict)}
         for result in results
-        for verdict in result.told["verdicts"]
+        for verdict in result.outcome["verdicts"]
         if judged
     ]
     verdicts.sort(key=lambda verdict: order.get(verdict["claim"], len(order)))
@@ -123,7 +123,7 @@ def _content(results: Sequence[Result], failures: Sequence[Failure]) -> dict[str
     named = ROBOTS.beside(robot.name, "chosen", ()) if robot.name in ROBOTS else ()
     return {
         "results": results,
-        "unjudged": {result.name: result.told.get("unjudged", "") for result in results},
+        "unjudged": {result.name: result.outcome.get("unjudged", "") for result in results},
         "title": TITLE,
         "authors": AUTHORS,
         "failures": failures,
@@ -137,7 +137,7 @@ def _content(results: Sequence[Result], failures: Sequence[Failure]) -> dict[str
         "put_in": {word: n for word, n in counts.items() if word in _TOLD},
         "inputs": [verdict for verdict in verdicts if verdict["verdict"] in _TOLD],
         "fragile": sum(bool(verdict["fragile"]) for verdict in verdicts),
-        "tally": {result.name: _counts(result.told["verdicts"] if judged else ()) for result in results},
+        "tally": {result.name: _counts(result.outcome["verdicts"] if judged else ()) for result in results},
         "untouched": [c for c in CLAIMS.values() if judged and c.key not in {v["claim"] for v in verdicts}],
         "beside": beside(robot, {result.name: result for result in results}),
         "metres": metres({result.name: result for result in results}),
@@ -160,7 +160,7 @@ def _counts(verdicts: Sequence[Mapping[str, Any]]) -> dict[str, int]:
 
 def _place(result: Result, order: Mapping[str, int]) -> int:
     """Where the article comes to the last claim of a result, its main one; what claims nothing comes last."""
-    return max((order.get(v["claim"], len(order)) for v in result.told["verdicts"]), default=len(order))
+    return max((order.get(v["claim"], len(order)) for v in result.outcome["verdicts"]), default=len(order))
 
 
 def _drawing(robot: AnyRobot) -> dict[str, str]:

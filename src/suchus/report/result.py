@@ -11,6 +11,7 @@ from markupsafe import Markup
 from suchus.errors import IncompatibleRecord, UnreadableFile
 from suchus.figures import WIDTH
 from suchus.record import read_json, read_text
+from suchus.renamed import old_names
 from suchus.report.described import check_described
 from suchus.report.embedding import embedded
 from suchus.report.saving import OUTCOME, RECORD
@@ -43,13 +44,14 @@ class Moving:
     """Caption: what the picture or replay shows."""
 
 
+@old_names(told="outcome")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Result:
     """The contents of a folder of results."""
 
     folder: Path
     """The folder."""
-    told: Mapping[str, Any]
+    outcome: Mapping[str, Any]
     """Contents of ``outcome.json``."""
     pictures: tuple[Picture, ...]
     """The figures."""
@@ -63,7 +65,7 @@ class Result:
     @property
     def name(self) -> str:
         """Name of the experiment."""
-        return str(self.told["experiment"])
+        return str(self.outcome["experiment"])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -87,7 +89,7 @@ def load_result(folder: Path) -> Result:
     """
     file = folder / OUTCOME
     try:
-        told = read_json(file)
+        outcome = read_json(file)
         pictures = tuple(
             Picture(
                 name=f["name"],
@@ -95,24 +97,24 @@ def load_result(folder: Path) -> Result:
                 source=embedded(_inside(folder, f"{f['name']}.svg"), _inside(folder, f"{f['name']}.png")),
                 wide=_wide(_inside(folder, f"{f['name']}.svg")),
             )
-            for f in told["figures"]
+            for f in outcome["figures"]
         )
-        tables = {name: read_text(_inside(folder, name)) for name in told["tables"]}
-        films = _moving(folder, told.get("films", ()))
-        replays = _moving(folder, told.get("replays", ()))
+        tables = {name: read_text(_inside(folder, name)) for name in outcome["tables"]}
+        films = _moving(folder, outcome.get("films", ()))
+        replays = _moving(folder, outcome.get("replays", ()))
     except UnreadableFile:
         raise
     except OSError as error:
         raise UnreadableFile(f"{error.filename or file} cannot be read: {(error.strerror or '').lower()}.") from error
     except (ValueError, KeyError, TypeError, AttributeError) as error:
         raise IncompatibleRecord(f"{file} is no outcome of suchus: {error}.") from error
-    check_described(told, file)
-    return Result(folder=folder, told=told, pictures=pictures, tables=tables, films=films, replays=replays)
+    check_described(outcome, file)
+    return Result(folder=folder, outcome=outcome, pictures=pictures, tables=tables, films=films, replays=replays)
 
 
 def whole(result: Result) -> bool:
     """Return whether every file that an outcome names is in its folder: record, films and replays too."""
-    names = [RECORD, *(one["name"] for part in ("films", "replays") for one in result.told.get(part, ()))]
+    names = [RECORD, *(one["name"] for part in ("films", "replays") for one in result.outcome.get(part, ()))]
     return all(_inside(result.folder, name).is_file() for name in names)
 
 
@@ -122,8 +124,8 @@ def _wide(svg: Path) -> bool:
     return found is not None and float(found[1]) > _COLUMN
 
 
-def _moving(folder: Path, told: Iterable[Mapping[str, str]]) -> tuple[Moving, ...]:
-    found = (Moving(file=_inside(folder, one["name"]), caption=one["caption"]) for one in told)
+def _moving(folder: Path, outcome: Iterable[Mapping[str, str]]) -> tuple[Moving, ...]:
+    found = (Moving(file=_inside(folder, one["name"]), caption=one["caption"]) for one in outcome)
     return tuple(one for one in found if one.file.is_file())
 
 

@@ -21,7 +21,7 @@ def robot_of(results: Sequence[Result]) -> tuple[AnyRobot, dict[str, int]]:
 
     A robot that this version of suchus cannot build any more does not count.
     """
-    found = [robot for result in results if (robot := _robot(result.told.get("settings", {}))) is not None]
+    found = [robot for result in results if (robot := _robot(result.outcome.get("settings", {}))) is not None]
     if not found:
         return ROBOTS[ARTICLES], {}
     (most, _), *others = Counter(found).most_common()
@@ -29,8 +29,8 @@ def robot_of(results: Sequence[Result]) -> tuple[AnyRobot, dict[str, int]]:
 
 
 def _robot(settings: Any) -> AnyRobot | None:
-    told = settings.get("robot") if isinstance(settings, Mapping) else None
+    values = settings.get("robot") if isinstance(settings, Mapping) else None
     try:
-        return _ADAPTER.validate_python(told) if isinstance(told, Mapping) else None
+        return _ADAPTER.validate_python(values) if isinstance(values, Mapping) else None
     except (ValidationError, SuchusError):
         return None

@@ -54,8 +54,8 @@ def save_outcome(
             (draft / name).write_text(replay.html, encoding="utf-8")
         record.save(outcome.record, draft / RECORD)
         captions = {name: pictures.caption(figure) for name, figure in figures.items()}
-        told = describe(outcome, experiment, captions, command)
-        text = json.dumps(told, indent=2, ensure_ascii=False, allow_nan=False)
+        described = describe(outcome, experiment, captions, command)
+        text = json.dumps(described, indent=2, ensure_ascii=False, allow_nan=False)
         (draft / OUTCOME).write_text(text + "\n", encoding="utf-8")
     return folder
 

@@ -40,22 +40,22 @@ class ChosenNumber:
 
 def parts(design: Any) -> dict[str, tuple[Row, ...]]:
     """Return the rows of each part of a robot, by the part's name."""
-    told = meanings(type(design))
+    about = meanings(type(design))
     found: dict[str, tuple[Row, ...]] = {}
     for f in fields(design):
         part = getattr(design, f.name)
         if is_dataclass(part):
-            found[f"{f.name.replace('_', ' ')}: {told.get(f.name, '')[:1].lower()}{told.get(f.name, '')[1:]}"] = tuple(
-                rows(part, f.name)
-            )
+            meaning = about.get(f.name, "")
+            title = f"{f.name.replace('_', ' ')}: {meaning[:1].lower()}{meaning[1:]}"
+            found[title] = tuple(rows(part, f.name))
     return found
 
 
 def rows(design: Any, path: str = "") -> Iterator[Row]:
     """Yield a row for every number below a frozen value."""
-    told = meanings(type(design))
+    about = meanings(type(design))
     for f in fields(design):
-        value, meaning = getattr(design, f.name), told.get(f.name, "")
+        value, meaning = getattr(design, f.name), about.get(f.name, "")
         below = f"{path}.{f.name}".lstrip(".")
         if is_dataclass(value):
             yield from rows(value, below)

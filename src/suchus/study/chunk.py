@@ -106,10 +106,10 @@ def _table(
     table["seed"] = ("sample", np.array([point.seed for point in points], dtype=np.int64), _units("-"))
     if study.arms:
         table["arm"] = ("sample", np.array([point.arm.name for point in points]))
-    for told in dict.fromkeys(name for row in rows.values() for name in row):
-        measure = max((m for m in study.measure if told == m or told.startswith(f"{m}_")), key=len)
-        numbers = np.array([rows.get(s, {}).get(told, np.nan) for s in samples])
-        table[told] = ("sample", numbers, _units(unit_of(measure)))
+    for name in dict.fromkeys(name for row in rows.values() for name in row):
+        measure = max((m for m in study.measure if name == m or name.startswith(f"{m}_")), key=len)
+        numbers = np.array([rows.get(s, {}).get(name, np.nan) for s in samples])
+        table[name] = ("sample", numbers, _units(unit_of(measure)))
     table["error"] = ("sample", np.array([errors.get(s, "") for s in samples]))
     return table
 

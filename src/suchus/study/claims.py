@@ -164,7 +164,7 @@ def conduct_claims(
 
     def run(samples: int, timestep: float, place: str) -> xr.Dataset:
         study = replace(asked.study(samples, timestep), name=f"claims_{place}")
-        shown = None if progress is None else (lambda told: progress(place, told))
+        shown = None if progress is None else (lambda state: progress(place, state))
         return asked.record(study, conduct(study, folder / place, progress=shown, client=client, jobs=jobs))
 
     full = run(asked.compared, FINE, _compared(FINE))
@@ -194,8 +194,8 @@ def answer_finished(asked: Claims, folder: Path) -> xr.Dataset:
     """
 
     def read(place: str) -> tuple[Study, xr.Dataset]:
-        told = made_by(folder / place, key="fields")
-        samples, timestep = int(told["samples"]), float(told["timestep"])
+        makers = made_by(folder / place, key="fields")
+        samples, timestep = int(makers["samples"]), float(makers["timestep"])
         study = asked.study(samples, timestep)
         results = finished(study, folder / place)
         count = results.sizes["sample"] // len(RUNS)

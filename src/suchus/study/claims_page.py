@@ -11,7 +11,7 @@ import xarray as xr
 from suchus import record as records
 from suchus.figures.sensitivity import draw_claim, draw_shares, spoken
 from suchus.paper import CLAIMS
-from suchus.study.claims_table import finite, shipped, table, told, turned
+from suchus.study.claims_table import claim_row, finite, shipped, table, turned
 from suchus.study.result_table import ResultTable, Section, write_tables
 
 OUTCOME, TABLE, RECORD, SHARES = "outcome.json", "claims.csv", "claims.nc", "claims.json"
@@ -27,7 +27,7 @@ def write_claims(record: xr.Dataset, folder: Path) -> Path:
     Raises:
         Unwritable: the place cannot be written to, or is taken.
     """
-    rows = [told(record, str(claim)) for claim in record.claim.values]
+    rows = [claim_row(record, str(claim)) for claim in record.claim.values]
     with records.new_folder(folder, mark=OUTCOME) as draft:
         (draft / TABLE).write_text(table(rows), encoding="utf-8")
         (draft / SHARES).write_text(shipped(record, rows), encoding="utf-8")

@@ -27,7 +27,7 @@ _ANSWERED_BY = (
 )
 
 
-def told(record: xr.Dataset, claim: str) -> dict[str, Any]:
+def claim_row(record: xr.Dataset, claim: str) -> dict[str, Any]:
     """Return what became of one claim: share, deciders with their intervals, border.
 
     Args:
@@ -143,7 +143,7 @@ def shipped(record: xr.Dataset, rows: Sequence[Mapping[str, Any]]) -> str:
 
     Args:
         record: of ``claims.conduct_claims``.
-        rows: of ``told``.
+        rows: of ``claim_row``.
     """
     claims = shares(rows)
     made_by = json.loads(record.attrs["made_by"])

@@ -169,7 +169,7 @@ def _reach(address: str, patience: float) -> None:
     found = _ADDRESS.fullmatch(address)
     if found is None or not 0 < int(found[3]) < 65536:
         raise NoCluster(f"{address!r} is no address of a scheduler; one looks like tcp://127.0.0.1:8786.")
-    end, told = time.monotonic() + patience, False
+    end, announced = time.monotonic() + patience, False
     while True:
         try:
             where = found[2].strip("[]"), int(found[3])
@@ -185,9 +185,9 @@ def _reach(address: str, patience: float) -> None:
                 raise NoCluster(
                     f"no scheduler answers at {address} within {patience:g} s; start one with `dask scheduler`."
                 ) from error
-        if not told:
+        if not announced:
             _LOG.warning("nobody answers at %s; trying for %g s.", address, patience)
-            told = True
+            announced = True
         time.sleep(_AGAIN)
 
 
@@ -216,10 +216,10 @@ def _check_versions(client: Any) -> None:
         NoCluster: they do not even say.
     """
     try:
-        told = client.get_versions()
-        ours = _packages(told["client"])
-        others = {"the scheduler": _packages(told["scheduler"])}
-        others |= {f"the worker {name}": _packages(worker) for name, worker in told["workers"].items()}
+        versions = client.get_versions()
+        ours = _packages(versions["client"])
+        others = {"the scheduler": _packages(versions["scheduler"])}
+        others |= {f"the worker {name}": _packages(worker) for name, worker in versions["workers"].items()}
     except (OSError, TimeoutError, KeyError, TypeError, ValueError, ImportError, AttributeError) as error:
         raise NoCluster(
             "the cluster does not report its versions; start it with the versions that are here."
@@ -230,8 +230,8 @@ def _check_versions(client: Any) -> None:
             raise IncompatibleRecord(f"{who} has {', '.join(other)}; install the same versions on every machine.")
 
 
-def _packages(told: Mapping[str, Any]) -> dict[str, str]:
-    packages: Mapping[str, Any] = told["packages"]
+def _packages(versions: Mapping[str, Any]) -> dict[str, str]:
+    packages: Mapping[str, Any] = versions["packages"]
     return {name: ".".join(str(packages.get(name)).split(".")[: 2 if name == "python" else 3]) for name in _ALIKE}
 
 

@@ -200,5 +200,5 @@ def _duration(seconds: float) -> str:
     return f"{seconds / 60:.0f} min" if seconds < 5400 else f"{seconds / 3600:.1f} h"
 
 
-def _silent(told: StudyProgress) -> None:
-    del told
+def _silent(progress: StudyProgress) -> None:
+    del progress

@@ -35,11 +35,11 @@ def deciding(libraries: Sequence[str] = (), rooms: Sequence[str] = MADE_BY) -> d
         rooms: whose source decides, see ``record.code_digest``.
     """
     found = versions()
-    told = {name: found.get(name, "not installed") for name in _DECIDING}
-    told["source"] = code_digest(*rooms)[:12]
+    makers = {name: found.get(name, "not installed") for name in _DECIDING}
+    makers["source"] = code_digest(*rooms)[:12]
     for name in libraries:
         try:
-            told[name] = version(name)
+            makers[name] = version(name)
         except PackageNotFoundError:
-            told[name] = "not installed"
-    return told
+            makers[name] = "not installed"
+    return makers

@@ -28,7 +28,7 @@ def unpacked(table: xr.Dataset) -> xr.Dataset:
     if _ABOUT not in table.attrs:
         return table
     dim, numbers = table[_NUMBERS].dims[0], table[_NUMBERS].values
-    columns = {name: (dim, numbers[:, i].copy(), told) for i, (name, told) in enumerate(table.attrs[_ABOUT])}
+    columns = {name: (dim, numbers[:, i].copy(), attrs) for i, (name, attrs) in enumerate(table.attrs[_ABOUT])}
     whole = table.drop_vars(_NUMBERS).assign(columns)[table.attrs[_ORDER]]
     whole.attrs = {name: value for name, value in table.attrs.items() if name not in (_ABOUT, _ORDER)}
     return whole

@@ -51,8 +51,8 @@ def _shipped() -> Mapping[str, Share]:
     file = resources.files("suchus.verdict") / _FILE
     if not file.is_file():
         return MappingProxyType({})
-    told = json.loads(file.read_text(encoding="utf-8"))
-    return MappingProxyType({key: Share(claim=key, **row) for key, row in told["claims"].items()})
+    table = json.loads(file.read_text(encoding="utf-8"))
+    return MappingProxyType({key: Share(claim=key, **row) for key, row in table["claims"].items()})
 
 
 def digest(claims: Mapping[str, Mapping[str, object]]) -> str:

@@ -177,8 +177,8 @@ def force_on(robot: AnyRobot) -> Knob:
     """Return the knob of a push's force, which follows the weight of whom it pushes, in newtons or millinewtons."""
     weight = robot.mass * GRAVITY
     unit, scale = ("N", 1.0) if weight >= _FAINT else ("mN", 1e-3)
-    told = f"{weight / scale:.0f}" if weight / scale >= 10.0 else f"{weight / scale:.2g}"
-    hint = f"{robot.name} weighs {told} {unit}."
+    shown = f"{weight / scale:.0f}" if weight / scale >= 10.0 else f"{weight / scale:.2g}"
+    hint = f"{robot.name} weighs {shown} {unit}."
     high = _rounded(FORCE.high * beside_article(robot).weight / scale)
     return replace(FORCE, unit=unit, scale=scale, high=high, step=_rounded(high / 60.0), hint=hint)
 

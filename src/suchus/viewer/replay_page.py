@@ -108,10 +108,10 @@ class ReplayPage:
                 self._stage.ghost.show(ghost.at(time))
             if everything:
                 self._slider.value = round(time, 2)
-                self._status.content = told(take, ghost, time)
+                self._status.content = status_text(take, ghost, time)
 
 
-def told(take: Take, ghost: Take | None, time: float) -> str:
+def status_text(take: Take, ghost: Take | None, time: float) -> str:
     """Return the head of the page as HTML: who is where at this time."""
     rows = []
     for name, one in (("", take), ("ghost", ghost)):

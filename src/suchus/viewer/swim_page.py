@@ -108,7 +108,7 @@ class SwimPage:
                 else:
                     self._image.image = picture
             self._body_at(film.sides[frame])
-            self._status.content = told(film, field, frame)
+            self._status.content = status_text(film, field, frame)
 
     def _body_at(self, sides: np.ndarray) -> None:
         left, right = (np.column_stack([side, np.zeros(len(side))]) for side in sides)
@@ -125,7 +125,7 @@ class SwimPage:
         self._edge.points = np.stack([ring[:-1], ring[1:]], axis=1).astype(np.float32)
 
 
-def told(film: Film, field: str, frame: int) -> str:
+def status_text(film: Film, field: str, frame: int) -> str:
     """Return the head of the page as HTML: which frame, and what the colours mean."""
     bar = ""
     if field != "none":

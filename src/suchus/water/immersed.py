@@ -35,7 +35,7 @@ def immersed(
     def spine(time: float) -> flow.Spine:
         curve = bent.curve(np.asarray(time), *_grown(time, grow))
         bare = flow.Spine(**curve._asdict(), half_width=half_width)
-        return bare.blunted(least) if least > 0.0 else bare
+        return bare.thickened(least) if least > 0.0 else bare
 
     return flow.Midline(spine=spine)
 

@@ -62,8 +62,8 @@ def tail_sides(outline: Outline, surface: flow.Surface) -> Float[np.ndarray, "2 
     places = np.linspace(root(outline), outline.robot.length, PLACES)
     out = np.empty((2, PLACES))
     for row, side in enumerate((-1.0, 1.0)):  # the midline runs to the tail: its left is the robot's right
-        some = np.flatnonzero(m.side == side)
-        order = some[np.argsort(m.station[some])]
+        there = np.flatnonzero(m.side == side)
+        order = there[np.argsort(m.station[there])]
         out[row] = np.interp(places, m.station[order], surface.pressure[order])
     return out
 

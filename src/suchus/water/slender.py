@@ -155,7 +155,7 @@ def cruise(outline: Outline, motion: Motion, model: Model, water: Water) -> Crui
     for share in np.geomspace(0.01, 1.0, 9):
         end = float(np.copysign(share * most, held.thrust))
         if effort(end).thrust * held.thrust <= 0:
-            speed = float(brentq(lambda some: effort(some).thrust, start, end, xtol=1e-6))
+            speed = float(brentq(lambda speed: effort(speed).thrust, start, end, xtol=1e-6))
             return Cruise(speed, effort(speed).power, *recoil(outline, bent, speed, water))
         start = end
     raise NotConverged(

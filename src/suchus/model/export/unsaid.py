@@ -8,7 +8,7 @@ _CABLES, _SPRINGS = "The cable.", "Springs"
 _BESIDE = "{name} {stiffness:g} N m/rad"
 
 
-def told(texts: Sequence[str], robot: AnyRobot, **own: object) -> tuple[str, ...]:
+def filled(texts: Sequence[str], robot: AnyRobot, **own: object) -> tuple[str, ...]:
     """Return sentences with the robot's numbers in their braces; those about cables or springs only if it has some.
 
     Args:

@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 from suchus.design import AnyRobot, layout
 from suchus.model.build import compile_model, servo_of
 from suchus.model.export.mjcf import numbers
-from suchus.model.export.unsaid import told
+from suchus.model.export.unsaid import filled
 from suchus.model.names import IMU, sites
 
 BALL = "meshes/ball.obj"
@@ -69,7 +69,7 @@ def urdf(robot: AnyRobot) -> str:
 
 def unsaid(robot: AnyRobot) -> tuple[str, ...]:
     """Return what the URDF of a robot leaves out, and what to do about it."""
-    return told(UNSAID, robot, faceted=100 * (1 - np.cos(np.pi / _SECTORS)))
+    return filled(UNSAID, robot, faceted=100 * (1 - np.cos(np.pi / _SECTORS)))
 
 
 def ball() -> str:

@@ -10,7 +10,7 @@ from suchus.design import GRAVITY, AnyRobot, layout
 from suchus.errors import SuchusError
 from suchus.model.build import compile_model, servo_of
 from suchus.model.export.mjcf import home
-from suchus.model.export.unsaid import told
+from suchus.model.export.unsaid import filled
 from suchus.model.export.urdf import ball
 from suchus.model.names import IMU, sites
 from suchus.model.standing import standing
@@ -130,7 +130,7 @@ def Xform "World"
 def unsaid_in_usd(robot: AnyRobot) -> tuple[str, ...]:
     """Return what the USD of a robot leaves out, and what to do about it."""
     speeds = sorted({servo_of(robot, name).speed for name in layout(robot).servos})
-    return told(UNSAID, robot, speeds=" or ".join(f"{v:g}" for v in speeds), link=LINK_MASS)
+    return filled(UNSAID, robot, speeds=" or ".join(f"{v:g}" for v in speeds), link=LINK_MASS)
 
 
 def prim_name(robot: AnyRobot) -> str:

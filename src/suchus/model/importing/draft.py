@@ -14,6 +14,7 @@ from suchus.model.importing.draft_limbs import draft_girdle, lowest
 from suchus.model.importing.making import Making, making_of
 from suchus.model.importing.options import Words
 from suchus.model.importing.plan import BodyPlan, without
+from suchus.renamed import old_names
 
 _LEG = 0.03  # of the robot's length that a leg reaches below the axis, at least
 _CONTACT = {
@@ -23,6 +24,7 @@ _CONTACT = {
 }
 
 
+@old_names(told="remarks")
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Draft:
     """A robot read from a file of another tool."""
@@ -31,7 +33,7 @@ class Draft:
     """The robot."""
     matches: tuple[Match, ...]
     """Each hinge of the robot and the one of the file, in the order of the robot's layout."""
-    told: tuple[str, ...]
+    remarks: tuple[str, ...]
     """What was guessed and what was not taken, in sentences."""
     notes: Mapping[str, str]
     """Guesses, by the place of the number in the robot's file, as ``girdles[0].limb.foot.radius``."""
@@ -72,26 +74,26 @@ def draft_of(plan: BodyPlan, name: str, words: Words) -> Draft:
     return Draft(
         robot=robot,
         matches=tuple(sorted(making.matches, key=lambda match: order.index(match.ours))),
-        told=(*plan.told, *dict.fromkeys([*arms, *making.told, *_balance(making, robot)])),
+        remarks=(*plan.remarks, *dict.fromkeys([*arms, *making.remarks, *_balance(making, robot)])),
         notes=making.notes | {f"contact.{key}": text for key, text in _CONTACT.items()},
     )
 
 
 def _legs(plan: BodyPlan, words: Words) -> tuple[BodyPlan, list[str]]:
     """Return a plan without limbs that do not reach below the axis, and what is noted of them."""
-    told = []
+    remarks = []
     for number in reversed(range(len(plan.pairs))):
         making = making_of(plan, words)
         depth = -lowest(draft_girdle(making, number))
         if depth < _LEG * making.size.length:
             pair = plan.pairs[number]
             parts = " and ".join(plan.part(chain.parts[0]).name for chain in pair)
-            told.append(
+            remarks.append(
                 f"{parts} reach {max(depth, 0.0):.3g} m below the axis, so they are arms or fins and were left out; "
                 "their masses went to the part that carries them."
             )
             plan = without(plan, pair)
-    return plan, told
+    return plan, remarks
 
 
 def _seated(girdle: Girdle, segment: str, front: float) -> Girdle:

@@ -78,7 +78,7 @@ def _joints(making: Making, i: int, root: int) -> list[Found]:
     near, far = (axis[i + 1], axis[i]) if ahead else (axis[i], axis[i + 1])
     found = []
     for joint, onward in links_between(making.plan, near, far):
-        turn, sense = turn_of(joint, making.turned(joint.axis), making.told)
+        turn, sense = turn_of(joint, making.turned(joint.axis), making.remarks)
         off = 0.0 if turn == "yaw" else abs(float(making.into(joint.anchor)[2]))
         found.append((joint, turn, axial_sign(turn, sense, ahead=ahead, onward=onward), off))
     return found
@@ -106,7 +106,7 @@ def _tell_offsets(making: Making, groups: Sequence[Sequence[Found]], places: lis
         moved += [(abs(float(making.into(j.anchor)[0]) - place), j.name) for j, turn, _, _ in group if turn != "roll"]
     worst = max(moved, default=(0.0, ""))
     if worst[0] > JOINED * making.size.length:
-        making.told.append(
+        making.remarks.append(
             f"The axis of a robot is straight here: hinges of the file lie up to {worst[0]:.3g} m off it ({worst[1]}) "
             "and were moved onto it."
         )
@@ -120,7 +120,7 @@ def _shapes(making: Making, part: TreePart, front: float, length: float, number:
     volume = sum(piece.volume for piece in inside)
     if not inside or volume <= 0:
         making.notes[f"{place}[0].radius"] = "guess: a tenth of the segment's length; the file has no shape for it"
-        making.told.append(f"{part.name} has no shape that is read; the draft gives it a rod.")
+        making.remarks.append(f"{part.name} has no shape that is read; the draft gives it a rod.")
         radius = min(max(_THIN * length, 1e-5), 10.0)
         return (Rod(name=part.name, start=(0.0, 0.0, 0.0), end=(-length, 0.0, 0.0), radius=radius, mass=part.mass),)
     found: list[Rod | Shell] = []

@@ -44,13 +44,13 @@ class Size:
     """Length of the robot [m]."""
 
 
-def turn_of(joint: Joint, axis: np.ndarray, told: list[str]) -> tuple[Turn, float]:
+def turn_of(joint: Joint, axis: np.ndarray, remarks: list[str]) -> tuple[Turn, float]:
     """Return what a hinge turns, and 1 where its axis points along x, y or z of the robot, else -1.
 
     Args:
         joint: the hinge.
         axis: its axis in the robot's frame.
-        told: takes a sentence where the axis is rounded.
+        remarks: takes a sentence where the axis is rounded.
 
     Raises:
         UnreadableFile: it is skew.
@@ -63,14 +63,14 @@ def turn_of(joint: Joint, axis: np.ndarray, told: list[str]) -> tuple[Turn, floa
             "the robot's axes (forward, left, up) at zero posture; suchus takes hinges along them: draw its limb so."
         )
     if off > _EXACT:
-        told.append(f"Hinge {joint.name} is {off:.1f} degrees skew; the draft has it along an axis of the robot.")
+        remarks.append(f"Hinge {joint.name} is {off:.1f} degrees skew; the draft has it along an axis of the robot.")
     turn: Turn = ("roll", "pitch", "yaw")[along]
     return turn, float(np.sign(axis[along]))
 
 
-def limb_turn(joint: Joint, axis: np.ndarray, side: float, told: list[str]) -> tuple[Turn, float]:
+def limb_turn(joint: Joint, axis: np.ndarray, side: float, remarks: list[str]) -> tuple[Turn, float]:
     """Return what a hinge of a limb turns, and 1 where it turns as ours does, else -1."""
-    along, sense = turn_of(joint, axis, told)
+    along, sense = turn_of(joint, axis, remarks)
     turn: Turn = {"roll": "pitch", "pitch": "roll", "yaw": "yaw"}[along]  # type: ignore[assignment]
     ours = LIMB_AXES[turn][("roll", "pitch", "yaw").index(along)]
     return turn, sense * ours * (side if turn != "roll" else 1.0)

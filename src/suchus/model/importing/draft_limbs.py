@@ -32,8 +32,8 @@ def draft_girdle(making: Making, number: int) -> Girdle:
     joints, others = ([j for i in chain.parts for j in making.plan.part(i).joints] for chain in (left, right))
     count = len(making.plan.pairs)
     name = _NAMES[count][number] if count in _NAMES else f"G{number + 1}"
-    turns = [limb_turn(joint, making.turned(joint.axis), 1.0, making.told) for joint in joints]
-    across = [limb_turn(joint, making.turned(joint.axis), -1.0, making.told) for joint in others]
+    turns = [limb_turn(joint, making.turned(joint.axis), 1.0, making.remarks) for joint in joints]
+    across = [limb_turn(joint, making.turned(joint.axis), -1.0, making.remarks) for joint in others]
     if [turn for turn, _ in turns] != [turn for turn, _ in across]:
         raise UnreadableFile(f"the limbs of {joints[0].name} and {others[0].name} have their hinges in another order.")
     labels = limb_names([j.name for j in joints], [j.name for j in others], name) or numbered([t for t, _ in turns])
@@ -45,7 +45,8 @@ def draft_girdle(making: Making, number: int) -> Girdle:
         ]
     hip = making.into(making.hip(left))
     if hip[1] < _LEAST:
-        making.told.append(f"The hips of girdle {name} lie in the midline; the draft has them {_LEAST:g} m beside it.")
+        where = f"the draft has them {_LEAST:g} m beside it"
+        making.remarks.append(f"The hips of girdle {name} lie in the midline; {where}.")
     limb = _limb(making, left, turns, labels, f"girdles[{number}].limb")
     return Girdle(
         name=name, segment="-", at=float(hip[0]), aside=max(float(hip[1]), _LEAST), above=float(hip[2]), limb=limb
@@ -130,7 +131,7 @@ def _foot(making: Making, parts: list[TreePart], knee: np.ndarray, place: str) -
     far_end = max(ends, key=lambda end: float(np.linalg.norm(end - knee)), default=knee)
     if np.linalg.norm(far_end - knee) < max(0.1 * reach, _POINT):
         far_end = knee - np.array([0.0, 0.0, reach or 0.2 * making.size.length])
-        making.told.append(
+        making.remarks.append(
             f"Nothing of the file says how far {last.name} reaches beyond its joint; the draft has its foot "
             f"{knee[2] - far_end[2]:.3g} m below."
         )
@@ -138,7 +139,7 @@ def _foot(making: Making, parts: list[TreePart], knee: np.ndarray, place: str) -
     elif last.pieces:
         middle = np.mean([making.into(piece.centre) for piece in last.pieces], axis=0)
         far_end = np.array([*middle[:2], far_end[2]]) if abs(far_end[2] - knee[2]) > _POINT else far_end
-        making.told.append(f"{last.name} has no ball for a foot; the draft has the foot at its farthest end.")
+        making.remarks.append(f"{last.name} has no ball for a foot; the draft has the foot at its farthest end.")
     radius = _FOOT * max(reach + float(np.linalg.norm(far_end - knee)), _POINT)
     making.notes[f"{place}.foot.radius"] = "guess: a twelfth of the limb's reach; see --foot-radius"
     return far_end, max(radius, 1e-5)
@@ -163,10 +164,11 @@ def _tell_sides(
         line = making.turned(two.axis)
         off = float(np.linalg.norm(gap - (gap @ line) * line))
         if off > _ALIKE * making.size.length:
-            making.told.append(
+            making.remarks.append(
                 f"{two.name} lies {off:.3g} m off the mirror image of {one.name}; the draft has the image."
             )
         if one.range and two.range:
             left, right = (sorted(sign * end for end in r) for sign, r in ((a, one.range), (b, two.range)))
             if np.abs(np.subtract(left, right)).max() > _ALIKE:
-                making.told.append(f"{two.name} has another range than {one.name}; the draft has the left one on both.")
+                which = f"{two.name} has another range than {one.name}"
+                making.remarks.append(f"{which}; the draft has the left one on both.")

@@ -32,7 +32,7 @@ class Loaded:
     """The ``mujoco.MjModel``: bodies, hinges and shapes."""
     drives: dict[str, Drive]
     """What drives each hinge; empty where the file says nothing of drives."""
-    told: tuple[str, ...]
+    remarks: tuple[str, ...]
     """Notes on what was not taken over, a sentence each."""
 
 
@@ -52,10 +52,10 @@ def load(path: Path) -> Loaded:
     try:
         if root.tag == "robot":
             kind: Format = "URDF"
-            clean, drives, told = clean_urdf(root, mesh)
+            clean, drives, remarks = clean_urdf(root, mesh)
         elif root.tag == "mujoco":
             kind = "MJCF"
-            clean, drives, told = clean_mjcf(with_includes(root, path), mesh)
+            clean, drives, remarks = clean_mjcf(with_includes(root, path), mesh)
         else:
             raise UnreadableFile(
                 f"it begins with <{root.tag[:40]}>; a URDF begins with <robot>, an MJCF with <mujoco>."
@@ -64,11 +64,11 @@ def load(path: Path) -> Loaded:
     except SuchusError as error:
         raise UnreadableFile(f"{path.name} cannot be imported: {error}") from error
     if lost:
-        told += (
+        remarks += (
             f"{len(lost)} meshes were not read ({', '.join(sorted(set(lost))[:3])}): only STL and OBJ files in the "
             "file's own folder are.",
         )
-    return Loaded(kind=kind, model=model, drives=drives, told=told)
+    return Loaded(kind=kind, model=model, drives=drives, remarks=remarks)
 
 
 def _given(path: Path, name: str, assets: dict[str, bytes], lost: list[str]) -> str | None:

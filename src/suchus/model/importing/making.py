@@ -28,7 +28,7 @@ class Making:
     """Mass of the heaviest part [kg]."""
     matches: list[Match] = field(default_factory=list)
     """Hinges so far."""
-    told: list[str] = field(default_factory=list)
+    remarks: list[str] = field(default_factory=list)
     """What was guessed and what was not taken, in sentences."""
     notes: dict[str, str] = field(default_factory=dict)
     """Guesses by the place of the number in the robot's file."""

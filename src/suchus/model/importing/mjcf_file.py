@@ -62,9 +62,9 @@ def clean_mjcf(root: ElementTree.Element, mesh: Mesh) -> tuple[ElementTree.Eleme
     Raises:
         UnreadableFile: it has loops, makes bodies by rule, or has no bodies.
     """
-    told = _equalities(root)
+    remarks = _equalities(root)
     drives, of_tendons = _actuators(root)
-    told += of_tendons
+    remarks += of_tendons
     made = ElementTree.Element("mujoco", model="imported")
     compiler = {k: v for e in root.findall("compiler") for k, v in e.attrib.items() if k in _COMPILER}
     bounds = {key: MUJOCO[key] for key in ("boundmass", "boundinertia")}
@@ -84,8 +84,8 @@ def clean_mjcf(root: ElementTree.Element, mesh: Mesh) -> tuple[ElementTree.Eleme
         made.append(_cleaned(world, _KEPT, meshes))
     left = sorted({element.tag for element in root if element.tag not in _UNTOLD})
     if left:
-        told += (f"Of the MJCF these are not part of a body and were not read: {', '.join(left)}.",)
-    return made, drives, told
+        remarks += (f"Of the MJCF these are not part of a body and were not read: {', '.join(left)}.",)
+    return made, drives, remarks
 
 
 def _cleaned(element: ElementTree.Element, tags: tuple[str, ...], meshes: set[str] | None) -> ElementTree.Element:
@@ -122,7 +122,7 @@ def _meshes(root: ElementTree.Element, made: ElementTree.Element, mesh: Mesh) ->
 
 
 def _equalities(root: ElementTree.Element) -> tuple[str, ...]:
-    told = []
+    remarks = []
     for element in (e for part in root.findall("equality") for e in part):
         if element.get("active") == "false":
             continue
@@ -132,15 +132,15 @@ def _equalities(root: ElementTree.Element) -> tuple[str, ...]:
                 f"a <{element.tag}> of {' and '.join(map(str, ends)) or 'two bodies'} closes a loop; suchus takes "
                 "trees: remove it, or make it inactive."
             )
-        told.append(f"An equality <{element.tag}> was not taken: the joints that it ties are hinges of their own.")
-    return tuple(told)
+        remarks.append(f"An equality <{element.tag}> was not taken: the joints that it ties are hinges of their own.")
+    return tuple(remarks)
 
 
 def _actuators(root: ElementTree.Element) -> tuple[dict[str, Drive], tuple[str, ...]]:
     """Return the drive of each hinge; where a file drives some hinges, the others are passive."""
     defaults = dict(_defaults(root))
     driven: dict[str, Drive] = {}
-    told = []
+    remarks = []
     tendons = {e.get("name"): e for part in root.findall("tendon") for e in part}
     for element in (e for part in root.findall("actuator") for e in part):
         joint = element.get("joint") or element.get("jointinparent")
@@ -149,17 +149,17 @@ def _actuators(root: ElementTree.Element) -> tuple[dict[str, Drive], tuple[str, 
             driven[joint] = Drive(torque=_torque(given), speed=None, passive=False)
         elif element.get("tendon") in tendons:
             over = [e.get("joint", "") for e in tendons[element.get("tendon")].iter("joint")]
-            told.append(
+            remarks.append(
                 f"Actuator {element.get('name', element.tag)} pulls a tendon over {', '.join(over) or 'sites'}; this "
                 "drive was not taken: these hinges are springs in the draft. Say it as [[cables]], with cord spacing "
                 "and pulley, or give them servos."
             )
         else:
-            told.append(f"Actuator {element.get('name', element.tag)} drives no joint and was not taken.")
+            remarks.append(f"Actuator {element.get('name', element.tag)} drives no joint and was not taken.")
     if not driven:
-        return {}, tuple(told)
+        return {}, tuple(remarks)
     others = {e.get("name", ""): Drive(torque=None, speed=None, passive=True) for e in root.iter("joint")}
-    return {**others, **driven}, tuple(told)
+    return {**others, **driven}, tuple(remarks)
 
 
 def _defaults(root: ElementTree.Element) -> Iterator[tuple[tuple[str, str], Mapping[str, str]]]:

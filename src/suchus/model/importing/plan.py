@@ -31,7 +31,7 @@ class BodyPlan:
     """Places in the tree, from the front end to the rear end."""
     pairs: tuple[tuple[LimbChain, LimbChain], ...]
     """Limbs, left and right, from the front."""
-    told: tuple[str, ...]
+    remarks: tuple[str, ...]
     """What was guessed, and what was not taken."""
 
     def part(self, place: int) -> TreePart:
@@ -46,10 +46,10 @@ def plan_of(tree: Tree, words: Words) -> BodyPlan:
         UnreadableFile: it has no mirror plane, or its root is a limb.
         UnknownName: a body that was named is not there.
     """
-    tree, told = _pruned(tree, words.leave)
+    tree, remarks = _pruned(tree, words.leave)
     plane, split = find_plane(tree, front=words.front, heading=words.heading)
     axis = _chain(tree, plane, split.axis, words)
-    told += _told_front(plane)
+    remarks += _remarks_on_front(plane)
     pairs, lost = [], [(i, "no mirror image") for i in split.single]
     for left, right in split.pairs:
         where = tree.parts[left].parent
@@ -71,7 +71,7 @@ def plan_of(tree: Tree, words: Words) -> BodyPlan:
     for i in first:
         names = [tree.parts[k].name for k in tree.below(i) if k not in used]
         reason = why.get(i) or ("in the middle, but not between front and rear" if i in split.axis else "a fork")
-        told.append(
+        remarks.append(
             f"{', '.join(names[:4])}{' ...' if len(names) > 4 else ''} was left out ({reason}); its mass went to the "
             f"part that carries it. {'See --neck and --tail.' if i in split.axis else ''}".rstrip()
         )
@@ -81,7 +81,7 @@ def plan_of(tree: Tree, words: Words) -> BodyPlan:
         plane=plane,
         axis=axis,
         pairs=tuple(sorted(pairs, key=lambda pair: -hips[pair])),
-        told=(*tree.told, *told),
+        remarks=(*tree.remarks, *remarks),
     )
 
 
@@ -105,19 +105,19 @@ def links_between(plan: BodyPlan, near: int, far: int) -> Iterator[tuple[Joint, 
             yield joint, False
 
 
-def _told_front(plane: Plane) -> list[str]:
+def _remarks_on_front(plane: Plane) -> list[str]:
     where = f"the file's x axis turned left by {plane.heading % 360:g} degrees"
     other = (plane.heading + 180) % 360
     if plane.certain:
-        told = [f"Front: {where}, as names or options say (--front, --heading)."]
+        remarks = [f"Front: {where}, as names or options say (--front, --heading)."]
     else:
-        told = [f"Guess: the front is {where}; if it is the rear, say --front BODY or --heading {other:g}."]
+        remarks = [f"Guess: the front is {where}; if it is the rear, say --front BODY or --heading {other:g}."]
     if plane.rivals:
         others = " or ".join(f"{(heading + turn) % 360:g}" for heading in plane.rivals for turn in (0, 180))
-        told.append(
+        remarks.append(
             f"Guess: its sides mirror as well about another plane; if that is the right one, --heading {others}."
         )
-    return told
+    return remarks
 
 
 def _pruned(tree: Tree, names: Sequence[str]) -> tuple[Tree, list[str]]:
@@ -136,7 +136,8 @@ def _pruned(tree: Tree, names: Sequence[str]) -> tuple[Tree, list[str]]:
     lighter = _lumped(tree, set(kept))
     parts = tuple(replace(lighter.parts[i], parent=-1 if i == 0 else kept.index(tree.parts[i].parent)) for i in kept)
     left = ", ".join(tree.parts[i].name for i in sorted(gone))
-    return Tree(parts=parts, told=tree.told), [f"Left out as asked, their masses lent to what carries them: {left}."]
+    remark = f"Left out as asked, their masses lent to what carries them: {left}."
+    return Tree(parts=parts, remarks=tree.remarks), [remark]
 
 
 def _chain(tree: Tree, plane: Plane, inside: Sequence[int], words: Words) -> tuple[int, ...]:

@@ -20,14 +20,14 @@ def straightened(plan: BodyPlan) -> BodyPlan:
     The leg of a hexapod that points forward and out by 45 degrees is turned at its yaw hinge until it points straight
     out. A hinge turned so calls our zero another angle. A limb of which that does not make anything straight stays.
     """
-    parts, told = list(plan.tree.parts), list(plan.told)
+    parts, remarks = list(plan.tree.parts), list(plan.remarks)
     for pair in plan.pairs:
         for chain in pair:
-            _straighten(plan, parts, chain, told)
-    return replace(plan, tree=replace(plan.tree, parts=tuple(parts)), told=tuple(told))
+            _straighten(plan, parts, chain, remarks)
+    return replace(plan, tree=replace(plan.tree, parts=tuple(parts)), remarks=tuple(remarks))
 
 
-def _straighten(plan: BodyPlan, parts: list[TreePart], chain: LimbChain, told: list[str]) -> None:
+def _straighten(plan: BodyPlan, parts: list[TreePart], chain: LimbChain, remarks: list[str]) -> None:
     order = [(i, k) for i in chain.parts for k in range(len(parts[i].joints))]
     for number, (i, k) in enumerate(order[1:], 1):
         axis = plan.plane.turn @ parts[i].joints[k].axis
@@ -39,7 +39,7 @@ def _straighten(plan: BodyPlan, parts: list[TreePart], chain: LimbChain, told: l
         if angle is None:
             return
         _turn(parts, plan, before, which, angle)
-        told.append(
+        remarks.append(
             f"The limb behind {pivot.name} is drawn askew: the draft's zero of this hinge is the file's "
             f"{parts[before].joints[which].zero:.4g} rad, where the next hinge lies along the robot's axes."
         )

@@ -76,7 +76,7 @@ class Tree:
 
     parts: tuple[TreePart, ...]
     """The first one is the root."""
-    told: tuple[str, ...]
+    remarks: tuple[str, ...]
     """Notes on what was not taken over, a sentence each."""
 
     @property
@@ -117,7 +117,7 @@ def tree_of(loaded: Loaded) -> Tree:
     model = loaded.model
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
-    root, told = _root(model)
+    root, remarks = _root(model)
     parts: list[TreePart] = []
     part_of: dict[int, int] = {}
     for body in range(root, model.nbody):
@@ -131,7 +131,7 @@ def tree_of(loaded: Loaded) -> Tree:
         else:
             part_of[body] = part_of[above]
             parts[part_of[above]] = _fused(parts[part_of[above]], here)
-    tree = Tree(parts=tuple(_joined(parts)), told=(*loaded.told, *told))
+    tree = Tree(parts=tuple(_joined(parts)), remarks=(*loaded.remarks, *remarks))
     return _weighed(tree)
 
 
@@ -146,17 +146,17 @@ def _root(model: Any) -> tuple[int, tuple[str, ...]]:
     others = [
         model.body(b).name or f"body {b}" for b in range(1, model.nbody) if model.body_parentid[b] == 0 and b != root
     ]
-    told: list[str] = []
+    remarks: list[str] = []
     if others:
-        told.append(f"Beside the robot the file holds {', '.join(others[:4])}, which was not taken.")
+        remarks.append(f"Beside the robot the file holds {', '.join(others[:4])}, which was not taken.")
     held = [
         model.joint(j).name for j in range(model.njnt) if model.jnt_bodyid[j] == root and model.jnt_type[j] == hinge
     ]
     if held:
-        told.append(
+        remarks.append(
             f"{', '.join(held)} hinges the root to the world and was not taken: in suchus the root is a free body."
         )
-    return root, tuple(told)
+    return root, tuple(remarks)
 
 
 def _body(model: Any, data: Any, body: int, loaded: Loaded, *, root: bool) -> TreePart:
@@ -240,5 +240,5 @@ def _weighed(tree: Tree) -> Tree:
     if not names:
         return tree
     mended = tuple(replace(part, mass=part.mass or 1e-3 * tree.mass) for part in tree.parts)
-    told = f"{', '.join(names[:6])} had no mass; the draft gives each a thousandth of the robot's."
-    return Tree(parts=mended, told=(*tree.told, told))
+    remarks = f"{', '.join(names[:6])} had no mass; the draft gives each a thousandth of the robot's."
+    return Tree(parts=mended, remarks=(*tree.remarks, remarks))

@@ -35,16 +35,16 @@ def clean_urdf(root: ElementTree.Element, mesh: Mesh) -> tuple[ElementTree.Eleme
         kept = ElementTree.SubElement(made, "joint", {k: joint.get(k, "") for k in ("name", "type")})
         kept.extend(e for e in joint if e.tag in ("origin", "parent", "child", "axis", "limit"))
     turning = [joint for joint in joints if joint.get("type") in _TURNING]
-    told = [
+    remarks = [
         f"Joint {joint.get('name')} follows {mimic.get('joint')} (mimic): it is a hinge of its own in the draft."
         for joint in turning
         if (mimic := joint.find("mimic")) is not None
     ]
-    told.append("A URDF holds no cables, springs, rotor inertia or gains: what the draft has of them is a guess.")
+    remarks.append("A URDF holds no cables, springs, rotor inertia or gains: what the draft has of them is a guess.")
     drives = {str(joint.get("name")): _drive(joint) for joint in turning}
     if drives and all(drive.torque == 0.0 for drive in drives.values()):
         drives = {name: Drive(torque=None, speed=drive.speed, passive=False) for name, drive in drives.items()}
-    return made, drives, tuple(told)
+    return made, drives, tuple(remarks)
 
 
 def _refuse_kinds(joints: list[ElementTree.Element]) -> None:

@@ -453,7 +453,7 @@
     $("time").value = state.time;
     $("time").setAttribute("aria-valuetext", `${state.time.toFixed(1)} seconds`);
     const way = (i) => now[i].mass[0] - actors[i].mass[0];
-    $("told").textContent = now.map((_, i) => `${actors.length > 1 ? actors[i].label + ": " : ""}${metres(way(i))} forward, ` +
+    $("in-words").textContent = now.map((_, i) => `${actors.length > 1 ? actors[i].label + ": " : ""}${metres(way(i))} forward, ` +
       `centre of mass ${metres(now[i].mass[2])} high`).join("  ·  ");
   }
 

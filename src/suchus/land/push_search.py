@@ -88,8 +88,8 @@ class _Trial(NamedTuple):
         batch = [
             replace(run, pushes=(replace(self.push, force=_along(toward, force)),))
             for run, of_run in zip(self.runs, forces, strict=True)
-            for toward, some in zip(self.directions, of_run, strict=True)
-            for force in some
+            for toward, levels in zip(self.directions, of_run, strict=True)
+            for force in levels
         ]
         end = self.push.at + self.push.duration + self.wait
         record = simulate(batch, duration=end, timestep=self.timestep, every=10, progress=progress)

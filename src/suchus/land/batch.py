@@ -26,7 +26,7 @@ _TOO_FAST = 1e3  # [rad/s] or [m/s]; nothing on a robot moves so fast: the physi
 _CURRENT = mujoco.mjtStage.mjSTAGE_VEL  # after a step, positions and velocities describe the new state
 
 
-class Bench:
+class SimulationBatch:
     """The simulations of one group of runs, whose robots share a topology.
 
     Runs of one robot on one relief share a model, with per-run values where they differ (``Batch.expand``). Where
@@ -49,16 +49,16 @@ class Bench:
         self._owned: set[int] = set()
         self._written = False
         self._timestep = timestep
-        self.batch = Batch(shared, len(runs), nthread=min(threads.count(), len(runs)), persistent=True)
+        self.physics = Batch(shared, len(runs), nthread=min(threads.count(), len(runs)), persistent=True)
         self._lay_ground(runs)
         if self._models:
-            self.batch.set_models(self._models)
+            self.physics.set_models(self._models)
             self._written = False
         self.qpos, self.qvel, self.ctrl, self.sensors = (
-            self.batch.bind(name) for name in ("qpos", "qvel", "ctrl", "sensordata")
+            self.physics.bind(name) for name in ("qpos", "qvel", "ctrl", "sensordata")
         )
         self.readings = self.sensors.copy()
-        self.water = self.batch.bind("userdata") if self._lakes else np.zeros((len(runs), 0))
+        self.water = self.physics.bind("userdata") if self._lakes else np.zeros((len(runs), 0))
         for sim in self._lakes:
             self.refill(sim)
         forces = force_sensors(runs[0].robot)
@@ -78,7 +78,7 @@ class Bench:
     def field(self, name: str, sim: int) -> np.ndarray:
         """Return a run's own values of a model field, for writing; ``commit`` after it."""
         if self._single:
-            values: np.ndarray = self.batch.expand(name)[sim]
+            values: np.ndarray = self.physics.expand(name)[sim]
             return values
         self._written = True
         owner: Any = self._own(sim)
@@ -89,7 +89,7 @@ class Bench:
     def commit(self) -> None:
         """Let the physics know of written model fields."""
         if self._models and self._written:
-            self.batch.set_models(self._models)
+            self.physics.set_models(self._models)
             self._written = False
 
     def _own(self, sim: int) -> Any:
@@ -118,7 +118,7 @@ class Bench:
 
     def _set_option(self, name: str, sim: int, value: float) -> None:
         if self._single:
-            self.batch.expand(f"opt.{name}")[sim] = value
+            self.physics.expand(f"opt.{name}")[sim] = value
         else:
             setattr(self._own(sim).opt, name, value)
             self._written = True
@@ -126,7 +126,7 @@ class Bench:
     def power(self, sim: int, servo: str, *, on: bool) -> None:
         """Give a servo its torque, or take it away, from the next ``commit`` on."""
         bit = 1 << int(self.model.actuator(servo).group[0])
-        now = self.batch.expand("opt.disableactuator")[sim] if self._single else self._own(sim).opt.disableactuator
+        now = self.physics.expand("opt.disableactuator")[sim] if self._single else self._own(sim).opt.disableactuator
         self._set_option("disableactuator", sim, int(now) & ~bit if on else int(now) | bit)
 
     def flood(self, time: float, breath: np.ndarray | None = None) -> None:
@@ -185,7 +185,7 @@ class Bench:
             body: name of the body.
             force: in the world, shape (3,) [N]; zeros end the push.
         """
-        self.batch.bind("xfrc_applied")[sim, self.model.body(body).id, :3] = force
+        self.physics.bind("xfrc_applied")[sim, self.model.body(body).id, :3] = force
 
     def place(self, runs: Sequence[Run], first: np.ndarray) -> None:
         """Put every robot on the ground in its first posture, nothing below the surface.
@@ -194,7 +194,7 @@ class Bench:
             runs: the runs.
             first: the servo angles at the start, shape (run, servo) [rad].
         """
-        act = self.batch.bind("act")
+        act = self.physics.bind("act")
         found: dict[object, tuple[np.ndarray, np.ndarray]] = {}
         afloat: dict[object, np.ndarray] = {}
         for sim, run in enumerate(runs):
@@ -206,12 +206,12 @@ class Bench:
                 found[key] = posture, activations(model, first[sim])
             self.qpos[sim], act[sim] = found[key]
             if run.lake is not None:
-                alike = (key, run.lake, run.ground)
-                if alike not in afloat:
-                    afloat[alike] = surfaced(run.robot, run.lake, up(run.ground), self.qpos[sim], self._timestep)
-                self.qpos[sim] = afloat[alike]
+                float_key = (key, run.lake, run.ground)
+                if float_key not in afloat:
+                    afloat[float_key] = surfaced(run.robot, run.lake, up(run.ground), self.qpos[sim], self._timestep)
+                self.qpos[sim] = afloat[float_key]
             self.ctrl[sim] = first[sim]
-        self.batch.forward()
+        self.physics.forward()
         self.read(slice(None))
 
     def read(self, who: int | slice) -> None:
@@ -220,7 +220,7 @@ class Bench:
         if self._lakes:
             self.worked[who, :4] = self.water[who, hydro.FORCE : hydro.FORCE + 4]
 
-    def advance(self, targets: np.ndarray, steps: int, time: float, alike: Deduplication | None = None) -> None:
+    def advance(self, targets: np.ndarray, steps: int, time: float, shared: Deduplication | None = None) -> None:
         """Command servo angles and advance the living by some steps; who diverges dies, with the time and the cause.
 
         On return ``readings`` holds what the sensors say: contact forces as their mean over the steps, as a pressure
@@ -230,11 +230,11 @@ class Bench:
             targets: shape (run, servo) [rad].
             steps: number of physics steps.
             time: at which they begin [s].
-            alike: runs of which one stands for all; None if there are none.
+            shared: runs of which one stands for all; None if there are none.
         """
-        if alike is not None and alike.others.size:
-            self._advance(targets, steps, time, alike.first)
-            self._copy(alike.others, alike.whom)
+        if shared is not None and shared.others.size:
+            self._advance(targets, steps, time, shared.first)
+            self._copy(shared.others, shared.whom)
         else:
             self._advance(targets, steps, time, None)
 
@@ -250,17 +250,17 @@ class Bench:
         meter = _Meter(self, steps) if self._lakes else None
         for step in range(steps):
             try:
-                self.batch.step(going, stage=_CURRENT)
+                self.physics.step(going, stage=_CURRENT)
             except SimulationError as error:
                 for sim in error.ids:
-                    self._end(int(sim), time, self.batch.error(int(sim)))
+                    self._end(int(sim), time, self.physics.error(int(sim)))
                 going = self._going(who)
             pressed += felt
             if meter is not None:
                 meter.read(step)
         if meter is not None:
-            some = slice(None) if who is None else who
-            self.worked[some] = meter.mean()[some]
+            stepped = slice(None) if who is None else who
+            self.worked[stepped] = meter.mean()[stepped]
         self.readings[:] = self.sensors
         self.readings[:, self._forces] = pressed / steps
         fastest = np.abs(self.qvel).max(axis=1)
@@ -280,7 +280,7 @@ class Bench:
 
     def _copy(self, sims: np.ndarray, whom: np.ndarray) -> None:
         """Let runs be where others are, and feel and suffer the same."""
-        self.batch.state[sims] = self.batch.state[whom]
+        self.physics.state[sims] = self.physics.state[whom]
         self.readings[sims] = self.readings[whom]
         self.worked[sims] = self.worked[whom]
         for sim, other in zip(sims, whom, strict=True):
@@ -295,23 +295,23 @@ class Bench:
 class _Meter:
     """Keeps step by step what the water does to the robots and what their servos do; both jitter within a period."""
 
-    def __init__(self, bench: Bench, steps: int) -> None:
-        self._bench = bench
-        self._water = np.empty((steps, len(bench.water), 4))
-        self._felt = np.empty((steps + 1, *bench.sensors.shape))
-        self._felt[0] = bench.sensors
+    def __init__(self, batch: SimulationBatch, steps: int) -> None:
+        self._batch = batch
+        self._water = np.empty((steps, len(batch.water), 4))
+        self._felt = np.empty((steps + 1, *batch.sensors.shape))
+        self._felt[0] = batch.sensors
 
     def read(self, step: int) -> None:
         """Keep what a physics step has left."""
-        self._water[step] = self._bench.water[:, hydro.FORCE : hydro.FORCE + 4]
-        self._felt[step + 1] = self._bench.sensors
+        self._water[step] = self._batch.water[:, hydro.FORCE : hydro.FORCE + 4]
+        self._felt[step + 1] = self._batch.sensors
 
     def mean(self) -> np.ndarray:
         """Return force and power of the water and power of the servos, shape (run, 5).
 
         The power of a servo in a step is its torque times the mean of its speeds before and after.
         """
-        speed, torque = self._felt[..., self._bench.velocities], self._felt[1:, :, self._bench.torques]
+        speed, torque = self._felt[..., self._batch.velocities], self._felt[1:, :, self._batch.torques]
         power = 0.5 * np.einsum("kij,kij->i", torque, speed[:-1] + speed[1:]) / len(torque)
         return np.column_stack([self._water.mean(axis=0), power])
 

@@ -15,7 +15,7 @@ _SHOWN = 3  # points of a front whose gaits are written and checked: both ends a
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Found:
+class SearchResult:
     """The result of the search in one condition."""
 
     spec: Optimisation
@@ -80,11 +80,11 @@ class Found:
 
     def active(self, which: int) -> dict[str, tuple[float, float, bool]]:
         """Return by limit its value, what a chosen one has, and whether the limit is what stops it."""
-        told = {}
+        limits = {}
         for limit in self.spec.limits:
             has = float(self.history[f"limit_{limit.name}"][self.chosen[which]])
-            told[limit.name] = (limit.value, has, bool(over(limit, np.array([has]))[0] > -ACTIVE))
-        return told
+            limits[limit.name] = (limit.value, has, bool(over(limit, np.array([has]))[0] > -ACTIVE))
+        return limits
 
     def best_so_far(self) -> np.ndarray:
         """Return after each candidate the value of the first aim of the best so far, NaN before there is one."""
@@ -105,7 +105,7 @@ class Found:
             areas.append(float(archive.hypervolume))
         return np.array(areas)
 
-    def with_checks(self, checks: xr.Dataset, near: xr.Dataset) -> "Found":
+    def with_checks(self, checks: xr.Dataset, near: xr.Dataset) -> "SearchResult":
         """Return the same with what was checked."""
         return replace(self, checks=checks, near=near)
 
