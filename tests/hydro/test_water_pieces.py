@@ -12,7 +12,8 @@ from suchus.design.flotation import float_hull
 from suchus.design.pieces import masses, pieces, swollen, volumes
 from suchus.design.profile import profile, stations
 from suchus.errors import InvalidDesign
-from suchus.hydro import BALL, column, packed
+from suchus.hydro import BALL, column, packed, unpacked
+from suchus.hydro.table import LANES
 from suchus.robots import ROBOTS
 
 
@@ -112,6 +113,7 @@ def test_impossible_hulls_are_refused(make, message):
 
 def test_a_packed_table_has_room():
     table = pieces(ROBOTS["caiman"])
-    row = packed(table, 1.0, len(table) + 3)
-    assert len(row) == len(packed(table, 1.0)) + 3 * table.shape[1]
+    row = packed(table, 1.0, len(table) + LANES)
+    assert len(row) == len(packed(table, 1.0)) + LANES * table.shape[1]
     assert row[1] == len(table)
+    assert unpacked(row)[:, :-1] == pytest.approx(table[:, :-1], abs=0.0)

@@ -12,8 +12,7 @@ from hypothesis import strategies as st
 from suchus.design.pieces import pieces
 from suchus.design.scale import physics_step
 from suchus.experiments import _floating_cases as cases
-from suchus.hydro import ADDED, CROSS_DRAG, DENSITY, FORCE, HEADER, POWER, UNDER, column
-from suchus.hydro.table import COLUMNS, WIDTH
+from suchus.hydro import ADDED, CROSS_DRAG, DENSITY, FORCE, POWER, UNDER, column, packed, unpacked
 from suchus.land import Lake, Wave, wetting
 from suchus.land.float_body import FloatBody, FloatTank
 from suchus.model.wet import wet_model
@@ -133,18 +132,25 @@ def test_drag_is_against_the_motion_and_takes_energy(speed, angle):
 def _dragged(body):
     """Return a deep body with the drag of a section."""
     pool = FloatTank(body, Lake(level=10.0, added_mass=0.0))
-    rows = pool.model.numeric_data[HEADER:].reshape(-1, WIDTH)
-    rows[:, slice(*COLUMNS["area"])] = 0.6 * 2 * body.half[2], 0.6 * 2 * body.half[1]
+    _write(pool, area=(0.6 * 2 * body.half[2], 0.6 * 2 * body.half[1]))
     assert pool.data.userdata[CROSS_DRAG] == 1.1
     return pool
+
+
+def _write(pool, **columns):
+    """Change columns of the table that a model carries."""
+    numbers = pool.model.numeric_data
+    rows = unpacked(numbers)
+    for name, values in columns.items():
+        column(rows, name)[:] = values
+    numbers[:] = packed(rows, numbers[2])
 
 
 def test_what_is_shed_pushes_forward_and_takes_what_lighthill_says():
     body = FloatBody(shape="cylinder", half=(0.1, 0.02, 0.05), mass=1.0, inertia=(1, 1, 1), added=(0.0, 1.0, 1.0))
     pool = FloatTank(body, Lake(level=10.0))
-    rows = pool.model.numeric_data[HEADER:].reshape(-1, WIDTH)
     side = pi * 0.05**2
-    rows[:, slice(*COLUMNS["shed"])], rows[:, COLUMNS["shed_at"][0]] = (side, pi * 0.02**2), -0.1
+    _write(pool, shed=(side, pi * 0.02**2), shed_at=-0.1)
     u, w = 0.6, 0.2
     for forward, expected in ((u, 0.5 * 1000 * side * w**2), (-u, 0.0)):
         pool.place((0, 0, 0), velocity=(forward, w, 0.0))

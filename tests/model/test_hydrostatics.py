@@ -12,7 +12,7 @@ from suchus.design import servo_names
 from suchus.design.pieces import pieces
 from suchus.errors import InvalidDesign
 from suchus.experiments.floating import STILL, heel_of
-from suchus.hydro import HEADER, column
+from suchus.hydro import column, unpacked
 from suchus.model.build import TIMESTEP
 from suchus.model.hydrostatics import Hydrostatics, hydrostatics
 from suchus.model.wet import wet_model
@@ -51,7 +51,7 @@ def test_under_water_the_lever_is_that_of_buoyancy_over_mass(bare):
         if name != "tail_cable":
             data.joint(name).qpos = angle
     mujoco.mj_fwdPosition(model, data)
-    rows = model.numeric_data[HEADER:].reshape(-1, pieces(BARE).shape[1])
+    rows = unpacked(model.numeric_data)
     ids = rows[:, 0].astype(int)
     at = data.xpos[ids] + np.einsum("nij,nj->ni", data.xmat[ids].reshape(-1, 3, 3), column(rows, "at"))
     over = np.average(at, axis=0, weights=column(rows, "volume")[:, 0]) - data.subtree_com[0]

@@ -5,6 +5,7 @@ import pytest
 
 from suchus.optimise.elsewhere import ROOMS
 from suchus.record import code_digest
+from suchus.record.provenance import deciding_source
 from suchus.study.makers import MADE_BY, deciding
 from suchus.study.sweep import FLOW
 
@@ -37,3 +38,21 @@ def test_another_source_has_another_digest():
     assert code_digest("design") != code_digest("design", "motion") != code_digest("motion", "design")
     assert code_digest("study/claims.py") != code_digest("study/answers.py")
     assert deciding()["source"] == code_digest(*MADE_BY)[:12]
+
+
+def test_docstrings_are_in_no_digest_and_all_else_is():
+    source = (
+        '"""A room."""\nspeed = 1.0\n"""Of the body [m/s]."""\n'
+        'def twice(x):\n    """Return it\n    twice."""\n    return 2 * x\n'
+    )
+    other = source.replace("A room", "Another").replace("Return it\n    twice", "Double").replace("[m/s]", "in\nm/s")
+    assert deciding_source(source.encode()) == deciding_source(other.encode()) != source.encode()
+    for old, new in [("1.0", "2.0"), ("2 * x", "3 * x"), ("twice(x)", "twice(y)"), ("\nspeed", "\n# a word\nspeed")]:
+        assert deciding_source(source.replace(old, new, 1).encode()) != deciding_source(source.encode())
+
+
+@pytest.mark.parametrize(
+    "source", ['x = "told"\n', 'print("""a\nb""")\n', 'x = 1; "told"\n', '"told"; x = 1\n', 'f"told {x}"\n']
+)
+def test_texts_that_are_no_docstrings_stay_in_the_digest(source):
+    assert deciding_source(source.encode()) == source.encode()

@@ -1,14 +1,17 @@
 """One experiment of many: whatever goes wrong in it is reported, and must not stop the others."""
 
+import sys
 import traceback
 from dataclasses import dataclass
 from pathlib import Path
 
+import suchus
 from suchus.cli.perform import perform
-from suchus.errors import SuchusError
-from suchus.experiment import Progress
+from suchus.errors import IncompatibleRecord, SuchusError, UnreadableFile
+from suchus.experiment import Experiment, Progress
 from suchus.experiments import EXPERIMENTS
-from suchus.report import Failure, Result, load_result
+from suchus.record import made_alike
+from suchus.report import Failure, Result, load_result, whole
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -21,6 +24,17 @@ class Job:
     """The folder for results."""
     quick: bool
     """Whether its quick form is asked for, whatever it is."""
+
+    @property
+    def experiment(self) -> Experiment:
+        """The question in the form that is asked for."""
+        experiment = EXPERIMENTS[self.name]
+        return experiment.quick() if self.quick else experiment
+
+    @property
+    def command(self) -> str:
+        """What makes the same result again."""
+        return f"suchus run {self.name}{' --quick' * self.quick}"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -41,17 +55,40 @@ def attempt(task: Job, progress: Progress) -> JobResult:
         progress: called with the share that is done, 0 to 1.
     """
     try:
-        experiment = EXPERIMENTS[task.name]
-        command = f"suchus run {task.name}{' --quick' * task.quick}"
-        done = perform(experiment.quick() if task.quick else experiment, task.name, task.out, progress, command)
+        done = perform(task.experiment, task.name, task.out, progress, task.command)
         result = load_result(done.folder)
     except SuchusError as error:
         return failed(task.name, str(error))
     except Exception as error:
         return failed(task.name, f"{type(error).__name__}: {error}", traceback.format_exc())
+    return JobResult(result=result, summary=f"{_summary(result)} ({done.seconds:.1f} s)")
+
+
+def kept(task: Job) -> JobResult | None:
+    """Return the result that an earlier run left, if it is whole and a run would give the same again.
+
+    That is so if the settings, the files of suchus and the versions of libraries are the same. An experiment that is no
+    part of suchus itself is always run again, since its own code is in no digest.
+    """
+    try:
+        experiment = task.experiment
+        result = load_result(task.out / task.name)
+        same = made_alike(result.outcome["provenance"], experiment.settings())
+    except (UnreadableFile, IncompatibleRecord):
+        return None
+    if not (same and whole(result) and result.outcome["command"] == task.command and _is_ours(experiment)):
+        return None
+    return JobResult(result=result, summary=f"{_summary(result)} (kept from an earlier run)")
+
+
+def _is_ours(experiment: Experiment) -> bool:
+    file = sys.modules[type(experiment).__module__].__file__
+    return file is not None and Path(file).is_relative_to(Path(suchus.__file__).parent)
+
+
+def _summary(result: Result) -> str:
     words = [verdict["verdict"] for verdict in result.outcome["verdicts"]]
-    counts = ", ".join(f"{words.count(word)} {word}" for word in dict.fromkeys(words)) or "no verdict"
-    return JobResult(result=result, summary=f"{task.name}: {counts} ({done.seconds:.1f} s)")
+    return f"{result.name}: {', '.join(f'{words.count(word)} {word}' for word in dict.fromkeys(words)) or 'no verdict'}"
 
 
 def failed(name: str, sentence: str, trace: str = "") -> JobResult:

@@ -8,7 +8,7 @@ from typing import Annotated
 import tyro
 
 from suchus import threads
-from suchus.cli.attempt import Job, JobResult, attempt
+from suchus.cli.attempt import Job, JobResult, attempt, kept
 from suchus.cli.commands import BadCommand
 from suchus.cli.options import OUT, QUICK, parse
 from suchus.cli.processes import side_by_side
@@ -21,7 +21,6 @@ _MOST = 4
 """Experiments at a time unless more are asked for [-]; beyond, the longest one alone decides, and each takes memory."""
 _LONG = (
     "swimming",
-    "shore",
     "feedback",
     "terrain",
     "bipedal_reach",
@@ -42,16 +41,25 @@ class ReproduceOptions:
     jobs: Annotated[
         int | None, tyro.conf.arg(help=f"Experiments at a time; by default one for each core, {_MOST} at most.")
     ] = None
+    anew: Annotated[
+        bool,
+        tyro.conf.FlagCreatePairsOff,
+        tyro.conf.arg(help="Run every experiment again. Otherwise results of the same code and settings are kept."),
+    ] = False
 
 
 def reproduce(words: Sequence[str]) -> int:
     """Run every experiment of the article, write the page, print its path; return 1 if an experiment failed, else 0.
 
+    Started again it goes on where it stopped: what is there of the same settings, code and versions is kept.
+
     Raises:
         SuchusError: the words make no sense, or the results cannot be saved.
     """
     about = "Run every experiment and write one page with all results, DIR/report.html."
-    options: ReproduceOptions = parse(ReproduceOptions, "suchus reproduce", words, about, ("out", "quick", "jobs"))
+    options: ReproduceOptions = parse(
+        ReproduceOptions, "suchus reproduce", words, about, ("out", "quick", "jobs", "anew")
+    )
     tasks = [
         Job(name=name, out=options.out, quick=options.quick) for name, one in EXPERIMENTS.items() if one.reproduces
     ]
@@ -64,23 +72,27 @@ def reproduce(words: Sequence[str]) -> int:
         check_place(options.out / task.name)
     jobs = min(threads.count(), _MOST) if options.jobs is None else options.jobs
     with working() as bars:
-        done = [job.result for job in _results_of(tasks, min(jobs, len(tasks)), bars)]
-        results = [result for result in done if isinstance(result, Result)]
-        failures = [result for result in done if isinstance(result, Failure)]
+        done = {} if options.anew else {task.name: one for task in tasks if (one := kept(task)) is not None}
+        for one in done.values():
+            bars.say(one.summary)
+        done |= _run([task for task in tasks if task.name not in done], jobs, bars)
+        outcomes = [done[task.name].result for task in tasks]
+        results = [one for one in outcomes if isinstance(one, Result)]
+        failures = [one for one in outcomes if isinstance(one, Failure)]
         page = write_page(results, failures, options.out / "report.html")
     print(page)
     return 1 if failures else 0
 
 
-def _results_of(tasks: Sequence[Job], jobs: int, bars: Bars) -> list[JobResult]:
-    """Return the result of each task, in their order."""
-    if jobs > 1:
-        by_name = side_by_side(sorted(tasks, key=_place), jobs, bars)
-        return [by_name[task.name] for task in tasks]
-    done = []
+def _run(tasks: Sequence[Job], jobs: int, bars: Bars) -> dict[str, JobResult]:
+    """Return the result of each task by name; the longest are begun first."""
+    tasks = sorted(tasks, key=_place)
+    if min(jobs, len(tasks)) > 1:
+        return side_by_side(tasks, min(jobs, len(tasks)), bars)
+    done = {}
     for task in tasks:
-        done.append(attempt(task, bars.task(task.name)))
-        bars.say(done[-1].summary)
+        done[task.name] = attempt(task, bars.task(task.name))
+        bars.say(done[task.name].summary)
     return done
 
 

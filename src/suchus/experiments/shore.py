@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from math import pi, radians, sin, tan
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import xarray as xr
@@ -58,6 +58,7 @@ class Shore(Experiment):
 
     title = "Does it swim in, touch ground, stand and walk out, and go back into the water?"
     shows = "Section I, whose robot is amphibious; beyond the article"
+    reproduces: ClassVar[bool] = False
     needs = ("tables", "article_spine", "cable_tail")
 
     robot: Crocodile = field(default_factory=lambda: ROBOTS["floating_caiman"])

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any, ClassVar
 
 import numpy as np
@@ -10,10 +11,12 @@ import xarray as xr
 from suchus.design import Crocodile
 from suchus.design.checks import Checks
 from suchus.design.water import Water
-from suchus.experiment import Experiment, Measure, Outcome, Progress, Simulated, silent, staged
+from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.experiments import _swim_3d_findings as findings
 from suchus.figures.swim_3d import draw_joints, draw_speeds, draw_tails, draw_wake
+from suchus.figures.vortices import draw_vortices, film_vortices
 from suchus.kinematics.wave import READINGS
+from suchus.replay import wake_replay
 from suchus.robots import ROBOTS
 from suchus.water import Basin, Motion, Tether, check_swim_in_space, fit, free_swim, printed_wave, swim, swim_in_space
 from suchus.water.diary import forget_kept, kept_in
@@ -65,6 +68,8 @@ class Swim3d(Experiment):
     """Cells per body length of the slice [-]."""
     limbs: str = "none"
     """Limbs in the water: ``none``; folded ones are not resolved."""
+    frames: int = 24
+    """Instants of the last cycle on the finest grid that film and replay show [-]."""
     keep: str = ""
     """Folder for what is finished of an interrupted run, from which it goes on; empty keeps nothing."""
 
@@ -78,6 +83,7 @@ class Swim3d(Experiment):
             check.rising("cells", 32, 512, "cells")
             for name in ("compared_cells", "slice_cells"):
                 check.whole(name, 32, 512)
+            check.whole("frames", 1, 200)
             for name in ("cycles", "compared_cycles"):
                 check.whole(name, 2, 100)
             if self.tail_heights:
@@ -87,7 +93,7 @@ class Swim3d(Experiment):
         """A coarse grid, a thick water, two cycles."""
         return replace(
             self, cells=(56,), compared_cells=56, slice_cells=40, cycles=2, compared_cycles=2, reynolds=3000.0,
-            tail_heights=(),
+            tail_heights=(), frames=4,
         )  # fmt: skip
 
     def simulate(self, progress: Progress = silent) -> Simulated:
@@ -97,14 +103,15 @@ class Swim3d(Experiment):
         for _, motion, basin in runs:
             check_swim_in_space(self.robot, motion, basin)
         work = np.cumsum([0.0, *(basin.cells**4 * basin.cycles for _, _, basin in runs)])
-        found, ends = {}, 0.05 + 0.95 * work / work[-1]
+        found, ends = {}, 0.05 + 0.9 * work / work[-1]
         beside = self._beside(ours, staged(progress, "the slice", 0.0, 0.05))
         for (name, motion, basin), start, end in zip(runs, ends, ends[1:], strict=False):
             told = staged(progress, name, float(start), float(end))
             found[name] = swim_in_space(self.robot, motion, basin, checkpoint=kept_in(self.keep, name), progress=told)
         record = findings.record(found, beside, self)
+        film = film_vortices(record, staged(progress, "the film", 0.95, 1.0))
         forget_kept(self.keep)
-        return Simulated(record=record)
+        return Simulated(record=record, films={"swim_3d.gif": film}, replays=_replays(record))
 
     def _motion(self, sign: int) -> Motion:
         wave = printed_wave(self.robot, self.reading, frequency=self.frequency, sign=sign)
@@ -122,7 +129,8 @@ class Swim3d(Experiment):
             return Basin(cells=cells, viscosity=self.viscosity, cycles=cycles, **other)
 
         compared = basin(self.compared_cells, self.compared_cycles)
-        runs = [(f"{cells} cells", ours, basin(cells, self.cycles)) for cells in self.cells]
+        runs = [(f"{cells} cells", ours, basin(cells, self.cycles)) for cells in self.cells[:-1]]
+        runs.append((f"{self.cells[-1]} cells", ours, basin(self.cells[-1], self.cycles, frames=self.frames)))
         if self.compared_cells not in self.cells or self.compared_cycles > self.cycles:
             runs.append(("compared", ours, compared))
         runs.append(("held", ours, basin(self.compared_cells, min(3, self.compared_cycles), moves_on=False)))
@@ -157,10 +165,22 @@ class Swim3d(Experiment):
         record = outcome.record
         figures = {
             "swim_3d_speeds": draw_speeds(record),
+            "swim_3d_vortices": draw_vortices(record),
             "swim_3d_wake": draw_wake(record),
             "swim_3d_joints": draw_joints(record),
         }
         return figures | ({"swim_3d_tails": draw_tails(record)} if record.sizes["compared"] > 1 else {})
+
+
+def _replays(record: xr.Dataset) -> dict[str, Replay]:
+    """Return the page on which the body swims through its last cycle on the finest grid, vortices around it."""
+    told = (
+        f"The robot's body in three dimensions at f L² / ν = {float(record.reynolds):.0f}, on {int(record.cells[-1])} "
+        f"cells a length, in its last cycle. Surfaces lie where the second invariant of the velocity's gradient is "
+        f"{float(record.vortex_level):.3g} 1/s², around vortices."
+    )
+    page = partial(wake_replay, record, title="Vortices around the swimming robot", caption=told)
+    return {"swim_3d_replay.html": Replay(caption=told, make=page)}
 
 
 experiment = Swim3d()

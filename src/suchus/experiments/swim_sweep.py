@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import xarray as xr
@@ -59,6 +59,7 @@ class SwimSweep(Experiment):
 
     title = "How fast and how well does it swim at other frequencies, amplitudes and wavelengths?"
     shows = "Section IV.B, eq. (20); beyond the article"
+    reproduces: ClassVar[bool] = False
     needs = ("tables", "article_spine", "cable_tail")
 
     robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])

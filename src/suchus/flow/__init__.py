@@ -7,6 +7,7 @@ from suchus.flow.eel import eel
 from suchus.flow.force import Load, Surface
 from suchus.flow.free import FreeBody
 from suchus.flow.grid import Grid
+from suchus.flow.isosurface import IsoSurface, isosurface
 from suchus.flow.mass import Mass, SpaceMass
 from suchus.flow.midline import Midline, Spine, foil
 from suchus.flow.outline import Implicit, Polygon, difference, from_outline, from_sdf, scaled, union
@@ -22,6 +23,7 @@ from suchus.flow.signals import frequency, morison, noise, strouhal
 from suchus.flow.simulation import Simulation
 from suchus.flow.solid import Ellipsoid, Skin, SpaceField, SpaceShape, Sphere
 from suchus.flow.trunk import Trunk
+from suchus.flow.vortices import lambda2, second_invariant, velocity_gradient
 
 __all__ = [
     "ALONG_THE_SKIN",
@@ -38,6 +40,7 @@ __all__ = [
     "Grid",
     "Implicit",
     "Inflow",
+    "IsoSurface",
     "Load",
     "Markers",
     "Mass",
@@ -77,12 +80,16 @@ __all__ = [
     "frequency",
     "from_outline",
     "from_sdf",
+    "isosurface",
+    "lambda2",
     "line",
     "morison",
     "noise",
     "save_vti",
     "scaled",
+    "second_invariant",
     "snapshot",
     "strouhal",
     "union",
+    "velocity_gradient",
 ]

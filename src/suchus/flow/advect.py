@@ -14,7 +14,10 @@ import numpy as np
 from numba import prange
 
 from suchus.flow.compiled import PAD, UNIT, part, signed, threaded, unsigned
-from suchus.flow.slab import NONE, block_of, meets, near_shift, row_length, run_of, window_columns, window_rows
+from suchus.flow.slab import NONE, EDGE, block_of, meets, near_shift, row_count, row_length, window_columns, window_rows
+
+ROWS = 16
+"""Rows of a slab in space that are advanced together: with the slabs around them they stay in the nearest caches [-]."""
 
 
 @part
@@ -36,20 +39,21 @@ def limited_quick(upstream, centre, downstream):
 
 
 @part
-def _fluxes(flux, o, w, side, slab, start, stop, dj, di, ej, ei, viscosity):
-    """Write the fluxes of ``w`` through the faces before the nodes of a slab to slab ``o`` of ``flux``.
+def _fluxes(flux, o, shift, rate, c, d, slab, start, stop, dj, di, ej, ei, viscosity):
+    """Write the fluxes of component ``c`` along axis ``d`` through the faces before nodes of a slab to ``flux[o]``.
 
-    The next node is ``dj`` slabs and ``di`` cells on. A face moves with the mean of ``side`` at the node and ``ej``
-    slabs and ``ei`` cells before it; ``viscosity`` in cells x m/s.
+    They come ``shift`` earlier there. The next node is ``dj`` slabs and ``di`` cells on. A face moves with the mean of
+    component ``d`` at the node and ``ej`` slabs and ``ei`` cells before it; ``viscosity`` in cells x m/s.
     """
-    o, j, half = unsigned(o), unsigned(slab), flux.dtype.type(0.5)
+    o, c, d, j, half = unsigned(o), unsigned(c), unsigned(d), unsigned(slab), flux.dtype.type(0.5)
     for k in range(unsigned(start), unsigned(stop)):
         # loaded first: a choice of loads is a branch
-        a, b, c, d = w[j - dj - dj, k - di - di], w[j - dj, k - di], w[j, k], w[j + dj, k + di]
-        speed = half * (side[j - ej, k - ei] + side[j, k])
+        before, here = rate[c, j - dj, k - di], rate[c, j, k]
+        behind, ahead = rate[c, j - dj - dj, k - di - di], rate[c, j + dj, k + di]
+        speed = half * (rate[d, j - ej, k - ei] + rate[d, j, k])
         forth = speed > 0
-        face = limited_quick(a if forth else d, b if forth else c, c if forth else b)
-        flux[o, k] = speed * face - viscosity * (c - b)
+        face = limited_quick(behind if forth else ahead, before if forth else here, here if forth else before)
+        flux[o, k - shift] = speed * face - viscosity * (here - before)
 
 
 @part
@@ -62,41 +66,56 @@ def _net(flux, low, high, k, inner):
 
 
 @part
-def _update_slab(out, blend, base, flux, low, high, p, slab, start, stop, inner, ej, ei, dt, push, keep):
+def _update(out, blend, base, c, flux, low, high, shift, p, slab, start, stop, inner, ej, ei, dt, push, keep):
     """Write ``keep * blend + (1 - keep) * (base + dt * (net flux + push - pressure gradient))``."""
-    j, low, high, take = unsigned(slab), unsigned(low), unsigned(high), out.dtype.type(1.0) - keep
+    c, j, low, high = unsigned(c), unsigned(slab), unsigned(low), unsigned(high)
+    take = out.dtype.type(1.0) - keep
     for k in range(unsigned(start), unsigned(stop)):
-        rate = _net(flux, low, high, k, inner) + push - (p[j, k] - p[j - ej, k - ei])
-        out[j, k] = keep * blend[j, k] + take * (base[j, k] + dt * rate)
+        rate = _net(flux, low, high, k - shift, inner) + push - (p[j, k] - p[j - ej, k - ei])
+        out[c, j, k] = keep * blend[c, j, k] + take * (base[c, j, k] + dt * rate)
 
 
 @part
-def _raw_slab(raw, base, flux, low, high, slab, place, near, inner, dt, push):
+def _bare(raw, base, c, flux, low, high, shift, slab, rows, place, near, inner, dt, push):
     """Write ``base + dt * (net flux + push)`` in the window: what the body is then immersed in."""
-    j, low, high = unsigned(slab), unsigned(low), unsigned(high)
-    wide, (r0, r1), (s, e) = row_length(inner, base.shape[1]), window_rows(place, inner), window_columns(place, inner)
+    c, j, low, high = unsigned(c), unsigned(slab), unsigned(low), unsigned(high)
+    wide, (r0, r1), (s, e) = row_length(inner, base.shape[2]), window_rows(place, inner), window_columns(place, inner)
     o = j - unsigned(near[len(inner) + 2])
-    for row in range(r0, r1):
-        shift = near_shift(near, inner, row, wide)
+    for row in range(max(r0, rows[0]), min(r1, rows[1])):
+        to = near_shift(near, inner, row, wide)
         for k in range(row * wide + s, row * wide + e):
-            raw[o, k - shift] = base[j, k] + dt * (_net(flux, low, high, k, inner) + push)
+            raw[c, o, k - to] = base[c, j, k] + dt * (_net(flux, low, high, k - shift, inner) + push)
 
 
 @part
-def _advance(out, blend, base, w, rate, p, raw, place, near, inner, j0, j1, s, e, ej, ei, dt, nu, push, keep):
-    """Advance slabs ``j0`` to ``j1``, cells ``s`` to ``e`` of one component ``w``, whose axis is (``ej``, ``ei``)."""
-    up = len(inner)
-    flux = np.empty((up + 2, w.shape[1]), w.dtype)
-    low, high = up, up + 1
-    _fluxes(flux, high, w, rate[up], j0, s, e, UNIT, NONE, ej, ei, nu)
-    for j in range(j0, j1):
-        low, high = high, low
-        for d in range(up):
-            _fluxes(flux, d, w, rate[d], j, s, e + inner[d], NONE, inner[d], ej, ei, nu)
-        _fluxes(flux, high, w, rate[up], j + 1, s, e, UNIT, NONE, ej, ei, nu)
-        _update_slab(out, blend, base, flux, low, high, p, j, s, e, inner, ej, ei, dt, push, keep)
-        if meets(place, inner, j):
-            _raw_slab(raw, base, flux, low, high, j, place, near, inner, dt, push)
+def _advance(
+    out, blend, base, rate, p, raw, place, near, inner, repeats, flux, slabs, rows, dt, nu, push, keep
+):  # fmt: skip
+    """Advance some rows of some slabs, of both first and end; ``flux`` is room."""
+    up, wide, shift = len(inner), row_length(inner, out.shape[2]), rows[0] * row_length(inner, out.shape[2])
+    s, e, first = shift + EDGE, rows[1] * wide - EDGE, slabs[0]
+    margin = EDGE if up > 1 else NONE
+    for j in range(first - 1, slabs[1]):
+        for c in range(up + 1):
+            # the first face along its own axis lies on a side
+            start, j0, ej, ei = s, first, NONE, NONE
+            if c == up:
+                ej = UNIT
+                j0 = first if repeats[c] else max(first, PAD + 1)
+            else:
+                ei = inner[c]
+                start = s if repeats[c] else max(s, margin * wide + EDGE + inner[c])
+            if j < j0 - 1:
+                continue
+            low, high = up + c + c + j % 2, up + c + c + 1 - j % 2
+            _fluxes(flux, high, shift, rate, c, up, j + 1, start, e, UNIT, NONE, ej, ei, nu)
+            if j < j0:
+                continue
+            for d in range(up):
+                _fluxes(flux, d, shift, rate, c, d, j, start, e + inner[d], NONE, inner[d], ej, ei, nu)
+            _update(out, blend, base, c, flux, low, high, shift, p, j, start, e, inner, ej, ei, dt, push[c], keep)
+            if meets(place, inner, j):
+                _bare(raw, base, c, flux, low, high, shift, j, rows, place, near, inner, dt, push[c])
 
 
 @threaded
@@ -111,17 +130,12 @@ def advance(out, blend, base, rate, p, raw, place, near, inner, repeats, dt, nu,
     size, block = out.shape[1] - 2 * PAD, block_of(inner)
     for n in prange((size + block - 1) // block):
         first = PAD + signed(n) * block
-        j1 = min(first + block, PAD + size)
-        for c in range(len(inner) + 1):
-            s, e = run_of(inner, out.shape[2])
-            j0, ej, ei = first, NONE, NONE
-            if c == len(inner):
-                ej = UNIT
-                j0 = first if repeats[c] else max(first, PAD + 1)
-            else:
-                ei = inner[c]
-                s = s if repeats[c] else s + inner[c]
+        slabs = first, min(first + block, PAD + size)
+        wide, rows = row_length(inner, out.shape[2]), row_count(inner, out.shape[2])
+        margin, many = (EDGE, unsigned(ROWS)) if len(inner) > 1 else (NONE, UNIT)
+        flux = np.empty((3 * len(inner) + 2, (many + UNIT) * wide), out.dtype)
+        for row in range(NONE, rows, many):
+            part_of = row + margin, min(row + many, rows) + margin
             _advance(
-                out[c], blend[c], base[c], rate[c], rate, p, raw[c], place, near, inner, j0, j1, s, e, ej, ei, dt, nu,
-                push[c], keep,
+                out, blend, base, rate, p, raw, place, near, inner, repeats, flux, slabs, part_of, dt, nu, push, keep
             )  # fmt: skip

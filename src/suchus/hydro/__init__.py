@@ -10,7 +10,6 @@ from suchus.hydro.table import (
     DENSITY,
     DISC,
     FORCE,
-    HEADER,
     LEVEL,
     MAGIC,
     NUMBERS,
@@ -23,6 +22,7 @@ from suchus.hydro.table import (
     WAVE,
     column,
     packed,
+    unpacked,
 )
 
 __all__ = [
@@ -35,7 +35,6 @@ __all__ = [
     "DENSITY",
     "DISC",
     "FORCE",
-    "HEADER",
     "LEVEL",
     "MAGIC",
     "NUMBERS",
@@ -48,4 +47,5 @@ __all__ = [
     "WAVE",
     "column",
     "packed",
+    "unpacked",
 ]

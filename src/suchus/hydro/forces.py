@@ -1,56 +1,75 @@
-"""The formulas: what the water does to one piece, and what is under water of a body at rest.
+"""The formulas: what the water does to pieces of bodies, and what is under water of a body at rest.
 
 Added mass is Kirchhoff's: a piece of added inertia A that moves at w against the water has the momentum p = A w; the
 water answers its rate of change with a force -(A dw/dt + omega x p) and the couple -w x p (Munk). What is proportional
 to the accelerations goes into the mass matrix, the rest to the passive forces. Lighthill's momentum is shed at the
 tail's end: -u p' + (p' . w) t / 2, where the water passes towards the tail (u > 0).
 
+Some pieces at a time are taken together, quantity by quantity below each other (``lanes``), so that the compiler
+handles several with one instruction. It does only where a loop has neither branches nor calls of a library: what needs
+them stands in loops of its own, and what holds for some pieces only is multiplied by zero for the others.
+
 After an edit here delete ``__pycache__/*.nb*``: numba looks at the file of the kernel alone.
 """
 
-from math import acos, cos, exp, pi, sin, sqrt
+from math import cos, exp, pi, sin, sqrt
 
 import numpy as np
 
-from suchus.hydro.table import (
-    ADDED,
-    BALL,
-    BREATH,
-    CROSS_DRAG,
-    CURRENT,
-    DENSITY,
-    DISC,
-    LEVEL,
-    SHEDDING,
-    THICKENING,
-    VISCOSITY,
-    WAVE,
-)
-from suchus.hydro.vectors import Axes, Vector, blend, compiled, cross, dot, part, plus, row3, three, times, turned
+from suchus.hydro import lanes as at
+from suchus.hydro.lanes import Water
+from suchus.hydro.table import BALL, CURRENT, DISC, LANES, LEVEL, WAVE
+from suchus.hydro.vectors import Vector, blend, compiled, cross, dot, lane, part, plus, put, three, times, turned
 
 _TURBULENT = 5e5
 """Reynolds number from which a plate's turbulent friction counts [-]."""
+_SERIES = (
+    0.1666666666666665, 0.07500000000020764, 0.044642857103423646, 0.03038194736709848,
+    0.02237204763174451, 0.01735525995578633, 0.013929652902326577, 0.011875494382637216,
+    0.007802949477352493, 0.016035514349149713, -0.010749050339696914, 0.02816921806087918,
+)
+"""(asin(x) / x - 1) / x^2 as a polynomial of x^2 up to 1/4, by interpolation at Chebyshev's points."""
 
 
 @part
-def immersed(kind: int, d: float) -> tuple[float, float]:
+def immersed(kind: float, depth: float) -> tuple[float, float]:
     """Return the share of a unit shape under a plane, and its first moment along the plane's normal.
 
     Args:
         kind: of the shape.
-        d: depth of its centre over its half extent along the normal; beyond -1 and 1 it is dry or under water.
+        depth: of its centre over its half extent along the normal; beyond -1 and 1 it is dry or under water.
     """
-    if d >= 1.0:
-        return 1.0, 0.0
-    if d <= -1.0:
-        return 0.0, 0.0
+    d = min(max(depth, -1.0), 1.0)
     rest = 1.0 - d * d
-    if kind == DISC:
-        root = sqrt(rest)
-        return (pi - acos(d) + d * root) / pi, -2.0 / 3.0 * rest * root / pi
-    if kind == BALL:
-        return (2.0 + 3.0 * d - d**3) / 4.0, -3.0 / 16.0 * rest * rest
-    return (1.0 + d) / 2.0, -rest / 4.0
+    root = sqrt(rest)
+    disc, ball, slab = 0.5 + (_arcsine(d) + d * root) / pi, (2.0 + 3.0 * d - d * d * d) / 4.0, (1.0 + d) / 2.0
+    flat = -2.0 / 3.0 / pi * rest * root
+    share = disc if kind == DISC else (ball if kind == BALL else slab)
+    return share, flat if kind == DISC else (-3.0 / 16.0 * rest * rest if kind == BALL else -rest / 4.0)
+
+
+@part
+def _arcsine(x: float) -> float:
+    """Return the arc sine, to a few units in the last place; the library's would keep a loop from being vectorised."""
+    size = abs(x)
+    small = size < 0.5
+    z = x * x if small else 0.5 * (1.0 - size)
+    y = size if small else sqrt(z)
+    p = _SERIES[11]
+    p = p * z + _SERIES[10]
+    p = p * z + _SERIES[9]
+    p = p * z + _SERIES[8]
+    p = p * z + _SERIES[7]
+    p = p * z + _SERIES[6]
+    p = p * z + _SERIES[5]
+    p = p * z + _SERIES[4]
+    p = p * z + _SERIES[3]
+    p = p * z + _SERIES[2]
+    p = p * z + _SERIES[1]
+    p = p * z + _SERIES[0]
+    near = y + y * z * p
+    found = near if small else 0.5 * pi - 2.0 * near
+    return found if x > 0.0 else -found
 
 
 @compiled
@@ -60,7 +79,6 @@ def hydrostatic(
     """Return the volume under water, its first moment about the world's origin, and the work of pushing it there.
 
     Shape (5,): [m3], three [m4], and the work over density and gravity [m4].
-
 
     Args:
         table: of pieces.
@@ -78,7 +96,7 @@ def hydrostatic(
         ua, ub, ut = row[14] * dot(ahead, axes[0]), row[15] * dot(ahead, axes[1]), row[16] * dot(ahead, axes[2])
         extent = sqrt(ua * ua + ub * ub + ut * ut)
         depth = (level - dot(ahead, at)) / extent
-        share, moment = immersed(int(row[1]), depth)
+        share, moment = immersed(row[1], depth)
         arm = blend(row[14] * ua, axes[0], row[15] * ub, axes[1], row[16] * ut, axes[2])
         volume = row[17] - (1.0 - breath) * row[18]
         found[0] += volume * share
@@ -108,151 +126,123 @@ def _orbit(user: np.ndarray, time: float, x: Vector, up: Vector) -> tuple[float,
 
 
 @part
-def _rub(speed: float, length: float, viscosity: float) -> float:
-    """Return the friction coefficient of a plate times the speed [m/s]: laminar, or turbulent where that is more."""
-    if speed == 0.0:
-        return 0.0
-    reynolds = max(abs(speed) * length / viscosity, 1.0)
-    laminar = 1.328 / sqrt(reynolds)
-    if reynolds > _TURBULENT:
-        return max(laminar, 0.074 * reynolds**-0.2) * abs(speed)
-    return laminar * abs(speed)
+def place(table: np.ndarray, rows: np.ndarray) -> None:
+    """Turn axes and centres of pieces from the frames of their bodies into the world."""
+    for n in range(LANES):
+        turn = lane(rows, at.TURN, n), lane(rows, at.TURN + 3, n), lane(rows, at.TURN + 6, n)
+        a, b = lane(table, at.ACROSS, n), lane(table, at.UPWARD, n)
+        t, centre = lane(table, at.FORWARD, n), lane(table, at.AT, n)
+        put(rows, at.E_A, n, (dot(turn[0], a), dot(turn[1], a), dot(turn[2], a)))
+        put(rows, at.E_B, n, (dot(turn[0], b), dot(turn[1], b), dot(turn[2], b)))
+        put(rows, at.E_T, n, (dot(turn[0], t), dot(turn[1], t), dot(turn[2], t)))
+        centre = (dot(turn[0], centre), dot(turn[1], centre), dot(turn[2], centre))
+        put(rows, at.CENTRE, n, plus(lane(rows, at.ORIGIN, n), centre))
 
 
 @part
-def _drag(
-    row: np.ndarray, axes: Axes, w: Vector, roll: float, user: np.ndarray, length: float
-) -> tuple[Vector, Vector]:
-    """Return drag across and along a piece, and the couple of a flat piece that rolls, over its share under water."""
-    rho, coefficient = user[DENSITY], user[CROSS_DRAG]
-    across = -0.5 * rho * coefficient * sqrt(w[0] * w[0] + w[1] * w[1])
-    along = -0.5 * rho * (row[24] * user[THICKENING] * _rub(w[2], length, user[VISCOSITY]) + row[25] * abs(w[2]))
-    force = blend(across * row[22] * w[0], axes[0], across * row[23] * w[1], axes[1], along * w[2], axes[2])
-    return force, times(-rho * coefficient * row[26] * abs(roll) * roll, axes[2])
+def flow(rows: np.ndarray, user: np.ndarray, time: float, up: Vector) -> None:
+    """Say how high the surface stands over the level at each piece, and how the water there moves."""
+    current, still, wave = three(user, CURRENT), (0.0, 0.0, 0.0), user[WAVE] != 0.0
+    for n in range(LANES):
+        raised, stream, surge = 0.0, current, still
+        if wave:
+            raised, stream, surge = _orbit(user, time, lane(rows, at.CENTRE, n), up)
+        rows[at.RAISED, n] = raised
+        put(rows, at.STREAM, n, stream)
+        put(rows, at.SURGE, n, surge)
 
 
 @part
-def _shed(row: np.ndarray, axes: Axes, v: Vector, omega: Vector, dense: float) -> tuple[Vector, Vector]:
-    """Return force and couple of the momentum that is shed where the tail ends."""
-    none = (0.0, 0.0, 0.0)
-    if row[27] + row[28] <= 0.0:
-        return none, none
-    arm = times(row[29], axes[2])
-    here = plus(v, cross(omega, arm))
-    u = dot(here, axes[2])
-    if u <= 0.0:
-        return none, none
-    wa, wb = dot(here, axes[0]), dot(here, axes[1])
-    pa, pb = dense * row[27] * wa, dense * row[28] * wb
-    force = blend(-u * pa, axes[0], -u * pb, axes[1], 0.5 * (pa * wa + pb * wb), axes[2])
-    return force, cross(arm, force)
+def meet(table: np.ndarray, rows: np.ndarray, water: Water) -> None:
+    """Compare pieces with the surface and with the water around them: how deep they are, how they move against it."""
+    for n in range(LANES):
+        a, b, t = lane(rows, at.E_A, n), lane(rows, at.E_B, n), lane(rows, at.E_T, n)
+        ua, ub, ut = dot(water.up, a), dot(water.up, b), dot(water.up, t)
+        ua, ub, ut = table[at.HALF, n] * ua, table[at.HALF + 1, n] * ub, table[at.HALF + 2, n] * ut
+        extent, centre = sqrt(ua * ua + ub * ub + ut * ut), lane(rows, at.CENTRE, n)
+        depth = (water.level + rows[at.RAISED, n] - dot(water.up, centre)) / extent
+        rows[at.DEPTH, n] = depth
+        arm = blend(table[at.HALF, n] * ua, a, table[at.HALF + 1, n] * ub, b, table[at.HALF + 2, n] * ut, t)
+        put(rows, at.ARM, n, times(1.0 / extent, arm))
+        r = plus(centre, times(-1.0, lane(rows, at.REFERENCE, n)))
+        v = plus(lane(rows, at.MOVING + 3, n), cross(lane(rows, at.MOVING, n), r))
+        v = plus(v, times(-1.0, lane(rows, at.STREAM, n)))  # of the centre against the water
+        put(rows, at.FROM, n, r)
+        put(rows, at.AGAINST, n, v)
+        put(rows, at.SPEED, n, (dot(v, a), dot(v, b), dot(v, t)))
 
 
 @part
-def _spatial(mass: float, axis: Vector, r: Vector, inertia: np.ndarray, b: int) -> None:
-    """Add the inertia of a point at r that resists along one axis only to the spatial inertia of a body, (21,).
-
-    Of the symmetric (6, 6) only the lower half is kept, row by row; written out, since numba picks the parts of a tuple
-    one by one where the index is not known beforehand.
-    """
-    turn = cross(r, axis)
-    g0, g1, g2 = mass * turn[0], mass * turn[1], mass * turn[2]
-    g3, g4, g5 = mass * axis[0], mass * axis[1], mass * axis[2]
-    inertia[b, 0] += g0 * turn[0]
-    inertia[b, 1] += g1 * turn[0]
-    inertia[b, 2] += g1 * turn[1]
-    inertia[b, 3] += g2 * turn[0]
-    inertia[b, 4] += g2 * turn[1]
-    inertia[b, 5] += g2 * turn[2]
-    inertia[b, 6] += g3 * turn[0]
-    inertia[b, 7] += g3 * turn[1]
-    inertia[b, 8] += g3 * turn[2]
-    inertia[b, 9] += g3 * axis[0]
-    inertia[b, 10] += g4 * turn[0]
-    inertia[b, 11] += g4 * turn[1]
-    inertia[b, 12] += g4 * turn[2]
-    inertia[b, 13] += g4 * axis[0]
-    inertia[b, 14] += g4 * axis[1]
-    inertia[b, 15] += g5 * turn[0]
-    inertia[b, 16] += g5 * turn[1]
-    inertia[b, 17] += g5 * turn[2]
-    inertia[b, 18] += g5 * axis[0]
-    inertia[b, 19] += g5 * axis[1]
-    inertia[b, 20] += g5 * axis[2]
+def rub(rows: np.ndarray, water: Water) -> None:
+    """Say how turbulent water rubs, where it does."""
+    per_speed = water.length / water.viscosity
+    for n in range(LANES):
+        reynolds, found = abs(rows[at.SPEED + 2, n]) * per_speed, 0.0
+        if reynolds > _TURBULENT:
+            found = 0.074 * reynolds**-0.2
+        rows[at.TURBULENT, n] = found
 
 
 @part
-def piece(
-    row: np.ndarray,
-    b: int,
-    poses: tuple[np.ndarray, np.ndarray, np.ndarray],
-    motion: np.ndarray,
-    bias: np.ndarray,
-    up: Vector,
-    gravity: float,
-    user: np.ndarray,
-    time: float,
-    length: float,
-    force: np.ndarray,
-    inertia: np.ndarray,
-) -> float:
-    """Add what the water does to one piece to the force and the added inertia of its body.
+def press(table: np.ndarray, rows: np.ndarray, water: Water) -> None:
+    """Say what the water does to each piece: force, couple about the point of reference, volume under water."""
+    per_speed = water.length / water.viscosity
+    for n in range(LANES):
+        share, moment = immersed(table[at.KIND, n], rows[at.DEPTH, n])
+        volume = (table[at.VOLUME, n] - (1.0 - water.breath) * table[at.AIR, n]) * share
+        a, b, t, w = lane(rows, at.E_A, n), lane(rows, at.E_B, n), lane(rows, at.E_T, n), lane(rows, at.SPEED, n)
+        r, omega, surge = lane(rows, at.FROM, n), lane(rows, at.MOVING, n), lane(rows, at.SURGE, n)
+        # buoyancy and the pressure of the waves, at the centre of what is under water
+        f = times(water.density * volume, plus(times(water.gravity, water.up), surge))
+        torque = cross(times(moment / share, lane(rows, at.ARM, n)), f)
+        # drag across and along, and of a flat piece that rolls, over the share under water
+        dense = water.density * share
+        across = -0.5 * dense * water.cross_drag * sqrt(w[0] * w[0] + w[1] * w[1])
+        speed, roll = abs(w[2]), dot(omega, t)
+        friction = water.thickening * max(1.328 / sqrt(max(speed * per_speed, 1.0)), rows[at.TURBULENT, n])
+        along = -0.5 * dense * (table[at.SKIN, n] * friction + table[at.END, n]) * speed
+        f = plus(f, blend(across * table[at.AREA, n] * w[0], a, across * table[at.AREA + 1, n] * w[1], b, along * w[2], t))
+        torque = plus(torque, times(-dense * water.cross_drag * table[at.ROLL, n] * abs(roll) * roll, t))
+        # shed momentum, where the tail ends and the water passes towards it
+        end = times(table[at.SHED_AT, n], t)
+        here = plus(lane(rows, at.AGAINST, n), cross(omega, end))
+        u, wa, wb = dot(here, t), dot(here, a), dot(here, b)
+        shed = dense * water.added * water.shedding * max(u, 0.0)
+        pa, pb = shed * table[at.SHED, n] * wa, shed * table[at.SHED + 1, n] * wb
+        half = 0.5 * dense * water.added * water.shedding * (table[at.SHED, n] * wa * wa + table[at.SHED + 1, n] * wb * wb)
+        lost = blend(-pa, a, -pb, b, half if u > 0.0 else 0.0, t)
+        torque = plus(plus(torque, cross(end, lost)), cross(r, plus(f, lost)))
+        put(rows, at.FORCE, n, plus(f, lost))
+        put(rows, at.FORCE - 3, n, torque)
+        rows[at.SHARE, n], rows[at.UNDER, n] = share, volume
 
-    Args:
-        row: of the table.
-        b: number of the body.
-        poses: origins (body, 3) and orientations (body, 9) of the bodies, and the point of reference (3,).
-        motion: spatial velocities of the bodies, (body, 6).
-        bias: their spatial accelerations without those of the joints, (body, 6).
-        up: against gravity.
-        gravity: its size [m/s2].
-        user: the numbers of the water.
-        time: [s].
-        length: for the Reynolds number [m].
-        force: spatial forces on the bodies, (body, 6), changed.
-        inertia: lower halves of the spatial added inertias of the bodies, (body, 21), changed.
 
-    Returns:
-        The volume under water [m3].
-    """
-    turn = poses[1][b]
-    axes = turned(turn, row, 5), turned(turn, row, 8), turned(turn, row, 11)
-    at = plus(row3(poses[0], b, 0), turned(turn, row, 2))
-    raised, stream, surge = _orbit(user, time, at, up)
-    ua, ub, ut = row[14] * dot(up, axes[0]), row[15] * dot(up, axes[1]), row[16] * dot(up, axes[2])
-    extent = sqrt(ua * ua + ub * ub + ut * ut)
-    share, moment = immersed(int(row[1]), (user[LEVEL] + raised - dot(up, at)) / extent)
-    if share <= 0.0:
-        return 0.0
-    volume = (row[17] - (1.0 - user[BREATH]) * row[18]) * share
-    r = plus(at, times(-1.0, three(poses[2], 0)))
-    omega, alpha = row3(motion, b, 0), row3(bias, b, 0)
-    v = plus(row3(motion, b, 3), plus(cross(omega, r), times(-1.0, stream)))  # of the centre against the water
-    w = dot(v, axes[0]), dot(v, axes[1]), dot(v, axes[2])
-    # buoyancy and the pressure of the waves, at the centre of what is under water
-    f = times(user[DENSITY] * volume, plus(times(gravity, up), surge))
-    arm = blend(row[14] * ua, axes[0], row[15] * ub, axes[1], row[16] * ut, axes[2])
-    torque = cross(times(moment / (share * extent), arm), f)
-    rubbed, couple = _drag(row, axes, w, dot(omega, axes[2]), user, length)
-    f, torque = plus(f, times(share, rubbed)), plus(torque, times(share, couple))
-    dense = user[DENSITY] * share * user[ADDED]
-    if dense > 0.0:  # added mass: its bias here, the rest in the matrix
-        ma, mb, mt = dense * row[19], dense * row[20], dense * row[21]
-        p = blend(ma * w[0], axes[0], mb * w[1], axes[1], mt * w[2], axes[2])
-        a = plus(row3(bias, b, 3), plus(cross(alpha, r), plus(cross(omega, stream), times(-1.0, surge))))
-        rate = blend(ma * dot(a, axes[0]), axes[0], mb * dot(a, axes[1]), axes[1], mt * dot(a, axes[2]), axes[2])
-        lost, twist = _shed(row, axes, v, omega, dense * user[SHEDDING])
-        f = plus(f, blend(-1.0, rate, -1.0, cross(omega, p), 1.0, lost))
-        torque = plus(torque, blend(-1.0, cross(v, p), 1.0, twist, 0.0, twist))
-        _spatial(ma, axes[0], r, inertia, b)
-        _spatial(mb, axes[1], r, inertia, b)
-        if mt > 0.0:
-            _spatial(mt, axes[2], r, inertia, b)
-    torque = plus(torque, cross(r, f))
-    force[b, 0] += torque[0]
-    force[b, 1] += torque[1]
-    force[b, 2] += torque[2]
-    force[b, 3] += f[0]
-    force[b, 4] += f[1]
-    force[b, 5] += f[2]
-    return volume
+@part
+def drag_along(table: np.ndarray, rows: np.ndarray, water: Water) -> None:
+    """Add the added mass of each piece, as a spatial inertia about the point of reference, and its bias force."""
+    for n in range(LANES):
+        dense = water.density * rows[at.SHARE, n] * water.added
+        a, b, t = lane(rows, at.E_A, n), lane(rows, at.E_B, n), lane(rows, at.E_T, n)
+        ma, mb, mt = dense * table[at.ADDED, n], dense * table[at.ADDED + 1, n], dense * table[at.ADDED + 2, n]
+        pushed = (
+            blend(ma * a[0], a, mb * b[0], b, mt * t[0], t),
+            blend(ma * a[1], a, mb * b[1], b, mt * t[1], t),
+            blend(ma * a[2], a, mb * b[2], b, mt * t[2], t),
+        )  # rows of the tensor A
+        r, v, omega = lane(rows, at.FROM, n), lane(rows, at.AGAINST, n), lane(rows, at.MOVING, n)
+        alpha, stream = lane(rows, at.BIAS, n), lane(rows, at.STREAM, n)
+        p = dot(pushed[0], v), dot(pushed[1], v), dot(pushed[2], v)
+        rate = plus(lane(rows, at.BIAS + 3, n), plus(cross(alpha, r), cross(omega, stream)))
+        rate = plus(rate, times(-1.0, lane(rows, at.SURGE, n)))
+        f = plus((dot(pushed[0], rate), dot(pushed[1], rate), dot(pushed[2], rate)), cross(omega, p))
+        torque = plus(cross(v, p), cross(r, f))
+        put(rows, at.FORCE, n, plus(lane(rows, at.FORCE, n), times(-1.0, f)))
+        put(rows, at.FORCE - 3, n, plus(lane(rows, at.FORCE - 3, n), times(-1.0, torque)))
+        x, y, z = cross(r, pushed[0]), cross(r, pushed[1]), cross(r, pushed[2])  # rows: force by rotation
+        put(rows, at.MIXED, n, x)
+        put(rows, at.MIXED + 3, n, y)
+        put(rows, at.MIXED + 6, n, z)
+        put(rows, at.SPUN, n, (r[1] * z[0] - r[2] * y[0], r[2] * x[0] - r[0] * z[0], r[2] * x[1] - r[0] * z[1]))
+        put(rows, at.SPUN + 3, n, (r[0] * y[0] - r[1] * x[0], r[0] * y[1] - r[1] * x[1], r[0] * y[2] - r[1] * x[2]))
+        put(rows, at.PUSHED, n, (pushed[0][0], pushed[1][0], pushed[1][1]))
+        put(rows, at.PUSHED + 3, n, (pushed[2][0], pushed[2][1], pushed[2][2]))

@@ -5,15 +5,37 @@ it runs. All spatial vectors are MuJoCo's: rotation first, about the centre of m
 """
 
 from math import sqrt
+from typing import NamedTuple
 
 import numpy as np
 from numba import carray, types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
-from suchus.hydro.forces import piece
-from suchus.hydro.table import ADDED, COLUMNS, FORCE, HEADER, LEVEL, MAGIC, NUMBERS, POWER, UNDER, WAVE, WIDTH
-from suchus.hydro.vectors import Vector, compiled, dot, part, row3, three, times
+from suchus.hydro import lanes
+from suchus.hydro.forces import drag_along, flow, meet, place, press, rub
+from suchus.hydro.lanes import MIXED, PUSHED, ROWS, SPUN, SUMS, Water
+from suchus.hydro.table import (
+    ADDED,
+    BREATH,
+    COLUMNS,
+    CROSS_DRAG,
+    DENSITY,
+    FORCE,
+    HEADER,
+    LANES,
+    LEVEL,
+    MAGIC,
+    NUMBERS,
+    POWER,
+    SHEDDING,
+    THICKENING,
+    UNDER,
+    VISCOSITY,
+    WAVE,
+    WIDTH,
+)
+from suchus.hydro.vectors import Vector, compiled, dot, part, plus, put, three, times, write
 
 FIELDS = (
     "nv", "nbody", "nnumericdata", "nuserdata", "opt.gravity", "numeric_data", "body_parentid", "body_rootid",
@@ -29,7 +51,9 @@ DATA_FIELDS = (
     _COLIND, _TIME, _QVEL, _QACC, _XPOS, _XMAT, _COM, _CVEL, _CDOF, _CDOFDOT, _PASSIVE, _MASS, _USER,
 ) = range(26)  # fmt: skip
 
-_REACH = COLUMNS["reach"][0]
+_BODY, _REACH = COLUMNS["body"][0], COLUMNS["reach"][0]
+_COUPLE, _LINEAR = lanes.FORCE - 3 - lanes.FOUND, lanes.FORCE - lanes.FOUND
+_SPUN, _MIXED, _PUSHED = SPUN - lanes.FOUND, MIXED - lanes.FOUND, PUSHED - lanes.FOUND
 
 
 @intrinsic
@@ -59,153 +83,248 @@ def wet(model: int, data: int, at: np.ndarray) -> bool:
     numbers = carray(_pointer(whole[at[_NUMERIC] // 8]), (whole[count],), np.float64)
     if numbers[0] != MAGIC or whole[at[_NUSER] // 8] < NUMBERS:
         return False
-    return _wet(model, data, at, numbers)
-
-
-@part
-def _wet(model: int, data: int, at: np.ndarray, numbers: np.ndarray) -> bool:
-    """Gather what the water does piece by piece and body by body, and hand it to the joints."""
-    whole, real = carray(model, (4096,), np.int64), carray(model, (4096,), np.float64)
-    state, clock = carray(data, (65536,), np.int64), carray(data, (65536,), np.float64)
-    nv, nbody = whole[at[_NV] // 8], whole[at[_NBODY] // 8]
-    parent = carray(_pointer(whole[at[_PARENT] // 8]), (nbody,), np.int32)
-    root = carray(_pointer(whole[at[_ROOT] // 8]), (nbody,), np.int32)
-    first = carray(_pointer(whole[at[_DOFADR] // 8]), (nbody,), np.int32)
-    dofs = carray(_pointer(whole[at[_DOFNUM] // 8]), (nbody,), np.int32)
-    owner = carray(_pointer(whole[at[_DOFBODY] // 8]), (nv,), np.int32)
-    xpos = carray(_pointer(state[at[_XPOS] // 8]), (nbody, 3), np.float64)
-    xmat = carray(_pointer(state[at[_XMAT] // 8]), (nbody, 9), np.float64)
-    com = carray(_pointer(state[at[_COM] // 8]), (nbody, 3), np.float64)
-    cvel = carray(_pointer(state[at[_CVEL] // 8]), (nbody, 6), np.float64)
-    cdof = carray(_pointer(state[at[_CDOF] // 8]), (nv, 6), np.float64)
-    cdof_dot = carray(_pointer(state[at[_CDOFDOT] // 8]), (nv, 6), np.float64)
-    qvel = carray(_pointer(state[at[_QVEL] // 8]), (nv,), np.float64)
-    passive = carray(_pointer(state[at[_PASSIVE] // 8]), (nv,), np.float64)
-    user = carray(_pointer(state[at[_USER] // 8]), (NUMBERS,), np.float64)
-    down = three(real, at[_GRAVITY] // 8)
-    gravity = sqrt(dot(down, down))
-    up = times(-1.0 / gravity, down) if gravity > 0.0 else (0.0, 0.0, 1.0)
-    table, surface = numbers[HEADER:], user[LEVEL] + abs(user[WAVE])
-    near = 0  # the first piece that is not far above the surface
-    while near < int(numbers[1]) and _dry(table, near, surface, up, xpos):
-        near += 1
+    bodies, motion = _bodies(model, at), _motion(model, data, at)
+    user, water = motion.user, _water(model, motion.user, at, numbers[2])
+    blocks = (len(numbers) - HEADER) // (WIDTH * LANES)
+    table = carray(_pointer(whole[at[_NUMERIC] // 8] + 8 * HEADER), (blocks, WIDTH, LANES), np.float64)
     for i in range(4):
         user[FORCE + i] = 0.0
     user[UNDER] = 0.0
-    if near == int(numbers[1]):
+    if _all_dry(table, int(numbers[1]), water, abs(user[WAVE]), motion):
         return False
-    bias = np.zeros((nbody, 6))
-    for b in range(1, nbody):
-        for i in range(6):
-            bias[b, i] = bias[parent[b], i]
-            for j in range(first[b], first[b] + dofs[b]):
-                bias[b, i] += cdof_dot[j, i] * qvel[j]
-    force, inertia, under = np.zeros((nbody, 6)), np.zeros((nbody, 21)), 0.0
-    for n in range(near, int(numbers[1])):
-        if _dry(table, n, surface, up, xpos):
-            continue
-        row = table[n * WIDTH : (n + 1) * WIDTH]
-        b = int(row[0])
-        poses = xpos, xmat, com[root[b]]
-        under += piece(row, b, poses, cvel, bias, up, gravity, user, clock[at[_TIME] // 8], numbers[2], force, inertia)
-    user[UNDER] = under
-    if under == 0.0:
+    sums = _gathered(table, int(numbers[1]), water, bodies, motion)
+    if user[UNDER] == 0.0:
         return False
-    if user[ADDED] > 0.0:
-        qacc = carray(_pointer(state[at[_QACC] // 8]), (nv,), np.float64)
-        _taken(parent, first, dofs, cdof, qacc, cvel, inertia, user)
-    for b in range(nbody - 1, 0, -1):
-        if parent[b] > 0:
-            for i in range(6):
-                force[parent[b], i] += force[b, i]
-            for i in range(21):
-                inertia[parent[b], i] += inertia[b, i]
-        else:
-            for i in range(3):
-                user[FORCE + i] += force[b, 3 + i]
-    power = user[POWER]  # memory is not summed up in: the compiler cannot know that nothing else lies there
-    for i in range(nv):
-        acts, b = 0.0, owner[i]
-        for k in range(6):
-            acts += cdof[i, k] * force[b, k]
-        passive[i] += acts
-        power += acts * qvel[i]
-    user[POWER] = power
-    if user[ADDED] <= 0.0:
+    _hand_over(sums, bodies, motion)
+    if water.added <= 0.0:
         return False
-    _burden(whole, state, at, inertia, cdof, owner)
+    _burden(sums, bodies, motion)
+    return True
+
+
+class Bodies(NamedTuple):
+    """The tree of bodies and joints."""
+
+    parent: np.ndarray
+    """Of each body (body,)."""
+    root: np.ndarray
+    """First body of its tree (body,)."""
+    first: np.ndarray
+    """First joint of each body (body,)."""
+    dofs: np.ndarray
+    """Number of its joints (body,)."""
+    owner: np.ndarray
+    """Body that each joint moves (joint,)."""
+    rownnz: np.ndarray
+    """Numbers in each row of the matrix (joint,)."""
+    rowadr: np.ndarray
+    """Where each row begins (joint,)."""
+    column: np.ndarray
+    """Joint of each number."""
+
+
+class Motion(NamedTuple):
+    """Where the bodies are and how they move, in the world."""
+
+    time: float
+    """[s]."""
+    xpos: np.ndarray
+    """Origins (body, 3) [m]."""
+    xmat: np.ndarray
+    """Orientations (body, 9)."""
+    com: np.ndarray
+    """Centres of mass of the subtrees (body, 3) [m]."""
+    cvel: np.ndarray
+    """Spatial velocities (body, 6)."""
+    cdof: np.ndarray
+    """Spatial velocities by the joints (joint, 6)."""
+    cdof_dot: np.ndarray
+    """Their rates (joint, 6)."""
+    qvel: np.ndarray
+    """Velocities of the joints (joint,)."""
+    qacc: np.ndarray
+    """Their accelerations in the last step (joint,)."""
+    passive: np.ndarray
+    """Passive forces on them (joint,), changed."""
+    mass: np.ndarray
+    """The matrix, changed."""
+    user: np.ndarray
+    """The numbers of the water, changed."""
+
+
+@part
+def _bodies(model: int, at: np.ndarray) -> Bodies:
+    """Return the tree of a model."""
+    whole = carray(model, (4096,), np.int64)
+    nv, nbody = whole[at[_NV] // 8], whole[at[_NBODY] // 8]
+    rownnz = carray(_pointer(whole[at[_ROWNNZ] // 8]), (nv,), np.uint32)
+    rowadr = carray(_pointer(whole[at[_ROWADR] // 8]), (nv,), np.uint32)
+    return Bodies(
+        carray(_pointer(whole[at[_PARENT] // 8]), (nbody,), np.uint32),
+        carray(_pointer(whole[at[_ROOT] // 8]), (nbody,), np.uint32),
+        carray(_pointer(whole[at[_DOFADR] // 8]), (nbody,), np.uint32),
+        carray(_pointer(whole[at[_DOFNUM] // 8]), (nbody,), np.uint32),
+        carray(_pointer(whole[at[_DOFBODY] // 8]), (nv,), np.uint32),
+        rownnz,
+        rowadr,
+        carray(_pointer(whole[at[_COLIND] // 8]), (rowadr[nv - 1] + rownnz[nv - 1],), np.uint32),
+    )
+
+
+@part
+def _motion(model: int, data: int, at: np.ndarray) -> Motion:
+    """Return where the bodies of a model are."""
+    whole = carray(model, (4096,), np.int64)
+    state, clock = carray(data, (65536,), np.int64), carray(data, (65536,), np.float64)
+    nv, nbody = whole[at[_NV] // 8], whole[at[_NBODY] // 8]
+    return Motion(
+        clock[at[_TIME] // 8],
+        carray(_pointer(state[at[_XPOS] // 8]), (nbody, 3), np.float64),
+        carray(_pointer(state[at[_XMAT] // 8]), (nbody, 9), np.float64),
+        carray(_pointer(state[at[_COM] // 8]), (nbody, 3), np.float64),
+        carray(_pointer(state[at[_CVEL] // 8]), (nbody, 6), np.float64),
+        carray(_pointer(state[at[_CDOF] // 8]), (nv, 6), np.float64),
+        carray(_pointer(state[at[_CDOFDOT] // 8]), (nv, 6), np.float64),
+        carray(_pointer(state[at[_QVEL] // 8]), (nv,), np.float64),
+        carray(_pointer(state[at[_QACC] // 8]), (nv,), np.float64),
+        carray(_pointer(state[at[_PASSIVE] // 8]), (nv,), np.float64),
+        carray(_pointer(state[at[_MASS] // 8]), (nv * nv,), np.float64),
+        carray(_pointer(state[at[_USER] // 8]), (NUMBERS,), np.float64),
+    )
+
+
+@part
+def _water(model: int, user: np.ndarray, at: np.ndarray, length: float) -> Water:
+    """Return what the water is."""
+    down = three(carray(model, (4096,), np.float64), at[_GRAVITY] // 8)
+    gravity = sqrt(dot(down, down))
+    up = times(-1.0 / gravity, down) if gravity > 0.0 else (0.0, 0.0, 1.0)
+    return Water(
+        user[LEVEL], user[DENSITY], user[BREATH], user[VISCOSITY], user[CROSS_DRAG], user[THICKENING], user[ADDED],
+        user[SHEDDING], up, gravity, length,
+    )  # fmt: skip
+
+
+@part
+def _all_dry(table: np.ndarray, count: int, water: Water, height: float, motion: Motion) -> bool:
+    """Return whether all pieces are far above the surface, waves of a height included."""
+    for n in range(count):
+        block, lane = n // LANES, n % LANES
+        at = three(motion.xpos[int(table[block, _BODY, lane])], 0)
+        if water.level + height - dot(water.up, at) > -table[block, _REACH, lane]:
+            return False
     return True
 
 
 @part
-def _dry(table: np.ndarray, n: int, surface: float, up: Vector, xpos: np.ndarray) -> bool:
-    """Return whether a piece is far above the surface."""
-    return surface - dot(up, row3(xpos, int(table[n * WIDTH]), 0)) <= -table[n * WIDTH + _REACH]
+def _gathered(table: np.ndarray, count: int, water: Water, bodies: Bodies, motion: Motion) -> np.ndarray:
+    """Return inertia, couple and force of the water on each body, shape (body, ``SUMS``)."""
+    bias = _bias(bodies, motion)
+    rows, sums, under = np.zeros((ROWS, LANES)), np.zeros((len(bodies.parent), SUMS)), 0.0
+    for block in range(table.shape[0]):
+        some = table[block]
+        for n in range(LANES):
+            b = np.uint32(some[_BODY, n])
+            for k in range(0, 9, 3):
+                put(rows, lanes.TURN + k, n, three(motion.xmat[b], k))
+            put(rows, lanes.ORIGIN, n, three(motion.xpos[b], 0))
+            put(rows, lanes.REFERENCE, n, three(motion.com[bodies.root[b]], 0))
+            put(rows, lanes.MOVING, n, three(motion.cvel[b], 0))
+            put(rows, lanes.MOVING + 3, n, three(motion.cvel[b], 3))
+            put(rows, lanes.BIAS, n, three(bias[b], 0))
+            put(rows, lanes.BIAS + 3, n, three(bias[b], 3))
+        place(some, rows)
+        if block == 0 or motion.user[WAVE] != 0.0:
+            flow(rows, motion.user, motion.time, water.up)
+        meet(some, rows, water)
+        rub(rows, water)
+        press(some, rows, water)
+        drag_along(some, rows, water)
+        for n in range(min(LANES, count - block * LANES)):
+            if rows[lanes.SHARE, n] > 0.0:
+                under += rows[lanes.UNDER, n]
+                b = np.uint32(some[_BODY, n])
+                for k in range(SUMS):
+                    sums[b, k] += rows[lanes.FOUND + k, n]
+    motion.user[UNDER] = under
+    return sums
 
 
 @part
-def _taken(
-    parent: np.ndarray,
-    first: np.ndarray,
-    dofs: np.ndarray,
-    cdof: np.ndarray,
-    qacc: np.ndarray,
-    cvel: np.ndarray,
-    inertia: np.ndarray,
-    user: np.ndarray,
-) -> None:
-    """Take from force and power of the water what the added mass takes by the accelerations of the last step."""
-    acceleration = np.zeros((len(parent), 6))
-    power, pulled = user[POWER], three(user, FORCE)
-    for b in range(1, len(parent)):
-        for i in range(6):
-            sum_ = acceleration[parent[b], i]
-            for j in range(first[b], first[b] + dofs[b]):
-                sum_ += cdof[j, i] * qacc[j]
-            acceleration[b, i] = sum_
-        if inertia[b, 9] + inertia[b, 14] + inertia[b, 20] <= 0.0:
-            continue
-        for i in range(6):
-            k, reaction = i * (i + 1) // 2, 0.0
-            for n in range(i + 1):
-                reaction += inertia[b, k + n] * acceleration[b, n]
-            for n in range(i + 1, 6):
-                reaction += inertia[b, n * (n + 1) // 2 + i] * acceleration[b, n]
-            power -= reaction * cvel[b, i]
-            if i == 3:
-                pulled = pulled[0] - reaction, pulled[1], pulled[2]
-            elif i == 4:
-                pulled = pulled[0], pulled[1] - reaction, pulled[2]
-            elif i == 5:
-                pulled = pulled[0], pulled[1], pulled[2] - reaction
+def _bias(bodies: Bodies, motion: Motion) -> np.ndarray:
+    """Return spatial accelerations of the bodies without those of the joints, shape (body, 6)."""
+    bias = np.empty((len(bodies.parent), 6))
+    bias[0] = 0.0
+    for b in range(1, len(bodies.parent)):
+        before = bias[bodies.parent[b]]
+        turns, moves = three(before, 0), three(before, 3)
+        for j in range(bodies.first[b], bodies.first[b] + bodies.dofs[b]):
+            turns = plus(turns, times(motion.qvel[j], three(motion.cdof_dot[j], 0)))
+            moves = plus(moves, times(motion.qvel[j], three(motion.cdof_dot[j], 3)))
+        write(bias[b], 0, turns)
+        write(bias[b], 3, moves)
+    return bias
+
+
+@part
+def _hand_over(sums: np.ndarray, bodies: Bodies, motion: Motion) -> None:
+    """Add up what acts on the bodies towards the roots, and hand the forces to the joints."""
+    user, power = motion.user, 0.0
+    for b in range(len(bodies.parent) - 1, 0, -1):
+        parent = bodies.parent[b]
+        if parent > 0:
+            for k in range(SUMS):
+                sums[parent, k] += sums[b, k]
+        else:
+            for i in range(3):
+                user[FORCE + i] += sums[b, _LINEAR + i]
+    for i in range(len(bodies.owner)):
+        acts, b = 0.0, bodies.owner[i]
+        for k in range(6):
+            acts += motion.cdof[i, k] * sums[b, _COUPLE + k]
+        motion.passive[i] += acts
+        power += acts * motion.qvel[i]
     user[POWER] = power
-    for i in range(3):
-        user[FORCE + i] = pulled[i]
 
 
 @part
-def _burden(
-    whole: np.ndarray, state: np.ndarray, at: np.ndarray, inertia: np.ndarray, cdof: np.ndarray, owner: np.ndarray
-) -> None:
-    """Add the composite added inertia to the joints' matrix."""
-    nv = len(owner)
-    rownnz = carray(_pointer(whole[at[_ROWNNZ] // 8]), (nv,), np.int32)
-    rowadr = carray(_pointer(whole[at[_ROWADR] // 8]), (nv,), np.int32)
-    size = rowadr[nv - 1] + rownnz[nv - 1]
-    column = carray(_pointer(whole[at[_COLIND] // 8]), (size,), np.int32)
-    mass = carray(_pointer(state[at[_MASS] // 8]), (size,), np.float64)
-    given = np.empty(6)
-    for i in range(nv):
-        b = owner[i]
-        for k in range(6):
-            given[k] = 0.0
-        for k in range(6):
-            for n in range(k):
-                given[k] += inertia[b, k * (k + 1) // 2 + n] * cdof[i, n]
-                given[n] += inertia[b, k * (k + 1) // 2 + n] * cdof[i, k]
-            given[k] += inertia[b, k * (k + 3) // 2] * cdof[i, k]
-        for n in range(rowadr[i], rowadr[i] + rownnz[i]):
-            j, more = column[n], 0.0
-            for k in range(6):
-                more += cdof[j, k] * given[k]
-            mass[n] += more
+def _burden(sums: np.ndarray, bodies: Bodies, motion: Motion) -> None:
+    """Add the added inertia of each joint's subtree to the matrix.
+
+    From force and power of the water is taken what this inertia takes by the accelerations of the last step.
+    """
+    power, pulled, cdof, qvel, qacc = 0.0, (0.0, 0.0, 0.0), motion.cdof, motion.qvel, motion.qacc
+    for i in range(len(bodies.owner)):
+        turns, moves = three(cdof[i], 0), three(cdof[i], 3)
+        couple, force = _answer(sums[bodies.owner[i]], turns, moves)
+        start, speeds, speedings = bodies.rowadr[i], 0.0, 0.0
+        for n in range(start, start + bodies.rownnz[i]):
+            j = bodies.column[n]
+            more = dot(three(cdof[j], 0), couple) + dot(three(cdof[j], 3), force)
+            motion.mass[n] += more
+            speeds += more * qvel[j]
+            speedings += more * qacc[j]
+        own = (dot(turns, couple) + dot(moves, force)) * qvel[i]
+        power += qvel[i] * speedings + qacc[i] * (speeds - own)
+        pulled = plus(pulled, times(qacc[i], force))
+    motion.user[POWER] -= power
+    write(motion.user, FORCE, plus(three(motion.user, FORCE), times(-1.0, pulled)))
+
+
+@part
+def _answer(inertia: np.ndarray, turns: Vector, moves: Vector) -> tuple[Vector, Vector]:
+    """Return couple and force of an added inertia that is accelerated."""
+    s, x, y = three(inertia, _SPUN), three(inertia, _MIXED), three(inertia, _MIXED + 3)
+    rest, z = three(inertia, _SPUN + 3), three(inertia, _MIXED + 6)
+    m, more = three(inertia, _PUSHED), three(inertia, _PUSHED + 3)
+    force = (
+        dot(x, turns) + dot((m[0], m[1], more[0]), moves),
+        dot(y, turns) + dot((m[1], m[2], more[1]), moves),
+        dot(z, turns) + dot(more, moves),
+    )
+    couple = (
+        dot((s[0], s[1], rest[0]), turns) + dot((x[0], y[0], z[0]), moves),
+        dot((s[1], s[2], rest[1]), turns) + dot((x[1], y[1], z[1]), moves),
+        dot(rest, turns) + dot((x[2], y[2], z[2]), moves),
+    )
+    return couple, force

@@ -42,6 +42,9 @@ COLUMNS: Mapping[str, tuple[int, int]] = {
 WIDTH = 31
 """Columns of the table [-]."""
 
+LANES = 16
+"""Pieces that the kernel takes at once; a packed table has room for a whole number of these [-]."""
+
 MAGIC = 7.3115e77
 """First number of a model's table, by which it is known."""
 HEADER = 3
@@ -86,15 +89,22 @@ def column(table: Float[np.ndarray, "piece column"], name: str) -> Float[np.ndar
 def packed(
     table: Float[np.ndarray, "piece column"], length: float, count: int | None = None
 ) -> Float[np.ndarray, " n"]:
-    """Return a table as the row of numbers that a model carries.
+    """Return a table as the row of numbers that a model carries: after the header ``LANES`` pieces at a time by columns.
 
     Args:
         table: the pieces.
         length: of the body, for the Reynolds number of its friction [m].
         count: pieces to make room for; as many as there are if None.
     """
-    room = np.zeros((len(table) if count is None else count, WIDTH))
-    room[: len(table)] = table
-    half = np.linalg.norm(column(room, "half"), axis=1)
-    column(room, "reach")[:, 0] = np.linalg.norm(column(room, "at"), axis=1) + half
-    return np.concatenate([[MAGIC, len(table), length], room.ravel()])
+    blocks = -(-(len(table) if count is None else count) // LANES)
+    rows = np.zeros((blocks * LANES, WIDTH))
+    rows[: len(table)] = table
+    half = np.linalg.norm(column(rows, "half"), axis=1)
+    column(rows, "reach")[:, 0] = np.linalg.norm(column(rows, "at"), axis=1) + half
+    return np.concatenate([[MAGIC, len(table), length], rows.reshape(blocks, LANES, WIDTH).swapaxes(1, 2).ravel()])
+
+
+def unpacked(numbers: Float[np.ndarray, " n"]) -> Float[np.ndarray, "piece column"]:
+    """Return the table in the row of numbers that a model carries; a copy."""
+    blocks = numbers[HEADER:].reshape(-1, WIDTH, LANES)
+    return np.array(blocks.swapaxes(1, 2).reshape(-1, WIDTH)[: int(numbers[1])])

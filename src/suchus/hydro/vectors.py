@@ -10,13 +10,15 @@ Vector = tuple[float, float, float]
 """Three numbers in the world."""
 Axes = tuple[Vector, Vector, Vector]
 """Unit axes e_a, e_b and t of a piece."""
+_FAST = {"contract"}
+"""What the compiler may do to sums and products: multiply and add in one instruction."""
 P = ParamSpec("P")
 R = TypeVar("R")
 
 
 def compiled(function: Callable[P, R]) -> Callable[P, R]:
     """Compile what is called from outside; keep the code on disk (``NUMBA_CACHE_DIR`` moves it)."""
-    options = {"nogil": True, "error_model": "numpy"}
+    options = {"nogil": True, "error_model": "numpy", "fastmath": _FAST}
     try:
         made: Callable[P, R] = njit(cache=True, **options)(function)
     except RuntimeError:  # neither this folder nor the user's cache can be written: compile anew every time
@@ -27,7 +29,7 @@ def compiled(function: Callable[P, R]) -> Callable[P, R]:
 def part(function: Callable[P, R]) -> Callable[P, R]:
     """Compile a part of these, which nothing else calls."""
     made: Callable[P, R] = njit(
-        nogil=True, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True, forceinline=True
+        nogil=True, error_model="numpy", fastmath=_FAST, no_cpython_wrapper=True, no_cfunc_wrapper=True, forceinline=True
     )(function)
     return made
 
@@ -69,9 +71,21 @@ def three(values: np.ndarray, start: int) -> Vector:
 
 
 @part
-def row3(values: np.ndarray, row: int, start: int) -> Vector:
-    """Return three numbers of a row of an array."""
-    return values[row, start], values[row, start + 1], values[row, start + 2]
+def write(values: np.ndarray, start: int, three_: Vector) -> None:
+    """Write three numbers into an array."""
+    values[start], values[start + 1], values[start + 2] = three_
+
+
+@part
+def lane(rows: np.ndarray, row: int, place: int) -> Vector:
+    """Return three numbers that stand below each other, from a row on."""
+    return rows[row, place], rows[row + 1, place], rows[row + 2, place]
+
+
+@part
+def put(rows: np.ndarray, row: int, place: int, values: Vector) -> None:
+    """Write three numbers below each other, from a row on."""
+    rows[row, place], rows[row + 1, place], rows[row + 2, place] = values
 
 
 @part

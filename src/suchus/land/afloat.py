@@ -7,7 +7,7 @@ from scipy.optimize import brentq
 
 from suchus.design import AnyRobot
 from suchus.design.pieces import pieces
-from suchus.hydro import HEADER, column
+from suchus.hydro import column, unpacked
 from suchus.hydro.forces import hydrostatic
 from suchus.land import wetting
 from suchus.land.lake import Lake
@@ -54,7 +54,7 @@ def surfaced(
     here[:3] = 0.0
     data.qpos[:] = here
     mujoco.mj_kinematics(model, data)
-    bodies = model.numeric_data[HEADER : HEADER + table.size].reshape(table.shape)
+    bodies = unpacked(model.numeric_data)
 
     def lacking(height: float) -> float:
         return float(hydrostatic(bodies, data.xpos, data.xmat, up, -height, breath)[0]) - weight

@@ -12,7 +12,7 @@ from jaxtyping import Float
 from suchus.design import GRAVITY
 from suchus.design.checks import Checks
 from suchus.errors import Diverged
-from suchus.hydro import BALL, DISC, HEADER, SLAB, column
+from suchus.hydro import BALL, DISC, SLAB, column, unpacked
 from suchus.hydro.forces import hydrostatic
 from suchus.hydro.table import COLUMNS, WIDTH
 from suchus.land import wetting
@@ -110,7 +110,7 @@ class FloatTank:
         self.model = with_pieces(spec, table, 2 * max(body.half), acting=True)
         self.data = mujoco.MjData(self.model)
         self.data.userdata[:] = lake.numbers(_UP)
-        self._table = self.model.numeric_data[HEADER:].reshape(-1, WIDTH)
+        self._table = unpacked(self.model.numeric_data)
 
     def place(self, at: Point, turn: Float[np.ndarray, "4"] | None = None, velocity: Point = (0, 0, 0),
               spin: Point = (0, 0, 0)) -> None:  # fmt: skip

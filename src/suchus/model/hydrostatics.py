@@ -13,7 +13,7 @@ from suchus.design import WATER_DENSITY, AnyRobot, layout, servo_names
 from suchus.design.checks import require
 from suchus.design.pieces import pieces
 from suchus.errors import InvalidDesign
-from suchus.hydro import HEADER, column
+from suchus.hydro import column, unpacked
 from suchus.hydro.forces import hydrostatic
 from suchus.model.build import TIMESTEP, joint_addresses
 from suchus.model.wet import wet_model
@@ -71,7 +71,7 @@ class _Rigid:
         data.qpos[:3] = 0.0  # the model begins at a height that may be beyond the reach of a small robot
         _bend(model, data, robot, servos)
         mujoco.mj_fwdPosition(model, data)
-        self.table = model.numeric_data[HEADER : HEADER + table.size].reshape(table.shape)
+        self.table = unpacked(model.numeric_data)
         self.centre, self.mass = np.array(data.subtree_com[0]), float(model.body_subtreemass[0])
         air = (1.0 - breath) * float(column(table, "air").sum())
         self.volume, self.breath, self.density = float(column(table, "volume").sum()) - air, breath, density

@@ -9,7 +9,7 @@ from suchus.design import AnyRobot, layout
 from suchus.design.pieces import pieces
 from suchus.design.relief import Relief
 from suchus.errors import InvalidDesign
-from suchus.hydro import HEADER, NUMBERS, column, packed
+from suchus.hydro import NUMBERS, column, packed
 from suchus.model.build import build
 
 NUMERIC = "water"
@@ -53,8 +53,8 @@ def carrying(spec: Any, robot: AnyRobot, room: int | None = None, *, acting: boo
     names = [body.name for body in layout(robot).bodies]
     model = with_pieces(spec, table, robot.length, room, acting=acting)
     ids = np.array([model.body(name).id for name in names])
-    rows = model.numeric_data[HEADER:].reshape(-1, table.shape[1])[: len(table)]
-    column(rows, "body")[:, 0] = ids[table[:, 0].astype(int)]
+    column(table, "body")[:, 0] = ids[table[:, 0].astype(int)]
+    model.numeric_data[:] = packed(table, robot.length, room)
     return model
 
 

@@ -2,7 +2,7 @@
 
 from suchus.record.ground import ground_of, ground_text
 from suchus.record.place import check_name, check_replaceable, check_writable, new_file, new_folder, sweep
-from suchus.record.provenance import code_digest, digest, plain, provenance, versions
+from suchus.record.provenance import code_digest, digest, made_alike, package_digest, plain, provenance, versions
 from suchus.record.reading import check_file, read_json, read_text, read_toml, there
 from suchus.record.schema import PER_RUN, VARIABLES, WATER, check_land, dataset
 from suchus.record.store import load, save
@@ -23,8 +23,10 @@ __all__ = [
     "ground_of",
     "ground_text",
     "load",
+    "made_alike",
     "new_file",
     "new_folder",
+    "package_digest",
     "plain",
     "provenance",
     "read_json",

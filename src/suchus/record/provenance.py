@@ -1,10 +1,11 @@
 """Where a result comes from: what was asked, with which software, how long it took. No dates."""
 
+import ast
 import hashlib
 import json
 import math
 import platform
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import fields, is_dataclass
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
@@ -25,6 +26,7 @@ def provenance(settings: Mapping[str, Any], *, seconds: float) -> dict[str, Any]
     return {
         "config_hash": digest(settings),
         "versions": versions(),
+        "code": package_digest(),
         "seed": plain(settings.get("seed")),
         "seconds": round(seconds, 3),
     }
@@ -49,7 +51,7 @@ def versions() -> dict[str, str]:
 
 @cache
 def code_digest(*rooms: str) -> str:
-    """Return the SHA-256 of the source of some rooms or modules of suchus.
+    """Return the SHA-256 of the source of some rooms or modules of suchus without their docstrings.
 
     Args:
         rooms: names of folders or of modules, as ``land`` or ``study/claims.py``.
@@ -58,8 +60,51 @@ def code_digest(*rooms: str) -> str:
     for room in rooms:
         place = _PACKAGE / room
         for file in [place] if place.is_file() else sorted(place.rglob("*.py")):
-            text.update(file.relative_to(_PACKAGE).as_posix().encode() + b"\0" + file.read_bytes() + b"\0")
+            text.update(
+                file.relative_to(_PACKAGE).as_posix().encode() + b"\0" + deciding_source(file.read_bytes()) + b"\0"
+            )
     return text.hexdigest()
+
+
+def deciding_source(source: bytes) -> bytes:
+    """Return the source of a module without the docstrings on lines of their own, which change no result."""
+    lines = source.splitlines(keepends=True)
+    for text in _docstrings(ast.parse(source)):
+        first, end = text.lineno - 1, text.end_lineno or text.lineno
+        beside = lines[first][: text.col_offset] + lines[end - 1][text.end_col_offset :]
+        if not beside.strip():
+            lines[first:end] = [b""] * (end - first)
+    return b"".join(lines)
+
+
+def _docstrings(place: ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef) -> Iterator[ast.Constant]:
+    """Yield the texts that stand alone as a statement of a module, class or function."""
+    for part in place.body:
+        if isinstance(part, (ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)):
+            yield from _docstrings(part)
+        elif isinstance(part, ast.Expr) and isinstance(part.value, ast.Constant) and isinstance(part.value.value, str):
+            yield part.value
+
+
+@cache
+def package_digest() -> str:
+    """Return the first 12 digits of the SHA-256 of every file of suchus: another one may mean other results."""
+    text = hashlib.sha256()
+    for file in sorted(_PACKAGE.rglob("*")):
+        if "__pycache__" not in file.parts and file.is_file():
+            text.update(file.relative_to(_PACKAGE).as_posix().encode() + b"\0" + file.read_bytes() + b"\0")
+    return text.hexdigest()[:12]
+
+
+def made_alike(told: Mapping[str, Any], settings: Mapping[str, Any]) -> bool:
+    """Return whether a result has these settings, this code and these versions, so that a run would repeat it.
+
+    Args:
+        told: what ``provenance`` returned for it.
+        settings: the fields of the experiment.
+    """
+    now = provenance(settings, seconds=0.0)
+    return all(told.get(name) == now[name] for name in ("config_hash", "versions", "code"))
 
 
 def plain(value: Any) -> Any:

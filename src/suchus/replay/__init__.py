@@ -1,5 +1,6 @@
-"""A run on land as one HTML file: three-dimensional, plays offline, can be mailed."""
+"""A run on land or a swim as one HTML file: three-dimensional, plays offline, can be mailed."""
 
 from suchus.replay.page import replay, save
+from suchus.replay.wake import wake_replay
 
-__all__ = ["replay", "save"]
+__all__ = ["replay", "save", "wake_replay"]

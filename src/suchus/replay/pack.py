@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-_KINDS = {"int8", "uint8", "int16", "uint16", "float32"}
+_KINDS = {"int8", "uint8", "int16", "uint16", "uint32", "float32"}
 
 
 class PackedArrays:
@@ -13,16 +13,17 @@ class PackedArrays:
 
     def __init__(self) -> None:
         self._parts: list[bytes] = []
-        self._size = 0
+        self.size = 0
+        """Bytes so far [-]."""
 
     def add(self, array: np.ndarray) -> dict[str, Any]:
         """Append an array and return where it lies: its ``kind``, its ``start`` [byte], its ``count`` of numbers."""
         assert array.dtype.name in _KINDS
         raw = np.ascontiguousarray(array, dtype=array.dtype.newbyteorder("<")).tobytes()
-        place = {"kind": array.dtype.name, "start": self._size, "count": int(array.size)}
+        place = {"kind": array.dtype.name, "start": self.size, "count": int(array.size)}
         raw += bytes(-len(raw) % 4)
         self._parts.append(raw)
-        self._size += len(raw)
+        self.size += len(raw)
         return place
 
     def text(self) -> str:

@@ -53,7 +53,7 @@ def replay(
     overlaid = overlaid or grounds[0].relief is not None
     meta, data = scene(robot, moving, labels, grounds[0], overlaid=overlaid)
     still, still_time = _still(robot, runs[0])
-    return _environment().get_template("replay.html").render(
+    return environment().get_template("replay.html").render(
         title=title or f"{robot.name}: {_text(record, 'gait', 'a run on land').replace('_', ' ')}",
         caption=" ".join(f"{caption} {_on(grounds)}".split()),
         alt=_in_words(robot, moving, labels),
@@ -81,19 +81,20 @@ def save(page: str, path: Path) -> Path:
     return path
 
 
-def _environment() -> Environment:
-    environment = Environment(
+def environment() -> Environment:
+    """Return the templates of the pages, which hold styles and players as globals."""
+    found = Environment(
         loader=PackageLoader("suchus.replay"),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    loader = environment.loader
+    loader = found.loader
     assert loader is not None
-    for name, file in (("style", "player.css"), ("player", "player.js")):
-        environment.globals[name] = Markup(loader.get_source(environment, file)[0])
-    return environment
+    for name, file in (("style", "player.css"), ("player", "player.js"), ("wake_player", "wake.js")):
+        found.globals[name] = Markup(loader.get_source(found, file)[0])
+    return found
 
 
 def _on(grounds: Sequence[Ground]) -> str:

@@ -3,7 +3,7 @@
 from suchus.report.comparison import Comparison, compare, render_comparison, write_comparison
 from suchus.report.numbers import number, quantity
 from suchus.report.page import render_page, write_page
-from suchus.report.result import Failure, Picture, Result, load_result
+from suchus.report.result import Failure, Picture, Result, load_result, whole
 from suchus.report.saving import check_place, save_outcome
 
 __all__ = [
@@ -19,6 +19,7 @@ __all__ = [
     "render_comparison",
     "render_page",
     "save_outcome",
+    "whole",
     "write_comparison",
     "write_page",
 ]

@@ -14,7 +14,7 @@ from suchus.record import read_json, read_text
 from suchus.renamed import old_names
 from suchus.report.described import check_described
 from suchus.report.embedding import embedded
-from suchus.report.saving import OUTCOME
+from suchus.report.saving import OUTCOME, RECORD
 
 _COLUMN = 1.15 * 72 * WIDTH
 """Width of a drawing beyond which it takes both columns of the page [pt]."""
@@ -110,6 +110,12 @@ def load_result(folder: Path) -> Result:
         raise IncompatibleRecord(f"{file} is no outcome of suchus: {error}.") from error
     check_described(outcome, file)
     return Result(folder=folder, outcome=outcome, pictures=pictures, tables=tables, films=films, replays=replays)
+
+
+def whole(result: Result) -> bool:
+    """Return whether every file that an outcome names is in its folder: record, films and replays too."""
+    names = [RECORD, *(one["name"] for part in ("films", "replays") for one in result.outcome.get(part, ()))]
+    return all(_inside(result.folder, name).is_file() for name in names)
 
 
 def _wide(svg: Path) -> bool:

@@ -19,14 +19,13 @@ from suchus.water.slender import cycle, recoil
 from suchus.water.swimming import wave_speed
 from suchus.water.tank import DENSITY, GROWS, Tether, check_motion
 from suchus.water.undulation import Motion
-from suchus.water.view import SPINE, midline
+from suchus.water.view import midline
+from suchus.water.wake import Filmed, wake
 
 AHEAD, BEHIND, BESIDE, ABOVE = 0.15, 0.35, 0.2, 0.15
 """Water ahead of the snout, behind the tail, beside the widest swing and above the back [body length]."""
 FIN_STARTS, FIN_RISES = 2 / 3, 0.05
 """Where a raised tail begins, from the snout, and over which length it rises [body length]."""
-OUTSIDE = 0.99
-"""Share of the fluid from which a cell counts as outside the body [-]."""
 _WATER = 0.05
 """Swing to a side that the box leaves to a body that draws to the side and turns, beside its own [body length]."""
 
@@ -45,6 +44,8 @@ class Basin:
     """Height of the last third of the body, as a fin as thick as the tail is; 0 leaves the tail as it is [m]."""
     moves_on: bool = True
     """Whether the body may move along its course; it always sways and turns freely."""
+    frames: int = 0
+    """Instants of the last cycle at which the vortices are kept, for films [-]."""
     tolerance: float = 1e-4
     """Mean divergence left over, in fastest speed per cell [-]."""
 
@@ -52,6 +53,7 @@ class Basin:
         with Checks("basin", self) as check:
             check.whole("cells", 32, 1024)
             check.whole("cycles", 1, 1000)
+            check.whole("frames", 0, 200)
             check.number("viscosity", 1e-7, 10.0, "m2/s")
             check.number("tail_height", 0.0, 1.0, "m")
             check.number("tolerance", 5e-7, 1e-2, "")
@@ -141,15 +143,17 @@ def swim_in_space(
         )
     )  # fmt: skip
     end, about = basin.cycles * period, repr((robot, motion_key(motion), basin))
+    filmed = Filmed(motion.frequency, end, basin.frames)
 
     def look(sim: flow.Simulation, diary: Diary) -> None:
+        filmed.look(sim, diary)
         if end - sim.time > period * (1.0 + SLACK):
             return
         spine, (position, _) = midline(sim), sim.frame
         diary.note("track", sim.time, heading=spine.heading[0], tail=spine.y[-1] + position[1])
 
     diary = run_on(sim, end, period / 4, look, about=about, checkpoint=checkpoint, progress=progress)
-    return _record(sim, diary, outline, motion, basin)
+    return _record(sim, diary, outline, motion, basin).merge(filmed.record(diary))
 
 
 def _grid(
@@ -193,7 +197,7 @@ def _record(sim: flow.Simulation, diary: Diary, outline: Outline, motion: Motion
         million_cells=((), float(np.prod(sim.setup.grid.cells)) / 1e6, {"units": "1"}),
         joint_place=("joint", outline.places, {"units": "m"}),
     )
-    return data.assign_coords(servo=list(_servos(robot)), cycle=np.arange(1, basin.cycles + 1)).merge(_wake(sim))
+    return data.assign_coords(servo=list(_servos(robot)), cycle=np.arange(1, basin.cycles + 1)).merge(wake(sim))
 
 
 def _servos(robot: Crocodile) -> tuple[str, ...]:
@@ -211,40 +215,3 @@ def _at_servos(outline: Outline, torques: np.ndarray) -> np.ndarray:
     behind = torques[:, yaws : yaws + len(cable_joints(robot))].mean(axis=1)
     cable = behind * robot.tail.pulley / (0.5 * robot.tail.cord_spacing)
     return np.column_stack([torques[:, :yaws], cable])
-
-
-def _wake(sim: flow.Simulation) -> xr.Dataset:
-    """Return the midline, the vorticity in the plane of symmetry, and the strongest vortices over and beside it."""
-    grid, spine = sim.setup.grid, midline(sim)
-    shape = sim.setup.bodies[0].shape
-    assert isinstance(shape, flow.Trunk)
-    q = _second_invariant(np.stack(sim.velocity).astype(float), grid.cell) * (sim.fluid_share > OUTSIDE)
-    units = {"units": "1/s2", "long_name": "second invariant of the velocity's gradient, the greatest along the view"}
-    found = xr.Dataset(
-        {
-            "vorticity": (("y", "x"), sim.vorticity_at_centres[2, 0].astype(np.float32), {"units": "1/s"}),
-            "vortices_above": (("y", "x"), q.max(axis=0).astype(np.float32), units),
-            "vortices_beside": (("z", "x"), q.max(axis=1).astype(np.float32), units),
-            "half_height": ("station", shape.half_height, {"units": "m"}),
-        },
-        coords={axis: (axis, getattr(grid, axis), {"units": "m"}) for axis in "xyz"},
-    )
-    lines = {f"midline_{name}": ("station", getattr(spine, name), {"units": unit}) for name, unit in SPINE}
-    return found.assign(lines)
-
-
-def _second_invariant(velocity: np.ndarray, h: float) -> np.ndarray:
-    """Return Q = -1/2 d_i u_j d_j u_i at the cell centres, positive in vortices [1/s^2].
-
-    Args:
-        velocity: shape (3, z, y, x) [m/s].
-        h: cell [m].
-
-    Source: Hunt, Wray and Moin 1988, Center for Turbulence Research, CTR-S88, 193.
-    """
-    slopes = [np.gradient(part, h) for part in velocity]  # of each component along z, y, x
-    total: np.ndarray = np.zeros_like(velocity[0])
-    for i in range(3):
-        for j in range(3):
-            total -= 0.5 * slopes[j][2 - i] * slopes[i][2 - j]
-    return total

@@ -1,0 +1,149 @@
+"""Vortices around a swimming body in space: a picture and a film of the surfaces around them and of the body."""
+
+from collections.abc import Callable
+
+import numpy as np
+import xarray as xr
+from matplotlib import colormaps
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import LinearSegmentedColormap, Normalize, to_hex
+from matplotlib.figure import Figure
+from scipy.ndimage import map_coordinates
+
+from suchus import flow
+from suchus.figures.fields import VORTICITY
+from suchus.figures.film import film
+from suchus.figures.solids import Camera, picture
+from suchus.figures.style import captioned, panels, styled
+from suchus.skin.mesh import Mesh, joined, loft
+
+SKIN = (0.42, 0.44, 0.36)
+"""Colour of the body."""
+AROUND = 32
+"""Points around a section of the body [-]."""
+_DARKEST = 0.92  # share of the colour map that is used; its ends are nearly black
+_SECONDS = 4.0  # in which the film shows a cycle
+
+
+def surface(record: xr.Dataset, frame: int, *, coarse: int = 1) -> tuple[flow.IsoSurface, np.ndarray]:
+    """Return the upper half of the surfaces around the vortices, and the vorticity about z at their points [1/s].
+
+    Args:
+        record: of the experiment ``swim_3d``.
+        frame: which.
+        coarse: cells along each side of a block over which the fields are averaged [-].
+    """
+    q, spin = (_blocks(record[name].values[frame].astype(float), coarse) for name in ("vortices", "spin"))
+    h = coarse * float(record.x[1] - record.x[0])
+    start = [float(record[axis][0]) + 0.5 * (h - h / coarse) for axis in "xyz"]
+    q, spin = (np.concatenate([part[:1], part]) for part in (q, spin))  # the image below the plane of symmetry
+    level = float(record.vortex_level / record.vortex_unit)
+    found = flow.isosurface(q, level, (start[0], start[1], start[2] - h), h)
+    turning = map_coordinates(spin, found.places.T, order=1, mode="nearest") * float(record.spin_unit)
+    return found, turning
+
+
+def _blocks(values: np.ndarray, coarse: int) -> np.ndarray:
+    nz, ny, nx = (n // coarse for n in values.shape)
+    cut = values[: nz * coarse, : ny * coarse, : nx * coarse]
+    means: np.ndarray = cut.reshape(nz, coarse, ny, coarse, nx, coarse).mean(axis=(1, 3, 5))
+    return means
+
+
+def body(record: xr.Dataset, frame: int) -> Mesh:
+    """Return the body, elliptic sections along its midline."""
+    x, y, heading, wide = (record[f"film_{name}"].values[frame].astype(float)[:, None]
+                           for name in ("x", "y", "heading", "half_width"))  # fmt: skip
+    turn = 2 * np.pi * np.arange(AROUND) / AROUND
+    aside, up = wide * np.cos(turn), record.half_height.values[:, None] * np.sin(turn)
+    return loft(np.stack([x - aside * np.sin(heading), y + aside * np.cos(heading), up], axis=-1)).painted(
+        np.array(SKIN)
+    )
+
+
+def around(record: xr.Dataset, frame: int) -> Mesh:
+    """Return the surfaces around the vortices, upper and lower half, coloured by the vorticity about z."""
+    found, spin = surface(record, frame)
+    half = Mesh(found.points, found.faces, colours(spin, colour_limit(record)))
+    below = Mesh(found.points * np.array([1.0, 1.0, -1.0]), found.faces[:, ::-1], half.colours)
+    return joined([half, below])
+
+
+def colours(spin: np.ndarray, limit: float) -> np.ndarray:
+    """Return the colours of a vorticity about z, (n, 3) [0 to 1]: red counter-clockwise as seen from above."""
+    share = 0.5 + 0.5 * _DARKEST * np.clip(spin / limit, -1.0, 1.0)
+    return np.asarray(colormaps[VORTICITY](share)[:, :3])
+
+
+def colour_limit(record: xr.Dataset) -> float:
+    """Return the vorticity at which the colours end: that of a round vortex whose middle is at twice the level."""
+    return float(2.0 * (2.0 * record.vortex_level) ** 0.5)
+
+
+def _camera(record: xr.Dataset) -> Camera:
+    x, y = record.film_x.values, record.y.values
+    length, middle = float(np.ptp(x[0])), 0.5 * float(x.min() + x.max())
+    target, width = (middle + 0.1 * length, -0.03 * length, 0.0), 1.2 * length + 0.25 * float(np.ptp(y))
+    return Camera(azimuth=-1.05, elevation=0.62, distance=3.2 * length, target=target, width=width)
+
+
+def hexed(share: float) -> str:
+    """Return the colour of a vorticity as #rrggbb, from its share of the one at which the colours end [-1 to 1]."""
+    return to_hex(colours(np.array([share]), 1.0)[0])
+
+
+def still(record: xr.Dataset, frame: int, size: tuple[int, int] = (720, 400)) -> np.ndarray:
+    """Return a picture of a frame from a corner, (row, column, 3) uint8."""
+    return picture(body(record, frame), around(record, frame), _camera(record), size)
+
+
+def draw_vortices(record: xr.Dataset) -> Figure:
+    """Draw the surfaces around the vortices and the body at the end, from a corner.
+
+    Args:
+        record: of the experiment ``swim_3d``.
+    """
+    last = record.sizes["frame"] - 1
+    with styled(axes__grid=False):
+        figure, axes = panels(1, 1, width=9.0, height=5.6)
+        ax = axes[0, 0]
+        ax.imshow(still(record, last, (1440, 800)), interpolation="none")
+        ax.set_axis_off()
+        limit = colour_limit(record)
+        shown = colormaps[VORTICITY](np.linspace(0.5 - 0.5 * _DARKEST, 0.5 + 0.5 * _DARKEST, 256))
+        bar = ScalarMappable(Normalize(-limit, limit), cmap=LinearSegmentedColormap.from_list("spin", shown))
+        figure.colorbar(bar, ax=ax, orientation="horizontal", shrink=0.45, pad=0.02, aspect=32, extend="both",
+                        label="vorticity about the vertical [1/s]")  # fmt: skip
+    return captioned(figure, _caption(record))
+
+
+def film_vortices(record: xr.Dataset, progress: Callable[[float], None] | None = None) -> bytes:
+    """Return a film of the last cycle as a GIF.
+
+    Args:
+        record: of the experiment ``swim_3d``.
+        progress: called with the share that is done.
+    """
+    count = record.sizes["frame"]
+    with styled(axes__grid=False, figure__dpi=100):
+        figure, axes = panels(1, 1, width=7.2, height=4.0)
+        figure.set_layout_engine("none")
+        axes[0, 0].set_position((0.0, 0.0, 1.0, 1.0))
+        axes[0, 0].set_axis_off()
+        image = axes[0, 0].imshow(still(record, 0), interpolation="none", aspect="auto")
+
+        def show(i: int) -> None:
+            image.set_data(still(record, i))
+            if progress is not None:
+                progress((i + 1) / count)
+
+        return film(figure, show, count, seconds=_SECONDS, caption=_caption(record))
+
+
+def _caption(record: xr.Dataset) -> str:
+    return (
+        f"The robot's body swims to the left, on {int(record.cells[-1])} cells a length at f L² / ν = "
+        f"{float(record.reynolds):.0f}. The surfaces lie where the second invariant of the velocity's gradient is Q = "
+        f"{float(record.vortex_level):.3g} 1/s², around vortices; red ones turn counter-clockwise as seen from above, "
+        "blue ones clockwise."
+    )
