@@ -88,7 +88,7 @@ class Edge:
     prescribed: np.ndarray
     """Velocity into the domain on the side's faces, the last axis first [m/s]."""
     endless: bool
-    """Whether the side is one of water without end."""
+    """Whether the side is one of an unbounded domain."""
     leaves: float = 0.0
     """Share of this step in which water is carried out here instead of held to the far water [-]."""
     induced: np.ndarray = field(init=False)

@@ -1,4 +1,4 @@
-"""Sides of a domain in space that move as they would in water without end: a source and a dipole for each body.
+"""Sides of a domain in space that move as they would in an unbounded domain: a source and a dipole for each body.
 
 From afar a body that moves with W through the water is a dipole of moment ``(volume + added mass / density) W``, and
 its wake is a source of strength ``D / (density |W|)`` where it stands, D the drag: what the wake lacks flows around it.
@@ -72,7 +72,7 @@ class FarBody:
         Args:
             force: of the water on the body over the density, shape (3,) [m^4/s^2].
             through: velocity of the body through the far water, shape (3,) [m/s].
-            share: how far the source goes to what this force says, 0 to 1 [-].
+            share: part of the way from the present source to that of this force, 0 to 1 [-].
         """
         square = float(through @ through)
         if square > 0:

@@ -1,6 +1,6 @@
 # mypy: disable-error-code="no-untyped-def, var-annotated, call-overload"
 # (the kernels get their types from numba, once per precision)
-"""Sides that move as they would in water without end: what the vorticity in the domain induces there.
+"""Sides that move as they would in an unbounded domain: what the vorticity in the domain induces there.
 
 By Biot and Savart the velocity anywhere is the far stream's plus what all vorticity, and all divergence of the bodies'
 own motion, induces. Both are gathered to square blocks with their first moments and summed up at every eighth face of

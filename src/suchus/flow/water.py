@@ -434,7 +434,7 @@ class Water:
     def answer(self, given: np.ndarray) -> list[np.ndarray]:
         """Return the acceleration into the domain that ``potential``'s last answer induces on each side [m/s^2].
 
-        Takes what ``potential`` took. Empty if the domain is not in water without end.
+        Takes what ``potential`` took. Empty if the domain is bounded.
         """
         if self.border.water is None:
             return []
