@@ -63,7 +63,7 @@ def _case(aspect: float, keulegan: float, cells: int = _CELLS) -> Case:
         name=name_of(aspect, keulegan, cells), run=partial(_moved, aspect=aspect, keulegan=keulegan),
         full=Effort(cells=cells, until=_PERIODS), quick=Effort(cells=8, until=2.0), code=_CODE,
         setup=f"A section {aspect:g} times as high as thick that oscillates across its height in water at rest, KC "
-        f"{keulegan:g}, beta {STOKES:g}; {_MARGIN:g} heights of water around its path and then water without end, "
+        f"{keulegan:g}, beta {STOKES:g}; {_MARGIN:g} heights of water around its path in an unbounded domain, "
         "{cells} cells a height; three periods from rest.",
     )  # fmt: skip
 

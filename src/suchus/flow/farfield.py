@@ -72,7 +72,7 @@ class FarBody:
         Args:
             force: of the water on the body over the density, shape (3,) [m^4/s^2].
             through: velocity of the body through the far water, shape (3,) [m/s].
-            share: part of the way from the present source to that of this force, 0 to 1 [-].
+            share: weight of the source that belongs to this force against the present one, 0 to 1 [-].
         """
         square = float(through @ through)
         if square > 0:
