@@ -89,8 +89,8 @@ CASES = (
         name="started_re40", run=partial(_started, reynolds=40.0, x=(-5.0, 7.0), y=(-5.0, 5.0)),
         full=Effort(cells=48, until=5.0), quick=Effort(cells=12, until=1.0), code=_CODE,
         setup="A cylinder that starts at once in water at rest; {cells} cells a diameter, unbounded "
-        "domain, of which 12 x 10 diameters are computed. The length of the recirculation ends where the velocity on the "
-        "axis is zero.",
+        "domain, of which 12 x 10 diameters are computed. The length of the recirculation ends where the velocity on "
+        "the axis is zero.",
     ),
     Case(
         name="started_re550", run=partial(_started, reynolds=550.0, x=(-2.5, 4.0), y=(-2.5, 2.5)),
