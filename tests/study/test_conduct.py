@@ -18,7 +18,7 @@ from suchus.land import Run, simulate
 from suchus.metrics import displacement
 from suchus.record import load
 from suchus.study import Plan, Study, Vary, conduct, read_study, run_chunk
-from suchus.study.conduct import Lost
+from suchus.study.conduct import ProcessesDied
 from suchus.study.packing import packed, unpacked
 from suchus.study.store import MARK, RESULTS, TABLE, Store
 from suchus.workers import Died
@@ -272,5 +272,7 @@ def test_no_process_and_processes_beside_a_cluster_are_refused(asked, tmp_path):
 def test_a_batch_whose_processes_die_is_told(asked, tmp_path, monkeypatch):
     room = sys.modules[conduct.__module__]
     monkeypatch.setattr(room, "side_by_side", lambda *_, **__: (said for said in [(1, Died(-9))]))
-    with pytest.raises(Lost, match="the process at batch 1 of study 'strokes' ended with exit code -9, 3 times"):
+    with pytest.raises(
+        ProcessesDied, match="the process at batch 1 of study 'strokes' ended with exit code -9, 3 times"
+    ):
         conduct(asked, tmp_path / "s", jobs=2)

@@ -57,7 +57,7 @@ def _steered(measures: Mapping[str, float]) -> str:
         )
         if loss[0] < 0 and loss[1] / loss[0] >= 1.75:
             doubled.append(f"{name} by a factor of {loss[1] / loss[0]:.1f}")
-    said = f"It makes a loss much greater where it does not help: {listed(doubled)}.\n" if doubled else ""
+    said = f"Where steering does not help it makes the loss much greater: {listed(doubled)}.\n" if doubled else ""
     return "\n".join(lines) + "\n\n" + said
 
 

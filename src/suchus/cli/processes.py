@@ -34,7 +34,7 @@ def side_by_side(tasks: Sequence[Job], jobs: int, bars: Bars) -> dict[str, JobRe
                 elif isinstance(said, workers.Far):
                     moves[number](*said)
                 else:
-                    results[name] = said.value if isinstance(said, workers.Done) else _lost(tasks[number], said)
+                    results[name] = said.value if isinstance(said, workers.Done) else _died(tasks[number], said)
                     bars.say(results[name].summary)
     finally:
         for number in moves:
@@ -43,7 +43,7 @@ def side_by_side(tasks: Sequence[Job], jobs: int, bars: Bars) -> dict[str, JobRe
     return results
 
 
-def _lost(task: Job, said: workers.Died) -> JobResult:
+def _died(task: Job, said: workers.Died) -> JobResult:
     sweep(task.out / task.name)
     return failed(
         task.name,

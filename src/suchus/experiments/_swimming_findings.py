@@ -33,7 +33,7 @@ def measures(record: xr.Dataset, robot: Crocodile, frequency: float, reading: st
     return {
         "misfit": Measure(float(record.attrs["misfit"]), "-"),
         **dict(_thrusts(record, held, reading)),
-        **dict(_held(held)),
+        **dict(_tethered(held)),
         **dict(_free(record, free, robot, frequency)),
         **dict(_wave(free, robot)),
         **dict(_track(free, robot)),
@@ -85,7 +85,7 @@ def _thrusts(record: xr.Dataset, held: xr.Dataset, reading: str) -> Iterator[tup
         yield f"thrust_mean_{letter}", Measure(float(record.reading_thrust.sel(reading=letter)), "N/m")
 
 
-def _held(held: xr.Dataset) -> Iterator[tuple[str, Measure]]:
+def _tethered(held: xr.Dataset) -> Iterator[tuple[str, Measure]]:
     each = Quarters.each(held)
     yield "convex_higher_share", Measure(convex_higher(held), "-")
     yield "power_held", Measure(float(held.cycle_power[1:].mean()), "W/m")

@@ -136,8 +136,8 @@ class JointFaults(Experiment):
         """Break joints."""
         record = self._campaign(staged(progress, "campaign", 0.0, 0.75))
         record = record.merge(self._spread(staged(progress, "repeats", 0.75, 0.83)))
-        record = record.merge(self._held(staged(progress, "places of locking", 0.83, 0.9)))
-        lost_pitch = self._lost_pitch(staged(progress, "support", 0.9, 0.92))
+        record = record.merge(self._locked_at(staged(progress, "places of locking", 0.83, 0.9)))
+        lost_pitch = self._failed_pitch(staged(progress, "support", 0.9, 0.92))
         record = record.merge(support(lost_pitch))
         record = record.merge(self._others(staged(progress, "steered, and with the tail lifted", 0.92, 1.0)))
         record = record.assign_attrs(judged_kind=self.kind, judged_legs=self.legs)
@@ -192,7 +192,7 @@ class JointFaults(Experiment):
         return failing_joints(self.robot)
 
     @property
-    def _lost(self) -> tuple[str, ...]:
+    def _failing(self) -> tuple[str, ...]:
         """The joints whose loss is repeated, steered and locked in several places."""
         return self._joints[: _OF_A_LIMB * len(layout(self.robot).robot.girdles)]
 
@@ -276,9 +276,9 @@ class JointFaults(Experiment):
             )
             for i, scale in enumerate(scales)
             for arm in ARMS
-            for faults in ((), *(self._broken(gaits[arm], joint) for joint in self._lost))
+            for faults in ((), *(self._broken(gaits[arm], joint) for joint in self._failing))
         ]
-        distance = self._forward(runs, progress).reshape(self.repeats, len(ARMS), 1 + len(self._lost))
+        distance = self._forward(runs, progress).reshape(self.repeats, len(ARMS), 1 + len(self._failing))
         metre = {"units": "m", "long_name": "displacement forward, repeated"}
         data = xr.Dataset(
             {
@@ -286,26 +286,26 @@ class JointFaults(Experiment):
                 "repeat_forward": (("repeat", "arm", "lost"), distance[:, :, 1:], metre),
             }
         )
-        return data.assign_coords(arm=list(ARMS), lost=list(self._lost))
+        return data.assign_coords(arm=list(ARMS), lost=list(self._failing))
 
     def _forward(self, runs: list[Run], progress: Any) -> np.ndarray:
         """Return the displacement forward of each run [m]."""
         record = simulate(runs, duration=self._duration, timestep=self.timestep, every=10, progress=progress)
         return np.asarray(displacement(whole(record)).sel(xyz="x").values)
 
-    def _held(self, progress: Any) -> xr.Dataset:
+    def _locked_at(self, progress: Any) -> xr.Dataset:
         """Lock one leg's joint at several places of its range, in the gait as given."""
         gaits, _ = self._varied()[0]
-        points = list(product(ARMS, self._lost, self.holds))
+        points = list(product(ARMS, self._failing, self.holds))
         runs = [
             Run(robot=self.robot, gait=gaits[a], faults=joint_failure(self.robot, gaits[a], j, "locked", hold=h))
             for a, j, h in points
         ]
-        distance = self._forward(runs, progress).reshape(len(ARMS), len(self._lost), len(self.holds))
+        distance = self._forward(runs, progress).reshape(len(ARMS), len(self._failing), len(self.holds))
         data = xr.Dataset({"held_forward": (("arm", "lost", "hold"), distance, {"units": "m"})})
-        return data.assign_coords(arm=list(ARMS), lost=list(self._lost), hold=list(self.holds))
+        return data.assign_coords(arm=list(ARMS), lost=list(self._failing), hold=list(self.holds))
 
-    def _lost_pitch(self, progress: Any) -> xr.Dataset:
+    def _failed_pitch(self, progress: Any) -> xr.Dataset:
         """Run the gait as given intact, with the right hind pitch joint limp, and with it locked.
 
         Of a limb with one hinge it is that one.
@@ -334,7 +334,7 @@ class JointFaults(Experiment):
 
     def _others(self, progress: Any) -> xr.Dataset:
         """Run the judged reading of the article's joints steered, and with limbs only and the tail in the air."""
-        joints, steers = self._lost, not isinstance(self.gait, AngleTable)
+        joints, steers = self._failing, not isinstance(self.gait, AngleTable)
         varied, runs = self._varied(), []
         for i, (gaits, scale) in enumerate(varied):
             cases: list[tuple[AnyGait, tuple[Fault, ...], Control]] = []

@@ -46,7 +46,7 @@ Progress = Callable[[StudyProgress], None]
 _TRIES = 3  # how often a batch is begun whose process dies
 
 
-class Lost(SuchusError, RuntimeError):
+class ProcessesDied(SuchusError, RuntimeError):
     """A batch whose processes died again and again."""
 
 
@@ -75,7 +75,7 @@ def conduct(
         Unwritable: the store cannot be written to.
         IncompatibleRecord: the store is another study's or another version's, or a worker has another version.
         NoCluster: the cluster was lost.
-        Lost: the processes at a batch died again and again.
+        ProcessesDied: the processes at a batch died again and again.
         OutsideLimits: less than one process is asked for, or several beside a cluster.
     """
     if jobs < 1:
@@ -108,7 +108,7 @@ def _in_processes(
             if isinstance(said, Done):
                 yield i, said.value
             elif isinstance(said, Died):
-                raise Lost(
+                raise ProcessesDied(
                     f"the process at batch {numbers[i]} of study {study.name!r} ended with exit code {said.exit_code}, "
                     f"{_TRIES} times; what was finished is kept: where memory was short, ask for fewer --jobs or a "
                     "smaller chunk."

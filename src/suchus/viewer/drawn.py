@@ -36,7 +36,7 @@ class DrawnRobot:
         self.relief: Relief | None = None
         self._marks: dict[str, Any] = {}
         self._size = beside_article(robot).length
-        self._lost: tuple[Fault, ...] = ()
+        self._failed: tuple[Fault, ...] = ()
         self._look: Look = "skin"
         self._geoms: dict[int, Any] = {}
         cut = pieces(robot, 1) if ghost else pieces(robot)
@@ -93,21 +93,21 @@ class DrawnRobot:
             ball.position = self.posture.part(part)
             label.position = ball.position + np.array([0.0, 0.0, self._size * _WORD])
 
-    def mark(self, lost: Sequence[Fault]) -> None:
+    def mark(self, faults: Sequence[Fault]) -> None:
         """Mark the joints and legs that are broken, each with how."""
-        if tuple(lost) == self._lost:
+        if tuple(faults) == self._failed:
             return
-        self._lost = tuple(lost)
+        self._failed = tuple(faults)
         for handles in self._marks.values():
             for handle in handles:
                 handle.remove()
-        self._marks = {fault.part: self._mark(fault) for fault in lost if fault.acts_on != "sensor"}
+        self._marks = {fault.part: self._mark(fault) for fault in faults if fault.acts_on != "sensor"}
 
     def _mark(self, fault: Fault) -> tuple[Any, Any]:
         part, kind = fault.part, fault.kind()
         place = self.posture.part(part)
         ball = self._scene.add_icosphere(
-            f"{self._root}/lost_{part}",
+            f"{self._root}/failed_{part}",
             self._size * _MARK,
             color=LIMP if kind == "limp" else LOCKED,
             position=place,

@@ -143,11 +143,11 @@ def status(instant: Instant, settings: Settings, *, rate: float, notice: str, pa
         )
     )
     said = _box(instant.trouble, "#fdecea", "#a1261b") if instant.trouble else _box(notice, "#fff6dc", "#6b5200")
-    lost = ", ".join(f"{fault.part.replace('_', ' ')} {fault.kind().replace('_', ' ')}" for fault in settings.broken)
+    failed = ", ".join(f"{fault.part.replace('_', ' ')} {fault.kind().replace('_', ' ')}" for fault in settings.broken)
     return (
         f'<div style="padding:4px 12px;font-family:sans-serif"><table><tr>{cells}</tr></table>'
         f'<div style="font-size:12px;color:#444" data-suchus="state">{escape(state)}</div>'
-        f'<div style="font-size:12px;color:#a1261b" data-suchus="lost">{escape(lost)}</div>{said}</div>'
+        f'<div style="font-size:12px;color:#a1261b" data-suchus="failed">{escape(failed)}</div>{said}</div>'
     )
 
 

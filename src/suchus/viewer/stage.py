@@ -223,6 +223,6 @@ class Stage:
         self._path = []
         self._track.visible = False
 
-    def mark(self, lost: Sequence[Fault]) -> None:
+    def mark(self, faults: Sequence[Fault]) -> None:
         """Mark the joints and legs that are broken."""
-        self.robot.mark(lost)
+        self.robot.mark(faults)
