@@ -26,6 +26,7 @@ OLD = {
     r"\bwhereto\b": "in which direction, heading",
     r"\bcheap(?:er|est)? models?\b": "slender-body models",
     r"\b(?:held|endless) (?:body|swim|swimmer|eel|head|water)\b": "tethered; unbounded",
+    r"\bresolved flows?\b": "CFD",
     r"\bendless\b|\bwithout end\b": "unbounded",
     r"\bshaken\b": "oscillated transversely",
     r"\bblunted\b": "with a minimum thickness",
