@@ -133,7 +133,8 @@ def test_the_page_can_be_read_without_sight_and_by_keyboard(page):
 def test_the_verdicts_stand_first_and_in_the_order_of_the_article(page):
     text = " ".join(" ".join(page.text).split())
     assert text.index("Verdicts") < text.index("Is <everything>")
-    places = [text.index(why) for why in ("Two.", "Nobody looked.", 'It was "put in" <i>by hand</i>.')]
+    every = text[text.index("in the order of the article") :]  # the headline before it says some of them too
+    places = [every.index(why) for why in ("Two.", "Nobody looked.", 'It was "put in" <i>by hand</i>.')]
     assert places == sorted(places)
     for said in ("0.73 m", "0.5 m", "same sense", "reproduced", "not testable", "IV.B"):
         assert said in text
