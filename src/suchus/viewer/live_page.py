@@ -133,8 +133,8 @@ def status(instant: Instant, settings: Settings, *, rate: float, notice: str, pa
     if not paused and rate < 0.9 * settings.speed:
         state += f" at {rate:.2f} x real time, as fast as this machine can"
     cells = "".join(
-        f'<td style="padding:0 12px 0 0;white-space:nowrap"><div style="font-size:11px;color:#666">{label}</div>'
-        f'<div style="font-size:17px;font-weight:600" data-suchus="{label}">{value}</div></td>'
+        f'<div style="white-space:nowrap"><div style="font-size:11px;color:#666">{label}</div>'
+        f'<div style="font-size:17px;font-weight:600" data-suchus="{label}">{value}</div></div>'
         for label, value in (
             ("time", f"{instant.time:.1f} s"),
             ("forward", f"{instant.forward:+.3f} m"),
@@ -145,7 +145,8 @@ def status(instant: Instant, settings: Settings, *, rate: float, notice: str, pa
     said = _box(instant.trouble, "#fdecea", "#a1261b") if instant.trouble else _box(notice, "#fff6dc", "#6b5200")
     failed = ", ".join(f"{fault.part.replace('_', ' ')} {fault.kind().replace('_', ' ')}" for fault in settings.broken)
     return (
-        f'<div style="padding:4px 12px;font-family:sans-serif"><table><tr>{cells}</tr></table>'
+        f'<div style="padding:4px 12px;font-family:sans-serif">'
+        f'<div style="display:flex;flex-wrap:wrap;gap:2px 12px">{cells}</div>'
         f'<div style="font-size:12px;color:#444" data-suchus="state">{escape(state)}</div>'
         f'<div style="font-size:12px;color:#a1261b" data-suchus="failed">{escape(failed)}</div>{said}</div>'
     )
