@@ -3,6 +3,7 @@
 Usage: python tools/example_pictures.py [NAME ...]
 """
 
+import json
 import re
 import sys
 from collections.abc import Callable, Mapping, Sequence
@@ -16,12 +17,17 @@ from matplotlib.figure import Figure
 import suchus
 from lighter import lighten
 from suchus import envs
+from suchus.design import with_values
 from suchus.figures import COLOURS, dimension_drawing, panels, styled
 from suchus.figures.crawls import draw_crawls
 from suchus.figures.standing import draw_side_views
 from suchus.land import Run, simulate
+from suchus.metrics import displacement
+from suchus.optimise import READY
+from suchus.optimise.pictures import draw_gaits
 
 PICTURES = Path(__file__).parents[1] / "docs" / "pictures"
+FOUND = Path(__file__).parents[1] / "tests" / "docs" / "stated" / "optimise_crawl.json"
 CAIMAN, CRAWL = suchus.ROBOTS["caiman"], suchus.GAITS["belly_crawl"]
 
 
@@ -89,6 +95,20 @@ def crawling() -> Figure:
     return draw_crawls(CAIMAN, simulate([Run(robot=CAIMAN, gait=gait) for gait in gaits], duration=9.0), arms)
 
 
+def optimised_crawl() -> Figure:
+    """Draw the article's crawl and the best that the search ``crawl`` found, from what it kept."""
+    kept = json.loads(FOUND.read_text(encoding="utf-8"))
+    spec = READY["crawl"]()
+    runs = [replace(spec.run, label="start")]
+    for arm in spec.arms:
+        best = kept["arms"][arm.name]["best"][arm.name]["fields"]
+        values = {**arm.values, **{field: value["best"] for field, value in best.items()}}
+        runs.append(replace(with_values(spec.run, values), label=arm.name))
+    record = simulate(runs, duration=spec.duration, timestep=kept["timestep"])
+    texts = [f"{float(distance):.2f} m" for distance in displacement(record).sel(xyz="x")]
+    return draw_gaits(runs, record, texts)
+
+
 def standing() -> Figure:
     """Draw the robot standing up."""
     question = suchus.EXPERIMENTS["bipedal_reach"].quick()
@@ -97,6 +117,7 @@ def standing() -> Figure:
 
 DRAWN: Mapping[str, Callable[[], Figure]] = {
     "crawling": crawling,
+    "optimised_crawl": optimised_crawl,
     "standing": standing,
     "example_02": broken_joints,
     "example_03": longer_tail,

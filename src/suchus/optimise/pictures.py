@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from suchus.control import Standing
 from suchus.design import unit_at
-from suchus.figures import COLOURS, captioned, panels, styled
+from suchus.figures import COLOURS, LINES, captioned, panels, styled
 from suchus.figures.posture import draw_posture, draw_strip
 from suchus.land import Run
 from suchus.motion import START
@@ -30,7 +30,9 @@ def role(number: int) -> str:
 
 
 def label(name: str) -> str:
-    """Return how a field or a limit is called on a page."""
+    """Return the name of a field, a limit or a condition as pages and figures show it."""
+    if name in LINES and LINES[name]["label"]:
+        return str(LINES[name]["label"])
     name = name.rpartition("gait.")[2].removeprefix("robot.").replace("_", " ").replace(".", ", ")
     return f"{name.removeprefix('control, ')} (control)" if name.startswith("control, ") else name
 
