@@ -71,7 +71,8 @@ class BipedalReach(Experiment):
     hips: tuple[float, ...] = (0.07, 0.09, 0.11, 0.125, 0.135)
     """Heights of the hips in the crawls that show what the legs decide [m]; the last is near what the legs allow."""
     leads: tuple[float, ...] = (0.015, 0.025, 0.035)
-    """Further commanded distances of the centre of mass behind the feet, for what a safe stand costs [m]."""
+    """Further distances of the centre of mass behind the feet that are commanded, to see how much height a safe
+    stand costs [m]."""
     pushes: tuple[float, ...] = (1.0, 2.0, 4.0, 6.0, 8.0, 11.0, 14.0, 17.0, 20.0)
     """Forces that are tried, before finer ones between two of them [N]."""
     finer: int = 4

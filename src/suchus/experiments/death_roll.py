@@ -62,7 +62,7 @@ class DeathRoll(Experiment):
     coarse_timestep: float = 0.002
     """Time step of the runs in which only the trunk bends [s]."""
     timesteps: tuple[float, ...] = (0.0025, 0.00125, 0.000625)
-    """For the check of the angular momentum and the rate, falling [s]."""
+    """Time steps, falling, for the check of the angular momentum and the rate [s]."""
 
     def __post_init__(self) -> None:
         with Checks("death_roll", self) as check:

@@ -76,7 +76,7 @@ class Feedback(Experiment):
     robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that crawls."""
     gait: AnyGait = field(default_factory=lambda: GAITS["belly_crawl"])
-    """How; its limbs must form diagonal pairs."""
+    """Gait of the robot; its limbs must form diagonal pairs."""
     starts: int = 32
     """Random initial limb phases, the same for all laws [-]."""
     cycles: int = 12

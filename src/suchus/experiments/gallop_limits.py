@@ -54,7 +54,7 @@ class GallopLimits(Experiment):
             replace(GAITS[name], period=0.6 * GAITS[name].period) for name in ("semi_erect", "high_walk")
         )
     )
-    """Walks on the shelf that a gallop must outrun too, hurried."""
+    """Walks of the shelf, at short cycle times, that a gallop must outrun too."""
     speeds: tuple[float, ...] = (5.0, 7.0, 10.0, 14.0, 20.0, 30.0, 60.0)
     """No-load speeds of the servos [rad/s]; hobby servos reach 7 to 12, the last is out of any servo's reach."""
     torques: tuple[float, ...] = (1.5, 3.0, 6.0)

@@ -76,7 +76,7 @@ class PatternGeneratorExperiment(Experiment):
     swimmer_gait: AnyGait = field(default_factory=lambda: GAITS["belly_crawl"])
     """Gait whose foot paths, bends and period its oscillators drive."""
     slope: float = radians(5)
-    """Of the shore [rad]."""
+    """Slope of the shore [rad]."""
     water_line: float = 2.2
     """Distance of the water line ahead of the robot, along the ground [m]."""
     shore_time: float = 30.0

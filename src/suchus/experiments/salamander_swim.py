@@ -38,13 +38,14 @@ class SalamanderSwim(Experiment):
     robot: AnyRobot = field(default_factory=lambda: ROBOTS["salamander"])
     """The robot that swims; a table of angles made for it is played."""
     frequencies: tuple[float, ...] = animal.FREQUENCIES
-    """Of the swims [Hz]."""
+    """Frequencies of the swims [Hz]."""
     settle: int = 8
     """Cycles that are swum before anything is measured [-]."""
     cycles: int = 6
     """Cycles that are measured [-]."""
     factors: tuple[float, ...] = (0.5, 2.0)
-    """On cross drag, friction, added mass and what is shed, all but one as they are, at the highest frequency [-]."""
+    """Factors on cross drag, friction, added mass and shed momentum, one of which is changed at a time, at the
+    highest frequency [-]."""
 
     def __post_init__(self) -> None:
         with Checks(self.name(), self) as check:

@@ -51,15 +51,15 @@ class SwimFree(Experiment):
     reading: str = "I"
     """Letter of the reading of (20), see ``kinematics.wave.READINGS``."""
     frequency: float = 1.0
-    """Of the wave [Hz]."""
+    """Frequency of the wave [Hz]."""
     stiffness: float = 2.4
-    """Of the cable's joints in the further runs [N m/rad]."""
+    """Stiffness of the cable's joints in the further runs [N m/rad]."""
     limb_pitch: float = -0.15
-    """How far the limbs, which lie back along the body, point down [rad]."""
+    """Angle by which the limbs, which lie back along the body, point down [rad]."""
     turn: float = 0.6
-    """Mean bend of the tail of the run that steers [rad]."""
+    """Mean bend of the tail in the run that steers [rad]."""
     trunk_turn: float = 0.3
-    """Mean bend of its trunk [rad]."""
+    """Mean bend of the trunk in that run [rad]."""
     settle: int = 6
     """Cycles that are swum before anything is measured [-]."""
     cycles: int = 6

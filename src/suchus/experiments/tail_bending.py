@@ -51,7 +51,7 @@ class TailBending(Experiment):
     gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
     """The crawl in which the angles of the joints are compared."""
     straight: Gait = field(default_factory=lambda: GAITS["tail_drag"])
-    """The same with a straight trunk, beside it."""
+    """The same crawl with a straight trunk, for comparison."""
     cycles: int = int(CYCLES)
     """Cycles of the crawls [-]."""
 

@@ -60,7 +60,7 @@ class Terrain(Experiment):
     crawl: Gait | Pattern = field(default_factory=lambda: GAITS["low_crawl"])
     """The sprawled gait."""
     semi_erect: Gait | Pattern = field(default_factory=lambda: GAITS["semi_erect"])
-    """The gait between both."""
+    """The gait between the sprawled and the erect one."""
     high_walk: Gait | Pattern = field(default_factory=lambda: GAITS["high_walk"])
     """The erect gait."""
     bumps: tuple[float, ...] = (0.04, 0.06)

@@ -43,13 +43,13 @@ class Turning(Experiment):
     )
     """The gaits that it walks in."""
     bends: tuple[float, ...] = (0.0, 0.17, 0.35, 0.52, 0.79)
-    """Lasting bends of the trunk [rad]."""
+    """Curvature offsets of the trunk [rad]."""
     asymmetries: tuple[float, ...] = (0.0, 0.25, 0.5, 0.75, 1.0)
     """Fractions by which left strokes are shorter and right ones longer [-]."""
     mixtures: tuple[float, ...] = (0.0, 0.1, 0.2, 0.3, 0.45, 0.6, 0.8, 1.0)
     """Shares of the last bend together with, on sprawled legs, the last asymmetry [-]."""
     asked: tuple[float, ...] = (0.6, 0.8, 1.2, 2.0, 3.0)
-    """Radii of the circles on command [m]."""
+    """Radii of the commanded circles [m]."""
     cycles: int = 10
     """Number of cycles that are measured, after one more [-]."""
     timestep: float = 0.005

@@ -40,9 +40,9 @@ class WorkingSpace(Experiment):
     gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
     """Gait whose stance gives the places of the feet."""
     crawling: int = 2**19
-    """Configurations that are drawn on four feet; one in two hundred can be [-]."""
+    """Configurations that are drawn on four feet; about one in two hundred is possible [-]."""
     standing: int = 2**18
-    """Configurations that are drawn on hind feet and tail; one in ten can be [-]."""
+    """Configurations that are drawn on hind feet and tail; about one in ten is possible [-]."""
     cell: float = 0.025
     """Edge of the cells that are counted [m]."""
     seed: int = 0
