@@ -50,19 +50,19 @@ class Robot:
 
     @property
     def mass(self) -> float:
-        """Of the whole robot [kg]."""
+        """Mass of the whole robot [kg]."""
         axis = sum(shape.mass for segment in self.axis for shape in segment.shapes)
         foam = 0.0 if self.hull is None else self.hull.mass
         return axis + 2 * sum(girdle.limb.mass for girdle in self.girdles) + foam
 
     @property
     def length(self) -> float:
-        """From the tip of the snout to the tip of the tail when straight [m]."""
+        """Length from the tip of the snout to the tip of the tail when straight [m]."""
         return sum(segment.front + segment.rear for segment in self.axis)
 
     @property
     def axis_hinges(self) -> tuple[Hinge, ...]:
-        """Of the axis, from head to tail."""
+        """Segments of the axis, from head to tail."""
         return tuple(hinge for segment in self.axis for hinge in segment.hinges)
 
     @property

@@ -46,10 +46,10 @@ class Hull:
 
     @property
     def volume(self) -> float:
-        """Of the foam [m3]."""
+        """Volume of the foam [m3]."""
         return sum(one.volume for one in self.foam)
 
     @property
     def mass(self) -> float:
-        """Of the foam [kg]."""
+        """Mass of the foam [kg]."""
         return self.density * self.volume

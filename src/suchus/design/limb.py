@@ -31,7 +31,7 @@ class Link:
 
     @property
     def length(self) -> float:
-        """From its beginning to its end [m]."""
+        """Length from its beginning to its end [m]."""
         return hypot(*self.end)
 
 
@@ -78,7 +78,7 @@ class Limb:
 
     @property
     def mass(self) -> float:
-        """Of one limb [kg]."""
+        """Mass of one limb [kg]."""
         return sum(link.mass for link in self.links) + self.foot.mass
 
 

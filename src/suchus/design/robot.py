@@ -60,14 +60,14 @@ class Crocodile:
 
     @property
     def mass(self) -> float:
-        """Of the whole robot [kg]."""
+        """Mass of the whole robot [kg]."""
         trunk = self.pelvis.mass + (self.spine.joints - 1) * self.spine.link_mass + self.thorax.mass + self.head.mass
         foam = 0.0 if self.hull is None else self.hull.mass
         return trunk + 2 * (self.hind_leg.mass + self.front_leg.mass) + self.tail.mass + foam
 
     @property
     def length(self) -> float:
-        """From the tip of the snout to the tip of the tail when straight [m]."""
+        """Length from the tip of the snout to the tip of the tail when straight [m]."""
         return self.spine.length + self.head.snout + self.tail.length
 
     def leg(self, name: str) -> Leg:

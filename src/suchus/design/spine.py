@@ -49,7 +49,7 @@ class Spine:
 
     @property
     def length(self) -> float:
-        """From the hind girdle's axis to the last joint when straight [m]."""
+        """Length from the hind girdle's axis to the last joint when straight [m]."""
         return self.base + (self.joints - 1) * self.link
 
     @property

@@ -92,12 +92,12 @@ class Tail:
 
     @property
     def pitch(self) -> float:
-        """From each cable joint to the next, H + h [m]."""
+        """Distance from each cable joint to the next, H + h [m]."""
         return self.plate + self.gap
 
     @property
     def length(self) -> float:
-        """From the hind girdle's axis to the tip when straight [m]."""
+        """Length from the hind girdle's axis to the tip when straight [m]."""
         return self.offset + self.root + self.joints * self.pitch + self.fin_length
 
 

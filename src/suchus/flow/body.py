@@ -21,9 +21,9 @@ class Body:
     """A shape whose motion is given."""
 
     shape: Shape | SpaceShape
-    """What it looks like in its own frame."""
+    """Shape of the body in its own frame."""
     motion: Pose | Motion = field(default_factory=Pose)
-    """Where its frame is: a fixed pose, or a pose for every time [s]."""
+    """Position and angle of its frame: a fixed pose, or a pose for every time [s]."""
     name: str = "body"
     """Its name in records and messages."""
 

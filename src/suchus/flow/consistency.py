@@ -30,7 +30,7 @@ class Consistency:
     name: str
     """Name of the body."""
     motion: Motion
-    """What is watched."""
+    """The motion that is watched."""
     reach: float
     """Distance of the body's surface from the origin of its frame [m]."""
     cell: float

@@ -86,7 +86,7 @@ class FarField:
     grid: Grid
     """The grid inside the sides."""
     bodies: list[FarBody] = field(default_factory=list)
-    """What induces."""
+    """Bodies that induce the flow far away."""
     points: dict[tuple[int, bool], np.ndarray] = field(init=False)
     """Middles of the faces of each side, by its axis and whether it is the low one, the last axis first [m]."""
 

@@ -20,7 +20,7 @@ class Fields:
     setup: Setup
     water: Water
     time: float
-    """How far the run has come [s]."""
+    """Time that the run has reached [s]."""
     frame: np.ndarray
     """Position and velocity of the grid, shape (2, 2) [m, m/s]."""
     _log: Log

@@ -32,7 +32,7 @@ class FreeBody:
     """A shape that the water moves, and weight, springs, dampers and other forces, if it has any."""
 
     shape: Shape | SpaceShape
-    """What it looks like in its own frame, at every time."""
+    """Shape of the body in its own frame, at every time."""
     start: tuple[float, float] | tuple[float, float, float] = (0.0, 0.0)
     """Centre of mass at time 0 (x, y), in space (x, y, z) too; z, which is 0 if it is not given, stays as it is [m]."""
     angle: float = 0.0

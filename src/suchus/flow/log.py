@@ -25,7 +25,7 @@ class Log:
     """Rows of the record, and what the bodies' regions held at the last step."""
 
     setup: Setup
-    """What is simulated."""
+    """Set-up of the simulation."""
     rows: list[np.ndarray] = field(default_factory=list)
     """One row per step."""
     held: np.ndarray = field(init=False)

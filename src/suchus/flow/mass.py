@@ -22,27 +22,27 @@ class _InPlane:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Mass(_InPlane):
-    """What a body of density 1 weighs per metre of depth."""
+    """Mass and moment of inertia of a body of density 1, per metre of depth."""
 
     area: float
     """Area of the cross-section [m^2]."""
 
     @property
     def size(self) -> float:
-        """What the density multiplies to the mass: the area [m^2]."""
+        """The area, by which the density is multiplied to give the mass [m^2]."""
         return self.area
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SpaceMass(_InPlane):
-    """What a body of density 1 weighs in space."""
+    """Mass and moment of inertia of a body of density 1 in space."""
 
     volume: float
     """Volume [m^3]."""
 
     @property
     def size(self) -> float:
-        """What the density multiplies to the mass: the volume [m^3]."""
+        """The volume, by which the density is multiplied to give the mass [m^3]."""
         return self.volume
 
 

@@ -19,7 +19,7 @@ class Sample:
     """The water at some points, in the world's frame."""
 
     points: np.ndarray
-    """Where, shape (point, 2) [m]."""
+    """Positions of the points, shape (point, 2) [m]."""
     velocity: np.ndarray
     """Velocity (x, y), shape (point, 2) [m/s]."""
     pressure: np.ndarray
@@ -102,7 +102,7 @@ class Rake:
     """
 
     points: Place
-    """Where; a function of time for a rake that travels [m]."""
+    """Positions of the points; a function of time for a rake that travels [m]."""
     every: float | None = None
     """Interval of the notes [s]; None notes after every step."""
     _times: list[float] = field(default_factory=list)

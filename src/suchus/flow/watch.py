@@ -46,7 +46,7 @@ class Watch:
     """Warns once of each thing."""
 
     setup: Setup
-    """What is simulated."""
+    """Set-up of the simulation."""
     errors: list[float] = field(default_factory=list)
     """Estimated error of each body's force now [-]."""
     _said: set[str] = field(default_factory=set)

@@ -27,9 +27,9 @@ class Hydrostatics:
     """How a robot floats, rigid in a posture."""
 
     mass: float
-    """With its foam [kg]."""
+    """Mass with the foam [kg]."""
     volume: float
-    """With its foam, all under water [m3]."""
+    """Volume with the foam, all of it under water [m3]."""
     floats: bool
     """Whether it is lighter than the water that it can displace."""
     missing: float

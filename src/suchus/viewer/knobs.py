@@ -21,7 +21,7 @@ class Knob:
     label: str
     """Beside the slider."""
     unit: str
-    """In which it is shown."""
+    """Unit in which it is shown."""
     low: float
     """Least value, in that unit."""
     high: float

@@ -24,7 +24,7 @@ class Line:
     """One line of a chart."""
 
     label: str
-    """In the legend."""
+    """Label in the legend."""
     column: str
     """Name of the column."""
     colour: str

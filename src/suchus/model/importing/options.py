@@ -10,7 +10,7 @@ class Words:
     front: str | None = None
     """A body at the front end."""
     heading: float | None = None
-    """Of the front, from the file's x axis to the left [degree]."""
+    """Direction of the front, from the file's x axis to the left [degree]."""
     neck: str | None = None
     """The body in which the axis ends in front, where it forks."""
     tail: str | None = None
@@ -18,4 +18,4 @@ class Words:
     leave: tuple[str, ...] = ()
     """Bodies to leave out with all that hangs on them, such as arms."""
     foot_radius: float | None = None
-    """Of every foot [m]."""
+    """Radius of every foot [m]."""

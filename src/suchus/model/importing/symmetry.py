@@ -27,9 +27,9 @@ class Plane:
     """The vertical mirror plane, and the robot's frame: x forward in it, y left, z up."""
 
     point: np.ndarray
-    """In the plane, shape (3,) [m]."""
+    """A point in the plane, shape (3,) [m]."""
     heading: float
-    """Of forward, from the file's x axis to the left [degree]."""
+    """Direction of forward, from the file's x axis to the left [degree]."""
     certain: bool
     """Whether the file's names, or an option, say which end is the front."""
     rivals: tuple[float, ...] = ()

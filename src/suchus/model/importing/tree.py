@@ -23,7 +23,7 @@ class Joint:
     """A hinge as its file has it."""
 
     name: str
-    """In the file."""
+    """Name in the file."""
     axis: np.ndarray
     """Unit vector about which the child turns, shape (3,) [-]."""
     anchor: np.ndarray
@@ -55,7 +55,7 @@ class TreePart:
     com: np.ndarray
     """Centre of mass, shape (3,) [m]."""
     origin: np.ndarray
-    """Of its first body, shape (3,) [m]."""
+    """Origin of its first body, shape (3,) [m]."""
     pieces: tuple[ShapePiece, ...]
     """Its shapes."""
     points: np.ndarray
@@ -87,7 +87,7 @@ class Tree:
 
     @property
     def mass(self) -> float:
-        """Of all parts [kg]."""
+        """Mass of all parts [kg]."""
         return sum(part.mass for part in self.parts)
 
     @property
