@@ -9,6 +9,7 @@ import xarray as xr
 from suchus import flow
 from suchus.design import GRAVITY, Crocodile, cable_joints, layout
 from suchus.design.checks import Checks
+from suchus.design.profile import stations
 from suchus.design.water import Water
 from suchus.motion.swim import trunk_yaws
 from suchus.water.diary import Diary, Progress, run_on
@@ -42,6 +43,8 @@ class Basin:
     """Number of cycles that are simulated; the last is measured [-]."""
     tail_height: float = 0.0
     """Height of the last third of the body, as a fin as thick as the tail is; 0 leaves the tail as it is [m]."""
+    limbs: bool = False
+    """Whether the limbs are in the water, folded straight back along the body."""
     moves_on: bool = True
     """Whether the body may move along its course; it always sways and turns freely."""
     frames: int = 0
@@ -73,18 +76,43 @@ def half_heights(outline: Outline, tail_height: float = 0.0) -> np.ndarray:
     return np.maximum(outline.silhouette.half_height, fin)
 
 
-def trunk(outline: Outline, motion: Motion, *, grow: float = 0.0, tail_height: float = 0.0) -> flow.Trunk:
-    """Return the robot as a bending body in space, its sections ellipses, divided at its joints; limbs left out.
+def folded(robot: Crocodile) -> tuple[flow.Capsule, ...]:
+    """Return the limbs of a robot, stretched and turned straight back from the hips, which lie in the body's plane.
+
+    Each link is a capsule and each foot a ball, rigid with the body at the hip.
+    """
+    place, found = layout(robot), []
+    names = [segment.name for segment in place.robot.axis]
+    for limb in place.limbs:
+        girdle = limb.girdle
+        at = stations(place.robot)[names.index(girdle.segment)][0]
+        at += place.robot.axis[names.index(girdle.segment)].front - girdle.at
+        aside, behind = -limb.side * girdle.aside, 0.0  # the body's y points to the robot's right
+        for link in girdle.limb.links:
+            ends = (behind, aside), (behind + link.length, aside)
+            found.append(flow.Capsule(at=at, start=ends[0], end=ends[1], radius=link.radius))
+            behind += link.length
+        found.append(flow.Capsule(at=at, start=(behind, aside), end=(behind, aside), radius=girdle.limb.foot.radius))
+    return tuple(found)
+
+
+def trunk(
+    outline: Outline, motion: Motion, *, grow: float = 0.0, tail_height: float = 0.0, limbs: bool = False
+) -> flow.Trunk:
+    """Return the robot as a bending body in space, its sections ellipses, divided at its joints.
 
     Args:
         outline: of the robot; stations about one cell apart serve well.
         motion: how it swims.
         grow: time over which the motion grows from nothing [s].
         tail_height: see ``half_heights`` [m].
+        limbs: whether it has its limbs, see ``folded``; without them otherwise.
     """
     spine = immersed(outline, motion, grow=grow).spine
-    cuts = tuple(sorted(outline.places.tolist()))
-    return flow.Trunk(spine=spine, half_height=half_heights(outline, tail_height), cuts=cuts)
+    cuts, high = tuple(sorted(outline.places.tolist())), half_heights(outline, tail_height)
+    if limbs:
+        return flow.Limbed(spine=spine, half_height=high, cuts=cuts, limbs=folded(outline.robot))
+    return flow.Trunk(spine=spine, half_height=high, cuts=cuts)
 
 
 def check_swim_in_space(robot: Crocodile, motion: Motion, basin: Basin) -> None:
@@ -108,7 +136,7 @@ def swim_in_space(
     checkpoint: Path | str | None = None,
     progress: Progress | None = None,
 ) -> xr.Dataset:
-    """Return a swim from rest in the plane of symmetry, the body as heavy as the water it displaces; limbs left out.
+    """Return a swim from rest in the plane of symmetry, the body as heavy as the water it displaces.
 
     The upper half is computed: beyond the plane lies its image. The grid travels with the body's centre.
 
@@ -132,7 +160,7 @@ def swim_in_space(
     outline, period = Outline(robot, basin.cells + 1), 1.0 / motion.frequency
     sway, turn = recoil(outline, motion, 0.0, Water(viscosity=basin.viscosity))
     body = flow.FreeBody(
-        shape=trunk(outline, motion, grow=GROWS * period, tail_height=basin.tail_height),
+        shape=trunk(outline, motion, grow=GROWS * period, tail_height=basin.tail_height, limbs=basin.limbs),
         start=(0.5 * robot.length, 0.0, 0.0), free=(basin.moves_on, True, True),
     )  # fmt: skip
     grid = _grid(robot.length, outline, motion, basin, sway, turn)
