@@ -1,5 +1,6 @@
 """The robot's body in three dimensions: its geometry, its swim, and what the measures mean."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -7,6 +8,7 @@ import pytest
 import xarray as xr
 
 from suchus import flow
+from suchus.cli import main
 from suchus.design import layout
 from suchus.design.pieces import pieces
 from suchus.errors import InvalidDesign, OutsideLimits
@@ -14,9 +16,21 @@ from suchus.experiments import EXPERIMENTS
 from suchus.experiments import _swim_3d_findings as findings
 from suchus.figures import caption
 from suchus.figures.swim_3d import draw_tails
+from suchus.flow import memory
 from suchus.hydro.table import column
 from suchus.robots import ROBOTS
-from suchus.water import Basin, Outline, displaced, fit, folded, half_heights, printed_wave, swim_in_space, trunk
+from suchus.water import (
+    Basin,
+    Outline,
+    check_swim_in_space,
+    displaced,
+    fit,
+    folded,
+    half_heights,
+    printed_wave,
+    swim_in_space,
+    trunk,
+)
 
 ROBOT, ASKED = ROBOTS["caiman"], EXPERIMENTS["swim_3d"]
 MOTION = fit(ROBOT, printed_wave(ROBOT, "I", sign=-1)).swim
@@ -74,13 +88,62 @@ def test_folded_limbs_are_the_robots_links_and_feet_beside_the_body_at_their_hip
         ({"cells": (96, 64)}, "increasing numbers"),
         ({"cells": ()}, "at least one"),
         ({"cycles": 1}, "cycles is 1"),
-        ({"reynolds": 1e6}, "reynolds is"),
+        ({"reynolds": 1e6}, r"reynolds is 1e\+06, and in real water it is 1.02e\+06.*friction law"),
+        ({"reynolds": 1.0}, "reynolds is 1; 10 to 20000"),
+        ({"beside": -0.1}, "beside is"),
         ({"tail_heights": (0.1, 0.05)}, "increasing numbers"),
     ],
 )
 def test_impossible_settings_are_refused(fields, said):
     with pytest.raises(InvalidDesign, match=said):
         replace(ASKED, **fields)
+
+
+REFUSED = {
+    "--beside 0.0": ("the box leaves 0 body lengths of water beside the widest swing", "give at least 0.0"),
+    "--cells 40 --reynolds 2e4": (
+        "the boundary layer of",
+        "cells per body length, ",
+        "hours for 6 cycles, or a viscosity",
+    ),
+    "--reynolds 1e6": ("in real water it is", "friction law, which is not built; give at most 20000"),
+    "--cells 512": ("a grid of 768 x 384 x 128 cells takes 3.", "GB of memory, and this machine has 1 GB"),
+}
+
+
+@pytest.mark.parametrize("words", REFUSED)
+def test_what_cannot_be_swum_is_one_sentence_before_anything_runs(words, capsys, tmp_path, monkeypatch):
+    if "512" in words:
+        monkeypatch.setattr(memory, "machine_memory", lambda: 10**9)
+    assert main(["run", "swim_3d", *words.split(), "--out", str(tmp_path / "out")]) == 2
+    out, err = capsys.readouterr()
+    said = err.strip()
+    assert all(part in said for part in REFUSED[words][-2:]), said
+    assert len(said) < 600
+    assert "\n" not in said
+    assert out == ""
+    assert not (tmp_path / "out" / "swim_3d").exists()
+
+
+def test_a_layer_says_the_cells_and_hours_that_it_takes():
+    with pytest.raises(
+        InvalidDesign, match=r"at least (\d+) cells per body length, ([\d.e+]+) million cells"
+    ) as caught:
+        swim_in_space(ROBOT, MOTION, Basin(cells=64, viscosity=1e-4 / 7, cycles=1))
+    cells = int(re.search(r"least (\d+) cells", str(caught.value))[1])
+    check_swim_in_space(ROBOT, MOTION, Basin(cells=cells, viscosity=1e-4 / 7, cycles=1))  # they do
+    with pytest.raises(InvalidDesign, match="boundary layer"):
+        check_swim_in_space(ROBOT, MOTION, Basin(cells=cells - 1, viscosity=1e-4 / 7, cycles=1))
+    with pytest.raises(InvalidDesign, match="more than the 1024 that are allowed"):
+        swim_in_space(ROBOT, MOTION, Basin(cells=64, viscosity=2e-7, cycles=1))
+
+
+def test_the_narrowest_box_that_is_allowed_holds_the_body():
+    basin = Basin(cells=56, viscosity=2e-3, cycles=1, beside=8 / 56 - 0.05)
+    check_swim_in_space(ROBOT, MOTION, basin)
+    swim_in_space(ROBOT, MOTION, basin, progress=lambda _: None)
+    with pytest.raises(InvalidDesign, match="the body would leave it"):
+        check_swim_in_space(ROBOT, MOTION, replace(basin, beside=basin.beside - 1e-3))
 
 
 def test_a_motion_that_the_grid_or_the_joints_cannot_follow_is_refused():

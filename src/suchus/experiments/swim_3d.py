@@ -24,6 +24,10 @@ from suchus.robots import ROBOTS
 from suchus.study import at_scheduler, conduct_sweep
 from suchus.water import Basin, Motion, Tether, check_swim_in_space, fit, free_swim, printed_wave, swim, swim_in_space
 from suchus.water.diary import forget_kept, kept_in
+from suchus.water.space import BESIDE
+
+MOST_REYNOLDS = 2e4
+"""Largest frequency times length squared over viscosity [-]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -68,6 +72,8 @@ class Swim3d(Experiment):
     """Cycles of these [-]."""
     tail_heights: tuple[float, ...] = (0.06, 0.1)
     """Heights to which the last third of the body is raised, as a fin as thick as the tail; rising [m]."""
+    beside: float = BESIDE
+    """Water between the widest swing and the sides of the box [body length]."""
     slice_cells: int = 96
     """Cells per body length of the slice [-]."""
     frames: int = 24
@@ -84,7 +90,14 @@ class Swim3d(Experiment):
     def __post_init__(self) -> None:
         with Checks(self.name(), self) as check:
             check.number("frequency", 0.01, 20.0, "Hz")
-            check.number("reynolds", 10.0, 2e4, "")
+            check.number("beside", 0.0, 3.0, "body lengths")
+            if self.reynolds > MOST_REYNOLDS:
+                real = self.frequency * self.robot.length**2 / Water().viscosity
+                check.that(False, f"{self.name()}.reynolds is {self.reynolds:.3g}, and in real water it is {real:.3g}: "
+                           f"there the water must slip along the body with a friction law, which is not built; give at "
+                           f"most {MOST_REYNOLDS:.0f}, whose layers a grid carries")  # fmt: skip
+            else:
+                check.number("reynolds", 10.0, MOST_REYNOLDS, "")
             check.that(self.reading in READINGS, f"{self.name()}.reading is {self.reading!r}; there are "
                        f"{', '.join(READINGS)}")  # fmt: skip
             check.rising("cells", 32, 512, "cells")
@@ -140,7 +153,7 @@ class Swim3d(Experiment):
         """Return name, motion, grid and time of every swim in space."""
 
         def basin(cells: int, cycles: int, **other: Any) -> Basin:
-            return Basin(cells=cells, viscosity=self.viscosity, cycles=cycles, **other)
+            return Basin(cells=cells, viscosity=self.viscosity, cycles=cycles, beside=self.beside, **other)
 
         compared = basin(self.compared_cells, self.compared_cycles)
         runs = [(f"{cells} cells", ours, basin(cells, self.cycles)) for cells in self.cells[:-1]]

@@ -1,6 +1,7 @@
 """The robot's own body in the water of three dimensions: free, or kept from moving on."""
 
 from dataclasses import dataclass, replace
+from math import prod
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,8 @@ from suchus.design import GRAVITY, Crocodile, cable_joints, layout
 from suchus.design.checks import Checks
 from suchus.design.profile import stations
 from suchus.design.water import Water
+from suchus.errors import InvalidDesign
+from suchus.flow.memory import check_memory
 from suchus.motion.swim import trunk_yaws
 from suchus.water.diary import Diary, Progress, run_on
 from suchus.water.immersed import immersed
@@ -25,9 +28,16 @@ from suchus.water.wake import Filmed, wake
 
 AHEAD, BEHIND, BESIDE, ABOVE = 0.15, 0.35, 0.2, 0.15
 """Water ahead of the snout, behind the tail, beside the widest swing and above the back [body length]."""
+FINEST = 1024
+"""Most cells per body length [-]."""
+STEPS, SECONDS = 1.1, 1.2e-7
+"""Steps in a cycle over the cells per body length [-], and processor time of a step over the cells [s]: what they were
+at 96 to 192 cells a length."""
+_MARGIN = 8.0
+"""Cells between the body's widest reach and the sides that the solver needs, its half-width included [-]."""
 FIN_STARTS, FIN_RISES = 2 / 3, 0.05
 """Where a raised tail begins, from the snout, and over which length it rises [body length]."""
-_WATER = 0.05
+_DRAWN = 0.05
 """Swing to a side that the box leaves to a body that draws to the side and turns, beside its own [body length]."""
 
 
@@ -45,6 +55,8 @@ class Basin:
     """Height of the last third of the body, as a fin as thick as the tail is; 0 leaves the tail as it is [m]."""
     limbs: bool = False
     """Whether the limbs are in the water, folded straight back along the body."""
+    beside: float = BESIDE
+    """Water beside the widest swing, to each side [body length]."""
     moves_on: bool = True
     """Whether the body may move along its course; it always sways and turns freely."""
     frames: int = 0
@@ -54,10 +66,11 @@ class Basin:
 
     def __post_init__(self) -> None:
         with Checks("basin", self) as check:
-            check.whole("cells", 32, 1024)
+            check.whole("cells", 32, FINEST)
             check.whole("cycles", 1, 1000)
             check.whole("frames", 0, 200)
             check.number("viscosity", 1e-7, 10.0, "m2/s")
+            check.number("beside", 0.0, 3.0, "body lengths")
             check.number("tail_height", 0.0, 1.0, "m")
             check.number("tolerance", 5e-7, 1e-2, "")
 
@@ -116,16 +129,33 @@ def trunk(
 
 
 def check_swim_in_space(robot: Crocodile, motion: Motion, basin: Basin) -> None:
-    """Refuse what joints, servos or grid cannot follow, before anything runs.
+    """Refuse what joints, servos, grid, box or machine cannot follow, before anything runs.
 
     Raises:
         OutsideLimits: the joints or servos cannot follow the motion.
-        InvalidDesign: the boundary layer is too thin for the grid.
+        InvalidDesign: the boundary layer is too thin for the grid, with the cells that would do and the hours that they
+            take; the body would reach out of the box; the machine has not the memory.
     """
     outline = Outline(robot, basin.cells + 1)
     sway, turn = recoil(outline, motion, 0.0, Water(viscosity=basin.viscosity))
     resolved = Tether(cells=basin.cells, viscosity=basin.viscosity, cycles=basin.cycles)
-    check_motion(outline, motion, resolved, sway, turn)
+
+    def cost(cells: int) -> str:
+        finer = replace(basin, cells=cells) if cells <= FINEST else None
+        if finer is None:
+            return f", more than the {FINEST} that are allowed"
+        count = prod(_grid(robot.length, outline, motion, finer, sway, turn).cells)
+        hours = count * STEPS * cells * basin.cycles * SECONDS / 3600.0
+        return f", {count / 1e6:.3g} million cells that take some {hours:.2g} hours for {basin.cycles} cycles"
+
+    check_motion(outline, motion, resolved, sway, turn, cost)
+    least, beside = _MARGIN / basin.cells, basin.beside
+    if beside + _DRAWN < least:
+        raise InvalidDesign(
+            f"the box leaves {beside:.3g} body lengths of water beside the widest swing, and the body would leave it: "
+            f"give at least {least - _DRAWN:.2g}, better {BESIDE}."
+        )
+    check_memory(_grid(robot.length, outline, motion, basin, sway, turn), np.float32)
 
 
 def swim_in_space(
@@ -188,11 +218,11 @@ def _grid(
     length: float, outline: Outline, motion: Motion, basin: Basin, sway: complex, turn: complex
 ) -> flow.Grid:  # fmt: skip
     """Return the cells around the upper half of a body whose snout is near the origin."""
-    swing = float(np.abs(cycle(outline, motion, sway, turn).y).max()) / length + _WATER
+    swing = float(np.abs(cycle(outline, motion, sway, turn).y).max()) / length + _DRAWN
     high = max(outline.silhouette.half_height.max(), 0.5 * basin.tail_height) / length + ABOVE
     grid = flow.Grid.covering(
         (-AHEAD * length, (1.0 + BEHIND) * length),
-        (-(swing + BESIDE) * length, (swing + BESIDE) * length),
+        (-(swing + basin.beside) * length, (swing + basin.beside) * length),
         (0.0, high * length),
         cell=length / basin.cells,
     )
