@@ -15,7 +15,7 @@ from suchus.gaits import GAITS
 from suchus.land import Lake, Run, simulate
 from suchus.motion import Swim
 
-DURATION, RUNS, REPEATS = 2.0, 8, 5
+DURATION, RUNS, REPEATS = 1.5, 8, 9
 WAVE = Swim(name="wave", frequency=1.0, yaw=(0.36, 0.13, 0.11), yaw_lag=(0.08, -0.11, -0.29), tail=0.75, tail_lag=-0.11)
 GAIT = GAITS["belly_crawl"]
 ARMS = {

@@ -34,7 +34,7 @@ def wet(model: int, data: int, at: np.ndarray) -> bool:
     numbers = carray(pointer(whole[at[memory.NUMERIC] // 8]), (whole[count],), np.float64)
     if numbers[0] != MAGIC or whole[at[memory.NUSER] // 8] < NUMBERS:
         return False
-    bodies, motion = read_bodies(model, at), read_motion(model, data, at)
+    motion = read_motion(model, data, at)
     user, water = motion.user, read_water(model, motion.user, at, numbers[2])
     blocks = (len(numbers) - HEADER) // (WIDTH * LANES)
     table = carray(pointer(whole[at[memory.NUMERIC] // 8] + 8 * HEADER), (blocks, WIDTH, LANES), np.float64)
@@ -43,6 +43,7 @@ def wet(model: int, data: int, at: np.ndarray) -> bool:
     user[UNDER] = 0.0
     if _all_dry(table, int(numbers[1]), water, abs(user[WAVE]), motion):
         return False
+    bodies = read_bodies(model, at)
     sums = _gathered(table, int(numbers[1]), water, bodies, motion)
     if user[UNDER] == 0.0:
         return False

@@ -17,20 +17,22 @@ class Meter:
     """
 
     def __init__(self, water: np.ndarray, sensors: np.ndarray, velocities: slice, torques: slice, steps: int) -> None:
-        self._acts, self._felt = water[:, hydro.FORCE : hydro.FORCE + 4], sensors
-        self._water = np.empty((steps, *self._acts.shape))
-        self._all = np.empty((steps + 1, *self._felt.shape))
-        speed = self._all[..., velocities]
-        self._before, self._after, self._torque = speed[:-1], speed[1:], self._all[1:, :, torques]
+        self._acts, self._steps = water[:, hydro.FORCE : hydro.FORCE + 4], steps
+        self._speed, self._torque = sensors[:, velocities], sensors[:, torques]
+        count, servos = self._speed.shape
+        self._did = np.zeros((steps, count, 4))
+        self._speeds, self._torques = np.zeros((count, steps + 1, servos)), np.zeros((count, steps, servos))
+        self._work = np.zeros((count, steps, servos))
 
     def begin(self) -> None:
         """Keep what is felt before the first step."""
-        self._all[0] = self._felt
+        self._speeds[:, 0] = self._speed
 
     def read(self, step: int) -> None:
         """Keep what a physics step has left."""
-        self._water[step] = self._acts
-        self._all[step + 1] = self._felt
+        self._did[step] = self._acts
+        self._speeds[:, step + 1] = self._speed
+        self._torques[:, step] = self._torque
 
     def mean(self, into: np.ndarray, who: np.ndarray | slice) -> None:
         """Write the means of force and power of the water and of the power of the servos, shape (run, 5).
@@ -41,7 +43,7 @@ class Meter:
             into: where to.
             who: runs for which they are written.
         """
-        work, steps = self._before + self._after, len(self._water)
-        work *= self._torque
-        into[who, :4] = self._water.sum(axis=0)[who] / steps
-        into[who, 4] = work.sum(axis=(0, 2))[who] / (2 * steps)
+        np.add(self._speeds[:, :-1], self._speeds[:, 1:], out=self._work)
+        np.multiply(self._work, self._torques, out=self._work)
+        into[who, :4] = np.add.reduce(self._did, axis=0)[who] / self._steps
+        into[who, 4] = np.add.reduce(self._work.reshape(len(into), -1), axis=1)[who] / (2 * self._steps)
