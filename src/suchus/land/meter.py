@@ -17,22 +17,23 @@ class Meter:
     """
 
     def __init__(self, water: np.ndarray, sensors: np.ndarray, velocities: slice, torques: slice, steps: int) -> None:
-        self._acts, self._steps = water[:, hydro.FORCE : hydro.FORCE + 4], steps
-        self._speed, self._torque = sensors[:, velocities], sensors[:, torques]
-        count, servos = self._speed.shape
-        self._did = np.zeros((steps, count, 4))
-        self._speeds, self._torques = np.zeros((count, steps + 1, servos)), np.zeros((count, steps, servos))
-        self._work = np.zeros((count, steps, servos))
+        first, last = min(velocities.start, torques.start), max(velocities.stop, torques.stop)
+        self._acts, self._felt = water[:, hydro.FORCE : hydro.FORCE + 4], sensors[:, first:last]
+        self._did, self._all = np.zeros((steps, *self._acts.shape)), np.zeros((steps + 1, *self._felt.shape))
+        speeds = self._all[..., velocities.start - first : velocities.stop - first]
+        self._before, self._after = speeds[:-1], speeds[1:]
+        self._torque = self._all[1:, :, torques.start - first : torques.stop - first]
+        self._sum = np.zeros(self._torque.shape)
+        self._share = np.full(steps, 1.0 / steps)
 
     def begin(self) -> None:
         """Keep what is felt before the first step."""
-        self._speeds[:, 0] = self._speed
+        self._all[0] = self._felt
 
     def read(self, step: int) -> None:
         """Keep what a physics step has left."""
         self._did[step] = self._acts
-        self._speeds[:, step + 1] = self._speed
-        self._torques[:, step] = self._torque
+        self._all[step + 1] = self._felt
 
     def mean(self, into: np.ndarray, who: np.ndarray | slice) -> None:
         """Write the means of force and power of the water and of the power of the servos, shape (run, 5).
@@ -43,7 +44,6 @@ class Meter:
             into: where to.
             who: runs for which they are written.
         """
-        np.add(self._speeds[:, :-1], self._speeds[:, 1:], out=self._work)
-        np.multiply(self._work, self._torques, out=self._work)
-        into[who, :4] = np.add.reduce(self._did, axis=0)[who] / self._steps
-        into[who, 4] = np.add.reduce(self._work.reshape(len(into), -1), axis=1)[who] / (2 * self._steps)
+        np.add(self._before, self._after, out=self._sum)
+        into[who, :4] = (self._share @ self._did.reshape(len(self._did), -1)).reshape(-1, 4)[who]
+        into[who, 4] = (0.5 * self._share @ np.vecdot(self._sum, self._torque))[who]
