@@ -14,10 +14,10 @@ import numpy as np
 from numba import prange
 
 from suchus.flow.compiled import PAD, UNIT, part, signed, threaded, unsigned
-from suchus.flow.slab import NONE, EDGE, block_of, meets, near_shift, row_count, row_length, window_columns, window_rows
+from suchus.flow.slab import EDGE, NONE, block_of, meets, near_shift, row_count, row_length, window_columns, window_rows
 
 ROWS = 16
-"""Rows of a slab in space that are advanced together: with the slabs around them they stay in the nearest caches [-]."""
+"""Rows of a slab in space that are advanced together: they and those around them stay in the nearest caches [-]."""
 
 
 @part
