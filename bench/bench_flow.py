@@ -14,6 +14,7 @@ import numpy as np
 from suchus import flow
 from suchus.flow import border, log, midline, multigrid, openwater, patch, poisson, simulation, water
 from suchus.flow.compiled import compiled, threaded
+from suchus.flow.slab import inner_strides
 
 PIECES = (
     (water, "advance immerse collect swelling contents mean_residual residual correct fastest fill fill_source"),
@@ -56,7 +57,7 @@ def spin(x, rounds):
 @numba.njit(fastmath=True, parallel=True)
 def spin_threads(x, rounds):
     for t in numba.prange(x.shape[0]):
-        spin(x[t], rounds)
+        spin(x[t, 0], rounds)
 
 
 def best(function, times=5):
@@ -79,11 +80,11 @@ def bandwidth(size, threads):
 
 def gain_of_two():
     """How much faster two threads are than one at arithmetic alone: what the machine's cores are worth."""
-    x, rounds = np.ones((2, 512), np.float32), 200_000
+    x, rounds = np.ones((2, 2, 512), np.float32), 200_000  # apart: neighbours share a line of the caches
     numba.set_num_threads(2)
     both = best(lambda: spin_threads(x, rounds))
     numba.set_num_threads(1)
-    return 2 * best(lambda: spin(x[0], rounds)) / both
+    return 2 * best(lambda: spin(x[0, 0], rounds)) / both
 
 
 def eel(cells, threads):
@@ -150,8 +151,12 @@ def tell_pieces(make, cells, threads, steps):
     for label, spent in sorted(calls.items(), key=lambda item: -sum(item[1])):
         half = np.mean(np.sort(spent)[: max(len(spent) // 2, 1)])
         print(f"  {per_cell * half * len(spent) / steps:7.2f}  {label} ({len(spent) / steps:.0f})")
-    if sim.axes == 2:
-        tell_solve(sim.water, per_cell)
+    tell_solve(sim.water, per_cell)
+
+
+def cells_of(w, level):
+    """Return the cells of a level along x, y (and z)."""
+    return tuple(int(n) for n in w._layout[level, w.axes : 0 : -1])
 
 
 def tell_solve(w, per_cell):
@@ -170,15 +175,15 @@ def tell_solve(w, per_cell):
         print(f"  {per_cell * best(function, 20):7.2f}  {label}")
 
     for k in range(layout.shape[0]):
-        x, size = multigrid.level(store, layout, inner, multigrid.X, k), tuple(int(n) for n in layout[k, 2:0:-1])
+        x, size = multigrid.level(store, layout, inner, multigrid.X, k), cells_of(w, k)
         below, own = layout[k:].copy(), patches[k:].copy()
         tell(f"cycle from level {k}, {size}", lambda: cycle(x, store, below, room, own, inner, sides))  # noqa: B023
     x, b, dinv = (multigrid.level(store, layout, inner, kind, 0) for kind in (multigrid.X, multigrid.B, multigrid.DINV))
     faces = multigrid.faces_of(store, layout, inner, 0)
     coarse_b, coarse_x = (multigrid.level(store, layout, inner, kind, 1) for kind in (multigrid.B, multigrid.X))
-    zero, rect, place = w.dtype(0), patches[0], layout[0]
-    tell("down, finest level", lambda: down(coarse_b, b, faces, place, room, rect, inner, inner, sides))
-    tell("up, finest level", lambda: up(x, b, coarse_x, faces, dinv, place, room, rect, inner, inner, sides))
+    zero, rect, place, coarser = w.dtype(0), patches[0], layout[0], inner_strides(cells_of(w, 1))
+    tell("down, finest level", lambda: down(coarse_b, b, faces, place, room, rect, inner, coarser, sides))
+    tell("up, finest level", lambda: up(x, b, coarse_x, faces, dinv, place, room, rect, inner, coarser, sides))
     tell("patch, finest level, before", lambda: start(room, rect, b, inner))
     tell("patch, finest level, after", lambda: end(room, rect, x, inner))
     tell("dot products", lambda: dots(x, b, w._d, faces, place, inner, w._sums))

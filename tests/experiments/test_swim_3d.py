@@ -1,5 +1,6 @@
 """The robot's body in three dimensions: its geometry, its swim, and what the measures mean."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -7,13 +8,29 @@ import pytest
 import xarray as xr
 
 from suchus import flow
+from suchus.cli import main
+from suchus.design import layout
+from suchus.design.pieces import pieces
 from suchus.errors import InvalidDesign, OutsideLimits
 from suchus.experiments import EXPERIMENTS
 from suchus.experiments import _swim_3d_findings as findings
 from suchus.figures import caption
 from suchus.figures.swim_3d import draw_tails
+from suchus.flow import memory
+from suchus.hydro.table import column
 from suchus.robots import ROBOTS
-from suchus.water import Basin, Outline, displaced, fit, half_heights, printed_wave, swim_in_space, trunk
+from suchus.water import (
+    Basin,
+    Outline,
+    check_swim_in_space,
+    displaced,
+    fit,
+    folded,
+    half_heights,
+    printed_wave,
+    swim_in_space,
+    trunk,
+)
 
 ROBOT, ASKED = ROBOTS["caiman"], EXPERIMENTS["swim_3d"]
 MOTION = fit(ROBOT, printed_wave(ROBOT, "I", sign=-1)).swim
@@ -42,21 +59,91 @@ def test_a_raised_tail_is_as_high_as_asked_and_nowhere_lower_than_the_robot():
     assert trunk(outline, MOTION, tail_height=0.1).volume(0.0) > trunk(outline, MOTION).volume(0.0)
 
 
+def test_folded_limbs_are_the_robots_links_and_feet_beside_the_body_at_their_hips():
+    limbs, place = folded(ROBOT), layout(ROBOT)
+    outline = Outline(ROBOT, 129)
+    bare, body = trunk(outline, MOTION), trunk(outline, MOTION, limbs=True)
+    assert len(limbs) == sum(len(limb.girdle.limb.links) + 1 for limb in place.limbs)
+    lengths = sorted(float(np.hypot(*np.subtract(one.end, one.start))) for one in limbs if one.start != one.end)
+    links = [link.length for limb in place.limbs for link in limb.girdle.limb.links]
+    assert lengths == pytest.approx(sorted(links))
+    assert sorted({one.at for one in limbs}) == pytest.approx([0.1625, 0.505])  # as far behind the snout as the hips
+    table = pieces(ROBOT)
+    axis = {body.name for body in place.bodies} - {segment.name for segment in place.robot.axis}
+    there = [place.bodies[int(row)].name in axis for row in table[:, 0]]
+    volume = float(column(table, "volume")[there].sum())
+    extra = body.mass(0.0).volume - bare.mass(0.0).volume
+    hips = sum(2 / 3 * np.pi * limb.girdle.limb.links[0].radius ** 3 for limb in place.limbs)  # round ends, not there
+    assert extra == pytest.approx(volume + hips, rel=0.01)
+    assert sum(lump.volume * lump.centre[1] for lump in body.lumps) == pytest.approx(0.0, abs=1e-12)
+    assert body.bounds(0.0, flow.Pose())[4:] == bare.bounds(0.0, flow.Pose())[4:]  # no limb is as high as the body
+
+
 @pytest.mark.parametrize(
     ("fields", "said"),
     [
         ({"reading": "Z"}, "reading is 'Z'"),
-        ({"limbs": "folded"}, "there is 'none' only"),
+        ({"jobs": 0}, "jobs is 0"),
+        ({"frames": 0}, "frames is 0"),
         ({"cells": (96, 64)}, "increasing numbers"),
         ({"cells": ()}, "at least one"),
         ({"cycles": 1}, "cycles is 1"),
-        ({"reynolds": 1e6}, "reynolds is"),
+        ({"reynolds": 1e6}, r"reynolds is 1e\+06, and in real water it is 1.02e\+06.*friction law"),
+        ({"reynolds": 1.0}, "reynolds is 1; 10 to 20000"),
+        ({"beside": -0.1}, "beside is"),
         ({"tail_heights": (0.1, 0.05)}, "increasing numbers"),
     ],
 )
 def test_impossible_settings_are_refused(fields, said):
     with pytest.raises(InvalidDesign, match=said):
         replace(ASKED, **fields)
+
+
+REFUSED = {
+    "--beside 0.0": ("the box leaves 0 body lengths of water beside the widest swing", "give at least 0.0"),
+    "--cells 40 --reynolds 2e4": (
+        "the boundary layer of",
+        "cells per body length, ",
+        "hours for 6 cycles, or a viscosity",
+    ),
+    "--reynolds 1e6": ("in real water it is", "friction law, which is not built; give at most 20000"),
+    "--cells 512": ("a grid of 768 x 384 x 128 cells takes 3.", "GB of memory, and this machine has 1 GB"),
+}
+
+
+@pytest.mark.parametrize("words", REFUSED)
+def test_what_cannot_be_swum_is_one_sentence_before_anything_runs(words, capsys, tmp_path, monkeypatch):
+    if "512" in words:
+        monkeypatch.setattr(memory, "machine_memory", lambda: 10**9)
+    assert main(["run", "swim_3d", *words.split(), "--out", str(tmp_path / "out")]) == 2
+    out, err = capsys.readouterr()
+    said = err.strip()
+    assert all(part in said for part in REFUSED[words][-2:]), said
+    assert len(said) < 600
+    assert "\n" not in said
+    assert out == ""
+    assert not (tmp_path / "out" / "swim_3d").exists()
+
+
+def test_a_layer_says_the_cells_and_hours_that_it_takes():
+    with pytest.raises(
+        InvalidDesign, match=r"at least (\d+) cells per body length, ([\d.e+]+) million cells"
+    ) as caught:
+        swim_in_space(ROBOT, MOTION, Basin(cells=64, viscosity=1e-4 / 7, cycles=1))
+    cells = int(re.search(r"least (\d+) cells", str(caught.value))[1])
+    check_swim_in_space(ROBOT, MOTION, Basin(cells=cells, viscosity=1e-4 / 7, cycles=1))  # they do
+    with pytest.raises(InvalidDesign, match="boundary layer"):
+        check_swim_in_space(ROBOT, MOTION, Basin(cells=cells - 1, viscosity=1e-4 / 7, cycles=1))
+    with pytest.raises(InvalidDesign, match="more than the 1024 that are allowed"):
+        swim_in_space(ROBOT, MOTION, Basin(cells=64, viscosity=2e-7, cycles=1))
+
+
+def test_the_narrowest_box_that_is_allowed_holds_the_body():
+    basin = Basin(cells=56, viscosity=2e-3, cycles=1, beside=8 / 56 - 0.05)
+    check_swim_in_space(ROBOT, MOTION, basin)
+    swim_in_space(ROBOT, MOTION, basin, progress=lambda _: None)
+    with pytest.raises(InvalidDesign, match="the body would leave it"):
+        check_swim_in_space(ROBOT, MOTION, replace(basin, beside=basin.beside - 1e-3))
 
 
 def test_a_motion_that_the_grid_or_the_joints_cannot_follow_is_refused():
@@ -69,7 +156,7 @@ def test_a_motion_that_the_grid_or_the_joints_cannot_follow_is_refused():
 
 
 def test_a_swim_that_was_interrupted_goes_on_to_the_same_numbers(tmp_path):
-    basin, seen = Basin(cells=54, viscosity=2e-3, cycles=1), []
+    basin, seen = Basin(cells=54, viscosity=2e-3, cycles=1, frames=4), []
 
     def stop(share):
         if share > 0.6:
@@ -82,6 +169,15 @@ def test_a_swim_that_was_interrupted_goes_on_to_the_same_numbers(tmp_path):
     assert found.identical(swim_in_space(ROBOT, MOTION, basin, progress=lambda _: None))
     assert found.sizes["z"] * found.sizes["y"] * found.sizes["x"] == pytest.approx(1e6 * float(found.million_cells))
     assert float(found.power[-1]) > 0
+    assert found.frame.values == pytest.approx([0.25, 0.5, 0.75, 1.0], abs=0.05)
+    assert found.film_x.values[-1] == pytest.approx(found.midline_x.values, abs=1e-6)
+    above = found.vortices.values[-1].max(axis=0) * float(found.vortex_unit)
+    shown = above > 0.3 * float(found.vortex_level)
+    capped = 30 * float(found.vortex_level)
+    assert shown.sum() > 100
+    assert np.minimum(above, capped)[shown] == pytest.approx(
+        np.minimum(found.vortices_above.values, capped)[shown], rel=0.01
+    )
     assert np.isfinite(found.joint_torque.values).all()
 
 
@@ -109,7 +205,7 @@ def swum():
     asked = replace(ASKED, cells=(68, 96), cycles=2, compared_cycles=2, tail_heights=(0.1,))
     swims = {"68 cells": one([0.01, 0.02]), "96 cells": one([0.02, 0.04], power=1.0), "held": one([0.0, 0.0]),
              "trunk only": one([0.0, 0.01]), "tail only": one([0.0, 0.005]), "as printed": one([0.0, -0.01]),
-             "tail 0.1 m": one([0.02, 0.06], weight=30.0)}  # fmt: skip
+             "limbs folded": one([0.01, 0.015], weight=25.0), "tail 0.1 m": one([0.02, 0.06], weight=30.0)}  # fmt: skip
     models = ("model", [0.05, 0.04])
     beside = xr.Dataset(
         {"slice_speed": ("cycle", [0.1, 0.4]), "model_speed": models, "model_power": models, "model_thrust": models,
@@ -145,16 +241,20 @@ def test_motions_and_tails_are_compared_on_one_grid():
     assert m["speed_tail_0_1"] == 0.06
     assert m["cost_of_transport_tail_0_1"] == pytest.approx(2.0 / (30.0 * 0.06))
     assert m["cost_of_transport_as_printed"] > 0
+    assert m["speed_limbs_folded"] == 0.015
+    assert m["cost_of_transport_limbs_folded"] == pytest.approx(2.0 / (25.0 * 0.015))
     told = findings.explain(m)
     assert "40.0 mm/s in cycle 2 on 96 cells a length" in told
     assert "10 times as fast" in told
     assert "0.1 m high" in told
     assert "3.0 times as fast" in told
+    assert "limbs folded straight back it swims 15.0 mm/s on the grid where it swims 20.0 mm/s" in told
+    assert "limbs" not in findings.explain({name: value for name, value in m.items() if "limbs" not in name})
 
 
 def test_the_figure_of_tails_and_motions_is_drawn_from_the_record_alone():
     figure = draw_tails(swum())
     left, right = (sorted(line.get_label() for line in ax.lines if line.get_label()[0] != "_") for ax in figure.axes)
     assert left == ["last third 0.1 m high", "the robot's tail"]
-    assert right == ["as printed", "tail only", "the robot's tail", "trunk only"]
+    assert right == ["as printed", "limbs folded", "tail only", "the robot's tail", "trunk only"]
     assert "on 68 cells a length at f L² / ν = 7000" in caption(figure)

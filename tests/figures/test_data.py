@@ -149,3 +149,12 @@ def test_it_is_saved_beside_the_figure_and_an_empty_figure_has_none(plain, tmp_p
     save(new(), tmp_path, "nothing")
     assert (tmp_path / "speeds.data.csv").read_text() == table(plain)
     assert not (tmp_path / "nothing.data.csv").exists()
+
+
+def test_a_picture_in_colours_has_no_numbers():
+    with styled():
+        figure, axes = panels(1, 1)
+        axes[0, 0].imshow(np.zeros((4, 4, 3), np.uint8))
+        assert not table(figure)
+        axes[0, 0].imshow(np.zeros((4, 4)))
+        assert table(figure)

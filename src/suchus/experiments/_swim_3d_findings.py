@@ -13,6 +13,8 @@ from suchus.verdict import Reading
 
 WHOLE = "trunk and tail"
 """The motion that the others are compared with."""
+LIMBS = "limbs folded"
+"""The same with the limbs in the water."""
 
 
 class Asked(Protocol):
@@ -44,7 +46,7 @@ def record(swims: Mapping[str, xr.Dataset], beside: xr.Dataset, asked: Asked) ->
     grids = [swims[f"{cells} cells"] for cells in asked.cells]
     whole = swims.get("compared", swims.get(f"{asked.compared_cells} cells"))
     assert whole is not None
-    names = [name for name in ("trunk only", "tail only", "as printed") if name in swims]
+    names = [name for name in ("trunk only", "tail only", "as printed", LIMBS) if name in swims]
     tails = {f"tail {high:g} m": high for high in asked.tail_heights}
     compared = {WHOLE: whole, **{name: swims[name] for name in (*names, *tails)}}
     finest = grids[-1].drop_vars(("speed", "thrust", "power", "steps", "million_cells", "thin", "cycle"))
@@ -173,6 +175,11 @@ def explain(measures: Mapping[str, float]) -> str:
         f"{m['speed_resistive']:.3f} and {m['speed_reactive']:.3f} m/s; in real water they say "
         f"{m['speed_resistive_real_water']:.2f} and {m['speed_reactive_real_water']:.2f} m/s. "
     )
+    if "speed_limbs_folded" in m:
+        text += (
+            f"With its limbs folded straight back it swims {1e3 * measures['speed_limbs_folded']:.1f} mm/s on the grid "
+            f"where it swims {1e3 * measures['speed_trunk_and_tail']:.1f} mm/s without them. "
+        )
     highest = [name for name in measures if name.startswith("speed_tail_") and name != "speed_tail_only"]
     if highest:
         high, bare = measures[highest[-1]], measures["speed_trunk_and_tail"]

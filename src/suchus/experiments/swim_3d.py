@@ -1,11 +1,13 @@
 """How does the robot's own body swim in the water of three dimensions, and what would a higher tail do?"""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass, field, replace
 from functools import partial
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any, ClassVar
 
-import numpy as np
 import xarray as xr
 
 from suchus.design import Crocodile
@@ -15,29 +17,35 @@ from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Si
 from suchus.experiments import _swim_3d_findings as findings
 from suchus.figures.swim_3d import draw_joints, draw_speeds, draw_tails, draw_wake
 from suchus.figures.vortices import draw_vortices, film_vortices
+from suchus.flow.fingerprint import fingerprint
 from suchus.kinematics.wave import READINGS
 from suchus.replay import wake_replay
 from suchus.robots import ROBOTS
+from suchus.study import at_scheduler, conduct_sweep
 from suchus.water import Basin, Motion, Tether, check_swim_in_space, fit, free_swim, printed_wave, swim, swim_in_space
 from suchus.water.diary import forget_kept, kept_in
+from suchus.water.space import BESIDE
+
+MOST_REYNOLDS = 2e4
+"""Largest frequency times length squared over viscosity [-]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Swim3d(Experiment):
     """The robot free in three dimensions, from rest, its joints fitted to (20); no article's claim is judged by it.
 
-    The body has elliptic sections as wide and high as the robot's pieces, its limbs are left out, and it moves in its
-    plane of symmetry: along, to the side and about the vertical. It swims on several grids, in a water so thick that
-    ``reynolds``, the frequency times the length squared over the viscosity, is what the grids carry; the same number
-    holds for the slice of the experiment ``swimming`` and the slender-body models beside it. Nothing here is in newtons
-    or watts of the robot in real water, whose number is ``reynolds_real_water``.
+    The body has elliptic sections as wide and high as the robot's pieces, without limbs unless it is said, and moves in
+    its plane of symmetry: along, to the side and about the vertical. It swims on several grids, in a water so thick
+    that ``reynolds``, the frequency times the length squared over the viscosity, is what the grids carry; the same
+    number holds for the slice of the experiment ``swimming`` and the slender-body models beside it. Nothing here is in
+    newtons or watts of the robot in real water, whose number is ``reynolds_real_water``.
 
     ``speed`` is the mean of the last cycle on the finest grid and ``speed_gain`` by how much that is above the cycle
     before: a body so light for its power takes tens of cycles to its last speed. ``speed_over_grids`` is by how much
     the finest grid is faster than the next coarser one in the same cycle. ``thrust_held`` is the mean force forward on
     a body that sways and turns but is kept from moving on. ``servo_load_peak`` is the greatest torque that the water
-    alone asks of a servo, over its limit. Trunk only, tail only, the printed direction and higher tails swim on
-    ``compared_cells``.
+    alone asks of a servo, over its limit. Trunk only, tail only, the printed direction, the body with its limbs folded
+    straight back and higher tails swim on ``compared_cells``.
     """
 
     title = "How does the robot's own body swim in three dimensions, and what does a higher tail do?"
@@ -64,26 +72,39 @@ class Swim3d(Experiment):
     """Cycles of these [-]."""
     tail_heights: tuple[float, ...] = (0.06, 0.1)
     """Heights to which the last third of the body is raised, as a fin as thick as the tail; rising [m]."""
+    beside: float = BESIDE
+    """Water between the widest swing and the sides of the box [body length]."""
     slice_cells: int = 96
     """Cells per body length of the slice [-]."""
-    limbs: str = "none"
-    """Limbs in the water: ``none``; folded ones are not resolved."""
     frames: int = 24
     """Instants of the last cycle on the finest grid that film and replay show [-]."""
     keep: str = ""
-    """Folder for what is finished of an interrupted run, from which it goes on; empty keeps nothing."""
+    """Folder for finished swims, and for how far unfinished ones have come, from which an interrupted run goes on;
+    empty keeps nothing."""
+    jobs: int = 1
+    """Swims that are computed side by side, in processes that share the threads of this machine [-]."""
+    scheduler: str = ""
+    """Address of a Dask scheduler whose workers compute the swims, as tcp://127.0.0.1:8786; empty: they are computed
+    here."""
 
     def __post_init__(self) -> None:
         with Checks(self.name(), self) as check:
             check.number("frequency", 0.01, 20.0, "Hz")
-            check.number("reynolds", 10.0, 2e4, "")
+            check.number("beside", 0.0, 3.0, "body lengths")
+            if self.reynolds > MOST_REYNOLDS:
+                real = self.frequency * self.robot.length**2 / Water().viscosity
+                check.that(False, f"{self.name()}.reynolds is {self.reynolds:.3g}, and in real water it is {real:.3g}: "
+                           f"there the water must slip along the body with a friction law, which is not built; give at "
+                           f"most {MOST_REYNOLDS:.0f}, whose layers a grid carries")  # fmt: skip
+            else:
+                check.number("reynolds", 10.0, MOST_REYNOLDS, "")
             check.that(self.reading in READINGS, f"{self.name()}.reading is {self.reading!r}; there are "
                        f"{', '.join(READINGS)}")  # fmt: skip
-            check.that(self.limbs == "none", f"{self.name()}.limbs is {self.limbs!r}; there is 'none' only")
             check.rising("cells", 32, 512, "cells")
             for name in ("compared_cells", "slice_cells"):
                 check.whole(name, 32, 512)
             check.whole("frames", 1, 200)
+            check.whole("jobs", 1, 256)
             for name in ("cycles", "compared_cycles"):
                 check.whole(name, 2, 100)
             if self.tail_heights:
@@ -98,17 +119,23 @@ class Swim3d(Experiment):
 
     def simulate(self, progress: Progress = silent) -> Simulated:
         """Swim on every grid, held, in other motions and with higher tails; the slice and the models beside them."""
+        with at_scheduler(self.scheduler or None) as client:  # refused before anything is computed
+            return self._simulated(progress, client)
+
+    def _simulated(self, progress: Progress, client: Any) -> Simulated:
         ours, printed = (self._motion(sign) for sign in (-1, 1))
         runs = self._runs(ours, printed)
         for _, motion, basin in runs:
             check_swim_in_space(self.robot, motion, basin)
-        work = np.cumsum([0.0, *(basin.cells**4 * basin.cycles for _, _, basin in runs)])
-        found, ends = {}, 0.05 + 0.9 * work / work[-1]
-        beside = self._beside(ours, staged(progress, "the slice", 0.0, 0.05))
-        for (name, motion, basin), start, end in zip(runs, ends, ends[1:], strict=False):
-            told = staged(progress, name, float(start), float(end))
-            found[name] = swim_in_space(self.robot, motion, basin, checkpoint=kept_in(self.keep, name), progress=told)
-        record = findings.record(found, beside, self)
+        items = [(motion, basin) for _, motion, basin in runs]
+        with nullcontext(self.keep) if self.keep else TemporaryDirectory() as folder:
+            found = conduct_sweep(
+                self.name(), partial(swum_in_space, self.robot), items, Path(folder) / "swims", client=client,
+                progress=staged(progress, f"{len(runs)} swims", 0.0, 0.9), jobs=self.jobs,
+                local=partial(_swum_here, self.robot, self.keep),
+            )  # fmt: skip
+        beside = self._beside(ours, staged(progress, "the slice", 0.9, 0.95))
+        record = findings.record({name: swum for (name, *_), swum in zip(runs, found, strict=True)}, beside, self)
         film = film_vortices(record, staged(progress, "the film", 0.95, 1.0))
         forget_kept(self.keep)
         return Simulated(record=record, films={"swim_3d.gif": film}, replays=_replays(record))
@@ -126,7 +153,7 @@ class Swim3d(Experiment):
         """Return name, motion, grid and time of every swim in space."""
 
         def basin(cells: int, cycles: int, **other: Any) -> Basin:
-            return Basin(cells=cells, viscosity=self.viscosity, cycles=cycles, **other)
+            return Basin(cells=cells, viscosity=self.viscosity, cycles=cycles, beside=self.beside, **other)
 
         compared = basin(self.compared_cells, self.compared_cycles)
         runs = [(f"{cells} cells", ours, basin(cells, self.cycles)) for cells in self.cells[:-1]]
@@ -137,6 +164,7 @@ class Swim3d(Experiment):
         if self.tail_heights:
             arms = {"trunk only": ours.trunk_only(), "tail only": ours.tail_only(), "as printed": printed}
             runs += [(name, motion, compared) for name, motion in arms.items()]
+            runs.append((findings.LIMBS, ours, replace(compared, limbs=True)))
         return runs + [(f"tail {high:g} m", ours, replace(compared, tail_height=high)) for high in self.tail_heights]
 
     def _beside(self, ours: Any, progress: Any) -> xr.Dataset:
@@ -170,6 +198,20 @@ class Swim3d(Experiment):
             "swim_3d_joints": draw_joints(record),
         }
         return figures | ({"swim_3d_tails": draw_tails(record)} if record.sizes["compared"] > 1 else {})
+
+
+Item = tuple[Motion, Basin]
+"""What differs between the swims."""
+
+
+def swum_in_space(robot: Crocodile, item: Item, progress: Callable[[float], None]) -> xr.Dataset:
+    """Return a swim of a robot, see ``water.swim_in_space``; its bytes follow from robot and item alone."""
+    return swim_in_space(robot, *item, progress=progress)
+
+
+def _swum_here(robot: Crocodile, keep: str, item: Item, progress: Callable[[float], None]) -> xr.Dataset:
+    """Return the same, and keep in a folder how far it has come."""
+    return swim_in_space(robot, *item, checkpoint=kept_in(keep, fingerprint(item)[:16]), progress=progress)
 
 
 def _replays(record: xr.Dataset) -> dict[str, Replay]:

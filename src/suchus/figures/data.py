@@ -158,6 +158,8 @@ def _of_collection(ax: Axes, drawn: Collection, names: tuple[str, str]) -> Itera
 def _of_image(ax: Axes, image: AxesImage, names: tuple[str, str]) -> Iterator[Cells]:
     carried = getattr(image, _CARRIED, None)
     values = np.ma.filled(np.ma.asarray(image.get_array()), np.nan) if carried is None else carried.values
+    if values.ndim > 2:  # colours, which are no numbers of anything
+        return
     x0, x1, y0, y1 = image.get_extent()
     ny, nx = values.shape[:2]
     x, y = (a + (np.arange(n) + 0.5) * (b - a) / n for a, b, n in ((x0, x1, nx), (y0, y1, ny)))

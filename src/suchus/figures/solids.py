@@ -67,13 +67,13 @@ def _drawn(meshes: Sequence[Mesh], camera: Camera, size: tuple[int, int]) -> np.
     facing = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0] > 0  # the others are hidden behind these
     order = np.flatnonzero(facing)[np.argsort(-depth[whole.faces[facing]].mean(axis=1), kind="stable")]
     colours = np.column_stack([_lit(whole, camera), np.ones(len(whole.vertices))])
-    renderer = RendererAgg(fine[0], fine[1], 72.0)
-    gc = renderer.new_gc()  # type: ignore[no-untyped-call]
+    renderer = RendererAgg(fine[0], fine[1], 72.0)  # type: ignore[no-untyped-call]
+    gc = renderer.new_gc()
     gc.set_antialiased(False)
     if len(order):
         shades = colours[whole.faces[order]]
-        renderer.draw_gouraud_triangles(gc, corner[order], shades, IdentityTransform())  # type: ignore[no-untyped-call]
-    found = np.asarray(renderer.buffer_rgba())[..., :3]  # type: ignore[no-untyped-call]  # white where nothing is
+        renderer.draw_gouraud_triangles(gc, corner[order], shades, IdentityTransform())
+    found = np.asarray(renderer.buffer_rgba())[..., :3]  # white where nothing is
     first_rows, *rest = (found[i::_FINER, j::_FINER] for i in range(_FINER) for j in range(_FINER))
     total = sum((part.astype(np.float32) for part in rest), first_rows.astype(np.float32))
     return total / _FINER**2

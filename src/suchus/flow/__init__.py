@@ -8,6 +8,7 @@ from suchus.flow.force import Load, Surface
 from suchus.flow.free import FreeBody
 from suchus.flow.grid import Grid
 from suchus.flow.isosurface import IsoSurface, isosurface
+from suchus.flow.limbed import Capsule, Limbed
 from suchus.flow.mass import Mass, SpaceMass
 from suchus.flow.midline import Midline, Spine, foil
 from suchus.flow.outline import Implicit, Polygon, difference, from_outline, from_sdf, scaled, union
@@ -28,6 +29,7 @@ from suchus.flow.vortices import lambda2, second_invariant, velocity_gradient
 __all__ = [
     "ALONG_THE_SKIN",
     "Body",
+    "Capsule",
     "Coefficients",
     "Contact",
     "Cylinder",
@@ -41,6 +43,7 @@ __all__ = [
     "Implicit",
     "Inflow",
     "IsoSurface",
+    "Limbed",
     "Load",
     "Markers",
     "Mass",

@@ -14,10 +14,21 @@ import numpy as np
 from numba import prange
 
 from suchus.flow.compiled import PAD, UNIT, part, signed, threaded, unsigned
-from suchus.flow.slab import NONE, EDGE, block_of, meets, near_shift, row_count, row_length, window_columns, window_rows
+from suchus.flow.slab import (
+    EDGE,
+    LEAST,
+    NONE,
+    block_of,
+    meets,
+    near_shift,
+    row_count,
+    row_length,
+    window_columns,
+    window_rows,
+)
 
 ROWS = 16
-"""Rows of a slab in space that are advanced together: with the slabs around them they stay in the nearest caches [-]."""
+"""Rows of a slab in space that are advanced together: they and those around them stay in the nearest caches [-]."""
 
 
 @part
@@ -127,7 +138,8 @@ def advance(out, blend, base, rate, p, raw, place, near, inner, repeats, dt, nu,
     periodic, ``push`` is a uniform acceleration, one number for each axis. Faces on the sides and beyond them are for
     the caller to fill.
     """
-    size, block = out.shape[1] - 2 * PAD, block_of(inner)
+    size = out.shape[1] - 2 * PAD
+    block = block_of(inner, size, LEAST)
     for n in prange((size + block - 1) // block):
         first = PAD + signed(n) * block
         slabs = first, min(first + block, PAD + size)

@@ -158,7 +158,7 @@ def measure_all(
     first, owner = None, np.zeros([p.size for p in reversed(points)], np.int8)
     for rows, body, pose in zip(rows_of(bodies), bodies, poses, strict=True):
         measure: Callable[..., Field | SpaceField] = body.shape.measure
-        f = measure(*points, time, pose, (REACH + 1) * h)
+        f = measure(*points, time, pose, (REACH + (len(points) == 2)) * h)
         other = SpaceField(f.distance, f.normal, f.velocity, f.thickness)
         part = getattr(f, "part", None)
         if first is None:

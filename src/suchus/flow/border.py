@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from suchus.flow.compiled import PAD, Window, compiled
+from suchus.flow.compiled import PAD, Window, compiled, part, unsigned
 from suchus.flow.farfield import FarField
 from suchus.flow.grid import Grid
 from suchus.flow.openwater import Fading, OpenWater
@@ -49,28 +49,45 @@ def _fill_side(n, t, face, inner, step, prescribed, straight, how, value):  # ty
                 t[to, i] = t[source, i]
 
 
+@part
+def _mirror_row(a, to, on, source, by, count, straight):  # type: ignore[no-untyped-def]
+    """Write a row beyond a side from that on it and, where the normal velocity goes on straight, from its image."""
+    two, to, on, source, by = a.dtype.type(2), unsigned(to), unsigned(on), unsigned(source), unsigned(by)
+    for i in range(unsigned(count)):
+        a[to + i * by] = two * a[on + i * by] - a[source + i * by] if straight else a[on + i * by]
+
+
+@part
+def _fill_row(a, to, source, by, count, how, value):  # type: ignore[no-untyped-def]
+    """Write a row of a velocity along a side beyond it from that inside it."""
+    times, plus = a.dtype.type(-1 if how == _MIRRORED else how != _GIVEN), value
+    plus = plus + plus if how == _MIRRORED else plus if how == _GIVEN else a.dtype.type(0)
+    to, source, by = unsigned(to), unsigned(source), unsigned(by)
+    for i in range(unsigned(count)):
+        a[to + i * by] = plus + times * a[source + i * by]
+
+
 @compiled
-def _fill_planes(n, first, second, face, inner, step, prescribed, straight, how, values):  # type: ignore[no-untyped-def]
+def _fill_planes(velocity, axis, strides, face, inner, step, prescribed, straight, how, values):  # type: ignore[no-untyped-def]
     """Do in space what ``_fill_side`` does in the plane, with both velocities along the side and planes for lines.
 
-    Points of the side one by one: the planes beyond a side across x lie in the same lines of the memory.
+    ``velocity`` has the cells of a component end to end, ``strides`` apart along the normal and along the side's axes,
+    the last one first; ``values`` are those of the velocities along the side in the order of the axes.
     """
-    two, sign = n.dtype.type(2), n.dtype.type(step)
-    for j in range(n.shape[1]):
-        for i in range(n.shape[2]):
-            if PAD <= j < n.shape[1] - PAD and PAD <= i < n.shape[2] - PAD:
-                n[face, j, i] = sign * prescribed[j - PAD, i - PAD]
-            on = n[face, j, i]
-            for k in range(1, 3 if step > 0 else 2):
-                n[face - k * step, j, i] = two * on - n[face + k * step, j, i] if straight else on
-            for k in range(1, 3):
-                to, source = inner - k * step, inner + (k - 1) * step
-                a, b = first[source, j, i], second[source, j, i]
-                if how == _MIRRORED:
-                    a, b = two * values[0] - a, two * values[1] - b
-                elif how == _GIVEN:
-                    a, b = values
-                first[to, j, i], second[to, j, i] = a, b
+    n, (across, down, by), sign = velocity[axis], strides, velocity.dtype.type(step)
+    high, count = prescribed.shape[0] + 2 * PAD, prescribed.shape[1] + 2 * PAD
+    for j in range(high):
+        on = face * across + j * down
+        if PAD <= j < high - PAD:
+            for i in range(count - 2 * PAD):
+                n[on + (i + PAD) * by] = sign * prescribed[j - PAD, i]
+        for k in range(1, 3 if step > 0 else 2):
+            away = k * step * across
+            _mirror_row(n, on - away, on, on + away, by, count, straight)
+        for k in range(1, 3):
+            to, source = (inner - k * step) * across + j * down, (inner + (k - 1) * step) * across + j * down
+            for c in range(2):
+                _fill_row(velocity[c + (c >= axis)], to, source, by, count, how, values[c])
 
 
 @dataclass(slots=True)
@@ -136,12 +153,16 @@ class Edge:
             return
         straight = isinstance(self.side, Wall | Slip | Mirror) or (self.endless and not self.leaves)
         beyond = [self._along(k, d, step, stream) for k, d in enumerate(others)]
-        along, how = [self.across(velocity[d]) for d in others], beyond[0][0]
+        how = beyond[0][0]
         values = tuple(n.dtype.type(value) for _, value in beyond)
         if len(others) == 1:
-            _fill_side(n, along[0], f, inner, step, self.prescribed, straight, how, values[0])
+            along = self.across(velocity[others[0]])
+            _fill_side(n, along, f, inner, step, self.prescribed, straight, how, values[0])
         else:
-            _fill_planes(n, along[0], along[1], f, inner, step, self.prescribed, straight, how, values)
+            line, plane = velocity.shape[3], velocity.shape[2] * velocity.shape[3]
+            strides = ((1, plane, line), (line, plane, 1), (plane, line, 1))[self.axis]
+            flat = velocity.reshape(3, -1)
+            _fill_planes(flat, self.axis, strides, f, inner, step, self.prescribed, straight, how, values)
 
     def _along(self, k: int, axis: int, step: int, stream: tuple[float, ...]) -> tuple[int, float]:
         """Return what the velocity along an axis in the side, the one of number ``k``, is beyond it.

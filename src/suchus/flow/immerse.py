@@ -14,6 +14,7 @@ from numba import prange
 
 from suchus.flow.compiled import UNIT, compiled, ordered_part, part, signed, threaded, unsigned
 from suchus.flow.slab import (
+    LEAST,
     NONE,
     block_of,
     meets,
@@ -180,7 +181,8 @@ def immerse(out, blend, raw, b, mu0, passage, mu1, p, component, near, inner, dt
     ei = NONE
     for d in range(len(inner)):
         ei = inner[d] if d == component else ei
-    w, block = len(inner) + 2, block_of(inner)
+    w = len(inner) + 2
+    block = block_of(inner, near[w + 1] - near[w], LEAST)
     wide, (r0, r1), (s, e) = row_length(inner, p.shape[1]), window_rows(near, inner), window_columns(near, inner)
     own = near_strides(near, inner)
     r0, r1 = (r0 + UNIT, r1 - UNIT) if len(inner) > 1 else (r0, r1)

@@ -21,6 +21,7 @@ from suchus.flow.compiled import PAD, SERIAL_BELOW, UNIT, compiled, part, signed
 from suchus.flow.patch import ONE, end, give_slab, patch, start, take_coefficients
 from suchus.flow.slab import (
     EDGE,
+    LEAST,
     NONE,
     block_of,
     row_count,
@@ -193,7 +194,8 @@ def _up(x, b, coarse, faces, dinv, place, room, rect, j0, j1, inner, below, repe
 
 @threaded_part
 def _down_threaded(coarse, b, faces, place, room, rect, inner, below, repeats):
-    end, block = coarse.shape[0] - PAD, block_of(inner)
+    end = coarse.shape[0] - PAD
+    block = block_of(inner, end - PAD, LEAST // 2)
     for n in prange((end - PAD + block - 1) // block):
         j0 = PAD + signed(n) * block
         _down(coarse, b, faces, place, room, rect, j0, min(j0 + block, end), inner, below, repeats)
@@ -201,7 +203,8 @@ def _down_threaded(coarse, b, faces, place, room, rect, inner, below, repeats):
 
 @threaded_part
 def _up_threaded(x, b, coarse, faces, dinv, place, room, rect, inner, below, repeats):
-    end, block = x.shape[0] - PAD, block_of(inner)
+    end = x.shape[0] - PAD
+    block = block_of(inner, end - PAD, LEAST)
     for n in prange((end - PAD + block - 1) // block):
         j0 = PAD + signed(n) * block
         _up(x, b, coarse, faces, dinv, place, room, rect, j0, min(j0 + block, end), inner, below, repeats)

@@ -15,7 +15,7 @@ from numba import prange
 
 from suchus.flow.compiled import PAD, Window, compiled, part, signed, threaded_part, unsigned
 from suchus.flow.multigrid import DINV, FACES, B, X, cycle, faces_of, level
-from suchus.flow.slab import EDGE, block_of, row_count, row_length
+from suchus.flow.slab import EDGE, LEAST, block_of, row_count, row_length
 from suchus.flow.stencil import LANES, apply_slabs, copy_slab, largest_size, seal_slab
 
 PARALLEL = 1e-3
@@ -55,7 +55,8 @@ def _dots(z, az, r, d, slab, inner):
 @threaded_part
 def _measure(z, r, d, faces, place, inner, sums):
     """Write each slab's sums of (z, A z), (d, A z), (r, z) and (r, d)."""
-    end, block = z.shape[0] - PAD, block_of(inner)
+    end = z.shape[0] - PAD
+    block = block_of(inner, end - PAD, LEAST)
     for n in prange((end - PAD + block - 1) // block):
         first = PAD + signed(n) * block
         az = np.empty((1, z.shape[1]), z.dtype)
@@ -95,7 +96,8 @@ def _lower(r, slab, q, alpha, inner):
 @threaded_part
 def _first_step(r, z, faces, place, alpha, inner, repeats, sums):
     """Write ``r -= alpha A z`` and each slab's sum of |r| and largest |r|."""
-    end, block = z.shape[0] - PAD, block_of(inner)
+    end = z.shape[0] - PAD
+    block = block_of(inner, end - PAD, LEAST)
     for n in prange((end - PAD + block - 1) // block):
         first = PAD + signed(n) * block
         q, top = np.empty((1, z.shape[1]), z.dtype), np.empty(LANES, z.dtype)
@@ -109,7 +111,8 @@ def _first_step(r, z, faces, place, alpha, inner, repeats, sums):
 @threaded_part
 def _step(r, z, d, faces, place, alpha, beta, inner, repeats, sums):
     """Write ``r -= alpha A (z + beta d)`` and each slab's sum of |r| and largest |r|."""
-    end, block, one = z.shape[0] - PAD, block_of(inner), z.dtype.type(1.0)
+    end, one = z.shape[0] - PAD, z.dtype.type(1.0)
+    block = block_of(inner, end - PAD, LEAST)
     for n in prange((end - PAD + block - 1) // block):
         q, top = np.empty((1, z.shape[1]), z.dtype), np.empty(LANES, z.dtype)
         rows = np.empty((3, z.shape[1]), z.dtype)
@@ -129,7 +132,7 @@ def _step(r, z, d, faces, place, alpha, beta, inner, repeats, sums):
 @threaded_part
 def _keep(x, e, z, d, alpha, beta, before, inner):
     """Write ``e = z + beta d`` and ``x = alpha e + before d``, or ``x += alpha e`` if ``before`` is 0."""
-    one, block = z.dtype.type(1.0), block_of(inner)
+    one, block = z.dtype.type(1.0), block_of(inner, x.shape[0], LEAST)
     for n in prange((x.shape[0] + block - 1) // block):
         first = signed(n) * block
         for j in range(first, min(first + block, x.shape[0])):

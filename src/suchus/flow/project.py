@@ -8,6 +8,7 @@ from numba import prange
 from suchus.flow.compiled import PAD, UNIT, compiled, part, signed, threaded, unsigned
 from suchus.flow.slab import (
     EDGE,
+    LEAST,
     block_of,
     meets,
     near_shift,
@@ -38,7 +39,8 @@ def residual(r, velocity, source, dinv, place, near, mean, inner, repeats, sums)
 
     Cells that lie wholly inside the body get 0: no pressure acts there. ``source`` is an array of the window ``near``.
     """
-    end, block = r.shape[0] - PAD, block_of(inner)
+    end = r.shape[0] - PAD
+    block = block_of(inner, end - PAD, LEAST)
     for n in prange((end - PAD + block - 1) // block):
         start = PAD + signed(n) * block
         top = np.empty(LANES, r.dtype)
@@ -180,7 +182,8 @@ def correct(velocity, p, d, z, a, b, passage, place, inner, gain):
     precision has less and less room for what matters. Values on the domain's edges are corrected with a mirrored ``x``,
     that is, left as they are.
     """
-    end, block = p.shape[0] - PAD, block_of(inner)
+    end = p.shape[0] - PAD
+    block = block_of(inner, end - PAD, LEAST)
     level = p.dtype.type(a * _along_sides(d, inner) + b * _along_sides(z, inner))
     for n in prange((end - PAD + block - 1) // block):
         first = PAD + signed(n) * block
@@ -209,7 +212,8 @@ def _speeds(out, velocity, slab, inner):
 @threaded
 def fastest(velocity, inner, sums):
     """Write the largest sum of the components' sizes of every slab to ``sums[:, 0]``."""
-    end, block = velocity.shape[1] - PAD, block_of(inner)
+    end = velocity.shape[1] - PAD
+    block = block_of(inner, end - PAD, LEAST)
     for n in prange((end - PAD + block - 1) // block):
         start = PAD + signed(n) * block
         speed, top = np.empty((1, velocity.shape[2]), velocity.dtype), np.empty(LANES, velocity.dtype)

@@ -18,11 +18,17 @@ X, Y, HEADING, WIDE, X_RATE, Y_RATE, TURN, HIGH, SWELL, ARC = range(10)
 """Rows of the stations: those of ``Spine.rows``, then half-height, rate of the half-width, and arc length."""
 
 PAINTED = 8
-"""Values painted at each point: distance, normal (3), velocity (2), thickness, arc length of the section [-]."""
+"""Values painted at each point: distance, normal (3), velocity (2), thickness, which part of the body [-]."""
 
 _STEPS = 6
 """Steps to the foot point on an ellipse [-]: with 6 the distance is right to 1e-4 of the smaller half-axis on a 6:1 one
 up to that half-axis away from it."""
+
+_AT_REST = 1e-10
+"""Change of cosine and sine of the foot point's angle at which they end [-]."""
+
+_STRIDE = 4
+"""Stations from one to the next of those that the nearest one is looked for among first [-]."""
 
 _LEAST = 1e-9
 """Half-axis, over the cell, below which a section is taken for a point [-]."""
@@ -41,6 +47,7 @@ def ellipse_foot(y, z, wide, high):
     c, s = np.sqrt(0.5), np.sqrt(0.5)
     focal = wide * wide - high * high
     for _ in range(_STEPS):
+        was_c, was_s = c, s
         ey, ez = focal * c * c * c / wide, -focal * s * s * s / high  # centre of curvature
         ry, rz, qy, qz = wide * c - ey, high * s - ez, py - ey, pz - ez
         away = np.sqrt(qy * qy + qz * qz)
@@ -48,17 +55,28 @@ def ellipse_foot(y, z, wide, high):
         c, s = min(max((ey + qy * ratio) / wide, 0.0), 1.0), min(max((ez + qz * ratio) / high, 0.0), 1.0)
         size = np.sqrt(c * c + s * s)
         c, s = (c / size, s / size) if size > 0.0 else (1.0, 0.0)
+        if abs(c - was_c) + abs(s - was_s) < _AT_REST:
+            break
     return (c if y >= 0.0 else -c), (s if z >= 0.0 else -s)
+
+
+@part
+def _nearest_station(px, py, rows, first, end, stride):
+    """Return which of some stations is nearest to a column, and the square of its distance."""
+    nearest, square = first, np.inf
+    for m in range(first, end, stride):
+        d2 = (px - rows[X, m]) ** 2 + (py - rows[Y, m]) ** 2
+        if d2 < square:
+            nearest, square = m, d2
+    return nearest, square
 
 
 @part
 def _column(px, py, rows, tx, ty):
     """Return segment and share of the section that holds a column, its offset to the side, and what it lies beyond."""
-    nearest, square = 0, np.inf
-    for m in range(rows.shape[1]):
-        d2 = (px - rows[X, m]) ** 2 + (py - rows[Y, m]) ** 2
-        if d2 < square:
-            nearest, square = m, d2
+    about, _ = _nearest_station(px, py, rows, 0, rows.shape[1], _STRIDE)
+    first, end = max(about - _STRIDE, 0), min(about + _STRIDE + 1, rows.shape[1])
+    nearest, _ = _nearest_station(px, py, rows, first, end, 1)
     k, f = find_section(px, py, min(nearest, rows.shape[1] - 2), rows[X], rows[Y], tx, ty)
     g = 1.0 - f
     dx, dy = px - g * rows[X, k] - f * rows[X, k + 1], py - g * rows[Y, k] - f * rows[Y, k + 1]
@@ -89,7 +107,7 @@ def _growth(k, at, wide, high, rows, reach):
 def _to_edge(away, best, a0, r0, a1, r1):
     """Return the nearest vector so far from an outline to the point (0, away), after one more edge of it.
 
-    ``best`` is the vector before: along, across, its length, and the edge's normal along and across.
+    ``best`` is the vector before: along, across, the square of its length, and the edge along and across.
     """
     ea, er = a1 - a0, r1 - r0
     square = ea * ea + er * er
@@ -97,9 +115,8 @@ def _to_edge(away, best, a0, r0, a1, r1):
         return best
     share = min(max((-a0 * ea + (away - r0) * er) / square, 0.0), 1.0)
     da, dr = -a0 - share * ea, away - r0 - share * er
-    d = np.sqrt(da * da + dr * dr)
-    size = np.sqrt(square)
-    return (da, dr, d, -er / size, ea / size) if d < best[2] else best
+    d2 = da * da + dr * dr
+    return (da, dr, d2, ea, er) if d2 < best[2] else best
 
 
 @part
@@ -112,7 +129,7 @@ def _outline_of(m, rows, c, s, ny, nz, fy, fz):
 def _nearest(k, at, away, stretch, rows, c, s, ny, nz, fy, fz, reach):
     """Return the vector from the outline through the sections to the point, as ``_to_edge`` does."""
     last = rows.shape[1] - 1
-    best = (0.0, 0.0, np.inf, 0.0, 1.0)
+    best, farthest = (0.0, 0.0, np.inf, 1.0, 0.0), reach * reach
     for way in (1, -1):
         m = k
         a, r = (rows[ARC, m] - at) * stretch, _outline_of(m, rows, c, s, ny, nz, fy, fz)
@@ -121,7 +138,7 @@ def _nearest(k, at, away, stretch, rows, c, s, ny, nz, fy, fz, reach):
                 axis = -ny * fy - nz * fz
                 best = _to_edge(away, best, a, r, a, axis) if way > 0 else _to_edge(away, best, a, axis, a, r)
                 break
-            if abs(a) > min(best[2], reach) and not (way > 0 and m == k):
+            if a * a > min(best[2], farthest) and not (way > 0 and m == k):
                 break
             b, t = (rows[ARC, m + way] - at) * stretch, _outline_of(m + way, rows, c, s, ny, nz, fy, fz)
             best = _to_edge(away, best, a, r, b, t) if way > 0 else _to_edge(away, best, b, t, a, r)
@@ -151,8 +168,8 @@ def _chord(at, k, rows, c, s, ny, nz, depth):
 @part
 def _paint_point(out, place, px, py, z, column, section, rows, h):
     """Write what ``paint_sections`` paints for one point whose column and section are known."""
-    (q, j, i), (k, f, y, beyond, cos, sin), (at, wide, high, reach) = place, column, section
-    if abs(y) > wide + reach or abs(z) > high + reach:
+    (q, j, i), (k, f, y, beyond, cos, sin), (at, part_of, wide, high, reach) = place, column, section
+    if np.sqrt(y * y + z * z) >= max(wide, high) + reach:  # the ellipse lies in the circle around it
         return
     wide, high = max(wide, _LEAST * h), max(high, _LEAST * h)
     c, s = ellipse_foot(y, z, wide, high)
@@ -160,7 +177,7 @@ def _paint_point(out, place, px, py, z, column, section, rows, h):
     size = np.sqrt(ny * ny + nz * nz)
     ny, nz = ny / size, nz / size
     away = (y - fy) * ny + (z - fz) * nz
-    out[7, q, j, i] = at
+    out[7, q, j, i] = part_of
     if away >= reach:
         return
     out[4, q, j, i], out[5, q, j, i] = section_velocity(px, py, k, f, rows, rows[SWELL])
@@ -169,10 +186,13 @@ def _paint_point(out, place, px, py, z, column, section, rows, h):
         return
     bend = (rows[HEADING, k + 1] - rows[HEADING, k]) / (rows[ARC, k + 1] - rows[ARC, k])
     stretch = max(1.0 - bend * fy, 0.1)
-    along, across, distance, ea, er = _nearest(k, at, away, stretch, rows, c, s, ny, nz, fy, fz, reach)
-    sign = -1.0 if away < 0.0 and beyond == 0.0 else 1.0
+    along, across, square, edge_a, edge_r = _nearest(k, at, away, stretch, rows, c, s, ny, nz, fy, fz, reach)
+    sign, distance = -1.0 if away < 0.0 and beyond == 0.0 else 1.0, np.sqrt(square)
     if distance > 1e-6 * h:
         ea, er = sign * along / distance, sign * across / distance
+    else:
+        size = np.sqrt(edge_a * edge_a + edge_r * edge_r)
+        ea, er = -edge_r / size, edge_a / size
     out[0, q, j, i] = sign * distance
     out[1, q, j, i], out[2, q, j, i] = ea * cos - er * ny * sin, ea * sin + er * ny * cos
     out[3, q, j, i] = er * nz
@@ -180,14 +200,15 @@ def _paint_point(out, place, px, py, z, column, section, rows, h):
 
 
 @threaded
-def paint_sections(out, rows, tx, ty, x0, y0, z0, h, reach):
+def paint_sections(out, rows, tx, ty, cuts, x0, y0, z0, h, reach):
     """Paint ``out``, shape (``PAINTED``, z, y, x), which is ``reach`` far from everything beforehand.
 
     Args:
-        out: distance, normal, velocity, thickness, arc length of the section.
+        out: distance, normal, velocity, thickness, part.
         rows: the stations; see ``ARC``.
         tx: cosine of their heading.
         ty: sine of it.
+        cuts: rising arc lengths that divide the body into parts.
         x0: first point.
         y0: first point.
         z0: first point, from the plane of the midline.
@@ -205,6 +226,9 @@ def paint_sections(out, rows, tx, ty, x0, y0, z0, h, reach):
                 at = (1.0 - f) * rows[ARC, k] + f * rows[ARC, k + 1] + column[3]
                 wide = (1.0 - f) * rows[WIDE, k] + f * rows[WIDE, k + 1]
                 high = (1.0 - f) * rows[HIGH, k] + f * rows[HIGH, k + 1]
-                section = (at, wide, high, reach + _growth(k, at, wide, high, rows, reach))
+                part_of = 0
+                while part_of < cuts.size and cuts[part_of] <= at:
+                    part_of += 1
+                section = (at, part_of, wide, high, reach + _growth(k, at, wide, high, rows, reach))
                 for q in range(out.shape[1]):
                     _paint_point(out, (q, j, i), px, py, z0 + q * h, column, section, rows, h)

@@ -26,8 +26,8 @@ EDGE = unsigned(PAD)
 NONE = unsigned(0)
 """Nothing, as kernels count [-]."""
 
-PLANES = 16
-"""Planes that one thread takes at a time [-]."""
+PLANES, LEAST = 16, 8
+"""Planes that one thread takes at a time, at most and, of a thin domain, at least [-]."""
 
 Strides = tuple[np.uint64, ...]
 """Strides along the axes of a slab [-]."""
@@ -45,9 +45,18 @@ def strides_like(inner, wide):
 
 
 @part
-def block_of(inner):
-    """Return how many slabs a thread takes at a time."""
-    return BLOCK if len(inner) == 1 else PLANES
+def block_of(inner, count, least):
+    """Return how many of ``count`` slabs a thread takes at a time: in space an even number of such blocks, if it can.
+
+    Args:
+        inner: strides within a slab.
+        count: slabs, those of one run of the loop.
+        least: planes of a block in space, at least.
+    """
+    if len(inner) == 1:
+        return BLOCK
+    blocks = 2 * ((count + 2 * PLANES - 1) // (2 * PLANES))
+    return max((count + blocks - 1) // blocks, least)
 
 
 @part

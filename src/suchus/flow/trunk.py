@@ -92,11 +92,11 @@ class Trunk(SpaceShape):
         out[0], out[6] = reach, np.inf
         rows = np.stack([*spine.rows, self.half_height, spine.swell, spine.arc])
         paint_sections(
-            out, rows, np.cos(spine.heading), np.sin(spine.heading), float(x[0]), float(y[0]),
+            out, rows, np.cos(spine.heading), np.sin(spine.heading), np.array(self.cuts), float(x[0]), float(y[0]),
             float(z[0]) - place.position[2], h, float(reach),
         )  # fmt: skip
         lift = np.full(out[0].shape, place.velocity[2])
-        part = np.searchsorted(self.cuts, out[7], side="right") if self.cuts else None
+        part = out[7] if self.cuts else None
         return SpaceField(out[0], (out[1], out[2], out[3]), (out[4], out[5], lift), out[6], part)
 
     def markers(self, time: float, pose: Pose, spacing: float) -> Skin:

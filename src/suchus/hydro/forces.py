@@ -24,9 +24,18 @@ from suchus.hydro.vectors import Vector, blend, compiled, cross, dot, lane, part
 _TURBULENT = 5e5
 """Reynolds number from which a plate's turbulent friction counts [-]."""
 _SERIES = (
-    0.1666666666666665, 0.07500000000020764, 0.044642857103423646, 0.03038194736709848,
-    0.02237204763174451, 0.01735525995578633, 0.013929652902326577, 0.011875494382637216,
-    0.007802949477352493, 0.016035514349149713, -0.010749050339696914, 0.02816921806087918,
+    0.1666666666666665,
+    0.07500000000020764,
+    0.044642857103423646,
+    0.03038194736709848,
+    0.02237204763174451,
+    0.01735525995578633,
+    0.013929652902326577,
+    0.011875494382637216,
+    0.007802949477352493,
+    0.016035514349149713,
+    -0.010749050339696914,
+    0.02816921806087918,
 )
 """(asin(x) / x - 1) / x^2 as a polynomial of x^2 up to 1/4, by interpolation at Chebyshev's points."""
 
@@ -201,15 +210,19 @@ def press(table: np.ndarray, rows: np.ndarray, water: Water) -> None:
         speed, roll = abs(w[2]), dot(omega, t)
         friction = water.thickening * max(1.328 / sqrt(max(speed * per_speed, 1.0)), rows[at.TURBULENT, n])
         along = -0.5 * dense * (table[at.SKIN, n] * friction + table[at.END, n]) * speed
-        f = plus(f, blend(across * table[at.AREA, n] * w[0], a, across * table[at.AREA + 1, n] * w[1], b, along * w[2], t))
+        f = plus(
+            f, blend(across * table[at.AREA, n] * w[0], a, across * table[at.AREA + 1, n] * w[1], b, along * w[2], t)
+        )
         torque = plus(torque, times(-dense * water.cross_drag * table[at.ROLL, n] * abs(roll) * roll, t))
-        # shed momentum, where the tail ends and the water passes towards it
+        # momentum that is shed, where the tail ends and the water passes towards it
         end = times(table[at.SHED_AT, n], t)
         here = plus(lane(rows, at.AGAINST, n), cross(omega, end))
         u, wa, wb = dot(here, t), dot(here, a), dot(here, b)
         shed = dense * water.added * water.shedding * max(u, 0.0)
         pa, pb = shed * table[at.SHED, n] * wa, shed * table[at.SHED + 1, n] * wb
-        half = 0.5 * dense * water.added * water.shedding * (table[at.SHED, n] * wa * wa + table[at.SHED + 1, n] * wb * wb)
+        half = (
+            0.5 * dense * water.added * water.shedding * (table[at.SHED, n] * wa * wa + table[at.SHED + 1, n] * wb * wb)
+        )
         lost = blend(-pa, a, -pb, b, half if u > 0.0 else 0.0, t)
         torque = plus(plus(torque, cross(end, lost)), cross(r, plus(f, lost)))
         put(rows, at.FORCE, n, plus(f, lost))
@@ -218,7 +231,7 @@ def press(table: np.ndarray, rows: np.ndarray, water: Water) -> None:
 
 
 @part
-def drag_along(table: np.ndarray, rows: np.ndarray, water: Water) -> None:
+def added_mass(table: np.ndarray, rows: np.ndarray, water: Water) -> None:
     """Add the added mass of each piece, as a spatial inertia about the point of reference, and its bias force."""
     for n in range(LANES):
         dense = water.density * rows[at.SHARE, n] * water.added

@@ -4,68 +4,19 @@ It is given addresses and byte offsets (see ``land.structs``), so that it needs 
 it runs. All spatial vectors are MuJoCo's: rotation first, about the centre of mass of the whole tree.
 """
 
-from math import sqrt
-from typing import NamedTuple
-
 import numpy as np
-from numba import carray, types
-from numba.core import cgutils
-from numba.extending import intrinsic
+from numba import carray
 
-from suchus.hydro import lanes
-from suchus.hydro.forces import drag_along, flow, meet, place, press, rub
+from suchus.hydro import lanes, memory
+from suchus.hydro.forces import added_mass, flow, meet, place, press, rub
 from suchus.hydro.lanes import MIXED, PUSHED, ROWS, SPUN, SUMS, Water
-from suchus.hydro.table import (
-    ADDED,
-    BREATH,
-    COLUMNS,
-    CROSS_DRAG,
-    DENSITY,
-    FORCE,
-    HEADER,
-    LANES,
-    LEVEL,
-    MAGIC,
-    NUMBERS,
-    POWER,
-    SHEDDING,
-    THICKENING,
-    UNDER,
-    VISCOSITY,
-    WAVE,
-    WIDTH,
-)
+from suchus.hydro.memory import Bodies, Motion, pointer, read_bodies, read_motion, read_water
+from suchus.hydro.table import COLUMNS, FORCE, HEADER, LANES, MAGIC, NUMBERS, POWER, UNDER, WAVE, WIDTH
 from suchus.hydro.vectors import Vector, compiled, dot, part, plus, put, three, times, write
-
-FIELDS = (
-    "nv", "nbody", "nnumericdata", "nuserdata", "opt.gravity", "numeric_data", "body_parentid", "body_rootid",
-    "body_dofadr", "body_dofnum", "dof_bodyid", "M_rownnz", "M_rowadr", "M_colind",
-)  # fmt: skip
-"""Fields of the model whose offsets the kernel needs, in the order of the table of offsets; then those of the data."""
-DATA_FIELDS = (
-    "time", "qvel", "qacc", "xpos", "xmat", "subtree_com", "cvel", "cdof", "cdof_dot", "qfrc_passive", "M", "userdata",
-)  # fmt: skip
-"""Fields of the data."""
-(
-    _NV, _NBODY, _NNUMERIC, _NUSER, _GRAVITY, _NUMERIC, _PARENT, _ROOT, _DOFADR, _DOFNUM, _DOFBODY, _ROWNNZ, _ROWADR,
-    _COLIND, _TIME, _QVEL, _QACC, _XPOS, _XMAT, _COM, _CVEL, _CDOF, _CDOFDOT, _PASSIVE, _MASS, _USER,
-) = range(26)  # fmt: skip
 
 _BODY, _REACH = COLUMNS["body"][0], COLUMNS["reach"][0]
 _COUPLE, _LINEAR = lanes.FORCE - 3 - lanes.FOUND, lanes.FORCE - lanes.FOUND
 _SPUN, _MIXED, _PUSHED = SPUN - lanes.FOUND, MIXED - lanes.FOUND, PUSHED - lanes.FOUND
-
-
-@intrinsic
-def _pointer(typing, address):  # type: ignore[no-untyped-def]
-    """Take a number for an address."""
-    del typing, address
-
-    def generate(context, builder, signature, given):  # type: ignore[no-untyped-def]
-        del context, signature
-        return builder.inttoptr(given[0], cgutils.voidptr_t)
-
-    return types.voidptr(types.int64), generate
 
 
 @compiled
@@ -77,21 +28,22 @@ def wet(model: int, data: int, at: np.ndarray) -> bool:
         data: address of its ``mjData``.
         at: offsets of ``FIELDS`` and ``DATA_FIELDS`` [byte].
     """
-    whole, count = carray(model, (4096,), np.int64), at[_NNUMERIC] // 8
+    whole, count = carray(model, (4096,), np.int64), at[memory.NNUMERIC] // 8
     if whole[count] < HEADER:
         return False
-    numbers = carray(_pointer(whole[at[_NUMERIC] // 8]), (whole[count],), np.float64)
-    if numbers[0] != MAGIC or whole[at[_NUSER] // 8] < NUMBERS:
+    numbers = carray(pointer(whole[at[memory.NUMERIC] // 8]), (whole[count],), np.float64)
+    if numbers[0] != MAGIC or whole[at[memory.NUSER] // 8] < NUMBERS:
         return False
-    bodies, motion = _bodies(model, at), _motion(model, data, at)
-    user, water = motion.user, _water(model, motion.user, at, numbers[2])
+    motion = read_motion(model, data, at)
+    user, water = motion.user, read_water(model, motion.user, at, numbers[2])
     blocks = (len(numbers) - HEADER) // (WIDTH * LANES)
-    table = carray(_pointer(whole[at[_NUMERIC] // 8] + 8 * HEADER), (blocks, WIDTH, LANES), np.float64)
+    table = carray(pointer(whole[at[memory.NUMERIC] // 8] + 8 * HEADER), (blocks, WIDTH, LANES), np.float64)
     for i in range(4):
         user[FORCE + i] = 0.0
     user[UNDER] = 0.0
     if _all_dry(table, int(numbers[1]), water, abs(user[WAVE]), motion):
         return False
+    bodies = read_bodies(model, at)
     sums = _gathered(table, int(numbers[1]), water, bodies, motion)
     if user[UNDER] == 0.0:
         return False
@@ -100,109 +52,6 @@ def wet(model: int, data: int, at: np.ndarray) -> bool:
         return False
     _burden(sums, bodies, motion)
     return True
-
-
-class Bodies(NamedTuple):
-    """The tree of bodies and joints."""
-
-    parent: np.ndarray
-    """Of each body (body,)."""
-    root: np.ndarray
-    """First body of its tree (body,)."""
-    first: np.ndarray
-    """First joint of each body (body,)."""
-    dofs: np.ndarray
-    """Number of its joints (body,)."""
-    owner: np.ndarray
-    """Body that each joint moves (joint,)."""
-    rownnz: np.ndarray
-    """Numbers in each row of the matrix (joint,)."""
-    rowadr: np.ndarray
-    """Where each row begins (joint,)."""
-    column: np.ndarray
-    """Joint of each number."""
-
-
-class Motion(NamedTuple):
-    """Where the bodies are and how they move, in the world."""
-
-    time: float
-    """[s]."""
-    xpos: np.ndarray
-    """Origins (body, 3) [m]."""
-    xmat: np.ndarray
-    """Orientations (body, 9)."""
-    com: np.ndarray
-    """Centres of mass of the subtrees (body, 3) [m]."""
-    cvel: np.ndarray
-    """Spatial velocities (body, 6)."""
-    cdof: np.ndarray
-    """Spatial velocities by the joints (joint, 6)."""
-    cdof_dot: np.ndarray
-    """Their rates (joint, 6)."""
-    qvel: np.ndarray
-    """Velocities of the joints (joint,)."""
-    qacc: np.ndarray
-    """Their accelerations in the last step (joint,)."""
-    passive: np.ndarray
-    """Passive forces on them (joint,), changed."""
-    mass: np.ndarray
-    """The matrix, changed."""
-    user: np.ndarray
-    """The numbers of the water, changed."""
-
-
-@part
-def _bodies(model: int, at: np.ndarray) -> Bodies:
-    """Return the tree of a model."""
-    whole = carray(model, (4096,), np.int64)
-    nv, nbody = whole[at[_NV] // 8], whole[at[_NBODY] // 8]
-    rownnz = carray(_pointer(whole[at[_ROWNNZ] // 8]), (nv,), np.uint32)
-    rowadr = carray(_pointer(whole[at[_ROWADR] // 8]), (nv,), np.uint32)
-    return Bodies(
-        carray(_pointer(whole[at[_PARENT] // 8]), (nbody,), np.uint32),
-        carray(_pointer(whole[at[_ROOT] // 8]), (nbody,), np.uint32),
-        carray(_pointer(whole[at[_DOFADR] // 8]), (nbody,), np.uint32),
-        carray(_pointer(whole[at[_DOFNUM] // 8]), (nbody,), np.uint32),
-        carray(_pointer(whole[at[_DOFBODY] // 8]), (nv,), np.uint32),
-        rownnz,
-        rowadr,
-        carray(_pointer(whole[at[_COLIND] // 8]), (rowadr[nv - 1] + rownnz[nv - 1],), np.uint32),
-    )
-
-
-@part
-def _motion(model: int, data: int, at: np.ndarray) -> Motion:
-    """Return where the bodies of a model are."""
-    whole = carray(model, (4096,), np.int64)
-    state, clock = carray(data, (65536,), np.int64), carray(data, (65536,), np.float64)
-    nv, nbody = whole[at[_NV] // 8], whole[at[_NBODY] // 8]
-    return Motion(
-        clock[at[_TIME] // 8],
-        carray(_pointer(state[at[_XPOS] // 8]), (nbody, 3), np.float64),
-        carray(_pointer(state[at[_XMAT] // 8]), (nbody, 9), np.float64),
-        carray(_pointer(state[at[_COM] // 8]), (nbody, 3), np.float64),
-        carray(_pointer(state[at[_CVEL] // 8]), (nbody, 6), np.float64),
-        carray(_pointer(state[at[_CDOF] // 8]), (nv, 6), np.float64),
-        carray(_pointer(state[at[_CDOFDOT] // 8]), (nv, 6), np.float64),
-        carray(_pointer(state[at[_QVEL] // 8]), (nv,), np.float64),
-        carray(_pointer(state[at[_QACC] // 8]), (nv,), np.float64),
-        carray(_pointer(state[at[_PASSIVE] // 8]), (nv,), np.float64),
-        carray(_pointer(state[at[_MASS] // 8]), (nv * nv,), np.float64),
-        carray(_pointer(state[at[_USER] // 8]), (NUMBERS,), np.float64),
-    )
-
-
-@part
-def _water(model: int, user: np.ndarray, at: np.ndarray, length: float) -> Water:
-    """Return what the water is."""
-    down = three(carray(model, (4096,), np.float64), at[_GRAVITY] // 8)
-    gravity = sqrt(dot(down, down))
-    up = times(-1.0 / gravity, down) if gravity > 0.0 else (0.0, 0.0, 1.0)
-    return Water(
-        user[LEVEL], user[DENSITY], user[BREATH], user[VISCOSITY], user[CROSS_DRAG], user[THICKENING], user[ADDED],
-        user[SHEDDING], up, gravity, length,
-    )  # fmt: skip
 
 
 @part
@@ -239,7 +88,7 @@ def _gathered(table: np.ndarray, count: int, water: Water, bodies: Bodies, motio
         meet(some, rows, water)
         rub(rows, water)
         press(some, rows, water)
-        drag_along(some, rows, water)
+        added_mass(some, rows, water)
         for n in range(min(LANES, count - block * LANES)):
             if rows[lanes.SHARE, n] > 0.0:
                 under += rows[lanes.UNDER, n]

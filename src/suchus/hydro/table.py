@@ -89,7 +89,9 @@ def column(table: Float[np.ndarray, "piece column"], name: str) -> Float[np.ndar
 def packed(
     table: Float[np.ndarray, "piece column"], length: float, count: int | None = None
 ) -> Float[np.ndarray, " n"]:
-    """Return a table as the row of numbers that a model carries: after the header ``LANES`` pieces at a time by columns.
+    """Return a table as the row of numbers that a model carries: the header, then ``LANES`` pieces at a time.
+
+    The numbers of one column stand beside each other.
 
     Args:
         table: the pieces.

@@ -1,7 +1,7 @@
 """How the kernel is compiled, and three numbers at a time: tuples, which need no memory of their own."""
 
 from collections.abc import Callable
-from typing import ParamSpec, TypeVar
+from typing import Any, ParamSpec, TypeVar
 
 import numpy as np
 from numba import njit
@@ -10,27 +10,25 @@ Vector = tuple[float, float, float]
 """Three numbers in the world."""
 Axes = tuple[Vector, Vector, Vector]
 """Unit axes e_a, e_b and t of a piece."""
-_FAST = {"contract"}
-"""What the compiler may do to sums and products: multiply and add in one instruction."""
+_OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "fastmath": {"contract"}}
+"""Of numba; products and sums may be computed in one instruction."""
 P = ParamSpec("P")
 R = TypeVar("R")
 
 
 def compiled(function: Callable[P, R]) -> Callable[P, R]:
     """Compile what is called from outside; keep the code on disk (``NUMBA_CACHE_DIR`` moves it)."""
-    options = {"nogil": True, "error_model": "numpy", "fastmath": _FAST}
     try:
-        made: Callable[P, R] = njit(cache=True, **options)(function)
+        made: Callable[P, R] = njit(cache=True, **_OPTIONS)(function)
     except RuntimeError:  # neither this folder nor the user's cache can be written: compile anew every time
-        made = njit(**options)(function)
+        made = njit(**_OPTIONS)(function)
     return made
 
 
 def part(function: Callable[P, R]) -> Callable[P, R]:
     """Compile a part of these, which nothing else calls."""
-    made: Callable[P, R] = njit(
-        nogil=True, error_model="numpy", fastmath=_FAST, no_cpython_wrapper=True, no_cfunc_wrapper=True, forceinline=True
-    )(function)
+    alone = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True, "forceinline": True}
+    made: Callable[P, R] = njit(**_OPTIONS, **alone)(function)
     return made
 
 

@@ -17,6 +17,7 @@ from suchus.land import wetting
 from suchus.land.afloat import surfaced
 from suchus.land.deduplication import Deduplication
 from suchus.land.lake import Lake
+from suchus.land.meter import Meter
 from suchus.land.run import Afloat, Run
 from suchus.model import activations, compile_model, force_sensors, standing
 from suchus.model.wet import wet_model
@@ -71,6 +72,7 @@ class SimulationBatch:
             for what in ("velocity", "torque")
         )
         self.worked = np.zeros((len(runs), 5))
+        self._meters: dict[int, Meter] = {}
         self.alive = np.ones(len(runs), dtype=bool)
         self.ended = np.full(len(runs), np.inf)
         self.cause = [""] * len(runs)
@@ -247,7 +249,7 @@ class SimulationBatch:
         felt = self.sensors[:, self._forces]
         pressed = np.zeros_like(felt)
         going = self._going(who)
-        meter = _Meter(self, steps) if self._lakes else None
+        meter = self._meter(steps)
         for step in range(steps):
             try:
                 self.physics.step(going, stage=_CURRENT)
@@ -259,8 +261,7 @@ class SimulationBatch:
             if meter is not None:
                 meter.read(step)
         if meter is not None:
-            stepped = slice(None) if who is None else who
-            self.worked[stepped] = meter.mean()[stepped]
+            meter.mean(self.worked, slice(None) if who is None else who)
         self.readings[:] = self.sensors
         self.readings[:, self._forces] = pressed / steps
         fastest = np.abs(self.qvel).max(axis=1)
@@ -268,6 +269,15 @@ class SimulationBatch:
         if not sound.all():
             for sim in np.flatnonzero(self._living(who) & ~sound):
                 self._end(int(sim), time, f"a speed of {fastest[sim]:.3g} was reached")
+
+    def _meter(self, steps: int) -> Meter | None:
+        """Return the meter of a control period, which is kept from one to the next; None on dry land."""
+        if not self._lakes:
+            return None
+        if steps not in self._meters:
+            self._meters[steps] = Meter(self.water, self.sensors, self.velocities, self.torques, steps)
+        self._meters[steps].begin()
+        return self._meters[steps]
 
     def _living(self, who: np.ndarray | None) -> np.ndarray:
         """Return who is alive, of some or of all."""
@@ -290,30 +300,6 @@ class SimulationBatch:
     def _end(self, sim: int, time: float, cause: str) -> None:
         if self.alive[sim]:
             self.alive[sim], self.ended[sim], self.cause[sim] = False, time, cause
-
-
-class _Meter:
-    """Keeps step by step what the water does to the robots and what their servos do; both jitter within a period."""
-
-    def __init__(self, batch: SimulationBatch, steps: int) -> None:
-        self._batch = batch
-        self._water = np.empty((steps, len(batch.water), 4))
-        self._felt = np.empty((steps + 1, *batch.sensors.shape))
-        self._felt[0] = batch.sensors
-
-    def read(self, step: int) -> None:
-        """Keep what a physics step has left."""
-        self._water[step] = self._batch.water[:, hydro.FORCE : hydro.FORCE + 4]
-        self._felt[step + 1] = self._batch.sensors
-
-    def mean(self) -> np.ndarray:
-        """Return force and power of the water and power of the servos, shape (run, 5).
-
-        The power of a servo in a step is its torque times the mean of its speeds before and after.
-        """
-        speed, torque = self._felt[..., self._batch.velocities], self._felt[1:, :, self._batch.torques]
-        power = 0.5 * np.einsum("kij,kij->i", torque, speed[:-1] + speed[1:]) / len(torque)
-        return np.column_stack([self._water.mean(axis=0), power])
 
 
 def _model(robot: AnyRobot, timestep: float, relief: Relief | None, room: int) -> Any:

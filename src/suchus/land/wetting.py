@@ -19,7 +19,8 @@ from numba import cfunc, types
 
 from suchus.errors import OtherMuJoCo
 from suchus.hydro import BALL, BREATH, DENSITY, LEVEL, UNDER, column
-from suchus.hydro.kernel import DATA_FIELDS, FIELDS, wet
+from suchus.hydro.kernel import wet
+from suchus.hydro.memory import DATA_FIELDS, FIELDS
 from suchus.hydro.table import WIDTH
 from suchus.land.structs import offset, plugin_struct, verify
 from suchus.model.wet import PLUGIN, with_pieces

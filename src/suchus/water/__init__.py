@@ -12,7 +12,7 @@ from suchus.water.outline import Base, BodySilhouette, MidlineCurve, Outline, si
 from suchus.water.passive import sprung
 from suchus.water.readings import Attempt, attempts, readings_table
 from suchus.water.slender import Cruise, Effort, cruise, cycle, reactive, recoil, resistive
-from suchus.water.space import Basin, check_swim_in_space, half_heights, swim_in_space, trunk
+from suchus.water.space import Basin, check_swim_in_space, folded, half_heights, swim_in_space, trunk
 from suchus.water.sweep import greatest, scaled, survey
 from suchus.water.swimming import MODELS, displaced, swim, wave_speed
 from suchus.water.taken import taken, unevenness
@@ -51,6 +51,7 @@ __all__ = [
     "displaced",
     "efficiency",
     "fit",
+    "folded",
     "free_swim",
     "greatest",
     "half_heights",

@@ -1,6 +1,7 @@
 """The robot's own body in the water of three dimensions: free, or kept from moving on."""
 
 from dataclasses import dataclass, replace
+from math import prod
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +10,10 @@ import xarray as xr
 from suchus import flow
 from suchus.design import GRAVITY, Crocodile, cable_joints, layout
 from suchus.design.checks import Checks
+from suchus.design.profile import stations
 from suchus.design.water import Water
+from suchus.errors import InvalidDesign
+from suchus.flow.memory import check_memory
 from suchus.motion.swim import trunk_yaws
 from suchus.water.diary import Diary, Progress, run_on
 from suchus.water.immersed import immersed
@@ -24,9 +28,16 @@ from suchus.water.wake import Filmed, wake
 
 AHEAD, BEHIND, BESIDE, ABOVE = 0.15, 0.35, 0.2, 0.15
 """Water ahead of the snout, behind the tail, beside the widest swing and above the back [body length]."""
+FINEST = 1024
+"""Most cells per body length [-]."""
+STEPS, SECONDS = 1.1, 1.2e-7
+"""Steps in a cycle over the cells per body length [-], and processor time of a step over the cells [s]: what they were
+at 96 to 192 cells a length."""
+_MARGIN = 8.0
+"""Cells between the body's widest reach and the sides that the solver needs, its half-width included [-]."""
 FIN_STARTS, FIN_RISES = 2 / 3, 0.05
 """Where a raised tail begins, from the snout, and over which length it rises [body length]."""
-_WATER = 0.05
+_DRAWN = 0.05
 """Swing to a side that the box leaves to a body that draws to the side and turns, beside its own [body length]."""
 
 
@@ -42,6 +53,10 @@ class Basin:
     """Number of cycles that are simulated; the last is measured [-]."""
     tail_height: float = 0.0
     """Height of the last third of the body, as a fin as thick as the tail is; 0 leaves the tail as it is [m]."""
+    limbs: bool = False
+    """Whether the limbs are in the water, folded straight back along the body."""
+    beside: float = BESIDE
+    """Water beside the widest swing, to each side [body length]."""
     moves_on: bool = True
     """Whether the body may move along its course; it always sways and turns freely."""
     frames: int = 0
@@ -51,10 +66,11 @@ class Basin:
 
     def __post_init__(self) -> None:
         with Checks("basin", self) as check:
-            check.whole("cells", 32, 1024)
+            check.whole("cells", 32, FINEST)
             check.whole("cycles", 1, 1000)
             check.whole("frames", 0, 200)
             check.number("viscosity", 1e-7, 10.0, "m2/s")
+            check.number("beside", 0.0, 3.0, "body lengths")
             check.number("tail_height", 0.0, 1.0, "m")
             check.number("tolerance", 5e-7, 1e-2, "")
 
@@ -73,31 +89,73 @@ def half_heights(outline: Outline, tail_height: float = 0.0) -> np.ndarray:
     return np.maximum(outline.silhouette.half_height, fin)
 
 
-def trunk(outline: Outline, motion: Motion, *, grow: float = 0.0, tail_height: float = 0.0) -> flow.Trunk:
-    """Return the robot as a bending body in space, its sections ellipses, divided at its joints; limbs left out.
+def folded(robot: Crocodile) -> tuple[flow.Capsule, ...]:
+    """Return the limbs of a robot, stretched and turned straight back from the hips, which lie in the body's plane.
+
+    Each link is a capsule and each foot a ball, rigid with the body at the hip.
+    """
+    place, found = layout(robot), []
+    names = [segment.name for segment in place.robot.axis]
+    for limb in place.limbs:
+        girdle = limb.girdle
+        at = stations(place.robot)[names.index(girdle.segment)][0]
+        at += place.robot.axis[names.index(girdle.segment)].front - girdle.at
+        aside, behind = -limb.side * girdle.aside, 0.0  # the body's y points to the robot's right
+        for link in girdle.limb.links:
+            ends = (behind, aside), (behind + link.length, aside)
+            found.append(flow.Capsule(at=at, start=ends[0], end=ends[1], radius=link.radius))
+            behind += link.length
+        found.append(flow.Capsule(at=at, start=(behind, aside), end=(behind, aside), radius=girdle.limb.foot.radius))
+    return tuple(found)
+
+
+def trunk(
+    outline: Outline, motion: Motion, *, grow: float = 0.0, tail_height: float = 0.0, limbs: bool = False
+) -> flow.Trunk:
+    """Return the robot as a bending body in space, its sections ellipses, divided at its joints.
 
     Args:
         outline: of the robot; stations about one cell apart serve well.
         motion: how it swims.
         grow: time over which the motion grows from nothing [s].
         tail_height: see ``half_heights`` [m].
+        limbs: whether it has its limbs, see ``folded``; without them otherwise.
     """
     spine = immersed(outline, motion, grow=grow).spine
-    cuts = tuple(sorted(outline.places.tolist()))
-    return flow.Trunk(spine=spine, half_height=half_heights(outline, tail_height), cuts=cuts)
+    cuts, high = tuple(sorted(outline.places.tolist())), half_heights(outline, tail_height)
+    if limbs:
+        return flow.Limbed(spine=spine, half_height=high, cuts=cuts, limbs=folded(outline.robot))
+    return flow.Trunk(spine=spine, half_height=high, cuts=cuts)
 
 
 def check_swim_in_space(robot: Crocodile, motion: Motion, basin: Basin) -> None:
-    """Refuse what joints, servos or grid cannot follow, before anything runs.
+    """Refuse what joints, servos, grid, box or machine cannot follow, before anything runs.
 
     Raises:
         OutsideLimits: the joints or servos cannot follow the motion.
-        InvalidDesign: the boundary layer is too thin for the grid.
+        InvalidDesign: the boundary layer is too thin for the grid, with the cells that would do and the hours that they
+            take; the body would reach out of the box; the machine has not the memory.
     """
     outline = Outline(robot, basin.cells + 1)
     sway, turn = recoil(outline, motion, 0.0, Water(viscosity=basin.viscosity))
     resolved = Tether(cells=basin.cells, viscosity=basin.viscosity, cycles=basin.cycles)
-    check_motion(outline, motion, resolved, sway, turn)
+
+    def cost(cells: int) -> str:
+        finer = replace(basin, cells=cells) if cells <= FINEST else None
+        if finer is None:
+            return f", more than the {FINEST} that are allowed"
+        count = prod(_grid(robot.length, outline, motion, finer, sway, turn).cells)
+        hours = count * STEPS * cells * basin.cycles * SECONDS / 3600.0
+        return f", {count / 1e6:.3g} million cells that take some {hours:.2g} hours for {basin.cycles} cycles"
+
+    check_motion(outline, motion, resolved, sway, turn, cost)
+    least, beside = _MARGIN / basin.cells, basin.beside
+    if beside + _DRAWN < least:
+        raise InvalidDesign(
+            f"the box leaves {beside:.3g} body lengths of water beside the widest swing, and the body would leave it: "
+            f"give at least {least - _DRAWN:.2g}, better {BESIDE}."
+        )
+    check_memory(_grid(robot.length, outline, motion, basin, sway, turn), np.float32)
 
 
 def swim_in_space(
@@ -108,7 +166,7 @@ def swim_in_space(
     checkpoint: Path | str | None = None,
     progress: Progress | None = None,
 ) -> xr.Dataset:
-    """Return a swim from rest in the plane of symmetry, the body as heavy as the water it displaces; limbs left out.
+    """Return a swim from rest in the plane of symmetry, the body as heavy as the water it displaces.
 
     The upper half is computed: beyond the plane lies its image. The grid travels with the body's centre.
 
@@ -132,7 +190,7 @@ def swim_in_space(
     outline, period = Outline(robot, basin.cells + 1), 1.0 / motion.frequency
     sway, turn = recoil(outline, motion, 0.0, Water(viscosity=basin.viscosity))
     body = flow.FreeBody(
-        shape=trunk(outline, motion, grow=GROWS * period, tail_height=basin.tail_height),
+        shape=trunk(outline, motion, grow=GROWS * period, tail_height=basin.tail_height, limbs=basin.limbs),
         start=(0.5 * robot.length, 0.0, 0.0), free=(basin.moves_on, True, True),
     )  # fmt: skip
     grid = _grid(robot.length, outline, motion, basin, sway, turn)
@@ -160,11 +218,11 @@ def _grid(
     length: float, outline: Outline, motion: Motion, basin: Basin, sway: complex, turn: complex
 ) -> flow.Grid:  # fmt: skip
     """Return the cells around the upper half of a body whose snout is near the origin."""
-    swing = float(np.abs(cycle(outline, motion, sway, turn).y).max()) / length + _WATER
+    swing = float(np.abs(cycle(outline, motion, sway, turn).y).max()) / length + _DRAWN
     high = max(outline.silhouette.half_height.max(), 0.5 * basin.tail_height) / length + ABOVE
     grid = flow.Grid.covering(
         (-AHEAD * length, (1.0 + BEHIND) * length),
-        (-(swing + BESIDE) * length, (swing + BESIDE) * length),
+        (-(swing + basin.beside) * length, (swing + basin.beside) * length),
         (0.0, high * length),
         cell=length / basin.cells,
     )

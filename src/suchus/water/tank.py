@@ -1,5 +1,6 @@
 """How finely, how long and in how large a box a swim is resolved."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -76,8 +77,23 @@ class Tether:
         )
 
 
-def check_motion(outline: Outline, motion: Motion, setting: Tether, sway: complex, turn: complex) -> None:
+def check_motion(
+    outline: Outline,
+    motion: Motion,
+    setting: Tether,
+    sway: complex,
+    turn: complex,
+    cost: Callable[[int], str] = lambda _: "",
+) -> None:
     """Refuse what joints, servos or grid cannot follow.
+
+    Args:
+        outline: of the robot.
+        motion: how it swims.
+        setting: grid and water.
+        sway: harmonic of the snout's displacement to the right [m].
+        turn: harmonic of the head's direction [rad].
+        cost: says what a swim with so many cells per body length takes, for the message.
 
     Raises:
         OutsideLimits: the joints or servos cannot follow the motion.
@@ -89,8 +105,9 @@ def check_motion(outline: Outline, motion: Motion, setting: Tether, sway: comple
     speed = float(np.hypot(moving.x_rate, moving.y_rate).max())
     layer, cell = (length * setting.viscosity / max(speed, 1e-12)) ** 0.5, length / setting.cells
     if layer < LAYER_CELLS * cell:
+        cells = int(np.ceil(LAYER_CELLS * length / layer))
         raise InvalidDesign(
             f"the boundary layer of {motion.name!r} is {layer:.2g} m thin and a cell {cell:.2g} m; take at least "
-            f"{int(np.ceil(LAYER_CELLS * length / layer))} cells per body length, or a viscosity of at least "
+            f"{cells} cells per body length{cost(cells)}, or a viscosity of at least "
             f"{setting.viscosity * (LAYER_CELLS * cell / layer) ** 2:.2g} m2/s."
         )

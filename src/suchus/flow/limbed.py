@@ -1,0 +1,271 @@
+"""A trunk with rigid pieces that are attached to it: folded limbs, spread fins."""
+
+from dataclasses import dataclass, field
+from functools import lru_cache
+
+import numpy as np
+
+from suchus.errors import InvalidDesign
+from suchus.flow.mass import SpaceMass
+from suchus.flow.midline import Spine
+from suchus.flow.pose import Pose
+from suchus.flow.shape import positive
+from suchus.flow.solid import Skin, SpaceField
+from suchus.flow.trunk import Trunk
+from suchus.kinds import show
+
+_ACROSS = 28
+"""Points across a capsule and along it at least, over which its volume is summed [-]."""
+
+_AROUND = 8
+"""Points around a capsule, at least [-]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Capsule:
+    """A rod with round ends, rigid with the section of a trunk that it is attached to; a ball if it has no length.
+
+    Points are along the midline there, towards its last station, and to the side, counter-clockwise of that.
+
+    Raises:
+        InvalidDesign: on creation, for a radius that is not positive or a point that is not two finite numbers.
+    """
+
+    at: float
+    """Arc length of the section, from the first station [m]."""
+    start: tuple[float, float]
+    """Middle of one end, from the midline in that section [m]."""
+    end: tuple[float, float]
+    """Middle of the other end [m]."""
+    radius: float
+    """Radius [m]."""
+
+    def __post_init__(self) -> None:
+        positive("radius", self.radius)
+        for name in ("at", "start", "end"):
+            if not np.isfinite(getattr(self, name)).all():
+                raise InvalidDesign(f"{name} of a capsule is {show(getattr(self, name))} m; give finite numbers.")
+
+    def placed(self, spine: Spine) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
+        """Return both ends, the velocity of the first end and the rate of turning, shapes (2,) and a number."""
+        x, y, heading, u, v, turn = (
+            float(np.interp(self.at, spine.arc, part))
+            for part in (spine.x, spine.y, spine.heading, spine.x_rate, spine.y_rate, spine.heading_rate)
+        )
+        along, aside = np.array([np.cos(heading), np.sin(heading)]), np.array([-np.sin(heading), np.cos(heading)])
+        first, last = (np.array([x, y]) + p[0] * along + p[1] * aside for p in (self.start, self.end))
+        rate = np.array([u - turn * (first[1] - y), v + turn * (first[0] - x)])
+        return first, last, rate, turn
+
+    def distance(self, px: np.ndarray, py: np.ndarray, pz: np.ndarray, spine: Spine) -> np.ndarray:
+        """Return the signed distance from points, pz from the plane of the midline [m]."""
+        return self.reach(px, py, pz, spine)[1] - self.radius
+
+    def reach(
+        self, px: np.ndarray, py: np.ndarray, pz: np.ndarray, spine: Spine
+    ) -> tuple[tuple[np.ndarray, ...], np.ndarray]:
+        """Return the vectors from the capsule's axis to points, and their lengths [m]."""
+        first, last, *_ = self.placed(spine)
+        axis = last - first
+        square = float(axis @ axis)
+        share = np.clip(((px - first[0]) * axis[0] + (py - first[1]) * axis[1]) / square, 0.0, 1.0) if square else 0.0
+        dx, dy = px - first[0] - share * axis[0], py - first[1] - share * axis[1]
+        return (dx, dy, pz), np.sqrt(dx * dx + dy * dy + pz * pz)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Lump:
+    """What a capsule adds to a trunk: its part outside of the straight trunk and of the capsules before it."""
+
+    volume: float
+    """Volume [m^3]."""
+    centre: tuple[float, float]
+    """Its centre, from the section that it is attached to [m]."""
+    moment: float
+    """Second moment about the axis along z through the centre [m^5]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Limbed(Trunk):
+    """The union of a trunk and capsules, whose axes lie in the plane of its midline.
+
+    What a capsule shares with the trunk is that of the straight trunk, however it bends.
+
+    Raises:
+        InvalidDesign: see ``Trunk``; or a capsule that is attached beyond the trunk's ends.
+    """
+
+    limbs: tuple[Capsule, ...] = ()
+    """The capsules."""
+    lumps: tuple[Lump, ...] = field(init=False, repr=False, default=())
+    """What each of them adds."""
+
+    def __post_init__(self) -> None:
+        Trunk.__post_init__(self)
+        spine = self._spine(0.0)
+        for limb in self.limbs:
+            if not 0 <= limb.at <= spine.arc[-1]:
+                raise InvalidDesign(
+                    f"a capsule is attached at {limb.at:.4g} m of a trunk that is {spine.arc[-1]:.4g} m long; "
+                    "attach it between its ends."
+                )
+        straight = _straight(spine)
+        lumps = [self._lump(straight, limb, self.limbs[:i]) for i, limb in enumerate(self.limbs)]
+        object.__setattr__(self, "lumps", tuple(lumps))
+
+    def _lump(self, straight: Spine, limb: Capsule, others: tuple[Capsule, ...]) -> Lump:
+        low, high = np.minimum(limb.start, limb.end) - limb.radius, np.maximum(limb.start, limb.end) + limb.radius
+        step = 2 * limb.radius / _ACROSS
+        x, y, z = (a + (np.arange(n) + 0.5) * (b - a) / n for a, b, n in (
+            (a, b, max(int(np.ceil((b - a) / step)), 1)) for a, b in (*zip(low, high, strict=True), (0.0, limb.radius))
+        ))  # fmt: skip
+        z, y, x = (part.ravel() for part in np.meshgrid(z, y, x, indexing="ij"))
+        each = float(np.prod((*(high - low), 2 * limb.radius))) / x.size  # both halves
+        at = limb.at + x
+        there = limb.distance(at, y, z, straight) < 0
+        there &= ~self._holds(at, y, z, straight)
+        for other in others:
+            there &= other.distance(at, y, z, straight) >= 0
+        if not there.any():
+            return Lump(volume=0.0, centre=(0.0, 0.0), moment=0.0)
+        x, y = x[there], y[there]
+        cx, cy = float(x.mean()), float(y.mean())
+        moment = each * float(((x - cx) ** 2 + (y - cy) ** 2).sum())
+        return Lump(volume=each * x.size, centre=(cx, cy), moment=moment)
+
+    def _holds(self, px: np.ndarray, py: np.ndarray, pz: np.ndarray, spine: Spine) -> np.ndarray:
+        """Return which points lie inside the trunk alone, pz from the plane of the midline [m]."""
+        near = ((px[:, None] - spine.x) ** 2 + (py[:, None] - spine.y) ** 2).argmin(axis=1)
+        cos, sin = np.cos(spine.heading[near]), np.sin(spine.heading[near])
+        dx, dy = px - spine.x[near], py - spine.y[near]
+        along, aside = dx * cos + dy * sin, -dx * sin + dy * cos
+        at = spine.arc[near] + along
+        wide, high = (np.interp(at, spine.arc, part) for part in (spine.half_width, self.half_height))
+        inside: np.ndarray = (aside * high) ** 2 + (pz * wide) ** 2 < (wide * high) ** 2
+        return inside & (at >= 0) & (at <= spine.arc[-1])
+
+    def measure(self, x: np.ndarray, y: np.ndarray, z: np.ndarray, time: float, pose: Pose, reach: float) -> SpaceField:
+        """Return the field on the points of a window."""
+        found = Trunk.measure(self, x, y, z, time, pose, reach)
+        spine, middle = self.placed(time, pose), pose.along(3).position[2]
+        for limb in self.limbs:
+            self._add(found, limb, spine, (z - middle, y, x), reach)
+        return found
+
+    def _add(
+        self, found: SpaceField, limb: Capsule, spine: Spine, axes: tuple[np.ndarray, ...], reach: float
+    ) -> None:  # fmt: skip
+        """Write a capsule to the points that are nearer to it."""
+        first, last, rate, turn = limb.placed(spine)
+        ends = np.append(first, 0.0), np.append(last, 0.0)
+        low, high = (pick(*ends)[::-1] for pick in (np.minimum, np.maximum))
+        far = limb.radius + reach
+        box = tuple(
+            slice(*np.searchsorted(axis, (a - far, b + far))) for axis, a, b in zip(axes, low, high, strict=True)
+        )  # fmt: skip
+        pz, py, px = np.meshgrid(*(axis[s] for axis, s in zip(axes, box, strict=True)), indexing="ij")
+        away, size = limb.reach(px, py, pz, spine)
+        distance = size - limb.radius
+        trunk = found.distance[box]
+        nearer = distance < trunk
+        normal = [part / np.maximum(size, 1e-12 * limb.radius) for part in away]
+        facing = sum(part * one[box] for part, one in zip(normal, found.normal, strict=True))
+        sunk = trunk < facing * (distance + 2 * limb.radius)  # the capsule's far side lies in what is there already
+        values = [
+            (found.distance, distance), (found.thickness, np.where(sunk, np.inf, 2 * limb.radius)),
+            *zip(found.normal, normal, strict=True),
+            (found.velocity[0], rate[0] - turn * (py - first[1])),
+            (found.velocity[1], rate[1] + turn * (px - first[0])),
+        ]  # fmt: skip
+        for one, value in values:
+            one[box] = np.where(nearer, value, one[box])
+        if found.part is not None:
+            found.part[box] = np.where(nearer, self._part(limb), found.part[box])
+
+    def _part(self, limb: Capsule) -> int:
+        return int(np.searchsorted(self.cuts, limb.at, side="right"))
+
+    def markers(self, time: float, pose: Pose, spacing: float) -> Skin:
+        """Return points over what is outside of trunk and capsules: those inside stand for no area."""
+        skin, spine, place = Trunk.markers(self, time, pose, spacing), self.placed(time, pose), pose.along(3)
+        points, share, rates = [skin.points], [skin.share.copy()], [skin.velocities]
+        part = [skin.part] if skin.part is not None else []
+        for limb in self.limbs:
+            first, last, rate, turn = limb.placed(spine)
+            local, area = _surface(limb, spacing)
+            axis = last - first
+            cos, sin = axis / np.linalg.norm(axis) if axis.any() else (1.0, 0.0)
+            px, py = first[0] + cos * local[0] - sin * local[1], first[1] + sin * local[0] + cos * local[1]
+            area = np.where(self._holds(px, py, local[2], spine), 0.0, area)
+            points.append(np.stack([px, py, local[2] + place.position[2]]))
+            share.append(area)
+            lift = np.full(px.shape, place.velocity[2])
+            rates.append(np.stack([rate[0] - turn * (py - first[1]), rate[1] + turn * (px - first[0]), lift]))
+            part += [np.full(px.shape, self._part(limb))] if part else []
+        for i, limb in enumerate(self.limbs):
+            for k, (one, area) in enumerate(zip(points, share, strict=True)):
+                if k != i + 1:
+                    inside = limb.distance(one[0], one[1], one[2] - place.position[2], spine) < -1e-9 * limb.radius
+                    area[inside] = 0.0
+        parts = np.concatenate(part) if part else None
+        return Skin(np.concatenate(points, axis=1), np.concatenate(share), np.concatenate(rates, axis=1), parts)
+
+    def bounds(self, time: float, pose: Pose) -> tuple[float, ...]:
+        """Return the box around the body."""
+        box, spine, middle = list(Trunk.bounds(self, time, pose)), self.placed(time, pose), pose.along(3).position[2]
+        for limb in self.limbs:
+            first, last, *_ = limb.placed(spine)
+            for d, ends in enumerate((*zip(first, last, strict=True), (middle, middle))):
+                box[2 * d] = min(box[2 * d], float(min(ends)) - limb.radius)
+                box[2 * d + 1] = max(box[2 * d + 1], float(max(ends)) + limb.radius)
+        return tuple(box)
+
+    def mass(self, time: float) -> SpaceMass:
+        """Return volume, centre and moments of trunk and capsules together."""
+        trunk, spine = Trunk.mass(self, time), self._spine(time)
+        volume, centre, rate = [trunk.volume], [np.array(trunk.centre)], [np.array(trunk.centre_rate)]
+        moment, swirl = trunk.moment, trunk.swirl
+        for limb, lump in zip(self.limbs, self.lumps, strict=True):
+            ball = Capsule(at=limb.at, start=lump.centre, end=lump.centre, radius=limb.radius)
+            place, _, speed, turn = ball.placed(spine)
+            volume.append(lump.volume)
+            centre.append(place)
+            rate.append(speed)
+            moment += lump.moment
+            swirl += lump.moment * turn
+        v = np.array(volume)
+        middle, drift = v @ np.array(centre) / v.sum(), v @ np.array(rate) / v.sum()
+        off, past = np.array(centre) - middle, np.array(rate) - drift
+        moment += float(v @ (off**2).sum(axis=1))
+        swirl += float(v @ (off[:, 0] * past[:, 1] - off[:, 1] * past[:, 0]))
+        (cx, cy), (cu, cv) = middle.tolist(), drift.tolist()
+        return SpaceMass(volume=float(v.sum()), centre=(cx, cy), centre_rate=(cu, cv), moment=moment, swirl=swirl)
+
+
+def _straight(spine: Spine) -> Spine:
+    zero = np.zeros(spine.x.size)
+    return Spine(x=spine.arc, y=zero, heading=zero, half_width=spine.half_width, x_rate=zero, y_rate=zero,
+                 heading_rate=zero)  # fmt: skip
+
+
+@lru_cache(maxsize=64)
+def _surface(limb: Capsule, spacing: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return points over a capsule from its first end, along its axis, across and up, and the area of each."""
+    r, length = limb.radius, float(np.hypot(*np.subtract(limb.end, limb.start)))
+    count = max(_AROUND, int(np.ceil(2 * np.pi * r / spacing)))
+    turn = 2 * np.pi * (np.arange(count) + 0.5) / count
+    rings = max(1, int(np.ceil(length / spacing))) if length else 0
+    along = [(np.arange(rings) + 0.5) * length / max(rings, 1)]
+    out, area = [np.full(rings, r)], [np.full(rings, 2 * np.pi * r * length / max(rings, 1) / count)]
+    caps = count // 2
+    height = (np.arange(caps) + 0.5) / caps  # rings of equal area on a half ball
+    for way, base in ((-1.0, 0.0), (1.0, length)):
+        along.append(base + way * r * height)
+        out.append(r * np.sqrt(1 - height**2))
+        area.append(np.full(caps, 2 * np.pi * r * r / caps / count))
+    a, o, share = (np.concatenate(part)[:, None] for part in (along, out, area))
+    points = np.stack([np.broadcast_to(a, (a.size, count)), o * np.cos(turn), o * np.sin(turn)])
+    found = points.reshape(3, -1), np.broadcast_to(share, (a.size, count)).ravel().copy()
+    for array in found:
+        array.flags.writeable = False
+    return found
