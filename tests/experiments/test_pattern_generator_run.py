@@ -83,9 +83,9 @@ def measures(**changes):
 @pytest.mark.parametrize(
     ("changes", "said"),
     [
-        ({}, "draw it along: a standing wave"),
-        ({"standing_index_walk": 0.79}, "draw it along: no standing wave"),
-        ({"standing_index_swim": 0.81}, "left to itself: a standing wave"),
+        ({}, "they entrain the axis: a standing wave"),
+        ({"standing_index_walk": 0.79}, "they entrain the axis: no standing wave"),
+        ({"standing_index_swim": 0.81}, "oscillates by itself: a standing wave"),
         ({}, "frequency rises from"),
         ({"frequency_jump": 0.5}, "frequency falls from"),
         ({"frequency_jump": 1.005}, "frequency stays from"),
