@@ -71,7 +71,7 @@ def _drawn(meshes: Sequence[Mesh], camera: Camera, size: tuple[int, int]) -> np.
     if len(order):
         shades = colours[whole.faces[order]]
         renderer.draw_gouraud_triangles(gc, corner[order], shades, IdentityTransform())
-    found = np.asarray(renderer.buffer_rgba())[..., :3]  # white where nothing is
+    found = np.asarray(renderer.buffer_rgba())[..., :3]  # type: ignore[no-untyped-call]  # white where nothing is
     first_rows, *rest = (found[i::_FINER, j::_FINER] for i in range(_FINER) for j in range(_FINER))
     total = sum((part.astype(np.float32) for part in rest), first_rows.astype(np.float32))
     return total / _FINER**2
