@@ -126,7 +126,7 @@ def _space(m: Mapping[str, float]) -> str:
     lines += ["", f"| on one grid, {number} | speed | on the cycle before | energy over weight and distance |",
               "|---|---|---|---|"]  # fmt: skip
     motions = {"trunk_and_tail": "trunk and tail", "trunk_only": "trunk only", "tail_only": "tail only",
-               "as_printed": "as printed"}  # fmt: skip
+               "as_printed": "as printed", "limbs_folded": "limbs folded"}  # fmt: skip
     tails = [name.removeprefix("speed_") for name in m if name.startswith("speed_tail_") and name != "speed_tail_only"]
     high = {name: f"last third {name.removeprefix('tail_').replace('_', '.')} m high" for name in sorted(tails)}
     for name, called in (motions | high).items():
