@@ -19,7 +19,9 @@ from scipy.interpolate import RegularGridInterpolator
 
 from suchus.atlas import sections
 from suchus.atlas.outcome import Outcome
+from suchus.atlas.published import published
 from suchus.errors import InvalidDesign, UnreadableFile
+from suchus.flow import morison
 from suchus.record import new_file
 
 TABLE = Path(__file__).parent / "data" / "sections.csv"
@@ -73,6 +75,19 @@ def attached(keulegan: float, stokes: float = sections.STOKES) -> tuple[float, f
     thin = 1.0 / sqrt(pi * stokes)
     drag = 1.5 * pi**3 / keulegan * (thin + thin**2 - 0.25 * thin**3)
     return drag, 1.0 + 4.0 * thin + thin**3
+
+
+def measured(instants: int = 200) -> tuple[float, float]:
+    """Return Cd and Ca of a round section at KC 5, Re 100, fitted to the published force over a period [-].
+
+    Args:
+        instants: at which the published curve is read, linear in between.
+
+    Source: Dütsch, Durst, Becker and Lienhart 1998, J. Fluid Mech. 360, 249-271, fig. 10, as ``atlas`` ships it.
+    """
+    curve, keulegan, time = published("duetsch1998_force"), 5.0, np.arange(instants) / instants
+    force = np.interp(time, curve.values("t_over_period"), curve.values("force"), period=1.0)
+    return morison(time, keulegan**2 * force, frequency=1.0, speed=keulegan, diameter=1.0, density=1.0)
 
 
 def write_table(outcomes: Mapping[str, Outcome], path: Path = TABLE) -> str:
