@@ -10,7 +10,7 @@ from suchus.atlas import sections
 from suchus.atlas.outcome import Outcome, compute
 from suchus.design.water import Water
 from suchus.errors import InvalidDesign, UnreadableFile
-from suchus.water.sections import TABLE, attached, coefficients, held_out, measured, points, table, write_table
+from suchus.water.sections import TABLE, attached, coefficients, held_out, likely, measured, points, table, write_table
 
 
 def test_where_the_flow_is_attached_the_round_section_is_that_of_stokes_and_wang():
@@ -65,6 +65,26 @@ def test_the_page_says_how_the_swims_own_coefficients_compare():
         assert coefficients(2.0, keulegan)[0] - layer > 1.5 * model
         assert coefficients(4.0, keulegan)[0] - layer > 1.5 * model
         assert coefficients(0.5, keulegan)[0] - layer < 0.8 * model
+
+
+@pytest.mark.parametrize(("aspect", "low", "high"), [(1.0, 0.9, 1.1), (4.0, 1.5, 3.0), (0.5, 0.3, 0.7)])
+def test_a_high_section_widens_the_band_and_a_flat_one_too(aspect, low, high):
+    """KC 10: the drag of a round section is the swims' own, that of a high one more, of a flat one less."""
+    height = np.full(5, 0.05)
+    drag, _ = likely(height / aspect, height, 10.0 / np.pi * height)
+    assert low < drag < high
+    assert drag == pytest.approx((coefficients(aspect, 10.0)[0] - attached(10.0)[0]) / Water().cross_drag)
+
+
+def test_sections_count_as_much_as_they_swing():
+    height, swing = np.array([0.05, 0.05]), np.array([0.16, 0.0016])
+    both = likely(np.array([0.05, 0.0125]), height, swing)
+    first = likely(np.array([0.05, 0.05]), height, swing)
+    assert both == pytest.approx(first, rel=1e-2)
+    assert likely(np.array([0.0125, 0.05]), height, swing)[0] > 1.5 * first[0]
+    assert likely(np.array([0.0125, 0.05]), height, swing)[1] > 1.5 * first[1]
+    pointed = likely(np.array([0.05, 0.05, 0.0]), np.array([0.05, 0.05, 0.0]), np.array([0.16, 0.0016, 0.2]))
+    assert pointed == pytest.approx(first)
 
 
 @pytest.mark.parametrize(("aspect", "keulegan", "message"), [
