@@ -237,8 +237,8 @@ class SwimFree(Experiment):
             f"({m['speed_whole_stiff']:.3f} m/s). Reversed, it moves at {m['speed_reversed']:.3f} m/s. It rolls by "
             f"{m['roll_amplitude']:deg.1f} degrees at most and, steered, turns on a radius of "
             f"{abs(m['turn_radius']):.2f} m, {turns} than 1 m. Over the plausible coefficients of the water the speed "
-            f"is {m['speed_low']:.3f} to {m['speed_high']:.3f} m/s; oscillating sections have {table} times the drag and "
-            f"the added mass that it swims with. Half the time step changes the speed by "
+            f"is {m['speed_low']:.3f} to {m['speed_high']:.3f} m/s; oscillating sections have {table} times the drag "
+            f"and the added mass that it swims with. Half the time step changes the speed by "
             f"{m['step_change']:.1%}. The servos take {m['servo_power']:.2f} W, of which the water gets "
             f"{m['water_power']:.2f}."
         )
