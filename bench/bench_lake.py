@@ -19,7 +19,7 @@ from suchus.land import Lake, Run
 from suchus.land.loop import Loop, physics_steps
 from suchus.motion import Swim
 
-RUNS, TICKS, TURNS, WARM = 8, 20, 30, 3  # TICKS control periods in a turn; the first WARM turns do not count
+RUNS, TICKS, TURNS, WARM = 8, 20, 24, 3  # TICKS control periods in a turn; the first WARM turns do not count
 WAVE = Swim(name="wave", frequency=1.0, yaw=(0.36, 0.13, 0.11), yaw_lag=(0.08, -0.11, -0.29), tail=0.75, tail_lag=-0.11)
 GAIT = GAITS["belly_crawl"]
 ARMS = {
