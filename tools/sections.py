@@ -13,7 +13,7 @@ from pages.stated import keep
 from pages.stated import main as write_pages
 from suchus.atlas import sections
 from suchus.atlas.computing import FlowProgress, compute_all
-from suchus.water.sections import attached, coefficients, held_out, table, write_table
+from suchus.water.sections import attached, coefficients, held_out, measured, table, write_table
 
 
 def stated() -> Mapping[str, Any]:
@@ -28,6 +28,7 @@ def stated() -> Mapping[str, Any]:
         "attached_robot": attached(5.0, 3600.0)[1],
         "held_out": float(held_out().max()),
         "fine_round": [round_.drag, round_.added],
+        "published_round": list(measured()),
         "fine_high": [high.drag, high.added],
         "left": max(one.left for one in table()),
     }

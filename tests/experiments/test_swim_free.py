@@ -9,7 +9,7 @@ import xarray as xr
 from suchus.control import Swimming
 from suchus.errors import InvalidDesign
 from suchus.experiments import EXPERIMENTS
-from suchus.experiments.swim_free import _radius, _speed, _uneven
+from suchus.experiments.swim_free import _ends, _radius, _speed, _uneven
 from suchus.motion import Swim
 from suchus.robots import ROBOTS
 from suchus.rotation import about
@@ -40,6 +40,23 @@ def test_joints_that_share_unevenly_are_told(amplitudes, expected):
     angles = np.sin(phase)[:, None] * np.array(amplitudes)
     part = xr.Dataset({"joint_angle": (("time", "joint"), angles)}, coords={"joint": ["a", "b", "c"]})
     assert _uneven(part, part.assign_attrs(cable=["a", "b", "c"])) == pytest.approx(expected, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("drag", "expected"), [(1.0, (0.7, 1.5)), (2.3, (0.7, 2.3)), (0.3, (0.3, 1.5)), (1.5, (0.7, 1.5))]
+)
+def test_the_band_is_as_wide_as_the_table_of_sections_asks(drag, expected):
+    found = _ends(("cross_drag", "thickening"), {"cross_drag": drag, "added_mass": 3.0})
+    assert found == {"cross_drag": expected, "thickening": (0.5, 2.0)}
+
+
+def test_the_table_is_read_where_this_body_swims():
+    """A wider swing has larger Keulegan numbers: more drag beyond the attached layer, and more added mass."""
+    one = EXPERIMENTS["swim_free"]
+    small = replace(SWIM, yaw=tuple(0.2 * a for a in SWIM.yaw), tail=0.2 * SWIM.tail)
+    found = [one._by_table(motion) for motion in (small, SWIM)]
+    for name in ("cross_drag", "added_mass"):
+        assert 0.2 < found[0][name] < found[1][name] < 3.0
 
 
 def test_a_swim_grows_and_a_mean_bend_goes_to_its_side():

@@ -28,7 +28,8 @@ def test_a_square_is_seen_where_and_as_large_as_perspective_says():
     assert depth == pytest.approx([10.0, 5.0])
     shown = picture(square(0.0, (0, 0, 0)), NOTHING, AHEAD, (400, 200))
     assert (shown < 128).any(axis=2).sum() == pytest.approx(100 * 100, rel=0.01)
-    assert (picture(square(0.0, (0, 0, 0)), NOTHING, AHEAD._replace(azimuth=np.pi), (80, 40)) == 255).all()  # its back
+    edge_on = picture(square(0.0, (0, 0, 0)), NOTHING, AHEAD._replace(azimuth=np.pi / 2), (80, 40))
+    assert (edge_on < 128).any(axis=2).sum() <= 25
 
 
 def test_what_is_near_hides_what_is_far_and_clear_surfaces_let_solids_through():

@@ -7,9 +7,12 @@ comment says so.
 import numpy as np
 import pytest
 from test_space import SPHERE, TAYLOR_GREEN, added, ball, taylor_green
+from test_validate_flow import _table_so_far, note  # noqa: F401 - the fixture works by being here
 
 from suchus import flow
+from suchus.experiments.swim_3d import Swim3d
 from suchus.flow.compiled import PAD
+from suchus.water import space
 
 pytestmark = pytest.mark.validate
 
@@ -223,3 +226,20 @@ def test_mirror_and_full_domain_over_half_a_stroke():
     off = np.abs(full - half).max(axis=0) / np.abs(full).max(axis=0)
     print(f"half and whole domain: force x, y, torque, power differ by {off} of their largest")
     assert off.max() < 1e-3
+
+
+def test_the_box_around_the_swimming_robot(monkeypatch):
+    """The robot free from rest at 64 cells a length, its default box and others: the asked 1 % of the speed."""
+    swim, sizes, found = Swim3d(), ("AHEAD", "BEHIND", "BESIDE", "ABOVE"), {}
+    motion, basin = swim._motion(-1), space.Basin(cells=64, viscosity=swim.viscosity, cycles=4)
+    default = tuple(getattr(space, name) for name in sizes)
+    for label, box in (("default", default), ("wide", (0.5, 0.8, 0.6, 0.45))):
+        for name, size in zip(sizes, box, strict=True):
+            monkeypatch.setattr(space, name, size)
+        record = space.swim_in_space(swim.robot, motion, basin, progress=lambda _: None)
+        found[label] = np.array([float(record[name][-1]) for name in ("speed", "power")])
+    print(f"robot at 64 cells a length, 4th cycle, speed and power in its box {found['default']}, wide {found['wide']}")
+    about = "64 cells/L", "ahead, behind, beside, above {:g}, {:g}, {:g}, {:g} L".format(*default)
+    for quantity, own, wide in zip(("speed, m/s", "power, W"), *found.values(), strict=True):
+        note("swimming robot", quantity, own, float(wide), *about, "box of 0.5, 0.8, 0.6, 0.45 L")
+    assert found["default"] == pytest.approx(found["wide"], rel=0.01)

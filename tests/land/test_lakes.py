@@ -9,8 +9,12 @@ import pytest
 from numba import cfunc, types
 
 from suchus.control import Swimming
+from suchus.design.pieces import volumes
+from suchus.design.water import Water
 from suchus.errors import InvalidDesign, OtherMuJoCo, OutsideLimits
+from suchus.experiments import EXPERIMENTS
 from suchus.land import VACUUM, Ground, Lake, Run, Wave, crawl, simulate, structs, wetting
+from suchus.land.afloat import check_floats
 from suchus.motion import Swim
 from suchus.record import WATER
 from suchus.robots import ROBOTS
@@ -104,6 +108,10 @@ def test_a_robot_that_floats_begins_at_the_surface_and_one_that_sinks_stands():
     assert float(heavy.position[0, 2]) < 0.2
 
 
+def test_the_steepest_wave_is_allowed():
+    assert Wave(height=0.1419, length=1.0).frequency == pytest.approx(np.sqrt(9.81 / (2 * np.pi)), rel=1e-3)
+
+
 def test_it_swims_forward_and_backward_with_the_wave():
     def distance(swim):
         lake = Lake(level=2.0)
@@ -127,6 +135,10 @@ def test_it_swims_forward_and_backward_with_the_wave():
         (lambda: Lake(level=0.0, current=(inf, 0.0)), r"current\[0\] is inf m/s; -5 to 5 m/s is allowed"),
         (lambda: Lake(level=0.0, wave=Wave(height=0.5, length=1.0)), "steeper than 0.142, where waves break"),
         (lambda: Wave(height=0.1, length=0.0), "length is 0 m"),
+        (lambda: Wave(height=0.143, length=1.0), "at this length at most 0.142 m are allowed"),
+        (lambda: Lake(level=0.0, current=(0.0, nan)), r"current\[1\] is nan m/s"),
+        (lambda: Water(density=0.0), "water.density is 0 kg/m3"),
+        (lambda: Water(cross_drag=-1.0), "water.cross_drag is -1"),
         (lambda: Run(robot="caiman", gait="belly_crawl", lake=Lake(level=0.0), afloat=VACUUM), "not in both"),
         (
             lambda: crawl("caiman", "belly_crawl", duration=0.1, lake=Lake(level=0.0, breath=0.5)),
@@ -138,6 +150,40 @@ def test_it_swims_forward_and_backward_with_the_wave():
 def test_bad_water_is_refused_in_a_sentence(make, message):
     with pytest.raises(InvalidDesign, match=message):
         make()
+
+
+def test_a_robot_that_sinks_is_told_by_how_much_and_one_that_floats_is_not():
+    """Foam of 40 kg/m3: a litre of it carries 960 g."""
+    caiman, floating = ROBOTS["caiman"], ROBOTS["floating_caiman"]
+    lacking = caiman.mass - 1000.0 * sum(volumes(caiman).values())
+    with pytest.raises(InvalidDesign, match="robot 'caiman' sinks") as refused:
+        check_floats(caiman, Lake(level=1.0))
+    assert f"{1e3 * lacking:.0f} g heavier" in str(refused.value)
+    assert f"{lacking / 0.96:.2f} l more foam" in str(refused.value)
+    check_floats(floating, Lake(level=1.0))
+    with pytest.raises(InvalidDesign, match="keep more of its air"):
+        check_floats(floating, Lake(level=1.0, breath=0.0))
+    check_floats(caiman, Lake(level=1.0, water=Water(density=2000.0)))
+
+
+@pytest.mark.parametrize("name", ["swim_free", "shore"])
+def test_experiments_at_the_surface_refuse_a_robot_that_sinks(name):
+    with pytest.raises(InvalidDesign, match="robot 'caiman' sinks"):
+        replace(EXPERIMENTS[name].quick(), robot=ROBOTS["caiman"]).simulate()
+
+
+def test_a_run_that_diverges_in_water_ends_with_its_time_and_the_others_go_on():
+    robot = ROBOTS["caiman"]
+    servo = replace(robot.hind_leg.servo, kp=9000.0, kd=0.0, armature=1e-4, damping=0.0, torque=900.0)
+    wild = replace(robot, name="wild", hind_leg=replace(robot.hind_leg, servo=servo))
+    lake = Lake(level=0.06)
+    some = [Run(robot=one, gait="belly_crawl", lake=lake) for one in (wild, robot)]
+    record = simulate(some, duration=1.0, timestep=0.005)
+    assert str(record.cause[0].values)
+    assert 0.0 <= float(record.ended[0]) < 1.0
+    assert np.isnan(record.position[0, -1]).all()
+    assert not str(record.cause[1].values)
+    assert np.isfinite(record.water_force[1]).all()
 
 
 def test_a_swim_beyond_the_joints_is_refused():

@@ -59,9 +59,10 @@ def _swims(m: Mapping[str, float]) -> str:
         lines.append(f"| {called} | {' | '.join(cells)} |")
     return "\n".join(lines) + (
         f"\n\nThe whole wave: {m['speed_low']:.3f} to {m['speed_high']:.3f} m/s over the plausible coefficients of the "
-        f"water, {m['step_change']:.1%} at half the time step; Strouhal number {m['strouhal']:.2f}, slip "
-        f"{m['slip']:.2f}, roll {degrees(m['roll_amplitude']):.1f} degrees at most. The servos take "
-        f"{m['servo_power']:.2f} W, of which the water gets {m['water_power']:.2f}: cost of transport "
+        f"water (oscillating sections have {m['cross_drag_by_table']:.2f} and {m['added_mass_by_table']:.2f} times the "
+        f"drag and added mass of the swims), {m['step_change']:.1%} at half the time step; Strouhal number "
+        f"{m['strouhal']:.2f}, slip {m['slip']:.2f}, roll {degrees(m['roll_amplitude']):.1f} degrees at most. The "
+        f"servos take {m['servo_power']:.2f} W, of which the water gets {m['water_power']:.2f}: cost of transport "
         f"{m['cost_of_transport']:.2f} and {m['cost_of_transport_water']:.2f}. Steered, it turns on a radius of "
         f"{abs(m['turn_radius']):.2f} m. The largest amplitude of a joint of the cable is {m['tail_spread']:.1f} times "
         f"their mean, {m['tail_spread_stiff']:.1f} times with stiffer joints.\n"
@@ -126,7 +127,7 @@ def _space(m: Mapping[str, float]) -> str:
     lines += ["", f"| on one grid, {number} | speed | on the cycle before | energy over weight and distance |",
               "|---|---|---|---|"]  # fmt: skip
     motions = {"trunk_and_tail": "trunk and tail", "trunk_only": "trunk only", "tail_only": "tail only",
-               "as_printed": "as printed"}  # fmt: skip
+               "as_printed": "as printed", "limbs_folded": "limbs folded"}  # fmt: skip
     tails = [name.removeprefix("speed_") for name in m if name.startswith("speed_tail_") and name != "speed_tail_only"]
     high = {name: f"last third {name.removeprefix('tail_').replace('_', '.')} m high" for name in sorted(tails)}
     for name, called in (motions | high).items():
@@ -189,7 +190,8 @@ def _sections(m: Mapping[str, Any]) -> str:
         f"\n\nCd by height and Ca. Between the nodes the interpolation is off by {m['held_out']:.1%} at most, at eight "
         f"points that were held out. Drag and added mass leave up to {m['left']:.0%} of the rms force unexplained. On "
         f"a grid half as fine again the round section at KC 5 has {m['fine_round'][0]:.2f}, {m['fine_round'][1]:.2f} "
-        "(Dütsch et al. 1998: 2.09, 1.45) and the one four times as high as thick "
+        f"(fitted to the force that Dütsch et al. 1998 published: {m['published_round'][0]:.2f}, "
+        f"{m['published_round'][1]:.2f}) and the one four times as high as thick "
         f"{m['fine_high'][0]:.2f}, {m['fine_high'][1]:.2f}. Where the flow is attached the round section has the exact "
         f"Ca {m['attached_added']:.2f} of Stokes and Wang at this beta; at the robot's, 3600, it is "
         f"{m['attached_robot']:.2f}.\n"

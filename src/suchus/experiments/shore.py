@@ -17,6 +17,7 @@ from suchus.experiments import _shore_findings as findings
 from suchus.figures.shore import draw_ashore, draw_decides
 from suchus.gaits import GAITS
 from suchus.land import Ground, Lake, Run, simulate
+from suchus.land.afloat import check_floats
 from suchus.metrics.energy import METRES
 from suchus.motion import Gait, Swim
 from suchus.renamed import old_names
@@ -129,6 +130,7 @@ class Shore(Experiment):
 
     def simulate(self, progress: Progress = silent) -> Simulated:
         """Simulate all runs as one batch: to the shore, with other gaits and other breaths, and into the water."""
+        check_floats(self.robot, Lake(level=_DEEP))
         cases = self._cases()
         runs = [run for _, _, run in cases]
         record = simulate(

@@ -1,6 +1,6 @@
 """How does it swim in six degrees of freedom, at the surface?"""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from math import pi
@@ -19,17 +19,21 @@ from suchus.experiments.floating import heel_of
 from suchus.figures.swim_free import draw_speeds, draw_tail
 from suchus.gaits import GAITS
 from suchus.land import Lake, Run, simulate
+from suchus.land.afloat import check_floats
 from suchus.motion import Swim
 from suchus.replay import replay
 from suchus.robots import ROBOTS
 from suchus.verdict import Reading, compared
-from suchus.water import fit, printed_wave, swim
+from suchus.water import Outline, fit, printed_wave, swim
+from suchus.water.sections import likely
+from suchus.water.slender import cruise, cycle, reactive
 
 MOTIONS = ("whole", "tail_only", "trunk_only", "reversed")
 """Motions that are compared, in open loop."""
 _MODELS = ("resistive", "reactive")
 _SPREAD = {"cross_drag": (0.7, 1.5), "thickening": (0.5, 2.0), "added_mass": (0.7, 1.4), "shedding": (0.5, 1.5)}
-"""Plausible factors on the coefficients of the water [-]: oscillating sections, swimming fish, how the tail sheds."""
+"""Plausible factors on the coefficients of the water [-]: round sections that oscillate, swimming fish, how the tail
+sheds. Drag and added mass may be farther off, as ``water.sections.likely`` says of the robot's sections."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,7 +43,8 @@ class SwimFree(Experiment):
     The robot floats, heaves, rolls, pitches and steers as the water lets it. Its cable fixes the sum of its joints'
     angles only; how they share it is up to rubber and water. So the same swims are repeated with stiffer joints, and
     set beside two models whose midline is commanded and cannot see this. One run steers by a mean bend; further runs
-    vary each coefficient of the water over its plausible range, and halve the time step.
+    vary each coefficient of the water over its plausible range, wide enough for the table of oscillating sections at
+    the aspects and Keulegan numbers of this body, and halve the time step.
     """
 
     title = "How does it swim in six degrees of freedom, at the surface?"
@@ -92,6 +97,7 @@ class SwimFree(Experiment):
 
     def simulate(self, progress: Progress = silent) -> Simulated:
         """Swim in every motion, stiffer, steered, in other waters, and at half the time step."""
+        check_floats(self.robot, Lake(level=self.level))
         motion = fit(
             replace(self.robot, hull=None), printed_wave(self.robot, self.reading, frequency=self.frequency, sign=-1)
         ).swim
@@ -101,7 +107,8 @@ class SwimFree(Experiment):
             "trunk_only": motion.trunk_only(),
             "reversed": motion.reversed(),
         }
-        runs = self._runs(motions)
+        by_table = self._by_table(motion)
+        runs = self._runs(motions, _ends(self.spread, by_table))
         record = simulate(runs, duration=self._duration, progress=staged(progress, "swims", 0.0, 0.85))
         fine = simulate(
             runs[:1],
@@ -117,10 +124,18 @@ class SwimFree(Experiment):
             frequency=self.frequency,
             cable=list(cable_joints(self.robot)),
             meant=motion.tail / len(cable_joints(self.robot)),
+            **{f"{name}_by_table": factor for name, factor in by_table.items()},
         )
         return Simulated(record=record, replays=self._replays(record))
 
-    def _runs(self, motions: Mapping[str, Swim]) -> list[Run]:
+    def _by_table(self, motion: Swim) -> Mapping[str, float]:
+        """Return the factors by which the table of sections differs from the coefficients of the swims [-]."""
+        outline = Outline(replace(self.robot, hull=None))
+        swum = cruise(outline, motion, reactive, Water())
+        side = np.ptp(cycle(outline, motion, swum.sway, swum.turn).y, axis=0) / 2
+        return dict(zip(("cross_drag", "added_mass"), likely(*outline.silhouette, side), strict=True))
+
+    def _runs(self, motions: Mapping[str, Swim], factors: Mapping[str, tuple[float, float]]) -> list[Run]:
         """Return every run; their labels say what they are."""
         lake, gait = Lake(level=self.level), GAITS["belly_crawl"]
         stiff = replace(self.robot, tail=replace(self.robot.tail, joint_stiffness=self.stiffness))
@@ -132,8 +147,8 @@ class SwimFree(Experiment):
         ]
         steered = plain(swim=motions["whole"], turn=self.turn, trunk_turn=self.trunk_turn)
         runs.append(Run(robot=self.robot, gait=gait, lake=lake, control=steered, label="steered"))
-        for name in self.spread:
-            for factor in _SPREAD[name]:
+        for name, ends in factors.items():
+            for factor in ends:
                 other = _other(lake, name, factor)
                 control = plain(swim=motions["whole"])
                 runs.append(Run(robot=self.robot, gait=gait, lake=other, control=control, label=f"{name} x {factor:g}"))
@@ -186,6 +201,8 @@ class SwimFree(Experiment):
         return found | {
             "speed_low": Measure(min(waters), "m/s"),
             "speed_high": Measure(max(waters), "m/s"),
+            "cross_drag_by_table": Measure(record.attrs["cross_drag_by_table"], "-"),
+            "added_mass_by_table": Measure(record.attrs["added_mass_by_table"], "-"),
             "step_change": Measure(abs(fine - speed["whole"]) / ahead, "-"),
             "roll_amplitude": Measure(float(np.abs(heel_of(whole.orientation.values)).max()), "rad"),
             "pitch": Measure(float(rotation.pitch(whole.orientation.values).mean()), "rad"),
@@ -208,6 +225,7 @@ class SwimFree(Experiment):
         tail = compared(m["speed_tail_only"], m["speed_tail_only_stiff"], less="less", more="more", within=0.05)
         gain = compared(m["speed_whole_stiff"], m["speed_whole"], less="slower", more="faster", within=0.02)
         turns = compared(abs(m["turn_radius"]), 1.0, less="less", more="more")
+        table = f"{m['cross_drag_by_table']:.2f} and {m['added_mass_by_table']:.2f}"
         return (
             f"With the whole wave it swims at {m['speed_whole']:.3f} m/s, with the trunk alone at "
             f"{m['speed_trunk_only']:.3f} and with the tail alone at {m['speed_tail_only']:.3f} m/s, {tail} than the "
@@ -219,7 +237,8 @@ class SwimFree(Experiment):
             f"({m['speed_whole_stiff']:.3f} m/s). Reversed, it moves at {m['speed_reversed']:.3f} m/s. It rolls by "
             f"{m['roll_amplitude']:deg.1f} degrees at most and, steered, turns on a radius of "
             f"{abs(m['turn_radius']):.2f} m, {turns} than 1 m. Over the plausible coefficients of the water the speed "
-            f"is {m['speed_low']:.3f} to {m['speed_high']:.3f} m/s; half the time step changes it by "
+            f"is {m['speed_low']:.3f} to {m['speed_high']:.3f} m/s; oscillating sections have {table} times the drag "
+            f"and the added mass that it swims with. Half the time step changes the speed by "
             f"{m['step_change']:.1%}. The servos take {m['servo_power']:.2f} W, of which the water gets "
             f"{m['water_power']:.2f}."
         )
@@ -228,6 +247,12 @@ class SwimFree(Experiment):
         """Draw the speeds beside the models', and how the joints of the cable share the bend."""
         speeds = {name: measure.value for name, measure in self.measure(outcome.record).items()}
         return {"swim_speeds": draw_speeds(speeds, MOTIONS, _MODELS), "tail_shares": draw_tail(outcome.record)}
+
+
+def _ends(names: Sequence[str], by_table: Mapping[str, float]) -> dict[str, tuple[float, float]]:
+    """Return the least and the greatest factor on each coefficient, those of the table among them [-]."""
+    some = {name: (*_SPREAD[name], by_table.get(name, _SPREAD[name][0])) for name in names}
+    return {name: (min(factors), max(factors)) for name, factors in some.items()}
 
 
 def _other(lake: Lake, name: str, factor: float) -> Lake:

@@ -63,9 +63,7 @@ def _drawn(meshes: Sequence[Mesh], camera: Camera, size: tuple[int, int]) -> np.
     fine = (_FINER * size[0], _FINER * size[1])
     at, depth = camera.seen(whole.vertices, fine)
     corner = at[whole.faces]
-    first, second = corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]
-    facing = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0] > 0  # the others are hidden behind these
-    order = np.flatnonzero(facing)[np.argsort(-depth[whole.faces[facing]].mean(axis=1), kind="stable")]
+    order = np.argsort(-depth[whole.faces].mean(axis=1), kind="stable")
     colours = np.column_stack([_lit(whole, camera), np.ones(len(whole.vertices))])
     renderer = RendererAgg(fine[0], fine[1], 72.0)  # type: ignore[no-untyped-call]
     gc = renderer.new_gc()
@@ -73,7 +71,7 @@ def _drawn(meshes: Sequence[Mesh], camera: Camera, size: tuple[int, int]) -> np.
     if len(order):
         shades = colours[whole.faces[order]]
         renderer.draw_gouraud_triangles(gc, corner[order], shades, IdentityTransform())
-    found = np.asarray(renderer.buffer_rgba())[..., :3]  # white where nothing is
+    found = np.asarray(renderer.buffer_rgba())[..., :3]  # type: ignore[no-untyped-call]  # white where nothing is
     first_rows, *rest = (found[i::_FINER, j::_FINER] for i in range(_FINER) for j in range(_FINER))
     total = sum((part.astype(np.float32) for part in rest), first_rows.astype(np.float32))
     return total / _FINER**2
@@ -83,10 +81,11 @@ def _lit(mesh: Mesh, camera: Camera) -> np.ndarray:
     """Return the colours of a mesh under a high light from behind the camera's left shoulder, (n, 3) [0 to 1]."""
     axes = camera.axes
     normal, light = normals(mesh), axes.T @ _LIGHT
+    normal *= np.where(normal @ axes[2] < 0, -1.0, 1.0)[:, None]  # where a surface is open its other side is seen
     half = light + axes[2]
     half /= np.linalg.norm(half)
     straight = np.clip(normal @ light, 0.0, 1.0)[:, None]
     glint = np.clip(normal @ half, 0.0, 1.0)[:, None] ** 40
-    facing = np.clip(normal @ axes[2], 0.0, 1.0)[:, None]
+    facing = (normal @ axes[2])[:, None]
     shown = mesh.colours * (0.45 + 0.45 * straight + 0.2 * facing) + 0.2 * glint
     return np.clip(shown, 0.0, 1.0)

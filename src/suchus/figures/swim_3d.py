@@ -113,7 +113,7 @@ def draw_tails(record: xr.Dataset) -> Figure:
         figure,
         f"Mean speed of each cycle on {float(record.compared_cells):.0f} cells a length at f L² / ν = "
         f"{float(record.reynolds):.0f}. Left: the last third of the body raised to a fin as thick as the tail. Right: "
-        "the motions of trunk and tail alone, and the printed direction of (20).",
+        "the motions of trunk and tail alone, the printed direction of (20), and the limbs folded back.",
     )
 
 

@@ -65,6 +65,11 @@ GROUPS = (
         "from step to step.",
         cases=("free eel", "tethered eel", "held eel"),
     ),
+    Group(
+        title="In three dimensions",
+        about="The robot of `suchus run swim_3d`, free in its own box of water and in a wide one: what the sides do.",
+        cases=("swimming robot",),
+    ),
 )
 """The groups of the page in their order; a case that none of them names is in a last group."""
 

@@ -83,7 +83,7 @@ def colour_limit(record: xr.Dataset) -> float:
 def _camera(record: xr.Dataset) -> Camera:
     x, y = record.film_x.values, record.y.values
     length, middle = float(np.ptp(x[0])), 0.5 * float(x.min() + x.max())
-    target, width = (middle + 0.1 * length, -0.03 * length, 0.0), 1.2 * length + 0.25 * float(np.ptp(y))
+    target, width = (middle + 0.26 * length, -0.14 * length, 0.0), 1.2 * length + 0.25 * float(np.ptp(y))
     return Camera(azimuth=-1.05, elevation=0.62, distance=3.2 * length, target=target, width=width)
 
 

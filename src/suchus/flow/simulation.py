@@ -32,6 +32,7 @@ from suchus.flow.record import Record
 from suchus.flow.setup import Setup
 from suchus.flow.shape import Markers
 from suchus.flow.solid import Skin, SpaceShape
+from suchus.flow.trunk import Trunk
 from suchus.flow.watch import EVERY, Watch
 from suchus.flow.water import Water
 
@@ -97,6 +98,7 @@ class Simulation(Fields):
         self._watch.layers(
             [setup.layer_error(b, m, stream, 0.0) for b, m in zip(setup.bodies, outlines, strict=True)]
         )  # fmt: skip
+        self._afar: list[list[FarBody]] = []  # of each body in space, what it counts as from afar
         self._see_from_afar(outlines)
         self._motions = [self._watched(b) for b in setup.bodies if isinstance(b, Body) and callable(b.motion)]
 
@@ -107,30 +109,40 @@ class Simulation(Fields):
             return
         for k, (body, skin) in enumerate(zip(self.setup.bodies, outlines, strict=True)):
             assert isinstance(body.shape, SpaceShape)
+            if isinstance(body.shape, Trunk):
+                count = len(body.shape.from_afar(0.0, self.pose(body.name), self._stream(0.0))[0])
+                self._afar.append([FarBody(*np.zeros((2, 3)), np.zeros((3, 3))) for _ in range(count)])
+                continue
             pose = self._in_frame(self.pose(body.name))
             added, turn = added_mass(self.water, skin, pose.position, 1.0, k)[:3, :3], turned(pose.angle)
             mass = body.shape.volume(0.0) * np.eye(3) + turn.T @ np.nan_to_num(added) @ turn
-            far.bodies.append(FarBody(np.zeros(3), np.zeros(3), mass))
+            self._afar.append([FarBody(np.zeros(3), np.zeros(3), mass)])
+        far.bodies += [one for parts in self._afar for one in parts]
         self._move_afar([self._in_frame(self.pose(b.name)) for b in self.setup.bodies], self._stream(0.0), 0.0)
 
     def _move_afar(self, poses: list[Pose], stream: tuple[float, ...], time: float) -> None:
         """Tell the sides of a domain in space where the bodies are."""
-        far = self.water.border.far
-        if far is not None:
-            for one, body, pose in zip(far.bodies, self.setup.bodies, poses, strict=True):
+        if self.water.border.far is None:
+            return
+        for parts, body, pose in zip(self._afar, self.setup.bodies, poses, strict=True):
+            if isinstance(body.shape, Trunk):
+                for one, place, dipole in zip(parts, *body.shape.from_afar(time, pose, stream), strict=True):
+                    one.place, one.dipole = place, dipole
+            else:
                 place, velocity = middle_of(body, pose, time)
-                one.move(place, pose.angle, velocity - stream)
+                parts[0].move(place, pose.angle, velocity - stream)
 
     def _drag_afar(self, poses: list[Pose], acts: Sequence[Reaction], outlines: Sequence[Markers | Skin]) -> None:
         """Let the sides of a domain in space know the drag, from the second step on: the first has the start's jolt."""
         far, dt = self.water.border.far, self._last
         if far is None or not self._log.rows:
             return
-        for one, body, pose, act, skin in zip(far.bodies, self.setup.bodies, poses, acts, outlines, strict=True):
+        for parts, body, pose, act, skin in zip(self._afar, self.setup.bodies, poses, acts, outlines, strict=True):
             through = middle_of(body, pose, self.time)[1] - self.water.border.stream
             extent = float(np.ptp(skin.points, axis=1).max())
             share = 1 - exp(-dt * length(through) / extent)
-            one.drag(np.array(act.force) / self.setup.density, through, share)
+            for one in parts:
+                one.drag(np.array(act.force) / (self.setup.density * len(parts)), through, share)
 
     def _watched(self, body: Body) -> Consistency:
         pose = body.pose(0.0).along(self.axes)

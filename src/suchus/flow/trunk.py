@@ -15,6 +15,9 @@ from suchus.flow.pose import Pose
 from suchus.flow.sections import PAINTED, paint_sections
 from suchus.flow.solid import Skin, SpaceField, SpaceShape
 
+DIPOLES = 12
+"""Stretches that count as a dipole each from afar: shorter than the sides are away [-]."""
+
 MOST_PARTS = 64
 """Parts that a body may be divided into [-]; those of all bodies are counted in one byte."""
 
@@ -145,6 +148,30 @@ class Trunk(SpaceShape):
     def mass(self, time: float) -> SpaceMass:
         """Return volume, centre and moments, section by section."""
         return of_trunk(self._spine(time).rows, self.half_height)
+
+    def from_afar(self, time: float, pose: Pose, stream: tuple[float, ...]) -> tuple[np.ndarray, np.ndarray]:
+        """Return where ``DIPOLES`` stretches are and their dipoles, each of shape (stretch, 3) [m, m^4/s].
+
+        A section of a slender body that moves across its axis carries on the water of an ellipse's added mass, the
+        square of its extent across the motion times pi; along the axis it carries none.
+        Source: Lighthill 1960, J. Fluid Mech. 9, 305-317.
+
+        Args:
+            time: when [s].
+            pose: of the body's frame.
+            stream: velocity of the far water [m/s].
+        """
+        spine, place = self.placed(time, pose), pose.along(3)
+        x, y, heading, wide, u, v, _ = 0.5 * (spine.rows[:, 1:] + spine.rows[:, :-1])
+        high, ds = 0.5 * (self.half_height[1:] + self.half_height[:-1]), np.diff(spine.arc)
+        u, v, w = u - stream[0], v - stream[1], place.velocity[2] - stream[2]
+        aside = np.pi * high**2 * (v * np.cos(heading) - u * np.sin(heading))
+        held, up = np.pi * wide * high, np.pi * wide * (high + wide)
+        dipole = ds * np.stack([held * u - aside * np.sin(heading), held * v + aside * np.cos(heading), up * w])
+        first = np.linspace(0, ds.size, min(DIPOLES, ds.size), endpoint=False).astype(int)
+        middle = np.add.reduceat(np.stack([x, y]) * ds, first, axis=1) / np.add.reduceat(ds, first)
+        height = np.full((1, first.size), place.position[2])
+        return np.concatenate([middle, height]).T, np.add.reduceat(dipole, first, axis=1).T
 
     def at(self, time: float, pose: Pose, arc: np.ndarray) -> np.ndarray:
         """Return where the midline is at arc lengths [m], in the world, shape (point, 2) [m]."""

@@ -6,7 +6,9 @@ from jaxtyping import Float
 from scipy.optimize import brentq
 
 from suchus.design import AnyRobot
+from suchus.design.hull import Hull
 from suchus.design.pieces import pieces
+from suchus.errors import InvalidDesign
 from suchus.hydro import column, unpacked
 from suchus.hydro.forces import hydrostatic
 from suchus.land import wetting
@@ -25,6 +27,26 @@ def capacity(robot: AnyRobot, lake: Lake) -> tuple[float, float]:
     table = pieces(robot)
     lost = (1 - lake.at(0.0)[1]) * column(table, "air").sum()
     return float(column(table, "volume").sum() - lost), robot.mass / lake.water.density
+
+
+def check_floats(robot: AnyRobot, lake: Lake) -> None:
+    """Refuse a robot that is heavier than the water that it displaces.
+
+    Args:
+        robot: the design.
+        lake: the water, as it is at the beginning.
+
+    Raises:
+        InvalidDesign: it sinks; the message says by how much, and what foam is missing.
+    """
+    volume, weight = capacity(robot, lake)
+    if volume < weight:
+        surplus, foam = (weight - volume) * lake.water.density, Hull(foam=()).density
+        raise InvalidDesign(
+            f"robot {robot.name!r} sinks: it is {1e3 * surplus:.0f} g heavier than the water that it displaces; give "
+            f"it a design.Hull with at least {1e3 * surplus / (lake.water.density - foam):.2f} l more foam, as "
+            "design.flotation.float_hull makes, or keep more of its air."
+        )
 
 
 def surfaced(

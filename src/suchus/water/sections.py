@@ -19,7 +19,10 @@ from scipy.interpolate import RegularGridInterpolator
 
 from suchus.atlas import sections
 from suchus.atlas.outcome import Outcome
+from suchus.atlas.published import published
+from suchus.design.water import Water
 from suchus.errors import InvalidDesign, UnreadableFile
+from suchus.flow import morison
 from suchus.record import new_file
 
 TABLE = Path(__file__).parent / "data" / "sections.csv"
@@ -73,6 +76,47 @@ def attached(keulegan: float, stokes: float = sections.STOKES) -> tuple[float, f
     thin = 1.0 / sqrt(pi * stokes)
     drag = 1.5 * pi**3 / keulegan * (thin + thin**2 - 0.25 * thin**3)
     return drag, 1.0 + 4.0 * thin + thin**3
+
+
+def likely(
+    half_width: Float[np.ndarray, " s"], half_height: Float[np.ndarray, " s"], amplitude: Float[np.ndarray, " s"]
+) -> tuple[float, float]:
+    """Return by what factors the table's coefficients differ from a swim's own, over the sections of a body [-].
+
+    Of the table's coefficients that is taken which an attached viscous layer adds at its number of Stokes and not at a
+    robot's. Each section counts for drag as the power that drag takes from it, and for added mass as its kinetic
+    energy; outside the table the nearest of its aspects and Keulegan numbers counts.
+
+    Args:
+        half_width: of equally spaced sections [m].
+        half_height: of them [m].
+        amplitude: of their motion to the side [m].
+
+    Returns:
+        Factors on ``Water.cross_drag`` and on the added mass of ideal water.
+    """
+    solid = (half_width > 0.0) & (half_height > 0.0)  # an end that comes to a point has no section
+    half_width, half_height, amplitude = half_width[solid], half_height[solid], amplitude[solid]
+    aspect = np.clip(half_height / half_width, sections.ASPECTS[0], sections.ASPECTS[-1])
+    keulegan = np.clip(pi * amplitude / half_height, sections.KEULEGANS[0], sections.KEULEGANS[-1])
+    found = np.array([coefficients(float(a), float(k)) for a, k in zip(aspect, keulegan, strict=True)])
+    layer = np.array([attached(float(k)) for k in keulegan])
+    drag, added = np.maximum(found[:, 0] - layer[:, 0], 0.0), found[:, 1] - layer[:, 1] + 1.0
+    power, energy = half_height * amplitude**3, (half_height * amplitude) ** 2
+    return float(np.average(drag, weights=power)) / Water().cross_drag, float(np.average(added, weights=energy))
+
+
+def measured(instants: int = 200) -> tuple[float, float]:
+    """Return Cd and Ca of a round section at KC 5, Re 100, fitted to the published force over a period [-].
+
+    Args:
+        instants: at which the published curve is read, linear in between.
+
+    Source: Dütsch, Durst, Becker and Lienhart 1998, J. Fluid Mech. 360, 249-271, fig. 10, as ``atlas`` ships it.
+    """
+    curve, keulegan, time = published("duetsch1998_force"), 5.0, np.arange(instants) / instants
+    force = np.interp(time, curve.values("t_over_period"), curve.values("force"), period=1.0)
+    return morison(time, keulegan**2 * force, frequency=1.0, speed=keulegan, diameter=1.0, density=1.0)
 
 
 def write_table(outcomes: Mapping[str, Outcome], path: Path = TABLE) -> str:
