@@ -122,7 +122,7 @@ RULES = (
         band=_cycles("gain_tail_swim", _LAST),
         why="The limbs are left out, here as in the article. Trunk and tail together reach {speed_trunk_and_tail:.3f} "
         "m/s, the trunk alone {speed_trunk_only:.3f}: without the swing of the tail {gain_tail_swim_share:.0%} of the "
-        "speed are missing.",
+        "speed is missing.",
         unswept=_UNSWEPT,
     ),
     Rule(
