@@ -216,9 +216,9 @@ def _swum_here(robot: Crocodile, keep: str, item: Item, progress: Callable[[floa
 def _replays(record: xr.Dataset) -> dict[str, Replay]:
     """Return the page on which the body swims through its last cycle on the finest grid, vortices around it."""
     told = (
-        f"The body of the robot in three dimensions at f L² / ν = {float(record.reynolds):.0f}, on {int(record.cells[-1])} "
-        f"cells a length, in its last cycle. Surfaces lie where the second invariant of the velocity gradient is "
-        f"{float(record.vortex_level):.3g} 1/s², around vortices."
+        f"The body of the robot in three dimensions at f L² / ν = {float(record.reynolds):.0f}, on "
+        f"{int(record.cells[-1])} cells a length, in its last cycle. Surfaces lie where the second invariant of the "
+        f"velocity gradient is {float(record.vortex_level):.3g} 1/s², around vortices."
     )
     page = partial(wake_replay, record, title="Vortices around the swimming robot", caption=told)
     return {"swim_3d_replay.html": Replay(caption=told, make=page)}
