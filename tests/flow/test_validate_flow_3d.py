@@ -244,5 +244,5 @@ def test_the_box_around_the_swimming_robot(monkeypatch):
     print(f"robot at 64 cells a length, 4th cycle, speed and power in its box {found['default']}, wide {found['wide']}")
     about = "64 cells/L", "ahead, behind, beside, above {:g}, {:g}, {:g}, {:g} L".format(*default)
     for quantity, own, wide in zip(("speed, m/s", "power, W"), *found.values(), strict=True):
-        note("swimming robot", quantity, own, float(wide), *about, "box of 0.4, 0.85, 0.575, 0.4 L")
+        note("swimming robot", quantity, own, float(wide), *about, "the same in 0.4, 0.85, 0.575, 0.4 L")
     assert found["default"] == pytest.approx(found["wide"], rel=0.01)
