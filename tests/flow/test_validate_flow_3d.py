@@ -229,11 +229,14 @@ def test_mirror_and_full_domain_over_half_a_stroke():
 
 
 def test_the_box_around_the_swimming_robot(monkeypatch):
-    """The robot free from rest at 64 cells a length, its default box and others: the asked 1 % of the speed."""
+    """The robot free from rest at 64 cells a length, its default box and a wide one: the asked 1 % of the speed.
+
+    In both it lies alike between the nodes: half a cell farther along, in a box of the same size, it is 0.7 % slower.
+    """
     swim, sizes, found = Swim3d(), ("AHEAD", "BEHIND", "BESIDE", "ABOVE"), {}
     motion, basin = swim._motion(-1), space.Basin(cells=64, viscosity=swim.viscosity, cycles=4)
     default = tuple(getattr(space, name) for name in sizes)
-    for label, box in (("default", default), ("wide", (0.5, 0.8, 0.6, 0.45))):
+    for label, box in (("default", default), ("wide", (0.4, 0.85, 0.575, 0.4))):
         for name, size in zip(sizes, box, strict=True):
             monkeypatch.setattr(space, name, size)
         record = space.swim_in_space(swim.robot, motion, basin, progress=lambda _: None)
@@ -241,5 +244,5 @@ def test_the_box_around_the_swimming_robot(monkeypatch):
     print(f"robot at 64 cells a length, 4th cycle, speed and power in its box {found['default']}, wide {found['wide']}")
     about = "64 cells/L", "ahead, behind, beside, above {:g}, {:g}, {:g}, {:g} L".format(*default)
     for quantity, own, wide in zip(("speed, m/s", "power, W"), *found.values(), strict=True):
-        note("swimming robot", quantity, own, float(wide), *about, "box of 0.5, 0.8, 0.6, 0.45 L")
+        note("swimming robot", quantity, own, float(wide), *about, "the same in 0.4, 0.85, 0.575, 0.4 L")
     assert found["default"] == pytest.approx(found["wide"], rel=0.01)

@@ -111,7 +111,7 @@ class Simulation(Fields):
             assert isinstance(body.shape, SpaceShape)
             if isinstance(body.shape, Trunk):
                 count = len(body.shape.from_afar(0.0, self.pose(body.name), self._stream(0.0))[0])
-                self._afar.append([FarBody(*np.zeros((2, 3)), np.zeros((3, 3))) for _ in range(count)])
+                self._afar.append([FarBody(np.zeros(3), np.zeros(3), np.zeros((3, 3))) for _ in range(count)])
                 continue
             pose = self._in_frame(self.pose(body.name))
             added, turn = added_mass(self.water, skin, pose.position, 1.0, k)[:3, :3], turned(pose.angle)
