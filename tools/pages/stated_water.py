@@ -131,6 +131,8 @@ def _space(m: Mapping[str, float]) -> str:
     tails = [name.removeprefix("speed_") for name in m if name.startswith("speed_tail_") and name != "speed_tail_only"]
     high = {name: f"last third {name.removeprefix('tail_').replace('_', '.')} m high" for name in sorted(tails)}
     for name, called in (motions | high).items():
+        if f"speed_{name}" not in m:  # kept measures from before these swims
+            continue
         cells = millimetres[f"speed_{name}"], f"{m[f'speed_gain_{name}']:+.0%}", f"{m[f'cost_of_transport_{name}']:.2g}"
         lines.append(f"| {called} | {' | '.join(cells)} |")
     most = max(value for name, value in m.items() if name.startswith("servo_load_peak"))
