@@ -91,7 +91,8 @@ class Swim3d(Experiment):
         with Checks(self.name(), self) as check:
             check.number("frequency", 0.01, 20.0, "Hz")
             check.number("beside", 0.0, 3.0, "body lengths")
-            if isinstance(self.reynolds, (int, float)) and self.reynolds > MOST_REYNOLDS:
+            reynolds: Any = self.reynolds  # a file may say anything
+            if isinstance(reynolds, (int, float)) and reynolds > MOST_REYNOLDS:
                 check.that(False, f"{self.name()}.reynolds is {self.reynolds:.3g}: real water, 1e6 at 1 Hz and 1 m, "
                            "would need to slip along the body, with a friction law, and that is not built; at most "
                            f"{MOST_REYNOLDS:.0f} is allowed, whose layers a grid carries")  # fmt: skip
