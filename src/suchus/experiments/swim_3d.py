@@ -81,7 +81,7 @@ class Swim3d(Experiment):
     keep: str = ""
     """Folder for finished swims, and for how far unfinished ones have come, from which an interrupted run goes on;
     empty keeps nothing."""
-    jobs: int = 1
+    jobs: int = 2
     """Swims that are computed side by side, in processes that share the threads of this machine [-]."""
     scheduler: str = ""
     """Address of a Dask scheduler whose workers compute the swims, as tcp://127.0.0.1:8786; empty: they are computed
@@ -114,7 +114,7 @@ class Swim3d(Experiment):
         """A coarse grid, a thick water, two cycles."""
         return replace(
             self, cells=(56,), compared_cells=56, slice_cells=40, cycles=2, compared_cycles=2, reynolds=3000.0,
-            tail_heights=(), frames=4,
+            tail_heights=(), frames=4, jobs=1,
         )  # fmt: skip
 
     def simulate(self, progress: Progress = silent) -> Simulated:
