@@ -33,9 +33,9 @@ def begun(task, count=1, seed=0):
 
 def shifted(pack, by):
     """Put every robot of a pack elsewhere, by a vector [m], and bring the readings up to date."""
-    pack._bench.qpos[:, :3] += by
-    pack._bench.batch.forward()
-    pack._bench.read(slice(None))
+    pack._batch.qpos[:, :3] += by
+    pack._batch.physics.forward()
+    pack._batch.read(slice(None))
 
 
 @pytest.mark.parametrize("name", ["Swim", "Shore"])
@@ -65,7 +65,7 @@ def test_an_episode_after_others_is_the_first_of_a_fresh_batch_to_the_byte(task)
     used, fresh = begun(task, 2), Pack(task, 2)
     for _ in range(3):
         used.act(np.ones((2, 19)), np.ones(2, dtype=bool))
-    floated = used._bench.qpos[0, :3].copy()
+    floated = used._batch.qpos[0, :3].copy()
     for pack in (used, fresh):
         pack.restart([1], [np.random.default_rng(7)])
         first = pack.record(1)
@@ -73,9 +73,9 @@ def test_an_episode_after_others_is_the_first_of_a_fresh_batch_to_the_byte(task)
         for _ in range(4):
             pack.act(np.full((2, 19), 0.2), np.array([False, True]))
     np.testing.assert_array_equal(used.feel()[1], fresh.feel()[1])
-    np.testing.assert_array_equal(used._bench.qpos[1], fresh._bench.qpos[1])
-    np.testing.assert_array_equal(used._bench.water[1], fresh._bench.water[1])
-    np.testing.assert_array_equal(used._bench.qpos[0, :3], floated)  # the other one waits meanwhile
+    np.testing.assert_array_equal(used._batch.qpos[1], fresh._batch.qpos[1])
+    np.testing.assert_array_equal(used._batch.water[1], fresh._batch.water[1])
+    np.testing.assert_array_equal(used._batch.qpos[0, :3], floated)  # the other one waits meanwhile
 
 
 def test_equal_seeds_give_equal_goals_and_others_do_not():
@@ -90,7 +90,7 @@ def test_equal_seeds_give_equal_goals_and_others_do_not():
 def test_the_goal_is_seen_in_the_frame_of_the_root():
     pack = begun(replace(SWIM, jitter=0.0))
     turn = Rotation.from_euler("zyx", [0.7, -0.2, 0.1])
-    pack._bench.qpos[0, 3:7] = turn.as_quat(scalar_first=True)
+    pack._batch.qpos[0, 3:7] = turn.as_quat(scalar_first=True)
     shifted(pack, np.zeros(3))
     centre = pack._read("centre_of_mass")[0, :2]
     pack._goals[0] = centre + 0.9 * np.array([0.6, 0.8])
@@ -211,7 +211,7 @@ def test_an_episode_ends_ashore_beyond_the_line_and_not_before(short_of, reached
 def test_a_robot_that_rolls_over_at_the_goal_has_not_reached_it():
     pack = begun(replace(SWIM, goal=envs.Goal(distance=0.2, within=0.19)))
     pack._goals[0] = pack._read("centre_of_mass")[0, :2]
-    pack._bench.qpos[0, 3:7] = [0, 1, 0, 0]
+    pack._batch.qpos[0, 3:7] = [0, 1, 0, 0]
     terms = pack.act(np.zeros((1, 19)), np.ones(1, dtype=bool))
     assert (terms.fall[0], terms.goal[0], terms.over[0]) == (True, False, True)
     assert "it rolled over" in pack.causes[0]
@@ -220,7 +220,7 @@ def test_a_robot_that_rolls_over_at_the_goal_has_not_reached_it():
 def test_servos_lose_torque_with_speed_in_water_too():
     assert SWIM.speed_lines
     assert SHORE.speed_lines
-    model = Pack(SWIM, 1)._bench.model
+    model = Pack(SWIM, 1)._batch.model
     joint = with_speed_lines(SWIM.robot).servo("LF_yaw").damping
     assert model.joint("LF_yaw").damping[0] == pytest.approx(joint)
     assert joint > SWIM.robot.servo("LF_yaw").damping

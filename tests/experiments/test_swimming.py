@@ -13,7 +13,7 @@ from suchus.paper import ERRATA
 from suchus.water import fit, printed_wave, swim
 
 
-def _no_arms(self, ours, printed, free, progress):
+def _no_conditions(self, ours, printed, free, progress):
     """Stand in for five more swims that are kept as the first is."""
     speed = np.ones((len(ARMS), self.arm_cycles))
     data = xr.Dataset({"arm_speed": (("arm", "cycle"), speed)})
@@ -22,7 +22,7 @@ def _no_arms(self, ours, printed, free, progress):
 
 def test_what_was_finished_is_kept_and_the_rest_goes_on(tmp_path, monkeypatch):
     quick = EXPERIMENTS["swimming"].quick()
-    monkeypatch.setattr(Swimming, "_arms", _no_arms)
+    monkeypatch.setattr(Swimming, "_conditions", _no_conditions)
     experiment, seen = replace(quick, keep=str(tmp_path), readings=(), frames=1), []
 
     def interrupted(stage, share):
@@ -134,7 +134,7 @@ def test_midlines_as_taken_swim_beside_those_commanded(monkeypatch):
     assert record.taken_speed.values[:, -1] == pytest.approx([0.1, 0.2])
     # the tail alone folds more than the whole body; neither is what was commanded
     assert 0.1 < float(record.taken_away[0]) < float(record.taken_away[1]) < 1.5
-    arms = _no_arms(quick, None, None, None, None)
+    arms = _no_conditions(quick, None, None, None, None)
     told = dict(findings._compared(xr.merge([arms, record])))
     assert told["speed_tail_only_as_taken"].value == pytest.approx(0.2)
     assert told["misfit_trunk_and_tail_as_taken"].value == float(record.taken_away[0])

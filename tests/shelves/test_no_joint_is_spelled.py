@@ -40,10 +40,11 @@ WHERE = {
     "LH_pitch": {"experiments/joint_loops.py"},
 }
 COLUMNS = {
+    "experiments/swim_3d.py": "letters of a digest",
     "flow/cache.py": "hexdigest",
     "hydro/forces.py": "rows of the table of pieces and of inertia",
-    "hydro/kernel.py": "rows of inertia",
     "design/pieces.py": "a row of the table of pieces",
+    "record/provenance.py": "letters of a digest",
     "study/makers.py": "letters of a digest",
     "study/claims_table.py": "letters of a digest",
 }

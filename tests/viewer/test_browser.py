@@ -135,7 +135,7 @@ def test_a_walk_is_watched_steered_and_broken_in_two_browsers_that_do_not_distur
 
     press(first, "make it limp")
     wait_for(lambda: mine.settings.broken == (Limp("LF_yaw"),))
-    wait_for(lambda: shown(first, "lost") == "LF yaw limp")
+    wait_for(lambda: shown(first, "failed") == "LF yaw limp")
 
     second = tabs(watched.viewer.url)
     second.locator('[data-suchus="forward"]').wait_for(state="attached")
