@@ -17,7 +17,7 @@ from suchus.flow.compiled import compiled, threaded
 from suchus.flow.slab import inner_strides
 
 PIECES = (
-    (water, "advance immerse collect swelling contents mean_residual residual correct fastest fill fill_source"),
+    (water, "advance immerse collect dilatation_work contents mean_residual residual correct fastest fill fill_source"),
     (water.Water, "step place _measure _clear"),
     (poisson, "solve"),
     (multigrid, "coarsen spread"),

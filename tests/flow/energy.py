@@ -50,7 +50,7 @@ class Stage:
     out: list[np.ndarray]
     blend: list[np.ndarray]
     pressure: np.ndarray
-    swelling: float
+    dilatation_work: float
     dt: float
     keep: float
     moments: list[np.ndarray]
@@ -72,9 +72,9 @@ class Spy:
         inside = list(w.mu0 < 1)
         for touched, mu1 in zip(inside, w.mu1, strict=True):
             touched[w.here] |= (mu1 != 0).any(axis=0)
-        swelling = float((w.p[w.here].astype(float) * w.source).sum())
+        dilatation_work = float((w.p[w.here].astype(float) * w.source).sum())
         copies = [list(vector.astype(float)) for vector in (stage.out, stage.blend)]
-        self.stages.append(Stage(*copies, w.p.astype(float), swelling, float(dt), float(stage.keep), inside))
+        self.stages.append(Stage(*copies, w.p.astype(float), dilatation_work, float(dt), float(stage.keep), inside))
 
 
 def limited(far, near, ahead):
@@ -138,7 +138,7 @@ def of_step(budget, sim, spy, before):
     for k in range(2):
         of_component(budget, k, spy.stages, (before, now), before, float(w.nu), body)
     for stage in spy.stages:
-        budget.pressure += 0.5 * stage.dt * stage.swelling
+        budget.pressure += 0.5 * stage.dt * stage.dilatation_work
     budget.cells += spy.stages[0].dt * float(w.nu) * 0.5 * (strain(*before) + strain(*now))
     spy.stages.clear()
     return now

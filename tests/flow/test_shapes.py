@@ -110,18 +110,18 @@ def test_a_blunted_eel_keeps_its_head_and_gets_a_round_tail():
     assert (blunt.half_width >= sharp.half_width).all()
 
 
-def test_the_sheet_of_a_tail_ends_where_its_tip_is_round():
+def test_the_centreline_of_a_tail_ends_where_its_tip_is_round():
     """It goes on to a sharp tip; in a round one it would close faces that the kernel leaves open."""
-    arc, (x, _) = _eel(0.3).arc, flow.eel(1.0).sheet(0.3, STILL)
+    arc, (x, _) = _eel(0.3).arc, flow.eel(1.0).centreline(0.3, STILL)
     assert arc[-1] - np.interp(x[-1], _eel(0.3).x, arc) < 1e-3
     assert x[0] > 0.04  # the head is round
     least = 0.02
     blunt = flow.Midline(spine=lambda t: _eel(t).thickened(least))
-    spine, (x, _) = blunt.spine(0.3), blunt.sheet(0.3, STILL)
+    spine, (x, _) = blunt.spine(0.3), blunt.centreline(0.3, STILL)
     assert spine.arc[-1] - np.interp(x[-1], spine.x, spine.arc) == pytest.approx(least, abs=2e-3)
-    assert flow.Cylinder(diameter=1.0).sheet(0.0, STILL) is None
+    assert flow.Cylinder(diameter=1.0).centreline(0.0, STILL) is None
     ellipse = flow.Ellipse(length=2.0, width=0.4)
-    (_, reach), _ = ellipse.sheet(0.0, STILL)
+    (_, reach), _ = ellipse.centreline(0.0, STILL)
     assert 0.2 * np.sqrt(1 - reach**2) == pytest.approx(1 - reach, abs=1e-9)  # as wide there as far from the tip
 
 

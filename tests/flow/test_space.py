@@ -12,8 +12,8 @@ from suchus.errors import InvalidDesign, OutsideLimits, UnknownName
 from suchus.flow import memory
 from suchus.flow.added import added_mass
 from suchus.flow.compiled import PAD
-from suchus.flow.exchange import Reaction
 from suchus.flow.farfield import FarBody, FarField
+from suchus.flow.momentum import Reaction
 from suchus.flow.watch import vorticity_size
 from suchus.flow.water import Water
 

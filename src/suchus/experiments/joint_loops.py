@@ -1,4 +1,4 @@
-"""What does an integral term buy the joint loops, and what does it cost?"""
+"""What does an integral term in the joint controllers improve, and what does it cost?"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -37,7 +37,7 @@ class JointLoops(Experiment):
     It needs a robot one of whose servos turns the named joint directly, and a gait that the robot can crawl.
     """
 
-    title = "What does an integral term buy the joint loops, and what does it cost?"
+    title = "What does an integral term in the joint controllers improve, and what does it cost?"
     shows = "Section III.D, Fig. 10"
     needs = ("limbs",)
     judged_with = ("robot", "gait", "joint", "step")

@@ -48,7 +48,7 @@ class Swim3d(Experiment):
     straight back and higher tails swim on ``compared_cells``.
     """
 
-    title = "How does the robot's own body swim in three dimensions, and what does a higher tail do?"
+    title = "How fast does the robot's own body swim in three dimensions, and what does a higher tail change?"
     shows = "Beyond the article: Section IV.B, whose flow is a slice"
     needs = ("tables", "article_spine", "cable_tail")
     reproduces: ClassVar[bool] = False
@@ -216,13 +216,13 @@ def _swum_here(robot: Crocodile, keep: str, item: Item, progress: Callable[[floa
 
 def _replays(record: xr.Dataset) -> dict[str, Replay]:
     """Return the page on which the body swims through its last cycle on the finest grid, vortices around it."""
-    told = (
+    caption = (
         f"The body of the robot in three dimensions at f L² / ν = {float(record.reynolds):.0f}, on "
         f"{int(record.cells[-1])} cells a length, in its last cycle. Surfaces lie where the second invariant of the "
         f"velocity gradient is {float(record.vortex_level):.3g} 1/s², around vortices."
     )
-    page = partial(wake_replay, record, title="Vortices around the swimming robot", caption=told)
-    return {"swim_3d_replay.html": Replay(caption=told, make=page)}
+    page = partial(wake_replay, record, title="Vortices around the swimming robot", caption=caption)
+    return {"swim_3d_replay.html": Replay(caption=caption, make=page)}
 
 
 experiment = Swim3d()

@@ -19,7 +19,7 @@ def added_mass(
     """Return the added mass for accelerations along each axis and about a point, shape (axes + 1, axes + 1).
 
     The bodies must have been placed; ``body`` counts them. The force of mode k is ``-Ma[:, k]`` per unit
-    acceleration; other bodies stay still. In space the turning is that about z. It is what ``exchange`` would find: the
+    acceleration; other bodies stay still. In space the turning is that about z. It is what ``momentum`` would find: the
     momentum that the immersion gives to the water. Units: kg/m in the plane and kg in space for the translations, times
     m between them and the turning, times m^2 for the turning. Where the sides move as in open water it is that of open
     water, in space with the body as a dipole in ``about``. What lies beyond mirrors is counted, and motions through a
@@ -124,9 +124,9 @@ def _from_afar(water: Water, about: tuple[float, ...], momentum: np.ndarray) -> 
     if far is None:
         return []
     body = FarBody(np.array(about, float), momentum[:3], np.zeros((3, 3)))
-    sides = [far.of(body, e.axis, e.low) if e.endless else np.zeros(e.prescribed.shape) for e in edges]
-    level = sum(float(side.sum()) for side in sides) / sum(e.prescribed.size for e in edges if e.endless)
-    return [side - e.endless * level for side, e in zip(sides, edges, strict=True)]
+    sides = [far.of(body, e.axis, e.low) if e.unbounded else np.zeros(e.prescribed.shape) for e in edges]
+    level = sum(float(side.sum()) for side in sides) / sum(e.prescribed.size for e in edges if e.unbounded)
+    return [side - e.unbounded * level for side, e in zip(sides, edges, strict=True)]
 
 
 def _in_open_water(

@@ -10,7 +10,7 @@ from suchus.errors import InvalidDesign
 from suchus.flow.compiled import PAD, Window
 from suchus.flow.free import FreeBody
 from suchus.flow.grid import Grid
-from suchus.flow.immerse import REACH, THINNEST, THINNEST_SHEET
+from suchus.flow.immerse import REACH, THINNEST, THINNEST_WITH_CENTRELINE
 from suchus.flow.pose import Motion, Pose
 from suchus.flow.shape import Field, Shape
 from suchus.flow.solid import SpaceField, SpaceShape
@@ -194,7 +194,7 @@ def thin_share(body: AnyBody, grid: Grid, time: float) -> float:
     """
     station, thickness = body.shape.thickness(time)
     least, most = THINNEST * grid.cell, float(thickness.max())
-    needed = THINNEST if body.shape.sheet(time, Pose()) is None else THINNEST_SHEET
+    needed = THINNEST if body.shape.centreline(time, Pose()) is None else THINNEST_WITH_CENTRELINE
     if most < needed * grid.cell:
         raise InvalidDesign(
             f"{body.name} is {most:.4g} m thick at most, {most / grid.cell:.2g} cells of {grid.cell:.4g} m; at least "

@@ -104,7 +104,7 @@ class Edge:
     """Cells along the normal [-]."""
     prescribed: np.ndarray
     """Velocity into the domain on the side's faces, the last axis first [m/s]."""
-    endless: bool
+    unbounded: bool
     """Whether the side is one of an unbounded domain."""
     leaves: float = 0.0
     """Share of this step in which water is carried out here instead of held to the far water [-]."""
@@ -151,7 +151,7 @@ class Edge:
                 for a in lines:
                     a[to] = a[source]
             return
-        straight = isinstance(self.side, Wall | Slip | Mirror) or (self.endless and not self.leaves)
+        straight = isinstance(self.side, Wall | Slip | Mirror) or (self.unbounded and not self.leaves)
         beyond = [self._along(k, d, step, stream) for k, d in enumerate(others)]
         how = beyond[0][0]
         values = tuple(n.dtype.type(value) for _, value in beyond)
@@ -173,7 +173,7 @@ class Edge:
             return _MIRRORED, self.side.along(len(stream))[k]
         if isinstance(self.side, Inflow):
             return _MIRRORED, 0.0
-        if self.endless and not self.leaves:
+        if self.unbounded and not self.leaves:
             return _FREE_OF_VORTICITY, 0.0
         if isinstance(self.side, Stream) and step * stream[self.axis] > 0:
             return _GIVEN, stream[axis]
@@ -200,18 +200,18 @@ class Border:
     @classmethod
     def of(cls, sides: Sides, grid: Grid, dtype: type) -> "Border":
         """Return the border of a grid."""
-        edges, endless = [], sides.endless(grid.axes)
+        edges, unbounded = [], sides.unbounded(grid.axes)
         for k, (name, side) in enumerate(zip(NAMES, sides.around(grid.axes), strict=False)):
             axis = k // 2
             prescribed: np.ndarray = np.zeros([n for d, n in enumerate(grid.cells) if d != axis][::-1], dtype)
             if isinstance(side, Inflow):
                 prescribed[:] = inflow(side, grid, axis)
-            moves = endless and isinstance(side, Stream)
+            moves = unbounded and isinstance(side, Stream)
             edges.append(Edge(side, axis, name in NAMES[::2], grid.cells[axis], prescribed, moves))
         plane = grid.axes == 2
         return cls(
-            edges=edges, water=OpenWater.around(grid) if endless and plane else None,
-            far=FarField(grid) if endless and not plane else None, stream=(0.0,) * grid.axes,
+            edges=edges, water=OpenWater.around(grid) if unbounded and plane else None,
+            far=FarField(grid) if unbounded and not plane else None, stream=(0.0,) * grid.axes,
         )  # fmt: skip
 
     def state(self) -> dict[str, np.ndarray]:
@@ -265,7 +265,7 @@ class Border:
         self.steps, self.span = self.steps + 1, dt
         self._balance()
 
-    def settle(self, velocity: np.ndarray, window: Window) -> float:
+    def update_induced(self, velocity: np.ndarray, window: Window) -> float:
         """Take what the fields, which are those of the step's end, induce; return the largest change [m/s].
 
         ``prepare`` could only carry on from the last steps. Without this a cylinder in a domain of 4 diameters that
@@ -286,7 +286,7 @@ class Border:
 
     def _induced(self, velocity: np.ndarray, window: Window) -> list[np.ndarray]:
         if self.far is not None:
-            return [self.far.inward(e.axis, e.low) if e.endless else np.zeros(e.prescribed.shape) for e in self.edges]
+            return [self.far.inward(e.axis, e.low) if e.unbounded else np.zeros(e.prescribed.shape) for e in self.edges]
         if self.water is None:
             return [np.zeros(e.prescribed.shape) for e in self.edges]
         return self.water.inward(velocity, window, [Fading(e.axis, e.low, e.leaves) for e in self.edges if e.leaves])
@@ -307,10 +307,10 @@ class Border:
         for edge in self.edges:
             if not isinstance(edge.side, Periodic):
                 net += float(edge.prescribed.sum(dtype=np.float64))
-                room += edge.prescribed.size * (edge.leaves if free else float(edge.endless))
+                room += edge.prescribed.size * (edge.leaves if free else float(edge.unbounded))
         if room:
             for edge in self.edges:
-                edge.prescribed -= (edge.leaves if free else float(edge.endless)) * net / room
+                edge.prescribed -= (edge.leaves if free else float(edge.unbounded)) * net / room
 
     def fill(self, velocity: np.ndarray) -> None:
         """Write all boundary values around the domain."""

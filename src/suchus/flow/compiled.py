@@ -62,9 +62,9 @@ class _Notice(event.Listener):  # type: ignore[misc]
     def __init__(self) -> None:
         self._open, self._since, self._spent, self._said = 0, 0.0, 0.0, False
 
-    def on_start(self, told: event.Event) -> None:
+    def on_start(self, compilation: event.Event) -> None:
         """Note when a kernel begins to be compiled."""
-        if told.data["dispatcher"].py_func.__module__.startswith(__package__ or ""):
+        if compilation.data["dispatcher"].py_func.__module__.startswith(__package__ or ""):
             if self._open == 0:
                 self._since = monotonic()
             if not self._said and self._spent > self.AFTER:
@@ -75,9 +75,9 @@ class _Notice(event.Listener):  # type: ignore[misc]
                 )  # fmt: skip
             self._open += 1
 
-    def on_end(self, told: event.Event) -> None:
+    def on_end(self, compilation: event.Event) -> None:
         """Add up what it took."""
-        if told.data["dispatcher"].py_func.__module__.startswith(__package__ or ""):
+        if compilation.data["dispatcher"].py_func.__module__.startswith(__package__ or ""):
             self._open -= 1
             if self._open == 0:
                 self._spent += monotonic() - self._since

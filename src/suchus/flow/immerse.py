@@ -37,7 +37,7 @@ LEAST_SHARE = 1e-3
 THINNEST = 2.0 + 2.0**0.5
 """Thickness below which no cell is wholly inside [cells]."""
 
-THINNEST_SHEET = 1.0
+THINNEST_WITH_CENTRELINE = 1.0
 """Thickness that a body with a line in its middle needs somewhere [cells]: from there on the added mass and work of a
 plate that heaves agree within 1 % with those on three times as fine a grid; at half of it they are 7 % off."""
 

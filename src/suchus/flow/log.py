@@ -7,8 +7,8 @@ import numpy as np
 
 from suchus.errors import Diverged
 from suchus.flow.body import rows_of
-from suchus.flow.exchange import Reaction, contents_of, reaction, skin
 from suchus.flow.force import ControlVolume, Load
+from suchus.flow.momentum import Reaction, contents_of, reaction, skin
 from suchus.flow.pose import Pose
 from suchus.flow.record import COLUMNS, HEAD, PART_COLUMNS, SPACE_COLUMNS, Record
 from suchus.flow.setup import Setup
@@ -29,7 +29,7 @@ class Log:
     rows: list[np.ndarray] = field(default_factory=list)
     """One row per step."""
     held: np.ndarray = field(init=False)
-    """What the region of each part of each body held at the end of the last step; see ``exchange.contents``."""
+    """What the region of each part of each body held at the end of the last step; see ``momentum.contents``."""
     controls: list[ControlVolume] = field(default_factory=list)
     """Boxes whose momentum is followed."""
     control_rows: list[tuple[float, float]] = field(default_factory=list)

@@ -143,7 +143,7 @@ class Midline(Shape):
             float(outline[0].min()), float(outline[0].max()), float(outline[1].min()), float(outline[1].max())
         )  # fmt: skip
 
-    def sheet(self, time: float, pose: Pose) -> np.ndarray | None:
+    def centreline(self, time: float, pose: Pose) -> np.ndarray | None:
         """Return the midline, but for its ends where they are round: wider than the way to the tip is long."""
         placed = self.spine(time).placed(pose)
         to_tip = np.minimum(placed.arc, placed.arc[-1] - placed.arc)

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from suchus.flow.body import AnyBody
-from suchus.flow.exchange import Reaction
+from suchus.flow.momentum import Reaction
 from suchus.flow.pose import Pose
 from suchus.flow.trunk import Trunk
 

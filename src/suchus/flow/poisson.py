@@ -199,13 +199,13 @@ def solve(x, d, q, store, layout, room, rects, inner, repeats, sums, mean_limit,
             _step(r, z, d, faces, place, real(alpha), real(beta), inner, repeats, sums)
             due = True
         k += 1
-        told = mean, largest
+        before_last = mean, largest
         mean, largest = _total(sums, 0) / cells, _most(sums, 1)
         if mean <= mean_limit and largest <= max_limit:
             break
         worst = max(mean / mean_limit, largest / max_limit)
         if k > 2 and worst > WORSE * best and best <= NEARLY:
-            mean, largest = told
+            mean, largest = before_last
             due = False
             break
         since = 0 if worst < 0.8 * best else since + 1

@@ -113,7 +113,7 @@ class Shape(ABC):
     def mass(self, time: float) -> Mass:
         """Return area, centre and moments in the body's own frame."""
 
-    def sheet(self, time: float, pose: Pose) -> np.ndarray | None:
+    def centreline(self, time: float, pose: Pose) -> np.ndarray | None:
         """Return the line in the middle of a thin body, which no water passes, shape (2, point) [m].
 
         None for a body that is never thin.
@@ -243,7 +243,7 @@ class Ellipse(Solid):
         turn = np.interp(np.linspace(0, arc[-1], count, endpoint=False), arc, fine)
         return self.length / 2 * np.cos(turn), self.width / 2 * np.sin(turn)
 
-    def sheet(self, time: float, pose: Pose) -> np.ndarray:
+    def centreline(self, time: float, pose: Pose) -> np.ndarray:
         """Return the longer axis as far as the ellipse is less wide there than the way to its tip is long."""
         a, b = self.length / 2, self.width / 2
         reach = (a if a > b else b) * abs(a * a - b * b) / (a * a + b * b)
@@ -289,7 +289,7 @@ class Plate(Solid):
         along = np.maximum(lap - turn, 0.0)
         return second * (half + r * np.cos(angle) - along), second * r * np.sin(angle)
 
-    def sheet(self, time: float, pose: Pose) -> np.ndarray:
+    def centreline(self, time: float, pose: Pose) -> np.ndarray:
         """Return the line between the middles of the round ends."""
         return np.stack(pose.to_world((self.length - self.thick) / 2 * np.array([-1.0, 1.0]), np.zeros(2)))
 

@@ -158,7 +158,7 @@ class Sides:
         """Return the sides of a domain with so many axes, in the order of ``NAMES``."""
         return tuple(getattr(self, name) for name in NAMES[: 2 * axes])
 
-    def endless(self, axes: int) -> bool:
+    def unbounded(self, axes: int) -> bool:
         """Return whether the domain is unbounded, so that its sides move with the flow."""
         every = self.around(axes)
         open_sides = [isinstance(s, Stream) and s.unbounded for s in every]

@@ -17,13 +17,13 @@ from suchus.flow.ahead import compile_ahead
 from suchus.flow.body import Body, middle_of
 from suchus.flow.compiled import PAD
 from suchus.flow.consistency import Consistency
-from suchus.flow.exchange import Reaction
 from suchus.flow.farfield import FarBody, turned
 from suchus.flow.fields import Fields
 from suchus.flow.force import ControlVolume, Surface, sample
 from suchus.flow.free import FreeBody, Swimmer
 from suchus.flow.immerse import wall_offset
 from suchus.flow.log import Log, columns
+from suchus.flow.momentum import Reaction
 from suchus.flow.pace import due_after, even
 from suchus.flow.parts import columns_of
 from suchus.flow.pose import Pose, length, speeds

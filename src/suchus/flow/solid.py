@@ -135,8 +135,8 @@ class SpaceShape(ABC):
         """Parts that the record tells of one by one [-]."""
         return 1
 
-    def sheet(self, time: float, pose: Pose) -> np.ndarray | None:
-        """Return None: no body in space is taken for a sheet."""
+    def centreline(self, time: float, pose: Pose) -> np.ndarray | None:
+        """Return None: no body in three dimensions is taken for thin."""
         return None
 
     @property

@@ -63,7 +63,7 @@ class Watch:
         """Warn of vortices at a side that is held to the far stream, which they should move."""
         held = [
             (edge, name) for edge, name in zip(water.border.edges, NAMES, strict=False)
-            if isinstance(edge.side, Stream) and not edge.endless and edge.leaves < 0.5
+            if isinstance(edge.side, Stream) and not edge.unbounded and edge.leaves < 0.5
         ]  # fmt: skip
         if not held:
             return

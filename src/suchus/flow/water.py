@@ -16,9 +16,9 @@ from suchus.flow.advect import advance
 from suchus.flow.body import AnyBody, cuts, measure_all, rows_of, unite, window_of
 from suchus.flow.border import Border
 from suchus.flow.compiled import PAD, Window
-from suchus.flow.exchange import collect, contents, contents_of, sums_of, swelling
 from suchus.flow.grid import Grid
 from suchus.flow.immerse import close, fill, fill_source, immerse
+from suchus.flow.momentum import collect, contents, contents_of, dilatation_work, sums_of
 from suchus.flow.pose import Pose
 from suchus.flow.project import correct, fastest, mean_residual, residual
 from suchus.flow.sides import Sides
@@ -77,7 +77,7 @@ class Water:
         cut: for each body, which mirrors cut it; see ``body.cuts``.
         rows: for each body the rows of its parts, where sums are kept; one for a body that is not divided.
         owners: for each component, the row of the part that is nearest to the points of the window.
-        given: what the immersion gave to the water in the last step, per row; see ``exchange.collect``.
+        given: what the immersion gave to the water in the last step, per row; see ``momentum.collect``.
         solves: how the last two pressure solves went.
     """
 
@@ -249,11 +249,11 @@ class Water:
             self.mu1[c] = mu1.reshape(self.axes, *near.shape)
             self.b[c] = f.velocity[c]
         for body, pose in zip(bodies, poses, strict=True):
-            sheet = body.shape.sheet(time, pose)
-            if sheet is not None:
+            centreline = body.shape.centreline(time, pose)
+            if centreline is not None:
                 x, y = (grid.centres(*ends[d], d)[0] for d in range(2))
-                close(self.passage[0][here], sheet[0], sheet[1], x - h, y, h)
-                close(self.passage[1][here].T, sheet[1], sheet[0], y - h, x, h)
+                close(self.passage[0][here], centreline[0], centreline[1], x - h, y, h)
+                close(self.passage[1][here].T, centreline[1], centreline[0], y - h, x, h)
         source, b, mu0 = (self._flat(a) for a in (self.source, self.b, self.mu0))
         fill_source(source, b, mu0, self._layout[0], self._near, self.inner)
 
@@ -282,7 +282,7 @@ class Water:
         self._heun(step, force, limits)
         if first:  # a body that starts at once moves the far water at once
             for _ in range(MOST_ROUNDS):
-                if self.border.settle(self._corrected, self.window) <= limits[1]:
+                if self.border.update_induced(self._corrected, self.window) <= limits[1]:
                     break
                 self.p[:] = start
                 self._heun(step, force, limits)
@@ -300,7 +300,7 @@ class Water:
         stage = self._predict(step, push)
         self._project(self._predicted, step, limits)
         self._collect(stage, step)
-        self.border.settle(self._predicted, self.window)
+        self.border.update_induced(self._predicted, self.window)
         stage = self._correct(step, push)
         self._project(self._corrected, half * step, limits)
         self._collect(stage, step)
@@ -365,11 +365,11 @@ class Water:
                 sums, out[c], blend[c], raw[c], self._flat(mean), passage[c], mu1[c], p, owners[c], c, near, inner, dt,
                 keep,
             )  # fmt: skip
-        swelling(sums, p, self._flat(self.source), owners[0], near, inner, dt)
+        dilatation_work(sums, p, self._flat(self.source), owners[0], near, inner, dt)
         self.given += 0.5 * sums
 
     def contents(self) -> np.ndarray:
-        """Return what the region of each part of each placed body holds, shape (row, ``exchange.contents_of``)."""
+        """Return what the region of each part of each placed body holds, shape (row, ``momentum.contents_of``)."""
         sums = np.zeros((len(self.given), contents_of(self.axes)))
         if self.window[1] > self.window[0]:
             b, mu0 = self._flat(self.b), self._flat(self.mu0)
@@ -449,11 +449,11 @@ class Water:
 
     def _solve(self, limits: tuple[float, float]) -> tuple[poisson.Solve, tuple[float, float]]:
         """Return how the solve went, and what the solution is made of; see ``poisson.solve``."""
-        *told, a, b = poisson.solve(
+        *result, a, b = poisson.solve(
             self._x, self._d, self._q, self._store, self._layout, self._room, self._patches, self.inner,
             self.repeats, self._sums, *limits, MOST_CYCLES,
         )  # fmt: skip
-        went = poisson.Solve(*told)
+        went = poisson.Solve(*result)
         if not (went.mean <= STUCK * limits[0] and went.largest <= STUCK * limits[1]):
             raise NotConverged(
                 f"the pressure solver stopped after {went.cycles} cycles with a divergence of {went.mean:.2g} m/s per "

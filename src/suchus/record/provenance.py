@@ -96,15 +96,15 @@ def package_digest() -> str:
     return text.hexdigest()[:12]
 
 
-def made_alike(told: Mapping[str, Any], settings: Mapping[str, Any]) -> bool:
+def made_alike(stored: Mapping[str, Any], settings: Mapping[str, Any]) -> bool:
     """Return whether a result has these settings, this code and these versions, so that a run would repeat it.
 
     Args:
-        told: what ``provenance`` returned for it.
+        stored: what ``provenance`` returned for it.
         settings: the fields of the experiment.
     """
     now = provenance(settings, seconds=0.0)
-    return all(told.get(name) == now[name] for name in ("config_hash", "versions", "code"))
+    return all(stored.get(name) == now[name] for name in ("config_hash", "versions", "code"))
 
 
 def plain(value: Any) -> Any:

@@ -69,7 +69,7 @@ def collect(sums, out, blend, raw, mean, passage, mu1, p, owner, component, plac
 
 
 @compiled
-def swelling(sums, p, source, owner, place, inner, dt):
+def dilatation_work(sums, p, source, owner, place, inner, dt):
     """Take from the energy what the pressure does on the divergence of the bodies' own motion inside them."""
     up, w = len(inner), len(inner) + 2
     wide, columns = signed(row_length(inner, p.shape[1])), place[3 * up + 3] - place[3 * up + 2] + 1
