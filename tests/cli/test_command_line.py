@@ -21,7 +21,8 @@ from suchus.robots import ROBOTS
 pytestmark = pytest.mark.usefixtures("fakes")
 FAKES = Path(__file__).parent / "fake_shelf"
 DRIVER = f"""
-import sys, suchus.experiments
+import signal, sys, suchus.experiments
+signal.signal(signal.SIGINT, signal.default_int_handler)  # also where the tests' own shell ignores it
 suchus.experiments.__path__ = [{str(FAKES)!r}]
 from suchus.cli import main
 sys.exit(main())

@@ -51,7 +51,8 @@ class Slow(wave.Wave):
 experiment = Slow()
 '''
 DRIVER = """
-import sys, suchus.experiments
+import signal, sys, suchus.experiments
+signal.signal(signal.SIGINT, signal.default_int_handler)  # also where the tests' own shell ignores it
 suchus.experiments.__path__ = sys.argv.pop(1).split(":")
 from suchus.cli import main
 sys.exit(main())
