@@ -1,7 +1,7 @@
 """The tail: a pitch joint, plates bent sideways by one cable, and a flexible end."""
 
 from dataclasses import dataclass
-from typing import Literal, NamedTuple, get_args
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -87,8 +87,6 @@ class Tail:
             check.number("bend_limit", 0.01, 3.1416, "rad")
             check.whole("joints", 1, 30)
             check.whole("fin_segments", 1, 30)
-            known = self.drive in get_args(TailDrive)
-            check.that(known, f"tail.drive is {self.drive!r}; {' or '.join(get_args(TailDrive))} is allowed")
 
     @property
     def pitch(self) -> float:
