@@ -168,7 +168,8 @@ def _steps(environment: Environment, log: Path, tests: list[str]) -> Iterator[tu
             ends = f"suchus {words[0]} ends with {done.returncode}"
             yield words[0], ends if done.returncode else f"ok: {words[0]}"
         out.flush()
-        command = [python, "-P", "-m", "pytest", "-n0", "-m", "not validate", "-p", "no:cacheprovider", *tests]
+        heard = ["-W", "default::DeprecationWarning"]  # old releases use what newer ones of others will drop
+        command = [python, "-P", "-m", "pytest", "-n0", "-m", "not validate", "-p", "no:cacheprovider", *heard, *tests]
         done = subprocess.run(command, cwd=ROOT, env=clean(), stdout=out, stderr=subprocess.STDOUT, check=False)
     last = (log.read_text(encoding="utf-8").strip().splitlines() or [""])[-1].strip("= ")
     where = ", ".join(test.removeprefix("tests/") for test in tests)

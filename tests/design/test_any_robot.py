@@ -163,6 +163,11 @@ def test_every_hinge_and_servo_has_one_place(name):
     assert servo_ranges(ROBOTS[name]).shape == (len(place.servos), 2)
 
 
+def test_a_field_of_another_kind_is_named_once():
+    with pytest.raises(InvalidDesign, match=r"^tail\.drive is object; 'cable' or 'servos' is needed\.$"):
+        replace(CAIMAN.tail, drive=object)
+
+
 def test_who_needs_a_crocodile_says_so():
     assert crocodile(CAIMAN, "it") is CAIMAN
     with pytest.raises(UnsuitedRobot, match=r"standing up needs a crocodile-like robot.*'salamander'"):

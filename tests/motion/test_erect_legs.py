@@ -107,7 +107,7 @@ def test_longest_stroke_counts_from_where_the_foot_stands(robot, walk):
 def test_impossible_legs_are_refused(walk):
     with pytest.raises(InvalidDesign, match="both must be 0 m"):
         replace(walk, front_reach=0.05)
-    with pytest.raises(InvalidDesign, match="sprawled or erect"):
+    with pytest.raises(InvalidDesign, match="'sprawled' or 'erect' is needed"):
         replace(walk, legs="upright")
     with pytest.raises(InvalidDesign, match="front_ahead"):
         replace(walk, front_ahead=11.0)
