@@ -9,10 +9,10 @@ from jaxtyping import Float
 
 from suchus.control.facing import Facing
 from suchus.control.sensed import Sensed, finite, keep
-from suchus.design import WATER_DENSITY, AnyRobot, general
+from suchus.design import AnyRobot
 from suchus.design.checks import Checks
-from suchus.design.pieces import volumes
-from suchus.errors import InvalidDesign
+from suchus.design.pieces import chambers
+from suchus.kinematics.trim import spare_volume
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -78,15 +78,7 @@ def neutral_breath(robot: AnyRobot) -> float:
     Raises:
         InvalidDesign: its hull has no air, or not enough of it.
     """
-    hull = general(robot).hull
-    air = 0.0 if hull is None else hull.air
-    spare = sum(volumes(robot).values()) - robot.mass / WATER_DENSITY
-    if not 0.0 <= spare <= air or air == 0.0:
-        raise InvalidDesign(
-            f"robot {robot.name!r} would have to let out {1e3 * spare:.3g} l of air to hover, and has {1e3 * air:.3g} "
-            "l: give it a design.Hull with as much air, and foam enough to float with it."
-        )
-    return 1.0 - spare / air
+    return 1.0 - spare_volume(robot) / sum(chambers(robot))
 
 
 class Headings:
