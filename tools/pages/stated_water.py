@@ -77,9 +77,10 @@ def _below(m: Mapping[str, float]) -> str:
         ("_in_foam", "air where the foam is"), ("", "chambers as designed"), ("_held", "the same, pitch held"),
         ("_pitched", "the same, dives by pitch"),
     ):  # fmt: skip
-        trim, pitch, speed, off, dives = (
-            m[f"{name}_deep{ending}"] for name in ("trim", "pitch", "speed", "depth_error", "dive_time")
+        pitch, speed, off, dives = (
+            m[f"{name}_deep{ending}"] for name in ("pitch", "speed", "depth_error", "dive_time")
         )
+        trim = m.get(f"trim_deep{ending}", m["trim_deep"])
         cells = _pitched(trim), _pitched(pitch), f"{speed:.2f} m/s", f"{1e3 * off:.0f} mm", f"{dives:.0f} s"
         lines.append(f"| {called} | {' | '.join(cells)} |")
     return "\n".join(lines) + f"\n\nThe front chamber has {m['front_air']:.0%} of the air.\n"

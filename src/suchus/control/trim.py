@@ -19,9 +19,10 @@ from suchus.errors import InvalidDesign
 class PitchHold:
     """Keeps the pitch of a swim under water by air that moves between the chambers of the hull.
 
-    With theta the pitch less the asked one, nose down positive, through a low pass, and q its rate, the share of the
-    hull's air that moves ahead of where it is when all chambers are filled alike is gain theta + rate_gain q +
-    integral_gain sum(theta dt), as far as the chambers have air and room, and changes by ``pump`` at most.
+    With theta the pitch less the asked one, nose down positive, and q its rate, both through a low pass, since a swim
+    pitches to and fro, the share of the hull's air that moves ahead of where it is with all chambers filled alike is
+    gain theta + rate_gain q + integral_gain sum(theta dt), as far as the chambers have air and room, and changes by
+    ``pump`` at most.
     """
 
     pitch: float = 0.0
@@ -37,7 +38,7 @@ class PitchHold:
     """Answer to its rate [s/rad]."""
     integral_gain: float = 0.02
     """Answer to the error that stays [1/(rad s)]."""
-    memory: float = 0.2
+    memory: float = 0.5
     """Time constant of the low pass [s]."""
     pump: float = 0.1
     """Greatest rate at which the share of the air that has moved changes [1/s]."""
@@ -86,7 +87,7 @@ class Pitches:
         self._share = air / air.sum(axis=1, keepdims=True)
         self._asked_depth, self._period = np.array(depths), period
         self._kept = np.array([keep(value, period) for value in self._rule["memory"]])
-        self._theta: np.ndarray | None = None
+        self._felt: np.ndarray | None = None
         self._offset, self._moved = np.zeros(len(rules)), np.zeros(len(rules))
 
     def split(self, breath: Float[np.ndarray, " run"], sensed: Sensed) -> Float[np.ndarray, "run 2"]:
@@ -98,10 +99,11 @@ class Pitches:
         """
         rule, (front, rear) = self._rule, self._share.T
         error = rotation.pitch(finite(sensed.orientation)) - self._asked(sensed)
-        self._theta = error if self._theta is None else error + self._kept * (self._theta - error)
-        rate = finite(sensed.angular_velocity)[:, 1]
-        offset = self._offset + rule["integral_gain"] * self._theta * self._period
-        asked = offset + rule["gain"] * self._theta + rule["rate_gain"] * rate
+        now = np.stack([error, finite(sensed.angular_velocity)[:, 1]])
+        self._felt = now if self._felt is None else now + self._kept * (self._felt - now)
+        theta, rate = self._felt
+        offset = self._offset + rule["integral_gain"] * theta * self._period
+        asked = offset + rule["gain"] * theta + rule["rate_gain"] * rate
         most = rule["pump"] * self._period
         wanted = self._moved + np.clip(asked - self._moved, -most, most)
         kept = finite(breath)

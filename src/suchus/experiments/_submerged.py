@@ -108,7 +108,8 @@ def measures(record: xr.Dataset) -> dict[str, Measure]:
     for name in (str(one) for one in record.dive.values):
         one, ending = part.sel(dive=name), "_deep" if name == "deep" else f"_deep_{name}"
         x, time = one.deep_along.values, one.dive_time.values
-        found[f"trim{ending}"] = Measure(float(one.deep_trim), "rad")
+        if name in ("deep", "in_foam"):  # rest is the same for what moves its air
+            found[f"trim{ending}"] = Measure(round(float(one.deep_trim), 9) + 0.0, "rad")
         found[f"pitch{ending}"] = Measure(float(one.deep_pitch.mean()), "rad")
         found[f"speed{ending}"] = Measure(float((x[-1] - x[0]) / (time[-1] - time[0])), "m/s")
         found[f"depth_error{ending}"] = Measure(float(np.abs(one.deep_depth.values - depth).max()), "m")
