@@ -1,4 +1,4 @@
-"""What the experiments in water measured keeps the bounds that were set before: a new run that does not is seen here."""
+"""What the experiments in water measured keeps the bounds that were set before; a new run that does not is seen."""
 
 from math import inf, isfinite
 
