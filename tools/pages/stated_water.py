@@ -69,6 +69,18 @@ def _swims(m: Mapping[str, float]) -> str:
     )
 
 
+def _taken(m: Mapping[str, float]) -> str:
+    """Return the speeds of the slice by the commanded midline and by the one that the joints take."""
+    lines = [
+        "| slice, 1 Hz | midline as commanded | as the joints take it | their angles differ by |",
+        "|---|---|---|---|",
+    ]
+    for name, called in (("trunk_and_tail", "trunk and tail"), ("tail_only", "tail only")):
+        speeds = [f"{m[f'speed_{name}{ending}']:.2f} m/s" for ending in ("", "_as_taken")]
+        lines.append(f"| {called} | {' | '.join(speeds)} | {m[f'misfit_{name}_as_taken']:.0%} |")
+    return "\n".join(lines) + "\n"
+
+
 def _below(m: Mapping[str, float]) -> str:
     """Return the table of the swims below the surface, by where the air is and by what holds the pitch."""
     lines = ["| below the surface | hovers at rest | swims | speed | greatest error of the depth | dives in |",
@@ -227,6 +239,7 @@ def _sections(m: Mapping[str, Any]) -> str:
 PASSAGES: Mapping[str, Mapping[str, Callable[[Mapping[str, Any]], str]]] = {
     "floating": {"checks": _checks, "hull": _hull},
     "swim_free": {"swims": _swims, "below": _below},
+    "swimming_taken": {"taken": _taken},
     "salamander_swim": {"animal_swim": _animal},
     "swim_3d": {"space": _space, "space_in_short": _space_in_short},
     "shore": {"ashore": _ashore},
