@@ -111,6 +111,13 @@ def test_the_error_of_the_depth_settles_within_two_centimetres():
     assert np.abs(floats[-500:] - 0.6).min() > 0.1
 
 
+def test_the_way_down_is_not_learnt_and_not_overshot():
+    depth, _ = depth_after(DepthHold(depth=0.6), 25.0)
+    learning, _ = depth_after(DepthHold(depth=0.6, near=1000.0), 25.0)
+    assert depth.max() < 0.62
+    assert learning.max() > 0.63
+
+
 def test_a_weight_that_is_not_known_is_learnt():
     held, _ = depth_after(DepthHold(depth=0.6), 120.0, leak=0.5)
     without, _ = depth_after(DepthHold(depth=0.6, integral_gain=0.0), 120.0, leak=0.5)
@@ -139,6 +146,7 @@ def test_a_swim_holds_heading_and_depth_in_the_water():
     ("make", "error", "message"),
     [
         (lambda: DepthHold(depth=-1.0), InvalidDesign, "depth_hold.depth is -1 m"),
+        (lambda: DepthHold(depth=1.0, near=-0.1), InvalidDesign, "depth_hold.near is -0.1 m"),
         (lambda: DepthHold(depth=1.0, pump=0.0), InvalidDesign, "depth_hold.pump is 0 1/s"),
         (lambda: HeadingHold(direction=9.0), InvalidDesign, "heading_hold.direction is 9 rad"),
         (lambda: neutral_breath(ROBOTS["caiman"]), InvalidDesign, "give it a design.Hull with as much air"),

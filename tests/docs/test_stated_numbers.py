@@ -4,13 +4,14 @@ import copy
 import math
 import os
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
 from pages.passages import names
-from pages.stated import MADE, PASSAGES, filled, keep, kept, pages
+from pages.stated import MADE, PASSAGES, filled, keep, kept, measured, pages
 from suchus.experiments import EXPERIMENTS
 from suchus.optimise import READY
 from suchus.optimise.evaluate import evaluate
@@ -57,9 +58,9 @@ def _changed(value: Any, path: tuple[Any, ...]) -> Any:
 @pytest.mark.parametrize("source", list(PASSAGES))
 def test_other_numbers_make_other_pages(source, texts):
     """A passage that no measure changes would be prose."""
-    measured = kept(source)
+    before = kept(source)
     page = next(text for text in texts.values() if set(PASSAGES[source]) & set(names(text)))
-    read = [path for path in _numbers(measured) if filled(page, {source: _changed(measured, path)}) != page]
+    read = [path for path in _numbers(before) if filled(page, {source: _changed(before, path)}) != page]
     assert len(read) >= 2
 
 
@@ -71,6 +72,23 @@ def test_a_new_run_measures_what_is_kept(name):
     if os.environ.get("SUCHUS_GOLDEN") == "write":
         keep(name, found)
     assert found == pytest.approx(kept(name), rel=0.02, abs=0.01, nan_ok=True)
+
+
+@pytest.mark.validate
+def test_the_midline_that_the_joints_take_swims_again_as_it_is_kept():
+    found = replace(EXPERIMENTS["swimming"], taken=True).run()
+    numbers = {key: measure.value for key, measure in sorted(found.measures.items())}
+    if os.environ.get("SUCHUS_GOLDEN") == "write":
+        keep("swimming_taken", numbers)
+    assert numbers == pytest.approx(kept("swimming_taken"), rel=0.02, abs=0.01, nan_ok=True)
+
+
+@pytest.mark.parametrize(
+    ("name", "source"), [("speed_free", "swimming"), ("speed_tail_only_as_taken", "swimming_taken")]
+)
+def test_swims_with_the_midline_that_the_joints_take_are_kept_by_themselves(name, source):
+    outcome = {"experiment": "swimming", "measures": {name: {"value": 0.1}}}
+    assert measured(outcome) == (source, {name: 0.1})
 
 
 @pytest.mark.validate

@@ -74,7 +74,7 @@ def test_an_episode_after_others_is_the_first_of_a_fresh_batch_to_the_byte(task)
             pack.act(np.full((2, 19), 0.2), np.array([False, True]))
     np.testing.assert_array_equal(used.feel()[1], fresh.feel()[1])
     np.testing.assert_array_equal(used._batch.qpos[1], fresh._batch.qpos[1])
-    np.testing.assert_array_equal(used._batch.water[1], fresh._batch.water[1])
+    np.testing.assert_array_equal(used._batch.waters.rows[1], fresh._batch.waters.rows[1])
     np.testing.assert_array_equal(used._batch.qpos[0, :3], floated)  # the other one waits meanwhile
 
 

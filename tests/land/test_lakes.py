@@ -1,7 +1,7 @@
 """Runs in water: dry bytes, threads, records, what may change, and what is refused."""
 
 from dataclasses import replace
-from math import inf, nan
+from math import inf, nan, radians
 
 import mujoco
 import numpy as np
@@ -13,6 +13,7 @@ from suchus.design.pieces import volumes
 from suchus.design.water import Water
 from suchus.errors import InvalidDesign, OtherMuJoCo, OutsideLimits
 from suchus.experiments import EXPERIMENTS
+from suchus.experiments.floating import heel_of
 from suchus.land import VACUUM, Ground, Lake, Run, Wave, crawl, simulate, structs, wetting
 from suchus.land.afloat import check_floats
 from suchus.motion import Swim
@@ -106,6 +107,21 @@ def test_a_robot_that_floats_begins_at_the_surface_and_one_that_sinks_stands():
     assert float(light.water_force[0, 2]) == pytest.approx(9.81 * float(light.mass), rel=1e-6)
     assert float(light.position[0, 2]) > 0.9
     assert float(heavy.position[0, 2]) < 0.2
+
+
+def test_let_go_heeled_by_150_degrees_it_rights_itself_and_with_its_foam_no_higher_it_does_not():
+    robot = ROBOTS["floating_caiman"]
+    flat = replace(robot, hull=replace(robot.hull, foam=tuple(replace(foam, raised=0.0) for foam in robot.hull.foam)))
+    still = Swimming(swim=replace(WAVE, yaw=(0, 0, 0), tail=0.0))
+    some = [
+        Run(robot=one, gait="belly_crawl", lake=Lake(level=3.0, heel=radians(150)), control=still)
+        for one in (robot, flat)
+    ]
+    record = simulate(some, duration=9.0, timestep=0.01, every=10)
+    heel = np.abs(heel_of(record.orientation.values))[:, -20:]
+    assert heel[0].max() < 0.035
+    assert heel[1].min() > radians(150)
+    assert float(record.share_under[0, -20:].mean()) == pytest.approx(0.95, abs=0.005)
 
 
 def test_the_steepest_wave_is_allowed():

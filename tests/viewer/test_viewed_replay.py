@@ -1,3 +1,5 @@
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -7,7 +9,7 @@ from suchus.design.ground import Ground, slope
 from suchus.design.relief import Bumps, heights
 from suchus.errors import IncompatibleRecord, UnreadableFile
 from suchus.gaits import GAITS
-from suchus.land import Run, simulate
+from suchus.land import Lake, Run, simulate
 from suchus.record import save
 from suchus.robots import ROBOTS
 from suchus.rotation import rotate
@@ -61,6 +63,41 @@ def test_a_take_knows_the_ground_it_was_walked_on(tmp_path):
     assert "other ground" not in told(level, level, 0.0)
     old = save(record.isel(run=1).drop_vars("stands_on"), tmp_path / "old.nc")
     assert [take.ground for take in takes(old)] == [Ground()]
+
+
+def test_a_take_says_where_the_water_stands_and_a_dry_one_that_there_is_none(tmp_path):
+    rising = Lake(level=((0.0, 0.0), (0.1, 0.1)))
+    runs = [Run(robot=ROBOTS["caiman"], gait=GAITS["belly_crawl"], lake=lake) for lake in (rising, None)]
+    record = simulate(runs, duration=0.1, timestep=0.01)
+    wet, dry = takes(save(record, tmp_path / "wet.nc"))
+    assert wet.level(0.05) == pytest.approx(0.05, abs=0.011)
+    assert wet.level(9.0) == pytest.approx(0.1, abs=0.011)
+    assert dry.level(0.05) is None
+    assert takes(save(record.drop_vars("water_level"), tmp_path / "dry.nc"))[0].level(0.05) is None
+    odd = record.assign(water_level=("run", np.zeros(2)))
+    assert takes(save(odd, tmp_path / "odd.nc"))[0].level(0.05) is None
+
+
+@pytest.mark.parametrize(
+    ("visible", "height", "follow", "below"),
+    [(True, 0.6, True, 0.48), (True, 0.1, True, 0.0), (False, 0.6, True, 0.0), (None, 0.6, True, 0.0),
+     (True, 0.6, False, 0.0)],
+)  # fmt: skip
+def test_the_camera_follows_a_swimmer_up_and_down_and_a_walker_along_the_ground(visible, height, follow, below):
+    water = None if visible is None else SimpleNamespace(visible=visible)
+    seen = SimpleNamespace(_world=SimpleNamespace(), _water=water, _size=1.0)
+    stage.Stage.place(seen, {"centre_of_mass": np.array([2.0, 0.0, height])}, (0.0, 0.0), follow=follow)
+    np.testing.assert_allclose(seen._world.position, [-2.0 if follow else 0.0, 0.0, -below], atol=1e-12)
+
+
+def test_water_that_a_run_does_not_have_is_hidden():
+    box = SimpleNamespace(visible=True, position=None)
+    seen = SimpleNamespace(_world=SimpleNamespace(position=np.array([0.0, 0.0, -0.2])), _water=box)
+    stage.Stage.flood(seen, None)
+    assert not box.visible
+    stage.Stage.flood(seen, 0.6)
+    assert box.visible
+    assert box.position[2] == pytest.approx(0.4)
 
 
 @pytest.mark.parametrize("relief", [None, Bumps(height=0.03, correlation=0.1, start=-1.0, seed=1)])

@@ -1,7 +1,7 @@
 """Passages of the page on water and land that state what its experiments measured; see ``stated``."""
 
 from collections.abc import Callable, Mapping
-from math import degrees
+from math import degrees, radians
 from typing import Any
 
 
@@ -67,6 +67,42 @@ def _swims(m: Mapping[str, float]) -> str:
         f"{abs(m['turn_radius']):.2f} m. The largest amplitude of a joint of the cable is {m['tail_spread']:.1f} times "
         f"their mean, {m['tail_spread_stiff']:.1f} times with stiffer joints.\n"
     )
+
+
+def _taken(m: Mapping[str, float]) -> str:
+    """Return the speeds of the slice by the commanded midline and by the one that the joints take."""
+    lines = [
+        "| slice, 1 Hz | midline as commanded | as the joints take it | their angles differ by |",
+        "|---|---|---|---|",
+    ]
+    for name, called in (("trunk_and_tail", "trunk and tail"), ("tail_only", "tail only")):
+        speeds = [f"{m[f'speed_{name}{ending}']:.2f} m/s" for ending in ("", "_as_taken")]
+        lines.append(f"| {called} | {' | '.join(speeds)} | {m[f'misfit_{name}_as_taken']:.0%} |")
+    return "\n".join(lines) + "\n"
+
+
+def _below(m: Mapping[str, float]) -> str:
+    """Return the table of the swims below the surface, by where the air is and by what holds the pitch."""
+    lines = ["| below the surface | hovers at rest | swims | speed | greatest error of the depth | dives in |",
+             "|---|---|---|---|---|---|"]  # fmt: skip
+    for ending, called in (
+        ("_in_foam", "air where the foam is"), ("", "chambers as designed"), ("_held", "the same, pitch held"),
+        ("_pitched", "the same, dives by pitch"),
+    ):  # fmt: skip
+        pitch, speed, off, dives = (
+            m[f"{name}_deep{ending}"] for name in ("pitch", "speed", "depth_error", "dive_time")
+        )
+        trim = m.get(f"trim_deep{ending}", m["trim_deep"])
+        cells = _pitched(trim), _pitched(pitch), f"{speed:.2f} m/s", f"{1e3 * off:.0f} mm", f"{dives:.0f} s"
+        lines.append(f"| {called} | {' | '.join(cells)} |")
+    return "\n".join(lines) + f"\n\nThe front chamber has {m['front_air']:.0%} of the air.\n"
+
+
+def _pitched(pitch: float) -> str:
+    """Return a pitch in words."""
+    if abs(pitch) < radians(0.5):
+        return "level"
+    return f"nose {'down' if pitch > 0 else 'up'} by {degrees(abs(pitch)):.0f} deg"
 
 
 def _ashore(m: Mapping[str, float]) -> str:
@@ -202,7 +238,8 @@ def _sections(m: Mapping[str, Any]) -> str:
 
 PASSAGES: Mapping[str, Mapping[str, Callable[[Mapping[str, Any]], str]]] = {
     "floating": {"checks": _checks, "hull": _hull},
-    "swim_free": {"swims": _swims},
+    "swim_free": {"swims": _swims, "below": _below},
+    "swimming_taken": {"taken": _taken},
     "salamander_swim": {"animal_swim": _animal},
     "swim_3d": {"space": _space, "space_in_short": _space_in_short},
     "shore": {"ashore": _ashore},

@@ -19,6 +19,7 @@ from suchus.control.standing import BALANCE, Balance, Standing
 from suchus.control.swimming import Swimming
 from suchus.control.switching import SwitchRule
 from suchus.control.tail import TailRule
+from suchus.control.trim import PitchHold
 from suchus.control.turning import CURVES, TurningCurve, turn
 from suchus.control.walking import Change, Walking
 from suchus.renamed import old_exports
@@ -48,6 +49,7 @@ __all__ = [
     "OscillatorStates",
     "Oscillators",
     "PatternGenerator",
+    "PitchHold",
     "Rolling",
     "Sensed",
     "Shared",

@@ -184,7 +184,7 @@ class Amphibian:
         phase = self._phase
         if time >= START - _SLACK:
             self._advance()
-        return Command(targets, phase, self._breath.copy())
+        return Command(targets, phase, np.column_stack([self._breath, self._breath]))
 
     @property
     def _phase(self) -> np.ndarray:

@@ -9,10 +9,10 @@ from jaxtyping import Float
 
 from suchus.control.facing import Facing
 from suchus.control.sensed import Sensed, finite, keep
-from suchus.design import WATER_DENSITY, AnyRobot, general
+from suchus.design import AnyRobot
 from suchus.design.checks import Checks
-from suchus.design.pieces import volumes
-from suchus.errors import InvalidDesign
+from suchus.design.pieces import chambers
+from suchus.kinematics.trim import spare_volume
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -49,7 +49,7 @@ class DepthHold:
 
     With e how much deeper than asked the root is and w its sinking speed, the share of the air that is kept is that of
     neutral buoyancy plus gain e + rate_gain w + integral_gain sum(e dt), within 0 and 1, and changes by ``pump`` at
-    most.
+    most. Errors beyond ``near`` do not add up.
     """
 
     depth: float
@@ -60,6 +60,8 @@ class DepthHold:
     """Answer to the sinking speed [s/m]."""
     integral_gain: float = 0.1
     """Answer to the error that stays [1/(m s)]."""
+    near: float = 0.1
+    """Error up to which it adds up [m]; on the way down from the surface nothing is to be learnt."""
     pump: float = 0.25
     """Greatest rate at which the share of the air changes [1/s]."""
 
@@ -69,6 +71,7 @@ class DepthHold:
             check.number("gain", 0.0, 100.0, "1/m")
             check.number("rate_gain", 0.0, 100.0, "s/m")
             check.number("integral_gain", 0.0, 100.0, "1/(m s)")
+            check.number("near", 0.0, 1000.0, "m")
             check.number("pump", 1e-3, 100.0, "1/s")
 
 
@@ -78,15 +81,7 @@ def neutral_breath(robot: AnyRobot) -> float:
     Raises:
         InvalidDesign: its hull has no air, or not enough of it.
     """
-    hull = general(robot).hull
-    air = 0.0 if hull is None else hull.air
-    spare = sum(volumes(robot).values()) - robot.mass / WATER_DENSITY
-    if not 0.0 <= spare <= air or air == 0.0:
-        raise InvalidDesign(
-            f"robot {robot.name!r} would have to let out {1e3 * spare:.3g} l of air to hover, and has {1e3 * air:.3g} "
-            "l: give it a design.Hull with as much air, and foam enough to float with it."
-        )
-    return 1.0 - spare / air
+    return 1.0 - spare_volume(robot) / sum(chambers(robot))
 
 
 class Headings:
@@ -141,7 +136,7 @@ class Depths:
         error = depth - rule["depth"]
         offset = self._offset + rule["integral_gain"] * error * self._period
         asked = self._neutral + rule["gain"] * error + rule["rate_gain"] * self._sinking + offset
-        within = (asked >= 0.0) & (asked <= 1.0)  # what stays adds up only where the air can answer
+        within = (asked >= 0.0) & (asked <= 1.0) & (np.abs(error) <= rule["near"])  # where the air can answer
         self._offset = np.where(within, offset, self._offset)
         most = rule["pump"] * self._period
         self._breath = self._breath + np.clip(np.clip(asked, 0.0, 1.0) - self._breath, -most, most)

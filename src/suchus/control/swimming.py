@@ -1,4 +1,4 @@
-"""Swimming as a control: the wave on trunk and tail, limbs held out, a mean bend that steers, heading and depth."""
+"""Swimming as a control: the wave on trunk and tail, limbs held out, a mean bend that steers; heading, depth, pitch."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,6 +11,7 @@ from suchus.control.controller import Command
 from suchus.control.holding import DepthHold, Depths, HeadingHold, Headings
 from suchus.control.sensed import Sensed
 from suchus.control.suited import crocodiles
+from suchus.control.trim import Pitches, PitchHold
 from suchus.design import AnyRobot, Crocodile, layout, servo_ranges
 from suchus.design.checks import Checks
 from suchus.errors import OutsideLimits
@@ -22,8 +23,8 @@ from suchus.motion import AnyGait, Swim, bends, check_swim
 class Swimming:
     """A swimming motion; the gait of the run is not asked, and its limbs have no phase of their own.
 
-    The amplitudes grow over ``ramp``. A mean bend of the tail steers, as a rudder does; with ``heading`` and ``depth``
-    the robot does so by what it feels.
+    The amplitudes grow over ``ramp``. A mean bend of the tail steers, as a rudder does; with ``heading``, ``depth`` and
+    ``pitch`` the robot swims by what it feels.
     """
 
     swim: Swim
@@ -43,6 +44,8 @@ class Swimming:
     """Rule that keeps the heading; None for none."""
     depth: DepthHold | None = None
     """Rule that keeps the depth; None for none."""
+    pitch: PitchHold | None = None
+    """Rule that keeps the pitch at that depth; None for none."""
 
     def __post_init__(self) -> None:
         with Checks("swimming", self) as check:
@@ -51,10 +54,15 @@ class Swimming:
             check.number("limb_yaw", -pi, pi, "rad")
             check.number("limb_pitch", -pi, pi, "rad")
             check.number("ramp", 0.0, 60.0, "s")
+            check.that(
+                self.pitch is None or self.depth is not None,
+                "swimming.pitch is held by the air that a held depth lets out, and swimming.depth is None; give it a "
+                "DepthHold, or leave out swimming.pitch",
+            )
 
     @property
     def feels(self) -> bool:
-        """Whether heading or depth are controlled."""
+        """Whether heading, depth or pitch are controlled."""
         return self.heading is not None or self.depth is not None
 
     def targets(self, robot: Crocodile, time: Float[np.ndarray, " time"]) -> Float[np.ndarray, "time servo"]:
@@ -82,7 +90,7 @@ class Swimming:
 
         Raises:
             OutsideLimits: a robot cannot follow it.
-            InvalidDesign: a robot whose depth is controlled has too little air.
+            InvalidDesign: a robot whose depth is controlled has too little air, or no two chambers for its pitch.
         """
         return self.start_together([self] * len(robots), robots, gaits, seeds, ticks, period)
 
@@ -99,7 +107,7 @@ class Swimming:
 
         Raises:
             OutsideLimits: a robot cannot follow its swim.
-            InvalidDesign: a robot whose depth is controlled has too little air.
+            InvalidDesign: a robot whose depth is controlled has too little air, or no two chambers for its pitch.
         """
         del gaits, seeds
         return SwimmingController(controls, crocodiles(robots, "swimming by trunk and cable"), ticks, period)
@@ -129,6 +137,8 @@ class SwimmingController:
         cycle = [max(1, round(1.0 / (one * period))) for one in frequency]
         self._headings = Headings([one.heading for one in controls], robots, cycle, period)
         self._depths = Depths([one.depth for one in controls], robots, period)
+        asked = [np.nan if one.depth is None else one.depth.depth for one in controls]
+        self._pitches = Pitches([one.pitch for one in controls], asked, robots, period)
 
     def rest(self) -> Float[np.ndarray, "run servo"]:
         """The first posture."""
@@ -141,7 +151,8 @@ class SwimmingController:
             tail, trunk = self._headings.bend(sensed)
             for robot, runs in self._robots:
                 targets[runs] = bent(targets[runs], robot, tail[runs], trunk[runs])
-            breath = self._depths.breath(sensed)
+            kept = self._depths.breath(sensed)
+            breath = None if kept is None else self._pitches.split(kept, sensed)
         return Command(targets, self._frequency * (tick * self._period), breath)
 
 

@@ -5,7 +5,7 @@ from suchus.design.chosen import Chosen, unit_at, value_at, with_values
 from suchus.design.contact import Contact
 from suchus.design.general import AnyRobot, general
 from suchus.design.hinge import Cable, Crank, Hinge, Spring, Turn
-from suchus.design.hull import Foam, Hull
+from suchus.design.hull import Chamber, Foam, Hull
 from suchus.design.joints import (
     LEGS,
     LegName,
@@ -38,6 +38,7 @@ __all__ = [
     "WATER_VISCOSITY",
     "AnyRobot",
     "Cable",
+    "Chamber",
     "Chosen",
     "Contact",
     "Crank",

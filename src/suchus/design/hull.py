@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 from suchus.design.checks import Checks
 
+_SLACK = 1e-9  # of a sum of shares [-]
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Foam:
@@ -23,10 +25,25 @@ class Foam:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Chamber:
+    """A part of the hull's air, in the foam around a body of the axis or in the hollow of that body."""
+
+    body: str
+    """Name of the body, as ``thorax``."""
+    share: float
+    """Share of the hull's air [-]."""
+
+    def __post_init__(self) -> None:
+        with Checks(f"chamber in {self.body}", self) as check:
+            check.number("share", 0.0, 1.0, "")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Hull:
     """Foam on a robot, and its air. Water feels it and so does the weight; on the ground the robot's own skin touches.
 
-    ``suchus.model.float_hull`` makes the one that lets a robot float with a share above the surface.
+    ``design.flotation.float_hull`` makes the one that lets a robot float with a share above the surface, and
+    ``kinematics.trim.level_chambers`` the chambers with which it is level under it.
     """
 
     foam: tuple[Foam, ...]
@@ -34,7 +51,10 @@ class Hull:
     density: float = 40.0
     """Density of the foam [kg/m3]; extruded polystyrene and closed-cell polyethylene have 25 to 60."""
     air: float = 0.0
-    """So much of the foam on the axis is a bladder whose air can be let out [m3]; water takes its place."""
+    """Air that can be let out [m3]; water takes its place."""
+    chambers: tuple[Chamber, ...] = ()
+    """Where that air is. Those ahead of the root are front chambers, the others rear ones, and each kind is emptied and
+    filled by itself. If none is given, the air lies in the foam of the axis, in proportion to it."""
 
     def __post_init__(self) -> None:
         with Checks("hull", self) as check:
@@ -43,6 +63,14 @@ class Hull:
             names = [one.body for one in self.foam]
             twice = sorted({name for name in names if names.count(name) > 1})
             check.that(not twice, f"hull.foam names {', '.join(twice)} more than once; give each body one foam")
+            bodies, total = [one.body for one in self.chambers], sum(one.share for one in self.chambers)
+            check.that(
+                len(set(bodies)) == len(bodies), "hull.chambers names a body more than once; give each body one chamber"
+            )
+            check.that(
+                not bodies or abs(total - 1.0) < _SLACK,
+                f"hull.chambers have shares that add up to {total:g}; they must be all of the air, 1",
+            )
 
     @property
     def volume(self) -> float:

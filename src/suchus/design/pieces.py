@@ -24,6 +24,11 @@ _BONES = 2
 """Sections of each link of a limb [-]."""
 _NOSE = 0.1
 """Drag coefficient of the front, over the greatest section [-]; streamlined noses have 0.05 to 0.2."""
+FRONT, REAR = 0, 1
+"""Kinds of chambers in the order of the table's columns."""
+SOLID = 2000.0
+"""Density of what is solid in a robot, batteries and servos above all [kg/m3]; packed cells and geared servos of metal
+have 1700 to 2500, frames of plastic 1200."""
 _BALL_DRAG = 0.47 / 1.1
 """Drag coefficient of a ball over that of a round section across [-]."""
 
@@ -33,7 +38,7 @@ def pieces(robot: AnyRobot) -> Float[np.ndarray, "piece column"]:
     """Return the pieces of a robot, with its foam if it has any; read-only.
 
     Raises:
-        InvalidDesign: a hull with foam on a body that does not exist, or more air than foam.
+        InvalidDesign: a hull with foam or air on a body that does not exist, or with more air than there is room for.
     """
     place = layout(robot)
     rows = [*_strips(place), *(row for limb in place.limbs for row in _limb(limb))]
@@ -172,17 +177,69 @@ def _dress(place: Layout, table: np.ndarray, hull: Hull) -> None:
         factor = 1.0 + foam.volume / own
         table[mine] = swollen(part, factor)
         column(table, "at")[mine, 2] += foam.raised * foam.volume / (own + foam.volume)
-    axis = {segment.name for segment in place.robot.axis}
-    on_axis = {foam.body: foam.volume for foam in hull.foam if foam.body in axis}
-    if hull.air > sum(on_axis.values()) + 1e-12:
-        raise InvalidDesign(
-            f"hull.air is {1e3 * hull.air:g} l and the foam on the axis is {1e3 * sum(on_axis.values()):.3g} l; at "
-            "most all of it can be a bladder: add foam or take less air."
-        )
-    for body, volume in on_axis.items() if hull.air > 0 else ():
+    if hull.air == 0.0:
+        return
+    for body, volume in (_given if hull.chambers else _in_foam)(place, hull).items():
         mine = table[:, 0] == number[body]
         here = table[mine, COLUMNS["volume"][0]]
-        table[mine, COLUMNS["air"][0]] = hull.air * volume / sum(on_axis.values()) * here / here.sum()
+        if hull.chambers:
+            _check_hollow(place, body, volume, here.sum())
+        kind = FRONT if body in place.trunk[1:] else REAR
+        table[mine, COLUMNS["air"][0] + kind] = volume * here / here.sum()
+
+
+def _in_foam(place: Layout, hull: Hull) -> dict[str, float]:
+    """Return the air in each body of the axis, in proportion to its foam [m3]."""
+    axis = {segment.name for segment in place.robot.axis}
+    on_axis = {foam.body: foam.volume for foam in hull.foam if foam.body in axis}
+    total = sum(on_axis.values())
+    if hull.air > total + 1e-12:
+        raise InvalidDesign(
+            f"hull.air is {1e3 * hull.air:g} l and the foam on the axis is {1e3 * total:.3g} l; at "
+            "most all of it can be a bladder: add foam or take less air."
+        )
+    return {body: hull.air * volume / total for body, volume in on_axis.items()}
+
+
+def _given(place: Layout, hull: Hull) -> dict[str, float]:
+    """Return the air in each chamber [m3]."""
+    axis = [segment.name for segment in place.robot.axis]
+    for chamber in hull.chambers:
+        if chamber.body not in axis:
+            raise InvalidDesign(
+                f"hull.chambers has one in {str(chamber.body)[:40]!r}, and the axis of robot {place.robot.name!r} has "
+                f"no such body; it has {', '.join(axis)}."
+            )
+    return {chamber.body: hull.air * chamber.share for chamber in hull.chambers}
+
+
+def _check_hollow(place: Layout, body: str, air: float, volume: float) -> None:
+    """Refuse a chamber larger than what a body displaces, foam included, beside what is solid in it."""
+    most = max(volume - masses(place.robot)[body] / SOLID, 0.0)
+    if air > most + 1e-12:
+        raise InvalidDesign(
+            f"the chamber in {body} of robot {place.robot.name!r} has {1e3 * air:.3g} l; it displaces "
+            f"{1e3 * volume:.3g} l with its foam, of which at most {1e3 * most:.3g} l can be air: make the chamber "
+            "smaller, or give the body more foam."
+        )
+
+
+def foam_centres(robot: AnyRobot) -> dict[str, tuple[float, float, float]]:
+    """Return where the centre of the foam of each body is that has some, in the frame of that body [m]."""
+    place, table = layout(robot), pieces(robot)
+    number = {body.name: i for i, body in enumerate(place.bodies)}
+    found = {}
+    for foam in () if place.robot.hull is None else place.robot.hull.foam:
+        mine = table[table[:, 0] == number[foam.body]]
+        x, y, z = np.average(column(mine, "at"), axis=0, weights=column(mine, "volume")[:, 0])
+        found[foam.body] = (float(x), float(y), float(z))
+    return found
+
+
+def chambers(robot: AnyRobot) -> tuple[float, float]:
+    """Return the air in the front and in the rear chambers of a robot's hull [m3]; both 0 without."""
+    front, rear = column(pieces(robot), "air").sum(axis=0)
+    return float(front), float(rear)
 
 
 def swollen(part: Float[np.ndarray, "piece column"], factor: float) -> Float[np.ndarray, "piece column"]:

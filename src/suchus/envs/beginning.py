@@ -16,9 +16,10 @@ from suchus.errors import Diverged, InvalidDesign
 from suchus.gaits import GAITS
 from suchus.land import Ground, Run
 from suchus.land.afloat import surfaced
-from suchus.land.batch import SimulationBatch, up
+from suchus.land.batch import SimulationBatch
 from suchus.land.readings import Readings
 from suchus.land.restarting import Beginning
+from suchus.land.waters import up
 from suchus.model import activations, compile_model, standing
 from suchus.model.export import home
 from suchus.motion import check_swim, hip_height

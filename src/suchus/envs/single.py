@@ -13,7 +13,7 @@ from suchus.envs.shelf import chosen
 from suchus.envs.spaces import RENDER_MODES, action_space, check_render_mode, checked, observation_space
 from suchus.envs.task import Rewards, Task
 from suchus.errors import OldName
-from suchus.land.batch import up
+from suchus.land.waters import up
 from suchus.renamed import new_name
 
 

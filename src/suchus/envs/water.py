@@ -9,11 +9,10 @@ from suchus.errors import InvalidDesign
 from suchus.land import Lake
 from suchus.land.afloat import capacity
 from suchus.land.lake import check_lake
-from suchus.motion import Swim
+from suchus.motion import LIMBS_BACK, Swim
 from suchus.water import fit, printed_wave
 
 _FREQUENCY = 1.0  # [Hz]; as in the experiments swim_free and shore
-_LIMBS = -0.15  # [rad]; how far the limbs, which lie back along the body, point down
 
 
 @lru_cache(maxsize=16)
@@ -30,7 +29,7 @@ def swimming(robot: AnyRobot, swim: Swim | None) -> Swimming:
     if swim is None:
         bare = replace(crocodile(robot, "a swim"), hull=None)
         swim = fit(bare, printed_wave(bare, "I", frequency=_FREQUENCY, sign=-1)).swim
-    return Swimming(swim=swim, limb_pitch=_LIMBS, ramp=0.0)
+    return Swimming(swim=swim, limb_pitch=LIMBS_BACK[1], ramp=0.0)
 
 
 def check_water(robot: AnyRobot, lake: Lake) -> None:

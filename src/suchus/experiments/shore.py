@@ -19,15 +19,13 @@ from suchus.gaits import GAITS
 from suchus.land import Ground, Lake, Run, simulate
 from suchus.land.afloat import check_floats
 from suchus.metrics.energy import METRES
-from suchus.motion import Gait, Swim
+from suchus.motion import LIMBS_BACK, Gait, Swim
 from suchus.renamed import old_names
 from suchus.replay import replay
 from suchus.robots import ROBOTS
 from suchus.verdict import Reading, compared, listed
 from suchus.water import fit, printed_wave
 
-_LIMBS = -0.15
-"""How far the limbs, which lie back along the body, point down while it swims [rad]."""
 _DRY, _DEEP = -10.0, 3.0
 """Levels of the water far below dry land, and far above the ground [m]."""
 _WADE = replace(
@@ -191,7 +189,7 @@ class Shore(Experiment):
         offshore = self.robot.length / 2 + self.clearance / tan(uphill) if uphill > 0 else self.inland
         course = self.approach if uphill > 0 else 0.0
         control = Amphibious(
-            swim=Swimming(swim=self._swim(), limb_pitch=_LIMBS, heading=HeadingHold(direction=course)),
+            swim=Swimming(swim=self._swim(), limb_pitch=LIMBS_BACK[1], heading=HeadingHold(direction=course)),
             begins="swimming" if uphill > 0 else "walking",
             wade=self.wade if gait == self.gait else None,
             breathe_out=out,
@@ -210,7 +208,7 @@ class Shore(Experiment):
 
     def _metres(self, progress: Callable[[float], None]) -> xr.Dataset:
         """Return speed and power of the servos on level dry land, at the surface and at depth."""
-        plain = partial(Swimming, swim=self._swim(), limb_pitch=_LIMBS, heading=HeadingHold())
+        plain = partial(Swimming, swim=self._swim(), limb_pitch=LIMBS_BACK[1], heading=HeadingHold())
         controls: Mapping[str, Control] = {
             "land": OpenLoop(), "surface": plain(), "deep": plain(depth=DepthHold(depth=self.depth)),
         }  # fmt: skip

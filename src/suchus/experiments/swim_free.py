@@ -15,12 +15,13 @@ from suchus.design import GRAVITY, Crocodile, cable_joints
 from suchus.design.checks import Checks
 from suchus.design.water import Water
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
+from suchus.experiments import _submerged as submerged
 from suchus.experiments.floating import heel_of
-from suchus.figures.swim_free import draw_speeds, draw_tail
+from suchus.figures.swim_free import draw_below, draw_speeds, draw_tail
 from suchus.gaits import GAITS
 from suchus.land import Lake, Run, simulate
 from suchus.land.afloat import check_floats
-from suchus.motion import Swim
+from suchus.motion import LIMBS_BACK, Swim
 from suchus.replay import replay
 from suchus.robots import ROBOTS
 from suchus.verdict import Reading, compared
@@ -44,7 +45,9 @@ class SwimFree(Experiment):
     angles only; how they share it is up to rubber and water. So the same swims are repeated with stiffer joints, and
     set beside two models whose midline is commanded and cannot see this. One run steers by a mean bend; further runs
     vary each coefficient of the water over its plausible range, wide enough for the table of oscillating sections at
-    the aspects and Keulegan numbers of this body, and halve the time step.
+    the aspects and Keulegan numbers of this body, and halve the time step. Last, it dives and swims below the surface,
+    neutrally buoyant: with the air in the chambers of the design, with its pitch held or used to dive by air that moves
+    between them, and with the air in the foam, where it lies without chambers.
     """
 
     title = "How does it swim in six degrees of freedom, at the surface?"
@@ -59,7 +62,7 @@ class SwimFree(Experiment):
     """Frequency of the wave [Hz]."""
     stiffness: float = 2.4
     """Stiffness of the cable's joints in the further runs [N m/rad]."""
-    limb_pitch: float = -0.15
+    limb_pitch: float = LIMBS_BACK[1]
     """Angle by which the limbs, which lie back along the body, point down [rad]."""
     turn: float = 0.6
     """Mean bend of the tail in the run that steers [rad]."""
@@ -73,6 +76,10 @@ class SwimFree(Experiment):
     """Coefficients of the water that are varied."""
     level: float = 2.0
     """Depth of the water [m]."""
+    depth: float = 0.6
+    """Depth of the root in the swims below the surface [m]."""
+    dive: int = 24
+    """Cycles that are swum in those before anything is measured; as many are measured as at the surface [-]."""
 
     def __post_init__(self) -> None:
         with Checks(self.name(), self) as check:
@@ -84,12 +91,18 @@ class SwimFree(Experiment):
             check.whole("settle", 0, 1000)
             check.whole("cycles", 1, 1000)
             check.number("level", 0.3, 1000.0, "m")
+            check.number("depth", 0.05, 1000.0, "m")
+            check.whole("dive", 0, 1000)
+            check.that(
+                self.depth <= self.level - 0.2,
+                f"swim_free.depth is {self.depth:g} m in water {self.level:g} m deep; at least 0.2 m must be below it",
+            )
             unknown = [name for name in self.spread if name not in _SPREAD]
             check.that(not unknown, f"spread names {', '.join(unknown)}; there is {', '.join(_SPREAD)}")
 
     def quick(self) -> "SwimFree":
         """Return the first cycle alone, coefficients as they are."""
-        return replace(self, settle=0, cycles=1, spread=())
+        return replace(self, settle=0, cycles=1, spread=(), dive=0)
 
     @property
     def _duration(self) -> float:
@@ -109,24 +122,34 @@ class SwimFree(Experiment):
         }
         by_table = self._by_table(motion)
         runs = self._runs(motions, _ends(self.spread, by_table))
-        record = simulate(runs, duration=self._duration, progress=staged(progress, "swims", 0.0, 0.85))
+        record = simulate(runs, duration=self._duration, progress=staged(progress, "swims", 0.0, 0.7))
         fine = simulate(
             runs[:1],
             duration=self._duration,
             timestep=record.attrs["timestep"] / 2,
-            progress=staged(progress, "half the time step", 0.85, 1.0),
+            progress=staged(progress, "half the time step", 0.7, 0.8),
         )
         models = self._models(motions)
         record["fine_centre_of_mass"] = fine.centre_of_mass.isel(run=0, drop=True)
-        record = xr.merge([record, models], join="exact", compat="no_conflicts")
+        deep = self._deep(motion, staged(progress, "swims below the surface", 0.8, 1.0))
+        record = xr.merge([record, models, *deep], join="exact", compat="no_conflicts", combine_attrs="override")
         record.attrs.update(
             measured_from=self.settle / self.frequency,
+            deep_from=self.dive / self.frequency,
+            depth=self.depth,
             frequency=self.frequency,
             cable=list(cable_joints(self.robot)),
             meant=motion.tail / len(cable_joints(self.robot)),
             **{f"{name}_by_table": factor for name, factor in by_table.items()},
         )
         return Simulated(record=record, replays=self._replays(record))
+
+    def _deep(self, motion: Swim, progress: Any) -> list[xr.Dataset]:
+        """Return what is kept of the swims below the surface; nothing of a robot that cannot hover."""
+        swim = Swimming(swim=motion, limb_pitch=self.limb_pitch)
+        runs = submerged.deep_runs(self.robot, swim, Lake(level=self.level), self.depth)
+        duration = (self.dive + self.cycles) / self.frequency
+        return [submerged.kept(simulate(runs, duration=duration, progress=progress), runs)] if runs else []
 
     def _by_table(self, motion: Swim) -> Mapping[str, float]:
         """Return the factors by which the table of sections differs from the coefficients of the swims [-]."""
@@ -198,26 +221,30 @@ class SwimFree(Experiment):
         swing = float(np.ptp((whole.tail_tip - whole.centre_of_mass).sel(xyz="y").values))
         fine = _speed(record.fine_centre_of_mass, record)
         yaw = np.unwrap(rotation.yaw(whole.orientation.values))
-        return found | {
-            "speed_low": Measure(min(waters), "m/s"),
-            "speed_high": Measure(max(waters), "m/s"),
-            "cross_drag_by_table": Measure(record.attrs["cross_drag_by_table"], "-"),
-            "added_mass_by_table": Measure(record.attrs["added_mass_by_table"], "-"),
-            "step_change": Measure(abs(fine - speed["whole"]) / ahead, "-"),
-            "roll_amplitude": Measure(float(np.abs(heel_of(whole.orientation.values)).max()), "rad"),
-            "pitch": Measure(float(rotation.pitch(whole.orientation.values).mean()), "rad"),
-            "yaw_amplitude": Measure(float(np.ptp(yaw)) / 2, "rad"),
-            "share_above": Measure(float(1.0 - whole.share_under.mean()), "-"),
-            "strouhal": Measure(record.attrs["frequency"] * swing / ahead, "-"),
-            "slip": Measure(speed["whole"] / float(record.wave_speed), "-"),
-            "servo_power": Measure(float(whole.servo_power.mean()), "W"),
-            "water_power": Measure(-float(whole.water_power.mean()), "W"),
-            "cost_of_transport": Measure(float(whole.servo_power.mean()) / (weight * ahead), "-"),
-            "cost_of_transport_water": Measure(-float(whole.water_power.mean()) / (weight * ahead), "-"),
-            "turn_radius": Measure(_radius(part.isel(run=labels.index("steered")), record.attrs["frequency"]), "m"),
-            "tail_spread": Measure(_uneven(whole, record), "-"),
-            "tail_spread_stiff": Measure(_uneven(part.isel(run=labels.index("whole_stiff")), record), "-"),
-        }
+        return (
+            found
+            | submerged.measures(record)
+            | {
+                "speed_low": Measure(min(waters), "m/s"),
+                "speed_high": Measure(max(waters), "m/s"),
+                "cross_drag_by_table": Measure(record.attrs["cross_drag_by_table"], "-"),
+                "added_mass_by_table": Measure(record.attrs["added_mass_by_table"], "-"),
+                "step_change": Measure(abs(fine - speed["whole"]) / ahead, "-"),
+                "roll_amplitude": Measure(float(np.abs(heel_of(whole.orientation.values)).max()), "rad"),
+                "pitch": Measure(float(rotation.pitch(whole.orientation.values).mean()), "rad"),
+                "yaw_amplitude": Measure(float(np.ptp(yaw)) / 2, "rad"),
+                "share_above": Measure(float(1.0 - whole.share_under.mean()), "-"),
+                "strouhal": Measure(record.attrs["frequency"] * swing / ahead, "-"),
+                "slip": Measure(speed["whole"] / float(record.wave_speed), "-"),
+                "servo_power": Measure(float(whole.servo_power.mean()), "W"),
+                "water_power": Measure(-float(whole.water_power.mean()), "W"),
+                "cost_of_transport": Measure(float(whole.servo_power.mean()) / (weight * ahead), "-"),
+                "cost_of_transport_water": Measure(-float(whole.water_power.mean()) / (weight * ahead), "-"),
+                "turn_radius": Measure(_radius(part.isel(run=labels.index("steered")), record.attrs["frequency"]), "m"),
+                "tail_spread": Measure(_uneven(whole, record), "-"),
+                "tail_spread_stiff": Measure(_uneven(part.isel(run=labels.index("whole_stiff")), record), "-"),
+            }
+        )
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Say what each part of the body gives, what the joints' stiffness changes, and how sure that is."""
@@ -240,13 +267,14 @@ class SwimFree(Experiment):
             f"is {m['speed_low']:.3f} to {m['speed_high']:.3f} m/s; oscillating sections have {table} times the drag "
             f"and the added mass that it swims with. Half the time step changes the speed by "
             f"{m['step_change']:.1%}. The servos take {m['servo_power']:.2f} W, of which the water gets "
-            f"{m['water_power']:.2f}."
+            f"{m['water_power']:.2f}.{submerged.said(m)}"
         )
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw the speeds beside the models', and how the joints of the cable share the bend."""
         speeds = {name: measure.value for name, measure in self.measure(outcome.record).items()}
-        return {"swim_speeds": draw_speeds(speeds, MOTIONS, _MODELS), "tail_shares": draw_tail(outcome.record)}
+        found = {"swim_speeds": draw_speeds(speeds, MOTIONS, _MODELS), "tail_shares": draw_tail(outcome.record)}
+        return found | ({"below": draw_below(outcome.record, submerged.DEEP)} if "dive" in outcome.record else {})
 
 
 def _ends(names: Sequence[str], by_table: Mapping[str, float]) -> dict[str, tuple[float, float]]:

@@ -87,3 +87,33 @@ def draw_tail(record: xr.Dataset) -> Figure:
         "Amplitude of each joint of the cable while swimming, beside the even share that is meant; and tracks of the "
         "centre of mass seen from above.",
     )
+
+
+def draw_below(record: xr.Dataset, called: Mapping[str, str]) -> Figure:
+    """Draw depth and pitch of the swims below the surface over time.
+
+    Args:
+        record: with ``deep_depth`` and ``deep_pitch`` over ``dive`` and ``dive_time``; attributes ``depth`` and
+            ``deep_from``.
+        called: what each swim is called.
+    """
+    looks = (("coordinated", "-"), ("tail_still", (0, (5, 2))), ("spine_only", (0, (5, 1.5, 1, 1.5))),
+             ("limbs_only", (0, (1, 1.2))))  # fmt: skip
+    with styled():
+        figure, axes = panels(1, 2, width=12.0, height=4.2)
+        for name, (colour, dashes) in zip(called, looks, strict=True):
+            if name not in record.dive.values:
+                continue
+            one, time = record.sel(dive=name), record.dive_time
+            for ax, values in ((axes[0, 0], -one.deep_depth), (axes[0, 1], -np.degrees(one.deep_pitch))):
+                ax.plot(time, values, color=COLOURS[colour], linestyle=dashes, label=called[name])
+        axes[0, 0].axhline(-record.attrs["depth"], color=COLOURS["neutral"], linewidth=0.9)
+        axes[0, 1].axhline(0.0, color=COLOURS["neutral"], linewidth=0.9)
+        axes[0, 0].set(xlabel="time [s]", ylabel="root above the surface [m]")
+        axes[0, 1].set(xlabel="time [s]", ylabel="pitch, nose up positive [deg]")
+        axes[0, 1].legend(loc="best")
+    return captioned(
+        figure,
+        "Dives from the surface to a depth that is held by air let out, and pitch on the way: by where the air is, and "
+        f"by what holds the pitch. Measured from {record.attrs['deep_from']:.0f} s on.",
+    )

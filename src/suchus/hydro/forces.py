@@ -83,7 +83,7 @@ def _arcsine(x: float) -> float:
 
 @compiled
 def hydrostatic(
-    table: np.ndarray, xpos: np.ndarray, xmat: np.ndarray, up: np.ndarray, level: float, breath: float
+    table: np.ndarray, xpos: np.ndarray, xmat: np.ndarray, up: np.ndarray, level: float, breath: tuple[float, float]
 ) -> np.ndarray:
     """Return the volume under water, its first moment about the world's origin, and the work of pushing it there.
 
@@ -95,7 +95,7 @@ def hydrostatic(
         xmat: their orientations, shape (body, 9).
         up: unit vector against gravity, shape (3,).
         level: of the surface above the origin [m].
-        breath: share of the air that is kept [-].
+        breath: shares of the air that are kept, in the front and in the rear chambers [-].
     """
     found, ahead = np.zeros(5), three(up, 0)
     for row in table:
@@ -107,7 +107,7 @@ def hydrostatic(
         depth = (level - dot(ahead, at)) / extent
         share, moment = immersed(row[1], depth)
         arm = blend(row[14] * ua, axes[0], row[15] * ub, axes[1], row[16] * ut, axes[2])
-        volume = row[17] - (1.0 - breath) * row[18]
+        volume = row[17] - (1.0 - breath[0]) * row[18] - (1.0 - breath[1]) * row[19]
         found[0] += volume * share
         for i in range(3):
             found[1 + i] += volume * (share * at[i] + moment * arm[i] / extent)
@@ -195,10 +195,11 @@ def rub(rows: np.ndarray, water: Water) -> None:
 @part
 def press(table: np.ndarray, rows: np.ndarray, water: Water) -> None:
     """Say what the water does to each piece: force, couple about the point of reference, volume under water."""
-    per_speed = water.length / water.viscosity
+    per_speed, (front, rear) = water.length / water.viscosity, water.breath
     for n in range(LANES):
         share, moment = immersed(table[at.KIND, n], rows[at.DEPTH, n])
-        volume = (table[at.VOLUME, n] - (1.0 - water.breath) * table[at.AIR, n]) * share
+        emptied = (1.0 - front) * table[at.AIR, n] + (1.0 - rear) * table[at.AIR + 1, n]
+        volume = (table[at.VOLUME, n] - emptied) * share
         a, b, t, w = lane(rows, at.E_A, n), lane(rows, at.E_B, n), lane(rows, at.E_T, n), lane(rows, at.SPEED, n)
         r, omega, surge = lane(rows, at.FROM, n), lane(rows, at.MOVING, n), lane(rows, at.SURGE, n)
         # buoyancy and the pressure of the waves, at the centre of what is under water

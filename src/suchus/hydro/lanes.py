@@ -78,8 +78,8 @@ class Water(NamedTuple):
     """Height of the surface above the world's origin, against gravity, without waves [m]."""
     density: float
     """[kg/m3]."""
-    breath: float
-    """Share of the hull's air that is kept [-]."""
+    breath: tuple[float, float]
+    """Shares of the hull's air that are kept, in the front and in the rear chambers [-]."""
     viscosity: float
     """Kinematic viscosity [m2/s]."""
     cross_drag: float

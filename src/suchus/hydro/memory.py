@@ -137,6 +137,6 @@ def read_water(model: int, user: np.ndarray, at: np.ndarray, length: float) -> W
     gravity = sqrt(dot(down, down))
     up = times(-1.0 / gravity, down) if gravity > 0.0 else (0.0, 0.0, 1.0)
     return Water(
-        user[LEVEL], user[DENSITY], user[BREATH], user[VISCOSITY], user[CROSS_DRAG], user[THICKENING], user[ADDED],
-        user[SHEDDING], up, gravity, length,
+        user[LEVEL], user[DENSITY], (user[BREATH], user[BREATH + 1]), user[VISCOSITY], user[CROSS_DRAG],
+        user[THICKENING], user[ADDED], user[SHEDDING], up, gravity, length,
     )  # fmt: skip

@@ -27,19 +27,19 @@ COLUMNS: Mapping[str, tuple[int, int]] = {
         ("forward", 11, 14),  # t
         ("half", 14, 17),  # a, b, c [m]
         ("volume", 17, 18),  # [m3]
-        ("air", 18, 19),  # of which so much can be let out [m3]
-        ("added", 19, 22),  # added mass over density along e_a, e_b, t [m3]
-        ("area", 22, 24),  # drag area over the cross drag coefficient, for motion along e_a and e_b [m2]
-        ("skin", 24, 25),  # wetted area [m2]
-        ("end", 25, 26),  # drag area of motion along t [m2]
-        ("roll", 26, 27),  # roll drag over density, cross drag coefficient and the square of the rate [m5]
-        ("shed", 27, 29),  # added mass per length over density, along e_a and e_b, where the tail ends; else 0 [m2]
-        ("shed_at", 29, 30),  # of that end from the centre along t [m]
-        ("reach", 30, 31),  # no part of it is farther from the body's origin; filled where the table is packed [m]
+        ("air", 18, 20),  # of which so much can be let out, from the front and from the rear chambers [m3]
+        ("added", 20, 23),  # added mass over density along e_a, e_b, t [m3]
+        ("area", 23, 25),  # drag area over the cross drag coefficient, for motion along e_a and e_b [m2]
+        ("skin", 25, 26),  # wetted area [m2]
+        ("end", 26, 27),  # drag area of motion along t [m2]
+        ("roll", 27, 28),  # roll drag over density, cross drag coefficient and the square of the rate [m5]
+        ("shed", 28, 30),  # added mass per length over density, along e_a and e_b, where the tail ends; else 0 [m2]
+        ("shed_at", 30, 31),  # of that end from the centre along t [m]
+        ("reach", 31, 32),  # no part of it is farther from the body's origin; filled where the table is packed [m]
     )
 }
 """Columns of each quantity in the table."""
-WIDTH = 31
+WIDTH = 32
 """Columns of the table [-]."""
 
 LANES = 16
@@ -55,28 +55,28 @@ LEVEL = 0
 DENSITY = 1
 """Place of the density [kg/m3]."""
 BREATH = 2
-"""Place of the share of the hull's air that is kept [-]."""
-CURRENT = 3
+"""Place of the shares of the hull's air that are kept, in the front and in the rear chambers (2) [-]."""
+CURRENT = 4
 """Place of the velocity of the current in the world (3) [m/s]."""
-VISCOSITY = 6
+VISCOSITY = 7
 """Place of the kinematic viscosity [m2/s]."""
-CROSS_DRAG = 7
+CROSS_DRAG = 8
 """Place of the drag coefficient of a section across [-]."""
-THICKENING = 8
+THICKENING = 9
 """Place of the factor on plate friction [-]."""
-ADDED = 9
+ADDED = 10
 """Place of the factor on added mass [-]."""
-SHEDDING = 10
+SHEDDING = 11
 """Place of the factor on what is shed at the tail [-]."""
-WAVE = 11
+WAVE = 12
 """Place of a wave's amplitude [m], wave vector in the world (3) [rad/m], angular frequency [rad/s], phase [rad]."""
-FORCE = 17
+FORCE = 18
 """Place where the kernel leaves the force of the water on the robot (3) [N]."""
-POWER = 20
+POWER = 21
 """Place where it leaves the power of that force [W]."""
-UNDER = 21
+UNDER = 22
 """Place where it leaves the volume under water [m3]."""
-NUMBERS = 22
+NUMBERS = 23
 """Length of the row [-]."""
 
 

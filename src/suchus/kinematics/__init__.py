@@ -1,6 +1,6 @@
 """Kinematics: pure NumPy, double precision, batched over leading axes."""
 
-from suchus.kinematics import body, dh, leg, limb, mass, printed, spine, tail, tree, wave
+from suchus.kinematics import body, dh, leg, limb, mass, printed, spine, tail, tree, trim, wave
 from suchus.kinematics.body import Landmarks, landmarks
 from suchus.kinematics.wave import TravellingWave
 from suchus.renamed import old_exports
@@ -18,6 +18,7 @@ __all__ = [
     "spine",
     "tail",
     "tree",
+    "trim",
     "wave",
 ]
 

@@ -12,6 +12,7 @@ from jaxtyping import Float
 
 from suchus.design import AnyRobot, layout
 from suchus.design.layout import Axis
+from suchus.design.pieces import foam_centres
 from suchus.kinematics.given import numbers, rows, spread_over
 
 
@@ -107,7 +108,7 @@ def centre_of_mass(robot: AnyRobot, angles: Float[np.ndarray, "*batch joint"]) -
 
 @lru_cache(maxsize=64)
 def _masses(robot: AnyRobot) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the body, the place in its frame [m] and the mass [kg] of every piece."""
+    """Return the body, the place in its frame [m] and the mass [kg] of every piece, foam included."""
     place = layout(robot)
     segments = {segment.name: segment for segment in place.robot.axis}
     rows = []
@@ -121,6 +122,10 @@ def _masses(robot: AnyRobot) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
             end = np.array([link.end[0], limb.side * link.end[1], link.end[2]])
             rows.append((limb.tip - len(links) + 1 + number, tuple(end / 2), link.mass))
         rows.append((limb.tip, tuple(end), limb.girdle.limb.foot.mass))
+    hull, names = place.robot.hull, [body.name for body in place.bodies]
+    if hull is not None:
+        at = foam_centres(robot)
+        rows += [(names.index(foam.body), at[foam.body], hull.density * foam.volume) for foam in hull.foam]
     return np.array([row[0] for row in rows]), np.array([row[1] for row in rows]), np.array([row[2] for row in rows])
 
 

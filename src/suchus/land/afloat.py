@@ -79,7 +79,7 @@ def surfaced(
     bodies = unpacked(model.numeric_data)
 
     def lacking(height: float) -> float:
-        return float(hydrostatic(bodies, data.xpos, data.xmat, up, -height, breath)[0]) - weight
+        return float(hydrostatic(bodies, data.xpos, data.xmat, up, -height, (breath, breath))[0]) - weight
 
     reach = float(robot.length)
     height = brentq(lacking, -reach, reach, xtol=1e-9)  # of the root above the surface

@@ -8,17 +8,17 @@ import mujoco
 import numpy as np
 from mujoco.batch import Batch, SimulationError
 
-from suchus import hydro, threads
-from suchus.design import GRAVITY, AnyRobot, layout
+from suchus import threads
+from suchus.design import AnyRobot, layout
 from suchus.design.ground import Ground
 from suchus.design.pieces import pieces
 from suchus.design.relief import Relief
 from suchus.land import wetting
 from suchus.land.afloat import surfaced
 from suchus.land.deduplication import Deduplication
-from suchus.land.lake import Lake
 from suchus.land.meter import Meter
 from suchus.land.run import Afloat, Run
+from suchus.land.waters import Waters, gravity, up
 from suchus.model import activations, compile_model, force_sensors, standing
 from suchus.model.wet import wet_model
 from suchus.motion import hip_height
@@ -36,12 +36,10 @@ class SimulationBatch:
 
     def __init__(self, runs: Sequence[Run], timestep: float) -> None:
         bodies = [(run.robot, run.ground.relief) for run in runs]
-        self._lakes = {sim: run.lake for sim, run in enumerate(runs) if run.lake is not None}
-        self._changing = {sim: lake for sim, lake in self._lakes.items() if lake.changes()}
-        self._ups = np.array([up(run.ground) for run in runs])
-        if self._lakes:
+        wet = any(run.lake is not None for run in runs)
+        if wet:
             wetting.install()
-        room = max(len(pieces(run.robot)) for run in runs) if self._lakes else 0
+        room = max(len(pieces(run.robot)) for run in runs) if wet else 0
         models = {body: _model(body[0], timestep, body[1], room) for body in dict.fromkeys(bodies)}
         shared = models[bodies[0]]
         self.model = shared
@@ -59,9 +57,7 @@ class SimulationBatch:
             self.physics.bind(name) for name in ("qpos", "qvel", "ctrl", "sensordata")
         )
         self.readings = self.sensors.copy()
-        self.water = self.physics.bind("userdata") if self._lakes else np.zeros((len(runs), 0))
-        for sim in self._lakes:
-            self.refill(sim)
+        self.waters = Waters(runs, self.physics)
         forces = force_sensors(runs[0].robot)
         self._forces = slice(int(shared.sensor(forces[0]).adr[0]), int(shared.sensor(forces[-1]).adr[0]) + 3)
         servos = [shared.sensor(f"{name}_position") for name in layout(runs[0].robot).servos]
@@ -106,7 +102,7 @@ class SimulationBatch:
             if run.ground.friction_scale != 1.0:
                 self.field("geom_friction", sim)[1:, 0] *= run.ground.friction_scale
             if run.ground.uphill or run.ground.sideways:
-                self.tilt(sim, run.ground)
+                self.field("opt.gravity", sim)[:] = gravity(run.ground)
             if run.afloat is not None:
                 self._cast_off(sim, run.afloat)
 
@@ -131,43 +127,6 @@ class SimulationBatch:
         now = self.physics.expand("opt.disableactuator")[sim] if self._single else self._own(sim).opt.disableactuator
         self._set_option("disableactuator", sim, int(now) & ~bit if on else int(now) | bit)
 
-    def flood(self, time: float, breath: np.ndarray | None = None) -> None:
-        """Let level and breath of the lakes be what they are at a time, where they change or are commanded.
-
-        Args:
-            time: [s].
-            breath: what controllers command, shape (run,), NaN where they leave it to the lake [-]; None for all.
-        """
-        for sim, lake in self._changing.items():
-            self.water[sim, hydro.LEVEL], self.water[sim, hydro.BREATH] = lake.at(time)
-        if breath is not None and self._lakes:
-            asked = np.isfinite(breath)
-            self.water[asked, hydro.BREATH] = breath[asked]
-
-    def fill(self, sim: int, lake: Lake, time: float) -> None:
-        """Let the water of a run be another one from now on; what the water did last stays to be read.
-
-        Args:
-            sim: a run that has a lake.
-            lake: the other one.
-            time: [s].
-        """
-        self._lakes[sim] = lake
-        self._changing = {one: lake for one, lake in self._lakes.items() if lake.changes()}
-        self.water[sim, : hydro.FORCE] = lake.numbers(self._ups[sim], time)[: hydro.FORCE]
-
-    def refill(self, sim: int) -> None:
-        """Write the water of a run anew, as it is at the beginning; a reset of the physics drains it."""
-        if sim in self._lakes:
-            self.water[sim] = self._lakes[sim].numbers(self._ups[sim])
-
-    def depths(self) -> np.ndarray | None:
-        """Return how deep the roots are below the level of their water, 0 above it, shape (run,) [m]; None if dry."""
-        if not self._lakes:
-            return None
-        height = np.einsum("ij,ij->i", self.qpos[:, :3], self._ups)
-        return np.asarray(np.maximum(self.water[:, hydro.LEVEL] - height, 0.0))
-
     def angles(self, sim: int) -> np.ndarray:
         """Return the angles of a run's joints at the servos' shafts as they are now, shape (servo,) [rad]."""
         angles: np.ndarray = self.readings[sim, self._positions]
@@ -175,9 +134,8 @@ class SimulationBatch:
 
     def tilt(self, sim: int, ground: Ground) -> None:
         """Let a ground slope as it says from now on; its friction and relief are not looked at."""
-        self.field("opt.gravity", sim)[:] = _gravity(ground)
-        if sim in self._lakes:
-            self._ups[sim] = up(ground)
+        self.field("opt.gravity", sim)[:] = gravity(ground)
+        self.waters.tilt(sim, ground)
 
     def push(self, sim: int, body: str, force: np.ndarray) -> None:
         """Let a force act on the centre of mass of a body from now on.
@@ -219,8 +177,8 @@ class SimulationBatch:
     def read(self, who: int | slice) -> None:
         """Take the readings of some runs at rest in their present state, which has been brought up to date."""
         self.readings[who], self.worked[who] = self.sensors[who], 0.0
-        if self._lakes:
-            self.worked[who, :4] = self.water[who, hydro.FORCE : hydro.FORCE + 4]
+        if self.waters:
+            self.worked[who, :4] = self.waters.acts()[who]
 
     def advance(self, targets: np.ndarray, steps: int, time: float, shared: Deduplication | None = None) -> None:
         """Command servo angles and advance the living by some steps; who diverges dies, with the time and the cause.
@@ -272,10 +230,10 @@ class SimulationBatch:
 
     def _meter(self, steps: int) -> Meter | None:
         """Return the meter of a control period, which is kept from one to the next; None on dry land."""
-        if not self._lakes:
+        if not self.waters:
             return None
         if steps not in self._meters:
-            self._meters[steps] = Meter(self.water, self.sensors, self.velocities, self.torques, steps)
+            self._meters[steps] = Meter(self.waters.rows, self.sensors, self.velocities, self.torques, steps)
         self._meters[steps].begin()
         return self._meters[steps]
 
@@ -311,15 +269,3 @@ def _model(robot: AnyRobot, timestep: float, relief: Relief | None, room: int) -
     model = copy.copy(made)
     model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_ISLAND)
     return model
-
-
-def up(ground: Ground) -> np.ndarray:
-    """Return the direction against gravity in the frame of a tilted ground, a unit vector."""
-    return -_gravity(ground) / GRAVITY
-
-
-def _gravity(ground: Ground) -> np.ndarray:
-    """Return gravity in the frame of a tilted ground [m/s2]."""
-    down = np.array([-np.sin(ground.uphill), 0.0, -np.cos(ground.uphill)])
-    c, s = np.cos(ground.sideways), np.sin(ground.sideways)
-    return GRAVITY * np.array([down[0], down[2] * s, down[2] * c])

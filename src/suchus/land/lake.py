@@ -73,7 +73,7 @@ class Lake:
     wave: Wave | None = None
     """Waves on the surface; None where it is flat."""
     breath: Course = 1.0
-    """Share of the air of the robot's hull that is kept, 0 to 1 [-]."""
+    """Share of the air of the robot's hull that is kept, 0 to 1, alike in all its chambers [-]."""
     heel: float = 0.0
     """Roll with which a robot that floats is put on the water, right side down positive [rad]."""
     added_mass: float = 1.0
@@ -110,7 +110,7 @@ class Lake:
             time: [s].
         """
         row = np.zeros(hydro.NUMBERS)
-        row[hydro.LEVEL], row[hydro.BREATH] = self.at(time)
+        row[hydro.LEVEL], row[hydro.BREATH : hydro.BREATH + 2] = self.at(time)
         row[hydro.DENSITY], row[hydro.VISCOSITY] = self.water.density, self.water.viscosity
         row[hydro.CROSS_DRAG], row[hydro.THICKENING] = self.water.cross_drag, self.water.thickening
         row[hydro.ADDED], row[hydro.SHEDDING] = self.added_mass, self.shedding

@@ -145,7 +145,7 @@ class Live:
             raise InvalidDesign("this run is on dry land; begin one with a lake to change its water.")
         check_lake(self.run.robot, lake)
         self.run = replace(self.run, lake=lake)
-        self._loop.batch.fill(0, lake, self.time)
+        self._loop.batch.waters.fill(0, lake, self.time)
 
     def _look(self) -> None:
         """Decide what the servos are commanded next, and read everything."""

@@ -95,5 +95,5 @@ class Loop:
     def advance(self, tick: int, targets: np.ndarray) -> None:
         """Let one control period pass in which the servos are commanded these angles, shape (run, servo) [rad]."""
         self._deduplication.part(tick, targets if self._breath is None else np.column_stack([targets, self._breath]))
-        self.batch.flood(tick * self._period, self._breath)
+        self.batch.waters.flood(tick * self._period, self._breath)
         self.batch.advance(targets, self._steps, tick * self._period, self._deduplication)

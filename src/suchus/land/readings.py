@@ -9,11 +9,12 @@ import xarray as xr
 from suchus import hydro
 from suchus.control import Sensed
 from suchus.design import GRAVITY, layout
-from suchus.design.pieces import pieces
+from suchus.design.pieces import chambers, pieces
 from suchus.hydro import column
-from suchus.land.batch import SimulationBatch, up
+from suchus.land.batch import SimulationBatch
 from suchus.land.lake import lake_text
 from suchus.land.run import Run
+from suchus.land.waters import up
 from suchus.model import joint_addresses, sensor_names
 from suchus.record import WATER, dataset, ground_text
 
@@ -48,7 +49,7 @@ class Readings:
         self._qpos = np.full((n, samples, model.nq), np.nan)
         self._phase = np.full((n, samples, len(place.limbs)), np.nan)
         self._targets = np.full((n, samples, len(place.servos)), np.nan)
-        self._water = np.full((n, samples, batch.water.shape[1]), np.nan)
+        self._water = np.full((n, samples, batch.waters.rows.shape[1]), np.nan)
         self._worked = np.full((n, samples, batch.worked.shape[1]), np.nan)
 
     def store(self, sample: int, phase: np.ndarray, targets: np.ndarray) -> None:
@@ -58,7 +59,7 @@ class Readings:
         self._qpos[alive, sample] = self._batch.qpos[alive]
         self._phase[alive, sample] = phase[alive]
         self._targets[alive, sample] = targets[alive]
-        self._water[alive, sample] = self._batch.water[alive]
+        self._water[alive, sample] = self._batch.waters.rows[alive]
         self._worked[alive, sample] = self._batch.worked[alive]
 
     def sensed(self, time: float) -> Sensed:
@@ -66,7 +67,7 @@ class Readings:
         read = self._batch.readings
         felt = {name: read[:, where].copy() for name, where in self._felt.items()}
         pressed = {name: -read[:, where] for name, where in self._pressed.items()}
-        depth = self._batch.depths()
+        depth = self._batch.waters.depths(self._batch.qpos[:, :3])
         return Sensed(time=time, **felt, **pressed, tail_pressure=-self._tail(read)[..., 2], depth=depth)
 
     def sample(self, run: int, sample: int) -> dict[str, np.ndarray]:
@@ -113,10 +114,14 @@ class Readings:
         water, worked = self._water, self._worked
         total = np.array([column(pieces(run.robot), "volume").sum() for run in self._runs])
         ups = np.array([up(run.ground) for run in self._runs])
+        air = np.array([chambers(run.robot) for run in self._runs])
+        air[air.sum(axis=1) == 0.0] = 1.0  # nothing to share out
+        kept = water[..., hydro.BREATH : hydro.BREATH + 2]
         weight = GRAVITY * np.array([run.robot.mass for run in self._runs])
         return {
             "water_level": water[..., hydro.LEVEL],
-            "breath": water[..., hydro.BREATH],
+            "breath": np.einsum("rtc,rc->rt", kept, air / air.sum(axis=1, keepdims=True)),
+            "breath_front": kept[..., 0],
             "share_under": water[..., hydro.UNDER] / total[:, None],
             "water_force": worked[..., :3],
             "water_power": worked[..., 3],

@@ -36,7 +36,7 @@ def restart(batch: SimulationBatch, sim: int, begin: Beginning) -> None:
     physics.reset(who, stage=mujoco.mjtStage.mjSTAGE_NONE)
     batch.qpos[sim], batch.qvel[sim], batch.ctrl[sim] = begin.qpos, begin.qvel, begin.commanded
     physics.bind("act")[sim] = begin.act
-    batch.refill(sim)
+    batch.waters.refill(sim)
     physics.forward(who)
     batch.read(sim)
     batch.alive[sim], batch.ended[sim], batch.cause[sim] = True, np.inf, ""

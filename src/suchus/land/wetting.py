@@ -114,7 +114,7 @@ def _check_that_it_acts() -> None:
     column(table, "half")[:], column(table, "volume")[:] = 0.1, 0.004
     model = with_pieces(spec, table, 1.0, acting=True)
     data = mujoco.MjData(model)
-    data.userdata[[LEVEL, DENSITY, BREATH]] = 5.0, 1000.0, 1.0
+    data.userdata[[LEVEL, DENSITY, BREATH, BREATH + 1]] = 5.0, 1000.0, 1.0, 1.0
     mujoco.mj_forward(model, data)
     if data.userdata[UNDER] != 0.004:
         why = f"a ball of 4 l under water displaces {1000 * data.userdata[UNDER]:g} l"

@@ -4,12 +4,10 @@ from math import pi
 from typing import Any
 
 import mujoco
-import numpy as np
 
 from suchus.design import Contact, Hinge, Layout, LimbPlace, Robot, Rod, Segment, Servo, Spring
-from suchus.design.pieces import pieces
+from suchus.design.pieces import foam_centres
 from suchus.design.segment import Point
-from suchus.hydro import column
 from suchus.model.names import IMU, SNOUT, TAIL_TIP
 from suchus.model.surface import shell, skin, sole
 
@@ -90,18 +88,15 @@ def add_foam(spec: Any, place: Layout) -> None:
     hull = place.robot.hull
     if hull is None:
         return
-    table = pieces(place.robot)
-    number = {body.name: i for i, body in enumerate(place.bodies)}
+    at = foam_centres(place.robot)
     for foam in hull.foam:
         if foam.volume * hull.density < _LEAST:
             continue
-        mine = table[table[:, 0] == number[foam.body]]
-        at = np.average(column(mine, "at"), axis=0, weights=column(mine, "volume")[:, 0])
         spec.body(foam.body).add_geom(
             name=f"{foam.body}_foam",
             type=mujoco.mjtGeom.mjGEOM_SPHERE,
             size=[(3 * foam.volume / (4 * pi)) ** (1 / 3), 0, 0],
-            pos=list(at),
+            pos=list(at[foam.body]),
             mass=hull.density * foam.volume,
             contype=0,
             conaffinity=0,

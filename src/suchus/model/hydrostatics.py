@@ -1,7 +1,7 @@
 """Hydrostatics of a robot at rest, as naval architects draw them: draft, trim, metacentric height, righting curve."""
 
 from dataclasses import dataclass
-from math import cos, radians, sin
+from math import atan2, cos, radians, sin
 from typing import Any
 
 import mujoco
@@ -18,6 +18,8 @@ from suchus.hydro.forces import hydrostatic
 from suchus.model.build import TIMESTEP, joint_addresses
 from suchus.model.wet import wet_model
 
+Breath = tuple[float, float]
+"""Shares of the air that are kept in the front and in the rear chambers [-]."""
 _STEEPEST = radians(80)
 _SMALL = radians(0.5)
 
@@ -40,6 +42,8 @@ class Hydrostatics:
     """Distance from the surface down to its lowest point, upright; NaN if it sinks [m]."""
     trim: float
     """Pitch at rest, upright, nose up positive; NaN if it sinks [rad]."""
+    trim_submerged: float
+    """Pitch at which, wholly under water, its centre of buoyancy is above that of mass, nose up positive [rad]."""
     metacentric_height: float
     """Transverse: slope of the righting lever where it is upright; under water, the centre of buoyancy over that of
     mass [m]."""
@@ -64,7 +68,7 @@ class Hydrostatics:
 class _Rigid:
     """A robot frozen in a posture: its pieces, its weight and its centre of mass, root at the origin."""
 
-    def __init__(self, robot: AnyRobot, servos: np.ndarray, density: float, breath: float) -> None:
+    def __init__(self, robot: AnyRobot, servos: np.ndarray, density: float, breath: Breath) -> None:
         table = np.array(pieces(robot))
         model = wet_model(robot, TIMESTEP, None, len(table))
         self.data = data = mujoco.MjData(model)
@@ -73,7 +77,7 @@ class _Rigid:
         mujoco.mj_fwdPosition(model, data)
         self.table = unpacked(model.numeric_data)
         self.centre, self.mass = np.array(data.subtree_com[0]), float(model.body_subtreemass[0])
-        air = (1.0 - breath) * float(column(table, "air").sum())
+        air = float(column(table, "air").sum(axis=0) @ (1.0 - np.array(breath)))
         self.volume, self.breath, self.density = float(column(table, "volume").sum()) - air, breath, density
         self.reach = 2.0 * float(robot.length)
         self.sunk = self.volume <= self.mass / density
@@ -88,6 +92,12 @@ class _Rigid:
 
     def _statics(self, up: np.ndarray, level: float) -> np.ndarray:
         return np.asarray(hydrostatic(self.table, self.data.xpos, self.data.xmat, up, level, self.breath))
+
+    def trim_submerged(self) -> float:
+        """Return the pitch at which the centre of buoyancy is above that of mass, wholly under water [rad]."""
+        found = self._statics(np.array([0.0, 0.0, 1.0]), 2.0 * self.reach)
+        arm = found[1:4] / found[0] - self.centre
+        return atan2(arm[0], arm[2])
 
     def rest(self, heel: float, near: float) -> tuple[float, float, float]:
         """Return trim [rad], righting lever and level [m] at a heel; afloat the trim is free, from one nearby on."""
@@ -124,7 +134,7 @@ def hydrostatics(
     servos: Float[np.ndarray, " servo"] | None = None,
     *,
     density: float = WATER_DENSITY,
-    breath: float = 1.0,
+    breath: float | Breath = 1.0,
     heels: int = 37,
 ) -> Hydrostatics:
     """Return how a robot floats, rigid in a posture with its cables straight.
@@ -133,21 +143,21 @@ def hydrostatics(
         robot: the design.
         servos: angles of its servos; zeros if None.
         density: of the water [kg/m3].
-        breath: share of the hull's air that is kept [-].
+        breath: share of the hull's air that is kept, or those of its front and rear chambers [-].
         heels: angles of heel from 0 to 180 degrees at which the lever is computed [-].
 
     Raises:
         InvalidDesign: a density or breath that cannot be, or another number of servo angles.
     """
     require("hydrostatics", "density", density, 1.0, 2e4, "kg/m3")
-    require("hydrostatics", "breath", breath, 0.0, 1.0, "")
+    kept = _both(breath)
     require("hydrostatics", "heels", heels, 3, 1000, "")
     angles = np.zeros(len(servo_names(robot))) if servos is None else np.asarray(servos, dtype=float)
     if len(angles) != len(servo_names(robot)):
         raise InvalidDesign(
             f"{len(angles)} servo angles are given and robot {robot.name!r} has {len(servo_names(robot))} servos."
         )
-    body = _Rigid(robot, angles, density, breath)
+    body = _Rigid(robot, angles, density, kept)
     floats = body.volume * density > body.mass
     trim, _, level = body.rest(0.0, 0.0)
     heel = np.linspace(0.0, np.pi, int(heels))
@@ -165,10 +175,21 @@ def hydrostatics(
         surplus=body.mass - density * body.volume,
         draft=level - ends if floats else float("nan"),
         trim=trim if floats else float("nan"),
+        trim_submerged=body.trim_submerged(),
         metacentric_height=float(slope),
         heel=heel,
         lever=lever,
     )
+
+
+def _both(breath: float | Breath) -> Breath:
+    """Return the shares of the air in front and rear chambers."""
+    if isinstance(breath, tuple):
+        for name, share in zip(("front", "rear"), breath, strict=True):
+            require("hydrostatics", f"breath ({name})", share, 0.0, 1.0, "")
+        return breath
+    require("hydrostatics", "breath", breath, 0.0, 1.0, "")
+    return float(breath), float(breath)
 
 
 def _lowest(body: _Rigid, up: np.ndarray) -> float:

@@ -30,13 +30,14 @@ from suchus.motion.rising import stand_up, stretched, tallest
 from suchus.motion.roll import Roll, check_roll, roll_targets
 from suchus.motion.steered import bends as axis_bends
 from suchus.motion.steered import steerable, steered, trunk_amplitude
-from suchus.motion.swim import Bends, Swim, bends, check_swim, swim_targets
+from suchus.motion.swim import LIMBS_BACK, Bends, Swim, bends, check_swim, limbs_back, swim_targets
 from suchus.motion.tabled import as_table
 from suchus.motion.targets import foot_targets, longest_stroke, servo_targets, within_reach
 from suchus.motion.timing import START
 from suchus.renamed import old_exports
 
 __all__ = [
+    "LIMBS_BACK",
     "START",
     "AngleTable",
     "AnyGait",
@@ -68,6 +69,7 @@ __all__ = [
     "intended",
     "limb_phase",
     "limb_targets",
+    "limbs_back",
     "longest_stroke",
     "longest_strokes",
     "middle_stance",

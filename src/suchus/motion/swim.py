@@ -12,6 +12,18 @@ from suchus.errors import InvalidDesign, OutsideLimits
 from suchus.kinematics import tail as tail_kinematics
 from suchus.renamed import old_names
 
+LIMBS_BACK = (-np.pi / 2, -0.15)
+"""Yaw, forward positive, and pitch, down positive, of limbs that lie back along the body as it swims [rad]."""
+
+
+def limbs_back(robot: AnyRobot) -> Float[np.ndarray, " joint"]:
+    """Return the angles of all hinges of a straight body whose limbs lie back along it [rad]."""
+    place = layout(robot)
+    angles = np.zeros(len(place.hinges))
+    for limb in place.limbs:
+        angles[limb.hinges.start : limb.hinges.start + 2] = LIMBS_BACK
+    return angles
+
 
 def trunk_yaws(robot: AnyRobot) -> tuple[str, ...]:
     """Return the trunk's yaw servos from the root forward."""

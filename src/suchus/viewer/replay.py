@@ -46,11 +46,20 @@ class Take:
 
     def at(self, time: float) -> dict[str, np.ndarray]:
         """Return the sample nearest to a time, by the names of ``record.VARIABLES``."""
+        sample = self._sample(time)
+        return {name: self.record[name].values[sample] for name in _NEEDED}
+
+    def level(self, time: float) -> float | None:
+        """Return the level of the water above the world's origin at a time [m]; None on dry land."""
+        if "water_level" not in self.record:
+            return None
+        level = float(self.record.water_level.values[self._sample(time)])
+        return level if np.isfinite(level) else None
+
+    def _sample(self, time: float) -> int:
         times = self.record.time.values
         sample = int(np.clip(np.searchsorted(times, time), 0, len(times) - 1))
-        if sample > 0 and time - times[sample - 1] < times[sample] - time:
-            sample -= 1
-        return {name: self.record[name].values[sample] for name in _NEEDED}
+        return sample - 1 if sample > 0 and time - times[sample - 1] < times[sample] - time else sample
 
     def table(self) -> dict[str, np.ndarray]:
         """Return the columns for plots, see ``history.columns``."""
@@ -72,9 +81,18 @@ def takes(path: Path, robot: AnyRobot | None = None) -> tuple[Take, ...]:
     if "position" not in record and any("midline_x" in str(name) for name in record):
         raise IncompatibleRecord(f"{path} is no record of a run on land; view it with suchus view swim.")
     check_land(record, _NEEDED, str(path))
-    whole = record[[name for name in (*VARIABLES, "cause", "ended", "mass", "period", "stands_on") if name in record]]
+    names = (*VARIABLES, "cause", "ended", "mass", "period", "stands_on")
+    whole = record[[name for name in names if name in record] + (["water_level"] if _tells_level(record) else [])]
     runs = [whole] if "run" not in whole.dims else [whole.isel(run=i) for i in range(whole.sizes["run"])]
     return tuple(_take(path, run, i, robot) for i, run in enumerate(runs))
+
+
+def _tells_level(record: xr.Dataset) -> bool:
+    """Return whether a record says where the level of its water is, as those of runs in water do."""
+    if "water_level" not in record:
+        return False
+    level = record.water_level
+    return level.dtype.kind == "f" and set(level.dims) in ({"time"}, {"run", "time"})
 
 
 def _take(path: Path, run: xr.Dataset, number: int, robot: AnyRobot | None) -> Take:

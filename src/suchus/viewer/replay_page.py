@@ -117,6 +117,7 @@ class ReplayPage:
             now = take.at(time)
             self._stage.place(now, (take.ground.uphill, take.ground.sideways), follow=bool(self._follow.value))
             self._stage.show(now)
+            self._stage.flood(take.level(time))
             if ghost is not None and self._stage.ghost is not None:
                 self._stage.ghost.show(ghost.at(time))
             if self._drawn is not None:

@@ -16,7 +16,7 @@ from suchus.fault import Fault
 from suchus.faults import from_table
 from suchus.land import Ground, Lake, Live, Push, Run
 from suchus.land.arenas import BEFORE
-from suchus.motion import START, AnyGait, Swim, check_limits, straightened
+from suchus.motion import LIMBS_BACK, START, AnyGait, Swim, check_limits, straightened
 from suchus.robots import beside_article
 from suchus.viewer.history import History
 from suchus.viewer.knobs import (
@@ -96,7 +96,7 @@ class Settings:
     def control(self) -> Coordinated | Swimming:
         """The swim, or the rules that are on."""
         if self.swim is not None and self.swims:
-            return Swimming(swim=self.swim, limb_pitch=-0.15)
+            return Swimming(swim=self.swim, limb_pitch=LIMBS_BACK[1])
         rules = Coordinated() if self.coordination else _OPEN
         return replace(rules, heading=HeadingRule()) if self.heading else rules
 

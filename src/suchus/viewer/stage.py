@@ -35,6 +35,7 @@ _ARROW = RodShape(radius=0.006, head=0.028, head_radius=0.014)
 _PUSH = RodShape(radius=0.010, head=0.042, head_radius=0.021)
 _EDGE = RodShape(radius=0.0035)
 _PLUMB = RodShape(radius=0.0018)
+_STANDS = 0.12  # [m]; height of the centre of mass of the article's robot as it walks
 _LAKE = 12.0  # [m]; how far the water reaches that is drawn
 _STEPS = 400  # pieces of the track that are kept
 
@@ -146,10 +147,15 @@ class Stage:
                 drawn.look(look)
 
     def place(self, now: Mapping[str, np.ndarray], tilt: tuple[float, float], *, follow: bool) -> None:
-        """Turn the world as its slope says, and move it so that a camera that follows keeps the robot in view."""
+        """Turn the world as its slope says, and move it so that a camera that follows keeps the robot in view.
+
+        In water it follows up and down too, from the height of the centre of mass of a robot that stands.
+        """
         turned = slope(*tilt)
         self._world.wxyz = turned
-        at = np.array([*now["centre_of_mass"][:2], 0.0]) if follow else np.zeros(3)
+        x, y, z = now["centre_of_mass"]
+        above = 0.0 if self._water is None or not self._water.visible else max(float(z) - self._size * _STANDS, 0.0)
+        at = np.array([x, y, above]) if follow else np.zeros(3)
         self._world.position = -rotate(turned, at)
 
     def show(self, now: Mapping[str, np.ndarray], pushed: tuple[float, float, float] | None = None) -> None:
@@ -177,11 +183,14 @@ class Stage:
             level: above the world's origin, against gravity [m]; None on dry land.
         """
         if level is None:
+            if self._water is not None:
+                self._water.visible = False
             return
         if self._water is None:
             self._water = self._scene.add_box(
                 "/water", dimensions=(_LAKE, _LAKE, 0.001), color=rgb(COLOURS["water"]), opacity=0.35
             )
+        self._water.visible = True
         self._water.position = np.array([0.0, 0.0, level + float(np.asarray(self._world.position)[2])])
 
     def _stand(self, feet: np.ndarray, loaded: np.ndarray, com: np.ndarray) -> None:

@@ -87,11 +87,12 @@
     layout(location=0) in vec3 aAt; layout(location=1) in vec3 aNormal; layout(location=2) in vec4 aColour;
     uniform mat4 uView; out vec3 vAt, vNormal; out vec4 vColour;
     void main() { vAt = aAt; vNormal = aNormal; vColour = aColour; gl_Position = uView * vec4(aAt, 1.0); }`, `
-    in vec3 vAt, vNormal; in vec4 vColour; uniform float uLined; out vec4 colour; ${lit} ${lines}
+    in vec3 vAt, vNormal; in vec4 vColour; uniform float uLined; uniform vec3 uFar; out vec4 colour; ${lit} ${lines}
     void main() {
       bool flat_ = dot(vNormal, vNormal) < 0.01;
       vec3 own = mix(vColour.rgb, vec3(0.45, 0.43, 0.38), uLined * lines(vAt.xy));
-      colour = vec4(flat_ ? own : lit(own, normalize(vNormal), vAt), vColour.a);
+      float near = uFar.z > 0.0 ? 1.0 - smoothstep(0.4, 1.0, length(vAt.xy - uFar.xy) / uFar.z) : 1.0;
+      colour = vec4(flat_ ? own : lit(own, normalize(vNormal), vAt), vColour.a * near);
     }`);
   const floor = program(`
     layout(location=0) in vec3 aAt; uniform mat4 uView; uniform vec3 uEye; uniform float uLevel; out vec2 vAt;
@@ -307,7 +308,7 @@
     if (!levels) return;
     const f = Math.min(Math.max((state.time - meta.start) * meta.rate, 0), levels.length - 1), i = Math.floor(f);
     const level = levels[i] + (f - i) * (levels[Math.min(i + 1, levels.length - 1)] - levels[i]), up = meta.water.up;
-    const reach = 6 * meta.length, c = camera.target;
+    const reach = 9 * meta.length, c = camera.target; // it fades into the distance: no edge is seen
     const at = (x, y) => [x, y, (level - up[0] * x - up[1] * y) / up[2]];
     const corners = [[-1, -1], [1, -1], [1, 1], [-1, 1]].map(([a, b]) => at(c[0] + a * reach, c[1] + b * reach));
     const wet = [];
@@ -318,11 +319,12 @@
     });
     const made = [], colour = [...meta.colours.water, 0.3];
     for (let k = 1; k + 1 < wet.length; k++) push(made, wet[0], wet[k], wet[k + 1], colour, [0, 0, 0]);
-    triangles(made, seen, false);
+    triangles(made, seen, false, [c[0], c[1], reach]);
   }
-  function triangles(made, seen, write) {
+  function triangles(made, seen, write, far = [0, 0, 0]) {
     if (!made.length) return;
     usePlain(seen);
+    gl.uniform3fv(plain.uniforms.uFar, far);
     gl.bindVertexArray(dynamic);
     gl.bindBuffer(gl.ARRAY_BUFFER, dynamicBuffer);
     gl.bufferData(gl.ARRAY_BUFFER, new Float32Array(made), gl.DYNAMIC_DRAW);
@@ -392,6 +394,7 @@
     gl.depthMask(true);
     if (relief) {
       usePlain(seen);
+      gl.uniform3fv(plain.uniforms.uFar, [0, 0, 0]);
       gl.uniform1f(plain.uniforms.uLined, 1);
       gl.bindVertexArray(relief.array);
       gl.drawArrays(gl.TRIANGLES, 0, relief.count);
