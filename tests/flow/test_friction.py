@@ -48,6 +48,13 @@ def test_on_a_plate_the_totals_are_those_of_blasius_and_of_the_line(stations):
     assert band.turbulent == pytest.approx(push * (line(reynolds) + at_the_nose), rel=1e-9)
 
 
+def test_a_slope_takes_its_share_of_the_force():
+    arc, ones = np.array([0.0, 0.5, 1.0]), np.ones(3)
+    flat = along_stations(arc, ones, ones, **WATER)
+    sloped = along_stations(arc, ones, ones, **WATER, slope=np.array([0.5, 0.5, 0.5]))
+    assert np.allclose(sloped, 0.5 * np.array(flat), rtol=1e-12)
+
+
 def test_the_local_law_is_the_rate_of_the_total():
     for law, total in ((blasius, lambda n: 1.328 * n**0.5), (ittc, lambda n: 0.075 * n / (np.log10(n) - 2) ** 2)):
         for reynolds in (3e4, 1e6, 1e8):

@@ -113,14 +113,13 @@ def _laminar_total(reynolds: Float[np.ndarray, " *n"]) -> Float[np.ndarray, " *n
 
 
 def _turbulent_total(reynolds: Float[np.ndarray, " *n"]) -> Float[np.ndarray, " *n"]:
-    """Return the integral of ``ittc`` over the Reynolds number from 0 on."""
+    """Return the integral of ``ittc`` over the Reynolds number, but for a constant."""
 
     def line(number: Float[np.ndarray, " *n"]) -> Float[np.ndarray, " *n"]:
         return np.asarray(0.075 * number / (np.log10(number) - 2.0) ** 2)
 
     above = np.maximum(reynolds, SLOWEST)
-    start = np.asarray(SLOWEST)
-    return _laminar_total(np.minimum(reynolds, SLOWEST)) + line(above) - line(start)
+    return _laminar_total(np.minimum(reynolds, SLOWEST)) + line(above)
 
 
 def _check(arc: np.ndarray, girth: np.ndarray, speed: np.ndarray, slope: np.ndarray) -> None:
