@@ -1,0 +1,141 @@
+"""Friction of a boundary layer on a body whose layer no grid carries: a law along stations, and its band.
+
+The layer at a station rubs as that of a flat plate with the same momentum thickness. Laminar from the nose to
+the end is the least friction, turbulent from the nose on the most: the two are the band. The law holds where the layer
+stays attached; behind a separation it says nothing, and it leaves out what the layer does to the pressure.
+
+Sources: Blasius 1908, Z. Math. Phys. 56, 1-37, and Thwaites 1949, Aeronaut. Q. 1, 245-280, with the girth after Mangler
+1948, Z. angew. Math. Mech. 28, 97-103 (laminar); ITTC 1957, 8th International Towing Tank Conference, Madrid, the
+correlation line of ship models, and Truckenbrodt 1952, Ing.-Arch. 20, 211-228 (turbulent).
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from jaxtyping import Float
+
+from suchus.errors import InvalidDesign
+
+SLOWEST = 2e4
+"""Reynolds number below which no layer is turbulent; the friction of the turbulent end is laminar up to there [-]."""
+
+
+def blasius(reynolds: Float[np.ndarray, " *n"]) -> Float[np.ndarray, " *n"]:
+    """Return the local coefficient of friction of a laminar layer on a flat plate [-].
+
+    Args:
+        reynolds: speed times distance from the edge over the viscosity, above 0 [-].
+    """
+    return np.asarray(0.664 / np.sqrt(reynolds))
+
+
+def ittc(reynolds: Float[np.ndarray, " *n"]) -> Float[np.ndarray, " *n"]:
+    """Return the local coefficient of friction of a turbulent layer, laminar below ``SLOWEST`` [-].
+
+    The line is one of totals, ``C = 0.075 / (log10 Re - 2)^2``; the local one is the rate of ``C Re``.
+
+    Args:
+        reynolds: speed times distance from the nose over the viscosity, above 0 [-].
+    """
+    decades = np.log10(np.maximum(reynolds, SLOWEST)) - 2.0
+    line = 0.075 / decades**2 * (1.0 - 2.0 / (np.log(10.0) * decades))
+    return np.where(reynolds < SLOWEST, blasius(reynolds), line)
+
+
+class Band(NamedTuple):
+    """A quantity at the two ends of the law."""
+
+    laminar: float
+    """Where the layer is laminar to the end of the body."""
+    turbulent: float
+    """Where it is turbulent from the nose on."""
+
+
+def along_stations(
+    arc: Float[np.ndarray, " station"],
+    girth: Float[np.ndarray, " station"],
+    speed: Float[np.ndarray, " station"],
+    *,
+    viscosity: float,
+    density: float,
+    slope: Float[np.ndarray, " station"] | float = 1.0,
+) -> Band:
+    """Return the force of friction along a body whose layer stays attached [N].
+
+    Between two stations girth, speed and slope are taken as even and the layer grows as on a plate, so that on a plate
+    the result is exact for any stations. Where the body widens or the water gains speed the layer is thinner than a
+    plate's of the same length, and it rubs more.
+
+    Args:
+        arc: distance of the stations from the nose along the body, rising [m].
+        girth: wetted [m].
+        speed: of the water beside the layer against the skin, towards the tail [m/s].
+        viscosity: kinematic [m^2/s].
+        density: [kg/m^3].
+        slope: cosine of the angle between the skin and the direction of the force [-].
+
+    Raises:
+        InvalidDesign: stations that do not rise from 0 on, a girth that is negative, a speed that is not positive
+            somewhere between the ends, or numbers that are not finite.
+    """
+    slope = np.broadcast_to(np.asarray(slope, float), arc.shape)
+    _check(arc, girth, speed, slope)
+    if not (np.isfinite([viscosity, density]).all() and viscosity > 0 and density > 0):
+        raise InvalidDesign(
+            f"viscosity is {viscosity:.4g} m^2/s and density {density:.4g} kg/m^3; both must be above 0."
+        )
+    wide, fast, tilt = (0.5 * (a[1:] + a[:-1]) for a in (girth, speed, slope))
+    forces = []
+    for total, (of_girth, of_speed) in ((_laminar_total, _LAMINAR), (_turbulent_total, _TURBULENT)):
+        end, start = _plate(arc, wide, fast, of_girth, of_speed)
+        rubbed = total(fast * end / viscosity) - total(fast * start / viscosity)
+        forces.append(float((0.5 * density * fast * viscosity * wide * tilt * rubbed).sum()))
+    return Band(*forces)
+
+
+_LAMINAR, _TURBULENT = (2.0, 5.0), (7.0 / 6.0, 10.0 / 3.0)
+"""Powers of girth and speed with which a layer remembers where it has been [-]."""
+
+
+def _plate(
+    arc: np.ndarray, wide: np.ndarray, fast: np.ndarray, of_girth: float, of_speed: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the lengths of the plates whose layers are those at the end and at the start of each interval [m]."""
+    own, ds = (wide / max(wide.max(), 1e-300)) ** of_girth * (fast / fast.max()) ** of_speed, np.diff(arc)
+    before = own[0] * arc[0] + np.concatenate([[0.0], np.cumsum(own * ds)[:-1]])
+    start = np.divide(before, own, out=np.zeros_like(own), where=own > 0)
+    return start + ds, start
+
+
+def _laminar_total(reynolds: Float[np.ndarray, " *n"]) -> Float[np.ndarray, " *n"]:
+    """Return the integral of ``blasius`` over the Reynolds number from 0 on."""
+    return 1.328 * np.sqrt(reynolds)
+
+
+def _turbulent_total(reynolds: Float[np.ndarray, " *n"]) -> Float[np.ndarray, " *n"]:
+    """Return the integral of ``ittc`` over the Reynolds number, but for a constant."""
+
+    def line(number: Float[np.ndarray, " *n"]) -> Float[np.ndarray, " *n"]:
+        return np.asarray(0.075 * number / (np.log10(number) - 2.0) ** 2)
+
+    above = np.maximum(reynolds, SLOWEST)
+    return _laminar_total(np.minimum(reynolds, SLOWEST)) + line(above)
+
+
+def _check(arc: np.ndarray, girth: np.ndarray, speed: np.ndarray, slope: np.ndarray) -> None:
+    if not (arc.ndim == 1 and arc.shape == girth.shape == speed.shape and arc.size >= 2):
+        raise InvalidDesign(
+            f"stations have shape {arc.shape}, girths {girth.shape} and speeds {speed.shape}; give three rows of as "
+            f"many numbers, two at least."
+        )
+    if not (np.isfinite(arc).all() and arc[0] >= 0 and (np.diff(arc) > 0).all()):
+        raise InvalidDesign(f"stations go from {arc[0]:.4g} to {arc[-1]:.4g} m; give rising distances from the nose.")
+    if not (np.isfinite(girth).all() and girth.min() >= 0):
+        raise InvalidDesign(f"the girth is {girth.min():.4g} m at least; give finite numbers, none negative.")
+    if not (np.isfinite(speed).all() and speed.min() >= 0 and (speed[1:-1] > 0).all()):
+        raise InvalidDesign(
+            f"the speed of the water along the body is {speed.min():.4g} m/s at least; the law is for water that runs "
+            f"towards the tail everywhere: give positive numbers."
+        )
+    if not (np.isfinite(slope).all() and np.abs(slope).max() <= 1):
+        raise InvalidDesign(f"the slope is up to {np.abs(slope).max():.4g}; it is a cosine: give numbers from -1 to 1.")
