@@ -108,7 +108,7 @@ REFUSED = {
     ),
     "--reynolds 1e6": (
         "reynolds is 1e+06: real water",
-        "friction law, and that is not built; at most 20000 is allowed",
+        "where its layer does, and that is not built; at most 20000 is allowed",
     ),
     "--cells 512": ("a grid of 768 x 384 x 128 cells takes 3.", "GB of memory, and this machine has 1 GB"),
 }

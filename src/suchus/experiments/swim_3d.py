@@ -94,8 +94,8 @@ class Swim3d(Experiment):
             reynolds: Any = self.reynolds  # a file may say anything
             if isinstance(reynolds, (int, float)) and reynolds > MOST_REYNOLDS:
                 check.that(False, f"{self.name()}.reynolds is {self.reynolds:.3g}: real water, 1e6 at 1 Hz and 1 m, "
-                           "would need to slip along the body, with a friction law, and that is not built; at most "
-                           f"{MOST_REYNOLDS:.0f} is allowed, whose layers a grid carries")  # fmt: skip
+                           "would need to slip along the body and to leave it where its layer does, and that is not "
+                           f"built; at most {MOST_REYNOLDS:.0f} is allowed, whose layers a grid carries")  # fmt: skip
             else:
                 check.number("reynolds", 10.0, MOST_REYNOLDS, "")
             check.that(self.reading in READINGS, f"{self.name()}.reading is {self.reading!r}; there are "
