@@ -136,9 +136,10 @@ def test_added_mass_for_each_of_six_accelerations_is_lambs(axis):
     limit = found[1] + (found[1] - found[0]) / 3
     print(f"six accelerations of a spheroid along {'xyz'[axis]}: {np.round(found, 4)}, limit {limit}, Lamb {exact}")
     names = (f"{what} {'its axis' if d == 'x' else d}" for what in ("mass along", "inertia about") for d in "xyz")
+    about = "8, 16 cells/D, limit", "5 x 4 x 4 D", "Lamb 1932"
     for name, ours, theirs in zip(names, limit, exact, strict=True):
         if axis == 0:
-            note("spheroid 2:1", f"added {name}", ours, float(theirs), "8, 16 cells/D, limit", "5 x 4 x 4 D", "Lamb 1932")
+            note("spheroid 2:1", f"added {name}", ours, float(theirs), *about)
     assert 1 + limit == pytest.approx(1 + exact, rel=0.01)
     assert limit[exact > 0] == pytest.approx(exact[exact > 0], rel=0.02)
 

@@ -67,8 +67,8 @@ GROUPS = (
     ),
     Group(
         title="In three dimensions",
-        about="The added mass of a spheroid for its six accelerations. The robot of `suchus run swim_3d`, free in its own "
-        "box of water and in a wide one: what the sides do.",
+        about="The added mass of a spheroid for its six accelerations. The robot of `suchus run swim_3d`, free in its "
+        "own box of water and in a wide one: what the sides do.",
         cases=("spheroid", "swimming robot"),
     ),
 )
