@@ -128,6 +128,21 @@ def test_the_momentum_of_the_pieces_of_a_bending_body_is_that_of_where_they_go()
     assert (skin.points.max(axis=1) <= np.array(box[1::2]) + 1e-9).all()
 
 
+def test_a_ball_beside_the_trunk_adds_its_own_tensor_of_inertia():
+    """Two fifths of its mass times its radius squared about each axis, and what its place adds (Steiner)."""
+    radius, place = 0.1, np.array([0.5, 0.3, 0.0])
+    ball = flow.Capsule(at=0.5, start=(0.0, 0.3), end=(0.0, 0.3), radius=radius)
+    whole, trunk = straight((ball,)).mass(0.0), straight(()).mass(0.0)
+    volume = 4 / 3 * np.pi * radius**3
+    middle = (trunk.volume * np.array(trunk.centre) + volume * place) / (trunk.volume + volume)
+    exact = trunk.moments + 0.4 * volume * radius**2 * np.eye(3)
+    for size, at in ((trunk.volume, trunk.centre), (volume, place)):
+        off = np.array(at) - middle
+        exact = exact + size * (off @ off * np.eye(3) - np.outer(off, off))
+    assert whole.centre == pytest.approx(middle, rel=3e-3)
+    assert whole.moments == pytest.approx(exact, rel=3e-3, abs=1e-6)
+
+
 def test_a_turning_body_has_the_swirl_of_a_rigid_one():
     """A midline that turns as a whole: the angular momentum is the moment of inertia times the rate."""
     s, spin = np.linspace(0.0, 1.0, 41), 0.7
