@@ -9,7 +9,7 @@ import pytest
 
 ROOT = Path(__file__).parent.parent
 EXAMPLES = sorted((ROOT / "examples").glob("[0-9][0-9]_*.py"))
-LONG = ("14", "15", "16", "17")
+LONG = ("14", "15", "16", "17", "18")
 """Flows of 10 s and more of processor time, which ``make validate`` runs."""
 
 

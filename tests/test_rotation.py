@@ -89,3 +89,45 @@ def test_leading_dimensions_stay_and_lost_readings_go_through():
     np.testing.assert_allclose(rotation.yaw(q)[0], 0.1 * np.arange(6.0), atol=1e-15)
     assert np.isnan(rotation.roll(q)[1]).all()
     assert np.all(rotation.pitch(q)[2] == 0.0)
+
+
+@given(yaw=st.floats(-3.1, 3.1), pitch=st.floats(-1.55, 1.55), roll=st.floats(-3.1, 3.1))
+def test_three_angles_make_a_rotation_and_are_found_in_it(yaw, pitch, roll):
+    q = rotation.from_angles(yaw, pitch, roll)
+    exact = Rotation.from_euler("ZYX", [yaw, pitch, roll]).as_matrix()
+    np.testing.assert_allclose(scipys(q).as_matrix(), exact, atol=1e-14)
+    assert rotation.angles(q) == pytest.approx((yaw, pitch, roll), abs=1e-9)
+
+
+@pytest.mark.parametrize("pitch", [np.pi / 2, -np.pi / 2, np.pi / 2 - 1e-9, -np.pi / 2 + 3e-12])
+@given(yaw=st.floats(-3.1, 3.1), roll=st.floats(-3.1, 3.1))
+def test_upright_on_its_nose_the_angles_still_make_the_same_rotation(pitch, yaw, roll):
+    q = rotation.from_angles(yaw, pitch, roll)
+    found = rotation.angles(q)
+    assert found[1] == pytest.approx(pitch, abs=1e-7)
+    np.testing.assert_allclose(rotation.matrix(rotation.from_angles(*found)), rotation.matrix(q), atol=1e-12)
+
+
+vectors = st.tuples(*[st.floats(-1.7, 1.7)] * 3).map(np.array)
+
+
+@given(vector=vectors, turns=st.integers(-3, 3))
+def test_rotation_vectors_are_those_of_scipy_and_the_nearest_among_whole_turns(vector, turns):
+    q = rotation.from_vector(vector)
+    exact = Rotation.from_rotvec(vector)
+    np.testing.assert_allclose(scipys(q).as_matrix(), exact.as_matrix(), atol=1e-14)
+    np.testing.assert_allclose(rotation.turn(vector), exact.as_matrix(), atol=1e-14)
+    np.testing.assert_allclose(rotation.to_vector(q, np.zeros(3)), exact.as_rotvec(), atol=1e-9)
+    size = np.linalg.norm(vector)
+    assume(size > 1e-3)
+    far = vector + 2 * np.pi * turns * vector / size
+    np.testing.assert_allclose(rotation.to_vector(q, far + 0.1), far, atol=1e-9)
+    np.testing.assert_allclose(rotation.turn(far), exact.as_matrix(), atol=1e-12)
+
+
+def test_no_turn_has_no_axis_and_whole_turns_that_of_their_neighbour():
+    none = np.array([1.0, 0.0, 0.0, 0.0])
+    assert rotation.to_vector(none, np.zeros(3)) == pytest.approx(np.zeros(3))
+    assert rotation.to_vector(none, 6.2 * Y) == pytest.approx(2 * np.pi * Y)
+    assert rotation.turn(np.zeros(3)) == pytest.approx(np.eye(3))
+    assert rotation.turn(1e-9 * Z)[1, 0] == pytest.approx(1e-9)

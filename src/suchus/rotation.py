@@ -11,6 +11,8 @@ scipy's.
 Zeros and NaN, as of sensors that are lost, go through all but ``matrix``.
 """
 
+from math import atan2, cos, pi, sin, sqrt
+
 import numpy as np
 from jaxtyping import Float
 from scipy.spatial.transform import Rotation
@@ -64,6 +66,51 @@ def about(axis: Vector, angle: Float[np.ndarray, "*b"] | float) -> Quaternion:
     """
     half = np.asarray(angle)[..., None] / 2
     return np.concatenate([np.cos(half), np.sin(half) * axis + 0.0], axis=-1)  # no negative zeros in records
+
+
+def from_angles(yaw: float, pitch: float, roll: float) -> Float[np.ndarray, "4"]:
+    """Return the quaternion of three angles that follow each other as intrinsic rotations [rad]."""
+    return np.asarray(Rotation.from_euler("ZYX", [yaw, pitch, roll]).as_quat(scalar_first=True))
+
+
+def angles(q: Float[np.ndarray, "4"]) -> tuple[float, float, float]:
+    """Return yaw, pitch (-pi/2 to pi/2) and roll, from which ``from_angles`` makes the same rotation [rad].
+
+    That holds for a body that stands upright as well, where yaw and roll are about one axis and any yaw will do.
+    """
+    turned = matrix(q)
+    (x, y, z), sides = turned[:, 0].tolist(), turned[:, 1:]
+    yaw = np.arctan2(y, x)
+    aside = np.cos(yaw) * sides[1] - np.sin(yaw) * sides[0]  # across the yaw, where the body's y and z axes show
+    return float(yaw), float(np.arctan2(-z, np.hypot(x, y))), float(np.arctan2(-aside[1], aside[0]))
+
+
+def from_vector(vector: Float[np.ndarray, "3"]) -> Float[np.ndarray, "4"]:
+    """Return the quaternion of a rotation vector: its axis times its angle [rad]."""
+    x, y, z = vector.tolist()
+    half = 0.5 * sqrt(x * x + y * y + z * z)
+    share = 0.5 * (sin(half) / half if half > 0 else 1.0)
+    return np.array([cos(half), share * x, share * y, share * z])
+
+
+def to_vector(q: Float[np.ndarray, "4"], near: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3"]:
+    """Return the rotation vector that is nearest to another one, among those that differ by whole turns [rad]."""
+    w, x, y, z = q.tolist()
+    half = sqrt(x * x + y * y + z * z)
+    angle = 2 * atan2(half, w)
+    axis = q[1:] / half if half > 0 else near / max(sqrt(near @ near), 1e-300)
+    turns = round((float(axis @ near) - angle) / (2 * pi))
+    return np.asarray((angle + 2 * pi * turns) * axis)
+
+
+def turn(vector: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3 3"]:
+    """Return the rotation matrix of a rotation vector [rad]."""
+    x, y, z = vector.tolist()
+    square = x * x + y * y + z * z
+    angle = sqrt(square)
+    one, half = (sin(angle) / angle, 2 * sin(angle / 2) / angle) if angle > 0 else (1.0, 1.0)
+    across = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    return np.asarray(np.eye(3) + one * across + 0.5 * half**2 * across @ across)
 
 
 def matrix(q: Quaternion) -> Float[np.ndarray, "*b 3 3"]:

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from suchus import flow
 from suchus.errors import InvalidDesign
 from suchus.flow import contact
-from suchus.flow.free import Swimmer
+from suchus.flow.swimmer import Swimmer
 
 LAW = flow.Contact(gap=0.1, pressure=50.0)
 ROUND, LONG = flow.Cylinder(diameter=1.0), flow.Ellipse(length=1.4, width=0.6)

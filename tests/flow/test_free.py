@@ -10,7 +10,7 @@ from scipy.special import kv
 
 from suchus import flow
 from suchus.errors import InvalidDesign
-from suchus.flow.free import Swimmer
+from suchus.flow.swimmer import Swimmer
 
 CIRCLE = flow.Cylinder(diameter=1.0)
 AREA = CIRCLE.mass(0.0).area

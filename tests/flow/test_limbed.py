@@ -49,9 +49,9 @@ def test_the_volume_of_the_union_is_that_of_random_points():
     mass = straight().mass(0.0)
     assert mass.volume == pytest.approx(box * there.mean(), rel=0.01)
     centre = x[there].mean(), y[there].mean()
-    assert mass.centre == pytest.approx(centre, abs=2e-3)
+    assert mass.centre == pytest.approx((*centre, 0.0), abs=2e-3)
     moment = box * ((x - centre[0]) ** 2 + (y - centre[1]) ** 2)[there].sum() / x.size
-    assert mass.moment == pytest.approx(moment, rel=0.01)
+    assert mass.moments[2, 2] == pytest.approx(moment, rel=0.01)
     apart = straight(LIMBS[:2]).mass(0.0).volume - straight(()).mass(0.0).volume
     assert apart == pytest.approx(2 * (np.pi * 0.03**2 * 0.2 + 4 / 3 * np.pi * 0.03**3), rel=3e-3)
 
@@ -121,11 +121,26 @@ def test_the_momentum_of_the_pieces_of_a_bending_body_is_that_of_where_they_go()
     rate = (pieces(time + dt)[0] - pieces(time - dt)[0]) / (2 * dt)
     assert pieces(time)[1] == pytest.approx(rate, rel=1e-4)
     assert np.abs(rate).max() > 1e-4
-    assert body.mass(time).moment > flow.Trunk.mass(body, time).moment
+    assert body.mass(time).moments[2, 2] > flow.Trunk.mass(body, time).moments[2, 2]
     box = body.bounds(time, flow.Pose())
     skin = body.markers(time, flow.Pose(), 0.01)
     assert (skin.points.min(axis=1) >= np.array(box[::2]) - 1e-9).all()
     assert (skin.points.max(axis=1) <= np.array(box[1::2]) + 1e-9).all()
+
+
+def test_a_ball_beside_the_trunk_adds_its_own_tensor_of_inertia():
+    """Two fifths of its mass times its radius squared about each axis, and what its place adds (Steiner)."""
+    radius, place = 0.1, np.array([0.5, 0.3, 0.0])
+    ball = flow.Capsule(at=0.5, start=(0.0, 0.3), end=(0.0, 0.3), radius=radius)
+    whole, trunk = straight((ball,)).mass(0.0), straight(()).mass(0.0)
+    volume = 4 / 3 * np.pi * radius**3
+    middle = (trunk.volume * np.array(trunk.centre) + volume * place) / (trunk.volume + volume)
+    exact = trunk.moments + 0.4 * volume * radius**2 * np.eye(3)
+    for size, at in ((trunk.volume, trunk.centre), (volume, place)):
+        off = np.array(at) - middle
+        exact = exact + size * (off @ off * np.eye(3) - np.outer(off, off))
+    assert whole.centre == pytest.approx(middle, rel=3e-3)
+    assert whole.moments == pytest.approx(exact, rel=3e-3, abs=1e-6)
 
 
 def test_a_turning_body_has_the_swirl_of_a_rigid_one():
@@ -135,8 +150,8 @@ def test_a_turning_body_has_the_swirl_of_a_rigid_one():
     spine = flow.Spine(x=s, y=zero, heading=zero, half_width=zero + 0.06, x_rate=zero, y_rate=spin * s,
                        heading_rate=zero + spin)  # fmt: skip
     mass = flow.Limbed(spine=lambda _: spine, half_height=zero + 0.06, limbs=LIMBS).mass(0.0)
-    assert mass.swirl == pytest.approx(spin * mass.moment, rel=1e-9)
-    assert mass.centre_rate == pytest.approx((-spin * mass.centre[1], spin * mass.centre[0]), rel=1e-9)
+    assert mass.swirl == pytest.approx((0.0, 0.0, spin * mass.moments[2, 2]), rel=1e-9)
+    assert mass.centre_rate == pytest.approx((-spin * mass.centre[1], spin * mass.centre[0], 0.0), rel=1e-9)
 
 
 @pytest.mark.parametrize(

@@ -143,12 +143,16 @@ def test_what_a_mirror_cuts_counts_whole():
 
 
 def test_a_part_of_a_force_becomes_the_whole():
-    part = Reaction(force=(1.0, 2.0, 3.0), torque=4.0, power=5.0)
+    part = Reaction(force=(1.0, 2.0, 3.0), moment=(6.0, 7.0, 4.0), power=5.0)
     assert part.whole((False,) * 6) == part
     assert part.whole((False, False, False, False, True, False)) == Reaction(
-        force=(2.0, 4.0, 0.0), torque=8.0, power=10
+        force=(2.0, 4.0, 0.0), moment=(0.0, 0.0, 8.0), power=10
     )
-    assert part.whole((False, False, True, False, False, True)) == Reaction(force=(4.0, 0.0, 0.0), torque=0.0, power=20)
+    assert part.whole((False, False, True, False, False, True)) == Reaction(
+        force=(4.0, 0.0, 0.0), moment=(0.0,) * 3, power=20
+    )
+    assert part.torque == 4.0
+    assert part.whole((True, False, False, False, False, False)).moment == (12.0, 0.0, 0.0)
 
 
 def added(sim):
@@ -255,7 +259,7 @@ def test_a_body_from_afar_is_a_source_and_a_dipole():
     radius, speed = 0.5, np.array([1.0, -2.0, 0.5])
     volume = 4 / 3 * np.pi * radius**3
     body = FarBody(np.zeros(3), np.zeros(3), 1.5 * volume * np.eye(3))
-    body.move(np.array([0.1, 0.2, 0.3]), 0.7, speed)
+    body.move(np.array([0.1, 0.2, 0.3]), flow.Pose(angle=0.7).matrix, speed)
     skin = SPHERE.markers(0.0, flow.Pose(position=(0.1, 0.2, 0.3)), 0.02)
     normal = (skin.points - np.array([[0.1], [0.2], [0.3]])) / radius
     assert (body.velocity(skin.points) * normal).sum(axis=0) == pytest.approx(speed @ normal)
@@ -270,7 +274,7 @@ def test_a_body_from_afar_is_a_source_and_a_dipole():
 
 def test_a_body_that_turns_takes_its_dipole_along():
     body = FarBody(np.zeros(3), np.zeros(3), np.diag([1.0, 3.0, 2.0]))
-    body.move(np.zeros(3), np.pi / 2, np.array([1.0, 1.0, 1.0]))
+    body.move(np.zeros(3), flow.Pose(angle=np.pi / 2).matrix, np.array([1.0, 1.0, 1.0]))
     assert body.dipole == pytest.approx(np.array([3.0, 1.0, 2.0]))
 
 
@@ -306,10 +310,14 @@ def test_an_ellipsoid_knows_the_distance_of_every_point(axes, direction, far):
     normal = normal / np.linalg.norm(normal)
     bend = shape.half.min() ** 2 / shape.half.max()  # smallest radius of curvature
     reach = max(far, -0.9) * (bend if far < 0 else 1.0)
-    distance, seen = shape.distance((foot + reach * normal)[:, None])
-    assert distance[0] == pytest.approx(reach, abs=1e-7)
+    lines = [np.array([at]) for at in foot + reach * normal]
+    still = flow.Pose(position=(0.0, 0.0, 0.0))
+    found = shape.measure(*lines, 0.0, still, np.inf)
+    assert found.distance.item() == pytest.approx(reach, abs=1e-7)
     if np.abs(direction).min() > 1e-3:
-        assert seen[:, 0] == pytest.approx(normal, abs=1e-5)
+        assert [part.item() for part in found.normal] == pytest.approx(normal, abs=1e-5)
+    short = shape.measure(*lines, 0.0, still, 0.5 * abs(reach)).distance.item()  # beyond its reach, but never nearer
+    assert 0.5 * abs(reach) - 1e-7 <= short * np.sign(reach) <= abs(reach) + 1e-7
 
 
 def test_the_skin_of_an_ellipsoid_has_its_area_and_moves_with_it():

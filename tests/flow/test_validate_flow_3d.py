@@ -11,6 +11,7 @@ from test_validate_flow import _table_so_far, note  # noqa: F401 - the fixture w
 
 from suchus import flow
 from suchus.experiments.swim_3d import Swim3d
+from suchus.flow.added import added_mass
 from suchus.flow.compiled import PAD
 from suchus.water import space
 
@@ -101,6 +102,46 @@ def test_added_mass_in_open_water_is_lambs(ratio, box):
     if ratio < 4:
         assert limit == pytest.approx(exact, rel=0.01)
     assert 1 + limit == pytest.approx(1 + exact, rel=0.01)
+
+
+def lamb_turning(ratio):
+    """Added inertia of a prolate spheroid about an axis across, over that of what it displaces: Lamb 1932, par. 115."""
+    e2 = 1 - 1 / ratio**2
+    k = lamb(ratio)
+    alpha, beta = 2 * k / (1 + k)  # Lamb's integrals: k = alpha / (2 - alpha)
+    return e2**2 * (beta - alpha) / ((2 - e2) * (2 * e2 - (2 - e2) * (beta - alpha)))
+
+
+@pytest.mark.parametrize("axis", range(3))
+def test_added_mass_for_each_of_six_accelerations_is_lambs(axis):
+    """A spheroid of 2:1 along each axis, whole, in open water, extrapolated in h^2: 1 %, of its inertia with the water.
+
+    Those across and about both of them are alike, about its own axis there is none, and none couples with another.
+    """
+    ratio, cells, found = 2.0, np.array([8, 16]), []
+    k, turning = lamb(ratio), lamb_turning(ratio)
+    sizes = np.roll([ratio, 1.0, 1.0], axis)
+    shape = flow.Ellipsoid(length=sizes[0], width=sizes[1], height=sizes[2])
+    moments = np.diag(shape.mass(0.0).moments)
+    displaced = np.array([shape.volume(0.0)] * 3 + moments.tolist())
+    exact = np.concatenate([np.roll([k[0], k[1], k[1]], axis), np.roll([0.0, turning, turning], axis)])
+    for n in cells:
+        box = np.roll([5, 4, 4], axis)
+        grid = flow.Grid(cells=tuple((box * n).tolist()), cell=1 / n, origin=tuple((-box / 2).tolist()))
+        sim = ball(grid=grid, sides=flow.Sides(), bodies=(flow.Body(shape=shape),), steps=0)
+        skin = shape.markers(0.0, flow.Pose(position=(0.0, 0.0, 0.0)), 1 / n)
+        whole = added_mass(sim.water, skin, (0.0, 0.0, 0.0), 1.0)
+        assert np.abs(whole - np.diag(np.diag(whole))).max() < 1e-3 * whole.max()
+        found.append(np.diag(whole) / displaced)
+    limit = found[1] + (found[1] - found[0]) / 3
+    print(f"six accelerations of a spheroid along {'xyz'[axis]}: {np.round(found, 4)}, limit {limit}, Lamb {exact}")
+    names = (f"{what} {'its axis' if d == 'x' else d}" for what in ("mass along", "inertia about") for d in "xyz")
+    about = "8, 16 cells/D, limit", "5 x 4 x 4 D", "Lamb 1932"
+    for name, ours, theirs in zip(names, limit, exact, strict=True):
+        if axis == 0:
+            note("spheroid 2:1", f"added {name}", ours, float(theirs), *about)
+    assert 1 + limit == pytest.approx(1 + exact, rel=0.01)
+    assert limit[exact > 0] == pytest.approx(exact[exact > 0], rel=0.02)
 
 
 def oscillating(cells, stokes=20.0, reach=0.02, periods=3):

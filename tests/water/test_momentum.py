@@ -1,7 +1,7 @@
 import numpy as np
 
 from suchus import flow
-from suchus.flow import free
+from suchus.flow import swimmer
 from suchus.water import Outline, Tether, fit, immersed, printed_wave
 
 
@@ -38,12 +38,12 @@ def test_body_and_water_together_keep_their_momentum(robot):
 
 def test_the_books_show_what_is_kept_back(robot, monkeypatch):
     """A body that gets nine tenths of the force is found out."""
-    whole = free.Swimmer.advance
+    whole = swimmer.Swimmer.advance
 
     def less(self, *how):
         self.load = 0.9 * self.load
         whole(self, *how)
 
-    monkeypatch.setattr(free.Swimmer, "advance", less)
+    monkeypatch.setattr(swimmer.Swimmer, "advance", less)
     has, given, _ = _books(robot)
     assert _apart(has, given)[0] > 0.08

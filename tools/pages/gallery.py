@@ -15,6 +15,7 @@ _SHARED = {
     "06_eel": ("flow_eel.png",),
     "14_heaving_foil": ("flow_foil.png",),
     "16_falling_ellipse": ("flow_falling.png",),
+    "18_flutter": ("flow_flutter.png",),
     "09_replay": ("replay.png",),
     "10_optimise": ("optimised_crawl.png",),
 }

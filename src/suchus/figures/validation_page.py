@@ -67,8 +67,9 @@ GROUPS = (
     ),
     Group(
         title="In three dimensions",
-        about="The robot of `suchus run swim_3d`, free in its own box of water and in a wide one: what the sides do.",
-        cases=("swimming robot",),
+        about="The added mass of a spheroid for its six accelerations. The robot of `suchus run swim_3d`, free in its "
+        "own box of water and in a wide one: what the sides do.",
+        cases=("spheroid", "swimming robot"),
     ),
 )
 """The groups of the page in their order; a case that none of them names is in a last group."""

@@ -1,10 +1,12 @@
 """Added mass of a body, from the pressure equation that the solver itself uses."""
 
+from collections.abc import Sequence
 from math import prod
 
 import numpy as np
 
 from suchus.flow.farfield import FarBody
+from suchus.flow.pose import TURNS
 from suchus.flow.shape import Markers
 from suchus.flow.solid import Skin
 from suchus.flow.water import Water
@@ -14,22 +16,28 @@ _LIMIT = 1e-5
 
 
 def added_mass(
-    water: Water, markers: Markers | Skin, about: tuple[float, ...], density: float, body: int = 0
-) -> np.ndarray:
-    """Return the added mass for accelerations along each axis and about a point, shape (axes + 1, axes + 1).
+    water: Water, markers: Markers | Skin, about: tuple[float, ...], density: float, body: int = 0,
+    wanted: Sequence[bool] | np.ndarray | None = None,
+) -> np.ndarray:  # fmt: skip
+    """Return the added mass for accelerations along each axis and about a point, in the plane of shape (3, 3).
 
-    The bodies must have been placed; ``body`` counts them. The force of mode k is ``-Ma[:, k]`` per unit
-    acceleration; other bodies stay still. In space the turning is that about z. It is what ``momentum`` would find: the
-    momentum that the immersion gives to the water. Units: kg/m in the plane and kg in space for the translations, times
-    m between them and the turning, times m^2 for the turning. Where the sides move as in open water it is that of open
-    water, in space with the body as a dipole in ``about``. What lies beyond mirrors is counted, and motions through a
-    mirror that cuts the body, which are not symmetric, have NaN.
+    In space it is of shape (6, 6): along x, y and z, then about x, y and z. The bodies must have been placed; ``body``
+    counts them. The force of mode k is ``-Ma[:, k]`` per unit acceleration; other bodies stay still. It is what
+    ``momentum`` would find: the momentum that the immersion gives to the water. Units: kg/m in the plane and kg in
+    space for the translations, times m between them and the turnings, times m^2 for the turnings. Where the sides move
+    as in open water it is that of open water, in space with the body as a dipole in ``about``. What lies beyond mirrors
+    is counted. Motions through a mirror that cuts the body, which are not symmetric, have NaN, and so have those that
+    are not ``wanted``.
 
     Raises:
         NotConverged: the pressure solver got stuck.
     """
     h, axes, cut = water.grid.cell, water.axes, water.cut[body]
-    here, kept = water.here, _symmetric(cut)
+    here, kept = water.here, symmetric(cut)
+    if wanted is not None:  # in open water the body's whole momentum counts, that along other axes too
+        far = water.border.far is not None
+        asked = [bool(one) or (far and k < axes) for k, one in enumerate(wanted)]
+        kept = [keep and one for keep, one in zip(kept, asked, strict=True)]
     modes = [mode for mode, keep in zip(_modes(water, about), kept, strict=True) if keep]
     rows = water.rows[body]
     own = [(owner >= rows.start) & (owner < rows.stop) for owner in water.owners]
@@ -51,31 +59,34 @@ def added_mass(
     )
     if axes == 3:
         momenta = 2 ** sum(cut) * (held + own_mass).T
-        inward = [_from_afar(water, about, np.compress(kept, np.eye(4), axis=0).T @ momentum) for momentum in momenta]
+        inward = [_from_afar(water, about, np.compress(kept, np.eye(6), axis=0).T @ momentum) for momentum in momenta]
     both = np.ix_(kept, kept)
-    whole = np.full((axes + 1, axes + 1), np.nan)
+    whole = np.full((len(kept), len(kept)), np.nan)
     rim = _rim(water, markers, about, cut)[both]
     whole[both] = 2 ** sum(cut) * density * (_in_open_water(held, own_mass, shores, inward, prod([h] * axes)) + rim)
     return whole
 
 
-def _symmetric(cut: tuple[bool, ...]) -> list[bool]:
-    """Return which modes are symmetric about the mirrors that cut a body."""
+def symmetric(cut: tuple[bool, ...]) -> list[bool]:
+    """Return which modes are symmetric about the mirrors that cut a body; see ``body.cuts``."""
     across = [low or high for low, high in zip(cut[::2], cut[1::2], strict=True)]
-    return [not off for off in (*across, any(across[:2]))]
+    return [*(not off for off in across), *(not (across[a] or across[b]) for a, b in TURNS[len(across)])]
 
 
 def _modes(water: Water, about: tuple[float, ...]) -> list[list[np.ndarray]]:
     """Return the velocity of each mode on the faces of the window, mode by mode and component by component."""
     axes, here = water.axes, water.here
     shape = tuple(s.stop - s.start for s in here)
-    x, y = (
+    off = [
         np.expand_dims(water.grid.centres(s.start, s.stop, d) - about[d], [n for n in range(axes) if n != axes - 1 - d])
-        for d, s in zip(range(2), reversed(here), strict=False)
-    )
+        for d, s in enumerate(reversed(here))
+    ]
     ones, none = np.ones(shape), np.zeros(shape)
-    shifts = [[ones if c == d else none for c in range(axes)] for d in range(axes)]
-    return [*shifts, [np.broadcast_to(-y, shape), np.broadcast_to(x, shape), *(none,) * (axes - 2)]]
+    modes = [[ones if c == d else none for c in range(axes)] for d in range(axes)]
+    for a, b in TURNS[axes]:
+        turn = {a: np.broadcast_to(-off[b], shape), b: np.broadcast_to(off[a], shape)}
+        modes.append([turn.get(c, none) for c in range(axes)])
+    return modes
 
 
 def _leave_images(share: np.ndarray, cut: tuple[bool, ...]) -> None:
@@ -105,20 +116,20 @@ def _work(mode: list[np.ndarray], shares: list[np.ndarray], parts: list[np.ndarr
 
 def _rim(water: Water, markers: Markers | Skin, about: tuple[float, ...], cut: tuple[bool, ...]) -> np.ndarray:
     """Return the mass over the density of the skin that the immersion holds with the body, per mode and mode."""
-    axes, points = water.axes, markers.points
-    rx, ry = points[0] - about[0], points[1] - about[1]
+    axes, turns = water.axes, TURNS[water.axes]
+    off = [points - place for points, place in zip(markers.points, about, strict=True)]
     skin = water.offset * water.grid.cell * 0.5 ** sum(cut) * markers.share
     none = 0 * skin
-    rims = np.array(
-        [[*(skin if c == d else none for d in range(axes)), (-ry * skin, rx * skin, none)[c]] for c in range(axes)]
-    )  # component, mode, marker
-    return np.array([*rims.sum(axis=2), (rx * rims[1] - ry * rims[0]).sum(axis=1)])
+    modes = [*({d: skin} for d in range(axes)), *({a: -off[b] * skin, b: off[a] * skin} for a, b in turns)]
+    rims = np.array([[mode.get(c, none) for mode in modes] for c in range(axes)])  # component, mode, marker
+    moments = [(off[a] * rims[b] - off[b] * rims[a]).sum(axis=1) for a, b in turns]
+    return np.array([*rims.sum(axis=2), *moments])
 
 
 def _from_afar(water: Water, about: tuple[float, ...], momentum: np.ndarray) -> list[np.ndarray]:
     """Return the velocity into the domain that a body in space induces on each side; empty if the sides are held.
 
-    ``momentum`` is that of body and water over the density per mode, shape (4,); the sum over all faces is zero.
+    ``momentum`` is that of body and water over the density per mode, shape (6,); the sum over all faces is zero.
     """
     far, edges = water.border.far, water.border.edges
     if far is None:

@@ -11,7 +11,8 @@ from suchus.flow.compiled import PAD, Window
 from suchus.flow.free import FreeBody
 from suchus.flow.grid import Grid
 from suchus.flow.immerse import REACH, THINNEST, THINNEST_WITH_CENTRELINE
-from suchus.flow.pose import Motion, Pose
+from suchus.flow.mass import SpaceMass
+from suchus.flow.pose import Motion, Pose, turned
 from suchus.flow.shape import Field, Shape
 from suchus.flow.solid import SpaceField, SpaceShape
 
@@ -34,7 +35,7 @@ class Body:
     @property
     def still(self) -> bool:
         """Whether neither shape nor pose ever change."""
-        moving = not isinstance(self.motion, Pose) or any(self.motion.velocity) or self.motion.spin
+        moving = not isinstance(self.motion, Pose) or any(self.motion.velocity) or self.motion.spins.any()
         return self.shape.rigid and not moving
 
 
@@ -90,9 +91,12 @@ def _outside(body: AnyBody, grid: Grid, ends: list[tuple[float, float]], time: f
 def middle_of(body: AnyBody, pose: Pose, time: float) -> tuple[np.ndarray, np.ndarray]:
     """Return where the centre of a body's volume is and how fast it moves, along every axis [m, m/s]."""
     mass = body.shape.mass(time)
+    if isinstance(mass, SpaceMass):
+        place = np.array(pose.place(mass.centre))
+        return place, np.array(pose.rates(place)) + turned(pose.matrix, mass.centre_rate)
     (x, y), (u, v) = pose.to_world(*map(np.asarray, mass.centre)), pose.turn(*map(np.asarray, mass.centre_rate))
     carried = pose.carry(x, y)
-    return np.array([x, y, *pose.position[2:]]), np.array([carried[0] + u, carried[1] + v, *pose.velocity[2:]])
+    return np.array([x, y]), np.array([carried[0] + u, carried[1] + v])
 
 
 def check_cut(body: AnyBody, pose: Pose, axis: int, plane: float, h: float, time: float) -> None:
@@ -103,7 +107,9 @@ def check_cut(body: AnyBody, pose: Pose, axis: int, plane: float, h: float, time
             oblique to it.
     """
     place, name = pose.along(3), "xyz"[axis]
-    if isinstance(body.shape, SpaceShape) and not body.shape.even[axis]:
+    across = np.abs(place.matrix[axis])  # how the body's axes lie to the mirror
+    upright = float(across.max()) > 1 - MIDDLE**2
+    if isinstance(body.shape, SpaceShape) and upright and not body.shape.even[int(across.argmax())]:
         raise InvalidDesign(
             f"the Mirror at {name} = {plane:.4g} m cuts {body.name}, whose two halves there are no images of each "
             f"other; move the body or the grid, or take another side. A Trunk may be cut across z."
@@ -114,11 +120,14 @@ def check_cut(body: AnyBody, pose: Pose, axis: int, plane: float, h: float, time
             f"{place.velocity[axis]:.4g} m/s along {name}; the Mirror that cuts it, at {name} = {plane:.4g} m, needs "
             f"it to stay there. Move the body or the grid, or take another side."
         )
-    if axis < 2 and (place.spin != 0 or abs(np.sin(2 * place.angle)) > MIDDLE):
+    if not upright or np.delete(place.spins, axis).any():
+        tilt = [round(part, 9) + 0.0 for part in (place.pitch, place.roll)]
+        more = f", pitch {tilt[0]:.4g} and roll {tilt[1]:.4g} rad," if any(tilt) else ""
+        spins = ", ".join(f"{part:.4g}" for part in place.spins)
         raise InvalidDesign(
-            f"at t = {time:.4g} s {body.name} stands at an angle of {place.angle:.4g} rad and turns with "
-            f"{place.spin:.4g} rad/s; the Mirror that cuts it across {name} needs its axes along those of the grid. "
-            f"Take another side there."
+            f"at t = {time:.4g} s {body.name} stands at an angle of {place.angle:.4g} rad{more} and turns with "
+            f"({spins}) rad/s; the Mirror that cuts it across {name} needs one of its axes along {name} and lets it "
+            f"turn about {name} alone. Take another side there."
         )
 
 

@@ -15,7 +15,7 @@ from suchus.errors import UnreadableFile, Unwritable
 from suchus.flow.fingerprint import fingerprint
 from suchus.flow.setup import Setup
 
-VERSION = 8
+VERSION = 9
 """Layout of the file; rises with every change of it."""
 
 MARK = b"suchus flow checkpoint %d\n" % VERSION

@@ -1,12 +1,12 @@
 """Whether a motion's velocity is the rate of its position. The wall moves with the one and stands at the other."""
 
 from dataclasses import dataclass
-from math import hypot
 
 import numpy as np
 
+from suchus import rotation
 from suchus.errors import InvalidDesign
-from suchus.flow.pose import Motion
+from suchus.flow.pose import Motion, Pose, length
 
 SHARE = 0.1
 """Difference of the two, over the larger one, from which they disagree [-]."""
@@ -58,8 +58,10 @@ class Consistency:
         """
         span = _LOOK * dt
         now, soon, then = (self.motion(time + k * span) for k in range(3))
-        places = [np.array([*p.position, p.angle]) for p in (now, soon, then)]
-        given, seen = np.array([*now.velocity, now.spin]), (4 * places[1] - 3 * places[0] - places[2]) / (2 * span)
+        axes = len(now.position)
+        places = [np.array([*p.position, *_turn(now, p)]) for p in (now, soon, then)]
+        spins = [now.spin] if axes == 2 else now.spins
+        given, seen = np.array([*now.velocity, *spins]), (4 * places[1] - 3 * places[0] - places[2]) / (2 * span)
         size, moved, off = (self._speed(rate) for rate in (given, seen, given - seen))
         self.top = max(self.top, size, moved)
         if not (off > SHARE * max(size, moved, QUIET * self.top) and off * dt > NOTHING * self.cell):
@@ -68,11 +70,14 @@ class Consistency:
         self.strikes += 1
         if self.strikes < PATIENCE:
             return
-        turning = abs(given[-1] - seen[-1]) * self.reach > hypot(*(given - seen)[:-1])
-        what, of = ("spin", "angle") if turning else ("velocity", "position")
+        wrong = given - seen
+        turning = length(wrong[axes:]) * self.reach > length(wrong[:axes])
+        what, of = ("spin", "angle" if axes == 2 else "attitude") if turning else ("velocity", "position")
 
         def numbers(rate: np.ndarray) -> str:
-            return f"{rate[-1]:.4g} rad/s" if turning else f"({', '.join(f'{part:.4g}' for part in rate[:-1])}) m/s"
+            parts, unit = (rate[axes:], "rad/s") if turning else (rate[:axes], "m/s")
+            text = ", ".join(f"{part:.4g}" for part in parts)
+            return f"({text}) {unit}" if parts.size > 1 else f"{text} {unit}"
 
         raise InvalidDesign(
             f"at t = {time:.4g} s the motion of {self.name} gives the {what} {numbers(given)}, and its "
@@ -80,4 +85,15 @@ class Consistency:
         )
 
     def _speed(self, rate: np.ndarray) -> float:
-        return max(hypot(*rate[:-1]), abs(rate[-1]) * self.reach)
+        axes = (len(rate) + 2) // 2  # 3 numbers in the plane, 6 in space
+        return max(length(rate[:axes]), length(rate[axes:]) * self.reach)
+
+
+def _turn(now: Pose, then: Pose) -> np.ndarray:
+    """Return the angle of a pose in the plane, in space the rotation vector from another one to it [rad]."""
+    if len(now.position) == 2:
+        return np.array([then.angle])
+    if now.pitch == then.pitch == 0 and now.roll == then.roll == 0:
+        return np.array([0.0, 0.0, then.angle - now.angle])
+    one, other = (rotation.from_angles(p.angle, p.pitch, p.roll) for p in (now, then))
+    return rotation.to_vector(rotation.multiply(other, one * [1, -1, -1, -1]), np.zeros(3))

@@ -15,12 +15,6 @@ from suchus.flow.compiled import compiled
 from suchus.flow.grid import Grid
 
 
-def turned(angle: float) -> np.ndarray:
-    """Return the matrix that turns a vector about z by an angle [rad], shape (3, 3)."""
-    c, s = np.cos(angle), np.sin(angle)
-    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-
-
 @compiled
 def _induce(points, place, dipole, source, out):  # type: ignore[no-untyped-def]
     """Write the velocity that a source and a dipole at ``place`` induce at ``points``, both of shape (3, point)."""
@@ -55,15 +49,14 @@ class FarBody:
         _induce(points.reshape(3, -1), self.place, self.dipole, self.source, out)
         return out.reshape(points.shape)
 
-    def move(self, place: np.ndarray, angle: float, through: np.ndarray) -> None:
+    def move(self, place: np.ndarray, turn: np.ndarray, through: np.ndarray) -> None:
         """Take the body's motion.
 
         Args:
             place: its middle, in the frame of the grid, shape (3,) [m].
-            angle: of its x axis about z [rad].
+            turn: rotation matrix of its frame, shape (3, 3) [-].
             through: its velocity through the far water, shape (3,) [m/s].
         """
-        turn = turned(angle)
         self.place, self.dipole = place, turn @ (self.mass @ (turn.T @ through))
 
     def drag(self, force: np.ndarray, through: np.ndarray, share: float) -> None:

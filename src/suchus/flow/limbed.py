@@ -6,12 +6,12 @@ from functools import lru_cache
 import numpy as np
 
 from suchus.errors import InvalidDesign
-from suchus.flow.mass import SpaceMass
+from suchus.flow.mass import SpaceMass, tensor
 from suchus.flow.midline import Spine
-from suchus.flow.pose import Pose
+from suchus.flow.pose import Pose, turned
 from suchus.flow.shape import positive
 from suchus.flow.solid import Skin, SpaceField
-from suchus.flow.trunk import Trunk
+from suchus.flow.trunk import Trunk, in_world
 from suchus.kinds import show
 
 _ACROSS = 28
@@ -81,8 +81,9 @@ class Lump:
     """Volume [m^3]."""
     centre: tuple[float, float]
     """Its centre, from the section that it is attached to [m]."""
-    moment: float
-    """Second moment about the axis along z through the centre [m^5]."""
+    second: np.ndarray
+    """Integrals of the products of coordinates from the centre, which go along the section's axis, to the side and up,
+    shape (3, 3) [m^5]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -127,11 +128,13 @@ class Limbed(Trunk):
         for other in others:
             there &= other.distance(at, y, z, straight) >= 0
         if not there.any():
-            return Lump(volume=0.0, centre=(0.0, 0.0), moment=0.0)
-        x, y = x[there], y[there]
+            return Lump(volume=0.0, centre=(0.0, 0.0), second=np.zeros((3, 3)))
+        x, y, z = x[there], y[there], z[there]
         cx, cy = float(x.mean()), float(y.mean())
-        moment = each * float(((x - cx) ** 2 + (y - cy) ** 2).sum())
-        return Lump(volume=each * x.size, centre=(cx, cy), moment=moment)
+        dx, dy = x - cx, y - cy
+        xx, xy, yy, zz = (each * float((a * b).sum()) for a, b in ((dx, dx), (dx, dy), (dy, dy), (z, z)))
+        second = np.array([[xx, xy, 0.0], [xy, yy, 0.0], [0.0, 0.0, zz]])
+        return Lump(volume=each * x.size, centre=(cx, cy), second=second)
 
     def _holds(self, px: np.ndarray, py: np.ndarray, pz: np.ndarray, spine: Spine) -> np.ndarray:
         """Return which points lie inside the trunk alone, pz from the plane of the midline [m]."""
@@ -147,35 +150,37 @@ class Limbed(Trunk):
     def measure(self, x: np.ndarray, y: np.ndarray, z: np.ndarray, time: float, pose: Pose, reach: float) -> SpaceField:
         """Return the field on the points of a window."""
         found = Trunk.measure(self, x, y, z, time, pose, reach)
-        spine, middle = self.placed(time, pose), pose.along(3).position[2]
+        spine, frame = self.placed(time, pose)
         for limb in self.limbs:
-            self._add(found, limb, spine, (z - middle, y, x), reach)
+            self._add(found, limb, spine, frame, (z, y, x), reach)
         return found
 
     def _add(
-        self, found: SpaceField, limb: Capsule, spine: Spine, axes: tuple[np.ndarray, ...], reach: float
-    ) -> None:  # fmt: skip
+        self, found: SpaceField, limb: Capsule, spine: Spine, frame: Pose, axes: tuple[np.ndarray, ...], reach: float
+    ) -> None:
         """Write a capsule to the points that are nearer to it."""
         first, last, rate, turn = limb.placed(spine)
-        ends = np.append(first, 0.0), np.append(last, 0.0)
+        ends = [np.array(frame.place((*end, 0.0))) for end in (first, last)]
         low, high = (pick(*ends)[::-1] for pick in (np.minimum, np.maximum))
         far = limb.radius + reach
         box = tuple(
             slice(*np.searchsorted(axis, (a - far, b + far))) for axis, a, b in zip(axes, low, high, strict=True)
         )  # fmt: skip
-        pz, py, px = np.meshgrid(*(axis[s] for axis, s in zip(axes, box, strict=True)), indexing="ij")
+        wz, wy, wx = np.meshgrid(*(axis[s] for axis, s in zip(axes, box, strict=True)), indexing="ij")
+        px, py, pz = frame.seen((wx, wy, wz))
         away, size = limb.reach(px, py, pz, spine)
         distance = size - limb.radius
         trunk = found.distance[box]
         nearer = distance < trunk
-        normal = [part / np.maximum(size, 1e-12 * limb.radius) for part in away]
+        normal = turned(frame.matrix, [part / np.maximum(size, 1e-12 * limb.radius) for part in away])
         facing = sum(part * one[box] for part, one in zip(normal, found.normal, strict=True))
         sunk = trunk < facing * (distance + 2 * limb.radius)  # the capsule's far side lies in what is there already
+        own = turned(frame.matrix, (rate[0] - turn * (py - first[1]), rate[1] + turn * (px - first[0]), 0 * px))
+        velocity = [a + b for a, b in zip(own, frame.rates((wx, wy, wz)), strict=True)]
         values = [
             (found.distance, distance), (found.thickness, np.where(sunk, np.inf, 2 * limb.radius)),
             *zip(found.normal, normal, strict=True),
-            (found.velocity[0], rate[0] - turn * (py - first[1])),
-            (found.velocity[1], rate[1] + turn * (px - first[0])),
+            *zip(found.velocity, velocity, strict=True),
         ]  # fmt: skip
         for one, value in values:
             one[box] = np.where(nearer, value, one[box])
@@ -187,7 +192,8 @@ class Limbed(Trunk):
 
     def markers(self, time: float, pose: Pose, spacing: float) -> Skin:
         """Return points over what is outside of trunk and capsules: those inside stand for no area."""
-        skin, spine, place = Trunk.markers(self, time, pose, spacing), self.placed(time, pose), pose.along(3)
+        spine, frame = self.placed(time, pose)
+        skin = self._skin(spine, spacing)
         points, share, rates = [skin.points], [skin.share.copy()], [skin.velocities]
         part = [skin.part] if skin.part is not None else []
         for limb in self.limbs:
@@ -197,25 +203,25 @@ class Limbed(Trunk):
             cos, sin = axis / np.linalg.norm(axis) if axis.any() else (1.0, 0.0)
             px, py = first[0] + cos * local[0] - sin * local[1], first[1] + sin * local[0] + cos * local[1]
             area = np.where(self._holds(px, py, local[2], spine), 0.0, area)
-            points.append(np.stack([px, py, local[2] + place.position[2]]))
+            points.append(np.stack([px, py, local[2]]))
             share.append(area)
-            lift = np.full(px.shape, place.velocity[2])
-            rates.append(np.stack([rate[0] - turn * (py - first[1]), rate[1] + turn * (px - first[0]), lift]))
+            rates.append(np.stack([rate[0] - turn * (py - first[1]), rate[1] + turn * (px - first[0]), 0 * px]))
             part += [np.full(px.shape, self._part(limb))] if part else []
         for i, limb in enumerate(self.limbs):
             for k, (one, area) in enumerate(zip(points, share, strict=True)):
                 if k != i + 1:
-                    inside = limb.distance(one[0], one[1], one[2] - place.position[2], spine) < -1e-9 * limb.radius
+                    inside = limb.distance(one[0], one[1], one[2], spine) < -1e-9 * limb.radius
                     area[inside] = 0.0
         parts = np.concatenate(part) if part else None
-        return Skin(np.concatenate(points, axis=1), np.concatenate(share), np.concatenate(rates, axis=1), parts)
+        whole = Skin(np.concatenate(points, axis=1), np.concatenate(share), np.concatenate(rates, axis=1), parts)
+        return in_world(whole, frame)
 
     def bounds(self, time: float, pose: Pose) -> tuple[float, ...]:
         """Return the box around the body."""
-        box, spine, middle = list(Trunk.bounds(self, time, pose)), self.placed(time, pose), pose.along(3).position[2]
+        box, (spine, frame) = list(Trunk.bounds(self, time, pose)), self.placed(time, pose)
         for limb in self.limbs:
-            first, last, *_ = limb.placed(spine)
-            for d, ends in enumerate((*zip(first, last, strict=True), (middle, middle))):
+            both = (frame.place((*end, 0.0)) for end in limb.placed(spine)[:2])
+            for d, ends in enumerate(zip(*both, strict=True)):
                 box[2 * d] = min(box[2 * d], float(min(ends)) - limb.radius)
                 box[2 * d + 1] = max(box[2 * d + 1], float(max(ends)) + limb.radius)
         return tuple(box)
@@ -224,22 +230,26 @@ class Limbed(Trunk):
         """Return volume, centre and moments of trunk and capsules together."""
         trunk, spine = Trunk.mass(self, time), self._spine(time)
         volume, centre, rate = [trunk.volume], [np.array(trunk.centre)], [np.array(trunk.centre_rate)]
-        moment, swirl = trunk.moment, trunk.swirl
+        moments, swirl = trunk.moments, trunk.swirl[2]
         for limb, lump in zip(self.limbs, self.lumps, strict=True):
             ball = Capsule(at=limb.at, start=lump.centre, end=lump.centre, radius=limb.radius)
             place, _, speed, turn = ball.placed(spine)
+            matrix = Pose(angle=float(np.interp(limb.at, spine.arc, spine.heading))).matrix
             volume.append(lump.volume)
-            centre.append(place)
-            rate.append(speed)
-            moment += lump.moment
-            swirl += lump.moment * turn
+            centre.append(np.append(place, 0.0))
+            rate.append(np.append(speed, 0.0))
+            moments = moments + tensor(matrix @ lump.second @ matrix.T)
+            swirl += (lump.second[0, 0] + lump.second[1, 1]) * turn
         v = np.array(volume)
         middle, drift = v @ np.array(centre) / v.sum(), v @ np.array(rate) / v.sum()
         off, past = np.array(centre) - middle, np.array(rate) - drift
-        moment += float(v @ (off**2).sum(axis=1))
+        moments = moments + tensor((v * off.T) @ off)
         swirl += float(v @ (off[:, 0] * past[:, 1] - off[:, 1] * past[:, 0]))
-        (cx, cy), (cu, cv) = middle.tolist(), drift.tolist()
-        return SpaceMass(volume=float(v.sum()), centre=(cx, cy), centre_rate=(cu, cv), moment=moment, swirl=swirl)
+        (cx, cy, _), (cu, cv, _) = middle.tolist(), drift.tolist()
+        return SpaceMass(
+            volume=float(v.sum()), centre=(cx, cy, 0.0), centre_rate=(cu, cv, 0.0), moments=moments,
+            swirl=(0.0, 0.0, float(swirl)),
+        )  # fmt: skip
 
 
 def _straight(spine: Spine) -> Spine:

@@ -138,6 +138,9 @@ def columns(load: Load | None, act: Reaction, frame: np.ndarray, place: Pose, er
     """
     power = act.power - float(frame @ np.array(act.force))
     along = () if load is None else (*load.pressure, *load.shear)
+    flat = len(act.moment) == 1
+    angles = (place.angle,) if flat else (place.angle, place.pitch, place.roll)
+    spins = (place.spin,) if flat else (place.spin_x, place.spin_y, place.spin)
     return [
-        *along, act.torque, power, *place.position, place.angle, *place.velocity, place.spin, *act.force, error
+        *along, *act.moment, power, *place.position, *angles, *place.velocity, *spins, *act.force, error
     ]  # fmt: skip

@@ -7,43 +7,72 @@ import numpy as np
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _InPlane:
-    """Centre and moments of a body of density 1, in its own frame, for motions along x and y and about z."""
-
-    centre: tuple[float, float]
-    """Centre of the area, in space of the volume, which lies in the plane z = 0 [m]."""
-    centre_rate: tuple[float, float]
-    """Velocity that the deformation gives to the centre [m/s]."""
-    moment: float
-    """Second moment about the axis along z through the centre, of the area [m^4], in space of the volume [m^5]."""
-    swirl: float
-    """Angular momentum of the deformation about that axis [m^4/s], in space [m^5/s]."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Mass(_InPlane):
-    """Mass and moment of inertia of a body of density 1, per metre of depth."""
+class Mass:
+    """Mass and moment of inertia of a body of density 1, in its own frame, per metre of depth."""
 
     area: float
     """Area of the cross-section [m^2]."""
+    centre: tuple[float, float]
+    """Centre of the area [m]."""
+    centre_rate: tuple[float, float]
+    """Velocity that the deformation gives to the centre [m/s]."""
+    moment: float
+    """Second moment of the area about the centre [m^4]."""
+    swirl: float
+    """Angular momentum of the deformation about the centre [m^4/s]."""
 
     @property
     def size(self) -> float:
         """The area, by which the density is multiplied to give the mass [m^2]."""
         return self.area
 
+    def inertia(self, _: np.ndarray) -> np.ndarray:
+        """Return the mass matrix over the density for motions along x and y and about the centre, shape (3, 3)."""
+        return np.diag([self.area, self.area, self.moment])
+
+    def recoil(self, _: np.ndarray) -> np.ndarray:
+        """Return the velocity that the deformation takes from the frame: 0, 0 and an angular one [rad/s]."""
+        return np.array([0.0, 0.0, self.swirl / self.moment])
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SpaceMass(_InPlane):
-    """Mass and moment of inertia of a body of density 1 in space."""
+class SpaceMass:
+    """Mass and moments of inertia of a body of density 1 in space, in its own frame."""
 
     volume: float
     """Volume [m^3]."""
+    centre: tuple[float, float, float]
+    """Centre of the volume [m]."""
+    centre_rate: tuple[float, float, float]
+    """Velocity that the deformation gives to the centre [m/s]."""
+    moments: np.ndarray
+    """Tensor of inertia of the volume about the centre, shape (3, 3) [m^5]."""
+    swirl: tuple[float, float, float]
+    """Angular momentum of the deformation about the centre [m^5/s]."""
 
     @property
     def size(self) -> float:
         """The volume, by which the density is multiplied to give the mass [m^3]."""
         return self.volume
+
+    def inertia(self, matrix: np.ndarray) -> np.ndarray:
+        """Return the mass matrix over the density for motions along and about the world's axes, shape (6, 6).
+
+        ``matrix`` turns the body's frame into the world's, shape (3, 3).
+        """
+        whole = np.zeros((6, 6))
+        whole[:3, :3], whole[3:, 3:] = self.volume * np.eye(3), matrix @ self.moments @ matrix.T
+        return whole
+
+    def recoil(self, matrix: np.ndarray) -> np.ndarray:
+        """Return the velocity that the deformation takes from the frame: three zeros, three angular ones [rad/s]."""
+        return np.concatenate([np.zeros(3), matrix @ np.linalg.solve(self.moments, self.swirl)])
+
+
+def tensor(second: np.ndarray) -> np.ndarray:
+    """Return the tensor of inertia from the integrals of the products of coordinates, each of shape (3, 3) [m^5]."""
+    found: np.ndarray = np.trace(second) * np.eye(3) - second
+    return found
 
 
 def of_outline(x: np.ndarray, y: np.ndarray) -> Mass:
@@ -64,19 +93,25 @@ def of_midline(spine: np.ndarray) -> Mass:
     cross-section is a rod; where the midline bends, its outer half counts for more than its inner one.
     """
     w = (spine[3, 1:] + spine[3, :-1]) / 2
-    area, *rest = _of_sections(spine, 2 * w, 2 * w**3 / 3)
-    return Mass(area=area, **dict(zip(("centre", "centre_rate", "moment", "swirl"), rest, strict=True)))
+    area, centre, rate, second, swirl = _of_sections(spine, 2 * w, 2 * w**3 / 3)
+    return Mass(area=area, centre=centre, centre_rate=rate, moment=second[0], swirl=swirl)
 
 
 def of_trunk(spine: np.ndarray, half_height: np.ndarray) -> SpaceMass:
     """Return the mass of a body with elliptic sections, from the rows of its midline and its half-heights [m]."""
     w, h = (spine[3, 1:] + spine[3, :-1]) / 2, (half_height[1:] + half_height[:-1]) / 2
-    volume, *rest = _of_sections(spine, np.pi * w * h, np.pi * w**3 * h / 4)
-    return SpaceMass(volume=volume, **dict(zip(("centre", "centre_rate", "moment", "swirl"), rest, strict=True)))
+    volume, centre, rate, (moment, xx, xy), swirl = _of_sections(spine, np.pi * w * h, np.pi * w**3 * h / 4)
+    zz = float((np.pi * w * h**3 / 4 * np.hypot(np.diff(spine[0]), np.diff(spine[1]))).sum())
+    second = np.array([[xx, xy, 0.0], [xy, moment - xx, 0.0], [0.0, 0.0, zz]])
+    return SpaceMass(
+        volume=volume, centre=(*centre, 0.0), centre_rate=(*rate, 0.0), moments=tensor(second), swirl=(0.0, 0.0, swirl)
+    )
 
 
 def _of_sections(spine: np.ndarray, size: np.ndarray, second: np.ndarray) -> tuple[Any, ...]:
-    """Return size, centre, its rate, moment and swirl of sections between the stations.
+    """Return size, centre, its rate, moments and swirl of sections between the stations.
+
+    The moments are that about the centre, and the integrals of x^2 and x y from there.
 
     Args:
         spine: rows of the midline; see ``of_midline``.
@@ -99,4 +134,7 @@ def _of_sections(spine: np.ndarray, size: np.ndarray, second: np.ndarray) -> tup
     moment = ((dx**2 + dy**2) * slice_size).sum() + slice_moment.sum() + 2 * ((dx * nx + dy * ny) * lean).sum()
     swirl = ((dx * dv - dy * du) * slice_size).sum() + (turn * slice_moment).sum()
     swirl += ((nx * dv - ny * du + turn * (dx * nx + dy * ny)) * lean).sum()
-    return float(total), (float(cx), float(cy)), (float(ux), float(uy)), float(moment), float(swirl)
+    xx = (dx**2 * slice_size).sum() + (nx**2 * slice_moment).sum() + 2 * (dx * nx * lean).sum()
+    xy = (dx * dy * slice_size).sum() + (nx * ny * slice_moment).sum() + ((dx * ny + dy * nx) * lean).sum()
+    moments = float(moment), float(xx), float(xy)
+    return float(total), (float(cx), float(cy)), (float(ux), float(uy)), moments, float(swirl)

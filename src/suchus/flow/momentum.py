@@ -14,20 +14,39 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from suchus.flow.compiled import PAD, compiled, signed
+from suchus.flow.compiled import PAD, compiled, part, signed
+from suchus.flow.pose import TURNS
 from suchus.flow.shape import Markers
 from suchus.flow.slab import row_length
 from suchus.flow.solid import Skin
 
 
 def sums_of(axes: int) -> int:
-    """Return how many sums are kept per body: momentum, angular momentum about z, energy."""
-    return axes + 2
+    """Return how many sums are kept per body: momentum, angular momentum (in the plane that about z), energy."""
+    return axes + len(TURNS[axes]) + 1
 
 
 def contents_of(axes: int) -> int:
     """Return how much is kept of a body's region: the sums of its motion, its volume and its first moments."""
-    return 2 * axes + 3
+    return sums_of(axes) + 1 + axes
+
+
+@part
+def _about_z(up):
+    """Return where the angular momentum about z is kept; those about x and y, in space, stand before it."""
+    return up + 1 if up == 1 else up + 3
+
+
+@part
+def _tilt(sums, m, component, x, y, z, given):
+    """Add the angular momentum about x and about y that a component of a momentum has at a place in space."""
+    if component == 0:
+        sums[m, 4] += z * given
+    elif component == 1:
+        sums[m, 3] += -z * given
+    else:
+        sums[m, 3] += y * given
+        sums[m, 4] += -x * given
 
 
 @compiled
@@ -39,7 +58,7 @@ def collect(sums, out, blend, raw, mean, passage, mu1, p, owner, component, plac
     moments are in cells from the grid's corner. ``mean``, ``raw``, ``mu1`` and ``owner`` are arrays of the window; see
     ``slab``.
     """
-    up, w = len(inner), len(inner) + 2
+    up, w, turn = len(inner), len(inner) + 2, _about_z(len(inner))
     wide, columns = signed(row_length(inner, p.shape[1])), place[3 * up + 3] - place[3 * up + 2] + 1
     r0, r1 = (place[w + 2], place[w + 3]) if up > 1 else (-1, 2)
     c0, c1 = place[3 * up + 2], place[3 * up + 3]
@@ -62,16 +81,18 @@ def collect(sums, out, blend, raw, mean, passage, mu1, p, owner, component, plac
                 m, y = owner[j - place[w], at], (row if up > 1 else j) - PAD + 0.5
                 sums[m, component] += given
                 if component == 0:
-                    sums[m, up + 1] += -y * given
+                    sums[m, turn] += -y * given
                 elif component == 1:
-                    sums[m, up + 1] += (i - PAD + 0.5) * given
-                sums[m, up + 2] += mean[j - place[w], at] * given
+                    sums[m, turn] += (i - PAD + 0.5) * given
+                if up > 1:
+                    _tilt(sums, m, component, i - PAD + 0.5, y, j - PAD + 0.5, given)
+                sums[m, turn + 1] += mean[j - place[w], at] * given
 
 
 @compiled
 def dilatation_work(sums, p, source, owner, place, inner, dt):
     """Take from the energy what the pressure does on the divergence of the bodies' own motion inside them."""
-    up, w = len(inner), len(inner) + 2
+    up, w, turn = len(inner), len(inner) + 2, _about_z(len(inner))
     wide, columns = signed(row_length(inner, p.shape[1])), place[3 * up + 3] - place[3 * up + 2] + 1
     r0, r1 = (place[w + 2], place[w + 3]) if up > 1 else (0, 1)
     c0, c1 = place[3 * up + 2], place[3 * up + 3]
@@ -80,7 +101,7 @@ def dilatation_work(sums, p, source, owner, place, inner, dt):
             for i in range(c0, c1):
                 o, at = j - place[w], (row - r0) * columns + i - c0
                 if source[o, at] != 0:
-                    sums[owner[o, at], up + 2] += dt * np.float64(p[j, row * wide + i]) * source[o, at]
+                    sums[owner[o, at], turn + 1] += dt * np.float64(p[j, row * wide + i]) * source[o, at]
 
 
 @compiled
@@ -90,7 +111,7 @@ def contents(sums, b, mu0, owner, component, place, near, inner):
     Columns: the sums of its motion, its volume and first moments [m/s, m^2/s^2, cells]. What lies in the window of
     ``place`` counts; ``b`` and ``owner`` are arrays of the window ``near``.
     """
-    up, w = len(inner), len(inner) + 2
+    up, w, turn = len(inner), len(inner) + 2, _about_z(len(inner))
     wide, columns = signed(row_length(inner, mu0.shape[1])), near[3 * up + 3] - near[3 * up + 2] + 1
     n0, n1 = near[w + 2] if up > 1 else 0, near[3 * up + 2]
     r0, r1 = (place[w + 2], place[w + 3]) if up > 1 else (0, 1)
@@ -110,15 +131,17 @@ def contents(sums, b, mu0, owner, component, place, near, inner):
                 held, part_of = share * b[o, at], share / axes
                 sums[m, component] += held
                 if component == 0:
-                    sums[m, axes] += -y * held
+                    sums[m, turn] += -y * held
                 elif component == 1:
-                    sums[m, axes] += x * held
-                sums[m, axes + 1] += 0.5 * held * b[o, at]
-                sums[m, axes + 2] += part_of
-                sums[m, axes + 3] += part_of * x
-                sums[m, axes + 4] += part_of * y
+                    sums[m, turn] += x * held
+                sums[m, turn + 1] += 0.5 * held * b[o, at]
+                sums[m, turn + 2] += part_of
+                sums[m, turn + 3] += part_of * x
+                sums[m, turn + 4] += part_of * y
                 if up > 1:
-                    sums[m, axes + 5] += part_of * (j - PAD + (0.0 if component == 2 else 0.5))
+                    z = j - PAD + (0.0 if component == 2 else 0.5)
+                    _tilt(sums, m, component, x, y, z, held)
+                    sums[m, turn + 5] += part_of * z
 
 
 def skin(markers: Markers | Skin, offset: float, origin: tuple[float, ...], h: float) -> np.ndarray:
@@ -130,7 +153,8 @@ def skin(markers: Markers | Skin, offset: float, origin: tuple[float, ...], h: f
     square = v[0] ** 2 + v[1] ** 2
     if axes == 3:
         square = square + v[2] ** 2
-    columns = (*v, place[0] * v[1] - place[1] * v[0], 0.5 * square, np.ones(w.size), *place)
+    around = (place[a] * v[b] - place[b] * v[a] for a, b in TURNS[axes])
+    columns = (*v, *around, 0.5 * square, np.ones(w.size), *place)
     return np.array([(w * column).sum() for column in columns])
 
 
@@ -140,20 +164,29 @@ class Reaction:
 
     force: tuple[float, ...]
     """Force (x, y) or (x, y, z) [N/m, N]."""
-    torque: float
-    """Torque about the z axis through the asked point, counter-clockwise [N, N m]."""
+    moment: tuple[float, ...]
+    """Torque about the axes through the asked point, (z,) in the plane, counter-clockwise, or (x, y, z) [N, N m]."""
     power: float
     """Power that the body's surface gives to the water, in the frame of the grid [W/m, W]."""
+
+    @property
+    def torque(self) -> float:
+        """Torque about z [N, N m]."""
+        return self.moment[-1]
 
     def whole(self, cut: tuple[bool, ...]) -> "Reaction":
         """Return that of the whole body, of which this is the part between the mirrors that cut it; see ``body.cuts``.
 
-        Forces through a mirror, and a torque about an axis in it, vanish.
+        Forces through a mirror, and torques about the axes in it, vanish.
         """
         times, across = 2 ** sum(cut), [low or high for low, high in zip(cut[::2], cut[1::2], strict=True)]
         return Reaction(
             force=tuple(0.0 if off else times * part for part, off in zip(self.force, across, strict=True)),
-            torque=0.0 if any(across[:2]) else times * self.torque, power=times * self.power,
+            moment=tuple(
+                0.0 if across[a] or across[b] else times * part
+                for part, (a, b) in zip(self.moment, TURNS[len(self.force)], strict=True)
+            ),
+            power=times * self.power,
         )  # fmt: skip
 
 
@@ -174,14 +207,22 @@ def reaction(
         h: cell [m].
         density: of the water [kg/m^3].
     """
-    axes = len(origin)
-    change, middle = now[: axes + 2] - before[: axes + 2], 0.5 * (now + before)
-    cx, cy = ((about - np.array(origin)) / h)[:2]
-    size, sx, sy = middle[axes + 2 : axes + 5]
+    axes, turns = len(origin), TURNS[len(origin)]
+    energy = axes + len(turns)
+    change, middle = now[: energy + 1] - before[: energy + 1], 0.5 * (now + before)
+    centre = (about - np.array(origin)) / h
+    size, first = middle[energy + 1], middle[energy + 2 :]
     force = (change[:axes] - given[:axes]) / dt - size * np.array(push)
-    torque = (change[axes] - given[axes]) / dt - (sx * push[1] - sy * push[0]) - (cx * force[1] - cy * force[0])
-    power, scale = (given[axes + 1] - change[axes + 1]) / dt, density
-    for part, momentum in zip(push, middle, strict=False):
-        power += part * momentum
+    moment = [
+        (change[axes + n] - given[axes + n]) / dt - (first[a] * push[b] - first[b] * push[a])
+        - (centre[a] * force[b] - centre[b] * force[a])
+        for n, (a, b) in enumerate(turns)
+    ]  # fmt: skip
+    power, scale = (given[energy] - change[energy]) / dt, density
+    for own, momentum in zip(push, middle, strict=False):
+        power += own * momentum
         scale *= h
-    return Reaction(force=tuple(scale * part for part in force), torque=scale * h * torque, power=scale * power)
+    return Reaction(
+        force=tuple(scale * part for part in force), moment=tuple(scale * h * part for part in moment),
+        power=scale * power,
+    )  # fmt: skip

@@ -6,7 +6,7 @@ import numpy as np
 
 from suchus.flow.body import AnyBody
 from suchus.flow.momentum import Reaction
-from suchus.flow.pose import Pose
+from suchus.flow.pose import Pose, cross
 from suchus.flow.trunk import Trunk
 
 
@@ -25,11 +25,11 @@ def columns_of(
     """
     if len(acts) < 2 or not isinstance(body.shape, Trunk):
         return []
-    force = np.array([act.force[:2] for act in acts])
-    torque = np.array([act.torque for act in acts])
-    power = np.array([act.power for act in acts]) - force @ frame[:2]
+    force, torque = (np.array([getattr(act, what) for act in acts]) for what in ("force", "moment"))
+    power = np.array([act.power for act in acts]) - force[:, :2] @ frame[:2] - force[:, 2] * frame[2]
     behind, moment = (part[::-1].cumsum(axis=0)[::-1] for part in (force, torque))
-    ends = body.shape.at(time, pose, np.array([0.0, *body.shape.cuts])) - np.array(about[:2])
-    joint = moment - (ends[:, 0] * behind[:, 1] - ends[:, 1] * behind[:, 0])
-    found: list[float] = np.column_stack([force, torque, power, joint]).ravel().tolist()
+    ends = body.shape.at(time, pose, np.array([0.0, *body.shape.cuts])) - np.array(about)
+    axis = pose.matrix[:, 2]  # the midline bends about the body's z
+    joint = (moment - np.stack(cross(ends.T, behind.T), axis=1)) @ axis
+    found: list[float] = np.column_stack([force[:, :2], torque[:, 2], power, joint]).ravel().tolist()
     return found

@@ -3,16 +3,35 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import zip_longest
+from typing import Any
 
 import numpy as np
 
+from suchus import rotation
 from suchus.errors import InvalidDesign
 from suchus.kinds import show
 
+TURNS = {2: ((0, 1),), 3: ((1, 2), (2, 0), (0, 1))}
+"""For each axis of turning of a grid with so many axes, the first and the second axis that lie across it."""
+
+
+def cross(one: Sequence[float] | np.ndarray, other: Sequence[float] | np.ndarray) -> tuple[Any, Any, Any]:
+    """Return the vector product of vectors of shape (3, ...), component by component."""
+    (a, b, c), (x, y, z) = one, other
+    return b * z - c * y, c * x - a * z, a * y - b * x
+
+
+def turned(matrix: np.ndarray, vectors: Sequence[Any] | np.ndarray) -> tuple[Any, Any, Any]:
+    """Return vectors of shape (3, ...) turned by a rotation matrix, component by component."""
+    x, y, z = vectors
+    one, two, three = ((a * x + b * y) + c * z for a, b, c in matrix.tolist())
+    return one, two, three
+
 
 def length(parts: Sequence[float] | np.ndarray) -> float:
-    """Return the length of a vector of two or three parts, in their unit."""
-    return float(speeds(np.asarray(parts, float)))
+    """Return the length of a vector of one, two or three parts, in their unit."""
+    given = np.asarray(parts, float)
+    return abs(float(given[0])) if given.size == 1 else float(speeds(given))
 
 
 def speeds(velocity: np.ndarray) -> np.ndarray:
@@ -23,22 +42,34 @@ def speeds(velocity: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Pose:
-    """Position, attitude and their rates of a body's own frame; in space it turns about z."""
+    """Position, attitude and their rates of a body's own frame.
+
+    In space the three angles are yaw, pitch and roll, which follow each other about the body's own axes
+    (``suchus.rotation``), and the three spins the angular velocity about the axes of the world.
+    """
 
     position: tuple[float, ...] = (0.0, 0.0)
     """Origin of the body's frame (x, y) or (x, y, z); without it, z is 0 in space [m]."""
     angle: float = 0.0
-    """Angle of the body's x axis, counter-clockwise about z [rad]."""
+    """Angle of the body's x axis, counter-clockwise about z: the yaw [rad]."""
     velocity: tuple[float, ...] = (0.0, 0.0)
     """Velocity of the origin (x, y) or (x, y, z) [m/s]."""
     spin: float = 0.0
-    """Rate of the angle [rad/s]."""
+    """Angular velocity about z [rad/s]."""
+    pitch: float = 0.0
+    """In space, angle about the body's y axis after the yaw: nose down [rad]."""
+    roll: float = 0.0
+    """In space, angle about the body's x axis after yaw and pitch: left side up [rad]."""
+    spin_x: float = 0.0
+    """In space, angular velocity about x [rad/s]."""
+    spin_y: float = 0.0
+    """In space, angular velocity about y [rad/s]."""
 
     def along(self, axes: int) -> "Pose":
         """Return the same pose with as many numbers in position and velocity as there are axes.
 
         Raises:
-            InvalidDesign: it has other than two or three, or three in the plane.
+            InvalidDesign: it has other than two or three, or what only space has in the plane.
         """
         position, velocity = (
             (*part, 0.0) if len(part) == 2 and axes == 3 else part for part in (self.position, self.velocity)
@@ -48,7 +79,49 @@ class Pose:
                 f"a pose has the position {show(self.position)} m and the velocity {show(self.velocity)} m/s; "
                 f"{'two numbers are needed in the plane' if axes == 2 else 'three numbers are needed in space'}."
             )
+        if axes == 2 and not self.in_plane:
+            raise InvalidDesign(
+                f"a pose has pitch {self.pitch:.4g} rad, roll {self.roll:.4g} rad and the spins {self.spin_x:.4g} and "
+                f"{self.spin_y:.4g} rad/s; in the plane a body has an angle and a spin alone. Leave the others 0."
+            )
         return replace(self, position=position, velocity=velocity)
+
+    @property
+    def in_plane(self) -> bool:
+        """Whether the body stands upright and turns about z alone."""
+        return not (self.pitch or self.roll or self.spin_x or self.spin_y)
+
+    @property
+    def matrix(self) -> np.ndarray:
+        """Rotation matrix, shape (3, 3): its columns are the body's axes in the world [-]."""
+        if self.pitch or self.roll:
+            return rotation.matrix(rotation.from_angles(self.angle, self.pitch, self.roll))
+        c, s = np.cos(self.angle), np.sin(self.angle)
+        return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+
+    @property
+    def spins(self) -> np.ndarray:
+        """Angular velocity about x, y and z, shape (3,) [rad/s]."""
+        return np.array([self.spin_x, self.spin_y, self.spin])
+
+    def place(self, points: Sequence[Any] | np.ndarray) -> tuple[Any, Any, Any]:
+        """Return points of the body's frame in the world, in space, component by component [m]."""
+        x, y, z = (
+            part + at for part, at in zip(turned(self.matrix, points), self.along(3).position, strict=True)
+        )  # fmt: skip
+        return x, y, z
+
+    def seen(self, points: Sequence[Any] | np.ndarray) -> tuple[Any, Any, Any]:
+        """Return points of the world in the body's frame, in space, component by component [m]."""
+        away = [part - at for part, at in zip(points, self.along(3).position, strict=True)]
+        return turned(self.matrix.T, away)
+
+    def rates(self, points: Sequence[Any] | np.ndarray) -> tuple[Any, Any, Any]:
+        """Return the velocity that the rigid motion gives to points of the world, in space [m/s]."""
+        place = self.along(3)
+        away = [part - at for part, at in zip(points, place.position, strict=True)]
+        x, y, z = (own + part for own, part in zip(place.velocity, cross(place.spins, away), strict=True))
+        return x, y, z
 
     def to_world(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return points of the body's frame in the world [m]."""

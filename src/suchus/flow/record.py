@@ -5,6 +5,7 @@ from math import isfinite
 
 import numpy as np
 
+from suchus import rotation
 from suchus.errors import OutsideLimits, UnknownName
 
 COLUMNS = (
@@ -18,21 +19,28 @@ COLUMNS = (
 """
 
 SPACE_COLUMNS = (
-    "torque", "power", "x", "y", "z", "angle", "velocity_x", "velocity_y", "velocity_z", "spin", "force_x", "force_y",
-    "force_z", "layer_error",
+    "torque_x", "torque_y", "torque", "power", "x", "y", "z", "angle", "pitch", "roll", "velocity_x", "velocity_y",
+    "velocity_z", "spin_x", "spin_y", "spin", "force_x", "force_y", "force_z", "layer_error",
 )  # fmt: skip
-"""The same in space, where no pressure and friction are read along the skin."""
+"""The same in space, where no pressure and friction are read along the skin.
+
+``torque`` and ``spin`` are those about z, ``angle`` is the yaw; see ``Pose``. The angle of a body that turns about z
+alone counts whole turns, else it lies between -pi and pi.
+"""
 
 PART_COLUMNS = ("force_x", "force_y", "torque", "power", "torque_behind")
 """Values kept of each part of a divided body, in the order of the last axis of ``Record.parts``.
 
 Force along x and y [N]; torque about z through the point that the torque of the whole body is about [N m]; power that
-the part gives to the water [W]; and the torque about z of all that lies behind the part's front end, about the midline
-there [N m]: what the water asks of a joint at that place. The pressure inside the body acts across a cut on both of its
-parts. It cancels in their sum, and since it acts along the midline a joint does not feel it.
+the part gives to the water [W]; and the torque, about the body's z through the midline at the part's front end, of
+all that lies behind it [N m]: what the water asks of a joint at that place. The pressure inside the body acts across a
+cut on both of its parts. It cancels in their sum, and since it acts along the midline a joint does not feel it.
 """
 
-_UNITS = {"power": "W", "x": "m", "y": "m", "z": "m", "angle": "rad", "spin": "rad s-1", "layer_error": "1"}
+_UNITS = {
+    "power": "W", **dict.fromkeys(("x", "y", "z"), "m"), **dict.fromkeys(("angle", "pitch", "roll"), "rad"),
+    **dict.fromkeys(("spin", "spin_x", "spin_y"), "rad s-1"), "layer_error": "1",
+}  # fmt: skip
 
 HEAD = 5
 """Numbers at the start of a row: time, step, two counts of cycles, divergence [-]."""
@@ -86,7 +94,8 @@ class Record:
     def units(self) -> dict[str, str]:
         """The unit of each column, as CF conventions write it; forces in the plane are per metre of depth."""
         force, torque = ("N", "N m") if self.axes == 3 else ("N m-1", "N")
-        own = {**_UNITS, "torque": torque, "power": "W" if self.axes == 3 else "W m-1"}
+        own = {**_UNITS, **dict.fromkeys(("torque", "torque_x", "torque_y"), torque)}
+        own["power"] = "W" if self.axes == 3 else "W m-1"
         return {n: own.get(n, "m s-1" if n.startswith("velocity") else force) for n in self.columns}
 
     def column(self, name: str, body: str | int = 0) -> np.ndarray:
@@ -127,6 +136,25 @@ class Record:
         In N/m in the plane, in N in space.
         """
         return np.stack([self.column(f"force_{a}", body) for a in "xyz"[: self.axes]], axis=1)
+
+    def torque(self, body: str | int = 0) -> np.ndarray:
+        """Return the torque on a body, mean over each step: about its centre of mass if it is free, else its origin.
+
+        In space about x, y and z, shape (step, 3) [N m], in the plane about z, shape (step, 1) [N].
+        """
+        names = ("torque_x", "torque_y", "torque") if self.axes == 3 else ("torque",)
+        return np.stack([self.column(name, body) for name in names], axis=1)
+
+    def attitude(self, body: str | int = 0) -> np.ndarray:
+        """Return the attitude of a body in space at each step's end as unit quaternions wxyz, shape (step, 4) [-].
+
+        Raises:
+            OutsideLimits: in the plane.
+        """
+        if self.axes == 2:
+            raise OutsideLimits("a body in the plane has no attitude but its angle; take column('angle').")
+        angles = [self.column(name, body) for name in ("angle", "pitch", "roll")]
+        return np.array([rotation.from_angles(*each) for each in zip(*angles, strict=True)]).reshape(-1, 4)
 
     def coefficients(
         self,

@@ -199,6 +199,15 @@ def _paint_point(out, place, px, py, z, column, section, rows, h):
     out[6, q, j, i] = _chord(at - (along + ea * h) / stretch, k, rows, c, s, ny, nz, h)
 
 
+@part
+def _part_at(at, cuts):
+    """Return which part of the body an arc length belongs to."""
+    part_of = 0
+    while part_of < cuts.size and cuts[part_of] <= at:
+        part_of += 1
+    return part_of
+
+
 @threaded
 def paint_sections(out, rows, tx, ty, cuts, x0, y0, z0, h, reach):
     """Paint ``out``, shape (``PAINTED``, z, y, x), which is ``reach`` far from everything beforehand.
@@ -226,9 +235,47 @@ def paint_sections(out, rows, tx, ty, cuts, x0, y0, z0, h, reach):
                 at = (1.0 - f) * rows[ARC, k] + f * rows[ARC, k + 1] + column[3]
                 wide = (1.0 - f) * rows[WIDE, k] + f * rows[WIDE, k + 1]
                 high = (1.0 - f) * rows[HIGH, k] + f * rows[HIGH, k + 1]
-                part_of = 0
-                while part_of < cuts.size and cuts[part_of] <= at:
-                    part_of += 1
-                section = (at, part_of, wide, high, reach + _growth(k, at, wide, high, rows, reach))
+                section = (at, _part_at(at, cuts), wide, high, reach + _growth(k, at, wide, high, rows, reach))
                 for q in range(out.shape[1]):
                     _paint_point(out, (q, j, i), px, py, z0 + q * h, column, section, rows, h)
+
+
+@threaded
+def paint_turned_sections(out, rows, tx, ty, cuts, x, y, z, turn, place, reach):
+    """Paint ``out`` as ``paint_sections`` does, of a body in any attitude; vectors are those of the body's frame.
+
+    Args:
+        out: distance, normal, velocity, thickness, part.
+        rows: the stations; see ``ARC``.
+        tx: cosine of their heading.
+        ty: sine of it.
+        cuts: rising arc lengths that divide the body into parts.
+        x: coordinates of the points, evenly spaced.
+        y: coordinates of the points.
+        z: coordinates of the points.
+        turn: rotation matrix of the body's frame.
+        place: its origin.
+        reach: distance up to which it need be exact.
+    """
+    h, widest, highest = x[1] - x[0], np.max(rows[WIDE]) + reach, np.max(rows[HIGH]) + reach
+    for n in prange(out.shape[2]):
+        j = signed(n)
+        dy = y[j] - place[1]
+        for q in range(out.shape[1]):
+            dz = z[q] - place[2]
+            for i in range(out.shape[3]):
+                dx = x[i] - place[0]
+                up = turn[0, 2] * dx + turn[1, 2] * dy + turn[2, 2] * dz
+                if abs(up) > highest:
+                    continue
+                px = turn[0, 0] * dx + turn[1, 0] * dy + turn[2, 0] * dz
+                py = turn[0, 1] * dx + turn[1, 1] * dy + turn[2, 1] * dz
+                column = _column(px, py, rows, tx, ty)
+                if abs(column[2]) > widest or abs(column[3]) > reach:
+                    continue
+                k, f = column[0], column[1]
+                at = (1.0 - f) * rows[ARC, k] + f * rows[ARC, k + 1] + column[3]
+                wide = (1.0 - f) * rows[WIDE, k] + f * rows[WIDE, k + 1]
+                high = (1.0 - f) * rows[HIGH, k] + f * rows[HIGH, k + 1]
+                section = (at, _part_at(at, cuts), wide, high, reach + _growth(k, at, wide, high, rows, reach))
+                _paint_point(out, (q, j, i), px, py, up, column, section, rows, h)

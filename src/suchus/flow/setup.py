@@ -8,9 +8,9 @@ from typing import Any, Literal
 import numpy as np
 
 from suchus.errors import InvalidDesign
-from suchus.flow.body import Body, thin_share, window_of
+from suchus.flow.body import Body, cuts, thin_share, window_of
 from suchus.flow.contact import Contact
-from suchus.flow.free import FreeBody, Swimmer
+from suchus.flow.free import FreeBody
 from suchus.flow.grid import Grid, check_kinds
 from suchus.flow.memory import check_memory
 from suchus.flow.pose import speeds
@@ -18,6 +18,7 @@ from suchus.flow.resolution import DOUBTED, REFUSED, cells_across, estimate, nee
 from suchus.flow.shape import Markers
 from suchus.flow.sides import Sides
 from suchus.flow.solid import Skin
+from suchus.flow.swimmer import Swimmer
 from suchus.kinds import show
 
 LAYER_CELLS = needed(REFUSED)
@@ -48,8 +49,8 @@ class Setup:
     """Force between bodies that nearly touch; None lets them run into each other."""
     follow: str | None = None
     """Name of the body whose centre the grid travels with; None keeps the grid where it is."""
-    follow_axes: tuple[bool, bool] = (True, True)
-    """Whether the grid travels along x and along y; along z it stays."""
+    follow_axes: tuple[bool, bool] | tuple[bool, bool, bool] = (True, True)
+    """Whether the grid travels along x, y (and z); along z it stays if that is not given."""
     courant: float = 0.8
     """Share of a cell that the water may cross in one step [-]."""
     step: float | None = None
@@ -92,7 +93,8 @@ class Setup:
             raise InvalidDesign(f"the grid is to follow {self.follow!r}, and the bodies are named {names}.")
         self._check_dimension()
         if self.follow is not None:
-            self.sides.check_travel(self.grid.axes, (*self.follow_axes, False), self.follow)
+            x, y, z = (*self.follow_axes, False)[:3]
+            self.sides.check_travel(self.grid.axes, (x, y, z), self.follow)
         check_memory(self.grid, self.dtype)
 
     def _check_dimension(self) -> None:
@@ -100,8 +102,8 @@ class Setup:
         axes = self.grid.axes
         self.sides.check(axes)
         for body in self.bodies:
-            if isinstance(body, FreeBody) and len(body.start) > axes:
-                raise InvalidDesign(f"{body.name} starts at {body.start} m, and the grid has two axes; give (x, y).")
+            if isinstance(body, FreeBody) and axes == 2:
+                body.check_plane()
             if body.shape.axes == axes:
                 continue
             shape = type(body.shape).__name__
@@ -148,10 +150,26 @@ class Setup:
         for body in self.bodies:
             pose = body.pose(0.0) if isinstance(body, Body) else Swimmer.of(body).pose(body.shape.mass(0.0))
             pose = pose.along(self.grid.axes)
-            window_of(body, pose, self.grid, 0.0, self.sides.mirrors(self.grid.axes))
+            window = window_of(body, pose, self.grid, 0.0, self.sides.mirrors(self.grid.axes))
+            if isinstance(body, FreeBody):
+                self._check_weight(body, cuts(window, self.grid))
             thin[body.name] = thin_share(body, self.grid, 0.0)
             self.layer_error(body, body.shape.markers(0.0, pose, self.grid.cell), self.far(0.0), 0.0)
         return thin
+
+    def _check_weight(self, body: FreeBody, cut: tuple[bool, ...]) -> None:
+        """Refuse a weight that would draw a body through a mirror that cuts it.
+
+        Raises:
+            InvalidDesign: naming the axis.
+        """
+        for axis, pull in enumerate(body.gravity):
+            if pull and any(cut[2 * axis : 2 * axis + 2]):
+                name = "xyz"[axis]
+                raise InvalidDesign(
+                    f"gravity of {body.name} is {body.gravity} m/s2, and a Mirror across {name} cuts it, where it must "
+                    f"stay; give a gravity without a component along {name}, or take another side."
+                )
 
     def layer_error(
         self,

@@ -12,15 +12,15 @@ from suchus import threads
 from suchus.errors import OutsideLimits, UnknownName
 from suchus.flow import checkpoint as store
 from suchus.flow import contact
-from suchus.flow.added import added_mass
+from suchus.flow.added import added_mass, symmetric
 from suchus.flow.ahead import compile_ahead
 from suchus.flow.body import Body, middle_of
 from suchus.flow.compiled import PAD
 from suchus.flow.consistency import Consistency
-from suchus.flow.farfield import FarBody, turned
+from suchus.flow.farfield import FarBody
 from suchus.flow.fields import Fields
 from suchus.flow.force import ControlVolume, Surface, sample
-from suchus.flow.free import FreeBody, Swimmer
+from suchus.flow.free import FreeBody
 from suchus.flow.immerse import wall_offset
 from suchus.flow.log import Log, columns
 from suchus.flow.momentum import Reaction
@@ -32,6 +32,7 @@ from suchus.flow.record import Record
 from suchus.flow.setup import Setup
 from suchus.flow.shape import Markers
 from suchus.flow.solid import Skin, SpaceShape
+from suchus.flow.swimmer import Swimmer
 from suchus.flow.trunk import Trunk
 from suchus.flow.watch import EVERY, Watch
 from suchus.flow.water import Water
@@ -53,9 +54,6 @@ def _fastest_marker(markers: Markers | Skin) -> float:
 
 Watcher = Callable[["Simulation"], None]
 """What looks at a simulation on its way."""
-
-_MODES = {2: [0, 1, 2], 3: [0, 1, 3]}
-"""Which modes of the added mass a free body has: along x, along y, turning; those through a mirror count as none."""
 
 _CHANGING = ("time", "_last", "_speed", "_reference")
 
@@ -94,6 +92,9 @@ class Simulation(Fields):
         self._fastest = 0.0  # fastest water after the last step
         self._reference = 0.0  # fastest stream, body or wall so far
         self.water.place(list(setup.bodies), [self._in_frame(self.pose(b.name)) for b in setup.bodies], 0.0)
+        for body, cut in zip(setup.bodies, self.water.cut, strict=True):
+            if isinstance(body, FreeBody) and body.free is None:
+                self.swimmers[body.name].go &= np.array(symmetric(cut))
         self._log.hold(self.water, outlines)
         self._watch.layers(
             [setup.layer_error(b, m, stream, 0.0) for b, m in zip(setup.bodies, outlines, strict=True)]
@@ -114,7 +115,8 @@ class Simulation(Fields):
                 self._afar.append([FarBody(np.zeros(3), np.zeros(3), np.zeros((3, 3))) for _ in range(count)])
                 continue
             pose = self._in_frame(self.pose(body.name))
-            added, turn = added_mass(self.water, skin, pose.position, 1.0, k)[:3, :3], turned(pose.angle)
+            asked, turn = (True,) * 3 + (False,) * 3, pose.matrix
+            added = added_mass(self.water, skin, pose.position, 1.0, k, asked)[:3, :3]
             mass = body.shape.volume(0.0) * np.eye(3) + turn.T @ np.nan_to_num(added) @ turn
             self._afar.append([FarBody(np.zeros(3), np.zeros(3), mass)])
         far.bodies += [one for parts in self._afar for one in parts]
@@ -130,7 +132,7 @@ class Simulation(Fields):
                     one.place, one.dipole = place, dipole
             else:
                 place, velocity = middle_of(body, pose, time)
-                parts[0].move(place, pose.angle, velocity - stream)
+                parts[0].move(place, pose.matrix, velocity - stream)
 
     def _drag_afar(self, poses: list[Pose], acts: Sequence[Reaction], outlines: Sequence[Markers | Skin]) -> None:
         """Let the sides of a domain in space know the drag, from the second step on: the first has the start's jolt."""
@@ -168,7 +170,7 @@ class Simulation(Fields):
             tuple(a - b for a, b in zip(part, frame, strict=True))
             for part, frame in zip((pose.position, pose.velocity), self.frame, strict=True)
         )
-        return Pose(position=position, angle=pose.angle, velocity=velocity, spin=pose.spin)
+        return replace(pose, position=position, velocity=velocity)
 
     def _stream(self, time: float) -> tuple[float, ...]:
         return tuple(float(part - own) for part, own in zip(self.setup.far(time), self.frame[1], strict=True))
@@ -177,8 +179,9 @@ class Simulation(Fields):
         if self.setup.follow is None:
             return
         name = self.setup.follow
-        velocity = self.swimmers[name].rate[:2] if name in self.swimmers else np.array(self.pose(name, time).velocity)
-        self.frame[1, :2] = np.where(self.setup.follow_axes, velocity[:2], 0.0)
+        velocity = self.swimmers[name].rate if name in self.swimmers else np.array(self.pose(name, time).velocity)
+        travels = self.setup.follow_axes[: self.axes]
+        self.frame[1, : len(travels)] = np.where(travels, velocity[: len(travels)], 0.0)
 
     # --- one step ----------------------------------------------------------------------------------------------
 
@@ -294,10 +297,11 @@ class Simulation(Fields):
             swimmer = self.swimmers.get(body.name)
             if swimmer is not None:
                 place = swimmer.place_and_rate
-                swimmer.load = np.array([*act.force[:2], act.torque])
-                if swimmer.steps % ADDED_EVERY == 1:
-                    added = added_mass(water, markers, point, setup.density, k)
-                    swimmer.added = np.nan_to_num(added[np.ix_(_MODES[self.axes], _MODES[self.axes])])
+                swimmer.load = np.array([*act.force, *act.moment])
+                if swimmer.steps % ADDED_EVERY == 1 and swimmer.go.any():
+                    asked = swimmer.go if self.axes == 3 else None
+                    added = added_mass(water, markers, point, setup.density, k, asked)
+                    swimmer.added = np.nan_to_num(added)
             values += columns(load, act, drift, place, self._watch.errors[k])
             along += columns_of(body, parts, point, poses[k], self.time, drift)
             body_speed = max(body_speed, _fastest_marker(markers))

@@ -10,60 +10,13 @@ from typing import ClassVar
 
 import numpy as np
 
-from suchus.flow.compiled import compiled
-from suchus.flow.mass import SpaceMass
+from suchus.flow.ellipsoid import paint_ellipsoid
+from suchus.flow.mass import SpaceMass, tensor
 from suchus.flow.pose import Pose
 from suchus.flow.shape import positive
 
-_STEPS = 12
-"""Newton steps to the foot point on an ellipsoid at most [-]: with 8 the distance is right to rounding on a 20:1."""
-
-_STILL = 1e-12
-"""Change of the foot point's parameter, over the square of the smallest half-axis, at which they end [-]."""
-
-_TINY = 1e-9
-"""Distance from a plane of symmetry, over the half-axis, below which a point counts as so far off it [-]."""
-
 _FEWEST = 16
 """Rings of points on a skin, at least [-]."""
-
-
-@compiled
-def _measure_ellipsoid(points, a, distance, normal):  # type: ignore[no-untyped-def]
-    """Write signed distances from an ellipsoid with half-axes ``a`` (3,), and normals, at points, shape (3, point).
-
-    The foot point f of a point p has ``f_i = a_i^2 p_i / (t + a_i^2)``, where t makes it lie on the surface. Newton's
-    method on ``1 / |s(t)|`` with ``s_i = a_i p_i / (t + a_i^2)``, which is nearly straight, rises to that t from every
-    start below it and above minus the smallest ``a_i^2``.
-    """
-    p, least = np.empty(3), min(a[0], a[1], a[2]) ** 2
-    for k in range(points.shape[1]):
-        t = -np.inf
-        for d in range(3):
-            p[d] = max(abs(points[d, k]), _TINY * a[d])
-            t = max(t, a[d] * p[d] - a[d] * a[d])  # one term of |s| is 1 here: at or below the root
-        for _ in range(_STEPS):
-            square, slope = 0.0, 0.0
-            for d in range(3):
-                below = 1.0 / (t + a[d] * a[d])
-                s = a[d] * p[d] * below
-                square += s * s
-                slope += s * s * below
-            change = (np.sqrt(square) - 1.0) * square / slope
-            t += change
-            if abs(change) <= _STILL * least:
-                break
-        size, off = 0.0, 0.0
-        for d in range(3):
-            normal[d, k] = p[d] / (t + a[d] * a[d])
-            size += normal[d, k] * normal[d, k]
-        size = np.sqrt(size)
-        for d in range(3):
-            foot = a[d] * a[d] * normal[d, k]
-            normal[d, k] /= size
-            off += (p[d] - foot) * normal[d, k]
-            normal[d, k] = np.copysign(normal[d, k], points[d, k])
-        distance[k] = off
 
 
 @dataclass(slots=True)
@@ -128,7 +81,7 @@ class SpaceShape(ABC):
 
     @abstractmethod
     def mass(self, time: float) -> SpaceMass:
-        """Return what a body of density 1 weighs, for motions in the plane z = 0."""
+        """Return volume, centre and moments of inertia of a body of density 1."""
 
     @property
     def parts(self) -> int:
@@ -147,7 +100,7 @@ class SpaceShape(ABC):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Ellipsoid(SpaceShape):
-    """An ellipsoid with its axes along the body's axes; it may turn about z."""
+    """An ellipsoid with its axes along the body's axes."""
 
     length: float
     """Full axis along the body's x [m]."""
@@ -165,20 +118,16 @@ class Ellipsoid(SpaceShape):
         """Half-axes, shape (3,) [m]."""
         return 0.5 * np.array([self.length, self.width, self.height])
 
-    def distance(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return signed distance and outward normal at points (3, ...) of the body's frame [m]."""
-        flat = np.ascontiguousarray(points.reshape(3, -1), dtype=np.float64)
-        distance, normal = np.empty(flat.shape[1]), np.empty(flat.shape)
-        _measure_ellipsoid(flat, self.half, distance, normal)
-        return distance.reshape(points.shape[1:]), normal.reshape(points.shape)
-
     def measure(self, x: np.ndarray, y: np.ndarray, z: np.ndarray, time: float, pose: Pose, reach: float) -> SpaceField:
         """Return the field on the points of a window."""
         place = pose.along(3)
-        wz, wy, wx = np.meshgrid(z, y, x, indexing="ij")
-        distance, normal = self.distance(np.stack([*place.to_body(wx, wy), wz - place.position[2]]))
-        velocity = (*place.carry(wx, wy), np.full(wx.shape, place.velocity[2]))
-        return SpaceField(distance, (*place.turn(normal[0], normal[1]), normal[2]), velocity, np.full(wx.shape, np.inf))
+        out = np.zeros((7, z.size, y.size, x.size))
+        px, py, pz = (np.ascontiguousarray(line, float) for line in (x, y, z))
+        paint_ellipsoid(
+            out, px, py, pz, np.ascontiguousarray(place.matrix), np.array(place.position), np.array(place.velocity),
+            place.spins, self.half, float(reach),
+        )  # fmt: skip
+        return SpaceField(out[0], (out[1], out[2], out[3]), (out[4], out[5], out[6]), np.full(out[0].shape, np.inf))
 
     def markers(self, time: float, pose: Pose, spacing: float) -> Skin:
         """Return points on rings about the body's z axis, each of which stands for the same part of a unit sphere."""
@@ -190,16 +139,13 @@ class Ellipsoid(SpaceShape):
         unit = unit.reshape(3, -1)
         a = self.half[:, None]
         share = float(np.prod(self.half)) * np.sqrt(((unit / a) ** 2).sum(axis=0)) * (4 * np.pi / unit.shape[1])
-        x, y, z = a * unit
-        wx, wy = place.to_world(x, y)
-        velocities = np.stack([*place.carry(wx, wy), np.full(wx.shape, place.velocity[2])])
-        return Skin(np.stack([wx, wy, z + place.position[2]]), share, velocities)
+        points = np.stack(place.place(a * unit))
+        return Skin(points, share, np.stack(place.rates(points)))
 
     def bounds(self, time: float, pose: Pose) -> tuple[float, ...]:
         """Return the box around the ellipsoid."""
-        place, (a, b, c) = pose.along(3), self.half.tolist()
-        cos, sin = np.cos(pose.angle), np.sin(pose.angle)
-        reach = float(np.hypot(a * cos, b * sin)), float(np.hypot(a * sin, b * cos)), c
+        place = pose.along(3)
+        reach = np.sqrt(((place.matrix * self.half) ** 2).sum(axis=1)).tolist()
         return tuple(p + way * r for p, r in zip(place.position, reach, strict=True) for way in (-1.0, 1.0))
 
     def thickness(self, time: float) -> tuple[np.ndarray, np.ndarray]:
@@ -211,10 +157,10 @@ class Ellipsoid(SpaceShape):
         return 4 / 3 * np.pi * float(np.prod(self.half))
 
     def mass(self, time: float) -> SpaceMass:
-        """Return volume and moment; the centre is the origin."""
-        volume, (a, b, _) = self.volume(time), self.half.tolist()
-        moment = volume * (a * a + b * b) / 5
-        return SpaceMass(volume=volume, centre=(0.0, 0.0), centre_rate=(0.0, 0.0), moment=moment, swirl=0.0)
+        """Return volume and moments; the centre is the origin."""
+        volume, none = self.volume(time), (0.0, 0.0, 0.0)
+        moments = tensor(np.diag(volume * self.half**2 / 5))
+        return SpaceMass(volume=volume, centre=none, centre_rate=none, moments=moments, swirl=none)
 
 
 class Sphere(Ellipsoid):

@@ -11,8 +11,8 @@ from suchus.errors import InvalidDesign
 from suchus.flow.mass import SpaceMass, of_trunk
 from suchus.flow.midline import Spine
 from suchus.flow.paint import ring
-from suchus.flow.pose import Pose
-from suchus.flow.sections import PAINTED, paint_sections
+from suchus.flow.pose import Pose, turned
+from suchus.flow.sections import PAINTED, paint_sections, paint_turned_sections
 from suchus.flow.solid import Skin, SpaceField, SpaceShape
 
 DIPOLES = 12
@@ -70,13 +70,19 @@ class Trunk(SpaceShape):
         """Parts that the cuts leave [-]."""
         return len(self.cuts) + 1
 
-    def placed(self, time: float, pose: Pose) -> Spine:
-        """Return the midline in the world at a time [s].
+    def placed(self, time: float, pose: Pose) -> tuple[Spine, Pose]:
+        """Return the midline at a time [s] in the plane z = 0 of a frame, and the frame's pose in the world.
+
+        The frame of a body that turns about z alone has the axes of the world.
 
         Raises:
             InvalidDesign: it has other stations than the half-heights.
         """
-        return self._spine(time).placed(pose)
+        spine, place = self._spine(time), pose.along(3)
+        if not place.in_plane:
+            return spine, place
+        up, rate = place.position[2], place.velocity[2]
+        return spine.placed(pose), Pose(position=(0.0, 0.0, up), velocity=(0.0, 0.0, rate))
 
     def _spine(self, time: float) -> Spine:
         spine = self.spine(time)
@@ -89,22 +95,31 @@ class Trunk(SpaceShape):
 
     def measure(self, x: np.ndarray, y: np.ndarray, z: np.ndarray, time: float, pose: Pose, reach: float) -> SpaceField:
         """Return the field on the points of a window."""
-        spine, place = self.placed(time, pose), pose.along(3)
+        spine, frame = self.placed(time, pose)
         h = float(x[-1] - x[0]) / (x.size - 1)
         out = np.zeros((PAINTED, z.size, y.size, x.size))
         out[0], out[6] = reach, np.inf
         rows = np.stack([*spine.rows, self.half_height, spine.swell, spine.arc])
-        paint_sections(
-            out, rows, np.cos(spine.heading), np.sin(spine.heading), np.array(self.cuts), float(x[0]), float(y[0]),
-            float(z[0]) - place.position[2], h, float(reach),
-        )  # fmt: skip
-        lift = np.full(out[0].shape, place.velocity[2])
+        given = out, rows, np.cos(spine.heading), np.sin(spine.heading), np.array(self.cuts)
         part = out[7] if self.cuts else None
-        return SpaceField(out[0], (out[1], out[2], out[3]), (out[4], out[5], lift), out[6], part)
+        if pose.in_plane:
+            paint_sections(*given, float(x[0]), float(y[0]), float(z[0]) - frame.position[2], h, float(reach))
+            lift = np.full(out[0].shape, frame.velocity[2])
+            return SpaceField(out[0], (out[1], out[2], out[3]), (out[4], out[5], lift), out[6], part)
+        matrix = np.ascontiguousarray(frame.matrix)
+        px, py, pz = (np.ascontiguousarray(line, float) for line in (x, y, z))
+        paint_turned_sections(*given, px, py, pz, matrix, np.array(frame.position), float(reach))
+        rigid = frame.rates((x, y[:, None], z[:, None, None]))
+        u, v, w = (a + b for a, b in zip(rigid, turned(matrix, (out[4], out[5], 0 * out[5])), strict=True))
+        return SpaceField(out[0], turned(matrix, out[1:4]), (u, v, w), out[6], part)
 
     def markers(self, time: float, pose: Pose, spacing: float) -> Skin:
         """Return the middles of patches between stations, as many around as the widest section needs."""
-        spine, place = self.placed(time, pose), pose.along(3)
+        spine, frame = self.placed(time, pose)
+        return in_world(self._skin(spine, spacing), frame)
+
+    def _skin(self, spine: Spine, spacing: float) -> Skin:
+        """Return the same in the frame of a midline."""
         wide, high = (np.concatenate([[0.0], part, [0.0]]) for part in (spine.half_width, self.half_height))
         station = np.clip(np.arange(-1, spine.x.size + 1), 0, spine.x.size - 1)  # the ends' faces too
         largest = float(np.hypot(spine.half_width, self.half_height).max())
@@ -113,14 +128,14 @@ class Trunk(SpaceShape):
         nx, ny = -np.sin(spine.heading)[station, None], np.cos(spine.heading)[station, None]
         corner = np.stack([
             spine.x[station, None] + aside * nx, spine.y[station, None] + aside * ny,
-            place.position[2] + np.outer(high, np.sin(angle)),
+            np.outer(high, np.sin(angle)),
         ])  # fmt: skip
         turn = spine.heading_rate[station, None]
         swell = np.outer(np.concatenate([[0.0], spine.swell, [0.0]]), np.cos(angle))
         rate = np.stack([
             spine.x_rate[station, None] + swell * nx - turn * aside * ny,
             spine.y_rate[station, None] + swell * ny + turn * aside * nx,
-            np.full(aside.shape, place.velocity[2]),
+            np.zeros(aside.shape),
         ])  # fmt: skip
         first, second = corner[:, 1:, 1:] - corner[:, :-1, :-1], corner[:, 1:, :-1] - corner[:, :-1, 1:]
         share = 0.5 * np.sqrt((np.cross(first, second, axis=0) ** 2).sum(axis=0))
@@ -131,10 +146,18 @@ class Trunk(SpaceShape):
 
     def bounds(self, time: float, pose: Pose) -> tuple[float, ...]:
         """Return the box around the body."""
-        outline, middle = ring(self.placed(time, pose).rows), pose.along(3).position[2]
-        ends = [end for line in outline for end in (float(line.min()), float(line.max()))]
-        high = float(self.half_height.max())
-        return (*ends, middle - high, middle + high)
+        spine, frame = self.placed(time, pose)
+        if pose.in_plane:
+            outline, middle = ring(spine.rows), frame.position[2]
+            ends = [end for line in outline for end in (float(line.min()), float(line.max()))]
+            high = float(self.half_height.max())
+            return (*ends, middle - high, middle + high)
+        middles, matrix = np.array(frame.place((spine.x, spine.y, 0 * spine.x))), frame.matrix
+        aside = np.stack([-np.sin(spine.heading), np.cos(spine.heading)])
+        across, up = spine.half_width * (matrix[:, :2] @ aside), np.outer(matrix[:, 2], self.half_height)
+        far = np.hypot(across, up)  # how far each section reaches along the world's axes
+        low, top = (middles - far).min(axis=1).tolist(), (middles + far).max(axis=1).tolist()
+        return tuple(end for pair in zip(low, top, strict=True) for end in pair)
 
     def thickness(self, time: float) -> tuple[np.ndarray, np.ndarray]:
         """Return arc length and the smaller axis of the section at the stations."""
@@ -161,22 +184,32 @@ class Trunk(SpaceShape):
             pose: of the body's frame.
             stream: velocity of the far water [m/s].
         """
-        spine, place = self.placed(time, pose), pose.along(3)
+        spine, frame = self.placed(time, pose)
         x, y, heading, wide, u, v, _ = 0.5 * (spine.rows[:, 1:] + spine.rows[:, :-1])
-        high, ds = 0.5 * (self.half_height[1:] + self.half_height[:-1]), np.diff(spine.arc)
-        u, v, w = u - stream[0], v - stream[1], place.velocity[2] - stream[2]
+        high, ds, matrix = 0.5 * (self.half_height[1:] + self.half_height[:-1]), np.diff(spine.arc), frame.matrix
+        carried = frame.rates(frame.place((x, y, 0 * x)))
+        past = turned(matrix.T, [part - far for part, far in zip(carried, stream, strict=True)])
+        u, v, w = u + past[0], v + past[1], past[2]
         aside = np.pi * high**2 * (v * np.cos(heading) - u * np.sin(heading))
         held, up = np.pi * wide * high, np.pi * wide * (high + wide)
         dipole = ds * np.stack([held * u - aside * np.sin(heading), held * v + aside * np.cos(heading), up * w])
         first = np.linspace(0, ds.size, min(DIPOLES, ds.size), endpoint=False).astype(int)
-        middle = np.add.reduceat(np.stack([x, y]) * ds, first, axis=1) / np.add.reduceat(ds, first)
-        height = np.full((1, first.size), place.position[2])
-        return np.concatenate([middle, height]).T, np.add.reduceat(dipole, first, axis=1).T
+        middle = np.add.reduceat(np.stack([x, y, 0 * x]) * ds, first, axis=1) / np.add.reduceat(ds, first)
+        dipoles = turned(matrix, np.add.reduceat(dipole, first, axis=1))
+        return np.array(frame.place(middle)).T, np.array(dipoles).T
 
     def at(self, time: float, pose: Pose, arc: np.ndarray) -> np.ndarray:
-        """Return where the midline is at arc lengths [m], in the world, shape (point, 2) [m]."""
-        spine = self.placed(time, pose)
-        return np.column_stack([np.interp(arc, spine.arc, spine.x), np.interp(arc, spine.arc, spine.y)])
+        """Return where the midline is at arc lengths [m], in the world, shape (point, 3) [m]."""
+        spine, frame = self.placed(time, pose)
+        x, y = (np.interp(arc, spine.arc, line) for line in (spine.x, spine.y))
+        return np.column_stack(frame.place((x, y, 0 * x)))
+
+
+def in_world(skin: Skin, frame: Pose) -> Skin:
+    """Return a skin whose points and velocities are those of a frame in the world, where the frame moves."""
+    points = np.array(frame.place(skin.points))
+    velocities = np.array(turned(frame.matrix, skin.velocities)) + frame.rates(points)
+    return Skin(points, skin.share, velocities, skin.part)
 
 
 def _middles(corners: np.ndarray) -> np.ndarray:

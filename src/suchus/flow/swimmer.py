@@ -1,0 +1,307 @@
+"""Free bodies under way: three degrees of freedom in the plane, six in space.
+
+The pressure answers a body's acceleration at once, ``F = F0 - Ma a``; the added mass ``Ma`` comes from three or six
+solves of the pressure equation itself and goes to the left side, ``(M + Ma) a = F0``. Without it the coupling
+of a light body is unstable. A body's deformation carries no momentum of its own: its frame moves so that the
+centre of mass and the angular momentum change by outer forces alone: the water's, the body's weight less its buoyancy,
+its springs and dampers, and what else it is given.
+
+In space the attitude is a rotation vector, so that it is a rotation whatever a step adds to it. A step turns the body
+with the mean of the angular velocities at its start and end, and both follow from the angular momentum, which changes
+by the torque times the step and by nothing else: a body without torques keeps it to rounding, its energy has no drift,
+and the error of its attitude is of second order.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from suchus import rotation
+from suchus.errors import InvalidDesign
+from suchus.flow.free import FreeBody
+from suchus.flow.mass import Mass, SpaceMass
+from suchus.flow.pose import Pose, turned
+from suchus.kinds import show
+
+
+def spread(given: Sequence[float], axes: int) -> np.ndarray:
+    """Return values for every degree of freedom: of three in space, those along z and about x and y are 0."""
+    if axes == 2 or len(given) == 6:
+        return np.array(given)
+    x, y, turn = given
+    return np.array([x, y, 0 * x, 0 * x, 0 * x, turn])
+
+
+def _lengthened(given: Sequence[float], axes: int) -> list[float]:
+    """Return a vector with as many components as there are axes."""
+    return [*given, *(0.0,) * (axes - len(given))]
+
+
+def _attitude(yaw: float, pitch: float, roll: float) -> np.ndarray:
+    """Return the rotation vector of three angles, shape (3,) [rad]."""
+    if not (pitch or roll):
+        return np.array([0.0, 0.0, yaw])
+    return rotation.to_vector(rotation.from_angles(yaw, pitch, roll), np.zeros(3))
+
+
+def _unwinding(vector: np.ndarray, slope: np.ndarray) -> np.ndarray:
+    """Return the torque of a potential whose slope by the rotation vector is given, shape (3,).
+
+    It is ``-J^-T slope``, where the rotation vector r changes by ``J^-1 dw`` as the body turns by dw.
+    Source: Sola, Deray, Atchuthan 2018, arXiv:1812.01537, Eq. (146).
+    """
+    angle = float(np.linalg.norm(vector))
+    share = 1 / 12 if angle < 1e-3 else (1 - 0.5 * angle / np.tan(0.5 * angle)) / angle**2
+    twist = np.cross(vector, slope)
+    torque: np.ndarray = -(slope + 0.5 * twist + share * np.cross(vector, twist))
+    return torque
+
+
+_CHANGING = ("place", "rate", "push", "load", "added", "momentum", "owed", "applied", "span", "steps")
+
+REPAID = 0.5
+"""Share of the momentum still owed that a step repays [-]; all at once rings."""
+
+MOST_ROUNDS = 40
+"""Rounds in which attitude and angular velocity at a step's end come to terms, at most [-]: each makes the error
+smaller by about the angle that the body turns in a step."""
+
+_SETTLED = 1e-14
+"""Change of the rates, over their size, at which they have [-]."""
+
+
+@dataclass(slots=True)
+class Swimmer:
+    """A free body under way. Vectors are per degree of freedom, shape (3,) or (6,); in the plane per metre of depth."""
+
+    body: FreeBody
+    """Which body."""
+    place: np.ndarray
+    """Centre of mass and angle of the frame, in space its rotation vector [m, rad]."""
+    rate: np.ndarray
+    """Velocity of the centre, and angular momentum over the tensor of inertia [m/s, rad/s]."""
+    go: np.ndarray
+    """Whether it may move in each degree of freedom."""
+    push: np.ndarray = field(init=False)
+    """Acceleration in the last step [m/s^2, rad/s^2]."""
+    load: np.ndarray = field(init=False)
+    """Force and torque of the water in the last step [N/m, N; in space N, N m]."""
+    added: np.ndarray = field(init=False)
+    """Added mass, a square matrix [kg/m, kg, kg m; in space kg, kg m, kg m^2]."""
+    momentum: np.ndarray = field(init=False)
+    """Momentum and angular momentum before the last step [kg/s, kg m/s; in space kg m/s, kg m^2/s]."""
+    owed: np.ndarray = field(init=False)
+    """Momentum that the water and the other forces gave and the body has not got yet [kg/s, kg m/s]."""
+    applied: np.ndarray = field(init=False)
+    """Force and torque of all but the water in the last step [N/m, N]."""
+    span: float = 0.0
+    """Length of the last step [s]."""
+    steps: int = 0
+    """Steps taken so far [-]."""
+
+    def __post_init__(self) -> None:
+        count = len(self.place)
+        self.push, self.load, self.momentum, self.owed, self.applied = np.zeros((5, count))
+        self.added = np.zeros((count, count))
+
+    @classmethod
+    def of(cls, body: FreeBody) -> "Swimmer":
+        """Return the body at its start."""
+        axes = body.shape.axes
+        if axes == 2:
+            place, rate = np.array([*body.start[:2], body.angle]), np.array([*body.velocity[:2], body.spin])
+        else:
+            turn = _attitude(body.angle, body.pitch, body.roll)
+            place = np.array([*_lengthened(body.start, 3), *turn])
+            rate = np.array([*_lengthened(body.velocity, 3), body.spin_x, body.spin_y, body.spin])
+        free = (True,) * place.size if body.free is None else body.free
+        return cls(body, place, rate, spread(free, axes).astype(bool))
+
+    @property
+    def _axes(self) -> int:
+        return self.body.shape.axes
+
+    @staticmethod
+    def _angles(place: np.ndarray) -> tuple[float, float, float]:
+        """Return yaw, pitch and roll of a body in space; a body that turns about z alone counts its whole turns."""
+        x, y, z = place[3:].tolist()
+        return rotation.angles(rotation.from_vector(place[3:])) if x or y else (z, 0.0, 0.0)
+
+    def _matrix(self, place: np.ndarray) -> np.ndarray:
+        """Return the rotation matrix of the frame, in space; see ``Pose.matrix``."""
+        if self._axes == 2:
+            return np.eye(3)  # the plane's mass matrix does not depend on it
+        x, y, z = place[3:].tolist()
+        return rotation.turn(place[3:]) if x or y else Pose(angle=z).matrix
+
+    def _pose(self, place: np.ndarray, velocity: np.ndarray, spins: np.ndarray) -> Pose:
+        """Return the pose in space with an attitude, the origin in the place."""
+        yaw, pitch, roll = self._angles(place)
+        (x, y, z), (u, v, w), (p, q, r) = place[:3].tolist(), velocity.tolist(), spins.tolist()
+        return Pose(
+            position=(x, y, z), angle=yaw, pitch=pitch, roll=roll, velocity=(u, v, w), spin_x=p, spin_y=q, spin=r
+        )
+
+    def pose(self, mass: Mass | SpaceMass) -> Pose:
+        """Return the pose of the body's frame, whose deformation it has taken out of the motion."""
+        if isinstance(mass, SpaceMass):
+            matrix = self._matrix(self.place)
+            spins = np.where(self.go[3:], self.rate[3:] - mass.recoil(matrix)[3:], self.rate[3:])
+            away, drift = np.array(turned(matrix, mass.centre)), np.array(turned(matrix, mass.centre_rate))
+            place = np.concatenate([self.place[:3] - away, self.place[3:]])
+            return self._pose(place, self.rate[:3] - drift - np.cross(spins, away), spins)
+        angle = self.place[2]
+        c, s = np.cos(angle), np.sin(angle)
+        spin = self.rate[2] - mass.swirl / mass.moment if self.go[2] else self.rate[2]
+        rx, ry = c * mass.centre[0] - s * mass.centre[1], s * mass.centre[0] + c * mass.centre[1]
+        ux, uy = (c * mass.centre_rate[0] - s * mass.centre_rate[1], s * mass.centre_rate[0] + c * mass.centre_rate[1])
+        return Pose(
+            position=(self.place[0] - rx, self.place[1] - ry), angle=angle,
+            velocity=(self.rate[0] - ux + spin * ry, self.rate[1] - uy - spin * rx), spin=spin,
+        )  # fmt: skip
+
+    @property
+    def place_and_rate(self) -> Pose:
+        """Centre of mass and attitude, with the velocities that the water's forces change."""
+        return self._state(self.place)
+
+    def _state(self, place: np.ndarray) -> Pose:
+        if self._axes == 3:
+            return self._pose(place, self.rate[:3], self.rate[3:])
+        (x, y, angle), (u, v, spin) = place.tolist(), self.rate.tolist()
+        return Pose(position=(x, y), angle=angle, velocity=(u, v), spin=spin)
+
+    def state(self) -> dict[str, np.ndarray]:
+        """Return all that changes, by name."""
+        return {key: np.array(getattr(self, key)) for key in _CHANGING}
+
+    def resume(self, state: dict[str, np.ndarray]) -> None:
+        """Set all that changes."""
+        for key in _CHANGING:
+            setattr(self, key, state[key] if state[key].ndim else state[key].item())
+
+    def advance(self, time: float, dt: float, water_density: float, contact: np.ndarray | None = None) -> None:
+        """Advance by ``dt`` [s] under the water's forces of the last step and the other forces of this one.
+
+        Springs and dampers act at the mean of the step's start and end, the other forces at a middle foreseen from
+        its start: neither adds energy.
+
+        Args:
+            time: start of the step [s].
+            dt: length of the step [s].
+            water_density: of the water [kg/m^3].
+            contact: force and torque of other bodies that nearly touch, shape (3,) [N/m, N].
+
+        Raises:
+            InvalidDesign: the body's own force is not three or six finite numbers.
+        """
+        shape = self.body.shape
+        density = water_density if self.body.density is None else self.body.density
+        now, then = shape.mass(time), shape.mass(time + dt)
+        matrix = self._matrix(self.place)
+        before, slip = now.inertia(matrix), self._slip(now, matrix)
+        momentum = (density * before) @ self.rate
+        guess = self.load + self.added @ self.push
+        if self.steps:
+            self.owed = self.owed + self.span * (self.load + self.applied) - (momentum - self.momentum)
+        if self.steps > 1:  # the second step itself repays the jolt of the start
+            # Extrapolating instead feeds every ripple of the force back into the motion. The last step's force comes
+            # a step late; what the body therefore did not get, it gets little by little. Without that an eel, whose
+            # added mass aside is ten times its own, sways several times too much.
+            guess = guess + REPAID * self.owed / dt
+        self.momentum, self.span = momentum, dt
+        recoil = slip + self._slip(then, matrix)
+        outer, yielding = self._outer(time, dt, (density - water_density) * now.size, recoil)
+        if contact is not None:
+            outer = outer + contact
+        push, rate, place = np.zeros(self.place.size), self.rate, self.place
+        for count in range(MOST_ROUNDS):  # in the plane the first is the last; in space it takes the attitude for fixed
+            after = then.inertia(matrix)
+            grown = after - before
+            grown[: self._axes] = 0
+            force = guess - (density * grown / dt) @ self.rate + outer
+            if not self.steps:  # neither the water's force nor the added mass is known yet
+                force = force - guess - outer
+            if self.steps or self._axes == 3:
+                whole = density * after + self.added + np.diag(yielding)
+                push[self.go] = np.linalg.solve(whole[np.ix_(self.go, self.go)], force[self.go])
+            last, rate = rate, self.rate + dt * push
+            place = self._moved(dt * 0.5 * (self.rate + rate) - dt * 0.5 * recoil)
+            if self._axes == 2 or (count and np.abs(rate - last).max() <= _SETTLED * np.abs(rate).max()):
+                break
+            matrix = self._matrix(place)
+            recoil = slip + self._slip(then, matrix)
+        self.applied = outer - yielding * push
+        self.place, self.rate, self.push = place, rate, push
+        self.steps += 1
+
+    def _slip(self, mass: Mass | SpaceMass, matrix: np.ndarray) -> np.ndarray:
+        """Return the velocity that the deformation takes from the frame, as far as it is free."""
+        slip: np.ndarray = np.where(self.go, mass.recoil(matrix), 0.0)
+        return slip
+
+    def _moved(self, step: np.ndarray) -> np.ndarray:
+        """Return the place after a step, in space a turn by a rotation vector."""
+        place = self.place + step
+        if step[3:5].any() or (self.place[3:5].any() and step[3:].any()):  # else about z alone
+            turn = rotation.multiply(rotation.from_vector(step[3:]), rotation.from_vector(self.place[3:]))
+            place[3:] = rotation.to_vector(turn, self.place[3:] + step[3:])
+        return place
+
+    def _outer(self, time: float, dt: float, weight: float, recoil: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the mean over a step of all forces but the water's, and by how much an acceleration lessens them.
+
+        The first is that of a body that does not accelerate [N/m, N], [kg/m, kg m].
+
+        Args:
+            time: start of the step [s].
+            dt: length of the step [s].
+            weight: mass of the body less that of the water it displaces [kg/m].
+            recoil: velocity of the frame at start and end that the deformation takes away, summed [m/s, rad/s].
+
+        Raises:
+            InvalidDesign: the body's own force is not three or six finite numbers.
+        """
+        body, axes = self.body, self._axes
+        middle = self._moved(0.5 * dt * (self.rate - 0.5 * recoil))
+        stiff, viscous = spread(body.springs, axes), spread(body.dampers, axes)
+        pull = _lengthened(body.gravity, axes)
+        outer = weight * np.array([*pull, *np.zeros(middle.size - axes)]) - self._held(middle, stiff)
+        outer = outer - viscous * self.rate
+        if body.force is not None:
+            given = body.force(time + 0.5 * dt, self._state(middle))
+            sizes = [(3,)] if axes == 2 else [(3,), (6,)]
+            if np.shape(given) not in sizes or not np.isfinite(np.asarray(given, float)).all():
+                raise InvalidDesign(
+                    f"the force of {body.name} at t = {time:.4g} s is {show(given)}; give three finite numbers, the "
+                    f"force along x and y in N/m and the torque in N (in space N and N m, or six numbers: forces along "
+                    f"and torques about x, y and z)."
+                )
+            outer = outer + spread(np.asarray(given, float).tolist(), axes)
+        return outer, 0.5 * dt * viscous + 0.25 * dt**2 * stiff
+
+    def _held(self, middle: np.ndarray, stiff: np.ndarray) -> np.ndarray:
+        """Return what the springs pull back with in a place."""
+        body = self.body
+        if self._axes == 2:
+            slack = np.array([*body.start[:2], body.angle] if body.anchor is None else body.anchor)
+            return np.asarray(stiff * (middle - slack))
+        if body.anchor is None:
+            slack = np.array([*_lengthened(body.start, 3), *_attitude(body.angle, body.pitch, body.roll)])
+        else:
+            x, y, z, yaw, pitch, roll = self._anchor(body.anchor)
+            slack = np.array([x, y, z, *_attitude(yaw, pitch, roll)])
+        away = stiff * (middle - slack)
+        if stiff[3:].any():
+            turn = rotation.multiply(rotation.from_vector(middle[3:]), rotation.from_vector(-slack[3:]))
+            vector = rotation.to_vector(turn, middle[3:] - slack[3:])
+            away[3:] = -_unwinding(vector, stiff[3:] * vector)
+        return np.asarray(away)
+
+    def _anchor(self, anchor: Sequence[float]) -> list[float]:
+        """Return the anchor as six numbers; of three, the others are those of the start."""
+        if len(anchor) == 6:
+            return list(anchor)
+        x, y, turn = anchor
+        return [x, y, _lengthened(self.body.start, 3)[2], turn, 0.0, 0.0]
