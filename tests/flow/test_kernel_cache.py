@@ -5,7 +5,9 @@ from pathlib import Path
 
 import pytest
 
+from suchus import kernel_cache
 from suchus.flow import cache
+from suchus.hydro import vectors
 
 ROOM = Path(cache.__file__).parent
 MAKERS = {"compiled", "threaded", "part", "threaded_part"}
@@ -49,6 +51,17 @@ def test_an_edit_of_a_kernel_that_others_call_is_another_folder(room):
     assert before.is_dir()
 
 
+def test_the_forces_of_water_have_such_a_folder_too(tmp_path, monkeypatch):
+    (tmp_path / "table.py").write_text("BREATH = 6\n")
+    monkeypatch.setattr(vectors, "_HERE", tmp_path)
+    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
+    before = vectors.folder()
+    assert before.parent == tmp_path / "__pycache__"
+    assert vectors.folder() == before
+    (tmp_path / "table.py").write_text("BREATH = 7\n")  # no kernel stands in this file
+    assert vectors.folder() != before
+
+
 def test_where_the_package_cannot_be_written_the_users_folder_is_taken(room, tmp_path):
     (room / "__pycache__").write_text("no folder")  # root may write everywhere, so that permissions would not do
     assert cache.folder().parent == tmp_path / "the user's" / "suchus"
@@ -75,7 +88,7 @@ def test_the_latest_few_states_are_kept_and_nothing_else_is_touched(room):
         (room / "a.py").write_text(f"from suchus.flow.compiled import part\nN = {n}\n")
         made.append(cache.folder())
     kept = [one for one in made if one.is_dir()]
-    assert len(kept) == cache._KEPT
+    assert len(kept) == kernel_cache.KEPT
     assert made[-1] in kept
     assert (room / "__pycache__" / "a.pyc").exists()
 
@@ -83,4 +96,4 @@ def test_the_latest_few_states_are_kept_and_nothing_else_is_touched(room):
 def test_without_a_home_there_is_still_an_answer(monkeypatch):
     monkeypatch.delenv("XDG_CACHE_HOME", raising=False)
     monkeypatch.delenv("HOME", raising=False)
-    assert cache.user_cache().name == "suchus"
+    assert kernel_cache.user_cache().name == "suchus"

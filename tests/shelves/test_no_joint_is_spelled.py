@@ -41,7 +41,7 @@ WHERE = {
 }
 COLUMNS = {
     "experiments/swim_3d.py": "letters of a digest",
-    "flow/cache.py": "hexdigest",
+    "kernel_cache.py": "letters of a digest",
     "hydro/forces.py": "rows of the table of pieces and of inertia",
     "design/pieces.py": "a row of the table of pieces",
     "record/provenance.py": "letters of a digest",

@@ -76,7 +76,7 @@ def _draw_curve(axes: Axes, entry: Entry, found: Comparison) -> None:
     else:
         curve = curve[:, np.argsort(curve[0], kind="stable")]
         curve = curve[:, (curve[0] >= low) & (curve[0] <= high)]
-    axes.plot(curve[0], curve[1], color=_OURS, linewidth=1.4, label="ours")
+    axes.plot(curve[0], curve[1], color=_OURS, linewidth=1.4, label="computed")
     axes.plot(found.x, found.theirs, "k.", markersize=3, label="published")
     axes.set_xlabel(row.labels[0], **_SMALL)
     axes.set_ylabel(row.labels[1], **_SMALL)
@@ -89,14 +89,14 @@ def _draw_numbers(axes: Axes, row: Row, found: Comparison) -> None:
     for column in table.columns:
         if column != "quantity":
             axes.plot(table.values(column) / found.theirs, places, "k|", markersize=14, label="published")
-    axes.plot(found.ours / found.theirs, places, "o", color=_OURS, label="ours")
+    axes.plot(found.ours / found.theirs, places, "o", color=_OURS, label="computed")
     axes.set_yticks(places, table.columns["quantity"])
-    axes.set_ylim(-0.6, len(places) - 0.4)
+    axes.set_ylim(-0.6, len(places) + 0.1)
     reach = 1.2 * max(float(np.abs(found.ours / found.theirs - 1).max()), found.bound)
     axes.set_xlim(1 - reach, 1 + reach)
     axes.set_xlabel("over the mean of the published [-]", **_SMALL)
     handles = dict(zip(*axes.get_legend_handles_labels()[::-1], strict=True))
-    axes.legend(handles.values(), handles.keys(), loc="best", fontsize=7)
+    axes.legend(handles.values(), handles.keys(), loc="upper right", fontsize=7, ncols=2)
 
 
 def draw_parity(listed: Sequence[Entry]) -> Figure:
@@ -110,7 +110,7 @@ def draw_parity(listed: Sequence[Entry]) -> Figure:
             colour = _ABOVE if entry.bad else _OURS
             left.plot(found.theirs / peak, found.ours / peak, ".", markersize=3, color=colour, alpha=0.5)
         left.axline((0, 0), slope=1, color="k", linewidth=0.8)
-        left.set(xlabel="published, over the peak of its row [-]", ylabel="ours, over the same [-]", aspect="equal")
+        left.set(xlabel="published, over the peak of its row [-]", ylabel="computed, over the same [-]", aspect="equal")
         left.set(xlim=(-_FARTHEST, _FARTHEST), ylim=(-_FARTHEST, _FARTHEST))
         for place, (entry, found) in enumerate(reversed(shown)):
             colour = _ABOVE if entry.bad else _OURS
@@ -120,5 +120,5 @@ def draw_parity(listed: Sequence[Entry]) -> Figure:
         right.set(xlabel="rms difference over the peak [%]", ylim=(-0.8, max(len(shown), 1) - 0.2))
         right.set_xlim(left=0.0)
         if shown:
-            right.legend(loc="lower right", fontsize=8)
+            right.legend(loc="upper right", fontsize=8)
     return figure

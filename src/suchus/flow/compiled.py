@@ -17,6 +17,7 @@ import numpy as np
 from numba.core import event
 
 from suchus.flow import cache, linking
+from suchus.kernel_cache import kept_in
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -87,19 +88,17 @@ event.register("numba:compile", _Notice())
 
 
 def _compile(function: Callable[P, R], parallel: bool) -> Callable[P, R]:
+    made: Callable[P, R]
     if FOLDER is None:  # compile anew every time
-        made: Callable[P, R] = numba.njit(parallel=parallel, **_OPTIONS)(function)
-        return made
-    asked, numba.config.CACHE_DIR = numba.config.CACHE_DIR, str(FOLDER)  # read when a kernel is made, for it alone
-    try:
-        made = numba.njit(cache=True, parallel=parallel, **_OPTIONS)(function)
-    finally:
-        numba.config.CACHE_DIR = asked
+        made = numba.njit(parallel=parallel, **_OPTIONS)(function)
+    else:
+        with kept_in(numba.config, FOLDER):
+            made = numba.njit(cache=True, parallel=parallel, **_OPTIONS)(function)
     return made
 
 
 def compiled(function: Callable[P, R]) -> Callable[P, R]:
-    """Compile ``function``; keep the code on disk (see ``suchus.flow.cache``)."""
+    """Compile ``function``; keep the code on disk (see ``suchus.kernel_cache``)."""
     return _compile(function, parallel=False)
 
 

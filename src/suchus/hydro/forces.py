@@ -8,8 +8,6 @@ tail's end: -u p' + (p' . w) t / 2, where the water passes towards the tail (u >
 Some pieces at a time are taken together, quantity by quantity below each other (``lanes``), so that the compiler
 handles several with one instruction. It does only where a loop has neither branches nor calls of a library: what needs
 them stands in loops of its own, and what holds for some pieces only is multiplied by zero for the others.
-
-After an edit here delete ``__pycache__/*.nb*``: numba looks at the file of the kernel alone.
 """
 
 from math import cos, exp, pi, sin, sqrt

@@ -1,10 +1,14 @@
 """How the kernel is compiled, and three numbers at a time: tuples, which need no memory of their own."""
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, ParamSpec, TypeVar
 
+import numba
 import numpy as np
 from numba import njit
+
+from suchus import kernel_cache
 
 Vector = tuple[float, float, float]
 """Three numbers in the world."""
@@ -14,14 +18,26 @@ _OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "fastmath": {
 """Of numba; products and sums may be computed in one instruction."""
 P = ParamSpec("P")
 R = TypeVar("R")
+_HERE = Path(__file__).parent
+
+
+def folder() -> Path | None:
+    """Return where the code of these sources is kept; None where no place can be written to."""
+    return kernel_cache.folder(_HERE, sorted(_HERE.glob("*.py")), "forces-")
+
+
+FOLDER = folder()
+"""Where the machine code is kept between runs; None where no place can be written to."""
 
 
 def compiled(function: Callable[P, R]) -> Callable[P, R]:
-    """Compile what is called from outside; keep the code on disk (``NUMBA_CACHE_DIR`` moves it)."""
-    try:
-        made: Callable[P, R] = njit(cache=True, **_OPTIONS)(function)
-    except RuntimeError:  # neither this folder nor the user's cache can be written: compile anew every time
+    """Compile what is called from outside; keep the code on disk (see ``suchus.kernel_cache``)."""
+    made: Callable[P, R]
+    if FOLDER is None:  # compile anew every time
         made = njit(**_OPTIONS)(function)
+    else:
+        with kernel_cache.kept_in(numba.config, FOLDER):
+            made = njit(cache=True, **_OPTIONS)(function)
     return made
 
 
