@@ -88,7 +88,7 @@ def test_folded_limbs_are_the_robots_links_and_feet_beside_the_body_at_their_hip
         ({"cells": (96, 64)}, "increasing numbers"),
         ({"cells": ()}, "at least one"),
         ({"cycles": 1}, "cycles is 1"),
-        ({"reynolds": 1e6}, r"reynolds is 1e\+06: real water.*friction law"),
+        ({"reynolds": 1e6}, r"reynolds is 1e\+06: real water.*leave it where its layer does"),
         ({"reynolds": 1.0}, "reynolds is 1; 10 to 20000"),
         ({"beside": -0.1}, "beside is"),
         ({"tail_heights": (0.1, 0.05)}, "increasing numbers"),

@@ -20,7 +20,7 @@ from suchus.study.store import Store
 Item = TypeVar("Item")
 Progress = Callable[[float], None]
 KIND = "sweep"
-FLOW = ("catalog.py", "design", "flow", "kinds.py", "kinematics", "motion", "paper", "record", "robots",
+FLOW = ("catalog.py", "design", "flow", "hydro", "kinds.py", "kinematics", "motion", "paper", "record", "robots",
         "rotation.py", "water")  # fmt: skip
 """Rooms whose code decides the numbers of a swim by CFD."""
 
