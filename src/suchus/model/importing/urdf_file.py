@@ -33,7 +33,8 @@ def clean_urdf(root: ElementTree.Element, mesh: Mesh) -> tuple[ElementTree.Eleme
         _add_link(made, link, mesh)
     for joint in joints:
         kept = ElementTree.SubElement(made, "joint", {k: joint.get(k, "") for k in ("name", "type")})
-        kept.extend(e for e in joint if e.tag in ("origin", "parent", "child", "axis", "limit"))
+        bounded = ("limit",) if joint.get("type") == "revolute" else ()  # MuJoCo before 4.0 bounds continuous ones too
+        kept.extend(e for e in joint if e.tag in ("origin", "parent", "child", "axis", *bounded))
     turning = [joint for joint in joints if joint.get("type") in _TURNING]
     remarks = [
         f"Joint {joint.get('name')} follows {mimic.get('joint')} (mimic): it is a hinge of its own in the draft."
