@@ -11,7 +11,7 @@ scipy's.
 Zeros and NaN, as of sensors that are lost, go through all but ``matrix``.
 """
 
-from math import atan2, cos, pi, sin, sqrt
+from math import atan2, pi, sqrt
 
 import numpy as np
 from jaxtyping import Float
@@ -87,10 +87,7 @@ def angles(q: Float[np.ndarray, "4"]) -> tuple[float, float, float]:
 
 def from_vector(vector: Float[np.ndarray, "3"]) -> Float[np.ndarray, "4"]:
     """Return the quaternion of a rotation vector: its axis times its angle [rad]."""
-    x, y, z = vector.tolist()
-    half = 0.5 * sqrt(x * x + y * y + z * z)
-    share = 0.5 * (sin(half) / half if half > 0 else 1.0)
-    return np.array([cos(half), share * x, share * y, share * z])
+    return np.asarray(Rotation.from_rotvec(vector).as_quat(scalar_first=True))
 
 
 def to_vector(q: Float[np.ndarray, "4"], near: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3"]:
@@ -105,12 +102,7 @@ def to_vector(q: Float[np.ndarray, "4"], near: Float[np.ndarray, "3"]) -> Float[
 
 def turn(vector: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3 3"]:
     """Return the rotation matrix of a rotation vector [rad]."""
-    x, y, z = vector.tolist()
-    square = x * x + y * y + z * z
-    angle = sqrt(square)
-    one, half = (sin(angle) / angle, 2 * sin(angle / 2) / angle) if angle > 0 else (1.0, 1.0)
-    across = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    return np.asarray(np.eye(3) + one * across + 0.5 * half**2 * across @ across)
+    return np.asarray(Rotation.from_rotvec(vector).as_matrix())
 
 
 def matrix(q: Quaternion) -> Float[np.ndarray, "*b 3 3"]:

@@ -202,30 +202,20 @@ class Swimmer:
         matrix = self._matrix(self.place)
         before, slip = now.inertia(matrix), self._slip(now, matrix)
         momentum = (density * before) @ self.rate
-        guess = self.load + self.added @ self.push
-        if self.steps:
-            self.owed = self.owed + self.span * (self.load + self.applied) - (momentum - self.momentum)
-        if self.steps > 1:  # the second step itself repays the jolt of the start
-            # Extrapolating instead feeds every ripple of the force back into the motion. The last step's force comes
-            # a step late; what the body therefore did not get, it gets little by little. Without that an eel, whose
-            # added mass aside is ten times its own, sways several times too much.
-            guess = guess + REPAID * self.owed / dt
+        guess = self._foreseen(momentum, dt)
         self.momentum, self.span = momentum, dt
         recoil = slip + self._slip(then, matrix)
         outer, yielding = self._outer(time, dt, (density - water_density) * now.size, recoil)
         if contact is not None:
             outer = outer + contact
-        push, rate, place = np.zeros(self.place.size), self.rate, self.place
+        rate = self.rate
         for count in range(MOST_ROUNDS):  # in the plane the first is the last; in space it takes the attitude for fixed
             after = then.inertia(matrix)
             grown = after - before
             grown[: self._axes] = 0
             force = guess - (density * grown / dt) @ self.rate + outer
-            if not self.steps:  # neither the water's force nor the added mass is known yet
-                force = force - guess - outer
-            if self.steps or self._axes == 3:
-                whole = density * after + self.added + np.diag(yielding)
-                push[self.go] = np.linalg.solve(whole[np.ix_(self.go, self.go)], force[self.go])
+            whole = density * after + self.added + np.diag(yielding)
+            push = self._accelerated(whole, force if self.steps else force - guess - outer)
             last, rate = rate, self.rate + dt * push
             place = self._moved(dt * 0.5 * (self.rate + rate) - dt * 0.5 * recoil)
             if self._axes == 2 or (count and np.abs(rate - last).max() <= _SETTLED * np.abs(rate).max()):
@@ -235,6 +225,36 @@ class Swimmer:
         self.applied = outer - yielding * push
         self.place, self.rate, self.push = place, rate, push
         self.steps += 1
+
+    def _foreseen(self, momentum: np.ndarray, dt: float) -> np.ndarray:
+        """Return the water's force that is expected of a step, were the body not to accelerate, and note what is owed.
+
+        Args:
+            momentum: of the body now [kg/s, kg m/s; in space kg m/s, kg m^2/s].
+            dt: length of the step [s].
+        """
+        guess: np.ndarray = self.load + self.added @ self.push
+        if self.steps:
+            self.owed = self.owed + self.span * (self.load + self.applied) - (momentum - self.momentum)
+        if self.steps > 1:  # the second step itself repays the jolt of the start
+            # Extrapolating instead feeds every ripple of the force back into the motion. The last step's force comes
+            # a step late; what the body therefore did not get, it gets little by little. Without that an eel, whose
+            # added mass aside is ten times its own, sways several times too much.
+            guess = guess + REPAID * self.owed / dt
+        return guess
+
+    def _accelerated(self, whole: np.ndarray, force: np.ndarray) -> np.ndarray:
+        """Return the acceleration in the degrees of freedom that are free, 0 in the others.
+
+        Args:
+            whole: mass of the body and added mass, with what springs and dampers add, a square matrix.
+            force: that acts on a body that does not accelerate; in the first step neither the water's force nor the
+                added mass is known, so that it is what a change of the inertia asks for.
+        """
+        push = np.zeros(self.place.size)
+        if self.steps or self._axes == 3:
+            push[self.go] = np.linalg.solve(whole[np.ix_(self.go, self.go)], force[self.go])
+        return push
 
     def _slip(self, mass: Mass | SpaceMass, matrix: np.ndarray) -> np.ndarray:
         """Return the velocity that the deformation takes from the frame, as far as it is free."""
