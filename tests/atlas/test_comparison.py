@@ -108,6 +108,31 @@ def test_a_curve_that_is_not_there_is_named(data):
         compare(ROW, {"other": np.zeros((2, 3))})
 
 
+def test_an_instant_is_compared_with_the_nearest_cycle_and_says_how_far_the_others_are(data):
+    data("one", x=[0, 1], y=[1, 1])
+    row = replace(ROW, any_cycle=True)
+    cycles = {f"curve {k}": np.array([[0, 1], [1 + off, 1 + off]]) for k, off in ((2, 0.3), (3, -0.05), (10, 0.2))}
+    found = compare(row, {**cycles, "curve": np.zeros((2, 2)), "curve of another": np.zeros((2, 2))})
+    assert found.curve == "curve 3"
+    assert found.rms == pytest.approx(0.05)
+    assert found.cycles == pytest.approx((0.3, 0.05, 0.2))
+    assert compare(ROW, {"curve": np.array([[0, 1], [1, 1]])}).cycles == ()
+    with pytest.raises(IncompatibleRecord, match="no curve named 'curve 1'"):
+        compare(row, {"other 1": np.zeros((2, 2))})
+
+
+def test_a_row_takes_the_cycle_that_another_row_of_its_source_chose(data):
+    data("one", x=[0, 1], y=[1, 1])
+    data("two", x=[0, 1], y=[1, 1])
+    here, there = np.array([[0, 1], [1.0, 1.0]]), np.array([[0, 1], [1.5, 1.5]])
+    by = replace(ROW, any_cycle=True)
+    row = replace(ROW, data="two", ours="other", any_cycle=True, cycle_of=by)
+    found = compare(row, {"curve 1": there, "curve 2": here, "other 1": here, "other 2": there})
+    assert found.curve == "other 2"
+    assert found.rms == pytest.approx(0.5)
+    assert min(found.cycles) == 0
+
+
 def test_a_loop_is_compared_with_its_nearer_branch(data):
     turn = np.linspace(0, 2 * np.pi, 400, endpoint=False)
     circle = np.stack([np.cos(turn), np.sin(turn)])

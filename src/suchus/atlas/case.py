@@ -85,6 +85,11 @@ class Row:
     """Period of the abscissa; None for one that has none."""
     others: tuple[tuple[str, str, str, float], ...] = ()
     """Further sources of the same curve: table, its columns, factor on its abscissa; they give the scatter."""
+    any_cycle: bool = False
+    """Whether the source shows one instant of a flow that may beat and does not say in which cycle: each cycle of ours
+    counts then, curves named ``ours`` with a number behind it, and the nearest is compared."""
+    cycle_of: "Row | None" = None
+    """Row of the same source whose nearest cycle is taken, so that this one chooses nothing; None for its own."""
     skin: bool = False
     """Whether it is read along the skin, where the reading has an error of its own."""
     note: str = ""

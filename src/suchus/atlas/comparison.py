@@ -29,6 +29,10 @@ class Comparison:
     differences [-]."""
     scatter: float | None
     """The same between the sources; None where there is one only [-]."""
+    curve: str = ""
+    """Name of our curve; empty for single numbers."""
+    cycles: tuple[float, ...] = ()
+    """The differences of all cycles of ours, of which the nearest counts; empty where there is no choice [-]."""
 
     @property
     def bound(self) -> float:
@@ -50,10 +54,11 @@ def compare(row: Row, curves: Curves) -> Comparison:
     table = published(row.data)
     if row.kind == "numbers":
         return _numbers(table, curves)
-    if row.ours not in curves:
-        raise IncompatibleRecord(f"the flow of {row.name} gave no curve named {row.ours!r}; compute it anew.")
+    name = f"{row.ours} {_nearest_cycle(row.cycle_of or row, curves)}" if row.any_cycle else row.ours
+    if name not in curves:
+        raise IncompatibleRecord(f"the flow of {row.name} gave no curve named {name!r}; compute it anew.")
     x, y = points(row, table)
-    ours = curves[row.ours]
+    ours = curves[name]
     at = _on_loop(ours, x, y) if row.kind == "loop" else at_abscissae(ours, x, row.period)
     there = np.isfinite(at)
     if there.mean() < LEAST_SHARE:
@@ -62,7 +67,26 @@ def compare(row: Row, curves: Curves) -> Comparison:
             f"needed; run longer."
         )
     x, y, at = x[there], y[there], at[there]
-    return Comparison(x=x, theirs=y, ours=at, rms=rms_over_peak(at, y), scatter=_scatter(row, x, y))
+    return Comparison(
+        x=x, theirs=y, ours=at, rms=rms_over_peak(at, y), scatter=_scatter(row, x, y), curve=name,
+        cycles=tuple(_cycles(row, curves).values()) if row.any_cycle else (),
+    )  # fmt: skip
+
+
+def _cycles(row: Row, curves: Curves) -> dict[str, float]:
+    """Return the difference of each cycle of ours from a row's published points, by the cycle's number [-]."""
+    x, y = points(row, published(row.data))
+    cycles = {name.removeprefix(f"{row.ours} "): curve for name, curve in curves.items() if name.startswith(row.ours)}
+    return {
+        cycle: rms_over_peak(at_abscissae(curve, x, row.period), y)
+        for cycle, curve in cycles.items() if cycle.isdecimal()
+    }  # fmt: skip
+
+
+def _nearest_cycle(row: Row, curves: Curves) -> str:
+    """Return the number of the cycle of ours that is nearest to a row's published points; "1" where there is none."""
+    cycles = _cycles(row, curves)
+    return min(cycles, key=cycles.__getitem__) if cycles else "1"
 
 
 def points(row: Row, table: Published) -> tuple[np.ndarray, np.ndarray]:

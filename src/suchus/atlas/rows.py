@@ -50,9 +50,12 @@ def _oscillated() -> tuple[Row, ...]:
     for ratio in oscillated.RATIOS:
         key = f"{ratio:g}".replace(".", "p") if ratio != 1 else "1p0"
         case = f"shaken_{ratio:g}".replace(".", "p")
+        pressure: Row | None = None
         for quantity, label in (("pressure", "pressure coefficient [-]"), ("vorticity", "vorticity x D / U [-]")):
             rows.append(
                 Row(
+                    any_cycle=True,
+                    cycle_of=pressure,
                     name=f"guilmineau_{quantity}_{key}",
                     case=case,
                     x="angle",
@@ -66,6 +69,7 @@ def _oscillated() -> tuple[Row, ...]:
                     labels=(_ANGLE, label),
                 )
             )
+            pressure = rows[-1]
     rows.append(
         Row(name="re185_numbers", title="Cylinder at rest, Re 185: Strouhal number", case="held_re185",
             data="re185_numbers", kind="numbers")

@@ -7,10 +7,12 @@ import numpy as np
 from suchus import flow
 from suchus.atlas.case import Case, Curves, Effort, Tell
 from suchus.atlas.marching import march, middles
+from suchus.atlas.refine import refined
 from suchus.flow.signals import last_periods
 
-_CODE = ("walls.py", "marching.py")
+_CODE = ("walls.py", "marching.py", "refine.py")
 _HEIGHT, _DIAMETER = 0.41, 0.1  # [m]; of the DFG channel and of its cylinder
+_STEADY = 0.25  # [s] at the end of the steady flow, over which is averaged
 _SINKING = 2.1  # [m/s]; of the frame that a settling cylinder is seen from
 _VISCOSITY = 0.008088  # [m^2/s]; of the water that it settles in
 
@@ -29,24 +31,14 @@ def _cavity(effort: Effort, tell: Tell, *, reynolds: float) -> Curves:
 
 
 def _channel(effort: Effort, tell: Tell, *, mean_speed: float) -> Curves:
-    """Compute the DFG channel, 2.2 m long, from rest."""
-    rows = round(_HEIGHT / _DIAMETER * effort.cells / 16) * 16  # multigrid halves it
-    cell = _HEIGHT / rows
-    long = flow.Grid.covering((0.0, 2.2), (0.0, _HEIGHT), cell=cell).cells[0]
-    sides = flow.Sides(
-        left=flow.Inflow(profile=lambda y: 6 * mean_speed * y * (_HEIGHT - y) / _HEIGHT**2), right=flow.Outflow(),
-        bottom=flow.Wall(), top=flow.Wall(),
-    )  # fmt: skip
-    cylinder = flow.Body(shape=flow.Cylinder(diameter=_DIAMETER), motion=flow.Pose(position=(0.2, 0.2)))
-    sim = flow.Simulation(
-        flow.Setup(
-            grid=flow.Grid(cells=(long, rows), cell=cell), viscosity=1e-3, sides=sides, bodies=(cylinder,), coarse=True
-        )
-    )
-    record = march(sim, effort.until, tell)
+    """Compute the DFG channel, 2.2 m long: from rest on the coarse grid, then on the finer one."""
+    before = flow.Simulation(_channel_setup(effort.coarse, effort.coarse, mean_speed))
+    march(before, effort.before, lambda share: tell(0.3 * share))
+    sim = refined(before, _channel_setup(effort.cells, effort.coarse, mean_speed))
+    record = march(sim, effort.until, lambda share: tell(0.3 + 0.7 * share))
     drag, lift = (record.force() * 2 / (mean_speed**2 * _DIAMETER)).T
     if mean_speed < 0.5:
-        late = record.time > effort.until - 0.5
+        late = record.time > effort.until - _STEADY
         return {
             "drag": np.array(drag[late].mean()), "lift": np.array(lift[late].mean()),
             "pressure drop": np.array(_pressure_drop(sim)),
@@ -58,6 +50,20 @@ def _channel(effort: Effort, tell: Tell, *, mean_speed: float) -> Curves:
         "Strouhal": np.array(flow.frequency(time[kept], lift[kept]) * _DIAMETER / mean_speed),
         "lift": np.stack([time, lift]),
     }  # fmt: skip
+
+
+def _channel_setup(cells: int, coarse: int, mean_speed: float) -> flow.Setup:
+    """Return the DFG channel in a whole number of times as many cells as on the coarse grid, with the same corners."""
+    rows = round(_HEIGHT / _DIAMETER * coarse / 16) * 16  # multigrid halves it
+    long = flow.Grid.covering((0.0, 2.2), (0.0, _HEIGHT), cell=_HEIGHT / rows).cells[0]
+    times = cells // coarse
+    grid = flow.Grid(cells=(times * long, times * rows), cell=_HEIGHT / (times * rows))
+    sides = flow.Sides(
+        left=flow.Inflow(profile=lambda y: 6 * mean_speed * y * (_HEIGHT - y) / _HEIGHT**2), right=flow.Outflow(),
+        bottom=flow.Wall(), top=flow.Wall(),
+    )  # fmt: skip
+    cylinder = flow.Body(shape=flow.Cylinder(diameter=_DIAMETER), motion=flow.Pose(position=(0.2, 0.2)))
+    return flow.Setup(grid=grid, viscosity=1e-3, sides=sides, bodies=(cylinder,), coarse=True)
 
 
 def _pressure_drop(sim: flow.Simulation) -> float:
@@ -113,16 +119,18 @@ CASES = (
         setup="A square box whose lid slides, from rest until it is steady; {cells} cells a side.",
     ),
     Case(
-        name="dfg_2d1", run=partial(_channel, mean_speed=0.2), full=Effort(cells=31, until=7.0),
-        quick=Effort(cells=8, until=0.7), code=_CODE,
-        setup="The DFG channel, 22 x 4.1 diameters, {cells} cells a diameter, from rest; the last half "
-        "second of seven.",
+        name="dfg_2d1", run=partial(_channel, mean_speed=0.2), code=_CODE,
+        full=Effort(cells=62, until=1.0, coarse=31, before=6.0),
+        quick=Effort(cells=16, until=0.3, coarse=8, before=0.7),
+        setup="The DFG channel, 22 x 4.1 diameters: six seconds from rest with {coarse} cells a diameter and one with "
+        f"{{cells}}, of which the last {_STEADY:g} s count.",
     ),
     Case(
-        name="dfg_2d2", run=partial(_channel, mean_speed=1.0), full=Effort(cells=31, until=8.0),
-        quick=Effort(cells=10, until=6.0), code=_CODE,
-        setup="The DFG channel, 22 x 4.1 diameters, {cells} cells a diameter, from rest; the last five periods of "
-        "eight seconds.",
+        name="dfg_2d2", run=partial(_channel, mean_speed=1.0), code=_CODE,
+        full=Effort(cells=62, until=2.7, coarse=31, before=6.0),
+        quick=Effort(cells=20, until=2.7, coarse=10, before=5.0),
+        setup="The DFG channel, 22 x 4.1 diameters: six seconds from rest with {coarse} cells a diameter and 2.7 with "
+        "{cells}, of which the last five periods count.",
     ),
     Case(
         name="settling", run=_settling, code=_CODE, full=Effort(cells=24, until=46.0),

@@ -69,7 +69,7 @@ def _draw(axes: Axes, entry: Entry) -> None:
 
 
 def _draw_curve(axes: Axes, entry: Entry, found: Comparison) -> None:
-    row, curve = entry.row, entry.curves[entry.row.ours]
+    row, curve = entry.row, entry.curves[found.curve]
     low, high = found.x.min(), found.x.max()
     if row.kind == "loop":
         curve = np.append(curve, curve[:, :1], axis=1)

@@ -160,6 +160,12 @@ def _words(entry: Entry) -> list[str]:
         sign = "within" if found.agrees else "**above**"
         judged = "a trial, which is not judged" if outcome.quick else f"{sign} its bound of {_percent(found.bound)}"
         sentences.append(f"{_percent(found.rms)} over {found.x.size} points: {judged}.")
+        if found.cycles:
+            sentences.append(
+                f"The source shows one instant and does not say of which cycle: of our {len(found.cycles)}, whose "
+                f"differences are {_percent(min(found.cycles))} to {_percent(max(found.cycles))}, the one "
+                f"{'whose pressure is ' if entry.row.cycle_of else ''}nearest to it counts."
+            )
     if entry.row.note:
         sentences.append(entry.row.note)
     if outcome.digest != digest_of(CASES[entry.row.case], quick=outcome.quick):
