@@ -4,9 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests.felt import felt as feels
 
 from suchus.control import Amphibious, HeadingHold, HeadingRule, Joinable, Sensed, Swimming
 from suchus.control.holding import DepthHold
+from suchus.design import layout
 from suchus.errors import InvalidDesign
 from suchus.gaits import GAITS
 from suchus.land import Lake, Run, simulate
@@ -28,20 +30,14 @@ def twice(felt):
 
 def sensed(load, robot=ROBOT, yaw=0.0, feet=1 / 3):
     """What a robot feels whose feet, belly and tail carry a share of its weight, belly and tail alike."""
-    part = load * robot.mass * 9.81 * (1 - feet) / 2
-    none = np.zeros((1, 17))
-    return Sensed(
-        time=0.0,
-        servo_position=none,
-        servo_velocity=none,
-        servo_torque=none,
-        foot_pressure=np.full((1, 4), load * robot.mass * 9.81 * feet / 4),
-        belly_pressure=np.full((1, 5), part / 5),
-        tail_pressure=np.full(1, part),
-        orientation=np.array([[np.cos(yaw / 2), 0.0, 0.0, np.sin(yaw / 2)]]),
-        angular_velocity=np.zeros((1, 3)),
-        acceleration=np.zeros((1, 3)),
-        depth=np.zeros(1),
+    weight = load * robot.mass * 9.81
+    part = weight * (1 - feet) / 2
+    return feels(
+        robot,
+        foot_pressure=weight * feet / 4,
+        belly_pressure=part / len(layout(robot).trunk),
+        tail_pressure=part,
+        orientation=[np.cos(yaw / 2), 0.0, 0.0, np.sin(yaw / 2)],
     )
 
 

@@ -4,8 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests.felt import felt as feels
 
-from suchus.control import DepthHold, HeadingHold, Sensed, Swimming
+from suchus.control import DepthHold, HeadingHold, Swimming
 from suchus.control.holding import Depths, Headings, neutral_breath
 from suchus.design import WATER_DENSITY
 from suchus.design.pieces import volumes
@@ -23,20 +24,7 @@ UP = np.array([0.0, 0.0, 1.0])
 
 def sensed(*, yaw=0.0, depth=0.0):
     """What a robot feels that faces to the left by ``yaw``."""
-    none = np.zeros((1, 17))
-    return Sensed(
-        time=0.0,
-        servo_position=none,
-        servo_velocity=none,
-        servo_torque=none,
-        foot_pressure=np.zeros((1, 4)),
-        belly_pressure=np.zeros((1, 5)),
-        tail_pressure=np.zeros(1),
-        orientation=about(UP, np.array([yaw])),
-        angular_velocity=np.zeros((1, 3)),
-        acceleration=np.zeros((1, 3)),
-        depth=np.array([depth]),
-    )
+    return feels(ROBOT, orientation=about(UP, yaw), depth=depth)
 
 
 def test_neutral_breath_weighs_what_it_displaces():

@@ -5,9 +5,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.felt import felt
 
 from suchus.capture.wave import standing_index
-from suchus.control import LAWS, Control, Joinable, OpenLoop, Oscillators, PatternGenerator, Sensed, SpineRule, TailRule
+from suchus.control import LAWS, Control, Joinable, OpenLoop, Oscillators, PatternGenerator, SpineRule, TailRule
 from suchus.control import oscillate as turned
 from suchus.control.oscillators import AxisPart, Rhythm, couple, cut, steps_needed
 from suchus.control.pattern_posture import axis_segments
@@ -318,23 +319,6 @@ def test_it_walks_on_land_the_same_alone_and_beside_others():
 # --- feedback ---
 
 
-def felt(robot, **readings):
-    place = layout(robot)
-    none = np.zeros((1, len(place.servos)))
-    values = {
-        "servo_position": none,
-        "servo_velocity": none,
-        "servo_torque": none,
-        "foot_pressure": np.zeros((1, len(place.limbs))),
-        "belly_pressure": np.zeros((1, len(place.trunk))),
-        "tail_pressure": np.zeros(1),
-        "orientation": np.array([[1.0, 0.0, 0.0, 0.0]]),
-        "angular_velocity": np.zeros((1, 3)),
-        "acceleration": np.zeros((1, 3)),
-    }
-    return Sensed(time=2.0, **(values | readings))
-
-
 def test_a_limb_that_still_carries_waits_and_one_that_carries_early_hurries():
     control = PatternGenerator(limbs=LAWS["own_load"], lesions=(("limbs", "limbs"),))
     period, ahead = control_period(SALAMANDER), []
@@ -343,7 +327,9 @@ def test_a_limb_that_still_carries_waits_and_one_that_carries_early_hurries():
         limbs = [phase - (0.25 - WALK.duty_factor / 2)] * 4
         generator = started(replace(control, initial=(*([0.0] * 2 * N), *limbs)), "salamander")
         for k in range(10):
-            phases = generator.command(round(START / period) + k, felt(SALAMANDER, foot_pressure=weight)).phase[0]
+            phases = generator.command(
+                round(START / period) + k, felt(SALAMANDER, time=2.0, foot_pressure=weight)
+            ).phase[0]
         ahead.append(phases[0] - phases[1])
         assert phases[1:] == pytest.approx(np.full(3, phases[1]))
     assert ahead[0] > 1e-3
@@ -355,8 +341,9 @@ def test_spine_and_tail_rules_act_on_it(robot, crawl_gait):
     torque = np.zeros((1, 19))
     place = layout(robot)
     torque[0, place.tail_pitch[0]] = 1.0
+    readings = felt(robot, time=2.0, servo_torque=torque)
     plain, ruled = (
-        control.start([robot], [crawl_gait], [0], 0, period).command(tick, felt(robot, servo_torque=torque)).targets[0]
+        control.start([robot], [crawl_gait], [0], 0, period).command(tick, readings).targets[0]
         for control in (PatternGenerator(), PatternGenerator(spine=SpineRule(), tail=TailRule()))
     )
     yaws = list(place.trunk_yaw)

@@ -4,10 +4,10 @@ from math import radians, sin
 
 import numpy as np
 import pytest
+from tests.felt import felt as feels
 
 from suchus.control import LoadRule, PatternGenerator
 from suchus.control.pattern_load import FeltDrive
-from suchus.control.sensed import Sensed
 from suchus.design import GRAVITY
 from suchus.errors import InvalidDesign
 from suchus.land import Ground, Lake, Run, simulate
@@ -19,10 +19,13 @@ WEIGHT = ROBOT.mass * GRAVITY
 
 def felt(feet, belly=0.0, tail=0.0, runs=1):
     """Return readings in which these shares of the weight are carried, in so many runs alike."""
-    some = {name: np.zeros((runs, 3)) for name in Sensed.__dataclass_fields__ if name not in ("time", "depth")}
-    some |= {"orientation": np.tile([1.0, 0.0, 0.0, 0.0], (runs, 1)), "tail_pressure": np.full(runs, tail * WEIGHT)}
-    carried = {"foot": np.full((runs, 4), feet / 4), "belly": np.full((runs, 2), belly / 2)}
-    return Sensed(time=0.0, depth=None, **some | {f"{k}_pressure": WEIGHT * share for k, share in carried.items()})
+    return feels(
+        ROBOT,
+        runs,
+        foot_pressure=WEIGHT * feet / 4,
+        belly_pressure=WEIGHT * belly / len(feels(ROBOT).belly_pressure[0]),
+        tail_pressure=WEIGHT * tail,
+    )
 
 
 @pytest.mark.parametrize(("feet", "belly", "tail", "drive"), [

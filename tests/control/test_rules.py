@@ -5,8 +5,9 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tests.felt import felt as feels
 
-from suchus.control import LAWS, OWNERS, Coordinated, HeadingRule, Kick, LimbLaw, OpenLoop, Sensed, SpineRule, TailRule
+from suchus.control import LAWS, OWNERS, Coordinated, HeadingRule, Kick, LimbLaw, OpenLoop, SpineRule, TailRule
 from suchus.control.limbs import GRAVITY, Limbs
 from suchus.control.shared import silence
 from suchus.control.spine import SpineController
@@ -28,18 +29,7 @@ OFF = Coordinated(limbs=LAWS["off"], spine=None, tail=None)
 
 def sensed(runs, **readings):
     """Return the readings of robots that feel nothing but what is given."""
-    shapes = {
-        "servo_position": 19,
-        "servo_velocity": 19,
-        "servo_torque": 19,
-        "foot_pressure": 4,
-        "belly_pressure": 6,
-        "angular_velocity": 3,
-        "acceleration": 3,
-    }
-    values = {name: np.zeros((runs, size)) for name, size in shapes.items()}
-    values |= {"tail_pressure": np.zeros(runs), "orientation": np.tile([1.0, 0.0, 0.0, 0.0], (runs, 1))}
-    return Sensed(time=0.0, **(values | {name: np.broadcast_to(v, values[name].shape) for name, v in readings.items()}))
+    return feels(ROBOTS["caiman"], runs, **readings)
 
 
 def started(control, robot, gait, runs=1, ticks=1000):

@@ -2,9 +2,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests.felt import felt as feels
 
 import suchus
-from suchus.control import Sensed
 from suchus.control.standing import BALANCE, Standing
 from suchus.errors import InvalidDesign
 from suchus.kinematics import leg as leg_kinematics
@@ -26,22 +26,14 @@ def started(standing, robots=(CAIMAN,), ticks=3000):
 def felt(pitch, *, tail=6.9, rate=0.0, count=1):
     """Return what a robot of 34.5 N feels that stands still at a pitch."""
     half = np.broadcast_to(pitch, count) / 2
-    zeros = np.zeros((count, 19))
-    feet = np.zeros((count, 4))
-    feet[:, 2:] = (34.5 - tail) / 2
-    spin = np.zeros((count, 3))
-    spin[:, 1] = rate
-    return Sensed(
-        time=0.0,
-        servo_position=zeros,
-        servo_velocity=zeros,
-        servo_torque=zeros,
-        foot_pressure=feet,
-        belly_pressure=np.zeros((count, 6)),
-        tail_pressure=np.full(count, tail),
+    foot = (34.5 - tail) / 2
+    return feels(
+        CAIMAN,
+        count,
+        foot_pressure=[0.0, 0.0, foot, foot],
+        tail_pressure=tail,
         orientation=np.stack([np.cos(half), 0 * half, -np.sin(half), 0 * half], axis=-1),
-        angular_velocity=spin,
-        acceleration=np.zeros((count, 3)),
+        angular_velocity=np.stack([0 * half, np.broadcast_to(rate, count), 0 * half], axis=-1),
     )
 
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tests.felt import felt as feels
 
 from suchus import rotation
 from suchus.control import DepthHold, PitchHold, Sensed, Swimming
@@ -29,20 +30,7 @@ LEFT = np.array([0.0, 1.0, 0.0])
 
 def sensed(*, pitch=0.0, rate=0.0, depth=0.6):
     """What a robot feels whose nose is down by ``pitch``."""
-    none = np.zeros((1, 17))
-    return Sensed(
-        time=0.0,
-        servo_position=none,
-        servo_velocity=none,
-        servo_torque=none,
-        foot_pressure=np.zeros((1, 4)),
-        belly_pressure=np.zeros((1, 5)),
-        tail_pressure=np.zeros(1),
-        orientation=about(LEFT, np.array([pitch])),
-        angular_velocity=np.array([[0.0, rate, 0.0]]),
-        acceleration=np.zeros((1, 3)),
-        depth=np.array([depth]),
-    )
+    return feels(ROBOT, orientation=about(LEFT, pitch), angular_velocity=[0.0, rate, 0.0], depth=depth)
 
 
 def hold(rule, depth=0.6, robot=ROBOT):

@@ -3,8 +3,9 @@ from itertools import permutations
 
 import numpy as np
 import pytest
+from tests.felt import felt as feels
 
-from suchus.control import AttitudeRule, Change, Joinable, OpenLoop, Sensed, SwitchRule, Walking
+from suchus.control import AttitudeRule, Change, Joinable, OpenLoop, SwitchRule, Walking
 from suchus.control.switching import Switcher
 from suchus.design.relief import Bumps, Stone
 from suchus.errors import InvalidDesign, OutsideLimits, UnknownName
@@ -23,18 +24,14 @@ def sensed(*, roll=0.0, pitch=0.0, roll_rate=0.0, pitch_rate=0.0, feet=(20.0,) *
     quaternion = (
         [np.cos(roll / 2), np.sin(roll / 2), 0.0, 0.0] if roll else [np.cos(pitch / 2), 0, np.sin(pitch / 2), 0]
     )
-    none = np.zeros((runs, 19))
-    return Sensed(
+    return feels(
+        ROBOTS["caiman"],
+        runs,
         time=2.0,
-        servo_position=none,
-        servo_velocity=none,
-        servo_torque=none,
-        foot_pressure=np.tile(np.array(feet), (runs, 1)),
-        belly_pressure=np.tile(np.array([belly, 0, 0, 0, 0, 0]), (runs, 1)),
-        tail_pressure=np.zeros(runs),
-        orientation=np.tile(np.array(quaternion), (runs, 1)),
-        angular_velocity=np.tile(np.array([roll_rate, pitch_rate, 0.0]), (runs, 1)),
-        acceleration=np.zeros((runs, 3)),
+        foot_pressure=feet,
+        belly_pressure=[belly, 0, 0, 0, 0, 0],
+        orientation=quaternion,
+        angular_velocity=[roll_rate, pitch_rate, 0.0],
     )
 
 
