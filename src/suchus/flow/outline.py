@@ -68,7 +68,8 @@ class Polygon(Solid):
         edges = np.roll(self.corners, -1, axis=0) - self.corners
         length = np.hypot(*edges.T)
         parts = np.maximum(1, np.round(count * length / length.sum())).astype(int)
-        share = np.concatenate([np.arange(n) / n for n in parts])
+        within = np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)
+        share = within / np.repeat(parts, parts)
         points = np.repeat(self.corners, parts, axis=0) + share[:, None] * np.repeat(edges, parts, axis=0)
         return points[:, 0], points[:, 1]
 

@@ -87,7 +87,9 @@ class Simulation(Fields):
             component[:] = part
         self.water.border.stream = stream
         self._placed = False
-        outlines = [b.shape.markers(0.0, self._in_frame(self.pose(b.name)), setup.grid.cell) for b in setup.bodies]
+        self._outlines = outlines = [
+            b.shape.markers(0.0, self._in_frame(self.pose(b.name)), setup.grid.cell) for b in setup.bodies
+        ]
         self._speed = max([length(stream), 1e-12] + [_fastest_marker(m) for m in outlines])
         self._fastest = 0.0  # fastest water after the last step
         self._reference = 0.0  # fastest stream, body or wall so far
@@ -233,9 +235,10 @@ class Simulation(Fields):
             self.water.offset = offset
             self.water.place(list(self.setup.bodies), poses, time)
             self._placed = True
-        markers = [
-            b.shape.markers(time, p, self.setup.grid.cell) for b, p in zip(self.setup.bodies, poses, strict=True)
-        ]
+        if moving:
+            cell = self.setup.grid.cell
+            self._outlines = [b.shape.markers(time, p, cell) for b, p in zip(self.setup.bodies, poses, strict=True)]
+        markers = self._outlines
         self._watch.layers(
             [
                 self.setup.layer_error(b, m, self._stream(time), time, slack=SLACK)
