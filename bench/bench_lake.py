@@ -17,7 +17,7 @@ from suchus.control import Swimming
 from suchus.gaits import GAITS
 from suchus.land import Lake, Run
 from suchus.land.loop import Loop, physics_steps
-from suchus.motion import Swim
+from suchus.motion import LIMBS_BACK, Swim
 
 RUNS, TICKS, TURNS, WARM = 8, 20, 24, 3  # TICKS control periods in a turn; the first WARM turns do not count
 WAVE = Swim(name="wave", frequency=1.0, yaw=(0.36, 0.13, 0.11), yaw_lag=(0.08, -0.11, -0.29), tail=0.75, tail_lag=-0.11)
@@ -26,7 +26,7 @@ ARMS = {
     "dry": {"robot": "caiman"},
     "dry, water far below": {"robot": "caiman", "lake": Lake(level=-10.0)},
     "wading, 60 mm": {"robot": "caiman", "lake": Lake(level=0.06)},
-    "swimming": {"robot": "floating_caiman", "lake": Lake(level=2.0), "control": Swimming(swim=WAVE, limb_pitch=-0.15)},
+    "swimming": {"robot": "floating_caiman", "lake": Lake(level=2.0), "control": Swimming(swim=WAVE, limb_pitch=LIMBS_BACK)},
 }
 FIRST = """
 import time

@@ -11,13 +11,13 @@ from suchus.control import Swimming
 from suchus.experiments import EXPERIMENTS
 from suchus.experiments import _submerged as submerged
 from suchus.land import Lake
-from suchus.motion import Swim
+from suchus.motion import LIMBS_BACK, Swim
 from suchus.robots import ROBOTS
 
 ROBOT, LAKE = ROBOTS["floating_caiman"], Lake(level=2.0)
 SWIM = Swimming(
     swim=Swim(name="one", frequency=1.0, yaw=(0.1, 0.2, 0.3), yaw_lag=(0, 0, 0), tail=0.5, tail_lag=0.0),
-    limb_pitch=-0.15,
+    limb_pitch=LIMBS_BACK,
 )
 TIME = np.linspace(0.0, 10.0, 101)
 
