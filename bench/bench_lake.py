@@ -26,7 +26,11 @@ ARMS = {
     "dry": {"robot": "caiman"},
     "dry, water far below": {"robot": "caiman", "lake": Lake(level=-10.0)},
     "wading, 60 mm": {"robot": "caiman", "lake": Lake(level=0.06)},
-    "swimming": {"robot": "floating_caiman", "lake": Lake(level=2.0), "control": Swimming(swim=WAVE, limb_pitch=LIMBS_BACK)},
+    "swimming": {
+        "robot": "floating_caiman",
+        "lake": Lake(level=2.0),
+        "control": Swimming(swim=WAVE, limb_pitch=LIMBS_BACK),
+    },
 }
 FIRST = """
 import time

@@ -102,7 +102,9 @@ CASES = (
         Case(
             name=f"shaken_{ratio:g}".replace(".", "p"),
             run=partial(_oscillated, ratio=ratio),
-            full=Effort(cells=32, until=9.0 if ratio > _BEATS else 3.0, coarse=_COARSE, before=9.0),
+            full=Effort(cells=32, until=9.0, coarse=_COARSE, before=9.0)
+            if ratio > _BEATS
+            else Effort(cells=48, until=3.0, coarse=_COARSE, before=9.0),
             quick=Effort(cells=16, until=1.0, coarse=8, before=1.0),
             code=_CODE,
             setup=f"Re 185, amplitude 0.2 diameters across the stream, frequency {ratio:g} times 0.195 U/D; unbounded "

@@ -69,7 +69,7 @@ def _flapping(effort: Effort, tell: Tell) -> Curves:
 
 CASES = (
     Case(
-        name="in_line", run=_in_line, full=Effort(cells=48, until=5.0), quick=Effort(cells=12, until=1.0), code=_CODE,
+        name="in_line", run=_in_line, full=Effort(cells=64, until=5.0), quick=Effort(cells=12, until=1.0), code=_CODE,
         setup="A cylinder that oscillates in water at rest, Re 100, KC 5; unbounded domain, of which 10 x 8 diameters "
         "are computed; {cells} cells a diameter; the last of five periods.",
     ),

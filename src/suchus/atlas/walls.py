@@ -133,7 +133,7 @@ CASES = (
         "{cells}, of which the last five periods count.",
     ),
     Case(
-        name="settling", run=_settling, code=_CODE, full=Effort(cells=24, until=46.0),
+        name="settling", run=_settling, code=_CODE, full=Effort(cells=32, until=46.0),
         quick=Effort(cells=12, until=2.0),
         setup="A cylinder of relative density 1.5 that settles from rest, one diameter from a wall, in a channel 4 "
         "diameters wide, seen from a frame that sinks with 2.1 m/s: 40 diameters of the channel, {cells} cells a "
