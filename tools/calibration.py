@@ -139,7 +139,7 @@ def _grids(found: Found) -> dict[str, list[float]]:
     out: dict[str, list[float]] = {}
     for kind, (name, grids) in ladders.items():
         for cells in grids:
-            for quantity, value in _numbers(kind, found[kind, name, cells]).items():
+            for quantity, value in numbers(kind, found[kind, name, cells]).items():
                 out.setdefault(f"{kind} {quantity}", []).append(value)
     for cells in (*GRIDS, FINEST):
         for name in FITTED:
@@ -168,8 +168,8 @@ def _fit(found: Found, name: str, cells: int, fitted_names: Sequence[str]) -> Co
     return fitted(flow, responses(ROBOT, motions()[name], VISCOSITY, **_head(flow)), fitted_names)
 
 
-def _numbers(kind: str, flow: xr.Dataset) -> dict[str, float]:
-    """Return what is compared of a body: drag, means over a cycle and the rms side force, or those of its last cycle."""
+def numbers(kind: str, flow: xr.Dataset) -> dict[str, float]:
+    """Return what is compared of a body: drag, means over a cycle and rms side force, or those of the last cycle."""
     if kind == "towed":
         return {"drag": float(flow.drag)}
     if kind == "free":
@@ -183,15 +183,15 @@ def _beside(
 ) -> dict[str, list[float]]:
     """Return, by quantity, what the flow says, the model of the runs and the fitted one."""
     flow = found[kind, name, GRIDS[0]]
-    rows = [_numbers(kind, flow)]
+    rows = [numbers(kind, flow)]
     for one in both:
         lake = one.lake(VISCOSITY)
         if kind == "towed":
             rows.append({"drag": towed_sections(ROBOT, float(name.split(maxsplit=1)[0]), lake)})
         elif kind == "held":
-            rows.append(_numbers(kind, _held(swims[name], flow, one)))
+            rows.append(numbers(kind, _held(swims[name], flow, one)))
         else:
-            rows.append(_numbers(kind, free_sections(ROBOT, swims[name], lake, FREE_CYCLES)))
+            rows.append(numbers(kind, free_sections(ROBOT, swims[name], lake, FREE_CYCLES)))
     return {quantity: [row[quantity] for row in rows] for quantity in rows[0]}
 
 
@@ -224,7 +224,7 @@ def draw(found: Found) -> Figure:
                 ax.plot(one.phase, one[name], label=called, **look)
             ax.axhline(0.0, color=COLOURS["grid"], linewidth=0.8)
             ax.set(xlabel="phase [cycle]", ylabel=label)
-        axes[0, 0].legend(loc="best", fontsize=9)
+        figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=len(lines))
     return figure
 
 

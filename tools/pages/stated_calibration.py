@@ -4,7 +4,11 @@ from collections.abc import Callable, Mapping, Sequence
 from math import floor, log10
 from typing import Any
 
+WORTH = 2.0
+"""Factor by which a correction must lower what the model is off, where nothing was fitted, to be worth having [-]."""
 _HELD = {"thrust": ("mean thrust", "N"), "aside": ("rms side force", "N"), "power": ("power", "W")}
+_ASIDE = ("mean thrust held", "drag towed")
+"""What does not decide about a correction for swims: a small difference of large forces, and no swim."""
 _FREE = {"speed": ("speed", "mm/s"), "power": ("power", "W")}
 
 
@@ -31,6 +35,26 @@ def held_out(m: Mapping[str, Any]) -> dict[str, tuple[float, float]]:
     groups |= {f"{_FREE[name][0]} free": rows for name, rows in free.items()}
     groups["drag towed"] = [one["drag"] for one in m["towed"].values()]
     return {name: (mean_off(rows, 1), mean_off(rows, 2)) for name, rows in groups.items()}
+
+
+def worth(m: Mapping[str, Any]) -> dict[str, bool]:
+    """Return of every quantity whether the fitted coefficients are worth having.
+
+    They are where they halve what the model of the runs is off, on the grid of the fit where nothing was fitted, and
+    are also nearer than it to where the flow tends as the cells become finer.
+    """
+    found = {}
+    for name, (before, after) in held_out(m).items():
+        quantity, kind = name.rsplit(" ", 1)
+        key = next(key for key, (called, _) in {**_HELD, **_FREE, "drag": ("drag", "N")}.items() if called == quantity)
+        limit, models = m["grids"][f"{kind} {key}"]["limit"], m["models"][f"{kind} {key}"]
+        found[name] = after <= before / WORTH and abs(off(limit, models[1])) < abs(off(limit, models[0]))
+    return found
+
+
+def earned(m: Mapping[str, Any]) -> bool:
+    """Return whether a correction is earned: one set of coefficients must be worth having for all of a swim."""
+    return all(good for name, good in worth(m).items() if name not in _ASIDE)
 
 
 def _row(first: str, values: Sequence[float], unit: str) -> str:
@@ -95,11 +119,15 @@ def _left(m: Mapping[str, Any]) -> list[str]:
 def _calibration(m: Mapping[str, Any]) -> str:
     """Return the tables of flow and models, of the grids, and what is left of the forces over a cycle."""
     said = "; ".join(f"{name} {before:.0%} and {after:.0%}" for name, (before, after) in held_out(m).items())
+    good = ", ".join(name for name, one in worth(m).items() if one) or "nothing"
+    verdict = (
+        f"By both measures the fit is worth having for: {good}. A correction is {'' if earned(m) else 'not '}earned."
+    )
     added = ", ".join(f"{values[2]:.1f}" for values in m["all_three"].values())
     return "\n".join([*_cases(m), "", *_on_grids(m), "", *_left(m)]) + (
-        f"\n\nOn that grid, where nothing was fitted, the model of the runs and the fitted one are off in the mean by: "
-        f"{said}. Fitted to each held swim together with the other two coefficients, the factor on added mass is "
-        f"{added}.\n"
+        "\n\nOn the grid of the fit, where nothing was fitted, the model of the runs and the fitted one are off in "
+        f"the mean by: {said}. {verdict} Fitted to each held swim together with the other two coefficients, the factor "
+        f"on added mass is {added}.\n"
     )
 
 
