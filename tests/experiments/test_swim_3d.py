@@ -14,6 +14,7 @@ from suchus.design.pieces import pieces
 from suchus.errors import InvalidDesign, OutsideLimits
 from suchus.experiments import EXPERIMENTS
 from suchus.experiments import _swim_3d_findings as findings
+from suchus.experiments._taken import TAKEN, Midline
 from suchus.figures import caption
 from suchus.figures.swim_3d import draw_tails
 from suchus.flow import memory
@@ -30,6 +31,7 @@ from suchus.water import (
     printed_wave,
     swim_in_space,
     trunk,
+    undulation,
 )
 
 ROBOT, ASKED = ROBOTS["caiman"], EXPERIMENTS["swim_3d"]
@@ -184,6 +186,58 @@ def test_a_swim_that_was_interrupted_goes_on_to_the_same_numbers(tmp_path):
     assert np.isfinite(found.joint_torque.values).all()
 
 
+def test_a_motion_that_is_handed_over_joint_by_joint_swims_to_the_same_numbers():
+    basin = Basin(cells=40, viscosity=5e-3, cycles=1)
+    outline = Outline(ROBOT, basin.cells + 1)
+    commanded = swim_in_space(ROBOT, MOTION, basin, progress=lambda _: None)
+    handed = undulation(outline, MOTION)
+    assert swim_in_space(ROBOT, handed, basin, progress=lambda _: None).identical(commanded)
+    folded_end = handed.middles.copy()
+    folded_end[1, -4:] += 0.3
+    other = swim_in_space(ROBOT, replace(handed, middles=folded_end), basin, progress=lambda _: None)
+    assert abs(float(other.speed[-1] / commanded.speed[-1]) - 1.0) > 1e-3
+    with pytest.raises(InvalidDesign, match="has 41 stations along the midline, and 43 are asked for"):
+        swim_in_space(ROBOT, handed, replace(basin, cells=42), progress=lambda _: None)
+
+
+def bent():
+    """Midlines that the joints take, by hand."""
+    outline = Outline(ROBOT, ASKED.compared_cells + 1)
+    return [Midline(name, undulation(outline, MOTION), 0.4 + i) for i, name in enumerate(TAKEN)]
+
+
+def test_midlines_as_taken_swim_beside_those_commanded(monkeypatch):
+    without = [name for name, *_ in ASKED._runs(MOTION, MOTION)]
+    runs = ASKED._runs(MOTION, MOTION, bent())
+    added = [one for one in runs if one[0] not in without]
+    assert [name for name, *_ in added] == list(TAKEN)
+    for _, motion, basin in added:
+        assert basin == next(basin for name, _, basin in runs if name == "trunk only")
+        check_swim_in_space(ROBOT, motion, basin)
+    m = made(bent())
+    assert m["speed_trunk_and_tail_as_taken"] == 0.03
+    assert m["speed_tail_only_as_taken"] == -0.01
+    assert (m["misfit_trunk_and_tail_as_taken"], m["misfit_tail_only_as_taken"]) == (0.4, 1.4)
+    told = findings.explain(m)
+    assert "40% off those commanded (tail alone: 140%), it swims 30.0 mm/s and the tail alone -10.0 mm/s" in told
+    assert "0.1 m high" in told
+    assert "taken" not in findings.explain(made()).replace("taken together", "")
+    assert not any("taken" in name for name in made())
+
+
+def test_the_midlines_are_asked_for_only_if_they_are_to_swim(monkeypatch):
+    monkeypatch.setattr("suchus.experiments.swim_3d.midlines", lambda *given: pytest.fail("nobody asked"))
+    monkeypatch.setattr("suchus.experiments.swim_3d.check_swim_in_space", _stopped)
+    with pytest.raises(KeyboardInterrupt):
+        ASKED.quick().run()
+    with pytest.raises(pytest.fail.Exception, match="nobody asked"):
+        replace(ASKED.quick(), taken=True).run()
+
+
+def _stopped(*given):
+    raise KeyboardInterrupt
+
+
 def one(speed, *, power=2.0, weight=20.0):
     """A swim with these speeds in its cycles."""
     count = len(speed)
@@ -203,7 +257,7 @@ def one(speed, *, power=2.0, weight=20.0):
     )  # fmt: skip
 
 
-def swum():
+def swum(handed=()):
     """The record of swims by hand."""
     asked = replace(ASKED, cells=(68, 96), cycles=2, compared_cycles=2, tail_heights=(0.1,))
     swims = {"68 cells": one([0.01, 0.02]), "96 cells": one([0.02, 0.04], power=1.0), "held": one([0.0, 0.0]),
@@ -214,12 +268,13 @@ def swum():
         {"slice_speed": ("cycle", [0.1, 0.4]), "model_speed": models, "model_power": models, "model_thrust": models,
          "real_model_speed": models}, coords={"model": ["resistive", "reactive"]},
     )  # fmt: skip
-    return findings.record(swims, beside, asked)
+    swims |= {one_.name: one(speeds) for one_, speeds in zip(handed, ([0.01, 0.03], [0.0, -0.01]), strict=False)}
+    return findings.record(swims, findings.with_midlines(beside, handed), asked)
 
 
-def made():
+def made(handed=()):
     """The measures of swims by hand."""
-    return {name: measure.value for name, measure in findings.measures(swum(), ROBOT, 1.0).items()}
+    return {name: measure.value for name, measure in findings.measures(swum(handed), ROBOT, 1.0).items()}
 
 
 def test_measures_are_of_the_finest_grid_and_its_last_cycle():

@@ -8,6 +8,7 @@ from suchus.errors import InvalidDesign
 from suchus.experiments import EXPERIMENTS
 from suchus.experiments import _swimming_findings as findings
 from suchus.experiments._swimming_findings import ARMS
+from suchus.experiments._taken import TAKEN
 from suchus.experiments.swimming import Swimming
 from suchus.paper import ERRATA
 from suchus.water import fit, printed_wave, swim
@@ -124,11 +125,11 @@ def test_midlines_as_taken_swim_beside_those_commanded(monkeypatch):
 
     monkeypatch.setattr(Swimming, "_free", free)
     for name in ("_SETTLE", "_AVERAGED"):  # of which the experiment itself takes more
-        monkeypatch.setattr(f"suchus.experiments.swimming.{name}", 2)
+        monkeypatch.setattr(f"suchus.experiments._taken.{name}", 2)
     quick = replace(EXPERIMENTS["swimming"].quick(), taken=True, coarse_cells=64)
     motion = quick._fit(-1).swim
     (record,) = quick._taken(motion, lambda stage, share: None)
-    assert [one[0] for one in swum] == list(findings.TAKEN)
+    assert [one[0] for one in swum] == list(TAKEN)
     assert [one[2:] for one in swum] == [(64, quick.arm_cycles)] * 2
     assert swum[0][1].frequency == quick.frequency
     assert record.taken_speed.values[:, -1] == pytest.approx([0.1, 0.2])

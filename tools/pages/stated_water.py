@@ -164,8 +164,9 @@ def _space(m: Mapping[str, float]) -> str:
               "|---|---|---|---|"]  # fmt: skip
     motions = {"trunk_and_tail": "trunk and tail", "trunk_only": "trunk only", "tail_only": "tail only",
                "as_printed": "as printed", "limbs_folded": "limbs folded"}  # fmt: skip
-    tails = [name.removeprefix("speed_") for name in m if name.startswith("speed_tail_") and name != "speed_tail_only"]
-    high = {name: f"last third {name.removeprefix('tail_').replace('_', '.')} m high" for name in sorted(tails)}
+    high = {
+        name.removeprefix("speed_"): f"last third {_height(name):g} m high" for name in sorted(_raised(m), key=_height)
+    }
     for name, called in (motions | high).items():
         if f"speed_{name}" not in m:  # kept measures from before these swims
             continue
@@ -186,7 +187,7 @@ def _space(m: Mapping[str, float]) -> str:
 
 def _space_in_short(m: Mapping[str, float]) -> str:
     """Return the speeds of body and slice beside each other."""
-    high = max((name for name in m if name.startswith("speed_tail_") and name != "speed_tail_only"), key=_height)
+    high = max(_raised(m), key=_height)
     return (
         f"Swimming at f L²/ν = {m['reynolds']:.0f}, the robot's body makes {m['speed']:.3f} m/s in three dimensions "
         f"({m['cells_per_length']:.0f} cells a length), and its two-dimensional slice {m['speed_slice']:.2f} m/s. With "
@@ -194,6 +195,11 @@ def _space_in_short(m: Mapping[str, float]) -> str:
         f"{m[high] / m['speed_trunk_and_tail']:.1f} times as fast. See [swimming](docs/water.md) and "
         "`suchus run swim_3d`.\n"
     )
+
+
+def _raised(m: Mapping[str, float]) -> list[str]:
+    """Return the names of the speeds with raised tails, which say how high."""
+    return [name for name in m if name.startswith("speed_tail_") and name[len("speed_tail_")].isdigit()]
 
 
 def _height(name: str) -> float:

@@ -1,6 +1,6 @@
 """What the experiment ``swim_3d`` keeps of its swims, and every number that it reads from them."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Protocol
 
 import numpy as np
@@ -9,6 +9,7 @@ import xarray as xr
 from suchus.design import GRAVITY, Crocodile
 from suchus.design.water import Water
 from suchus.experiment import Measure
+from suchus.experiments._taken import TAKEN, Midline
 from suchus.verdict import Reading
 
 WHOLE = "trunk and tail"
@@ -46,7 +47,7 @@ def record(swims: Mapping[str, xr.Dataset], beside: xr.Dataset, asked: Asked) ->
     grids = [swims[f"{cells} cells"] for cells in asked.cells]
     whole = swims.get("compared", swims.get(f"{asked.compared_cells} cells"))
     assert whole is not None
-    names = [name for name in ("trunk only", "tail only", "as printed", LIMBS) if name in swims]
+    names = [name for name in ("trunk only", "tail only", "as printed", LIMBS, *TAKEN) if name in swims]
     tails = {f"tail {high:g} m": high for high in asked.tail_heights}
     compared = {WHOLE: whole, **{name: swims[name] for name in (*names, *tails)}}
     finest = grids[-1].drop_vars(("speed", "thrust", "power", "steps", "million_cells", "thin", "cycle"))
@@ -71,6 +72,14 @@ def record(swims: Mapping[str, xr.Dataset], beside: xr.Dataset, asked: Asked) ->
                 "cycle": grids[0].cycle.values, "compared_cycle": np.arange(1, n + 1)},
     )  # fmt: skip
     return data.merge(finest).merge(beside)
+
+
+def with_midlines(beside: xr.Dataset, bent: Sequence[Midline]) -> xr.Dataset:
+    """Return what stands beside the swims, with how far the midlines that the joints took are off, if there are any."""
+    if not bent:
+        return beside
+    away = ("taken_arm", [one.away for one in bent], {"units": "1", "long_name": "rms angle off, over that commanded"})
+    return beside.assign(taken_away=away).assign_coords(taken_arm=[one.name for one in bent])
 
 
 def measures(record: xr.Dataset, robot: Crocodile, frequency: float) -> Mapping[str, Measure]:
@@ -143,6 +152,8 @@ def _compared(record: xr.Dataset) -> Iterator[tuple[str, Measure]]:
         yield f"speed_gain_{key}", Measure(_gain(speed), "-")
         yield f"power_{key}", Measure(power, "W")
         yield f"cost_of_transport_{key}", Measure(power / (float(one.weight_compared) * abs(float(speed[-1]))), "-")
+    for name in record.taken_arm.values if "taken_away" in record else ():
+        yield f"misfit_{_key(str(name))}", Measure(float(record.taken_away.sel(taken_arm=name)), "-")
 
 
 def _gain(speeds: np.ndarray) -> float:
@@ -180,7 +191,15 @@ def explain(measures: Mapping[str, float]) -> str:
             f"With its limbs folded straight back it swims {1e3 * measures['speed_limbs_folded']:.1f} mm/s on the grid "
             f"where it swims {1e3 * measures['speed_trunk_and_tail']:.1f} mm/s without them. "
         )
-    highest = [name for name in measures if name.startswith("speed_tail_") and name != "speed_tail_only"]
+    if "speed_trunk_and_tail_as_taken" in m:
+        text += (
+            "With the midlines that the joints take in six degrees of freedom, "
+            f"{m['misfit_trunk_and_tail_as_taken']:.0%} off those commanded (tail alone: "
+            f"{m['misfit_tail_only_as_taken']:.0%}), it swims "
+            f"{1e3 * measures['speed_trunk_and_tail_as_taken']:.1f} mm/s and the tail alone "
+            f"{1e3 * measures['speed_tail_only_as_taken']:.1f} mm/s. "
+        )
+    highest = [name for name in measures if name.startswith("speed_tail_") and name[11].isdigit()]
     if highest:
         high, bare = measures[highest[-1]], measures["speed_trunk_and_tail"]
         text += (

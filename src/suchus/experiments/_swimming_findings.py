@@ -12,8 +12,6 @@ from suchus.water import Quarters, Sway, Swum, convex_higher, efficiency, wave_f
 
 ARMS = ("trunk and tail", "trunk only", "tail only", "as printed", "exact wave", "exact wave as printed")
 """Conditions: the motions that are compared while swimming freely."""
-TAKEN = ("trunk and tail as taken", "tail only as taken")
-"""The same with the midline that the joints take in six degrees of freedom."""
 SETTLED = 4
 """Last cycles of the free swim over which its track is measured, fewer where it has fewer after the first [-]."""
 _GAINS = {"tail": "trunk only", "spine": "tail only"}

@@ -15,10 +15,12 @@ from suchus.design.checks import Checks
 from suchus.design.water import Water
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.experiments import _swim_3d_findings as findings
+from suchus.experiments._taken import Midline, midlines
 from suchus.figures.swim_3d import draw_joints, draw_speeds, draw_tails, draw_wake
 from suchus.figures.vortices import draw_vortices, film_vortices
 from suchus.flow.fingerprint import fingerprint
 from suchus.kinematics.wave import READINGS
+from suchus.motion import Swim
 from suchus.replay import wake_replay
 from suchus.robots import ROBOTS
 from suchus.study import at_scheduler, conduct_sweep
@@ -45,7 +47,9 @@ class Swim3d(Experiment):
     the finest grid is faster than the next coarser one in the same cycle. ``thrust_held`` is the mean force forward on
     a body that sways and turns but is kept from moving on. ``servo_load_peak`` is the greatest torque that the water
     alone asks of a servo, over its limit. Trunk only, tail only, the printed direction, the body with its limbs folded
-    straight back and higher tails swim on ``compared_cells``.
+    straight back and higher tails swim on ``compared_cells``. With ``taken`` the midlines that the same commands give
+    in six degrees of freedom at the surface, where the water distributes the cable's bend among its joints, swim there
+    as further conditions, joint by joint; of these midlines only yaw counts.
     """
 
     title = "How fast does the robot's own body swim in three dimensions, and what does a higher tail change?"
@@ -72,6 +76,9 @@ class Swim3d(Experiment):
     """Cycles of these [-]."""
     tail_heights: tuple[float, ...] = (0.06, 0.1)
     """Heights to which the last third of the body is raised, as a fin as thick as the tail; rising [m]."""
+    taken: bool = False
+    """Whether the midline that the joints take in six degrees of freedom swims too, with trunk and tail and with the
+    tail alone: two more swims like those of trunk and tail."""
     beside: float = BESIDE
     """Water between the widest swing and the sides of the box [body length]."""
     slice_cells: int = 96
@@ -124,7 +131,8 @@ class Swim3d(Experiment):
 
     def _simulated(self, progress: Progress, client: Any) -> Simulated:
         ours, printed = (self._motion(sign) for sign in (-1, 1))
-        runs = self._runs(ours, printed)
+        bent = midlines(self.robot, ours, self.compared_cells + 1) if self.taken else []
+        runs = self._runs(ours, printed, bent)
         for _, motion, basin in runs:
             check_swim_in_space(self.robot, motion, basin)
         items = [(motion, basin) for _, motion, basin in runs]
@@ -135,12 +143,13 @@ class Swim3d(Experiment):
                 local=partial(_swum_here, self.robot, self.keep),
             )  # fmt: skip
         beside = self._beside(ours, staged(progress, "the slice", 0.9, 0.95))
-        record = findings.record({name: swum for (name, *_), swum in zip(runs, found, strict=True)}, beside, self)
+        swims = {name: swum for (name, *_), swum in zip(runs, found, strict=True)}
+        record = findings.record(swims, findings.with_midlines(beside, bent), self)
         film = film_vortices(record, staged(progress, "the film", 0.95, 1.0))
         forget_kept(self.keep)
         return Simulated(record=record, films={"swim_3d.gif": film}, replays=_replays(record))
 
-    def _motion(self, sign: int) -> Motion:
+    def _motion(self, sign: int) -> Swim:
         wave = printed_wave(self.robot, self.reading, frequency=self.frequency, sign=sign)
         return fit(self.robot, wave, name=f"(20), reading {self.reading}").swim
 
@@ -149,14 +158,16 @@ class Swim3d(Experiment):
         """Kinematic viscosity of the water [m2/s]."""
         return self.frequency * self.robot.length**2 / self.reynolds
 
-    def _runs(self, ours: Any, printed: Motion) -> Sequence[tuple[str, Motion, Basin]]:
+    def _runs(self, ours: Swim, printed: Swim, bent: Sequence[Midline] = ()) -> Sequence[tuple[str, Motion, Basin]]:
         """Return name, motion, grid and time of every swim in space."""
 
         def basin(cells: int, cycles: int, **other: Any) -> Basin:
             return Basin(cells=cells, viscosity=self.viscosity, cycles=cycles, beside=self.beside, **other)
 
         compared = basin(self.compared_cells, self.compared_cycles)
-        runs = [(f"{cells} cells", ours, basin(cells, self.cycles)) for cells in self.cells[:-1]]
+        runs: list[tuple[str, Motion, Basin]] = [
+            (f"{cells} cells", ours, basin(cells, self.cycles)) for cells in self.cells[:-1]
+        ]
         runs.append((f"{self.cells[-1]} cells", ours, basin(self.cells[-1], self.cycles, frames=self.frames)))
         if self.compared_cells not in self.cells or self.compared_cycles > self.cycles:
             runs.append(("compared", ours, compared))
@@ -165,6 +176,7 @@ class Swim3d(Experiment):
             arms = {"trunk only": ours.trunk_only(), "tail only": ours.tail_only(), "as printed": printed}
             runs += [(name, motion, compared) for name, motion in arms.items()]
             runs.append((findings.LIMBS, ours, replace(compared, limbs=True)))
+        runs += [(one.name, one.motion, compared) for one in bent]
         return runs + [(f"tail {high:g} m", ours, replace(compared, tail_height=high)) for high in self.tail_heights]
 
     def _beside(self, ours: Any, progress: Any) -> xr.Dataset:

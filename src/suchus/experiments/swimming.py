@@ -7,24 +7,20 @@ from typing import Any, ClassVar
 import numpy as np
 import xarray as xr
 
-from suchus.control import Swimming as Waving
 from suchus.design import Crocodile
 from suchus.design.checks import Checks
-from suchus.design.flotation import float_hull
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Simulated, silent, staged
 from suchus.experiments import _swimming_findings as findings
 from suchus.experiments._swimming_findings import ARMS
+from suchus.experiments._taken import TAKEN, midlines
 from suchus.figures.swimming import draw_forces, draw_free, draw_quarters, draw_sides, film_pressure, film_vorticity
-from suchus.gaits import GAITS
 from suchus.kinematics.wave import READINGS
-from suchus.land import Lake, Run, simulate
 from suchus.motion import Swim
 from suchus.robots import ROBOTS
 from suchus.water import (
     ExactWave,
     Fit,
     Motion,
-    Outline,
     Tether,
     attempts,
     fit,
@@ -33,15 +29,10 @@ from suchus.water import (
     printed_wave,
     readings_table,
     swim,
-    taken,
     tether,
     towed,
-    undulation,
-    unevenness,
 )
 from suchus.water.diary import forget_kept, kept_in
-
-_SETTLE, _AVERAGED = 5, 3  # [cycle]; in six degrees of freedom, before the joints' angles are taken and while they are
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -217,27 +208,19 @@ class Swimming(Experiment):
 
     def _taken(self, motion: Swim, progress: Callable[[float], None]) -> list[xr.Dataset]:
         """Return speeds of the midlines that joints take in six degrees of freedom, and the error of their angles."""
-        bare = replace(self.robot, hull=None)
-        floating = self.robot if self.robot.hull is not None else replace(bare, hull=float_hull(bare))
-        meant = (motion, motion.tail_only())
-        runs = [
-            Run(robot=floating, gait=GAITS["belly_crawl"], lake=Lake(level=2.0), control=Waving(swim=one))
-            for one in meant
-        ]
-        record = simulate(runs, duration=(_SETTLE + _AVERAGED) / self.frequency)
-        outline, speeds, away = Outline(bare, self.coarse_cells + 1), [], []
-        for i, (arm, one) in enumerate(zip(findings.TAKEN, meant, strict=True)):
-            bends = taken(outline, record.isel(run=i), frequency=self.frequency, cycles=_AVERAGED, name=arm)
-            stage = portion(progress, i, len(meant))
+        speeds, away = [], []
+        bent = midlines(self.robot, motion, self.coarse_cells + 1)
+        for i, (arm, bends, off) in enumerate(bent):
+            stage = portion(progress, i, len(bent))
             speeds.append(self._free(arm, bends, self.coarse_cells, self.arm_cycles, stage).speed.values)
-            away.append(unevenness(bends, undulation(outline, one)))
+            away.append(off)
         data = xr.Dataset(
             {
                 "taken_speed": (("taken_arm", "cycle"), np.array(speeds), {"units": "m/s"}),
                 "taken_away": ("taken_arm", away, {"units": "1", "long_name": "rms angle off, over that commanded"}),
             }
         )
-        return [data.assign_coords(taken_arm=list(findings.TAKEN), cycle=np.arange(1, self.arm_cycles + 1))]
+        return [data.assign_coords(taken_arm=list(TAKEN), cycle=np.arange(1, self.arm_cycles + 1))]
 
     def _readings(self, progress: Callable[[float], None]) -> tuple[xr.Dataset, str]:
         """Return the mean thrust of further readings, and a table of all of them."""

@@ -13,6 +13,7 @@ from suchus.water.passive import sprung
 from suchus.water.readings import Attempt, attempts, readings_table
 from suchus.water.slender import Cruise, Effort, cruise, cycle, reactive, recoil, resistive
 from suchus.water.space import Basin, check_swim_in_space, folded, half_heights, swim_in_space, trunk
+from suchus.water.space_held import held_in_space, towed_in_space
 from suchus.water.sweep import greatest, scaled, survey
 from suchus.water.swimming import MODELS, displaced, swim, wave_speed
 from suchus.water.taken import taken, unevenness
@@ -56,6 +57,7 @@ __all__ = [
     "greatest",
     "half_heights",
     "head_base",
+    "held_in_space",
     "immersed",
     "level",
     "portion",
@@ -74,6 +76,7 @@ __all__ = [
     "taken",
     "tether",
     "towed",
+    "towed_in_space",
     "trunk",
     "undulation",
     "unevenness",

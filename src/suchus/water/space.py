@@ -110,7 +110,14 @@ def folded(robot: Crocodile) -> tuple[flow.Capsule, ...]:
 
 
 def trunk(
-    outline: Outline, motion: Motion, *, grow: float = 0.0, tail_height: float = 0.0, limbs: bool = False
+    outline: Outline,
+    motion: Motion,
+    *,
+    grow: float = 0.0,
+    tail_height: float = 0.0,
+    limbs: bool = False,
+    sway: complex = 0j,
+    turn: complex = 0j,
 ) -> flow.Trunk:
     """Return the robot as a bending body in space, its sections ellipses, divided at its joints.
 
@@ -120,8 +127,10 @@ def trunk(
         grow: time over which the motion grows from nothing [s].
         tail_height: see ``half_heights`` [m].
         limbs: whether it has its limbs, see ``folded``; without them otherwise.
+        sway: harmonic of the snout's displacement to the right [m]; zero for a free body, which finds it by itself.
+        turn: harmonic of the head's direction [rad].
     """
-    spine = immersed(outline, motion, grow=grow).spine
+    spine = immersed(outline, motion, sway=sway, turn=turn, grow=grow).spine
     cuts, high = tuple(sorted(outline.places.tolist())), half_heights(outline, tail_height)
     if limbs:
         return flow.Limbed(spine=spine, half_height=high, cuts=cuts, limbs=folded(outline.robot))
@@ -144,7 +153,7 @@ def check_swim_in_space(robot: Crocodile, motion: Motion, basin: Basin) -> None:
         finer = replace(basin, cells=cells) if cells <= FINEST else None
         if finer is None:
             return f", more than the {FINEST} that are allowed"
-        count = prod(_grid(robot.length, outline, motion, finer, sway, turn).cells)
+        count = prod(basin_grid(robot.length, outline, motion, finer, sway, turn).cells)
         hours = count * STEPS * cells * basin.cycles * SECONDS / 3600.0
         return f", {count / 1e6:.3g} million cells that take some {hours:.2g} hours for {basin.cycles} cycles"
 
@@ -155,7 +164,7 @@ def check_swim_in_space(robot: Crocodile, motion: Motion, basin: Basin) -> None:
             f"the box leaves {beside:.3g} body lengths of water beside the widest swing, and the body would leave it: "
             f"give at least {least - _DRAWN:.2g}, better {BESIDE}."
         )
-    check_memory(_grid(robot.length, outline, motion, basin, sway, turn), np.float32)
+    check_memory(basin_grid(robot.length, outline, motion, basin, sway, turn), np.float32)
 
 
 def swim_in_space(
@@ -193,7 +202,7 @@ def swim_in_space(
         shape=trunk(outline, motion, grow=GROWS * period, tail_height=basin.tail_height, limbs=basin.limbs),
         start=(0.5 * robot.length, 0.0, 0.0), free=(basin.moves_on, True, True),
     )  # fmt: skip
-    grid = _grid(robot.length, outline, motion, basin, sway, turn)
+    grid = basin_grid(robot.length, outline, motion, basin, sway, turn)
     sim = flow.Simulation(
         flow.Setup(
             grid=grid, viscosity=basin.viscosity, density=DENSITY, bodies=(body,), follow="body",
@@ -214,7 +223,7 @@ def swim_in_space(
     return _record(sim, diary, outline, motion, basin).merge(filmed.record(diary))
 
 
-def _grid(
+def basin_grid(
     length: float, outline: Outline, motion: Motion, basin: Basin, sway: complex, turn: complex
 ) -> flow.Grid:  # fmt: skip
     """Return the cells around the upper half of a body whose snout is near the origin."""

@@ -108,9 +108,18 @@ def undulation(outline: Outline, motion: Motion) -> Undulation:
 
     Args:
         outline: of the robot.
-        motion: of its joints, or a wave that is followed exactly.
+        motion: of its joints, or a wave that is followed exactly, or a bend that was worked out before.
+
+    Raises:
+        InvalidDesign: a bend that was worked out for other stations.
     """
     if isinstance(motion, Undulation):
+        if motion.outline.stations != outline.stations:
+            raise InvalidDesign(
+                f"the motion {motion.name!r} has {motion.outline.stations} stations along the midline, and "
+                f"{outline.stations} are asked for, in a flow one more than its cells per body length: work it out for "
+                "an Outline with so many."
+            )
         return motion
     if isinstance(motion, ExactWave):
         return _of_wave(outline, motion)

@@ -1,0 +1,50 @@
+"""The midlines that a robot's joints take of a commanded swim in six degrees of freedom, for the swims by CFD."""
+
+from dataclasses import replace
+from typing import NamedTuple
+
+from suchus.control import Swimming
+from suchus.design import Crocodile
+from suchus.design.flotation import float_hull
+from suchus.gaits import GAITS
+from suchus.land import Lake, Run, simulate
+from suchus.motion import Swim
+from suchus.water import Outline, Undulation, taken, undulation, unevenness
+
+TAKEN = ("trunk and tail as taken", "tail only as taken")
+"""Names of the midlines that the joints take in six degrees of freedom."""
+_SETTLE, _AVERAGED = 5, 3  # [cycle]; before the joints' angles are taken and while they are
+
+
+class Midline(NamedTuple):
+    """What the joints take of one command."""
+
+    name: str
+    """One of ``TAKEN``."""
+    motion: Undulation
+    """The midline, joint by joint."""
+    away: float
+    """Rms angle off what was commanded, over that [-]."""
+
+
+def midlines(robot: Crocodile, motion: Swim, stations: int) -> list[Midline]:
+    """Return the midlines of trunk and tail, and of the tail alone, as the joints take them at the surface.
+
+    Args:
+        robot: who swims; without a hull it gets one with which it floats.
+        motion: that is commanded.
+        stations: of the midline [-].
+    """
+    bare = replace(robot, hull=None)
+    floating = robot if robot.hull is not None else replace(bare, hull=float_hull(bare))
+    meant = (motion, motion.tail_only())
+    runs = [
+        Run(robot=floating, gait=GAITS["belly_crawl"], lake=Lake(level=2.0), control=Swimming(swim=one))
+        for one in meant
+    ]
+    record = simulate(runs, duration=(_SETTLE + _AVERAGED) / motion.frequency)
+    outline, found = Outline(bare, stations), []
+    for i, (name, one) in enumerate(zip(TAKEN, meant, strict=True)):
+        bends = taken(outline, record.isel(run=i), frequency=motion.frequency, cycles=_AVERAGED, name=name)
+        found.append(Midline(name, bends, unevenness(bends, undulation(outline, one))))
+    return found

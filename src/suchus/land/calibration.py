@@ -1,0 +1,95 @@
+"""How far the water of the runs is from a flow in three dimensions, and the coefficients that come nearest to it.
+
+What a body feels whose motion is given is linear in three coefficients: the drag coefficient across, the factor on
+plate friction along, the factor on added mass. So a flow around the same motion gives them by least squares.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from suchus.design import Crocodile
+from suchus.design.water import Water
+from suchus.land.lake import Course, Lake
+from suchus.land.prescribed import held_sections
+from suchus.motion import Swim
+
+QUANTITIES = ("thrust", "aside", "power")
+"""What is compared over a cycle."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Coefficients:
+    """What the section model of the runs makes of the water."""
+
+    cross_drag: float = Water().cross_drag
+    """Drag coefficient of a section across [-]."""
+    thickening: float = Water().thickening
+    """Factor on plate friction along [-]."""
+    added_mass: float = 1.0
+    """Factor on added mass [-]."""
+
+    def lake(self, viscosity: float, level: Course = 0.0) -> Lake:
+        """Return water of a viscosity [m2/s] with these coefficients, its surface at a level [m]."""
+        water = Water(viscosity=viscosity, cross_drag=self.cross_drag, thickening=self.thickening)
+        return Lake(level=level, water=water, added_mass=self.added_mass)
+
+
+def responses(
+    robot: Crocodile, swim: Swim, viscosity: float, *, sway: complex = 0j, turn: complex = 0j
+) -> Mapping[str, xr.Dataset]:
+    """Return what each of ``Coefficients`` does by one unit of it, and what is left without them, as ``rest``.
+
+    Args:
+        robot: whose body, limbs left out.
+        swim: motion of its joints.
+        viscosity: of the water [m2/s].
+        sway: see ``held_sections`` [m].
+        turn: see ``held_sections`` [rad].
+    """
+
+    def felt(**one: float) -> xr.Dataset:
+        lake = Coefficients(**({"cross_drag": 0.0, "thickening": 0.0, "added_mass": 0.0} | one)).lake(viscosity)
+        return held_sections(robot, swim, lake, sway=sway, turn=turn)
+
+    rest = felt()
+    return {"rest": rest, **{name: felt(**{name: 1.0}) - rest for name in Coefficients.__slots__}}
+
+
+def composed(parts: Mapping[str, xr.Dataset], coefficients: Coefficients) -> xr.Dataset:
+    """Return what a body feels with coefficients, from ``responses``."""
+    felt = parts["rest"]
+    for name in Coefficients.__slots__:
+        felt = felt + getattr(coefficients, name) * parts[name]
+    return felt
+
+
+def fitted(flow: xr.Dataset, parts: Mapping[str, xr.Dataset], names: Sequence[str]) -> Coefficients:
+    """Return the coefficients with which the model comes nearest to a flow; those that are not named stay.
+
+    Thrust, side force and power count alike, each over its peak in the flow.
+
+    Args:
+        flow: ``thrust``, ``aside`` and ``power`` over ``phase``.
+        parts: of ``responses`` to the same motion.
+        names: of the coefficients that are fitted.
+    """
+    kept = Coefficients(**dict.fromkeys(names, 0.0))
+    peaks = {name: float(np.abs(flow[name]).max()) for name in QUANTITIES}
+
+    def row(one: xr.Dataset) -> np.ndarray:
+        return np.concatenate([one[name].values / peaks[name] for name in QUANTITIES])
+
+    columns = np.column_stack([row(parts[name]) for name in names])
+    found = np.linalg.lstsq(columns, row(flow) - row(composed(parts, kept)), rcond=None)[0]
+    return Coefficients(**{name: float(value) for name, value in zip(names, found, strict=True)})
+
+
+def left(flow: xr.Dataset, model: xr.Dataset) -> dict[str, float]:
+    """Return the rms of the flow less the model over a cycle, over the peak in the flow, by quantity [-]."""
+    return {
+        name: float(np.sqrt(np.mean((flow[name].values - model[name].values) ** 2)) / np.abs(flow[name].values).max())
+        for name in QUANTITIES
+    }

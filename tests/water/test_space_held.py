@@ -1,0 +1,73 @@
+"""The body in three dimensions whose motion is given: at rest, mirrored, interrupted, towed."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from suchus.errors import InvalidDesign, OutsideLimits
+from suchus.robots import ROBOTS
+from suchus.water import Basin, fit, held_in_space, printed_wave, towed_in_space
+from suchus.water.undulation import STILL
+
+ROBOT = ROBOTS["caiman"]
+MOTION = fit(ROBOT, printed_wave(ROBOT, "I", sign=-1)).swim
+BASIN = Basin(cells=40, viscosity=5e-3, cycles=1)
+
+
+def silent(share):
+    del share
+
+
+@pytest.fixture(scope="module")
+def swum():
+    return held_in_space(ROBOT, MOTION, BASIN, progress=silent)
+
+
+def test_a_body_at_rest_feels_nothing():
+    found = held_in_space(ROBOT, STILL, BASIN, progress=silent)
+    assert all(np.abs(found[name].values).max() == 0.0 for name in ("thrust", "aside", "power", "sway", "turn"))
+
+
+def test_a_mirrored_swim_is_pushed_to_the_other_side(swum):
+    lags = {"yaw_lag": tuple(lag + 0.5 for lag in MOTION.yaw_lag), "tail_lag": MOTION.tail_lag + 0.5}
+    other = held_in_space(ROBOT, replace(MOTION, **lags), BASIN, progress=silent)
+    peak = np.abs(swum.aside.values).max()
+    assert peak > 0.1
+    assert other.aside.values == pytest.approx(-swum.aside.values, abs=1e-3 * peak)
+    assert other.thrust.values == pytest.approx(swum.thrust.values, abs=1e-3 * peak)
+    assert other.sway.values == pytest.approx(-swum.sway.values)
+    assert float(swum.power.mean()) == pytest.approx(float(swum.cycle_power[-1]), rel=0.05)
+    assert float(swum.cycle_power[-1]) > 0
+
+
+def test_a_swim_on_the_spot_that_was_interrupted_goes_on_to_the_same_numbers(swum, tmp_path):
+    def stop(share):
+        if share > 0.6:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        held_in_space(ROBOT, MOTION, BASIN, checkpoint=tmp_path / "swim", progress=stop)
+    assert held_in_space(ROBOT, MOTION, BASIN, checkpoint=tmp_path / "swim", progress=silent).identical(swum)
+
+
+def test_a_faster_tow_takes_more_than_in_proportion():
+    slow, fast = (towed_in_space(ROBOT, speed, BASIN, lengths=1.5) for speed in (0.2, 0.4))
+    assert slow > 0
+    assert fast > 2.0 * slow
+
+
+@pytest.mark.parametrize(("given", "said"), [
+    ({"speed": 0.0}, "speed of the tow is 0 m/s; 0.0001 to 10 m/s is allowed"),
+    ({"speed": float("nan")}, "speed of the tow is nan"),
+    ({"speed": 11.0}, "speed of the tow is 11 m/s"),
+    ({"speed": 0.1, "lengths": 1.4}, "lengths of the tow is 1.4 body lengths; 1.5 to 100 body lengths is allowed"),
+])  # fmt: skip
+def test_a_tow_that_is_none_is_refused(given, said):
+    with pytest.raises(OutsideLimits, match=said):
+        towed_in_space(ROBOT, given.pop("speed"), BASIN, **given)
+
+
+def test_water_too_thin_for_the_grid_is_refused_before_anything_runs():
+    with pytest.raises(InvalidDesign, match="boundary layer"):
+        held_in_space(ROBOT, MOTION, replace(BASIN, viscosity=1e-5))
