@@ -12,6 +12,7 @@ from urllib.parse import urlsplit
 import numpy as np
 import pytest
 import xarray as xr
+from tests.wakes import ringed
 
 from suchus.faults import Limp
 from suchus.gaits import GAITS
@@ -21,6 +22,7 @@ from suchus.robots import ROBOTS
 from suchus.viewer import Session
 from suchus.viewer.replay import takes
 from suchus.viewer.swim import films
+from suchus.viewer.vortices import vortex_film
 
 pages = pytest.importorskip("suchus.viewer.pages", reason="the extra viewer is not installed")
 playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
@@ -171,9 +173,11 @@ def test_a_record_and_a_swim_are_played_back(tabs, tmp_path):
     runs = [Run(robot=ROBOTS["caiman"], gait=GAITS[name], label=name) for name in ("belly_crawl", "limbs_only")]
     walk = takes(save(simulate(runs, duration=1.5, timestep=0.005, every=5), tmp_path / "walk.nc"))
     swim, curves = films(save(swimming(), tmp_path / "swim.nc"))
+    space = vortex_film(save(ringed(), tmp_path / "space.nc"))
     for page, told in (
         (lambda client: pages.ReplayPage(client, walk, walk), "ghost 1: limbs_only"),
         (lambda client: pages.SwimPage(client, swim, curves), "of the last cycle"),
+        (lambda client: pages.VortexPage(client, space), "surfaces of Q = 4 1/s²"),
     ):
         viewer = pages.Viewer(page, port=0)
         try:

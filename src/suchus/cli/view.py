@@ -21,6 +21,7 @@ from suchus.viewer import Session
 from suchus.viewer.animal import FilmedAnimal, beside
 from suchus.viewer.replay import Take, takes
 from suchus.viewer.swim import films
+from suchus.viewer.vortices import vortex_film
 from suchus.water import fit, printed_wave
 
 _SWIM = 1.0
@@ -79,7 +80,7 @@ class ViewSwimOptions(Where):
     """Options of ``suchus view swim``."""
 
     record: Annotated[Path, tyro.conf.Positional]
-    """The record.nc of the experiment swimming."""
+    """The record.nc of the experiment swimming or swim_3d."""
 
 
 def view(words: Sequence[str]) -> int:
@@ -169,10 +170,16 @@ def _animals(options: Replaying, runs: Sequence[Take]) -> tuple[FilmedAnimal, ..
 
 
 def _swim(words: Sequence[str]) -> int:
-    about = "Play a swim back in the browser, with vorticity and pressure of the flow."
+    about = "Play a swim back in the browser, with vorticity and pressure of the flow, or the vortices around it."
     options: ViewSwimOptions = parse(
         ViewSwimOptions, "suchus view swim", words, about, [f.name for f in fields(ViewSwimOptions)]
     )
+    space = vortex_film(options.record)
+    if space is not None:
+        pages = _pages()
+        return _serve(
+            lambda client: pages.VortexPage(client, space), options, options.record.name, camera=space.camera()
+        )
     swims, curves = films(options.record)
     pages = _pages()
     return _serve(
@@ -223,7 +230,8 @@ _HELP = """usage: suchus view [ROBOT] [GAIT] [--lake] [--host HOST] [--port PORT
        suchus view RECORD.nc [--ghost RECORD2.nc] [--animal TRACKS]
        suchus view swim RECORD.nc
 
-Show in the browser a robot that walks live, a record played back, or a swim with the flow around it.
+Show in the browser a robot that walks live, a record played back, or a swim with the flow around it: a record of
+swimming in the plane from above, one of swim_3d with the surfaces around its vortices.
 
   ROBOT, GAIT      names that `suchus list` shows, or TOML files; by default caiman and belly_crawl
   RECORD.nc        the record of an experiment, such as out/displacement/record.nc

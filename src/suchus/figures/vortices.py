@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from scipy.ndimage import map_coordinates
 
 from suchus import flow
+from suchus.errors import IncompatibleRecord
 from suchus.figures.fields import VORTICITY
 from suchus.figures.film import film
 from suchus.figures.solids import Camera, picture
@@ -21,24 +22,63 @@ SKIN = (0.42, 0.44, 0.36)
 """Colour of the body."""
 AROUND = 32
 """Points around a section of the body [-]."""
+LINES = tuple(f"film_{name}" for name in ("x", "y", "heading", "half_width"))
+"""What a record holds of the body in each frame, as (frame, station)."""
+_FIELDS, _UNITS = ("vortices", "spin"), ("vortex_level", "vortex_unit", "spin_unit")
 _DARKEST = 0.92  # share of the colour map that is used; its ends are nearly black
 _SECONDS = 4.0  # in which the film shows a cycle
 
 
-def surface(record: xr.Dataset, frame: int, *, coarse: int = 1) -> tuple[flow.IsoSurface, np.ndarray]:
+def check_filmed(record: xr.Dataset, whose: str = "the record") -> None:
+    """Refuse a record without the vortices of a swim in three dimensions over a cycle.
+
+    Args:
+        record: in question.
+        whose: how a sentence begins.
+
+    Raises:
+        IncompatibleRecord: something is missing, or is no number, or the sizes do not go together.
+    """
+    missing = [name for name in (*_FIELDS, *_UNITS, "half_height", *LINES) if name not in record]
+    if missing or record.sizes.get("frame", 0) < 1:
+        raise IncompatibleRecord(
+            f"{whose} has no {', '.join(missing) or 'frame'}: only swims in three dimensions whose vortices were kept "
+            "can be shown so, as the record.nc of suchus run swim_3d."
+        )
+    asked = {**dict.fromkeys(_FIELDS, ("frame", "z", "y", "x")), **dict.fromkeys(_UNITS, ()),
+             "half_height": ("station",), **dict.fromkeys(LINES, ("frame", "station"))}  # fmt: skip
+    axes = [axis for axis in ("frame", "z", "y", "x") if axis in record.coords]
+    named = [*asked, *axes]
+    wrong = [name for name in named if record[name].dims != asked.get(name, (name,)) or not _numbers(record[name])]
+    wrong += [name for name in _UNITS if name not in wrong and not float(record[name]) > 0.0]
+    if wrong or len(axes) < 4 or min(record.sizes[axis] for axis in ("z", "y", "x", "station")) < 2:
+        raise IncompatibleRecord(
+            f"{whose} holds {', '.join(wrong) or 'places or sizes'} in another form than swims in three dimensions do, "
+            "as the record.nc of suchus run swim_3d."
+        )
+
+
+def _numbers(values: xr.DataArray) -> bool:
+    return values.dtype.kind in "iuf" and bool(np.isfinite(values.values).all())
+
+
+def surface(
+    record: xr.Dataset, frame: int, *, coarse: int = 1, level: float | None = None
+) -> tuple[flow.IsoSurface, np.ndarray]:
     """Return the upper half of the surfaces around the vortices, and the vorticity about z at their points [1/s].
 
     Args:
         record: of the experiment ``swim_3d``.
         frame: which.
         coarse: cells along each side of a block over which the fields are averaged [-].
+        level: second invariant Q on them, above 0 [1/s2]; the record's own if None.
     """
     q, spin = (_blocks(record[name].values[frame].astype(float), coarse) for name in ("vortices", "spin"))
     h = coarse * float(record.x[1] - record.x[0])
     start = [float(record[axis][0]) + 0.5 * (h - h / coarse) for axis in "xyz"]
     q, spin = (np.concatenate([part[:1], part]) for part in (q, spin))  # the image below the plane of symmetry
-    level = float(record.vortex_level / record.vortex_unit)
-    found = flow.isosurface(q, level, (start[0], start[1], start[2] - h), h)
+    at = float((record.vortex_level if level is None else level) / record.vortex_unit)
+    found = flow.isosurface(q, at, (start[0], start[1], start[2] - h), h)
     turning = map_coordinates(spin, found.places.T, order=1, mode="nearest") * float(record.spin_unit)
     return found, turning
 
@@ -61,12 +101,22 @@ def body(record: xr.Dataset, frame: int) -> Mesh:
     )
 
 
-def around(record: xr.Dataset, frame: int) -> Mesh:
-    """Return the surfaces around the vortices, upper and lower half, coloured by the vorticity about z."""
-    found, spin = surface(record, frame)
+def around(
+    record: xr.Dataset, frame: int, *, coarse: int = 1, level: float | None = None, lower: bool = False
+) -> Mesh:  # fmt: skip
+    """Return the surfaces around the vortices, coloured by the vorticity about z.
+
+    Args:
+        record: see ``surface``, as frame, coarse and level are.
+        frame: which.
+        coarse: cells along each side of a block [-].
+        level: second invariant on them [1/s2].
+        lower: whether only the half below the plane of symmetry is returned.
+    """
+    found, spin = surface(record, frame, coarse=coarse, level=level)
     half = Mesh(found.points, found.faces, colours(spin, colour_limit(record)))
     below = Mesh(found.points * np.array([1.0, 1.0, -1.0]), found.faces[:, ::-1], half.colours)
-    return joined([half, below])
+    return below if lower else joined([half, below])
 
 
 def colours(spin: np.ndarray, limit: float) -> np.ndarray:
@@ -80,7 +130,8 @@ def colour_limit(record: xr.Dataset) -> float:
     return float(2.0 * (2.0 * record.vortex_level) ** 0.5)
 
 
-def _camera(record: xr.Dataset) -> Camera:
+def camera(record: xr.Dataset) -> Camera:
+    """Return where pictures of a record are taken from: obliquely from above, beside the body."""
     x, y = record.film_x.values, record.y.values
     length, middle = float(np.ptp(x[0])), 0.5 * float(x.min() + x.max())
     target, width = (middle + 0.26 * length, -0.14 * length, 0.0), 1.2 * length + 0.25 * float(np.ptp(y))
@@ -94,7 +145,7 @@ def hexed(share: float) -> str:
 
 def still(record: xr.Dataset, frame: int, size: tuple[int, int] = (720, 400)) -> np.ndarray:
     """Return a picture of a frame from a corner, (row, column, 3) uint8."""
-    return picture(body(record, frame), around(record, frame), _camera(record), size)
+    return picture(body(record, frame), around(record, frame), camera(record), size)
 
 
 def draw_vortices(record: xr.Dataset) -> Figure:

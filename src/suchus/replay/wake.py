@@ -10,7 +10,6 @@ import xarray as xr
 from markupsafe import Markup
 from PIL import Image
 
-from suchus.errors import IncompatibleRecord
 from suchus.figures import vortices
 from suchus.record import versions
 from suchus.replay.pack import PackedArrays, quantised
@@ -19,8 +18,6 @@ from suchus.replay.page import environment
 LARGEST = 3_500_000
 """Bytes of arrays from which the surfaces are taken of blocks of cells [-]; as text they take a third more."""
 _COARSEST = 4
-_NEEDED = ("vortices", "spin", "vortex_level", "vortex_unit", "spin_unit", "half_height",
-           *(f"film_{name}" for name in ("x", "y", "heading", "half_width")))  # fmt: skip
 
 
 def wake_replay(record: xr.Dataset, *, title: str = "", caption: str = "") -> str:
@@ -34,12 +31,7 @@ def wake_replay(record: xr.Dataset, *, title: str = "", caption: str = "") -> st
     Raises:
         IncompatibleRecord: the record holds no vortices of a swim in three dimensions.
     """
-    missing = [name for name in _NEEDED if name not in record]
-    if missing or record.sizes.get("frame", 0) < 1:
-        raise IncompatibleRecord(
-            f"the record has no {', '.join(missing) or 'frame'}: only swims in three dimensions whose vortices were "
-            "kept can be replayed so, as the record.nc of suchus run swim_3d."
-        )
+    vortices.check_filmed(record)
     meta, data = _scene(record)
     still = vortices.still(record, record.sizes["frame"] - 1)
     drawn = BytesIO()
@@ -81,7 +73,9 @@ def _packed(record: xr.Dataset, pack: PackedArrays, coarse: int) -> dict[str, An
         small = len(whole) <= np.iinfo(np.uint16).max
         faces = pack.add(one.faces.astype(np.uint16 if small else np.uint32))
         frames.append({"points": pack.add(whole), "spin": pack.add(shades), "faces": faces})
-    lines = {name: quantised(record[f"film_{name}"].values, np.int16) for name in ("x", "y", "heading", "half_width")}
+    lines = {
+        name.removeprefix("film_"): quantised(record[name].values, np.int16) for name in vortices.LINES
+    }  # fmt: skip
     return {
         "frames": frames,
         "phase": np.round(record.frame.values.astype(float), 4).tolist(),

@@ -79,7 +79,7 @@ def films(path: Path) -> tuple[tuple[Film, ...], tuple[PlottedCurve, ...]]:
     if not found:
         raise IncompatibleRecord(
             f"{path} holds no fields of water: only records of swimming by CFD do, as the record.nc of "
-            "suchus run swimming."
+            "suchus run swimming or suchus run swim_3d."
         )
     return tuple(found), _curves(record)
 

@@ -17,7 +17,7 @@ from suchus.viewer.swim import Film, PlottedCurve, colours
 CAMERA = ((0.75, -0.05, 3.3), (0.75, 0.0, 0.0))
 """Where the camera is at first and where it looks [m]."""
 _SKIN, _EDGE = "#C9DCCB", "#2F4737"
-_INKS = (COLOURS["ours"], COLOURS["limbs_only"], COLOURS["tail"])
+_INKS = (COLOURS["ours"], COLOURS["limbs_only"], COLOURS["tail"], COLOURS["limbs_tail_lifted"])
 _FRAME = 0.1  # [s]
 _CYCLE = 4.0  # [s]; in which a cycle is played at speed 1
 _WORDS = {"vorticity": ("turns clockwise", "counter-clockwise"), "pressure": ("suction", "pressure")}
@@ -52,7 +52,7 @@ class SwimPage:
             panel = gui.add_panel()
             with panel.add_tab("Measured"):
                 for curve in curves:
-                    _draw(gui, curve)
+                    draw_curve(gui, curve)
             panel.dock_left()
             panel.set_width(370)
         scene = client.scene
@@ -146,7 +146,8 @@ def status_text(film: Film, field: str, frame: int) -> str:
     )
 
 
-def _draw(gui: Any, curve: PlottedCurve) -> None:
+def draw_curve(gui: Any, curve: PlottedCurve) -> None:
+    """Draw a measured course as a plot of its own, with at most as many lines as there are inks."""
     lines = tuple(Line(name, name, ink) for name, ink in zip(curve.lines, _INKS, strict=False))
     gui.add_uplot(
         data=(np.asarray(curve.x, dtype=float), *(np.asarray(curve.lines[line.column], dtype=float) for line in lines)),
