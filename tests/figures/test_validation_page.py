@@ -1,12 +1,14 @@
 """The page of the validation: no row is lost, each stands in its group, and its plots are drawn from the rows."""
 
 import json
+from types import SimpleNamespace
 
 import pytest
 from matplotlib.figure import Figure
+from tests.flow.validation_rows import ROOT, SOURCES, is_whole
 
 from suchus.errors import IncompatibleRecord
-from suchus.figures.validation import DRAWN, write_table, write_validation
+from suchus.figures.validation import DRAWN, kept_rows, write_table, write_validation
 from suchus.figures.validation_page import GROUPS, page
 
 
@@ -86,3 +88,69 @@ def test_page_and_plots_are_written(tmp_path):
     write_validation(tmp_path, tmp_path, ("Someone 1990: a paper.",))
     assert "- Someone 1990: a paper." in (tmp_path / "validation.md").read_text()
     assert {path.stem for path in (tmp_path / "pictures").iterdir()} == {f"flow_{name}" for name in DRAWN}
+
+
+@pytest.fixture
+def run(tmp_path):
+    """Do a part of a validation: rows into a folder, and the page from them."""
+    folder, docs = tmp_path / "rows", tmp_path / "docs"
+    docs.mkdir()
+
+    def part(*rows, **how):
+        folder.mkdir(exist_ok=True)
+        for old in folder.iterdir():
+            old.unlink()
+        for i, one in enumerate(rows):
+            (folder / f"{i}.json").write_text(json.dumps(one))
+        write_table(folder, docs, **how)
+        return (docs / "validation.md").read_text()
+
+    part.docs = docs
+    return part
+
+
+def test_a_part_of_the_validation_renews_its_own_rows_and_keeps_the_others_with_their_code(run):
+    run(row("Taylor-Green") | {"code": "first"}, row("Taylor-Green", "order") | {"code": "first"}, row("a sphere"))
+    text = run(row("Taylor-Green", "order") | {"code": "second", "ours": 1.9})
+    assert "| Cd | 2.1 | 2 | +5.0 % | first |" in text
+    assert "| order | 1.9 | 2 | -5.0 % | second |" in text
+    assert "### A sphere" in text
+    assert text.count("| order |") == 1
+
+
+def test_the_whole_validation_leaves_no_row_of_before(run):
+    run(row("a sphere"))
+    assert "sphere" not in run(row("Taylor-Green"), whole=True)
+    assert "sphere" not in run(row("Taylor-Green", "order"))
+
+
+def test_rows_that_only_plots_need_stay_off_the_file_beside_the_page(run):
+    run(row("Taylor-Green", size=[16]), row("energy budget", "share", theirs="-", share=[0.9]))
+    assert [set(one) & {"case", "curves"} for one in kept_rows(run.docs)] == [{"case"}]
+
+
+@pytest.mark.parametrize("text", ["[{", '[{"case": "a"}]', "[1]", "3"])
+def test_damaged_rows_of_the_page_are_refused_and_nothing_is_written(run, text):
+    page_before = run(row("Taylor-Green"))
+    (run.docs / "validation.json").write_text(text)
+    with pytest.raises(IncompatibleRecord, match=r"validation\.json holds no rows"):
+        run(row("a sphere"))
+    assert (run.docs / "validation.md").read_text() == page_before
+    assert (run.docs / "validation.json").read_text() == text
+
+
+def test_the_page_is_what_its_rows_say():
+    """By hand nothing is changed on it: a change would be lost when any part of the validation runs."""
+    assert page(kept_rows(ROOT / "docs"), SOURCES) == (ROOT / "docs" / "validation.md").read_text()
+
+
+@pytest.mark.parametrize(
+    ("changed", "whole"),
+    [({}, True), ({"args": ["tests/flow"]}, True), ({"keyword": "eel"}, False), ({"lf": True}, False),
+     ({"args": ["tests/flow/test_validate_flow.py"]}, False), ({"args": ["tests/flow/a.py::test_b"]}, False),
+     ({"deselect": ["tests/flow/a.py"]}, False), ({"ignore": ["tests/flow"]}, False)],
+)  # fmt: skip
+def test_a_part_is_known_by_how_it_is_asked_for(changed, whole):
+    asked = {"args": ["tests"], "keyword": "", "lf": False, "deselect": None, "ignore": None} | changed
+    args = asked.pop("args")
+    assert is_whole(SimpleNamespace(args=args, option=SimpleNamespace(**asked))) == whole

@@ -6,71 +6,27 @@ its bound here is the one that holds, so that it cannot get worse unseen.
 """
 
 import csv
-import json
-from pathlib import Path
 
 import energy
 import flow_cases as cases
 import numpy as np
 import pytest
+from validation_rows import OUT, ROOT, SOURCES, is_whole, note
 
 from suchus import flow
-from suchus.figures.validation import write_table, write_validation
+from suchus.figures.validation import write_validation
 from suchus.flow import signals
 from suchus.flow.resolution import SKIN_SUM
 
-pytestmark = pytest.mark.validate
+pytestmark = [pytest.mark.validate, pytest.mark.usefixtures("validation_table")]
 
-ROOT = Path(__file__).resolve().parents[2]
 DATA = ROOT / "tests" / "data" / "flow"
-OUT = ROOT / "out" / "validation"
-
-SOURCES = (
-    "Stokes 1851 (Trans. Cambridge Phil. Soc. 9, 8-106) and Wang 1968 (J. Fluid Mech. 32, 55-68): the force on a "
-    "cylinder that oscillates in water at rest by small amounts.",
-    "The eel is that of the IBAMR example eel2d, which gives no speed: what is bounded is how much finer grids and "
-    "further cycles change it.",
-    "Flows with published data stand in the [atlas](atlas.md).",
-)
-
-
-@pytest.fixture(autouse=True, scope="module")
-def _fresh(request):
-    """Begin with no rows, unless only some of the cases were asked for."""
-    if not request.config.option.keyword:
-        for path in OUT.glob("*.json"):
-            path.unlink()
-
-
-@pytest.fixture(autouse=True)
-def _table_so_far():
-    """Write the table after every case: a run that is killed leaves what it had."""
-    yield
-    if any(OUT.glob("*.json")):
-        write_table(OUT, ROOT / "docs", SOURCES)
 
 
 def published(name):
     with (DATA / name).open() as file:
         rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
     return {key: np.array([float(row[key]) for row in rows]) for key in rows[0]}
-
-
-def note(case, quantity, ours, theirs, grid, domain, source, **curves):
-    """Keep one row of the table (and curves for its figure) under out/validation."""
-    OUT.mkdir(parents=True, exist_ok=True)
-    row = {
-        "case": case,
-        "quantity": quantity,
-        "ours": float(ours),
-        "theirs": theirs,
-        "grid": grid,
-        "domain": domain,
-        "source": source,
-        "curves": {key: np.asarray(value).tolist() for key, value in curves.items()},
-    }
-    (OUT / f"{case} {quantity}.json".replace("/", "-")).write_text(json.dumps(row))
-    return abs(ours / theirs - 1) if isinstance(theirs, float) and theirs else float("nan")
 
 
 def periodic(record, f):
@@ -373,7 +329,9 @@ def test_heaving_thin_plate():
     assert works[1] == pytest.approx(works[-1], rel=0.02)
 
 
-def test_table_is_written():
-    """Last in this file: gathers what the others kept."""
+def test_table_is_written(request):
+    """Last in this file: draws the plots from what the others kept."""
+    if not is_whole(request.config):
+        pytest.skip("the plots are drawn when all of the validation runs")
     write_validation(OUT, ROOT / "docs", SOURCES)
     assert "Taylor-Green" in (ROOT / "docs" / "validation.md").read_text()

@@ -7,7 +7,7 @@ comment says so.
 import numpy as np
 import pytest
 from test_space import SPHERE, TAYLOR_GREEN, added, ball, taylor_green
-from test_validate_flow import _table_so_far, note  # noqa: F401 - the fixture works by being here
+from validation_rows import note
 
 from suchus import flow
 from suchus.experiments.swim_3d import Swim3d
@@ -15,7 +15,7 @@ from suchus.flow.added import added_mass
 from suchus.flow.compiled import PAD
 from suchus.water import space
 
-pytestmark = pytest.mark.validate
+pytestmark = [pytest.mark.validate, pytest.mark.usefixtures("validation_table")]
 
 DRAG = {25: 2.366, 50: 1.581, 100: 1.0965, 200: 0.790}
 """Drag of a sphere: Johnson and Patel 1999, J. Fluid Mech. 378, 19, Fig. 5 as digitised; at Re 100 the middle of it and
@@ -30,6 +30,8 @@ def test_taylor_green_at_64_cells_a_period():
     energies = taylor_green(32, 9)
     error = np.abs(energies - TAYLOR_GREEN).max() / TAYLOR_GREEN[0]
     print(f"Taylor-Green at Re 100, 64 cells a period: energy {energies.round(5)}, error {100 * error:.2f} %")
+    note("box of Taylor-Green vortices, Re 100", "largest error of the energy over that at the start", error,
+         "at most 0.002", "64 cells a period", "periodic", "by spectra, 40 modes a side")  # fmt: skip
     assert error < 0.002
 
 
@@ -41,6 +43,8 @@ def test_added_mass_of_a_sphere_over_three_grids():
         held = dict.fromkeys(("left", "right", "bottom", "top", "low"), flow.Stream(unbounded=False))
         found.append(added(ball(grid=grid, sides=flow.Sides(**held, high=flow.Mirror()), steps=0))[0, 0])
     print(f"added mass of a sphere at 8, 16, 24 cells a diameter: {np.round(found, 4)}, potential flow 0.512")
+    note("sphere, added mass", "in a box of 4 D whose sides hold the water", found[-1], 0.512, "24 cells/D",
+         "4 x 4 x 4 D", "potential theory, concentric sphere")  # fmt: skip
     assert np.all(np.diff(np.abs(np.array(found) - 0.512)) < 0)
     assert found[-1] == pytest.approx(0.512, rel=0.01)
 
@@ -65,6 +69,8 @@ def test_drag_of_a_sphere_over_three_grids(reynolds):
     found = np.array([drag(n, reynolds, until=UNTIL[reynolds]) for n in cells])
     limit = np.polynomial.Polynomial.fit(1 / cells**2, found, 1)(0.0)
     print(f"sphere at Re {reynolds}: {found.round(4)}, limit {limit:.4f}, published {DRAG[reynolds]}")
+    note("sphere in a stream", f"Cd, Re {reynolds}", limit, DRAG[reynolds], "12, 16, 24 cells/D, limit", "6 x 4 x 4 D",
+         "Johnson and Patel 1999")  # fmt: skip
     assert np.all(np.diff(found) < 0)
     assert limit == pytest.approx(DRAG[reynolds], rel=0.02)
 
@@ -73,6 +79,8 @@ def test_drag_of_a_sphere_and_the_width_of_the_box():
     """Half-widths of 2 and 4 diameters, with sides that a source and a dipole move: the asked 1 %."""
     narrow, wide = drag(8, 100), drag(8, 100, half=4.0)
     print(f"sphere at Re 100 in boxes of 4 and 8 diameters: {narrow:.3f}, {wide:.3f}")
+    note("sphere in a stream", "Cd, Re 100, in a box of 4 D", narrow, wide, "8 cells/D", "6 x 4 x 4 D",
+         "the same in a box of 8 D")  # fmt: skip
     assert narrow == pytest.approx(wide, rel=0.01)
 
 
@@ -98,6 +106,11 @@ def test_added_mass_in_open_water_is_lambs(ratio, box):
     share = cells[0] ** 2 / (cells[1] ** 2 - cells[0] ** 2)
     limit = found[1] + share * (found[1] - found[0])
     print(f"added mass of a spheroid {ratio}:1, cells {cells}: {np.round(found, 4)}, limit {limit}, Lamb {exact}")
+    case = f"spheroid {ratio}:1" if ratio > 1 else "sphere, added mass"
+    for name, ours, theirs in zip(("along its axis", "across it"), limit, exact, strict=True):
+        if ratio == 4 or (ratio == 1 and name == "across it"):  # that of 2:1 stands below, with its inertia
+            note(case, f"added mass {name}" if ratio > 1 else "in open water", ours, float(theirs),
+                 f"{cells[0]}, {cells[1]} cells/D, limit", "{} x {} x {} D".format(*box), "Lamb 1932")  # fmt: skip
     assert np.abs(found[1] - exact).max() < np.abs(found[0] - exact).max()
     if ratio < 4:
         assert limit == pytest.approx(exact, rel=0.01)
@@ -168,6 +181,9 @@ def test_force_on_an_oscillating_sphere():
     found = np.array([oscillating(n) for n in cells])
     limit = [np.polynomial.Polynomial.fit(1 / cells**2, column, 1)(0.0) for column in found.T]
     print(f"oscillating sphere, cells {cells}, added mass and damping: {found.round(4)}, limit {limit}, exact {exact}")
+    for name, ours, theirs in zip(("added mass", "damping"), limit, exact, strict=True):
+        note("sphere, oscillating, f D^2 / nu = 20", f"{name} over what is displaced", ours, float(theirs),
+             "12, 16, 24 cells/D, limit", "4 x 4 x 4 D", "Stokes 1851")  # fmt: skip
     assert limit == pytest.approx(exact, rel=0.03)
 
 
@@ -213,6 +229,8 @@ def test_control_volume_and_exchange():
             seen = entered - (held() - before) / sim.record.step[-1]
         drag = sim.record.force()[-1, 0]
         print(f"drag of a sphere by exchange {drag:.5f}, through a box {margin} cells inside the domain {seen:.5f}")
+        note("sphere, momentum", f"force less that through a box, {margin} cells inside the domain",
+             abs(seen / drag - 1), "at most 0.005", "16 cells/D", "3 x 3 x 3 D", "-")  # fmt: skip
         assert seen == pytest.approx(drag, rel=0.005)
 
 
@@ -235,6 +253,8 @@ def test_momentum_of_body_and_water():
     given, now = -np.sum(record, axis=0), gained() - start
     scale = np.abs(record).sum(axis=0).max()
     print(f"momentum that a sphere gave {given}, that the water has {now}, sum of sizes {scale:.4g}")
+    note("sphere, momentum", "what the body gave less what the water has, over all that went to and fro",
+         np.abs(given - now).max() / scale, "at most 0.0001", "10.7 cells/D", "periodic, 3 D", "exact")  # fmt: skip
     assert scale > 0.1 * SPHERE.volume(0.0)
     assert np.abs(given - now).max() < 1e-4 * scale
 
@@ -266,6 +286,8 @@ def test_mirror_and_full_domain_over_half_a_stroke():
     full, half = (sim.record.bodies[:, 0, columns] for sim in runs)
     off = np.abs(full - half).max(axis=0) / np.abs(full).max(axis=0)
     print(f"half and whole domain: force x, y, torque, power differ by {off} of their largest")
+    note("spheroid, heaving and pitching", "force, torque, power in half and whole domain, largest difference",
+         off.max(), "at most 0.001", "10.7 cells/D", "3 x 3 x 3 D", "-")  # fmt: skip
     assert off.max() < 1e-3
 
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from free_slip import sampled, slipping
 from test_friction import lamb, meridian
-from test_validate_flow import _table_so_far, note  # noqa: F401 - the fixture works by being here
+from validation_rows import note
 
 from suchus import flow
 from suchus.design.water import Water
@@ -22,7 +22,7 @@ from suchus.robots import ROBOTS
 from suchus.water import Basin, Outline, cycle, fit, printed_wave, recoil, space
 from suchus.water.sections import coefficients
 
-pytestmark = pytest.mark.validate
+pytestmark = [pytest.mark.validate, pytest.mark.usefixtures("validation_table")]
 
 HARDLY = 1e-9
 """Kinematic viscosity of water that is next to ideal, per length and speed [-]."""

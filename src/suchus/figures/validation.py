@@ -1,5 +1,6 @@
 """Plots of the flow solver's validation, and the page that shows them beside its numbers."""
 
+import json
 import re
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
@@ -10,8 +11,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from suchus.errors import IncompatibleRecord
 from suchus.figures.style import COLOURS, styled
-from suchus.figures.validation_page import load_rows, page
+from suchus.figures.validation_page import UNKNOWN, Row, load_rows, merged, page
 from suchus.record import new_file
 
 _SMALL = {"fontsize": 10}
@@ -115,21 +117,54 @@ DRAWN: Final[Mapping[str, Callable[[list[dict[str, Any]]], Figure]]] = MappingPr
 """The plots of the page by name: each is drawn from all rows."""
 
 
-def write_table(folder: Path, docs: Path, sources: Sequence[str] = ()) -> None:
-    """Write ``validation.md`` to ``docs`` from the rows that the validation kept in ``folder``, and the ``sources``.
+KEPT = "validation.json"
+"""File beside the page with every row that stands on it, so that a part of the validation renews its rows alone."""
+
+
+def kept_rows(docs: Path) -> list[Row]:
+    """Return the rows of the page as it stands in ``docs``; none where there is no page.
 
     Raises:
-        IncompatibleRecord: there are no rows.
+        IncompatibleRecord: the file of the rows is damaged.
     """
+    path = docs / KEPT
+    if not path.exists():
+        return []
+    try:
+        rows = json.loads(path.read_text(encoding="utf-8"))
+        merged(rows, ())
+    except (ValueError, KeyError, TypeError) as error:
+        raise IncompatibleRecord(f"{path} holds no rows of the validation; take it from the last commit.") from error
+    return list(rows)
+
+
+def write_table(folder: Path, docs: Path, sources: Sequence[str] = (), *, whole: bool = False) -> None:
+    """Write ``validation.md``, and its rows beside it, to ``docs``.
+
+    Args:
+        folder: where the validation kept its rows.
+        docs: where the page stands.
+        sources: sentences on where the published numbers come from.
+        whole: whether these are all rows there are; else those of the page that are not computed anew stay on it.
+
+    Raises:
+        IncompatibleRecord: there are no rows, or those of the page are damaged.
+    """
+    rows = merged([] if whole else kept_rows(docs), load_rows(folder))
+    bare = [
+        {name: value for name, value in row.items() if name != "curves"} for row in rows if row["theirs"] != UNKNOWN
+    ]
+    with new_file(docs / KEPT) as draft:
+        draft.write_text("[\n" + ",\n".join(map(json.dumps, bare)) + "\n]\n", encoding="utf-8")
     with new_file(docs / "validation.md") as draft:
-        draft.write_text(page(load_rows(folder), sources), encoding="utf-8")
+        draft.write_text(page(rows, sources), encoding="utf-8")
 
 
 def write_validation(folder: Path, docs: Path, sources: Sequence[str] = ()) -> None:
-    """Write ``validation.md``, with ``sources``, and its plots to ``docs`` from the rows kept in ``folder``.
+    """Write ``validation.md``, see ``write_table``, and its plots, which are drawn from the rows in ``folder`` alone.
 
     Raises:
-        IncompatibleRecord: there are no rows.
+        IncompatibleRecord: there are no rows, or those of the page are damaged.
     """
     rows = load_rows(folder)
     pictures = docs / "pictures"

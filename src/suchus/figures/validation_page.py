@@ -14,7 +14,8 @@ UNKNOWN = "-"
 """Value of ``theirs`` in a row without anything to compare with: its curves are drawn, and it is in no table."""
 
 Row = Mapping[str, Any]
-"""One comparison: ``case``, ``quantity``, ``ours``, ``theirs``, ``grid``, ``domain``, ``source``, ``curves``."""
+"""One comparison: ``case``, ``quantity``, ``ours``, ``theirs``, ``grid``, ``domain``, ``source``, ``code``, ``curves``;
+``code`` is how the hash of the solver's source began."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -67,16 +68,17 @@ GROUPS = (
     ),
     Group(
         title="In three dimensions",
-        about="The added mass of a spheroid for its six accelerations. The robot of `suchus run swim_3d`, free in its "
-        "own box of water and in a wide one: what the sides do.",
-        cases=("spheroid", "swimming robot"),
+        about="Decaying vortices, spheres and spheroids against exact and published numbers, budgets of momentum. The "
+        "robot of `suchus run swim_3d`, free in its own box of water and in a wide one: what the sides do.",
+        cases=("box of Taylor-Green vortices", "sphere", "spheroid", "swimming robot"),
     ),
 )
 """The groups of the page in their order; a case that none of them names is in a last group."""
 
 _OTHERS = Group(title="Other cases", about="Cases that belong to none of the groups above.", cases=("",))
 _MISSED = "**missed**"
-_HEAD = ("quantity", "computed", "published or exact", "difference", "grid", "domain", "source")
+_HEAD = ("quantity", "computed", "published or exact", "difference", "grid", "domain", "source", "code")
+_SHARED = ("grid", "domain", "source", "code")
 
 
 def load_rows(folder: Path) -> list[dict[str, Any]]:
@@ -89,6 +91,12 @@ def load_rows(folder: Path) -> list[dict[str, Any]]:
     if not rows:
         raise IncompatibleRecord(f"{folder} holds no validation rows; run `make validate` first.")
     return rows
+
+
+def merged(kept: Sequence[Row], new: Sequence[Row]) -> list[Row]:
+    """Return all rows in their order, those of a quantity that was computed anew in the place of the old ones."""
+    rows = {f"{row['case']} {row['quantity']}.": row for row in (*kept, *new)}
+    return [rows[key] for key in sorted(rows)]
 
 
 def page(rows: Sequence[Row], sources: Sequence[str] = ()) -> str:
@@ -104,9 +112,11 @@ def page(rows: Sequence[Row], sources: Sequence[str] = ()) -> str:
     lines = [
         "# Validation of the flow solver", "",
         "Results of `suchus.flow` beside exact solutions, budgets that must close and required bounds. `make "
-        "validate` runs every case (`tests/flow/test_validate_flow.py`) and writes this page; every row is a run of "
-        "this code. Comparisons with published data are in the [atlas](atlas.md). [Limits](flow_limits.md) says what "
-        "the rows mean, and where the solver falls short: a required bound that is not kept is marked.", "",
+        "validate` runs every case (`tests/flow/test_validate_*.py`) and writes this page; every row is a run. Code "
+        "is how the hash of the solver's source began in that run, `suchus.record.code_digest(\"flow\")`: cases that "
+        "are run alone renew their own rows, and a row without a code is older than this rule. Comparisons with "
+        "published data are in the [atlas](atlas.md). [Limits](flow_limits.md) says what the rows mean, and where the "
+        "solver falls short: a required bound that is not kept is marked.", "",
         "Grids are given in cells per diameter D or body length L. Re is the Reynolds number, Cd and Ci are the "
         "coefficients of drag and inertia, KC is the Keulegan-Carpenter number.", "",
         *contents,
@@ -133,9 +143,9 @@ def _grouped(rows: Sequence[Row]) -> Iterator[tuple[Group, list[Row]]]:
 
 def _table(case: str, rows: Sequence[Row]) -> list[str]:
     """Return a case's heading, what all its rows have in common, and the table of the rest."""
-    common = [name for name in ("grid", "domain", "source") if len({row[name] for row in rows}) == 1]
-    shared = [f"{name.capitalize()}: {rows[0][name]}." for name in common if rows[0][name] != "-"]
     cells = [_cells(row) for row in rows]
+    common = [name for name in _SHARED if len({cell[name] for cell in cells}) == 1]
+    shared = [f"{name.capitalize()}: {cells[0][name]}." for name in common if cells[0][name] not in ("-", "")]
     columns = [name for name in _HEAD if name not in common and any(cell[name] for cell in cells)]
     lines = ["", f"### {case[:1].upper()}{case[1:]}", ""]
     lines += [" ".join(shared), ""] if shared else []
@@ -151,7 +161,7 @@ def _cells(row: Row) -> dict[str, str]:
         "computed": f"{row['ours']:.4g}",
         "published or exact": f"{theirs:.4g}" if number else str(theirs),
         "difference": _compared(float(row["ours"]), theirs),
-        **{name: str(row[name]) for name in ("grid", "domain", "source")},
+        **{name: str(row.get(name, "")) for name in _SHARED},
     }
 
 

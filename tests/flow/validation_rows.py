@@ -1,0 +1,46 @@
+"""Rows of the validation: each is kept as it comes, with the code and the test that made it."""
+
+import json
+import os
+from pathlib import Path
+
+import numpy as np
+
+from suchus.record import code_digest
+
+ROOT = Path(__file__).resolve().parents[2]
+OUT = ROOT / "out" / "validation"
+
+SOURCES = (
+    "Stokes 1851 (Trans. Cambridge Phil. Soc. 9, 8-106) and Wang 1968 (J. Fluid Mech. 32, 55-68): the force on a "
+    "cylinder that oscillates in water at rest by small amounts.",
+    "The eel is that of the IBAMR example eel2d, which gives no speed: what is bounded is how much finer grids and "
+    "further cycles change it.",
+    "Flows with published data stand in the [atlas](atlas.md).",
+)
+
+
+def note(case, quantity, ours, theirs, grid, domain, source, **curves):
+    """Keep one row of the table (and curves for its figure) under out/validation."""
+    OUT.mkdir(parents=True, exist_ok=True)
+    row = {
+        "case": case,
+        "quantity": quantity,
+        "ours": float(ours),
+        "theirs": theirs,
+        "grid": grid,
+        "domain": domain,
+        "source": source,
+        "code": code_digest("flow")[:12],
+        "test": os.environ["PYTEST_CURRENT_TEST"].rpartition(" ")[0],
+        "curves": {key: np.asarray(value).tolist() for key, value in curves.items()},
+    }
+    (OUT / f"{case} {quantity}.json".replace("/", "-")).write_text(json.dumps(row))
+    return abs(ours / theirs - 1) if isinstance(theirs, float) and theirs else float("nan")
+
+
+def is_whole(config):
+    """Return whether all of the validation is asked for, and not a part of its files or tests."""
+    option = config.option
+    chosen = option.keyword or option.lf or option.deselect or option.ignore
+    return not chosen and not any("::" in word or word.endswith(".py") for word in map(str, config.args))
