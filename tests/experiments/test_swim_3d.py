@@ -112,6 +112,8 @@ REFUSED = {
         "reynolds is 1e+06: real water",
         "where its layer does, and that is not built; at most 20000 is allowed",
     ),
+    "--cells 32 --compared-cells 32 --reynolds 400": ("m thick at most, 2", "at least 3.41 cells are needed"),
+    "--slice-cells 32 --reynolds 3000": ("the boundary layer of", "at least 39 cells per body length, or a viscosity"),
     "--cells 512": ("a grid of 768 x 384 x 128 cells takes 3.", "GB of memory, and this machine has 1 GB"),
 }
 
@@ -120,9 +122,12 @@ REFUSED = {
 def test_what_cannot_be_swum_is_one_sentence_before_anything_runs(words, capsys, tmp_path, monkeypatch):
     if "512" in words:
         monkeypatch.setattr(memory, "machine_memory", lambda: 10**9)
-    assert main(["run", "swim_3d", *words.split(), "--out", str(tmp_path / "out")]) == 2
+    assert (
+        main(["run", "swim_3d", *words.split(), "--keep", str(tmp_path / "keep"), "--out", str(tmp_path / "out")]) == 2
+    )
     out, err = capsys.readouterr()
     said = err.strip()
+    assert not (tmp_path / "keep").exists()
     assert all(part in said for part in REFUSED[words][-2:]), said
     assert len(said) < 600
     assert "\n" not in said

@@ -2,9 +2,11 @@
 
 import json
 import os
+import pickle
 import subprocess
 import sys
 import time
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -13,11 +15,14 @@ import xarray as xr
 
 from suchus.cli import main
 from suchus.errors import IncompatibleRecord, InvalidDesign
+from suchus.experiments.swim_3d import _swum_here, swum_in_space
+from suchus.flow.fingerprint import fingerprint
 from suchus.land import Run
 from suchus.optimise import Aim, Optimisation, optimise
 from suchus.optimise.elsewhere import evaluate_on
 from suchus.optimise.evaluate import evaluate
 from suchus.study import NoCluster, Study, Vary, conduct, conduct_sweep, connected
+from suchus.water import Basin, fit, printed_wave
 
 pytestmark = pytest.mark.filterwarnings("default")  # Dask's own
 
@@ -119,6 +124,28 @@ def test_the_same_bytes_whatever_is_killed(asked, search, machines, tmp_path):
         assert contents(tmp_path / name) == contents(tmp_path / f"{name}_here")
 
 
+@pytest.fixture
+def swims(robot):
+    """Name, calculation and items of a sweep of one small swim in three dimensions."""
+    wave = fit(robot, printed_wave(robot, "I", sign=-1)).swim
+    return "swims", partial(swum_in_space, robot), [(wave, Basin(cells=54, viscosity=2e-3, cycles=1, frames=2))]
+
+
+def test_a_worker_gets_the_swim_that_is_asked(swims):
+    for part in swims:
+        assert fingerprint(pickle.loads(pickle.dumps(part))) == fingerprint(part)
+
+
+@pytest.mark.validate  # half a minute: two swims, and machines that load the solver
+def test_a_swim_in_three_dimensions_has_the_bytes_of_one_here(robot, swims, machines, tmp_path):
+    with connected(machines.address) as client:
+        conduct_sweep(*swims, tmp_path / "there", client=client)
+    (swum,) = conduct_sweep(*swims, tmp_path / "here", local=partial(_swum_here, robot, str(tmp_path / "kept")))
+    assert contents(tmp_path / "there") == contents(tmp_path / "here")
+    assert swum.sizes["frame"] == 2
+    assert float(swum.power[-1]) > 0.0
+
+
 def test_a_generation_in_pieces_is_the_generation(search, monkeypatch):
     shares = np.random.default_rng(0).uniform(-0.2, 1.2, (5, 2))  # some cannot be
     monkeypatch.setattr("suchus.optimise.elsewhere.cores", lambda client: 3)
@@ -184,7 +211,7 @@ high = 0.1
 
 @pytest.mark.parametrize(
     "words",
-    [["study", "study.toml"], ["optimise", "search.toml"], ["run", "swim_sweep"]],
+    [["study", "study.toml"], ["optimise", "search.toml"], ["run", "swim_sweep"], ["run", "swim_3d"]],
 )
 def test_each_command_takes_a_scheduler(words, tmp_path, monkeypatch, capsys):
     (tmp_path / "study.toml").write_text(PAGE.format('measure = ["slip"]\ndesign = "latin"\nsamples = 2'))

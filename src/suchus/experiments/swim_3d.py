@@ -24,7 +24,18 @@ from suchus.motion import Swim
 from suchus.replay import wake_replay
 from suchus.robots import ROBOTS
 from suchus.study import at_scheduler, conduct_sweep
-from suchus.water import Basin, Motion, Tether, check_swim_in_space, fit, free_swim, printed_wave, swim, swim_in_space
+from suchus.water import (
+    Basin,
+    Motion,
+    Tether,
+    check_free_swim,
+    check_swim_in_space,
+    fit,
+    free_swim,
+    printed_wave,
+    swim,
+    swim_in_space,
+)
 from suchus.water.diary import forget_kept, kept_in
 from suchus.water.space import BESIDE
 
@@ -135,6 +146,7 @@ class Swim3d(Experiment):
         runs = self._runs(ours, printed, bent)
         for _, motion, basin in runs:
             check_swim_in_space(self.robot, motion, basin)
+        check_free_swim(self.robot, ours, self._tether)
         items = [(motion, basin) for _, motion, basin in runs]
         with nullcontext(self.keep) if self.keep else TemporaryDirectory() as folder:
             found = conduct_sweep(
@@ -157,6 +169,11 @@ class Swim3d(Experiment):
     def viscosity(self) -> float:
         """Kinematic viscosity of the water [m2/s]."""
         return self.frequency * self.robot.length**2 / self.reynolds
+
+    @property
+    def _tether(self) -> Tether:
+        """Grid, water and time of the slice."""
+        return Tether(cells=self.slice_cells, viscosity=self.viscosity, cycles=self.cycles)
 
     def _runs(self, ours: Swim, printed: Swim, bent: Sequence[Midline] = ()) -> Sequence[tuple[str, Motion, Basin]]:
         """Return name, motion, grid and time of every swim in space."""
@@ -181,8 +198,7 @@ class Swim3d(Experiment):
 
     def _beside(self, ours: Any, progress: Any) -> xr.Dataset:
         """Return the speed of the slice and of the slender-body models at the same Reynolds number."""
-        setting = Tether(cells=self.slice_cells, viscosity=self.viscosity, cycles=self.cycles)
-        plane = free_swim(self.robot, ours, setting, checkpoint=kept_in(self.keep, "slice"), progress=progress)
+        plane = free_swim(self.robot, ours, self._tether, checkpoint=kept_in(self.keep, "slice"), progress=progress)
         models, real = swim(self.robot, ours, water=Water(viscosity=self.viscosity)), swim(self.robot, ours)
         return xr.Dataset(
             {

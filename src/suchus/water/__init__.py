@@ -4,7 +4,7 @@ from suchus.design.water import Water
 from suchus.renamed import old_exports
 from suchus.water.diary import portion
 from suchus.water.fit import Fit, fit, head_base
-from suchus.water.free import free_swim
+from suchus.water.free import check_free_swim, free_swim
 from suchus.water.held import tether
 from suchus.water.immersed import immersed
 from suchus.water.measures import Quarters, Sway, Swum, convex_higher, efficiency, level, swing, wave_form
@@ -45,6 +45,7 @@ __all__ = [
     "Undulation",
     "Water",
     "attempts",
+    "check_free_swim",
     "check_swim_in_space",
     "convex_higher",
     "cruise",

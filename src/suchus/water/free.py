@@ -40,6 +40,11 @@ def free_swim(
     return pool.swum(_Free(pool), checkpoint=checkpoint, progress=progress)
 
 
+def check_free_swim(robot: Crocodile, motion: Motion, setting: Tether) -> None:
+    """Refuse what joints, servos or grid cannot follow, before anything runs; errors are those of ``free_swim``."""
+    Pool.filled(robot, motion, setting, _BOX, None)
+
+
 class _Free:
     """Time series of a freely swimming body."""
 

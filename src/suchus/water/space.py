@@ -13,7 +13,6 @@ from suchus.design.checks import Checks
 from suchus.design.profile import stations
 from suchus.design.water import Water
 from suchus.errors import InvalidDesign
-from suchus.flow.memory import check_memory
 from suchus.motion.swim import trunk_yaws
 from suchus.water.diary import Diary, Progress, run_on
 from suchus.water.immersed import immersed
@@ -143,7 +142,7 @@ def check_swim_in_space(robot: Crocodile, motion: Motion, basin: Basin) -> None:
     Raises:
         OutsideLimits: the joints or servos cannot follow the motion.
         InvalidDesign: the boundary layer is too thin for the grid, with the cells that would do and the hours that they
-            take; the body would reach out of the box; the machine has not the memory.
+            take; the body would reach out of the box, or is too thin for the grid; the machine has not the memory.
     """
     outline = Outline(robot, basin.cells + 1)
     sway, turn = recoil(outline, motion, 0.0, Water(viscosity=basin.viscosity))
@@ -164,7 +163,21 @@ def check_swim_in_space(robot: Crocodile, motion: Motion, basin: Basin) -> None:
             f"the box leaves {beside:.3g} body lengths of water beside the widest swing, and the body would leave it: "
             f"give at least {least - _DRAWN:.2g}, better {BESIDE}."
         )
-    check_memory(basin_grid(robot.length, outline, motion, basin, sway, turn), np.float32)
+    _setup(robot, motion, basin).check()
+
+
+def _setup(robot: Crocodile, motion: Motion, basin: Basin) -> flow.Setup:
+    outline = Outline(robot, basin.cells + 1)
+    sway, turn = recoil(outline, motion, 0.0, Water(viscosity=basin.viscosity))
+    grow = GROWS / motion.frequency
+    body = flow.FreeBody(
+        shape=trunk(outline, motion, grow=grow, tail_height=basin.tail_height, limbs=basin.limbs),
+        start=(0.5 * robot.length, 0.0, 0.0), free=(basin.moves_on, True, True),
+    )  # fmt: skip
+    return flow.Setup(
+        grid=basin_grid(robot.length, outline, motion, basin, sway, turn), viscosity=basin.viscosity, density=DENSITY,
+        bodies=(body,), follow="body", sides=flow.Sides(low=flow.Mirror()), tolerance=basin.tolerance,
+    )  # fmt: skip
 
 
 def swim_in_space(
@@ -196,19 +209,7 @@ def swim_in_space(
         Diverged: the flow diverged.
     """
     check_swim_in_space(robot, motion, basin)
-    outline, period = Outline(robot, basin.cells + 1), 1.0 / motion.frequency
-    sway, turn = recoil(outline, motion, 0.0, Water(viscosity=basin.viscosity))
-    body = flow.FreeBody(
-        shape=trunk(outline, motion, grow=GROWS * period, tail_height=basin.tail_height, limbs=basin.limbs),
-        start=(0.5 * robot.length, 0.0, 0.0), free=(basin.moves_on, True, True),
-    )  # fmt: skip
-    grid = basin_grid(robot.length, outline, motion, basin, sway, turn)
-    sim = flow.Simulation(
-        flow.Setup(
-            grid=grid, viscosity=basin.viscosity, density=DENSITY, bodies=(body,), follow="body",
-            sides=flow.Sides(low=flow.Mirror()), tolerance=basin.tolerance,
-        )
-    )  # fmt: skip
+    period, sim = 1.0 / motion.frequency, flow.Simulation(_setup(robot, motion, basin))
     end, about = basin.cycles * period, repr((robot, motion_key(motion), basin))
     filmed = Filmed(motion.frequency, end, basin.frames)
 
@@ -220,7 +221,7 @@ def swim_in_space(
         diary.note("track", sim.time, heading=spine.heading[0], tail=spine.y[-1] + position[1])
 
     diary = run_on(sim, end, period / 4, look, about=about, checkpoint=checkpoint, progress=progress)
-    return _record(sim, diary, outline, motion, basin).merge(filmed.record(diary))
+    return _record(sim, diary, Outline(robot, basin.cells + 1), motion, basin).merge(filmed.record(diary))
 
 
 def basin_grid(
