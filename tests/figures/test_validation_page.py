@@ -146,11 +146,12 @@ def test_the_page_is_what_its_rows_say():
 
 @pytest.mark.parametrize(
     ("changed", "whole"),
-    [({}, True), ({"args": ["tests/flow"]}, True), ({"keyword": "eel"}, False), ({"lf": True}, False),
+    [({}, True), ({"args": ["tests/flow"]}, True), ({"lf": None, "keyword": ""}, True),
+     ({"keyword": "eel"}, False), ({"lf": True}, False),
      ({"args": ["tests/flow/test_validate_flow.py"]}, False), ({"args": ["tests/flow/a.py::test_b"]}, False),
      ({"deselect": ["tests/flow/a.py"]}, False), ({"ignore": ["tests/flow"]}, False)],
 )  # fmt: skip
 def test_a_part_is_known_by_how_it_is_asked_for(changed, whole):
-    asked = {"args": ["tests"], "keyword": "", "lf": False, "deselect": None, "ignore": None} | changed
+    asked = {"args": ["tests"], "keyword": "", "deselect": None, "ignore": None} | changed
     args = asked.pop("args")
     assert is_whole(SimpleNamespace(args=args, option=SimpleNamespace(**asked))) == whole

@@ -11,6 +11,7 @@ from validation_rows import note
 
 from suchus import flow
 from suchus.experiments.swim_3d import Swim3d
+from suchus.flow import signals
 from suchus.flow.added import added_mass
 from suchus.flow.compiled import PAD
 from suchus.water import space
@@ -82,6 +83,35 @@ def test_drag_of_a_sphere_and_the_width_of_the_box():
     note("sphere in a stream", "Cd, Re 100, in a box of 4 D", narrow, wide, "8 cells/D", "6 x 4 x 4 D",
          "the same in a box of 8 D")  # fmt: skip
     assert narrow == pytest.approx(wide, rel=0.01)
+
+
+SHEDDING = {"Strouhal number": (0.134, 0.137), "Cd": (0.655, 0.671), "mean side force": (0.065, 0.069)}
+"""Of a sphere at Re 300, least and greatest of: Johnson and Patel 1999, J. Fluid Mech. 378, 19 (0.137, 0.656, 0.069);
+Kim, Kim and Choi 2001, J. Comput. Phys. 171, 132 (0.134, 0.657, 0.067); Constantinescu and Squires 2003, Flow Turbul.
+Combust. 70, 267 (0.136, 0.655, 0.065); Tomboulides, Orszag and Karniadakis 1993, AIAA 93-0546 (0.136, 0.671)."""
+
+
+def shedding(cells, until, periods):
+    """Strouhal number, mean drag and mean side force of a sphere at Re 300, in the half beside its plane of symmetry.
+
+    The stream comes from the side for the first four diameters over its speed, so that the wake leans to one side.
+    """
+
+    def stream(time):
+        return 1.0, 0.3 * np.sin(np.pi * time / 4) ** 2 if time < 4 else 0.0, 0.0
+
+    grid = flow.Grid(cells=(9 * cells, 4 * cells, 2 * cells), cell=1 / cells, origin=(-2.0, -2.0, 0.0))
+    body = flow.Body(shape=flow.Sphere(diameter=1.0))
+    sides = flow.Sides(low=flow.Mirror())
+    setup = flow.Setup(grid=grid, viscosity=1 / 300, stream=stream, sides=sides, bodies=(body,), coarse=True)
+    record = flow.Simulation(setup).run(until, progress=False)
+    force = record.force() / (0.5 * setup.density * np.pi / 4)
+    late = record.time > 0.5 * until
+    at = signals.rises(record.time[late], force[late, 1])[-periods - 1 :]
+    assert len(at) == periods + 1
+    whole = (record.time >= at[0]) & (record.time < at[-1])
+    drag, side = (float(np.average(force[whole, axis], weights=record.step[whole])) for axis in (0, 1))
+    return periods / float(at[-1] - at[0]), drag, abs(side)
 
 
 def lamb(ratio):

@@ -41,6 +41,6 @@ def note(case, quantity, ours, theirs, grid, domain, source, **curves):
 
 def is_whole(config):
     """Return whether all of the validation is asked for, and not a part of its files or tests."""
-    option = config.option
-    chosen = option.keyword or option.lf or option.deselect or option.ignore
+    narrower = ("keyword", "lf", "failedfirst", "stepwise", "deselect", "ignore", "ignore_glob")  # some are of plugins
+    chosen = any(getattr(config.option, name, None) for name in narrower)
     return not chosen and not any("::" in word or word.endswith(".py") for word in map(str, config.args))

@@ -1,3 +1,6 @@
+import os
+import subprocess
+import sys
 from dataclasses import replace
 
 import numpy as np
@@ -120,6 +123,31 @@ def test_the_wave_runs_to_the_tail_or_to_the_head(outline, forward):
     there, back = (wave_speed(outline, some, cycle(outline, some)) for some in (forward, forward.reversed()))
     assert there > 0
     assert back == pytest.approx(-there, rel=1e-6)
+
+
+WAVE_SPEEDS = """
+import suchus
+from suchus.water import Outline, fit, printed_wave, swimming
+from suchus.water.slender import cycle
+robot = suchus.ROBOTS["caiman"]
+motion = fit(robot, printed_wave(robot, "I", sign=-1)).swim
+for stations in (57, 69, 81):
+    outline = Outline(robot, stations)
+    print(repr(swimming.wave_speed(outline, motion, cycle(outline, motion))))
+"""
+
+
+def test_the_speed_of_the_wave_has_the_same_digits_on_one_thread_and_on_two():
+    """A worker of a cluster gives the algebra one thread, and the machine that asks gives it all; records are alike."""
+    said = [
+        subprocess.run(
+            [sys.executable, "-c", WAVE_SPEEDS], capture_output=True, text=True, check=True,
+            env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path), "OPENBLAS_NUM_THREADS": count},
+        ).stdout
+        for count in ("1", "2")
+    ]  # fmt: skip
+    assert said[0] == said[1]
+    assert len(said[0].split()) == 3
 
 
 def test_a_record_has_units_and_the_same_bytes_twice(robot, forward):

@@ -97,7 +97,7 @@ def wave_speed(outline: Outline, motion: Motion, curve: MidlineCurve) -> float:
     """
     count = len(curve.y)
     turning = np.exp(-2j * np.pi * np.arange(count) / count)
-    harmonic = turning @ curve.y
+    harmonic = (turning[:, None] * curve.y).sum(axis=0)  # a product of matrices has other digits on more threads
     weight = np.abs(harmonic) ** 2
     if weight.sum() == 0.0:
         return float("inf")
