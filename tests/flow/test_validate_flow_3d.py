@@ -114,6 +114,28 @@ def shedding(cells, until, periods):
     return periods / float(at[-1] - at[0]), drag, abs(side)
 
 
+def test_vortices_that_a_sphere_sheds():
+    """Re 300 on 12 and 16 cells a diameter, the mean of four periods: how often, with which side force and drag.
+
+    The layer is 0.7 and 0.9 cells thin, so the drag is taken in the limit of h^2; asked is no number, ours are 5 % for
+    frequency and drag and 20 % for the side force, set when only 12 cells had been run.
+    """
+    cells = np.array([12, 16])
+    found = np.array([shedding(n, 100.0, 4) for n in cells])
+    limit = [np.polynomial.Polynomial.fit(1 / cells**2, column, 1)(0.0) for column in found.T]
+    ours = dict(zip(SHEDDING, (found[1, 0], limit[1], found[1, 2]), strict=True))
+    print(f"sphere at Re 300, cells {cells}, Strouhal number, drag, side force: {found.round(4)}, limit {limit}")
+    for name, (least, most) in SHEDDING.items():
+        grid = "12, 16 cells/D, limit" if name == "Cd" else "16 cells/D"
+        note("sphere that sheds vortices, Re 300", name, ours[name], 0.5 * (least + most), grid, "9 x 4 x 4 D",
+             "four computations since 1993")  # fmt: skip
+    note("sphere that sheds vortices, Re 300", "Cd on the finer grid", found[1, 1], 0.663, "16 cells/D", "9 x 4 x 4 D",
+         "four computations since 1993")  # fmt: skip
+    for name, share in (("Strouhal number", 0.05), ("Cd", 0.05), ("mean side force", 0.2)):
+        least, most = SHEDDING[name]
+        assert (1 - share) * least < ours[name] < (1 + share) * most
+
+
 def lamb(ratio):
     """Added mass of a prolate spheroid over what it displaces, along and across its axis: Lamb 1932, par. 114."""
     e = np.sqrt(1 - 1 / ratio**2)
