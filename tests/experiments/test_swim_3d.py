@@ -192,7 +192,7 @@ def test_a_swim_that_was_interrupted_goes_on_to_the_same_numbers(tmp_path):
 
 
 def test_a_motion_that_is_handed_over_joint_by_joint_swims_to_the_same_numbers():
-    basin = Basin(cells=40, viscosity=5e-3, cycles=1)
+    basin = Basin(cells=54, viscosity=2e-3, cycles=1)
     outline = Outline(ROBOT, basin.cells + 1)
     commanded = swim_in_space(ROBOT, MOTION, basin, progress=lambda _: None)
     handed = undulation(outline, MOTION)
@@ -201,8 +201,8 @@ def test_a_motion_that_is_handed_over_joint_by_joint_swims_to_the_same_numbers()
     folded_end[1, -4:] += 0.3
     other = swim_in_space(ROBOT, replace(handed, middles=folded_end), basin, progress=lambda _: None)
     assert abs(float(other.speed[-1] / commanded.speed[-1]) - 1.0) > 1e-3
-    with pytest.raises(InvalidDesign, match="has 41 stations along the midline, and 43 are asked for"):
-        swim_in_space(ROBOT, handed, replace(basin, cells=42), progress=lambda _: None)
+    with pytest.raises(InvalidDesign, match="has 55 stations along the midline, and 57 are asked for"):
+        swim_in_space(ROBOT, handed, replace(basin, cells=56), progress=lambda _: None)
 
 
 def bent():
