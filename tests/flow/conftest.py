@@ -1,7 +1,12 @@
+import sys
+from pathlib import Path
+
 import pytest
 from validation_rows import OUT, ROOT, SOURCES, is_whole
 
 from suchus.figures.validation import write_table
+
+sys.path.insert(0, str(Path(__file__).parents[2] / "tools"))
 
 
 @pytest.fixture(scope="session")

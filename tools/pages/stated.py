@@ -16,7 +16,15 @@ from typing import Any
 if __name__ == "__main__":
     sys.path.insert(0, str(Path(__file__).parents[1]))
 
-from pages import passages, stated_calibration, stated_faults, stated_land, stated_studies, stated_water
+from pages import (
+    passages,
+    stated_calibration,
+    stated_faults,
+    stated_flow,
+    stated_land,
+    stated_studies,
+    stated_water,
+)
 from suchus.experiments import EXPERIMENTS
 
 ROOT = Path(__file__).parents[2]
@@ -27,6 +35,7 @@ Make = Callable[[Mapping[str, Any]], str]
 PASSAGES: Mapping[str, Mapping[str, Make]] = {
     **stated_calibration.PASSAGES,
     **stated_faults.PASSAGES,
+    **stated_flow.PASSAGES,
     **stated_land.PASSAGES,
     **stated_studies.PASSAGES,
     **stated_water.PASSAGES,
