@@ -45,8 +45,10 @@ def check_filmed(record: xr.Dataset, whose: str = "the record") -> None:
             f"{whose} has no {', '.join(missing) or 'frame'}: only swims in three dimensions whose vortices were kept "
             "can be shown so, as the record.nc of suchus run swim_3d."
         )
-    asked = {**dict.fromkeys(_FIELDS, ("frame", "z", "y", "x")), **dict.fromkeys(_UNITS, ()),
-             "half_height": ("station",), **dict.fromkeys(LINES, ("frame", "station"))}  # fmt: skip
+    asked: dict[str, tuple[str, ...]] = {"half_height": ("station",)}
+    asked |= dict.fromkeys(_FIELDS, ("frame", "z", "y", "x"))
+    asked |= dict.fromkeys(_UNITS, ())
+    asked |= dict.fromkeys(LINES, ("frame", "station"))
     axes = [axis for axis in ("frame", "z", "y", "x") if axis in record.coords]
     named = [*asked, *axes]
     wrong = [name for name in named if record[name].dims != asked.get(name, (name,)) or not _numbers(record[name])]
