@@ -126,7 +126,10 @@ def shed(time, step, force, periods):
 
 
 def test_vortices_that_a_sphere_sheds():
-    """Re 300 on 12 cells a diameter, across whose layer lie 0.7: what the page on limits states, in a minute."""
+    """Re 300 on 12 cells a diameter, across whose layer lie 0.7: what the page on limits states, in a minute.
+
+    The bounds were set after that result and hold it: drag is too large by as much as the sphere is too thick.
+    """
     found = shedding(12)
     print(f"sphere at Re 300, 12 cells a diameter: {found}")
     for name, key in (("Strouhal number", "strouhal"), ("Cd", "drag"), ("mean side force", "side")):
@@ -136,7 +139,7 @@ def test_vortices_that_a_sphere_sheds():
         keep("sphere_300", found)
     assert found == pytest.approx(kept("sphere_300"), rel=0.02)
     assert found["side"] == pytest.approx(np.mean(SHEDDING["side"]), rel=0.1)
-    assert SHEDDING["drag"][0] < found["drag"] < 1.25 * SHEDDING["drag"][1]  # as much too large as the sphere is thick
+    assert SHEDDING["drag"][0] < found["drag"] < 1.25 * SHEDDING["drag"][1]
 
 
 def lamb(ratio):
