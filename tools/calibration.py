@@ -18,7 +18,7 @@ from lighter import lighten
 from pages.stated import keep, kept
 from pages.stated import main as write_pages
 from suchus.figures import COLOURS, panels, styled
-from suchus.land.calibration import QUANTITIES, Coefficients, fitted, left, responses
+from suchus.land.calibration import NAMES, QUANTITIES, Coefficients, fitted, left, responses
 from suchus.land.prescribed import free_sections, held_sections, towed_sections
 from suchus.motion import Swim
 from suchus.robots import ROBOTS
@@ -127,9 +127,7 @@ def stated(found: Found) -> Mapping[str, Any]:
         },
         "left": {name: [left(flow, _held(swims[name], flow, one)) for one in both] for name, flow in flows.items()},
         "left_finest": [left(found["held", WHOLE, FINEST], _held(swims[WHOLE], flows[WHOLE], one)) for one in both],
-        "all_three": {
-            name: list(asdict(_fit(found, name, GRIDS[0], tuple(Coefficients.__slots__))).values()) for name in flows
-        },
+        "all_three": {name: list(asdict(_fit(found, name, GRIDS[0], NAMES)).values()) for name in flows},
     }
 
 

@@ -11,7 +11,7 @@ from suchus.design.pieces import pieces
 from suchus.design.water import Water
 from suchus.hydro import column
 from suchus.land import Lake
-from suchus.land.calibration import QUANTITIES, Coefficients, composed, fitted, left, responses
+from suchus.land.calibration import NAMES, QUANTITIES, Coefficients, composed, fitted, left, responses
 from suchus.land.prescribed import INSTANTS, _Submerged, free_sections, held_sections, towed_sections
 from suchus.motion import Swim
 from suchus.robots import ROBOTS
@@ -83,7 +83,7 @@ def test_what_a_body_feels_is_linear_in_the_coefficients(parts):
 def test_a_fit_finds_the_coefficients_that_a_force_was_made_with(parts):
     some = Coefficients(cross_drag=2.7, thickening=11.0, added_mass=1.4)
     made = composed(parts, some)
-    found = fitted(made, parts, tuple(Coefficients.__slots__))
+    found = fitted(made, parts, NAMES)
     assert [found.cross_drag, found.thickening, found.added_mass] == pytest.approx([2.7, 11.0, 1.4])
     assert max(left(made, composed(parts, found)).values()) < 1e-9
     two = fitted(made, parts, ("cross_drag", "thickening"))

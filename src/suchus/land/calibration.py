@@ -5,7 +5,7 @@ plate friction along, the factor on added mass. So a flow around the same motion
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 import xarray as xr
@@ -37,6 +37,10 @@ class Coefficients:
         return Lake(level=level, water=water, added_mass=self.added_mass)
 
 
+NAMES = tuple(one.name for one in fields(Coefficients))
+"""Names of the coefficients."""
+
+
 def responses(
     robot: Crocodile, swim: Swim, viscosity: float, *, sway: complex = 0j, turn: complex = 0j
 ) -> Mapping[str, xr.Dataset]:
@@ -55,13 +59,13 @@ def responses(
         return held_sections(robot, swim, lake, sway=sway, turn=turn)
 
     rest = felt()
-    return {"rest": rest, **{name: felt(**{name: 1.0}) - rest for name in Coefficients.__slots__}}
+    return {"rest": rest, **{name: felt(**{name: 1.0}) - rest for name in NAMES}}
 
 
 def composed(parts: Mapping[str, xr.Dataset], coefficients: Coefficients) -> xr.Dataset:
     """Return what a body feels with coefficients, from ``responses``."""
     felt = parts["rest"]
-    for name in Coefficients.__slots__:
+    for name in NAMES:
         felt = felt + getattr(coefficients, name) * parts[name]
     return felt
 
