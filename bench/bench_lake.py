@@ -29,7 +29,7 @@ ARMS = {
     "swimming": {
         "robot": "floating_caiman",
         "lake": Lake(level=2.0),
-        "control": Swimming(swim=WAVE, limb_pitch=LIMBS_BACK),
+        "control": Swimming(swim=WAVE, limb_pitch=LIMBS_BACK[1]),
     },
 }
 FIRST = """

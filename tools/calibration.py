@@ -33,7 +33,7 @@ VISCOSITY = ROBOT.length**2 / REYNOLDS
 GRIDS = (68, 80, 96)
 """Cells per body length; most cases are computed on the first [-]."""
 FINEST = 128
-"""Cells per body length of one held swim more, which what three grids say of a finer one is tried on [-]."""
+"""Cells per body length of one swim on the spot more, which what three grids say of a finer one is tried on [-]."""
 SPEEDS = (0.02, 0.05, 0.1, 0.2)
 """Speeds of the tows [m/s]."""
 ANEW = ("half the amplitude", "half the frequency")
@@ -43,7 +43,7 @@ TOWED = "0.1 m/s"
 WHOLE = "whole wave"
 """Name of the motion that the coefficients are fitted to [-]."""
 FITTED = ("cross_drag", "thickening")
-"""Coefficients that are fitted, to the whole wave of the held body."""
+"""Coefficients that are fitted, to the whole wave of the body that is held."""
 PICTURE = Path(__file__).parents[1] / "docs" / "pictures" / "calibration.png"
 HELD_CYCLES, FREE_CYCLES = 3, 6
 """Cycles from rest, of which the last counts [-]."""
@@ -157,7 +157,7 @@ def _held(swim: Swim, flow: xr.Dataset, one: Coefficients) -> xr.Dataset:
 
 
 def _head(flow: xr.Dataset) -> dict[str, complex]:
-    """Return how the head moved in a flow around a held body."""
+    """Return how the head moved in a flow around a body that is held."""
     return {name: complex(flow[name][0], -flow[name][1]) for name in ("sway", "turn")}
 
 
@@ -204,7 +204,7 @@ def from_swim_3d(measures: Mapping[str, float]) -> dict[tuple[str, str, int], xr
 
 
 def draw(found: Found) -> Figure:
-    """Draw thrust, side force and power of the held body over a cycle: the flow and the models."""
+    """Draw thrust, side force and power of the body that is held over a cycle: the flow and the models."""
     swim, flow = motions()[WHOLE], found["held", WHOLE, GRIDS[0]]
     plain, nearest = (_held(swim, flow, one) for one in (Coefficients(), _fit(found, WHOLE, GRIDS[0], FITTED)))
     with styled():

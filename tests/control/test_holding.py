@@ -114,10 +114,10 @@ def test_a_weight_that_is_not_known_is_learnt():
 
 
 def test_a_swim_holds_heading_and_depth_in_the_water():
-    held = Swimming(swim=WAVE, limb_pitch=LIMBS_BACK, heading=HeadingHold(direction=0.4), depth=DepthHold(depth=0.5))
+    held = Swimming(swim=WAVE, limb_pitch=LIMBS_BACK[1], heading=HeadingHold(direction=0.4), depth=DepthHold(depth=0.5))
     runs = [
         Run(robot=ROBOT, gait="belly_crawl", lake=Lake(level=2.0), control=control)
-        for control in (held, Swimming(swim=WAVE, limb_pitch=LIMBS_BACK))
+        for control in (held, Swimming(swim=WAVE, limb_pitch=LIMBS_BACK[1]))
     ]
     record = simulate(runs, duration=20.0, timestep=0.005, every=10)
     end = record.sel(time=slice(17.0, None))

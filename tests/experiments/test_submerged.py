@@ -17,7 +17,7 @@ from suchus.robots import ROBOTS
 ROBOT, LAKE = ROBOTS["floating_caiman"], Lake(level=2.0)
 SWIM = Swimming(
     swim=Swim(name="one", frequency=1.0, yaw=(0.1, 0.2, 0.3), yaw_lag=(0, 0, 0), tail=0.5, tail_lag=0.0),
-    limb_pitch=LIMBS_BACK,
+    limb_pitch=LIMBS_BACK[1],
 )
 TIME = np.linspace(0.0, 10.0, 101)
 

@@ -126,8 +126,8 @@ def _calibration(m: Mapping[str, Any]) -> str:
     added = ", ".join(f"{values[2]:.1f}" for values in m["all_three"].values())
     return "\n".join([*_cases(m), "", *_on_grids(m), "", *_left(m)]) + (
         "\n\nOn the grid of the fit, where nothing was fitted, the model of the runs and the fitted one are off in "
-        f"the mean by: {said}. {verdict} Fitted to each held swim together with the other two coefficients, the factor "
-        f"on added mass is {added}.\n"
+        f"the mean by: {said}. {verdict} Fitted to each swim on the spot together with the other two coefficients, the "
+        f"factor on added mass is {added}.\n"
     )
 
 
