@@ -7,6 +7,7 @@ writes DOCS/atlas.md, by default docs/atlas.md, and DOCS/pictures/atlas_*.png.
 import sys
 from pathlib import Path
 
+from lighter import lighten
 from suchus.atlas import CASES, load_outcome
 from suchus.errors import IncompatibleRecord, SuchusError
 from suchus.figures.atlas import write_atlas
@@ -26,7 +27,10 @@ def main(out: Path, docs: Path = DOCS) -> Path:
     trials = [name for name, outcome in found.items() if outcome.quick]
     if trials:
         raise IncompatibleRecord(f"{', '.join(trials)} in {out} are quick trials; run suchus flow-atlas in full first.")
-    return write_atlas(found, docs)
+    page = write_atlas(found, docs)
+    for picture in sorted((docs / "pictures").glob("atlas_*.png")):
+        lighten(picture)
+    return page
 
 
 if __name__ == "__main__":
