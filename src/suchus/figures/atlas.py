@@ -94,6 +94,7 @@ def _draw_numbers(axes: Axes, row: Row, found: Comparison) -> None:
     axes.set_ylim(-0.6, len(places) + 0.1)
     reach = 1.2 * max(float(np.abs(found.ours / found.theirs - 1).max()), found.bound)
     axes.set_xlim(1 - reach, 1 + reach)
+    axes.locator_params(axis="x", nbins=5)
     axes.set_xlabel("over the mean of the published [-]", **_SMALL)
     handles = dict(zip(*axes.get_legend_handles_labels()[::-1], strict=True))
     axes.legend(handles.values(), handles.keys(), loc="upper right", fontsize=7, ncols=2)
