@@ -216,22 +216,6 @@ def test_a_trunk_that_hardly_tilts_is_painted_as_the_upright_one():
     skin = np.abs(one.distance) < 0.9 * h
     for a, b in zip((*one.normal, *one.velocity), (*other.normal, *other.velocity), strict=True):
         assert np.quantile(np.abs(a - b)[skin], 0.99) < 1e-5
-    afar = [shape.from_afar(0.4, pose, (0.1, 0.0, 0.2)) for pose in (upright, replace(upright, roll=1e-9))]
-    places, dipoles = zip(*afar, strict=True)
-    for pair in (places, dipoles):
-        assert pair[0] == pytest.approx(pair[1], abs=1e-8)
-
-
-def test_the_dipoles_of_a_trunk_turn_with_it_and_with_the_stream():
-    shape, matrix = eel(), TURNED.matrix
-    stream = np.array([0.3, -0.2, 0.5])
-    places, dipoles = shape.from_afar(0.4, TURNED, tuple(stream.tolist()))
-    p, q, r = (matrix.T @ TURNED.spins).tolist()
-    gone = flow.Pose(position=(0.0, 0.0, 0.0), spin_x=p, spin_y=q, spin=r)
-    own = tuple((matrix.T @ (stream - TURNED.velocity)).tolist())
-    there, upright = shape.from_afar(0.4, gone, own)
-    assert places == pytest.approx(np.array(TURNED.place(there.T)).T)
-    assert dipoles == pytest.approx(upright @ matrix.T)
 
 
 @settings(max_examples=30)

@@ -12,7 +12,6 @@ from suchus.errors import InvalidDesign, OutsideLimits, UnknownName
 from suchus.flow import memory
 from suchus.flow.added import added_mass
 from suchus.flow.compiled import PAD
-from suchus.flow.farfield import FarBody, FarField
 from suchus.flow.momentum import Reaction
 from suchus.flow.watch import vorticity_size
 from suchus.flow.water import Water
@@ -254,30 +253,6 @@ def test_two_threads_and_a_checkpoint_give_the_same_bytes(tmp_path):
     assert resumed.record.bodies.tobytes() == straight.record.bodies.tobytes()
 
 
-def test_a_body_from_afar_is_a_source_and_a_dipole():
-    """A sphere of radius R that moves with V is exactly a dipole of 2 pi R^3 V: on its skin the normal parts agree."""
-    radius, speed = 0.5, np.array([1.0, -2.0, 0.5])
-    volume = 4 / 3 * np.pi * radius**3
-    body = FarBody(np.zeros(3), np.zeros(3), 1.5 * volume * np.eye(3))
-    body.move(np.array([0.1, 0.2, 0.3]), flow.Pose(angle=0.7).matrix, speed)
-    skin = SPHERE.markers(0.0, flow.Pose(position=(0.1, 0.2, 0.3)), 0.02)
-    normal = (skin.points - np.array([[0.1], [0.2], [0.3]])) / radius
-    assert (body.velocity(skin.points) * normal).sum(axis=0) == pytest.approx(speed @ normal)
-    body.drag(np.array([-3.0, 0.0, 0.0]), np.array([2.0, 0.0, 0.0]), 0.5)
-    assert body.source == pytest.approx(0.5 * 3.0 / 2.0)  # half way to D / |W|
-    assert ((body.velocity(skin.points) * normal).sum(axis=0) * skin.share).sum() == pytest.approx(0.75)
-    grid = flow.Grid(cells=(32, 32, 32), cell=1 / 8, origin=(-2.0, -1.5, -2.2))
-    far = FarField(grid, [body])
-    net = sum(far.inward(axis, low).sum() for axis in range(3) for low in (True, False)) / 64
-    assert net == pytest.approx(-0.75, rel=1e-3)
-
-
-def test_a_body_that_turns_takes_its_dipole_along():
-    body = FarBody(np.zeros(3), np.zeros(3), np.diag([1.0, 3.0, 2.0]))
-    body.move(np.zeros(3), flow.Pose(angle=np.pi / 2).matrix, np.array([1.0, 1.0, 1.0]))
-    assert body.dipole == pytest.approx(np.array([3.0, 1.0, 2.0]))
-
-
 def test_open_sides_make_the_size_of_the_domain_matter_little():
     """A sphere that has just started: the drag in boxes of 3 and 5 diameters, with open and with held sides."""
     near = flow.Grid(cells=(24, 24, 24), cell=1 / 8, origin=(-1.5,) * 3)
@@ -296,8 +271,8 @@ def test_open_sides_beside_mirrors_are_those_of_the_whole_domain():
     every = dict.fromkeys(np.ravel(NAMES), flow.Stream())
     whole = ball(sides=flow.Sides(**every), steps=5)
     quarter = ball(mirrors=(False, True, True), sides=flow.Sides(bottom=flow.Mirror(), low=flow.Mirror()), steps=5)
-    assert whole.water.border.far.bodies[0].source > 0
-    assert quarter.record.force()[-1, 0] == pytest.approx(whole.record.force()[-1, 0], rel=1e-4)
+    drag = whole.record.force()[-1, 0]  # the sides' knots lie elsewhere on a quarter
+    assert quarter.record.force()[-1, 0] == pytest.approx(drag, rel=3e-4)
 
 
 @given(st.tuples(*[st.floats(0.2, 3.0)] * 3), st.tuples(*[st.floats(-1.0, 1.0)] * 3), st.floats(-0.2, 3.0))

@@ -314,32 +314,3 @@ def test_what_does_not_fit_is_refused_in_use():
     assert len(bodies.rows_of(many[:2])) == 2
     with pytest.raises(InvalidDesign, match="183 parts"):
         bodies.rows_of(many)
-
-
-def test_from_afar_a_straight_trunk_is_a_row_of_dipoles():
-    """Along its axis it displaces water; across it carries on as much as a cylinder does, pi times the square of the
-    half-axis across the motion."""
-    length, wide, high = 1.2, 0.05, 0.08
-    s = np.linspace(0.0, length, STATIONS)
-    pose = flow.Pose(position=(0.5, -0.2, 0.3), angle=0.4, velocity=(0.3, 0.2, 0.1))
-    places, dipoles = rod(s, np.full(s.size, wide), np.full(s.size, high)).from_afar(0.0, pose, (0.1, -0.1, 0.05))
-    assert len(places) == len(dipoles) == 12
-    assert places[:, :2] == pytest.approx(np.array(pose.to_world((np.arange(12) + 0.5) / 12 * length, np.zeros(12))).T)
-    assert places[:, 2] == pytest.approx(0.3)
-    along, across = 0.2 * np.cos(0.4) + 0.3 * np.sin(0.4), 0.3 * np.cos(0.4) - 0.2 * np.sin(0.4)
-    section = np.pi * wide * high
-    u, v, w = dipoles.T * 12 / length
-    assert u * np.cos(0.4) + v * np.sin(0.4) == pytest.approx(section * along)
-    assert v * np.cos(0.4) - u * np.sin(0.4) == pytest.approx((section + np.pi * high**2) * across)
-    assert w == pytest.approx((section + np.pi * wide**2) * 0.05)
-
-
-def test_the_sides_know_a_swimmer_stretch_by_stretch():
-    sim = water(eel(), half=False)
-    sim.run(0.2, progress=False)
-    (body,), far = sim.setup.bodies, sim.water.border.far.bodies
-    pose = sim._in_frame(sim.pose(body.name))
-    places, dipoles = body.shape.from_afar(sim.time, pose, sim.water.border.stream)
-    assert np.array([one.place for one in far]) == pytest.approx(places)
-    assert np.array([one.dipole for one in far]) == pytest.approx(dipoles)
-    assert np.abs(dipoles[:, 1]).max() > 3 * np.abs(dipoles[:, 1].mean())  # it sways to both sides

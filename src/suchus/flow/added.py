@@ -5,7 +5,6 @@ from math import prod
 
 import numpy as np
 
-from suchus.flow.farfield import FarBody
 from suchus.flow.pose import TURNS
 from suchus.flow.shape import Markers
 from suchus.flow.solid import Skin
@@ -25,9 +24,8 @@ def added_mass(
     counts them. The force of mode k is ``-Ma[:, k]`` per unit acceleration; other bodies stay still. It is what
     ``momentum`` would find: the momentum that the immersion gives to the water. Units: kg/m in the plane and kg in
     space for the translations, times m between them and the turnings, times m^2 for the turnings. Where the sides move
-    as in open water it is that of open water, in space with the body as a dipole in ``about``. What lies beyond mirrors
-    is counted. Motions through a mirror that cuts the body, which are not symmetric, have NaN, and so have those that
-    are not ``wanted``.
+    as in open water it is that of open water. What lies beyond mirrors is counted. Motions through a mirror that cuts
+    the body, which are not symmetric, have NaN, and so have those that are not ``wanted``.
 
     Raises:
         NotConverged: the pressure solver got stuck.
@@ -35,8 +33,8 @@ def added_mass(
     h, axes, cut = water.grid.cell, water.axes, water.cut[body]
     here, kept = water.here, symmetric(cut)
     if wanted is not None:  # in open water the body's whole momentum counts, that along other axes too
-        far = water.border.far is not None
-        asked = [bool(one) or (far and k < axes) for k, one in enumerate(wanted)]
+        unbounded = water.border.water is not None and axes == 3
+        asked = [bool(one) or (unbounded and k < axes) for k, one in enumerate(wanted)]
         kept = [keep and one for keep, one in zip(kept, asked, strict=True)]
     modes = [mode for mode, keep in zip(_modes(water, about), kept, strict=True) if keep]
     rows = water.rows[body]
@@ -57,9 +55,6 @@ def added_mass(
         prod([h] * axes) * np.array([[_work(mode, shares, parts) for parts in what] for mode in modes])
         for what in (rises, modes)
     )
-    if axes == 3:
-        momenta = 2 ** sum(cut) * (held + own_mass).T
-        inward = [_from_afar(water, about, np.compress(kept, np.eye(6), axis=0).T @ momentum) for momentum in momenta]
     both = np.ix_(kept, kept)
     whole = np.full((len(kept), len(kept)), np.nan)
     rim = _rim(water, markers, about, cut)[both]
@@ -124,20 +119,6 @@ def _rim(water: Water, markers: Markers | Skin, about: tuple[float, ...], cut: t
     rims = np.array([[mode.get(c, none) for mode in modes] for c in range(axes)])  # component, mode, marker
     moments = [(off[a] * rims[b] - off[b] * rims[a]).sum(axis=1) for a, b in turns]
     return np.array([*rims.sum(axis=2), *moments])
-
-
-def _from_afar(water: Water, about: tuple[float, ...], momentum: np.ndarray) -> list[np.ndarray]:
-    """Return the velocity into the domain that a body in space induces on each side; empty if the sides are held.
-
-    ``momentum`` is that of body and water over the density per mode, shape (6,); the sum over all faces is zero.
-    """
-    far, edges = water.border.far, water.border.edges
-    if far is None:
-        return []
-    body = FarBody(np.array(about, float), momentum[:3], np.zeros((3, 3)))
-    sides = [far.of(body, e.axis, e.low) if e.unbounded else np.zeros(e.prescribed.shape) for e in edges]
-    level = sum(float(side.sum()) for side in sides) / sum(e.prescribed.size for e in edges if e.unbounded)
-    return [side - e.unbounded * level for side, e in zip(sides, edges, strict=True)]
 
 
 def _in_open_water(

@@ -67,6 +67,14 @@ def _fill_row(a, to, source, by, count, how, value):  # type: ignore[no-untyped-
         a[to + i * by] = plus + times * a[source + i * by]
 
 
+@part
+def _free_of_vorticity(a, to, n, on, before, by, first, last, sign):  # type: ignore[no-untyped-def]
+    """Add to a row beyond a side what the normal velocity, whose row on the side is ``on``, rises along the side."""
+    to, on, before, by = unsigned(to), unsigned(on), unsigned(before), unsigned(by)
+    for i in range(unsigned(first), unsigned(last)):
+        a[to + i * by] -= sign * (n[on + i * by] - n[before + i * by])
+
+
 @compiled
 def _fill_planes(velocity, axis, strides, face, inner, step, prescribed, straight, how, values):  # type: ignore[no-untyped-def]
     """Do in space what ``_fill_side`` does in the plane, with both velocities along the side and planes for lines.
@@ -85,9 +93,13 @@ def _fill_planes(velocity, axis, strides, face, inner, step, prescribed, straigh
             away = k * step * across
             _mirror_row(n, on - away, on, on + away, by, count, straight)
         for k in range(1, 3):
-            to, source = (inner - k * step) * across + j * down, (inner + (k - 1) * step) * across + j * down
+            to, beyond = (inner - k * step) * across + j * down, how == _FREE_OF_VORTICITY
+            source = to + step * across if beyond else (inner + (k - 1) * step) * across + j * down
             for c in range(2):
-                _fill_row(velocity[c + (c >= axis)], to, source, by, count, how, values[c])
+                t, at = velocity[c + (c >= axis)], on - (k - 1) * step * across
+                _fill_row(t, to, source, by, count, how, values[c])
+                if beyond and PAD + c <= j < high - PAD:
+                    _free_of_vorticity(t, to, n, at, at - (down if c else by), by, PAD + 1 - c, count - PAD, sign)
 
 
 @dataclass(slots=True)
@@ -186,10 +198,8 @@ class Border:
 
     edges: list[Edge]
     """Left, right, bottom, top, and in space low and high."""
-    water: OpenWater | None
-    """The water around a plane domain, if it has no end."""
-    far: FarField | None
-    """The same in space."""
+    water: OpenWater | FarField | None
+    """The water around the domain, if it has no end."""
     stream: tuple[float, ...] = (0.0, 0.0)
     """Velocity of the far water at the end of the step [m/s]."""
     steps: int = 0
@@ -208,11 +218,10 @@ class Border:
                 prescribed[:] = inflow(side, grid, axis)
             moves = unbounded and isinstance(side, Stream)
             edges.append(Edge(side, axis, name in NAMES[::2], grid.cells[axis], prescribed, moves))
-        plane = grid.axes == 2
-        return cls(
-            edges=edges, water=OpenWater.around(grid) if unbounded and plane else None,
-            far=FarField(grid) if unbounded and not plane else None, stream=(0.0,) * grid.axes,
-        )  # fmt: skip
+        water: OpenWater | FarField | None = None
+        if unbounded:
+            water = OpenWater.around(grid) if grid.axes == 2 else FarField(grid, sides.mirrors(3))
+        return cls(edges=edges, water=water, stream=(0.0,) * grid.axes)
 
     def state(self) -> dict[str, np.ndarray]:
         """Return all that changes, by name."""
@@ -221,8 +230,6 @@ class Border:
             for k, e in enumerate(self.edges)
             for name in ("prescribed", "induced", "seen")
         }
-        if self.far is not None:
-            edges["far"] = np.array([body.source for body in self.far.bodies])
         return {**edges, "stream": np.array(self.stream), "prepared": np.array([self.steps, self.span])}
 
     def resume(self, state: dict[str, np.ndarray]) -> None:
@@ -230,9 +237,6 @@ class Border:
         for k, edge in enumerate(self.edges):
             for name in ("prescribed", "induced", "seen"):
                 getattr(edge, name)[:] = state[f"edge{k}.{name}"]
-        if self.far is not None:
-            for body, source in zip(self.far.bodies, state["far"].tolist(), strict=True):
-                body.source = source
         self.stream = tuple(state["stream"].tolist())
         self.steps, self.span = int(state["prepared"][0]), float(state["prepared"][1])
 
@@ -249,7 +253,7 @@ class Border:
                 edge.leaves = min(max((outward - _LEAVES[0]) / (_LEAVES[1] - _LEAVES[0]), 0.0), 1.0)
             elif isinstance(edge.side, Outflow):
                 edge.leaves = 1.0
-        if self.steps == 0 or self.far is not None:
+        if self.steps == 0:
             for edge, induced in zip(self.edges, self._induced(velocity, window), strict=True):
                 edge.induced[:] = edge.seen[:] = induced
         grown = dt / self.span if self.span else 0.0
@@ -285,8 +289,6 @@ class Border:
         return change
 
     def _induced(self, velocity: np.ndarray, window: Window) -> list[np.ndarray]:
-        if self.far is not None:
-            return [self.far.inward(e.axis, e.low) if e.unbounded else np.zeros(e.prescribed.shape) for e in self.edges]
         if self.water is None:
             return [np.zeros(e.prescribed.shape) for e in self.edges]
         return self.water.inward(velocity, window, [Fading(e.axis, e.low, e.leaves) for e in self.edges if e.leaves])

@@ -1,106 +1,211 @@
-"""Sides of a domain in space that move as they would in an unbounded domain: a source and a dipole for each body.
+"""Sides of a domain in space that move as they would in an unbounded domain.
 
-From afar a body that moves with W through the water is a dipole of moment ``(volume + added mass / density) W``, and
-its wake is a source of strength ``D / (density |W|)`` where it stands, D the drag: what the wake lacks flows around it.
-What leaves with the wake itself goes out where the stream does, which balances the sum over all sides.
+All that moves the water is inside a closed surface, which lies a little inside the sides. Beyond it the velocity, less
+the far stream's, is that of sources of strength ``n . u`` and of vortex sheets of strength ``n x u`` on the surface:
+``integral of [(n . u) r + (n x u) x r] / (4 pi r^3)`` over it, where n is its outward normal, u the velocity on it less
+the far stream's, and r leads from it to where the velocity is asked for. A flow that comes from beyond the surface adds
+nothing to this integral, so what the sides do does not act back on them. The surface is divided into panels; one
+matrix, made once, turns the mean velocities on them into those on the sides.
 
-Source: Batchelor 1967, An Introduction to Fluid Dynamics, sections 2.9, 5.12 and 6.4.
+**The wake that has left.** A wake that goes on unchanged behind the domain is a tube of flux, ``1/2 integral of
+(x cross vorticity) . n`` over a plane across it, and from afar a source of that strength where it begins. It begins on
+the surface, whose own sources there have the same strength and the opposite sign; both are left out. What remains is
+the source of strength ``D / (density U)`` that a body with drag D is from afar, if the wake's flux no longer changes;
+it is too strong where the wake is still young.
+
+Source: Batchelor 1967, An Introduction to Fluid Dynamics, sections 2.4 (velocity of sources and vorticity), 5.12
+(wakes) and 7.2 (flux and impulse of vorticity).
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from itertools import product
+from math import ceil
 
 import numpy as np
 
-from suchus.flow.compiled import compiled
+from suchus.flow.compiled import PAD, Window
 from suchus.flow.grid import Grid
+from suchus.flow.openwater import Fading, cubic
 
+PANELS = 16
+"""Panels along the side of a cube with as many cells as the domain and its images; the surface lies as far inside the
+sides as a panel is long [-]."""
 
-@compiled
-def _induce(points, place, dipole, source, out):  # type: ignore[no-untyped-def]
-    """Write the velocity that a source and a dipole at ``place`` induce at ``points``, both of shape (3, point)."""
-    for k in range(points.shape[1]):
-        square, along = 0.0, 0.0
-        for d in range(3):
-            r = points[d, k] - place[d]
-            square += r * r
-            along += dipole[d] * r
-        near = 1.0 / (4.0 * np.pi * square * np.sqrt(square))
-        spread = source + 3.0 * along / square
-        for d in range(3):
-            out[d, k] = near * (spread * (points[d, k] - place[d]) - dipole[d])
+LEAST = 2
+"""Cells along a panel, at least [-]."""
+
+KNOT = 1.5
+"""Panels between two knots of a side, where the velocity is summed up; between them it is cubic [-]."""
+
+IMAGES = 3
+"""Images to each side that count where two mirrors face each other, whose images have no end [-]."""
 
 
 @dataclass(slots=True)
-class FarBody:
-    """What a body is from afar."""
+class Face:
+    """One of the plane faces of the surface, with the side of the domain beyond it."""
 
-    place: np.ndarray
-    """Its middle, in the frame of the grid, shape (3,) [m]."""
-    dipole: np.ndarray
-    """Moment of the dipole, shape (3,) [m^4/s]."""
-    mass: np.ndarray
-    """Displaced and added mass over the density, in the body's own axes, shape (3, 3) [m^3]."""
-    source: float = 0.0
-    """Strength of the source [m^3/s]."""
+    axis: int
+    """Axis of its normal: 0 is x, 1 is y, 2 is z."""
+    low: bool
+    """Whether it is that at the smaller coordinate."""
+    along: tuple[int, int]
+    """The two axes in it, the later one first, as the arrays have them."""
+    spans: tuple[tuple[int, int], ...]
+    """First and last cell face of the surface along each axis [-]."""
+    centre: tuple[float, ...]
+    """Where the moments of vorticity are taken about, along each axis [cells]."""
+    starts: tuple[np.ndarray, ...]
+    """First cells of the panels along each axis, counted from the span's [-]."""
+    sizes: tuple[np.ndarray, ...]
+    """Cells of the panels along each axis [-]."""
 
-    def velocity(self, points: np.ndarray) -> np.ndarray:
-        """Return the velocity that it induces at points, both of shape (3, ...) [m, m/s]."""
-        out = np.empty((3, points[0].size))
-        _induce(points.reshape(3, -1), self.place, self.dipole, self.source, out)
-        return out.reshape(points.shape)
+    @property
+    def cells(self) -> np.ndarray:
+        """Cells of each panel, shape (panel along one axis, along the other) [-]."""
+        return np.outer(*(self.sizes[d] for d in self.along))
 
-    def move(self, place: np.ndarray, turn: np.ndarray, through: np.ndarray) -> None:
-        """Take the body's motion.
+    @property
+    def middles(self) -> np.ndarray:
+        """Middles of the panels, shape (3, panel) [cells]."""
+        panels = zip(self.spans, self.starts, self.sizes, strict=True)
+        lines = [first + starts + 0.5 * sizes for (first, _), starts, sizes in panels]
+        lines[self.axis] = np.array([float(self.spans[self.axis][0 if self.low else 1])])
+        return points_of(lines)
+
+    def velocities(self, velocity: np.ndarray, leaving: float) -> np.ndarray:
+        """Return the mean velocity over each panel, shape (3, panel) [m/s].
 
         Args:
-            place: its middle, in the frame of the grid, shape (3,) [m].
-            turn: rotation matrix of its frame, shape (3, 3) [-].
-            through: its velocity through the far water, shape (3,) [m/s].
+            velocity: on the faces before the cells, padded, shape (3, ...) [m/s].
+            leaving: share of the wake's flux that is left out [-].
         """
-        self.place, self.dipole = place, turn @ (self.mass @ (turn.T @ through))
+        at = PAD + self.spans[self.axis][0 if self.low else 1]
+        parts, rises = [np.empty(0)] * 3, {}
+        for d in range(3):
+            planes = np.moveaxis(velocity[d], 2 - self.axis, 0)[at - 1 : at + 1]
+            both = planes[:, *(self._stretch(e, d) for e in self.along)].astype(np.float64)
+            if d == self.axis:
+                parts[d] = both[1]
+                continue
+            n = 1 + self.along.index(d)  # of cells from their two faces
+            both = 0.5 * (np.delete(both, 0, axis=n) + np.delete(both, -1, axis=n))
+            parts[d], rises[d] = 0.5 * (both[0] + both[1]), both[1] - both[0]
+        if leaving:
+            parts[self.axis] = parts[self.axis] - leaving * self._flux(parts[self.axis], rises)
+        first, second = (self.starts[d] for d in self.along)
+        sums = [np.add.reduceat(np.add.reduceat(part, first, axis=0), second, axis=1) for part in parts]
+        means: np.ndarray = np.reshape(sums / self.cells, (3, -1))
+        return means
 
-    def drag(self, force: np.ndarray, through: np.ndarray, share: float) -> None:
-        """Let the source follow the drag.
+    def _stretch(self, axis: int, component: int) -> slice:
+        """Return the padded cells of the surface along an axis; of the velocity along it their faces."""
+        first, last = self.spans[axis]
+        return slice(PAD + first, PAD + last + (axis == component))
+
+    def _flux(self, normal: np.ndarray, rises: dict[int, np.ndarray]) -> np.ndarray:
+        """Return the velocity along the axis whose integral is the flux of the wake.
 
         Args:
-            force: of the water on the body over the density, shape (3,) [m^4/s^2].
-            through: velocity of the body through the far water, shape (3,) [m/s].
-            share: weight of the source that belongs to this force against the present one, 0 to 1 [-].
+            normal: velocity along the axis on the faces [m/s].
+            rises: of the two other velocities from the cells before the faces to those behind them, by their axis
+                [m/s].
         """
-        square = float(through @ through)
-        if square > 0:
-            self.source += share * (-float(force @ through) / square - self.source)
+        flux = np.zeros(normal.shape)
+        for n, d in enumerate(self.along):
+            arm = np.arange(*self.spans[d]) + 0.5 - self.centre[d]
+            flux += 0.5 * np.expand_dims(arm, 1 - n) * (rises[d] - np.gradient(normal, axis=n))
+        return flux
+
+
+def points_of(lines: Sequence[np.ndarray]) -> np.ndarray:
+    """Return the points of a lattice from its coordinates along x, y and z, the first changing fastest."""
+    return np.stack([part.ravel() for part in np.meshgrid(*reversed(lines), indexing="ij")[::-1]])
 
 
 @dataclass(slots=True)
 class FarField:
-    """The bodies from afar, and the faces of the sides."""
+    """Open water around a grid in space, on all its sides but the mirrors."""
 
     grid: Grid
     """The grid inside the sides."""
-    bodies: list[FarBody] = field(default_factory=list)
-    """Bodies that induce the flow far away."""
-    points: dict[tuple[int, bool], np.ndarray] = field(init=False)
-    """Middles of the faces of each side, by its axis and whether it is the low one, the last axis first [m]."""
+    mirrors: tuple[bool, ...]
+    """Whether a side is a mirror, in the order of ``sides.NAMES``."""
+    faces: list[Face] = field(init=False)
+    """The faces of the surface."""
+    matrices: list[np.ndarray] = field(init=False)
+    """Per face: velocity into the domain in the knots of its side per velocity on all panels, shape (knot, 3 panel)."""
+    between: list[tuple[np.ndarray, np.ndarray]] = field(init=False)
+    """Which knots the middles of the cells along each axis take, and their weights, each of shape (4, cell) [-]."""
 
     def __post_init__(self) -> None:
-        self.points = {(axis, low): self._faces(axis, low) for axis in range(3) for low in (True, False)}
+        cells, ends = self.grid.cells, list(zip(self.mirrors[::2], self.mirrors[1::2], strict=True))
+        whole = np.prod([n * (1 + any(pair)) for n, pair in zip(cells, ends, strict=True)], dtype=float)
+        panel = max(LEAST, round(whole ** (1 / 3) / PANELS))
+        knots = [np.linspace(0.5, n - 0.5, max(ceil(n / (KNOT * panel)), 3) + 1) for n in cells]
+        self.between = [cubic(at, np.arange(n) + 0.5) for at, n in zip(knots, cells, strict=True)]
+        spans = [(panel * (not low), n - panel * (not high)) for n, (low, high) in zip(cells, ends, strict=True)]
+        centre = [0.0 if low else float(n) if high else n / 2 for n, (low, high) in zip(cells, ends, strict=True)]
+        cuts = [np.linspace(0, b - a, max(round((b - a) / panel), 1) + 1).round().astype(int) for a, b in spans]
+        starts, sizes = tuple(cut[:-1] for cut in cuts), tuple(np.diff(cut) for cut in cuts)
+        along = ((2, 1), (2, 0), (1, 0))
+        self.faces = [
+            Face(k // 2, k % 2 == 0, along[k // 2], tuple(spans), tuple(centre), starts, sizes)
+            for k, mirror in enumerate(self.mirrors)
+            if not mirror
+        ]
+        self.matrices = [self._matrix(face, knots) for face in self.faces]
 
-    def _faces(self, axis: int, low: bool) -> np.ndarray:
-        grid = self.grid
-        plane = grid.origin[axis] + (0.0 if low else grid.size[axis])
-        lines = [np.array([plane]) if d == axis else at for d, at in enumerate((grid.x, grid.y, grid.z))]
-        z, y, x = np.meshgrid(*reversed(lines), indexing="ij")
-        return np.ascontiguousarray(np.squeeze(np.stack([x, y, z]), axis=3 - axis))
+    def _matrix(self, side: Face, knots: list[np.ndarray]) -> np.ndarray:
+        """Return the velocity into the domain in the knots of the side beyond a face per velocity on the panels."""
+        axis, lines = side.axis, list(knots)
+        lines[axis] = np.array([0.0 if side.low else float(self.grid.cells[axis])])
+        points, parts = points_of(lines), []
+        for face in self.faces:
+            normal = np.zeros(3)
+            normal[face.axis] = -1.0 if face.low else 1.0
+            induced = np.zeros((points.shape[1], 3, face.cells.size))
+            for signs, shifts in self._images():  # an image is seen as its original from the image of the point
+                r = (signs[:, None] * (points - shifts[:, None]))[:, :, None] - face.middles[:, None, :]
+                share = signs[axis] * face.cells.ravel() / (4 * np.pi * (r * r).sum(axis=0) ** 1.5)
+                past = np.tensordot(normal, r, 1)
+                for j in range(3):
+                    induced[:, j] += share * (normal[j] * r[axis] - normal[axis] * r[j] + (j == axis) * past)
+            parts.append(induced)
+        both = np.concatenate(parts, axis=2).reshape(points.shape[1], -1)
+        return (both if side.low else -both).astype(np.float32)
 
-    def inward(self, axis: int, low: bool) -> np.ndarray:
-        """Return the velocity into the domain that the bodies induce on a side's faces, the last axis first [m/s]."""
-        total = np.zeros(self.points[axis, low].shape[1:])
-        for body in self.bodies:
-            total += self.of(body, axis, low)
-        return total
+    def _images(self) -> list[tuple[np.ndarray, np.ndarray]]:
+        """Return signs and shifts of the images of the domain, itself among them: a point is seen from its image."""
+        every = []
+        for n, low, high in zip(self.grid.cells, self.mirrors[::2], self.mirrors[1::2], strict=True):
+            facing = [(sign, 2.0 * k * n) for k in range(-IMAGES, IMAGES + 1) for sign in (1.0, -1.0)]
+            every.append(facing if low and high else [(1.0, 0.0), (-1.0, 2.0 * n * high)][: 1 + (low or high)])
+        return [(np.array([s for s, _ in image]), np.array([b for _, b in image])) for image in product(*every)]
 
-    def of(self, body: FarBody, axis: int, low: bool) -> np.ndarray:
-        """Return the same of one body, which need not be among them."""
-        velocity = body.velocity(self.points[axis, low])[axis]
-        return velocity if low else -velocity
+    def inward(self, velocity: np.ndarray, window: Window, fadings: list[Fading]) -> list[np.ndarray]:  # noqa: ARG002
+        """Return the velocity into the domain that the flow induces on the faces of each side, 0 on mirrors [m/s].
+
+        Args:
+            velocity: on the faces before the cells, padded, shape (3, ...) [m/s].
+            window: padded cell indices around the bodies, which are inside the surface.
+            fadings: the sides that carry a wake out.
+
+        The order is that of ``sides.NAMES``, in each array the last axis first.
+        """
+        leaving = {(fading.axis, fading.low): fading.share for fading in fadings}
+        seen = [face.velocities(velocity, leaving.get((face.axis, face.low), 0.0)) for face in self.faces]
+        strength, cells = np.concatenate(seen, axis=1), np.concatenate([face.cells.ravel() for face in self.faces])
+        for d in range(3):  # the far stream, or any other that is the same everywhere: it adds nothing
+            if not any(self.mirrors[2 * d : 2 * d + 2]):
+                strength[d] -= np.average(strength[d], weights=cells)
+        flat = strength.astype(np.float32).ravel()
+        cells_along = self.grid.cells[::-1]
+        sides = [np.zeros([n for d, n in enumerate(cells_along) if d != 2 - k // 2]) for k in range(6)]
+        for face, matrix in zip(self.faces, self.matrices, strict=True):
+            (a, share_a), (b, share_b) = (self.between[d] for d in face.along)
+            knots = np.einsum("ps,s->p", matrix, flat).astype(np.float64).reshape(int(a[-1, -1]) + 1, -1)
+            lines = (share_a[:, :, None] * knots[a]).sum(axis=0)
+            sides[2 * face.axis + (not face.low)] = (share_b * lines[:, b]).sum(axis=1)
+        return sides

@@ -108,7 +108,7 @@ def induce(points, place, strength, out):
         out[0, t], out[1, t] = _induced_at(points[0, t], points[1, t], place, strength, least)
 
 
-def _cubic(knots: np.ndarray, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def cubic(knots: np.ndarray, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return which four knots a cubic through them takes at each ``x``, and their weights, both of shape (4, x)."""
     step = knots[1] - knots[0]
     first = np.clip(((x - knots[0]) / step).astype(int) - 1, 0, knots.size - 4)
@@ -155,7 +155,7 @@ class OpenWater:
         for axis, at in ((0, 0), (0, nx), (1, 0), (1, ny)):
             along = self.cells[1 - axis]
             knots = np.linspace(0.5, along - 0.5, max(-(-along // SIDE), 3) + 1)
-            self.between.append(_cubic(knots, np.arange(along) + 0.5))
+            self.between.append(cubic(knots, np.arange(along) + 0.5))
             pair = np.full(knots.size, float(at)), knots
             points.append(np.array(pair if axis == 0 else pair[::-1]))
         self.points = np.concatenate(points, axis=1)

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from math import exp, isfinite, prod
+from math import isfinite, prod
 from pathlib import Path
 
 import numba
@@ -14,16 +14,14 @@ from suchus.flow import checkpoint as store
 from suchus.flow import contact
 from suchus.flow.added import added_mass, symmetric
 from suchus.flow.ahead import compile_ahead
-from suchus.flow.body import Body, middle_of
+from suchus.flow.body import Body
 from suchus.flow.compiled import PAD
 from suchus.flow.consistency import Consistency
-from suchus.flow.farfield import FarBody
 from suchus.flow.fields import Fields
 from suchus.flow.force import ControlVolume, Surface, sample
 from suchus.flow.free import FreeBody
 from suchus.flow.immerse import wall_offset
 from suchus.flow.log import Log, columns
-from suchus.flow.momentum import Reaction
 from suchus.flow.pace import due_after, even
 from suchus.flow.parts import columns_of
 from suchus.flow.pose import Pose, length, speeds
@@ -31,9 +29,8 @@ from suchus.flow.progress import Bar
 from suchus.flow.record import Record
 from suchus.flow.setup import Setup
 from suchus.flow.shape import Markers
-from suchus.flow.solid import Skin, SpaceShape
+from suchus.flow.solid import Skin
 from suchus.flow.swimmer import Swimmer
-from suchus.flow.trunk import Trunk
 from suchus.flow.watch import EVERY, Watch
 from suchus.flow.water import Water
 
@@ -101,52 +98,7 @@ class Simulation(Fields):
         self._watch.layers(
             [setup.layer_error(b, m, stream, 0.0) for b, m in zip(setup.bodies, outlines, strict=True)]
         )  # fmt: skip
-        self._afar: list[list[FarBody]] = []  # of each body in space, what it counts as from afar
-        self._see_from_afar(outlines)
         self._motions = [self._watched(b) for b in setup.bodies if isinstance(b, Body) and callable(b.motion)]
-
-    def _see_from_afar(self, outlines: Sequence[Markers | Skin]) -> None:
-        """Measure what the bodies are from afar, if the sides of a domain in space ask for it."""
-        far = self.water.border.far
-        if far is None:
-            return
-        for k, (body, skin) in enumerate(zip(self.setup.bodies, outlines, strict=True)):
-            assert isinstance(body.shape, SpaceShape)
-            if isinstance(body.shape, Trunk):
-                count = len(body.shape.from_afar(0.0, self.pose(body.name), self._stream(0.0))[0])
-                self._afar.append([FarBody(np.zeros(3), np.zeros(3), np.zeros((3, 3))) for _ in range(count)])
-                continue
-            pose = self._in_frame(self.pose(body.name))
-            asked, turn = (True,) * 3 + (False,) * 3, pose.matrix
-            added = added_mass(self.water, skin, pose.position, 1.0, k, asked)[:3, :3]
-            mass = body.shape.volume(0.0) * np.eye(3) + turn.T @ np.nan_to_num(added) @ turn
-            self._afar.append([FarBody(np.zeros(3), np.zeros(3), mass)])
-        far.bodies += [one for parts in self._afar for one in parts]
-        self._move_afar([self._in_frame(self.pose(b.name)) for b in self.setup.bodies], self._stream(0.0), 0.0)
-
-    def _move_afar(self, poses: list[Pose], stream: tuple[float, ...], time: float) -> None:
-        """Tell the sides of a domain in space where the bodies are."""
-        if self.water.border.far is None:
-            return
-        for parts, body, pose in zip(self._afar, self.setup.bodies, poses, strict=True):
-            if isinstance(body.shape, Trunk):
-                for one, place, dipole in zip(parts, *body.shape.from_afar(time, pose, stream), strict=True):
-                    one.place, one.dipole = place, dipole
-            else:
-                place, velocity = middle_of(body, pose, time)
-                parts[0].move(place, pose.matrix, velocity - stream)
-
-    def _drag_afar(self, poses: list[Pose], acts: Sequence[Reaction], outlines: Sequence[Markers | Skin]) -> None:
-        """Let the sides of a domain in space know the drag, from the second step on: the first has the start's jolt."""
-        far, dt = self.water.border.far, self._last
-        if far is None or not self._log.rows:
-            return
-        for parts, body, pose, act, skin in zip(self._afar, self.setup.bodies, poses, acts, outlines, strict=True):
-            through = middle_of(body, pose, self.time)[1] - self.water.border.stream
-            extent = float(np.ptp(skin.points, axis=1).max())
-            share = 1 - exp(-dt * length(through) / extent)
-            for one in parts:
-                one.drag(np.array(act.force) / (self.setup.density * len(parts)), through, share)
 
     def _watched(self, body: Body) -> Consistency:
         pose = body.pose(0.0).along(self.axes)
@@ -248,7 +200,6 @@ class Simulation(Fields):
         ahead = length(self._stream(time))
         self._speed = max([self._speed, ahead] + [_fastest_marker(m) for m in markers])  # it may just start to move
         push = tuple(-(self.frame[1] - old_frame[1]) / dt)
-        self._move_afar(poses, self._stream(time), time)
         limits = (self.setup.tolerance * self._speed, 10 * self.setup.tolerance * self._speed)
         self.water.step(dt, self._stream(time), tuple(map(float, push)), limits)
         self.time, self._last = time, dt
@@ -291,7 +242,6 @@ class Simulation(Fields):
         about = [self._about(b.name, p) for b, p in zip(setup.bodies, poses, strict=True)]
         values, body_speed = [], 0.0
         reactions, along = self._log.reactions(water, outlines, about, dt, push), []
-        self._drag_afar(poses, [act for act, *_ in reactions], outlines)
         for k, (body, markers, point, (act, *parts)) in enumerate(
             zip(setup.bodies, outlines, about, reactions, strict=True)
         ):

@@ -15,9 +15,6 @@ from suchus.flow.pose import Pose, turned
 from suchus.flow.sections import PAINTED, paint_sections, paint_turned_sections
 from suchus.flow.solid import Skin, SpaceField, SpaceShape
 
-DIPOLES = 12
-"""Stretches that count as a dipole each from afar: shorter than the sides are away [-]."""
-
 MOST_PARTS = 64
 """Parts that a body may be divided into [-]; those of all bodies are counted in one byte."""
 
@@ -171,32 +168,6 @@ class Trunk(SpaceShape):
     def mass(self, time: float) -> SpaceMass:
         """Return volume, centre and moments, section by section."""
         return of_trunk(self._spine(time).rows, self.half_height)
-
-    def from_afar(self, time: float, pose: Pose, stream: tuple[float, ...]) -> tuple[np.ndarray, np.ndarray]:
-        """Return where ``DIPOLES`` stretches are and their dipoles, each of shape (stretch, 3) [m, m^4/s].
-
-        A section of a slender body that moves across its axis carries on the water of an ellipse's added mass, the
-        square of its extent across the motion times pi; along the axis it carries none.
-        Source: Lighthill 1960, J. Fluid Mech. 9, 305-317.
-
-        Args:
-            time: when [s].
-            pose: of the body's frame.
-            stream: velocity of the far water [m/s].
-        """
-        spine, frame = self.placed(time, pose)
-        x, y, heading, wide, u, v, _ = 0.5 * (spine.rows[:, 1:] + spine.rows[:, :-1])
-        high, ds, matrix = 0.5 * (self.half_height[1:] + self.half_height[:-1]), np.diff(spine.arc), frame.matrix
-        carried = frame.rates(frame.place((x, y, 0 * x)))
-        past = turned(matrix.T, [part - far for part, far in zip(carried, stream, strict=True)])
-        u, v, w = u + past[0], v + past[1], past[2]
-        aside = np.pi * high**2 * (v * np.cos(heading) - u * np.sin(heading))
-        held, up = np.pi * wide * high, np.pi * wide * (high + wide)
-        dipole = ds * np.stack([held * u - aside * np.sin(heading), held * v + aside * np.cos(heading), up * w])
-        first = np.linspace(0, ds.size, min(DIPOLES, ds.size), endpoint=False).astype(int)
-        middle = np.add.reduceat(np.stack([x, y, 0 * x]) * ds, first, axis=1) / np.add.reduceat(ds, first)
-        dipoles = turned(matrix, np.add.reduceat(dipole, first, axis=1))
-        return np.array(frame.place(middle)).T, np.array(dipoles).T
 
     def at(self, time: float, pose: Pose, arc: np.ndarray) -> np.ndarray:
         """Return where the midline is at arc lengths [m], in the world, shape (point, 3) [m]."""

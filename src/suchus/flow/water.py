@@ -422,9 +422,12 @@ class Water:
             lines[:PAD], lines[-PAD:] = 0, 0
         r[self._part(multigrid.DINV) == 0] = 0
         _, (a, b) = self._solve((limit, 10 * limit))
-        np.multiply(self._d, a, out=self._x)
-        self._x += b * self._part(multigrid.X)
-        return self._x.reshape(self.p.shape)
+        x, d, rest = (part.reshape(self.p.shape) for part in (self._x, self._d, self._part(multigrid.X)))
+        cells = (slice(PAD, -PAD),) * self.axes  # beyond them the multigrid leaves what it happens to
+        np.multiply(d[cells], a, out=x[cells])
+        x[cells] += b * rest[cells]
+        self._seal(x)
+        return x
 
     def along_sides(self, x: np.ndarray) -> list[np.ndarray]:
         """Return the values of the cells along each side: left, right, bottom, top (low and high)."""
@@ -444,8 +447,9 @@ class Water:
             np.moveaxis(work, axis, 0)[1:] = -np.moveaxis(np.diff(x, axis=axis), axis, 0)
             work[here] = given[c] + self.passage[c][here] * work[here]
         sides = self.border.water.inward(gained, self.window, [])
-        level = sum(float(s.sum()) for s in sides) / sum(s.size for s in sides)
-        return [s - level for s in sides]
+        moves = [float(edge.unbounded) for edge in self.border.edges]
+        level = sum(float(s.sum()) for s in sides) / sum(m * s.size for m, s in zip(moves, sides, strict=True))
+        return [s - m * level for m, s in zip(moves, sides, strict=True)]
 
     def _solve(self, limits: tuple[float, float]) -> tuple[poisson.Solve, tuple[float, float]]:
         """Return how the solve went, and what the solution is made of; see ``poisson.solve``."""
