@@ -11,8 +11,7 @@ from suchus.flow.compiled import PAD, Window
 from suchus.flow.free import FreeBody
 from suchus.flow.grid import Grid
 from suchus.flow.immerse import REACH, THINNEST, THINNEST_WITH_CENTRELINE
-from suchus.flow.mass import SpaceMass
-from suchus.flow.pose import Motion, Pose, turned
+from suchus.flow.pose import Motion, Pose
 from suchus.flow.shape import Field, Shape
 from suchus.flow.solid import SpaceField, SpaceShape
 
@@ -86,17 +85,6 @@ def _outside(body: AnyBody, grid: Grid, ends: list[tuple[float, float]], time: f
         f"at t = {time:.4g} s, {body.name} reaches over {reach}, outside the domain {domain} "
         f"(less {(REACH + 2) * grid.cell:.2g} m on each side); enlarge the grid, or let the frame follow the body."
     )
-
-
-def middle_of(body: AnyBody, pose: Pose, time: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return where the centre of a body's volume is and how fast it moves, along every axis [m, m/s]."""
-    mass = body.shape.mass(time)
-    if isinstance(mass, SpaceMass):
-        place = np.array(pose.place(mass.centre))
-        return place, np.array(pose.rates(place)) + turned(pose.matrix, mass.centre_rate)
-    (x, y), (u, v) = pose.to_world(*map(np.asarray, mass.centre)), pose.turn(*map(np.asarray, mass.centre_rate))
-    carried = pose.carry(x, y)
-    return np.array([x, y]), np.array([carried[0] + u, carried[1] + v])
 
 
 def check_cut(body: AnyBody, pose: Pose, axis: int, plane: float, h: float, time: float) -> None:
