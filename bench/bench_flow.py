@@ -1,20 +1,25 @@
 """Speed of the flow solver, beside what this machine's memory and threads give in the same run.
 
-Ratios travel, times do not. ``--pieces`` says where the time goes, piece by piece.
+Ratios travel, times do not. ``--pieces`` says where the time goes, piece by piece; ``--keep`` states what was found on
+the page on the limits of the flow solver.
 """
 
 import argparse
+import sys
 from collections import defaultdict
 from math import prod
+from pathlib import Path
 from time import perf_counter
 
 import numba
 import numpy as np
 
 from suchus import flow
+from suchus.experiments.swim_3d import Swim3d
 from suchus.flow import border, log, midline, multigrid, openwater, patch, poisson, simulation, water
 from suchus.flow.compiled import compiled, threaded
 from suchus.flow.slab import inner_strides
+from suchus.water import Basin, fit, printed_wave, space
 
 PIECES = (
     (water, "advance immerse collect dilatation_work contents mean_residual residual correct fastest fill fill_source"),
@@ -195,27 +200,58 @@ def main():
     options = argparse.ArgumentParser(description=__doc__)
     options.add_argument("--steps", type=int, default=30, help="steps per batch; the fastest of 5 batches counts")
     options.add_argument("--pieces", action="store_true", help="say where the time goes instead")
+    options.add_argument("--keep", action="store_true", help="state what was found on the page on limits")
     chosen = options.parse_args()
     steps = chosen.steps
     many = min(2, numba.config.NUMBA_NUM_THREADS)
-    far = {}
+    far, found = {}, {}
     for threads in sorted({1, many}):
         far[threads], near = bandwidth(16_000_000, threads), bandwidth(500_000, threads)
+        found[f"memory_{threads}"] = far[threads]
         print(f"memory, {threads} thread(s): {far[threads]:.1f} GB/s far, {near:.1f} GB/s near")
     if many > 1:
-        print(f"arithmetic alone: two threads over one {gain_of_two():.2f}")
+        found["arithmetic"] = gain_of_two()
+        print(f"arithmetic alone: two threads over one {found['arithmetic']:.2f}")
     for label, make, sizes in FLOWS:
         for cells in sizes:
             if chosen.pieces:
                 for threads in sorted({1, many}):
                     tell_pieces(make, cells, threads, steps)
             else:
-                tell_speed(label, make, cells, steps, far)
+                found |= tell_speed(label, make, cells, steps, far)
+    if not chosen.pieces:
+        for cells in (96, 128):
+            found |= tell_swim(cells, far)
+    if chosen.keep and many > 1 and not chosen.pieces:
+        sys.path.insert(0, str(Path(__file__).parents[1] / "tools"))
+        from pages import stated  # noqa: PLC0415
+
+        stated.keep("bench_flow", found)
+        stated.main([])
+
+
+def tell_swim(cells, far):
+    """Print what a cycle of the robot's free swim in space takes on each number of threads in ``far`` [s]."""
+    swim, found = Swim3d(), {}
+    motion = fit(swim.robot, printed_wave(swim.robot, swim.reading, frequency=1.0, sign=-1)).swim
+    basin = Basin(cells=cells, viscosity=swim.robot.length**2 / swim.reynolds, cycles=2)
+    for threads in far:
+        sim = flow.Simulation(space.setup_of(swim.robot, motion, basin), thread_count=threads)
+        sim.run(0.2, progress=False)
+        before, start = sim.record.time.size, perf_counter()
+        sim.run(1.2, progress=False)
+        found[f"swim_{cells}_{threads}"] = spent = perf_counter() - start
+        found[f"swim_{cells}_steps"] = count = sim.record.time.size - before
+        print(
+            f"{' x '.join(map(str, sim.setup.grid.cells))}, the robot's swim at {cells} cells a length, {threads} "
+            f"thread(s): {spent:.2f} s a cycle, {1e3 * spent / count:.1f} ms a step, {count} steps"
+        )
+    return found
 
 
 def tell_speed(label, make, cells, steps, far):
     """Print cells a second on each number of threads in ``far``, the speed of the memory with so many [GB/s]."""
-    rates = {}
+    rates, key = {}, f"{label.split()[-1]}_{cells}"
     for threads in far:
         sim = make(cells, threads)
         size, count = " x ".join(map(str, sim.setup.grid.cells)), prod(sim.setup.grid.cells)
@@ -235,6 +271,7 @@ def tell_speed(label, make, cells, steps, far):
         )
     if len(rates) > 1:
         print(f"{size}, {label}: two threads over one {rates[max(rates)] / rates[1]:.2f}")
+    return {f"{key}_{threads}": rate for threads, rate in rates.items()} | {f"{key}_bytes": memory}
 
 
 FLOWS = (

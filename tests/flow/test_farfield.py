@@ -151,7 +151,7 @@ def ball(grid, *, stream=(1.0, 0.0, 0.0), mirrors=(), **changes):
 
 @pytest.mark.parametrize("axis", range(3))
 def test_no_vorticity_comes_in_from_the_sides(axis):
-    """Where the water enters it had 3 % of the stream's speed over the diameter when the sides were not free of vorticity."""
+    """It was 3 % of the stream's speed over the diameter when velocities along the sides were those inside them."""
     stream, cells, origin = np.eye(3)[axis], [24] * 3, [-1.5] * 3
     cells[axis], origin[axis] = 32, -2.0
     sim = ball(flow.Grid(cells=tuple(cells), cell=CELL, origin=tuple(origin)), stream=tuple(stream.tolist()))

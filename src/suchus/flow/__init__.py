@@ -3,7 +3,7 @@
 from suchus.flow.added import added_mass
 from suchus.flow.body import Body
 from suchus.flow.contact import Contact
-from suchus.flow.eel import eel
+from suchus.flow.eel import eel, eel_in_space
 from suchus.flow.force import Load, Surface
 from suchus.flow.free import FreeBody
 from suchus.flow.grid import Grid
@@ -79,6 +79,7 @@ __all__ = [
     "added_mass",
     "difference",
     "eel",
+    "eel_in_space",
     "foil",
     "frequency",
     "from_outline",

@@ -163,10 +163,11 @@ def check_swim_in_space(robot: Crocodile, motion: Motion, basin: Basin) -> None:
             f"the box leaves {beside:.3g} body lengths of water beside the widest swing, and the body would leave it: "
             f"give at least {least - _DRAWN:.2g}, better {BESIDE}."
         )
-    _setup(robot, motion, basin).check()
+    setup_of(robot, motion, basin).check()
 
 
-def _setup(robot: Crocodile, motion: Motion, basin: Basin) -> flow.Setup:
+def setup_of(robot: Crocodile, motion: Motion, basin: Basin) -> flow.Setup:
+    """Return what is simulated when a robot swims in a basin: the half above its plane of symmetry."""
     outline = Outline(robot, basin.cells + 1)
     sway, turn = recoil(outline, motion, 0.0, Water(viscosity=basin.viscosity))
     grow = GROWS / motion.frequency
@@ -209,7 +210,7 @@ def swim_in_space(
         Diverged: the flow diverged.
     """
     check_swim_in_space(robot, motion, basin)
-    period, sim = 1.0 / motion.frequency, flow.Simulation(_setup(robot, motion, basin))
+    period, sim = 1.0 / motion.frequency, flow.Simulation(setup_of(robot, motion, basin))
     end, about = basin.cycles * period, repr((robot, motion_key(motion), basin))
     filmed = Filmed(motion.frequency, end, basin.frames)
 
