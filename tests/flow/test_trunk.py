@@ -10,6 +10,10 @@ from hypothesis import strategies as st
 from suchus import flow
 from suchus.errors import InvalidDesign, OutsideLimits, UnknownName
 from suchus.flow import body as bodies
+from suchus.flow.added import added_mass
+from suchus.flow.immerse import LEAST_SHARE, close_surface
+from suchus.flow.sections import ellipse_foot
+from suchus.flow.water import Water
 
 STATIONS = 61
 
@@ -314,3 +318,92 @@ def test_what_does_not_fit_is_refused_in_use():
     assert len(bodies.rows_of(many[:2])) == 2
     with pytest.raises(InvalidDesign, match="183 parts"):
         bodies.rows_of(many)
+
+
+@given(st.floats(-6.0, 6.0), st.floats(-6.0, 6.0), st.floats(-9.0, 0.5), st.booleans())
+def test_the_foot_on_an_ellipse_is_square_to_it(y, z, thin, upright):
+    """However thin the ellipse: with a bounded number of steps that suited a ratio of 6 a fin's edge was anywhere."""
+    wide, high = (2.0, 2.0 * 10**thin)[:: 1 if upright else -1]
+    c, s = ellipse_foot(y, z, wide, high)
+    assert c * c + s * s == pytest.approx(1.0)
+    foot = np.array([wide * c, high * s])
+    away = np.array([y, z]) - foot
+    along = np.array([-wide * s, high * c])
+    assert abs(away @ along) <= 1e-5 * (np.hypot(y, z) + 2.0) * max(np.linalg.norm(along), 1e-9) + 1e-12
+    angles = np.linspace(0.0, 2 * np.pi, 721)
+    others = np.hypot(y - wide * np.cos(angles), z - high * np.sin(angles))
+    assert np.linalg.norm(away) <= others.min() + 1e-6
+
+
+def test_a_fin_that_ends_in_an_edge_is_painted_beside_itself_alone():
+    """A tail that tapers to nothing across and is high: at its end the section is a line."""
+    s = np.linspace(0.0, 1.0, STATIONS)
+    shape, h = rod(s, 0.05 * (1 - s), np.full(s.size, 0.05)), 1 / 40
+    x, y, z = points(h, 0.2, 0.5, 0.1)
+    found = shape.measure(x + 0.98, y, z, 0.0, flow.Pose(position=(0.0, 0.0, 0.0)), 3 * h)
+    beside = np.hypot(y[None, :, None], np.maximum(np.abs(z)[:, None, None] - 0.05, 0.0)) - 0.01
+    far = np.broadcast_to(beside, found.distance.shape) > 3.2 * h
+    assert far.sum() > 100
+    assert found.distance[far].min() > 2.9 * h
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.tuples(*[st.floats(-1.0, 1.0)] * 3), st.floats(-2.0, 2.0))
+def test_no_path_from_cell_to_cell_crosses_a_closed_surface(normal, shift):
+    """A plane wall: the faces between cells on both sides of it are closed, and no others."""
+    n = np.array(normal)
+    if np.linalg.norm(n) < 0.2:
+        return
+    n = n / np.linalg.norm(n)
+    aside = np.linalg.svd(n[None])[2][1:]
+    corners = np.array(
+        [(shift + 0.01) * n + 20 * (a * aside[0] + b * aside[1]) for a, b in ((1, 1), (-1, 1), (-1, -1), (1, -1))]
+    )
+    triangles = np.stack([corners[[0, 1, 2]], corners[[0, 2, 3]]], axis=2)
+    size, first, h = 9, np.array([-4.0, -4.0, -4.0]), 1.0
+    lines = first[:, None] + np.arange(-1, size)  # one more before the first cell
+    z, y, x = np.meshgrid(*lines[::-1], indexing="ij")
+    side = n[0] * x + n[1] * y + n[2] * z > shift + 0.01
+    for c in range(3):
+        passage = np.ones((size,) * 3, np.float32)
+        close_surface(passage, c, triangles, first, h)
+        axis, inner = 2 - c, (slice(1, None),) * 3
+        before = [slice(1, None)] * 3
+        before[axis] = slice(None, -1)
+        apart = side[inner] != side[tuple(before)]
+        assert np.array_equal(passage == np.float32(LEAST_SHARE), apart)
+
+
+def oblate(ratio):
+    """Added mass of an oblate spheroid along its axis over what it displaces: Lamb 1932, par. 114 and 373."""
+    e = np.sqrt(1 - ratio**2)
+    alpha = 2 / e**2 * (1 - ratio * np.arcsin(e) / e)
+    return alpha / (2 - alpha)
+
+
+@pytest.mark.parametrize("pose", [
+    flow.Pose(position=(0.011, 0.007, 0.003)),
+    flow.Pose(position=(0.011, 0.007, 0.003), angle=0.5),
+    flow.Pose(position=(0.011, 0.007, 0.003), angle=0.5, roll=0.4),
+])  # fmt: skip
+def test_water_does_not_pass_through_a_disc_of_two_cells(pose):
+    """An oblate spheroid 8 times as wide as thick: open to the pressure it had two thirds of its added mass."""
+    shape, cells = egg(1.0, 0.125, 1.0), 16
+    grid = flow.Grid(cells=(2 * cells,) * 3, cell=1 / cells, origin=(-1.0,) * 3)
+    body = flow.Body(shape=shape, motion=pose)
+    water = Water(grid, flow.Sides(), 1e-9, np.float32)
+    water.place([body], [pose], 0.0)
+    mass = added_mass(water, shape.markers(0.0, pose, 1 / cells), pose.position, 1.0)[:3, :3]
+    across = pose.matrix[:, 1]
+    assert across @ mass @ across == pytest.approx(oblate(0.125) * shape.volume(0.0), rel=0.06)
+
+
+def test_the_middle_of_a_trunk_is_the_longer_axis_of_its_sections():
+    """As far as they are slim: of half-axes a > b it reaches a (a^2 - b^2) / (a^2 + b^2); round ones have none."""
+    s, here = np.linspace(0.0, 1.0, STATIONS), flow.Pose(position=(0.0, 0.0, 0.0))
+    for wide, high, axis in ((0.02, 0.06, 2), (0.06, 0.02, 1)):
+        found = rod(s, np.full(s.size, wide), np.full(s.size, high)).midsurface(0.0, here)
+        assert np.abs(found[:, axis]).max() == pytest.approx(0.06 * 0.8)
+        assert np.abs(found[:, 3 - axis]).max() == 0
+        assert [found[:, 0].min(), found[:, 0].max()] == pytest.approx([1 / 30, 1 - 1 / 30])  # not its flat ends
+    assert rod(s, np.full(s.size, 0.05), np.full(s.size, 0.05)).midsurface(0.0, here) is None

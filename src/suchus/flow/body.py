@@ -191,7 +191,8 @@ def thin_share(body: AnyBody, grid: Grid, time: float) -> float:
     """
     station, thickness = body.shape.thickness(time)
     least, most = THINNEST * grid.cell, float(thickness.max())
-    needed = THINNEST if body.shape.centreline(time, Pose()) is None else THINNEST_WITH_CENTRELINE
+    lined = isinstance(body.shape, Shape) and body.shape.centreline(time, Pose()) is not None
+    needed = THINNEST_WITH_CENTRELINE if lined else THINNEST
     if most < needed * grid.cell:
         raise InvalidDesign(
             f"{body.name} is {most:.4g} m thick at most, {most / grid.cell:.2g} cells of {grid.cell:.4g} m; at least "

@@ -13,24 +13,25 @@ _STEPS = 12
 _STILL = 1e-12
 """Change of the foot point's parameter, over the square of the smallest half-axis, at which they end [-]."""
 
-_TINY = 1e-9
+TINY = 1e-9
 """Distance from a plane of symmetry, over the half-axis, below which a point counts as so far off it [-]."""
 
 
 @part
-def _foot(p, a):
-    """Return the distance of a point, all of whose coordinates are positive, from an ellipsoid, and the normal there.
+def foot_parameter(p, a):
+    """Return the parameter t of the point of an ellipse or an ellipsoid nearest to a point p in its first quadrant.
 
     The foot point f of a point p has ``f_i = a_i^2 p_i / (t + a_i^2)``, where t makes it lie on the surface. Newton's
     method on ``1 / |s(t)|`` with ``s_i = a_i p_i / (t + a_i^2)``, which is nearly straight, rises to that t from every
     start below it and above minus the smallest ``a_i^2``.
     """
-    least, t = min(a[0], a[1], a[2]) ** 2, -np.inf
-    for d in range(3):
+    least, t = np.inf, -np.inf
+    for d in range(len(a)):
+        least = min(least, a[d] * a[d])
         t = max(t, a[d] * p[d] - a[d] * a[d])  # one term of |s| is 1 here: at or below the root
     for _ in range(_STEPS):
         square, slope = 0.0, 0.0
-        for d in range(3):
+        for d in range(len(a)):
             below = 1.0 / (t + a[d] * a[d])
             s = a[d] * p[d] * below
             square += s * s
@@ -39,6 +40,13 @@ def _foot(p, a):
         t += change
         if abs(change) <= _STILL * least:
             break
+    return t
+
+
+@part
+def _foot(p, a):
+    """Return the distance of a point in the first octant from an ellipsoid, and the normal there."""
+    t = foot_parameter(p, a)
     nx, ny, nz = p[0] / (t + a[0] * a[0]), p[1] / (t + a[1] * a[1]), p[2] / (t + a[2] * a[2])
     size = 1.0 / np.sqrt(nx * nx + ny * ny + nz * nz)
     off = (p[0] - a[0] * a[0] * nx) * nx + (p[1] - a[1] * a[1] * ny) * ny + (p[2] - a[2] * a[2] * nz) * nz
@@ -56,7 +64,7 @@ def _paint_ellipsoid_point(out, at, away, turn, a, reach):
     if abs(bound) >= reach:  # no point of the surface is nearer than this
         out[0, q, j, i] = bound
         return
-    p = (max(abs(away[0]), _TINY * a[0]), max(abs(away[1]), _TINY * a[1]), max(abs(away[2]), _TINY * a[2]))
+    p = (max(abs(away[0]), TINY * a[0]), max(abs(away[1]), TINY * a[1]), max(abs(away[2]), TINY * a[2]))
     found = _foot(p, a)
     out[0, q, j, i] = found[0]
     n = (np.copysign(found[1], away[0]), np.copysign(found[2], away[1]), np.copysign(found[3], away[2]))

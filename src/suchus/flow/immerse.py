@@ -31,6 +31,9 @@ REACH = 3.0
 POINTS = 4096
 """Points whose moments one thread fills at a time [-]."""
 
+FLAT = 1e-9
+"""Share of a cell, or of a triangle, by which a line of cells may pass it by and still meet it [-]."""
+
 LEAST_SHARE = 1e-3
 """Share of the fluid kept inside the bodies, so that the pressure equation has no pockets cut off from the rest [-]."""
 
@@ -96,6 +99,14 @@ def fill(distance, normal, thickness, mu0, mu1):
                 mu1[d, k] = first * normal[d, k]
 
 
+@part
+def _lines_within(p, q, r, first, h, count):
+    """Return the first line of cells that three coordinates span, and the one after the last."""
+    low, high = min(p, q, r), max(p, q, r)
+    start, stop = np.ceil((low - first) / h - FLAT), np.floor((high - first) / h + FLAT) + 1.0
+    return max(int(start), 0), min(int(stop), count)
+
+
 @compiled
 def close(passage, x, y, x0, y0, h):
     """Let the pressure not act on the faces of one direction whose two cells lie on either side of a line.
@@ -121,6 +132,41 @@ def close(passage, x, y, x0, y0, h):
             i = int(np.floor((at - x0) / h))
             if 0 <= i < faces:
                 passage[j, i] = min(passage[j, i], LEAST_SHARE)
+
+
+@compiled
+def close_surface(passage, c, triangles, first, h):
+    """Do in space what ``close`` does in the plane, with triangles in place of the pieces of a line.
+
+    Args:
+        passage: share of the pressure's gradient that acts on the faces across axis ``c`` of a window, shape (z, y, x);
+            changed.
+        c: axis that the faces lie across.
+        triangles: corners, shape (corner, axis, triangle).
+        first: middle of the window's first cell, x, y and z; the first face lies before it.
+        h: cell.
+    """
+    a, b = (c + 1) % 3, (c + 2) % 3
+    sizes = (passage.shape[2], passage.shape[1], passage.shape[0])
+    at = np.zeros(3, np.int64)
+    for n in range(triangles.shape[2]):
+        p, q, r = triangles[0, :, n], triangles[1, :, n], triangles[2, :, n]
+        area = (q[a] - p[a]) * (r[b] - p[b]) - (r[a] - p[a]) * (q[b] - p[b])
+        if abs(area) < FLAT * h * h:
+            continue
+        low_a, high_a = _lines_within(p[a], q[a], r[a], first[a], h, sizes[a])
+        low_b, high_b = _lines_within(p[b], q[b], r[b], first[b], h, sizes[b])
+        for i in range(low_a, high_a):
+            for j in range(low_b, high_b):
+                u, v = first[a] + i * h - p[a], first[b] + j * h - p[b]
+                to_q = (u * (r[b] - p[b]) - (r[a] - p[a]) * v) / area
+                to_r = ((q[a] - p[a]) * v - u * (q[b] - p[b])) / area
+                if min(to_q, to_r, 1.0 - to_q - to_r) < -FLAT:
+                    continue
+                place = p[c] + to_q * (q[c] - p[c]) + to_r * (r[c] - p[c])
+                at[c], at[a], at[b] = int(np.floor((place - first[c]) / h)) + 1, i, j
+                if 0 <= at[c] < sizes[c]:
+                    passage[at[2], at[1], at[0]] = min(passage[at[2], at[1], at[0]], LEAST_SHARE)
 
 
 @ordered_part

@@ -12,6 +12,7 @@ import numpy as np
 from numba import prange
 
 from suchus.flow.compiled import part, signed, threaded
+from suchus.flow.ellipsoid import TINY, foot_parameter
 from suchus.flow.paint import find_section, section_velocity
 
 X, Y, HEADING, WIDE, X_RATE, Y_RATE, TURN, HIGH, SWELL, ARC = range(10)
@@ -19,13 +20,6 @@ X, Y, HEADING, WIDE, X_RATE, Y_RATE, TURN, HIGH, SWELL, ARC = range(10)
 
 PAINTED = 8
 """Values painted at each point: distance, normal (3), velocity (2), thickness, which part of the body [-]."""
-
-_STEPS = 6
-"""Steps to the foot point on an ellipse [-]: with 6 the distance is right to 1e-4 of the smaller half-axis on a 6:1 one
-up to that half-axis away from it."""
-
-_AT_REST = 1e-10
-"""Change of cosine and sine of the foot point's angle at which they end [-]."""
 
 _STRIDE = 4
 """Stations from one to the next of those that the nearest one is looked for among first [-]."""
@@ -36,28 +30,12 @@ _LEAST = 1e-9
 
 @part
 def ellipse_foot(y, z, wide, high):
-    """Return where on an ellipse the point nearest to (y, z) is, as cosine and sine of its angle.
-
-    Each step takes the circle of curvature at the last place for the ellipse.
-    """
-    py, pz = abs(y), abs(z)
-    if wide == high:
-        size = np.sqrt(py * py + pz * pz)
-        return (y / size, z / size) if size > 0.0 else (1.0, 0.0)
-    c, s = np.sqrt(0.5), np.sqrt(0.5)
-    focal = wide * wide - high * high
-    for _ in range(_STEPS):
-        was_c, was_s = c, s
-        ey, ez = focal * c * c * c / wide, -focal * s * s * s / high  # centre of curvature
-        ry, rz, qy, qz = wide * c - ey, high * s - ez, py - ey, pz - ez
-        away = np.sqrt(qy * qy + qz * qz)
-        ratio = np.sqrt(ry * ry + rz * rz) / away if away > 0.0 else 1.0
-        c, s = min(max((ey + qy * ratio) / wide, 0.0), 1.0), min(max((ez + qz * ratio) / high, 0.0), 1.0)
-        size = np.sqrt(c * c + s * s)
-        c, s = (c / size, s / size) if size > 0.0 else (1.0, 0.0)
-        if abs(c - was_c) + abs(s - was_s) < _AT_REST:
-            break
-    return (c if y >= 0.0 else -c), (s if z >= 0.0 else -s)
+    """Return where on an ellipse the point nearest to (y, z) is, as cosine and sine of its angle."""
+    p = max(abs(y), TINY * wide), max(abs(z), TINY * high)
+    t = foot_parameter(p, (wide, high))
+    c, s = wide * p[0] / (t + wide * wide), high * p[1] / (t + high * high)
+    size = np.sqrt(c * c + s * s)
+    return np.copysign(c / size, y), np.copysign(s / size, z)
 
 
 @part

@@ -88,8 +88,11 @@ class SpaceShape(ABC):
         """Parts that the record tells of one by one [-]."""
         return 1
 
-    def centreline(self, time: float, pose: Pose) -> np.ndarray | None:
-        """Return None: no body in three dimensions is taken for thin."""
+    def midsurface(self, time: float, pose: Pose) -> np.ndarray | None:
+        """Return the surface in the middle of a thin body, which no water passes, in triangles.
+
+        Shape (corner, axis, triangle) [m]; None for a body that is never thin.
+        """
         return None
 
     @property

@@ -156,6 +156,26 @@ class Trunk(SpaceShape):
         low, top = (middles - far).min(axis=1).tolist(), (middles + far).max(axis=1).tolist()
         return tuple(end for pair in zip(low, top, strict=True) for end in pair)
 
+    def midsurface(self, time: float, pose: Pose) -> np.ndarray | None:
+        """Return the longer axes of the sections, as far as a section is less wide than the way to its tip is long.
+
+        Round sections have none, nor have the body's round ends.
+        """
+        spine, frame = self.placed(time, pose)
+        wide, high, arc = spine.half_width, self.half_height, spine.arc
+        slim = np.minimum(wide, high) < np.minimum(arc, arc[-1] - arc)
+        square = np.maximum(wide**2 + high**2, np.finfo(float).tiny)
+        excess = np.where(slim, (high**2 - wide**2) / square, 0.0)
+        up, aside = high * np.maximum(excess, 0.0), wide * np.maximum(-excess, 0.0)
+        across = np.stack([-aside * np.sin(spine.heading), aside * np.cos(spine.heading), up])
+        middle = np.stack([spine.x, spine.y, 0 * spine.x])
+        both = ((up[1:] > 0) & (up[:-1] > 0)) | ((aside[1:] > 0) & (aside[:-1] > 0))
+        if not both.any():
+            return None
+        low, top = (np.array(frame.place(middle + way * across)) for way in (-1.0, 1.0))
+        pairs = [(low[:, :-1], low[:, 1:], top[:, :-1]), (low[:, 1:], top[:, 1:], top[:, :-1])]
+        return np.ascontiguousarray(np.concatenate([np.stack(pair)[:, :, both] for pair in pairs], axis=2))
+
     def thickness(self, time: float) -> tuple[np.ndarray, np.ndarray]:
         """Return arc length and the smaller axis of the section at the stations."""
         spine = self._spine(time)

@@ -17,12 +17,14 @@ from suchus.flow.body import AnyBody, cuts, measure_all, rows_of, unite, window_
 from suchus.flow.border import Border
 from suchus.flow.compiled import PAD, Window
 from suchus.flow.grid import Grid
-from suchus.flow.immerse import close, fill, fill_source, immerse
+from suchus.flow.immerse import close, close_surface, fill, fill_source, immerse
 from suchus.flow.momentum import collect, contents, contents_of, dilatation_work, sums_of
 from suchus.flow.pose import Pose
 from suchus.flow.project import correct, fastest, mean_residual, residual
+from suchus.flow.shape import Shape
 from suchus.flow.sides import Sides
 from suchus.flow.slab import inner_strides
+from suchus.flow.solid import SpaceShape
 
 MOST_CYCLES = 60
 """Iterations of the pressure solver before it counts as stuck [-]."""
@@ -248,14 +250,26 @@ class Water:
             self.mu0[c][here] = self.passage[c][here] = mu0.reshape(near.shape)
             self.mu1[c] = mu1.reshape(self.axes, *near.shape)
             self.b[c] = f.velocity[c]
+        first = [grid.centres(*ends[d], d)[0] for d in range(self.axes)]
         for body, pose in zip(bodies, poses, strict=True):
-            centreline = body.shape.centreline(time, pose)
-            if centreline is not None:
-                x, y = (grid.centres(*ends[d], d)[0] for d in range(2))
-                close(self.passage[0][here], centreline[0], centreline[1], x - h, y, h)
-                close(self.passage[1][here].T, centreline[1], centreline[0], y - h, x, h)
+            self._close(body.shape, pose, time, first)
         source, b, mu0 = (self._flat(a) for a in (self.source, self.b, self.mu0))
         fill_source(source, b, mu0, self._layout[0], self._near, self.inner)
+
+    def _close(self, shape: Shape | SpaceShape, pose: Pose, time: float, first: list[float]) -> None:
+        """Let no pressure act through the middle of a thin body; ``first`` is the middle of the window's first cell."""
+        h, here = self.grid.cell, self._here(self.window)
+        if isinstance(shape, SpaceShape):
+            triangles = shape.midsurface(time, pose)
+            if triangles is not None:
+                for c in range(3):
+                    close_surface(self.passage[c][here], c, triangles, np.array(first), h)
+            return
+        centreline = shape.centreline(time, pose)
+        if centreline is not None:
+            x, y = first
+            close(self.passage[0][here], centreline[0], centreline[1], x - h, y, h)
+            close(self.passage[1][here].T, centreline[1], centreline[0], y - h, x, h)
 
     def fastest(self) -> float:
         """Return the largest sum of the sizes of the components in a cell [m/s]."""
