@@ -186,6 +186,16 @@ def _part_at(at, cuts):
     return part_of
 
 
+@part
+def _section(column, rows, cuts, reach):
+    """Return a column's section: arc length, part of the body, half-axes, and from how far it may be reached."""
+    k, f = column[0], column[1]
+    at = (1.0 - f) * rows[ARC, k] + f * rows[ARC, k + 1] + column[3]
+    wide = (1.0 - f) * rows[WIDE, k] + f * rows[WIDE, k + 1]
+    high = (1.0 - f) * rows[HIGH, k] + f * rows[HIGH, k + 1]
+    return at, _part_at(at, cuts), wide, high, reach + _growth(k, at, wide, high, rows, reach)
+
+
 @threaded
 def paint_sections(out, rows, tx, ty, cuts, x0, y0, z0, h, reach):
     """Paint ``out``, shape (``PAINTED``, z, y, x), which is ``reach`` far from everything beforehand.
@@ -209,11 +219,7 @@ def paint_sections(out, rows, tx, ty, cuts, x0, y0, z0, h, reach):
             px, py = x0 + i * h, y0 + j * h
             column = _column(px, py, rows, tx, ty)
             if abs(column[2]) <= widest and abs(column[3]) <= reach:
-                k, f = column[0], column[1]
-                at = (1.0 - f) * rows[ARC, k] + f * rows[ARC, k + 1] + column[3]
-                wide = (1.0 - f) * rows[WIDE, k] + f * rows[WIDE, k + 1]
-                high = (1.0 - f) * rows[HIGH, k] + f * rows[HIGH, k + 1]
-                section = (at, _part_at(at, cuts), wide, high, reach + _growth(k, at, wide, high, rows, reach))
+                section = _section(column, rows, cuts, reach)
                 for q in range(out.shape[1]):
                     _paint_point(out, (q, j, i), px, py, z0 + q * h, column, section, rows, h)
 
@@ -251,9 +257,5 @@ def paint_turned_sections(out, rows, tx, ty, cuts, x, y, z, turn, place, reach):
                 column = _column(px, py, rows, tx, ty)
                 if abs(column[2]) > widest or abs(column[3]) > reach:
                     continue
-                k, f = column[0], column[1]
-                at = (1.0 - f) * rows[ARC, k] + f * rows[ARC, k + 1] + column[3]
-                wide = (1.0 - f) * rows[WIDE, k] + f * rows[WIDE, k + 1]
-                high = (1.0 - f) * rows[HIGH, k] + f * rows[HIGH, k + 1]
-                section = (at, _part_at(at, cuts), wide, high, reach + _growth(k, at, wide, high, rows, reach))
+                section = _section(column, rows, cuts, reach)
                 _paint_point(out, (q, j, i), px, py, up, column, section, rows, h)

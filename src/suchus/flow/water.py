@@ -438,6 +438,7 @@ class Water:
         _, (a, b) = self._solve((limit, 10 * limit))
         x, d, rest = (part.reshape(self.p.shape) for part in (self._x, self._d, self._part(multigrid.X)))
         cells = (slice(PAD, -PAD),) * self.axes  # beyond them the multigrid leaves what it happens to
+        x[:] = 0
         np.multiply(d[cells], a, out=x[cells])
         x[cells] += b * rest[cells]
         self._seal(x)
