@@ -1,7 +1,10 @@
 """What can go wrong, each a sentence: what, the value, what is allowed, the remedy."""
 
 import re
-from collections.abc import Iterable
+import sys
+import warnings
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from difflib import get_close_matches
 from typing import Any
 
@@ -82,6 +85,15 @@ class UnknownName(SuchusError, KeyError):
 
 class Doubtful(UserWarning):
     """A result that stands and may be farther off than usual; the message says by how much and what helps."""
+
+
+@contextmanager
+def plain_warnings(*about: str) -> Iterator[None]:
+    """Write warnings as sentences on standard error, after ``about`` and without the place in the code."""
+    before = ": ".join(("suchus", *about))
+    with warnings.catch_warnings():
+        warnings.showwarning = lambda message, *_, **__: print(f"{before}: {message}", file=sys.stderr)
+        yield
 
 
 class OldName(DeprecationWarning):

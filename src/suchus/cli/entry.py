@@ -1,13 +1,11 @@
 """Where the command line begins and ends: words in, an exit code out."""
 
 import sys
-import warnings
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 
 from suchus.cli.commands import COMMANDS, BadCommand
 from suchus.cli.streams import drop_output, prepare_streams, printable
-from suchus.errors import Diverged, NotConverged, SuchusError, UnknownName, Unwritable
+from suchus.errors import Diverged, NotConverged, SuchusError, UnknownName, Unwritable, plain_warnings
 
 _EXAMPLES = (
     ("suchus demo", "a first walk, in the browser"),
@@ -30,7 +28,7 @@ def main(words: Sequence[str] | None = None) -> int:
     words = list(sys.argv[1:] if words is None else words)
     prepare_streams()
     try:
-        with _plain_warnings():
+        with plain_warnings():
             return _flushed(words)
     except (Diverged, NotConverged) as error:
         return _complain(str(error), 1)
@@ -41,14 +39,6 @@ def main(words: Sequence[str] | None = None) -> int:
     except BrokenPipeError:  # the reader of our output has gone, as in `suchus list | head -1`
         drop_output()
         return 0
-
-
-@contextmanager
-def _plain_warnings() -> Iterator[None]:
-    """Write warnings as sentences on standard error, without the place in the code."""
-    with warnings.catch_warnings():
-        warnings.showwarning = lambda message, *_, **__: print(f"suchus: {message}", file=sys.stderr)
-        yield
 
 
 def _flushed(words: list[str]) -> int:

@@ -1,15 +1,13 @@
 """One experiment from question to folder."""
 
-import sys
 import time
-import warnings
-from collections.abc import Iterator
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
 
 import xarray as xr
 
+from suchus.errors import plain_warnings
 from suchus.experiment import Experiment, Outcome, Progress
 from suchus.figures import styled
 from suchus.report import check_place, save_outcome
@@ -42,7 +40,7 @@ def perform(experiment: Experiment, name: str, out: Path, progress: Progress, co
     """
     start = time.perf_counter()
     check_place(out / name)
-    with _plain_sums(), _plain_warnings(name):
+    with _plain_sums(), plain_warnings(name):
         outcome = experiment.run(progress)
         progress("drawing", 1.0)
         with styled():
@@ -50,14 +48,6 @@ def perform(experiment: Experiment, name: str, out: Path, progress: Progress, co
         progress("saving", 1.0)
         folder = save_outcome(outcome, figures, experiment, out / name, command=command)
     return Done(outcome=outcome, folder=folder, seconds=time.perf_counter() - start)
-
-
-@contextmanager
-def _plain_warnings(name: str) -> Iterator[None]:
-    """Write warnings as sentences on standard error, each once, without the place in the code."""
-    with warnings.catch_warnings():
-        warnings.showwarning = lambda message, *_, **__: print(f"suchus: {name}: {message}", file=sys.stderr)
-        yield
 
 
 def _plain_sums() -> AbstractContextManager[object]:

@@ -11,7 +11,7 @@ import xarray as xr
 
 from suchus import workers
 from suchus.design.checks import Checks
-from suchus.errors import SuchusError
+from suchus.errors import SuchusError, plain_warnings
 from suchus.flow.fingerprint import fingerprint
 from suchus.study.cluster import here, spread
 from suchus.study.makers import deciding
@@ -110,7 +110,7 @@ def _in_processes(
 ) -> Generator[tuple[int, xr.Dataset], None, None]:
     """Yield the results of items, calculated side by side, with their numbers; tell the sum of the shares under way."""
     shares: dict[int, float] = {}
-    with closing(workers.side_by_side(partial(_telling, work), items, jobs, tries=2)) as heard:
+    with closing(workers.side_by_side(partial(_telling, name, work), items, jobs, tries=2)) as heard:
         for number, said in heard:
             if isinstance(said, workers.Far):
                 shares[number] = said.share
@@ -125,8 +125,11 @@ def _in_processes(
                 )
 
 
-def _telling(work: Callable[[Item, Progress], xr.Dataset], item: Item, tell: workers.Tell) -> xr.Dataset:
-    return work(item, partial(tell, ""))
+def _telling(
+    name: str, work: Callable[[Item, Progress], xr.Dataset], item: Item, tell: workers.Tell
+) -> xr.Dataset:  # fmt: skip
+    with plain_warnings(name):
+        return work(item, partial(tell, ""))
 
 
 def _quietly(work: Callable[[Item, Progress], xr.Dataset], item: Item) -> xr.Dataset:
