@@ -11,6 +11,9 @@ from suchus.figures.style import COLOURS, captioned, panels, styled
 
 _DOTS = ((0, (1, 1.5)), (0, (3, 1, 1, 1)))
 
+AS_TAKEN = " as taken"
+"""How the names of motions end whose midlines are those that the joints take."""
+
 
 def draw_speeds(record: xr.Dataset) -> Figure:
     """Draw the mean speed of each cycle on every grid, beside the slice and the slender-body models.
@@ -94,26 +97,34 @@ def draw_tails(record: xr.Dataset) -> Figure:
     Args:
         record: of the experiment ``swim_3d``.
     """
+    names, colours = [str(name) for name in record.compared.values], {}
+    taken = any(name.endswith(AS_TAKEN) for name in names)
     with styled():
-        figure, axes = panels(1, 2, width=10.5, height=4.6, sharey=True)
-        for name in record.compared.values:
-            one = record.sel(compared=name)
-            high, whole = float(one.tail_height), str(name) == "trunk and tail"
-            label = f"last third {high:g} m high" if high else "the robot's tail" if whole else str(name)
+        figure, axes = panels(1, 2, width=10.5, height=5.6, sharey=True)
+        for name in names:
+            one, motion = record.sel(compared=name), name.removesuffix(AS_TAKEN)
+            high, whole = float(one.tail_height), name == "trunk and tail"
+            label = f"last third {high:g} m high" if high else "the robot's tail" if whole else name
             for ax, wanted in zip(axes[0], (high > 0 or whole, high == 0), strict=True):
                 if wanted:
-                    ax.plot(record.compared_cycle, 1e3 * one.compared_speed, "o-", label=label)
+                    (line,) = ax.plot(
+                        record.compared_cycle, 1e3 * one.compared_speed, "o-" if name == motion else "o--", label=label,
+                        color=colours.get((ax, motion)), markerfacecolor=None if name == motion else "white",
+                    )  # fmt: skip
+                    colours.setdefault((ax, motion), line.get_color())
         for ax in axes[0]:
             ax.axhline(0.0, color="#999999", linewidth=0.8)
             ax.xaxis.set_major_locator(MaxNLocator(integer=True))
             ax.set_xlabel("cycle [-]")
-            ax.legend(loc="best", fontsize=11)
+            ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=2, fontsize=11)
         axes[0, 0].set_ylabel("mean speed [mm/s]")
     return captioned(
         figure,
         f"Mean speed of each cycle on {float(record.compared_cells):.0f} cells a length at f L² / ν = "
         f"{float(record.reynolds):.0f}. Left: the last third of the body raised to a fin as thick as the tail. Right: "
-        "the motions of trunk and tail alone, the printed direction of (20), and the limbs folded back.",
+        "the motions of trunk and tail alone, the printed direction of (20), and the limbs folded back."
+        + " Dashed: the midline that the joints take of the same commands in six degrees of freedom."
+        * taken,
     )
 
 
