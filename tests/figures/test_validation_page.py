@@ -118,6 +118,17 @@ def test_a_part_of_the_validation_renews_its_own_rows_and_keeps_the_others_with_
     assert text.count("| order |") == 1
 
 
+def test_rows_of_a_test_that_is_gone_leave_the_page(run):
+    run(
+        row("a sphere") | {"test": "tests/flow/a.py::test_gone[1]"},
+        row("an eel") | {"test": "tests/flow/a.py::test_b[2]"},
+    )
+    text = run(row("Taylor-Green"), tests={"test_b"})
+    assert "sphere" not in text
+    assert "### An eel" in text
+    assert "sphere" not in run(row("Taylor-Green"))
+
+
 def test_the_whole_validation_leaves_no_row_of_before(run):
     run(row("a sphere"))
     assert "sphere" not in run(row("Taylor-Green"), whole=True)

@@ -2,7 +2,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from validation_rows import OUT, ROOT, SOURCES, is_whole
+from validation_rows import OUT, ROOT, SOURCES, is_whole, tests_there_are
 
 from suchus.figures.validation import write_table
 
@@ -28,4 +28,4 @@ def validation_table(request, _validated):
     yield
     _validated.append(request.node.nodeid)
     if any(OUT.glob("*.json")):
-        write_table(OUT, ROOT / "docs", SOURCES)
+        write_table(OUT, ROOT / "docs", SOURCES, tests=tests_there_are())

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 from pathlib import Path
 
 import numpy as np
@@ -14,8 +15,9 @@ OUT = ROOT / "out" / "validation"
 SOURCES = (
     "Stokes 1851 (Trans. Cambridge Phil. Soc. 9, 8-106) and Wang 1968 (J. Fluid Mech. 32, 55-68): the force on a "
     "cylinder that oscillates in water at rest by small amounts.",
-    "The eel is that of the IBAMR example eel2d, which gives no speed: what is bounded is how much finer grids and "
-    "further cycles change it.",
+    "The eels are those of the IBAMR examples eel2d and, in space, eel3d, which is that of Kern and Koumoutsakos 2006 (J. "
+    "Exp. Biol. 209, 4841-4857); neither gives a speed: what is bounded is how much finer grids and further cycles "
+    "change it.",
     "Flows with published data stand in the [atlas](atlas.md).",
 )
 
@@ -37,6 +39,12 @@ def note(case, quantity, ours, theirs, grid, domain, source, **curves):
     }
     (OUT / f"{case} {quantity}.json".replace("/", "-")).write_text(json.dumps(row))
     return abs(ours / theirs - 1) if isinstance(theirs, float) and theirs else float("nan")
+
+
+def tests_there_are():
+    """Return the names of the validation's tests."""
+    files = Path(__file__).parent.glob("test_validate_*.py")
+    return {name for file in files for name in re.findall(r"^def (test_\w+)", file.read_text("utf-8"), re.MULTILINE)}
 
 
 def is_whole(config):

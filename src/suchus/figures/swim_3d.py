@@ -97,7 +97,8 @@ def draw_tails(record: xr.Dataset) -> Figure:
     Args:
         record: of the experiment ``swim_3d``.
     """
-    names, colours = [str(name) for name in record.compared.values], {}
+    names = [str(name) for name in record.compared.values]
+    colours: dict[tuple[Axes, str], object] = {}
     taken = any(name.endswith(AS_TAKEN) for name in names)
     with styled():
         figure, axes = panels(1, 2, width=10.5, height=5.6, sharey=True)

@@ -2,7 +2,7 @@
 
 import json
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Final
@@ -138,7 +138,9 @@ def kept_rows(docs: Path) -> list[Row]:
     return list(rows)
 
 
-def write_table(folder: Path, docs: Path, sources: Sequence[str] = (), *, whole: bool = False) -> None:
+def write_table(
+    folder: Path, docs: Path, sources: Sequence[str] = (), *, whole: bool = False, tests: Collection[str] = ()
+) -> None:
     """Write ``validation.md``, and its rows beside it, to ``docs``.
 
     Args:
@@ -146,11 +148,12 @@ def write_table(folder: Path, docs: Path, sources: Sequence[str] = (), *, whole:
         docs: where the page stands.
         sources: sentences on where the published numbers come from.
         whole: whether these are all rows there are; else those of the page that are not computed anew stay on it.
+        tests: names of the tests there are; rows of others do not stay.
 
     Raises:
         IncompatibleRecord: there are no rows, or those of the page are damaged.
     """
-    rows = merged([] if whole else kept_rows(docs), load_rows(folder))
+    rows = merged([] if whole else kept_rows(docs), load_rows(folder), tests)
     bare = [
         {name: value for name, value in row.items() if name != "curves"} for row in rows if row["theirs"] != UNKNOWN
     ]

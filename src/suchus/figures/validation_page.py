@@ -3,7 +3,7 @@
 import json
 import operator
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -93,10 +93,23 @@ def load_rows(folder: Path) -> list[dict[str, Any]]:
     return rows
 
 
-def merged(kept: Sequence[Row], new: Sequence[Row]) -> list[Row]:
-    """Return all rows in their order, those of a quantity that was computed anew in the place of the old ones."""
-    rows = {f"{row['case']} {row['quantity']}.": row for row in (*kept, *new)}
+def merged(kept: Sequence[Row], new: Sequence[Row], tests: Collection[str] = ()) -> list[Row]:
+    """Return all rows in their order, those of a quantity that was computed anew in the place of the old ones.
+
+    Args:
+        kept: rows of before.
+        new: rows of now.
+        tests: names of the tests there are; rows of before that name another one are left out. None leaves all.
+    """
+    still = [row for row in kept if not (tests and row.get("test")) or _test_of(row) in tests]
+    rows = {f"{row['case']} {row['quantity']}.": row for row in (*still, *new)}
     return [rows[key] for key in sorted(rows)]
+
+
+def _test_of(row: Row) -> str:
+    """Return the name of the test that made a row, without its parameters."""
+    name: str = row["test"].rpartition("::")[2].partition("[")[0]
+    return name
 
 
 def page(rows: Sequence[Row], sources: Sequence[str] = ()) -> str:
