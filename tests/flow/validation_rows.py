@@ -15,8 +15,8 @@ OUT = ROOT / "out" / "validation"
 SOURCES = (
     "Stokes 1851 (Trans. Cambridge Phil. Soc. 9, 8-106) and Wang 1968 (J. Fluid Mech. 32, 55-68): the force on a "
     "cylinder that oscillates in water at rest by small amounts.",
-    "The eels are those of the IBAMR examples eel2d and, in space, eel3d, which is that of Kern and Koumoutsakos 2006 (J. "
-    "Exp. Biol. 209, 4841-4857); neither gives a speed: what is bounded is how much finer grids and further cycles "
+    "The eels are those of the IBAMR examples eel2d and, in space, eel3d, which is that of Kern and Koumoutsakos 2006 "
+    "(J. Exp. Biol. 209, 4841-4857); neither gives a speed: what is bounded is how much finer grids and further cycles "
     "change it.",
     "Flows with published data stand in the [atlas](atlas.md).",
 )
