@@ -1,7 +1,7 @@
 # Everything sets up its own .venv; every path is relative, so a checkout may live under a name with spaces.
 PYTHON ?= python3
 PY := .venv/bin/python
-PIP := $(PY) -m pip --disable-pip-version-check --quiet
+INSTALL := $(PY) -m pip --disable-pip-version-check --quiet install --no-compile --editable
 export OMP_WAIT_POLICY := passive
 export PIP_CONSTRAINT := constraints.txt
 
@@ -48,12 +48,13 @@ atlas: .venv/.runtime # published flows beside ours, into docs/atlas.md; goes on
 
 .venv/.runtime: .venv/.base pyproject.toml constraints.txt
 	@echo "Installing suchus into .venv (once, about a minute) ..."
-	$(PIP) install --editable .
+	$(INSTALL) .
 	touch $@
 
-.venv/.dev: .venv/.runtime
-	$(PIP) install --editable ".[dev]"
-	touch $@
+.venv/.dev: .venv/.base pyproject.toml constraints.txt
+	@echo "Installing suchus and what its tests need into .venv (once, half a minute) ..."
+	$(INSTALL) ".[dev]"
+	touch .venv/.runtime $@
 
 bench: .venv/.dev
 	@for f in bench/bench_*.py; do echo; echo "== $$f"; $(PY) "$$f" || exit 1; done

@@ -44,7 +44,7 @@ def in_space() -> None:
     zero, wide = np.zeros(13), np.full(13, 0.15)
     spine = flow.Spine(x=stations, y=zero, heading=zero, half_width=wide, x_rate=zero, y_rate=zero, heading_rate=zero)
     trunk = flow.FreeBody(
-        shape=flow.Trunk(spine=lambda _: spine, half_height=wide), name="trunk", start=(0.0, 0.35, 0.0)
+        shape=flow.Trunk(spine=lambda _: spine, half_height=1.5 * wide), name="trunk", start=(0.0, 0.35, 0.0)
     )
     ellipsoid = flow.Body(
         shape=flow.Ellipsoid(length=0.6, width=0.4, height=0.4),
