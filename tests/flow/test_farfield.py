@@ -112,6 +112,18 @@ def test_a_flow_that_comes_from_beyond_adds_nothing():
         assert max(np.abs(side).max() for side in sides) < 0.03 * np.abs(velocity).max()
 
 
+@pytest.mark.parametrize("mirrors", [(False,) * 6, (False, False, False, False, True, False)])
+def test_a_flat_domain_has_a_surface_too(mirrors):
+    """The panels of a cube with as many cells would be longer than this one is high."""
+    grid = flow.Grid(cells=(160, 160, 8), cell=CELL)
+    far = FarField(grid, mirrors)
+    for face in far.faces:
+        assert all(0 <= a < b for a, b in face.spans)
+    sides = far.inward(on_faces(grid, pole((10.0, 10.0, 0.0 if mirrors[4] else 0.5), 2.0, (0.0, 0.0, 0.0))), NONE, [])
+    within = 1.0 if mirrors[4] else 2.0  # half of it lies beyond the mirror
+    assert sum(side.sum() for side in sides) * CELL**2 == pytest.approx(-within, rel=0.15)
+
+
 @pytest.mark.parametrize(("axis", "low"), [(0, False), (0, True), (1, False), (2, True)])
 def test_a_wake_that_leaves_is_a_source(axis, low):
     """A source, and the flux that comes back to it along a tube: from afar, the source alone."""

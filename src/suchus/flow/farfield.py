@@ -145,7 +145,10 @@ class FarField:
         panel = max(LEAST, round(whole ** (1 / 3) / PANELS))
         knots = [np.linspace(0.5, n - 0.5, max(ceil(n / (KNOT * panel)), 3) + 1) for n in cells]
         self.between = [cubic(at, np.arange(n) + 0.5) for at, n in zip(knots, cells, strict=True)]
-        spans = [(panel * (not low), n - panel * (not high)) for n, (low, high) in zip(cells, ends, strict=True)]
+        spans = []
+        for n, (low, high) in zip(cells, ends, strict=True):
+            inside = min(panel, n // (2 if low or high else 4))  # a flat domain is thinner than that
+            spans.append((inside * (not low), n - inside * (not high)))
         centre = [0.0 if low else float(n) if high else n / 2 for n, (low, high) in zip(cells, ends, strict=True)]
         cuts = [np.linspace(0, b - a, max(round((b - a) / panel), 1) + 1).round().astype(int) for a, b in spans]
         starts, sizes = tuple(cut[:-1] for cut in cuts), tuple(np.diff(cut) for cut in cuts)
