@@ -57,6 +57,17 @@ def page(browser, address):
     shown.close()
 
 
+def fits_a_phone(browser, address):
+    """The page asks for no more than a phone's width, and its controls are all in sight."""
+    shown = browser.new_page(viewport={"width": 390, "height": 760})
+    shown.goto(address + "#t=0")
+    until(shown, "window.suchus")
+    wide = shown.evaluate("document.documentElement.scrollWidth")
+    ends = shown.evaluate("[...document.querySelectorAll('footer *')].map((one) => one.getBoundingClientRect().right)")
+    shown.close()
+    return wide <= 390 and max(ends) <= 390
+
+
 def until(shown, condition):
     for _ in range(200):
         if shown.evaluate(f"!!({condition})"):
@@ -121,6 +132,10 @@ def test_the_second_run_can_be_hidden_and_the_view_changed(page):
     assert page.evaluate("window.suchus.camera.elevation") > 1.5
     page.get_by_role("button", name="Switch between light and dark").click()
     assert page.evaluate("document.documentElement.dataset.theme") == "dark"
+
+
+def test_it_fits_a_phone(browser, address):
+    assert fits_a_phone(browser, address)
 
 
 def test_without_webgl_there_is_a_picture(browser, address):

@@ -6,7 +6,7 @@ import re
 
 import numpy as np
 import pytest
-from tests.replay.test_player import BROWSER, browser, until  # noqa: F401
+from tests.replay.test_player import BROWSER, browser, fits_a_phone, until  # noqa: F401
 from tests.wakes import ringed
 
 from suchus.errors import IncompatibleRecord
@@ -92,6 +92,11 @@ def test_it_plays_from_a_file_without_network_or_complaint(browser, address):  #
     assert complaints == []
     assert asked == [address]
     shown.close()
+
+
+@needs_browser
+def test_it_fits_a_phone(browser, address):  # noqa: F811
+    assert fits_a_phone(browser, address)
 
 
 @needs_browser

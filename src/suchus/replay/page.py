@@ -92,7 +92,8 @@ def environment() -> Environment:
     )
     loader = found.loader
     assert loader is not None
-    for name, file in (("style", "player.css"), ("player", "player.js"), ("wake_player", "wake.js")):
+    files = {"style": "player.css", "shared": "shared.js", "player": "player.js", "wake_player": "wake.js"}
+    for name, file in files.items():
         found.globals[name] = Markup(loader.get_source(found, file)[0])
     return found
 

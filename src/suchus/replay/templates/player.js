@@ -1,23 +1,10 @@
-"use strict";
-// A small WebGL2 player: robots as skinned meshes, what they stand on, and what carries them. World: x forward, z up.
+// Robots as skinned meshes, what they stand on, and what carries them. World: x forward, z up.
 (() => {
-  const $ = (id) => document.getElementById(id);
-  const meta = JSON.parse($("meta").textContent);
-  const canvas = $("scene");
-  const gl = canvas.getContext("webgl2", { antialias: true, stencil: true, alpha: false, preserveDrawingBuffer: true });
-  if (!gl) return;
-
-  // ---- what was recorded -------------------------------------------------------------------------------------
-  const bytes = Uint8Array.from(atob($("data").textContent.trim()), (c) => c.charCodeAt(0));
-  const kinds = { int8: Int8Array, uint8: Uint8Array, int16: Int16Array, uint16: Uint16Array, float32: Float32Array };
-  const take = (ref) => new kinds[ref.kind](bytes.buffer, ref.start, ref.count);
+  if (!shared) return;
+  const { $, meta, canvas, gl, take, add, cross, dot, unit, program, asked, framed, state, redraw } = shared;
 
   // ---- vectors and quaternions (wxyz) --------------------------------------------------------------------------
-  const sub = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
-  const add = (a, b, k = 1) => [a[0] + k * b[0], a[1] + k * b[1], a[2] + k * b[2]];
-  const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
-  const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-  const unit = (a) => { const n = Math.hypot(...a) || 1; return [a[0] / n, a[1] / n, a[2] / n]; };
+  const sub = (a, b) => add(a, b, -1);
   const turn = (q, v) => { const u = [q[1], q[2], q[3]], t = cross(u, v).map((c) => 2 * c);
     return add(add(v, t, q[0]), cross(u, t)); };
   const times = (a, b) => { // column-major 4 x 4
@@ -28,24 +15,6 @@
   };
 
   // ---- programs ------------------------------------------------------------------------------------------------
-  const program = (vertex, fragment) => {
-    const made = gl.createProgram();
-    for (const [kind, text] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]]) {
-      const shader = gl.createShader(kind);
-      gl.shaderSource(shader, "#version 300 es\nprecision highp float;\n" + text);
-      gl.compileShader(shader);
-      if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw new Error(gl.getShaderInfoLog(shader));
-      gl.attachShader(made, shader);
-    }
-    gl.linkProgram(made);
-    if (!gl.getProgramParameter(made, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(made));
-    const uniforms = {};
-    for (let i = 0; i < gl.getProgramParameter(made, gl.ACTIVE_UNIFORMS); i++) {
-      const name = gl.getActiveUniform(made, i).name.replace("[0]", "");
-      uniforms[name] = gl.getUniformLocation(made, name);
-    }
-    return { made, uniforms };
-  };
   const LIGHT = unit([-0.35, -0.45, 1.0]);
   const lit = `
     uniform vec3 uEye; uniform vec4 uTint; uniform float uNight;
@@ -165,14 +134,11 @@
   }
 
   // ---- state ---------------------------------------------------------------------------------------------------
-  const calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
-  const framed = self !== top; // in a report: at rest until asked
-  const asked = new URLSearchParams(location.hash.slice(1));
-  const state = { time: 0, playing: !calm && !asked.has("t") && !framed, speed: 1, forces: true, support: true, tracks: true,
-    follow: true, compare: meta.actors.length < 2 ? "hidden" : meta.overlaid ? "over" : "beside", dark: matchMedia("(prefers-color-scheme: dark)").matches };
+  Object.assign(state, { time: meta.start, forces: true, support: true, tracks: true, follow: true,
+    compare: meta.actors.length < 2 ? "hidden" : meta.overlaid ? "over" : "beside" });
   const bodyLength = meta.length; // sizes of marks [m] were chosen for a robot as long as the article's, 1 m
   const camera = { azimuth: -0.95, elevation: 0.36, distance: 2.2 * meta.length, target: [0, 0, 0.06 * meta.length], moved: [0, 0, 0] };
-  let dirty = true, last = 0, shown = null;
+  let shown = null;
 
   const actors = meta.actors.map((actor) => {
     const read = Object.fromEntries(Object.entries(actor.arrays).map(([name, ref]) => [name, take(ref)]));
@@ -356,18 +322,11 @@
     gl.depthMask(true);
     gl.disable(gl.STENCIL_TEST);
   }
-  function through(now, seen) { // a ghost: its nearest surface only, half transparent
-    gl.colorMask(false, false, false, false);
-    robot(now, seen);
-    gl.colorMask(true, true, true, true);
-    gl.depthFunc(gl.EQUAL);
-    robot(now, seen, { alpha: 0.5, tint: [...meta.colours.ghost, 0.6] });
-    gl.depthFunc(gl.LESS);
-  }
+  const through = (now, seen) => shared.nearest(
+    () => robot(now, seen), () => robot(now, seen, { alpha: 0.5, tint: [...meta.colours.ghost, 0.6] }));
 
   function draw() {
-    const wide = Math.round(canvas.clientWidth * Math.min(devicePixelRatio, 2)), high = Math.round(canvas.clientHeight * Math.min(devicePixelRatio, 2));
-    if (canvas.width !== wide || canvas.height !== high) { canvas.width = wide; canvas.height = high; }
+    const back = shared.clear([0.925, 0.925, 0.905], [0.085, 0.098, 0.106]);
     const seenActors = state.compare === "hidden" ? actors.slice(0, 1) : actors;
     actors.forEach((actor, i) => { actor.side = i && state.compare === "beside" ? meta.aside : 0; });
     const now = seenActors.map((actor) => frame(actor, state.time));
@@ -375,13 +334,7 @@
       const sum = now.reduce((at, one) => add(at, one.mass, 1 / now.length), [0, 0, 0]);
       camera.target = [sum[0], sum[1], Math.max(0.06 * meta.length, 0.8 * sum[2])];
     }
-    const seen = view(), back = state.dark ? [0.085, 0.098, 0.106] : [0.925, 0.925, 0.905];
-    gl.viewport(0, 0, canvas.width, canvas.height);
-    gl.clearColor(...back, 1);
-    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT | gl.STENCIL_BUFFER_BIT);
-    gl.enable(gl.DEPTH_TEST);
-    gl.enable(gl.BLEND);
-    gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
+    const seen = view();
     gl.useProgram(floor.made);
     gl.uniformMatrix4fv(floor.uniforms.uView, false, seen.matrix);
     gl.uniform3fv(floor.uniforms.uEye, seen.eye);
@@ -456,84 +409,29 @@
     $("time").value = state.time;
     $("time").setAttribute("aria-valuetext", `${state.time.toFixed(1)} seconds`);
     const way = (i) => now[i].mass[0] - actors[i].mass[0];
-    $("in-words").textContent = now.map((_, i) => `${actors.length > 1 ? actors[i].label + ": " : ""}${metres(way(i))} forward, ` +
+    $("told").textContent = now.map((_, i) => `${actors.length > 1 ? actors[i].label + ": " : ""}${metres(way(i))} forward, ` +
       `centre of mass ${metres(now[i].mass[2])} high`).join("  ·  ");
   }
 
   // ---- controls ------------------------------------------------------------------------------------------------
   const end = meta.start + (Math.max(...actors.map((actor) => actor.frames)) - 1) / meta.rate;
-  const redraw = () => { if (!dirty) { dirty = true; requestAnimationFrame(tick); } };
   const seek = (time) => { state.time = Math.min(Math.max(time, meta.start), end); redraw(); };
-  const play = (on) => { state.playing = on; last = 0; if (on && state.time >= end - 1e-6) state.time = meta.start;
-    $("play").textContent = on ? "Pause" : "Play"; redraw(); };
+  const play = (on) => { if (on && state.time >= end - 1e-6) state.time = meta.start; shared.play(on); };
+  const step = (by) => seek(state.time + by / meta.rate);
   const views = { corner: [-0.95, 0.36], left: [Math.PI / 2, 0.06], right: [-Math.PI / 2, 0.06], front: [0, 0.12], above: [-Math.PI / 2, 1.55] };
   const look = (name) => { [camera.azimuth, camera.elevation] = views[name]; camera.moved = [0, 0, 0]; camera.distance = fitted(); redraw(); };
+  const move = (by) => { camera.moved = add(camera.moved, by); };
   const fitted = () => { // farther on narrow pictures, nearer on wide ones
     const aspect = canvas.clientWidth / Math.max(canvas.clientHeight, 1);
     return meta.length * (state.compare === "beside" ? 2.0 : 1.6) * Math.max(0.78, Math.min(1, 1.7 / aspect), 1.15 / aspect);
   };
-  const theme = (dark) => { state.dark = dark; document.documentElement.dataset.theme = dark ? "dark" : "light";
-    $("theme").textContent = dark ? "Light" : "Dark"; redraw(); };
   $("time").min = meta.start; $("time").max = end; $("time").step = 1 / meta.rate;
-  $("time").addEventListener("input", (e) => { if (state.playing) play(false); seek(+e.target.value); });
-  $("play").addEventListener("click", () => play(!state.playing));
-  $("speed").addEventListener("change", (e) => { state.speed = +e.target.value; });
-  $("view").addEventListener("change", (e) => look(e.target.value));
-  $("theme").addEventListener("click", () => theme(!state.dark));
-  for (const name of ["forces", "support", "tracks", "follow"])
-    $(name).addEventListener("change", (e) => { state[name] = e.target.checked; redraw(); });
   if ($("compare")) $("compare").addEventListener("change", (e) => { state.compare = e.target.value; camera.distance = fitted(); redraw(); });
-  const orbit = (dx, dy) => { camera.azimuth -= 0.006 * dx;
-    camera.elevation = Math.min(Math.max(camera.elevation + 0.006 * dy, -0.12), 1.56); redraw(); };
-  const pan = (dx, dy) => { const s = view(), k = 0.62 * camera.distance / canvas.clientHeight;
-    camera.moved = add(add(camera.moved, s.right, -k * dx), s.up, k * dy); redraw(); };
-  const zoom = (by) => { camera.distance = Math.min(Math.max(camera.distance * by, 0.25 * meta.length), 12 * meta.length); redraw(); };
-  const fingers = new Map();
-  canvas.addEventListener("pointerdown", (e) => { canvas.setPointerCapture(e.pointerId); fingers.set(e.pointerId, [e.clientX, e.clientY]); });
-  canvas.addEventListener("pointermove", (e) => {
-    const before = fingers.get(e.pointerId);
-    if (!before) return;
-    const dx = e.clientX - before[0], dy = e.clientY - before[1];
-    if (fingers.size === 1) (e.shiftKey || e.buttons & 6 ? pan : orbit)(dx, dy);
-    else { // two fingers: their distance zooms, their middle pans
-      const other = [...fingers].find(([id]) => id !== e.pointerId)[1];
-      const far = (p) => Math.hypot(p[0] - other[0], p[1] - other[1]) || 1;
-      zoom(far(before) / far([e.clientX, e.clientY])); pan(dx / 2, dy / 2);
-    }
-    fingers.set(e.pointerId, [e.clientX, e.clientY]);
-  });
-  for (const name of ["pointerup", "pointercancel"]) canvas.addEventListener(name, (e) => fingers.delete(e.pointerId));
-  canvas.addEventListener("wheel", (e) => { e.preventDefault(); zoom(Math.exp(0.0012 * e.deltaY)); }, { passive: false });
-  canvas.addEventListener("contextmenu", (e) => e.preventDefault());
-  canvas.addEventListener("keydown", (e) => {
-    const acts = { ArrowLeft: () => orbit(18, 0), ArrowRight: () => orbit(-18, 0), ArrowUp: () => orbit(0, 18), ArrowDown: () => orbit(0, -18),
-      "+": () => zoom(0.88), "=": () => zoom(0.88), "-": () => zoom(1.14), ",": () => seek(state.time - 1 / meta.rate),
-      ".": () => seek(state.time + 1 / meta.rate), " ": () => play(!state.playing), Home: () => seek(meta.start), End: () => seek(end) };
-    const act = acts[e.key];
-    if (act && !e.ctrlKey && !e.metaKey && !e.altKey) { e.preventDefault(); act(); }
-  });
-  new ResizeObserver(redraw).observe(canvas);
-  canvas.addEventListener("webglcontextlost", () => { document.body.classList.remove("alive"); state.playing = false; });
-
-  function tick(stamp) {
-    dirty = false;
-    if (state.playing) {
-      if (last) state.time += state.speed * Math.min((stamp - last) / 1000, 0.25);
-      last = stamp;
-      if (state.time > end) state.time = meta.start;
-    }
-    draw();
-    if (state.playing) redraw();
-  }
-  document.body.classList.add("alive");
-  state.time = meta.start;
-  theme(state.dark);
+  shared.hold({ camera, lowest: -0.12, move, seen: view, look, seek, step, start: meta.start, end, boxes: ["forces", "support", "tracks", "follow"], play });
+  shared.begin(draw, (time) => { state.time = state.time + time > end ? meta.start : state.time + time; });
   if (asked.has("view") && views[asked.get("view")]) { $("view").value = asked.get("view"); look(asked.get("view")); }
   camera.distance = fitted();
   if (asked.has("t")) seek(+asked.get("t"));
   else if (framed) seek(meta.start + 0.4 * (end - meta.start));
-  $("play").textContent = state.playing ? "Pause" : "Play";
   window.suchus = { state, camera, seek, play, up: () => view().up, mass: () => shown && shown.map((one) => one.mass) };
-  dirty = true;
-  requestAnimationFrame(tick);
 })();

@@ -1,33 +1,17 @@
-"use strict";
-// A small WebGL2 player: a swimming body and the surfaces around its vortices. World: x to the tail, z up.
+// A swimming body and the surfaces around its vortices. World: x to the tail, z up.
 (() => {
-  const $ = (id) => document.getElementById(id);
-  const meta = JSON.parse($("meta").textContent);
-  const canvas = $("scene");
-  const gl = canvas.getContext("webgl2", { antialias: true, alpha: false, preserveDrawingBuffer: true });
-  if (!gl) return;
-  const bytes = Uint8Array.from(atob($("data").textContent.trim()), (c) => c.charCodeAt(0));
-  const kinds = { int8: Int8Array, int16: Int16Array, uint16: Uint16Array, uint32: Uint32Array, float32: Float32Array };
-  const take = (ref) => new kinds[ref.kind](bytes.buffer, ref.start, ref.count);
+  if (!shared) return;
+  const { $, meta, canvas, gl, take, add, cross, dot, program, asked, state, redraw, play } = shared;
 
-  // ---- programs: one for both, a mesh has points, normals and a shade from -1 to 1 -------------------------------
-  const compiled = (kind, text) => {
-    const shader = gl.createShader(kind);
-    gl.shaderSource(shader, "#version 300 es\nprecision highp float;\n" + text);
-    gl.compileShader(shader);
-    if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw new Error(gl.getShaderInfoLog(shader));
-    return shader;
-  };
-  const program = gl.createProgram();
-  gl.attachShader(program, compiled(gl.VERTEX_SHADER, `
+  // ---- one program for both: a mesh has points, normals and a shade from -1 to 1 --------------------------------
+  const { made, uniforms: u } = program(`
     layout(location=0) in vec3 aAt; layout(location=1) in vec3 aNormal; layout(location=2) in float aShade;
     uniform mat4 uView; uniform float uSide; out vec3 vAt, vNormal; out float vShade;
     void main() {
       vec3 side = vec3(1.0, 1.0, uSide);
       vAt = aAt * side; vNormal = aNormal * side; vShade = aShade;
       gl_Position = uView * vec4(vAt, 1.0);
-    }`));
-  gl.attachShader(program, compiled(gl.FRAGMENT_SHADER, `
+    }`, `
     in vec3 vAt, vNormal; in float vShade; uniform vec3 uEye, uRamp[9], uOwn, uLight; uniform float uAlpha, uNight;
     out vec4 colour;
     void main() {
@@ -38,13 +22,9 @@
       vec3 c = own * (0.40 + 0.48 * max(dot(n, uLight), 0.0) + 0.22 * dot(n, V));
       c += 0.20 * pow(max(dot(n, normalize(uLight + V)), 0.0), 40.0);
       colour = vec4(c * mix(1.0, 0.9, uNight), uAlpha);
-    }`));
-  gl.linkProgram(program);
-  if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(program));
-  gl.useProgram(program);
-  const uniform = (name) => gl.getUniformLocation(program, name);
-  const u = Object.fromEntries(["View", "Side", "Eye", "Own", "Light", "Alpha", "Night"].map((name) => [name, uniform("u" + name)]));
-  gl.uniform3fv(uniform("uRamp"), meta.ramp.flat());
+    }`);
+  gl.useProgram(made);
+  gl.uniform3fv(u.uRamp, meta.ramp.flat());
 
   // ---- meshes ----------------------------------------------------------------------------------------------------
   function normals(points, faces) { // mean of the faces', weighted by their areas
@@ -96,20 +76,16 @@
     for (let k = 0; k < whole.length; k++) points[k] = meta.middle[k % 3] + whole[k] * meta.scale / 32767;
     return mesh(points, take(one.faces), take(one.spin));
   }
-  const made = new Map(); // meshes are made when they are first seen
-  const frame = (i) => { if (!made.has(i)) made.set(i, { body: body(i), vortices: vortices(meta.frames[i]) }); return made.get(i); };
+  const meshes = new Map(); // meshes are made when they are first seen
+  const frame = (i) => { if (!meshes.has(i)) meshes.set(i, { body: body(i), vortices: vortices(meta.frames[i]) }); return meshes.get(i); };
 
   // ---- camera ----------------------------------------------------------------------------------------------------
-  const count = meta.frames.length, calm = matchMedia("(prefers-reduced-motion: reduce)").matches, framed = self !== top;
-  const asked = new URLSearchParams(location.hash.slice(1));
-  const state = { place: 0, playing: !calm && !framed && !asked.has("t"), speed: 1, vortices: true, dark: matchMedia("(prefers-color-scheme: dark)").matches };
+  const count = meta.frames.length;
+  Object.assign(state, { place: 0, vortices: true });
   const views = { corner: [-1.05, 0.62], above: [-Math.PI / 2, 1.56], side: [-Math.PI / 2, 0.03], behind: [0.35, 0.3] };
   const home = [meta.middle[0] + 0.12 * meta.length, 0, 0];
   const camera = { azimuth: -1.05, elevation: 0.62, distance: 1, target: [...home] };
   const fitted = () => meta.length * 1.45 * Math.max(1, 1.6 * canvas.clientHeight / Math.max(canvas.clientWidth, 1));
-  const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
-  const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-  const add = (a, b, k) => [a[0] + k * b[0], a[1] + k * b[1], a[2] + k * b[2]];
   function view() {
     const { azimuth, elevation } = camera, e = Math.cos(elevation);
     const away = [e * Math.cos(azimuth), e * Math.sin(azimuth), Math.sin(elevation)], right = [-Math.sin(azimuth), Math.cos(azimuth), 0];
@@ -123,25 +99,19 @@
   }
 
   // ---- drawing ---------------------------------------------------------------------------------------------------
-  let dirty = true, last = 0;
   const shown = () => Math.min(Math.floor(state.place), count - 1);
-  function both(one, sides) { for (const side of sides) { gl.uniform1f(u.Side, side); gl.bindVertexArray(one.array); gl.drawElements(gl.TRIANGLES, one.count, one.kind, 0); } }
+  function both(one, sides) { for (const side of sides) { gl.uniform1f(u.uSide, side); gl.bindVertexArray(one.array); gl.drawElements(gl.TRIANGLES, one.count, one.kind, 0); } }
   function draw() {
-    const wide = Math.round(canvas.clientWidth * Math.min(devicePixelRatio, 2)), tall = Math.round(canvas.clientHeight * Math.min(devicePixelRatio, 2));
-    if (canvas.width !== wide || canvas.height !== tall) { canvas.width = wide; canvas.height = tall; }
+    shared.clear([0.965, 0.965, 0.95], [0.085, 0.098, 0.106]);
     const seen = view(), now = frame(shown());
-    gl.viewport(0, 0, canvas.width, canvas.height);
-    gl.clearColor(...(state.dark ? [0.085, 0.098, 0.106] : [0.965, 0.965, 0.95]), 1);
-    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-    gl.enable(gl.DEPTH_TEST); gl.enable(gl.BLEND); gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
-    gl.uniformMatrix4fv(u.View, false, seen.matrix);
-    gl.uniform3fv(u.Eye, seen.eye); gl.uniform3fv(u.Light, seen.light); gl.uniform1f(u.Night, +state.dark);
-    gl.uniform3fv(u.Own, meta.skin); gl.uniform1f(u.Alpha, 1);
+    gl.uniformMatrix4fv(u.uView, false, seen.matrix);
+    gl.uniform3fv(u.uEye, seen.eye); gl.uniform3fv(u.uLight, seen.light); gl.uniform1f(u.uNight, +state.dark);
+    gl.uniform3fv(u.uOwn, meta.skin); gl.uniform1f(u.uAlpha, 1);
     both(now.body, [1]);
-    if (state.vortices) { // their nearest surface only, seen through
-      gl.uniform3fv(u.Own, [-1, 0, 0]); gl.uniform1f(u.Alpha, 0.8);
-      gl.colorMask(false, false, false, false); both(now.vortices, [1, -1]); gl.colorMask(true, true, true, true);
-      gl.depthFunc(gl.EQUAL); both(now.vortices, [1, -1]); gl.depthFunc(gl.LESS);
+    if (state.vortices) {
+      gl.uniform3fv(u.uOwn, [-1, 0, 0]); gl.uniform1f(u.uAlpha, 0.8);
+      const surfaces = () => both(now.vortices, [1, -1]);
+      shared.nearest(surfaces, surfaces);
     }
     $("clock").textContent = `${meta.phase[shown()].toFixed(2)} cycle`;
     $("time").value = shown();
@@ -150,64 +120,15 @@
   }
 
   // ---- controls --------------------------------------------------------------------------------------------------
-  const redraw = () => { if (!dirty) { dirty = true; requestAnimationFrame(tick); } };
-  const play = (on) => { state.playing = on; last = 0; $("play").textContent = on ? "Pause" : "Play"; redraw(); };
   const seek = (place) => { state.place = Math.min(Math.max(Math.round(place), 0), count - 1); redraw(); };
   const step = (by) => { play(false); seek((shown() + by + count) % count); };
   const look = (name) => { [camera.azimuth, camera.elevation] = views[name]; camera.target = [...home]; camera.distance = fitted(); redraw(); };
-  const theme = (dark) => { state.dark = dark; document.documentElement.dataset.theme = dark ? "dark" : "light"; $("theme").textContent = dark ? "Light" : "Dark"; redraw(); };
-  const orbit = (dx, dy) => { camera.azimuth -= 0.006 * dx; camera.elevation = Math.min(Math.max(camera.elevation + 0.006 * dy, -1.56), 1.56); redraw(); };
-  const pan = (dx, dy) => { const s = view(), k = 0.62 * camera.distance / canvas.clientHeight; camera.target = add(add(camera.target, s.right, -k * dx), s.up, k * dy); redraw(); };
-  const zoom = (by) => { camera.distance = Math.min(Math.max(camera.distance * by, 0.25 * meta.length), 12 * meta.length); redraw(); };
+  const move = (by) => { camera.target = add(camera.target, by); };
   $("time").max = count - 1;
-  $("time").addEventListener("input", (e) => { if (state.playing) play(false); seek(+e.target.value); });
-  $("play").addEventListener("click", () => play(!state.playing));
-  $("speed").addEventListener("change", (e) => { state.speed = +e.target.value; });
-  $("view").addEventListener("change", (e) => look(e.target.value));
-  $("theme").addEventListener("click", () => theme(!state.dark));
-  $("vortices").addEventListener("change", (e) => { state.vortices = e.target.checked; redraw(); });
-  const fingers = new Map();
-  canvas.addEventListener("pointerdown", (e) => { canvas.setPointerCapture(e.pointerId); fingers.set(e.pointerId, [e.clientX, e.clientY]); });
-  canvas.addEventListener("pointermove", (e) => {
-    const before = fingers.get(e.pointerId);
-    if (!before) return;
-    const dx = e.clientX - before[0], dy = e.clientY - before[1];
-    if (fingers.size === 1) (e.shiftKey || e.buttons & 6 ? pan : orbit)(dx, dy);
-    else {
-      const other = [...fingers].find(([id]) => id !== e.pointerId)[1], far = (p) => Math.hypot(p[0] - other[0], p[1] - other[1]) || 1;
-      zoom(far(before) / far([e.clientX, e.clientY])); pan(dx / 2, dy / 2);
-    }
-    fingers.set(e.pointerId, [e.clientX, e.clientY]);
-  });
-  for (const name of ["pointerup", "pointercancel"]) canvas.addEventListener(name, (e) => fingers.delete(e.pointerId));
-  canvas.addEventListener("wheel", (e) => { e.preventDefault(); zoom(Math.exp(0.0012 * e.deltaY)); }, { passive: false });
-  canvas.addEventListener("contextmenu", (e) => e.preventDefault());
-  canvas.addEventListener("keydown", (e) => {
-    const acts = { ArrowLeft: () => orbit(18, 0), ArrowRight: () => orbit(-18, 0), ArrowUp: () => orbit(0, 18), ArrowDown: () => orbit(0, -18),
-      "+": () => zoom(0.88), "=": () => zoom(0.88), "-": () => zoom(1.14), ",": () => step(-1), ".": () => step(1),
-      " ": () => play(!state.playing), Home: () => seek(0), End: () => seek(count - 1) };
-    const act = acts[e.key];
-    if (act && !e.ctrlKey && !e.metaKey && !e.altKey) { e.preventDefault(); act(); }
-  });
-  new ResizeObserver(redraw).observe(canvas);
-  canvas.addEventListener("webglcontextlost", () => { document.body.classList.remove("alive"); state.playing = false; });
-
-  function tick(stamp) {
-    dirty = false;
-    if (state.playing) {
-      if (last) state.place = (state.place + state.speed * count / 4 * Math.min((stamp - last) / 1000, 0.25)) % count;
-      last = stamp;
-    }
-    draw();
-    if (state.playing) redraw();
-  }
-  document.body.classList.add("alive");
-  theme(state.dark);
+  shared.hold({ camera, lowest: -1.56, move, seen: view, look, seek, step, start: 0, end: count - 1, boxes: ["vortices"], play });
+  shared.begin(draw, (time) => { state.place = (state.place + time * count / 4) % count; });
   look(views[asked.get("view")] ? asked.get("view") : "corner");
   if (views[asked.get("view")]) $("view").value = asked.get("view");
   seek(asked.has("t") ? (+asked.get("t") || 0) * count : count - 1);
-  $("play").textContent = state.playing ? "Pause" : "Play";
   window.suchus = { state, camera, seek, play, shown };
-  dirty = true;
-  requestAnimationFrame(tick);
 })();
