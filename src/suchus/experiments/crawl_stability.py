@@ -1,20 +1,20 @@
 """Does it crawl more steadily with spine and tail than without?"""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from suchus.design import AnyRobot, layout
-from suchus.design.checks import Checks
+from suchus.design import layout
 from suchus.design.scale import coarse_step
-from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
+from suchus.experiment import Measure, Outcome, Progress, Replay, Simulated, silent, staged
+from suchus.experiments._two_groups import TwoGroups
 from suchus.figures.stability import draw_heights, draw_snapshots, draw_spreads
-from suchus.gaits import GAITS, conditions_of
-from suchus.land import Ground, Run, simulate
+from suchus.gaits import conditions_of
+from suchus.land import Run, simulate
 from suchus.metrics import (
     displacement,
     height_peak_to_peak,
@@ -29,10 +29,9 @@ from suchus.metrics import (
     tilt,
 )
 from suchus.motion import START, AnyGait, FootPath, Gait, Pattern, longest_stroke, longest_strokes, with_strokes
-from suchus.paper import CYCLES, SNAPSHOT_TIMES
+from suchus.paper import SNAPSHOT_TIMES
 from suchus.renamed import old_names
 from suchus.replay import replay
-from suchus.robots import ROBOTS
 from suchus.verdict import Reading, compared
 
 _EQUAL = "limbs_only_equal_displacement"
@@ -62,7 +61,7 @@ _PARTS = (
 
 @old_names(grip_spread="friction_spread")
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CrawlStability(Experiment):
+class CrawlStability(TwoGroups):
     """The height of the centre of mass over time, for every combination of spine and tail.
 
     The article compares spine and tail together with neither, at the same leg commands. That mixes four things, so all
@@ -74,33 +73,6 @@ class CrawlStability(Experiment):
     title = "Does it crawl more steadily with spine and tail than without?"
     shows = "Section IV.A, Figs 13 to 15"
     needs = ("limbs", "axis")
-    judged_with = ("robot", "gait", "control", "cycles")
-    judged_from: ClassVar[Mapping[str, float]] = {"repeats": 8}
-
-    robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
-    """The robot that crawls."""
-    gait: AnyGait = field(default_factory=lambda: GAITS["belly_crawl"])
-    """The crawl with spine and tail."""
-    control: AnyGait = field(default_factory=lambda: GAITS["limbs_only"])
-    """The crawl of the control group, with the same legs."""
-    cycles: int = int(CYCLES)
-    """Number of cycles that are measured [-]."""
-    repeats: int = 8
-    """Runs per condition with noise on the servos and another friction, for the spread [-]."""
-    noise: float = 0.01
-    """Standard deviation of the noise on every commanded angle in the repeats [rad]; a hobby servo's dead band."""
-    friction_spread: float = 0.1
-    """Half-width of the uniform spread of the friction in the repeats, as a fraction of it [-]."""
-    seed: int = 0
-    """Seed of noise and friction [-]."""
-
-    def __post_init__(self) -> None:
-        with Checks(self.name(), self) as check:
-            check.whole("cycles", 1, 1000)
-            check.whole("repeats", 1, 1000)
-            check.number("noise", 0.0, 1.0, "rad")
-            check.number("friction_spread", 0.0, 0.9, "")
-            check.whole("seed", 0, 2**31)
 
     def quick(self) -> "CrawlStability":
         """One cycle, two repeats."""
@@ -165,14 +137,9 @@ class CrawlStability(Experiment):
 
     def _repeated(self, runs: list[Run], end: float, progress: Any) -> xr.Dataset:
         """Return the fluctuation of every condition in repeats with noise and another friction."""
-        rng = np.random.default_rng(self.seed)
-        scales = rng.uniform(1 - self.friction_spread, 1 + self.friction_spread, self.repeats)
-        noisy = [
-            replace(run, ground=Ground(friction_scale=float(scale)), noise=self.noise, seed=self.seed + 1 + i)
-            for run in runs
-            for i, scale in enumerate(scales)
-        ]
-        record = simulate(noisy, duration=end, timestep=coarse_step(self.robot), every=2, progress=progress)
+        record = simulate(
+            self.repeated(runs), duration=end, timestep=coarse_step(self.robot), every=2, progress=progress
+        )
         shape = (len(runs), self.repeats)
         found = {"repeated_pp": height_peak_to_peak(record), "repeated_std": height_std(record)}
         data = {

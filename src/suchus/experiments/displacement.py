@@ -1,31 +1,31 @@
 """How far does the robot crawl, with spine and tail and without?"""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import partial
 from math import degrees
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from suchus.design import AnyRobot, layout
+from suchus.design import layout
 from suchus.design.checks import Checks
 from suchus.design.scale import coarse_step
-from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
+from suchus.experiment import Measure, Outcome, Progress, Replay, Simulated, silent, staged
+from suchus.experiments._two_groups import TwoGroups
 from suchus.figures import COLOURS, LINES, captioned, panels, styled
 from suchus.figures.crawls import draw_crawls
 from suchus.figures.maps import draw_map
 from suchus.figures.timeseries import draw_band, draw_lines, mark_cycles, mark_printed
-from suchus.gaits import CONDITIONS, GAITS, conditions_of, suits
-from suchus.land import Ground, Run, simulate
+from suchus.gaits import CONDITIONS, conditions_of, suits
+from suchus.land import Run, simulate
 from suchus.metrics import cost_of_transport, duty_factor, foot_clearance, heading_change, slip, two_feet_share
 from suchus.metrics import displacement as displacement_of
 from suchus.motion import START, AnyGait, Gait, strides, with_axis_lag, with_bends, with_strokes
 from suchus.paper import CLAIMS, CYCLES
 from suchus.renamed import old_names
 from suchus.replay import replay
-from suchus.robots import ROBOTS
 from suchus.verdict import Reading
 
 _GROUPS = CONDITIONS[:2]
@@ -34,7 +34,7 @@ _LEAST = 0.00198  # [body length]; below this displacement a ratio means nothing
 
 @old_names(grip_spread="friction_spread")
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Displacement(Experiment):
+class Displacement(TwoGroups):
     """The article's two groups side by side, what each part of spine and tail adds, and the map of what decides.
 
     Displacement is forward, along the direction that the body faced at the start, and that of the centre of mass from
@@ -46,23 +46,7 @@ class Displacement(Experiment):
     title = "How far does it crawl, with spine and tail and without?"
     shows = "Section IV.B, Fig. 16"
     needs = ("limbs", "axis")
-    judged_with = ("robot", "gait", "control", "cycles")
-    judged_from: ClassVar[Mapping[str, float]] = {"repeats": 8}
 
-    robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
-    """The robot that crawls."""
-    gait: AnyGait = field(default_factory=lambda: GAITS["belly_crawl"])
-    """The crawl with spine and tail."""
-    control: AnyGait = field(default_factory=lambda: GAITS["limbs_only"])
-    """The crawl of the control group, with the same legs."""
-    cycles: int = int(CYCLES)
-    """Number of cycles that are measured [-]."""
-    repeats: int = 8
-    """Runs per condition with noise on the servos and another friction, for the spread [-]."""
-    noise: float = 0.01
-    """Standard deviation of the noise on every commanded angle in the repeats [rad]; a hobby servo's dead band."""
-    friction_spread: float = 0.1
-    """Half-width of the uniform spread of the friction in the repeats, as a fraction of it [-]."""
     strokes: tuple[float, ...] = (0.01, 0.02, 0.027, 0.04, 0.055, 0.07, 0.085)
     """Half strokes of the legs on the map [m]."""
     bends: tuple[float, ...] = (0.0, 0.3, 0.6, 0.9, 1.2217304763960306, 1.5)
@@ -73,21 +57,14 @@ class Displacement(Experiment):
     """Phase lags of the trunk's bend behind the legs, for the curve [cycle]."""
     shares: tuple[float, ...] = (0.25, 0.5, 0.75, 1.0, 1.25, 1.5)
     """Strokes and bends on the map of a gait that is not of the article's kind, over its own [-]."""
-    seed: int = 0
-    """Seed of noise and friction [-]."""
 
-    def __post_init__(self) -> None:
-        with Checks(self.name(), self) as check:
-            check.whole("cycles", 1, 1000)
-            check.whole("repeats", 1, 1000)
-            check.whole("seed", 0, 2**31)
-            check.number("noise", 0.0, 1.0, "rad")
-            check.number("friction_spread", 0.0, 0.9, "")
-            check.rising("strokes", 0.0, 0.3, "m")
-            check.rising("bends", 0.0, 3.0, "rad")
-            check.rising("pitches", -1.0, 1.0, "rad")
-            check.rising("phases", -1.0, 1.0, "cycle")
-            check.rising("shares", 0.0, 10.0, "")
+    def check(self, check: Checks) -> None:
+        """Check what the map is drawn over."""
+        check.rising("strokes", 0.0, 0.3, "m")
+        check.rising("bends", 0.0, 3.0, "rad")
+        check.rising("pitches", -1.0, 1.0, "rad")
+        check.rising("phases", -1.0, 1.0, "cycle")
+        check.rising("shares", 0.0, 10.0, "")
 
     def quick(self) -> "Displacement":
         """One cycle, two repeats, four corners of the map."""
@@ -102,7 +79,7 @@ class Displacement(Experiment):
         record = simulate(runs, duration=duration, progress=staged(progress, "conditions", 0.0, 0.1))
         stage = staged(progress, "repeats", 0.1, 0.5)
         spread = simulate(
-            self._repeats(gaits), duration=duration, timestep=coarse_step(self.robot), every=10, progress=stage
+            self.repeated(runs), duration=duration, timestep=coarse_step(self.robot), every=10, progress=stage
         )
         found = self._mapped(duration, staged(progress, "map", 0.5, 1.0))
         record = record.merge(_renamed(spread, list(gaits), self.repeats)).merge(found)
@@ -121,24 +98,6 @@ class Displacement(Experiment):
             caption=caption,
         )
         return {"crawl_replay.html": Replay(caption=caption, make=page)}
-
-    def _repeats(self, gaits: Mapping[str, AnyGait]) -> list[Run]:
-        """Return the repeats of all conditions; the i-th has the same noise and friction in each."""
-        scales = np.random.default_rng(self.seed).uniform(
-            1 - self.friction_spread, 1 + self.friction_spread, self.repeats
-        )
-        return [
-            Run(
-                robot=self.robot,
-                gait=gait,
-                ground=Ground(friction_scale=float(scale)),
-                noise=self.noise,
-                seed=self.seed + 1 + i,
-                label=arm,
-            )
-            for arm, gait in gaits.items()
-            for i, scale in enumerate(scales)
-        ]
 
     def _mapped(self, duration: float, progress: Any) -> xr.Dataset:
         """Return the displacement over stroke and bend, over the tail's pitch, and over the trunk's phase lag [m]."""
