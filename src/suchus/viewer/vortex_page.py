@@ -1,8 +1,5 @@
 """One browser that watches a swim in three dimensions: the body, and surfaces around its vortices."""
 
-from html import escape
-from threading import Event
-from time import monotonic
 from typing import Any
 
 import numpy as np
@@ -12,16 +9,14 @@ from trimesh.visual.material import PBRMaterial
 
 from suchus.figures import vortices
 from suchus.skin.mesh import Mesh
+from suchus.viewer.cycle_page import CyclePage, colour_bar, frame_text, status
 from suchus.viewer.stage import light
-from suchus.viewer.swim_page import draw_curve
 from suchus.viewer.vortices import VortexFilm
 
-_TURN = 0.05  # [s]; how often the page looks what it should show
-_CYCLE = 4.0  # [s]; in which a cycle is played at speed 1
 _BOTH, _LOWER, _NONE = "both halves", "lower half", "none"
 
 
-class VortexPage:
+class VortexPage(CyclePage):
     """A browser and its own player of a swim in three dimensions.
 
     Surfaces are made when they are first shown and stay in the browser, so that the second cycle plays smoothly.
@@ -32,16 +27,14 @@ class VortexPage:
     """
 
     def __init__(self, client: Any, film: VortexFilm) -> None:
-        self._client, self._film, self._closed = client, film, Event()
-        self._count, self._place = len(film.phase), 0.0
+        super().__init__(client)
+        self._film, self._count = film, len(film.phase)
         gui = client.gui
-        self._status = gui.add_html("")
         with gui.add_folder("Replay"):
             self._frame = gui.add_slider("frame", 1, max(self._count, 2), 1, 1, disabled=self._count == 1)
-            self._pause = gui.add_checkbox("pause", initial_value=False)
             self._back = gui.add_button("step back")
             self._on = gui.add_button("step forward")
-            self._speed = gui.add_slider("playback speed [x]", 0.05, 4.0, 0.05, 1.0)
+            self._add_player()
         with gui.add_folder("Vortices"):
             low, high = film.levels
             self._halves = gui.add_dropdown(
@@ -51,18 +44,10 @@ class VortexPage:
                 "Q [1/s²]", low, high, 0.05 * film.level, film.level,
                 hint="Second invariant of the velocity's gradient on the surfaces; lower ones lie farther out.",
             )  # fmt: skip
-        gui.main_panel.dock_right()
-        gui.main_panel.set_width(330)
         self._frame.on_update(self._seek)
         self._back.on_click(lambda _: self.step(-1))
         self._on.on_click(lambda _: self.step(1))
-        if curves := film.curves():
-            panel = gui.add_panel()
-            with panel.add_tab("Measured"):
-                for curve in curves:
-                    draw_curve(gui, curve)
-            panel.dock_left()
-            panel.set_width(370)
+        self._dock(film.curves())
         light(client.scene)
         skin = film.body(0)
         red, green, blue = (round(255 * part) for part in vortices.SKIN)
@@ -75,21 +60,10 @@ class VortexPage:
         self._blocks = film.blocks(film.level)
         self._shown: tuple[float, str, int] | None = None
 
-    def close(self) -> None:
-        """End the replay."""
-        self._closed.set()
-
-    def run(self) -> None:
-        """Play until closed."""
-        before = monotonic()
-        while not self._closed.is_set():
-            start = monotonic()
-            if not self._pause.value:
-                share = min(start - before, _CYCLE / self._count) / _CYCLE  # no frame is left out, however slow
-                self._place = (self._place + self._speed.value * share) % 1.0
-            before = start
-            self.show()
-            self._closed.wait(max(0.01, _TURN - (monotonic() - start)))
+    @property
+    def frames(self) -> int:
+        """Frames of the cycle [-]."""
+        return self._count
 
     def step(self, frames: int) -> None:
         """Pause, and go on or back by frames."""
@@ -157,16 +131,9 @@ def _coloured(mesh: Mesh) -> trimesh.Trimesh:
 def status_text(film: VortexFilm, frame: int, level: float, blocks: int) -> str:
     """Return the head of the page as HTML: which frame, which surfaces, and what their colours mean."""
     inks = np.round(255.0 * vortices.colours(np.linspace(-1.0, 1.0, 9), 1.0)).astype(int)
-    stops = ",".join("rgb({},{},{})".format(*ink) for ink in inks)
-    where = f"frame {frame + 1} of {len(film.phase)}, phase {film.phase[frame]:.2f} of the last cycle"
     of = f", of blocks of {blocks} cells" if blocks > 1 else ""
-    return (
-        f'<div style="padding:4px 12px;font:13px sans-serif"><b>{escape(film.about() or "a swim")}</b>'
-        f'<div data-suchus="frame" style="color:#444">{where}</div>'
-        f'<div data-suchus="level" style="color:#444">surfaces of Q = {level:.3g} 1/s²{of}</div>'
-        '<div style="margin-top:8px;font-weight:600">vorticity about the vertical [1/s]</div>'
-        f'<div style="height:14px;border-radius:2px;background:linear-gradient(90deg,{stops})"></div>'
-        f'<div style="display:flex;justify-content:space-between"><span>{-film.limit:.3g}</span><span>0</span>'
-        f'<span>{film.limit:.3g}</span></div><div style="display:flex;justify-content:space-between;color:#666;'
-        'font-size:11px"><span>clockwise from above</span><span>counter-clockwise</span></div></div>'
+    lines = [("frame", frame_text(frame, film.phase)), ("level", f"surfaces of Q = {level:.3g} 1/s²{of}")]
+    bar = colour_bar(
+        "vorticity about the vertical [1/s]", inks, film.limit, "clockwise from above", "counter-clockwise"
     )
+    return status(film.about() or "a swim", lines, bar)
