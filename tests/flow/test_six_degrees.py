@@ -18,6 +18,7 @@ from suchus.flow.swimmer import Swimmer
 
 BRICK = flow.Ellipsoid(length=1.0, width=0.7, height=0.45)
 SPHEROID = flow.Ellipsoid(length=1.0, width=0.5, height=0.5)
+DISC = flow.Ellipsoid(length=1.0, width=1.0, height=0.1)  # a cell thick
 TURNED = flow.Pose(
     position=(0.05, -0.02, 0.03), angle=0.4, pitch=-0.7, roll=1.1, velocity=(0.3, 0.2, 0.1), spin_x=0.5, spin_y=-0.4,
     spin=0.7,
@@ -355,13 +356,15 @@ def test_a_spheroid_that_falls_obliquely_turns_broadside(shape, pitch):
     assert glide * pitch > 0 if long else glide * pitch < 0  # to where its lower end or edge is
 
 
-@pytest.mark.parametrize("velocity", [(0.5, -0.3, 0.4), (0.0, 0.0, 0.0)])
-def test_body_and_water_keep_momentum_and_angular_momentum(velocity):
+@pytest.mark.parametrize(
+    ("shape", "velocity"), [(BRICK, (0.5, -0.3, 0.4)), (BRICK, (0.0, 0.0, 0.0)), (DISC, (0.5, -0.3, 0.4))]
+)
+def test_body_and_water_keep_momentum_and_angular_momentum(shape, velocity):
     """A free body that tumbles in a periodic box: what it has and is owed, and what the water has, is kept.
 
     Angular momentum only as long as nothing of the flow has come to the sides: of a body that does not move along.
     """
-    body = spun(BRICK, (1.5, -1.0, 2.0), velocity=velocity, angle=0.3, pitch=0.4, roll=0.2)
+    body = spun(shape, (1.5, -1.0, 2.0), velocity=velocity, angle=0.3, pitch=0.4, roll=0.2)
     body = replace(body, density=2.0)
     sim = water(body, cells=32, sides=flow.Sides.periodic(), viscosity=0.01)
     grid, swimmer = sim.setup.grid, sim.swimmers["body"]
@@ -384,7 +387,7 @@ def test_body_and_water_keep_momentum_and_angular_momentum(velocity):
         inside[3:] = h * inside[3:] + np.cross(grid.origin, inside[:3])
         water_has = (total - inside) * h**3
         state, matrix = swimmer.rate, rotation.turn(swimmer.place[3:])
-        inertia = 2.0 * BRICK.mass(0.0).inertia(matrix)
+        inertia = 2.0 * shape.mass(0.0).inertia(matrix)
         own = inertia @ state
         late = swimmer.span * (swimmer.load + swimmer.applied) + swimmer.owed - (own - swimmer.momentum)
         own = own + late

@@ -12,6 +12,7 @@ from suchus.errors import InvalidDesign, OutsideLimits, UnknownName
 from suchus.flow import memory
 from suchus.flow.added import added_mass
 from suchus.flow.compiled import PAD
+from suchus.flow.immerse import THINNEST
 from suchus.flow.momentum import Reaction
 from suchus.flow.watch import vorticity_size
 from suchus.flow.water import Water
@@ -19,6 +20,8 @@ from suchus.flow.water import Water
 HELD = flow.Stream(unbounded=False)
 NAMES = (("left", "right"), ("bottom", "top"), ("low", "high"))
 SPHERE = flow.Sphere(diameter=1.0)
+NEEDLE = flow.Ellipsoid(length=1.0, width=0.3, height=0.3)
+FLAKE = flow.Ellipsoid(length=1.0, width=1.0, height=0.124)
 TAYLOR_GREEN = (0.125, 0.11748, 0.10905, 0.09879, 0.08682, 0.07397, 0.06125, 0.04969, 0.03999, 0.03224)
 """Kinetic energy at Re 100 at t = 0 to 9, from a pseudo-spectral computation on 40 modes a side."""
 
@@ -295,6 +298,51 @@ def test_an_ellipsoid_knows_the_distance_of_every_point(axes, direction, far):
     assert 0.5 * abs(reach) - 1e-7 <= short * np.sign(reach) <= abs(reach) + 1e-7
 
 
+def test_an_ellipsoid_knows_how_thick_it_is():
+    """Behind its flat faces, and at its rim, where it is the chord a cell inside; a thick one is thick everywhere."""
+    still, h = flow.Pose(position=(0.0, 0.0, 0.0)), 0.05
+    line, middle = np.arange(-12, 13) * h, 12
+    disc = flow.Ellipsoid(length=1.0, width=1.0, height=0.08).measure(line, line, line, 0.0, still, 3 * h)
+    assert disc.thickness[middle + 1, middle, middle] == pytest.approx(0.08)
+    inside = 0.04  # less than a cell: as far as it is thick
+    rim = 0.08 * np.sqrt(1 - ((0.5 - inside) / 0.5) ** 2)
+    assert disc.thickness[middle, middle, middle + 11] == pytest.approx(rim)
+    ball = flow.Sphere(diameter=THINNEST * h).measure(line, line, line, 0.0, still, 3 * h)
+    beyond = -(ball.thickness + ball.distance) / h  # from the other surface: no part of it is felt
+    assert beyond.max() < -1.0
+
+
+def test_the_middle_of_a_flat_ellipsoid_is_an_ellipse_and_round_ones_have_none():
+    """Of half-axes a > c it reaches a (a^2 - c^2) / (a^2 + c^2) along a, square to c."""
+    pose = flow.Pose(position=(0.1, 0.2, 0.3), angle=np.pi / 2)
+    found = flow.Ellipsoid(length=2.0, width=0.4, height=1.0).midsurface(0.0, pose)
+    size = np.abs(found - np.array(pose.position)[:, None]).max(axis=(0, 2))
+    assert size == pytest.approx([0.0, 0.96 / 1.04, 0.5 * 0.21 / 0.29], abs=1e-3)  # its length now lies along y
+    for shape in (flow.Sphere(diameter=1.0), flow.Ellipsoid(length=4.0, width=1.0, height=1.0)):
+        assert shape.midsurface(0.0, pose) is None
+
+
+def oblate(ratio):
+    """Added mass of an oblate spheroid along its axis over what it displaces: Lamb 1932, par. 114 and 373."""
+    e = np.sqrt(1 - ratio**2)
+    alpha = 2 / e**2 * (1 - ratio * np.arcsin(e) / e)
+    return alpha / (2 - alpha)
+
+
+@pytest.mark.parametrize("cells", [1.0, 1.6, 2.5])
+@pytest.mark.parametrize("turn", [0.0, 0.5])
+def test_a_disc_of_a_cell_has_the_added_mass_of_potential_flow(cells, turn):
+    """An oblate spheroid 16 cells across; open to the pressure, a disc of one cell had an eighth of it."""
+    ratio, h = cells / 16, 1 / 16
+    shape = flow.Ellipsoid(length=1.0, width=ratio, height=1.0)
+    pose = flow.Pose(position=(0.011, 0.007, 0.003), angle=turn, roll=0.8 * turn)
+    water = Water(flow.Grid(cells=(32,) * 3, cell=h, origin=(-1.0,) * 3), flow.Sides(), 1e-9, np.float32)
+    water.place([flow.Body(shape=shape, motion=pose)], [pose], 0.0)
+    mass = added_mass(water, shape.markers(0.0, pose, h), pose.position, 1.0)[:3, :3]
+    across = pose.matrix[:, 1]
+    assert across @ mass @ across == pytest.approx(oblate(ratio) * shape.volume(0.0), rel=0.06)
+
+
 def test_the_skin_of_an_ellipsoid_has_its_area_and_moves_with_it():
     """Area of a prolate spheroid: 2 pi b^2 (1 + a / (b e) asin e)."""
     a, b = 0.5, 0.2
@@ -402,6 +450,8 @@ HALF = flow.Grid(cells=(24, 24, 12), cell=1 / 8, origin=(-1.5, -1.5, 0.0))
         (lambda: ball(stream=(1.0, float("nan"), 0.0)), "finite numbers are needed"),
         (lambda: ball(stream=lambda _: (1.0,)), r"stream is \(1.0,\) at t = 0 s; give finite velocities"),
         (lambda: ball(bodies=(flow.Body(shape=flow.Sphere(diameter=0.3)),)), "at least 3.41 cells"),
+        (lambda: ball(bodies=(flow.Body(shape=NEEDLE),)), "at least 3.41 cells"),
+        (lambda: ball(bodies=(flow.Body(shape=FLAKE),)), "0.99 cells of 0.125 m; at least 1.00 cells"),
     ],
 )
 def test_bad_input_is_one_sentence_with_the_remedy(make, part):

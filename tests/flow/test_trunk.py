@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from test_space import oblate
 
 from suchus import flow
 from suchus.errors import InvalidDesign, OutsideLimits, UnknownName
@@ -372,13 +373,6 @@ def test_no_path_from_cell_to_cell_crosses_a_closed_surface(normal, shift):
         before[axis] = slice(None, -1)
         apart = side[inner] != side[tuple(before)]
         assert np.array_equal(passage == np.float32(LEAST_SHARE), apart)
-
-
-def oblate(ratio):
-    """Added mass of an oblate spheroid along its axis over what it displaces: Lamb 1932, par. 114 and 373."""
-    e = np.sqrt(1 - ratio**2)
-    alpha = 2 / e**2 * (1 - ratio * np.arcsin(e) / e)
-    return alpha / (2 - alpha)
 
 
 @pytest.mark.parametrize("pose", [

@@ -18,6 +18,8 @@ SOURCES = (
     "The eels are those of the IBAMR examples eel2d and, in space, eel3d, which is that of Kern and Koumoutsakos 2006 "
     "(J. Exp. Biol. 209, 4841-4857); neither gives a speed: what is bounded is how much finer grids and further cycles "
     "change it.",
+    "Pitter, Pruppacher and Hamielec 1973 (J. Atmos. Sci. 30, 125-134): thin oblate spheroids, by the fit of Clift, "
+    "Grace and Weber 1978 (Bubbles, Drops, and Particles), from memory.",
     "Flows with published data stand in the [atlas](atlas.md).",
 )
 

@@ -10,10 +10,10 @@ from suchus.errors import InvalidDesign
 from suchus.flow.compiled import PAD, Window
 from suchus.flow.free import FreeBody
 from suchus.flow.grid import Grid
-from suchus.flow.immerse import REACH, THINNEST, THINNEST_WITH_CENTRELINE
+from suchus.flow.immerse import REACH, THINNEST, THINNEST_CLOSED
 from suchus.flow.pose import Motion, Pose
 from suchus.flow.shape import Field, Shape
-from suchus.flow.solid import SpaceField, SpaceShape
+from suchus.flow.solid import Ellipsoid, SpaceField, SpaceShape
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -183,6 +183,13 @@ def _chosen(where: np.ndarray, a: SpaceField, b: SpaceField) -> SpaceField:
     )
 
 
+def _closed(shape: Shape | SpaceShape, time: float) -> bool:
+    """Return whether no water passes through the middle of a shape, however thin it is."""
+    if isinstance(shape, Shape):
+        return shape.centreline(time, Pose()) is not None
+    return isinstance(shape, Ellipsoid) and shape.midsurface(time, Pose()) is not None
+
+
 def thin_share(body: AnyBody, grid: Grid, time: float) -> float:
     """Return the share of the body's length that is thinner than ``THINNEST`` cells.
 
@@ -191,8 +198,7 @@ def thin_share(body: AnyBody, grid: Grid, time: float) -> float:
     """
     station, thickness = body.shape.thickness(time)
     least, most = THINNEST * grid.cell, float(thickness.max())
-    lined = isinstance(body.shape, Shape) and body.shape.centreline(time, Pose()) is not None
-    needed = THINNEST_WITH_CENTRELINE if lined else THINNEST
+    needed = THINNEST_CLOSED if _closed(body.shape, time) else THINNEST
     if most < needed * grid.cell:
         raise InvalidDesign(
             f"{body.name} is {most:.4g} m thick at most, {most / grid.cell:.2g} cells of {grid.cell:.4g} m; at least "

@@ -54,8 +54,19 @@ def _foot(p, a):
 
 
 @part
-def _paint_ellipsoid_point(out, at, away, turn, a, reach):
-    """Write distance and normal at one point, of its place in the body's frame; see ``paint_ellipsoid``."""
+def _chord(p, off, n, a, depth):
+    """Return the shortest of the chords along the axes through the point so far inside the foot of a point."""
+    deep = off + min(depth, a[0], a[1], a[2])
+    x, y, z = (p[0] - deep * n[0]) / a[0], (p[1] - deep * n[1]) / a[1], (p[2] - deep * n[2]) / a[2]
+    left = 1.0 - x * x - y * y - z * z
+    along = a[0] * np.sqrt(max(left + x * x, 0.0))
+    along = min(along, a[1] * np.sqrt(max(left + y * y, 0.0)))
+    return 2.0 * min(along, a[2] * np.sqrt(max(left + z * z, 0.0)))
+
+
+@part
+def _paint_ellipsoid_point(out, at, away, turn, a, reach, depth):
+    """Write distance, normal and thickness at one point, of its place in the body's frame; see ``paint_ellipsoid``."""
     q, j, i = at
     size, least = 0.0, min(a[0], a[1], a[2])
     for d in range(3):
@@ -65,19 +76,20 @@ def _paint_ellipsoid_point(out, at, away, turn, a, reach):
         out[0, q, j, i] = bound
         return
     p = (max(abs(away[0]), TINY * a[0]), max(abs(away[1]), TINY * a[1]), max(abs(away[2]), TINY * a[2]))
-    found = _foot(p, a)
-    out[0, q, j, i] = found[0]
-    n = (np.copysign(found[1], away[0]), np.copysign(found[2], away[1]), np.copysign(found[3], away[2]))
+    off, nx, ny, nz = _foot(p, a)
+    out[0, q, j, i] = off
+    out[7, q, j, i] = _chord(p, off, (nx, ny, nz), a, depth)
+    n = (np.copysign(nx, away[0]), np.copysign(ny, away[1]), np.copysign(nz, away[2]))
     for d in range(3):
         out[1 + d, q, j, i] = turn[d, 0] * n[0] + turn[d, 1] * n[1] + turn[d, 2] * n[2]
 
 
 @threaded
-def paint_ellipsoid(out, x, y, z, turn, place, velocity, spins, a, reach):
-    """Write distance, normal (3) and velocity (3) of an ellipsoid to the points of a window, shape (7, z, y, x).
+def paint_ellipsoid(out, x, y, z, turn, place, velocity, spins, a, reach, depth):
+    """Write distance, normal (3), velocity (3) and thickness of an ellipsoid to a window, shape (8, z, y, x).
 
     Args:
-        out: where to; normals that are not reached stay as they are.
+        out: where to; normals and thicknesses that are not reached stay as they are.
         x: coordinates of the points.
         y: coordinates of the points.
         z: coordinates of the points.
@@ -87,6 +99,7 @@ def paint_ellipsoid(out, x, y, z, turn, place, velocity, spins, a, reach):
         spins: angular velocity, shape (3,).
         a: half-axes, shape (3,).
         reach: distance up to which distance and normal are exact; beyond, the distance is at least as far off.
+        depth: how far inside the surface the thickness is taken.
     """
     for n in prange(out.shape[1]):
         q = signed(n)
@@ -103,4 +116,4 @@ def paint_ellipsoid(out, x, y, z, turn, place, velocity, spins, a, reach):
                     turn[0, 1] * dx + turn[1, 1] * dy + turn[2, 1] * dz,
                     turn[0, 2] * dx + turn[1, 2] * dy + turn[2, 2] * dz,
                 )
-                _paint_ellipsoid_point(out, (q, j, i), away, turn, a, reach)
+                _paint_ellipsoid_point(out, (q, j, i), away, turn, a, reach, depth)

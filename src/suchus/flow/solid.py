@@ -18,6 +18,12 @@ from suchus.flow.shape import positive
 _FEWEST = 16
 """Rings of points on a skin, at least [-]."""
 
+_RIM = 96
+"""Corners of the ellipse in the middle of a thin ellipsoid [-]."""
+
+_ROUND = 1e-3
+"""Length of that ellipse, over the smallest half-axis, below which the ellipsoid is taken for round there [-]."""
+
 
 @dataclass(slots=True)
 class SpaceField:
@@ -124,13 +130,15 @@ class Ellipsoid(SpaceShape):
     def measure(self, x: np.ndarray, y: np.ndarray, z: np.ndarray, time: float, pose: Pose, reach: float) -> SpaceField:
         """Return the field on the points of a window."""
         place = pose.along(3)
-        out = np.zeros((7, z.size, y.size, x.size))
+        out = np.zeros((8, z.size, y.size, x.size))
+        out[7] = np.inf
+        cell = float(x[1] - x[0]) if x.size > 1 else float(reach)
         px, py, pz = (np.ascontiguousarray(line, float) for line in (x, y, z))
         paint_ellipsoid(
             out, px, py, pz, np.ascontiguousarray(place.matrix), np.array(place.position), np.array(place.velocity),
-            place.spins, self.half, float(reach),
+            place.spins, self.half, float(reach), cell,
         )  # fmt: skip
-        return SpaceField(out[0], (out[1], out[2], out[3]), (out[4], out[5], out[6]), np.full(out[0].shape, np.inf))
+        return SpaceField(out[0], (out[1], out[2], out[3]), (out[4], out[5], out[6]), out[7])
 
     def markers(self, time: float, pose: Pose, spacing: float) -> Skin:
         """Return points on rings about the body's z axis, each of which stands for the same part of a unit sphere."""
@@ -150,6 +158,19 @@ class Ellipsoid(SpaceShape):
         place = pose.along(3)
         reach = np.sqrt(((place.matrix * self.half) ** 2).sum(axis=1)).tolist()
         return tuple(p + way * r for p, r in zip(place.position, reach, strict=True) for way in (-1.0, 1.0))
+
+    def midsurface(self, time: float, pose: Pose) -> np.ndarray | None:
+        """Return an ellipse across the smallest axis, as far as its own axes are longer; a long one has none."""
+        thin, *longer = np.argsort(self.half)
+        excess = self.half**2 - self.half[thin] ** 2
+        across = self.half * excess / (self.half**2 + self.half[thin] ** 2)
+        if across[longer].min() <= _ROUND * self.half[thin]:
+            return None
+        turn = np.linspace(0.0, 2 * np.pi, _RIM + 1)
+        rim = np.zeros((3, turn.size))
+        rim[longer] = across[longer, None] * np.stack([np.cos(turn), np.sin(turn)])
+        rim, middle = np.array(pose.along(3).place(rim)), np.array(pose.along(3).position)
+        return np.stack([np.broadcast_to(middle[:, None], (3, _RIM)), rim[:, :-1], rim[:, 1:]])
 
     def thickness(self, time: float) -> tuple[np.ndarray, np.ndarray]:
         """Return the smallest axis."""
