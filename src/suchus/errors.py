@@ -96,14 +96,6 @@ def plain_warnings(*about: str) -> Iterator[None]:
         yield
 
 
-class OldName(DeprecationWarning):
-    """Code that uses an old name of a field; the message gives the new one. The old one works for one more release."""
-
-
-class OldKey(FutureWarning):
-    """A file or a command that uses an old name of a field; the message gives the new one."""
-
-
 class Unreachable(SuchusError, ValueError):
     """Points that a limb or the spine cannot reach.
 

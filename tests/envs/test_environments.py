@@ -18,7 +18,7 @@ from suchus import envs, rotation  # noqa: E402
 from suchus.design import layout, leg_joints, servo_names  # noqa: E402
 from suchus.envs.pack import Pack, draw  # noqa: E402
 from suchus.envs.reward import Terms  # noqa: E402
-from suchus.errors import InvalidDesign, OldName, OutsideLimits, SuchusError, UnknownName  # noqa: E402
+from suchus.errors import InvalidDesign, OutsideLimits, SuchusError, UnknownName  # noqa: E402
 from suchus.faults import Locked, Weak  # noqa: E402
 from suchus.gaits import GAITS, own_gait  # noqa: E402
 from suchus.motion import limb_phase, servo_targets  # noqa: E402
@@ -498,29 +498,3 @@ def test_what_another_body_cannot_do_is_refused_in_a_sentence(changes, text):
     with pytest.raises(SuchusError, match=text) as told:
         envs.CrocodileEnv(**changes)
     assert str(told.value).count(". ") <= 1
-
-
-def test_old_names_of_a_task_work_and_say_the_new_ones():
-    with pytest.warns(OldName, match=r"suchus\.envs\.Shoves is now called Pushes"):
-        pushes = envs.Shoves(most=1.0)
-    with pytest.warns(OldName, match=r"Task\.shoves is now called pushes"):
-        env = gymnasium.make("suchus/Crawl-v0", shoves=pushes).unwrapped
-    assert env.task.pushes == pushes
-    with pytest.warns(OldName, match=r"Rewards\.haste is now called action_rate"):
-        assert replace(CRAWL.rewards, haste=-1.0).action_rate == -1.0
-
-
-def test_observations_and_info_are_read_by_their_old_names():
-    env = envs.CrocodileVectorEnv(1, CRAWL)
-    env.reset(seed=0)
-    seen, *_, infos = env.step(np.full(env.action_space.shape, 0.5))
-    with pytest.warns(OldName, match="'told' is now called 'last_action'"):
-        assert np.array_equal(envs.part(seen, "told"), envs.part(seen, "last_action"))
-    with pytest.warns(OldName, match="lateral_drift"):
-        assert infos["astray"] == infos["lateral_drift"]
-    with pytest.raises(KeyError, match="speed"):
-        infos["speed"]
-    single = envs.CrocodileEnv(CRAWL)
-    single.reset(seed=0)
-    with pytest.warns(OldName, match="action_rate"):
-        assert single.step(np.full(single.action_space.shape, 0.5))[-1]["haste"] > 0.0

@@ -33,6 +33,10 @@ def test_every_ground_comes_back_to_the_last_bit(ground):
     assert ground_of(xr.Dataset({"stands_on": ((), ground_text(ground))})) == ground
 
 
+def test_records_keep_the_key_of_the_friction_scale():
+    assert '"grip": 0.5' in ground_text(Ground(friction_scale=0.5))
+
+
 def test_each_run_tells_its_own_ground_and_a_floating_one_none(robot, crawl_gait, tmp_path):
     grounds = (Ground(uphill=0.1, friction_scale=0.7), Ground(relief=Step(at=0.66, height=0.02)))
     runs = [Run(robot=robot, gait=crawl_gait, ground=ground) for ground in grounds]

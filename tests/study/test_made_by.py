@@ -9,8 +9,8 @@ from suchus.record.provenance import deciding_source
 from suchus.study.makers import MADE_BY, deciding
 from suchus.study.sweep import FLOW
 
-HARMLESS = ("suchus.errors", "suchus.threads", "suchus.renamed", "suchus.kernel_cache")
-"""Words, how many threads, old names of fields, and where kernels are kept, which change no byte."""
+HARMLESS = ("suchus.errors", "suchus.threads", "suchus.kernel_cache")
+"""Words, how many threads, and where kernels are kept, which change no byte."""
 
 
 @pytest.fixture(scope="module")

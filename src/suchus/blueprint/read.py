@@ -13,7 +13,6 @@ from pydantic import TypeAdapter, ValidationError
 from suchus.blueprint.mistakes import MistakenFile, Place, explain
 from suchus.errors import UnreadableFile
 from suchus.record import read_toml
-from suchus.renamed import modern
 
 T = TypeVar("T")
 
@@ -42,7 +41,7 @@ def read(path: Path, kind: Any, shelf: Mapping[str, Any]) -> Any:
         UnreadableFile: the file is missing or no TOML.
         MistakenFile: values are missing, unknown, of the wrong kind or impossible; it names all of them.
     """
-    data = modern(read_toml(path), kind)
+    data = read_toml(path)
     base = data.pop("base", None)
     known = base is None or (isinstance(base, str) and base in shelf)
     kinds = get_args(kind) or (kind,)

@@ -11,7 +11,6 @@ from suchus.capture.table import write_table
 from suchus.capture.tracks import Tracks, UnusableTracks
 from suchus.capture.walk import Seen, Walk, observe
 from suchus.capture.wave import standing_index
-from suchus.renamed import old_exports
 
 __all__ = [
     "NEEDED",
@@ -40,5 +39,3 @@ __all__ = [
     "write_gait",
     "write_table",
 ]
-
-__getattr__ = old_exports(__name__, Animal="SyntheticAnimal", Reading="ReadingOptions", told="summary")

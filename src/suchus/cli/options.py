@@ -23,7 +23,6 @@ from suchus.experiment import Experiment
 from suchus.gaits import GAITS
 from suchus.motion import AngleTable, AnyGait, Gait, Pattern
 from suchus.record import there
-from suchus.renamed import new_name
 from suchus.robots import ROBOTS
 
 _WIDE = 110  # characters of a line of the description in the help
@@ -75,7 +74,6 @@ def choose(experiment: Experiment, name: str, words: Sequence[str]) -> RunReques
     if robot is not None:
         start = start.on(robot)
     prog = f"suchus run {name}"
-    words = [_today(word, type(start)) for word in words]
     options = make_dataclass(
         "Options",
         [
@@ -88,15 +86,6 @@ def choose(experiment: Experiment, name: str, words: Sequence[str]) -> RunReques
     names = ["quick", "out", "csv", *(f.name for f in fields(start))]  # type: ignore[arg-type]
     chosen = parse(options, prog, words, f"{start.title}\n\nAnswers: {start.shows}", names)
     return RunRequest(experiment=chosen.experiment, quick=quick, out=chosen.out, csv=chosen.csv)
-
-
-def _today(word: str, kind: type) -> str:
-    """Return an option by the name that it has today; of an old one it warns."""
-    option, equals, value = word.partition("=")
-    if not option.startswith("--"):
-        return word
-    new = new_name(kind, option.removeprefix("--").replace("-", "_"))
-    return f"--{new.replace('_', '-')}{equals}{value}" if new in {f.name for f in fields(kind)} else word
 
 
 def _robot(words: Sequence[str]) -> AnyRobot | None:

@@ -22,7 +22,6 @@ from suchus.control.tail import TailRule
 from suchus.control.trim import PitchHold
 from suchus.control.turning import CURVES, TurningCurve, turn
 from suchus.control.walking import Change, Walking
-from suchus.renamed import old_exports
 
 __all__ = [
     "BALANCE",
@@ -63,5 +62,3 @@ __all__ = [
     "oscillate",
     "turn",
 ]
-
-__getattr__ = old_exports(__name__, Oscillation="OscillatorStates")

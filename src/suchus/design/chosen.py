@@ -7,7 +7,6 @@ from typing import Any, TypeVar
 
 from suchus.design.meaning import meanings, unit
 from suchus.errors import UnknownName
-from suchus.renamed import names_of, new_name
 
 T = TypeVar("T")
 _STEP = re.compile(r"(\w+)|\[(\d+)\]")
@@ -38,7 +37,7 @@ def value_at(design: Any, path: str) -> Any:
         UnknownName: there is no such field.
     """
     for step in _steps(path):
-        design = _step(design, _today(design, step))
+        design = _step(design, step)
     return design
 
 
@@ -56,7 +55,6 @@ def with_values(design: T, values: Mapping[str, Any]) -> T:
     branches: dict[str | int, dict[str, Any]] = {}
     for path, value in values.items():
         first, *rest = _steps(path)
-        first = _today(design, first)
         _step(design, first)
         branches.setdefault(first, {})["".join(f"[{s}]" if isinstance(s, int) else f".{s}" for s in rest)] = value
     changed = {
@@ -81,7 +79,7 @@ def unit_at(design: Any, path: str) -> str:
     above, _, name = path.rpartition(".")
     owner = type(value_at(design, above))
     name = name.partition("[")[0]
-    return unit(meanings(owner).get(names_of(owner).get(name, name), "")) or "-"
+    return unit(meanings(owner).get(name, "")) or "-"
 
 
 def _steps(path: str) -> list[str | int]:
@@ -89,11 +87,6 @@ def _steps(path: str) -> list[str | int]:
     if not steps:
         raise UnknownName("field", path, ())
     return steps
-
-
-def _today(design: Any, step: str | int) -> str | int:
-    """Return a step by the name that its field has today."""
-    return step if isinstance(step, int) else new_name(type(design), step)
 
 
 def _step(design: Any, step: str | int) -> Any:

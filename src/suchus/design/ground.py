@@ -7,11 +7,9 @@ from jaxtyping import Float
 
 from suchus.design.checks import Checks
 from suchus.design.relief import Relief
-from suchus.renamed import old_names
 from suchus.rotation import about, multiply
 
 
-@old_names(grip="friction_scale")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Ground:
     """Ground: even or with relief, possibly tilted."""

@@ -9,7 +9,6 @@ from suchus.envs.shelf import TASKS
 from suchus.envs.single import CrocodileEnv
 from suchus.envs.task import Breaks, Pushes, Rewards, Task
 from suchus.envs.vector import CrocodileVectorEnv
-from suchus.renamed import old_exports
 
 register()
 
@@ -43,5 +42,3 @@ __all__ = [
     "remaining",
     "senses",
 ]
-
-__getattr__ = old_exports(__name__, Shoves="Pushes")

@@ -1,10 +1,7 @@
 """Observations: what the sensors of the robot measure, each divided by its scale, as one row of -1 to 1."""
 
-import warnings
-from collections.abc import Mapping
 from functools import lru_cache
 from math import sqrt
-from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -14,8 +11,7 @@ from scipy.spatial.transform import Rotation
 from suchus import rotation
 from suchus.control import Sensed
 from suchus.design import GRAVITY, AnyRobot, layout, servo_ranges
-from suchus.errors import OldName, UnknownName
-from suchus.renamed import sentence
+from suchus.errors import UnknownName
 from suchus.robots import ROBOTS, beside_article
 
 _CAIMAN = ROBOTS["caiman"]
@@ -31,8 +27,6 @@ ACCELERATION = 4 * GRAVITY
 
 FAR = 4.0
 """Scale of the distance to a goal, over the robot's length [-]."""
-OLD_SENSES: Mapping[str, str] = MappingProxyType({"told": "last_action"})
-"""Today's names of readings by their old ones, which work for one more release."""
 
 
 class Sense(NamedTuple):
@@ -115,9 +109,6 @@ def part(
     known = senses(ROBOTS.resolve(robot))
     if observations.shape[-1] > known[-1].columns.stop:
         known = senses(ROBOTS.resolve(robot), goal=True)
-    if name in OLD_SENSES:
-        warnings.warn(sentence(f"The reading {name!r}", repr(OLD_SENSES[name])), OldName, stacklevel=2)
-        name = OLD_SENSES[name]
     columns = {sense.name: sense.columns for sense in known}
     if name not in columns:
         raise UnknownName("reading", name, columns)

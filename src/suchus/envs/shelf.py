@@ -9,11 +9,10 @@ from typing import Any, get_args
 from suchus.design import AnyRobot
 from suchus.envs.goals import AnyGoal, Goal, Landing
 from suchus.envs.task import Breaks, Pushes, Rewards, Task
-from suchus.errors import InvalidDesign, OldName, UnknownName
+from suchus.errors import InvalidDesign, UnknownName
 from suchus.gaits import GAITS
 from suchus.land import Ground, Lake
 from suchus.motion import AnyGait, Swim
-from suchus.renamed import new_name
 from suchus.robots import ROBOTS
 
 STANDING_SPAN = 0.3
@@ -77,7 +76,6 @@ def chosen(task: Task | str, changes: Mapping[str, Any]) -> Task:
         if task not in TASKS:
             raise UnknownName("task", task, TASKS)
         task = TASKS[task]
-    changes = {new_name(Task, name, OldName): value for name, value in changes.items()}
     names = [f.name for f in fields(Task)]
     for name in changes:
         if name not in names:

@@ -11,21 +11,8 @@ from suchus.envs.picture import Surroundings, picture
 from suchus.envs.reward import Terms
 from suchus.envs.shelf import chosen
 from suchus.envs.spaces import RENDER_MODES, action_space, check_render_mode, checked, observation_space
-from suchus.envs.task import Rewards, Task
-from suchus.errors import OldName
+from suchus.envs.task import Task
 from suchus.land.waters import up
-from suchus.renamed import new_name
-
-
-class StepInfo(dict[str, Any]):
-    """Entries of ``info``, which can also be read by the old names of rewards for one more release."""
-
-    def __missing__(self, key: str) -> Any:
-        """Return an entry by its old name, with a warning."""
-        name = new_name(Rewards, key, OldName)
-        if name == key:
-            raise KeyError(key)
-        return self[name]
 
 
 class CrocodileEnv(gymnasium.Env):  # type: ignore[misc]  # gymnasium is not read by mypy
@@ -83,7 +70,7 @@ class CrocodileEnv(gymnasium.Env):  # type: ignore[misc]  # gymnasium is not rea
             OutsideLimits: an action of another shape, or not finite.
         """
         terms = self.pack.act(checked(action, self.action_space.shape)[None], np.ones(1, dtype=bool))
-        info = StepInfo((name, values.tolist()[0]) for name, values in step_info(self.pack, terms).items())
+        info = {name: values.tolist()[0] for name, values in step_info(self.pack, terms).items()}
         return self.pack.feel()[0], float(terms.reward(self.task.rewards)[0]), bool(terms.over[0]), False, info
 
     def render(self) -> np.ndarray | None:

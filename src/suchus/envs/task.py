@@ -18,7 +18,6 @@ from suchus.faults import FAULTS
 from suchus.gaits import GAITS, own_gait, suits
 from suchus.land import Ground, Lake
 from suchus.motion import AnyGait, Swim
-from suchus.renamed import old_names
 from suchus.robots import ROBOTS
 
 Start = Literal["lying", "upright", "swimming"]
@@ -32,7 +31,6 @@ NEEDED: Mapping[str, tuple[str, ...]] = MappingProxyType(
 """What a beginning needs of a robot: names of ``design.NEEDS``."""
 
 
-@old_names(astray="lateral_drift", haste="action_rate")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Rewards:
     """Weights of the terms of the reward; each term is a quantity of one step in SI units, see ``envs.reward``.
@@ -165,7 +163,6 @@ def _check_when(check: Checks, owner: str, earliest: float, latest: float) -> No
     )
 
 
-@old_names(shoves="pushes")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Task:
     """What is to be learned.

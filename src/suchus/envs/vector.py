@@ -12,7 +12,7 @@ from gymnasium.vector.utils import batch_space
 from suchus.design.checks import require
 from suchus.envs.pack import Pack
 from suchus.envs.shelf import chosen
-from suchus.envs.single import StepInfo, metadata, portrait, step_info
+from suchus.envs.single import metadata, portrait, step_info
 from suchus.envs.spaces import action_space, check_render_mode, checked, observation_space
 from suchus.envs.task import Task
 from suchus.errors import InvalidDesign
@@ -101,7 +101,7 @@ class CrocodileVectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[misc]  # g
         truncated = ~again & late
         said = step_info(self.pack, terms)
         self._over = terminated | truncated
-        infos = StepInfo()
+        infos: dict[str, Any] = {}
         begun = again
         if self.autoreset_mode is AutoresetMode.SAME_STEP and self._over.any():
             begun = self._over.copy()

@@ -30,7 +30,6 @@ from suchus.metrics import (
 )
 from suchus.motion import START, AnyGait, FootPath, Gait, Pattern, longest_stroke, longest_strokes, with_strokes
 from suchus.paper import SNAPSHOT_TIMES
-from suchus.renamed import old_names
 from suchus.replay import replay
 from suchus.verdict import Reading, compared
 
@@ -59,7 +58,6 @@ _PARTS = (
 """How the parts are called, their change, and what is said further of one more."""
 
 
-@old_names(grip_spread="friction_spread")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CrawlStability(TwoGroups):
     """The height of the centre of mass over time, for every combination of spine and tail.

@@ -24,7 +24,6 @@ from suchus.metrics import cost_of_transport, duty_factor, foot_clearance, headi
 from suchus.metrics import displacement as displacement_of
 from suchus.motion import START, AnyGait, Gait, strides, with_axis_lag, with_bends, with_strokes
 from suchus.paper import CLAIMS, CYCLES
-from suchus.renamed import old_names
 from suchus.replay import replay
 from suchus.verdict import Reading
 
@@ -32,7 +31,6 @@ _GROUPS = CONDITIONS[:2]
 _LEAST = 0.00198  # [body length]; below this displacement a ratio means nothing
 
 
-@old_names(grip_spread="friction_spread")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Displacement(TwoGroups):
     """The article's two groups side by side, what each part of spine and tail adds, and the map of what decides.

@@ -43,7 +43,6 @@ from suchus.metrics import (
 )
 from suchus.motion import START, AngleTable, AnyGait, Gait, straightened, with_bends, with_strokes
 from suchus.paper import CYCLES
-from suchus.renamed import old_names
 from suchus.replay import replay
 from suchus.robots import ROBOTS
 
@@ -51,7 +50,6 @@ _TRUNK = ("trunk_bend", "spine_phase", "tail_bend", "tail_phase", "tail_pitch") 
 _OF_A_LIMB = 2  # hinges of a limb, from the hip on, whose loss is repeated and steered; the article's yaw and pitch
 
 
-@old_names(grip_spread="friction_spread", repeat_grip="repeat_friction_spread")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class JointFaults(Experiment):
     """Front and hind; yaw, pitch and knee; limp and locked; one leg and both; with spine and tail and with limbs only.

@@ -19,7 +19,6 @@ from suchus.gaits import GAITS
 from suchus.land import Ground, Run, simulate
 from suchus.metrics import displacement, heading_change
 from suchus.motion import START, AngleTable
-from suchus.renamed import old_names
 from suchus.replay import replay
 from suchus.robots import ROBOTS
 from suchus.verdict import Reading, compared
@@ -27,7 +26,6 @@ from suchus.verdict import Reading, compared
 _WALK, _STRAIGHT = "the animal's angles", "axis held straight"
 
 
-@old_names(grips="friction_scales")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Salamander(Experiment):
     """The mean walking cycle of Pleurodeles waltl, played on the robot built after it; nothing is fitted.

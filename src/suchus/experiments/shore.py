@@ -20,7 +20,6 @@ from suchus.land import Ground, Lake, Run, simulate
 from suchus.land.afloat import check_floats
 from suchus.metrics.energy import METRES
 from suchus.motion import LIMBS_BACK, Gait, Swim
-from suchus.renamed import old_names
 from suchus.replay import replay
 from suchus.robots import ROBOTS
 from suchus.verdict import Reading, compared, listed
@@ -40,7 +39,6 @@ _SAMPLE, _KEPT = 4, 5
 """Control periods between two samples of a run, and samples of a run between two samples of the kept paths [-]."""
 
 
-@old_names(grips="friction_scales")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Shore(Experiment):
     """The floating robot swims to a shore, feels ground, changes to its gait and walks out; and back into the water.

@@ -10,10 +10,8 @@ from suchus.flow.mass import Mass, of_midline
 from suchus.flow.paint import paint, ring, sections
 from suchus.flow.pose import Pose
 from suchus.flow.shape import Field, Markers, Shape, positive
-from suchus.renamed import old_names
 
 
-@old_names(blunted="thickened")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Spine:
     """A midline at one time, in the body's own frame; arrays of shape (station,), from one end to the other.

@@ -9,10 +9,8 @@ import numpy as np
 from suchus.errors import InvalidDesign
 from suchus.flow.compiled import PAD
 from suchus.flow.grid import Grid, check_kinds
-from suchus.renamed import old_names
 
 
-@old_names(endless="unbounded")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Stream:
     """Open water that moves with the far stream; where the stream leaves, the wake is carried out."""

@@ -12,7 +12,6 @@ from suchus.hardware.limits import (
     share_at_limit,
 )
 from suchus.hardware.servo_map import ServoLine, ServoMap, read_map, straight, write_map
-from suchus.renamed import old_exports
 
 __all__ = [
     "Commands",
@@ -32,5 +31,3 @@ __all__ = [
     "trajectory_text",
     "write_map",
 ]
-
-__getattr__ = old_exports(__name__, Load="ServoLoad")

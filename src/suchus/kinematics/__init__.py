@@ -3,7 +3,6 @@
 from suchus.kinematics import body, dh, leg, limb, mass, printed, spine, tail, tree, trim, wave
 from suchus.kinematics.body import Landmarks, landmarks
 from suchus.kinematics.wave import TravellingWave
-from suchus.renamed import old_exports
 
 __all__ = [
     "Landmarks",
@@ -21,5 +20,3 @@ __all__ = [
     "trim",
     "wave",
 ]
-
-__getattr__ = old_exports(__name__, Wave="TravellingWave")

@@ -13,7 +13,6 @@ from suchus.land.push import Push
 from suchus.land.push_search import smallest_pushes
 from suchus.land.run import VACUUM, WATER, Afloat, Run
 from suchus.land.simulation import simulate
-from suchus.renamed import old_exports
 
 __all__ = [
     "ARENAS",
@@ -47,7 +46,3 @@ __all__ = [
     "simulate",
     "smallest_pushes",
 ]
-
-__getattr__ = old_exports(
-    __name__, LEGS_LOST="LEGS_FAILED", LOST="FAILED_JOINTS", lost="joint_failure", lost_joints="failing_joints"
-)

@@ -42,7 +42,6 @@ from suchus.metrics.stability import (
 )
 from suchus.metrics.tail import tail_joint_spread, tail_joint_spread_max
 from suchus.metrics.window import between, whole
-from suchus.renamed import old_exports
 
 __all__ = [
     "bend_swings",
@@ -98,10 +97,3 @@ __all__ = [
     "whole",
     "work",
 ]
-
-__getattr__ = old_exports(
-    __name__,
-    Border="decisive.DecisionBoundary",
-    border="decisive.border",
-    rank_correlation="decisive.rank_correlation",
-)

@@ -34,7 +34,6 @@ from suchus.motion.swim import LIMBS_BACK, Bends, Swim, bends, check_swim, limbs
 from suchus.motion.tabled import as_table
 from suchus.motion.targets import foot_targets, longest_stroke, servo_targets, within_reach
 from suchus.motion.timing import START
-from suchus.renamed import old_exports
 
 __all__ = [
     "LIMBS_BACK",
@@ -95,5 +94,3 @@ __all__ = [
     "with_strokes",
     "within_reach",
 ]
-
-__getattr__ = old_exports(__name__, with_late_axis="with_axis_lag")

@@ -10,12 +10,10 @@ from suchus.design.checks import Checks
 from suchus.errors import OutsideLimits
 from suchus.kinematics import tail as tail_kinematics
 from suchus.motion.targets import servo_range
-from suchus.renamed import old_names
 
 _LEGS_BACK = -np.pi / 2
 
 
-@old_names(late="lag", tail_late="tail_lag")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Roll:
     """A bend that goes around the body once in a cycle, legs folded back.

@@ -10,7 +10,6 @@ from suchus.design import AnyRobot, crocodile, layout
 from suchus.design.checks import Checks, require
 from suchus.errors import InvalidDesign, OutsideLimits
 from suchus.kinematics import tail as tail_kinematics
-from suchus.renamed import old_names
 
 LIMBS_BACK = (-np.pi / 2, -0.15)
 """Yaw, forward positive, and pitch, down positive, of limbs that lie back along the body as it swims [rad]."""
@@ -31,7 +30,6 @@ def trunk_yaws(robot: AnyRobot) -> tuple[str, ...]:
     return tuple(place.servos[i] for i in place.trunk_yaw)
 
 
-@old_names(yaw_late="yaw_lag", tail_late="tail_lag")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Swim:
     """A periodic swimming motion: every lateral angle is ``amplitude cos(2 pi (f t - lag))``."""

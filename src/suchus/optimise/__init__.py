@@ -9,7 +9,6 @@ from suchus.optimise.results import write_results
 from suchus.optimise.search import NoOptimiser
 from suchus.optimise.search_result import SearchResult
 from suchus.optimise.spec import Aim, Limit, Optimisation
-from suchus.renamed import old_exports
 
 __all__ = [
     "AIMS",
@@ -26,5 +25,3 @@ __all__ = [
     "read_optimisation",
     "write_results",
 ]
-
-__getattr__ = old_exports(__name__, Found="SearchResult", Told="SearchProgress")

@@ -10,7 +10,6 @@ from suchus.design.checks import Checks, InvalidFields
 from suchus.errors import InvalidDesign, UnknownName
 from suchus.land import Run
 from suchus.optimise.aims import AIMS, LIMITS
-from suchus.renamed import old_names
 from suchus.study import Arm, Vary
 
 WHOLE = Arm(name="best")
@@ -49,7 +48,6 @@ class Limit:
             check.number("value", -1e6, 1e6, LIMITS[self.name].unit)
 
 
-@old_names(grips="friction_scales")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Search:
     """What a search is besides where it starts; a file says the same."""

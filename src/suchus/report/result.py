@@ -11,7 +11,6 @@ from markupsafe import Markup
 from suchus.errors import IncompatibleRecord, UnreadableFile
 from suchus.figures import WIDTH
 from suchus.record import read_json, read_text
-from suchus.renamed import old_names
 from suchus.report.described import check_described
 from suchus.report.embedding import embedded
 from suchus.report.saving import OUTCOME, RECORD
@@ -44,7 +43,6 @@ class Moving:
     """Caption: what the picture or replay shows."""
 
 
-@old_names(told="outcome")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Result:
     """The contents of a folder of results."""

@@ -4,7 +4,6 @@ from typing import Any
 
 from suchus.catalog import Catalog
 from suchus.design import AnyRobot
-from suchus.renamed import old_exports
 from suchus.robots._size import RelativeSize, beside
 
 ROBOTS: Catalog[Any] = Catalog("robot", "suchus.robots", "suchus.design:AnyRobot")
@@ -17,5 +16,3 @@ def beside_article(robot: AnyRobot) -> RelativeSize:
 
 
 __all__ = ["ROBOTS", "RelativeSize", "beside_article"]
-
-__getattr__ = old_exports(__name__, Beside="RelativeSize")

@@ -3,7 +3,6 @@
 The page of the claims, ``study.claims_page``, is asked for by its own name: batches need no figures.
 """
 
-from suchus.renamed import old_exports
 from suchus.study.arm import Arm
 from suchus.study.chunk import run_chunk
 from suchus.study.claims import Claims, answer_finished, conduct_claims
@@ -36,5 +35,3 @@ __all__ = [
     "read_study",
     "run_chunk",
 ]
-
-__getattr__ = old_exports(__name__, Told="StudyProgress", write_claims="claims_page.write_claims")

@@ -1,7 +1,6 @@
 """The robot in water: its outline, waves fitted to its joints, and the models a designer calculates with."""
 
 from suchus.design.water import Water
-from suchus.renamed import old_exports
 from suchus.water.diary import portion
 from suchus.water.fit import Fit, fit, head_base
 from suchus.water.free import check_free_swim, free_swim
@@ -84,5 +83,3 @@ __all__ = [
     "wave_form",
     "wave_speed",
 ]
-
-__getattr__ = old_exports(__name__, Curve="MidlineCurve", Silhouette="BodySilhouette")

@@ -14,7 +14,6 @@ from suchus.model.importing.draft_limbs import draft_girdle, lowest
 from suchus.model.importing.making import Making, making_of
 from suchus.model.importing.options import Words
 from suchus.model.importing.plan import BodyPlan, without
-from suchus.renamed import old_names
 
 _LEG = 0.03  # of the robot's length that a leg reaches below the axis, at least
 _CONTACT = {
@@ -24,7 +23,6 @@ _CONTACT = {
 }
 
 
-@old_names(told="remarks")
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Draft:
     """A robot read from a file of another tool."""
