@@ -12,11 +12,11 @@ from flow_cases import still_setup
 from hypothesis import given
 from hypothesis import strategies as st
 
+from suchus import fingerprint as prints
 from suchus import flow
 from suchus.errors import UnreadableFile
-from suchus.flow import fingerprint as prints
+from suchus.fingerprint import fingerprint
 from suchus.flow.checkpoint import MARK, arrays
-from suchus.flow.fingerprint import fingerprint
 
 
 def heaving(amplitude, scale=1.0):

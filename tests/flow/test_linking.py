@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numba
 import pytest
+from numba.core.codegen import JITCodeLibrary, JITCPUCodegen
 from numba.core.registry import cpu_target
 
 from suchus.flow import compiled, linking
@@ -81,15 +82,19 @@ def test_the_same_bytes_of_a_whole_flow(tmp_path):
 
 def test_numba_has_the_names_that_linking_needs():
     assert linking.missing() == []
-    assert cpu_target.target_context.codegen()._library_class is linking.Library
+    assert linking.options() == {"pipeline_class": linking.KernelCompiler}
 
 
 def test_a_name_that_is_gone_is_missed(monkeypatch):
     monkeypatch.setattr(linking, "_NEEDED", (*linking._NEEDED, "_no_such_name"))
     assert linking.missing() == ["_no_such_name"]
+    assert linking.options() == {}  # as numba does it
 
 
-def test_functions_of_others_are_compiled_as_before():
+def test_numba_stays_as_it_is():
+    assert type(cpu_target.target_context.codegen()) is JITCPUCodegen
+    assert JITCPUCodegen._library_class is JITCodeLibrary
+
     @numba.njit
     def inner(x):
         return x + 1
@@ -100,6 +105,16 @@ def test_functions_of_others_are_compiled_as_before():
 
     assert outer(3) == 8
     assert inner(3) == 4
+    assert type(outer.overloads[outer.signatures[0]].library) is JITCodeLibrary
+
+
+def test_a_function_of_this_room_is_put_together_here():
+    @numba.njit(**linking.options())
+    def twice(x):
+        return 2 * x
+
+    assert twice(3) == 6
+    assert type(twice.overloads[twice.signatures[0]].library) is linking.Library
 
 
 def test_a_part_called_from_python_is_plain_python():

@@ -16,7 +16,7 @@ import xarray as xr
 from suchus.cli import main
 from suchus.errors import IncompatibleRecord, InvalidDesign
 from suchus.experiments.swim_3d import _swum_here, swum_in_space
-from suchus.flow.fingerprint import fingerprint
+from suchus.fingerprint import fingerprint
 from suchus.land import Run
 from suchus.optimise import Aim, Optimisation, optimise
 from suchus.optimise.elsewhere import evaluate_on

@@ -18,7 +18,7 @@ from suchus.experiments import _swim_3d_findings as findings
 from suchus.experiments._taken import Midline, midlines
 from suchus.figures.swim_3d import draw_joints, draw_speeds, draw_tails, draw_wake
 from suchus.figures.vortices import draw_vortices, film_vortices
-from suchus.flow.fingerprint import fingerprint
+from suchus.fingerprint import fingerprint
 from suchus.kinematics.wave import READINGS
 from suchus.motion import Swim
 from suchus.replay import wake_replay

@@ -10,12 +10,12 @@ from matplotlib.colors import LinearSegmentedColormap, Normalize, to_hex
 from matplotlib.figure import Figure
 from scipy.ndimage import map_coordinates
 
-from suchus import flow
 from suchus.errors import IncompatibleRecord
 from suchus.figures.fields import VORTICITY
 from suchus.figures.film import film
 from suchus.figures.solids import Camera, picture
 from suchus.figures.style import captioned, panels, styled
+from suchus.isosurface import IsoSurface, isosurface
 from suchus.skin.mesh import Mesh, joined, loft
 
 SKIN = (0.42, 0.44, 0.36)
@@ -66,7 +66,7 @@ def _numbers(values: xr.DataArray) -> bool:
 
 def surface(
     record: xr.Dataset, frame: int, *, coarse: int = 1, level: float | None = None
-) -> tuple[flow.IsoSurface, np.ndarray]:
+) -> tuple[IsoSurface, np.ndarray]:
     """Return the upper half of the surfaces around the vortices, and the vorticity about z at their points [1/s].
 
     Args:
@@ -80,7 +80,7 @@ def surface(
     start = [float(record[axis][0]) + 0.5 * (h - h / coarse) for axis in "xyz"]
     q, spin = (np.concatenate([part[:1], part]) for part in (q, spin))  # the image below the plane of symmetry
     at = float((record.vortex_level if level is None else level) / record.vortex_unit)
-    found = flow.isosurface(q, at, (start[0], start[1], start[2] - h), h)
+    found = isosurface(q, at, (start[0], start[1], start[2] - h), h)
     turning = map_coordinates(spin, found.places.T, order=1, mode="nearest") * float(record.spin_unit)
     return found, turning
 

@@ -7,7 +7,6 @@ from suchus.flow.eel import eel, eel_in_space
 from suchus.flow.force import Load, Surface
 from suchus.flow.free import FreeBody
 from suchus.flow.grid import Grid
-from suchus.flow.isosurface import IsoSurface, isosurface
 from suchus.flow.limbed import Capsule, Limbed
 from suchus.flow.mass import Mass, SpaceMass
 from suchus.flow.midline import Midline, Spine, foil
@@ -25,6 +24,7 @@ from suchus.flow.simulation import Simulation
 from suchus.flow.solid import Ellipsoid, Skin, SpaceField, SpaceShape, Sphere
 from suchus.flow.trunk import Trunk
 from suchus.flow.vortices import lambda2, second_invariant, velocity_gradient
+from suchus.isosurface import IsoSurface, isosurface
 
 __all__ = [
     "ALONG_THE_SKIN",

@@ -12,7 +12,7 @@ from zipfile import BadZipFile
 import numpy as np
 
 from suchus.errors import UnreadableFile, Unwritable
-from suchus.flow.fingerprint import fingerprint
+from suchus.fingerprint import fingerprint
 from suchus.flow.setup import Setup
 
 VERSION = 9

@@ -47,9 +47,7 @@ Window = tuple[int, ...]
 # No "nnan" and no "ninf": a NaN must stay visible.
 _FAST = {"contract", "reassoc", "nsz", "arcp"}
 
-_OPTIONS = {"fastmath": _FAST, "error_model": "numpy", "nogil": True, "no_cfunc_wrapper": True}
-
-linking.install()
+_OPTIONS = {"fastmath": _FAST, "error_model": "numpy", "nogil": True, "no_cfunc_wrapper": True, **linking.options()}
 
 FOLDER = cache.folder()
 """Where the machine code is kept between runs; None where no place can be written to."""

@@ -5,16 +5,21 @@ leaves the copy a *weak* symbol. A process that has just compiled both runs the 
 kernel from the cache runs the copy. With sums that may be reordered the two differ in their last bits, and a first run
 differs from the second. Here the copies belong to their kernel alone, so that a kernel's bytes are those of its object
 file, however it came to be. And since what a kernel calls is never run by itself, it is neither optimised nor emitted
-by itself, which is half of the time that compiling takes.
+by itself, which saves a quarter of the time that compiling takes.
 
-numba has no public door for this: ``Library`` overrides names that may change with any release. ``missing`` says which
-are gone; then kernels are compiled as numba does it, and ``tests/flow/test_linking.py`` fails.
+numba itself stays as it is: ``KernelCompiler`` is handed to ``numba.njit`` as the ``pipeline_class`` of this room's
+functions, and compiles them with a ``Codegen`` of its own. What ``Library`` overrides is not public and may change with
+any release. ``missing`` says which names are gone; then kernels are compiled as numba does it, and
+``tests/flow/test_linking.py`` fails.
 """
 
-import ctypes
+from functools import cache
+from typing import Any
 
 from llvmlite import binding
-from numba.core.codegen import JITCodeLibrary
+from numba.core.base import BaseContext
+from numba.core.codegen import JITCodeLibrary, JITCPUCodegen
+from numba.core.compiler import Compiler
 from numba.core.registry import cpu_target
 
 OURS = "_ZN6suchus4flow"
@@ -22,9 +27,6 @@ OURS = "_ZN6suchus4flow"
 
 LOOP = "__numba_parfor_gufunc"
 """What the names of the loops that run on threads contain."""
-
-_ENVIRONMENT = "_ZN08NumbaEnv"
-_environments: list[ctypes.c_void_p] = []
 
 _NEEDED = (
     "_optimize_final_module", "_finalize_final_module", "_finalize_dynamic_globals", "_verify_declare_only_symbols",
@@ -54,11 +56,6 @@ class Library(JITCodeLibrary):  # type: ignore[misc]
         if self._is_part():
             self._finalize_dynamic_globals()
             self._verify_declare_only_symbols()
-            engine = self._codegen._engine
-            for variable in self._final_module.global_variables:
-                if variable.name.startswith(_ENVIRONMENT) and not engine.is_symbol_defined(variable.name):
-                    _environments.append(ctypes.c_void_p())
-                    engine.add_global_mapping(variable, ctypes.addressof(_environments[-1]))
             self._finalized = True
             return
         if self._is_ours():
@@ -73,15 +70,37 @@ class Library(JITCodeLibrary):  # type: ignore[misc]
         super()._finalize_final_module()
 
 
+class Codegen(JITCPUCodegen):  # type: ignore[misc]
+    """Makes the libraries of this room's functions."""
+
+    _library_class = Library
+
+    def set_env(self, env_name: str, env: Any) -> None:
+        """Set the environment of a function; that of a part, which is nowhere by itself, is none of its own."""
+        if self._engine.is_symbol_defined(env_name):
+            super().set_env(env_name, env)
+
+
+class KernelCompiler(Compiler):  # type: ignore[misc]
+    """Numba's compiler, which puts the code of a function together as ``Library`` does."""
+
+    def __init__(self, typingctx: Any, targetctx: BaseContext, *rest: Any) -> None:
+        super().__init__(typingctx, _linked_here(targetctx), *rest)
+
+
+@cache
+def _linked_here(context: BaseContext) -> BaseContext:
+    """Return a target that is as another one, but for the ``Codegen``."""
+    return context.subtarget(_internal_codegen=Codegen("suchus.flow"))
+
+
 def missing() -> list[str]:
-    """Return the names that ``Library`` needs of numba and that are not there."""
-    codegen = cpu_target.target_context.codegen()
-    return [name for name in _NEEDED if not hasattr(JITCodeLibrary, name)] + (
-        [] if issubclass(Library, getattr(codegen, "_library_class", type(None))) else ["_library_class"]
-    )
+    """Return the names that ``Library`` and ``KernelCompiler`` need of numba and that are not there."""
+    lacking = [name for name in _NEEDED if not hasattr(JITCodeLibrary, name)]
+    lacking += [] if hasattr(JITCPUCodegen, "_library_class") else ["_library_class"]
+    return lacking + ([] if hasattr(cpu_target.target_context, "_internal_codegen") else ["_internal_codegen"])
 
 
-def install() -> None:
-    """Compile this room's kernels so from now on; other functions are compiled as before."""
-    if not missing():
-        cpu_target.target_context.codegen()._library_class = Library
+def options() -> dict[str, Any]:
+    """Return what ``numba.njit`` takes to compile a function so; nothing where numba lacks what that needs."""
+    return {} if missing() else {"pipeline_class": KernelCompiler}

@@ -12,7 +12,7 @@ import xarray as xr
 from suchus import workers
 from suchus.design.checks import Checks
 from suchus.errors import SuchusError, plain_warnings
-from suchus.flow.fingerprint import fingerprint
+from suchus.fingerprint import fingerprint
 from suchus.study.cluster import here, spread
 from suchus.study.makers import deciding
 from suchus.study.store import Store

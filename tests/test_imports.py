@@ -1,0 +1,39 @@
+"""What walks loads no flow solver: what an import brings along, each in a process of its own."""
+
+import subprocess
+import sys
+
+import pytest
+
+RESOLVED = {"swimming", "swim_3d", "swim_sweep", "swim_free", "shore"}
+"""Experiments that resolve the water, measure against flows that were, or swim as a wave is fitted to the joints."""
+
+LOADED = """
+import importlib, sys
+for name in sys.argv[1:]:
+    importlib.import_module(name)
+print([name for name in sys.modules if name.split(".")[:2] == ["suchus", "flow"]])
+"""
+
+
+def flow_modules_after(*names):
+    """Return what is printed of the flow solver's modules after modules were imported in a new process."""
+    done = subprocess.run([sys.executable, "-c", LOADED, *names], capture_output=True, text=True, check=True)
+    return done.stdout.strip()
+
+
+@pytest.fixture(scope="module")
+def walking():
+    from suchus.experiments import EXPERIMENTS  # noqa: PLC0415  its names only
+
+    return [f"suchus.experiments.{name}" for name in EXPERIMENTS if name not in RESOLVED]
+
+
+def test_what_walks_loads_no_flow_solver(walking):
+    assert "suchus.experiments.displacement" in walking
+    doors = ["suchus.replay", "suchus.study", "suchus.optimise", "suchus.viewer"]
+    assert flow_modules_after(*walking, *doors) == "[]"
+
+
+def test_a_swim_by_cfd_would_be_noticed():
+    assert "suchus.flow" in flow_modules_after("suchus.experiments.swimming")
