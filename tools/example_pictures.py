@@ -18,9 +18,9 @@ import suchus
 from lighter import lighten
 from suchus import envs
 from suchus.design import with_values
+from suchus.experiments.bipedal_reach.standing_figure import draw_side_views
+from suchus.experiments.displacement.figure import draw_crawls
 from suchus.figures import COLOURS, dimension_drawing, panels, styled
-from suchus.figures.crawls import draw_crawls
-from suchus.figures.standing import draw_side_views
 from suchus.land import Run, simulate
 from suchus.metrics import displacement
 from suchus.optimise import READY

@@ -2,8 +2,10 @@
 
 from collections.abc import Iterator, Mapping
 from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 from pkgutil import iter_modules
+from types import ModuleType
 from typing import Any, Generic, TypeVar, get_args
 
 from suchus.errors import InvalidDesign, UnknownName
@@ -15,7 +17,8 @@ T = TypeVar("T")
 class Catalog(Mapping[str, T], Generic[T]):
     """A lazy mapping from module name to what the module declares.
 
-    Listing the names reads file names only; a module is imported when its name is asked for.
+    Listing the names reads file names only; a module is imported when its name is asked for. A folder declares its
+    thing in its module of that name, ``displacement/experiment.py``, or itself.
 
     Args:
         kind: the singular noun, also the name each module must declare (``robot``, ``gait``, ``experiment``).
@@ -41,16 +44,15 @@ class Catalog(Mapping[str, T], Generic[T]):
         return name in tuple(self)
 
     def __getitem__(self, name: str) -> T:
-        if name not in self:
-            raise UnknownName(self.kind, name, self)
-        module = import_module(f"{self._package}.{name}")
+        module = self._module(name, self.kind)
         thing: Any = getattr(module, self.kind, None)
         wanted = self._wanted()
         fits = isinstance(thing, type) and issubclass(thing, wanted) if self._classes else isinstance(thing, wanted)
         if not fits:
             found = "nothing" if thing is None else f"a {type(thing).__name__}"
             wanted_as = f"subclass of {_name(wanted)}" if self._classes else _name(wanted)
-            file = Path(str(module.__file__)).name
+            path = Path(str(module.__file__))
+            file = f"{name}/{path.name}" if path.parent.name == name else path.name
             raise InvalidDesign(
                 f"{self._package.replace('.', '/')}/{file} must declare `{self.kind}`, a {wanted_as}, "
                 f"but declares {found}; add it or move the file off the shelf."
@@ -72,9 +74,19 @@ class Catalog(Mapping[str, T], Generic[T]):
         return value
 
     def beside(self, name: str, attribute: str, default: Any) -> Any:
-        """Return what else a module declares, such as the reasons for its numbers, or ``default``."""
-        self[name]
-        return getattr(import_module(f"{self._package}.{name}"), attribute, default)
+        """Return what else a module declares, such as the reasons for its numbers, or ``default``.
+
+        In a folder it is looked for in the module of its name, RULES in ``rules``, and the others are not imported.
+        """
+        return getattr(self._module(name, attribute.lower()), attribute, default)
+
+    def _module(self, name: str, part: str) -> ModuleType:
+        """Return the module that declares a part of what carries a name: its file; in a folder that of the part."""
+        if name not in self:
+            raise UnknownName(self.kind, name, self)
+        module = import_module(f"{self._package}.{name}")
+        inside = f"{module.__name__}.{part}"
+        return import_module(inside) if hasattr(module, "__path__") and find_spec(inside) else module
 
     def _wanted(self) -> Any:
         path, _, cls = self._declares.partition(":")

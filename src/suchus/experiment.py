@@ -227,8 +227,8 @@ class Experiment(ABC):
 
     @classmethod
     def name(cls) -> str:
-        """Return the name on the shelf: the name of the module."""
-        return cls.__module__.rpartition(".")[2]
+        """Return the name on the shelf: of the module, or of the folder whose module ``experiment`` it is."""
+        return cls.__module__.removesuffix(".experiment").rpartition(".")[2]
 
 
 def _gaits(value: Any) -> tuple[AnyGait, ...]:

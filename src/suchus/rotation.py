@@ -128,3 +128,10 @@ def rotate(q: Quaternion, vector: Vector) -> Float[np.ndarray, "*d 3"]:
 
 def _parts(q: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     return q[..., 0], q[..., 1], q[..., 2], q[..., 3]
+
+
+def heel(orientation: np.ndarray) -> np.ndarray:
+    """Return the heel of a body on a level surface, right side down positive, up to 180 degrees [rad]."""
+    left = rotate(orientation, np.array([0.0, 1.0, 0.0]))[..., 2]
+    up = rotate(orientation, np.array([0.0, 0.0, 1.0]))[..., 2]
+    return np.asarray(np.arctan2(left, up))

@@ -48,10 +48,10 @@ _HELD = r"\b(?:held|endless) (?:body|swim|swimmer|eel|head|water)\b"
 _GRIP, _APART, _LOST = r"\bgrips?\b", r"\b(?:came|comes?) apart\b", r"\blost joints?\b|\bjoints? (?:is |are )?lost\b"
 MEANT = {
     "docs/glossary.md": tuple(OLD),
-    "src/suchus/experiments/joint_faults.py": (_GRIP,),
-    "src/suchus/experiments/sensitivity.py": (_APART,),
-    "src/suchus/experiments/shore.py": (_GRIP,),
-    "src/suchus/figures/shore.py": (_GRIP,),
+    "src/suchus/experiments/joint_faults/experiment.py": (_GRIP,),
+    "src/suchus/experiments/sensitivity/experiment.py": (_APART,),
+    "src/suchus/experiments/shore/experiment.py": (_GRIP,),
+    "src/suchus/experiments/shore/figure.py": (_GRIP,),
     "src/suchus/figures/validation_page.py": (_HELD,),
     "src/suchus/paper/claims_land.py": (_LOST,),
     "src/suchus/paper/errata_words.py": (_LOST,),

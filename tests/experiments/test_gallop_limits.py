@@ -7,8 +7,8 @@ import pytest
 import xarray as xr
 
 from suchus.errors import InvalidDesign
-from suchus.experiments._gallop_gaits import BOUNDS, TROTS
-from suchus.experiments.gallop_limits import GallopLimits, _first, experiment
+from suchus.experiments.gallop_limits.experiment import GallopLimits, _first, experiment
+from suchus.experiments.gallop_limits.gaits import BOUNDS, TROTS
 from suchus.metrics import flight_share
 from suchus.motion import START
 from suchus.robots import ROBOTS

@@ -10,7 +10,7 @@ import xarray as xr
 from suchus.design import servo_names
 from suchus.errors import Diverged
 from suchus.experiments import EXPERIMENTS
-from suchus.experiments._fault_findings import tolerance
+from suchus.experiments.joint_faults.findings import tolerance
 from suchus.gaits import GAITS
 from suchus.land import FAILED_JOINTS, KINDS, KNEES, LEGS_FAILED, Limp, Locked, Run, angle_at, joint_failure, simulate
 from suchus.metrics import displacement, loss, swing_lift, swing_loads, whole

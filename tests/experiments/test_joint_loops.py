@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 
 from suchus.errors import InvalidDesign
-from suchus.experiments.joint_loops import JointLoops, overshoot, rise_time
+from suchus.experiments.joint_loops.experiment import JointLoops, overshoot, rise_time
 
 TIME = np.linspace(0.0, 2.0, 2001)
 

@@ -7,12 +7,12 @@ from matplotlib.figure import Figure
 
 from suchus.errors import OutsideLimits
 from suchus.experiment import Outcome
-from suchus.experiments import leg_kinematics, spine_kinematics, tail_bending
+from suchus.experiments import EXPERIMENTS
 from suchus.figures import caption, save
 from suchus.robots import ROBOTS
 from suchus.verdict import judge
 
-MODULES = {m.experiment.name(): m.experiment for m in (leg_kinematics, spine_kinematics, tail_bending)}
+MODULES = {name: EXPERIMENTS[name] for name in ("leg_kinematics", "spine_kinematics", "tail_bending")}
 
 
 @pytest.fixture(scope="module")

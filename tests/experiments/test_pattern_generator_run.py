@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 
 from suchus.errors import InvalidDesign, UnsuitedRobot
-from suchus.experiments.pattern_generator import _lags, _locked, experiment, lock_error
+from suchus.experiments.pattern_generator.experiment import _lags, _locked, experiment, lock_error
 from suchus.gaits import GAITS
 from suchus.robots import ROBOTS
 

@@ -8,7 +8,7 @@ import xarray as xr
 
 from suchus.errors import InvalidDesign, UnsuitedRobot
 from suchus.experiments import EXPERIMENTS
-from suchus.experiments._animal_walk import ANIMAL, PARTS, step
+from suchus.experiments.salamander.animal_walk import ANIMAL, PARTS, step
 from suchus.robots import ROBOTS
 
 

@@ -10,8 +10,8 @@ import xarray as xr
 from suchus.control import OpenLoop
 from suchus.errors import InvalidDesign
 from suchus.experiments import EXPERIMENTS
-from suchus.experiments import _shore_findings as findings
-from suchus.figures.shore import _obliquely, levelled
+from suchus.experiments.shore import findings
+from suchus.experiments.shore.figure import _obliquely, levelled
 from suchus.land import Ground, simulate
 from suchus.record import ground_text
 from suchus.rotation import about, rotate

@@ -9,7 +9,7 @@ import xarray as xr
 
 from suchus.control import Swimming
 from suchus.experiments import EXPERIMENTS
-from suchus.experiments import _submerged as submerged
+from suchus.experiments.swim_free import submerged
 from suchus.land import Lake
 from suchus.motion import LIMBS_BACK, Swim
 from suchus.robots import ROBOTS

@@ -13,10 +13,10 @@ from suchus.design import layout
 from suchus.design.pieces import pieces
 from suchus.errors import InvalidDesign, OutsideLimits
 from suchus.experiments import EXPERIMENTS
-from suchus.experiments import _swim_3d_findings as findings
 from suchus.experiments._taken import TAKEN, Midline
+from suchus.experiments.swim_3d import findings
+from suchus.experiments.swim_3d.figure import draw_tails
 from suchus.figures import caption
-from suchus.figures.swim_3d import draw_tails
 from suchus.flow import memory
 from suchus.hydro.table import column
 from suchus.robots import ROBOTS
@@ -231,8 +231,8 @@ def test_midlines_as_taken_swim_beside_those_commanded(monkeypatch):
 
 
 def test_the_midlines_are_asked_for_only_if_they_are_to_swim(monkeypatch):
-    monkeypatch.setattr("suchus.experiments.swim_3d.midlines", lambda *given: pytest.fail("nobody asked"))
-    monkeypatch.setattr("suchus.experiments.swim_3d.check_swim_in_space", _stopped)
+    monkeypatch.setattr("suchus.experiments.swim_3d.experiment.midlines", lambda *given: pytest.fail("nobody asked"))
+    monkeypatch.setattr("suchus.experiments.swim_3d.experiment.check_swim_in_space", _stopped)
     with pytest.raises(KeyboardInterrupt):
         ASKED.quick().run()
     with pytest.raises(pytest.fail.Exception, match="nobody asked"):

@@ -9,7 +9,7 @@ import xarray as xr
 from suchus.control import Swimming
 from suchus.errors import InvalidDesign
 from suchus.experiments import EXPERIMENTS
-from suchus.experiments.swim_free import _ends, _radius, _speed, _uneven
+from suchus.experiments.swim_free.experiment import _ends, _radius, _speed, _uneven
 from suchus.motion import Swim
 from suchus.robots import ROBOTS
 from suchus.rotation import about

@@ -6,10 +6,10 @@ import xarray as xr
 
 from suchus.errors import InvalidDesign
 from suchus.experiments import EXPERIMENTS
-from suchus.experiments import _swimming_findings as findings
-from suchus.experiments._swimming_findings import ARMS
 from suchus.experiments._taken import TAKEN
-from suchus.experiments.swimming import Swimming
+from suchus.experiments.swimming import findings
+from suchus.experiments.swimming.experiment import Swimming
+from suchus.experiments.swimming.findings import ARMS
 from suchus.paper import ERRATA
 from suchus.water import fit, printed_wave, swim
 

@@ -14,7 +14,7 @@ from validation_rows import note
 
 from pages.stated import keep, kept
 from suchus import flow
-from suchus.experiments.swim_3d import Swim3d
+from suchus.experiments.swim_3d.experiment import Swim3d
 from suchus.flow import signals
 from suchus.flow.added import added_mass
 from suchus.flow.compiled import PAD

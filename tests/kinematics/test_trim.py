@@ -12,7 +12,7 @@ from suchus.design import Chamber, Hull, layout
 from suchus.design.flotation import float_hull
 from suchus.design.pieces import SOLID, chambers, masses, pieces, volumes
 from suchus.errors import InvalidDesign, UnknownName
-from suchus.experiments.floating import STILL
+from suchus.experiments.floating.experiment import STILL
 from suchus.hydro import column, unpacked
 from suchus.kinematics.tree import centre_of_mass
 from suchus.kinematics.trim import level_chambers, spare_volume

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from suchus.design.pieces import pieces
 from suchus.design.scale import physics_step
-from suchus.experiments import _floating_cases as cases
+from suchus.experiments.floating import cases
 from suchus.hydro import ADDED, CROSS_DRAG, DENSITY, FORCE, POWER, UNDER, column, packed, unpacked
 from suchus.land import Lake, Wave, wetting
 from suchus.land.float_body import FloatBody, FloatTank

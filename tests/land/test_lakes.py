@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from numba import cfunc, types
 
+from suchus import rotation
 from suchus.control import Swimming
 from suchus.design.pieces import volumes
 from suchus.design.water import Water
 from suchus.errors import InvalidDesign, OtherMuJoCo, OutsideLimits
 from suchus.experiments import EXPERIMENTS
-from suchus.experiments.floating import heel_of
 from suchus.land import VACUUM, Ground, Lake, Run, Wave, crawl, simulate, structs, wetting
 from suchus.land.afloat import check_floats
 from suchus.motion import Swim
@@ -118,7 +118,7 @@ def test_let_go_heeled_by_150_degrees_it_rights_itself_and_with_its_foam_no_high
         for one in (robot, flat)
     ]
     record = simulate(some, duration=9.0, timestep=0.01, every=10)
-    heel = np.abs(heel_of(record.orientation.values))[:, -20:]
+    heel = np.abs(rotation.heel(record.orientation.values))[:, -20:]
     assert heel[0].max() < 0.035
     assert heel[1].min() > radians(150)
     assert float(record.share_under[0, -20:].mean()) == pytest.approx(0.95, abs=0.005)

@@ -7,11 +7,12 @@ import mujoco
 import numpy as np
 import pytest
 
+from suchus import rotation
 from suchus.control import Swimming
 from suchus.design import servo_names
 from suchus.design.pieces import pieces
 from suchus.errors import InvalidDesign
-from suchus.experiments.floating import STILL, heel_of
+from suchus.experiments.floating.experiment import STILL
 from suchus.hydro import column, unpacked
 from suchus.model.build import TIMESTEP
 from suchus.model.hydrostatics import Hydrostatics, hydrostatics
@@ -110,7 +111,7 @@ def test_bad_hydrostatics_are_refused(given, message):
 
 def test_heel_is_told_all_round():
     angles = np.radians([-170, -90, -10, 0, 10, 90, 170])
-    assert heel_of(about(np.array([1.0, 0.0, 0.0]), angles)) == pytest.approx(angles)
+    assert rotation.heel(about(np.array([1.0, 0.0, 0.0]), angles)) == pytest.approx(angles)
 
 
 @pytest.mark.parametrize("name", sorted(ROBOTS))

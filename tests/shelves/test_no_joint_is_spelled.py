@@ -25,22 +25,26 @@ NOT_JOINTS = {
 }
 WHERE = {
     "tail_pitch": {
-        "experiments/_feedback_findings.py",
-        "experiments/death_roll.py",
-        "experiments/feedback.py",
-        "experiments/joint_faults.py",
-        "figures/death_roll.py",
-        "figures/joint_loops.py",
+        "experiments/feedback/findings.py",
+        "experiments/death_roll/experiment.py",
+        "experiments/feedback/experiment.py",
+        "experiments/joint_faults/experiment.py",
+        "experiments/death_roll/figure.py",
+        "experiments/joint_loops/figure.py",
         "motion/gait.py",
         "optimise/ready.py",
         "study/claims.py",
         "viewer/knobs.py",
     },
-    "tail_cable": {"experiments/death_roll.py", "figures/death_roll.py", "figures/joint_loops.py"},
-    "LH_pitch": {"experiments/joint_loops.py"},
+    "tail_cable": {
+        "experiments/death_roll/experiment.py",
+        "experiments/death_roll/figure.py",
+        "experiments/joint_loops/figure.py",
+    },
+    "LH_pitch": {"experiments/joint_loops/experiment.py"},
 }
 COLUMNS = {
-    "experiments/swim_3d.py": "letters of a digest",
+    "experiments/swim_3d/experiment.py": "letters of a digest",
     "kernel_cache.py": "letters of a digest",
     "hydro/forces.py": "rows of the table of pieces and of inertia",
     "design/pieces.py": "a row of the table of pieces",

@@ -15,7 +15,7 @@ import xarray as xr
 
 from suchus.cli import main
 from suchus.errors import IncompatibleRecord, InvalidDesign
-from suchus.experiments.swim_3d import _swum_here, swum_in_space
+from suchus.experiments.swim_3d.experiment import _swum_here, swum_in_space
 from suchus.fingerprint import fingerprint
 from suchus.land import Run
 from suchus.optimise import Aim, Optimisation, optimise

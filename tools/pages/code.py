@@ -57,7 +57,9 @@ def modules(room: str) -> list[str]:
     if not folder.is_dir():
         return []
     wanted = {p.stem for p in folder.glob("*.py") if not p.stem.startswith("_")}
-    wanted |= {p.parent.name for p in folder.glob("*/__init__.py")}
+    for below in (p.parent for p in folder.glob("*/__init__.py")):
+        inside = [f"{below.name}.{p.stem}" for p in below.glob("*.py") if not p.stem.startswith("_")]
+        wanted |= {below.name} if exported(f"{room}/{below.name}") else set(inside)
     return sorted(wanted if room in BY_MODULE else wanted & (set(exported(room)) - _defined(room)))
 
 

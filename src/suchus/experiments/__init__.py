@@ -1,8 +1,16 @@
-"""The shelf of experiments: one file, one question, declared as ``experiment``."""
+"""The shelf of experiments: one folder or one file, one question.
+
+A folder holds ``experiment.py``, which declares ``experiment``, and beside it what belongs to the question alone: its
+``rules``, its ``figure``, tables that it needs. Importing the shelf imports none of them.
+"""
+
+from typing import TYPE_CHECKING
 
 from suchus.catalog import Catalog
-from suchus.experiment import Experiment
 
-EXPERIMENTS: Catalog[Experiment] = Catalog("experiment", "suchus.experiments", "suchus.experiment:Experiment")
+if TYPE_CHECKING:
+    from suchus.experiment import Experiment
+
+EXPERIMENTS: "Catalog[Experiment]" = Catalog("experiment", "suchus.experiments", "suchus.experiment:Experiment")
 
 __all__ = ["EXPERIMENTS"]

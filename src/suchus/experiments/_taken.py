@@ -6,12 +6,13 @@ from typing import NamedTuple
 from suchus.control import Swimming
 from suchus.design import Crocodile
 from suchus.design.flotation import float_hull
-from suchus.figures.swim_3d import AS_TAKEN
 from suchus.gaits import GAITS
 from suchus.land import Lake, Run, simulate
 from suchus.motion import Swim
 from suchus.water import Outline, Undulation, taken, undulation, unevenness
 
+AS_TAKEN = " as taken"
+"""How the names of motions end whose midlines are those that the joints take."""
 TAKEN = tuple(motion + AS_TAKEN for motion in ("trunk and tail", "tail only"))
 """Names of the midlines that the joints take in six degrees of freedom."""
 _SETTLE, _AVERAGED = 5, 3  # [cycle]; before the joints' angles are taken and while they are

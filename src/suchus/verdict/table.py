@@ -1,15 +1,45 @@
-"""All rules, by claim and by experiment."""
+"""All rules, by claim and by experiment, read from the shelf of experiments when they are asked for."""
 
-from collections.abc import Mapping
-from types import MappingProxyType
+from collections.abc import Iterator, Mapping
+from functools import cached_property
 
+from suchus.errors import InvalidDesign
+from suchus.experiments import EXPERIMENTS
 from suchus.verdict.rule import Rule
-from suchus.verdict.rules import EXPERIMENTS
-
-RULES: Mapping[str, Rule] = MappingProxyType({rule.claim: rule for rules in EXPERIMENTS for rule in rules})
-"""By claim."""
 
 
 def rules_of(experiment: str) -> tuple[Rule, ...]:
-    """Return the rules that read the measures of an experiment, in the order of its page."""
-    return tuple(rule for rule in RULES.values() if rule.experiment == experiment)
+    """Return the rules that read the measures of an experiment, in their order; none if it has none or is no shelf's.
+
+    They are the ``RULES`` of the module ``rules`` in the experiment's folder, which is read without the experiment, or
+    of its one file.
+
+    Raises:
+        InvalidDesign: what is declared are no rules of this experiment.
+    """
+    rules = EXPERIMENTS.beside(experiment, "RULES", ()) if experiment in EXPERIMENTS else ()
+    for rule in rules:
+        if not isinstance(rule, Rule) or rule.experiment != experiment:
+            raise InvalidDesign(f"RULES of {experiment} hold {rule!r}, which is no Rule of this experiment.")
+    return tuple(rules)
+
+
+class Rules(Mapping[str, Rule]):
+    """The rules of all experiments on the shelf, by claim; they are read when the first is asked for."""
+
+    @cached_property
+    def _by_claim(self) -> dict[str, Rule]:
+        return {rule.claim: rule for experiment in EXPERIMENTS for rule in rules_of(experiment)}
+
+    def __getitem__(self, claim: str) -> Rule:
+        return self._by_claim[claim]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._by_claim)
+
+    def __len__(self) -> int:
+        return len(self._by_claim)
+
+
+RULES = Rules()
+"""By claim."""

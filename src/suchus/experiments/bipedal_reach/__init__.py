@@ -1,0 +1,1 @@
+"""How high does it reach, crawling and standing on two legs?"""

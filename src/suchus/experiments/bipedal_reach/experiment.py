@@ -1,0 +1,306 @@
+"""How high does the robot reach when it crawls, and when it stands on hind legs and tail?"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
+from typing import Any, ClassVar
+
+import numpy as np
+import xarray as xr
+
+from suchus.control import OpenLoop
+from suchus.control.standing import BALANCE, Balance, Standing
+from suchus.design import Crocodile
+from suchus.design.checks import Checks
+from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
+from suchus.experiments.bipedal_reach import findings
+from suchus.experiments.bipedal_reach.figure import draw_ceiling, draw_heights, draw_limits, draw_pushes
+from suchus.experiments.bipedal_reach.standing_figure import draw_angles, draw_side_views
+from suchus.experiments.bipedal_reach.variants import PARTS, fitted, heavier, length, lengthened, stand_soon, up_at
+from suchus.gaits import GAITS
+from suchus.kinematics.mass import cantilever_torque
+from suchus.land import Run, simulate
+from suchus.land.push_search import smallest_pushes
+from suchus.metrics import lead, reach, static_margin
+from suchus.motion import START, Gait
+from suchus.motion.rising import LEAD, stretched, tallest
+from suchus.replay import replay
+from suchus.robots import ROBOTS
+
+_COARSE = 0.005  # [s]; time step of sweeps; reach and limits agree with those at 2 ms
+_UP = 0.6  # of the stretched length: who reaches less has not stood up, or has fallen
+_DIRECTIONS = {"fore": (1.0, 0.0, 0.0), "aft": (-1.0, 0.0, 0.0), "lateral": (0.0, 1.0, 0.0)}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BipedalReach(Experiment):
+    """From the crawl to standing on hind legs and tail, and down again into the crawl.
+
+    The height that the robot reaches is that of the highest point of head and trunk, whatever part that is; legs and
+    tail do not count. For the crawl it is the highest such point over a cycle, for standing the lowest while it
+    stands. Pushes act on the thorax for 0.2 s.
+    """
+
+    title = "How high does it reach, crawling and standing on two legs?"
+    shows = "Section IV.D, Figs 22 to 24"
+    needs = ("tables", "article_spine", "cable_tail")
+    judged_with = ("robot", "gait", "balance", "least")
+    judged_from: ClassVar[Mapping[str, float]] = {"hold": 10.0, "repeats": 4, "hips": 3}
+
+    robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
+    """The robot that stands up."""
+    gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
+    """The crawl before and after."""
+    straight: Gait = field(default_factory=lambda: GAITS["limbs_only"])
+    """Gait from whose first posture it stands up in the sweeps: the trunk is straight, so that pushes come from
+    ahead."""
+    balance: Balance = BALANCE
+    """The feedback by which it keeps its balance when it stands."""
+    hold: float = 60.0
+    """Duration of standing [s]."""
+    least: float = 0.64
+    """Reach that counts as standing for the time that it is held [m]; what an earlier study of this robot reached."""
+    repeats: int = 4
+    """Runs with noise on the servos, to see whether it stays up [-]."""
+    noise: float = 0.01
+    """Standard deviation of the noise on every commanded angle in the repeats [rad]; a hobby servo's dead band."""
+    torques: tuple[float, ...] = (2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0)
+    """Torques of the trunk's pitch servos on the map [N m]."""
+    forebodies: tuple[float, ...] = (0.4, 0.5, 0.6, 0.7, 0.8, 0.9)
+    """Masses of thorax and head together on the map [kg]; the pelvis takes the rest, as if the battery moved."""
+    hips: tuple[float, ...] = (0.07, 0.09, 0.11, 0.125, 0.135)
+    """Heights of the hips in the crawls that show what the legs decide [m]; the last is near what the legs allow."""
+    leads: tuple[float, ...] = (0.015, 0.025, 0.035)
+    """Further distances of the centre of mass behind the feet that are commanded, to see how much height a safe
+    stand costs [m]."""
+    pushes: tuple[float, ...] = (1.0, 2.0, 4.0, 6.0, 8.0, 11.0, 14.0, 17.0, 20.0)
+    """Forces that are tried, before finer ones between two of them [N]."""
+    finer: int = 4
+    """Number of forces between two of them [-]."""
+    wait: float = 3.0
+    """Duration for which a robot is left alone before a push and after it [s]; a fall takes less than 2 s."""
+    timestep: float = 0.002
+    """Time step of the physics in the run of the figures [s]; sweeps take 5 ms."""
+    longer: float = 0.05
+    """Fraction by which legs, spine and head are lengthened, one after another [-]."""
+
+    def __post_init__(self) -> None:
+        with Checks(self.name(), self) as check:
+            check.number("hold", 1.0, 3600.0, "s")
+            check.number("least", 0.1, 10.0, "m")
+            check.whole("repeats", 1, 1000)
+            check.number("noise", 0.0, 1.0, "rad")
+            check.whole("finer", 0, 100)
+            check.that(len(self.hips) > 1, f"{self.name()}.hips has {len(self.hips)} heights; two at least are needed")
+            check.number("wait", 0.1, 60.0, "s")
+            check.number("timestep", 1e-5, 0.01, "s")
+            check.number("longer", 0.001, 0.2, "")
+
+    def quick(self) -> "BipedalReach":
+        """A short stand, the corners of the map, few pushes."""
+        return replace(
+            self,
+            hold=1.0,
+            repeats=1,
+            torques=(2.0, 5.0),
+            forebodies=(0.4, 0.9),
+            hips=(0.09, 0.125),
+            leads=(),
+            pushes=(2.0, 25.0),
+            finer=0,
+            wait=1.5,
+            timestep=_COARSE,
+        )
+
+    def simulate(self, progress: Progress = silent) -> Simulated:
+        """Crawl, stand, sit, crawl; then what it takes and what it bears."""
+        standing = Standing(at=START + self.gait.period, hold=self.hold, balance=self.balance)
+        record = self._story(standing, staged(progress, "standing", 0.0, 0.2))
+        for study, stage, start, end in (
+            (self._limits, "torque and mass", 0.2, 0.4),
+            (self._pushed, "pushes", 0.4, 0.85),
+            (self._lengths, "lengths", 0.85, 1.0),
+        ):
+            record = record.merge(study(staged(progress, stage, start, end)))
+        record = record.merge(self._ceiling()).assign_attrs(self._facts())
+        return Simulated(record=record, replays=self._replays(record))
+
+    def _facts(self) -> dict[str, float]:
+        """Return what the measures are held against: lengths [m], torques [N m] and times [s]."""
+        plausible = {one.field: one.high for one in GAITS.beside("belly_crawl", "chosen", ())}
+        return {
+            "least": self.least,
+            "hold": self.hold,
+            "stretched": stretched(self.robot),
+            "cantilever": cantilever_torque(self.robot),
+            "pitch_torque": self.robot.spine.pitch_servo.torque,
+            "hip_height": self.gait.hip_height,
+            "hip_height_plausible": plausible["hip_height"],
+            "up": _UP * stretched(self.robot),
+        }
+
+    def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
+        """Return heights with their spread, what the stand bears, what it takes, and what the heights follow."""
+        return findings.measures(record)
+
+    def explain(self, measures: Mapping[str, float]) -> str:
+        """Say what it takes to stand up, what it costs to stand safely, and what the heights follow."""
+        return findings.explained(measures)
+
+    def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
+        caption = "From the crawl up on hind legs and tail, and down again into the crawl."
+        page = partial(replay, record, self.robot, labels=("standing up",), title="Standing up", caption=caption)
+        return {"standing_replay.html": Replay(caption=caption, make=page)}
+
+    def _story(self, standing: Standing, progress: Any) -> xr.Dataset:
+        """Return the run of the figures, and the heights of its repeats."""
+        duration = standing.down_from(self.robot) + self.gait.period
+        calm = Run(robot=self.robot, gait=self.gait, control=standing)
+        record = simulate(
+            [calm], duration=duration, timestep=self.timestep, every=2, progress=lambda share: progress(0.5 * share)
+        )
+        blind = replace(calm, control=replace(standing, balance=None))
+        shaken = [
+            replace(run, noise=self.noise, seed=seed) for run in (calm, blind) for seed in range(1, 1 + self.repeats)
+        ]
+        repeats = simulate(
+            shaken, duration=duration, timestep=_COARSE, every=10, progress=lambda share: progress(0.5 + 0.5 * share)
+        )
+        heights = reach(self.robot, repeats).values.reshape(2, self.repeats, -1)
+        record = record.assign(reach=reach(self.robot, record), margin=static_margin(record), lead=lead(record))
+        data = record.assign(
+            {"repeat_reach": (("feedback", "repeat", "repeat_time"), heights, {"units": "m"})}
+        ).assign_coords(feedback=["on", "off"], repeat_time=("repeat_time", repeats.time.values, {"units": "s"}))
+        stages = (START, standing.at, standing.upright_from(self.robot), standing.upright_until(self.robot))
+        data.attrs["stages"] = [*stages, standing.down_from(self.robot), duration]
+        return data
+
+    def _settled(self, robots: Sequence[Crocodile], leads: Sequence[float], progress: Any) -> xr.Dataset:
+        """Return reach and lead of robots that stood up; zero where the postures are out of reach."""
+        controls = [stand_soon(robot, ahead, self.balance) for robot, ahead in zip(robots, leads, strict=True)]
+        able = [control is not None for control in controls]
+        found = {name: np.zeros(len(able)) for name in ("reach", "lead")}
+        runs = [
+            Run(robot=robot, gait=self.straight, control=control)
+            for robot, control in zip(robots, controls, strict=True)
+            if control is not None
+        ]
+        if not runs:
+            return xr.Dataset({name: ("case", values, {"units": "m"}) for name, values in found.items()})
+        duration = max(up_at(robot) for robot, stands in zip(robots, able, strict=True) if stands) + self.wait
+        record = simulate(runs, duration=duration, timestep=_COARSE, every=10, progress=progress)
+        last = record.sel(time=slice(duration - 0.5, None))
+        for i, case in enumerate(np.flatnonzero(able)):
+            one = last.isel(run=i)
+            found["reach"][case] = float(reach(runs[i].robot, one).min())
+            found["lead"][case] = float(lead(one).mean())
+        return xr.Dataset({name: ("case", values, {"units": "m"}) for name, values in found.items()})
+
+    def _limits(self, progress: Any) -> xr.Dataset:
+        """Return what robots with other trunk servos and other forebodies reach."""
+        cells = [heavier(self.robot, mass, torque) for torque in self.torques for mass in self.forebodies]
+        found = self._settled(cells, [LEAD] * len(cells), progress)
+        shape = len(self.torques), len(self.forebodies)
+        cantilever = [cantilever_torque(heavier(self.robot, mass, 1.0)) for mass in self.forebodies]
+        data = xr.Dataset(
+            {
+                "map_reach": (("torque", "forebody"), found.reach.values.reshape(shape), {"units": "m"}),
+                "map_cantilever": ("forebody", cantilever, {"units": "N m"}),
+            },
+            coords={"torque": list(self.torques), "forebody": list(self.forebodies)},
+        )
+        data.torque.attrs.update(units="N m", long_name="torque of the trunk's pitch servos")
+        data.forebody.attrs.update(units="kg", long_name="mass of thorax and head")
+        return data
+
+    def _pushed(self, progress: Any) -> xr.Dataset:
+        """Return the smallest pushes that topple, with feedback and without, over the lead."""
+        leads = sorted({*self.leads, LEAD})
+        balances = {"on": self.balance, "off": None}
+        stood = self._settled([self.robot] * len(leads), leads, lambda share: progress(0.1 * share))
+        runs = [
+            Run(robot=self.robot, gait=self.straight, control=stand_soon(self.robot, lead, balance) or OpenLoop())
+            for balance in balances.values()
+            for lead in leads
+        ]
+        forces = smallest_pushes(
+            runs,
+            list(_DIRECTIONS.values()),
+            at=round(up_at(self.robot) + self.wait, 2),
+            levels=self.pushes,
+            finer=self.finer,
+            wait=self.wait,
+            fell=lambda record: record.snout.sel(xyz="z").isel(time=-1) < _UP * stretched(self.robot),
+            timestep=_COARSE,
+            progress=lambda share: progress(0.1 + 0.9 * share),
+        ).reshape(len(balances), len(leads), len(_DIRECTIONS))
+        stands = stood.reach.values > _UP * stretched(self.robot)
+        return xr.Dataset(
+            {
+                "push": (
+                    ("feedback", "commanded", "direction"),
+                    np.where(stands[:, None], forces, 0.0),
+                    {"units": "N"},
+                ),
+                "lead_reach": ("commanded", np.where(stands, stood.reach, np.nan), {"units": "m"}),
+                "lead_found": ("commanded", np.where(stands, stood.lead, np.nan), {"units": "m"}),
+            },
+            coords={"direction": list(_DIRECTIONS), "commanded": leads, "feedback": list(balances)},
+        )
+
+    def _lengths(self, progress: Any) -> xr.Dataset:
+        """Return how crawling and standing reach change with the lengths of legs, spine and head."""
+        robots = [self.robot, *(lengthened(self.robot, part, 1 + self.longer) for part in PARTS)]
+        stood = self._settled(robots, [LEAD] * len(robots), lambda share: progress(0.5 * share))
+        crawls = [(self.robot, replace(self.gait, hip_height=hips)) for hips in self.hips]
+        crawls += [(robot, fitted(self.gait, robot, self.robot)) for robot in robots]
+        runs = [Run(robot=robot, gait=gait) for robot, gait in crawls]
+        record = simulate(
+            runs,
+            duration=START + self.gait.period,
+            timestep=_COARSE,
+            every=5,
+            progress=lambda share: progress(0.5 + 0.5 * share),
+        ).sel(time=slice(START, None))
+        heights = np.array([float(reach(robot, record.isel(run=i)).max()) for i, (robot, _) in enumerate(crawls)])
+        walking = heights[len(self.hips) :]
+        longer = np.array(
+            [length(robot, part) - length(self.robot, part) for robot, part in zip(robots[1:], PARTS, strict=True)]
+        )
+        changes = np.stack([walking[1:] - walking[0], stood.reach.values[1:] - stood.reach.values[0]], axis=-1)
+        ahead = record.centre_of_mass.sel(xyz="x")
+        return xr.Dataset(
+            {
+                "crawl_reach": ("hip_height", heights[: len(self.hips)], {"units": "m"}),
+                "crawl_way": (
+                    "hip_height",
+                    (ahead[: len(self.hips), -1] - ahead[: len(self.hips), 0]).values,
+                    {"units": "m"},
+                ),
+                "gain": (("part", "pose"), changes / longer[:, None], {"units": "1"}),
+            },
+            coords={"hip_height": list(self.hips), "part": list(PARTS), "pose": ["crawling", "standing"]},
+        )
+
+    def _ceiling(self) -> xr.Dataset:
+        """Return how high any posture could reach over the distance of the centre of mass behind the feet."""
+        behind = np.linspace(0.0, 0.1, 11)
+        return xr.Dataset(
+            {"ceiling": ("behind", tallest(self.robot, behind), {"units": "m"})},
+            coords={"behind": ("behind", behind, {"units": "m"})},
+        )
+
+    def draw(self, outcome: Outcome) -> Mapping[str, Any]:
+        """Draw postures, angles and heights over time, and what decides them."""
+        record = outcome.record
+        return {
+            "side_views": draw_side_views(self.robot, record),
+            "angles": draw_angles(self.robot, record),
+            "height_over_time": draw_heights(record, self.hold),
+            "torque_and_mass": draw_limits(self.robot, record, _UP * stretched(self.robot)),
+            "ceiling": draw_ceiling(self.robot, record),
+            "pushes": draw_pushes(record, LEAD),
+        }
+
+
+experiment = BipedalReach()

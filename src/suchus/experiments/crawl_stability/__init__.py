@@ -1,0 +1,1 @@
+"""Does it crawl more steadily with spine and tail than without?"""

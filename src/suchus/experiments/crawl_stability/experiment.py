@@ -1,0 +1,256 @@
+"""Does it crawl more steadily with spine and tail than without?"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from suchus.design import layout
+from suchus.design.scale import coarse_step
+from suchus.experiment import Measure, Outcome, Progress, Replay, Simulated, silent, staged
+from suchus.experiments._two_groups import TwoGroups
+from suchus.experiments.crawl_stability.figure import draw_heights, draw_snapshots, draw_spreads
+from suchus.gaits import conditions_of
+from suchus.land import Run, simulate
+from suchus.metrics import (
+    displacement,
+    height_peak_to_peak,
+    height_std,
+    line_distance,
+    line_distance_max,
+    loaded,
+    roll_peak_to_peak,
+    spine_sine_share,
+    support_distance,
+    tail_load_share,
+    tilt,
+)
+from suchus.motion import START, AnyGait, FootPath, Gait, Pattern, longest_stroke, longest_strokes, with_strokes
+from suchus.paper import SNAPSHOT_TIMES
+from suchus.replay import replay
+from suchus.verdict import Reading, compared
+
+_EQUAL = "limbs_only_equal_displacement"
+_SHOWN = ("coordinated", "limbs_only", "limbs_tail_lifted")
+"""Conditions whose snapshots are looked at."""
+_CHANGES = (
+    ("com_height_pp_change", "coordinated", "limbs_only"),
+    ("com_height_pp_change_tail_lifted", "coordinated", "limbs_tail_lifted"),
+    ("wagging_pp_change", "coordinated", "tail_still"),
+    ("tail_contact_pp_change", "tail_still", "spine_only"),
+    ("tail_contact_pp_change_limbs_only", "limbs_only", "limbs_tail_lifted"),
+    ("spine_swing_pp_change", "coordinated", "tail_drag"),
+)
+"""Relative changes of the height's fluctuation: name, condition, what it is compared with."""
+_PARTS = (
+    (
+        "laying the tail on the ground",
+        "tail_contact_pp_change",
+        " with the trunk swinging and {} with the trunk straight",
+        "tail_contact_pp_change_limbs_only",
+    ),
+    ("wagging it", "wagging_pp_change", "", ""),
+    ("the swing of the trunk", "spine_swing_pp_change", "", ""),
+)
+"""How the parts are called, their change, and what is said further of one more."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CrawlStability(TwoGroups):
+    """The height of the centre of mass over time, for every combination of spine and tail.
+
+    The article compares spine and tail together with neither, at the same leg commands. That mixes four things, so all
+    conditions stand side by side here, and the group without spine and tail walks once more with strokes long enough to
+    get as far. Of another body those conditions are run that its parts make possible. Fluctuation is the amplitude that
+    the article's Fig. 15 shows: the highest less the lowest height.
+    """
+
+    title = "Does it crawl more steadily with spine and tail than without?"
+    shows = "Section IV.A, Figs 13 to 15"
+    needs = ("limbs", "axis")
+
+    def quick(self) -> "CrawlStability":
+        """One cycle, two repeats."""
+        return replace(self, cycles=1, repeats=2)
+
+    def simulate(self, progress: Progress = silent) -> Simulated:
+        """Crawl in every condition, as far with the legs alone, and again with noise."""
+        end = START + self.cycles * self.gait.period
+        arms = conditions_of(self.robot, self.gait, self.control)
+        runs = [Run(robot=self.robot, gait=gait, label=name) for name, gait in arms.items()]
+        record = simulate(runs, duration=end, progress=staged(progress, "conditions", 0.0, 0.2))
+        share = self._equal_stroke(record, end, staged(progress, "equal displacement", 0.2, 0.4))
+        equal = Run(robot=self.robot, gait=self._strode(share), label=_EQUAL)
+        record = simulate([*runs, equal], duration=end, progress=staged(progress, "all conditions", 0.4, 0.6))
+        record = record.merge(self._repeated(runs, end, staged(progress, "repeats", 0.6, 1.0)))
+        record.attrs["equal_stroke"] = share * self._stroke()
+        return Simulated(record=record, replays=self._replays(record))
+
+    def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
+        caption = "With spine and tail, and, half transparent, with longer strokes of the legs alone, just as far."
+        page = partial(
+            replay,
+            record.isel(run=0),
+            self.robot,
+            ghost=record.isel(run=-1),
+            labels=("spine and tail", "legs alone, as far"),
+            title="Two ways to get as far",
+            caption=caption,
+        )
+        return {"stability_replay.html": Replay(caption=caption, make=page)}
+
+    def _equal_stroke(self, record: xr.Dataset, end: float, progress: Any) -> float:
+        """Return the stroke with which the legs alone get as far as with spine and tail, or their longest.
+
+        In metres for a gait of the article's kind; else in strokes of the gait.
+        """
+        if isinstance(self.control, Gait):
+            strokes = np.linspace(self.control.stroke, longest_stroke(self.robot, self.control), 10)
+        else:
+            strokes = np.linspace(1.0, longest_strokes(self.robot, self.control), 10)
+        runs = [Run(robot=self.robot, gait=self._strode(float(s))) for s in strokes]
+        tried = simulate(runs, duration=end, timestep=coarse_step(self.robot), every=100, progress=progress)
+        reached = displacement(tried).sel(xyz="x").values
+        wanted = float(displacement(record).sel(xyz="x")[0])
+        return float(np.interp(wanted, np.maximum.accumulate(reached), strokes))
+
+    def _strode(self, stroke: float) -> AnyGait:
+        return (
+            replace(self.control, stroke=stroke)
+            if isinstance(self.control, Gait)
+            else with_strokes(self.control, stroke)
+        )
+
+    def _stroke(self) -> float:
+        """Return the unit of strokes [m]: a metre, or the longest half stroke of the gait; 0 where it has none."""
+        if isinstance(self.control, Gait):
+            return 1.0
+        if not isinstance(self.control, Pattern):
+            return 0.0
+        girdles = zip(layout(self.robot).robot.girdles, self.control.girdles, strict=True)
+        return max((g.limb.reach * abs(does.stroke) for g, does in girdles if isinstance(does, FootPath)), default=0.0)
+
+    def _repeated(self, runs: list[Run], end: float, progress: Any) -> xr.Dataset:
+        """Return the fluctuation of every condition in repeats with noise and another friction."""
+        record = simulate(
+            self.repeated(runs), duration=end, timestep=coarse_step(self.robot), every=2, progress=progress
+        )
+        shape = (len(runs), self.repeats)
+        found = {"repeated_pp": height_peak_to_peak(record), "repeated_std": height_std(record)}
+        data = {
+            name: (("condition", "repeat"), values.values.reshape(shape), {"units": "m"})
+            for name, values in found.items()
+        }
+        return xr.Dataset(data, coords={"condition": [run.label for run in runs]})
+
+    def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
+        """Return the fluctuation in every condition, its changes with their spread, and the snapshots."""
+        measures: dict[str, Measure] = {}
+        arms = [str(arm) for arm in record.condition.values]
+        std, pp, roll = height_std(record), height_peak_to_peak(record), roll_peak_to_peak(record)
+        for i, name in enumerate((*arms, _EQUAL)):
+            measures |= {
+                f"com_height_std_{name}": Measure(float(std[i]), "m"),
+                f"com_height_pp_{name}": Measure(float(pp[i]), "m"),
+                f"roll_pp_{name}": Measure(float(roll[i]), "rad"),
+                f"forward_{name}": Measure(float(displacement(record).sel(xyz="x")[i]), "m"),
+            }
+        for name, one, other in _CHANGES:
+            if not {one, other} <= set(arms):
+                continue
+            here, there = (record.repeated_pp.sel(condition=c, drop=True) for c in (one, other))
+            change, repeats = float(pp[arms.index(one)] / pp[arms.index(other)] - 1), here / there - 1
+            measures |= {
+                name: Measure(change, "-"),
+                f"{name}_low": Measure(float(repeats.min()), "-"),
+                f"{name}_high": Measure(float(repeats.max()), "-"),
+            }
+        equal = float(pp[0] / pp[len(arms)] - 1)
+        measures |= {
+            "com_height_pp_change_equal_displacement": Measure(equal, "-"),
+            "com_height_std_change": Measure(float(std[0] / std[1] - 1), "-"),
+            "roll_pp_change": Measure(float(roll[0] / roll[1] - 1), "-"),
+            "stroke_equal_displacement": Measure(float(record.attrs["equal_stroke"]), "m"),
+            "spine_sine_r2": Measure(float(spine_sine_share(record.isel(run=0))), "-"),
+            "tail_load_share": Measure(float(tail_load_share(record.isel(run=0))), "-"),
+        }
+        for name, i in self._shown(arms).items():
+            measures |= _looked_at(name, record.isel(run=i))
+        return measures
+
+    def explain(self, measures: Mapping[str, float]) -> str:
+        """Say what the dragged tail, its swing and the trunk's swing each do to the height's fluctuation."""
+        m = {name: Reading(value) for name, value in measures.items()}
+
+        def turns(name: str) -> str:
+            return f"{compared(m[name], 0.0, less='lowers it', more='raises it')} by {abs(m[name]):.0%}"
+
+        parts = [
+            f"{what} {turns(name)}{more.format(turns(also) if also in m else '')}"
+            for what, name, more, also in _PARTS
+            if name in m
+        ]
+        lifted = (
+            "So the answer hangs on where the tail of the control group is: against a control group with its tail in "
+            f"the air spine and tail change the fluctuation by {m['com_height_pp_change_tail_lifted']:+.0%}, against "
+            f"one whose tail lies still by {m['com_height_pp_change']:+.0%}, and against the same legs with "
+            if "com_height_pp_change_tail_lifted" in m
+            else f"Spine and tail change it by {m['com_height_pp_change']:+.0%}, and against the same legs with "
+        )
+        usual = Reading(self.control.stroke if isinstance(self.control, Gait) else self._stroke())
+        form = "mm.0f" if isinstance(self.control, Gait) else "mm.1f"
+        equal = (
+            f"strokes of {m['stroke_equal_displacement']:{form}} instead of {usual:{form}} mm"
+            if usual > 0
+            else "their longest strokes"
+        )
+        split, digits = "; ".join(parts), 2 if form == "mm.0f" else 4
+        return (
+            f"The height of the centre of mass moves by {m['com_height_pp_coordinated']:mm.1f} mm with spine and tail "
+            f"and by {m['com_height_pp_limbs_only']:mm.1f} mm with limbs only. {split[:1].upper()}{split[1:]}"
+            f"{'. ' if parts else ''}{lifted}{equal}, which get {m[f'forward_{_EQUAL}']:.{digits}f} m, "
+            f"by {m['com_height_pp_change_equal_displacement']:+.0%}."
+        )
+
+    def draw(self, outcome: Outcome) -> Mapping[str, Any]:
+        """Draw height over time, the snapshots, the spread."""
+        arms = [str(arm) for arm in outcome.record.condition.values]
+        return {
+            "height_of_mass": draw_heights(outcome.record, arms),
+            "fluctuation": draw_spreads(outcome.record, arms),
+            "snapshots": draw_snapshots(self.robot, outcome.record, self._shown(arms), SNAPSHOT_TIMES),
+        }
+
+    @staticmethod
+    def _shown(arms: Sequence[str]) -> dict[str, int]:
+        """Return the conditions whose snapshots are looked at, and their runs."""
+        return {name: arms.index(name) for name in _SHOWN if name in arms}
+
+
+def _looked_at(name: str, record: xr.Dataset) -> dict[str, Measure]:
+    """Return what the article's three snapshots show of one condition, and the line of two standing feet."""
+    apart, stands = line_distance(record), loaded(record).sum("leg")
+    measures = {f"line_distance_max_{name}": Measure(float(line_distance_max(record)), "m")}
+    for time in SNAPSHOT_TIMES:
+        at, lean = f"{name}_{1000 * time:.0f}_ms", _lean(record, time)
+        feet = int(stands.sel(time=time, method="nearest"))
+        measures |= {
+            f"support_distance_{at}": Measure(support_distance(record, time), "m"),
+            f"line_distance_{at}": Measure(float(apart.sel(time=time, method="nearest")), "m"),
+            f"standing_feet_{at}": Measure(feet, "-"),
+            f"lean_{at}": Measure(lean, "rad"),
+            f"lean_on_two_feet_{at}": Measure(lean if feet == 2 else float("nan"), "rad"),
+        }
+    return measures
+
+
+def _lean(record: xr.Dataset, time: float) -> float:
+    """Return the angle between the pelvis's vertical and the world's at one time [rad]."""
+    lean = tilt(record.sel(time=[time], method="nearest"))
+    return float(np.arccos(np.cos(lean["roll"][0]) * np.cos(lean["pitch"][0])))
+
+
+experiment = CrawlStability()

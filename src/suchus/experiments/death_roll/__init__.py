@@ -1,0 +1,1 @@
+"""How fast does it roll about its long axis, and with what?"""

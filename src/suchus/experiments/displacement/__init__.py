@@ -1,0 +1,1 @@
+"""How far does it crawl, with spine and tail and without?"""

@@ -1,0 +1,293 @@
+"""Do the three feedback rules coordinate the robot, and what are they good for?"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import partial
+from math import radians
+from typing import Any, ClassVar
+
+import xarray as xr
+
+from suchus.control import LAWS, Coordinated, HeadingRule, Kick
+from suchus.control.topology import topology
+from suchus.design import AnyRobot, layout
+from suchus.design.checks import Checks
+from suchus.design.scale import coarse_step, control_period
+from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
+from suchus.experiments.feedback import findings
+from suchus.experiments.feedback.figure import draw_fans, draw_gain, draw_onset, draw_tracks
+from suchus.experiments.feedback.topology import draw_topology
+from suchus.gaits import GAITS, own_gait
+from suchus.land import Ground, Limp, Locked, Push, Run, simulate
+from suchus.metrics import heading
+from suchus.metrics.coordination import WITHIN, phase_error
+from suchus.motion import START, AnyGait, axis_bends, steerable
+from suchus.replay import replay
+from suchus.robots import ROBOTS
+
+_ALONE: Mapping[str, Any] = {"spine": None, "tail": None}
+STARTS: Mapping[str, Coordinated] = {
+    **{law: Coordinated(limbs=LAWS[law], random_start=True, **_ALONE) for law in LAWS},
+    "closed_noisy": Coordinated(random_start=True, load_noise=0.3),
+    "isolated_noisy": Coordinated(random_start=True, load_noise=0.3, sharing=False),
+}
+"""What brings random limb phases in order: each law alone, then all rules with noisy feet, sharing and not sharing."""
+ARMS: Mapping[str, Coordinated] = {
+    "open": Coordinated(limbs=LAWS["off"], **_ALONE),
+    "limbs": Coordinated(**_ALONE),
+    "spine": Coordinated(limbs=LAWS["off"], tail=None),
+    "tail": Coordinated(limbs=LAWS["off"], spine=None),
+    "closed": Coordinated(),
+    "steered": Coordinated(heading=HeadingRule()),
+}
+"""Who is disturbed: no rule, each rule alone, all three, all three with the heading loop."""
+DISTURBANCES = (
+    "none",
+    "kick",
+    "locked_spine",
+    "uphill",
+    "downhill",
+    "side_slope",
+    "other_side",
+    "push",
+    "limp_yaw",
+    "load_noise",
+)
+"""What happens after one cycle; a slope is there from the beginning."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Feedback(Experiment):
+    """Random limb phases under every law, then nine disturbances with and without the rules.
+
+    Converged: the largest of the four phase errors (two diagonal pairs, two girdles) is within 0.1 cycle at every
+    sample from some time on until the end of the run, and for at least ``hold`` cycles. Recovery is the distance
+    forward, along the heading at the start, over ``after`` cycles from the disturbance on. Drift is the distance down a
+    slope to the side, the mean of both sides. The rule of the tail is left out of a body without a servo that pitches
+    it.
+    """
+
+    title = "Do three feedback rules coordinate limbs, spine and tail, and what do they help against?"
+    shows = "Sections II.B and III.D, Fig. 10"
+    needs = ("limbs", "trunk")
+    judged_with = ("robot", "gait", "kick", "slope", "push", "noise")
+    judged_from: ClassVar[Mapping[str, float]] = {"starts": 16, "cycles": 12, "hold": 2.0, "after": 5}
+
+    robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
+    """The robot that crawls."""
+    gait: AnyGait = field(default_factory=lambda: GAITS["belly_crawl"])
+    """Gait of the robot; its limbs must form diagonal pairs."""
+    starts: int = 32
+    """Random initial limb phases, the same for all laws [-]."""
+    cycles: int = 12
+    """Duration for which each start is followed [cycle]."""
+    hold: float = 2.0
+    """Duration for which the limbs must stay coordinated until the end [cycle]."""
+    after: int = 5
+    """Duration for which a disturbed robot is followed from the disturbance on [cycle]."""
+    kick: tuple[float, ...] = (0.5, 0.0, 0.0, 0.2)
+    """Phase by which each limb jumps ahead, in the order of the robot's limbs [cycle]; together almost the farthest
+    from the gait."""
+    slope: float = radians(10)
+    """Slope of the ground [rad]."""
+    push: tuple[float, float, float] = (0.0, 20.0, 0.0)
+    """Force on the foremost girdle's segment for 0.3 s [N]; 5 N does nothing even without feedback."""
+    noise: float = 0.3
+    """Standard deviation of the noise on what the feet feel, as a part of the load [-]."""
+    seed: int = 0
+    """Seed of the first start; the others follow."""
+
+    def __post_init__(self) -> None:
+        with Checks(self.name(), self) as check:
+            check.whole("starts", 1, 1000)
+            check.whole("cycles", 1, 1000)
+            check.number("hold", 0.1, 1000.0, "cycle")
+            check.whole("after", 1, 1000)
+            check.each("kick", layout(self.robot).limb_names, -1.0, 1.0, "cycle")
+            check.number("slope", 0.0, 0.5, "rad")
+            check.each("push", ("forward", "left", "up"), -1e3, 1e3, "N")
+            check.number("noise", 0.0, 10.0, "")
+            check.whole("seed", 0, 2**31)
+
+    def quick(self) -> "Feedback":
+        """Two starts, few and short cycles."""
+        return replace(self, gait=replace(self.gait, period=2.0), starts=2, cycles=2, hold=0.5, after=1)
+
+    def gaits_on(self, robot: AnyRobot) -> dict[str, Any]:
+        """Return the robot's own gait, and a kick for each of its limbs.
+
+        Raises:
+            OutsideLimits: its own gait is a table of angles.
+        """
+        own = steerable(own_gait(robot), self.name())
+        kick = (*self.kick, *(0.0,) * len(own.limb_phases))[: len(own.limb_phases)]
+        return {"gait": own, "kick": kick}
+
+    def _suited(self, control: Coordinated) -> Coordinated:
+        return control.suited(self.robot, self.gait)
+
+    @property
+    def _arms(self) -> dict[str, Coordinated]:
+        """Who is disturbed: those of ``ARMS`` whose rule the body can follow."""
+        return {
+            name: self._suited(one)
+            for name, one in ARMS.items()
+            if name != "tail" or self._suited(one).tail is not None
+        }
+
+    def simulate(self, progress: Progress = silent) -> Simulated:
+        """Crawl from random starts, then disturb a robot whose phases are right."""
+        starts, pair = self._starts(staged(progress, "random starts", 0.0, 0.7))
+        record = xr.merge([starts, self._disturbed(staged(progress, "disturbances", 0.7, 1.0))])
+        return Simulated(record=record, replays=self._replays(pair))
+
+    def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
+        """Return how many starts converge, and what each rule makes of each disturbance."""
+        return findings.start_measures(record, self.gait, self.hold, self.cycles) | findings.disturbed_measures(
+            record, self.gait, self.hold, self.after
+        )
+
+    def explain(self, measures: Mapping[str, float]) -> str:
+        """Say what each rule mends and what it does not."""
+        return findings.explain(measures)
+
+    def _replays(self, pair: xr.Dataset) -> Mapping[str, Replay]:
+        caption = (
+            "From limbs out of step: loads felt across the body bring them into the gait, and, half transparent, "
+            "without feedback they stay as they are."
+        )
+        page = partial(
+            replay,
+            pair.isel(run=0),
+            self.robot,
+            ghost=pair.isel(run=1),
+            labels=("feeling its loads", "without feedback"),
+            title="Finding the gait",
+            caption=caption,
+        )
+        return {"feedback_replay.html": Replay(caption=caption, make=page)}
+
+    @property
+    def _front(self) -> str:
+        """The segment of the foremost girdle."""
+        return layout(self.robot).robot.girdles[0].segment
+
+    @property
+    def _pushed(self) -> float:
+        """How long the push lasts: 0.3 s for a body as long as the article's [s]."""
+        period = control_period(self.robot)
+        return max(1, round(0.3 * (self.robot.length / ROBOTS["caiman"].length) ** 0.5 / period)) * period
+
+    @property
+    def _at(self) -> float:
+        """Time at which the disturbance begins [s]."""
+        return START + self.gait.period
+
+    def _starts(self, progress: Any) -> tuple[xr.Dataset, xr.Dataset]:
+        """Return limb phases and distances for every law and start, and one start as a record under two laws."""
+        runs = [
+            Run(robot=self.robot, gait=self.gait, control=self._suited(control), seed=self.seed + i)
+            for control in STARTS.values()
+            for i in range(self.starts)
+        ]
+        duration = START + self.cycles * self.gait.period
+        record = simulate(runs, duration=duration, timestep=coarse_step(self.robot), every=10, progress=progress)
+        shape = (len(STARTS), self.starts, record.sizes["time"])
+        dims = ("law", "start", "start_time")
+        phase = record.limb_phase.transpose("run", "time", "leg").values.reshape(*shape, -1)
+        distance = record.centre_of_mass.sel(xyz="x").transpose("run", "time").values.reshape(shape)
+        pair = record.isel(run=[self.starts * list(STARTS).index(law) for law in ("cross_load", "off")])
+        data = xr.Dataset(
+            {
+                "start_phase": ((*dims, "leg"), phase, {"units": "1", "long_name": "phase of each limb [cycle]"}),
+                "start_way": (
+                    dims,
+                    distance,
+                    {"units": "m", "long_name": "displacement of the centre of mass along x"},
+                ),
+            },
+            coords={
+                "law": list(STARTS),
+                "start_time": ("start_time", record.time.values, {"units": "s"}),
+                "leg": record.leg.values,
+            },
+        )
+        return data, pair
+
+    def _disturbed(self, progress: Any) -> xr.Dataset:
+        """Return track, direction, limb phases and tail pitch over time for every disturbance and condition."""
+        arms, place = self._arms, layout(self.robot)
+        runs = [self._disturb(control, name) for name in DISTURBANCES for control in arms.values()]
+        duration = self._at + self.after * self.gait.period
+        record = simulate(runs, duration=duration, timestep=coarse_step(self.robot), every=10, progress=progress)
+        dims, shape = ("disturbance", "arm", "time"), (len(DISTURBANCES), len(arms), record.sizes["time"])
+        track = record.centre_of_mass.transpose("run", "time", "xyz").values
+        phase = record.limb_phase.transpose("run", "time", "leg").values
+        facing = heading(record).transpose("run", "time").values
+        bent = record.servo_angle.isel(servo=list(place.trunk_yaw)).sum("servo").transpose("run", "time").values
+        lacking = axis_bends(self.robot, steerable(self.gait, self.name()), phase)[0] - bent
+        data = xr.Dataset(
+            {
+                "x": (dims, track[..., 0].reshape(shape), {"units": "m", "long_name": "distance forward"}),
+                "y": (dims, track[..., 1].reshape(shape), {"units": "m", "long_name": "distance to the left"}),
+                "heading": (dims, facing.reshape(shape), {"units": "rad", "long_name": "direction of the body"}),
+                "lacking": (dims, lacking.reshape(shape), {"units": "rad", "long_name": "bend missing in the trunk"}),
+                "limb_phase": ((*dims, "leg"), phase.reshape(*shape, -1), {"units": "1", "long_name": "[cycle]"}),
+            },
+            coords={
+                "disturbance": list(DISTURBANCES),
+                "arm": list(arms),
+                "time": ("time", record.time.values, {"units": "s"}),
+                "leg": record.leg.values,
+            },
+        )
+        if "tail" in arms:
+            at = place.tail_pitch[0]
+            pitch, torque = (
+                one.isel(servo=at).transpose("run", "time").values.reshape(shape)
+                for one in (record.servo_target, record.servo_torque)
+            )
+            data["tail_pitch"] = (dims, pitch, {"units": "rad", "long_name": "commanded, down positive"})
+            data["tail_load"] = (dims, torque, {"units": "N m", "long_name": "on the tail's pitch servo"})
+        return data
+
+    def _disturb(self, control: Coordinated, name: str) -> Run:
+        run = Run(robot=self.robot, gait=self.gait, control=control, seed=self.seed, label=name)
+        place = layout(self.robot)
+        match name:
+            case "kick":
+                return replace(run, control=replace(control, kicks=(Kick(self._at, self.kick),)))
+            case "load_noise":
+                return replace(run, control=replace(control, load_noise=self.noise))
+            case "locked_spine":
+                return replace(
+                    run, faults=(Locked(place.servos[place.trunk_yaw[len(place.trunk_yaw) // 2]], at=self._at),)
+                )
+            case "limp_yaw":
+                return replace(run, faults=(Limp(place.servos[place.limbs[0].servos][0], at=self._at),))
+            case "push":
+                return replace(
+                    run, pushes=(Push(force=self.push, at=self._at, duration=self._pushed, body=self._front),)
+                )
+            case "uphill" | "downhill":
+                return replace(run, ground=Ground(uphill=self.slope if name == "uphill" else -self.slope))
+            case "side_slope" | "other_side":
+                return replace(run, ground=Ground(sideways=self.slope if name == "side_slope" else -self.slope))
+        return run
+
+    def draw(self, outcome: Outcome) -> Mapping[str, Any]:
+        """Draw the starts, one of them as a gait diagram, what each rule gains, the tracks."""
+        record = outcome.record
+        error = phase_error(record.start_phase, self.gait).rename(start_time="time")
+        cycles = (error.time - START) / self.gait.period
+        part = record.sel(time=slice(self._at - 1e-9, None))
+        return {
+            "random_starts": draw_fans(error.assign_coords(time=cycles), WITHIN),
+            "finding_the_gait": draw_onset(record.start_phase.assign_coords(start_time=cycles.values), self.gait),
+            "what_each_rule_gains": draw_gain(part.x.isel(time=-1) - part.x.isel(time=0)),
+            "topology": draw_topology(topology(self.robot, self.gait)),
+            "disturbed_tracks": draw_tracks(part, ("limp_yaw", "push", "side_slope")),
+        }
+
+
+experiment = Feedback()

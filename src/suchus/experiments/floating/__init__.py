@@ -1,0 +1,1 @@
+"""Does it float as Archimedes says, and does it right itself?"""

@@ -1,0 +1,241 @@
+"""Does it float as Archimedes says, and does it right itself?"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import partial
+from math import pi, radians
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from suchus import rotation
+from suchus.control import Swimming
+from suchus.design import AnyRobot, Crocodile
+from suchus.design.checks import Checks
+from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
+from suchus.experiments.floating import cases
+from suchus.experiments.floating.figure import draw_checks, draw_righting
+from suchus.gaits import GAITS, own_gait, suits
+from suchus.land import Lake, Run, simulate
+from suchus.model.hydrostatics import hydrostatics
+from suchus.motion import Swim
+from suchus.replay import replay
+from suchus.robots import ROBOTS
+from suchus.verdict import Reading, compared
+
+STILL = Swim(name="still", frequency=1.0, yaw=(0, 0, 0), yaw_lag=(0, 0, 0), tail=0.0, tail_lag=0.0)
+"""No motion."""
+_UPRIGHT = 0.035
+"""Heel within which it counts as upright [rad]; 2 degrees."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Floating(Experiment):
+    """Forces of the water against exact answers, and a robot that is let go heeled.
+
+    Sphere, cylinder and box have drafts in closed form; a box that is let go heaves at a known period and keeps its
+    energy; a spheroid in ideal water keeps its momentum; volumes under water are those of counted points. The robot
+    lies still, limbs held out, and is let go at the surface from several angles of heel. Its righting lever, with trim
+    and draft free, is drawn over the heel as naval architects do.
+    """
+
+    title = "Does it float as Archimedes says, and does it right itself?"
+    shows = "Beyond the article, whose robot is amphibious and whose body is not said to float"
+    needs = ("tables", "cable_tail")  # as the controller that holds the limbs out
+
+    robot: AnyRobot = field(default_factory=lambda: ROBOTS["floating_caiman"])
+    """The robot that floats."""
+    bare: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
+    """The robot without its hull, whose hydrostatics are set beside."""
+    heels: tuple[float, ...] = (radians(60), radians(120), radians(150))
+    """Angles of heel from which the robot is let go [rad]; the last one is the measure."""
+    duration: float = 20.0
+    """Duration for which the robot is watched [s]; the mean of the last quarter counts as its rest."""
+    energy_time: float = 60.0
+    """Duration over which the energy of the box is followed [s]."""
+    periods: int = 10
+    """Periods of heave that are watched [-]."""
+    poses: int = 16
+    """Random poses in which volumes are counted, of each kind of piece [-]."""
+    points: int = 2**18
+    """Points that are counted, a power of two [-]."""
+    angles: int = 37
+    """Angles of heel from 0 to 180 degrees at which the righting lever is computed [-]."""
+    timestep: float = 0.002
+    """Time step of the physics of boxes and spheroids [s]."""
+
+    def __post_init__(self) -> None:
+        with Checks(self.name(), self) as check:
+            check.rising("heels", 0.0, pi, "rad")
+            check.number("duration", 0.1, 1e4, "s")
+            check.number("energy_time", 0.2, 1e4, "s")
+            check.whole("periods", 2, 1000)
+            check.whole("poses", 1, 1000)
+            check.whole("points", 2**8, 2**24)
+            check.that(self.points.bit_count() == 1, f"points is {self.points}; a power of two is needed")
+            check.whole("angles", 3, 1000)
+            check.number("timestep", 1e-5, 0.01, "s")
+
+    def quick(self) -> "Floating":
+        """Return one heel, few seconds, fewer points and angles."""
+        return replace(self, heels=(radians(150),), duration=1.5, energy_time=1.0, poses=2, points=2**14, angles=5)
+
+    def simulate(self, progress: Progress = silent) -> Simulated:
+        """Float the bodies whose answers are known, then let the robot go."""
+        progress("exact answers", 0.0)
+        parts = [self._drafts(), self._heave(), self._energy(), self._drift(), self._volumes(), self._table()]
+        progress("righting levers", 0.4)
+        parts.append(self._levers())
+        record = self._let_go(staged(progress, "let go", 0.5, 1.0))
+        return Simulated(record=xr.merge([*parts, record], compat="no_conflicts"), replays=self._replays(record))
+
+    def _drafts(self) -> xr.Dataset:
+        found = cases.drafts()
+        return xr.Dataset(
+            {
+                "body_draft": ("float", [cases.draft_of(one.body) for one in found], {"units": "m"}),
+                "exact_draft": ("float", [one.exact for one in found], {"units": "m"}),
+            },
+            coords={"float": [one.name for one in found]},
+        )
+
+    def _heave(self) -> xr.Dataset:
+        added = (0.0, 0.6)
+        watched = [cases.heave(one, 0.005, self.periods, self.timestep) for one in added]
+        return xr.Dataset(
+            {
+                "heave_period": ("added_mass", [cases.period_of(one) for one, _ in watched], {"units": "s"}),
+                "exact_heave_period": ("added_mass", [exact for _, exact in watched], {"units": "s"}),
+            },
+            coords={"added_mass": list(added)},
+        )
+
+    def _energy(self) -> xr.Dataset:
+        names = ("implicitfast", "RK4")
+        watched = [cases.rocking(self.energy_time, name, self.timestep) for name in names]  # type: ignore[arg-type]
+        energy = np.array([one.energy.values for one in watched])
+        return xr.Dataset(
+            {
+                "energy": (("integrator", "box_time"), energy, {"units": "J"}),
+                "gained": ("integrator", [cases.gained_energy(one) for one in watched], {"units": "1"}),
+            },
+            coords={"integrator": list(names), "box_time": ("box_time", watched[0].time.values, {"units": "s"})},
+        )
+
+    def _drift(self) -> xr.Dataset:
+        found = [cases.drift(cases.drifting("RK4", self.timestep)), cases.drift(cases.drifting("implicitfast", 0.001))]
+        return xr.Dataset({"drift": ("integrator", found[::-1], {"units": "1"})})
+
+    def _volumes(self) -> xr.Dataset:
+        found = {kind: cases.volume_errors(body, self.poses, self.points) for kind, body in cases.kinds().items()}
+        return xr.Dataset(
+            {"volume_off": (("piece", "pose"), np.array(list(found.values())), {"units": "1"})},
+            coords={"piece": list(found)},
+        )
+
+    @staticmethod
+    def _table() -> xr.Dataset:
+        found = cases.public_table()
+        units = {"neutral": "m/s2", "ballast": "N", "keel": "rad/s2"}
+        return xr.Dataset({f"table_{name}": ((), value, {"units": units[name]}) for name, value in found.items()})
+
+    def _levers(self) -> xr.Dataset:
+        both = [hydrostatics(one, self._posture(one), heels=self.angles) for one in (self.robot, self.bare)]
+        found = xr.Dataset(
+            {"lever": (("hull", "heel"), np.array([one.lever for one in both]), {"units": "m"})},
+            coords={"hull": ["floating", "bare"], "heel": ("heel", both[0].heel, {"units": "rad"})},
+        )
+        for name, unit in _STATICS.items():
+            found[f"static_{name}"] = ("hull", np.array([float(getattr(one, name)) for one in both]), {"units": unit})
+        return found
+
+    def _posture(self, robot: AnyRobot) -> np.ndarray | None:
+        return Swimming(swim=STILL).targets(robot, np.zeros(1))[0] if isinstance(robot, Crocodile) else None
+
+    def _let_go(self, progress: Any) -> xr.Dataset:
+        crawl = GAITS["belly_crawl"]
+        gait = crawl if suits(self.robot, crawl) else own_gait(self.robot)
+        runs = [
+            Run(
+                robot=self.robot,
+                gait=gait,
+                lake=Lake(level=3.0, heel=heel),
+                control=Swimming(swim=STILL),
+                label=f"{np.degrees(heel):.0f} degrees",
+            )
+            for heel in self.heels
+        ]
+        return simulate(runs, duration=self.duration, progress=progress)
+
+    def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
+        caption = f"Let go at the surface, heeled by {np.degrees(self.heels[-1]):.0f} degrees, limbs held out."
+        page = partial(replay, record.isel(run=-1), self.robot, title="A robot rights itself", caption=caption)
+        return {"righting_replay.html": Replay(caption=caption, make=page)}
+
+    def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
+        """Return how far off the exact answers are, and how the robot floats."""
+        heave = np.abs(record.heave_period / record.exact_heave_period - 1)
+        rest = record.isel(time=slice(-max(record.sizes["time"] // 4, 1), None))
+        roll = rotation.heel(record.orientation.values)
+        last = np.abs(roll[-1, -rest.sizes["time"] :])
+        upright = np.abs(roll[-1]) < _UPRIGHT
+        since = int(np.flatnonzero(~upright)[-1]) + 1 if not upright.all() else 0
+        righted = float(record.time[since]) if since < len(upright) else float("nan")
+        afloat, bare = record.sel(hull="floating"), record.sel(hull="bare")
+        return {
+            "draft_error": Measure(float(np.abs(record.body_draft - record.exact_draft).max()), "m"),
+            "heave_period_error": Measure(float(heave.max()), "-"),
+            "energy_gain": Measure(float(record.gained.sel(integrator="implicitfast")), "-"),
+            "energy_gain_rk4": Measure(float(record.gained.sel(integrator="RK4")), "-"),
+            "impulse_drift": Measure(float(record.drift.sel(integrator="RK4")), "-"),
+            "impulse_drift_implicitfast": Measure(float(record.drift.sel(integrator="implicitfast")), "-"),
+            "volume_error": Measure(float(record.volume_off.max()), "-"),
+            "acceleration_neutral": Measure(float(record.table_neutral), "m/s2"),
+            "force_of_ballast": Measure(float(record.table_ballast), "N"),
+            "acceleration_of_keel": Measure(float(record.table_keel), "rad/s2"),
+            "share_above": Measure(float(1.0 - rest.share_under.isel(run=0).mean()), "-"),
+            "roll_at_rest": Measure(float(last.mean()), "rad"),
+            "righting_time": Measure(righted, "s"),
+            **{f"{name}_{kind}": Measure(float(one[f"static_{name}"]), unit)
+               for kind, one in (("floating", afloat), ("bare", bare)) for name, unit in _STATICS.items()
+               if np.isfinite(float(one[f"static_{name}"]))},
+        }  # fmt: skip
+
+    def explain(self, measures: Mapping[str, float]) -> str:
+        """Say how the bare robot lies in the water, what the hull changes, and how far the forces can be trusted."""
+        m = {name: Reading(value) for name, value in measures.items()}
+        bare = (
+            f"The bare robot sinks: it weighs {m['mass_bare']:.2f} kg and displaces {1e3 * m['volume_bare']:.2f} l, so "
+            f"that {1e3 * m['missing_bare']:.2f} l of foam or {m['surplus_bare']:.2f} kg less would be needed"
+            if m["surplus_bare"] > 0
+            else f"The bare robot floats: it weighs {m['mass_bare']:.2f} kg and could displace "
+            f"{1e3 * m['volume_bare']:.2f} l"
+        )
+        gm = compared(m["metacentric_height_floating"], 0.0, less="unstable", more="stable", same="indifferent")
+        end = (
+            f"comes to rest at {m['roll_at_rest']:deg.1f} degrees"
+            + (f", upright after {m['righting_time']:.1f} s" if m["righting_time"] == m["righting_time"] else "")
+        )  # fmt: skip
+        return (
+            f"{bare}. With its hull it floats with {m['share_above']:.1%} of its volume above the surface and is "
+            f"{gm} upright (metacentric height {m['metacentric_height_floating']:mm.0f} mm); its righting lever "
+            f"vanishes at {m['vanishing_floating']:deg.0f} degrees of heel, and let go at the greatest heel it {end}. "
+            f"The forces are exact to rounding where an answer is known (draft {m['draft_error']:.0e} m); what is left "
+            f"is the time step's: heave period {m['heave_period_error']:.0e}, energy {m['energy_gain']:.1%} in the "
+            f"physics' own steps and {m['energy_gain_rk4']:.0e} in Runge-Kutta's."
+        )
+
+    def draw(self, outcome: Outcome) -> Mapping[str, Any]:
+        """Draw the righting lever with the rolls, and the checks against exact answers."""
+        return {"righting": draw_righting(outcome.record), "checks": draw_checks(outcome.record)}
+
+
+_STATICS: Mapping[str, str] = {
+    "mass": "kg", "volume": "m3", "missing": "m3", "surplus": "kg", "draft": "m", "trim": "rad",
+    "metacentric_height": "m", "vanishing": "rad",
+}  # fmt: skip
+"""Numbers of ``Hydrostatics`` that are kept, with their units."""
+
+
+experiment = Floating()

@@ -1,0 +1,1 @@
+"""When do the feet stand, and which way do spine and tail bend?"""

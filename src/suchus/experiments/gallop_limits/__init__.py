@@ -1,0 +1,1 @@
+"""Could the robot gallop, and which servos would it take?"""

@@ -1,0 +1,246 @@
+"""Could the robot gallop, and which servos would it take?"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
+from math import isfinite
+from typing import Any, ClassVar
+
+import numpy as np
+import xarray as xr
+
+from suchus.design import Crocodile, Servo, layout
+from suchus.design.checks import Checks
+from suchus.design.servos import with_servos
+from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
+from suchus.experiments.gallop_limits.figure import draw_gallop_limits
+from suchus.experiments.gallop_limits.gaits import BOUNDS, TROTS
+from suchus.experiments.gallop_limits.searched import Searched
+from suchus.figures import captioned
+from suchus.gaits import GAITS
+from suchus.land import Run, simulate
+from suchus.metrics import between, displacement, flight_share
+from suchus.motion import START, AnyGait, Gait
+from suchus.replay import replay
+from suchus.robots import ROBOTS
+from suchus.verdict import Reading
+
+_RUN_UP = 1.0  # [s]; before anything is measured
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GallopLimits(Experiment):
+    """Bounding gaits with servos of growing speed and torque, beside the fastest trots and walks with the same servos.
+
+    Every servo has a straight torque-speed line. The gaits are no gaits of the robot: a search by the cross-entropy
+    method found them, twelve numbers each, for servos of 3 N m at the legs and one no-load speed. On the map each is
+    the same command to all servos; of each kind the fastest counts. A robot flies while nothing touches the ground.
+    """
+
+    title = "Could the robot gallop, and which servos would it take?"
+    shows = "Section II.A"
+    needs = ("tables", "article_spine", "cable_tail")
+    judged_with = ("robot", "bounds", "trots", "walks", "noise")
+    judged_from: ClassVar[Mapping[str, float]] = {"speeds": 4, "torques": 3, "seconds": 3.0}
+
+    robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
+    """The robot that is to gallop."""
+    bounds: tuple[Searched, ...] = BOUNDS
+    """Bounding gaits, each found for another servo: both front feet, then both hind feet."""
+    trots: tuple[Searched, ...] = TROTS
+    """Trots, found by the same search with the same servos, so that a bound is not compared with a lesser effort."""
+    walks: tuple[Gait, ...] = field(
+        default_factory=lambda: tuple(
+            replace(GAITS[name], period=0.6 * GAITS[name].period) for name in ("semi_erect", "high_walk")
+        )
+    )
+    """Walks of the shelf, at short cycle times, that a gallop must outrun too."""
+    speeds: tuple[float, ...] = (5.0, 7.0, 10.0, 14.0, 20.0, 30.0, 60.0)
+    """No-load speeds of the servos [rad/s]; hobby servos reach 7 to 12, the last is out of any servo's reach."""
+    torques: tuple[float, ...] = (1.5, 3.0, 6.0)
+    """Torque limits of the legs' servos [N m]; those of the trunk and tail keep their ratio to them."""
+    noise: float = 0.01
+    """Standard deviation of the noise on every commanded angle [rad]: what only works without it does not count."""
+    seconds: float = 3.0
+    """Duration for which each run is measured, after a second more [s]."""
+    timestep: float = 0.002
+    """Time step of the physics [s]."""
+
+    def __post_init__(self) -> None:
+        with Checks(self.name(), self) as check:
+            check.rising("speeds", 0.1, 1e3, "rad/s")
+            check.rising("torques", 0.01, 1e3, "N m")
+            check.number("seconds", 0.5, 60.0, "s")
+            check.number("timestep", 1e-5, 0.01, "s")
+            check.number("noise", 0.0, 1.0, "rad")
+            for name in ("bounds", "walks"):
+                check.that(len(getattr(self, name)) > 0, f"{self.name()}.{name} is empty; one gait at least is needed")
+
+    def quick(self) -> "GallopLimits":
+        """Return two speeds, one torque, half a second, a coarse step."""
+        return replace(self, speeds=(7.0, 30.0), torques=(2.5,), seconds=0.5, timestep=0.005)
+
+    def simulate(self, progress: Progress = silent) -> Simulated:
+        """Bound, trot and walk with every servo on the map."""
+        searched = [("bound", one) for one in self.bounds] + [("trot", one) for one in self.trots]
+        kinds = [*(kind for kind, _ in searched), *("walk" for _ in self.walks)]
+        gaits: list[AnyGait] = [*(one.table(self.robot) for _, one in searched), *self.walks]
+        cells = [(torque, speed) for torque in self.torques for speed in self.speeds]
+        robots = [self._with(torque, speed) for torque, speed in cells]
+        runs = [Run(robot=robot, gait=gait, noise=self.noise, label=gait.name) for robot in robots for gait in gaits]
+        duration = round(START + _RUN_UP + self.seconds, 2)
+        record = simulate(
+            runs, duration=duration, timestep=self.timestep, progress=staged(progress, "bound and walk", 0.0, 1.0)
+        )
+        shape = (len(self.torques), len(self.speeds), len(gaits))
+        part = between(record, START + _RUN_UP)
+        fast = abs(part.servo_velocity.isel(servo=self._legs)).quantile(0.99, "time").max("servo")
+        values = {
+            "speed": (displacement(record, START + _RUN_UP).sel(xyz="x") / self.seconds, "m/s", "speed forward"),
+            "flight": (flight_share(record, START + _RUN_UP), "1", "share of the time in which nothing touches"),
+            "joint_speed": (fast, "rad/s", "99th percentile of the fastest leg joint"),
+        }
+        data = xr.Dataset(
+            {
+                name: (
+                    ("torque", "servo_speed", "gait"),
+                    array.values.reshape(shape),
+                    {"units": unit, "long_name": what},
+                )
+                for name, (array, unit, what) in values.items()
+            },
+            coords={
+                "torque": ("torque", list(self.torques), {"units": "N m", "long_name": "torque limit"}),
+                "servo_speed": ("servo_speed", list(self.speeds), {"units": "rad/s", "long_name": "no-load speed"}),
+                "gait": [f"{gait.name} {gait.period:g} s" for gait in gaits],
+                "kind": ("gait", kinds),
+            },
+            attrs={"own_torque": self._own.torque, "own_speed": self._own.speed},
+        )
+        return Simulated(record=data, replays=self._replays(record, cells, data))
+
+    @property
+    def _own(self) -> Servo:
+        """The servo of the legs as designed."""
+        return self.robot.hind_leg.servo
+
+    @property
+    def _legs(self) -> list[int]:
+        """Places of the legs' servos."""
+        place = layout(self.robot)
+        return [index for limb in place.limbs for index in range(*limb.servos.indices(len(place.servos)))]
+
+    def _with(self, torque: float, speed: float) -> Crocodile:
+        """Return the robot with other servos, each with a torque-speed line."""
+        stronger = torque / self._own.torque
+
+        def changed(servo: Servo) -> Servo:
+            return replace(servo, torque=servo.torque * stronger, speed=speed).with_speed_line()
+
+        return with_servos(self.robot, changed)
+
+    def _replays(
+        self, record: xr.Dataset, cells: Sequence[tuple[float, float]], found: xr.Dataset
+    ) -> Mapping[str, Replay]:
+        """Return the fastest bound of all and, half transparent, the fastest with servos nearest to the robot's own."""
+        bound = found.speed.isel(gait=found.kind.values == "bound").values.reshape(len(cells), -1)
+        best = int(np.argmax(bound.max(1)))
+        own = min(
+            range(len(cells)),
+            key=lambda i: (
+                abs(cells[i][0] - self._own.torque) / self._own.torque
+                + abs(cells[i][1] - self._own.speed) / self._own.speed
+            ),
+        )
+        said = ["{:g} N m and {:g} rad/s".format(*cells[i]) for i in (best, own)]
+        runs = [i * found.sizes["gait"] + int(np.argmax(bound[i])) for i in (best, own)]
+        caption = f"Bounds with servos of {said[0]}, and, half transparent, of {said[1]}."
+        page = partial(
+            replay,
+            record.isel(run=runs[0]),
+            self.robot,
+            ghost=record.isel(run=runs[1]),
+            labels=tuple(said),
+            title="Could it gallop?",
+            caption=caption,
+        )
+        return {"gallop_replay.html": Replay(caption=caption, make=page)}
+
+    def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
+        """Return how fast a bound is with the robot's servos and with better ones, and from which on it pays."""
+        bound, walks = fastest(record, "bound"), fastest(record, "trot", "walk")
+        own = {"torque": record.attrs["own_torque"], "servo_speed": record.attrs["own_speed"]}
+        here, there = (one.sel(own, method="nearest") for one in (bound, walks))
+        gallops = (bound.speed > walks.speed) & (bound.flight >= FLIES)
+        pays = gallops.sel(torque=own["torque"], method="nearest")
+        best = bound.isel(bound.speed.argmax(["torque", "servo_speed"]))
+        return {
+            "speed_bound": Measure(float(here.speed), "m/s"),
+            "flight_bound": Measure(float(here.flight), "-"),
+            "joint_speed_bound": Measure(float(here.joint_speed), "rad/s"),
+            "speed_walk": Measure(float(there.speed), "m/s"),
+            "bound_over_walk": Measure(float(here.speed / there.speed), "-"),
+            "speed_bound_best": Measure(float(best.speed), "m/s"),
+            "flight_bound_best": Measure(float(best.flight), "-"),
+            "joint_speed_best": Measure(float(best.joint_speed), "rad/s"),
+            "torque_best": Measure(float(best.torque), "N m"),
+            "servo_speed_best": Measure(float(best.servo_speed), "rad/s"),
+            "servo_speed_own": Measure(own["servo_speed"], "rad/s"),
+            "torque_own": Measure(own["torque"], "N m"),
+            "servo_speed_needed": Measure(_first(pays.servo_speed.values, pays.values), "rad/s"),
+            "gallops_share": Measure(float(gallops.mean()), "-"),
+        }
+
+    def explain(self, measures: Mapping[str, float]) -> str:
+        """Say what the bound comes to with the robot's servos, and which it would take."""
+        m = {name: Reading(value) for name, value in measures.items()}
+        verb = "outruns" if m["bound_over_walk"] > 1.0 else "does not outrun"
+        needed = (
+            f"At {m['torque_own']:g} N m it takes servos of {m['servo_speed_needed']:g} rad/s to gallop"
+            if isfinite(m["servo_speed_needed"])
+            else f"At {m['torque_own']:g} N m no servo speed of the map makes it gallop"
+        )
+        return (
+            f"With servos of {m['torque_own']:g} N m and {m['servo_speed_own']:g} rad/s the bound goes "
+            f"{m['speed_bound']:.2f} m/s, {m['flight_bound']:.0%} of the time in flight, and {verb} the fastest trot "
+            f"or walk ({m['speed_walk']:.2f} m/s); its leg joints turn with up to {m['joint_speed_bound']:.1f} rad/s. "
+            f"{needed}, which is to be faster than any trot or walk with the same servos and to fly a tenth of the "
+            f"time at least. The fastest bound on the map, with {m['torque_best']:g} N m and "
+            f"{m['servo_speed_best']:g} rad/s, goes {m['speed_bound_best']:.2f} m/s with {m['flight_bound_best']:.0%} "
+            f"in flight, its leg joints turning with {m['joint_speed_best']:.0f} rad/s."
+        )
+
+    def draw(self, outcome: Outcome) -> Mapping[str, Any]:
+        """Draw the bound's speed and flight over the servos' speed, beside the fastest walk."""
+        bound, walks = fastest(outcome.record, "bound"), fastest(outcome.record, "trot", "walk")
+        figure = captioned(
+            draw_gallop_limits(bound, walks, outcome.record.attrs["own_speed"]),
+            "The fastest bounding gait with servos of growing no-load speed and torque (colours). Left: its speed; "
+            "dashed: the fastest trot or walk with the same servos. Right: the share of the time in which nothing "
+            "touches the ground. The grey line is the robot's own servo.",
+        )
+        return {"gallop_limits": figure}
+
+
+FLIES = 0.1
+"""Share of the time in flight from which a bound counts as a gallop here [-]; less is a walk that stumbles."""
+
+
+def fastest(record: xr.Dataset, *kinds: str) -> xr.Dataset:
+    """Return speed [m/s], flight [-] and joint speed [rad/s] of the fastest gait of some kinds with every servo.
+
+    Args:
+        record: of the experiment.
+        kinds: ``bound``, ``trot`` or ``walk``.
+    """
+    chosen = record.isel(gait=np.isin(record.kind.values, kinds))
+    return chosen.isel(gait=chosen.speed.argmax("gait"))
+
+
+def _first(speeds: np.ndarray, pays: np.ndarray) -> float:
+    """Return the least speed from which on all faster ones pay too, infinite if not even the fastest does [rad/s]."""
+    from_here = np.flip(np.logical_and.accumulate(np.flip(pays)))
+    return float(speeds[from_here][0]) if from_here.any() else float("inf")
+
+
+experiment = GallopLimits()

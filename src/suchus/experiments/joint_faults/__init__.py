@@ -1,0 +1,1 @@
+"""How far does it still crawl when joints of its legs fail?"""

@@ -1,0 +1,386 @@
+"""How far does the robot still get when joints of its legs fail?"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import partial
+from itertools import product
+from typing import Any, ClassVar
+
+import numpy as np
+import xarray as xr
+from scipy.stats import qmc
+
+from suchus.control import Control, Coordinated, HeadingRule, OpenLoop
+from suchus.design import AnyRobot, Chosen, layout, meaning, value_at, with_values
+from suchus.design.checks import Checks
+from suchus.design.scale import coarse_step
+from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
+from suchus.experiments.joint_faults import findings
+from suchus.experiments.joint_faults.figure import draw_held, draw_losses, draw_over_time, draw_tracks
+from suchus.experiments.joint_faults.findings import ARMS
+from suchus.experiments.joint_faults.records import lay, support
+from suchus.gaits import GAITS, conditions_of, suits
+from suchus.land import (
+    KINDS,
+    LEGS_FAILED,
+    Fault,
+    Ground,
+    Limp,
+    Locked,
+    Run,
+    angle_at,
+    failing_joints,
+    joint_failure,
+    simulate,
+)
+from suchus.land.failed import Kind, Legs
+from suchus.metrics import (
+    between,
+    displacement,
+    heading_change,
+    path_length,
+    whole,
+)
+from suchus.motion import START, AngleTable, AnyGait, Gait, straightened, with_bends, with_strokes
+from suchus.paper import CYCLES
+from suchus.replay import replay
+from suchus.robots import ROBOTS
+
+_TRUNK = ("trunk_bend", "spine_phase", "tail_bend", "tail_phase", "tail_pitch")  # the rest of a gait is its legs
+_OF_A_LIMB = 2  # hinges of a limb, from the hip on, whose loss is repeated and steered; the article's yaw and pitch
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class JointFaults(Experiment):
+    """Front and hind; yaw, pitch and knee; limp and locked; one leg and both; with spine and tail and with limbs only.
+
+    All of it over variations of gait and friction. A change of displacement is measured against the intact run with
+    spine and tail of the same variation, as the article does; ``faults.csv`` has it against the intact run of the same
+    condition too. Two more conditions are run in the judged reading: ``steered`` with the feedback rules and the
+    heading loop, and ``limbs_tail_lifted``, limbs only with the tail in the air, where a servo lifts it. Displacement
+    is forward, along the direction that the body faced at the start. The limbs of another body lose the joints that
+    they have.
+    """
+
+    title = "How far does it still crawl when joints of its legs fail?"
+    shows = "Section IV.C, Figs 18 to 21"
+    needs = ("limbs",)
+    judged_with = ("robot", "gait", "control", "lifted", "cycles", "hold", "kind", "legs")
+    judged_from: ClassVar[Mapping[str, float]] = {"variations": 8, "repeats": 4}
+
+    robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
+    """The robot whose joints fail."""
+    gait: AnyGait = field(default_factory=lambda: GAITS["belly_crawl"])
+    """The crawl with spine and tail."""
+    control: AnyGait = field(default_factory=lambda: GAITS["limbs_only"])
+    """The crawl of the control group, its tail lying still; its legs follow those of ``gait``."""
+    lifted: AnyGait = field(default_factory=lambda: GAITS["limbs_tail_lifted"])
+    """The control group with its tail in the air, for comparison; its legs follow those of ``gait``."""
+    cycles: int = int(CYCLES)
+    """Number of cycles that are measured [-]."""
+    variations: int = 8
+    """Gaits and frictions [-]; the first is the gait as given, without noise."""
+    spread: float = 0.25
+    """Part of each plausible range of the gait's numbers that the variations cover, about the number given [-]."""
+    friction_spread: float = 0.2
+    """Half-width of the uniform spread of the friction, as a fraction of it [-]."""
+    noise: float = 0.01
+    """Standard deviation of the noise on every commanded angle [rad]; a hobby servo's dead band."""
+    repeats: int = 4
+    """Runs of the judged reading in the gait as given, with noise and another friction, for the spread [-]."""
+    repeat_friction_spread: float = 0.1
+    """Half-width of the uniform spread of the friction in the repeats, as a fraction of it [-]."""
+    hold: float = 0.5
+    """Where a locked joint holds in the range that the gait asks of it: 0 least, 1 greatest [-].
+
+    Not in the paper; the middle, because a servo that no longer hears commands may stop anywhere and the middle is
+    farthest from both ends. ``Locked`` without an angle would hold where the joint is when it fails, which at the
+    start of a run is an accident of the phase; what other places do is measured over ``holds``.
+    """
+    holds: tuple[float, ...] = (0.0, 0.25, 0.5, 0.75, 1.0)
+    """Places in that range at which one leg's joint is locked, for the curve [-]."""
+    kind: Kind = "limp"
+    """The reading of the article's 'lost' that is judged.
+
+    Not in the paper; limp, because a servo that 'cannot receive and execute commands' gets no pulses, and gives way.
+    """
+    legs: Legs = "one"
+    """Whether one leg or both of a girdle are judged; one, because the text speaks of individual joints."""
+    timestep: float = 0.005
+    """Time step of the physics [s]; 2 ms were measured to move no median by more than 3 points of a hundred, while
+    10 ms move some by 6 and change what steering does to a failed hind yaw joint."""
+    seed: int = 0
+    """Seed of the variations and their noise [-]."""
+
+    def __post_init__(self) -> None:
+        with Checks(self.name(), self) as check:
+            check.whole("cycles", 1, 1000)
+            check.whole("variations", 1, 10_000)
+            check.number("spread", 0.0, 1.0, "")
+            check.number("friction_spread", 0.0, 0.9, "")
+            check.whole("repeats", 1, 10_000)
+            check.number("repeat_friction_spread", 0.0, 0.9, "")
+            check.number("noise", 0.0, 1.0, "rad")
+            check.number("hold", 0.0, 1.0, "")
+            check.rising("holds", 0.0, 1.0, "")
+            check.number("timestep", 1e-5, 0.01, "s")
+            check.whole("seed", 0, 2**31)
+
+    def quick(self) -> "JointFaults":
+        """One cycle, two variations, one place of locking."""
+        return replace(self, cycles=1, variations=2, repeats=1, holds=(0.0, 1.0), timestep=0.01)
+
+    def simulate(self, progress: Progress = silent) -> Simulated:
+        """Break joints."""
+        record = self._campaign(staged(progress, "campaign", 0.0, 0.75))
+        record = record.merge(self._spread(staged(progress, "repeats", 0.75, 0.83)))
+        record = record.merge(self._locked_at(staged(progress, "places of locking", 0.83, 0.9)))
+        lost_pitch = self._failed_pitch(staged(progress, "support", 0.9, 0.92))
+        record = record.merge(support(lost_pitch))
+        record = record.merge(self._others(staged(progress, "steered, and with the tail lifted", 0.92, 1.0)))
+        record = record.assign_attrs(judged_kind=self.kind, judged_legs=self.legs)
+        return Simulated(
+            record=record, tables={"faults.csv": findings.table(record)}, replays=self._replays(lost_pitch)
+        )
+
+    def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
+        """Return what every loss costs in every reading, how far faults are borne, and what carries the body."""
+        return findings.measures(record)
+
+    def explain(self, measures: Mapping[str, float]) -> str:
+        """Say which choice of reading decides most, what walking without the trunk costs, and what steering does."""
+        return findings.explained(measures, self.kind, self.legs)
+
+    @property
+    def _duration(self) -> float:
+        return START + self.cycles * self.gait.period
+
+    def _varied(self) -> list[tuple[dict[str, AnyGait], float]]:
+        """Return the gaits of both conditions and the friction scale of each variation."""
+        if not isinstance(self.gait, Gait):
+            return self._varied_patterns()
+        chosen: tuple[Chosen, ...] = GAITS.beside("belly_crawl", "chosen", ())
+        points = qmc.LatinHypercube(len(chosen) + 1, rng=self.seed).random(max(self.variations - 1, 1))
+        varied = [(self._arms(self.gait), 1.0)]
+        for point in points[: self.variations - 1]:
+            values = {}
+            for one, share in zip(chosen, point, strict=False):
+                given, reach = value_at(self.gait, one.field), 0.5 * self.spread * (one.high - one.low)
+                low, high = max(given - reach, min(one.low, given)), min(given + reach, max(one.high, given))
+                values[one.field] = float(low + share * (high - low))
+            gait = with_values(self.gait, values)
+            scale = float(1.0 + self.friction_spread * (2.0 * point[-1] - 1.0))
+            varied.append((self._arms(gait), scale))
+        return varied
+
+    def _varied_patterns(self) -> list[tuple[dict[str, AnyGait], float]]:
+        """Return the same for a gait of any body, of which all strokes and all bends vary together."""
+        points = qmc.LatinHypercube(3, rng=self.seed).random(max(self.variations - 1, 1))
+        varied = [(self._arms(self.gait), 1.0)]
+        for point in points[: self.variations - 1]:
+            stroke, bend = 1.0 + 0.5 * self.spread * (2.0 * point[:2] - 1.0)
+            gait = with_bends(self.robot, with_strokes(self.gait, float(stroke)), float(bend))
+            gait = gait if suits(self.robot, gait) else self.gait
+            varied.append((self._arms(gait), float(1.0 + self.friction_spread * (2.0 * point[-1] - 1.0))))
+        return varied
+
+    @property
+    def _joints(self) -> tuple[str, ...]:
+        """Names of the joints that fail."""
+        return failing_joints(self.robot)
+
+    @property
+    def _failing(self) -> tuple[str, ...]:
+        """The joints whose loss is repeated, steered and locked in several places."""
+        return self._joints[: _OF_A_LIMB * len(layout(self.robot).robot.girdles)]
+
+    @property
+    def _lifts(self) -> bool:
+        """Whether the control group can lift its tail."""
+        return "limbs_tail_lifted" in conditions_of(self.robot, self.gait, self.control)
+
+    def _arms(self, gait: AnyGait) -> dict[str, AnyGait]:
+        """Return the gaits of all conditions with the legs of one gait."""
+        if not isinstance(gait, Gait):
+            return {"coordinated": gait, "limbs_only": straightened(self.robot, gait, name="limbs_only")}
+        limbs: dict[str, AnyGait] = {
+            arm: replace(gait, name=other.name, **{name: getattr(other, name) for name in _TRUNK})
+            for arm, other in (("limbs_only", self.control), ("limbs_tail_lifted", self.lifted))
+        }
+        arms: dict[str, AnyGait] = {"coordinated": gait}
+        return arms | limbs
+
+    def _broken(self, gait: AnyGait, joint: str) -> tuple[Fault, ...]:
+        """Return the faults of a joint in the judged reading."""
+        return joint_failure(self.robot, gait, joint, self.kind, self.legs, hold=self.hold)
+
+    def _campaign(self, progress: Any) -> xr.Dataset:
+        """Run everything in one batch and keep how far each got over time."""
+        varied = self._varied()
+        cells = list(product(self._joints, KINDS, LEGS_FAILED))
+        runs = [
+            Run(
+                robot=self.robot,
+                gait=gaits[arm],
+                ground=Ground(friction_scale=scale),
+                faults=faults,
+                noise=self.noise if i else 0.0,
+                seed=self.seed + i,
+            )
+            for i, (gaits, scale) in enumerate(varied)
+            for arm in ARMS
+            for faults in ((), *(joint_failure(self.robot, gaits[arm], *cell, hold=self.hold) for cell in cells))
+        ]
+        record = whole(simulate(runs, duration=self._duration, timestep=self.timestep, every=10, progress=progress))
+        net = (displacement(record).sel(xyz=["x", "y"]) ** 2).sum("xyz") ** 0.5
+        numbers = {
+            "forward": (displacement(record).sel(xyz="x"), "m", "displacement forward"),
+            "net": (net, "m", "displacement on the ground"),
+            "path": (path_length(record), "m", "path length, cycle by cycle"),
+            "turn": (heading_change(record), "rad", "how far the body turned, left positive"),
+        }
+        distance = between(record).centre_of_mass.sel(xyz=["x", "y"])
+        tracks = (distance - distance.isel(time=0)).transpose("run", "time", "xyz").values
+        shape = (len(varied), len(ARMS), 1 + len(cells))
+        data = xr.Dataset(coords={"variation": range(shape[0]), "arm": list(ARMS), "time": distance.time.values})
+        data = data.assign_coords(
+            joint=list(self._joints), kind=list(KINDS), legs=list(LEGS_FAILED), on_ground=["x", "y"]
+        )
+        for name, (array, unit, what) in numbers.items():
+            lay(data, name, array.values.reshape(shape), (), unit, what)
+        lay(data, "track", tracks.reshape(*shape, -1, 2), ("time", "on_ground"), "m", "track of the centre of mass")
+        about = meaning.meanings(Gait)
+        for one in GAITS.beside("belly_crawl", "chosen", ()) if isinstance(self.gait, Gait) else ():
+            values = [value_at(gaits["coordinated"], one.field) for gaits, _ in varied]
+            data[f"gait_{one.field}"] = ("variation", values, {"units": meaning.unit(about[one.field])})
+        data["grip"] = ("variation", [scale for _, scale in varied], {"units": "1", "long_name": "friction scale"})
+        data["time"].attrs["units"] = "s"
+        data["period"] = ((), self.gait.period, {"units": "s"})
+        return data
+
+    def _spread(self, progress: Any) -> xr.Dataset:
+        """Repeat the judged reading in the gait as given, with noise on the servos and other friction."""
+        gaits, _ = self._varied()[0]
+        spread = self.repeat_friction_spread
+        scales = np.random.default_rng(self.seed).uniform(1 - spread, 1 + spread, self.repeats)
+        runs = [
+            Run(
+                robot=self.robot,
+                gait=gaits[arm],
+                ground=Ground(friction_scale=float(scale)),
+                faults=faults,
+                noise=self.noise,
+                seed=self.seed + 1 + i,
+            )
+            for i, scale in enumerate(scales)
+            for arm in ARMS
+            for faults in ((), *(self._broken(gaits[arm], joint) for joint in self._failing))
+        ]
+        distance = self._forward(runs, progress).reshape(self.repeats, len(ARMS), 1 + len(self._failing))
+        metre = {"units": "m", "long_name": "displacement forward, repeated"}
+        data = xr.Dataset(
+            {
+                "repeat_intact_forward": (("repeat", "arm"), distance[:, :, 0], metre),
+                "repeat_forward": (("repeat", "arm", "lost"), distance[:, :, 1:], metre),
+            }
+        )
+        return data.assign_coords(arm=list(ARMS), lost=list(self._failing))
+
+    def _forward(self, runs: list[Run], progress: Any) -> np.ndarray:
+        """Return the displacement forward of each run [m]."""
+        record = simulate(runs, duration=self._duration, timestep=self.timestep, every=10, progress=progress)
+        return np.asarray(displacement(whole(record)).sel(xyz="x").values)
+
+    def _locked_at(self, progress: Any) -> xr.Dataset:
+        """Lock one leg's joint at several places of its range, in the gait as given."""
+        gaits, _ = self._varied()[0]
+        points = list(product(ARMS, self._failing, self.holds))
+        runs = [
+            Run(robot=self.robot, gait=gaits[a], faults=joint_failure(self.robot, gaits[a], j, "locked", hold=h))
+            for a, j, h in points
+        ]
+        distance = self._forward(runs, progress).reshape(len(ARMS), len(self._failing), len(self.holds))
+        data = xr.Dataset({"held_forward": (("arm", "lost", "hold"), distance, {"units": "m"})})
+        return data.assign_coords(arm=list(ARMS), lost=list(self._failing), hold=list(self.holds))
+
+    def _failed_pitch(self, progress: Any) -> xr.Dataset:
+        """Run the gait as given intact, with the right hind pitch joint limp, and with it locked.
+
+        Of a limb with one hinge it is that one.
+        """
+        hind = layout(self.robot).limbs[-1]
+        servo = layout(self.robot).servos[hind.servos][-1 if hind.servos.stop - hind.servos.start == 1 else 1]
+        angle = angle_at(self.robot, self.gait, servo, self.hold)
+        runs = [
+            Run(robot=self.robot, gait=self.gait, faults=faults)
+            for faults in ((), (Limp(servo),), (Locked(servo, angle=angle),))
+        ]
+        return whole(simulate(runs, duration=self._duration, timestep=coarse_step(self.robot), progress=progress))
+
+    def _replays(self, lost_pitch: xr.Dataset) -> Mapping[str, Replay]:
+        caption = "With the right hind pitch joint limp from the start, and, half transparent, intact."
+        page = partial(
+            replay,
+            lost_pitch.isel(run=1),
+            self.robot,
+            ghost=lost_pitch.isel(run=0),
+            labels=("right hind pitch joint limp", "intact"),
+            title="One limp leg",
+            caption=caption,
+        )
+        return {"fault_replay.html": Replay(caption=caption, make=page)}
+
+    def _others(self, progress: Any) -> xr.Dataset:
+        """Run the judged reading of the article's joints steered, and with limbs only and the tail in the air."""
+        joints, steers = self._failing, not isinstance(self.gait, AngleTable)
+        varied, runs = self._varied(), []
+        for i, (gaits, scale) in enumerate(varied):
+            cases: list[tuple[AnyGait, tuple[Fault, ...], Control]] = []
+            if steers:
+                ours = gaits["coordinated"]
+                control = Coordinated(heading=HeadingRule()).suited(self.robot, ours)
+                cases += [(ours, self._broken(ours, joint), control) for joint in joints]
+            if self._lifts:
+                lifted = gaits["limbs_tail_lifted"]
+                cases += [(lifted, (), OpenLoop()), *((lifted, self._broken(lifted, j), OpenLoop()) for j in joints)]
+            runs += [
+                Run(
+                    robot=self.robot,
+                    gait=gait,
+                    ground=Ground(friction_scale=scale),
+                    faults=faults,
+                    control=law,
+                    noise=self.noise if i else 0.0,
+                    seed=self.seed + i,
+                )
+                for gait, faults, law in cases
+            ]
+        data = xr.Dataset(coords={"lost": list(joints)})
+        if not runs:
+            return data
+        record = whole(simulate(runs, duration=self._duration, timestep=self.timestep, every=10, progress=progress))
+        distance = displacement(record).sel(xyz="x").values.reshape(len(varied), -1)
+        turned = heading_change(record).values.reshape(len(varied), -1)
+        both, metre, many = ("variation", "lost"), {"units": "m"}, len(joints)
+        if steers:
+            data["steered_forward"] = (both, distance[:, :many], metre | {"long_name": "forward, steered"})
+            data["steered_turn"] = (both, turned[:, :many], {"units": "rad", "long_name": "turned, steered"})
+        if self._lifts:
+            intact, broken = distance[:, -many - 1], distance[:, -many:]
+            data["lifted_intact_forward"] = ("variation", intact, metre | {"long_name": "tail lifted, intact"})
+            data["lifted_forward"] = (both, broken, metre | {"long_name": "forward, tail lifted"})
+        return data
+
+    def draw(self, outcome: Outcome) -> Mapping[str, Any]:
+        """Draw the losses, the distance over time for both kinds of fault, the tracks, and the places of locking."""
+        record = outcome.record
+        return {
+            "fault_losses": draw_losses(record),
+            "faults_limp": draw_over_time(record, "limp", self.legs),
+            "faults_locked": draw_over_time(record, "locked", self.legs),
+            "fault_tracks": draw_tracks(record),
+            "fault_places": draw_held(record),
+        }
+
+
+experiment = JointFaults()

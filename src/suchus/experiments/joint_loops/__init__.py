@@ -1,0 +1,1 @@
+"""What does an integral term in the joint controllers improve, and what does it cost?"""

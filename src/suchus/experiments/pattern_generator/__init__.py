@@ -1,0 +1,1 @@
+"""What do coupled oscillators make of a single drive: walking, swimming, turning, order from any start?"""

@@ -1,0 +1,1 @@
+"""How does a salamander's own swim, played joint by joint on its model, swim?"""

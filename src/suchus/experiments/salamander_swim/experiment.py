@@ -1,0 +1,178 @@
+"""How does a salamander's own swim, played joint by joint on its model, swim?"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import partial
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from suchus import rotation
+from suchus.design import AnyRobot
+from suchus.design.checks import Checks
+from suchus.design.water import Water
+from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
+from suchus.experiments.salamander_swim import animal_swim as animal
+from suchus.experiments.salamander_swim.figure import draw_envelope, draw_strides
+from suchus.land import Lake, Run, simulate
+from suchus.replay import replay
+from suchus.robots import ROBOTS
+from suchus.verdict import Reading
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SalamanderSwim(Experiment):
+    """The mean swimming cycle of Pleurodeles waltl, played on the robot built after it; nothing is fitted.
+
+    The robot floats in fresh water, its limbs folded back; as it is lighter than the animal, part of it is above the
+    surface, and nothing holds it upright but the water. Beside the coefficients as they are, the swim at the highest
+    frequency is repeated with factors on each of them.
+    """
+
+    title = "How does a salamander's own swim, played joint by joint on its model, swim?"
+    shows = "Beyond the article: kinematics of swimming salamanders"
+    needs = ("salamander_joints",)
+
+    robot: AnyRobot = field(default_factory=lambda: ROBOTS["salamander"])
+    """The robot that swims; a table of angles made for it is played."""
+    frequencies: tuple[float, ...] = animal.FREQUENCIES
+    """Frequencies of the swims [Hz]."""
+    settle: int = 8
+    """Cycles that are swum before anything is measured [-]."""
+    cycles: int = 6
+    """Cycles that are measured [-]."""
+    factors: tuple[float, ...] = (0.5, 2.0)
+    """Factors on cross drag, friction, added mass and shed momentum, one of which is changed at a time, at the
+    highest frequency [-]."""
+
+    def __post_init__(self) -> None:
+        with Checks(self.name(), self) as check:
+            check.rising("frequencies", 0.1, 20.0, "Hz")
+            check.whole("settle", 0, 1000)
+            check.whole("cycles", 1, 1000)
+            if self.factors:
+                check.rising("factors", 0.05, 20.0, "")
+
+    def quick(self) -> "SalamanderSwim":
+        """Return one frequency, two cycles after the first one, coefficients as they are."""
+        return replace(self, frequencies=self.frequencies[:1], settle=1, cycles=2, factors=())
+
+    def simulate(self, progress: Progress = silent) -> Simulated:
+        """Swim at every frequency, and in other waters at the highest."""
+        water = Water()
+        lake = Lake(level=2.0 * self.robot.length, water=water)
+        waters = [lake]
+        for factor in self.factors:
+            drag, skin = factor * water.cross_drag, factor * water.thickening
+            waters += [
+                replace(lake, water=replace(water, cross_drag=drag)),
+                replace(lake, water=replace(water, thickening=skin)),
+                replace(lake, added_mass=factor),
+                replace(lake, shedding=factor),
+            ]
+        records = []
+        for i, frequency in enumerate(self.frequencies):
+            gait = animal.played(self.robot, frequency)
+            tried = waters if i == len(self.frequencies) - 1 else waters[:1]
+            runs = [Run(robot=self.robot, gait=gait, lake=one, label=f"{frequency:g} Hz") for one in tried]
+            part = (i / len(self.frequencies), (i + 1) / len(self.frequencies))
+            stage = staged(progress, f"swim at {frequency:g} Hz", *part)
+            records.append(simulate(runs, duration=(self.settle + self.cycles) / frequency, progress=stage))
+        last = records[-1].isel(run=[0])
+        whole = last.merge(self._swims(records), combine_attrs="override", compat="no_conflicts")
+        return Simulated(record=whole, replays=self._replays(whole))
+
+    def _swims(self, records: list[xr.Dataset]) -> xr.Dataset:
+        """Return stride, swing and envelope of each swim, and the strides in other waters."""
+        strides, envelopes, turned, under, heel = [], [], [], [], []
+        for record, frequency in zip(records, self.frequencies, strict=True):
+            start = self.settle / frequency
+            strides.append([self._stride(record.isel(run=i), start) for i in range(record.sizes["run"])])
+            envelopes.append(animal.envelope(self.robot, record.isel(run=0), start, 1.0 / frequency))
+            names = [name for name in record.servo.values if name in record.joint.values]
+            missed = record.joint_angle.sel(joint=names).values - record.servo_target.sel(servo=names).values
+            turned.append(float(np.sqrt((missed[0] ** 2).mean())))
+            part = record.isel(run=0).sel(time=slice(start - 1e-9, None))
+            under.append(float(part.share_under.mean()))
+            heel.append(float(np.abs(rotation.heel(part.orientation.values)).max()))
+        units = {"units": "body length"}
+        return xr.Dataset(
+            {
+                "stride": ("swim", [lengths[0] for lengths in strides], units),
+                "stride_other": ("water", strides[-1], units),
+                "swing": (("swim", "point"), [one.swing for one in envelopes], units),
+                "missed": ("swim", turned, {"units": "rad"}),
+                "under": ("swim", under, {"units": "1"}),
+                "heel": ("swim", heel, {"units": "rad"}),
+            },
+            coords={
+                "frequency": ("swim", list(self.frequencies), {"units": "Hz"}),
+                "place": ("point", envelopes[0].place, units),
+            },
+        )
+
+    def _stride(self, record: xr.Dataset, start: float) -> float:
+        """Return how far the centre of mass of one run comes in a cycle, less than 0 tail first [body length]."""
+        part = record.sel(time=slice(start - 1e-9, None))
+        way = part.centre_of_mass.transpose("time", "xyz").values[[0, -1], :2]
+        facing = rotation.rotate(part.orientation.transpose("time", "wxyz").values, np.array([1.0, 0.0, 0.0]))
+        distance = float(np.hypot(*(way[1] - way[0]))) / self.cycles / self.robot.length
+        return float(np.copysign(distance, (way[1] - way[0]) @ facing[:, :2].mean(axis=0)))
+
+    def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
+        caption = f"Joint angles of a swimming salamander on its model, at {self.frequencies[-1]:g} cycles a second."
+        page = partial(
+            replay, record.isel(run=0), self.robot, title="The swim of a salamander, played joint by joint",
+            caption=caption,
+        )  # fmt: skip
+        return {"animal_swim_replay.html": Replay(caption=caption, make=page)}
+
+    def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
+        """Return stride, Strouhal number and envelope of the swims, and how far off the animal's stride they are."""
+        found, strides = {}, record.stride.values
+        for i, frequency in enumerate(record.frequency.values):
+            name = f"{frequency:g}".replace(".", "_")
+            found[f"stride_swim_{name}"] = Measure(float(strides[i]), "body length")
+            found[f"strouhal_{name}"] = Measure(float(record.swing[i, -1] / strides[i]), "-")
+        other, mean = record.stride_other.values, float(strides.mean())
+        middle = record.swing.mean("swim").values
+        least = int(middle.argmin())
+        return found | {
+            "stride_swim": Measure(mean, "body length"),
+            "stride_off": Measure(mean / animal.STRIDE - 1.0, "-"),
+            "stride_low": Measure(float(other.min()), "body length"),
+            "stride_high": Measure(float(other.max()), "body length"),
+            "strouhal": Measure(float((record.swing[:, -1] / record.stride).mean()), "-"),
+            "swing_snout": Measure(float(middle[0]), "body length"),
+            "swing_least": Measure(float(middle[least]), "body length"),
+            "swing_least_at": Measure(float(record.place[least]), "body length"),
+            "swing_tail": Measure(float(middle[-1]), "body length"),
+            "share_under": Measure(float(record.under.mean()), "-"),
+            "heel": Measure(float(record.heel.max()), "rad"),
+            "angle_missed": Measure(float(record.missed.max()), "rad"),
+        }
+
+    def explain(self, measures: Mapping[str, float]) -> str:
+        """Set the stride beside the animal's."""
+        m = {name: Reading(value) for name, value in measures.items()}
+        side = "more" if m["stride_off"] > 0 else "less"
+        within = "within" if m["stride_low"] <= animal.STRIDE <= m["stride_high"] else "outside"
+        return (
+            f"Played on the model, the animal's angles swim {m['stride_swim']:.3f} body lengths a cycle, "
+            f"{abs(m['stride_off']):.0%} {side} than the animal's {animal.STRIDE:g}, which is {within} the "
+            f"{m['stride_low']:.3f} to {m['stride_high']:.3f} of the highest frequency in other waters. The Strouhal "
+            f"number is {m['strouhal']:.2f}. It heels by {m['heel']:deg.0f} degrees at most; {m['share_under']:.0%} "
+            f"of it is under water. The snout swings by {m['swing_snout']:.2f} of the body's length from end to end, "
+            f"the tail's tip by {m['swing_tail']:.2f}, and least of all, by {m['swing_least']:.2f}, the body "
+            f"{m['swing_least_at']:.2f} behind the snout. The joints miss their angles by {m['angle_missed']:deg.1f} "
+            "degrees (root mean square)."
+        )
+
+    def draw(self, outcome: Outcome) -> Mapping[str, Any]:
+        """Draw the strides over the frequency, and how far the body swings along its length."""
+        record = outcome.record
+        return {"strides": draw_strides(record, animal.STRIDE), "envelope": draw_envelope(record)}
+
+
+experiment = SalamanderSwim()

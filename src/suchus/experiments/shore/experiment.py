@@ -1,0 +1,282 @@
+"""Does it swim in, touch ground, stand and walk out, and go back into the water?"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from functools import partial
+from math import pi, radians, sin, tan
+from typing import Any, ClassVar
+
+import numpy as np
+import xarray as xr
+
+from suchus.control import Amphibious, Control, DepthHold, HeadingHold, HeadingRule, OpenLoop, Swimming
+from suchus.design import Crocodile
+from suchus.design.checks import Checks
+from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
+from suchus.experiments.shore import findings
+from suchus.experiments.shore.figure import draw_ashore, draw_decides
+from suchus.gaits import GAITS
+from suchus.land import Ground, Lake, Run, simulate
+from suchus.land.afloat import check_floats
+from suchus.metrics.energy import METRES
+from suchus.motion import LIMBS_BACK, Gait, Swim
+from suchus.replay import replay
+from suchus.robots import ROBOTS
+from suchus.verdict import Reading, compared, listed
+from suchus.water import fit, printed_wave
+
+_DRY, _DEEP = -10.0, 3.0
+"""Levels of the water far below dry land, and far above the ground [m]."""
+_WADE = replace(
+    GAITS["semi_erect"], name="wade", period=1.6, duty_factor=0.5, limb_phases=(0.0, 0.5, 0.5, 0.0), stroke=0.05,
+    hip_height=0.09, trunk_bend=0.0, tail_pitch=-0.1,
+)  # fmt: skip
+"""A walk for feet that carry little weight. With a duty factor of a half the feet swing forward no faster than they
+move back in stance, so that over a cycle the water pushes the robot back no more than forward; the slower the cycle,
+the smaller the forces of the water are beside the friction of the ground. The tail is lifted, since pressed on the
+ground it lifts the hind feet. The trunk is straight."""
+_SAMPLE, _KEPT = 4, 5
+"""Control periods between two samples of a run, and samples of a run between two samples of the kept paths [-]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Shore(Experiment):
+    """The floating robot swims to a shore, feels ground, changes to its gait and walks out; and back into the water.
+
+    It swims by the wave of (20) with its heading held, decides between swimming and walking by the load that feet,
+    belly and tail carry, and lands with air let out in the gait ``wade``. It approaches obliquely, so that along its
+    body the slope is less than that of the shore. Main runs: every slope with every friction scale, ``seeds`` times,
+    with noise on the servos. Beside them other gaits on every slope with one friction scale, other amounts of air let
+    out on the steepest slope with every friction scale, and walks from land into the water on every slope. It has come
+    ashore if its centre of mass is ``beyond`` the water line without falling; it is in the water if it swims at the
+    end, floats free, and did not fall. The work per metre is measured in three more runs: the gait on level dry land,
+    and the swim at the surface and at a constant depth.
+    """
+
+    title = "Does it swim in, touch ground, stand and walk out, and go back into the water?"
+    shows = "Section I, whose robot is amphibious; beyond the article"
+    reproduces: ClassVar[bool] = False
+    needs = ("tables", "article_spine", "cable_tail")
+
+    robot: Crocodile = field(default_factory=lambda: ROBOTS["floating_caiman"])
+    """The robot; it must float, and have air to let out."""
+    gait: Gait = field(default_factory=lambda: GAITS["semi_erect"])
+    """Gait in which it walks ashore."""
+    wade: Gait = field(default_factory=lambda: _WADE)
+    """Gait in which it lands, while the ground carries little of its weight."""
+    approach: float = 0.85
+    """Heading of the approach relative to straight up the shore, left positive [rad]; at 0.85 rad a slope of 15 degrees
+    is 10 degrees along the body."""
+    others: tuple[Gait, ...] = field(
+        default_factory=lambda: tuple(GAITS[name] for name in ("belly_crawl", "low_crawl", "high_walk"))
+    )
+    """Other gaits in which it walks ashore, and in which it also lands."""
+    slopes: tuple[float, ...] = (radians(5), radians(8), radians(12), radians(15))
+    """Slopes of the shore [rad]."""
+    friction_scales: tuple[float, ...] = (0.6, 0.75, 0.9, 1.0)
+    """Factors on the friction of all the robot's surfaces [-]."""
+    seeds: int = 2
+    """Runs of each slope with each friction scale [-]."""
+    noise: float = 0.01
+    """Standard deviation of the noise on every commanded angle [rad]."""
+    breathe_out: float = 1.0
+    """Share of the air of the hull that it lets out while it lands [-]."""
+    breaths: tuple[float, ...] = (0.0, 0.5)
+    """Other values of ``breathe_out``, simulated on the steepest slope [-]."""
+    frequency: float = 1.0
+    """Frequency of the swimming wave [Hz]."""
+    clearance: float = 0.15
+    """Depth of the water half a body length ahead of where it begins to swim [m]."""
+    inland: float = 0.4
+    """Distance from the beginning of the walk into the water to the water line [m]."""
+    beyond: float = 1.0
+    """Distance beyond the water line at which the centre of mass counts as ashore [m]."""
+    duration: float = 50.0
+    """Duration of every run to the shore or into the water [s]."""
+    cycles: int = 16
+    """Cycles of the gait over which the work per metre is measured, after as many cycles of settling [-]."""
+    depth: float = 0.6
+    """Depth of the root in the swim below the surface [m]."""
+    timestep: float = 0.005
+    """Time step of the physics [s]."""
+
+    def __post_init__(self) -> None:
+        with Checks(self.name(), self) as check:
+            check.rising("slopes", 0.01, pi / 4, "rad")
+            check.rising("friction_scales", 0.01, 10.0, "")
+            check.whole("seeds", 1, 1000)
+            check.number("noise", 0.0, 1.0, "rad")
+            check.number("breathe_out", 0.0, 1.0, "")
+            check.number("approach", -1.2, 1.2, "rad")
+            if self.breaths:
+                check.rising("breaths", 0.0, 1.0, "")
+            check.number("frequency", 0.05, 10.0, "Hz")
+            check.number("clearance", 0.01, 10.0, "m")
+            check.number("inland", 0.0, 100.0, "m")
+            check.number("beyond", 0.0, 100.0, "m")
+            check.number("duration", 2.0, 3600.0, "s")
+            check.whole("cycles", 1, 1000)
+            check.number("depth", 0.0, 100.0, "m")
+            check.number("timestep", 1e-5, 0.01, "s")
+
+    def quick(self) -> "Shore":
+        """Return one slope with one friction scale, no other gaits, the first seconds."""
+        smaller = replace(self, slopes=self.slopes[1:2], friction_scales=(1.0,), seeds=1, others=(), breaths=())
+        return replace(smaller, duration=2.0, cycles=1)
+
+    def simulate(self, progress: Progress = silent) -> Simulated:
+        """Simulate all runs as one batch: to the shore, with other gaits and other breaths, and into the water."""
+        check_floats(self.robot, Lake(level=_DEEP))
+        cases = self._cases()
+        runs = [run for _, _, run in cases]
+        record = simulate(
+            runs,
+            duration=self.duration,
+            timestep=self.timestep,
+            every=_SAMPLE,
+            progress=staged(progress, "runs to the shore", 0.0, 0.9),
+        )
+        kept = findings.paths(record, runs, _KEPT)
+        for name, values, unit in (
+            ("kind", [kind for kind, _, _ in cases], "1"),
+            ("walk", [run.gait.name for run in runs], "1"),
+            ("slope", [abs(run.ground.uphill) for run in runs], "rad"),
+            ("grip", [run.ground.friction_scale for run in runs], "1"),
+            ("breathed_out", [out for _, out, _ in cases], "1"),
+        ):
+            kept[name] = ("case", np.array(values), {"units": unit})
+        shown = self._shown(kept)
+        metres = self._metres(staged(progress, "work per metre on land, at the surface and below", 0.9, 1.0))
+        whole = xr.merge([record.isel(run=[shown]), kept, metres], combine_attrs="override", compat="no_conflicts")
+        whole.attrs.update(
+            record.attrs, beyond=self.beyond, shown=shown, line=findings.water_line(runs[shown]),
+            breathe_out=self.breathe_out, depth=self.depth, approach=self.approach,
+        )  # fmt: skip
+        return Simulated(record=whole, replays=self._replays(whole))
+
+    def _cases(self) -> list[tuple[str, float, Run]]:
+        """Return of each case its kind, the share of the air that is let out, and its run."""
+        out = self.breathe_out
+        cases: list[tuple[str, float, Run]] = []
+        for slope in self.slopes:
+            for scale in self.friction_scales:
+                for _ in range(self.seeds):
+                    cases.append(("ashore", out, self._run(self.gait, slope, scale, out, len(cases))))
+        middle = self.friction_scales[len(self.friction_scales) // 2]
+        cases += [
+            ("gait", out, self._run(gait, slope, middle, out, 0)) for gait in self.others for slope in self.slopes
+        ]
+        steep = self.slopes[-1]
+        cases += [
+            ("breath", b, self._run(self.gait, steep, scale, b, 0))
+            for b in self.breaths
+            for scale in self.friction_scales
+        ]
+        ends = dict.fromkeys((self.friction_scales[0], self.friction_scales[-1]))
+        cases += [
+            ("into_water", out, self._run(self.gait, -slope, scale, out, 0)) for slope in self.slopes for scale in ends
+        ]
+        return cases
+
+    def _swim(self) -> Swim:
+        robot = replace(self.robot, hull=None)
+        return fit(robot, printed_wave(robot, "I", frequency=self.frequency, sign=-1)).swim
+
+    def _run(self, gait: Gait, uphill: float, scale: float, out: float, seed: int) -> Run:
+        """Return a run: up a shore from the water, or down into it where the slope falls."""
+        offshore = self.robot.length / 2 + self.clearance / tan(uphill) if uphill > 0 else self.inland
+        course = self.approach if uphill > 0 else 0.0
+        control = Amphibious(
+            swim=Swimming(swim=self._swim(), limb_pitch=LIMBS_BACK[1], heading=HeadingHold(direction=course)),
+            begins="swimming" if uphill > 0 else "walking",
+            wade=self.wade if gait == self.gait else None,
+            breathe_out=out,
+            heading=HeadingRule(direction=course),
+        )
+        return Run(
+            robot=self.robot,
+            gait=gait,
+            ground=Ground(uphill=uphill, friction_scale=scale),
+            lake=Lake(level=offshore * sin(uphill)),
+            control=control,
+            noise=self.noise,
+            seed=seed,
+            label=f"{np.degrees(abs(uphill)):.0f} degrees, friction scale {scale:g}",
+        )
+
+    def _metres(self, progress: Callable[[float], None]) -> xr.Dataset:
+        """Return speed and power of the servos on level dry land, at the surface and at depth."""
+        plain = partial(Swimming, swim=self._swim(), limb_pitch=LIMBS_BACK[1], heading=HeadingHold())
+        controls: Mapping[str, Control] = {
+            "land": OpenLoop(), "surface": plain(), "deep": plain(depth=DepthHold(depth=self.depth)),
+        }  # fmt: skip
+        runs = [
+            Run(robot=self.robot, gait=self.gait, lake=Lake(level=_DRY if name == "land" else _DEEP), control=one)
+            for name, one in controls.items()
+        ]
+        last = self.cycles * self.gait.period
+        record = simulate(runs, duration=2 * last, timestep=self.timestep, every=_SAMPLE, progress=progress)
+        return findings.metres(record, list(controls), last)
+
+    def _shown(self, kept: xr.Dataset) -> int:
+        """Return the index of the case that is drawn: on the second slope with the greatest friction scale."""
+        main = kept.kind.values == "ashore"
+        slope = self.slopes[min(1, len(self.slopes) - 1)]
+        mine = main & np.isclose(kept.slope, slope) & np.isclose(kept.grip, self.friction_scales[-1])
+        return int(np.flatnonzero(mine)[0])
+
+    def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
+        end = findings.ending(record)
+        caption = f"It swims to the shore with its limbs held back; {end}. Seen in the frame of the shore."
+        page = partial(replay, record.isel(run=0), self.robot, title="From the water onto the shore", caption=caption)
+        return {"shore_replay.html": Replay(caption=caption, make=page)}
+
+    def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
+        """Return how many runs come ashore and when, by gait and by breath, the falls, and the work per metre."""
+        return findings.measures(record)
+
+    def explain(self, measures: Mapping[str, float]) -> str:
+        """Say how many runs came ashore, what this depends on, and the work per metre."""
+        m = {name: Reading(value) for name, value in measures.items()}
+        breaths = [
+            f"{m[f'ashore_share_breathed_out_{i}']:.0%} with {m[f'breathed_out_{i}']:.0%} of its air let out"
+            for i in range(sum(name.startswith("breathed_out_") for name in m))
+        ]
+        gaits = {name.removeprefix("ashore_share_"): share for name, share in m.items() if name in _gait_names(m)}
+        walked = [f"{share:.0%} by {name.replace('_', ' ')}" for name, share in gaits.items()]
+        by_friction = compared(
+            m["ashore_share_most_grip"],
+            m["ashore_share_least_grip"],
+            less="fewer than",
+            more="more than",
+            same="as many as",
+        )
+        costs = [
+            f"{m[f'work_per_metre_{ending}']:.1f} J {where}"
+            for ending, where in METRES.items()
+            if m[f"work_per_metre_{ending}"] == m[f"work_per_metre_{ending}"]
+        ]
+        by_gait = f"Of all slopes at one friction: {listed(walked)}. " if walked else ""
+        when = f", half of these within {m['time_ashore']:.0f} s" if m["time_ashore"] == m["time_ashore"] else ""
+        return (
+            f"{m['ashore_share']:.0%} of the runs came ashore{when}; {m['falls']:.0f} fell. The most changes between "
+            f"swimming and walking in one run are {m['switches']:.0f}. On the steepest slope it is "
+            f"{m['ashore_share_steepest']:.0%}: {listed(breaths)}. With the greatest friction {by_friction} "
+            f"with the least come ashore ({m['ashore_share_most_grip']:.0%} and {m['ashore_share_least_grip']:.0%}). "
+            f"{by_gait}From land {m['into_water_share']:.0%} went into the water and swam "
+            f"on. The work per metre is {listed(costs)}; the depth is held to {m['depth_error']:mm.0f} mm."
+        )
+
+    def draw(self, outcome: Outcome) -> Mapping[str, Any]:
+        """Draw one run out of the water from the side, and how the time ashore depends on slope, friction and air."""
+        return {"ashore": draw_ashore(self.robot, outcome.record), "decides": draw_decides(outcome.record)}
+
+
+def _gait_names(measures: Mapping[str, float]) -> list[str]:
+    """Return the names of the measures with the share of runs that come ashore by each gait."""
+    other = ("steepest", "least_grip", "most_grip", "breathed_out")
+    names = [name for name in measures if name.startswith("ashore_share_")]
+    return [name for name in names if not name.removeprefix("ashore_share_").startswith(other)]
+
+
+experiment = Shore()

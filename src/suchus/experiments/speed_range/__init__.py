@@ -1,0 +1,1 @@
+"""How fast is each gait, and what does speed cost?"""

@@ -1,0 +1,269 @@
+"""How fast is each gait, and what does speed cost?"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
+from typing import Any, ClassVar
+
+import numpy as np
+import xarray as xr
+
+from suchus import rotation
+from suchus.design import AnyRobot, Rod, Segment, Servo, layout
+from suchus.design.checks import Checks
+from suchus.design.scale import control_period
+from suchus.design.servos import with_leg_servos
+from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
+from suchus.experiments.speed_range.figure import draw_speed_range
+from suchus.figures.gait_lines import gait_lines
+from suchus.gaits import GAITS
+from suchus.kinematics.mass import GRAVITY
+from suchus.kinematics.tree import frames
+from suchus.land import Run, simulate
+from suchus.metrics import between, cost_of_transport, displacement, duty_factor, roll_peak_to_peak
+from suchus.motion import START, AnyGait, hip_height
+from suchus.paper.animals import ANIMAL
+from suchus.replay import replay
+from suchus.robots import ROBOTS
+from suchus.verdict import Reading
+
+_TOUCHES = 0.00495  # [body length]; a tail this close to the ground lies on it
+_LOADED = 0.0029  # of the weight; a tail that presses more on the ground touches it
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SpeedRange(Experiment):
+    """Every gait at several cycle times, on the robot as it is and with a torque-speed line in its legs' servos.
+
+    Measured over whole cycles from the second on; the speed is that of the centre of mass along the initial heading,
+    the Froude number speed squared over gravity times hip height, without a number for a table of angles, which says no
+    height.
+    """
+
+    title = "How fast is each gait, and what does speed cost?"
+    shows = "Sections II.A and II.B, Fig. 3"
+    needs = ("limbs",)
+    judged_with = ("robot", "gaits")
+    judged_from: ClassVar[Mapping[str, float]] = {"slower": 4, "cycles": 3}
+
+    robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
+    """The robot that walks."""
+    gaits: tuple[AnyGait, ...] = field(
+        default_factory=lambda: tuple(GAITS[n] for n in ("belly_crawl", "low_crawl", "semi_erect", "high_walk"))
+    )
+    """The gaits that it walks in."""
+    slower: tuple[float, ...] = (0.6, 0.75, 0.875, 1.0, 1.3, 1.8)
+    """Factors on the cycle time of each gait [-]."""
+    cycles: int = 3
+    """Number of cycles that are measured, after one more [-]."""
+    timestep: float = 0.005
+    """Time step of the physics [s], at most 0.01; speeds at 2 ms are the same within 2 %."""
+
+    def __post_init__(self) -> None:
+        with Checks(self.name(), self) as check:
+            check.rising("slower", 0.1, 10.0, "")
+            check.whole("cycles", 1, 1000)
+            check.number("timestep", 1e-5, 0.01, "s")
+            check.that(len(self.gaits) > 0, f"{self.name()}.gaits is empty; one gait at least is needed")
+
+    def quick(self) -> "SpeedRange":
+        """Two gaits at two cycle times."""
+        two = tuple(GAITS[name] for name in ("semi_erect", "high_walk"))
+        return replace(self, gaits=two if set(two) <= set(self.gaits) else self.gaits[:1], slower=(1.0, 1.5), cycles=1)
+
+    def simulate(self, progress: Progress = silent) -> Simulated:
+        """Walk in every gait, at every cycle time, with both models of the servos."""
+        record, fastest = self._walk(progress)
+        return Simulated(record=record, replays=self._replays(fastest))
+
+    def _replays(self, fastest: Sequence[xr.Dataset]) -> Mapping[str, Replay]:
+        """Return the replay of the first gait and the last."""
+        until = min(float(one.time[-1]) for one in fastest)
+        pair = [one.sel(time=slice(None, until)) for one in (fastest[0], fastest[-1])]
+        names = [str(one.gait.item()).replace("_", " ") for one in pair]
+        caption = f"At the shortest cycle that was tried: {names[0]}, and, half transparent, {names[1]}."
+        page = partial(replay, pair[0], self.robot, ghost=pair[1], labels=names, title="In a hurry", caption=caption)
+        return {"speed_replay.html": Replay(caption=caption, make=page)}
+
+    def _walk(self, progress: Progress) -> tuple[xr.Dataset, list[xr.Dataset]]:
+        """Return what was measured, and the fastest walk of each gait as a record."""
+        rows, fastest, count = [], [], len(self.gaits)
+        parts = [
+            [s for s in self.slower if (s > 1.0) == slow] for slow in (False, True)
+        ]  # the long walks by themselves
+        for i, gait in enumerate(self.gaits):
+            found = [
+                self._walked(
+                    gait, part, staged(progress, gait.name, (i + 0.5 * j) / count, (i + 0.5 * j + 0.5) / count)
+                )
+                for j, part in enumerate(parts)
+                if part
+            ]
+            rows.append(np.concatenate([values for values, _ in found], axis=1))
+            fastest.append(found[0][1])
+        return self._table(np.array(rows)), fastest
+
+    def _walked(self, gait: AnyGait, slower: Sequence[float], progress: Any) -> tuple[np.ndarray, xr.Dataset]:
+        """Return ``_UNITS`` at some cycle times of a gait, shape (servo_model, slower, unit), and its fastest walk."""
+        robots = (self.robot, _limited(self.robot))
+        runs = [Run(robot=robot, gait=replace(gait, period=gait.period * s)) for robot in robots for s in slower]
+        longest, period = START + (self.cycles + 1) * gait.period * max(slower), control_period(self.robot)
+        walked = simulate(
+            runs,
+            duration=float(np.ceil(round(longest / period, 6)) * period),
+            timestep=self.timestep,
+            progress=progress,
+        )
+        looked = [self._look(walked.isel(run=j), run) for j, run in enumerate(runs)]
+        return np.array(looked).reshape(2, len(slower), len(_UNITS)), walked.isel(run=0)
+
+    def _look(self, one: xr.Dataset, run: Run) -> list[float]:
+        start, end = START + run.gait.period, START + (self.cycles + 1) * run.gait.period
+        part = between(one, start, end)
+        speed = float(displacement(one, start, end).sel(xyz="x")) / (end - start)
+        legs = [i for limb in layout(run.robot).limbs for i in range(limb.servos.start, limb.servos.stop)]
+        fastest = float(abs(part.servo_velocity.isel(servo=legs)).quantile(0.99, "time").max())
+        height = hip_height(run.robot, run.gait)
+        return [
+            run.gait.period,
+            speed,
+            float(duty_factor(one, start, end).mean()),
+            float(cost_of_transport(one, start, end)),
+            speed**2 / (GRAVITY * height) if height > 0.0 else float("nan"),
+            float(roll_peak_to_peak(one, start, end)),
+            fastest,
+            float((part.tail_force.sel(xyz="z") > _LOADED * run.robot.mass * GRAVITY).mean()),
+            _lying(run.robot, part),
+        ]
+
+    def _table(self, values: np.ndarray) -> xr.Dataset:
+        dims = ("gait", "servo_model", "slower")
+        data = xr.Dataset(
+            {name: (dims, values[..., i], {"units": unit}) for i, (name, unit) in enumerate(_UNITS.items())},
+            coords={
+                "gait": [gait.name for gait in self.gaits],
+                "servo_model": ["slew", "line"],
+                "slower": list(self.slower),
+            },
+        )
+        data.slower.attrs["units"] = "1"
+        return data
+
+    def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
+        """Return speed, cost and posture of every gait, and what is known of animals that walk high."""
+        measures: dict[str, Measure] = {}
+        usual = int(np.argmin(np.abs(np.array(self.slower) - 1.0)))
+        for name in record.gait.values:
+            both = record.sel(gait=name)
+            one, line = (both.sel(servo_model=model) for model in ("slew", "line"))
+            at = one.isel(slower=usual)
+            measures |= {
+                f"speed_{name}": Measure(float(at.speed), "m/s"),
+                f"speed_{name}_speed_line": Measure(float(line.isel(slower=usual).speed), "m/s"),
+                **_ranged(f"speed_{name}_slowest", one.speed.min(), both.speed.min("slower"), "m/s"),
+                **_ranged(f"speed_{name}_fastest", one.speed.max(), both.speed.max("slower"), "m/s"),
+                f"cost_{name}": Measure(float(at.cost), "-"),
+                f"cost_{name}_least": Measure(float(one.cost.min()), "-"),
+                f"duty_{name}": Measure(float(at.duty), "-"),
+                f"froude_{name}": Measure(float(at.froude), "-"),
+                f"roll_{name}": Measure(float(at.rolled), "rad"),
+                f"joint_speed_{name}": Measure(float(at.joint_speed), "rad/s"),
+            }
+        animals = ANIMAL["high_walk_speed"]
+        measures["animals_high_walk_slowest"] = Measure(animals.low, "m/s")
+        measures["animals_high_walk_fastest"] = Measure(animals.high, "m/s")
+        if "high_walk" in record.gait.values:
+            high = record.sel(gait="high_walk", servo_model="slew")
+            measures["tail_touches_high_walk"] = Measure(float(high.tail_touches.mean()), "-")
+            measures |= _ranged("tail_on_ground_high_walk", high.tail_lies.mean(), high.tail_lies, "-")
+        return measures
+
+    def explain(self, measures: Mapping[str, float]) -> str:
+        """Say how fast and how dear each gait is, and what a torque-speed line changes."""
+        m = {name: Reading(value) for name, value in measures.items()}
+        names = [gait.name for gait in self.gaits]
+        walks = [
+            f"the {name.replace('semi_', 'semi-').replace('_', ' ')} walks at {m[f'speed_{name}']:.2f} m/s with a cost "
+            f"of transport of {m[f'cost_{name}']:.2f} and {m[f'joint_speed_{name}']:.1f} rad/s in its fastest leg joint"
+            for name in names
+        ]
+        fastest, cheapest = (
+            pick(names, key=lambda name: m[f"{what}_{name}{end}"]).replace("_", " ")
+            for pick, what, end in ((max, "speed", "_fastest"), (min, "cost", "_least"))
+        )
+        changed = max(abs(m[f"speed_{name}_speed_line"] / m[f"speed_{name}"] - 1.0) for name in names)
+        return (
+            f"At its own cycle time {'; '.join(walks)}. Over all cycle times the {fastest} is the fastest and "
+            f"{'also' if cheapest == fastest else f'the {cheapest}'} the cheapest. A torque-speed line in the servos "
+            f"changes the speeds by at most {changed:.0%}. "
+            f"{ANIMAL['high_walk_speed'].who} walk high at {m['animals_high_walk_slowest']:g} to "
+            f"{m['animals_high_walk_fastest']:g} m/s."
+        )
+
+    def draw(self, outcome: Outcome) -> Mapping[str, Any]:
+        """Draw speed, cost, duty factor and Froude number over cycle time."""
+        return {"speed_range": draw_speed_range(outcome.record, gait_lines(outcome.record.gait.values))}
+
+
+_UNITS = {
+    "period": "s",
+    "speed": "m/s",
+    "duty": "1",
+    "cost": "1",
+    "froude": "1",
+    "rolled": "rad",
+    "joint_speed": "rad/s",
+    "tail_touches": "1",
+    "tail_lies": "1",
+}
+
+
+def _ranged(name: str, value: Any, repeats: xr.DataArray, unit: str) -> dict[str, Measure]:
+    """Return a number with the least and the greatest of its repeats."""
+    return {
+        name: Measure(float(value), unit),
+        f"{name}_low": Measure(float(repeats.min()), unit),
+        f"{name}_high": Measure(float(repeats.max()), unit),
+    }
+
+
+def _limited(robot: AnyRobot) -> AnyRobot:
+    """Return the robot with a torque-speed line in its legs' servos."""
+    return with_leg_servos(robot, Servo.with_speed_line)
+
+
+def _lying(robot: AnyRobot, part: xr.Dataset) -> float:
+    """Return the share of the tail's length that lies on the ground, on average; 0 of a body without a tail [-]."""
+    place = layout(robot)
+    if not place.tail:
+        return 0.0
+    sampled = part.isel(time=slice(None, None, 5))
+    found = frames(robot, sampled.joint_angle.transpose("time", "joint").values)
+    numbers = [i for i, body in enumerate(place.bodies) if body.name in place.tail]
+    segments = [next(one for one in place.robot.axis if one.name == place.bodies[i].name) for i in numbers]
+    last, ahead = numbers[-1], -(segments[-1].front + segments[-1].rear)
+    tip = found.places[:, last] + ahead * found.turns[:, last, :, 0]
+    points = np.concatenate([found.places[:, numbers], tip[:, None]], axis=1)
+    up = rotation.upward(sampled.orientation.transpose("time", "wxyz").values)
+    height = np.einsum("tk,tpk->tp", up, points) + sampled.position.sel(xyz="z").values[:, None]
+    lengths = np.array([segment.front + segment.rear for segment in segments])
+    along = np.concatenate([[0.0], np.cumsum(lengths)])
+    share = along / along[-1]
+    lies = (height - _radii(segments, along) < _TOUCHES * robot.length).astype(float)
+    return float(np.trapezoid(lies, share, axis=1).mean())
+
+
+def _radii(segments: Sequence[Segment], along: np.ndarray) -> np.ndarray:
+    """Return how thick a tail is at its joints and its tip, on straight lines through its segments' middles [m]."""
+    thick = np.array(
+        [max(s.radius if isinstance(s, Rod) else s.half[2] for s in segment.shapes) for segment in segments]
+    )
+    middles = (along[1:] + along[:-1]) / 2
+    found = np.interp(along, middles, thick)
+    if len(segments) > 1:
+        found[0] = thick[0] + (thick[1] - thick[0]) * (along[0] - middles[0]) / (middles[1] - middles[0])
+        found[-1] = thick[-1] + (thick[-1] - thick[-2]) * (along[-1] - middles[-1]) / (middles[-1] - middles[-2])
+    return np.maximum(found, 0.0)
+
+
+experiment = SpeedRange()

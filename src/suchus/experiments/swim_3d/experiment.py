@@ -1,0 +1,256 @@
+"""How does the robot's own body swim in the water of three dimensions, and what would a higher tail do?"""
+
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import nullcontext
+from dataclasses import dataclass, field, replace
+from functools import partial
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any, ClassVar
+
+import xarray as xr
+
+from suchus.design import Crocodile
+from suchus.design.checks import Checks
+from suchus.design.water import Water
+from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
+from suchus.experiments._taken import Midline, midlines
+from suchus.experiments.swim_3d import findings
+from suchus.experiments.swim_3d.figure import draw_joints, draw_speeds, draw_tails, draw_wake
+from suchus.figures.vortices import draw_vortices, film_vortices
+from suchus.fingerprint import fingerprint
+from suchus.kinematics.wave import READINGS
+from suchus.motion import Swim
+from suchus.replay import wake_replay
+from suchus.robots import ROBOTS
+from suchus.study import at_scheduler, conduct_sweep
+from suchus.water import (
+    Basin,
+    Motion,
+    Tether,
+    check_free_swim,
+    check_swim_in_space,
+    fit,
+    free_swim,
+    printed_wave,
+    swim,
+    swim_in_space,
+)
+from suchus.water.diary import forget_kept, kept_in
+from suchus.water.space import BESIDE
+
+MOST_REYNOLDS = 2e4
+"""Largest frequency times length squared over viscosity [-]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Swim3d(Experiment):
+    """The robot free in three dimensions, from rest, its joints fitted to (20); no article's claim is judged by it.
+
+    The body has elliptic sections as wide and high as the robot's pieces, without limbs unless it is said, and moves in
+    its plane of symmetry: along, to the side and about the vertical. It swims on several grids, in a water so thick
+    that ``reynolds``, the frequency times the length squared over the viscosity, is what the grids carry; the same
+    number holds for the slice of the experiment ``swimming`` and the slender-body models beside it. Nothing here is in
+    newtons or watts of the robot in real water, whose number is ``reynolds_real_water``.
+
+    ``speed`` is the mean of the last cycle on the finest grid and ``speed_gain`` by how much that is above the cycle
+    before: a body so light for its power takes tens of cycles to its last speed. ``speed_over_grids`` is by how much
+    the finest grid is faster than the next coarser one in the same cycle. ``thrust_held`` is the mean force forward on
+    a body that sways and turns but is kept from moving on. ``servo_load_peak`` is the greatest torque that the water
+    alone asks of a servo, over its limit. Trunk only, tail only, the printed direction, the body with its limbs folded
+    straight back and higher tails swim on ``compared_cells``. With ``taken`` the midlines that the same commands give
+    in six degrees of freedom at the surface, where the water distributes the cable's bend among its joints, swim there
+    as further conditions, joint by joint; of these midlines only yaw counts.
+    """
+
+    title = "How fast does the robot's own body swim in three dimensions, and what does a higher tail change?"
+    shows = "Beyond the article: Section IV.B, whose flow is a slice"
+    needs = ("tables", "article_spine", "cable_tail")
+    reproduces: ClassVar[bool] = False
+
+    robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
+    """The robot that swims."""
+    reading: str = "I"
+    """Letter of the reading of (20), see ``kinematics.wave.READINGS``."""
+    frequency: float = 1.0
+    """Frequency of the wave, which the article does not give [Hz], 0.01 to 20."""
+    reynolds: float = 7000.0
+    """Frequency times length squared over viscosity [-], chosen for what the grids carry; in real water it is
+    ``reynolds_real_water``."""
+    cells: tuple[int, ...] = (68, 80, 96)
+    """Cells per body length of the grids, rising [-]."""
+    cycles: int = 6
+    """Cycles of the free body; numbers are of the last [-]."""
+    compared_cells: int = 68
+    """Cells per body length where motions and tails are compared, and the body is held [-]."""
+    compared_cycles: int = 6
+    """Cycles of these [-]."""
+    tail_heights: tuple[float, ...] = (0.06, 0.1)
+    """Heights to which the last third of the body is raised, as a fin as thick as the tail; rising [m]."""
+    taken: bool = False
+    """Whether the midline that the joints take in six degrees of freedom swims too, with trunk and tail and with the
+    tail alone: two more swims like those of trunk and tail."""
+    beside: float = BESIDE
+    """Water between the widest swing and the sides of the box [body length]."""
+    slice_cells: int = 96
+    """Cells per body length of the slice [-]."""
+    frames: int = 24
+    """Instants of the last cycle on the finest grid that film and replay show [-]."""
+    keep: str = ""
+    """Folder for finished swims, and for how far unfinished ones have come, from which an interrupted run goes on;
+    empty keeps nothing."""
+    jobs: int = 2
+    """Swims that are computed side by side, in processes that share the threads of this machine [-]."""
+    scheduler: str = ""
+    """Address of a Dask scheduler whose workers compute the swims, as tcp://127.0.0.1:8786; empty: they are computed
+    here."""
+
+    def __post_init__(self) -> None:
+        with Checks(self.name(), self) as check:
+            check.number("frequency", 0.01, 20.0, "Hz")
+            check.number("beside", 0.0, 3.0, "body lengths")
+            reynolds: Any = self.reynolds  # a file may say anything
+            if isinstance(reynolds, (int, float)) and reynolds > MOST_REYNOLDS:
+                check.that(False, f"{self.name()}.reynolds is {self.reynolds:.3g}: real water, 1e6 at 1 Hz and 1 m, "
+                           "would need to slip along the body and to leave it where its layer does, and that is not "
+                           f"built; at most {MOST_REYNOLDS:.0f} is allowed, whose layers a grid carries")  # fmt: skip
+            else:
+                check.number("reynolds", 10.0, MOST_REYNOLDS, "")
+            check.that(self.reading in READINGS, f"{self.name()}.reading is {self.reading!r}; there are "
+                       f"{', '.join(READINGS)}")  # fmt: skip
+            check.rising("cells", 32, 512, "cells")
+            for name in ("compared_cells", "slice_cells"):
+                check.whole(name, 32, 512)
+            check.whole("frames", 1, 200)
+            check.whole("jobs", 1, 256)
+            for name in ("cycles", "compared_cycles"):
+                check.whole(name, 2, 100)
+            if self.tail_heights:
+                check.rising("tail_heights", 1e-3, 1.0, "m")
+
+    def quick(self) -> "Swim3d":
+        """A coarse grid, a thick water, two cycles."""
+        return replace(
+            self, cells=(56,), compared_cells=56, slice_cells=40, cycles=2, compared_cycles=2, reynolds=3000.0,
+            tail_heights=(), frames=4, jobs=1,
+        )  # fmt: skip
+
+    def simulate(self, progress: Progress = silent) -> Simulated:
+        """Swim on every grid, held, in other motions and with higher tails; the slice and the models beside them."""
+        with at_scheduler(self.scheduler or None) as client:  # refused before anything is computed
+            return self._simulated(progress, client)
+
+    def _simulated(self, progress: Progress, client: Any) -> Simulated:
+        ours, printed = (self._motion(sign) for sign in (-1, 1))
+        bent = midlines(self.robot, ours, self.compared_cells + 1) if self.taken else []
+        runs = self._runs(ours, printed, bent)
+        for _, motion, basin in runs:
+            check_swim_in_space(self.robot, motion, basin)
+        check_free_swim(self.robot, ours, self._tether)
+        items = [(motion, basin) for _, motion, basin in runs]
+        with nullcontext(self.keep) if self.keep else TemporaryDirectory() as folder:
+            found = conduct_sweep(
+                self.name(), partial(swum_in_space, self.robot), items, Path(folder) / "swims", client=client,
+                progress=staged(progress, f"{len(runs)} swims", 0.0, 0.9), jobs=self.jobs,
+                local=partial(_swum_here, self.robot, self.keep),
+            )  # fmt: skip
+        beside = self._beside(ours, staged(progress, "the slice", 0.9, 0.95))
+        swims = {name: swum for (name, *_), swum in zip(runs, found, strict=True)}
+        record = findings.record(swims, findings.with_midlines(beside, bent), self)
+        film = film_vortices(record, staged(progress, "the film", 0.95, 1.0))
+        forget_kept(self.keep)
+        return Simulated(record=record, films={"swim_3d.gif": film}, replays=_replays(record))
+
+    def _motion(self, sign: int) -> Swim:
+        wave = printed_wave(self.robot, self.reading, frequency=self.frequency, sign=sign)
+        return fit(self.robot, wave, name=f"(20), reading {self.reading}").swim
+
+    @property
+    def viscosity(self) -> float:
+        """Kinematic viscosity of the water [m2/s]."""
+        return self.frequency * self.robot.length**2 / self.reynolds
+
+    @property
+    def _tether(self) -> Tether:
+        """Grid, water and time of the slice."""
+        return Tether(cells=self.slice_cells, viscosity=self.viscosity, cycles=self.cycles)
+
+    def _runs(self, ours: Swim, printed: Swim, bent: Sequence[Midline] = ()) -> Sequence[tuple[str, Motion, Basin]]:
+        """Return name, motion, grid and time of every swim in space."""
+
+        def basin(cells: int, cycles: int, **other: Any) -> Basin:
+            return Basin(cells=cells, viscosity=self.viscosity, cycles=cycles, beside=self.beside, **other)
+
+        compared = basin(self.compared_cells, self.compared_cycles)
+        runs: list[tuple[str, Motion, Basin]] = [
+            (f"{cells} cells", ours, basin(cells, self.cycles)) for cells in self.cells[:-1]
+        ]
+        runs.append((f"{self.cells[-1]} cells", ours, basin(self.cells[-1], self.cycles, frames=self.frames)))
+        if self.compared_cells not in self.cells or self.compared_cycles > self.cycles:
+            runs.append(("compared", ours, compared))
+        runs.append(("held", ours, basin(self.compared_cells, min(3, self.compared_cycles), moves_on=False)))
+        if self.tail_heights:
+            arms = {"trunk only": ours.trunk_only(), "tail only": ours.tail_only(), "as printed": printed}
+            runs += [(name, motion, compared) for name, motion in arms.items()]
+            runs.append((findings.LIMBS, ours, replace(compared, limbs=True)))
+        runs += [(one.name, one.motion, compared) for one in bent]
+        return runs + [(f"tail {high:g} m", ours, replace(compared, tail_height=high)) for high in self.tail_heights]
+
+    def _beside(self, ours: Any, progress: Any) -> xr.Dataset:
+        """Return the speed of the slice and of the slender-body models at the same Reynolds number."""
+        plane = free_swim(self.robot, ours, self._tether, checkpoint=kept_in(self.keep, "slice"), progress=progress)
+        models, real = swim(self.robot, ours, water=Water(viscosity=self.viscosity)), swim(self.robot, ours)
+        return xr.Dataset(
+            {
+                "slice_speed": ("cycle", plane.speed.values, {"units": "m/s"}),
+                "model_speed": models.speed, "model_power": models.power, "model_thrust": models.thrust_held,
+                "real_model_speed": real.speed,
+            }
+        )  # fmt: skip
+
+    def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
+        """Return what the body did on every grid, and beside it slice, models, motions and tails."""
+        return findings.measures(record, self.robot, self.frequency)
+
+    def explain(self, measures: Mapping[str, float]) -> str:
+        """Set body, slice and models beside each other."""
+        return findings.explain(measures)
+
+    def draw(self, outcome: Outcome) -> Mapping[str, Any]:
+        """Draw speeds over the cycles, the wake, the tails and the joints' torques."""
+        record = outcome.record
+        figures = {
+            "swim_3d_speeds": draw_speeds(record),
+            "swim_3d_vortices": draw_vortices(record),
+            "swim_3d_wake": draw_wake(record),
+            "swim_3d_joints": draw_joints(record),
+        }
+        return figures | ({"swim_3d_tails": draw_tails(record)} if record.sizes["compared"] > 1 else {})
+
+
+Item = tuple[Motion, Basin]
+"""What differs between the swims."""
+
+
+def swum_in_space(robot: Crocodile, item: Item, progress: Callable[[float], None]) -> xr.Dataset:
+    """Return a swim of a robot, see ``water.swim_in_space``; its bytes follow from robot and item alone."""
+    return swim_in_space(robot, *item, progress=progress)
+
+
+def _swum_here(robot: Crocodile, keep: str, item: Item, progress: Callable[[float], None]) -> xr.Dataset:
+    """Return the same, and keep in a folder how far it has come."""
+    return swim_in_space(robot, *item, checkpoint=kept_in(keep, fingerprint(item)[:16]), progress=progress)
+
+
+def _replays(record: xr.Dataset) -> dict[str, Replay]:
+    """Return the page on which the body swims through its last cycle on the finest grid, vortices around it."""
+    caption = (
+        f"The body of the robot in three dimensions at f L² / ν = {float(record.reynolds):.0f}, on "
+        f"{int(record.cells[-1])} cells a length, in its last cycle. Surfaces lie where the second invariant of the "
+        f"velocity gradient is {float(record.vortex_level):.3g} 1/s², around vortices."
+    )
+    page = partial(wake_replay, record, title="Vortices around the swimming robot", caption=caption)
+    return {"swim_3d_replay.html": Replay(caption=caption, make=page)}
+
+
+experiment = Swim3d()

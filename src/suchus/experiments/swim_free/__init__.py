@@ -1,0 +1,1 @@
+"""How does it swim in six degrees of freedom, at the surface?"""

@@ -1,0 +1,313 @@
+"""How does it swim in six degrees of freedom, at the surface?"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
+from math import pi
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from suchus import rotation
+from suchus.control import Swimming
+from suchus.design import GRAVITY, Crocodile, cable_joints
+from suchus.design.checks import Checks
+from suchus.design.water import Water
+from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
+from suchus.experiments.swim_free import submerged
+from suchus.experiments.swim_free.figure import draw_below, draw_speeds, draw_tail
+from suchus.gaits import GAITS
+from suchus.land import Lake, Run, simulate
+from suchus.land.afloat import check_floats
+from suchus.motion import LIMBS_BACK, Swim
+from suchus.replay import replay
+from suchus.robots import ROBOTS
+from suchus.verdict import Reading, compared
+from suchus.water import Outline, fit, printed_wave, swim
+from suchus.water.sections import likely
+from suchus.water.slender import cruise, cycle, reactive
+
+MOTIONS = ("whole", "tail_only", "trunk_only", "reversed")
+"""Motions that are compared, in open loop."""
+_MODELS = ("resistive", "reactive")
+_SPREAD = {"cross_drag": (0.7, 1.5), "thickening": (0.5, 2.0), "added_mass": (0.7, 1.4), "shedding": (0.5, 1.5)}
+"""Plausible factors on the coefficients of the water [-]: round sections that oscillate, swimming fish, how the tail
+sheds. Drag and added mass may be farther off, as ``water.sections.likely`` says of the robot's sections."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SwimFree(Experiment):
+    """The wave of (20) on the joints of a floating robot, in open loop: whole, tail only, trunk only and reversed.
+
+    The robot floats, heaves, rolls, pitches and steers as the water lets it. Its cable fixes the sum of its joints'
+    angles only; how they share it is up to rubber and water. So the same swims are repeated with stiffer joints, and
+    set beside two models whose midline is commanded and cannot see this. One run steers by a mean bend; further runs
+    vary each coefficient of the water over its plausible range, wide enough for the table of oscillating sections at
+    the aspects and Keulegan numbers of this body, and halve the time step. Last, it dives and swims below the surface,
+    neutrally buoyant: with the air in the chambers of the design, with its pitch held or used to dive by air that moves
+    between them, and with the air in the foam, where it lies without chambers.
+    """
+
+    title = "How does it swim in six degrees of freedom, at the surface?"
+    shows = "Section IV.B, eq. (20); beyond the article"
+    needs = ("tables", "article_spine", "cable_tail")
+
+    robot: Crocodile = field(default_factory=lambda: ROBOTS["floating_caiman"])
+    """The robot that swims; it must float."""
+    reading: str = "I"
+    """Letter of the reading of (20), see ``kinematics.wave.READINGS``."""
+    frequency: float = 1.0
+    """Frequency of the wave [Hz]."""
+    stiffness: float = 2.4
+    """Stiffness of the cable's joints in the further runs [N m/rad]."""
+    limb_pitch: float = LIMBS_BACK[1]
+    """Angle by which the limbs, which lie back along the body, point down [rad]."""
+    turn: float = 0.6
+    """Mean bend of the tail in the run that steers [rad]."""
+    trunk_turn: float = 0.3
+    """Mean bend of the trunk in that run [rad]."""
+    settle: int = 6
+    """Cycles that are swum before anything is measured [-]."""
+    cycles: int = 6
+    """Cycles that are measured [-]."""
+    spread: tuple[str, ...] = tuple(_SPREAD)
+    """Coefficients of the water that are varied."""
+    level: float = 2.0
+    """Depth of the water [m]."""
+    depth: float = 0.6
+    """Depth of the root in the swims below the surface [m]."""
+    dive: int = 24
+    """Cycles that are swum in those before anything is measured; as many are measured as at the surface [-]."""
+
+    def __post_init__(self) -> None:
+        with Checks(self.name(), self) as check:
+            check.number("frequency", 0.05, 10.0, "Hz")
+            check.number("stiffness", 0.01, 100.0, "N m/rad")
+            check.number("limb_pitch", -pi, pi, "rad")
+            check.number("turn", -pi, pi, "rad")
+            check.number("trunk_turn", -pi, pi, "rad")
+            check.whole("settle", 0, 1000)
+            check.whole("cycles", 1, 1000)
+            check.number("level", 0.3, 1000.0, "m")
+            check.number("depth", 0.05, 1000.0, "m")
+            check.whole("dive", 0, 1000)
+            check.that(
+                self.depth <= self.level - 0.2,
+                f"swim_free.depth is {self.depth:g} m in water {self.level:g} m deep; at least 0.2 m must be below it",
+            )
+            unknown = [name for name in self.spread if name not in _SPREAD]
+            check.that(not unknown, f"spread names {', '.join(unknown)}; there is {', '.join(_SPREAD)}")
+
+    def quick(self) -> "SwimFree":
+        """Return the first cycle alone, coefficients as they are."""
+        return replace(self, settle=0, cycles=1, spread=(), dive=0)
+
+    @property
+    def _duration(self) -> float:
+        return (self.settle + self.cycles) / self.frequency
+
+    def simulate(self, progress: Progress = silent) -> Simulated:
+        """Swim in every motion, stiffer, steered, in other waters, and at half the time step."""
+        check_floats(self.robot, Lake(level=self.level))
+        motion = fit(
+            replace(self.robot, hull=None), printed_wave(self.robot, self.reading, frequency=self.frequency, sign=-1)
+        ).swim
+        motions = {
+            "whole": motion,
+            "tail_only": motion.tail_only(),
+            "trunk_only": motion.trunk_only(),
+            "reversed": motion.reversed(),
+        }
+        by_table = self._by_table(motion)
+        runs = self._runs(motions, _ends(self.spread, by_table))
+        record = simulate(runs, duration=self._duration, progress=staged(progress, "swims", 0.0, 0.7))
+        fine = simulate(
+            runs[:1],
+            duration=self._duration,
+            timestep=record.attrs["timestep"] / 2,
+            progress=staged(progress, "half the time step", 0.7, 0.8),
+        )
+        models = self._models(motions)
+        record["fine_centre_of_mass"] = fine.centre_of_mass.isel(run=0, drop=True)
+        deep = self._deep(motion, staged(progress, "swims below the surface", 0.8, 1.0))
+        record = xr.merge([record, models, *deep], join="exact", compat="no_conflicts", combine_attrs="override")
+        record.attrs.update(
+            measured_from=self.settle / self.frequency,
+            deep_from=self.dive / self.frequency,
+            depth=self.depth,
+            frequency=self.frequency,
+            cable=list(cable_joints(self.robot)),
+            meant=motion.tail / len(cable_joints(self.robot)),
+            **{f"{name}_by_table": factor for name, factor in by_table.items()},
+        )
+        return Simulated(record=record, replays=self._replays(record))
+
+    def _deep(self, motion: Swim, progress: Any) -> list[xr.Dataset]:
+        """Return what is kept of the swims below the surface; nothing of a robot that cannot hover."""
+        swim = Swimming(swim=motion, limb_pitch=self.limb_pitch)
+        runs = submerged.deep_runs(self.robot, swim, Lake(level=self.level), self.depth)
+        duration = (self.dive + self.cycles) / self.frequency
+        return [submerged.kept(simulate(runs, duration=duration, progress=progress), runs)] if runs else []
+
+    def _by_table(self, motion: Swim) -> Mapping[str, float]:
+        """Return the factors by which the table of sections differs from the coefficients of the swims [-]."""
+        outline = Outline(replace(self.robot, hull=None))
+        swum = cruise(outline, motion, reactive, Water())
+        side = np.ptp(cycle(outline, motion, swum.sway, swum.turn).y, axis=0) / 2
+        return dict(zip(("cross_drag", "added_mass"), likely(*outline.silhouette, side), strict=True))
+
+    def _runs(self, motions: Mapping[str, Swim], factors: Mapping[str, tuple[float, float]]) -> list[Run]:
+        """Return every run; their labels say what they are."""
+        lake, gait = Lake(level=self.level), GAITS["belly_crawl"]
+        stiff = replace(self.robot, tail=replace(self.robot.tail, joint_stiffness=self.stiffness))
+        plain = partial(Swimming, limb_pitch=self.limb_pitch)
+        runs = [
+            Run(robot=robot, gait=gait, lake=lake, control=plain(swim=one), label=name + ending)
+            for robot, ending in ((self.robot, ""), (stiff, "_stiff"))
+            for name, one in motions.items()
+        ]
+        steered = plain(swim=motions["whole"], turn=self.turn, trunk_turn=self.trunk_turn)
+        runs.append(Run(robot=self.robot, gait=gait, lake=lake, control=steered, label="steered"))
+        for name, ends in factors.items():
+            for factor in ends:
+                other = _other(lake, name, factor)
+                control = plain(swim=motions["whole"])
+                runs.append(Run(robot=self.robot, gait=gait, lake=other, control=control, label=f"{name} x {factor:g}"))
+        return runs
+
+    def _models(self, motions: Mapping[str, Swim]) -> xr.Dataset:
+        """Return the speeds of the models whose midline is commanded, and the speed of the body wave [m/s]."""
+        bare = replace(self.robot, hull=None)
+        found = {name: swim(bare, one) for name, one in motions.items()}
+        speeds = [[float(found[name].speed.sel(model=model)) for model in _MODELS] for name in MOTIONS]
+        whole = found["whole"].sel(model="reactive")
+        return xr.Dataset(
+            {
+                "model_speed": (("motion", "model"), speeds, {"units": "m/s"}),
+                "wave_speed": ((), float(whole.speed / whole.slip), {"units": "m/s"}),
+            },
+            coords={"motion": list(MOTIONS), "model": list(_MODELS)},
+        )
+
+    def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
+        caption = "Swimming at the surface by the wave of (20), limbs held back; half transparent, with stiffer joints."
+        page = partial(
+            replay,
+            record.isel(run=0),
+            self.robot,
+            ghost=record.isel(run=len(MOTIONS)),
+            labels=("joints as designed", "stiffer joints"),
+            title="Swimming in six degrees of freedom",
+            caption=caption,
+        )
+        return {"swim_replay.html": Replay(caption=caption, make=page)}
+
+    def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
+        """Return speeds, what the swim costs, how it rolls and turns, and how the cable's joints share their bend."""
+        labels = [str(label) for label in record.label.values]
+        speed = {label: _speed(record.centre_of_mass.isel(run=i), record) for i, label in enumerate(labels)}
+        part = record.sel(time=slice(record.attrs["measured_from"] - 1e-9, None))
+        whole, found = part.isel(run=0), {}
+        for name in MOTIONS:
+            found[f"speed_{name}"] = Measure(speed[name], "m/s")
+            found[f"speed_{name}_stiff"] = Measure(speed[f"{name}_stiff"], "m/s")
+            for model in _MODELS:
+                value = float(record.model_speed.sel(motion=name, model=model))
+                found[f"speed_{name}_{model}"] = Measure(value, "m/s")
+        waters = [value for label, value in speed.items() if " x " in label] + [speed["whole"]]
+        ahead, weight = abs(speed["whole"]), float(whole.mass) * GRAVITY
+        swing = float(np.ptp((whole.tail_tip - whole.centre_of_mass).sel(xyz="y").values))
+        fine = _speed(record.fine_centre_of_mass, record)
+        yaw = np.unwrap(rotation.yaw(whole.orientation.values))
+        return (
+            found
+            | submerged.measures(record)
+            | {
+                "speed_low": Measure(min(waters), "m/s"),
+                "speed_high": Measure(max(waters), "m/s"),
+                "cross_drag_by_table": Measure(record.attrs["cross_drag_by_table"], "-"),
+                "added_mass_by_table": Measure(record.attrs["added_mass_by_table"], "-"),
+                "step_change": Measure(abs(fine - speed["whole"]) / ahead, "-"),
+                "roll_amplitude": Measure(float(np.abs(rotation.heel(whole.orientation.values)).max()), "rad"),
+                "pitch": Measure(float(rotation.pitch(whole.orientation.values).mean()), "rad"),
+                "yaw_amplitude": Measure(float(np.ptp(yaw)) / 2, "rad"),
+                "share_above": Measure(float(1.0 - whole.share_under.mean()), "-"),
+                "strouhal": Measure(record.attrs["frequency"] * swing / ahead, "-"),
+                "slip": Measure(speed["whole"] / float(record.wave_speed), "-"),
+                "servo_power": Measure(float(whole.servo_power.mean()), "W"),
+                "water_power": Measure(-float(whole.water_power.mean()), "W"),
+                "cost_of_transport": Measure(float(whole.servo_power.mean()) / (weight * ahead), "-"),
+                "cost_of_transport_water": Measure(-float(whole.water_power.mean()) / (weight * ahead), "-"),
+                "turn_radius": Measure(_radius(part.isel(run=labels.index("steered")), record.attrs["frequency"]), "m"),
+                "tail_spread": Measure(_uneven(whole, record), "-"),
+                "tail_spread_stiff": Measure(_uneven(part.isel(run=labels.index("whole_stiff")), record), "-"),
+            }
+        )
+
+    def explain(self, measures: Mapping[str, float]) -> str:
+        """Say what each part of the body gives, what the joints' stiffness changes, and how sure that is."""
+        m = {name: Reading(value) for name, value in measures.items()}
+        tail = compared(m["speed_tail_only"], m["speed_tail_only_stiff"], less="less", more="more", within=0.05)
+        gain = compared(m["speed_whole_stiff"], m["speed_whole"], less="slower", more="faster", within=0.02)
+        turns = compared(abs(m["turn_radius"]), 1.0, less="less", more="more")
+        table = f"{m['cross_drag_by_table']:.2f} and {m['added_mass_by_table']:.2f}"
+        return (
+            f"With the whole wave it swims at {m['speed_whole']:.3f} m/s, with the trunk alone at "
+            f"{m['speed_trunk_only']:.3f} and with the tail alone at {m['speed_tail_only']:.3f} m/s, {tail} than the "
+            f"{m['speed_tail_only_stiff']:.3f} m/s of a tail with stiffer joints. The cable fixes the sum of its "
+            f"joints' angles only, and the water distributes it among them: the largest bend is {m['tail_spread']:.1f} "
+            f"times the mean ({m['tail_spread_stiff']:.1f} with stiffer joints). Models whose midline is commanded "
+            f"give {m['speed_tail_only_resistive']:.2f} and {m['speed_tail_only_reactive']:.2f} m/s for the tail "
+            f"alone, since they leave this out. With stiffer joints the whole wave is {gain} "
+            f"({m['speed_whole_stiff']:.3f} m/s). Reversed, it moves at {m['speed_reversed']:.3f} m/s. It rolls by "
+            f"{m['roll_amplitude']:deg.1f} degrees at most and, steered, turns on a radius of "
+            f"{abs(m['turn_radius']):.2f} m, {turns} than 1 m. Over the plausible coefficients of the water the speed "
+            f"is {m['speed_low']:.3f} to {m['speed_high']:.3f} m/s; oscillating sections have {table} times the drag "
+            f"and the added mass that it swims with. Half the time step changes the speed by "
+            f"{m['step_change']:.1%}. The servos take {m['servo_power']:.2f} W, of which the water gets "
+            f"{m['water_power']:.2f}.{submerged.said(m)}"
+        )
+
+    def draw(self, outcome: Outcome) -> Mapping[str, Any]:
+        """Draw the speeds beside the models', and how the joints of the cable share the bend."""
+        speeds = {name: measure.value for name, measure in self.measure(outcome.record).items()}
+        found = {"swim_speeds": draw_speeds(speeds, MOTIONS, _MODELS), "tail_shares": draw_tail(outcome.record)}
+        return found | ({"below": draw_below(outcome.record, submerged.DEEP)} if "dive" in outcome.record else {})
+
+
+def _ends(names: Sequence[str], by_table: Mapping[str, float]) -> dict[str, tuple[float, float]]:
+    """Return the least and the greatest factor on each coefficient, those of the table among them [-]."""
+    some = {name: (*_SPREAD[name], by_table.get(name, _SPREAD[name][0])) for name in names}
+    return {name: (min(factors), max(factors)) for name, factors in some.items()}
+
+
+def _other(lake: Lake, name: str, factor: float) -> Lake:
+    """Return a lake in which one coefficient is another."""
+    if name in ("added_mass", "shedding"):
+        return replace(lake, **{name: factor})  # type: ignore[arg-type]
+    return replace(lake, water=replace(Water(), **{name: factor * getattr(Water(), name)}))
+
+
+def _speed(centre: xr.DataArray, record: xr.Dataset) -> float:
+    """Return the mean speed of the centre of mass along its first heading, +x, over the measured cycles [m/s]."""
+    x = centre.sel(xyz="x").sel(time=slice(record.attrs["measured_from"] - 1e-9, None))
+    return float((x[-1] - x[0]) / (x.time[-1] - x.time[0]))
+
+
+def _radius(part: xr.Dataset, frequency: float) -> float:
+    """Return the radius of a circle, left positive: distance over the turn, cycle by cycle [m]."""
+    every = max(round(1.0 / (frequency * float(part.time[1] - part.time[0]))), 1)
+    x, y = (part.centre_of_mass.sel(xyz=axis).values[::every] for axis in "xy")
+    yaw = np.unwrap(rotation.yaw(part.orientation.values))[::every]
+    return float(np.hypot(np.diff(x), np.diff(y)).sum() / (yaw[-1] - yaw[0]))
+
+
+def _uneven(part: xr.Dataset, record: xr.Dataset) -> float:
+    """Return the largest amplitude of a cable joint over their mean [-]."""
+    angles = part.joint_angle.sel(joint=record.attrs["cable"]).transpose("time", "joint").values
+    half = np.ptp(angles, axis=0) / 2
+    return float(half.max() / half.mean())
+
+
+experiment = SwimFree()

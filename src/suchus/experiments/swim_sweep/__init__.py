@@ -1,0 +1,1 @@
+"""How fast and how well does it swim at other frequencies, amplitudes and wavelengths?"""

@@ -1,0 +1,268 @@
+"""How does it swim: the pressure around the waving body, and the speed it reaches on its own?"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any, ClassVar
+
+import numpy as np
+import xarray as xr
+
+from suchus.design import Crocodile
+from suchus.design.checks import Checks
+from suchus.experiment import Experiment, Measure, Outcome, Progress, Simulated, silent, staged
+from suchus.experiments._taken import TAKEN, midlines
+from suchus.experiments.swimming import findings
+from suchus.experiments.swimming.figure import (
+    draw_forces,
+    draw_free,
+    draw_quarters,
+    draw_sides,
+    film_pressure,
+    film_vorticity,
+)
+from suchus.experiments.swimming.findings import ARMS
+from suchus.kinematics.wave import READINGS
+from suchus.motion import Swim
+from suchus.robots import ROBOTS
+from suchus.water import (
+    ExactWave,
+    Fit,
+    Motion,
+    Tether,
+    attempts,
+    fit,
+    free_swim,
+    portion,
+    printed_wave,
+    readings_table,
+    swim,
+    tether,
+    towed,
+)
+from suchus.water.diary import forget_kept, kept_in
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Swimming(Experiment):
+    """The robot's own outline in a two-dimensional flow, its joints fitted to (20).
+
+    Tethered, as in the article's Fig. 17: the snout is fixed, and every cycle but the first is measured. Values are
+    those of the last cycle, ``_low`` and ``_high`` those of all measured cycles. ``pressure_difference`` is the mean
+    pressure along the convex side of the tail less that along the concave side; the bend between the tail's root and
+    its tip says which side is convex. ``pressure_fall`` is by how much its size is smaller at 3T/4 than at T/4.
+    ``pressure_moves`` is by how many tail lengths its place moves towards the tip meanwhile: the mean position along
+    the tail, weighted with the size of the difference. ``force_angle_1_quarter`` is the angle between the force at T/4
+    and the forward direction. ``thrust_asymmetry`` is the difference between the forces at T/4 and 3T/4, left and right
+    swapped, over the greater part of the force.
+
+    Free: from rest, in a grid that travels along. The speed is the mean of the last cycle; ``efficiency`` is the power
+    that towing the straight body at that speed takes over the power of the joints. ``track_sway`` is the lateral
+    amplitude of the centre of mass, ``track_noise`` twice the standard deviation of what is no sine of one cycle, both
+    over the last four cycles and in body lengths. ``wave_share`` is the part of the midline's mean square swing that
+    the nearest wave of the form (20) has. ``gain_tail_swim`` is the speed of trunk and tail less that of the trunk
+    alone, ``gain_spine_swim`` less that of the tail alone.
+
+    Trunk, tail, the printed direction, and the wave that the midline follows exactly are compared on a coarser grid.
+    With ``taken`` the midlines that the same commands give in six degrees of freedom at the surface, where the water
+    distributes the cable's bend among its joints, swim as further conditions; of these midlines only yaw counts. Other
+    readings of (20) are tethered in more viscous water, at ``readings_reynolds``.
+
+    Everything is per metre of depth but ``servo_load_peak``, the torque at a servo's shaft over its limit: there every
+    section is as high as the robot's and feels the flow's pressures.
+    """
+
+    title = "How does it swim?"
+    shows = "Section IV.B, eq. (20), Fig. 17"
+    needs = ("tables", "article_spine", "cable_tail")
+    judged_with = ("robot", "reading", "frequency", "reynolds")
+    judged_from: ClassVar[Mapping[str, float]] = {
+        "cells": 128, "coarse_cells": 80, "cycles": 4, "free_cycles": 8, "arm_cycles": 6,
+    }  # fmt: skip
+
+    robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
+    """The robot that swims."""
+    reading: str = "I"
+    """Letter of the reading of (20), see ``kinematics.wave.READINGS``."""
+    frequency: float = 1.0
+    """Frequency of the wave, which the article does not give [Hz], 0.01 to 20."""
+    reynolds: float = 7000.0
+    """Frequency times length squared over viscosity [-]; the robot's own would be 1e6, beyond any affordable grid."""
+    cells: int = 128
+    """Cells per body length, tethered and free [-]."""
+    coarse_cells: int = 80
+    """The same where trunk, tail, directions and the exact wave are compared, and of the towed body [-]."""
+    cycles: int = 4
+    """Cycles of the tethered body; all but the first are measured, and the fields of the last are shown [-]."""
+    free_cycles: int = 10
+    """Cycles of the free body; speeds are of the last, the track of the last four [-]."""
+    arm_cycles: int = 6
+    """Cycles after which the conditions (trunk, tail, directions, exact wave) are compared [-]."""
+    readings: tuple[str, ...] = ("A", "C", "F", "H", "K")
+    """Further readings of (20) whose thrust is measured [-]; the joints cannot make the others."""
+    readings_reynolds: float = 1000.0
+    """Reynolds number of these [-]; their tails are up to four times as fast and would need a finer grid."""
+    readings_cells: int = 40
+    """Cells per body length of these [-]."""
+    tow: float = 4.0
+    """Distance over which the straight body is towed, its drag the mean over the last length [body length]."""
+    frames: int = 20
+    """Pictures of each film, over one cycle [-], 1 to 200."""
+    taken: bool = False
+    """Whether the midline that the joints take in six degrees of freedom swims too, with trunk and tail and with the
+    tail alone: two more swims like those of trunk and tail."""
+    keep: str = ""
+    """Folder for what is finished of an interrupted run, from which it goes on; empty keeps nothing."""
+
+    def __post_init__(self) -> None:
+        with Checks("swimming", self) as check:
+            check.number("frequency", 0.01, 20.0, "Hz")
+            check.number("reynolds", 10.0, 2e4, "")
+            check.number("readings_reynolds", 10.0, 2e4, "")
+            unknown = [letter for letter in (self.reading, *self.readings) if letter not in READINGS]
+            check.that(
+                not unknown, f"swimming.readings of (20) are {', '.join(READINGS)}; there is no {', '.join(unknown)}"
+            )
+            for name in ("cells", "coarse_cells", "readings_cells"):
+                check.whole(name, 32, 1024)
+            check.number("tow", 1.5, 100.0, "body lengths")
+            check.whole("frames", 1, 200)
+            for name in ("cycles", "free_cycles", "arm_cycles"):
+                check.whole(name, 2, 100)
+
+    def quick(self) -> "Swimming":
+        """A coarse grid, viscous water, few cycles."""
+        return replace(
+            self, cells=32, coarse_cells=32, cycles=2, free_cycles=2, arm_cycles=2, reynolds=1000.0, readings=("H",),
+            readings_cells=32, tow=2.0, frames=3,
+        )  # fmt: skip
+
+    def simulate(self, progress: Progress = silent) -> Simulated:
+        """Swim tethered and free, in every motion."""
+        ours, printed = (self._fit(sign) for sign in (-1, 1))
+        held = self._tethered("ours", ours, staged(progress, "tethered", 0.0, 0.08))
+        printed_swim = self._tethered("as printed", printed, staged(progress, "as printed", 0.08, 0.16))
+        free = self._free("ours", ours.swim, self.cells, self.free_cycles, staged(progress, "free", 0.16, 0.5))
+        conditions = self._conditions(ours, printed, free, staged(progress, "trunk and tail separately", 0.5, 0.8))
+        bent = self._taken(ours.swim, staged(progress, "midline of the joints", 0.8, 0.92)) if self.taken else []
+        readings, table = self._readings(staged(progress, "readings of (20)", 0.92, 0.96))
+        drag = self._drag(float(free.speed[-1]), staged(progress, "towed", 0.96, 1.0))
+        printed_forces = printed_swim[["thrust", "aside", "power", "cycle_thrust"]]
+        record = xr.merge(
+            [
+                _prefixed(held, "held"),
+                _prefixed(printed_forces, "printed"),
+                _prefixed(free, "free"),
+                conditions,
+                readings,
+                *bent,
+            ],
+            join="exact",
+        )
+        record["model_speed"] = swim(self.robot, ours.swim).speed
+        record["printed_model_speed"] = swim(self.robot, printed.swim).speed
+        record["towed_drag"] = ((), drag, {"units": "N/m"})
+        record["servo_limit"] = ("held_servo", [self.robot.servo(str(s)).torque for s in held.servo.values])
+        record.servo_limit.attrs["units"] = "N m"
+        record.attrs["misfit"] = ours.misfit
+        progress("films", 1.0)
+        films = {"swimming_vorticity.gif": film_vorticity(record), "swimming_pressure.gif": film_pressure(record)}
+        forget_kept(self.keep)
+        return Simulated(record=record, tables={"readings.md": table}, films=films)
+
+    def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
+        """Return what the tethered and the free body did, and how fast each motion swims."""
+        return findings.measures(record, self.robot, self.frequency, self.reading)
+
+    def explain(self, measures: Mapping[str, float]) -> str:
+        """Say what tail, trunk and direction of the wave do to the speed."""
+        return findings.explain(measures)
+
+    def _setting(self, cells: int, cycles: int, reynolds: float | None = None) -> Tether:
+        viscosity = self.frequency * self.robot.length**2 / (reynolds or self.reynolds)
+        return Tether(cells=cells, viscosity=viscosity, cycles=cycles, frames=self.frames)
+
+    def _fit(self, sign: int) -> Fit:
+        wave = printed_wave(self.robot, self.reading, frequency=self.frequency, sign=sign)
+        return fit(self.robot, wave, name=f"(20), reading {self.reading}")
+
+    def _tethered(self, name: str, fitted: Fit, progress: Callable[[float], None]) -> xr.Dataset:
+        kept, setting = kept_in(self.keep, f"held {name}"), self._setting(self.cells, self.cycles)
+        return tether(self.robot, fitted.swim, setting, turn=fitted.head, checkpoint=kept, progress=progress)
+
+    def _free(
+        self, name: str, motion: Motion, cells: int, cycles: int, progress: Callable[[float], None]
+    ) -> xr.Dataset:
+        kept, setting = kept_in(self.keep, f"free {name}"), self._setting(cells, cycles)
+        return free_swim(self.robot, motion, setting, checkpoint=kept, progress=progress)
+
+    def _conditions(self, ours: Fit, printed: Fit, free: xr.Dataset, progress: Callable[[float], None]) -> xr.Dataset:
+        """Return the speed in every condition and cycle; the first is the free swim itself on equal grids."""
+        exact = [
+            ExactWave(name=name, wave=printed_wave(self.robot, self.reading, frequency=self.frequency, sign=sign))
+            for name, sign in zip(ARMS[4:], (-1, 1), strict=True)
+        ]
+        motions: tuple[Motion, ...] = (
+            ours.swim, ours.swim.trunk_only(), ours.swim.tail_only(), printed.swim, *exact,
+        )  # fmt: skip
+        speeds = []
+        for i, (arm, motion) in enumerate(zip(ARMS, motions, strict=True)):
+            done = i == 0 and self.coarse_cells == self.cells and self.arm_cycles <= self.free_cycles
+            stage = portion(progress, i, len(ARMS))
+            swum = free if done else self._free(arm, motion, self.coarse_cells, self.arm_cycles, stage)
+            speeds.append(swum.speed.values[: self.arm_cycles])
+        data = xr.Dataset({"arm_speed": (("arm", "cycle"), np.array(speeds), {"units": "m/s"})})
+        return data.assign_coords(arm=list(ARMS), cycle=np.arange(1, self.arm_cycles + 1))
+
+    def _taken(self, motion: Swim, progress: Callable[[float], None]) -> list[xr.Dataset]:
+        """Return speeds of the midlines that joints take in six degrees of freedom, and the error of their angles."""
+        speeds, away = [], []
+        bent = midlines(self.robot, motion, self.coarse_cells + 1)
+        for i, (arm, bends, off) in enumerate(bent):
+            stage = portion(progress, i, len(bent))
+            speeds.append(self._free(arm, bends, self.coarse_cells, self.arm_cycles, stage).speed.values)
+            away.append(off)
+        data = xr.Dataset(
+            {
+                "taken_speed": (("taken_arm", "cycle"), np.array(speeds), {"units": "m/s"}),
+                "taken_away": ("taken_arm", away, {"units": "1", "long_name": "rms angle off, over that commanded"}),
+            }
+        )
+        return [data.assign_coords(taken_arm=list(TAKEN), cycle=np.arange(1, self.arm_cycles + 1))]
+
+    def _readings(self, progress: Callable[[float], None]) -> tuple[xr.Dataset, str]:
+        """Return the mean thrust of further readings, and a table of all of them."""
+        tried = {one.letter: one for one in attempts(self.robot, frequency=self.frequency)}
+        setting, thrust = self._setting(self.readings_cells, self.cycles, self.readings_reynolds), []
+        for i, letter in enumerate(self.readings):
+            fitted, part = tried[letter].fitted, portion(progress, i, len(self.readings))
+            held = None if fitted is None else tether(self.robot, fitted.swim, setting, turn=fitted.head, progress=part)
+            thrust.append(float("nan") if held is None else float(held.cycle_thrust[1:].mean()))
+        thrusts = {
+            letter: f"{value:.1f} N/m at Re {self.readings_reynolds:.0f}"
+            for letter, value in zip(self.readings, thrust, strict=True)
+        }
+        data = xr.Dataset({"reading_thrust": ("reading", thrust, {"units": "N/m"})})
+        return data.assign_coords(reading=list(self.readings)), readings_table(tried.values(), thrusts)
+
+    def _drag(self, speed: float, progress: Callable[[float], None]) -> float:
+        progress(0.0)
+        least = 0.02 * self.robot.length
+        return towed(self.robot, max(abs(speed), least), self._setting(self.coarse_cells, 1), lengths=self.tow)
+
+    def draw(self, outcome: Outcome) -> Mapping[str, Any]:
+        """Draw the fields, the two sides of the tail, the forces, the free swim."""
+        record = outcome.record
+        return {
+            "swimming_pressure": draw_quarters(record),
+            "swimming_sides": draw_sides(record),
+            "swimming_forces": draw_forces(record),
+            "swimming_free": draw_free(record),
+        }
+
+
+def _prefixed(record: xr.Dataset, name: str) -> xr.Dataset:
+    """Return a record whose variables and dimensions carry the name of the swim."""
+    return record.rename({str(old): f"{name}_{old}" for old in {*record.variables, *record.dims}})
+
+
+experiment = Swimming()

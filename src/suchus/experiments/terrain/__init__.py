@@ -1,0 +1,1 @@
+"""Which posture for which ground, and can the robot choose by what it feels?"""

@@ -1,0 +1,1 @@
+"""How tightly does it turn, and does it walk the circle that was asked for?"""

@@ -1,0 +1,145 @@
+"""How much room does the snout reach, on four feet and on hind feet and tail?"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any, ClassVar
+
+import numpy as np
+import xarray as xr
+
+from suchus.design import LEGS, Crocodile
+from suchus.design.checks import Checks
+from suchus.experiment import Experiment, Measure, Outcome, Progress, Simulated, silent
+from suchus.experiments.working_space.figure import room
+from suchus.figures import captioned
+from suchus.gaits import GAITS
+from suchus.motion import Gait
+from suchus.motion.working_space import Extent, Reached, extent, outline, reached
+from suchus.robots import ROBOTS
+from suchus.verdict import Reading
+
+STATES = ("crawling", "standing")
+"""On four feet; on hind feet and tail."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WorkingSpace(Experiment):
+    """Volume and side-view area that the tip of the snout reaches without a step, by kinematics and balance.
+
+    It needs a robot with four legs, a trunk that bends, a head and a tail, and a gait that says where its feet stand.
+    """
+
+    title = "How much room does the snout reach, on four feet and on hind feet and tail?"
+    shows = "Section IV.D, Figs 23 and 24"
+    needs = ("tables", "article_spine", "cable_tail")
+    judged_with = ("robot", "gait")
+    judged_from: ClassVar[Mapping[str, float]] = {"crawling": 2**19, "standing": 2**18}
+
+    robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
+    """The robot that reaches."""
+    gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
+    """Gait whose stance gives the places of the feet."""
+    crawling: int = 2**19
+    """Configurations that are drawn on four feet; about one in two hundred is possible [-]."""
+    standing: int = 2**18
+    """Configurations that are drawn on hind feet and tail; about one in ten is possible [-]."""
+    cell: float = 0.025
+    """Edge of the cells that are counted [m]."""
+    seed: int = 0
+    """Seed of the drawing [-]."""
+
+    def __post_init__(self) -> None:
+        with Checks(self.name(), self) as check:
+            check.whole("crawling", 1, 2**24)
+            check.whole("standing", 1, 2**24)
+            check.whole("seed", 0, 2**31)
+            check.number("cell", 0.002, 0.2, "m")
+
+    def quick(self) -> "WorkingSpace":
+        """Return it with few configurations in coarse cells."""
+        return replace(self, crawling=2**15, standing=2**13, cell=0.04)
+
+    def simulate(self, progress: Progress = silent) -> Simulated:
+        """Draw configurations and keep those that can be."""
+        record = xr.Dataset(attrs={"cell": self.cell}, coords={"xyz": ["x", "y", "z"], "leg": ["LF", "LH"]})
+        for state, share in zip(STATES, (0.0, 0.6), strict=True):
+            progress(state, share)
+            found = reached(
+                self.robot, self.gait, standing=state == "standing", count=getattr(self, state), seed=self.seed
+            )
+            record[f"snout_{state}"] = ((f"kept_{state}", "xyz"), found.snout, {"units": "m"})
+            record[f"tried_{state}"] = ((), found.tried, {"units": "1"})
+            record = record.merge(_highest(self.robot, found, state))
+        return Simulated(record=record)
+
+    def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
+        """Return volumes, areas and heights of both states with what the counting leaves open."""
+        cell, rooms = record.attrs["cell"], {}
+        measures: dict[str, Measure] = {}
+        for state in STATES:
+            snout = record[f"snout_{state}"].values
+            both = np.concatenate([snout, snout * [1.0, -1.0, 1.0]])  # what a robot can do, its mirror image can
+            rooms[state] = {"volume": (extent(both, cell), "m3"), "area": (extent(snout[:, [0, 2]], cell), "m2")}
+            for name, (found, unit) in rooms[state].items():
+                measures |= {
+                    f"{name}_{state}": Measure(found.value, unit),
+                    f"{name}_{state}_low": Measure(found.low, unit),
+                    f"{name}_{state}_high": Measure(found.high, unit),
+                }
+            measures[f"highest_{state}"] = Measure(float(snout[:, 2].max()) if len(snout) else float("nan"), "m")
+            measures[f"possible_{state}"] = Measure(len(snout) / float(record[f"tried_{state}"]), "-")
+        for name in ("volume", "area"):
+            low, high = (rooms[state][name][0] for state in STATES)
+            measures |= {f"{name}_ratio{end}": Measure(v, "-") for end, v in _quotient(high, low).items()}
+        return measures
+
+    def explain(self, measures: Mapping[str, float]) -> str:
+        """Say how much larger the room is, and what is left out."""
+        m = {name: Reading(value) for name, value in measures.items()}
+        return (
+            f"While no foot is moved, the snout reaches on four feet {1000 * m['volume_crawling']:.1f} litres of space "
+            f"({1000 * m['volume_crawling_low']:.1f} to {1000 * m['volume_crawling_high']:.1f}) and on hind feet and "
+            f"tail {1000 * m['volume_standing']:.0f} ({1000 * m['volume_standing_low']:.0f} to "
+            f"{1000 * m['volume_standing_high']:.0f}): {m['volume_ratio']:.0f} times as much, "
+            f"{m['volume_ratio_low']:.1f} times at least. Seen from the side it is {m['area_ratio']:.1f} times the "
+            f"area, and the snout comes up to {m['highest_standing']:.2f} against {m['highest_crawling']:.2f} m. Of "
+            f"the configurations drawn {m['possible_crawling']:.1%} are possible on four feet and "
+            f"{m['possible_standing']:.1%} on two. They keep joint ranges, ground and balance; torques are not "
+            "considered."
+        )
+
+    def draw(self, outcome: Outcome) -> Mapping[str, Any]:
+        """Draw the room from the side and from above."""
+        return {
+            "working_space": captioned(
+                room(outcome.record, STATES),
+                "Where the tip of the snout can be without a step: on four feet (orange) and on hind feet and tail "
+                "(blue), from the side and from above, with the configuration of each that reaches highest. Feet stand "
+                f"as in the gait; cells of {1000 * self.cell:g} mm.",
+            )
+        }
+
+
+def _quotient(over: Extent, under: Extent) -> dict[str, float]:
+    """Return the ratio of two extents by end; NaN where there is nothing to compare with."""
+    pairs = {"": (over.value, under.value), "_low": (over.low, under.high), "_high": (over.high, under.low)}
+    return {end: a / b if b > 0 else float("nan") for end, (a, b) in pairs.items()}
+
+
+def _highest(robot: Crocodile, found: Reached, state: str) -> xr.Dataset:
+    """Return the body's line and the left legs of the configuration that reaches highest [m]."""
+    if not len(found.snout):
+        return xr.Dataset()
+    best = int(np.argmax(found.snout[:, 2]))
+    line, legs = outline(robot, found.angles[best : best + 1], found.pelvis[best : best + 1])
+    metres = {"units": "m"}
+    left = [LEGS.index("LF"), LEGS.index("LH")]
+    return xr.Dataset(
+        {
+            f"body_{state}": (("point", "xyz"), line[0], metres),
+            f"legs_{state}": (("leg", "end", "xyz"), legs[0, left], metres),
+        }
+    )
+
+
+experiment = WorkingSpace()
