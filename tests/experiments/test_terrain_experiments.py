@@ -8,8 +8,8 @@ import xarray as xr
 
 from suchus.design.relief import Bumps, Step, Stone
 from suchus.experiments import EXPERIMENTS
-from suchus.experiments.terrain import findings
 from suchus.experiments.speed_range.experiment import _UNITS
+from suchus.experiments.terrain import findings
 from suchus.experiments.terrain.experiment import _met
 from suchus.gaits import GAITS
 from suchus.land import Ground, Run, simulate
@@ -163,9 +163,7 @@ def test_erect_legs_are_ahead_where_they_get_farther_and_told_only_if_all_met():
     missed = findings.measures(rough_record(met=0.0))
     assert np.isnan(missed["erect_ahead_share"].value)
     assert missed["met_step_low_crawl"].value == 0.5
-    assert "met 100% of the bumps, 50% of the steps" in findings.explain(
-        {n: m.value for n, m in missed.items()}
-    )
+    assert "met 100% of the bumps, 50% of the steps" in findings.explain({n: m.value for n, m in missed.items()})
 
 
 def test_terrain_and_speed_are_judged_only_by_runs_that_meet_what_is_judged():

@@ -19,7 +19,8 @@ def page() -> str:
     ]
     lines += [f"| [`{name}`](#{name}) | {one.title} | {one.shows} |" for name, one in EXPERIMENTS.items()]
     for name, one in EXPERIMENTS.items():
-        lines += ["", f"## {one.title} {{#{name}}}", "", f"{one.shows}. Code: [`suchus.experiments.{name}`][suchus.experiments.{name}.experiment]", ""]
+        code = f"[`suchus.experiments.{name}`][suchus.experiments.{name}.experiment]"
+        lines += ["", f"## {one.title} {{#{name}}}", "", f"{one.shows}. Code: {code}", ""]
         lines += ["```sh", f"suchus run {name}", "```", ""]
         if one.claims:
             lines += ['??? note "Statements of the article that it judges"', ""]
