@@ -26,14 +26,14 @@ def flow_modules_after(*names):
 def walking():
     from suchus.experiments import EXPERIMENTS  # noqa: PLC0415  its names only
 
-    return [f"suchus.experiments.{name}" for name in EXPERIMENTS if name not in RESOLVED]
+    return [f"suchus.experiments.{name}.experiment" for name in EXPERIMENTS if name not in RESOLVED]
 
 
 def test_what_walks_loads_no_flow_solver(walking):
-    assert "suchus.experiments.displacement" in walking
+    assert "suchus.experiments.displacement.experiment" in walking
     doors = ["suchus.replay", "suchus.study", "suchus.optimise", "suchus.viewer"]
     assert flow_modules_after(*walking, *doors) == "[]"
 
 
 def test_a_swim_by_cfd_would_be_noticed():
-    assert "suchus.flow" in flow_modules_after("suchus.experiments.swimming")
+    assert "suchus.flow" in flow_modules_after("suchus.experiments.swimming.experiment")
