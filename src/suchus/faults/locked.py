@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from suchus.design import AnyRobot
 from suchus.errors import OutsideLimits
 from suchus.fault import Plant, ServoFault
-from suchus.motion.targets import servo_range
+from suchus.motion import servo_range
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,19 +1,17 @@
 """The shelf of gaits: one file, one gait, declared as ``gait`` with its ``chosen`` numbers."""
 
-from typing import Any
-
 from suchus.catalog import Catalog
 from suchus.design import AnyRobot
 from suchus.gaits._animal_swim import ANIMAL_SWIM
-from suchus.gaits._conditions import CONDITIONS, conditions, conditions_of
-from suchus.gaits._own import gait_of, suits
-from suchus.motion import AnyGait
+from suchus.gaits._conditions import CONDITIONS, conditions_of
+from suchus.gaits._own import gait_of
+from suchus.motion import Gait, suits
 
-GAITS: Catalog[Any] = Catalog("gait", "suchus.gaits", "suchus.motion:AnyGait")
-"""Of either kind; who needs one of them says so by the type of its field."""
+GAITS: Catalog[Gait] = Catalog("gait", "suchus.gaits", "suchus.motion:Gait")
+"""The gaits of the shelf."""
 
 
-def own_gait(robot: AnyRobot) -> AnyGait:
+def own_gait(robot: AnyRobot) -> Gait:
     """Return the gait in which a robot walks unless another one is asked for; see ``made_for`` in the gaits' files.
 
     Raises:
@@ -22,4 +20,4 @@ def own_gait(robot: AnyRobot) -> AnyGait:
     return gait_of(GAITS, robot)
 
 
-__all__ = ["ANIMAL_SWIM", "CONDITIONS", "GAITS", "conditions", "conditions_of", "own_gait", "suits"]
+__all__ = ["ANIMAL_SWIM", "CONDITIONS", "GAITS", "conditions_of", "own_gait", "suits"]

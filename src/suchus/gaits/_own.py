@@ -2,13 +2,13 @@
 
 from suchus.catalog import Catalog
 from suchus.design import AnyRobot, Crocodile, layout
-from suchus.errors import InvalidDesign, NotConverged, OutsideLimits, UnknownName, Unreachable, UnsuitedRobot
-from suchus.motion import AnyGait, check_limits
+from suchus.errors import UnsuitedRobot
+from suchus.motion import Gait, suits
 
 _CRAWL = "belly_crawl"
 
 
-def gait_of(shelf: Catalog[AnyGait], robot: AnyRobot) -> AnyGait:
+def gait_of(shelf: Catalog[Gait], robot: AnyRobot) -> Gait:
     """Return the gait in which a robot walks unless another one is asked for.
 
     A gait made for a robot of its name comes first, then one made for another robot whose limbs it can move; robots of
@@ -31,12 +31,3 @@ def gait_of(shelf: Catalog[AnyGait], robot: AnyRobot) -> AnyGait:
     raise UnsuitedRobot(
         f"no gait on the shelf suits robot {robot.name!r}, which has {limbs}: give one of its own, as a TOML file."
     )
-
-
-def suits(robot: AnyRobot, gait: AnyGait) -> bool:
-    """Return whether a robot's joints can follow a gait."""
-    try:
-        check_limits(robot, gait)
-    except (InvalidDesign, NotConverged, OutsideLimits, UnknownName, Unreachable):
-        return False
-    return True

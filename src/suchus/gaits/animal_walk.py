@@ -1,7 +1,9 @@
 """A salamander's own walk, joint by joint as it was filmed; nothing is fitted."""
 
+from typing import Literal
+
 from suchus.design.reasons import Reason, chosen_numbers
-from suchus.motion import AngleTable, Curve
+from suchus.motion import Curve, Gait
 
 # fmt: off
 _ANGLES = {
@@ -31,12 +33,16 @@ _ANGLES = {
     "RH_elbow": (0.748, 1.142, 1.301, 1.386, 1.336, 1.224, 1.003, 0.713, 0.509, 0.473, 0.616, 0.882, 0.489),
 }
 # fmt: on
-gait = AngleTable(
+_PARTS: dict[str, Literal["neck", "trunk", "tail"]] = {"neck": "neck", "spine": "trunk", "tail": "tail"}
+gait = Gait(
     name="animal_walk",
     period=1.0,
     duty_factor=0.786,
     limb_phases=(0.41, 0.92, 0.775, 0.27),
-    curves=tuple(Curve(servo=servo, angles=angles) for servo, angles in _ANGLES.items()),
+    curves=tuple(
+        Curve(servo=servo, part=_PARTS.get(servo.partition("_")[0], "limb"), angles=angles)
+        for servo, angles in _ANGLES.items()
+    ),
 )
 """The mean walking cycle of Pleurodeles waltl on the robot ``salamander``, closed with six harmonics.
 

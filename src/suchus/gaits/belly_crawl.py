@@ -3,10 +3,14 @@
 from math import radians
 
 from suchus.design import Chosen
-from suchus.motion import Gait
+from suchus.motion import GaitInMetres
 from suchus.paper import CYCLE_PERIOD
 
-gait = Gait(
+LIMBS = (0.1575, 0.175)
+"""Lengths of the front and hind limbs for which the metres of the crawls are, those of the robot ``caiman`` [m]."""
+FRONT, HIND = LIMBS
+
+metres = GaitInMetres(
     name="belly_crawl",
     period=CYCLE_PERIOD,
     duty_factor=0.5,
@@ -25,6 +29,8 @@ gait = Gait(
     tail_phase=0.0,
     tail_pitch=0.2,
 )
+"""The crawl in metres."""
+gait = metres.gait(LIMBS)
 """Spine and tail take part."""
 made_for = ("caiman", "floating_caiman", "long_tail")
 """Robots of the shelf whose gait it is."""
@@ -36,7 +42,7 @@ _FITTED = (
 _LOST = "Fig. 12 is lost; "
 _ROWS: tuple[tuple[str, float, float, str], ...] = (
     ("duty_factor", 0.5, 0.75, "a diagonal walk without flight"),
-    ("stroke", 0.0, 0.1, _FITTED),
+    ("stroke", 0.0, 0.1 / FRONT, _FITTED),
     ("trunk_bend", 0.0, 1.75, _FITTED),
     (
         "spine_phase",
@@ -44,14 +50,14 @@ _ROWS: tuple[tuple[str, float, float, str], ...] = (
         0.15,
         _LOST + "zero carries each girdle's swing foot farthest ahead at touch-down",
     ),
-    ("lift", 0.015, 0.05, "clears the sag of the diagonal pair under load"),
-    ("front_reach", 0.07, 0.11, "the shank stands upright in mid-stance"),
-    ("hind_reach", 0.08, 0.12, "the shank stands upright in mid-stance; the hind leg is longer"),
-    ("front_ahead", -0.03, 0.03, "the foot's path is centred on the hip"),
-    ("hind_ahead", -0.03, 0.03, "the foot's path is centred on the hip"),
-    ("hip_height", 0.07, 0.12, "level femur and upright shank, the sprawl of the article's Fig. 3a"),
+    ("lift", 0.015 / FRONT, 0.05 / FRONT, "clears the sag of the diagonal pair under load"),
+    ("limbs[0].outward", 0.07 / FRONT, 0.11 / FRONT, "the shank stands upright in mid-stance"),
+    ("limbs[1].outward", 0.08 / HIND, 0.12 / HIND, "the shank stands upright in mid-stance; the hind leg is longer"),
+    ("limbs[0].ahead", -0.03 / FRONT, 0.03 / FRONT, "the foot's path is centred on the hip"),
+    ("limbs[1].ahead", -0.03 / HIND, 0.03 / HIND, "the foot's path is centred on the hip"),
+    ("height", 0.07 / HIND, 0.12 / HIND, "level femur and upright shank, the sprawl of the article's Fig. 3a"),
     ("tail_bend", 0.0, 1.2, _LOST + "it changes the displacement by less than 0.03 m"),
-    ("tail_phase", 0.0, 0.5, _LOST + "against the trunk, which keeps the heading best"),
+    ("tail_lag", 0.5, 1.0, _LOST + "against the trunk, which keeps the heading best"),
     ("tail_pitch", 0.1, 0.3, "the tail drags without lifting the hind feet"),
 )
 chosen = tuple(Chosen(field=field, low=low, high=high, why=why) for field, low, high, why in _ROWS)

@@ -3,9 +3,10 @@
 from math import radians
 
 from suchus.design import Chosen
-from suchus.motion import Gait
+from suchus.gaits.belly_crawl import FRONT, HIND, LIMBS
+from suchus.motion import GaitInMetres
 
-gait = Gait(
+gait = GaitInMetres(
     name="high_walk",
     period=0.8,
     duty_factor=0.68,
@@ -23,7 +24,7 @@ gait = Gait(
     tail_bend=radians(21),
     tail_phase=0.0,
     tail_pitch=0.40,
-)
+).gait(LIMBS)
 """A walking trot, each hind foot a little after its diagonal front foot."""
 
 _AFTER = "after its diagonal front foot, a trot within an eighth of a cycle: the body rolls 3 instead of 7 degrees"
@@ -34,17 +35,17 @@ _ROWS: tuple[tuple[str, float, float, str], ...] = (
     ("limb_phases[2]", 0.375, 0.5, _AFTER),
     ("limb_phases[3]", -0.125, 0.0, _AFTER),
     ("duty_factor", 0.65, 0.72, "below 0.65 the body rolls more than 9 degrees; longer stance asks for faster swings"),
-    ("stroke", 0.033, 0.045, "longer ones ask the knee for more than 8 rad/s"),
-    ("lift", 0.022, 0.045, "clears bumps of 40 mm up and down; on even ground it costs power alone"),
-    ("front_reach", 0.0, 0.0, "erect feet stand below their hips"),
-    ("hind_reach", 0.0, 0.0, "erect feet stand below their hips"),
-    ("front_ahead", -0.04, -0.016, "feet a little behind the hips: the body rolls 4 instead of 14 degrees"),
-    ("hind_ahead", -0.03, -0.012, "feet a little behind the hips"),
-    ("hip_height", 0.135, 0.147, "the front leg, which is shorter, reaches all of its stroke with a bent knee"),
+    ("stroke", 0.033 / FRONT, 0.045 / FRONT, "longer ones ask the knee for more than 8 rad/s"),
+    ("lift", 0.022 / FRONT, 0.045 / FRONT, "clears bumps of 40 mm up and down; on even ground it costs power alone"),
+    ("limbs[0].outward", 0.0, 0.0, "erect feet stand below their hips"),
+    ("limbs[1].outward", 0.0, 0.0, "erect feet stand below their hips"),
+    ("limbs[0].ahead", -0.04 / FRONT, -0.016 / FRONT, "feet a little behind the hips: the body rolls 4 instead of 14 degrees"),
+    ("limbs[1].ahead", -0.03 / HIND, -0.012 / HIND, "feet a little behind the hips"),
+    ("height", 0.135 / HIND, 0.147 / HIND, "the front leg, which is shorter, reaches all of its stroke with a bent knee"),
     ("trunk_bend", 0.0, 0.35, "an alligator's trunk bends little in the high walk; more bend adds little speed"),
-    ("spine_phase", -0.15, 0.15, "zero carries each girdle's swing foot farthest ahead at touch-down"),
+    ("axis_lag", -0.15, 0.15, "zero carries each girdle's swing foot farthest ahead at touch-down"),
     ("tail_bend", 0.0, 0.4, "against the trunk, which keeps the heading best"),
-    ("tail_phase", 0.0, 0.5, "against the trunk, which keeps the heading best"),
+    ("tail_lag", 0.5, 1.0, "against the trunk, which keeps the heading best"),
     (
         "tail_pitch",
         0.35,

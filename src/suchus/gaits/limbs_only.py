@@ -7,10 +7,8 @@ the control group is this one, whose tail lies as in the crawl with spine and ta
 motion of spine and tail. The other is simulated beside it wherever a claim rests on the control group.
 """
 
-from dataclasses import replace
-
 from suchus.gaits import belly_crawl
 
-gait = replace(belly_crawl.gait, name="limbs_only", trunk_bend=0.0, tail_bend=0.0)
+gait = belly_crawl.gait.without("axis", name="limbs_only")
 """Legs alone."""
 chosen = belly_crawl.chosen

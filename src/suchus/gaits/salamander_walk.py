@@ -3,27 +3,20 @@
 from math import radians
 
 from suchus.design.reasons import Reason, chosen_numbers
-from suchus.motion import AxialWave, FootPath, Pattern
+from suchus.motion import Bend, FootPath, Gait
 
-_PATH = FootPath(stroke=0.30, lift=0.20, outward=0.60, ahead=0.0, plane=0.0)
-gait = Pattern(
+_TAIL = (6.0, 8.829694323144105, 11.633187772925764, 12.93, 14.0)  # [degree]; of its joints, toward the tip
+_PATH = FootPath(stroke=0.30, lift=0.20, outward=0.60, ahead=0.0)
+gait = Gait(
     name="salamander_walk",
     period=1.0,
     duty_factor=0.55,
     limb_phases=(0.0, 0.5, 0.5, 0.0),
-    girdles=(_PATH, _PATH),
+    limbs=(_PATH, _PATH),
     height=0.45,
-    wave=AxialWave(
-        amplitude=(
-            (0.15, radians(0)),
-            (0.257, radians(18)),
-            (0.364, radians(18)),
-            (0.471, radians(-6)),
-            (0.70, radians(-12)),
-            (0.90, radians(-14)),
-        ),
-        waves=0.0,
-        phase=0.0,
+    axis=(
+        Bend(part="trunk", amplitude=(radians(36),)),
+        Bend(part="tail", amplitude=tuple(5 * radians(angle) for angle in _TAIL), lag=(0.5,)),
     ),
 )
 """Diagonal limbs and a standing wave, as the animal walks."""
@@ -32,14 +25,14 @@ made_for = ("salamander",)
 
 _REASONS = (
     Reason(
-        r"^wave\.",
+        r"^axis",
         0.5,
         1.5,
         "as a walking salamander: a standing wave with its nodes at the girdles, 15 to 20 degrees a joint in the trunk",
     ),
     Reason(r"^period$", 0.5, 2.0, "a slow walk, at which every posture is nearly static"),
     Reason(r"^(duty_factor|limb_phases)", 0.8, 1.3, "opposite limbs in turn, a little more stance than swing"),
-    Reason(r"^girdles|^height$", 0.7, 1.4, "within what the limbs reach, the belly clear of the ground"),
+    Reason(r"^limbs|^height$", 0.7, 1.4, "within what the limbs reach, the belly clear of the ground"),
 )
 chosen = chosen_numbers(gait, _REASONS)
 """Every number with its plausible range and the reason."""

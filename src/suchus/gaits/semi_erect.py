@@ -3,9 +3,10 @@
 from math import radians
 
 from suchus.design import Chosen
-from suchus.motion import Gait
+from suchus.gaits.belly_crawl import FRONT, HIND, LIMBS
+from suchus.motion import GaitInMetres
 
-gait = Gait(
+gait = GaitInMetres(
     name="semi_erect",
     period=0.8,
     duty_factor=0.6,
@@ -23,7 +24,7 @@ gait = Gait(
     tail_bend=radians(13),
     tail_phase=0.0,
     tail_pitch=0.38,
-)
+).gait(LIMBS)
 """A walking trot between crawl and high walk."""
 
 _AFTER = "after its diagonal front foot, a trot within an eighth of a cycle; 0.19 earlier costs a quarter of the speed"
@@ -34,17 +35,17 @@ _ROWS: tuple[tuple[str, float, float, str], ...] = (
     ("limb_phases[2]", 0.375, 0.5, _AFTER),
     ("limb_phases[3]", -0.125, 0.0, _AFTER),
     ("duty_factor", 0.55, 0.65, "a walk without flight whose swing stays within 7 rad/s"),
-    ("stroke", 0.033, 0.045, "longer ones ask the knee for more than 8 rad/s"),
-    ("lift", 0.02, 0.05, "lifting by 40 mm keeps the distance on bumps; on even ground it costs power alone"),
-    ("front_reach", 0.035, 0.06, "a track of 0.24 m: wide enough not to roll, narrow enough to carry the body high"),
-    ("hind_reach", 0.045, 0.07, "a track of 0.26 m: wide enough not to roll, narrow enough to carry the body high"),
-    ("front_ahead", -0.05, -0.02, "behind the hip, which turns the elbow back"),
-    ("hind_ahead", 0.02, 0.05, "ahead of the hip, which turns the knee forward"),
-    ("hip_height", 0.11, 0.13, "70 mm of clearance below the belly"),
+    ("stroke", 0.033 / FRONT, 0.045 / FRONT, "longer ones ask the knee for more than 8 rad/s"),
+    ("lift", 0.02 / FRONT, 0.05 / FRONT, "lifting by 40 mm keeps the distance on bumps; on even ground it costs power alone"),
+    ("limbs[0].outward", 0.035 / FRONT, 0.06 / FRONT, "a track of 0.24 m: wide enough not to roll, narrow enough to carry the body high"),
+    ("limbs[1].outward", 0.045 / HIND, 0.07 / HIND, "a track of 0.26 m: wide enough not to roll, narrow enough to carry the body high"),
+    ("limbs[0].ahead", -0.05 / FRONT, -0.02 / FRONT, "behind the hip, which turns the elbow back"),
+    ("limbs[1].ahead", 0.02 / HIND, 0.05 / HIND, "ahead of the hip, which turns the knee forward"),
+    ("height", 0.11 / HIND, 0.13 / HIND, "70 mm of clearance below the belly"),
     ("trunk_bend", 0.17, 0.7, "each degree adds 2.5 mm/s; beyond 40 degrees the heading wanders"),
-    ("spine_phase", -0.15, 0.15, "zero carries each girdle's swing foot farthest ahead at touch-down"),
+    ("axis_lag", -0.15, 0.15, "zero carries each girdle's swing foot farthest ahead at touch-down"),
     ("tail_bend", 0.0, 0.52, "it changes speed by less than 2 %"),
-    ("tail_phase", 0.0, 0.5, "against the trunk, which keeps the heading best"),
+    ("tail_lag", 0.5, 1.0, "against the trunk, which keeps the heading best"),
     ("tail_pitch", 0.3, 0.4, "the tail carries 5 N and keeps the body from rolling"),
 )
 chosen = tuple(Chosen(field=field, low=low, high=high, why=why) for field, low, high, why in _ROWS)

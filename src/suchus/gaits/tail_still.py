@@ -1,9 +1,7 @@
 """The crawl with the trunk swinging and the tail dragged along without a swing of its own."""
 
-from dataclasses import replace
-
 from suchus.gaits import belly_crawl
 
-gait = replace(belly_crawl.gait, name="tail_still", tail_bend=0.0)
+gait = belly_crawl.gait.without("tail", name="tail_still")
 """Legs and trunk, the tail on the ground."""
 chosen = belly_crawl.chosen

@@ -3,27 +3,27 @@
 from math import radians
 
 from suchus.design.reasons import Reason, chosen_numbers
-from suchus.motion import AxialWave, FootPath, Pattern
+from suchus.motion import Bend, FootPath, Gait
 
 _PATH = FootPath(stroke=0.20, lift=0.18, outward=0.55, ahead=0.0)
-gait = Pattern(
+gait = Gait(
     name="tripod",
     period=1.0,
     duty_factor=0.55,
     limb_phases=(0.0, 0.5, 0.5, 0.0, 0.0, 0.5),
-    girdles=(_PATH, _PATH, _PATH),
+    limbs=(_PATH, _PATH, _PATH),
     height=0.55,
-    wave=AxialWave(amplitude=((0.0, radians(5)), (1.0, radians(5))), waves=0.0, phase=0.0),
+    axis=(Bend(part="trunk", amplitude=(radians(10),)),),
 )
 """The insects' gait."""
 made_for = ("strider",)
 """Robots of the shelf whose gait it is."""
 
 _REASONS = (
-    Reason(r"^wave\.", 0.5, 1.5, "a little bend with the legs, to show that the axis takes part"),
+    Reason(r"^axis", 0.5, 1.5, "a little bend with the legs, to show that the axis takes part"),
     Reason(r"^period$", 0.5, 2.0, "a slow walk, at which every posture is nearly static"),
     Reason(r"^(duty_factor|limb_phases)", 0.8, 1.3, "opposite limbs in turn, a little more stance than swing"),
-    Reason(r"^girdles|^height$", 0.7, 1.4, "within what the limbs reach, the belly clear of the ground"),
+    Reason(r"^limbs|^height$", 0.7, 1.4, "within what the limbs reach, the belly clear of the ground"),
 )
 chosen = chosen_numbers(gait, _REASONS)
 """Every number with its plausible range and the reason."""

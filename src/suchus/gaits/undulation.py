@@ -3,25 +3,24 @@
 from math import radians
 
 from suchus.design.reasons import Reason, chosen_numbers
-from suchus.motion import AxialWave, Pattern
+from suchus.motion import Bend, Gait
 
-gait = Pattern(
+gait = Gait(
     name="undulation",
     period=1.0,
     duty_factor=0.5,
-    limb_phases=(),
-    girdles=(),
-    height=0.0,
-    wave=AxialWave(amplitude=((0.0, radians(15)), (1.0, radians(35))), waves=1.0, phase=0.0),
+    axis=(Bend(part="axis", amplitude=(radians(1850 / 11), radians(3650 / 11)), lag=(1 / 11, 10 / 11)),),
 )
-"""For water; on even ground it hardly moves, since friction is the same along the body and across."""
+"""At the places of ten hinges, one wavelength along the body, 15 degrees a hinge at the snout and 35 at the tip.
+
+For water; on even ground it hardly moves, since friction is the same along the body and across."""
 made_for = ("swimmer",)
 """Robots of the shelf whose gait it is."""
 
 _REASONS = (
-    Reason(r"^wave\.", 0.5, 1.5, "an eel-like wave: one wavelength on the body, growing toward the tail"),
+    Reason(r"^axis", 0.5, 1.5, "an eel-like wave: one wavelength on the body, growing toward the tail"),
     Reason(r"^period$", 0.5, 2.0, "about the frequency at which its servos reach these angles"),
-    Reason(r"^(duty_factor|limb_phases)", 0.8, 1.3, "it has no limbs: unused"),
+    Reason(r"^(duty_factor)", 0.8, 1.3, "it has no limbs: unused"),
 )
 chosen = chosen_numbers(gait, _REASONS)
 """Every number with its plausible range and the reason."""

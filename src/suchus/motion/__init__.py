@@ -1,96 +1,84 @@
-"""From time to intended posture: phases, foot paths, bends, servo targets."""
+"""From phase to posture: one gait for every body, what it asks of servos, and courses of postures."""
 
-from suchus.motion.altered import (
-    longest_strokes,
-    straightened,
-    strides,
-    with_axis_lag,
-    with_bends,
-    with_strokes,
-)
-from suchus.motion.angle_table import AngleTable, Curve
-from suchus.motion.any_body import (
-    AnyGait,
-    Intended,
+from suchus.motion.draft import draft_gait
+from suchus.motion.forms import AxialWave, GaitByAngles, GaitByPlaces, GaitInMetres, limb_reaches
+from suchus.motion.gait import NUMBERS, Bend, Curve, FootPath, Gait, Held, Sweep
+from suchus.motion.limits import (
+    as_table,
     check_limits,
+    excess,
+    longest_strokes,
+    servo_parts,
+    servo_range,
+    shortest_period,
+    suits,
+)
+from suchus.motion.movement import (
+    START,
+    Batch,
+    Intended,
+    Movement,
+    Steer,
     cycle_targets,
     hip_height,
     intended,
     limb_targets,
     middle_stance,
-    pattern_targets,
-    shortest_period,
+    movement,
 )
-from suchus.motion.draft import draft_gait
-from suchus.motion.gait import Gait, Legs
-from suchus.motion.pattern import AxialWave, FootPath, Held, Pattern, Sweep
-from suchus.motion.phase import limb_phase, stance, tail_bend, trunk_bend
 from suchus.motion.posture import Keyed, Planned, Posture, plan
 from suchus.motion.rising import stand_up, stretched, tallest
 from suchus.motion.roll import Roll, check_roll, roll_targets
-from suchus.motion.steered import bends as axis_bends
-from suchus.motion.steered import steerable, steered, trunk_amplitude
 from suchus.motion.swim import LIMBS_BACK, Bends, Swim, bends, check_swim, limbs_back, swim_targets
-from suchus.motion.tabled import as_table
-from suchus.motion.targets import foot_targets, longest_stroke, servo_targets, within_reach
-from suchus.motion.timing import START
 
 __all__ = [
     "LIMBS_BACK",
+    "NUMBERS",
     "START",
-    "AngleTable",
-    "AnyGait",
     "AxialWave",
+    "Batch",
     "Bends",
+    "Bend",
     "Curve",
     "FootPath",
     "Gait",
+    "GaitByAngles",
+    "GaitByPlaces",
+    "GaitInMetres",
     "Held",
     "Intended",
     "Keyed",
-    "Legs",
-    "Pattern",
+    "Movement",
     "Planned",
     "Posture",
     "Roll",
+    "Steer",
     "Sweep",
     "Swim",
     "as_table",
-    "axis_bends",
     "bends",
     "check_limits",
     "check_roll",
     "check_swim",
     "cycle_targets",
     "draft_gait",
-    "foot_targets",
+    "excess",
     "hip_height",
     "intended",
-    "limb_phase",
+    "limb_reaches",
     "limb_targets",
     "limbs_back",
-    "longest_stroke",
     "longest_strokes",
     "middle_stance",
-    "pattern_targets",
+    "movement",
     "plan",
     "roll_targets",
-    "servo_targets",
+    "servo_parts",
+    "servo_range",
     "shortest_period",
-    "stance",
     "stand_up",
-    "steerable",
-    "steered",
-    "straightened",
     "stretched",
-    "strides",
+    "suits",
     "swim_targets",
-    "tail_bend",
     "tallest",
-    "trunk_amplitude",
-    "trunk_bend",
-    "with_axis_lag",
-    "with_bends",
-    "with_strokes",
-    "within_reach",
 ]

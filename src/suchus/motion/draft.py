@@ -12,10 +12,10 @@ from suchus.design import AnyRobot, Crank, Girdle, Limb, layout, servo_ranges
 from suchus.design.scale import gravity_time
 from suchus.errors import NotConverged, OutsideLimits, Unreachable
 from suchus.kinematics import limb as limb_kinematics
-from suchus.motion.angle_table import AngleTable
-from suchus.motion.any_body import check_limits, path, shortest_period
 from suchus.motion.draft_table import is_upright, table_walk
-from suchus.motion.pattern import AxialWave, FootPath, Pattern, Sweep
+from suchus.motion.gait import Bend, FootPath, Gait, Sweep
+from suchus.motion.limits import check_limits, shortest_period
+from suchus.motion.movement import foot_path, yaw_hinges
 
 _STROKES = (0.2, 0.15, 0.1, 0.06)  # of the limb's reach, the longest that all girdles can take is taken
 _HEIGHTS = (0.5, 0.55, 0.6, 0.45, 0.65, 0.7, 0.4, 0.75, 0.8, 0.85, 0.35, 0.3, 0.9)  # of the reach, the first that fits
@@ -34,11 +34,11 @@ _SPEED = 0.6  # of its servo's speed that a joint is asked for at most
 _PLANAR = 2  # hinges of a limb whose foot moves on a surface only
 
 
-def draft_gait(robot: AnyRobot, name: str) -> Pattern | AngleTable:
+def draft_gait(robot: AnyRobot, name: str) -> Gait:
     """Return a walk that a robot's limbs can follow, in lengths of its own; of a body without limbs, an undulation.
 
     Diagonal limbs go together; trunk joints bend a little with them. It is a beginning, not the best. Limbs of
-    two hinges and upright ones, whose feet move on a surface only, get a table of angles.
+    two hinges and upright ones, whose feet move on a surface only, get a curve for each servo.
 
     Args:
         robot: any.
@@ -50,14 +50,13 @@ def draft_gait(robot: AnyRobot, name: str) -> Pattern | AngleTable:
     girdles = layout(robot).robot.girdles
     phases = tuple(0.5 * ((i + right) % 2) for i in range(len(girdles)) for right in (0, 1))
     period = _PERIOD * gravity_time(robot.length)
-    gait: Pattern | AngleTable
     if not girdles:
         gait = _undulation(robot, name, period)
     elif all(_is_crank(girdle.limb) or _walks_by_paths(girdle.limb) for girdle in girdles):
         gait = _walk(robot, name, phases, period)
     else:
         gait = table_walk(
-            robot, name=name, period=period, duty_factor=_DUTY, phases=phases, wave=_wave(robot), path=_cycle()
+            robot, name=name, period=period, duty_factor=_DUTY, phases=phases, axis=_axis(robot), path=_cycle()
         )
     try:
         gait = _slow_enough(robot, gait)
@@ -67,11 +66,11 @@ def draft_gait(robot: AnyRobot, name: str) -> Pattern | AngleTable:
     return gait
 
 
-def _walk(robot: AnyRobot, name: str, phases: tuple[float, ...], period: float) -> Pattern:
+def _walk(robot: AnyRobot, name: str, phases: tuple[float, ...], period: float) -> Gait:
     """Return the first walk of those that are tried, the longest strokes first."""
     girdles = layout(robot).robot.girdles
     clouds, budget = [_cloud(girdle.limb) for girdle in girdles], iter(range(_PATHS))
-    wave = _wave(robot)
+    axis = _axis(robot)
     for stroke in _STROKES:
         for height in _heights(robot):
             found = []
@@ -81,14 +80,14 @@ def _walk(robot: AnyRobot, name: str, phases: tuple[float, ...], period: float) 
                     break
                 found.append(one)
             if len(found) == len(girdles):
-                return Pattern(
+                return Gait(
                     name=name,
                     period=period,
                     duty_factor=_DUTY,
                     limb_phases=phases,
-                    girdles=tuple(found),
+                    limbs=tuple(found),
                     height=height,
-                    wave=wave,
+                    axis=axis,
                 )
     raise OutsideLimits(
         f"no walk was found for robot {robot.name!r}: its limbs reach no path of {_STROKES[-1]:g} of their reach "
@@ -96,12 +95,12 @@ def _walk(robot: AnyRobot, name: str, phases: tuple[float, ...], period: float) 
     )
 
 
-def _undulation(robot: AnyRobot, name: str, period: float) -> Pattern:
+def _undulation(robot: AnyRobot, name: str, period: float) -> Gait:
     """Return a wave along the whole axis that grows toward the tail."""
-    least = float(np.abs(servo_ranges(robot)).min())
-    knots = (0.0, min(radians(15), _SHARE * least)), (1.0, min(radians(35), 0.5 * least))
-    wave = AxialWave(amplitude=knots, waves=1.0, phase=0.0)
-    return Pattern(name=name, period=period, duty_factor=_DUTY, limb_phases=(), girdles=(), height=0.0, wave=wave)
+    least, count = float(np.abs(servo_ranges(robot)).min()), len(yaw_hinges(robot).servos)
+    amplitude = (count * min(radians(15), _SHARE * least), count * min(radians(35), 0.5 * least))
+    wave = Bend(part="axis", amplitude=amplitude, lag=(0.0, 1.0))
+    return Gait(name=name, period=period, duty_factor=_DUTY, axis=(wave,))
 
 
 def _heights(robot: AnyRobot) -> list[float]:
@@ -151,17 +150,7 @@ def _beside(limb: Limb) -> Iterator[tuple[float, float]]:
 @lru_cache(maxsize=1)
 def _cycle() -> np.ndarray:
     """Return a path of stroke 1 and lift 1 about its middle: ahead and up, shape (2, sample) [-]."""
-    does = FootPath(stroke=1.0, lift=1.0, outward=0.0, ahead=0.0)
-    timing = Pattern(
-        name="path",
-        period=1.0,
-        duty_factor=_DUTY,
-        limb_phases=(0.0, 0.5),
-        girdles=(does,),
-        height=0.0,
-        wave=AxialWave(amplitude=((0.0, 0.0),), waves=0.0, phase=0.0),
-    )
-    return np.asarray(path(timing, does, np.arange(_SAMPLES) / _SAMPLES).T)
+    return np.stack(foot_path(np.arange(_SAMPLES) / _SAMPLES, _DUTY))
 
 
 def _follows(limb: Limb, feet: np.ndarray) -> bool:
@@ -197,17 +186,14 @@ def _down(limb: Limb) -> tuple[float, float]:
     return float(angles[np.argmax(depth)]), float(depth.max())
 
 
-def _wave(robot: AnyRobot) -> AxialWave:
+def _axis(robot: AnyRobot) -> tuple[Bend, ...]:
     """Return a bend of the trunk with the limbs."""
-    place = layout(robot)
+    trunk = layout(robot).trunk_yaw
     limits = np.abs(servo_ranges(robot)).min(axis=1)
-    knots = {
-        at: min(_BEND, _SHARE * float(limits[i])) if i in place.trunk_yaw else 0.0
-        for i, at in zip(place.axial_yaw, place.axial_place, strict=True)
-    }
-    return AxialWave(amplitude=tuple(sorted(knots.items())) or ((0.0, 0.0),), waves=0.0, phase=0.0)
+    amplitude = tuple(len(trunk) * min(_BEND, _SHARE * float(limits[i])) for i in reversed(trunk))
+    return (Bend(part="trunk", amplitude=amplitude),) if amplitude else ()
 
 
-def _slow_enough(robot: AnyRobot, gait: Pattern | AngleTable) -> Pattern | AngleTable:
+def _slow_enough(robot: AnyRobot, gait: Gait) -> Gait:
     """Return a gait with a period at which no servo is asked for more speed than it has to spare."""
     return replace(gait, period=float(np.round(max(gait.period, shortest_period(robot, gait)[0] / _SPEED), 4)))

@@ -1,4 +1,4 @@
-"""A first walk for limbs that cannot put their feet on any path, as those of two hinges: a table of servo angles.
+"""A first walk for limbs that cannot put their feet on any path, as those of two hinges: a curve for each servo.
 
 The foot's place ahead and its height follow a path; how far outside it stands is left to the limb. Upright limbs,
 all of whose hinges swing the foot fore and aft as hip and knee of a dog do, stand with the feet below the hips and
@@ -14,9 +14,8 @@ from scipy.optimize import least_squares
 from suchus.design import AnyRobot, Crank, Girdle, Limb, layout
 from suchus.errors import OutsideLimits
 from suchus.kinematics import limb as limb_kinematics
-from suchus.motion.angle_table import AngleTable, Curve
-from suchus.motion.any_body import check_limits, pattern_targets
-from suchus.motion.pattern import AxialWave, Held, Pattern
+from suchus.motion.gait import Bend, Curve, Gait
+from suchus.motion.limits import servo_parts, suits
 
 _STROKES = (0.25, 0.18, 0.12, 0.08)  # of the limb's reach, the longest that all girdles can take is taken
 _DEPTHS = (0.5, 0.6, 0.4, 0.7, 0.3, 0.8, 0.2, 0.9)  # of the hindmost limbs' reach, the first that fits
@@ -39,10 +38,10 @@ def table_walk(
     period: float,
     duty_factor: float,
     phases: tuple[float, ...],
-    wave: AxialWave,
+    axis: tuple[Bend, ...],
     path: Float[np.ndarray, "2 sample"],
-) -> AngleTable:
-    """Return a walk as a table, whose feet follow a path ahead and up as far as each limb's hinges let them.
+) -> Gait:
+    """Return a walk of curves, whose feet follow a path ahead and up as far as each limb's hinges let them.
 
     Args:
         robot: whose limbs have servos at two hinges or more.
@@ -50,7 +49,7 @@ def table_walk(
         period: of one cycle [s].
         duty_factor: share of the cycle in which a foot stands [-].
         phases: of the limbs when the walk begins [cycle].
-        wave: how the axis bends.
+        axis: how the axis bends.
         path: ahead and up over one cycle, with stroke 1 and lift 1 [-].
 
     Raises:
@@ -72,8 +71,8 @@ def table_walk(
                     break
                 found.append(angles)
             if len(found) == len(girdles):
-                table = _tabled(robot, name, period, duty_factor, phases, wave, found)
-                if _possible(robot, table):
+                table = _tabled(robot, name, period, duty_factor, phases, axis, found)
+                if suits(robot, table):
                     return table
     raise OutsideLimits(
         f"no walk was found for robot {robot.name!r}: its limbs bring their feet along no path of {_STROKES[-1]:g} of "
@@ -102,14 +101,6 @@ def _check_hinges(robot: AnyRobot, girdle: Girdle) -> None:
 def is_upright(limb: Limb) -> bool:
     """Return whether all of a limb's hinges that move swing its foot fore and aft, as hip and knee of a dog do."""
     return all(hinge.turn == "roll" for hinge in limb.hinges if hinge.servo is not None)
-
-
-def _possible(robot: AnyRobot, gait: AngleTable) -> bool:
-    try:
-        check_limits(robot, gait)
-    except OutsideLimits:
-        return False
-    return True
 
 
 def _followed(limb: Limb, path: np.ndarray, stroke: float, down: float) -> np.ndarray | None:
@@ -176,31 +167,21 @@ def _tabled(
     period: float,
     duty_factor: float,
     phases: tuple[float, ...],
-    wave: AxialWave,
+    axis: tuple[Bend, ...],
     limbs: list[np.ndarray],
-) -> AngleTable:
-    """Return the table of limbs at their phases and of the axis."""
-    place = layout(robot)
-    count = len(limbs[0])
-    still = Pattern(
-        name=name,
-        period=period,
-        duty_factor=duty_factor,
-        limb_phases=phases,
-        girdles=tuple(
-            Held(angles=(0.0,) * sum(hinge.servo is not None for hinge in girdle.limb.hinges))
-            for girdle in place.robot.girdles
-        ),
-        height=0.0,
-        wave=wave,
-    )
-    targets = pattern_targets(robot, still, np.arange(count) / count)
+) -> Gait:
+    """Return the gait of the limbs' angles at their phases, with the axis bent as it is said."""
+    place, parts, count = layout(robot), servo_parts(robot), len(limbs[0])
+    targets = np.zeros((count, len(place.servos)))
     for i, limb in enumerate(place.limbs):
         driven = [hinge.servo is not None for hinge in limb.girdle.limb.hinges]
         mine = limbs[limb.number][:, driven]
         targets[:, limb.servos] = np.roll(mine, -round(phases[i] * count), axis=0)
     curves = tuple(
-        Curve(servo=servo, angles=tuple(float(round(angle, 6)) for angle in column))
+        Curve(servo=servo, part="limb", angles=tuple(float(round(angle, 6)) for angle in column))
         for servo, column in zip(place.servos, targets.T, strict=True)
+        if parts[servo] == "limb"
     )
-    return AngleTable(name=name, period=period, duty_factor=duty_factor, limb_phases=phases, curves=curves)
+    return Gait(
+        name=name, period=period, duty_factor=duty_factor, limb_phases=phases, axis=axis, curves=curves
+    )

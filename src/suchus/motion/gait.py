@@ -1,91 +1,522 @@
-"""A gait: how feet, trunk and tail move over one cycle."""
+"""A gait: the periodic movement of any body, on land or in water.
 
-from dataclasses import dataclass, replace
-from typing import Literal
-
-from suchus.design import LEGS
-from suchus.design.checks import Checks
-
-Legs = Literal["sprawled", "erect"]
-"""How legs stand.
-
-``sprawled``: the plane of a leg turns with its foot, as in the article's Fig. 3a. ``erect``: it stays upright along the
-body, the foot below the hip, the elbow behind and the knee ahead, and the stride comes from pitch and knee alone, as
-in Fig. 3b.
+Four parts say all of it: timing, limbs, axis, and curves as they were measured. Lengths are shares of a limb's reach and
+bends are those of a part of the body, so that a gait fits a body of another size and another number of joints; only its
+period is in seconds.
 """
 
-_ALLOWED = {
-    "period": (1e-3, 3600.0, "s"),
-    "duty_factor": (0.05, 0.95, ""),
-    "stroke": (-10.0, 10.0, "m"),
-    "lift": (0.0, 10.0, "m"),
-    "front_reach": (-10.0, 10.0, "m"),
-    "hind_reach": (-10.0, 10.0, "m"),
-    "front_ahead": (-10.0, 10.0, "m"),
-    "hind_ahead": (-10.0, 10.0, "m"),
-    "hip_height": (1e-4, 10.0, "m"),
-    "trunk_bend": (0.0, 3.1416, "rad"),
-    "spine_phase": (-1.0, 1.0, "cycle"),
-    "tail_bend": (0.0, 3.1416, "rad"),
-    "tail_phase": (-1.0, 1.0, "cycle"),
-    "tail_pitch": (-3.1416, 3.1416, "rad"),
-}
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from math import pi, sqrt
+from types import MappingProxyType
+from typing import Literal, NamedTuple
+
+import numpy as np
+from jaxtyping import Float
+
+from suchus.design.checks import Checks, require
+from suchus.errors import OutsideLimits, UnknownName
+
+MOST_ANGLES = 1000
+"""Samples of a curve at most."""
+MOST_KNOTS = 100
+"""Numbers along a part of the axis at most."""
+
+Part = Literal["neck", "trunk", "tail", "axis"]
+"""A part of the axis: ahead of the foremost limbs, from there to the root, behind the root, or all of it.
+
+A body without limbs has no neck: what lies ahead of its root is trunk.
+"""
+Turn = Literal["yaw", "pitch"]
+"""Sideways, or up and down."""
+Ability = Literal["foot paths", "strokes", "wave", "steering"]
+"""What a gait has that may be changed: feet on paths, limbs that stride, an axis that bends sideways, and, for whoever
+changes size, stride and bend while it goes, no measured curves."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FootPath:
+    """The path of a girdle's feet in the girdle's frame, so that a swing of the trunk adds to the stride of the limbs.
+
+    In stance a foot goes straight back at constant speed; in swing it goes forward as half a cosine and is lifted as a
+    squared sine, so that it leaves and meets the ground without vertical speed. Lengths are shares of the limb's reach.
+    """
+
+    stroke: float
+    """Half of the distance that a foot moves back in stance [limb reach]."""
+    lift: float
+    """Height to which it is lifted in swing [limb reach]."""
+    outward: float
+    """Distance by which it stands outside its hip [limb reach]."""
+    ahead: float = 0.0
+    """Distance by which the middle of its path lies ahead of its hip [limb reach]."""
+    swivel: float = 0.0
+    """How far knee or elbow is turned forward about the line from hip to foot, 0 where it points up [rad].
+
+    A limb of yaw, pitch and knee takes the nearest of three: 0, the sprawl of the article's Fig. 3a; pi/2 with the knee
+    ahead and -pi/2 with the elbow behind, the erect legs of its Fig. 3b, whose feet stand below their hips.
+    """
+
+    def __post_init__(self) -> None:
+        with Checks("foot_path", self) as check:
+            for field in ("stroke", "outward", "ahead"):
+                check.number(field, -1.0, 1.0, "limb reach")
+            check.number("lift", 0.0, 1.0, "limb reach")
+            check.number("swivel", -pi, pi, "rad")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Sweep:
+    """How limbs of a single crank turn: slowly while they stand, fast while they return over the top."""
+
+    stance: float
+    """Angle that the crank turns through in stance, half before and half behind straight down [rad]."""
+    down: float = 0.0
+    """Angle of the crank at which the foot points straight down [rad]."""
+
+    def __post_init__(self) -> None:
+        with Checks("sweep", self) as check:
+            check.number("stance", 0.01, 2 * pi - 0.01, "rad")
+            check.number("down", -pi, pi, "rad")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Held:
+    """Limbs that are held still, as when a salamander swims."""
+
+    angles: tuple[float, ...]
+    """One for each servo of a limb, or those of its first servos; the others are held at 0 [rad]."""
+
+
+Limbs = FootPath | Sweep | Held
+"""The movement of a pair of limbs."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Bend:
+    """How a part of the axis bends, evenly shared by its hinges.
+
+    The part bends by ``offset - amplitude cos 2 pi (phase - lag)``, concave to the left (yaw) or below (pitch) where that
+    is positive. The phase is that of the limbs together, 0 a quarter of a cycle before the first limb's mid-stance: with
+    no lag each girdle of a diagonal gait carries its new stance foot ahead. Several numbers are knots from the part's
+    first to its last hinge from head to tail; of n hinges each takes an nth of the value at its place, so that the part
+    bends alike on every body.
+    """
+
+    part: Part
+    """Part of the axis that bends."""
+    turn: Turn = "yaw"
+    """Sideways or up and down."""
+    amplitude: tuple[float, ...] = (0.0,)
+    """Amplitude of the whole part, all its hinges together [rad]."""
+    lag: tuple[float, ...] = (0.0,)
+    """Phase lag behind the limbs [cycle]; where it grows toward the tail a wave travels backward."""
+    offset: float = 0.0
+    """Steady bend of the whole part [rad]."""
+
+    def __post_init__(self) -> None:
+        with Checks("bend", self) as check:
+            check.number("offset", -10 * pi, 10 * pi, "rad")
+            for name, most, unit in (("amplitude", 100 * pi, "rad"), ("lag", 100.0, "cycle")):
+                row = getattr(self, name)
+                check.that(
+                    1 <= len(row) <= MOST_KNOTS and all(-most <= value <= most for value in row),
+                    f"bend.{name} is {str(row)[:80]}; 1 to {MOST_KNOTS} numbers of {-most:g} to {most:g} {unit} are "
+                    "needed",
+                )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Curve:
+    """The angle of one servo over one cycle, as it was measured; it stands in the place of what limbs and axis say."""
+
+    servo: str
+    """Name of the servo, as ``suchus.design.layout(robot).servos`` has it."""
+    part: Literal["limb", "neck", "trunk", "tail"]
+    """Part of the body that it moves: a limb's curve follows the phase of its limb, any other one that of the axis."""
+    angles: tuple[float, ...]
+    """Angles at equal steps of the cycle; after the last one the first follows again [rad]."""
+
+    def __post_init__(self) -> None:
+        with Checks(f"curve {self.servo}", self) as check:
+            check.that(
+                1 <= len(self.angles) <= MOST_ANGLES,
+                f"curve {self.servo} has {len(self.angles)} angles; 1 to {MOST_ANGLES} are allowed",
+            )
+            wrong = next((angle for angle in self.angles if not abs(angle) <= 2 * pi), None)
+            check.that(wrong is None, f"curve {self.servo} has an angle of {wrong} rad; -6.28 to 6.28 rad is allowed")
+
+    @property
+    def harmonics(self) -> Float[np.ndarray, " harmonic"]:
+        """Complex amplitudes of the smoothest periodic curve through the samples, from the mean on [rad].
+
+        It is the trigonometric interpolation, which has the fewest harmonics: 13 samples give six of them exactly.
+        """
+        count = len(self.angles)
+        found = np.fft.rfft(self.angles) / count
+        found[1 : (count + 1) // 2] *= 2.0
+        return np.asarray(found)
+
+    def at(self, clock: Float[np.ndarray, "*batch"]) -> Float[np.ndarray, "*batch"]:
+        """Return the angle at times in cycles [rad]."""
+        turns = np.multiply.outer(np.asarray(clock, dtype=float), np.arange(len(self.harmonics)))
+        return np.asarray((np.exp(2j * np.pi * turns) @ self.harmonics).real)
+
+    def lagged(self, lag: float) -> "Curve":
+        """Return the curve so much later in the cycle [cycle]."""
+        count = len(self.angles)
+        return replace(self, angles=tuple(float(angle) for angle in self.at(np.arange(count) / count - lag)))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Gait:
-    """A periodic gait. Phases run from 0 to 1 [cycle]; each limb swings first, then stands.
-
-    Feet follow paths fixed to their girdle, so that a swing of the trunk adds to the stride of the legs.
-    """
+    """A periodic movement of any body. Phases run from 0 to 1 [cycle]; each limb swings first, then stands."""
 
     name: str
     """Name, as messages, tables and files show it."""
     period: float
     """Period of one cycle [s]."""
-    duty_factor: float
+    duty_factor: float = 0.5
     """Share of the cycle in which a foot stands [-]."""
-    limb_phases: tuple[float, float, float, float]
-    """Phase of LF, RF, LH, RH when the walk begins [cycle]."""
-    stroke: float
-    """Half of the distance that a foot moves back in stance, in its girdle's frame [m]."""
-    lift: float
-    """Height to which a foot is lifted in swing [m]."""
-    front_reach: float
-    """Distance by which a front foot stands outside its hip [m]."""
-    hind_reach: float
-    """Distance by which a hind foot stands outside its hip [m]."""
-    front_ahead: float
-    """Distance by which the middle of a front foot's path lies ahead of its hip [m]."""
-    hind_ahead: float
-    """Distance by which the middle of a hind foot's path lies ahead of its hip [m]."""
-    legs: Legs
-    """``sprawled`` or ``erect``; erect feet stand below their hips, so that both reaches are zero."""
-    hip_height: float
-    """Height of both girdles' hip axes above the ground [m]."""
-    trunk_bend: float
-    """Amplitude of the lateral bend of the whole trunk, the sum of its yaw angles [rad]."""
-    spine_phase: float
-    """Phase lag of the trunk's bend behind the legs [cycle]; 0: each girdle carries its swing foot forward."""
-    tail_bend: float
-    """Amplitude of the lateral bend of the tail [rad]."""
-    tail_phase: float
-    """Phase lag of the tail's bend behind the trunk's [cycle]; 0: head and tail swing to opposite sides."""
-    tail_pitch: float
-    """Steady angle of the tail's pitch joint, down positive [rad]: the ground carries the tail, or it is lifted."""
+    limb_phases: tuple[float, ...] = ()
+    """Phase of each limb when the movement begins, in the order of the robot's limbs: left before right, from the front
+    [cycle]."""
+    limbs: tuple[Limbs, ...] = ()
+    """Movement of the limbs of each girdle, from the front one; none where curves say all."""
+    height: float = 0.0
+    """Height of the hindmost girdle's hips above the ground [reach of its limb]; 0 for a body on its belly."""
+    axis: tuple[Bend, ...] = ()
+    """Bends of the axis; several of one part and turn add up."""
+    curves: tuple[Curve, ...] = ()
+    """Measured angles of servos."""
+    coupling: tuple[float, ...] = ()
+    """Phases of the limbs at which their pulls on the axis add up; those of the gait where empty [cycle].
+
+    In a gait whose limbs are not quite in diagonal pairs the article's law, 0, 1/2, 1/2, 0, lets the axis follow the
+    mean of the pairs.
+    """
 
     def __post_init__(self) -> None:
-        with Checks("gait", self) as checks:
-            for field, (low, high, unit) in _ALLOWED.items():
-                checks.number(field, low, high, unit)
-            checks.each("limb_phases", LEGS, -1.0, 1.0, "cycle")
-            checks.that(
-                self.legs != "erect" or (self.front_reach, self.hind_reach) == (0.0, 0.0),
-                f"gait.front_reach is {self.front_reach:g} m and gait.hind_reach {self.hind_reach:g} m; erect legs "
-                "stand below their hips, so that both must be 0 m",
+        with Checks("gait", self) as check:
+            check.number("period", 1e-3, 3600.0, "s")
+            check.number("duty_factor", 0.05, 0.95, "")
+            check.number("height", 0.0, 2.0, "limb reach")
+            for name in ("limb_phases", "coupling"):
+                row = getattr(self, name)
+                check.that(
+                    all(-1.0 <= phase <= 1.0 for phase in row), f"gait.{name} is {row}; -1 to 1 cycle is allowed"
+                )
+            check.that(
+                not self.limbs or len(self.limb_phases) == 2 * len(self.limbs),
+                f"gait {self.name} has {len(self.limb_phases)} limb phases for {len(self.limbs)} girdles; each limb "
+                "needs one, left before right",
             )
+            check.that(
+                len(self.coupling) in (0, len(self.limb_phases)),
+                f"gait {self.name} has {len(self.coupling)} phases of coupling for {len(self.limb_phases)} limbs; each "
+                "limb needs one, or none is given",
+            )
+            servos = [curve.servo for curve in self.curves]
+            twice = next((name for name in servos if servos.count(name) > 1), "")
+            check.that(not twice, f"gait {self.name} has two curves for {twice}; leave one")
+
+    def has(self, what: Ability) -> bool:
+        """Return whether a gait has what may be changed in it."""
+        if what == "foot paths":
+            return any(isinstance(limb, FootPath) for limb in self.limbs)
+        if what == "strokes":
+            return any(isinstance(limb, Sweep) or (isinstance(limb, FootPath) and limb.stroke) for limb in self.limbs)
+        if what == "wave":
+            return any(bend.turn == "yaw" and any(bend.amplitude) for bend in self.axis)
+        return not self.curves
+
+    def scaled(self, length: float) -> "Gait":
+        """Return the gait for a body so many times as long: its period grows with the root, nothing else has a size."""
+        require("gait", "length", length, 1e-4, 1e4, "")
+        return replace(self, period=sqrt(length) * self.period)
+
+    def straightened(self, *parts: Part, name: str = "") -> "Gait":
+        """Return the gait with parts of the axis held straight, all of them if none is named; a steady bend stays."""
+
+        def within(part: str) -> bool:
+            return not parts or part in parts or "axis" in parts
+
+        if parts and "axis" not in parts and any(bend.part == "axis" and any(bend.amplitude) for bend in self.axis):
+            raise OutsideLimits(
+                f"gait {self.name!r} bends the whole axis as one part, so that {', '.join(parts)} cannot be held "
+                "straight alone: straighten the axis, or give neck, trunk and tail bends of their own."
+            )
+        return replace(
+            self,
+            name=name or self.name,
+            axis=tuple(replace(bend, amplitude=(0.0,)) if within(bend.part) else bend for bend in self.axis),
+            curves=tuple(curve for curve in self.curves if curve.part == "limb" or not within(curve.part)),
+        )
+
+    def without(self, what: Literal["axis", "neck", "trunk", "tail", "limbs"], name: str = "") -> "Gait":
+        """Return the control group that lacks the motion of a part and differs in nothing else.
+
+        Without ``limbs`` the feet stay where the middle of their stance is; limbs with curves are held at the mean.
+        """
+        if what != "limbs":
+            return self.straightened(what, name=name)
+        still = tuple(
+            replace(curve, angles=(sum(curve.angles) / len(curve.angles),)) if curve.part == "limb" else curve
+            for curve in self.curves
+        )
+        return replace(self, name=name or self.name, limbs=tuple(_standing(limb) for limb in self.limbs), curves=still)
+
+    def lifted(self, angle: float, name: str = "") -> "Gait":
+        """Return the gait with another steady pitch of the tail, down positive [rad]."""
+        return replace(self.with_numbers(tail_pitch=angle), name=name or self.name)
+
+    def strode(self, share: float) -> "Gait":
+        """Return the gait whose limbs stride by a share of what they do [-]; held limbs and curves stay as they are."""
+        return replace(self, limbs=tuple(_strode(limb, share) for limb in self.limbs))
+
+    def bent(self, share: float) -> "Gait":
+        """Return the gait whose axis bends sideways by a share of what it does [-]; a steady bend stays."""
+        return replace(
+            self,
+            axis=tuple(
+                replace(bend, amplitude=tuple(share * angle for angle in bend.amplitude)) if bend.turn == "yaw" else bend
+                for bend in self.axis
+            ),
+            curves=tuple(
+                curve if curve.part == "limb" else replace(curve, angles=tuple(share * a for a in curve.angles))
+                for curve in self.curves
+            ),
+        )
+
+    def lagged(self, lag: float) -> "Gait":
+        """Return the gait whose axis lags the limbs by so much more than it does now [cycle]."""
+        return replace(
+            self,
+            axis=tuple(_lagged(bend, lag) for bend in self.axis),
+            curves=tuple(curve if curve.part == "limb" else curve.lagged(lag) for curve in self.curves),
+        )
+
+    def reversed(self) -> "Gait":
+        """Return the gait whose waves run the other way along the axis."""
+        turned = tuple(replace(bend, lag=tuple(0.0 - lag for lag in bend.lag)) for bend in self.axis)
+        return replace(self, axis=turned)
 
     def mirrored(self) -> "Gait":
-        """Return the gait with left and right swapped."""
-        lf, rf, lh, rh = self.limb_phases
-        return replace(self, limb_phases=(rf, lf, rh, lh))
+        """Return the gait with left and right swapped.
+
+        Raises:
+            OutsideLimits: it has measured curves, which say nothing of the other side.
+        """
+        if self.curves:
+            raise OutsideLimits(f"gait {self.name!r} has measured curves, which cannot be mirrored: give a gait without.")
+        phases = tuple(p for pair in zip(self.limb_phases[1::2], self.limb_phases[::2], strict=True) for p in pair)
+        # the limbs' clock of the axis begins at the phase of the first limb, which is now another one
+        clock = phases[0] - self.limb_phases[0] if phases and not self.coupling else 0.0
+        yaw, pitch = (0.0, 0.5) if self.coupling else (0.5 + clock, clock)
+        axis = tuple(
+            replace(
+                _lagged(bend, yaw if bend.turn == "yaw" else pitch),
+                offset=0.0 - bend.offset if bend.turn == "yaw" else bend.offset,
+            )
+            for bend in self.axis
+        )
+        return replace(self, limb_phases=phases, axis=axis)
+
+    def number(self, name: str) -> float:
+        """Return one of the ``NUMBERS`` of the gait.
+
+        Raises:
+            UnknownName: there is no such number.
+        """
+        return _named(name).read(self)
+
+    def with_numbers(self, **numbers: float) -> "Gait":
+        """Return the gait with other ``NUMBERS``, as ``gait.with_numbers(stroke=0.2, axis_lag=0.5)``.
+
+        Raises:
+            UnknownName: there is no such number.
+            OutsideLimits: the gait has nothing that the number could change.
+        """
+        changed = self
+        for name, value in numbers.items():
+            changed = _named(name).write(changed, value)
+        return changed
+
+
+class Number(NamedTuple):
+    """A number by which sliders, searches, studies and maps speak of a gait."""
+
+    unit: str
+    """SI unit, or ``limb reach``."""
+    read: Callable[[Gait], float]
+    """Returns it."""
+    write: Callable[[Gait, float], Gait]
+    """Returns the gait with another value."""
+    what: str
+    """The quantity, in a clause."""
+
+
+def _standing(limb: Limbs) -> Limbs:
+    if isinstance(limb, FootPath):
+        return replace(limb, stroke=0.0, lift=0.0)
+    return Held(angles=(limb.down,)) if isinstance(limb, Sweep) else limb
+
+
+def _strode(limb: Limbs, share: float) -> Limbs:
+    if isinstance(limb, FootPath):
+        return replace(limb, stroke=share * limb.stroke)
+    return replace(limb, stance=share * limb.stance) if isinstance(limb, Sweep) else limb
+
+
+def _lagged(bend: Bend, lag: float) -> Bend:
+    """Return a bend that lags by so much more, its first lag brought back to -1/2 to 1/2 [cycle] where it leaves it."""
+    if lag == 0.0:
+        return bend
+    turns = round(bend.lag[0] + lag)
+    return replace(bend, lag=tuple(value + lag - turns for value in bend.lag))
+
+
+def _named(name: str) -> Number:
+    if name not in NUMBERS:
+        raise UnknownName("number of a gait", name, NUMBERS)
+    return NUMBERS[name]
+
+
+def _missing(gait: Gait, name: str) -> OutsideLimits:
+    return OutsideLimits(
+        f"gait {gait.name!r} has nothing that {name!r} could change ({NUMBERS[name].what}): choose another number, or a "
+        "gait that has it."
+    )
+
+
+def _plain(name: str, unit: str, what: str) -> Number:
+    """Return a number that is a field of the gait."""
+    return Number(
+        unit, lambda gait: float(getattr(gait, name)), lambda gait, value: replace(gait, **{name: value}), what
+    )  # type: ignore[arg-type]
+
+
+def _of_paths(name: str, what: str) -> Number:
+    """Return a number that all foot paths have; it is that of the foremost, and others keep their proportion to it."""
+
+    def read(gait: Gait) -> float:
+        return next((float(getattr(limb, name)) for limb in gait.limbs if isinstance(limb, FootPath)), 0.0)
+
+    def write(gait: Gait, value: float) -> Gait:
+        if not gait.has("foot paths"):
+            raise _missing(gait, name)
+        now = read(gait)
+        if now == value:
+            return gait
+
+        def changed(limb: Limbs) -> Limbs:
+            if not isinstance(limb, FootPath):
+                return limb
+            return replace(limb, **{name: getattr(limb, name) / now * value if now else value})
+
+        return replace(gait, limbs=tuple(changed(limb) for limb in gait.limbs))
+
+    return Number("limb reach", read, write, what)
+
+
+def _yaw_of(gait: Gait, part: Part) -> list[Bend]:
+    return [bend for bend in gait.axis if bend.turn == "yaw" and bend.part in (part, "axis")]
+
+
+def _bend_of(name: str, part: Part, what: str) -> Number:
+    """Return the amplitude of a part's lateral bend: the mean of its knots, which keep their proportion."""
+
+    def read(gait: Gait) -> float:
+        return sum(sum(bend.amplitude) / len(bend.amplitude) for bend in _yaw_of(gait, part))
+
+    def write(gait: Gait, value: float) -> Gait:
+        if not _yaw_of(gait, part):
+            raise _missing(gait, name)
+        now = read(gait)
+
+        def changed(bend: Bend) -> Bend:
+            if bend.turn != "yaw" or bend.part not in (part, "axis") or now == value:
+                return bend
+            if len(bend.amplitude) == 1 and bend.amplitude[0] == now:
+                return replace(bend, amplitude=(value,))
+            return replace(bend, amplitude=tuple(a / now * value if now else value for a in bend.amplitude))
+
+        return replace(gait, axis=tuple(changed(bend) for bend in gait.axis))
+
+    return Number("rad", read, write, what)
+
+
+def _first_lag(gait: Gait, *parts: Part) -> float:
+    """Return the phase lag of the first lateral bend of some parts behind the limbs [cycle]."""
+    return next((float(bend.lag[0]) for bend in gait.axis if bend.turn == "yaw" and bend.part in parts), 0.0)
+
+
+def _with_lag(gait: Gait, more: float, *parts: Part) -> Gait:
+    """Return a gait whose lateral bends of some parts lag by so much more [cycle]."""
+
+    def moved(bend: Bend) -> Bend:
+        if bend.turn != "yaw" or bend.part not in parts or more == 0.0:
+            return bend
+        return replace(bend, lag=tuple(lag + more for lag in bend.lag))
+
+    return replace(gait, axis=tuple(moved(bend) for bend in gait.axis))
+
+
+def _read_axis_lag(gait: Gait) -> float:
+    return _first_lag(gait, "trunk", "axis") if _yaw_of(gait, "trunk") else _first_lag(gait, "neck", "tail")
+
+
+def _write_axis_lag(gait: Gait, value: float) -> Gait:
+    if not gait.has("wave"):
+        raise _missing(gait, "axis_lag")
+    return _with_lag(gait, value - _read_axis_lag(gait), "neck", "trunk", "tail", "axis")
+
+
+def _read_tail_lag(gait: Gait) -> float:
+    return _first_lag(gait, "tail") - _first_lag(gait, "trunk")
+
+
+def _write_tail_lag(gait: Gait, value: float) -> Gait:
+    if not any(bend.turn == "yaw" and bend.part == "tail" for bend in gait.axis):
+        raise _missing(gait, "tail_lag")
+    return _with_lag(gait, value - _read_tail_lag(gait), "tail")
+
+
+def _read_pitch(gait: Gait) -> float:
+    return sum(bend.offset for bend in gait.axis if bend.turn == "pitch" and bend.part == "tail")
+
+
+def _write_pitch(gait: Gait, value: float) -> Gait:
+    pitched = [bend for bend in gait.axis if bend.turn == "pitch" and bend.part == "tail"]
+    others = tuple(bend for bend in gait.axis if bend not in pitched)
+    rest = [replace(bend, offset=0.0) for bend in pitched[1:]]
+    first = pitched[0] if pitched else Bend(part="tail", turn="pitch")
+    return replace(gait, axis=(*others, replace(first, offset=value), *rest))
+
+
+NUMBERS: Mapping[str, Number] = MappingProxyType(
+    {
+        "period": _plain("period", "s", "the period of a cycle"),
+        "duty_factor": _plain("duty_factor", "-", "the share of the cycle in which a foot stands"),
+        "height": _plain("height", "limb reach", "the height of the hindmost hips"),
+        "stroke": _of_paths("stroke", "half of the way of a foot in stance"),
+        "lift": _of_paths("lift", "the height to which a foot is lifted"),
+        "outward": _of_paths("outward", "how far a foot stands outside its hip"),
+        "ahead": _of_paths("ahead", "how far the middle of a foot's path lies ahead of its hip"),
+        "trunk_bend": _bend_of("trunk_bend", "trunk", "the amplitude of the trunk's lateral bend"),
+        "tail_bend": _bend_of("tail_bend", "tail", "the amplitude of the tail's lateral bend"),
+        "axis_lag": Number(
+            "cycle", _read_axis_lag, _write_axis_lag, "the phase lag of the trunk's lateral bend behind the limbs"
+        ),
+        "tail_lag": Number(
+            "cycle", _read_tail_lag, _write_tail_lag, "the phase lag of the tail's lateral bend behind the trunk's"
+        ),
+        "tail_pitch": Number("rad", _read_pitch, _write_pitch, "the steady pitch of the tail, down positive"),
+    }
+)
+"""Numbers of a gait by name: the vocabulary of sliders, searches, studies and maps.
+
+``stroke``, ``lift``, ``outward`` and ``ahead`` are those of the foremost limbs with a foot path; other girdles keep
+their proportion. Where ``axis_lag`` changes, all other bends keep their lag behind the trunk; with a ``tail_lag`` of
+1/2 head and tail swing to opposite sides.
+"""

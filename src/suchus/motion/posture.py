@@ -17,7 +17,7 @@ from suchus.errors import InvalidDesign, OutsideLimits, Unreachable
 from suchus.kinematics import leg as leg_kinematics
 from suchus.kinematics.body import tail_points
 from suchus.kinematics.mass import centre_of_mass
-from suchus.motion.targets import servo_range
+from suchus.motion.limits import servo_range
 
 SETTLING = 12
 """Rounds that bring the centre of mass to its place [-]; each leaves a tenth of the error, since the legs are light."""

@@ -9,20 +9,15 @@ from jaxtyping import Float
 
 from suchus.design import AnyRobot, layout, servo_ranges
 from suchus.design.scale import gravity_time
-from suchus.errors import OutsideLimits
 from suchus.motion.gait import Gait
-from suchus.motion.pattern import Pattern
-from suchus.motion.steered import steered
-from suchus.motion.targets import servo_range, servo_targets
+from suchus.motion.movement import Steer, movement
 
-MEETING = 0.090
-"""Least height of the hips at which legs change their posture [m]: a folded leg needs room."""
-RAISED = 0.035
-"""How high a pair is lifted while it turns [m]."""
+MEETING = 0.090 / 0.175
+"""Least height of the hips at which limbs change their posture [limb reach]: a folded limb needs room."""
+RAISED = 0.2
+"""How high limbs are lifted while they turn [reach of the hindmost limb]."""
 _TIMES = (0.6, 0.3, 0.5, 0.3, 0.3, 0.5, 0.3, 0.7)  # [s]; between one key and the next
-_LIFT = 0.2  # [limb reach]; the same for the limbs of any body
-_USUAL = 0.319  # [s]; gravity time of a body of a metre, for which ``_TIMES`` are
-_PAIRS = ((0, 3), (1, 2))  # LF and RH, then RF and LH
+_LENGTH = 1.01  # [m]; of the body for which the times are
 _STANDING = 0.999  # [cycle]; a phase at which every foot is meant to stand
 
 
@@ -50,68 +45,37 @@ class Transition(NamedTuple):
 
 
 @lru_cache(maxsize=64)
-def transition(robot: AnyRobot, here: Gait | Pattern, there: Gait | Pattern, *, slower: float = 1.0) -> Transition:
+def transition(robot: AnyRobot, here: Gait, there: Gait, *, slower: float = 1.0) -> Transition:
     """Return the course from one gait's posture to another's: 3.5 s for a body of a metre, less for a smaller one.
 
-    The robot stops and goes to a height at which both postures can stand. Then LF and RH, or the limbs of any body that
-    swing in the first half of a cycle, are lifted, take their new posture and are put down; the others follow; then it
-    goes to the height of the new gait.
+    The robot stops and goes to a height at which both postures can stand. Then the limbs that swing in the first half of
+    a cycle, LF and RH of four, are lifted, take their new posture and are put down; the others follow; then it goes to
+    the height of the new gait. The axis is straight and changes its steady bends with the limbs.
 
     Args:
         robot: the design.
         here: the gait that it leaves.
         there: the gait that it begins.
         slower: factor on all times [-].
-
-    Raises:
-        OutsideLimits: one is a gait of the article's kind, the other is not.
     """
-    if isinstance(here, Gait) and isinstance(there, Gait):
-        height = max(MEETING, min(here.hip_height, there.hip_height))
-        old, new = replace(here, hip_height=height), replace(there, hip_height=height)
-        legs = [old, old]  # of the first and the second pair
-        keys = [_posture(robot, legs, (0.0, 0.0))]
-        for pair in (0, 1):
-            lift = (RAISED, 0.0) if pair == 0 else (0.0, RAISED)
-            keys.append(_posture(robot, legs, lift))
-            legs[pair] = new
-            keys += [_posture(robot, legs, lift), _posture(robot, legs, (0.0, 0.0))]
-        keys.append(_posture(robot, [there, there], (0.0, 0.0)))
-        return Transition(slower * np.cumsum(_TIMES), np.array(keys))
-    if isinstance(here, Gait) or isinstance(there, Gait):
-        raise OutsideLimits(
-            f"a change from gait {here.name!r} to {there.name!r} mixes a gait of the article's kind with a pattern of "
-            "any body: choose two of one kind."
-        )
-    pace = slower * gravity_time(robot.length) / _USUAL
-    return Transition(pace * np.cumsum(_TIMES), _of_any_body(robot, here, there))
-
-
-def _of_any_body(robot: AnyRobot, here: Pattern, there: Pattern) -> np.ndarray:
-    """Return the postures of a change between two patterns, shape (key, servo) [rad]."""
     place = layout(robot)
     early = np.array([(phase - here.limb_phases[0] + 0.25) % 1.0 < 0.5 for phase in here.limb_phases], dtype=bool)
-    reach = np.array([limb.girdle.limb.reach for limb in place.limbs])
-    height = max(here.height, there.height)
+    reach = place.limbs[-1].girdle.limb.reach if place.limbs else 0.0
+    height = max(MEETING, min(here.height, there.height))
     old, new = replace(here, height=height), replace(there, height=height)
 
-    def standing(gait: Pattern, lifted: np.ndarray) -> np.ndarray:
-        return steered(
-            robot,
-            gait,
-            np.full(len(place.limbs), _STANDING),
-            trunk=np.zeros(()),
-            size=np.zeros(()),
-            stroke=np.ones(len(place.limbs)),
-            lower=-_LIFT * reach * lifted,
-        )
+    def standing(gait: Gait, lifted: np.ndarray) -> np.ndarray:
+        steer = Steer(size=0.0, lower=-RAISED * reach * lifted[None])
+        phase = np.full((1, len(place.limbs)), _STANDING)
+        return np.asarray(movement(robot, gait).targets(phase, np.zeros(1, dtype=complex), steer)[0])
 
     def mixed(turned: np.ndarray, lifted: np.ndarray) -> np.ndarray:
-        found, newer = standing(old, lifted), standing(new, lifted)
-        for limb, now in zip(place.limbs, turned, strict=True):
-            if now:
-                found[limb.servos] = newer[limb.servos]
-        return found
+        before, after = standing(old, lifted), standing(new, lifted)
+        share = turned.mean() if turned.size else 1.0
+        targets = (1.0 - share) * before + share * after
+        for limb, is_new in zip(place.limbs, turned, strict=True):
+            targets[limb.servos] = (after if is_new else before)[limb.servos]
+        return targets
 
     none = np.zeros(len(place.limbs), dtype=bool)
     keys = [mixed(none, none)]
@@ -119,23 +83,5 @@ def _of_any_body(robot: AnyRobot, here: Pattern, there: Pattern) -> np.ndarray:
         after = before | pair
         keys += [mixed(before, pair), mixed(after, pair), mixed(after, none)]
     low, high = servo_ranges(robot).T
-    return np.clip(np.array([*keys, standing(there, none)]), low, high)
-
-
-def _posture(robot: AnyRobot, gaits: list[Gait], lift: tuple[float, float]) -> np.ndarray:
-    """Return the servo angles of a posture with straight trunk and tail, each pair of legs in its own gait."""
-    place = layout(robot)
-    targets = np.zeros(len(place.servos))
-    for gait, pair, raised in zip(gaits, _PAIRS, lift, strict=True):
-        still = replace(gait, stroke=0.0)
-        lower = np.full(4, -raised)
-        angles = servo_targets(
-            robot, still, np.full(4, _STANDING), trunk=np.zeros(()), tail=np.zeros(()), lower=lower, clip=True
-        )
-        for leg in pair:
-            targets[place.limbs[leg].servos] = angles[place.limbs[leg].servos]
-        for servo in place.tail_pitch[:1]:
-            targets[servo] += angles[servo] / 2
-    for i, name in enumerate(place.servos):
-        targets[i] = np.clip(targets[i], *servo_range(robot, name))
-    return targets
+    times = slower * gravity_time(robot.length) / gravity_time(_LENGTH) * np.cumsum(_TIMES)
+    return Transition(times, np.clip(np.array([*keys, standing(there, none)]), low, high))

@@ -1,0 +1,367 @@
+"""Other ways to write a gait down: in metres for the article's robot, by places along the body, as a table of angles.
+
+Files hold them, and the shelf's crawls are written in the first; each becomes a ``Gait`` for a robot, and nothing that
+simulates, draws or measures knows them.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
+from itertools import pairwise
+from math import pi
+from typing import Any, Literal, Self
+
+import numpy as np
+
+from suchus.design import LEGS, AnyRobot, layout
+from suchus.design.checks import Checks
+from suchus.errors import OutsideLimits
+from suchus.motion.gait import Bend, Curve, FootPath, Gait, Held, Limbs, Sweep
+from suchus.motion.limits import servo_parts
+from suchus.motion.movement import pitch_hinges, yaw_hinges
+
+DIAGONAL = (0.0, 0.5, 0.5, 0.0)
+"""Phases at which LF, RF, LH and RH pull on the trunk in the article's law [cycle]."""
+_ERECT = (-pi / 2, pi / 2)  # [rad]; the elbow behind, the knee ahead
+_METRES = 12  # digits of a metre that a share of the reach gives back
+_ALLOWED = {
+    "period": (1e-3, 3600.0, "s"),
+    "duty_factor": (0.05, 0.95, ""),
+    "stroke": (-10.0, 10.0, "m"),
+    "lift": (0.0, 10.0, "m"),
+    "front_reach": (-10.0, 10.0, "m"),
+    "hind_reach": (-10.0, 10.0, "m"),
+    "front_ahead": (-10.0, 10.0, "m"),
+    "hind_ahead": (-10.0, 10.0, "m"),
+    "hip_height": (1e-4, 10.0, "m"),
+    "trunk_bend": (0.0, 3.1416, "rad"),
+    "spine_phase": (-1.0, 1.0, "cycle"),
+    "tail_bend": (0.0, 3.1416, "rad"),
+    "tail_phase": (-1.0, 1.0, "cycle"),
+    "tail_pitch": (-3.1416, 3.1416, "rad"),
+}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GaitInMetres:
+    """A gait of four legs, a trunk and a tail in metres, as one speaks of the article's robot."""
+
+    name: str
+    """Name, as messages, tables and files show it."""
+    period: float
+    """Period of one cycle [s]."""
+    duty_factor: float
+    """Share of the cycle in which a foot stands [-]."""
+    limb_phases: tuple[float, float, float, float]
+    """Phase of LF, RF, LH, RH when the walk begins [cycle]."""
+    stroke: float
+    """Half of the distance that a foot moves back in stance, in its girdle's frame [m]."""
+    lift: float
+    """Height to which a foot is lifted in swing [m]."""
+    front_reach: float
+    """Distance by which a front foot stands outside its hip [m]."""
+    hind_reach: float
+    """Distance by which a hind foot stands outside its hip [m]."""
+    front_ahead: float
+    """Distance by which the middle of a front foot's path lies ahead of its hip [m]."""
+    hind_ahead: float
+    """Distance by which the middle of a hind foot's path lies ahead of its hip [m]."""
+    legs: Literal["sprawled", "erect"]
+    """How legs stand. ``sprawled``: the plane of a leg turns with its foot, as in the article's Fig. 3a. ``erect``: it
+    stays upright along the body, the elbow behind and the knee ahead, as in Fig. 3b; both reaches are zero."""
+    hip_height: float
+    """Height of both girdles' hip axes above the ground [m]."""
+    trunk_bend: float
+    """Amplitude of the lateral bend of the whole trunk, the sum of its yaw angles [rad]."""
+    spine_phase: float
+    """Phase lag of the trunk's bend behind the legs [cycle]; 0: each girdle carries its swing foot forward."""
+    tail_bend: float
+    """Amplitude of the lateral bend of the tail [rad]."""
+    tail_phase: float
+    """Phase lag of the tail's bend behind the trunk's [cycle]; 0: head and tail swing to opposite sides."""
+    tail_pitch: float
+    """Steady angle of the tail's pitch joint, down positive [rad]: the ground carries the tail, or it is lifted."""
+
+    def __post_init__(self) -> None:
+        with Checks("gait", self) as checks:
+            for field, (low, high, unit) in _ALLOWED.items():
+                checks.number(field, low, high, unit)
+            checks.each("limb_phases", LEGS, -1.0, 1.0, "cycle")
+            checks.that(
+                self.legs != "erect" or (self.front_reach, self.hind_reach) == (0.0, 0.0),
+                f"gait.front_reach is {self.front_reach:g} m and gait.hind_reach {self.hind_reach:g} m; erect legs "
+                "stand below their hips, so that both must be 0 m",
+            )
+
+    def gait(self, reaches: Sequence[float]) -> Gait:
+        """Return the gait for limbs of these lengths.
+
+        Args:
+            reaches: lengths of the front and of the hind limbs [m].
+        """
+        front, hind = reaches
+        swivels = _ERECT if self.legs == "erect" else (0.0, 0.0)
+        outward, ahead = (self.front_reach, self.hind_reach), (self.front_ahead, self.hind_ahead)
+        tail_lag = self.spine_phase + self.tail_phase + 0.5  # behind the limbs; head and tail to opposite sides
+        return Gait(
+            name=self.name,
+            period=self.period,
+            duty_factor=self.duty_factor,
+            limb_phases=self.limb_phases,
+            limbs=tuple(
+                FootPath(
+                    stroke=self.stroke / reach,
+                    lift=self.lift / reach,
+                    outward=outward[i] / reach,
+                    ahead=ahead[i] / reach,
+                    swivel=swivels[i],
+                )
+                for i, reach in enumerate((front, hind))
+            ),
+            height=self.hip_height / hind,
+            axis=(
+                Bend(part="trunk", amplitude=(self.trunk_bend,), lag=(self.spine_phase,)),
+                Bend(part="tail", amplitude=(self.tail_bend,), lag=(tail_lag,)),
+                Bend(part="tail", turn="pitch", offset=self.tail_pitch),
+            ),
+            coupling=() if _opposite(self.limb_phases) else DIAGONAL,
+        )
+
+    @classmethod
+    def of(cls, gait: Gait, reaches: Sequence[float]) -> Self:
+        """Return the numbers of a gait in metres, for limbs of these lengths [m].
+
+        Raises:
+            OutsideLimits: the gait says something that cannot be said so.
+        """
+        front, hind = reaches
+        paths = [limb for limb in gait.limbs if isinstance(limb, FootPath)]
+        lifts = {round(path.lift * reach, _METRES) for path, reach in zip(paths, reaches, strict=False)}
+        strokes = {round(path.stroke * reach, _METRES) for path, reach in zip(paths, reaches, strict=False)}
+        bends = {(bend.part, bend.turn): bend for bend in gait.axis}
+        trunk, tail = bends.get(("trunk", "yaw"), Bend(part="trunk")), bends.get(("tail", "yaw"), Bend(part="tail"))
+        pitch = bends.pop(("tail", "pitch"), Bend(part="tail", turn="pitch"))
+        plain = all(len(bend.amplitude) == len(bend.lag) == 1 for bend in (trunk, tail)) and not any(pitch.amplitude)
+        if len(paths) != 2 or len(lifts) != 1 or len(strokes) != 1 or not plain or gait.curves or len(gait.axis) > 3:
+            raise OutsideLimits(
+                f"gait {gait.name!r} cannot be given in metres of stroke, lift and reach, as it moves other limbs or "
+                "bends its axis otherwise: write limbs and axis instead."
+            )
+        return cls(
+            name=gait.name,
+            period=gait.period,
+            duty_factor=gait.duty_factor,
+            limb_phases=gait.limb_phases,  # type: ignore[arg-type]
+            stroke=strokes.pop(),
+            lift=lifts.pop(),
+            front_reach=round(paths[0].outward * front, _METRES),
+            hind_reach=round(paths[1].outward * hind, _METRES),
+            front_ahead=round(paths[0].ahead * front, _METRES),
+            hind_ahead=round(paths[1].ahead * hind, _METRES),
+            legs="erect" if abs(paths[0].swivel) > pi / 4 else "sprawled",
+            hip_height=round(gait.height * hind, _METRES),
+            trunk_bend=trunk.amplitude[0],
+            spine_phase=trunk.lag[0],
+            tail_bend=tail.amplitude[0],
+            tail_phase=tail.lag[0] - trunk.lag[0] - 0.5,
+            tail_pitch=pitch.offset,
+        )
+
+
+def _opposite(phases: Sequence[float]) -> bool:
+    """Return whether limbs are in diagonal pairs, so that the gait's own phases are those of the article's law."""
+    return all((phase - phases[0] - pull) % 1.0 == 0.0 for phase, pull in zip(phases, DIAGONAL, strict=True))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AxialWave:
+    """How each hinge of the axis bends sideways, by its place along the body.
+
+    A hinge at the place s bends by amplitude(s) cos 2 pi (clock - phase - waves s), with its concave side to the right
+    where the value is positive. With ``waves`` 0 it is a standing wave.
+    """
+
+    amplitude: tuple[tuple[float, float], ...]
+    """Place along the body, 0 at the snout and 1 at the tip of the tail [-], and amplitude of a hinge there [rad]."""
+    waves: float
+    """Wavelengths along the body; the wave runs from head to tail where positive [-]."""
+    phase: float
+    """Phase lag [cycle]; 0: concave on the right a quarter of a cycle before the first limb's mid-stance."""
+    offset: float = 0.0
+    """Steady bend of every hinge, concave on the left where positive, to turn left [rad]."""
+
+    def __post_init__(self) -> None:
+        with Checks("wave", self) as check:
+            check.number("waves", -10.0, 10.0, "")
+            check.number("phase", -1.0, 1.0, "cycle")
+            check.number("offset", -pi, pi, "rad")
+            knots = self.amplitude
+            shaped = bool(knots) and all(len(knot) == 2 for knot in knots)
+            check.that(
+                shaped
+                and all(0.0 <= s <= 1.0 and abs(a) <= pi for s, a in knots)
+                and all(first[0] < second[0] for first, second in pairwise(knots)),
+                f"wave.amplitude is {str(knots)[:80]}; pairs of a place that increases from 0 to 1 and an angle of "
+                "-3.14 to 3.14 rad are needed",
+            )
+
+    def bends(self, robot: AnyRobot) -> tuple[Bend, ...]:
+        """Return the bends of the parts of a robot's axis, each with a knot for every hinge."""
+        places, angles = zip(*self.amplitude, strict=True)
+        hinges, found = yaw_hinges(robot), []
+        parts: tuple[Literal["neck", "trunk", "tail"], ...] = ("neck", "trunk", "tail")
+        for part in parts:
+            among = hinges.within(part)
+            along = [hinges.places[k] for k in among]
+            amplitude = [len(among) * float(np.interp(place, places, angles)) for place in along]
+            if not (any(amplitude) or (among and self.offset)):
+                continue
+            lag = [self.phase + self.waves * place + (0.5 if a < 0.0 else 0.0) for a, place in zip(amplitude, along, strict=True)]
+            found.append(
+                Bend(
+                    part=part,
+                    amplitude=_plain([abs(a) for a in amplitude]),
+                    lag=_plain(lag),
+                    offset=len(among) * self.offset,
+                )
+            )
+        return tuple(found)
+
+
+def _plain(row: list[float]) -> tuple[float, ...]:
+    """Return a row of knots, or one where all are alike."""
+    return (row[0],) if len(set(row)) == 1 else tuple(row)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FootPathByPlane:
+    """A foot path whose limb is turned by its ``plane``; see ``FootPath``, whose ``swivel`` it is."""
+
+    stroke: float
+    """Half of the distance that a foot moves back in stance [limb reach]."""
+    lift: float
+    """Height to which it is lifted in swing [limb reach]."""
+    outward: float
+    """Distance by which it stands outside its hip [limb reach]."""
+    ahead: float
+    """Distance by which the middle of its path lies ahead of its hip [limb reach]."""
+    plane: float = 0.0
+    """Of a limb of four hinges: how far the elbow is turned forward about the line from hip to foot [rad]."""
+
+    def limbs(self, robot: AnyRobot, girdle: int) -> FootPath:
+        """Return the path; a limb of yaw, pitch and knee has no plane."""
+        hinges = len(layout(robot).robot.girdles[girdle].limb.hinges)
+        swivel = self.plane if hinges > len(("yaw", "pitch", "knee")) else 0.0
+        return FootPath(stroke=self.stroke, lift=self.lift, outward=self.outward, ahead=self.ahead, swivel=swivel)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GaitByPlaces:
+    """A gait of any body: what the limbs of each girdle do, and a wave by places along the axis."""
+
+    name: str
+    """Name, as messages, tables and files show it."""
+    period: float
+    """Period of one cycle [s]."""
+    duty_factor: float
+    """Share of the cycle in which a foot stands [-]."""
+    limb_phases: tuple[float, ...]
+    """Phase of each limb when the movement begins, in the order of the robot's limbs [cycle]."""
+    girdles: tuple[FootPathByPlane | Sweep | Held, ...]
+    """Movement of the limbs of each girdle, from the front one."""
+    height: float
+    """Height of the hindmost girdle's hips above the ground [reach of its limb]; 0 for a body on its belly."""
+    wave: AxialWave
+    """Wave by which the axis bends."""
+
+    def gait(self, robot: AnyRobot) -> Gait:
+        """Return the gait for a robot, whose hinges' places the wave is read at."""
+        limbs: list[Limbs] = []
+        for i, girdle in enumerate(self.girdles):
+            if isinstance(girdle, FootPathByPlane):
+                _check_girdles(robot, self.name, len(self.girdles))
+                limbs.append(girdle.limbs(robot, i))
+            else:
+                limbs.append(girdle)
+        return Gait(
+            name=self.name,
+            period=self.period,
+            duty_factor=self.duty_factor,
+            limb_phases=self.limb_phases,
+            limbs=tuple(limbs),
+            height=self.height,
+            axis=self.wave.bends(robot),
+        )
+
+
+def _check_girdles(robot: AnyRobot, name: str, count: int) -> None:
+    girdles = layout(robot).robot.girdles
+    if len(girdles) != count:
+        raise OutsideLimits(
+            f"gait {name!r} is for {count} pairs of limbs; robot {robot.name!r} has {len(girdles)}: choose a gait made "
+            "for it."
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AnglesOfServo:
+    """The angle of one servo over one cycle."""
+
+    servo: str
+    """Name of the servo, as ``suchus.design.layout(robot).servos`` has it."""
+    angles: tuple[float, ...]
+    """Angles at equal steps of the cycle; after the last one the first follows again [rad]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GaitByAngles:
+    """A gait given by servo angles alone, as they were measured on an animal; servos without a curve stay at 0."""
+
+    name: str
+    """Name, as messages, tables and files show it."""
+    period: float
+    """Period of one cycle [s]."""
+    duty_factor: float
+    """Share of the cycle in which a foot stands [-]; it moves nothing, measures and diagrams read it."""
+    limb_phases: tuple[float, ...]
+    """Phase of each limb when the movement begins, 0 where its swing begins [cycle]."""
+    curves: tuple[AnglesOfServo, ...]
+    """One for every servo that moves."""
+
+    def gait(self, robot: AnyRobot) -> Gait:
+        """Return the gait for a robot, whose servos say which part of the body each curve moves."""
+        parts = servo_parts(robot)
+        return Gait(
+            name=self.name,
+            period=self.period,
+            duty_factor=self.duty_factor,
+            limb_phases=self.limb_phases,
+            curves=tuple(
+                Curve(servo=curve.servo, part=parts.get(curve.servo, "trunk"), angles=curve.angles)  # type: ignore[arg-type]
+                for curve in self.curves
+            ),
+        )
+
+
+def limb_reaches(robot: AnyRobot) -> tuple[float, float]:
+    """Return the lengths of a robot's front and hind limbs, for gaits in metres [m].
+
+    Raises:
+        OutsideLimits: it has not two pairs of limbs.
+    """
+    girdles = layout(robot).robot.girdles
+    if len(girdles) != 2:
+        raise OutsideLimits(
+            f"a gait in metres is for two pairs of limbs; robot {robot.name!r} has {len(girdles)}: choose a gait made "
+            "for it, with limbs and axis."
+        )
+    return girdles[0].limb.reach, girdles[1].limb.reach
+
+
+def form_of(data: Mapping[str, Any]) -> type[GaitInMetres | GaitByPlaces | GaitByAngles] | None:
+    """Return the form whose own fields the top of a file names; None if it is that of a ``Gait``."""
+    for form in (GaitInMetres, GaitByPlaces):
+        if ({field.name for field in fields(form)} - {field.name for field in fields(Gait)}) & set(data):
+            return form
+    curves = data.get("curves")
+    plain = isinstance(curves, Sequence) and not any(isinstance(c, Mapping) and "part" in c for c in curves)
+    return GaitByAngles if plain and not {"limbs", "axis", "base"} & set(data) else None

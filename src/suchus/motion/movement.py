@@ -1,0 +1,602 @@
+"""From phase to posture: what every servo of a robot does in a gait, for many runs at once.
+
+``Movement`` works gaits of one structure out for one robot, so that their numbers are arrays over runs: that is done
+once, and then asked at every control period. Open loop, feedback, limits and swims all read it.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import lru_cache
+from typing import Any, NamedTuple
+
+import numpy as np
+from jaxtyping import Complex, Float
+
+from suchus.design import AnyRobot, Crank, Layout, layout, servo_ranges
+from suchus.errors import OutsideLimits, UnknownName, Unreachable
+from suchus.kinematics import leg as leg_kinematics
+from suchus.kinematics import limb as limb_kinematics
+from suchus.kinematics import tail as tail_kinematics
+from suchus.kinematics.limb import PlainLeg
+from suchus.motion.gait import Bend, FootPath, Gait, Held, Limbs, Part, Sweep
+from suchus.paper import CRAWL_START
+
+START = CRAWL_START
+"""A robot stands still until then, so that it has settled on the ground [s]."""
+_PICOMETRE = 12  # digits of a metre to which lengths of a gait are rounded: a share of a reach of 0.175 m gives 0.027 m
+_INSIDE = 1e-6  # how far inside its reach a foot that is drawn into it stays: [m] for a leg, [reach] for other limbs
+_LEAST, _MOST = 0.02, 2 * np.pi - 0.02  # [rad]; of the angle that a crank turns through in stance
+_SIDEWAYS = 2 / np.pi  # quarter turns of swivel a radian
+
+
+class Steer(NamedTuple):
+    """What is asked of a gait besides; every field broadcasts over runs, and limbs where it has them."""
+
+    size: Float[np.ndarray, "*batch"] | float = 1.0
+    """Factor on strokes and bends, 0 where a robot stands [-]."""
+    stroke: Float[np.ndarray, "*batch limb"] | float = 1.0
+    """Factor on the stroke of each limb [-]."""
+    lower: Float[np.ndarray, "*batch limb"] | float = 0.0
+    """How much lower than the gait says each foot is [m]."""
+    bend: Float[np.ndarray, "*batch"] | float = 0.0
+    """Steady bend of the trunk besides that of the gait, left positive [rad]."""
+
+
+class Intended(NamedTuple):
+    """Intended motion over time."""
+
+    phase: Float[np.ndarray, "*batch limb"]
+    """Phase of each limb, without wrapping [cycle]."""
+    targets: Float[np.ndarray, "*batch servo"]
+    """Servo angles [rad]."""
+
+
+class Hinges(NamedTuple):
+    """The hinges of the axis that turn one way, from head to tail; a cable has one for each of its joints."""
+
+    servos: tuple[int, ...]
+    """Servo that moves each of them."""
+    signs: tuple[float, ...]
+    """1 where a positive angle of the servo is a positive bend, else -1 [-]."""
+    parts: tuple[Part, ...]
+    """Part of the axis that each belongs to."""
+    places: tuple[float, ...]
+    """Of each along the body, 0 at the snout and 1 at the tip of the tail [-]."""
+
+    def within(self, part: Part) -> list[int]:
+        """Return which of them a part has."""
+        return [i for i, mine in enumerate(self.parts) if part in ("axis", mine)]
+
+
+@lru_cache(maxsize=256)
+def yaw_hinges(robot: AnyRobot) -> Hinges:
+    """Return the driven hinges that bend a robot sideways; positive is concave to the left."""
+    place = layout(robot)
+    rows: list[tuple[float, int, float, Part]] = []
+    for servo, left, along in zip(place.axial_yaw, place.axial_left, place.axial_place, strict=True):
+        part: Part = "trunk" if servo in place.trunk_yaw else "tail" if servo in place.tail_yaw else "neck"
+        rows.append((along, servo, left, part))
+    for servo in place.cables:
+        behind = place.hinges.index(place.cable(servo).hinges[0]) >= place.behind.start
+        rows += [(along, servo, -1.0, "tail" if behind else "trunk") for along in place.cable_places(servo)]
+    rows.sort(key=lambda row: row[0])
+    places, servos, signs, parts = tuple(zip(*rows, strict=True)) or ((), (), (), ())
+    return Hinges(servos, signs, parts, places)
+
+
+@lru_cache(maxsize=256)
+def pitch_hinges(robot: AnyRobot) -> Hinges:
+    """Return the driven hinges that bend a robot up and down; positive is concave below."""
+    place = layout(robot)
+
+    def part(servo: int) -> Part:
+        return "trunk" if servo in place.trunk_pitch else "tail" if servo in place.tail_pitch else "neck"
+
+    servos = place.axial_pitch
+    return Hinges(servos, (1.0,) * len(servos), tuple(part(servo) for servo in servos), (0.0,) * len(servos))
+
+
+class Waves:
+    """What gaits ask of one row of hinges: of a part's bend b, ``offset + Re(swing z)``, each hinge turns an nth."""
+
+    def __init__(self, hinges: Hinges, turn: str, gaits: Sequence[Gait]) -> None:
+        self.hinges = hinges
+        shape = (len(gaits), len(hinges.servos))
+        self.swing, self.offset, self.share = np.zeros(shape, dtype=complex), np.zeros(shape), np.ones(shape)
+        for run, gait in enumerate(gaits):
+            bends = [bend for bend in gait.axis if bend.turn == turn and hinges.within(bend.part)]
+            for k in range(len(hinges.servos)):
+                mine = [bend for bend in bends if k in hinges.within(bend.part)]
+                counts = {len(hinges.within(bend.part)) for bend in mine}
+                whole = counts.pop() if len(counts) == 1 else 1
+                self.share[run, k] = whole
+                for bend in mine:
+                    among = hinges.within(bend.part)
+                    scale = whole / len(among)
+                    self.swing[run, k] += scale * _swing(bend, among.index(k), len(among))
+                    self.offset[run, k] += scale * bend.offset
+        self._real = not self.swing.imag.any()
+        self._steady = bool(self.offset.any())
+        self.moves = bool(self.swing.any()) or self._steady
+
+    def bends(
+        self, z: Complex[np.ndarray, "*batch"], size: Float[np.ndarray, "*batch"] | float | None = None
+    ) -> Float[np.ndarray, "*batch hinge"]:
+        """Return the bend of the whole part, as each hinge takes its share of it [rad]."""
+        z = np.asarray(z)[..., None]
+        swung = self.swing.real * z.real if self._real else self.swing.real * z.real - self.swing.imag * z.imag
+        if size is not None:
+            swung = np.asarray(size)[..., None] * swung
+        return np.asarray(swung + self.offset if self._steady else swung)
+
+    def whole(self, among: Sequence[int], bends: Float[np.ndarray, "*batch hinge"]) -> Float[np.ndarray, "*batch"]:
+        """Return the bend of some hinges together [rad]."""
+        if not len(among):
+            return np.zeros(bends.shape[:-1])
+        first = among[0]
+        alike = (self.swing[:, among] == self.swing[:, [first]]).all() and (self.share[:, among] == len(among)).all()
+        if alike and (self.offset[:, among] == self.offset[:, [first]]).all():  # n nths of a number are not the number
+            return np.asarray(bends[..., first])
+        return np.asarray((bends[..., among] / self.share[:, among]).sum(axis=-1))
+
+    def amplitude(self) -> Float[np.ndarray, "run hinge"]:
+        """Return the most that each hinge turns to either side, its steady angle aside [rad]."""
+        return np.abs(self.swing) / self.share
+
+
+def _swing(bend: Bend, place: int, count: int) -> complex:
+    """Return the complex amplitude of a part's bend as its hinge number ``place`` sees it [rad]."""
+    amplitude, lag = (_at_knot(row, place, count) for row in (bend.amplitude, bend.lag))
+    half = round(2.0 * lag)  # half cycles change the sign alone, and exactly
+    rest = 2 * np.pi * (lag - half / 2.0)
+    signed = amplitude if half % 2 else -amplitude
+    return complex(signed) if rest == 0.0 else complex(signed * np.cos(rest), -signed * np.sin(rest))
+
+
+def _at_knot(row: tuple[float, ...], place: int, count: int) -> float:
+    """Return the value of knots, evenly spread over ``count`` hinges, at one of them."""
+    if len(row) in (1, count):
+        return row[place] if len(row) == count else row[0]
+    along = place / (count - 1) if count > 1 else 0.5
+    return float(np.interp(along, np.linspace(0.0, 1.0, len(row)), row))
+
+
+class Movement:
+    """Gaits of one structure worked out for one robot: every number is an array over runs.
+
+    Args:
+        robot: the design.
+        gaits: of each run; ``structure`` must be the same for all.
+
+    Raises:
+        OutsideLimits: a gait is for other limbs.
+        UnknownName: a curve is for a servo that the robot lacks.
+    """
+
+    def __init__(self, robot: AnyRobot, gaits: Sequence[Gait]) -> None:
+        for gait in gaits:
+            check_limbs(robot, gait)
+        self.robot, self.gaits, self.place = robot, tuple(gaits), layout(robot)
+        self.yaw, self.pitch = Waves(yaw_hinges(robot), "yaw", gaits), Waves(pitch_hinges(robot), "pitch", gaits)
+        self._duty = np.array([gait.duty_factor for gait in gaits])
+        self._phases = np.array([gait.limb_phases for gait in gaits], dtype=float)
+        self._touch_down = 0.75 - self._duty / 2  # a quarter of a cycle before mid-stance
+        self._signs, self._behind = _references(gaits)
+        self._paths = [_path_numbers(robot, gaits, limb.number) for limb in self.place.limbs]
+        self._harmonics = [np.array([gait.curves[i].harmonics for gait in gaits]) for i in range(len(gaits[0].curves))]
+        self._low, self._high = servo_ranges(robot).T
+
+    def axis_phase(self, limbs: Float[np.ndarray, "*batch limb"]) -> Complex[np.ndarray, "*batch"]:
+        """Return the order parameter of the limbs, which the axis follows: their mean on the unit circle [-].
+
+        Its angle is the phase of the axis; it is 1 in size where all limbs agree and 0 where their pulls cancel.
+
+        Args:
+            limbs: phases of the limbs [cycle].
+        """
+        angle = 2 * np.pi * (limbs - self._touch_down[:, None] - self._behind)
+        count = len(self._signs)
+        return np.asarray(np.cos(angle) @ self._signs / count + 1j * (np.sin(angle) @ self._signs / count))
+
+    def axis_of_clock(self, clock: Float[np.ndarray, "*batch"]) -> Complex[np.ndarray, "*batch"]:
+        """Return what the axis follows at times since the beginning [cycle], without asking the limbs."""
+        if len(self._signs):
+            return self.axis_phase(np.asarray(clock)[..., None] + self._phases)
+        return np.asarray(np.exp(2j * np.pi * (np.asarray(clock) - self._touch_down)))
+
+    def targets(
+        self,
+        limbs: Float[np.ndarray, "*batch limb"],
+        axis: Complex[np.ndarray, "*batch"],
+        steer: Steer | None = None,
+        *,
+        draw: bool = False,
+    ) -> Float[np.ndarray, "*batch servo"]:
+        """Return the servo angles [rad].
+
+        Args:
+            limbs: phases of the limbs, not wrapped; the last axis of the batch is that of the runs, or stands for the
+                only one [cycle].
+            axis: what the axis follows, as ``axis_phase`` returns it [-].
+            steer: what is asked besides; then feet are drawn into what limbs reach, and angles into their ranges.
+            draw: draw feet into what limbs reach, whether anything is steered or not.
+
+        Raises:
+            OutsideLimits: a foot's path is out of reach, and it is not drawn into it.
+        """
+        targets = np.zeros((*np.broadcast_shapes(np.shape(limbs)[:-1], np.shape(axis)), len(self.place.servos)))
+        for i, limb in enumerate(self.place.limbs):
+            if self._paths[i] is not None:
+                targets[..., limb.servos] = self._limb(i, limbs[..., i], steer, draw=draw or steer is not None)
+        self._bend(targets, axis, steer)
+        self._curve(targets, limbs, axis)
+        return np.clip(targets, self._low, self._high) if steer is not None else targets
+
+    def bend_of(self, part: Part, axis: Complex[np.ndarray, "*batch"]) -> Float[np.ndarray, "*batch"]:
+        """Return how far a part bends sideways, left positive, measured curves aside [rad]."""
+        return self.yaw.whole(self.yaw.hinges.within(part), self.yaw.bends(axis))
+
+    def out_of_reach(self, limbs: Float[np.ndarray, "*batch limb"]) -> Float[np.ndarray, "*batch limb"]:
+        """Return how far each foot's place lies outside what its limb reaches; 0 without a foot path [m]."""
+        away = np.zeros(np.broadcast_shapes(limbs.shape, (1, len(self.place.limbs))))
+        for i, (limb, numbers) in enumerate(zip(self.place.limbs, self._paths, strict=True)):
+            if isinstance(numbers, _Path):
+                far = np.linalg.norm(np.stack(self._foot(i, numbers, limbs[..., i], None), axis=-1), axis=-1)
+                near, most = limb_kinematics.reach(limb.girdle.limb)
+                away[..., i] = np.maximum(np.maximum(near - far, far - most), 0.0)
+        return away
+
+    def _foot(
+        self, i: int, numbers: "_Path", phase: np.ndarray, steer: Steer | None
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return how far a foot is ahead of its hip, outside it and below it [m]."""
+        forward, lifted = foot_path(phase, self._duty)
+        stroke, lower = numbers.stroke, np.zeros(())
+        if steer is not None:
+            stroke, lower = stroke * np.asarray(steer.size) * _of_limb(steer.stroke, i), _of_limb(steer.lower, i)
+        ahead = numbers.ahead + stroke * forward
+        return ahead, np.broadcast_to(numbers.outward, ahead.shape), numbers.down + lower - numbers.lift * lifted
+
+    def _limb(self, i: int, phase: np.ndarray, steer: Steer | None, *, draw: bool) -> np.ndarray:
+        limb, numbers = self.place.limbs[i], self._paths[i]
+        if isinstance(numbers, np.ndarray):  # held
+            return numbers
+        if isinstance(numbers, _Crank):
+            stance = numbers.stance
+            if steer is not None:
+                stance = np.clip(np.asarray(steer.size) * _of_limb(steer.stroke, i) * stance, _LEAST, _MOST)
+            return self._turned(phase, stance, numbers.down)[..., None]
+        assert numbers is not None
+        ahead, outward, down = self._foot(i, numbers, phase, steer)
+        try:
+            if numbers.leg is not None:
+                foot = np.stack([numbers.leg.hip_offset + outward, ahead, down], axis=-1)
+                return _leg_angles(numbers.leg, numbers.side, foot, draw=draw)
+            foot = np.stack([ahead, outward, -down], axis=-1)
+            if draw:
+                near, far = limb_kinematics.reach(limb.girdle.limb)
+                foot = _drawn(foot, np.zeros(3), (near + _INSIDE * far, far - _INSIDE * far))
+            swivel = np.broadcast_to(numbers.swivel, ahead.shape)
+            return limb_kinematics.inverse(limb.girdle.limb, foot, plane=swivel)
+        except Unreachable as error:
+            names = ", ".join(dict.fromkeys(repr(gait.name) for gait in self.gaits))
+            raise OutsideLimits(
+                f"gait {names} asks {limb.name} of robot {self.robot.name!r} for a foot path outside its reach: {error} "
+                "Lower stroke, outward or height."
+            ) from error
+
+    def _turned(self, phase: np.ndarray, stance: np.ndarray, down: np.ndarray) -> np.ndarray:
+        """Return the angle of a crank, which grows by a whole turn a cycle: the foot goes back below, forward above."""
+        swing = 1.0 - self._duty
+        turns, cycle = np.floor(phase), np.mod(phase, 1.0)
+        half = stance / 2
+        standing = -half + stance * (cycle - swing) / self._duty
+        returning = half - 2 * np.pi + (2 * np.pi - stance) * cycle / swing
+        return np.asarray(down - (2 * np.pi * turns + np.where(cycle < swing, returning, standing)))
+
+    def _bend(self, targets: np.ndarray, axis: np.ndarray, steer: Steer | None) -> None:
+        size = None if steer is None else steer.size
+        if self.yaw.moves:
+            hinges, bends = self.yaw.hinges, self.yaw.bends(axis, size)
+            for k, (servo, sign) in enumerate(zip(hinges.servos, hinges.signs, strict=True)):
+                if servo not in self.place.cables:
+                    targets[..., servo] = sign * bends[..., k] / self.yaw.share[:, k]
+            for servo in self.place.cables:
+                among = [k for k, mine in enumerate(hinges.servos) if mine == servo]
+                most = self.place.cable(servo).bend_limit
+                whole = np.clip(hinges.signs[among[0]] * self.yaw.whole(among, bends), -most, most)
+                targets[..., servo] = tail_kinematics.servo_angle(self.place.cable(servo), whole)
+        if self.pitch.moves:
+            bends = self.pitch.bends(axis, size)
+            for k, servo in enumerate(self.pitch.hinges.servos):
+                targets[..., servo] = bends[..., k] / self.pitch.share[:, k]
+        if steer is not None:
+            for servo in self.place.trunk_yaw:
+                targets[..., servo] += np.asarray(steer.bend) / len(self.place.trunk_yaw)
+
+    def _curve(self, targets: np.ndarray, limbs: np.ndarray, axis: np.ndarray) -> None:
+        if not self._harmonics:
+            return
+        first = self._phases[:, 0] if self._phases.shape[1] else 0.0
+        along = np.angle(axis) / (2 * np.pi) + self._touch_down - first
+        owner = {servo: i for i, limb in enumerate(self.place.limbs) for servo in range(*limb.servos.indices(10**6))}
+        for i, harmonics in enumerate(self._harmonics):
+            servo = self.place.servos.index(self.gaits[0].curves[i].servo)
+            limb = owner.get(servo)
+            clock = along if limb is None else limbs[..., limb] - self._phases[:, limb]
+            turns = np.exp(2j * np.pi * np.asarray(clock)[..., None] * np.arange(harmonics.shape[1]))
+            targets[..., servo] = (turns * harmonics).sum(axis=-1).real
+
+
+class Batch:
+    """The gaits of the runs of a batch, gathered by robot and structure, so that each kind is worked out in one call.
+
+    Args:
+        robots: the design of each run; all have the same layout.
+        gaits: the gait of each run.
+    """
+
+    def __init__(self, robots: Sequence[AnyRobot], gaits: Sequence[Gait]) -> None:
+        members: dict[Any, list[int]] = {}
+        for run, (robot, gait) in enumerate(zip(robots, gaits, strict=True)):
+            members.setdefault((robot, structure(gait)), []).append(run)
+        self.groups = [
+            (Movement(robots[runs[0]], [gaits[run] for run in runs]), np.array(runs)) for runs in members.values()
+        ]
+        self.phases = np.array([gait.limb_phases for gait in gaits], dtype=float).reshape(len(gaits), -1)
+        self.periods = np.array([gait.period for gait in gaits])
+        self._servos = len(layout(robots[0]).servos)
+
+    def axis_phase(self, limbs: Float[np.ndarray, "run limb"], clock: Float[np.ndarray, " run"]) -> np.ndarray:
+        """Return what the axis of each run follows: its limbs, or its clock where it has none [-]."""
+        z = np.zeros(len(limbs), dtype=complex)
+        for movement, runs in self.groups:
+            z[runs] = movement.axis_phase(limbs[runs]) if limbs.shape[1] else movement.axis_of_clock(clock[runs])
+        return z
+
+    def targets(
+        self, limbs: Float[np.ndarray, "run limb"], axis: Complex[np.ndarray, " run"], steer: Steer | None = None
+    ) -> Float[np.ndarray, "run servo"]:
+        """Return the servo angles of every run; see ``Movement.targets`` [rad]."""
+        targets = np.zeros((len(limbs), self._servos))
+        for movement, runs in self.groups:
+            mine = None if steer is None else Steer(*(field if np.ndim(field) == 0 else field[runs] for field in steer))
+            targets[runs] = movement.targets(limbs[runs], axis[runs], mine)
+        return targets
+
+    def bend_of(self, part: Part, axis: Complex[np.ndarray, " run"]) -> Float[np.ndarray, " run"]:
+        """Return how far a part of each run bends sideways, left positive [rad]."""
+        bend = np.zeros(len(axis))
+        for movement, runs in self.groups:
+            bend[runs] = movement.bend_of(part, axis[runs])
+        return bend
+
+
+def structure(gait: Gait) -> Any:
+    """Return what gaits must have in common to be worked out together: all that is no plain number."""
+    limbs = tuple((type(limb), _quarter(limb.swivel) if isinstance(limb, FootPath) else 0) for limb in gait.limbs)
+    signs = tuple(_references([gait])[0])
+    return limbs, signs, tuple((curve.servo, len(curve.angles)) for curve in gait.curves)
+
+
+@lru_cache(maxsize=256)
+def movement(robot: AnyRobot, gait: Gait) -> Movement:
+    """Return one gait worked out for a robot."""
+    return Movement(robot, [gait])
+
+
+def intended(robot: AnyRobot, gait: Gait, time: Float[np.ndarray, "*batch"]) -> Intended:
+    """Return phases and servo angles of a gait at some times; before the walk begins the phases stand still.
+
+    Args:
+        robot: the design.
+        gait: the gait.
+        time: since the beginning of the run [s].
+
+    Raises:
+        OutsideLimits: the gait is for other limbs, or asks for what they cannot reach.
+    """
+    clock = np.maximum(np.asarray(time, dtype=float) - START, 0.0) / gait.period
+    return Intended(clock[..., None] + np.array(gait.limb_phases), cycle_targets(robot, gait, clock))
+
+
+def cycle_targets(robot: AnyRobot, gait: Gait, clock: Float[np.ndarray, "*batch"]) -> Float[np.ndarray, "*batch servo"]:
+    """Return the servo angles of a gait that has begun [rad].
+
+    Args:
+        robot: the design.
+        gait: the gait.
+        clock: since it began [cycle].
+
+    Raises:
+        OutsideLimits: the gait is for other limbs, or asks for what they cannot reach.
+    """
+    here, clock = movement(robot, gait), np.asarray(clock, dtype=float)
+    many = np.atleast_1d(clock)
+    found = here.targets(many[..., None] + np.array(gait.limb_phases), here.axis_of_clock(many))
+    return found.reshape(*clock.shape, -1)
+
+
+def limb_targets(
+    robot: AnyRobot, gait: Gait, phase: Float[np.ndarray, "*batch limb"]
+) -> Float[np.ndarray, "*batch servo"]:
+    """Return the servo angles of limbs at phases of their own; the axis is not bent sideways [rad].
+
+    Args:
+        robot: the design.
+        gait: the gait.
+        phase: of the limbs, not wrapped [cycle].
+
+    Raises:
+        OutsideLimits: the gait is for other limbs, or asks for what they cannot reach.
+    """
+    still = gait.straightened()
+    still = replace(still, axis=tuple(bend for bend in still.axis if bend.turn == "pitch"))
+    many = np.atleast_2d(phase)
+    found = movement(robot, still).targets(many, np.zeros(many.shape[:-1], dtype=complex))
+    return found.reshape(*np.shape(phase)[:-1], -1)
+
+
+def middle_stance(robot: AnyRobot, gait: Gait) -> Float[np.ndarray, " servo"]:
+    """Return the servo angles in which all feet stand in the middle of their path and the axis is straight [rad].
+
+    Of a robot without limbs, or with limbs that are held, it is those with a straight axis.
+    """
+    return limb_targets(robot, gait, np.full(len(gait.limb_phases), 1.0 - gait.duty_factor / 2))
+
+
+def hip_height(robot: AnyRobot, gait: Gait) -> float:
+    """Return how high the root's axis is above the ground in a gait [m]; 0 where the gait does not say."""
+    girdles = layout(robot).robot.girdles
+    return _metres(gait.height, girdles[-1].limb.reach) - girdles[-1].above if girdles and gait.limbs else 0.0
+
+
+def _metres(share: float, reach: float) -> float:
+    return round(share * reach, _PICOMETRE)
+
+
+def _references(gaits: Sequence[Gait]) -> tuple[np.ndarray, np.ndarray]:
+    """Return by which sign each limb pulls on the axis [-], and the rest of the phase at which it does [cycle]."""
+    pulls = [
+        gait.coupling or tuple(phase - gait.limb_phases[0] for phase in gait.limb_phases) for gait in gaits
+    ]
+    reference = np.array(pulls, dtype=float)
+    half = np.round(2.0 * reference)
+    return (1.0 - 2.0 * np.mod(half, 2.0))[0], reference - half / 2.0
+
+
+def foot_path(phase: Float[np.ndarray, "*batch"], duty: Any) -> tuple[np.ndarray, np.ndarray]:
+    """Return how far a foot is along its path, -1 to 1 forward, and how far it is lifted, 0 to 1 [-].
+
+    Args:
+        phase: of the limb [cycle].
+        duty: share of the cycle in which it stands [-].
+    """
+    cycle, swing = np.mod(phase, 1.0), 1.0 - duty
+    s = np.clip(cycle / swing, 0.0, 1.0)
+    forward = np.where(cycle < swing, -np.cos(np.pi * s), 1.0 - 2.0 * ((cycle - swing) / duty))
+    return forward, np.where(cycle < swing, np.sin(np.pi * s) ** 2, 0.0)
+
+
+class _Path(NamedTuple):
+    """The numbers of the foot paths of one limb, over runs [m]; those of a limb of yaw, pitch and knee have a leg."""
+
+    stroke: np.ndarray
+    lift: np.ndarray
+    outward: np.ndarray
+    ahead: np.ndarray
+    down: np.ndarray
+    swivel: np.ndarray
+    leg: PlainLeg | None
+    side: int  # quarter turns of the swivel of a leg: 0 sprawled, 1 knee ahead, -1 elbow behind
+
+
+class _Crank(NamedTuple):
+    """The numbers of the cranks of one limb, over runs [rad]."""
+
+    stance: np.ndarray
+    down: np.ndarray
+
+
+def _path_numbers(robot: AnyRobot, gaits: Sequence[Gait], number: int) -> "_Path | _Crank | np.ndarray | None":
+    """Return what the gaits say of the limbs of a girdle."""
+    if not gaits[0].limbs:
+        return None
+    limbs: list[Any] = [gait.limbs[number] for gait in gaits]
+    girdle = layout(robot).robot.girdles[number]
+    if isinstance(limbs[0], Held):
+        servos = sum(hinge.servo is not None for hinge in girdle.limb.hinges)
+        return np.array([(*limb.angles, *(0.0,) * (servos - len(limb.angles))) for limb in limbs])
+    if isinstance(limbs[0], Sweep):
+        return _Crank(*(np.array([getattr(limb, name) for limb in limbs]) for name in ("stance", "down")))
+    design, leg = girdle.limb, limb_kinematics.kind(girdle.limb) == "leg"
+    metres = {
+        name: np.array([_metres(getattr(limb, name), design.reach) for limb in limbs])
+        for name in ("stroke", "lift", "outward", "ahead")
+    }
+    return _Path(
+        **metres,
+        down=np.array([hip_height(robot, gait) for gait in gaits]) + girdle.above - design.foot.radius,
+        swivel=np.array([limb.swivel for limb in limbs]),
+        leg=limb_kinematics.plain(girdle) if leg else None,
+        side=_quarter(limbs[0].swivel),
+    )
+
+
+def _quarter(swivel: float) -> int:
+    """Return the nearest of a quarter turn back, none, and a quarter turn forward: -1, 0, 1."""
+    return round(min(max(swivel * _SIDEWAYS, -1.0), 1.0))
+
+
+def _of_limb(field: np.ndarray | float, i: int) -> np.ndarray:
+    """Return what a field of a ``Steer`` says of one limb."""
+    return np.asarray(field)[..., i] if np.ndim(field) else np.asarray(field)
+
+
+def _leg_angles(leg: PlainLeg, side: int, foot: np.ndarray, *, draw: bool) -> np.ndarray:
+    """Return yaw, pitch and knee that bring a foot to its place, sprawled or erect [rad]."""
+    if draw:
+        near, far = leg.reach
+        foot = _drawn(foot, np.array([leg.hip_offset, 0.0, 0.0]), (near + _INSIDE, far - _INSIDE))
+    if side == 0:
+        return leg_kinematics.inverse(leg, foot)
+    # the plane of an erect leg faces back or forward; in it the foot may lie to either side of the hip
+    along = float(side) * foot[..., 1]
+    flat = np.stack([leg.hip_offset + along, np.zeros_like(along), foot[..., 2]], axis=-1)
+    angles = np.where(
+        along[..., None] < 0.0, leg_kinematics.inverse(leg, flat, side=-1), leg_kinematics.inverse(leg, flat)
+    )
+    angles[..., 0] = float(side) * np.pi / 2
+    return angles
+
+
+def _drawn(foot: np.ndarray, hip: np.ndarray, reach: tuple[float, float]) -> np.ndarray:
+    """Return foot points drawn along the line to the hip into what a limb reaches; others stay as they are [m]."""
+    away, (near, far) = foot - hip, reach
+    length = np.linalg.norm(away, axis=-1, keepdims=True)
+    moved = hip + away * np.clip(length, near, far) / np.maximum(length, _INSIDE)
+    return np.asarray(np.where((length < near) | (length > far), moved, foot))
+
+
+def check_limbs(robot: AnyRobot, gait: Gait) -> None:
+    """Refuse a gait for other limbs or servos than a robot has.
+
+    Raises:
+        OutsideLimits: it has phases or movements for another number of limbs, or moves them as they cannot move.
+        UnknownName: a curve is for a servo that the robot lacks.
+    """
+    place = layout(robot)
+    if len(gait.limb_phases) != len(place.limbs):
+        raise OutsideLimits(
+            f"gait {gait.name!r} has phases for {len(gait.limb_phases)} limbs; robot {robot.name!r} has "
+            f"{len(place.limbs)}: choose a gait made for it."
+        )
+    for curve in gait.curves:
+        if curve.servo not in place.servos:
+            raise UnknownName(f"servo of robot {robot.name!r}", curve.servo, place.servos)
+    for girdle, limb in zip(place.robot.girdles, gait.limbs, strict=False):
+        _check_girdle(place, gait, girdle, limb)
+
+
+def _check_girdle(place: Layout, gait: Gait, girdle: Any, limb: Limbs) -> None:
+    robot = place.robot
+    drives = [hinge.drive for hinge in girdle.limb.hinges]
+    cranks = len(drives) == 1 and isinstance(drives[0], Crank)
+    if cranks != isinstance(limb, Sweep) and not isinstance(limb, Held):
+        raise OutsideLimits(
+            f"gait {gait.name!r} wants girdle {girdle.name} of robot {robot.name!r} to follow a "
+            f"{type(limb).__name__}, but its limbs {'are' if cranks else 'are not'} cranks: choose a gait for it."
+        )
+    driven = sum(hinge.servo is not None for hinge in girdle.limb.hinges)
+    if isinstance(limb, Held) and len(limb.angles) > driven:
+        raise OutsideLimits(
+            f"gait {gait.name!r} holds {len(limb.angles)} angles of girdle {girdle.name}; its limbs have {driven} "
+            "servos: give one for each."
+        )
+    erect = isinstance(limb, FootPath) and _quarter(limb.swivel) != 0
+    if erect and limb.outward != 0.0 and limb_kinematics.kind(girdle.limb) == "leg":
+        raise OutsideLimits(
+            f"gait {gait.name!r} stands the limbs of girdle {girdle.name} of robot {robot.name!r} erect and "
+            f"{limb.outward:g} of their reach outside their hips; legs of yaw, pitch and knee that stand erect stand "
+            "below their hips: set outward to 0, or swivel."
+        )
