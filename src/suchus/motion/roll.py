@@ -9,12 +9,7 @@ from suchus.design import AnyRobot, crocodile, layout, servo_names
 from suchus.design.checks import Checks
 from suchus.errors import OutsideLimits
 from suchus.kinematics import tail as tail_kinematics
-<<<<<<< HEAD
-from suchus.motion.targets import servo_range
-=======
 from suchus.motion.limits import servo_range
-from suchus.renamed import old_names
->>>>>>> c8f106b (One gait for every body: limbs, axis and curves in shares of the body; the posture at a phase is computed in one place)
 
 _LEGS_BACK = -np.pi / 2
 
