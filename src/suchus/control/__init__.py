@@ -2,7 +2,7 @@
 
 from suchus.control.amphibious import Amphibious
 from suchus.control.attitude import AttitudeRule
-from suchus.control.controller import Command, Control, Controller, Joinable
+from suchus.control.controller import Command, Control, Controller, Runs
 from suchus.control.coordinated import Coordinated, Kick
 from suchus.control.heading import HeadingRule
 from suchus.control.holding import DepthHold, HeadingHold
@@ -40,7 +40,6 @@ __all__ = [
     "Generator",
     "HeadingHold",
     "HeadingRule",
-    "Joinable",
     "Kick",
     "LimbLaw",
     "LoadRule",
@@ -50,6 +49,7 @@ __all__ = [
     "PatternGenerator",
     "PitchHold",
     "Rolling",
+    "Runs",
     "Sensed",
     "Shared",
     "SpineRule",

@@ -7,15 +7,14 @@ from typing import Literal
 import numpy as np
 from jaxtyping import Bool, Float
 
-from suchus.control.controller import Command, Controller
+from suchus.control.controller import Command, Controller, Runs
 from suchus.control.heading import Heading, HeadingRule
 from suchus.control.sensed import Sensed, finite, keep
 from suchus.control.swimming import Swimming
-from suchus.control.walking import Groups, grouped
 from suchus.design import GRAVITY, AnyRobot, general, layout
 from suchus.design.checks import Checks
 from suchus.errors import InvalidDesign
-from suchus.motion import START, AnyGait, Gait, Pattern, steerable, steered
+from suchus.motion import START, Batch, Gait, Steer
 
 _SLACK = 1e-9  # [s]
 _GROWS = 0.5  # [cycle]; over which stroke and bends grow when the walk begins
@@ -44,7 +43,7 @@ class Amphibious:
     against 0.4 N on the floating caiman, the drag of its walking posture at 0.2 m/s."""
     aground: float = 0.8
     """Share of the weight on the ground from which it has landed [-]; on dry land it is 1 in the mean, with dips."""
-    wade: Gait | Pattern | None = None
+    wade: Gait | None = None
     """In which it walks while it lands; None for the run's gait."""
     memory: float = 0.4
     """Time constant of the low pass [s]."""
@@ -88,31 +87,19 @@ class Amphibious:
         """It decides by what it feels."""
         return True
 
-    def start(
-        self, robots: Sequence[AnyRobot], gaits: Sequence[AnyGait], seeds: Sequence[int], ticks: int, period: float
-    ) -> "Amphibian":
-        """Start it for every robot; see ``start_together``."""
-        return self.start_together([self] * len(robots), robots, gaits, seeds, ticks, period)
-
     @staticmethod
-    def start_together(
-        controls: Sequence["Amphibious"],
-        robots: Sequence[AnyRobot],
-        gaits: Sequence[AnyGait],
-        seeds: Sequence[int],
-        ticks: int,
-        period: float,
-    ) -> "Amphibian":
+    def start(runs: Runs, period: float) -> "Amphibian":
         """Start it for a batch, each run with its own control.
 
         Raises:
-            OutsideLimits: a robot cannot follow its swim, or a gait is a table of angles.
+            OutsideLimits: a robot cannot follow its swim, or a gait has measured curves.
             UnsuitedRobot: a robot does not swim by trunk and cable.
             InvalidDesign: a robot that is to breathe out has no air.
         """
-        needed = "a walk that begins and ends in water"
-        ours = [steerable(gait, needed) for gait in gaits]
-        wades = [steerable(control.wade or gait, needed) for control, gait in zip(controls, gaits, strict=True)]
+        controls, robots, gaits = runs.controls, runs.robots, runs.gaits
+        wades = tuple(control.wade or gait for control, gait in zip(controls, gaits, strict=True))
+        for gait in (*gaits, *wades):
+            gait.needs_steering("a walk that begins and ends in water")
         for control, robot in zip(controls, robots, strict=True):
             hull = general(robot).hull
             if control.breathe_out > 0.0 and (hull is None or hull.air == 0.0):
@@ -120,8 +107,8 @@ class Amphibious:
                     f"amphibious.breathe_out is {control.breathe_out:g}, and robot {robot.name!r} has no air that it "
                     "could let out: leave it at 0, or give the robot a design.Hull with air."
                 )
-        swims = Swimming.start_together([one.swim for one in controls], robots, gaits, seeds, ticks, period)
-        return Amphibian(controls, robots, ours, wades, swims, period)
+        swims = Swimming.start(runs._replace(controls=tuple(control.swim for control in controls)), period)
+        return Amphibian(controls, robots, gaits, wades, swims, period)
 
 
 class Amphibian:
@@ -131,8 +118,8 @@ class Amphibian:
         self,
         controls: Sequence[Amphibious],
         robots: Sequence[AnyRobot],
-        gaits: Sequence[Gait | Pattern],
-        wades: Sequence[Gait | Pattern],
+        gaits: Sequence[Gait],
+        wades: Sequence[Gait],
         swims: Controller,
         period: float,
     ) -> None:
@@ -160,7 +147,7 @@ class Amphibian:
         self._cycle, self._wade_cycle = (np.array([gait.period for gait in each]) for each in (gaits, wades))
         self._phases, self._wade_phases = (np.array([gait.limb_phases for gait in each]) for each in (gaits, wades))
         self._heading = Heading([one.heading for one in controls], robots, gaits, period)
-        self._groups, self._wade_groups = grouped(robots, gaits), grouped(robots, wades)
+        self._batch, self._wade_batch = Batch(robots, gaits), Batch(robots, wades)
         self._stroke, self._trunk = np.ones((n, limbs)), np.zeros(n)
 
     @property
@@ -230,27 +217,16 @@ class Amphibian:
         """Return the posture between that of the swim and that of the walk, shape (run, servo) [rad]."""
         if not self._blend.any():
             return swum
-        walked = self._walked(self._groups)
+        walked = self._walked(self._batch)
         if (self._landed < 1.0).any():
-            waded = self._walked(self._wade_groups)
+            waded = self._walked(self._wade_batch)
             walked = waded + _eased(self._landed) * (walked - waded)
         return np.asarray(swum + _eased(self._blend) * (walked - swum))
 
-    def _walked(self, groups: Groups) -> np.ndarray:
+    def _walked(self, gaits: Batch) -> np.ndarray:
         """Return the postures of gaits at the present phases, shape (run, servo) [rad]."""
-        phase, none = self._phase, np.zeros_like(self._stroke)
-        size = np.clip(self._grown / _GROWS, 0.0, 1.0)
-        parts = [
-            steered(
-                robot, gait, phase[runs], trunk=self._trunk[runs], size=size[runs], stroke=self._stroke[runs],
-                lower=none[runs],
-            )
-            for robot, gait, runs in groups
-        ]  # fmt: skip
-        out = np.zeros((len(phase), parts[0].shape[1]))
-        for (_, _, runs), part in zip(groups, parts, strict=True):
-            out[runs] = part
-        return out
+        steer = Steer(size=np.clip(self._grown / _GROWS, 0.0, 1.0), stroke=self._stroke, bend=self._trunk)
+        return gaits.targets(self._phase, gaits.axis_phase(self._phase, self._cycles), steer)
 
 
 def _eased(share: np.ndarray) -> np.ndarray:

@@ -1,6 +1,5 @@
 """The contract of a controller: a frozen setting that starts a machine for a batch."""
 
-from collections.abc import Sequence
 from typing import Any, NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
@@ -8,7 +7,7 @@ from jaxtyping import Float
 
 from suchus.control.sensed import Sensed
 from suchus.design import AnyRobot
-from suchus.motion import AnyGait
+from suchus.motion import Gait
 
 
 class Command(NamedTuple):
@@ -34,44 +33,39 @@ class Controller(Protocol):
         """Answer for control period ``tick``; ``sensed`` is None where ``Control.feels`` is false."""
 
 
+class Runs(NamedTuple):
+    """The runs of a batch as a controller sees them, one entry for each."""
+
+    controls: tuple[Any, ...]
+    """Settings, all of one class."""
+    robots: tuple[AnyRobot, ...]
+    """Designs, all of one layout."""
+    gaits: tuple[Gait, ...]
+    """Gaits."""
+    seeds: tuple[int, ...]
+    """Seeds of whatever is random."""
+    ticks: int
+    """Number of control periods to come."""
+
+    @classmethod
+    def alike(cls, control: Any, robot: AnyRobot, gait: Gait, *, count: int = 1, ticks: int = 1) -> "Runs":
+        """Return runs that differ in nothing, not even in the seed, 0."""
+        return cls((control,) * count, (robot,) * count, (gait,) * count, (0,) * count, ticks)
+
+
 @runtime_checkable
 class Control(Protocol):
-    """A controller as a value on a run; runs with equal values share one running controller."""
+    """A controller as a value on a run; the runs of a batch whose controls are of one class share a controller."""
 
     @property
     def feels(self) -> bool:
         """Whether it wants to know what the robot senses."""
 
-    def start(
-        self,
-        robots: Sequence[AnyRobot],
-        gaits: Sequence[AnyGait],
-        seeds: Sequence[int],
-        ticks: int,
-        period: float,
-    ) -> Controller:
-        """Start the controller for a batch: one robot, gait and seed per run.
+    @staticmethod
+    def start(runs: Runs, period: float) -> Controller:
+        """Start the controller of some runs.
 
         Args:
-            robots: the designs.
-            gaits: the gaits.
-            seeds: for whatever is random.
-            ticks: number of control periods to come.
+            runs: whose controls are of this class, different as they may be.
             period: of control [s].
         """
-
-
-@runtime_checkable
-class Joinable(Control, Protocol):
-    """A control whose values, different as they may be, can steer the runs of one batch together."""
-
-    @staticmethod
-    def start_together(
-        controls: Sequence[Any],
-        robots: Sequence[AnyRobot],
-        gaits: Sequence[AnyGait],
-        seeds: Sequence[int],
-        ticks: int,
-        period: float,
-    ) -> Controller:
-        """Start the controller for a batch: one control, robot, gait and seed per run; see ``Control.start``."""

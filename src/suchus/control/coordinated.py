@@ -1,13 +1,11 @@
 """The closed loop: limbs, spine and tail each with a rule of its own, joined by the shared variables."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Float
 
-from suchus.control.controller import Command
+from suchus.control.controller import Command, Runs
 from suchus.control.heading import Heading, HeadingRule, Steering
 from suchus.control.limbs import LAWS, LimbLaw, Limbs, in_pairs
 from suchus.control.open_loop import OpenLoop
@@ -18,7 +16,7 @@ from suchus.control.tail import TailController, TailRule
 from suchus.design import AnyRobot, layout
 from suchus.design.checks import Checks, require
 from suchus.errors import InvalidDesign, UnsuitedRobot
-from suchus.motion import START, AnyGait, Gait, Pattern, servo_targets, steerable, steered
+from suchus.motion import START, Batch, Gait, Steer
 
 _SLACK = 1e-9  # [s]; times are multiples of the control period up to rounding
 
@@ -73,7 +71,7 @@ class Coordinated:
         """Whether any rule is on."""
         return self.limbs.feels or any(rule is not None for rule in (self.spine, self.tail, self.heading))
 
-    def suited(self, robot: AnyRobot, gait: AnyGait) -> "Coordinated":
+    def suited(self, robot: AnyRobot, gait: Gait) -> "Coordinated":
         """Return it with those of its rules that a robot's parts make possible in a gait.
 
         A law that makes diagonal pairs is switched off in a gait without them.
@@ -83,58 +81,28 @@ class Coordinated:
             self,
             limbs=LAWS["off"] if not place.limbs or (self.limbs.pairs and not in_pairs(place, gait)) else self.limbs,
             spine=self.spine if place.trunk_yaw else None,
-            tail=self.tail if place.tail_pitch and isinstance(gait, Gait) else None,
+            tail=self.tail if place.tail_pitch and gait.has("tail pitch") else None,
         )
 
-    def start(
-        self,
-        robots: Sequence[AnyRobot],
-        gaits: Sequence[AnyGait],
-        seeds: Sequence[int],
-        ticks: int,
-        period: float,
-    ) -> "Coordinator":
-        """Start the rules for a batch that shares them."""
-        return self.start_together([self] * len(robots), robots, gaits, seeds, ticks, period)
-
     @staticmethod
-    def start_together(
-        controls: "Sequence[Coordinated]",
-        robots: Sequence[AnyRobot],
-        gaits: Sequence[AnyGait],
-        seeds: Sequence[int],
-        ticks: int,
-        period: float,
-    ) -> "Coordinator":
-        """Start the rules for a batch in which every run has its own."""
-        return Coordinator(controls, robots, gaits, seeds, ticks, period)
-
-
-class _Group(NamedTuple):
-    robot: AnyRobot
-    gait: Gait | Pattern
-    runs: np.ndarray
+    def start(runs: Runs, period: float) -> "Coordinator":
+        """Start the rules of a batch, each run with its own."""
+        return Coordinator(runs, period)
 
 
 class Coordinator:
     """The controllers of limbs, spine and tail of a batch, and the posture that they ask for together."""
 
-    def __init__(
-        self,
-        controls: Sequence[Coordinated],
-        robots: Sequence[AnyRobot],
-        gaits: Sequence[AnyGait],
-        seeds: Sequence[int],
-        ticks: int,
-        period: float,
-    ) -> None:
-        paths = [steerable(gait, "the closed loop") for gait in gaits]
-        for one in set(zip(controls, robots, paths, strict=True)):
-            _refuse_others(*one)
+    def __init__(self, runs: Runs, period: float) -> None:
+        controls, robots, gaits, seeds, _ = runs
+        for gait in gaits:
+            gait.needs_steering("the closed loop")
+        for setting in set(zip(controls, robots, gaits, strict=True)):
+            _refuse_others(*setting)
         limbs = len(layout(robots[0]).limbs)
         self._period = period
-        self._table = OpenLoop().start(robots, gaits, seeds, ticks, period)
-        self._groups = _grouped(robots, paths)
+        self._table = OpenLoop.start(runs, period)
+        self._gaits = Batch(robots, gaits)
         ahead = np.zeros((len(robots), limbs))
         self._noise: list[tuple[int, float, np.random.Generator]] = []
         self._kicks: dict[int, list[tuple[int, np.ndarray]]] = {}
@@ -147,10 +115,10 @@ class Coordinator:
                 self._kicks.setdefault(int(np.ceil(kick.at / period - _SLACK)), []).append((run, np.array(kick.ahead)))
         self._hears = np.array([control.sharing for control in controls])[:, None]
         self._limbs = Limbs([control.limbs for control in controls], robots, gaits, ahead, period)
-        self._spine = SpineController([control.spine for control in controls], robots, self._groups, period)
-        self._tail = TailController([control.tail for control in controls], robots, paths, self._groups, period)
-        steered = any(control.heading is not None for control in controls)
-        self._heading = Heading([control.heading for control in controls], robots, paths, period) if steered else None
+        self._spine = SpineController([control.spine for control in controls], robots, period)
+        self._tail = TailController([control.tail for control in controls], robots, gaits, period)
+        steers = any(control.heading is not None for control in controls)
+        self._heading = Heading([control.heading for control in controls], robots, gaits, period) if steers else None
         self._shared = silence(len(robots), limbs)
         self._steering = Steering.none(len(robots), limbs)
 
@@ -184,39 +152,26 @@ class Coordinator:
             targets = self._tail.correct(targets, sensed)
         return Command(targets, self._shared.limb_phase)
 
+    def _clock(self, tick: int) -> Float[np.ndarray, " run"]:
+        """Return the time since the walk began [cycle]."""
+        return np.asarray(max(tick * self._period - START, 0.0) / self._gaits.periods)
+
     def _share(self, tick: int, sensed: Sensed | None, *, walking: bool) -> None:
-        clock = self._table.command(tick, None).phase
-        limbs = self._limbs.step(self._shared, sensed, clock, walking=walking)
-        heard = replace(limbs, limb_phase=np.where(self._hears, limbs.limb_phase, clock))
-        self._shared = replace(self._tail.step(self._spine.step(heard)), limb_phase=limbs.limb_phase)
+        phases, clock = self._table.command(tick, None).phase, self._clock(tick)
+        limbs = self._limbs.step(self._shared, sensed, phases, walking=walking)
+        heard = replace(limbs, limb_phase=np.where(self._hears, limbs.limb_phase, phases))
+        self._axis = self._gaits.axis_phase(heard.limb_phase, clock)
+        bent = self._tail.step(self._spine.step(heard, self._gaits, clock), self._gaits, clock)
+        self._shared = replace(bent, limb_phase=limbs.limb_phase)
 
     def _posture(self, tick: int) -> Float[np.ndarray, "run servo"]:
         """Return the servo angles; where nothing is ahead of the clock and nobody steers, those of the table."""
-        targets = self._table.command(tick, None).targets
+        table = self._table.command(tick, None).targets
         moved = self._limbs.ahead.any(axis=1) | self._steering.any()
-        for robot, gait, members in self._groups:
-            runs = members[moved[members]]
-            if runs.size and isinstance(gait, Pattern):
-                phase = self._shared.limb_phase[runs]
-                targets[runs] = steered(
-                    robot,
-                    gait,
-                    phase,
-                    trunk=self._steering.trunk[runs],
-                    size=np.ones(len(runs)),
-                    stroke=1.0 + self._steering.stroke[runs],
-                    lower=np.zeros_like(phase),
-                )
-            elif runs.size and isinstance(gait, Gait):
-                targets[runs] = servo_targets(
-                    robot,
-                    gait,
-                    self._shared.limb_phase[runs],
-                    trunk=self._shared.trunk_bend[runs] + self._steering.trunk[runs],
-                    tail=self._shared.tail_bend[runs],
-                    stroke=gait.stroke * (1.0 + self._steering.stroke[runs]),
-                )
-        return targets
+        if not moved.any():
+            return table
+        steer = Steer(stroke=1.0 + self._steering.stroke, bend=self._steering.trunk)
+        return np.where(moved[:, None], self._gaits.targets(self._shared.limb_phase, self._axis, steer), table)
 
     def _noisy(self, sensed: Sensed) -> Sensed:
         pressure = sensed.foot_pressure.copy()
@@ -225,7 +180,7 @@ class Coordinator:
         return replace(sensed, foot_pressure=pressure)
 
 
-def _refuse_others(control: Coordinated, robot: AnyRobot, gait: Gait | Pattern) -> None:
+def _refuse_others(control: Coordinated, robot: AnyRobot, gait: Gait) -> None:
     place = layout(robot)
     for kick in control.kicks:
         if len(kick.ahead) != len(place.limbs):
@@ -248,10 +203,3 @@ def _refuse_others(control: Coordinated, robot: AnyRobot, gait: Gait | Pattern) 
                 f"the feedback rule {rule} to {rule} needs {needs}; robot {robot.name!r} with gait {gait.name!r} lacks "
                 "that: leave the rule out, as Coordinated.suited does."
             )
-
-
-def _grouped(robots: Sequence[AnyRobot], gaits: Sequence[Gait | Pattern]) -> list[_Group]:
-    members: dict[tuple[AnyRobot, Gait | Pattern], list[int]] = {}
-    for i, pair in enumerate(zip(robots, gaits, strict=True)):
-        members.setdefault(pair, []).append(i)
-    return [_Group(robot, gait, np.array(runs)) for (robot, gait), runs in members.items()]

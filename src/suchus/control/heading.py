@@ -12,7 +12,7 @@ from suchus.control.facing import Facing
 from suchus.control.sensed import Sensed
 from suchus.design import AnyRobot, layout
 from suchus.design.checks import Checks
-from suchus.motion import Gait, Pattern, longest_strokes, strides
+from suchus.motion import Gait, longest_strokes
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -69,7 +69,7 @@ class Heading:
         self,
         rules: Sequence[HeadingRule | None],
         robots: Sequence[AnyRobot],
-        gaits: Sequence[Gait | Pattern],
+        gaits: Sequence[Gait],
         period: float,
     ) -> None:
         off = HeadingRule(gain=0.0, integral_gain=0.0, trunk=0.0)
@@ -107,7 +107,7 @@ class Heading:
         self._offset = np.clip(before._offset, -self._most, self._most)
 
 
-def _most(rule: HeadingRule, robot: AnyRobot, gait: Gait | Pattern) -> float:
-    if not strides(gait):
+def _most(rule: HeadingRule, robot: AnyRobot, gait: Gait) -> float:
+    if not gait.has("strokes"):
         return 0.0
     return min(rule.most, max(longest_strokes(robot, gait) - 1.0, 0.0))

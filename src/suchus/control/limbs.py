@@ -13,7 +13,7 @@ from suchus.control.shared import Shared
 from suchus.design import GRAVITY, AnyRobot, Layout, layout
 from suchus.design.checks import Checks
 from suchus.errors import OutsideLimits
-from suchus.motion import AnyGait
+from suchus.motion import Gait
 
 _DIAGONAL = 0.02  # [cycle]; how far from diagonal pairs a gait may be that a law with pairs coordinates
 
@@ -98,7 +98,7 @@ class Loads:
     """
 
     def __init__(
-        self, laws: Sequence[LimbLaw], robots: Sequence[AnyRobot], gaits: Sequence[AnyGait], period: float
+        self, laws: Sequence[LimbLaw], robots: Sequence[AnyRobot], gaits: Sequence[Gait], period: float
     ) -> None:
         place = layout(robots[0])
         self.felt = any(law.feels for law in laws)
@@ -146,7 +146,7 @@ class Limbs:
         self,
         laws: Sequence[LimbLaw],
         robots: Sequence[AnyRobot],
-        gaits: Sequence[AnyGait],
+        gaits: Sequence[Gait],
         ahead: Float[np.ndarray, "run limb"],
         period: float,
     ) -> None:
@@ -192,19 +192,19 @@ def _trunk_torque(robot: AnyRobot) -> float:
     return sum(place.robot.servo(place.servos[i]).torque for i in place.trunk_yaw) or 1.0
 
 
-def in_pairs(place: Layout, gait: AnyGait) -> bool:
+def in_pairs(place: Layout, gait: Gait) -> bool:
     """Return whether diagonal limbs of a gait step together and those of a girdle take turns."""
     return _off_pairs(place, gait) <= _DIAGONAL
 
 
-def _off_pairs(place: Layout, gait: AnyGait) -> float:
+def _off_pairs(place: Layout, gait: Gait) -> float:
     phases = gait.limb_phases
     pairs = [(i, j, 0.0) for i, limb in enumerate(place.limbs) for j in limb.diagonal]
     pairs += [(i, limb.contralateral, 0.5) for i, limb in enumerate(place.limbs)]
     return max(abs((phases[i] - phases[j] + apart + 0.5) % 1.0 - 0.5) for i, j, apart in pairs)
 
 
-def _refuse_others(gait: AnyGait, place: Layout) -> None:
+def _refuse_others(gait: Gait, place: Layout) -> None:
     worst = _off_pairs(place, gait)
     if worst > _DIAGONAL:
         raise OutsideLimits(

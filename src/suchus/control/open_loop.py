@@ -1,15 +1,13 @@
 """Open loop: the gait as a table of servo angles over time."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float
 
-from suchus.control.controller import Command
+from suchus.control.controller import Command, Runs
 from suchus.control.sensed import Sensed
-from suchus.design import AnyRobot
-from suchus.motion import AnyGait, intended
+from suchus.motion import intended
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,21 +19,14 @@ class OpenLoop:
         """Nothing is sensed."""
         return False
 
-    def start(
-        self,
-        robots: Sequence[AnyRobot],
-        gaits: Sequence[AnyGait],
-        seeds: Sequence[int],
-        ticks: int,
-        period: float,
-    ) -> "GaitTable":
+    @staticmethod
+    def start(runs: Runs, period: float) -> "GaitTable":
         """Tabulate every gait; runs with the same robot and gait share their rows."""
-        del seeds
-        pairs = list(zip(robots, gaits, strict=True))
+        pairs = list(zip(runs.robots, runs.gaits, strict=True))
         unique = {pair: i for i, pair in enumerate(dict.fromkeys(pairs))}
-        time = np.arange(ticks) * period
-        found = [intended(robot, gait, time) for robot, gait in unique]
-        phase, targets = np.stack([one.phase for one in found]), np.stack([one.targets for one in found])
+        time = np.arange(runs.ticks) * period
+        tables = [intended(robot, gait, time) for robot, gait in unique]
+        phase, targets = np.stack([table.phase for table in tables]), np.stack([table.targets for table in tables])
         return GaitTable(targets, phase, np.array([unique[pair] for pair in pairs]))
 
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
-from suchus.control.controller import Command
+from suchus.control.controller import Command, Runs
 from suchus.control.course import Course, Courses, members, mistake, number
 from suchus.control.limbs import LAWS, LimbLaw, Loads
 from suchus.control.oscillators import Oscillators, Rhythm, couple, cut
@@ -22,7 +22,7 @@ from suchus.design import AnyRobot, layout
 from suchus.design.checks import Checks, require
 from suchus.design.scale import control_period
 from suchus.errors import InvalidDesign
-from suchus.motion import START, AnyGait, check_limits
+from suchus.motion import START, Gait, check_limits
 
 _SLACK = 1e-9  # [s]; times are multiples of the control period up to rounding
 _LEAST = 1e-9  # [-]; an amplitude below this is none
@@ -104,29 +104,10 @@ class PatternGenerator:
         """Whether any feedback rule is on."""
         return self.limbs.feels or any(rule is not None for rule in (self.spine, self.tail, self.load))
 
-    def start(
-        self,
-        robots: Sequence[AnyRobot],
-        gaits: Sequence[AnyGait],
-        seeds: Sequence[int],
-        ticks: int,
-        period: float,
-    ) -> "Generator":
-        """Start it for a batch that shares it."""
-        return self.start_together([self] * len(robots), robots, gaits, seeds, ticks, period)
-
     @staticmethod
-    def start_together(
-        controls: "Sequence[PatternGenerator]",
-        robots: Sequence[AnyRobot],
-        gaits: Sequence[AnyGait],
-        seeds: Sequence[int],
-        ticks: int,
-        period: float,
-    ) -> "Generator":
-        """Start it for a batch in which every run has its own."""
-        del ticks
-        return Generator(controls, robots, gaits, seeds, period)
+    def start(runs: Runs, period: float) -> "Generator":
+        """Start the pattern generators of a batch, each run with its own."""
+        return Generator(runs.controls, runs.robots, runs.gaits, runs.seeds, period)
 
 
 class Generator:
@@ -136,7 +117,7 @@ class Generator:
         self,
         controls: Sequence[PatternGenerator],
         robots: Sequence[AnyRobot],
-        gaits: Sequence[AnyGait],
+        gaits: Sequence[Gait],
         seeds: Sequence[int],
         period: float,
     ) -> None:
@@ -246,7 +227,7 @@ class Generator:
 
 
 def _grouped(
-    controls: Sequence[PatternGenerator], robots: Sequence[AnyRobot], gaits: Sequence[AnyGait]
+    controls: Sequence[PatternGenerator], robots: Sequence[AnyRobot], gaits: Sequence[Gait]
 ) -> list[tuple[PatternPosture, np.ndarray]]:
     for robot, gait in set(zip(robots, gaits, strict=True)):
         check_limits(robot, gait)
@@ -264,7 +245,7 @@ def _least(numbers: Oscillators) -> float:
     return float(numbers.limbs(np.array(numbers.limb_drives[0]))[1])
 
 
-def _pace(control: PatternGenerator, robot: AnyRobot, gait: AnyGait) -> float:
+def _pace(control: PatternGenerator, robot: AnyRobot, gait: Gait) -> float:
     if control.pace is not None:
         return control.pace
     numbers = control.oscillators
@@ -281,7 +262,7 @@ def _pace(control: PatternGenerator, robot: AnyRobot, gait: AnyGait) -> float:
 def _initial(
     control: PatternGenerator,
     robot: AnyRobot,
-    gait: AnyGait,
+    gait: Gait,
     seed: int,
     posture: PatternPosture,
     lag: float,
@@ -320,7 +301,7 @@ class OscillatorStates(NamedTuple):
 def oscillate(
     controls: Sequence[PatternGenerator],
     robot: AnyRobot,
-    gait: AnyGait,
+    gait: Gait,
     *,
     duration: float,
     seeds: Sequence[int] | None = None,

@@ -9,9 +9,9 @@ from jaxtyping import Float
 
 from suchus.control.oscillators import AxisPart
 from suchus.design import AnyRobot, Crank, Layout, hips_behind_snout, layout, servo_ranges
-from suchus.errors import OutsideLimits, UnsuitedRobot
+from suchus.errors import UnsuitedRobot
 from suchus.kinematics import tail as tail_kinematics
-from suchus.motion import AngleTable, AnyGait, Gait, Held, Pattern, Sweep, limb_targets, middle_stance
+from suchus.motion import Gait, Held, Sweep, limb_targets, middle_stance, movement
 
 _FOLDED = radians(-85)  # yaw of a folded limb, backward along the body, as a swimming salamander holds them
 
@@ -28,13 +28,15 @@ class AxisSegment:
     """1 where a positive angle of the servo bends to the left, -1 where to the right [-]."""
     amplitude: float
     """Amplitude of its bend in the gait [rad]."""
+    offset: float
+    """Steady bend of it in the gait, left positive [rad]."""
     part: AxisPart
     """The limbs that drive it, and its phase lag behind them."""
     steers: bool
     """Whether an offset on it turns the robot: it lies ahead of the hindmost limbs, or there are none."""
 
 
-def axis_segments(robot: AnyRobot, gait: AnyGait) -> tuple[AxisSegment, ...]:
+def axis_segments(robot: AnyRobot, gait: Gait) -> tuple[AxisSegment, ...]:
     """Return the segments of a robot's axis from head to tail.
 
     Each girdle drives the axis from itself to the next girdle, the first one also what is ahead of it: fore limbs the
@@ -43,29 +45,33 @@ def axis_segments(robot: AnyRobot, gait: AnyGait) -> tuple[AxisSegment, ...]:
     Raises:
         UnsuitedRobot: nothing bends its axis sideways.
     """
-    place, gait = layout(robot), _followed(gait)
-    girdles = range(len(place.robot.girdles))
-    hips = [hips_behind_snout(robot, number) / place.robot.length for number in girdles]
-    found = []
-
-    def add(at: float, servo: int, left: float) -> None:
-        behind = [number for number, hip in enumerate(hips) if hip <= at]
-        amplitude, lag = _wave(place, gait, at, servo)
-        part = AxisPart(-1 if not hips else behind[-1] if behind else 0, lag)
-        steers = not hips or at < hips[-1]
-        found.append(AxisSegment(place=at, servo=servo, left=left, amplitude=amplitude, part=part, steers=steers))
-
-    for servo, left, at in zip(place.axial_yaw, place.axial_left, place.axial_place, strict=True):
-        add(at, servo, left)
-    for servo in place.cables:
-        for at in place.cable_places(servo):
-            add(at, servo, -1.0)
-    if not found:
+    gait.needs_steering("a pattern generator")
+    place, yaw = layout(robot), movement(robot, gait).yaw
+    hips = [hips_behind_snout(robot, number) / place.robot.length for number in range(len(place.robot.girdles))]
+    if not yaw.hinges.servos:
         raise UnsuitedRobot(
             f"a pattern generator needs an axis that bends sideways; robot {robot.name!r} has no yaw hinge with a "
             "servo or a cable on its axis: let it walk in open loop."
         )
-    return tuple(sorted(found, key=lambda one: one.place))
+    steady, amplitude = (yaw.offset / yaw.share)[0], yaw.amplitude()[0]
+    segments = []
+    for k, (servo, left, along) in enumerate(
+        zip(yaw.hinges.servos, yaw.hinges.signs, yaw.hinges.places, strict=True)
+    ):
+        behind = [number for number, hip in enumerate(hips) if hip <= along]
+        girdle = -1 if not hips else behind[-1] if behind else 0
+        segments.append(
+            AxisSegment(
+                place=along,
+                servo=servo,
+                left=left,
+                amplitude=float(amplitude[k]),
+                offset=float(steady[k]),
+                part=AxisPart(girdle, _lag(gait, complex(yaw.swing[0, k]), girdle)),
+                steers=not hips or along < hips[-1],
+            )
+        )
+    return tuple(segments)
 
 
 class PatternPosture:
@@ -77,8 +83,7 @@ class PatternPosture:
         standing: whether silent limbs stand in the middle of their path; else they fold back along the body.
     """
 
-    def __init__(self, robot: AnyRobot, gait: AnyGait, *, standing: bool) -> None:
-        gait = _followed(gait)
+    def __init__(self, robot: AnyRobot, gait: Gait, *, standing: bool) -> None:
         self.segments = axis_segments(robot, gait)
         self.shift = 0.25 - gait.duty_factor / 2
         """What a limb's phase is ahead of its oscillator: a left oscillator bends the body to the left [cycle]."""
@@ -90,8 +95,7 @@ class PatternPosture:
         self._rest = (middle if standing else _folded(self._place, gait, middle))[self._limb_servos]
         self._turns = np.array([_cranked(self._place, gait, limb) for limb in owner], dtype=bool)
         self._low, self._high = servo_ranges(robot).T
-        self._steady = middle if isinstance(gait, Gait) else np.zeros_like(middle)
-        self._offset = 0.0 if isinstance(gait, Gait) else gait.wave.offset
+        self._steady = middle
 
     def targets(
         self,
@@ -113,8 +117,8 @@ class PatternPosture:
             path = limb_targets(self._robot, self._gait, phase)[:, self._limb_servos]
             follows = np.where(self._turns, 1.0, share[:, self._owner])
             targets[:, self._limb_servos] = self._rest + follows * (path - self._rest)
-        amplitude = np.array([one.amplitude for one in self.segments])
-        bend = amplitude * wave + self._offset + offset
+        amplitude, steady = np.array([(segment.amplitude, segment.offset) for segment in self.segments]).T
+        bend = amplitude * wave + steady + offset
         for servo in {one.servo for one in self.segments}:
             mine = [i for i, one in enumerate(self.segments) if one.servo == servo]
             whole = self.segments[mine[0]].left * bend[:, mine].sum(axis=1)
@@ -125,34 +129,21 @@ class PatternPosture:
         return targets
 
 
-def _followed(gait: AnyGait) -> Gait | Pattern:
-    """Return a gait that oscillators can follow."""
-    if isinstance(gait, AngleTable):
-        raise OutsideLimits(
-            f"gait {gait.name!r} is a table of angles, whose axis has no wave for oscillators to follow: choose a "
-            "gait with bends, as 'salamander_walk'."
-        )
-    return gait
+def _lag(gait: Gait, swing: complex, girdle: int) -> float:
+    """Return the phase lag of a hinge behind the limbs of a girdle, -1/2 to 1/2; 0 where nothing drives it [cycle]."""
+    if girdle < 0 or not swing:
+        return 0.0
+    pulls = gait.coupling or tuple(phase - gait.limb_phases[0] for phase in gait.limb_phases)
+    # a hinge bends by -amplitude cos(phase - lag); limbs that pull later see it bend earlier
+    lag = -float(np.angle(-swing)) / (2 * pi) + pulls[2 * girdle]
+    return lag - round(lag)
 
 
-def _wave(place: Layout, gait: Gait | Pattern, at: float, servo: int) -> tuple[float, float]:
-    """Return the amplitude [rad] and the phase lag [cycle] with which a gait bends a hinge of the axis."""
-    if not isinstance(gait, Gait):
-        places, angles = zip(*gait.wave.amplitude, strict=True)
-        return abs(float(np.interp(at, places, angles))), gait.wave.phase
-    if servo in place.trunk_yaw:
-        return gait.trunk_bend / len(place.trunk_yaw), gait.spine_phase
-    lag = gait.spine_phase + gait.tail_phase
-    if servo in place.tail_yaw:
-        return gait.tail_bend / len(place.tail_yaw), lag
-    return (gait.tail_bend / place.cable(servo).joints, lag) if servo in place.cables else (0.0, 0.0)
-
-
-def _folded(place: Layout, gait: Gait | Pattern, middle: np.ndarray) -> np.ndarray:
+def _folded(place: Layout, gait: Gait, middle: np.ndarray) -> np.ndarray:
     """Return the angles with every limb straight back along the body, as far as its joints go; held limbs as held."""
     folded, ranges = middle.copy(), servo_ranges(place.robot)
     for limb in place.limbs:
-        if not isinstance(gait, Gait) and isinstance(gait.girdles[limb.number], Held):
+        if isinstance(gait.limbs[limb.number], Held):
             continue
         driven = [hinge for hinge in limb.girdle.limb.hinges if hinge.servo is not None]
         yaws = [i for i, hinge in enumerate(driven) if hinge.turn == "yaw"]
@@ -163,9 +154,9 @@ def _folded(place: Layout, gait: Gait | Pattern, middle: np.ndarray) -> np.ndarr
     return folded
 
 
-def _cranked(place: Layout, gait: Gait | Pattern, limb: int) -> bool:
+def _cranked(place: Layout, gait: Gait, limb: int) -> bool:
     """Return whether a limb turns all round, so that it stops where it is."""
-    return not isinstance(gait, Gait) and isinstance(gait.girdles[place.limbs[limb].number], Sweep)
+    return isinstance(gait.limbs[place.limbs[limb].number], Sweep)
 
 
 def waves(

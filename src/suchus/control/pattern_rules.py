@@ -11,7 +11,7 @@ from suchus.control.spine import SpineController, SpineRule
 from suchus.control.tail import TailController, TailRule
 from suchus.design import AnyRobot, layout
 from suchus.errors import UnsuitedRobot
-from suchus.motion import AnyGait, Gait
+from suchus.motion import Gait
 
 
 class Rules:
@@ -22,7 +22,7 @@ class Rules:
         spines: Sequence[SpineRule | None],
         tails: Sequence[TailRule | None],
         robots: Sequence[AnyRobot],
-        gaits: Sequence[AnyGait],
+        gaits: Sequence[Gait],
         period: float,
     ) -> None:
         self._yaw = list(layout(robots[0]).trunk_yaw)
@@ -37,14 +37,13 @@ class Rules:
                     "lacks them: leave spine out."
                 )
             self._spine = SpineController(
-                [spines[i] for i in self._spined], [robots[i] for i in self._spined], [], period
+                [spines[i] for i in self._spined], [robots[i] for i in self._spined], period
             )
         if self._tailed:
             self._tail = TailController(
                 [tails[i] for i in self._tailed],
                 [robots[i] for i in self._tailed],
                 [_with_tail(robots[i], gaits[i]) for i in self._tailed],
-                [],
                 period,
             )
 
@@ -59,8 +58,8 @@ class Rules:
         return targets
 
 
-def _with_tail(robot: AnyRobot, gait: AnyGait) -> Gait:
-    if not (isinstance(gait, Gait) and layout(robot).tail_pitch):
+def _with_tail(robot: AnyRobot, gait: Gait) -> Gait:
+    if not (gait.has("tail pitch") and layout(robot).tail_pitch):
         raise UnsuitedRobot(
             f"the rule tail to tail needs a servo that pitches the tail and a gait that lays it down, as "
             f"'belly_crawl'; robot {robot.name!r} with gait {gait.name!r} lacks them: leave tail out."

@@ -1,14 +1,14 @@
 """The death roll as a control: a table of servo angles over time, legs folded back."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from suchus.control.controller import Runs
 from suchus.control.open_loop import GaitTable
 from suchus.control.suited import crocodiles
-from suchus.design import AnyRobot, layout
-from suchus.motion import AnyGait, Roll, check_roll, roll_targets
+from suchus.design import layout
+from suchus.motion import Roll, check_roll, roll_targets
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,41 +23,19 @@ class Rolling:
         """Nothing is sensed."""
         return False
 
-    def start(
-        self,
-        robots: Sequence[AnyRobot],
-        gaits: Sequence[AnyGait],
-        seeds: Sequence[int],
-        ticks: int,
-        period: float,
-    ) -> GaitTable:
-        """Tabulate the roll for every robot.
-
-        Raises:
-            OutsideLimits: a robot cannot follow it.
-        """
-        return self.start_together([self] * len(robots), robots, gaits, seeds, ticks, period)
-
     @staticmethod
-    def start_together(
-        controls: Sequence["Rolling"],
-        robots: Sequence[AnyRobot],
-        gaits: Sequence[AnyGait],
-        seeds: Sequence[int],
-        ticks: int,
-        period: float,
-    ) -> GaitTable:
+    def start(runs: Runs, period: float) -> GaitTable:
         """Tabulate the rolls of a batch, one per run.
 
         Raises:
             OutsideLimits: a robot cannot follow its roll.
         """
-        del gaits, seeds
-        ours = crocodiles(robots, "a death roll")
-        pairs = [(control.roll, robot) for control, robot in zip(controls, ours, strict=True)]
+        ticks = runs.ticks
+        ours = crocodiles(runs.robots, "a death roll")
+        pairs = [(control.roll, robot) for control, robot in zip(runs.controls, ours, strict=True)]
         unique = {pair: i for i, pair in enumerate(dict.fromkeys(pairs))}
         time = np.arange(ticks) * period
-        targets = np.empty((len(unique), ticks, len(layout(robots[0]).servos)))
+        targets = np.empty((len(unique), ticks, len(layout(ours[0]).servos)))
         phase = np.empty((len(unique), ticks, 4))
         for (roll, robot), i in unique.items():
             check_roll(robot, roll)

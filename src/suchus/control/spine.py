@@ -10,7 +10,7 @@ from suchus.control.sensed import Sensed, finite, keep
 from suchus.control.shared import Shared
 from suchus.design import AnyRobot, layout, servo_ranges
 from suchus.design.checks import Checks
-from suchus.motion import Gait, Pattern, axis_bends
+from suchus.motion import Batch
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -40,24 +40,27 @@ class SpineController:
         self,
         rules: Sequence[SpineRule | None],
         robots: Sequence[AnyRobot],
-        groups: Sequence[tuple[AnyRobot, Gait | Pattern, np.ndarray]],
         period: float,
     ) -> None:
         self._on = np.array([rule is not None for rule in rules])
         self._part = np.array([0.0 if rule is None else rule.share for rule in rules])[:, None]
         self._keep = np.array([0.0 if rule is None else keep(rule.delay, period) for rule in rules])
-        self._groups = groups
         self._yaw = list(layout(robots[0]).trunk_yaw)
         ranges = np.array([servo_ranges(robot)[self._yaw] for robot in robots])
         self._low, self._high = ranges[..., 0], ranges[..., 1]
         self._lacking = np.zeros(len(robots))
 
-    def step(self, shared: Shared) -> Shared:
-        """Let the bend follow the limbs: each of four pulls with a quarter of the amplitude."""
-        bend, direction = np.empty_like(shared.trunk_bend), np.empty_like(shared.trunk_bend)
-        for robot, gait, runs in self._groups:
-            bend[runs] = axis_bends(robot, gait, shared.limb_phase[runs])[0]
-            direction[runs] = axis_bends(robot, gait, shared.limb_phase[runs] + 0.25)[0]
+    @staticmethod
+    def step(shared: Shared, gaits: Batch, clock: Float[np.ndarray, " run"]) -> Shared:
+        """Let the bend follow the limbs: each of four pulls with a quarter of the amplitude.
+
+        Args:
+            shared: what the limbs say.
+            gaits: of the runs.
+            clock: since the walk began, for bodies without limbs [cycle].
+        """
+        axis = gaits.axis_phase(shared.limb_phase, clock)
+        bend, direction = gaits.bend_of("trunk", axis), gaits.bend_of("trunk", 1j * axis)
         return shared.written_by("spine", trunk_bend=bend, trunk_direction=direction)
 
     def take_over(self, before: "SpineController") -> None:

@@ -8,12 +8,12 @@ import numpy as np
 from jaxtyping import Float
 
 from suchus import rotation
-from suchus.control.controller import Command
+from suchus.control.controller import Command, Runs
 from suchus.control.sensed import Sensed
-from suchus.control.suited import crocodiles, leg_gaits
+from suchus.control.suited import crocodiles
 from suchus.design import AnyRobot, Crocodile, Layout, Leg, crocodile, layout
 from suchus.design.checks import Checks
-from suchus.motion import AnyGait, Gait, limb_phase, servo_targets
+from suchus.motion import Gait, intended
 from suchus.motion.posture import Keyed, hind_leg, plan
 from suchus.motion.rising import stand_up
 
@@ -125,36 +125,22 @@ class Standing:
     def _rise(self, robot: AnyRobot) -> Keyed:
         return stand_up(crocodile(robot, "standing up")) if self.rise is None else self.rise
 
-    def start(
-        self, robots: Sequence[AnyRobot], gaits: Sequence[AnyGait], seeds: Sequence[int], ticks: int, period: float
-    ) -> "Stander":
-        """Plan the whole course of every distinct pair of robot and gait.
+    @staticmethod
+    def start(runs: Runs, period: float) -> "Stander":
+        """Plan the whole course of every distinct robot, gait and control.
 
         Raises:
             OutsideLimits: a robot cannot take the postures.
         """
-        return self.start_together([self] * len(robots), robots, gaits, seeds, ticks, period)
-
-    @staticmethod
-    def start_together(
-        controls: Sequence["Standing"],
-        robots: Sequence[AnyRobot],
-        gaits: Sequence[AnyGait],
-        seeds: Sequence[int],
-        ticks: int,
-        period: float,
-    ) -> "Stander":
-        """Start runs that differ in when and how they stand; see ``start``."""
-        del seeds
-        ours, theirs = crocodiles(robots, "standing up"), leg_gaits(gaits, "standing up")
-        keys = [(replace(c, balance=None), r, g) for c, r, g in zip(controls, ours, theirs, strict=True)]
+        robots = crocodiles(runs.robots, "standing up")
+        keys = [(replace(c, balance=None), r, g) for c, r, g in zip(runs.controls, robots, runs.gaits, strict=True)]
         unique = {key: i for i, key in enumerate(dict.fromkeys(keys))}
-        time = np.arange(ticks) * period
+        time = np.arange(runs.ticks) * period
         courses = [control._course(robot, gait, time) for control, robot, gait in unique]
         course = Course(*(np.array(part) for part in zip(*courses, strict=True)))
-        legs = [robot.hind_leg for robot in ours]
+        legs, balances = [robot.hind_leg for robot in robots], [control.balance for control in runs.controls]
         rows = np.array([unique[key] for key in keys])
-        return Stander([c.balance for c in controls], course, rows, legs, layout(robots[0]), period)
+        return Stander(balances, course, rows, legs, layout(robots[0]), period)
 
     def _course(self, robot: Crocodile, gait: Gait, time: np.ndarray) -> "Course":
         up, leave, end = self._rise(robot), self.upright_until(robot), self.down_from(robot)
@@ -163,8 +149,7 @@ class Standing:
         planned = plan(robot, up, np.where(time < leave, way_up, way_down))
         away = np.clip(np.minimum(time - self.at, end - time) / self.blend, 0.0, 1.0)
         share = (1.0 - np.cos(np.pi * away)) / 2.0
-        phase = limb_phase(gait, np.where(time < end, np.minimum(time, self.at), time - (end - self.at)))
-        crawling = servo_targets(robot, gait, phase)
+        phase, crawling = intended(robot, gait, np.where(time < end, np.minimum(time, self.at), time - (end - self.at)))
         return Course(
             targets=crawling + share[:, None] * (planned.targets - crawling),
             phase=phase,

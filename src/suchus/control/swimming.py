@@ -7,16 +7,16 @@ from math import pi
 import numpy as np
 from jaxtyping import Float
 
-from suchus.control.controller import Command
+from suchus.control.controller import Command, Runs
 from suchus.control.holding import DepthHold, Depths, HeadingHold, Headings
 from suchus.control.sensed import Sensed
 from suchus.control.suited import crocodiles
 from suchus.control.trim import Pitches, PitchHold
-from suchus.design import AnyRobot, Crocodile, layout, servo_ranges
+from suchus.design import Crocodile, layout, servo_ranges
 from suchus.design.checks import Checks
 from suchus.errors import OutsideLimits
 from suchus.kinematics import tail as tail_kinematics
-from suchus.motion import AnyGait, Swim, bends, check_swim
+from suchus.motion import Swim, bends, check_swim
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -78,39 +78,16 @@ class Swimming:
         out[:, place.cables[0]] = tail_kinematics.servo_angle(robot.tail, grown * now.tail - self.turn)
         return out
 
-    def start(
-        self,
-        robots: Sequence[AnyRobot],
-        gaits: Sequence[AnyGait],
-        seeds: Sequence[int],
-        ticks: int,
-        period: float,
-    ) -> "SwimmingController":
-        """Start the swim for every robot.
-
-        Raises:
-            OutsideLimits: a robot cannot follow it.
-            InvalidDesign: a robot whose depth is controlled has too little air, or no two chambers for its pitch.
-        """
-        return self.start_together([self] * len(robots), robots, gaits, seeds, ticks, period)
-
     @staticmethod
-    def start_together(
-        controls: Sequence["Swimming"],
-        robots: Sequence[AnyRobot],
-        gaits: Sequence[AnyGait],
-        seeds: Sequence[int],
-        ticks: int,
-        period: float,
-    ) -> "SwimmingController":
+    def start(runs: Runs, period: float) -> "SwimmingController":
         """Start the swims of a batch, one per run.
 
         Raises:
             OutsideLimits: a robot cannot follow its swim.
             InvalidDesign: a robot whose depth is controlled has too little air, or no two chambers for its pitch.
         """
-        del gaits, seeds
-        return SwimmingController(controls, crocodiles(robots, "swimming by trunk and cable"), ticks, period)
+        robots = crocodiles(runs.robots, "swimming by trunk and cable")
+        return SwimmingController(runs.controls, robots, runs.ticks, period)
 
 
 class SwimmingController:

@@ -11,7 +11,7 @@ from suchus.control.sensed import Sensed
 from suchus.design import GRAVITY, AnyRobot
 from suchus.design.checks import Checks
 from suchus.errors import UnknownName
-from suchus.motion import Gait, Pattern
+from suchus.motion import Gait
 
 _WASHOUT = 3.0  # [s]; over which tilt is compared with its own mean
 _FOOT_LOADED = 0.02895931795  # of the weight, 1 N of the article's robot; from here on a foot feels the ground
@@ -27,7 +27,7 @@ class SwitchRule:
     above ``home`` ask for the one below, and so does a body that hardly tilts.
     """
 
-    ladder: tuple[Gait | Pattern, ...]
+    ladder: tuple[Gait, ...]
     """Gaits from the lowest posture to the highest; the run's gait must be among them."""
     home: int
     """Rung to which it returns on calm ground, counted from 0 [-]."""
@@ -60,7 +60,7 @@ class Switcher:
         self,
         rules: Sequence[SwitchRule | None],
         robots: Sequence[AnyRobot],
-        gaits: Sequence[Gait | Pattern],
+        gaits: Sequence[Gait],
         period: float,
     ) -> None:
         self._rules, self._period = list(rules), period
@@ -76,8 +76,8 @@ class Switcher:
         self._calm = np.zeros(n)  # of calm without a break [s]
 
     def decide(
-        self, sensed: Sensed, phase: Float[np.ndarray, "run limb"], gaits: Sequence[Gait | Pattern], busy: set[int]
-    ) -> list[tuple[int, Gait | Pattern]]:
+        self, sensed: Sensed, phase: Float[np.ndarray, "run limb"], gaits: Sequence[Gait], busy: set[int]
+    ) -> list[tuple[int, Gait]]:
         """Feel, and return which runs begin which gait now; those that are busy feel nothing new."""
         if all(rule is None for rule in self._rules):
             return []
@@ -105,7 +105,7 @@ class Switcher:
             return -int(self._stumbling[run] > rule.stumbling or self._calm[run] >= rule.patience)
         return 0
 
-    def _feel(self, sensed: Sensed, phase: np.ndarray, gaits: Sequence[Gait | Pattern], free: np.ndarray) -> None:
+    def _feel(self, sensed: Sensed, phase: np.ndarray, gaits: Sequence[Gait], free: np.ndarray) -> None:
         feet, belly = np.nan_to_num(sensed.foot_pressure), np.nan_to_num(sensed.belly_pressure).sum(axis=1)
         total = feet.sum(axis=1) + belly + np.nan_to_num(sensed.tail_pressure)
         duty = np.array([[gait.duty_factor] for gait in gaits])

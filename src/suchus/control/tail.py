@@ -10,7 +10,9 @@ from suchus.control.sensed import Sensed, finite
 from suchus.control.shared import Shared
 from suchus.design import AnyRobot, layout, servo_ranges
 from suchus.design.checks import Checks
-from suchus.motion import Gait, Pattern, axis_bends, tail_bend
+from suchus.motion import Batch, Gait
+
+_LEAST = 1e-9  # [rad]; a trunk that bends less does not bend
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -42,12 +44,11 @@ class TailController:
         self,
         rules: Sequence[TailRule | None],
         robots: Sequence[AnyRobot],
-        gaits: Sequence[Gait | Pattern],
-        groups: Sequence[tuple[AnyRobot, Gait | Pattern, np.ndarray]],
+        gaits: Sequence[Gait],
         period: float,
     ) -> None:
-        self._groups = groups
-        self._asked = np.array([gait.tail_pitch if isinstance(gait, Gait) else 0.0 for gait in gaits])
+        share = max(len(layout(robots[0]).tail_pitch), 1)
+        self._asked = np.array([gait.number("tail_pitch") / share for gait in gaits])
         self._pitch = self._asked
         self._on = np.array([rule is not None for rule in rules]) & (self._pitch >= 0.0)
         if not self._on.any():
@@ -61,22 +62,22 @@ class TailController:
                 high[i] = min(high[i], max(rule.lowest, self._pitch[i]))
         self._low, self._high = low, high
 
-    def step(self, shared: Shared) -> Shared:
-        """Let the bend follow the trunk, with the gait's phase lag; where no trunk bends, it follows the limbs."""
-        bend, direction = np.empty_like(shared.tail_bend), np.empty_like(shared.tail_bend)
-        for robot, gait, runs in self._groups:
-            if isinstance(gait, Pattern):  # its tail is a part of one wave along the axis
-                bend[runs] = axis_bends(robot, gait, shared.limb_phase[runs])[1]
-                direction[runs] = axis_bends(robot, gait, shared.limb_phase[runs] + 0.25)[1]
-            elif gait.trunk_bend > 0.0:
-                scale, lag = gait.tail_bend / gait.trunk_bend, 2 * np.pi * gait.tail_phase
-                now, later = shared.trunk_bend[runs], shared.trunk_direction[runs]
-                bend[runs] = scale * (np.cos(lag) * now - np.sin(lag) * later)
-                direction[runs] = scale * (np.cos(lag) * later + np.sin(lag) * now)
-            else:
-                bend[runs] = tail_bend(gait, shared.limb_phase[runs])
-                direction[runs] = tail_bend(gait, shared.limb_phase[runs] + 0.25)
-        return shared.written_by("tail", tail_bend=bend, tail_direction=direction)
+    @staticmethod
+    def step(shared: Shared, gaits: Batch, clock: Float[np.ndarray, " run"]) -> Shared:
+        """Let the bend follow the trunk, with the gait's phase lag; where no trunk bends, it follows the limbs.
+
+        Args:
+            shared: what spine and limbs say.
+            gaits: of the runs.
+            clock: since the walk began, for bodies without limbs [cycle].
+        """
+        (trunk, trunk_steady), (tail, steady) = gaits.together("trunk"), gaits.together("tail")
+        bends = np.abs(trunk) > _LEAST
+        # bend and direction together are the trunk's whole wave, swing times order parameter
+        wave = shared.trunk_bend - trunk_steady - 1j * (shared.trunk_direction - trunk_steady)
+        follows = tail * gaits.axis_phase(shared.limb_phase, clock)
+        follows[bends] = tail[bends] / trunk[bends] * wave[bends]
+        return shared.written_by("tail", tail_bend=-steady - follows.real, tail_direction=-steady + follows.imag)
 
     def take_over(self, before: "TailController") -> None:
         """Go on from where the tails of the same runs stand, as far as the gait asks for the same pitch."""

@@ -14,7 +14,7 @@ from suchus.control.spine import SpineController
 from suchus.control.tail import TailController
 from suchus.design import AnyRobot, Layout, layout
 from suchus.design.scale import control_period
-from suchus.motion import AnyGait, steerable
+from suchus.motion import Batch, Gait
 
 
 class ControlPart(NamedTuple):
@@ -30,7 +30,7 @@ class ControlPart(NamedTuple):
     """Shared variables that it wrote."""
 
 
-def topology(robot: AnyRobot, gait: AnyGait, control: Coordinated | None = None) -> tuple[ControlPart, ...]:
+def topology(robot: AnyRobot, gait: Gait, control: Coordinated | None = None) -> tuple[ControlPart, ...]:
     """Return what each controller reads and writes when it takes a step, in the order in which they act.
 
     Args:
@@ -40,16 +40,16 @@ def topology(robot: AnyRobot, gait: AnyGait, control: Coordinated | None = None)
             loop.
 
     Raises:
-        OutsideLimits: the gait is a table of angles.
+        OutsideLimits: the gait has measured curves.
     """
-    gait = steerable(gait, "the closed loop")
+    gait.needs_steering("the closed loop")
     if control is None:
         control = Coordinated(heading=HeadingRule()).suited(robot, gait)
     place, period = layout(robot), control_period(robot)
-    robots, gaits, groups = [robot], [gait], [(robot, gait, np.array([0]))]
+    robots, gaits, together, begun = [robot], [gait], Batch([robot], [gait]), np.zeros(1)
     limbs = Limbs([control.limbs], robots, gaits, np.zeros((1, len(place.limbs))), period)
-    spine = SpineController([control.spine], robots, groups, period)
-    tail = TailController([control.tail], robots, gaits, groups, period)
+    spine = SpineController([control.spine], robots, period)
+    tail = TailController([control.tail], robots, gaits, period)
     clock, targets = np.array([gait.limb_phases]), np.zeros((1, len(place.servos)))
 
     def heading(_: Any, sensed: Any) -> None:
@@ -58,11 +58,11 @@ def topology(robot: AnyRobot, gait: AnyGait, control: Coordinated | None = None)
 
     def of_spine(shared: Any, sensed: Any) -> Shared:
         spine.correct(targets.copy(), np.zeros(1), sensed)
-        return spine.step(shared)
+        return spine.step(shared, together, begun)
 
     def of_tail(shared: Any, sensed: Any) -> Shared:
         tail.correct(targets.copy(), sensed)
-        return tail.step(shared)
+        return tail.step(shared, together, begun)
 
     steps: dict[str, Callable[[Any, Any], Shared | None]] = {
         "limbs": lambda shared, sensed: limbs.step(shared, sensed, clock, walking=True),

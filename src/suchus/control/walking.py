@@ -1,23 +1,20 @@
 """Walking that changes its gait, steers, and keeps its body level."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float
 
 from suchus.control.attitude import Attitude, AttitudeRule
-from suchus.control.controller import Command
+from suchus.control.controller import Command, Runs
 from suchus.control.sensed import Sensed
 from suchus.control.switching import Switcher, SwitchRule
 from suchus.design import AnyRobot, layout, servo_ranges
 from suchus.design.checks import Checks, require
 from suchus.errors import OutsideLimits
-from suchus.motion import START, AnyGait, Gait, Pattern, steerable, steered, trunk_amplitude
+from suchus.motion import START, Batch, Gait, Steer, trunk_amplitude
 from suchus.motion.transition import Transition, transition
 
-Groups = list[tuple[AnyRobot, Gait | Pattern, np.ndarray]]
-"""Robot, gait, and the runs of a batch that have both."""
 _SLACK = 1e-9  # [s]
 _GROWS = 0.5  # [cycle]; over which stroke and bends grow after a change of gait
 
@@ -28,7 +25,7 @@ class Change:
 
     at: float
     """Time at which it begins [s]."""
-    gait: Gait | Pattern
+    gait: Gait
     """Gait to which the walk changes."""
 
     def __post_init__(self) -> None:
@@ -68,56 +65,45 @@ class Walking:
         """Whether any rule is on."""
         return self.attitude is not None or self.switching is not None
 
-    def start(
-        self, robots: Sequence[AnyRobot], gaits: Sequence[AnyGait], seeds: Sequence[int], ticks: int, period: float
-    ) -> "Walker":
-        """Start walking."""
-        return self.start_together([self] * len(robots), robots, gaits, seeds, ticks, period)
-
     @staticmethod
-    def start_together(
-        controls: Sequence["Walking"],
-        robots: Sequence[AnyRobot],
-        gaits: Sequence[AnyGait],
-        seeds: Sequence[int],
-        ticks: int,
-        period: float,
-    ) -> "Walker":
+    def start(runs: Runs, period: float) -> "Walker":
         """Start walking, each run with its own control.
 
         Raises:
-            OutsideLimits: a robot whose trunk cannot bend as far as it is asked to.
+            OutsideLimits: a robot whose trunk cannot bend as far as it is asked to, or a gait of measured curves from
+                which anything is asked.
         """
-        del seeds, ticks
-        ours = [steerable(gait, "a walk that is steered and changes its gait") for gait in gaits]
-        for control, robot, gait in zip(controls, robots, ours, strict=True):
-            place = layout(robot)
-            if control.bend and not place.trunk_yaw:
-                raise OutsideLimits(
-                    f"walking.bend is {control.bend:.3f} rad; robot {robot.name!r} has no servo that bends its trunk "
-                    "sideways: set it to 0, and steer by walking.asymmetry."
-                )
-            bent = trunk_amplitude(robot, gait)
-            most = float(np.abs(servo_ranges(robot)[list(place.trunk_yaw)]).min(axis=1, initial=np.inf).sum())
-            if abs(control.bend) + bent > most + 1e-9:
-                raise OutsideLimits(
-                    f"gait {gait.name!r} bends the trunk by {bent:.3f} rad and steering by "
-                    f"{abs(control.bend):.3f} rad; robot {robot.name!r} allows {most:.3f} rad in all: "
-                    "lower walking.bend."
-                )
-        return Walker(controls, robots, ours, period)
+        for control, robot, gait in set(zip(runs.controls, runs.robots, runs.gaits, strict=True)):
+            ladder = () if control.switching is None else control.switching.ladder
+            others = (*(change.gait for change in control.changes), *ladder)
+            for steered in (gait, *others) if control != Walking() else ():
+                steered.needs_steering("a walk that is steered and changes its gait")
+            _check_bend(control, robot, gait)
+        return Walker(runs, period)
+
+
+def _check_bend(control: Walking, robot: AnyRobot, gait: Gait) -> None:
+    place = layout(robot)
+    if control.bend and not place.trunk_yaw:
+        raise OutsideLimits(
+            f"walking.bend is {control.bend:.3f} rad; robot {robot.name!r} has no servo that bends its trunk "
+            "sideways: set it to 0, and steer by walking.asymmetry."
+        )
+    bent = trunk_amplitude(robot, gait)
+    most = float(np.abs(servo_ranges(robot)[list(place.trunk_yaw)]).min(axis=1, initial=np.inf).sum())
+    if abs(control.bend) + bent > most + 1e-9:
+        raise OutsideLimits(
+            f"gait {gait.name!r} bends the trunk by {bent:.3f} rad and steering by "
+            f"{abs(control.bend):.3f} rad; robot {robot.name!r} allows {most:.3f} rad in all: "
+            "lower walking.bend."
+        )
 
 
 class Walker:
     """The running controller of a batch of walks."""
 
-    def __init__(
-        self,
-        controls: Sequence[Walking],
-        robots: Sequence[AnyRobot],
-        gaits: Sequence[Gait | Pattern],
-        period: float,
-    ) -> None:
+    def __init__(self, runs: Runs, period: float) -> None:
+        controls, robots, gaits = runs.controls, runs.robots, runs.gaits
         self._controls, self._robots, self._gaits = list(controls), list(robots), list(gaits)
         self._period = period
         n = len(robots)
@@ -133,7 +119,7 @@ class Walker:
         self._attitude = Attitude([control.attitude for control in controls], robots, period)
         self._switcher = Switcher([control.switching for control in controls], robots, gaits, period)
         self._lower = np.zeros((n, len(place.limbs)))
-        self._groups = grouped(self._robots, self._gaits)
+        self._batch = Batch(self._robots, self._gaits)
         self._last = self._walk(0.0)
 
     def rest(self) -> Float[np.ndarray, "run servo"]:
@@ -152,18 +138,18 @@ class Walker:
             self._script[run] = (time, course, self._last.targets[run].copy())
             self._cycles[run] += np.ceil((time - self._began[run]) / self._gaits[run].period)
             self._gaits[run] = asked
-            self._groups = grouped(self._robots, self._gaits)
+            self._batch = Batch(self._robots, self._gaits)
         for run, (begun, course, start) in self._script.items():
             now.targets[run] = course.at(time - begun, start)
             now.phase[run] = self._last.phase[run]
         self._last = now
         return Command(now.targets.copy(), now.phase.copy())
 
-    def gait_of(self, run: int) -> Gait | Pattern:
+    def gait_of(self, run: int) -> Gait:
         """Return the gait in which a run walks, or to which it is changing."""
         return self._gaits[run]
 
-    def _asked(self, time: float, sensed: Sensed | None, phase: np.ndarray) -> list[tuple[int, Gait | Pattern]]:
+    def _asked(self, time: float, sensed: Sensed | None, phase: np.ndarray) -> list[tuple[int, Gait]]:
         """Return who begins another gait now."""
         busy = set(self._script)
         asked = []
@@ -184,28 +170,9 @@ class Walker:
 
     def _walk(self, time: float) -> Command:
         """Return the intended posture of every run by its clock; those of runs that change their gait do not count."""
-        place, many = layout(self._robots[0]), len(self._robots)
-        targets, phases = np.zeros((many, len(place.servos))), np.zeros((many, len(place.limbs)))
         since = np.maximum(time - self._began, 0.0)
         size = np.where(self._full > 0, np.clip(since / np.maximum(self._full, 1e-9), 0.0, 1.0), 1.0)
-        for robot, gait, runs in self._groups:
-            phase = (since[runs] / gait.period + self._cycles[runs])[:, None] + np.array(gait.limb_phases)
-            phases[runs] = phase
-            targets[runs] = steered(
-                robot,
-                gait,
-                phase,
-                trunk=self._bend[runs],
-                size=size[runs],
-                stroke=self._stroke[runs],
-                lower=self._lower[runs],
-            )
-        return Command(targets, phases)
-
-
-def grouped(robots: Sequence[AnyRobot], gaits: Sequence[Gait | Pattern]) -> Groups:
-    """Return who walks alike; to find it at every period takes as long as the walking."""
-    members: dict[tuple[AnyRobot, Gait | Pattern], list[int]] = {}
-    for run, pair in enumerate(zip(robots, gaits, strict=True)):
-        members.setdefault(pair, []).append(run)
-    return [(robot, gait, np.array(runs)) for (robot, gait), runs in members.items()]
+        clock = since / self._batch.periods + self._cycles
+        phases = clock[:, None] + self._batch.phases
+        steer = Steer(size=size, stroke=self._stroke, lower=self._lower, bend=self._bend)
+        return Command(self._batch.targets(phases, self._batch.axis_phase(phases, clock), steer), phases)

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from suchus.control import Command, Controller, Joinable
+from suchus.control import Command, Controller, Runs
 from suchus.design.checks import require
 from suchus.design.scale import control_period
 from suchus.errors import InvalidDesign
@@ -43,11 +43,15 @@ def start(runs: Sequence[Run], ticks: int, period: float = CONTROL_PERIOD) -> Co
         ticks: number of control periods to come.
         period: of control [s].
     """
-    robots, gaits, seeds = [run.robot for run in runs], [run.gait for run in runs], [run.seed for run in runs]
     control = runs[0].control
-    if isinstance(control, Joinable):
-        return control.start_together([run.control for run in runs], robots, gaits, seeds, ticks, period)
-    return control.start(robots, gaits, seeds, ticks, period)
+    group = Runs(
+        controls=tuple(run.control for run in runs),
+        robots=tuple(run.robot for run in runs),
+        gaits=tuple(run.gait for run in runs),
+        seeds=tuple(run.seed for run in runs),
+        ticks=ticks,
+    )
+    return control.start(group, period)
 
 
 class Loop:

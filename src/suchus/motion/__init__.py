@@ -25,6 +25,7 @@ from suchus.motion.movement import (
     limb_targets,
     middle_stance,
     movement,
+    trunk_amplitude,
 )
 from suchus.motion.posture import Keyed, Planned, Posture, plan
 from suchus.motion.rising import stand_up, stretched, tallest
@@ -81,4 +82,5 @@ __all__ = [
     "suits",
     "swim_targets",
     "tallest",
+    "trunk_amplitude",
 ]

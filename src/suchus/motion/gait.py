@@ -29,9 +29,9 @@ A body without limbs has no neck: what lies ahead of its root is trunk.
 """
 Turn = Literal["yaw", "pitch"]
 """Sideways, or up and down."""
-Ability = Literal["foot paths", "strokes", "wave", "steering"]
-"""What a gait has that may be changed: feet on paths, limbs that stride, an axis that bends sideways, and, for whoever
-changes size, stride and bend while it goes, no measured curves."""
+Ability = Literal["foot paths", "strokes", "wave", "tail pitch", "steering"]
+"""What a gait has that may be changed: feet on paths, limbs that stride, an axis that bends sideways, a tail that it
+lays down or lifts, and, for whoever changes size, stride and bend while it goes, no measured curves."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -228,7 +228,24 @@ class Gait:
             return any(isinstance(limb, Sweep) or (isinstance(limb, FootPath) and limb.stroke) for limb in self.limbs)
         if what == "wave":
             return any(bend.turn == "yaw" and any(bend.amplitude) for bend in self.axis)
+        if what == "tail pitch":
+            return any(bend.turn == "pitch" and bend.part == "tail" for bend in self.axis)
         return not self.curves
+
+    def needs_steering(self, what: str) -> None:
+        """Refuse a gait whose strokes, heights and bends cannot be changed while it goes.
+
+        Args:
+            what: needs it, as the beginning of a sentence.
+
+        Raises:
+            OutsideLimits: it has measured curves.
+        """
+        if not self.has("steering"):
+            raise OutsideLimits(
+                f"{what} needs a gait of foot paths and bends; gait {self.name!r} is a table of angles: choose another "
+                "gait, as 'salamander_walk', or walk it in open loop."
+            )
 
     def scaled(self, length: float) -> "Gait":
         """Return the gait for a body so many times as long: its period grows with the root, nothing else has a size."""

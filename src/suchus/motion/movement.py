@@ -139,6 +139,11 @@ class Waves:
             return np.asarray(bends[..., first])
         return np.asarray((bends[..., among] / self.share[:, among]).sum(axis=-1))
 
+    def together(self, among: Sequence[int]) -> tuple[Complex[np.ndarray, " run"], Float[np.ndarray, " run"]]:
+        """Return swing and steady bend of some hinges together [rad]."""
+        share = self.share[:, among]
+        return (self.swing[:, among] / share).sum(axis=1), (self.offset[:, among] / share).sum(axis=1)
+
     def amplitude(self) -> Float[np.ndarray, "run hinge"]:
         """Return the most that each hinge turns to either side, its steady angle aside [rad]."""
         return np.abs(self.swing) / self.share
@@ -328,6 +333,14 @@ class Movement:
             targets[..., servo] = (turns * harmonics).sum(axis=-1).real
 
 
+def trunk_amplitude(robot: AnyRobot, gait: Gait) -> float:
+    """Return the most that a gait bends the trunk sideways [rad]."""
+    yaw = movement(robot, gait).yaw
+    among = yaw.hinges.within("trunk")
+    steady = np.abs(yaw.offset / yaw.share)
+    return float((yaw.amplitude() + steady)[0, among].sum())
+
+
 class Batch:
     """The gaits of the runs of a batch, gathered by robot and structure, so that each kind is worked out in one call.
 
@@ -370,6 +383,14 @@ class Batch:
         for movement, runs in self.groups:
             bend[runs] = movement.bend_of(part, axis[runs])
         return bend
+
+    def together(self, part: Part) -> tuple[Complex[np.ndarray, " run"], Float[np.ndarray, " run"]]:
+        """Return swing and steady bend of a part of each run: its bend is ``steady + Re(swing z)`` [rad]."""
+        swing, steady = np.zeros(len(self.periods), dtype=complex), np.zeros(len(self.periods))
+        for movement, runs in self.groups:
+            yaw = movement.yaw
+            swing[runs], steady[runs] = yaw.together(yaw.hinges.within(part))
+        return swing, steady
 
 
 def structure(gait: Gait) -> Any:
