@@ -11,8 +11,8 @@ import xarray as xr
 
 from suchus.design import AnyRobot, check_needs
 from suchus.design.scale import coarse_step, scaled_fields
-from suchus.gaits import own_gait, suits
-from suchus.motion import AnyGait, straightened
+from suchus.gaits import own_gait
+from suchus.motion import Gait, suits
 from suchus.verdict import Rule, Verdict, judge, rules_of
 
 Progress = Callable[[str, float], None]
@@ -199,7 +199,7 @@ class Experiment(ABC):
             UnsuitedRobot: no gait on the shelf suits it.
         """
         own = own_gait(robot)
-        found = {"gait": own, "gaits": (own,), "control": straightened(robot, own, name="limbs_only")}
+        found = {"gait": own, "gaits": (own,), "control": own.without("axis", name="limbs_only")}
         names = {one.name for one in fields(self)}  # type: ignore[arg-type]
         return {name: value for name, value in found.items() if name in names}
 
@@ -231,10 +231,10 @@ class Experiment(ABC):
         return cls.__module__.removesuffix(".experiment").rpartition(".")[2]
 
 
-def _gaits(value: Any) -> tuple[AnyGait, ...]:
+def _gaits(value: Any) -> tuple[Gait, ...]:
     """Return the gaits that a field holds."""
     many = value if isinstance(value, tuple) else (value,)
-    return tuple(one for one in many if isinstance(one, AnyGait))
+    return tuple(one for one in many if isinstance(one, Gait))
 
 
 def _called(value: Any) -> str:

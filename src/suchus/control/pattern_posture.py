@@ -11,7 +11,7 @@ from suchus.control.oscillators import AxisPart
 from suchus.design import AnyRobot, Crank, Layout, hips_behind_snout, layout, servo_ranges
 from suchus.errors import UnsuitedRobot
 from suchus.kinematics import tail as tail_kinematics
-from suchus.motion import Gait, Held, Sweep, limb_targets, middle_stance, movement
+from suchus.motion import Gait, Held, Sweep, limb_movement, middle_stance, movement
 
 _FOLDED = radians(-85)  # yaw of a folded limb, backward along the body, as a swimming salamander holds them
 
@@ -87,7 +87,7 @@ class PatternPosture:
         self.segments = axis_segments(robot, gait)
         self.shift = 0.25 - gait.duty_factor / 2
         """What a limb's phase is ahead of its oscillator: a left oscillator bends the body to the left [cycle]."""
-        self._robot, self._gait, self._place = robot, gait, layout(robot)
+        self._limbs, self._place = limb_movement(robot, gait), layout(robot)
         self._limb_servos = [i for limb in self._place.limbs for i in range(limb.servos.start, limb.servos.stop)]
         owner = [n for n, limb in enumerate(self._place.limbs) for _ in range(limb.servos.start, limb.servos.stop)]
         self._owner = np.array(owner, dtype=int)
@@ -114,7 +114,7 @@ class PatternPosture:
         """
         targets = np.tile(self._steady, (len(phase), 1))
         if self._limb_servos:
-            path = limb_targets(self._robot, self._gait, phase)[:, self._limb_servos]
+            path = self._limbs.targets(phase, np.zeros(len(phase), dtype=complex))[:, self._limb_servos]
             follows = np.where(self._turns, 1.0, share[:, self._owner])
             targets[:, self._limb_servos] = self._rest + follows * (path - self._rest)
         amplitude, steady = np.array([(segment.amplitude, segment.offset) for segment in self.segments]).T

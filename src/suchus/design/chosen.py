@@ -3,7 +3,7 @@
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, is_dataclass, replace
-from typing import Any, TypeVar
+from typing import Any, Protocol, Self, TypeVar, runtime_checkable
 
 from suchus.design.meaning import meanings, unit
 from suchus.errors import UnknownName
@@ -24,6 +24,20 @@ class Chosen:
     """Greatest plausible value, in the field's unit."""
     why: str
     """Not in the paper; chosen because of this."""
+
+
+@runtime_checkable
+class Numbered(Protocol):
+    """A value with numbers besides its fields, as the stroke of all limbs of a gait."""
+
+    def numbers(self) -> Mapping[str, str]:
+        """Return their names and units."""
+
+    def number(self, name: str) -> float:
+        """Return one of them."""
+
+    def with_numbers(self, **numbers: float) -> Self:
+        """Return the same value with others."""
 
 
 def value_at(design: Any, path: str) -> Any:
@@ -53,8 +67,12 @@ def with_values(design: T, values: Mapping[str, Any]) -> T:
         InvalidDesign: the values cannot be, alone or together.
     """
     branches: dict[str | int, dict[str, Any]] = {}
+    numbers: dict[str, Any] = {}
     for path, value in values.items():
         first, *rest = _steps(path)
+        if not rest and first in _numbers(design):
+            numbers[str(first)] = value
+            continue
         _step(design, first)
         branches.setdefault(first, {})["".join(f"[{s}]" if isinstance(s, int) else f".{s}" for s in rest)] = value
     changed = {
@@ -62,7 +80,8 @@ def with_values(design: T, values: Mapping[str, Any]) -> T:
     }
     if isinstance(design, tuple):
         return type(design)(changed.get(i, item) for i, item in enumerate(design))
-    return replace(design, **{str(step): value for step, value in changed.items()})  # type: ignore[type-var]
+    fitted: Any = replace(design, **{str(step): value for step, value in changed.items()})  # type: ignore[type-var]
+    return fitted.with_numbers(**numbers) if numbers else fitted
 
 
 def unit_at(design: Any, path: str) -> str:
@@ -77,8 +96,10 @@ def unit_at(design: Any, path: str) -> str:
     """
     value_at(design, path)
     above, _, name = path.rpartition(".")
-    owner = type(value_at(design, above))
-    name = name.partition("[")[0]
+    holder = value_at(design, above) if above else design
+    if name in _numbers(holder):
+        return _numbers(holder)[name]
+    owner, name = type(holder), name.partition("[")[0]
     return unit(meanings(owner).get(name, "")) or "-"
 
 
@@ -89,11 +110,21 @@ def _steps(path: str) -> list[str | int]:
     return steps
 
 
+def _numbers(design: Any) -> Mapping[str, str]:
+    """Return the names and units of the numbers that a value has besides its fields."""
+    if not isinstance(design, Numbered):
+        return {}
+    own = {field.name for field in fields(design)} if is_dataclass(design) else set()
+    return {name: unit for name, unit in design.numbers().items() if name not in own}
+
+
 def _step(design: Any, step: str | int) -> Any:
+    if isinstance(design, Numbered) and step in _numbers(design):
+        return design.number(str(step))
     if isinstance(step, int):
         there: tuple[Any, ...] = tuple(range(len(design))) if isinstance(design, tuple) else ()
     else:
         there = tuple(f.name for f in fields(design)) if is_dataclass(design) else ()
     if step not in there:
-        raise UnknownName("field", str(step), [str(name) for name in there])
+        raise UnknownName("field", str(step), [*(str(name) for name in there), *_numbers(design)])
     return design[step] if isinstance(step, int) else getattr(design, step)

@@ -15,7 +15,7 @@ from suchus.envs.senses import felt, part, turning
 from suchus.envs.task import Task
 from suchus.envs.vector import CrocodileVectorEnv
 from suchus.envs.water import swimming
-from suchus.motion import AnyGait, cycle_targets
+from suchus.motion import Gait, cycle_targets
 
 Policy = Callable[[Float[np.ndarray, "run n"]], Float[np.ndarray, "run servo"]]
 """From observations to actions."""
@@ -55,7 +55,7 @@ class Follow:
     """The task, for whose robot the actions are."""
     centre: tuple[float, ...]
     """Servo angles of an action of zero, ``Pack.centre`` [rad]."""
-    gait: AnyGait
+    gait: Gait
     """The gait; it is played with the period of the task's gait."""
 
     def __call__(self, seen: Float[np.ndarray, "run n"]) -> Float[np.ndarray, "run servo"]:

@@ -12,7 +12,7 @@ from suchus.envs.task import Breaks, Pushes, Rewards, Task
 from suchus.errors import InvalidDesign, UnknownName
 from suchus.gaits import GAITS
 from suchus.land import Ground, Lake
-from suchus.motion import AnyGait, Swim
+from suchus.motion import Gait, Swim
 from suchus.robots import ROBOTS
 
 STANDING_SPAN = 0.3
@@ -87,7 +87,7 @@ def chosen(task: Task | str, changes: Mapping[str, Any]) -> Task:
     }
     kinds: Mapping[str, tuple[type, ...]] = {
         "robot": get_args(AnyRobot),
-        "gait": get_args(AnyGait),
+        "gait": get_args(Gait),
         "ground": (Ground,),
         "rewards": (Rewards,),
         "breaks": (Breaks, type(None)),

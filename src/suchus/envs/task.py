@@ -17,7 +17,7 @@ from suchus.fault import Fault
 from suchus.faults import FAULTS
 from suchus.gaits import GAITS, own_gait, suits
 from suchus.land import Ground, Lake
-from suchus.motion import AnyGait, Swim
+from suchus.motion import Gait, Swim
 from suchus.robots import ROBOTS
 
 Start = Literal["lying", "upright", "swimming"]
@@ -181,7 +181,7 @@ class Task:
     Without these lines a servo gives its full torque at any speed, and what is learned lives on that: see
     ``docs/environments.md``.
     """
-    gait: AnyGait = field(default_factory=lambda: GAITS["belly_crawl"])
+    gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
     """Gait whose mid-stance is the centre of the actions of a lying robot, and whose period is the clock's."""
     ground: Ground = field(default_factory=Ground)
     """The ground: its slope, friction and surface."""
@@ -232,7 +232,7 @@ class Task:
             return 1.0 / swimming(self.robot, self.swim).swim.frequency
         return self.gait.period
 
-    def on(self, robot: AnyRobot, gait: AnyGait | None = None) -> "Task":
+    def on(self, robot: AnyRobot, gait: Gait | None = None) -> "Task":
         """Return the same task for another robot.
 
         Where the robot can follow the gait and keeps the same control period, nothing else changes. If not, the gait

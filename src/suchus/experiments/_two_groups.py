@@ -11,7 +11,7 @@ from suchus.design.checks import Checks
 from suchus.experiment import Experiment
 from suchus.gaits import GAITS
 from suchus.land import Ground, Run
-from suchus.motion import AnyGait
+from suchus.motion import Gait
 from suchus.paper import CYCLES
 from suchus.robots import ROBOTS
 
@@ -25,9 +25,9 @@ class TwoGroups(Experiment):
 
     robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that crawls."""
-    gait: AnyGait = field(default_factory=lambda: GAITS["belly_crawl"])
+    gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
     """The crawl with spine and tail."""
-    control: AnyGait = field(default_factory=lambda: GAITS["limbs_only"])
+    control: Gait = field(default_factory=lambda: GAITS["limbs_only"])
     """The crawl of the control group, with the same legs."""
     cycles: int = int(CYCLES)
     """Number of cycles that are measured [-]."""

@@ -10,7 +10,7 @@ from suchus.design import AnyRobot, Crank, layout
 from suchus.design.checks import require
 from suchus.errors import OutsideLimits
 from suchus.hardware.servo_map import ServoLine, ServoMap
-from suchus.motion import START, AnyGait, check_limits, intended
+from suchus.motion import START, Gait, check_limits, intended
 
 
 class Commands(NamedTuple):
@@ -28,7 +28,7 @@ class Commands(NamedTuple):
     """Names of the servos."""
 
 
-def commands(robot: AnyRobot, gait: AnyGait, servo_map: ServoMap, cycles: int = 1) -> Commands:
+def commands(robot: AnyRobot, gait: Gait, servo_map: ServoMap, cycles: int = 1) -> Commands:
     """Return the commands of some cycles, so that they can be repeated without a jump.
 
     A cycle is divided into the whole number of intervals that is nearest to the map's rate.

@@ -13,7 +13,7 @@ from suchus.hardware.servo_map import ServoMap
 from suchus.land import Run, simulate
 from suchus.metrics import between, whole
 from suchus.model.build import servo_of
-from suchus.motion import START, AnyGait
+from suchus.motion import START, Gait
 
 AT_LIMIT = 0.02
 """Share of a walk that a servo may spend at its torque limit [-]; chosen so that the peak of a footfall passes."""
@@ -63,7 +63,7 @@ class ServoLoad:
         return f"{self.named} ({CLASSES[self.named]:.3g} N m)" if self.named else f"none up to {most:.3g} N m"
 
 
-def check_commands(robot: AnyRobot, gait: AnyGait, servo_map: ServoMap, samples: Commands) -> None:
+def check_commands(robot: AnyRobot, gait: Gait, servo_map: ServoMap, samples: Commands) -> None:
     """Refuse commands that are faster than a servo, or pulses outside the map's limits.
 
     Raises:
@@ -90,7 +90,7 @@ def check_commands(robot: AnyRobot, gait: AnyGait, servo_map: ServoMap, samples:
 
 
 def loads(
-    robot: AnyRobot, gait: AnyGait, *, cycles: int = 2, progress: Callable[[float], None] | None = None
+    robot: AnyRobot, gait: Gait, *, cycles: int = 2, progress: Callable[[float], None] | None = None
 ) -> Mapping[str, ServoLoad]:
     """Return what each servo bears in a simulated walk on level ground.
 
@@ -110,7 +110,7 @@ def loads(
 
 def loads_of_each(
     robot: AnyRobot,
-    gaits: Sequence[AnyGait],
+    gaits: Sequence[Gait],
     *,
     cycles: int = 2,
     timestep: float | None = None,
@@ -168,7 +168,7 @@ def _weak(borne: Mapping[str, ServoLoad]) -> dict[str, ServoLoad]:
 
 
 def _tried(
-    robot: AnyRobot, walks: Sequence[tuple[AnyGait, float, Mapping[str, ServoLoad]]], timestep: float | None
+    robot: AnyRobot, walks: Sequence[tuple[Gait, float, Mapping[str, ServoLoad]]], timestep: float | None
 ) -> list[Mapping[str, ServoLoad]]:
     """Return loads that know which of the servos that they name were at their limits for too long in the same walk.
 
@@ -226,7 +226,7 @@ def overloaded(borne: Mapping[str, ServoLoad], at_limit: float = AT_LIMIT) -> li
 
 def check_loads(
     robot: AnyRobot,
-    gait: AnyGait,
+    gait: Gait,
     borne: Mapping[str, ServoLoad],
     at_limit: float = AT_LIMIT,
     tracking: float = TRACKING,

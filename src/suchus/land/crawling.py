@@ -15,13 +15,13 @@ from suchus.land.lake import Lake
 from suchus.land.push import Push
 from suchus.land.run import Run
 from suchus.land.simulation import simulate
-from suchus.motion import START, AnyGait
+from suchus.motion import START, Gait
 from suchus.robots import ROBOTS
 
 
 def crawl(
     robot: AnyRobot | str,
-    gait: AnyGait | str,
+    gait: Gait | str,
     *,
     duration: float | None = None,
     cycles: float | None = None,
@@ -86,7 +86,7 @@ _USUAL = 9.0
 """Duration of a crawl that names none [s]: one second to settle, and two cycles of the article's gait."""
 
 
-def _duration(gait: AnyGait, duration: float | None, cycles: float | None) -> float:
+def _duration(gait: Gait, duration: float | None, cycles: float | None) -> float:
     """Return how long to simulate [s].
 
     Raises:

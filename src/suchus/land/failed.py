@@ -8,7 +8,7 @@ from suchus.design import AnyRobot, layout
 from suchus.errors import UnknownName
 from suchus.fault import Fault
 from suchus.faults import Limp, Locked
-from suchus.motion import AnyGait, cycle_targets
+from suchus.motion import Gait, cycle_targets
 
 Joint = Literal["front_yaw", "hind_yaw", "front_pitch", "hind_pitch", "front_knee", "hind_knee"]
 Kind = Literal["limp", "locked"]
@@ -44,7 +44,7 @@ def girdle_words(count: int) -> tuple[str, ...]:
 
 
 def joint_failure(
-    robot: AnyRobot, gait: AnyGait, joint: str, kind: Kind, legs: Legs = "one", *, hold: float = 0.5
+    robot: AnyRobot, gait: Gait, joint: str, kind: Kind, legs: Legs = "one", *, hold: float = 0.5
 ) -> tuple[Fault, ...]:
     """Return the faults of a run in which joints have failed from the start; one leg is the left one.
 
@@ -70,7 +70,7 @@ def joint_failure(
     return tuple(Locked(name, angle=angle_at(robot, gait, name, hold)) for name in names)
 
 
-def angle_at(robot: AnyRobot, gait: AnyGait, servo: str, share: float) -> float:
+def angle_at(robot: AnyRobot, gait: Gait, servo: str, share: float) -> float:
     """Return an angle in the range that a gait asks of a servo: 0 the least, 1 the greatest [rad]."""
     clock = np.arange(128) / 128
     asked = cycle_targets(robot, gait, clock)[:, layout(robot).servos.index(servo)]

@@ -15,7 +15,7 @@ from suchus.land.lake import Lake, check_lake
 from suchus.land.loop import Loop, physics_steps, start
 from suchus.land.push import Push, check_pushes
 from suchus.land.run import Run
-from suchus.motion import START, AnyGait, check_limits
+from suchus.motion import START, Gait, check_limits
 
 
 class Live:
@@ -87,7 +87,7 @@ class Live:
             self._beat -= self._cycle(self.run)
         self._look()
 
-    def walk(self, gait: AnyGait | None = None, control: Coordinated | Swimming | None = None) -> None:
+    def walk(self, gait: Gait | None = None, control: Coordinated | Swimming | None = None) -> None:
         """Walk on in another gait or by other rules, or swim, from the same phase of the cycle.
 
         Raises:

@@ -10,7 +10,7 @@ from suchus.fault import Fault
 from suchus.gaits import GAITS
 from suchus.land.lake import Lake
 from suchus.land.push import Push
-from suchus.motion import AnyGait
+from suchus.motion import Gait
 from suchus.robots import ROBOTS
 
 
@@ -45,7 +45,7 @@ class Run:
 
     robot: AnyRobot
     """The robot that walks: a body of any kind, as ``suchus.ROBOTS`` names them."""
-    gait: AnyGait
+    gait: Gait
     """Its periodic movement, as ``suchus.GAITS`` names them."""
     ground: Ground = field(default_factory=Ground)
     """Ground: its friction scale, slopes and relief."""

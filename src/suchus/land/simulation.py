@@ -5,7 +5,6 @@ from collections.abc import Callable, Sequence
 import numpy as np
 import xarray as xr
 
-from suchus.control import Joinable
 from suchus.design.checks import require
 from suchus.design.scale import check_step, control_period, physics_step
 from suchus.errors import InvalidDesign
@@ -107,15 +106,14 @@ def _check(runs: Sequence[Run], duration: float, timestep: float, every: int) ->
 
 
 def _groups(runs: Sequence[Run]) -> list[list[int]]:
-    """Return the indices of the runs that share a controller: equal controls, or controls that can be joined.
+    """Return the indices of the runs that share a controller: those whose controls are of one class.
 
     Runs on different types of relief, and runs in water and on dry land, have models of different sizes and run one
     after another.
     """
     groups: dict[object, list[int]] = {}
     for i, run in enumerate(runs):
-        joined = isinstance(run.control, Joinable)
-        key = type(run.control) if joined else run.control, type(run.ground.relief), run.lake is None
+        key = type(run.control), type(run.ground.relief), run.lake is None
         groups.setdefault(key, []).append(i)
     return list(groups.values())
 

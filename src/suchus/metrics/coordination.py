@@ -4,13 +4,13 @@ import numpy as np
 import xarray as xr
 
 from suchus.metrics.gait import diagonals
-from suchus.motion import AnyGait
+from suchus.motion import Gait
 
 WITHIN = 0.1
 """A limb this close to its place against another counts as coordinated [cycle]."""
 
 
-def phase_error(phase: xr.DataArray, gait: AnyGait) -> xr.DataArray:
+def phase_error(phase: xr.DataArray, gait: Gait) -> xr.DataArray:
     """Return how far the limbs are from the gait's phases against each other [cycle].
 
     It is the largest error of four differences, the two diagonal pairs and the two girdles; of any body as many as it

@@ -17,7 +17,7 @@ from suchus.design.checks import Checks
 from suchus.errors import OutsideLimits
 from suchus.motion.gait import Bend, Curve, FootPath, Gait, Held, Limbs, Sweep
 from suchus.motion.limits import servo_parts
-from suchus.motion.movement import pitch_hinges, yaw_hinges
+from suchus.motion.movement import yaw_hinges
 
 DIAGONAL = (0.0, 0.5, 0.5, 0.0)
 """Phases at which LF, RF, LH and RH pull on the trunk in the article's law [cycle]."""

@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from math import pi, sqrt
 from types import MappingProxyType
-from typing import Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from jaxtyping import Float
@@ -339,6 +339,10 @@ class Gait:
         )
         return replace(self, limb_phases=phases, axis=axis)
 
+    def numbers(self) -> dict[str, str]:
+        """Return the names and units of the ``NUMBERS`` that the gait has."""
+        return {name: number.unit for name, number in NUMBERS.items() if number.there(self)}
+
     def number(self, name: str) -> float:
         """Return one of the ``NUMBERS`` of the gait.
 
@@ -356,7 +360,12 @@ class Gait:
         """
         changed = self
         for name, value in numbers.items():
-            changed = _named(name).write(changed, value)
+            if not _named(name).there(self):
+                raise OutsideLimits(
+                    f"gait {self.name!r} has nothing that {name!r} could change ({NUMBERS[name].what}): choose another "
+                    "number, or a gait that has it."
+                )
+            changed = NUMBERS[name].write(changed, value)
         return changed
 
 
@@ -365,12 +374,14 @@ class Number(NamedTuple):
 
     unit: str
     """SI unit, or ``limb reach``."""
+    what: str
+    """The quantity, in a clause."""
+    there: Callable[[Gait], bool]
+    """Returns whether a gait has it."""
     read: Callable[[Gait], float]
     """Returns it."""
     write: Callable[[Gait, float], Gait]
     """Returns the gait with another value."""
-    what: str
-    """The quantity, in a clause."""
 
 
 def _standing(limb: Limbs) -> Limbs:
@@ -399,56 +410,50 @@ def _named(name: str) -> Number:
     return NUMBERS[name]
 
 
-def _missing(gait: Gait, name: str) -> OutsideLimits:
-    return OutsideLimits(
-        f"gait {gait.name!r} has nothing that {name!r} could change ({NUMBERS[name].what}): choose another number, or a "
-        "gait that has it."
-    )
-
-
 def _plain(name: str, unit: str, what: str) -> Number:
     """Return a number that is a field of the gait."""
     return Number(
-        unit, lambda gait: float(getattr(gait, name)), lambda gait, value: replace(gait, **{name: value}), what
-    )  # type: ignore[arg-type]
+        unit,
+        what,
+        lambda gait: True,  # noqa: ARG005
+        lambda gait: float(getattr(gait, name)),
+        lambda gait, value: replace(gait, **{name: value}),  # type: ignore[arg-type]
+    )
 
 
-def _of_paths(name: str, what: str) -> Number:
-    """Return a number that all foot paths have; it is that of the foremost, and others keep their proportion to it."""
+def _of_limbs(kind: type[FootPath] | type[Sweep], name: str, unit: str, what: str) -> Number:
+    """Return a number that all limbs of a kind have; it is that of the foremost, others keep their proportion to it."""
+
+    def mine(gait: Gait) -> list[Any]:
+        return [limb for limb in gait.limbs if isinstance(limb, kind)]
 
     def read(gait: Gait) -> float:
-        return next((float(getattr(limb, name)) for limb in gait.limbs if isinstance(limb, FootPath)), 0.0)
+        return float(getattr(mine(gait)[0], name)) if mine(gait) else 0.0
 
     def write(gait: Gait, value: float) -> Gait:
-        if not gait.has("foot paths"):
-            raise _missing(gait, name)
         now = read(gait)
-        if now == value:
-            return gait
 
-        def changed(limb: Limbs) -> Limbs:
-            if not isinstance(limb, FootPath):
+        def changed(limb: Any) -> Any:
+            if not isinstance(limb, kind) or now == value:
                 return limb
             return replace(limb, **{name: getattr(limb, name) / now * value if now else value})
 
         return replace(gait, limbs=tuple(changed(limb) for limb in gait.limbs))
 
-    return Number("limb reach", read, write, what)
+    return Number(unit, what, lambda gait: bool(mine(gait)), read, write)
 
 
 def _yaw_of(gait: Gait, part: Part) -> list[Bend]:
     return [bend for bend in gait.axis if bend.turn == "yaw" and bend.part in (part, "axis")]
 
 
-def _bend_of(name: str, part: Part, what: str) -> Number:
+def _bend_of(part: Part, what: str) -> Number:
     """Return the amplitude of a part's lateral bend: the mean of its knots, which keep their proportion."""
 
     def read(gait: Gait) -> float:
         return sum(sum(bend.amplitude) / len(bend.amplitude) for bend in _yaw_of(gait, part))
 
     def write(gait: Gait, value: float) -> Gait:
-        if not _yaw_of(gait, part):
-            raise _missing(gait, name)
         now = read(gait)
 
         def changed(bend: Bend) -> Bend:
@@ -460,7 +465,7 @@ def _bend_of(name: str, part: Part, what: str) -> Number:
 
         return replace(gait, axis=tuple(changed(bend) for bend in gait.axis))
 
-    return Number("rad", read, write, what)
+    return Number("rad", what, lambda gait: bool(_yaw_of(gait, part)), read, write)
 
 
 def _first_lag(gait: Gait, *parts: Part) -> float:
@@ -479,36 +484,56 @@ def _with_lag(gait: Gait, more: float, *parts: Part) -> Gait:
     return replace(gait, axis=tuple(moved(bend) for bend in gait.axis))
 
 
-def _read_axis_lag(gait: Gait) -> float:
+def _axis_lag(gait: Gait) -> float:
     return _first_lag(gait, "trunk", "axis") if _yaw_of(gait, "trunk") else _first_lag(gait, "neck", "tail")
 
 
-def _write_axis_lag(gait: Gait, value: float) -> Gait:
-    if not gait.has("wave"):
-        raise _missing(gait, "axis_lag")
-    return _with_lag(gait, value - _read_axis_lag(gait), "neck", "trunk", "tail", "axis")
+def _with_axis_lag(gait: Gait, value: float) -> Gait:
+    return _with_lag(gait, value - _axis_lag(gait), "neck", "trunk", "tail", "axis")
 
 
-def _read_tail_lag(gait: Gait) -> float:
+def _tail_lag(gait: Gait) -> float:
     return _first_lag(gait, "tail") - _first_lag(gait, "trunk")
 
 
-def _write_tail_lag(gait: Gait, value: float) -> Gait:
-    if not any(bend.turn == "yaw" and bend.part == "tail" for bend in gait.axis):
-        raise _missing(gait, "tail_lag")
-    return _with_lag(gait, value - _read_tail_lag(gait), "tail")
+def _with_tail_lag(gait: Gait, value: float) -> Gait:
+    return _with_lag(gait, value - _tail_lag(gait), "tail")
 
 
-def _read_pitch(gait: Gait) -> float:
-    return sum(bend.offset for bend in gait.axis if bend.turn == "pitch" and bend.part == "tail")
+def _has_yaw(gait: Gait, *parts: Part) -> bool:
+    return any(bend.turn == "yaw" and (not parts or bend.part in parts) for bend in gait.axis)
 
 
-def _write_pitch(gait: Gait, value: float) -> Gait:
-    pitched = [bend for bend in gait.axis if bend.turn == "pitch" and bend.part == "tail"]
-    others = tuple(bend for bend in gait.axis if bend not in pitched)
-    rest = [replace(bend, offset=0.0) for bend in pitched[1:]]
-    first = pitched[0] if pitched else Bend(part="tail", turn="pitch")
-    return replace(gait, axis=(*others, replace(first, offset=value), *rest))
+def _waves(gait: Gait) -> float:
+    return next((bend.lag[-1] - bend.lag[0] for bend in gait.axis if bend.turn == "yaw" and bend.part == "axis"), 0.0)
+
+
+def _with_waves(gait: Gait, value: float) -> Gait:
+    def changed(bend: Bend) -> Bend:
+        if bend.turn != "yaw" or bend.part != "axis":
+            return bend
+        return replace(bend, lag=(bend.lag[0], bend.lag[0] + value))
+
+    return replace(gait, axis=tuple(changed(bend) for bend in gait.axis))
+
+
+def _steady(gait: Gait, part: Part, turn: Turn) -> float:
+    return sum(bend.offset for bend in gait.axis if bend.turn == turn and bend.part == part)
+
+
+def _with_steady(gait: Gait, part: Part, turn: Turn, value: float) -> Gait:
+    """Return a gait with another steady bend of a part: in the first bend of it, or in one more."""
+    mine = [i for i, bend in enumerate(gait.axis) if bend.turn == turn and bend.part == part]
+    axis = [replace(bend, offset=0.0) if i in mine else bend for i, bend in enumerate(gait.axis)]
+    if mine:
+        axis[mine[0]] = replace(axis[mine[0]], offset=value)
+    else:
+        axis.append(Bend(part=part, turn=turn, offset=value))
+    return replace(gait, axis=tuple(axis))
+
+
+def _path_number(name: str, what: str) -> Number:
+    return _of_limbs(FootPath, name, "limb reach", what)
 
 
 NUMBERS: Mapping[str, Number] = MappingProxyType(
@@ -516,19 +541,40 @@ NUMBERS: Mapping[str, Number] = MappingProxyType(
         "period": _plain("period", "s", "the period of a cycle"),
         "duty_factor": _plain("duty_factor", "-", "the share of the cycle in which a foot stands"),
         "height": _plain("height", "limb reach", "the height of the hindmost hips"),
-        "stroke": _of_paths("stroke", "half of the way of a foot in stance"),
-        "lift": _of_paths("lift", "the height to which a foot is lifted"),
-        "outward": _of_paths("outward", "how far a foot stands outside its hip"),
-        "ahead": _of_paths("ahead", "how far the middle of a foot's path lies ahead of its hip"),
-        "trunk_bend": _bend_of("trunk_bend", "trunk", "the amplitude of the trunk's lateral bend"),
-        "tail_bend": _bend_of("tail_bend", "tail", "the amplitude of the tail's lateral bend"),
+        "stroke": _path_number("stroke", "half of the distance that a foot moves back in stance"),
+        "lift": _path_number("lift", "the height to which a foot is lifted"),
+        "outward": _path_number("outward", "how far a foot stands outside its hip"),
+        "ahead": _path_number("ahead", "how far the middle of a foot's path lies ahead of its hip"),
+        "crank": _of_limbs(Sweep, "stance", "rad", "the angle that a crank turns through in stance"),
+        "trunk_bend": _bend_of("trunk", "the amplitude of the trunk's lateral bend"),
+        "tail_bend": _bend_of("tail", "the amplitude of the tail's lateral bend"),
         "axis_lag": Number(
-            "cycle", _read_axis_lag, _write_axis_lag, "the phase lag of the trunk's lateral bend behind the limbs"
+            "cycle", "the phase lag of the trunk's lateral bend behind the limbs", _has_yaw, _axis_lag, _with_axis_lag
         ),
         "tail_lag": Number(
-            "cycle", _read_tail_lag, _write_tail_lag, "the phase lag of the tail's lateral bend behind the trunk's"
+            "cycle",
+            "the phase lag of the tail's lateral bend behind the trunk's",
+            lambda gait: _has_yaw(gait, "tail"),
+            _tail_lag,
+            _with_tail_lag,
         ),
-        "tail_pitch": Number("rad", _read_pitch, _write_pitch, "the steady pitch of the tail, down positive"),
+        "waves": Number(
+            "-", "the wavelengths along the axis", lambda gait: _has_yaw(gait, "axis"), _waves, _with_waves
+        ),
+        "trunk_offset": Number(
+            "rad",
+            "the steady lateral bend of the trunk, left positive",
+            lambda gait: not gait.curves,
+            lambda gait: _steady(gait, "trunk", "yaw"),
+            lambda gait, value: _with_steady(gait, "trunk", "yaw", value),
+        ),
+        "tail_pitch": Number(
+            "rad",
+            "the steady pitch of the tail, down positive",
+            lambda gait: not gait.curves,
+            lambda gait: _steady(gait, "tail", "pitch"),
+            lambda gait, value: _with_steady(gait, "tail", "pitch", value),
+        ),
     }
 )
 """Numbers of a gait by name: the vocabulary of sliders, searches, studies and maps.

@@ -451,11 +451,16 @@ def limb_targets(
     Raises:
         OutsideLimits: the gait is for other limbs, or asks for what they cannot reach.
     """
-    still = gait.straightened()
-    still = replace(still, axis=tuple(bend for bend in still.axis if bend.turn == "pitch"))
     many = np.atleast_2d(phase)
-    found = movement(robot, still).targets(many, np.zeros(many.shape[:-1], dtype=complex))
-    return found.reshape(*np.shape(phase)[:-1], -1)
+    targets = limb_movement(robot, gait).targets(many, np.zeros(many.shape[:-1], dtype=complex))
+    return targets.reshape(*np.shape(phase)[:-1], -1)
+
+
+@lru_cache(maxsize=256)
+def limb_movement(robot: AnyRobot, gait: Gait) -> Movement:
+    """Return a gait's limbs alone, worked out for a robot: its axis is not bent sideways, and not waved up and down."""
+    still = gait.straightened()
+    return Movement(robot, [replace(still, axis=tuple(bend for bend in still.axis if bend.turn == "pitch"))])
 
 
 def middle_stance(robot: AnyRobot, gait: Gait) -> Float[np.ndarray, " servo"]:

@@ -11,7 +11,7 @@ from suchus.optimise.spec import Optimisation
 from suchus.study.cluster import cores, spread
 from suchus.study.makers import MADE_BY, deciding
 
-ROOMS = (*MADE_BY, *(f"optimise/{module}.py" for module in ("aims", "clearance", "evaluate", "excess", "spec")))
+ROOMS = (*MADE_BY, *(f"optimise/{module}.py" for module in ("aims", "clearance", "evaluate", "spec")))
 """Whose code decides what a candidate reaches."""
 
 

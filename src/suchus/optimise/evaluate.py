@@ -7,12 +7,12 @@ import numpy as np
 import xarray as xr
 
 from suchus.design import with_values
+from suchus.control import Runs
 from suchus.design.scale import control_period
 from suchus.errors import SuchusError
 from suchus.land import Run, simulate
-from suchus.motion import check_limits
+from suchus.motion import check_limits, excess
 from suchus.optimise.aims import AIMS, LIMITS, Kind
-from suchus.optimise.excess import excess
 from suchus.optimise.spec import Optimisation
 
 WALKED, REFUSED, APART = "walked", "refused", "diverged"
@@ -33,7 +33,7 @@ def evaluate(
 
     Returns:
         A table along ``candidate``: ``share`` over ``field``; ``aim_...`` and ``limit_...``, NaN where it did not walk;
-        ``status``; ``beyond``, see ``excess``, infinite for a candidate that cannot be at all.
+        ``status``; ``beyond``, see ``suchus.motion.excess``, infinite for a candidate that cannot be at all.
     """
     count = len(shares)
     status, beyond = np.full(count, REFUSED, dtype="U16"), np.zeros(count)
@@ -44,8 +44,8 @@ def evaluate(
             beyond[i] = excess(run.robot, run.gait)
             if beyond[i] == 0.0:
                 check_limits(run.robot, run.gait)
-                period = control_period(run.robot)
-                run.control.start([run.robot], [run.gait], [run.seed], 1, period)  # refuses what it cannot steer
+                # refuses what it cannot steer
+                run.control.start(Runs.alike(run.control, run.robot, run.gait), control_period(run.robot))
                 runs[i] = run
         except SuchusError:
             beyond[i] = np.inf

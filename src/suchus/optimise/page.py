@@ -45,7 +45,7 @@ class SearchFile(Search):
 
 EXAMPLE = SearchFile(
     name="example",
-    vary=(Vary(field="gait.stroke", low=0.0, high=0.08),),
+    vary=(Vary(field="gait.stroke", low=0.0, high=0.5),),
     aims=(Aim(name="displacement"),),
 )
 """What a file's mistakes are mended with while the others are looked for."""

@@ -6,6 +6,7 @@ from types import MappingProxyType
 from suchus.control import Standing, Walking
 from suchus.design import value_at
 from suchus.gaits import GAITS
+from suchus.gaits.belly_crawl import FRONT, HIND
 from suchus.land import Run
 from suchus.optimise.spec import Aim, Limit, Optimisation
 from suchus.robots import ROBOTS
@@ -13,19 +14,19 @@ from suchus.study import Arm, Vary
 
 _LEGS = (
     ("duty_factor", 0.5, 0.8),
-    ("stroke", 0.0, 0.12),
-    ("lift", 0.01, 0.05),
-    ("front_reach", 0.02, 0.13),
-    ("hind_reach", 0.02, 0.14),
-    ("front_ahead", -0.06, 0.06),
-    ("hind_ahead", -0.06, 0.06),
-    ("hip_height", 0.06, 0.13),
+    ("stroke", 0.0, 0.12 / FRONT),
+    ("lift", 0.01 / FRONT, 0.05 / FRONT),
+    ("limbs[0].outward", 0.02 / FRONT, 0.13 / FRONT),
+    ("limbs[1].outward", 0.02 / HIND, 0.14 / HIND),
+    ("limbs[0].ahead", -0.06 / FRONT, 0.06 / FRONT),
+    ("limbs[1].ahead", -0.06 / HIND, 0.06 / HIND),
+    ("height", 0.06 / HIND, 0.13 / HIND),
 )
 _BODY = (
     ("trunk_bend", 0.0, 2.3),
-    ("spine_phase", -0.2, 0.2),
+    ("axis_lag", -0.2, 0.2),
     ("tail_bend", 0.0, 1.5),
-    ("tail_phase", -0.5, 0.5),
+    ("tail_lag", 0.0, 1.0),
     ("tail_pitch", -0.3, 0.4),
 )
 _LIMITS = (
@@ -92,7 +93,7 @@ def turn() -> Optimisation:
         vary=(
             Vary(field="control.bend", low=0.0, high=1.2),
             Vary(field="control.asymmetry", low=0.0, high=1.5),
-            *_vary((("stroke", 0.01, 0.08), ("trunk_bend", 0.0, 1.5), ("duty_factor", 0.5, 0.8))),
+            *_vary((("stroke", 0.01 / FRONT, 0.08 / FRONT), ("trunk_bend", 0.0, 1.5), ("duty_factor", 0.5, 0.8))),
         ),
         aims=(Aim(name="turning"),),
         limits=(Limit(name="torque", value=0.65), Limit(name="clearance", value=0.005)),

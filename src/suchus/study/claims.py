@@ -12,7 +12,7 @@ import xarray as xr
 from suchus.design import Crocodile, unit_at, value_at
 from suchus.design.checks import Checks
 from suchus.errors import UnreadableFile
-from suchus.gaits import GAITS, conditions
+from suchus.gaits import GAITS, conditions_of
 from suchus.land import FAILED_JOINTS, Run, joint_failure
 from suchus.motion import START, Gait
 from suchus.paper import CYCLES
@@ -98,7 +98,7 @@ class Claims:
         """Return what each run of a sample sets, after everything that varies."""
         crawl = GAITS["belly_crawl"]
         sets: dict[str, Mapping[str, Any]] = {}
-        for name, gait in conditions(crawl, GAITS["limbs_only"]).items():
+        for name, gait in conditions_of(ROBOTS["caiman"], crawl, GAITS["limbs_only"]).items():
             of = {one: (value_at(gait, one), value_at(crawl, one)) for one in _TRUNK}
             sets[name] = {f"gait.{one}": there for one, (there, here) in of.items() if there != here}
         sets |= {

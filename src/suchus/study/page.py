@@ -64,7 +64,7 @@ class StudyFile:
 
 EXAMPLE = StudyFile(
     name="example",
-    vary=(Vary(field="gait.stroke", low=0.0, high=0.08, steps=9),),
+    vary=(Vary(field="gait.stroke", low=0.0, high=0.48, steps=9),),
     measure=("displacement",),
 )
 """Nine strokes of the article's crawl: what a file's mistakes are mended with while the others are looked for."""

@@ -5,7 +5,7 @@ from typing import Any
 
 from suchus.faults import FAULTS, Limp, numbers
 from suchus.gaits import GAITS, suits
-from suchus.motion import AnyGait, Gait
+from suchus.motion import Gait
 from suchus.viewer.knobs import Knob, knobs_of, shown
 from suchus.viewer.saving import SavedFile, gait_file, robot_file
 from suchus.viewer.session import Session, Switch, plain_knobs
@@ -116,7 +116,7 @@ class Controls:
 
     def _gaits(self) -> None:
         mine = self._session.settings.gait
-        shelf: dict[str, AnyGait] = {name: gait for name, gait in GAITS.items() if self._fits(gait)}
+        shelf: dict[str, Gait] = {name: gait for name, gait in GAITS.items() if self._fits(gait)}
         if shelf.get(mine.name) != mine:
             shelf = {mine.name: mine, **shelf}
         menu = self._gui.add_dropdown("from the shelf", tuple(shelf), initial_value=mine.name)
@@ -138,11 +138,9 @@ class Controls:
             robot = gui.add_button("save the robot", hint="A TOML file, to be changed by hand.")
             self._on(robot, lambda _: save(robot_file(session.robot)))
 
-    def _fits(self, gait: AnyGait) -> bool:
-        """Return whether a gait of the shelf has the same sliders, and the robot can follow it if a pattern."""
+    def _fits(self, gait: Gait) -> bool:
+        """Return whether a gait of the shelf has the same sliders, and the robot can follow it."""
         robot, mine = self._session.robot, self._session.settings.gait
-        if isinstance(gait, Gait) and isinstance(mine, Gait):
-            return True
         return set(knobs_of(robot, gait)) == set(knobs_of(robot, mine)) and suits(robot, gait)
 
     def _add_gait_slider(self, name: str, knob: Knob) -> None:

@@ -4,11 +4,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from math import isfinite, radians
 from types import MappingProxyType
-from typing import Any
 
-from suchus.design import GRAVITY, AnyRobot
+from suchus.design import GRAVITY, AnyRobot, layout
 from suchus.errors import InvalidDesign, NotConverged, OutsideLimits
-from suchus.motion import AnyGait, FootPath, Gait, Pattern, Sweep, check_limits, with_bends, with_strokes
+from suchus.motion import Gait, check_limits
 from suchus.robots import beside_article
 
 _HALVINGS = 14  # of the distance to a value that the robot cannot reach: a ten-thousandth of it
@@ -62,37 +61,54 @@ class Knob:
 
 _DEGREE = radians(1.0)
 
+_SHARE = 0.01  # a per cent
+
 GAIT_KNOBS: Mapping[str, Knob] = MappingProxyType(
     {
-        "period": Knob(label="period", unit="s", low=0.5, high=8.0, step=0.05, hint="Of one cycle of the legs."),
+        "period": Knob(label="period", unit="s", low=0.5, high=8.0, step=0.05, hint="Of one cycle of the limbs."),
         "duty_factor": Knob(
             label="duty factor", unit="", low=0.3, high=0.9, step=0.01,
             hint="Share of the cycle in which a foot stands.",
         ),
         "stroke": Knob(
-            label="leg stroke", unit="mm", low=0.0, high=100.0, step=1.0, scale=1e-3,
-            hint="Half of the distance that a foot moves back in stance.",
+            label="limb stroke", unit="% of reach", low=0.0, high=60.0, step=0.5, scale=_SHARE,
+            hint="Half of the distance that a foot moves back in stance, of the front limbs; others in proportion.",
         ),
-        "lift": Knob(label="foot lift", unit="mm", low=0.0, high=80.0, step=1.0, scale=1e-3, hint="In swing."),
-        "hip_height": Knob(
-            label="hip height", unit="mm", low=40.0, high=170.0, step=1.0, scale=1e-3,
-            hint="Of the hips above the ground.",
+        "lift": Knob(
+            label="foot lift", unit="% of reach", low=0.0, high=60.0, step=0.5, scale=_SHARE,
+            hint="In swing, of the front limbs; others in proportion.",
+        ),
+        "height": Knob(
+            label="hip height", unit="% of reach", low=10.0, high=120.0, step=0.5, scale=_SHARE,
+            hint="Of the hindmost hips above the ground.",
+        ),
+        "crank": Knob(
+            label="crank in stance", unit="deg", low=10.0, high=340.0, step=5.0, scale=_DEGREE,
+            hint="Angle that a crank turns through while its foot stands.",
         ),
         "trunk_bend": Knob(
-            label="trunk bend", unit="deg", low=0.0, high=100.0, step=1.0, scale=_DEGREE,
+            label="trunk bend", unit="deg", low=0.0, high=120.0, step=1.0, scale=_DEGREE,
             hint="Amplitude of the sideways bend of the whole trunk.",
         ),
-        "spine_phase": Knob(
-            label="spine phase", unit="cycle", low=-0.5, high=0.5, step=0.01,
-            hint="Phase lag of the trunk's bend behind the legs; with half a cycle it walks backwards.",
+        "axis_lag": Knob(
+            label="axis phase", unit="cycle", low=-0.5, high=0.5, step=0.01,
+            hint="Phase lag of the trunk's bend behind the limbs; with half a cycle a crawl goes backwards.",
         ),
         "tail_bend": Knob(
-            label="tail bend", unit="deg", low=0.0, high=90.0, step=1.0, scale=_DEGREE,
+            label="tail bend", unit="deg", low=0.0, high=120.0, step=1.0, scale=_DEGREE,
             hint="Amplitude of the sideways bend of the tail.",
         ),
-        "tail_phase": Knob(
-            label="tail phase", unit="cycle", low=-0.5, high=0.5, step=0.01,
-            hint="Phase lag of the tail's bend behind the trunk's.",
+        "tail_lag": Knob(
+            label="tail phase", unit="cycle", low=0.0, high=1.0, step=0.01,
+            hint="Phase lag of the tail's bend behind the trunk's; with half a cycle they swing to opposite sides.",
+        ),
+        "waves": Knob(
+            label="waves along the body", unit="", low=-2.0, high=2.0, step=0.05,
+            hint="0 is a standing wave; positive it runs from head to tail.",
+        ),
+        "trunk_offset": Knob(
+            label="bend to the left", unit="deg", low=-60.0, high=60.0, step=1.0, scale=_DEGREE,
+            hint="Of the trunk, steadily: it turns left.",
         ),
         "tail_pitch": Knob(
             label="tail pitch", unit="deg", low=-30.0, high=40.0, step=0.5, scale=_DEGREE,
@@ -100,48 +116,7 @@ GAIT_KNOBS: Mapping[str, Knob] = MappingProxyType(
         ),
     }
 )  # fmt: skip
-"""Fields of a gait that can be turned; the ranges lie within those that ``Gait`` allows."""
-
-_SHARE = 0.01  # a per cent
-PATTERN_KNOBS: Mapping[str, Knob] = MappingProxyType(
-    {
-        "period": GAIT_KNOBS["period"],
-        "duty_factor": GAIT_KNOBS["duty_factor"],
-        "strokes": Knob(
-            label="limb stroke", unit="% of reach", low=1.0, high=60.0, step=1.0, scale=_SHARE,
-            hint="Half of the distance that a foot moves back in stance, of the front limbs; others in proportion.",
-        ),
-        "lifts": Knob(
-            label="foot lift", unit="% of reach", low=1.0, high=60.0, step=1.0, scale=_SHARE,
-            hint="In swing, of the front limbs; others in proportion.",
-        ),
-        "height": Knob(
-            label="hip height", unit="% of reach", low=10.0, high=120.0, step=1.0, scale=_SHARE,
-            hint="Of the hindmost hips above the ground.",
-        ),
-        "turned": Knob(
-            label="crank in stance", unit="deg", low=10.0, high=340.0, step=5.0, scale=_DEGREE,
-            hint="Angle that a crank turns through while its foot stands.",
-        ),
-        "bends": Knob(
-            label="axis bend", unit="deg", low=0.1, high=60.0, step=0.5, scale=_DEGREE,
-            hint="Greatest amplitude of a joint of the axis; others in proportion.",
-        ),
-        "lag": Knob(
-            label="axis phase", unit="cycle", low=-0.5, high=0.5, step=0.01,
-            hint="Phase lag of the axis' bend behind the limbs.",
-        ),
-        "waves": Knob(
-            label="waves along the body", unit="", low=-2.0, high=2.0, step=0.05,
-            hint="0 is a standing wave; positive it runs from head to tail.",
-        ),
-        "offset": Knob(
-            label="bend to the left", unit="deg", low=-15.0, high=15.0, step=0.5, scale=_DEGREE,
-            hint="Of every joint of the axis, steadily: it turns left.",
-        ),
-    }
-)  # fmt: skip
-"""What can be turned of a pattern of any body."""
+"""Numbers of a gait that can be turned; the ranges lie within those that ``Gait`` allows."""
 
 SLOPE = Knob(label="uphill", unit="deg", low=-20.0, high=20.0, step=0.5, scale=_DEGREE, hint="Slope along the walk.")
 SIDE_SLOPE = Knob(
@@ -193,17 +168,18 @@ def bumps_under(robot: AnyRobot) -> Knob:
     return _resized(BUMPS, beside_article(robot).length)
 
 
-def knobs_of(robot: AnyRobot, gait: AnyGait) -> Mapping[str, Knob]:
-    """Return what can be turned of a movement, by name; nothing of a table of angles."""
-    if isinstance(gait, Gait):
-        share = beside_article(robot).length
-        return {name: _resized(knob, share) if knob.unit == "mm" else knob for name, knob in GAIT_KNOBS.items()}
-    if not isinstance(gait, Pattern):
-        return {}
-    there = {name for name, value in _pattern(gait).items() if value != 0.0 or name in ("lag", "waves", "offset")}
-    if not any(angle for _, angle in gait.wave.amplitude):
-        there -= {"lag", "waves"}
-    return {name: knob for name, knob in PATTERN_KNOBS.items() if name in there}
+def knobs_of(robot: AnyRobot, gait: Gait) -> Mapping[str, Knob]:
+    """Return what can be turned of a gait, by name: the numbers that it has and that move something of the robot."""
+    place = layout(robot)
+    lacking = {
+        *(() if place.limbs else ("duty_factor", "height")),
+        *(() if gait.has("foot paths") else ("height",)),
+        *(() if place.trunk_yaw else ("trunk_bend", "trunk_offset")),
+        *(() if place.tail_yaw or place.cables else ("tail_bend", "tail_lag")),
+        *(() if place.tail_pitch else ("tail_pitch",)),
+    }
+    numbers = gait.numbers() if gait.has("steering") else {}
+    return {name: knob for name, knob in GAIT_KNOBS.items() if name in numbers and name not in lacking}
 
 
 def _resized(knob: Knob, share: float) -> Knob:
@@ -215,32 +191,12 @@ def _rounded(value: float) -> float:
     return float(f"{value:.2g}")
 
 
-def _pattern(gait: Pattern) -> dict[str, float]:
-    """Return what can be turned of a pattern, by name, in SI units; 0 where it has no such part."""
-    paths = [does for does in gait.girdles if isinstance(does, FootPath)]
-    cranks = [does for does in gait.girdles if isinstance(does, Sweep)]
-    return {
-        "period": gait.period,
-        "duty_factor": gait.duty_factor if gait.girdles else 0.0,
-        "strokes": abs(paths[0].stroke) if paths else 0.0,
-        "lifts": paths[0].lift if paths else 0.0,
-        "height": gait.height if paths else 0.0,
-        "turned": cranks[0].stance if cranks else 0.0,
-        "bends": max((abs(angle) for _, angle in gait.wave.amplitude), default=0.0),
-        "lag": gait.wave.phase,
-        "waves": gait.wave.waves,
-        "offset": gait.wave.offset,
-    }
+def shown(gait: Gait, name: str) -> float:
+    """Return a number of a gait in the unit of its knob, to four digits."""
+    return float(f"{gait.number(name) / GAIT_KNOBS[name].scale:.4g}")
 
 
-def shown(gait: AnyGait, name: str) -> float:
-    """Return a field of a gait in the unit of its knob, to four digits."""
-    scale = (GAIT_KNOBS if name in GAIT_KNOBS else PATTERN_KNOBS)[name].scale
-    now = _pattern(gait)[name] if isinstance(gait, Pattern) else getattr(gait, name)
-    return float(f"{now / scale:.4g}")
-
-
-def tuned(robot: AnyRobot, gait: AnyGait, name: str, value: object) -> tuple[AnyGait, str]:
+def tuned(robot: AnyRobot, gait: Gait, name: str, value: object) -> tuple[Gait, str]:
     """Return a gait with one field turned as far as the robot's joints follow, and a sentence if that is not as asked.
 
     Args:
@@ -265,31 +221,11 @@ def tuned(robot: AnyRobot, gait: AnyGait, name: str, value: object) -> tuple[Any
     return fits, f"{knob.label}: the robot cannot follow {knob.said(asked)}; it is {knob.said(reached)} now. {why}"
 
 
-def _tried(robot: AnyRobot, gait: AnyGait, name: str, value: float) -> tuple[AnyGait, str]:
+def _tried(robot: AnyRobot, gait: Gait, name: str, value: float) -> tuple[Gait, str]:
     """Return a gait with one field changed, and why the robot cannot follow it; empty if it can."""
     try:
-        changed = _with(robot, gait, name, value)
+        changed = gait.with_numbers(**{name: value})
         check_limits(robot, changed)
     except (InvalidDesign, NotConverged, OutsideLimits) as error:
         return gait, str(error)
     return changed, ""
-
-
-def _with(robot: AnyRobot, gait: AnyGait, name: str, value: float) -> AnyGait:
-    """Return a gait with one field changed, in SI units."""
-    change: dict[str, Any] = {name: value}
-    if not isinstance(gait, Pattern) or name in ("period", "duty_factor", "height"):
-        return replace(gait, **change)
-    share = value / _pattern(gait)[name] if name in ("strokes", "turned", "lifts", "bends") else 1.0
-    if name in ("strokes", "turned"):
-        return with_strokes(gait, share)
-    if name == "bends":
-        return with_bends(robot, gait, share)
-    if name == "lifts":
-        lifted = [
-            replace(does, lift=share * does.lift) if isinstance(does, FootPath) else does for does in gait.girdles
-        ]
-        return replace(gait, girdles=tuple(lifted))
-    field = "phase" if name == "lag" else name
-    changed: dict[str, Any] = {field: value}
-    return replace(gait, wave=replace(gait.wave, **changed))

@@ -16,7 +16,7 @@ from suchus.fault import Fault
 from suchus.faults import from_table
 from suchus.land import Ground, Lake, Live, Push, Run
 from suchus.land.arenas import BEFORE
-from suchus.motion import LIMBS_BACK, START, AnyGait, Swim, check_limits, straightened
+from suchus.motion import LIMBS_BACK, START, Gait, Swim, check_limits
 from suchus.robots import beside_article
 from suchus.viewer.history import History
 from suchus.viewer.knobs import (
@@ -44,7 +44,7 @@ _CORRELATION = 0.06  # [m]; of the bumps, as on the shelf of arenas
 class Settings:
     """All settings of a live walk."""
 
-    gait: AnyGait
+    gait: Gait
     """The gait, as the sliders set it."""
     spine: bool = True
     """Whether the trunk bends; if not, it is straight as in the article's control group."""
@@ -81,11 +81,12 @@ class Settings:
     broken: tuple[Fault, ...] = ()
     """Faults, each from the beginning of the next walk on."""
 
-    def walked(self, robot: AnyRobot) -> AnyGait:
+    def walked(self, robot: AnyRobot) -> Gait:
         """Return the gait of a robot with the switches of spine and tail."""
         if self.spine and self.tail:
             return self.gait
-        return straightened(robot, self.gait, trunk=not self.spine, tail=not self.tail)
+        still = [*(() if self.spine else ("neck", "trunk")), *(() if self.tail else ("tail",))]
+        return self.gait.straightened(*still) if still else self.gait
 
     @property
     def lake(self) -> Lake | None:
@@ -154,7 +155,7 @@ class Session:
     """
 
     def __init__(
-        self, robot: AnyRobot, gait: AnyGait, *, timestep: float | None = None, swim: Swim | None = None
+        self, robot: AnyRobot, gait: Gait, *, timestep: float | None = None, swim: Swim | None = None
     ) -> None:
         check_limits(robot, gait)
         self.robot = robot
@@ -188,7 +189,7 @@ class Session:
             gait, notice = tuned(self.robot, self.settings.gait, name, value)
             return notice if gait == self.settings.gait else self._change(replace(self.settings, gait=gait)) or notice
 
-    def adopt(self, gait: AnyGait) -> str:
+    def adopt(self, gait: Gait) -> str:
         """Walk on in another gait; return a sentence if the robot cannot."""
         with self._lock:
             return self._change(replace(self.settings, gait=gait))

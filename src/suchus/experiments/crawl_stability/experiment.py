@@ -28,7 +28,7 @@ from suchus.metrics import (
     tail_load_share,
     tilt,
 )
-from suchus.motion import START, AnyGait, FootPath, Gait, Pattern, longest_stroke, longest_strokes, with_strokes
+from suchus.motion import START, FootPath, Gait, Pattern, longest_stroke, longest_strokes, with_strokes
 from suchus.paper import SNAPSHOT_TIMES
 from suchus.replay import replay
 from suchus.verdict import Reading, compared
@@ -117,7 +117,7 @@ class CrawlStability(TwoGroups):
         wanted = float(displacement(record).sel(xyz="x")[0])
         return float(np.interp(wanted, np.maximum.accumulate(reached), strokes))
 
-    def _strode(self, stroke: float) -> AnyGait:
+    def _strode(self, stroke: float) -> Gait:
         return (
             replace(self.control, stroke=stroke)
             if isinstance(self.control, Gait)

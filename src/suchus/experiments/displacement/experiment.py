@@ -21,7 +21,7 @@ from suchus.gaits import CONDITIONS, conditions_of, suits
 from suchus.land import Run, simulate
 from suchus.metrics import cost_of_transport, duty_factor, foot_clearance, heading_change, slip, two_feet_share
 from suchus.metrics import displacement as displacement_of
-from suchus.motion import START, AnyGait, Gait, strides, with_axis_lag, with_bends, with_strokes
+from suchus.motion import START, Gait, strides, with_axis_lag, with_bends, with_strokes
 from suchus.paper import CLAIMS, CYCLES
 from suchus.replay import replay
 from suchus.verdict import Reading
@@ -145,13 +145,13 @@ class Displacement(TwoGroups):
         bends = tuple(b for b in self.shares if suits(self.robot, with_bends(self.robot, self.gait, b))) or (1.0,)
         return strokes, bends, ()
 
-    def _strode(self, gait: AnyGait, stroke: float) -> AnyGait:
+    def _strode(self, gait: Gait, stroke: float) -> Gait:
         return replace(gait, stroke=stroke) if isinstance(gait, Gait) else with_strokes(gait, stroke)
 
-    def _bent(self, gait: AnyGait, bend: float) -> AnyGait:
+    def _bent(self, gait: Gait, bend: float) -> Gait:
         return replace(gait, trunk_bend=bend) if isinstance(gait, Gait) else with_bends(self.robot, gait, bend)
 
-    def _lagging(self, phase: float) -> AnyGait:
+    def _lagging(self, phase: float) -> Gait:
         if isinstance(self.gait, Gait):
             return replace(self.gait, spine_phase=phase)
         return with_axis_lag(self.robot, self.gait, phase)

@@ -21,7 +21,7 @@ from suchus.gaits import GAITS, own_gait
 from suchus.land import Ground, Limp, Locked, Push, Run, simulate
 from suchus.metrics import heading
 from suchus.metrics.coordination import WITHIN, phase_error
-from suchus.motion import START, AnyGait, axis_bends, steerable
+from suchus.motion import START, Gait, axis_bends, steerable
 from suchus.replay import replay
 from suchus.robots import ROBOTS
 
@@ -75,7 +75,7 @@ class Feedback(Experiment):
 
     robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that crawls."""
-    gait: AnyGait = field(default_factory=lambda: GAITS["belly_crawl"])
+    gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
     """Gait of the robot; its limbs must form diagonal pairs."""
     starts: int = 32
     """Random initial limb phases, the same for all laws [-]."""

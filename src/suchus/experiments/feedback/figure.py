@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MultipleLocator
 
 from suchus.figures.style import COLOURS, DIVERGING, captioned, panels, styled
-from suchus.motion import AnyGait
+from suchus.motion import Gait
 
 _LAWS: Final[Mapping[str, tuple[str, str]]] = MappingProxyType(
     {
@@ -86,7 +86,7 @@ def draw_fans(error: xr.DataArray, within: float) -> Figure:
     )
 
 
-def draw_onset(phase: xr.DataArray, gait: AnyGait, start: int = 0) -> Figure:
+def draw_onset(phase: xr.DataArray, gait: Gait, start: int = 0) -> Figure:
     """Draw which feet are meant to stand from one random start, without and with feedback.
 
     Args:

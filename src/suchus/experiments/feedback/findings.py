@@ -7,7 +7,7 @@ import xarray as xr
 
 from suchus.experiment import Measure
 from suchus.metrics.coordination import cycles_until, phase_error
-from suchus.motion import START, AnyGait
+from suchus.motion import START, Gait
 from suchus.verdict import Reading, compared
 
 SHOWN = ("open", "closed", "steered")
@@ -16,7 +16,7 @@ _GROUP = 8
 """Random starts that are counted together, for the spread [-]."""
 
 
-def start_measures(record: xr.Dataset, gait: AnyGait, hold: float, cycles: int) -> dict[str, Measure]:
+def start_measures(record: xr.Dataset, gait: Gait, hold: float, cycles: int) -> dict[str, Measure]:
     """Return how many starts converge, how fast and how well, and what the phases' sharing is worth.
 
     Args:
@@ -52,7 +52,7 @@ def start_measures(record: xr.Dataset, gait: AnyGait, hold: float, cycles: int) 
     return measures
 
 
-def disturbed_measures(record: xr.Dataset, gait: AnyGait, hold: float, after: int) -> dict[str, Measure]:
+def disturbed_measures(record: xr.Dataset, gait: Gait, hold: float, after: int) -> dict[str, Measure]:
     """Return distances and turns after each disturbance, and what the rules make of them.
 
     Args:
@@ -119,7 +119,7 @@ def explain(measures: Mapping[str, float]) -> str:
     )
 
 
-def _loop_measures(part: xr.Dataset, gait: AnyGait) -> dict[str, Measure]:
+def _loop_measures(part: xr.Dataset, gait: Gait) -> dict[str, Measure]:
     """Return how well the loops of spine and tail hold what they control, from the disturbance on."""
     stuck = part.lacking.sel(disturbance="locked_spine")
     first = part.time[0] + gait.period
@@ -144,7 +144,7 @@ def _loop_measures(part: xr.Dataset, gait: AnyGait) -> dict[str, Measure]:
     }
 
 
-def _undisturbed_measures(record: xr.Dataset, gait: AnyGait) -> dict[str, Measure]:
+def _undisturbed_measures(record: xr.Dataset, gait: Gait) -> dict[str, Measure]:
     """Return what the rules do to a robot whose phases are right, over the first two cycles."""
     part = record.sel(time=slice(START - 1e-9, START + 2 * gait.period + 1e-9), disturbance="none")
     change = part.isel(time=-1) - part.isel(time=0)

@@ -25,7 +25,7 @@ from suchus.metrics import (
     loaded,
     sensed_phase,
 )
-from suchus.motion import START, AnyGait, as_table
+from suchus.motion import START, Gait, as_table
 from suchus.paper import CYCLES
 from suchus.replay import replay
 from suchus.robots import ROBOTS
@@ -53,7 +53,7 @@ class GaitDiagram(Experiment):
 
     robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that crawls."""
-    gait: AnyGait = field(default_factory=lambda: GAITS["belly_crawl"])
+    gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
     """The gait that is shown."""
     cycles: int = int(CYCLES)
     """Number of cycles that are shown [-]."""

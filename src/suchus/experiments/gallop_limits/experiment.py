@@ -20,7 +20,7 @@ from suchus.figures import captioned
 from suchus.gaits import GAITS
 from suchus.land import Run, simulate
 from suchus.metrics import between, displacement, flight_share
-from suchus.motion import START, AnyGait, Gait
+from suchus.motion import START, Gait
 from suchus.replay import replay
 from suchus.robots import ROBOTS
 from suchus.verdict import Reading
@@ -84,7 +84,7 @@ class GallopLimits(Experiment):
         """Bound, trot and walk with every servo on the map."""
         searched = [("bound", one) for one in self.bounds] + [("trot", one) for one in self.trots]
         kinds = [*(kind for kind, _ in searched), *("walk" for _ in self.walks)]
-        gaits: list[AnyGait] = [*(one.table(self.robot) for _, one in searched), *self.walks]
+        gaits: list[Gait] = [*(one.table(self.robot) for _, one in searched), *self.walks]
         cells = [(torque, speed) for torque in self.torques for speed in self.speeds]
         robots = [self._with(torque, speed) for torque, speed in cells]
         runs = [Run(robot=robot, gait=gait, noise=self.noise, label=gait.name) for robot in robots for gait in gaits]

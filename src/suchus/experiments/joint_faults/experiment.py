@@ -41,7 +41,7 @@ from suchus.metrics import (
     path_length,
     whole,
 )
-from suchus.motion import START, AngleTable, AnyGait, Gait, straightened, with_bends, with_strokes
+from suchus.motion import START, AngleTable, Gait, straightened, with_bends, with_strokes
 from suchus.paper import CYCLES
 from suchus.replay import replay
 from suchus.robots import ROBOTS
@@ -70,11 +70,11 @@ class JointFaults(Experiment):
 
     robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot whose joints fail."""
-    gait: AnyGait = field(default_factory=lambda: GAITS["belly_crawl"])
+    gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
     """The crawl with spine and tail."""
-    control: AnyGait = field(default_factory=lambda: GAITS["limbs_only"])
+    control: Gait = field(default_factory=lambda: GAITS["limbs_only"])
     """The crawl of the control group, its tail lying still; its legs follow those of ``gait``."""
-    lifted: AnyGait = field(default_factory=lambda: GAITS["limbs_tail_lifted"])
+    lifted: Gait = field(default_factory=lambda: GAITS["limbs_tail_lifted"])
     """The control group with its tail in the air, for comparison; its legs follow those of ``gait``."""
     cycles: int = int(CYCLES)
     """Number of cycles that are measured [-]."""
@@ -155,7 +155,7 @@ class JointFaults(Experiment):
     def _duration(self) -> float:
         return START + self.cycles * self.gait.period
 
-    def _varied(self) -> list[tuple[dict[str, AnyGait], float]]:
+    def _varied(self) -> list[tuple[dict[str, Gait], float]]:
         """Return the gaits of both conditions and the friction scale of each variation."""
         if not isinstance(self.gait, Gait):
             return self._varied_patterns()
@@ -173,7 +173,7 @@ class JointFaults(Experiment):
             varied.append((self._arms(gait), scale))
         return varied
 
-    def _varied_patterns(self) -> list[tuple[dict[str, AnyGait], float]]:
+    def _varied_patterns(self) -> list[tuple[dict[str, Gait], float]]:
         """Return the same for a gait of any body, of which all strokes and all bends vary together."""
         points = qmc.LatinHypercube(3, rng=self.seed).random(max(self.variations - 1, 1))
         varied = [(self._arms(self.gait), 1.0)]
@@ -199,18 +199,18 @@ class JointFaults(Experiment):
         """Whether the control group can lift its tail."""
         return "limbs_tail_lifted" in conditions_of(self.robot, self.gait, self.control)
 
-    def _arms(self, gait: AnyGait) -> dict[str, AnyGait]:
+    def _arms(self, gait: Gait) -> dict[str, Gait]:
         """Return the gaits of all conditions with the legs of one gait."""
         if not isinstance(gait, Gait):
             return {"coordinated": gait, "limbs_only": straightened(self.robot, gait, name="limbs_only")}
-        limbs: dict[str, AnyGait] = {
+        limbs: dict[str, Gait] = {
             arm: replace(gait, name=other.name, **{name: getattr(other, name) for name in _TRUNK})
             for arm, other in (("limbs_only", self.control), ("limbs_tail_lifted", self.lifted))
         }
-        arms: dict[str, AnyGait] = {"coordinated": gait}
+        arms: dict[str, Gait] = {"coordinated": gait}
         return arms | limbs
 
-    def _broken(self, gait: AnyGait, joint: str) -> tuple[Fault, ...]:
+    def _broken(self, gait: Gait, joint: str) -> tuple[Fault, ...]:
         """Return the faults of a joint in the judged reading."""
         return joint_failure(self.robot, gait, joint, self.kind, self.legs, hold=self.hold)
 
@@ -335,7 +335,7 @@ class JointFaults(Experiment):
         joints, steers = self._failing, not isinstance(self.gait, AngleTable)
         varied, runs = self._varied(), []
         for i, (gaits, scale) in enumerate(varied):
-            cases: list[tuple[AnyGait, tuple[Fault, ...], Control]] = []
+            cases: list[tuple[Gait, tuple[Fault, ...], Control]] = []
             if steers:
                 ours = gaits["coordinated"]
                 control = Coordinated(heading=HeadingRule()).suited(self.robot, ours)

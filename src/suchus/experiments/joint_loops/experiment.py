@@ -20,7 +20,7 @@ from suchus.gaits import GAITS, own_gait
 from suchus.land import Run, simulate
 from suchus.land.stand import on_stand
 from suchus.metrics import between, displacement, whole
-from suchus.motion import START, AnyGait
+from suchus.motion import START, Gait
 from suchus.paper import CYCLES
 from suchus.robots import ROBOTS
 from suchus.verdict import Reading, compared
@@ -45,7 +45,7 @@ class JointLoops(Experiment):
 
     robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot whose servos are tested."""
-    gait: AnyGait = field(default_factory=lambda: GAITS["belly_crawl"])
+    gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
     """The crawl whose torque is the load."""
     joint: str = "LH_pitch"
     """The servo that is tested on the stand."""

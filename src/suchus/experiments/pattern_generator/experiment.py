@@ -21,7 +21,7 @@ from suchus.experiments.pattern_generator.figure import draw_land, draw_locks, d
 from suchus.gaits import GAITS
 from suchus.land import Run, simulate
 from suchus.metrics import displacement, heading_change
-from suchus.motion import START, AnyGait
+from suchus.motion import START, Gait
 from suchus.replay import replay
 from suchus.robots import ROBOTS
 from suchus.verdict import Reading, compared
@@ -49,7 +49,7 @@ class PatternGeneratorExperiment(Experiment):
 
     robot: AnyRobot = field(default_factory=lambda: ROBOTS["salamander"])
     """The robot, with limbs and an axis that bends sideways."""
-    gait: AnyGait = field(default_factory=lambda: GAITS["salamander_walk"])
+    gait: Gait = field(default_factory=lambda: GAITS["salamander_walk"])
     """Gait whose foot paths, bends and period the oscillators drive."""
     drives: tuple[float, ...] = (1.0, 1.5, 2.0, 2.5, 3.0, 3.25, 3.5, 4.0, 4.5, 5.0)
     """Drives of the sweep [-]."""
@@ -73,7 +73,7 @@ class PatternGeneratorExperiment(Experiment):
     """Duration over which the drive rises from 1 to 5 and falls again, in periods of the gait [-]."""
     swimmer: AnyRobot = field(default_factory=lambda: ROBOTS["floating_caiman"])
     """The robot that goes from the water onto the land by one drive, ``walk``; it must float."""
-    swimmer_gait: AnyGait = field(default_factory=lambda: GAITS["belly_crawl"])
+    swimmer_gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
     """Gait whose foot paths, bends and period its oscillators drive."""
     slope: float = radians(5)
     """Slope of the shore [rad]."""

@@ -21,7 +21,7 @@ from suchus.kinematics.mass import GRAVITY
 from suchus.kinematics.tree import frames
 from suchus.land import Run, simulate
 from suchus.metrics import between, cost_of_transport, displacement, duty_factor, roll_peak_to_peak
-from suchus.motion import START, AnyGait, hip_height
+from suchus.motion import START, Gait, hip_height
 from suchus.paper.animals import ANIMAL
 from suchus.replay import replay
 from suchus.robots import ROBOTS
@@ -48,7 +48,7 @@ class SpeedRange(Experiment):
 
     robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that walks."""
-    gaits: tuple[AnyGait, ...] = field(
+    gaits: tuple[Gait, ...] = field(
         default_factory=lambda: tuple(GAITS[n] for n in ("belly_crawl", "low_crawl", "semi_erect", "high_walk"))
     )
     """The gaits that it walks in."""
@@ -103,7 +103,7 @@ class SpeedRange(Experiment):
             fastest.append(found[0][1])
         return self._table(np.array(rows)), fastest
 
-    def _walked(self, gait: AnyGait, slower: Sequence[float], progress: Any) -> tuple[np.ndarray, xr.Dataset]:
+    def _walked(self, gait: Gait, slower: Sequence[float], progress: Any) -> tuple[np.ndarray, xr.Dataset]:
         """Return ``_UNITS`` at some cycle times of a gait, shape (servo_model, slower, unit), and its fastest walk."""
         robots = (self.robot, _limited(self.robot))
         runs = [Run(robot=robot, gait=replace(gait, period=gait.period * s)) for robot in robots for s in slower]

@@ -17,7 +17,7 @@ from suchus.figures.gait_lines import gait_lines
 from suchus.gaits import GAITS
 from suchus.land import Run, simulate
 from suchus.metrics import between, heading_change
-from suchus.motion import START, AnyGait, Gait, steerable, strides, trunk_amplitude
+from suchus.motion import START, Gait, steerable, strides, trunk_amplitude
 from suchus.replay import replay
 from suchus.robots import ROBOTS
 from suchus.verdict import Reading
@@ -39,7 +39,7 @@ class Turning(Experiment):
 
     robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that turns."""
-    gaits: tuple[AnyGait, ...] = field(
+    gaits: tuple[Gait, ...] = field(
         default_factory=lambda: tuple(GAITS[n] for n in ("low_crawl", "semi_erect", "high_walk"))
     )
     """The gaits that it walks in."""
@@ -106,7 +106,7 @@ class Turning(Experiment):
         )
         return {"turning_replay.html": Replay(caption=caption, make=page)}
 
-    def _of(self, gait: AnyGait, progress: Any) -> tuple[xr.Dataset, tuple[xr.Dataset, xr.Dataset]]:
+    def _of(self, gait: Gait, progress: Any) -> tuple[xr.Dataset, tuple[xr.Dataset, xr.Dataset]]:
         """Return the curvatures of one gait, and its tightest turn and first circle as records."""
         room = self._room(gait)
         bent = [Walking(bend=min(bend, room)) for bend in self.bends]
@@ -144,20 +144,20 @@ class Turning(Experiment):
             data[name].attrs["units"] = unit
         return data, (record.isel(run=b + int(found[b:].argmax())), circled.isel(run=0))
 
-    def _room(self, gait: AnyGait) -> float:
+    def _room(self, gait: Gait) -> float:
         """Return how far the trunk can bend besides what the gait asks of it [rad]."""
         yaw = list(layout(self.robot).trunk_yaw)
         bent = trunk_amplitude(self.robot, steerable(gait, self.name()))
         return max(float(np.abs(servo_ranges(self.robot)[yaw]).min(axis=1, initial=np.inf).sum()) - bent, 0.0)
 
-    def _end(self, gait: AnyGait) -> float:
+    def _end(self, gait: Gait) -> float:
         return START + (self.cycles + 1) * gait.period
 
-    def _walk(self, gait: AnyGait, controls: Sequence[Walking], progress: Any) -> xr.Dataset:
+    def _walk(self, gait: Gait, controls: Sequence[Walking], progress: Any) -> xr.Dataset:
         runs = [Run(robot=self.robot, gait=gait, control=control) for control in controls]
         return simulate(runs, duration=self._end(gait), timestep=self.timestep, progress=progress)
 
-    def _curvatures(self, gait: AnyGait, record: xr.Dataset) -> np.ndarray:
+    def _curvatures(self, gait: Gait, record: xr.Dataset) -> np.ndarray:
         """Return the curvature of each path [1/m]."""
         end = self._end(gait)
         part = between(record, START + gait.period, end)

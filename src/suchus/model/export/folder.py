@@ -13,7 +13,7 @@ from suchus.model.build import TIMESTEP
 from suchus.model.export.mjcf import mjcf
 from suchus.model.export.urdf import BALL, ball, unsaid, urdf
 from suchus.model.export.usd import scene, unsaid_in_usd, usd
-from suchus.motion import AnyGait, check_limits
+from suchus.motion import Gait, check_limits
 from suchus.record import digest, new_folder, versions
 
 Format = Literal["mjcf", "urdf", "usd"]
@@ -25,7 +25,7 @@ Its numbers come from robot.toml; keep this note with copies.
 """
 
 
-def export(robot: AnyRobot, gait: AnyGait, folder: Path, kind: Format, *, timestep: float = TIMESTEP) -> Path:
+def export(robot: AnyRobot, gait: Gait, folder: Path, kind: Format, *, timestep: float = TIMESTEP) -> Path:
     """Write a robot for another tool and return the folder, which appears whole or not at all.
 
     Args:
@@ -62,13 +62,13 @@ def export(robot: AnyRobot, gait: AnyGait, folder: Path, kind: Format, *, timest
     return folder
 
 
-def _texts(robot: AnyRobot, gait: AnyGait, kind: Format, timestep: float) -> dict[str, str]:
+def _texts(robot: AnyRobot, gait: Gait, kind: Format, timestep: float) -> dict[str, str]:
     if kind == "mjcf":
         return _mjcf(robot, gait, timestep)
     return _urdf(robot) if kind == "urdf" else _usd(robot, gait)
 
 
-def _mjcf(robot: AnyRobot, gait: AnyGait, timestep: float) -> dict[str, str]:
+def _mjcf(robot: AnyRobot, gait: Gait, timestep: float) -> dict[str, str]:
     model, scene = mjcf(robot, gait, timestep=timestep)
     files = {
         f"{robot.name}.xml": "the robot: bodies, joints, tendon, servos, sensors, keyframe `home`",
@@ -101,7 +101,7 @@ def _urdf(robot: AnyRobot) -> dict[str, str]:
     return {f"{robot.name}.urdf": urdf(robot), BALL: ball(), "README.md": text}
 
 
-def _usd(robot: AnyRobot, gait: AnyGait) -> dict[str, str]:
+def _usd(robot: AnyRobot, gait: Gait) -> dict[str, str]:
     name = f"{robot.name}.usda"
     files = {
         name: "the robot: bodies, joints with limits and drives, shapes, frames",

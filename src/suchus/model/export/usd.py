@@ -14,7 +14,7 @@ from suchus.model.export.unsaid import filled
 from suchus.model.export.urdf import ball
 from suchus.model.names import IMU, sites
 from suchus.model.standing import standing
-from suchus.motion import AnyGait
+from suchus.motion import Gait
 
 LINK_MASS, LINK_INERTIA = 1e-6, 1e-9
 """Of the link between two joints in one point [kg], [kg m2]: in USD a mass of zero means that it is not known."""
@@ -49,7 +49,7 @@ class _Link(NamedTuple):
     turn: Rotation
 
 
-def usd(robot: AnyRobot, gait: AnyGait) -> str:
+def usd(robot: AnyRobot, gait: Gait) -> str:
     """Return a robot as USD text, all joints at zero, the lowest part touching the ground.
 
     Metres, kilograms, z up; bodies lie side by side below the robot, their places in the world in full precision.
