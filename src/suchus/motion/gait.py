@@ -232,6 +232,11 @@ class Gait:
             return any(bend.turn == "pitch" and bend.part == "tail" for bend in self.axis)
         return not self.curves
 
+    @property
+    def erect(self) -> bool:
+        """Whether limbs stand erect below their hips, elbows behind and knees ahead; see ``FootPath.swivel``."""
+        return any(isinstance(limb, FootPath) and abs(limb.swivel) > pi / 4 for limb in self.limbs)
+
     def needs_steering(self, what: str) -> None:
         """Refuse a gait whose strokes, heights and bends cannot be changed while it goes.
 

@@ -251,6 +251,25 @@ class Movement:
                 away[..., i] = np.maximum(np.maximum(near - far, far - most), 0.0)
         return away
 
+    def foot_places(self, limbs: Float[np.ndarray, "*batch limb"]) -> Float[np.ndarray, "*batch limb 3"]:
+        """Return the intended foot centres, each in the D-H base frame of its limb (outward, forward, down) [m].
+
+        Args:
+            limbs: phases of the limbs [cycle].
+
+        Raises:
+            OutsideLimits: a gait has limbs without a foot path.
+        """
+        places = []
+        for i, (limb, numbers) in enumerate(zip(self.place.limbs, self._paths, strict=True)):
+            if not isinstance(numbers, _Path):
+                raise OutsideLimits(
+                    f"gait {self.gaits[0].name!r} has no path for the foot of {limb.name}: choose a gait of foot paths."
+                )
+            ahead, outward, down = self._foot(i, numbers, limbs[..., i], None)
+            places.append(np.stack([limb.girdle.aside + outward, ahead, down], axis=-1))
+        return np.stack(places, axis=-2)
+
     def _foot(
         self, i: int, numbers: "_Path", phase: np.ndarray, steer: Steer | None
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -17,6 +17,7 @@ from suchus.kinematics import leg as leg_kinematics
 from suchus.kinematics import spine
 from suchus.kinematics.body import from_leg_frame, landmarks, tail_points, to_leg_frame
 from suchus.kinematics.mass import centre_of_mass
+from suchus.motion.forms import GaitInMetres, limb_reaches
 from suchus.motion.gait import Gait
 
 CRAWL_PITCH = (radians(-30), radians(45))
@@ -55,9 +56,10 @@ def reached(robot: Crocodile, gait: Gait, *, standing: bool, count: int, seed: i
         seed: of the drawing.
     """
     low, high = _box(robot, standing)
+    metres = GaitInMetres.of(gait, limb_reaches(robot))
     shares = qmc.Sobol(len(low), rng=seed).random_base2(max(count - 1, 1).bit_length())
     drawn = low + (high - low) * shares
-    parts = [_kept(robot, gait, drawn[at : at + _CHUNK], standing) for at in range(0, len(drawn), _CHUNK)]
+    parts = [_kept(robot, metres, drawn[at : at + _CHUNK], standing) for at in range(0, len(drawn), _CHUNK)]
     snout, angles, pelvis = (np.concatenate(fields) for fields in zip(*parts, strict=True))
     return Reached(snout, angles, pelvis, len(drawn))
 
@@ -72,7 +74,7 @@ def _box(robot: Crocodile, standing: bool) -> tuple[np.ndarray, np.ndarray]:
     return low, high
 
 
-def _kept(robot: Crocodile, gait: Gait, drawn: np.ndarray, standing: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _kept(robot: Crocodile, gait: GaitInMetres, drawn: np.ndarray, standing: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return snout, angles and pelvis of the configurations of a chunk that can be."""
     pelvis, trunk = drawn[:, :3], drawn[:, 3:]
     angles = np.zeros((len(drawn), len(joint_names(robot))))

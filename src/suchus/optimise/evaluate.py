@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from suchus.design import with_values
 from suchus.control import Runs
+from suchus.design import with_values
 from suchus.design.scale import control_period
 from suchus.errors import SuchusError
 from suchus.land import Run, simulate

@@ -22,7 +22,7 @@ from suchus.kinematics.mass import cantilever_torque
 from suchus.land import Run, simulate
 from suchus.land.push_search import smallest_pushes
 from suchus.metrics import lead, reach, static_margin
-from suchus.motion import START, Gait
+from suchus.motion import START, Gait, hip_height
 from suchus.motion.rising import LEAD, stretched, tallest
 from suchus.replay import replay
 from suchus.robots import ROBOTS
@@ -134,8 +134,8 @@ class BipedalReach(Experiment):
             "stretched": stretched(self.robot),
             "cantilever": cantilever_torque(self.robot),
             "pitch_torque": self.robot.spine.pitch_servo.torque,
-            "hip_height": self.gait.hip_height,
-            "hip_height_plausible": plausible["hip_height"],
+            "hip_height": hip_height(self.robot, self.gait),
+            "hip_height_plausible": plausible["height"] * length(self.robot, "leg"),
             "up": _UP * stretched(self.robot),
         }
 
@@ -252,7 +252,8 @@ class BipedalReach(Experiment):
         """Return how crawling and standing reach change with the lengths of legs, spine and head."""
         robots = [self.robot, *(lengthened(self.robot, part, 1 + self.longer) for part in PARTS)]
         stood = self._settled(robots, [LEAD] * len(robots), lambda share: progress(0.5 * share))
-        crawls = [(self.robot, replace(self.gait, hip_height=hips)) for hips in self.hips]
+        leg = length(self.robot, "leg")
+        crawls = [(self.robot, self.gait.with_numbers(height=hips / leg)) for hips in self.hips]
         crawls += [(robot, fitted(self.gait, robot, self.robot)) for robot in robots]
         runs = [Run(robot=robot, gait=gait) for robot, gait in crawls]
         record = simulate(

@@ -1,6 +1,5 @@
 """Who else stands up: robots with another forebody, other servos, longer parts; and how, at once and for good."""
 
-from dataclasses import replace
 from operator import attrgetter
 
 import numpy as np
@@ -48,10 +47,9 @@ def length(robot: Crocodile, part: str) -> float:
 
 
 def fitted(gait: Gait, robot: Crocodile, original: Crocodile) -> Gait:
-    """Return the gait with its heights and reaches in proportion to a robot's legs."""
+    """Return the gait with its heights and reaches in proportion to a robot's legs, its strokes and lifts as before."""
     factor = length(robot, "leg") / length(original, "leg")
-    sizes = {name: factor * getattr(gait, name) for name in ("hip_height", "front_reach", "hind_reach")}
-    return replace(gait, **sizes)
+    return gait.with_numbers(stroke=gait.number("stroke") / factor, lift=gait.number("lift") / factor)
 
 
 def stand_soon(robot: Crocodile, ahead: float, balance: Balance | None) -> Standing | None:

@@ -28,7 +28,7 @@ from suchus.metrics import (
     tail_load_share,
     tilt,
 )
-from suchus.motion import START, FootPath, Gait, Pattern, longest_stroke, longest_strokes, with_strokes
+from suchus.motion import START, FootPath, longest_strokes
 from suchus.paper import SNAPSHOT_TIMES
 from suchus.replay import replay
 from suchus.verdict import Reading, compared
@@ -58,6 +58,9 @@ _PARTS = (
 """How the parts are called, their change, and what is said further of one more."""
 
 
+_LONG = 0.5  # [m]; of a body whose strokes are told to a millimetre
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CrawlStability(TwoGroups):
     """The height of the centre of mass over time, for every combination of spine and tail.
@@ -83,7 +86,7 @@ class CrawlStability(TwoGroups):
         runs = [Run(robot=self.robot, gait=gait, label=name) for name, gait in arms.items()]
         record = simulate(runs, duration=end, progress=staged(progress, "conditions", 0.0, 0.2))
         share = self._equal_stroke(record, end, staged(progress, "equal displacement", 0.2, 0.4))
-        equal = Run(robot=self.robot, gait=self._strode(share), label=_EQUAL)
+        equal = Run(robot=self.robot, gait=self.control.strode(share), label=_EQUAL)
         record = simulate([*runs, equal], duration=end, progress=staged(progress, "all conditions", 0.4, 0.6))
         record = record.merge(self._repeated(runs, end, staged(progress, "repeats", 0.6, 1.0)))
         record.attrs["equal_stroke"] = share * self._stroke()
@@ -105,33 +108,19 @@ class CrawlStability(TwoGroups):
     def _equal_stroke(self, record: xr.Dataset, end: float, progress: Any) -> float:
         """Return the stroke with which the legs alone get as far as with spine and tail, or their longest.
 
-        In metres for a gait of the article's kind; else in strokes of the gait.
+        In strokes of the gait.
         """
-        if isinstance(self.control, Gait):
-            strokes = np.linspace(self.control.stroke, longest_stroke(self.robot, self.control), 10)
-        else:
-            strokes = np.linspace(1.0, longest_strokes(self.robot, self.control), 10)
-        runs = [Run(robot=self.robot, gait=self._strode(float(s))) for s in strokes]
+        strokes = np.linspace(1.0, longest_strokes(self.robot, self.control), 10)
+        runs = [Run(robot=self.robot, gait=self.control.strode(float(s))) for s in strokes]
         tried = simulate(runs, duration=end, timestep=coarse_step(self.robot), every=100, progress=progress)
         reached = displacement(tried).sel(xyz="x").values
         wanted = float(displacement(record).sel(xyz="x")[0])
         return float(np.interp(wanted, np.maximum.accumulate(reached), strokes))
 
-    def _strode(self, stroke: float) -> Gait:
-        return (
-            replace(self.control, stroke=stroke)
-            if isinstance(self.control, Gait)
-            else with_strokes(self.control, stroke)
-        )
-
     def _stroke(self) -> float:
-        """Return the unit of strokes [m]: a metre, or the longest half stroke of the gait; 0 where it has none."""
-        if isinstance(self.control, Gait):
-            return 1.0
-        if not isinstance(self.control, Pattern):
-            return 0.0
-        girdles = zip(layout(self.robot).robot.girdles, self.control.girdles, strict=True)
-        return max((g.limb.reach * abs(does.stroke) for g, does in girdles if isinstance(does, FootPath)), default=0.0)
+        """Return the longest half stroke of the gait's foot paths; 0 where it has none [m]."""
+        girdles = zip(layout(self.robot).robot.girdles, self.control.limbs, strict=False)
+        return max((g.limb.reach * abs(path.stroke) for g, path in girdles if isinstance(path, FootPath)), default=0.0)
 
     def _repeated(self, runs: list[Run], end: float, progress: Any) -> xr.Dataset:
         """Return the fluctuation of every condition in repeats with noise and another friction."""
@@ -200,8 +189,8 @@ class CrawlStability(TwoGroups):
             if "com_height_pp_change_tail_lifted" in m
             else f"Spine and tail change it by {m['com_height_pp_change']:+.0%}, and against the same legs with "
         )
-        usual = Reading(self.control.stroke if isinstance(self.control, Gait) else self._stroke())
-        form = "mm.0f" if isinstance(self.control, Gait) else "mm.1f"
+        usual = Reading(self._stroke())
+        form = "mm.0f" if self.robot.length > _LONG else "mm.1f"
         equal = (
             f"strokes of {m['stroke_equal_displacement']:{form}} instead of {usual:{form}} mm"
             if usual > 0

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import partial
-from math import degrees
+from math import degrees, radians
 from typing import Any
 
 import numpy as np
@@ -17,16 +17,17 @@ from suchus.experiments._two_groups import TwoGroups
 from suchus.experiments.displacement.figure import draw_crawls, draw_map
 from suchus.figures import COLOURS, LINES, captioned, panels, styled
 from suchus.figures.timeseries import draw_band, draw_lines, mark_cycles, mark_printed
-from suchus.gaits import CONDITIONS, conditions_of, suits
+from suchus.gaits import CONDITIONS, conditions_of
 from suchus.land import Run, simulate
 from suchus.metrics import cost_of_transport, duty_factor, foot_clearance, heading_change, slip, two_feet_share
 from suchus.metrics import displacement as displacement_of
-from suchus.motion import START, Gait, strides, with_axis_lag, with_bends, with_strokes
+from suchus.motion import START, FootPath, suits
 from suchus.paper import CLAIMS, CYCLES
 from suchus.replay import replay
 from suchus.verdict import Reading
 
 _GROUPS = CONDITIONS[:2]
+_LONG = 0.5  # [m]; of a body whose displacement is told to a centimetre
 _LEAST = 0.00198  # [body length]; below this displacement a ratio means nothing
 
 
@@ -37,35 +38,33 @@ class Displacement(TwoGroups):
     Displacement is forward, along the direction that the body faced at the start, and that of the centre of mass from
     the beginning of the first cycle to the end of the last. The control group's tail lies still on the ground; with its
     tail in the air it is simulated beside. Of another body those conditions are run that its parts make possible, and
-    its map is over shares of its own strokes and bends.
+    of the map as much as its limbs reach.
     """
 
     title = "How far does it crawl, with spine and tail and without?"
     shows = "Section IV.B, Fig. 16"
     needs = ("limbs", "axis")
 
-    strokes: tuple[float, ...] = (0.01, 0.02, 0.027, 0.04, 0.055, 0.07, 0.085)
-    """Half strokes of the legs on the map [m]."""
-    bends: tuple[float, ...] = (0.0, 0.3, 0.6, 0.9, 1.2217304763960306, 1.5)
-    """Amplitudes of the trunk's bend on the map [rad]."""
+    strokes: tuple[float, ...] = tuple(metres / 0.027 for metres in (0.01, 0.02, 0.027, 0.04, 0.055, 0.07, 0.085))
+    """Strokes of the limbs on the map, over those of the gait [-]; of the crawl from 10 to 85 mm."""
+    bends: tuple[float, ...] = tuple(angle / radians(70) for angle in (0.0, 0.3, 0.6, 0.9, radians(70), 1.5))
+    """Bends of the axis on the map, over those of the gait [-]; of the crawl's trunk up to 1.5 rad."""
     pitches: tuple[float, ...] = (0.1, 0.15, 0.2, 0.25, 0.3)
     """Steady angles of the tail's pitch joint, down positive, over its plausible range [rad]."""
     phases: tuple[float, ...] = (-0.5, -0.375, -0.25, -0.15, -0.075, 0.0, 0.075, 0.15, 0.25, 0.375, 0.5)
-    """Phase lags of the trunk's bend behind the legs, for the curve [cycle]."""
-    shares: tuple[float, ...] = (0.25, 0.5, 0.75, 1.0, 1.25, 1.5)
-    """Strokes and bends on the map of a gait that is not of the article's kind, over its own [-]."""
+    """Phase lags of the axis behind the limbs, besides that of the gait, for the curve [cycle]."""
 
     def check(self, check: Checks) -> None:
         """Check what the map is drawn over."""
-        check.rising("strokes", 0.0, 0.3, "m")
-        check.rising("bends", 0.0, 3.0, "rad")
+        check.rising("strokes", 0.0, 20.0, "")
+        check.rising("bends", 0.0, 20.0, "")
         check.rising("pitches", -1.0, 1.0, "rad")
         check.rising("phases", -1.0, 1.0, "cycle")
-        check.rising("shares", 0.0, 10.0, "")
 
     def quick(self) -> "Displacement":
         """One cycle, two repeats, four corners of the map."""
-        corners = replace(self, strokes=(0.02, 0.06), bends=(0.6, 1.2), pitches=(0.1, 0.3), shares=(0.5, 1.0))
+        strokes, bends = (0.02 / 0.027, 0.06 / 0.027), (0.6 / radians(70), 1.2 / radians(70))
+        corners = replace(self, strokes=strokes, bends=bends, pitches=(0.1, 0.3))
         return replace(corners, cycles=1, repeats=2, phases=(0.0, 0.5))
 
     def simulate(self, progress: Progress = silent) -> Simulated:
@@ -99,12 +98,10 @@ class Displacement(TwoGroups):
     def _mapped(self, duration: float, progress: Any) -> xr.Dataset:
         """Return the displacement over stroke and bend, over the tail's pitch, and over the trunk's phase lag [m]."""
         strokes, bends, pitches = self._grid()
-        limbs = [self._strode(self.control, s) for s in strokes]
-        bent = [self._bent(self._strode(self.gait, s), b) for s in strokes for b in bends]
-        pitched = [
-            replace(gait, tail_pitch=p) for gait in (self.gait, self.control) for p in pitches if isinstance(gait, Gait)
-        ]
-        lagging = [self._lagging(p) for p in self.phases]
+        limbs = [self.control.strode(s) for s in strokes]
+        bent = [self.gait.strode(s).bent(b) for s in strokes for b in bends]
+        pitched = [gait.lifted(p) for gait in (self.gait, self.control) for p in pitches]
+        lagging = [self.gait.lagged(p) for p in self.phases]
         runs = [Run(robot=self.robot, gait=gait) for gait in (*limbs, *bent, *pitched, *lagging)]
         reached = _forward(
             simulate(runs, duration=duration, timestep=coarse_step(self.robot), every=100, progress=progress)
@@ -126,10 +123,9 @@ class Displacement(TwoGroups):
                 "late": list(self.phases),
             },
         )
-        article = isinstance(self.gait, Gait)
         for name, unit, what in (
-            ("stroke", *(("m", "half stroke of the legs") if article else ("1", "strokes over those of the gait"))),
-            ("bend", *(("rad", "bend of the trunk") if article else ("1", "bends over those of the gait"))),
+            ("stroke", "1", "strokes over those of the gait"),
+            ("bend", "1", "bends over those of the gait"),
             ("pitch", "rad", "pitch of the tail, down positive"),
             ("late", "1", "phase lag of the trunk's bend, in cycles"),
         ):
@@ -138,23 +134,11 @@ class Displacement(TwoGroups):
 
     def _grid(self) -> tuple[tuple[float, ...], tuple[float, ...], tuple[float, ...]]:
         """Return strokes, bends and pitches of the tail on the map, as far as the body can follow them."""
-        if isinstance(self.gait, Gait) and isinstance(self.control, Gait):
-            return self.strokes, self.bends, self.pitches if layout(self.robot).tail_pitch else ()
-        strokes = self.shares if strides(self.gait) else (1.0,)
-        strokes = tuple(s for s in strokes if suits(self.robot, with_strokes(self.gait, s))) or (1.0,)
-        bends = tuple(b for b in self.shares if suits(self.robot, with_bends(self.robot, self.gait, b))) or (1.0,)
-        return strokes, bends, ()
-
-    def _strode(self, gait: Gait, stroke: float) -> Gait:
-        return replace(gait, stroke=stroke) if isinstance(gait, Gait) else with_strokes(gait, stroke)
-
-    def _bent(self, gait: Gait, bend: float) -> Gait:
-        return replace(gait, trunk_bend=bend) if isinstance(gait, Gait) else with_bends(self.robot, gait, bend)
-
-    def _lagging(self, phase: float) -> Gait:
-        if isinstance(self.gait, Gait):
-            return replace(self.gait, spine_phase=phase)
-        return with_axis_lag(self.robot, self.gait, phase)
+        strides, lifts = self.gait.has("strokes"), self.gait.has("steering") and layout(self.robot).tail_pitch
+        strokes = tuple(s for s in self.strokes if suits(self.robot, self.gait.strode(s))) if strides else ()
+        bends = tuple(b for b in self.bends if suits(self.robot, self.gait.bent(b)))
+        pitches = tuple(p for p in self.pitches if suits(self.robot, self.gait.lifted(p))) if lifts else ()
+        return strokes or (1.0,), bends or (1.0,), pitches
 
     def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
         """Return displacements with their spread, what the feet did, and what each part adds."""
@@ -208,7 +192,7 @@ class Displacement(TwoGroups):
             if m["forward_antiphase"] < 0
             else f"leaves {m['forward_antiphase'] / m['forward_coordinated']:.0%} of the displacement"
         )
-        form = ".2f" if isinstance(self.gait, Gait) else ".3g"  # another body may be as small as a hand
+        form = ".2f" if self.robot.length > _LONG else ".3g"  # a body may be as small as a hand
         parts = [f"the swing of the trunk makes {m['gain_spine_swing']:{form}} m"] if "gain_spine_swing" in m else []
         if "gain_tail_swing" in m:
             lies = f"{_adds(m['gain_tail_contact'])} by lying on the ground and " if "gain_tail_contact" in m else ""
@@ -306,22 +290,27 @@ class Displacement(TwoGroups):
             f"Bands: repeats with noise on the servos and {self.friction_spread:.0%} of spread in the friction.",
         )
 
+    def _stroke(self) -> float:
+        """Return half the distance that a front foot moves back in stance [m]."""
+        girdles = zip(layout(self.robot).robot.girdles, self.gait.limbs, strict=True)
+        return next((girdle.limb.reach * limb.stroke for girdle, limb in girdles if isinstance(limb, FootPath)), 0.0)
+
     def _article(self) -> bool:
         """Whether the article's numbers are for this robot and its gaits."""
         shelf = type(self)()
         return all(getattr(self, name) == getattr(shelf, name) for name in ("robot", "gait", "control"))
 
     def _drawn_map(self, record: xr.Dataset) -> Any:
-        pitched, article = record.sizes["pitch"] > 0, isinstance(self.gait, Gait)
+        pitched, absolute = record.sizes["pitch"] > 0, self.gait.has("foot paths") and self.gait.number("trunk_bend") > 0
         with styled(axes__grid=False):
             ratios = [1.35, 1, 1] if pitched else [1.35, 1]
             figure, axes = panels(1, len(ratios), width=12.5, height=4.3, width_ratios=ratios)
             ratio, star = _ratio(record), (1.0, 1.0)
-            if isinstance(self.gait, Gait):
-                ratio = ratio.assign_coords(stroke=record.stroke * 1000, bend=np.degrees(record.bend))
+            if absolute:
+                star = 1000 * self._stroke(), degrees(self.gait.number("trunk_bend"))
+                ratio = ratio.assign_coords(stroke=record.stroke * star[0], bend=record.bend * star[1])
                 ratio.stroke.attrs.update(units="mm", long_name="half stroke of the legs")
                 ratio.bend.attrs.update(units="deg", long_name="bend of the trunk")
-                star = (1000 * self.gait.stroke, degrees(self.gait.trunk_bend))
             printed = CLAIMS["displacement_ratio"].value if self._article() else None
             ax = axes[0, 0]
             if min(ratio.shape) > 1:
@@ -338,11 +327,11 @@ class Displacement(TwoGroups):
             )
             ax.legend(loc="upper right", fontsize=10)
             ax.set_title("spine and tail over limbs only")
-            if pitched and isinstance(self.gait, Gait):
+            if pitched:
                 ax = axes[0, 1]
                 for arm in _GROUPS:
                     ax.plot(np.degrees(record.pitch), record.pitched.sel(group=arm), marker="o", **LINES[arm])
-                ax.axvline(degrees(self.gait.tail_pitch), color=COLOURS["neutral"], linestyle=":", linewidth=1.2,
+                ax.axvline(degrees(self.gait.number("tail_pitch")), color=COLOURS["neutral"], linestyle=":", linewidth=1.2,
                            label=_SHOWN)  # fmt: skip
                 ax.set_xlabel("pitch of the tail, down [deg]")
                 ax.set_ylabel("displacement forward [m]")
@@ -356,7 +345,7 @@ class Displacement(TwoGroups):
             ax.set_ylabel("displacement forward [m]")
             ax.set_title("phase lag of the trunk")
         line = ", the orange line the article's ratio" if self._article() else ""
-        what = "" if article else " over shares of the strokes and bends of the robot's gait"
+        what = "" if absolute else " over shares of the strokes and bends of the robot's gait"
         middle = " Middle: the steady pitch of the tail, the dotted line that of the crawl." if pitched else ""
         return captioned(
             figure,

@@ -21,7 +21,7 @@ from suchus.gaits import GAITS, own_gait
 from suchus.land import Ground, Limp, Locked, Push, Run, simulate
 from suchus.metrics import heading
 from suchus.metrics.coordination import WITHIN, phase_error
-from suchus.motion import START, Gait, axis_bends, steerable
+from suchus.motion import START, Gait, movement
 from suchus.replay import replay
 from suchus.robots import ROBOTS
 
@@ -225,7 +225,9 @@ class Feedback(Experiment):
         phase = record.limb_phase.transpose("run", "time", "leg").values
         facing = heading(record).transpose("run", "time").values
         bent = record.servo_angle.isel(servo=list(place.trunk_yaw)).sum("servo").transpose("run", "time").values
-        lacking = axis_bends(self.robot, steerable(self.gait, self.name()), phase)[0] - bent
+        self.gait.needs_steering(self.name())
+        asked = movement(self.robot, self.gait)
+        lacking = asked.bend_of("trunk", asked.axis_phase(phase)) - bent
         data = xr.Dataset(
             {
                 "x": (dims, track[..., 0].reshape(shape), {"units": "m", "long_name": "distance forward"}),

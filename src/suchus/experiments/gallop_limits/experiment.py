@@ -84,7 +84,7 @@ class GallopLimits(Experiment):
         """Bound, trot and walk with every servo on the map."""
         searched = [("bound", one) for one in self.bounds] + [("trot", one) for one in self.trots]
         kinds = [*(kind for kind, _ in searched), *("walk" for _ in self.walks)]
-        gaits: list[Gait] = [*(one.table(self.robot) for _, one in searched), *self.walks]
+        gaits: list[Gait] = [*(one.gait for _, one in searched), *self.walks]
         cells = [(torque, speed) for torque in self.torques for speed in self.speeds]
         robots = [self._with(torque, speed) for torque, speed in cells]
         runs = [Run(robot=robot, gait=gait, noise=self.noise, label=gait.name) for robot in robots for gait in gaits]

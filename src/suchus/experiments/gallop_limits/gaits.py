@@ -2,8 +2,8 @@
 
 from typing import Any
 
-from suchus.experiments.gallop_limits.searched import Searched
-from suchus.motion import Gait
+from suchus.experiments.gallop_limits.searched import Searched, galloping
+from suchus.motion import GaitInMetres
 
 
 def _searched(
@@ -15,7 +15,7 @@ def _searched(
     yaw: tuple[float, float],
     **feet: Any,
 ) -> Searched:
-    gait = Gait(
+    metres = GaitInMetres(
         name=name,
         front_reach=0.0,
         hind_reach=0.0,
@@ -28,9 +28,8 @@ def _searched(
         tail_phase=0.0,
         **feet,
     )
-    return Searched(
-        servo_speed=servo_speed, gait=gait, trunk_mean=trunk[0], trunk_amplitude=trunk[1], trunk_phase=trunk[2]
-    )
+    gait = galloping(metres, mean=trunk[0], amplitude=trunk[1], down=trunk[2])
+    return Searched(servo_speed=servo_speed, gait=gait)
 
 
 BOUNDS = (

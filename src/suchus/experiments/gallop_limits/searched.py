@@ -2,43 +2,37 @@
 
 from dataclasses import dataclass, replace
 
-import numpy as np
-
-from suchus.design import Crocodile, layout
 from suchus.design.checks import Checks
-from suchus.motion import AngleTable, Curve, Gait, as_table
-
-_SAMPLES = 32  # of a cycle
+from suchus.gaits.belly_crawl import LIMBS
+from suchus.motion import Bend, Gait, GaitInMetres
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Searched:
-    """A gait that a search found for one kind of servo: feet as a gait says, and a trunk that bends up and down too."""
+    """A gait that a search found for one kind of servo."""
 
     servo_speed: float
     """No-load speed of the servos with which it was searched [rad/s]."""
     gait: Gait
-    """Gait that gives the paths of the feet."""
-    trunk_mean: float
-    """Mean vertical bend of the trunk, down positive [rad]."""
-    trunk_amplitude: float
-    """Amplitude of the vertical bend of the trunk [rad]."""
-    trunk_phase: float
-    """When in the cycle the trunk is bent down most [cycle]."""
+    """The gait."""
 
     def __post_init__(self) -> None:
         with Checks("searched", self) as check:
             check.number("servo_speed", 0.1, 1e3, "rad/s")
-            check.number("trunk_mean", -1.0, 1.0, "rad")
-            check.number("trunk_amplitude", 0.0, 1.5, "rad")
-            check.number("trunk_phase", -1.0, 1.0, "cycle")
 
-    def table(self, robot: Crocodile) -> AngleTable:
-        """Return the gait as a table of servo angles."""
-        table = as_table(robot, self.gait, _SAMPLES)
-        place = layout(robot)
-        pitch = [place.servos[i] for i in place.trunk_pitch]
-        clock = np.arange(_SAMPLES) / _SAMPLES - self.trunk_phase
-        bend = (self.trunk_mean + self.trunk_amplitude * np.cos(2 * np.pi * clock)) / len(pitch)
-        others = tuple(curve for curve in table.curves if curve.servo not in pitch)
-        return replace(table, curves=(*others, *(Curve(servo=name, angles=tuple(bend)) for name in pitch)))
+
+def galloping(gait: GaitInMetres, *, mean: float, amplitude: float, down: float) -> Gait:
+    """Return a gait whose trunk bends up and down besides.
+
+    Args:
+        gait: in metres of the article's robot.
+        mean: vertical bend of the trunk, down positive [rad].
+        amplitude: of that bend [rad].
+        down: when in the cycle the trunk is bent down most [cycle].
+    """
+    feet = gait.gait(LIMBS)
+    lag = down + 0.5 - (0.75 - gait.duty_factor / 2)  # the phase of the axis counts from before mid-stance
+    vertical = Bend(part="trunk", turn="pitch", amplitude=(amplitude,), lag=(lag,), offset=mean)
+    # in a bound the pulls of left and right cancel in the article's law, and the trunk follows the gait's own phases
+    coupling = () if amplitude else feet.coupling
+    return replace(feet, axis=(*feet.axis, vertical), coupling=coupling)

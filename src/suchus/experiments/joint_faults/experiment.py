@@ -1,5 +1,6 @@
 """How far does the robot still get when joints of its legs fail?"""
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -11,7 +12,7 @@ import xarray as xr
 from scipy.stats import qmc
 
 from suchus.control import Control, Coordinated, HeadingRule, OpenLoop
-from suchus.design import AnyRobot, Chosen, layout, meaning, value_at, with_values
+from suchus.design import AnyRobot, Chosen, layout, unit_at, value_at, with_values
 from suchus.design.checks import Checks
 from suchus.design.scale import coarse_step
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
@@ -19,7 +20,7 @@ from suchus.experiments.joint_faults import findings
 from suchus.experiments.joint_faults.figure import draw_held, draw_losses, draw_over_time, draw_tracks
 from suchus.experiments.joint_faults.findings import ARMS
 from suchus.experiments.joint_faults.records import lay, support
-from suchus.gaits import GAITS, conditions_of, suits
+from suchus.gaits import GAITS, conditions_of
 from suchus.land import (
     KINDS,
     LEGS_FAILED,
@@ -41,12 +42,11 @@ from suchus.metrics import (
     path_length,
     whole,
 )
-from suchus.motion import START, AngleTable, Gait, straightened, with_bends, with_strokes
+from suchus.motion import START, Gait, suits
 from suchus.paper import CYCLES
 from suchus.replay import replay
 from suchus.robots import ROBOTS
 
-_TRUNK = ("trunk_bend", "spine_phase", "tail_bend", "tail_phase", "tail_pitch")  # the rest of a gait is its legs
 _OF_A_LIMB = 2  # hinges of a limb, from the hip on, whose loss is repeated and steered; the article's yaw and pitch
 
 
@@ -157,9 +157,9 @@ class JointFaults(Experiment):
 
     def _varied(self) -> list[tuple[dict[str, Gait], float]]:
         """Return the gaits of both conditions and the friction scale of each variation."""
-        if not isinstance(self.gait, Gait):
-            return self._varied_patterns()
-        chosen: tuple[Chosen, ...] = GAITS.beside("belly_crawl", "chosen", ())
+        chosen = self._plausible
+        if not chosen:
+            return self._varied_together()
         points = qmc.LatinHypercube(len(chosen) + 1, rng=self.seed).random(max(self.variations - 1, 1))
         varied = [(self._arms(self.gait), 1.0)]
         for point in points[: self.variations - 1]:
@@ -169,17 +169,24 @@ class JointFaults(Experiment):
                 low, high = max(given - reach, min(one.low, given)), min(given + reach, max(one.high, given))
                 values[one.field] = float(low + share * (high - low))
             gait = with_values(self.gait, values)
+            gait = gait if suits(self.robot, gait) else self.gait
             scale = float(1.0 + self.friction_spread * (2.0 * point[-1] - 1.0))
             varied.append((self._arms(gait), scale))
         return varied
 
-    def _varied_patterns(self) -> list[tuple[dict[str, Gait], float]]:
-        """Return the same for a gait of any body, of which all strokes and all bends vary together."""
+    @property
+    def _plausible(self) -> tuple[Chosen, ...]:
+        """The gait's numbers with their plausible ranges; none of a gait that does not stand on the shelf."""
+        name = self.gait.name
+        return tuple(GAITS.beside(name, "chosen", ())) if name in GAITS and GAITS[name] == self.gait else ()
+
+    def _varied_together(self) -> list[tuple[dict[str, Gait], float]]:
+        """Return the same for a gait without plausible ranges, of which all strokes and all bends vary together."""
         points = qmc.LatinHypercube(3, rng=self.seed).random(max(self.variations - 1, 1))
         varied = [(self._arms(self.gait), 1.0)]
         for point in points[: self.variations - 1]:
             stroke, bend = 1.0 + 0.5 * self.spread * (2.0 * point[:2] - 1.0)
-            gait = with_bends(self.robot, with_strokes(self.gait, float(stroke)), float(bend))
+            gait = self.gait.strode(float(stroke)).bent(float(bend))
             gait = gait if suits(self.robot, gait) else self.gait
             varied.append((self._arms(gait), float(1.0 + self.friction_spread * (2.0 * point[-1] - 1.0))))
         return varied
@@ -201,14 +208,11 @@ class JointFaults(Experiment):
 
     def _arms(self, gait: Gait) -> dict[str, Gait]:
         """Return the gaits of all conditions with the legs of one gait."""
-        if not isinstance(gait, Gait):
-            return {"coordinated": gait, "limbs_only": straightened(self.robot, gait, name="limbs_only")}
-        limbs: dict[str, Gait] = {
-            arm: replace(gait, name=other.name, **{name: getattr(other, name) for name in _TRUNK})
-            for arm, other in (("limbs_only", self.control), ("limbs_tail_lifted", self.lifted))
+        return {
+            "coordinated": gait,
+            "limbs_only": _with_axis(gait, self.control),
+            "limbs_tail_lifted": _with_axis(gait, self.lifted),
         }
-        arms: dict[str, Gait] = {"coordinated": gait}
-        return arms | limbs
 
     def _broken(self, gait: Gait, joint: str) -> tuple[Fault, ...]:
         """Return the faults of a joint in the judged reading."""
@@ -249,10 +253,10 @@ class JointFaults(Experiment):
         for name, (array, unit, what) in numbers.items():
             lay(data, name, array.values.reshape(shape), (), unit, what)
         lay(data, "track", tracks.reshape(*shape, -1, 2), ("time", "on_ground"), "m", "track of the centre of mass")
-        about = meaning.meanings(Gait)
-        for one in GAITS.beside("belly_crawl", "chosen", ()) if isinstance(self.gait, Gait) else ():
-            values = [value_at(gaits["coordinated"], one.field) for gaits, _ in varied]
-            data[f"gait_{one.field}"] = ("variation", values, {"units": meaning.unit(about[one.field])})
+        for row in self._plausible:
+            values = [value_at(gaits["coordinated"], row.field) for gaits, _ in varied]
+            name = "_".join(re.findall(r"\w+", row.field))
+            data[f"gait_{name}"] = ("variation", values, {"units": unit_at(self.gait, row.field)})
         data["grip"] = ("variation", [scale for _, scale in varied], {"units": "1", "long_name": "friction scale"})
         data["time"].attrs["units"] = "s"
         data["period"] = ((), self.gait.period, {"units": "s"})
@@ -332,7 +336,7 @@ class JointFaults(Experiment):
 
     def _others(self, progress: Any) -> xr.Dataset:
         """Run the judged reading of the article's joints steered, and with limbs only and the tail in the air."""
-        joints, steers = self._failing, not isinstance(self.gait, AngleTable)
+        joints, steers = self._failing, self.gait.has("steering")
         varied, runs = self._varied(), []
         for i, (gaits, scale) in enumerate(varied):
             cases: list[tuple[Gait, tuple[Fault, ...], Control]] = []
@@ -381,6 +385,13 @@ class JointFaults(Experiment):
             "fault_tracks": draw_tracks(record),
             "fault_places": draw_held(record),
         }
+
+
+def _with_axis(gait: Gait, other: Gait) -> Gait:
+    """Return a gait with the name of another one and what that one does with the axis."""
+    limbs = tuple(curve for curve in gait.curves if curve.part == "limb")
+    axial = tuple(curve for curve in other.curves if curve.part != "limb")
+    return replace(gait, name=other.name, axis=other.axis, curves=(*limbs, *axial))
 
 
 experiment = JointFaults()

@@ -13,7 +13,7 @@ from suchus.experiment import Experiment, Measure, Outcome, Progress, Simulated,
 from suchus.experiments.leg_kinematics import figure as pictures
 from suchus.gaits import GAITS
 from suchus.kinematics import leg, printed
-from suchus.motion import Gait, foot_targets
+from suchus.motion import Gait, movement
 from suchus.robots import ROBOTS
 from suchus.verdict import Reading
 
@@ -74,7 +74,7 @@ class LegKinematics(Experiment):
         missed = []
         for gait in (self.gait, self.other_gait):
             phase = np.arange(self.phases)[:, None] / self.phases + np.array(gait.limb_phases)
-            feet = foot_targets(self.robot, gait, phase)
+            feet = movement(self.robot, gait).foot_places(phase)
             legs = [self.robot.front_leg if name in ("LF", "RF") else self.robot.hind_leg for name in LEGS]
             missed.append([_printed_miss(one, feet[:, i]) for i, one in enumerate(legs)])
         metre = {"units": "m", "long_name": "foot error of (14) along the gait"}

@@ -28,7 +28,7 @@ from suchus.experiments.salamander.figure import draw_angles, draw_feet
 from suchus.gaits import GAITS
 from suchus.land import Ground, Run, simulate
 from suchus.metrics import displacement, heading_change
-from suchus.motion import START, AngleTable
+from suchus.motion import START, Gait
 from suchus.replay import replay
 from suchus.robots import ROBOTS
 from suchus.verdict import Reading, compared
@@ -50,7 +50,7 @@ class Salamander(Experiment):
 
     robot: AnyRobot = field(default_factory=lambda: ROBOTS["salamander"])
     """The robot that walks; two pairs of limbs at least and a table of angles made for it are needed."""
-    gait: AngleTable = field(default_factory=lambda: GAITS["animal_walk"])
+    gait: Gait = field(default_factory=lambda: GAITS["animal_walk"])
     """The table of joint angles that is played."""
     settle: int = 3
     """Cycles that are walked before anything is measured [-]."""
@@ -80,7 +80,7 @@ class Salamander(Experiment):
                 f"the animal's walk needs a robot with two pairs of limbs; robot {self.robot.name!r} has "
                 f"{len(place.robot.girdles)}: choose another robot."
             )
-        straight = _straight(self.gait, {place.servos[i] for i in place.axial_yaw})
+        straight = self.gait.without("axis", name=f"{self.gait.name}, straight")
         runs = [
             Run(robot=self.robot, gait=self.gait, label=_WALK),
             Run(robot=self.robot, gait=straight, label=_STRAIGHT),
@@ -160,11 +160,6 @@ class Salamander(Experiment):
             "joint_angles": draw_angles(walk, when),
             "foot_forces": draw_feet(force, {pair: list(record.attrs[pair]) for pair in PAIRS}, least, ANIMAL),
         }
-
-
-def _straight(gait: AngleTable, axis: set[str]) -> AngleTable:
-    """Return a table without the curves of the axis."""
-    return replace(gait, name=f"{gait.name}, straight", curves=tuple(c for c in gait.curves if c.servo not in axis))
 
 
 def _under_load(record: xr.Dataset, when: Window) -> dict[str, Measure]:

@@ -10,7 +10,7 @@ from suchus import rotation
 from suchus.design import AnyRobot, layout
 from suchus.gaits import ANIMAL_SWIM
 from suchus.kinematics.tree import frames, landmarks
-from suchus.motion import AngleTable, Curve
+from suchus.motion import Curve, Gait, servo_parts
 
 FOLDED = np.radians(-85.0)
 """How far the limbs lie back along the body; the animal holds them so, and was not filmed closer [rad]."""
@@ -20,16 +20,17 @@ FREQUENCIES = (2.6, 2.9, 3.4, 3.8)
 """At which it was filmed [Hz]."""
 
 
-def played(robot: AnyRobot, frequency: float) -> AngleTable:
+def played(robot: AnyRobot, frequency: float) -> Gait:
     """Return the animal's swim for a robot with its joints, limbs folded back."""
     place = layout(robot)
-    limbs = tuple(Curve(servo=f"{limb.name}_yaw", angles=(FOLDED,)) for limb in place.limbs)
-    return AngleTable(
+    angles = ANIMAL_SWIM | {f"{limb.name}_yaw": (FOLDED,) for limb in place.limbs}
+    parts = servo_parts(robot)
+    return Gait(
         name=f"animal_swim_{frequency:g}",
         period=1.0 / frequency,
         duty_factor=0.5,
         limb_phases=(0.0,) * len(place.limbs),
-        curves=(*(Curve(servo=name, angles=angles) for name, angles in ANIMAL_SWIM.items()), *limbs),
+        curves=tuple(Curve(servo=name, part=parts[name], angles=curve) for name, curve in angles.items()),
     )
 
 

@@ -16,10 +16,11 @@ from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Si
 from suchus.experiments.shore import findings
 from suchus.experiments.shore.figure import draw_ashore, draw_decides
 from suchus.gaits import GAITS
+from suchus.gaits.belly_crawl import LIMBS
 from suchus.land import Ground, Lake, Run, simulate
 from suchus.land.afloat import check_floats
 from suchus.metrics.energy import METRES
-from suchus.motion import LIMBS_BACK, Gait, Swim
+from suchus.motion import LIMBS_BACK, Gait, GaitInMetres, Swim
 from suchus.replay import replay
 from suchus.robots import ROBOTS
 from suchus.verdict import Reading, compared, listed
@@ -28,9 +29,9 @@ from suchus.water import fit, printed_wave
 _DRY, _DEEP = -10.0, 3.0
 """Levels of the water far below dry land, and far above the ground [m]."""
 _WADE = replace(
-    GAITS["semi_erect"], name="wade", period=1.6, duty_factor=0.5, limb_phases=(0.0, 0.5, 0.5, 0.0), stroke=0.05,
-    hip_height=0.09, trunk_bend=0.0, tail_pitch=-0.1,
-)  # fmt: skip
+    GaitInMetres.of(GAITS["semi_erect"], LIMBS), name="wade", period=1.6, duty_factor=0.5, stroke=0.05, hip_height=0.09,
+    limb_phases=(0.0, 0.5, 0.5, 0.0), trunk_bend=0.0, tail_pitch=-0.1,
+).gait(LIMBS)  # fmt: skip
 """A walk for feet that carry little weight. With a duty factor of a half the feet swing forward no faster than they
 move back in stance, so that over a cycle the water pushes the robot back no more than forward; the slower the cycle,
 the smaller the forces of the water are beside the friction of the ground. The tail is lifted, since pressed on the

@@ -20,11 +20,11 @@ from suchus.experiments.terrain import findings
 from suchus.experiments.terrain.figure import draw_on_bumps, draw_rough
 from suchus.experiments.terrain.findings import FALLEN
 from suchus.figures.gait_lines import GAIT_LINES
-from suchus.gaits import GAITS, own_gait, suits
+from suchus.gaits import GAITS, own_gait
 from suchus.land import Ground, Run, simulate
 from suchus.land.arenas import BEFORE, STONE
 from suchus.metrics import between, cost_of_transport, displacement, heading_change, tilt
-from suchus.motion import START, Gait, Pattern
+from suchus.motion import START, Gait, suits
 from suchus.replay import replay
 from suchus.robots import ROBOTS
 
@@ -58,11 +58,11 @@ class Terrain(Experiment):
 
     robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that walks."""
-    crawl: Gait | Pattern = field(default_factory=lambda: GAITS["low_crawl"])
+    crawl: Gait = field(default_factory=lambda: GAITS["low_crawl"])
     """The sprawled gait."""
-    semi_erect: Gait | Pattern = field(default_factory=lambda: GAITS["semi_erect"])
+    semi_erect: Gait = field(default_factory=lambda: GAITS["semi_erect"])
     """The gait between the sprawled and the erect one."""
-    high_walk: Gait | Pattern = field(default_factory=lambda: GAITS["high_walk"])
+    high_walk: Gait = field(default_factory=lambda: GAITS["high_walk"])
     """The erect gait."""
     bumps: tuple[float, ...] = (0.04, 0.06)
     """Heights of random bumps [m]."""
@@ -115,7 +115,7 @@ class Terrain(Experiment):
             UnsuitedRobot: its own gait puts no feet at a height.
         """
         own = own_gait(robot)
-        if not isinstance(own, Pattern):
+        if not own.has("foot paths"):
             raise UnsuitedRobot(f"{self.name()} needs a gait of foot paths; robot {robot.name!r} has {own.name!r}.")
         more = own.period / self.semi_erect.period * _STEPS
         found: dict[str, Any] = {"walked": round(self.walked * more, 2)}
@@ -170,10 +170,10 @@ class Terrain(Experiment):
         size = self._size
         return Bumps(height=height, correlation=correlation, start=BEFORE * size, seed=seed, scale=size)
 
-    def arms(self) -> Mapping[str, tuple[Gait | Pattern, Control]]:
+    def arms(self) -> Mapping[str, tuple[Gait, Control]]:
         """Return gait and control of every condition."""
         ladder, level = (self.crawl, self.semi_erect, self.high_walk), AttitudeRule()
-        arms: dict[str, tuple[Gait | Pattern, Control]] = {
+        arms: dict[str, tuple[Gait, Control]] = {
             "low_crawl": (self.crawl, Walking()),
             "semi_erect": (self.semi_erect, Walking(attitude=level)),
             "high_walk": (self.high_walk, Walking()),
@@ -303,7 +303,7 @@ class Terrain(Experiment):
         """Draw the postures on bumps, and the distance on every ground."""
         record = outcome.record
         said = "the sprawled crawl, semi-erect legs, and erect legs with elbows behind and knees ahead"
-        if not isinstance(self.crawl, Gait):
+        if not self.high_walk.erect:
             said = "the robot's own gait low, as usual and high"
         return {"postures": draw_on_bumps(self.robot, record, said), "rough_ground": draw_rough(record, GAIT_LINES)}
 

@@ -17,7 +17,7 @@ from suchus.figures.gait_lines import gait_lines
 from suchus.gaits import GAITS
 from suchus.land import Run, simulate
 from suchus.metrics import between, heading_change
-from suchus.motion import START, Gait, steerable, strides, trunk_amplitude
+from suchus.motion import START, Gait, trunk_amplitude
 from suchus.replay import replay
 from suchus.robots import ROBOTS
 from suchus.verdict import Reading
@@ -111,8 +111,7 @@ class Turning(Experiment):
         room = self._room(gait)
         bent = [Walking(bend=min(bend, room)) for bend in self.bends]
         uneven = [Walking(asymmetry=share) for share in self.asymmetries]
-        erect = isinstance(gait, Gait) and gait.legs == "erect"
-        most = min(self.bends[-1], room), self.asymmetries[-1] if strides(gait) and not erect else 0.0
+        most = min(self.bends[-1], room), self.asymmetries[-1] if gait.has("strokes") and not gait.erect else 0.0
         mixed = [Walking(bend=m * most[0], asymmetry=m * most[1]) for m in self.mixtures]
         record = self._walk(gait, [*bent, *uneven, *mixed], lambda share: progress(0.7 * share))
         found = self._curvatures(gait, record)
@@ -147,7 +146,8 @@ class Turning(Experiment):
     def _room(self, gait: Gait) -> float:
         """Return how far the trunk can bend besides what the gait asks of it [rad]."""
         yaw = list(layout(self.robot).trunk_yaw)
-        bent = trunk_amplitude(self.robot, steerable(gait, self.name()))
+        gait.needs_steering(self.name())
+        bent = trunk_amplitude(self.robot, gait)
         return max(float(np.abs(servo_ranges(self.robot)[yaw]).min(axis=1, initial=np.inf).sum()) - bent, 0.0)
 
     def _end(self, gait: Gait) -> float:
