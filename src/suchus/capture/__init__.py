@@ -3,10 +3,8 @@
 from suchus.capture.angle_table import AngleCycle, is_angle_table, read_angles
 from suchus.capture.animal import SyntheticAnimal, film_animal
 from suchus.capture.film import Camera, film, keypoints
-from suchus.capture.patterned import NEEDED, to_pattern
-from suchus.capture.played import to_angle_table
 from suchus.capture.reading import ReadingOptions, read_tracks, summary, write_gait
-from suchus.capture.retarget import Captured, driven_share, to_gait
+from suchus.capture.retarget import NEEDED, Captured, driven_share, to_curves, to_gait
 from suchus.capture.table import write_table
 from suchus.capture.tracks import Tracks, UnusableTracks
 from suchus.capture.walk import Seen, Walk, observe
@@ -33,9 +31,8 @@ __all__ = [
     "read_tracks",
     "standing_index",
     "summary",
-    "to_angle_table",
+    "to_curves",
     "to_gait",
-    "to_pattern",
     "write_gait",
     "write_table",
 ]

@@ -1,17 +1,32 @@
-"""From a measured walk to a gait that a robot can walk, with a note on everything that the gait cannot keep."""
+"""From what was seen of an animal to the gait of any robot: by feet and bends, or joint by joint as it was measured."""
 
+import re
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import degrees
-from typing import Literal
+from math import degrees, floor
+from typing import Literal, NamedTuple
 
 import numpy as np
 
-from suchus.capture.slowed import within_speed
+from suchus.capture.angle_table import AngleCycle
 from suchus.capture.walk import UNSURE, Walk
 from suchus.capture.wave import STANDING
-from suchus.design import LEGS, AnyRobot, Crocodile, layout
-from suchus.errors import OutsideLimits, UnsuitedRobot
-from suchus.motion import Gait, Pattern, check_limits, tail_bend, trunk_bend
+from suchus.design import LEGS, AnyRobot, Layout, LimbPlace, check_needs, hips_ahead, layout, servo_ranges
+from suchus.errors import InvalidDesign, OutsideLimits, UnknownName
+from suchus.kinematics import limb as limb_kinematics
+from suchus.motion import (
+    Bend,
+    Curve,
+    FootPath,
+    Gait,
+    check_limits,
+    cycle_targets,
+    servo_parts,
+    servo_range,
+    shortest_period,
+    suits,
+)
+from suchus.motion.movement import yaw_hinges
 
 Duty = Literal["retraction", "contact"]
 """Share of the cycle that becomes the duty factor: feet going back along the body, or feet at rest on the ground.
@@ -19,58 +34,93 @@ Duty = Literal["retraction", "contact"]
 A gait commands the first. On a film of our own crawl, which commands 0.5, feet go back for 0.47 of the cycle but rest
 for 0.61, because the body sags onto feet that should have left the ground.
 """
+Girdles = Literal["alike", "apart"]
+"""Whether all limbs get their mean stroke and lift, or each girdle's limbs their own.
 
-_HOLDS = 0.2  # least share of a bend that the gait's law can carry in a footfall; below, its pulls cancel
+On a film of our own crawl, which commands 27 mm for all, slipping lets front feet stroke by 26 and hind feet by 30 mm.
+"""
+NEEDED = ("four_limbs", "foot_paths")
+"""What the walk of a four-limbed animal requires of a robot: names of ``design.NEEDS``."""
+_PAIRS = (LEGS[:2], LEGS[2:])
 _STILL = np.radians(1.0)  # a bend below this has no phase
-_STEPS = 200  # of the phase, where a gait is looked at over a cycle
+_AXIS = re.compile(r"^axis (\d+)$", re.IGNORECASE)
+_LIMB = re.compile(r"^(left|right) (shoulder|hip)-(yaw|pitch|roll)$|^(left|right) (elbow|knee)$", re.IGNORECASE)
+_FRONT = ("shoulder", "elbow")
+_STEPS = 200  # of the cycle, to see when a foot goes forward
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Captured:
     """A gait read from a walk."""
 
-    gait: Gait | Pattern
+    gait: Gait
     """The gait for the robot."""
     notes: tuple[str, ...]
     """Sentences on what was measured and is not in the gait, what is in it without a measurement, and what was
     changed."""
 
 
-def to_gait(walk: Walk, robot: AnyRobot, base: Gait, *, name: str, duty: Duty = "retraction") -> Captured:
+class _Feet(NamedTuple):
+    """Where the feet of a girdle go, in its frame [m]."""
+
+    stroke: float
+    lift: float
+    outward: float
+    ahead: float
+
+
+def to_gait(
+    walk: Walk, robot: AnyRobot, base: Gait, *, name: str, duty: Duty = "retraction", girdles: Girdles = "alike"
+) -> Captured:
     """Return the gait by which a robot walks as was measured.
 
-    Phases and angles are taken as they are, lengths in proportion to the trunk from hip to shoulder. The bends are
-    first harmonics, so that their amplitudes and phases are those of the gait's cosines. Quantities that were not
-    measured are the base's. What the robot's limits refuse is changed as little as needed.
+    Phases and angles are taken as they are, lengths in proportion to the trunk from hip to shoulder. Trunk and tail bend
+    by their first harmonics, each shared evenly by its hinges. Quantities that were not measured are the base's. What
+    the robot's limits refuse is changed as little as needed.
 
     Args:
         walk: the measured walk.
-        robot: the robot that shall walk.
-        base: gait from which quantities that were not measured are taken.
+        robot: the robot that shall walk, with four limbs whose feet can be put on a path.
+        base: gait of foot paths, from which quantities that were not measured are taken.
         name: name of the new gait.
         duty: which share of the cycle becomes its duty factor.
+        girdles: whether front and hind limbs share their stroke and lift.
 
     Raises:
-        OutsideLimits: the robot cannot follow even with the base's posture and a small stroke.
+        UnsuitedRobot: the robot lacks four limbs with foot paths.
+        OutsideLimits: the base has no foot paths, or the robot cannot follow even with the base's posture and a small
+            stroke.
     """
-    if not isinstance(robot, Crocodile):
-        raise UnsuitedRobot(f"robot {robot.name!r} walks by a pattern; a captured gait of legs needs a crocodile's.")
+    check_needs(robot, NEEDED, "a captured walk")
+    check_limits(robot, base)
+    if not base.limbs or not all(isinstance(limb, FootPath) for limb in base.limbs):
+        raise OutsideLimits(
+            f"a captured walk takes what was not measured from a gait of foot paths; gait {base.name!r} has measured "
+            "curves, holds limbs or turns cranks: name another one with --base."
+        )
     notes: list[str] = []
-    gait = _timed(walk, replace(base, name=name), duty, notes)
-    gait = _bent(walk, gait, notes)
-    gait = _shaped(walk, robot, gait, base, notes)
-    gait = _within_limits(robot, gait, base, notes)
-    gait = within_speed(robot, gait, notes)
+    gait = _timed(walk, replace(base, name=name, curves=(), coupling=()), duty, notes)
+    gait = _bent(walk, robot, gait, notes)
+    gait = _stepping(walk, robot, gait, base, girdles, notes)
+    gait = _slowed(robot, gait, notes)
     return Captured(gait=gait, notes=(*walk.notes, *notes, *_unheld(walk)))
 
 
-def driven_share(robot: Crocodile) -> float:
-    """Return where along its tail, from the pitch joint, a robot's last driven plate has its middle [-].
+def driven_share(robot: AnyRobot) -> float:
+    """Return where along its tail, from its first joint, a robot's last driven segment has its middle [-].
 
-    The end beyond it is passive: it follows by itself, and no command holds it.
+    The end beyond it is passive: it follows by itself, and no command holds it. It is 1 without such an end.
     """
-    cable = robot.tail.root + robot.tail.joints * robot.tail.pitch
-    return (cable - robot.tail.pitch / 4) / (cable + robot.tail.fin_length)
+    place = layout(robot)
+    body = place.robot
+    driven = {place.servos[i] for i in place.tail_yaw}
+    driven |= {name for servo in place.cables for name in place.cable(servo).hinges}
+    behind = body.axis[body.root_place :]
+    bent = [i for i, segment in enumerate(behind) if any(hinge.name in driven for hinge in segment.hinges)]
+    lengths = [segment.front + segment.rear for segment in behind[1:]]
+    if not bent or bent[-1] + 1 >= len(lengths):
+        return 1.0
+    return (sum(lengths[: bent[-1]]) + lengths[bent[-1]] / 2) / sum(lengths)
 
 
 def mean_of(walk: Walk, stem: str, legs: tuple[str, ...] = LEGS) -> float:
@@ -93,154 +143,252 @@ def _timed(walk: Walk, gait: Gait, duty: Duty, notes: list[str]) -> Gait:
         shares = ", ".join(f"{leg} {value:.2f}" for leg, value in apart.items())
         notes.append(f"the legs' {duty} shares differ ({shares}); the gait holds their mean")
     phases = tuple(_rounded((walk.value(f"phase_{leg}") + 0.05) % 1.0 - 0.05) for leg in LEGS)
-    return replace(
-        gait,
-        period=_rounded(walk.value("period")),
-        duty_factor=_rounded(share),
-        limb_phases=phases,  # type: ignore[arg-type]
-    )
+    return replace(gait, period=_rounded(walk.value("period")), duty_factor=_rounded(share), limb_phases=phases)
 
 
-def _bent(walk: Walk, gait: Gait, notes: list[str]) -> Gait:
-    """Set the bends so that the gait's own law gives the measured first harmonics."""
+def _bent(walk: Walk, robot: AnyRobot, gait: Gait, notes: list[str]) -> Gait:
+    """Give trunk and tail the first harmonics that were measured; steady bends up and down stay the base's."""
     # both clocks have LF's mid-stance in common: the gait's begins half the difference of the duty factors off
     clock = np.exp(1j * np.pi * (gait.duty_factor - mean_of(walk, "duty")))
-    unit = replace(gait, trunk_bend=1.0, tail_bend=1.0, spine_phase=0.0, tail_phase=0.0)
-    # the gait's laws give joint angles; the measured bends have the article's signs
-    spine, lag = _solve(-clock * walk.bends["spine_lateral"], _harmonic(unit, "trunk"))
-    tail, tail_lag = _solve(clock * walk.bends["tail_lateral"], _harmonic(unit, "tail"))
-    carried = abs(_harmonic(unit, "trunk"))
-    if carried < _HOLDS:
-        seen = degrees(walk.value("spine_lateral")), degrees(walk.value("tail_lateral"))
-        notes.append(
-            f"in this footfall the pulls of the limbs on trunk and tail cancel ({carried:.2f} is left of 1); the "
-            f"bends that were measured, trunk {seen[0]:.0f} and tail {seen[1]:.0f} degrees, cannot be followed and "
-            "are set to zero"
+    touch_down = 0.75 - gait.duty_factor / 2
+    bends = [bend for bend in gait.axis if bend.turn == "pitch"]
+    for part, word in (("trunk", "spine"), ("tail", "tail")):
+        seen = clock * walk.bends[f"{word}_lateral"]
+        most = _most(robot, part)
+        if not most:
+            notes.append(f"robot {robot.name} has no {part} that bends; {degrees(abs(seen)):.0f} degrees were seen")
+            continue
+        straight = walk.value(f"{word}_lateral") < _STILL
+        if straight:
+            notes.append(f"the {word} hardly bends ({degrees(abs(seen)):.1f} degrees): its phase has no meaning")
+        # concave on the right by |seen| cos 2 pi (phase of LF - its delay), which is what a bend says of the left
+        lag = 0.0 if straight else _within_half(-float(np.angle(seen)) / (2 * np.pi) - touch_down)
+        asked = _rounded(abs(seen))
+        limits = [floor(1e4 * len(most) * limit) / 1e4 for limit in most]
+        if min(limits) < asked:
+            notes.append(
+                f"the {part} would bend by {degrees(asked):.0f} degrees, more than its joints' ranges: of "
+                f"{len(limits)} joints, those that cannot follow bend as far as they can"
+            )
+        amplitude = tuple(min(asked, limit) for limit in limits)
+        bends.append(
+            Bend(part=part, amplitude=amplitude if len(set(amplitude)) > 1 else amplitude[:1], lag=(_rounded(lag),))
         )
-        return replace(gait, trunk_bend=0.0, tail_bend=0.0, spine_phase=0.0, tail_phase=0.0)
-    for part, amplitude in (("spine", walk.value("spine_lateral")), ("tail", walk.value("tail_lateral"))):
-        if amplitude < _STILL:
-            notes.append(f"the {part} hardly bends ({degrees(amplitude):.1f} degrees): its phase has no meaning")
-    lag = lag if walk.value("spine_lateral") >= _STILL else 0.0
-    tail_phase = _within_half(tail_lag - lag) if walk.value("tail_lateral") >= _STILL else 0.0
-    return replace(
-        gait,
-        trunk_bend=_rounded(spine),
-        tail_bend=_rounded(tail),
-        spine_phase=_rounded(lag),
-        tail_phase=_rounded(tail_phase),
-    )
+    return replace(gait, axis=tuple(bends))
 
 
-def _harmonic(gait: Gait, part: str) -> complex:
-    """First harmonic of a gait's bend over the phase of LF [rad]."""
-    phase = np.arange(_STEPS) / _STEPS
-    law = trunk_bend if part == "trunk" else tail_bend
-    bend = law(gait, phase[:, None] + np.array(gait.limb_phases))
-    return complex(2 * np.mean(bend * np.exp(-2j * np.pi * phase)))
+def _most(robot: AnyRobot, part: Literal["trunk", "tail"]) -> list[float]:
+    """Return how far each hinge that bends a part sideways can bend it to either side [rad]."""
+    place, ranges, hinges = layout(robot), np.abs(servo_ranges(robot)).min(axis=1), yaw_hinges(robot)
+    cables = {servo: place.cable(servo).bend_limit / place.cable(servo).joints for servo in place.cables}
+    return [cables.get(hinges.servos[k], float(ranges[hinges.servos[k]])) for k in hinges.within(part)]
 
 
-def _solve(seen: complex, unit: complex) -> tuple[float, float]:
-    """Return the amplitude [rad] and phase lag [cycle] from the law's unit response to the measured bend."""
-    return abs(seen) / max(abs(unit), 1e-9), _within_half(float(np.angle(unit / seen)) / (2 * np.pi)) if seen else 0.0
-
-
-def _shaped(walk: Walk, robot: Crocodile, gait: Gait, base: Gait, notes: list[str]) -> Gait:
-    """Scale lengths in proportion to the trunk, and take from the base what was not measured."""
-    trunk = robot.spine.length + robot.thorax.shoulder
-    stroke = trunk * mean_of(walk, "stroke")
-    sides = (("front", LEGS[:2]), ("hind", LEGS[2:]))
-    pairs = {girdle: trunk * mean_of(walk, "stroke", legs) for girdle, legs in sides}
-    if abs(pairs["front"] - pairs["hind"]) > 0.1 * stroke:
-        strokes = " and ".join(f"{girdle} {1000 * value:.0f} mm" for girdle, value in pairs.items())
-        notes.append(f"the feet's half strokes differ, {strokes} at the robot's size; the gait holds their mean")
-    if not walk.upright:
-        notes.append(f"heights were not seen: lift, hip_height and tail_pitch are those of {base.name}")
+def _stepping(
+    walk: Walk, robot: AnyRobot, gait: Gait, base: Gait, girdles: Girdles, notes: list[str]
+) -> Gait:
+    """Give the feet the measured paths in proportion to the trunk; what the limbs cannot follow becomes the base's."""
+    trunk, reaches = hips_ahead(robot, 0), [girdle.limb.reach for girdle in layout(robot).robot.girdles]
+    lent = [_feet_of(limb, reach) for limb, reach in zip(base.limbs, reaches, strict=True)]
+    feet = _feet(walk, robot, lent, girdles, notes)
+    if walk.upright:
+        notes.append(f"markers lie on the skin, so that height is that of {base.name}")
+        if layout(robot).tail_pitch:
+            low, high = np.sum([servo_range(robot, layout(robot).servos[i]) for i in layout(robot).tail_pitch], axis=0)
+            pitch = float(np.clip(_rounded(walk.value("tail_vertical_steady")), low, high))
+            gait = gait.with_numbers(tail_pitch=pitch)
     else:
-        notes.append(f"markers lie on the skin, so that hip_height is that of {base.name}")
-        gait = replace(
-            gait,
-            lift=_rounded(trunk * mean_of(walk, "lift")),
-            tail_pitch=_rounded(walk.value("tail_vertical_steady")),
-        )
-    return replace(
-        gait,
-        stroke=_rounded(stroke),
-        front_reach=_rounded(trunk * mean_of(walk, "outward", LEGS[:2]) - robot.front_leg.hip_offset),
-        hind_reach=_rounded(trunk * mean_of(walk, "outward", LEGS[2:]) - robot.hind_leg.hip_offset),
-        front_ahead=_rounded(trunk * mean_of(walk, "ahead", LEGS[:2])),
-        hind_ahead=_rounded(trunk * mean_of(walk, "ahead", LEGS[2:])),
-    )
-
-
-def _within_limits(robot: Crocodile, gait: Gait, base: Gait, notes: list[str]) -> Gait:
-    """Change as little as needed: bends to their limits, then the base's posture, then a shorter stroke."""
-    trunk_most = len(layout(robot).trunk_yaw) * min(abs(end) for end in robot.spine.yaw_range)
-    for field, asked, most in (
-        ("trunk_bend", gait.trunk_bend, trunk_most),
-        ("tail_bend", gait.tail_bend, robot.tail.bend_limit),
-    ):
-        if asked > most:
-            notes.append(f"{field} would be {degrees(asked):.0f} degrees; {degrees(most):.0f}, the limit, was taken")
-    gait = replace(
-        gait, trunk_bend=min(gait.trunk_bend, trunk_most), tail_bend=min(gait.tail_bend, robot.tail.bend_limit)
-    )
-    if _fits(robot, gait):
-        return gait
-    notes.append(f"the legs of {robot.name} do not reach the feet's places: reaches and lift are those of {base.name}")
-    gait = replace(
-        gait,
-        front_reach=base.front_reach,
-        hind_reach=base.hind_reach,
-        front_ahead=base.front_ahead,
-        hind_ahead=base.hind_ahead,
-        lift=base.lift,
-        tail_pitch=float(np.clip(gait.tail_pitch, *robot.tail.pitch_range)),
-    )
-    asked = gait.stroke
+        notes.append(f"heights were not seen: lift, height and tail_pitch are those of {base.name}")
+    whole = _placed(robot, gait, feet)
+    if whole is not None:
+        return whole
+    notes.append(f"the limbs of {robot.name} do not reach the feet's places: those and the lift are {base.name}'s")
+    asked = [one.stroke for one in feet]
     for share in np.linspace(1.0, 0.1, 19):
-        shorter = replace(gait, stroke=_rounded(share * asked))
-        if _fits(robot, shorter):
+        shorter = [one._replace(stroke=share * stroke) for one, stroke in zip(lent, asked, strict=True)]
+        placed = _placed(robot, gait, shorter)
+        if placed is not None:
             if share < 1.0:
-                notes.append(
-                    f"a half stroke of {1000 * asked:.0f} mm is beyond the legs; {1000 * shorter.stroke:.0f} mm "
-                    "was taken"
-                )
-            return shorter
-    check_limits(robot, gait)
-    return gait
+                said = " and ".join(f"{1000 * stroke:.0f} mm" for stroke in dict.fromkeys(asked))
+                taken = " and ".join(f"{1000 * share * stroke:.0f} mm" for stroke in dict.fromkeys(asked))
+                notes.append(f"half strokes of {said} are beyond the limbs; {taken} was taken")
+            return placed
+    still = replace(gait, limbs=base.limbs)
+    check_limits(robot, still)
+    raise OutsideLimits(
+        f"robot {robot.name!r} cannot follow a tenth of the strokes that were seen, {1000 * max(asked):.0f} mm at its "
+        "size, in the posture of "
+        f"gait {base.name!r}: name another one with --base."
+    )
 
 
-def _fits(robot: Crocodile, gait: Gait) -> bool:
+def _feet(
+    walk: Walk, robot: AnyRobot, lent: Sequence[_Feet], girdles: Girdles, notes: list[str]
+) -> list[_Feet]:
+    """Return the measured paths of the feet at the robot's size."""
+    trunk, sides = hips_ahead(robot, 0), [girdle.aside for girdle in layout(robot).robot.girdles]
+    strokes, stroke = [trunk * mean_of(walk, "stroke", legs) for legs in _PAIRS], trunk * mean_of(walk, "stroke")
+    if girdles == "alike" and abs(strokes[0] - strokes[1]) > 0.1 * stroke:
+        notes.append(
+            f"the feet's half strokes differ, front {1000 * strokes[0]:.0f} mm and hind {1000 * strokes[1]:.0f} mm at "
+            "the robot's size; the gait holds their mean"
+        )
+    feet = []
+    for i, legs in enumerate(_PAIRS):
+        among = LEGS if girdles == "alike" else legs
+        feet.append(
+            _Feet(
+                stroke=stroke if girdles == "alike" else strokes[i],
+                lift=abs(trunk * mean_of(walk, "lift", among)) if walk.upright else lent[i].lift,
+                outward=trunk * mean_of(walk, "outward", legs) - sides[i],
+                ahead=trunk * mean_of(walk, "ahead", legs),
+            )
+        )
+    return feet
+
+
+def _feet_of(limb: object, reach: float) -> _Feet:
+    """Return the foot path of a gait for a limb of some length [m]."""
+    assert isinstance(limb, FootPath)
+    return _Feet(*(reach * getattr(limb, field) for field in _Feet._fields))
+
+
+def _placed(robot: AnyRobot, gait: Gait, feet: Sequence[_Feet]) -> Gait | None:
+    """Return the gait with these paths of the feet; None where the robot cannot follow it."""
+    reaches = [girdle.limb.reach for girdle in layout(robot).robot.girdles]
     try:
-        check_limits(robot, gait)
-    except OutsideLimits:
-        return False
-    return True
+        limbs = tuple(
+            replace(limb, **{field: _rounded(metres / reach) for field, metres in one._asdict().items()})
+            for limb, one, reach in zip(gait.limbs, feet, reaches, strict=True)
+        )
+    except InvalidDesign:  # a path longer than the limb
+        return None
+    placed = replace(gait, limbs=limbs)
+    return placed if suits(robot, placed) else None
+
+
+def _slowed(robot: AnyRobot, gait: Gait, notes: list[str]) -> Gait:
+    """Return the gait with a period in which no servo has to turn faster than it can."""
+    needed, slow = shortest_period(robot, gait)
+    if needed <= gait.period:
+        return gait
+    notes.append(
+        f"in a cycle of {gait.period:.2f} s {slow} would have to turn faster than its servo can; the period is "
+        f"{needed:.2f} s"
+    )
+    return replace(gait, period=round(needed + 5e-5, 4))  # never rounded to below what is needed
 
 
 def _unheld(walk: Walk) -> list[str]:
-    """Note what was measured and no gait of this kind can have."""
+    """Note what was measured and is not in the gait."""
     notes = []
     for part in ("trunk", "tail"):
         index = walk.value(f"standing_{part}")
         if index < STANDING:
             notes.append(
-                f"the {part} bends as a travelling wave (standing index {index:.2f}); a gait bends it all at once"
+                f"the {part} bends as a travelling wave (standing index {index:.2f}); the gait bends it all at once"
             )
     for part in ("spine", "tail"):
         steady, beyond = walk.value(f"{part}_lateral_steady"), walk.value(f"{part}_lateral_overtones")
         if abs(steady) > np.radians(3.0):
             side = "right" if steady > 0 else "left"
             notes.append(
-                f"the {part} is bent {abs(degrees(steady)):.0f} degrees to the {side} on average; a gait is not"
+                f"the {part} is bent {abs(degrees(steady)):.0f} degrees to the {side} on average; in the gait it is not"
             )
         if beyond > 0.2 and walk.value(f"{part}_lateral") > _STILL:
-            notes.append(f"the {part}'s overtones are {100 * beyond:.0f} % of its swing; a gait swings as a cosine")
+            notes.append(
+                f"the {part}'s overtones are {100 * beyond:.0f} % of its swing; in the gait it swings as a cosine"
+            )
         name = f"{part}_vertical"
         if name in walk.numbers and walk.value(name) > np.radians(3.0):
-            notes.append(f"the {part} swings up and down by {degrees(walk.value(name)):.0f} degrees; a gait does not")
+            notes.append(
+                f"the {part} swings up and down by {degrees(walk.value(name)):.0f} degrees; in the gait it does not"
+            )
     return notes
+
+
+def to_curves(cycle: AngleCycle, robot: AnyRobot, *, name: str, period: float) -> Gait:
+    """Return the gait that plays measured joint angles on a robot; nothing is fitted.
+
+    A column is called after the robot's servo, or as in tables of animals: ``Axis 3``, the third lateral hinge from
+    the head, positive where the body is concave on its right; ``Left Shoulder-yaw``, ``-pitch``, ``-roll`` and ``Left
+    Elbow`` of a fore limb, ``Hip`` and ``Knee`` of a hind limb, positive as the hinges of a limb are: forward, down,
+    the lower limb forward, bent. A limb swings while its foot goes forward in its girdle's frame.
+
+    Args:
+        cycle: the angles, as ``read_angles`` returns them.
+        robot: who plays them.
+        name: of the gait.
+        period: of its cycle [s].
+
+    Raises:
+        UnknownName: a column belongs to no servo of the robot.
+        OutsideLimits: two columns belong to the same servo.
+    """
+    place, parts = layout(robot), servo_parts(robot)
+    columns = [_servo(place, joint) for joint in cycle.joints]
+    numbers = [number for number, _ in columns]
+    twice = next((number for number in numbers if numbers.count(number) > 1), None)
+    if twice is not None:
+        raise OutsideLimits(f"{cycle.source} has two columns for servo {place.servos[twice]}; leave one of them.")
+    count = 2 * cycle.harmonics.shape[1] - 1  # as many samples as the harmonics have numbers
+    angles = cycle.at(np.arange(count) / count)
+    curves = tuple(
+        Curve(
+            servo=place.servos[number],
+            part=parts[place.servos[number]],
+            angles=tuple(round(float(angle), 3) for angle in sign * angles[:, i]),
+        )
+        for i, (number, sign) in enumerate(columns)
+    )
+    played = Gait(name=name, period=period, limb_phases=(0.0,) * len(place.limbs), curves=curves)
+    swings = [_swing(robot, played, limb) for limb in place.limbs]
+    duty = 1.0 - float(np.mean([share for _, share in swings])) if swings else 0.5
+    return replace(
+        played,
+        duty_factor=round(min(max(duty, 0.05), 0.95), 3),
+        limb_phases=tuple(round((1.0 - start) % 1.0, 3) for start, _ in swings),
+    )
+
+
+def _servo(place: Layout, joint: str) -> tuple[int, float]:
+    """Return the number of the servo that a column belongs to, and the sign of its angle."""
+    word = " ".join(joint.split())
+    if word in place.servos:
+        return place.servos.index(word), 1.0
+    axis, limb = _AXIS.match(word), _LIMB.match(word)
+    if axis and 1 <= int(axis[1]) <= len(place.axial_yaw):
+        number = int(axis[1]) - 1
+        return place.axial_yaw[number], -place.axial_left[number]
+    if limb and place.limbs:
+        side, part, turn = limb[1] or limb[4], limb[2] or limb[5], limb[3]
+        girdle = 0 if part.lower() in _FRONT else place.limbs[-1].number
+        mine = next(one for one in place.limbs if one.number == girdle and (one.side > 0) == (side.lower() == "left"))
+        hinges = mine.girdle.limb.hinges
+        names = [hinge.name for hinge in hinges if turn is None or hinge.turn == turn.lower()]
+        wanted = f"{mine.name}_{names[0] if turn else names[-1]}" if names else ""
+        if wanted in place.servos:
+            return place.servos.index(wanted), 1.0
+    raise UnknownName(f"joint of robot {place.robot.name!r}", joint, (*place.servos, *_spelled(place)))
+
+
+def _spelled(place: Layout) -> tuple[str, ...]:
+    """Return further names of columns that a robot could play, as an example of each kind."""
+    axis = (f"Axis 1 to {len(place.axial_yaw)}",) if place.axial_yaw else ()
+    return (*axis, *(("Left Shoulder-yaw", "Left Hip-yaw", "Left Elbow", "Left Knee") if place.limbs else ()))
+
+
+def _swing(robot: AnyRobot, gait: Gait, limb: LimbPlace) -> tuple[float, float]:
+    """Return when the foot of a limb begins to go forward, and for which share of the cycle it does [cycle]."""
+    clock = np.arange(_STEPS) / _STEPS
+    design, place = limb.girdle.limb, layout(robot)
+    targets, angles = cycle_targets(robot, gait, clock), np.zeros((_STEPS, len(design.hinges)))
+    for i, hinge in enumerate(design.hinges):
+        if hinge.servo is not None:
+            angles[:, i] = targets[:, place.servos.index(f"{limb.name}_{hinge.name}")]
+    ahead = limb_kinematics.forward(design, angles)[:, 0]
+    start, end = int(np.argmin(ahead)), int(np.argmax(ahead))
+    return start / _STEPS, ((end - start) % _STEPS) / _STEPS
 
 
 def _within_half(cycles: float) -> float:

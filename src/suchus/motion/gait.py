@@ -27,6 +27,8 @@ Part = Literal["neck", "trunk", "tail", "axis"]
 
 A body without limbs has no neck: what lies ahead of its root is trunk.
 """
+ServoPart = Literal["limb", "neck", "trunk", "tail"]
+"""A part of the body that a servo moves."""
 Turn = Literal["yaw", "pitch"]
 """Sideways, or up and down."""
 Ability = Literal["foot paths", "strokes", "wave", "tail pitch", "steering"]
@@ -132,7 +134,7 @@ class Curve:
 
     servo: str
     """Name of the servo, as ``suchus.design.layout(robot).servos`` has it."""
-    part: Literal["limb", "neck", "trunk", "tail"]
+    part: ServoPart
     """Part of the body that it moves: a limb's curve follows the phase of its limb, any other one that of the axis."""
     angles: tuple[float, ...]
     """Angles at equal steps of the cycle; after the last one the first follows again [rad]."""

@@ -7,7 +7,7 @@ import numpy as np
 
 from suchus.design import AnyRobot, layout, servo_ranges
 from suchus.errors import InvalidDesign, NotConverged, OutsideLimits, UnknownName, Unreachable
-from suchus.motion.gait import Curve, Gait
+from suchus.motion.gait import Curve, Gait, ServoPart
 from suchus.motion.movement import Movement, cycle_targets, movement
 
 SAMPLES = 128
