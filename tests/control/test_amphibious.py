@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from tests.felt import felt as feels
+from tests.start_batch import start_batch
 
-from suchus.control import Amphibious, HeadingHold, HeadingRule, Joinable, Sensed, Swimming
+from suchus.control import Amphibious, HeadingHold, HeadingRule, Sensed, Swimming
 from suchus.control.holding import DepthHold
 from suchus.design import layout
 from suchus.errors import InvalidDesign
@@ -42,7 +43,7 @@ def sensed(load, robot=ROBOT, yaw=0.0, feet=1 / 3):
 
 
 def begun(way=WAY, load=0.0, gait=GAIT):
-    machine = way.start([ROBOT], [gait], [0], 3000, PERIOD)
+    machine = start_batch(way, [ROBOT], [gait], [0], 3000, PERIOD)
     machine.rest()
     for tick in range(BEGIN):
         machine.command(tick, sensed(load))
@@ -107,7 +108,7 @@ def test_a_touch_shorter_than_the_memory_is_not_felt():
 
 def test_limbs_step_only_while_it_walks_and_postures_go_over_without_a_jump():
     machine = begun()
-    swims = Swimming(swim=WAVE).start([ROBOT], [GAIT], [0], 3000, PERIOD)
+    swims = start_batch(Swimming(swim=WAVE), [ROBOT], [GAIT], [0], 3000, PERIOD)
     before, last, phases = [], None, []
     for tick in range(BEGIN, BEGIN + 300):
         command = machine.command(tick, sensed(0.0 if tick < BEGIN + 100 else 0.5))
@@ -131,8 +132,8 @@ def test_when_it_walks_it_walks_the_gait():
     walked = GAITS["low_crawl"]
     expected = simulate([Run(robot=ROBOT, gait=walked)], duration=0.02).servo_target  # its posture at rest
     assert machine._phase[0] == pytest.approx(np.array(walked.limb_phases) + 2.5 / walked.period, abs=0.01)
-    other = WAY.start([ROBOT], [walked], [0], 10, PERIOD).rest()
-    rest = replace(WAY, begins="walking").start([ROBOT], [walked], [0], 10, PERIOD).rest()
+    other = start_batch(WAY, [ROBOT], [walked], [0], 10, PERIOD).rest()
+    rest = start_batch(replace(WAY, begins="walking"), [ROBOT], [walked], [0], 10, PERIOD).rest()
     limbs = slice(0, 12)
     assert rest[0, limbs] == pytest.approx(expected[0, 0].values[limbs], abs=0.7)
     assert np.abs(other[0, limbs] - expected[0, 0].values[limbs]).max() > 0.9
@@ -196,23 +197,20 @@ def test_breath_that_is_commanded_reaches_the_water():
     runs = [Run(robot=ROBOT, gait=GAIT, lake=Lake(level=0.06), control=one) for one in (WAY, way)]
     record = simulate(runs, duration=START + 0.8)
     assert record.breath.min("time").values == pytest.approx([1.0, 0.0])
-    assert isinstance(WAY, Joinable)
 
 
 def test_what_others_of_its_batch_do_changes_nothing():
     """The direction is felt from the beginning on, and what stays of its error adds up only while it walks."""
     way = replace(WAY, heading=HeadingRule())
-    alone = way.start([ROBOT], [GAIT], [0], 3000, PERIOD)
-    both = Amphibious.start_together(
-        [way, replace(way, begins="walking")], [ROBOT] * 2, [GAIT] * 2, [0, 0], 3000, PERIOD
-    )
+    alone = start_batch(way, [ROBOT], [GAIT], [0], 3000, PERIOD)
+    both = start_batch([way, replace(way, begins="walking")], [ROBOT] * 2, [GAIT] * 2, [0, 0], 3000, PERIOD)
     rng = np.random.default_rng(0)
     for tick in range(0, 260):
         felt = sensed(0.0 if tick < 150 else 0.5, yaw=0.3 + 0.1 * rng.random())
         one = alone.command(tick, felt)
         two = both.command(tick, twice(felt))
         assert two.targets[0] == pytest.approx(one.targets[0], abs=1e-9), tick
-    swam = way.start([ROBOT], [GAIT], [0], 3000, PERIOD)
+    swam = start_batch(way, [ROBOT], [GAIT], [0], 3000, PERIOD)
     for tick in range(400):
         swam.command(tick, sensed(0.0, yaw=0.3 * (tick > 0)))
     assert np.abs(swam._heading._offset).max() == 0.0
@@ -228,7 +226,7 @@ def test_what_others_of_its_batch_do_changes_nothing():
         (lambda: replace(WAY, change=0.0), "change is 0 s"),
         (lambda: replace(WAY, swim=Swimming(swim=WAVE, depth=DepthHold(depth=1.0))), "leave out swim.depth"),
         (
-            lambda: replace(WAY, breathe_out=0.5).start([ROBOTS["caiman"]], [GAIT], [0], 10, PERIOD),
+            lambda: start_batch(replace(WAY, breathe_out=0.5), [ROBOTS["caiman"]], [GAIT], [0], 10, PERIOD),
             "no air that it could let out",
         ),
         (lambda: HeadingHold(gain=-1.0), "heading_hold.gain is -1"),

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from tests.felt import felt as feels
+from tests.start_batch import start_batch
 
 from suchus.control import DepthHold, HeadingHold, Swimming
 from suchus.control.holding import Depths, Headings, neutral_breath
@@ -144,8 +145,13 @@ def test_a_swim_holds_heading_and_depth_in_the_water():
             "would have to let out",
         ),
         (
-            lambda: Swimming(swim=WAVE, heading=HeadingHold(trunk_turn=3.0)).start(
-                [ROBOT], [GAITS["belly_crawl"]], [0], 10, PERIOD
+            lambda: start_batch(
+                Swimming(swim=WAVE, heading=HeadingHold(trunk_turn=3.0)),
+                [ROBOT],
+                [GAITS["belly_crawl"]],
+                [0],
+                10,
+                PERIOD,
             ),
             OutsideLimits,
             "spine_yaw_1 of robot",

@@ -6,9 +6,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.felt import felt
+from tests.start_batch import start_batch
 
 from suchus.capture.wave import standing_index
-from suchus.control import LAWS, Control, Joinable, OpenLoop, Oscillators, PatternGenerator, SpineRule, TailRule
+from suchus.control import LAWS, Control, OpenLoop, Oscillators, PatternGenerator, SpineRule, TailRule
 from suchus.control import oscillate as turned
 from suchus.control.oscillators import AxisPart, Rhythm, couple, cut, steps_needed
 from suchus.control.pattern_posture import axis_segments
@@ -37,7 +38,7 @@ N = 8  # segments of its axis
 def started(control, name, runs=1, seeds=None):
     robot, gait = ROBOTS[name], GAITS[WALKERS[name]]
     seeds = list(range(runs)) if seeds is None else seeds
-    return control.start([robot] * runs, [gait] * runs, seeds, 0, control_period(robot))
+    return start_batch(control, [robot] * runs, [gait] * runs, seeds, 0, control_period(robot))
 
 
 def followed(generator, name, cycles):
@@ -160,7 +161,7 @@ def test_at_the_middle_drive_limbs_do_what_the_gait_does_and_the_axis_bends_as_f
     robot, gait = ROBOTS[name], GAITS[WALKERS[name]]
     period, generator = control_period(robot), started(PatternGenerator(), name)
     ticks = round((START + 2.5 * gait.period) / period)
-    table = OpenLoop().start([robot], [gait], [0], ticks + 1, period)
+    table = start_batch(OpenLoop(), [robot], [gait], [0], ticks + 1, period)
     limbs = [i for one in layout(robot).limbs for i in range(one.servos.start, one.servos.stop)]
     found, meant = [generator.rest()], [table.rest()]
     for tick in range(round(START / period), ticks):
@@ -291,7 +292,7 @@ def test_a_batch_turns_as_each_run_does_alone_to_the_byte_in_any_order():
 
     def told(some, seeds):
         runs = len(some)
-        generator = PatternGenerator.start_together(some, [robot] * runs, [WALK] * runs, seeds, 0, period)
+        generator = start_batch(some, [robot] * runs, [WALK] * runs, seeds, 0, period)
         rows = [generator.command(first + k, None) for k in range(60)]
         return np.array([row.targets for row in rows]), np.array([row.phase for row in rows])
 
@@ -313,7 +314,7 @@ def test_it_walks_on_land_the_same_alone_and_beside_others():
     stride = displacement(both).sel(xyz="x").values / SALAMANDER.length / [1.5, 1.0]
     assert (stride > 0.1).all()
     assert isinstance(PatternGenerator(), Control)
-    assert isinstance(PatternGenerator(), Joinable)
+    assert isinstance(PatternGenerator(), Control)
 
 
 # --- feedback ---
@@ -343,7 +344,7 @@ def test_spine_and_tail_rules_act_on_it(robot, crawl_gait):
     torque[0, place.tail_pitch[0]] = 1.0
     readings = felt(robot, time=2.0, servo_torque=torque)
     plain, ruled = (
-        control.start([robot], [crawl_gait], [0], 0, period).command(tick, readings).targets[0]
+        start_batch(control, [robot], [crawl_gait], [0], 0, period).command(tick, readings).targets[0]
         for control in (PatternGenerator(), PatternGenerator(spine=SpineRule(), tail=TailRule()))
     )
     yaws = list(place.trunk_yaw)

@@ -6,6 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from tests.felt import felt as feels
+from tests.metres import limb_phase, placed, tail_bend, trunk_bend, with_metres
+from tests.start_batch import start_batch
 
 from suchus.control import LAWS, OWNERS, Coordinated, HeadingRule, Kick, LimbLaw, OpenLoop, SpineRule, TailRule
 from suchus.control.limbs import GRAVITY, Limbs
@@ -16,7 +18,7 @@ from suchus.design import layout
 from suchus.errors import InvalidDesign, OutsideLimits
 from suchus.gaits import GAITS
 from suchus.land import Run, simulate
-from suchus.motion import START, limb_phase, servo_targets, tail_bend, trunk_bend
+from suchus.motion import START, Batch, cycle_targets
 from suchus.robots import ROBOTS
 
 TRUNK_YAW = list(layout(ROBOTS["caiman"]).trunk_yaw)
@@ -33,7 +35,7 @@ def sensed(runs, **readings):
 
 
 def started(control, robot, gait, runs=1, ticks=1000):
-    return control.start([robot] * runs, [gait] * runs, list(range(runs)), ticks, PERIOD)
+    return start_batch(control, [robot] * runs, [gait] * runs, list(range(runs)), ticks, PERIOD)
 
 
 def turned(angle):
@@ -44,9 +46,9 @@ def turned(angle):
 
 
 def test_with_all_rules_off_the_commands_are_the_open_loop_table_to_the_bit(robot, crawl_gait, limbs_gait):
-    gaits = [crawl_gait, replace(crawl_gait, duty_factor=0.62, period=1.7, tail_phase=0.3), limbs_gait]
-    table = OpenLoop().start([robot] * 3, gaits, [0, 1, 2], 1000, PERIOD)
-    closed = OFF.start([robot] * 3, gaits, [0, 1, 2], 1000, PERIOD)
+    gaits = [crawl_gait, with_metres(crawl_gait, duty_factor=0.62, period=1.7, tail_phase=0.3), limbs_gait]
+    table = start_batch(OpenLoop(), [robot] * 3, gaits, [0, 1, 2], 1000, PERIOD)
+    closed = start_batch(OFF, [robot] * 3, gaits, [0, 1, 2], 1000, PERIOD)
     rng = np.random.default_rng(0)
     assert not OFF.feels
     assert closed.rest().tobytes() == table.rest().tobytes()
@@ -84,7 +86,7 @@ def test_all_rules_off_but_random_phases_is_the_gait_at_those_phases(robot, craw
     assert np.ptp(first.phase, axis=0).min() > 0.0
     assert ((first.phase >= 0.0) & (first.phase < 1.0)).all()
     assert later.phase - first.phase == pytest.approx(1.3 / crawl_gait.period)
-    assert later.targets == pytest.approx(servo_targets(robot, crawl_gait, later.phase), abs=1e-12)
+    assert later.targets == pytest.approx(placed(robot, crawl_gait, later.phase), abs=1e-12)
 
 
 # --- the shared variables ---
@@ -116,11 +118,11 @@ phases = st.lists(st.floats(0.0, 1.0), min_size=4, max_size=4)
 
 @given(phases, st.floats(-0.5, 0.5), st.floats(-0.5, 0.5), st.floats(0.3, 0.8))
 def test_spine_and_tail_follow_the_limbs_by_the_open_loop_law(robot, crawl_gait, phase, late, later, duty):
-    gait = replace(crawl_gait, spine_phase=late, tail_phase=later, duty_factor=duty)
-    groups = [(robot, gait, np.array([0]))]
+    gait = with_metres(crawl_gait, spine_phase=late, tail_phase=later, duty_factor=duty)
+    gaits, clock = Batch([robot], [gait]), np.zeros(1)
     shared = silence(1, 4).written_by("limbs", limb_phase=np.array([phase]))
-    shared = SpineController([None], [robot], groups, PERIOD).step(shared)
-    shared = TailController([None], [robot], [gait], groups, PERIOD).step(shared)
+    shared = SpineController.step(shared, gaits, clock)
+    shared = TailController.step(shared, gaits, clock)
     for name, law in (("trunk", trunk_bend), ("tail", tail_bend)):
         assert getattr(shared, f"{name}_bend") == pytest.approx(law(gait, np.array([phase])), abs=1e-12)
         assert getattr(shared, f"{name}_direction") == pytest.approx(law(gait, np.array([phase]) + 0.25), abs=1e-12)
@@ -129,7 +131,7 @@ def test_spine_and_tail_follow_the_limbs_by_the_open_loop_law(robot, crawl_gait,
 def test_without_sharing_spine_and_tail_follow_the_clock(robot, crawl_gait):
     closed = started(replace(OFF, random_start=True, sharing=False), robot, crawl_gait)
     command = closed.command(WALK + 70, None)
-    by_clock = servo_targets(robot, crawl_gait, limb_phase(crawl_gait, np.array([START + 0.7])))
+    by_clock = cycle_targets(robot, crawl_gait, np.array([0.7 / crawl_gait.period]))
     assert command.targets[:, 12:] == pytest.approx(by_clock[:, 12:], abs=1e-12)
     assert np.abs(command.targets[:, :12] - by_clock[:, :12]).max() > 0.01
 
@@ -221,7 +223,7 @@ def test_phases_stand_still_until_the_walk_begins(robot, crawl_gait):
 
 def test_a_kick_is_a_jump_of_one_run_alone(robot, crawl_gait):
     jump = (0.5, 0.0, -0.1, 0.2)
-    closed = Coordinated.start_together(
+    closed = start_batch(
         [replace(OFF, kicks=(Kick(2.0, jump),)), OFF], [robot] * 2, [crawl_gait] * 2, [0, 0], 400, PERIOD
     )
     before, after = closed.command(199, None).phase, closed.command(200, None).phase
@@ -231,7 +233,7 @@ def test_a_kick_is_a_jump_of_one_run_alone(robot, crawl_gait):
 def test_noise_on_the_feet_follows_the_seed(robot, crawl_gait):
     def phase(seed, loud):
         control = Coordinated(spine=None, tail=None, load_noise=loud)
-        closed = control.start([robot], [crawl_gait], [seed], 400, PERIOD)
+        closed = start_batch(control, [robot], [crawl_gait], [seed], 400, PERIOD)
         felt = sensed(1, foot_pressure=np.array([12.0, 3.0, 6.0, 9.0]))
         return [closed.command(WALK + i, felt).phase for i in range(40)][-1]
 
@@ -245,7 +247,7 @@ def test_noise_on_the_feet_follows_the_seed(robot, crawl_gait):
 
 def test_the_joints_share_out_what_is_lacking_of_the_bend(robot, crawl_gait):
     rule = SpineRule(share=0.25, delay=0.1)
-    spine = SpineController([rule, None], [robot] * 2, [(robot, crawl_gait, np.arange(2))], PERIOD)
+    spine = SpineController([rule, None], [robot] * 2, PERIOD)
     targets = np.zeros((2, 19))
     felt = sensed(2, servo_position=np.where(np.isin(np.arange(19), TRUNK_YAW[:2]), 0.1, 0.0))  # 0.2 of 0.6 rad
     for tick in range(200):
@@ -258,7 +260,7 @@ def test_the_joints_share_out_what_is_lacking_of_the_bend(robot, crawl_gait):
 
 
 def test_no_joint_is_told_to_leave_its_range(robot, crawl_gait):
-    spine = SpineController([SpineRule(share=2.0, delay=0.0)], [robot], [(robot, crawl_gait, np.arange(1))], PERIOD)
+    spine = SpineController([SpineRule(share=2.0, delay=0.0)], [robot], PERIOD)
     told = spine.correct(np.zeros((1, 19)), np.array([3.0]), sensed(1))
     assert told[0, TRUNK_YAW] == pytest.approx(robot.spine.yaw_range[1])
 
@@ -268,9 +270,9 @@ def test_the_tail_gives_way_to_its_torque_within_its_range(robot, crawl_gait):
     gaits = [crawl_gait, crawl_gait, crawl_gait, limbs_gait]
     rule = TailRule(rate=0.5)
     tail = TailController(
-        [rule, rule, None, rule], [robot] * 4, gaits, [(robot, g, np.array([i])) for i, g in enumerate(gaits)], PERIOD
+        [rule, rule, None, rule], [robot] * 4, gaits, PERIOD
     )
-    pitch = np.array([gait.tail_pitch for gait in gaits])
+    pitch = np.array([gait.number("tail_pitch") for gait in gaits])
     targets = np.zeros((4, 19))
     targets[:, PITCH] = pitch
     torque = np.zeros((4, 19))
@@ -280,7 +282,9 @@ def test_the_tail_gives_way_to_its_torque_within_its_range(robot, crawl_gait):
     for _ in range(2000):
         told = tail.correct(targets, sensed(4, servo_torque=torque))
     # a lifted tail stays lifted
-    assert told[:, PITCH] == pytest.approx([rule.lowest, rule.highest, crawl_gait.tail_pitch, limbs_gait.tail_pitch])
+    assert told[:, PITCH] == pytest.approx(
+        [rule.lowest, rule.highest, crawl_gait.number("tail_pitch"), limbs_gait.number("tail_pitch")]
+    )
 
 
 # --- the heading loop ---

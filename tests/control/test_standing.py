@@ -3,6 +3,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from tests.felt import felt as feels
+from tests.metres import limb_phase, placed
+from tests.start_batch import start_batch
 
 import suchus
 from suchus.control.standing import BALANCE, Standing
@@ -10,7 +12,6 @@ from suchus.errors import InvalidDesign
 from suchus.kinematics import leg as leg_kinematics
 from suchus.land import Run, simulate
 from suchus.metrics.reach import lead, reach
-from suchus.motion import limb_phase, servo_targets
 from suchus.motion.posture import plan
 from suchus.motion.rising import stand_up
 
@@ -20,7 +21,8 @@ PERIOD = 0.01
 
 
 def started(standing, robots=(CAIMAN,), ticks=3000):
-    return standing.start(list(robots), [CRAWL] * len(robots), [0] * len(robots), ticks, PERIOD)
+    many = len(robots)
+    return start_batch(standing, robots, [CRAWL] * many, [0] * many, ticks, PERIOD)
 
 
 def felt(pitch, *, tail=6.9, rate=0.0, count=1):
@@ -49,10 +51,10 @@ def test_before_and_after_it_stands_it_crawls_where_it_had_stopped():
     end = standing.down_from(CAIMAN)
     for time in (0.0, 1.3, 2.0):
         phase = limb_phase(CRAWL, np.array([time]))
-        assert blind.command(round(time / PERIOD), None).targets == pytest.approx(servo_targets(CAIMAN, CRAWL, phase))
+        assert blind.command(round(time / PERIOD), None).targets == pytest.approx(placed(CAIMAN, CRAWL, phase))
     later = blind.command(round((end + 1.5) / PERIOD), None)
     assert later.phase == pytest.approx(limb_phase(CRAWL, np.array([2.0 + 1.5])), abs=1e-9)
-    assert later.targets == pytest.approx(servo_targets(CAIMAN, CRAWL, later.phase), abs=1e-9)
+    assert later.targets == pytest.approx(placed(CAIMAN, CRAWL, later.phase), abs=1e-9)
 
 
 def test_commands_never_jump():
@@ -119,7 +121,7 @@ def test_runs_that_stand_at_different_times_share_a_batch():
 
 def test_without_balance_nothing_is_corrected():
     blind = replace(SOON, balance=None)
-    both = Standing.start_together([SOON, blind], [CAIMAN] * 2, [CRAWL] * 2, [0, 0], 3000, PERIOD)
+    both = start_batch([SOON, blind], [CAIMAN] * 2, [CRAWL] * 2, [0, 0], 3000, PERIOD)
     tick = round((SOON.upright_from(CAIMAN) + 1.0) / PERIOD)
     for i, pitch in enumerate((1.4, 1.2)):
         told = both.command(tick + i, felt(np.array([pitch, pitch]), count=2)).targets

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from tests.felt import felt as feels
+from tests.start_batch import start_batch
 
 from suchus import rotation
 from suchus.control import DepthHold, PitchHold, Sensed, Swimming
@@ -133,7 +134,8 @@ def test_a_swim_at_depth_is_level_and_with_the_air_in_its_foam_nose_up():
         (lambda: PitchHold(pump=0.0), "pitch_hold.pump is 0 1/s"),
         (lambda: Swimming(swim=WAVE, pitch=PitchHold()), "swimming.depth is None; give it a DepthHold"),
         (
-            lambda: Swimming(swim=WAVE, depth=DepthHold(depth=1.0), pitch=PitchHold()).start(
+            lambda: start_batch(
+                Swimming(swim=WAVE, depth=DepthHold(depth=1.0), pitch=PitchHold()),
                 [replace(ROBOT, hull=replace(ROBOT.hull, foam=one_sided(), air=3e-4, chambers=()))],
                 [GAITS["belly_crawl"]],
                 [0],

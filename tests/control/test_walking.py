@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from tests.felt import felt as feels
 
-from suchus.control import AttitudeRule, Change, Joinable, OpenLoop, SwitchRule, Walking
+from suchus.control import AttitudeRule, Change, Control, OpenLoop, Runs, SwitchRule, Walking
 from suchus.control.switching import Switcher
 from suchus.design.relief import Bumps, Stone
 from suchus.errors import InvalidDesign, OutsideLimits, UnknownName
@@ -13,6 +13,11 @@ from suchus.gaits import GAITS
 from suchus.land import Ground, Run, simulate
 from suchus.metrics import between, displacement, heading_change, tilt
 from suchus.robots import ROBOTS
+
+
+def started(control, robot, gait):
+    return control.start(Runs.alike(control, robot, gait, ticks=10), 0.01)
+
 
 POSTURES = ("belly_crawl", "low_crawl", "semi_erect", "high_walk")
 SEEDS = ((2, 0.06), (3, 0.1))
@@ -38,20 +43,20 @@ def sensed(*, roll=0.0, pitch=0.0, roll_rate=0.0, pitch_rate=0.0, feet=(20.0,) *
 @pytest.mark.parametrize("name", POSTURES)
 def test_with_nothing_asked_it_is_the_open_loop(robot, name):
     gait = GAITS[name]
-    table = OpenLoop().start([robot], [gait], [0], 400, 0.01)
-    walker = Walking().start([robot], [gait], [0], 400, 0.01)
+    table = OpenLoop.start(Runs.alike(OpenLoop(), robot, gait, ticks=400), 0.01)
+    walker = Walking.start(Runs.alike(Walking(), robot, gait, ticks=400), 0.01)
     assert walker.rest() == pytest.approx(table.rest(), abs=1e-9)
     for tick in range(0, 400, 7):
         ours, theirs = walker.command(tick, None), table.command(tick, None)
         assert ours.targets == pytest.approx(theirs.targets, abs=1e-9)
         assert ours.phase == pytest.approx(theirs.phase, abs=1e-9)
     assert not Walking().feels
-    assert isinstance(Walking(), Joinable)
+    assert isinstance(Walking(), Control)
 
 
 def test_feet_on_the_side_that_sinks_go_lower_and_the_front_ones_when_the_nose_sinks(robot):
     def lowered(**felt):
-        walker = Walking(attitude=AttitudeRule()).start([robot], [GAITS["high_walk"]], [0], 10, 0.01)
+        walker = started(Walking(attitude=AttitudeRule()), robot, GAITS["high_walk"])
         walker.command(150, sensed())
         walker.command(151, sensed(**felt))
         return walker._lower[0]
@@ -65,7 +70,7 @@ def test_feet_on_the_side_that_sinks_go_lower_and_the_front_ones_when_the_nose_s
 
 
 def test_a_constant_slope_is_no_stumble(robot):
-    walker = Walking(attitude=AttitudeRule(washout=0.5)).start([robot], [GAITS["high_walk"]], [0], 10, 0.01)
+    walker = started(Walking(attitude=AttitudeRule(washout=0.5)), robot, GAITS["high_walk"])
     walker.command(150, sensed())
     for tick in range(151, 600):
         walker.command(tick, sensed(pitch=0.2))
@@ -173,6 +178,6 @@ def test_impossible_wishes_are_refused(robot):
     with pytest.raises(InvalidDesign, match="repeats"):
         SwitchRule(ladder=(LADDER[0], LADDER[0]), home=0)
     with pytest.raises(OutsideLimits, match=r"lower walking\.bend"):
-        Walking(bend=2.0).start([robot], [LADDER[1]], [0], 10, 0.01)
+        started(Walking(bend=2.0), robot, LADDER[1])
     with pytest.raises(UnknownName, match="belly_crawl"):
-        Walking(switching=SwitchRule(ladder=LADDER, home=0)).start([robot], [GAITS["belly_crawl"]], [0], 10, 0.01)
+        started(Walking(switching=SwitchRule(ladder=LADDER, home=0)), robot, GAITS["belly_crawl"])

@@ -198,8 +198,7 @@ def test_each_unit_scales_by_its_powers():
     assert big.kd == pytest.approx(80 * own.kd)
     gait = scaled(GAITS["belly_crawl"], length=4.0)
     assert gait.period == pytest.approx(2 * GAITS["belly_crawl"].period)
-    assert gait.stroke == pytest.approx(4 * GAITS["belly_crawl"].stroke)
-    assert gait.trunk_bend == GAITS["belly_crawl"].trunk_bend
+    assert (gait.limbs, gait.axis) == (GAITS["belly_crawl"].limbs, GAITS["belly_crawl"].axis)  # shares and angles
     spring = scaled(Spring(stiffness=1.0, damping=1.0, armature=1.0), length=4.0, mass=1.0)
     assert (spring.stiffness, spring.damping, spring.armature) == pytest.approx((4.0, 8.0, 16.0))
     with pytest.raises(InvalidDesign, match=r"scaled.length is 0"):

@@ -21,7 +21,7 @@ from suchus.envs.reward import Terms  # noqa: E402
 from suchus.errors import InvalidDesign, OutsideLimits, SuchusError, UnknownName  # noqa: E402
 from suchus.faults import Locked, Weak  # noqa: E402
 from suchus.gaits import GAITS, own_gait  # noqa: E402
-from suchus.motion import limb_phase, servo_targets  # noqa: E402
+from suchus.motion import intended
 from suchus.robots import ROBOTS  # noqa: E402
 
 CRAWL, STAND, FAULT = (envs.TASKS[name] for name in ("Crawl", "Stand", "Fault"))
@@ -123,7 +123,7 @@ def test_the_shelf_s_gait_fits_into_the_actions_and_comes_out_of_them():
     actions = follow(seen)
     assert np.abs(actions).max() < 1.0
     ahead = 1.0 + gait.period * clock + CRAWL.decision
-    expected = servo_targets(CRAWL.robot, gait, limb_phase(gait, ahead))
+    expected = intended(CRAWL.robot, gait, ahead).targets
     np.testing.assert_allclose(env.pack.centre + CRAWL.span * actions, expected, atol=1e-12)
 
 

@@ -52,7 +52,7 @@ def disturbed(robot, crawl_gait):
         ("locked", "spine"): Run(robot=robot, gait=crawl_gait, control=ARMS["spine"], faults=locked),
         ("limp", "closed"): Run(robot=robot, gait=crawl_gait, control=ARMS["closed"], faults=limp),
         ("limp", "steered"): Run(robot=robot, gait=crawl_gait, control=ARMS["steered"], faults=limp),
-        ("tail", "closed"): Run(robot=robot, gait=replace(crawl_gait, tail_pitch=0.4), control=ARMS["tail"]),
+        ("tail", "closed"): Run(robot=robot, gait=crawl_gait.lifted(0.4), control=ARMS["tail"]),
     }
     record = simulate(list(runs.values()), duration=25.0, timestep=STEP, every=10)
     return {key: record.isel(run=i) for i, key in enumerate(runs)}

@@ -2,6 +2,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
+from tests.start_batch import start_batch
 
 from suchus.control import Command, OpenLoop
 from suchus.design import servo_names
@@ -147,7 +148,7 @@ class Listening:
     feels = True
 
     def start(self, robots, gaits, seeds, ticks, period):
-        table, heard = OpenLoop().start(robots, gaits, seeds, ticks, period), self.heard[0]
+        table, heard = start_batch(OpenLoop(), robots, gaits, seeds, ticks, period), self.heard[0]
 
         class Machine:
             def rest(self):

@@ -81,7 +81,7 @@ def test_switching_the_rules_keeps_the_asked_heading():
     walk = Live(Run(robot=ROBOT, gait=GAIT, control=rules, faults=(Limp("LF_yaw"),)), timestep=STEP)
     until(walk, 3.0)
     turned = walk._loop.controller._heading._facing._turned.copy()
-    walk.walk(replace(GAIT, stroke=0.03))
+    walk.walk(GAIT.strode(1.1))
     walk.step()
     assert abs(walk._loop.controller._heading._facing._turned - turned) < 0.05
 
@@ -89,7 +89,7 @@ def test_switching_the_rules_keeps_the_asked_heading():
 def test_a_gait_out_of_reach_is_refused_and_the_walk_goes_on():
     walk = until(live(), 1.2)
     with pytest.raises(OutsideLimits):
-        walk.walk(replace(GAIT, stroke=0.3))
+        walk.walk(GAIT.strode(5.5))
     assert until(walk, 1.4).run.gait == GAIT
 
 

@@ -6,6 +6,7 @@ from math import radians
 import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.metres import with_metres
 
 from suchus.design import servo_names
 from suchus.errors import SuchusError
@@ -58,7 +59,7 @@ def test_a_finite_run_or_a_suchus_error(robot, crawl_gait, design, changes, brok
         other = replace(robot, hind_leg=replace(robot.hind_leg, **design))
         run = Run(
             robot=other,
-            gait=replace(crawl_gait, **changes),
+            gait=with_metres(crawl_gait, **changes),
             ground=Ground(friction_scale=grip),
             faults=tuple(broken),
             noise=0.01,

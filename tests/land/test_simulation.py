@@ -56,12 +56,12 @@ def test_momentum_changes_by_the_forces_of_the_ground(arms):
 
 
 def test_reversed_spine_phase_walks_backwards(robot, crawl_gait):
-    record = simulate([Run(robot=robot, gait=replace(crawl_gait, spine_phase=0.5))], every=100)
+    record = simulate([Run(robot=robot, gait=crawl_gait.with_numbers(axis_lag=0.5))], every=100)
     assert way(record)[0] < -0.3
 
 
 def test_legs_without_stroke_and_spine_go_nowhere(robot, limbs_gait):
-    record = simulate([Run(robot=robot, gait=replace(limbs_gait, stroke=0.0))], every=100)
+    record = simulate([Run(robot=robot, gait=limbs_gait.strode(0.0))], every=100)
     assert abs(way(record)[0]) < 0.01
 
 
@@ -187,7 +187,7 @@ def test_bad_input_is_a_sentence(robot, crawl_gait, long_tail):
         with pytest.raises(InvalidDesign, match=words):
             call()
     with pytest.raises(OutsideLimits):
-        simulate([replace(run, gait=replace(crawl_gait, stroke=0.2))])
+        simulate([replace(run, gait=crawl_gait.strode(5.0))])
 
 
 def test_another_topology_walks_as_well(long_tail, crawl_gait):

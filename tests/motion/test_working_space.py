@@ -8,11 +8,14 @@ import pytest
 
 from suchus.design import LEGS, joint_names
 from suchus.gaits import GAITS
+from suchus.gaits.belly_crawl import LIMBS
 from suchus.kinematics.body import landmarks
 from suchus.kinematics.mass import centre_of_mass
+from suchus.motion import GaitInMetres
 from suchus.motion.working_space import extent, outline, over, reached
 
 CRAWL = GAITS["belly_crawl"]
+METRES = GaitInMetres.of(CRAWL, LIMBS)
 
 
 def world(pelvis, points):
@@ -31,7 +34,7 @@ def found(request, robot):
 def test_feet_stand_where_the_gait_puts_them(found, robot):
     standing, some = found
     assert len(some.snout) > 20
-    hind = robot.hind_leg.hip_offset + CRAWL.hind_reach
+    hind = robot.hind_leg.hip_offset + METRES.hind_reach
     for angles, pelvis, snout in zip(some.angles[:50], some.pelvis, some.snout, strict=False):
         marks = landmarks(robot, angles[None])
         feet = world(pelvis, marks.feet[0])
@@ -42,7 +45,7 @@ def test_feet_stand_where_the_gait_puts_them(found, robot):
             assert world(pelvis, marks.tail[0])[2] == pytest.approx(robot.tail.radius_tip, abs=1e-9)
         else:
             assert feet[:2, 2] == pytest.approx(robot.front_leg.foot_radius, abs=1e-9)
-            assert np.abs(feet[:2, 1]) == pytest.approx(robot.front_leg.hip_offset + CRAWL.front_reach)
+            assert np.abs(feet[:2, 1]) == pytest.approx(robot.front_leg.hip_offset + METRES.front_reach)
 
 
 def test_joints_stay_within_their_ranges_and_the_mass_over_what_stands(found, robot):
@@ -55,7 +58,7 @@ def test_joints_stay_within_their_ranges_and_the_mass_over_what_stands(found, ro
     assert some.snout[:, 2].min() >= robot.head.height / 2
     com = np.array([world(p, c) for p, c in zip(some.pelvis, centre_of_mass(robot, some.angles), strict=True)])
     assert (com[:, 0] <= 0.0).all() == standing
-    assert np.abs(com[:, 1]).max() < robot.hind_leg.hip_offset + CRAWL.hind_reach
+    assert np.abs(com[:, 1]).max() < robot.hind_leg.hip_offset + METRES.hind_reach
 
 
 def test_no_snout_is_higher_than_a_straight_robot(found, robot):

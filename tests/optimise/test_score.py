@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import xarray as xr
+from suchus.optimise.excess import excess
 
 from suchus.design import servo_names
 from suchus.errors import SuchusError
 from suchus.gaits import own_gait
 from suchus.kinematics.tail import servo_angle
 from suchus.optimise import Aim, Limit
-from suchus.optimise.excess import excess
 from suchus.optimise.score import allowed, excesses, losses, score, units
 from suchus.optimise.search_result import SearchResult
 from suchus.robots import ROBOTS

@@ -131,9 +131,9 @@ def test_a_walk_is_watched_steered_and_broken_in_two_browsers_that_do_not_distur
     first.locator('[data-suchus="forward"]').wait_for(state="attached")
     mine = watched.sessions[0]
     turn(first, "leg stroke [mm]", 41, lambda: mine.settings.gait.stroke == pytest.approx(0.041))
-    turn(first, "hip height [mm]", 170, lambda: "cannot follow 170 mm" in noticed(first))
-    assert 0.09 < mine.settings.gait.hip_height < 0.17
-    turn(first, "hip height [mm]", 90, lambda: mine.settings.gait.hip_height == pytest.approx(0.09))
+    turn(first, "hip height [% of reach]", 110, lambda: "cannot follow 110 % of reach" in noticed(first))
+    assert 0.52 < mine.settings.gait.height < 1.2
+    turn(first, "hip height [% of reach]", 55, lambda: mine.settings.gait.height == pytest.approx(0.55))
 
     press(first, "make it limp")
     wait_for(lambda: mine.settings.broken == (Limp("LF_yaw"),))

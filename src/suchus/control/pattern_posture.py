@@ -55,9 +55,7 @@ def axis_segments(robot: AnyRobot, gait: Gait) -> tuple[AxisSegment, ...]:
         )
     steady, amplitude = (yaw.offset / yaw.share)[0], yaw.amplitude()[0]
     segments = []
-    for k, (servo, left, along) in enumerate(
-        zip(yaw.hinges.servos, yaw.hinges.signs, yaw.hinges.places, strict=True)
-    ):
+    for k, (servo, left, along) in enumerate(zip(yaw.hinges.servos, yaw.hinges.signs, yaw.hinges.places, strict=True)):
         behind = [number for number, hip in enumerate(hips) if hip <= along]
         girdle = -1 if not hips else behind[-1] if behind else 0
         segments.append(

@@ -36,9 +36,7 @@ class Rules:
                     f"the rule spine to spine needs servos that bend the trunk sideways; robot {robots[0].name!r} "
                     "lacks them: leave spine out."
                 )
-            self._spine = SpineController(
-                [spines[i] for i in self._spined], [robots[i] for i in self._spined], period
-            )
+            self._spine = SpineController([spines[i] for i in self._spined], [robots[i] for i in self._spined], period)
         if self._tailed:
             self._tail = TailController(
                 [tails[i] for i in self._tailed],

@@ -13,7 +13,11 @@ _OWN = {
     "period": (1.2, 3.0, "0.35 m/s at 1.2 s, 0.14 m/s at 3 s; the body rolls by 8 degrees throughout"),
     "stroke": (0.03 / FRONT, 0.06 / FRONT, "long enough for 0.2 m/s, short enough to stay within reach"),
     "lift": (0.02 / FRONT, 0.05 / FRONT, "clears the sag of the diagonal pair under load"),
-    "height": (0.05 / HIND, 0.07 / HIND, "the belly clears even ground and touches bumps: what a crocodile's crawl looks like"),
+    "height": (
+        0.05 / HIND,
+        0.07 / HIND,
+        "the belly clears even ground and touches bumps: what a crocodile's crawl looks like",
+    ),
 }
 chosen = (
     *(Chosen(field=field, low=low, high=high, why=why) for field, (low, high, why) in _OWN.items()),

@@ -182,6 +182,4 @@ def _tabled(
         for servo, column in zip(place.servos, targets.T, strict=True)
         if parts[servo] == "limb"
     )
-    return Gait(
-        name=name, period=period, duty_factor=duty_factor, limb_phases=phases, axis=axis, curves=curves
-    )
+    return Gait(name=name, period=period, duty_factor=duty_factor, limb_phases=phases, axis=axis, curves=curves)

@@ -215,7 +215,10 @@ class AxialWave:
             amplitude = [len(among) * float(np.interp(place, places, angles)) for place in along]
             if not (any(amplitude) or (among and self.offset)):
                 continue
-            lag = [self.phase + self.waves * place + (0.5 if a < 0.0 else 0.0) for a, place in zip(amplitude, along, strict=True)]
+            lag = [
+                self.phase + self.waves * place + (0.5 if a < 0.0 else 0.0)
+                for a, place in zip(amplitude, along, strict=True)
+            ]
             found.append(
                 Bend(
                     part=part,

@@ -303,7 +303,9 @@ class Gait:
         return replace(
             self,
             axis=tuple(
-                replace(bend, amplitude=tuple(share * angle for angle in bend.amplitude)) if bend.turn == "yaw" else bend
+                replace(bend, amplitude=tuple(share * angle for angle in bend.amplitude))
+                if bend.turn == "yaw"
+                else bend
                 for bend in self.axis
             ),
             curves=tuple(
@@ -317,7 +319,7 @@ class Gait:
         return replace(
             self,
             axis=tuple(_lagged(bend, lag) for bend in self.axis),
-            curves=tuple(curve if curve.part == "limb" else curve.lagged(lag) for curve in self.curves),
+            curves=tuple(curve.lagged(lag) if curve.part != "limb" and lag else curve for curve in self.curves),
         )
 
     def reversed(self) -> "Gait":
@@ -332,7 +334,9 @@ class Gait:
             OutsideLimits: it has measured curves, which say nothing of the other side.
         """
         if self.curves:
-            raise OutsideLimits(f"gait {self.name!r} has measured curves, which cannot be mirrored: give a gait without.")
+            raise OutsideLimits(
+                f"gait {self.name!r} has measured curves, which cannot be mirrored: give a gait without."
+            )
         phases = tuple(p for pair in zip(self.limb_phases[1::2], self.limb_phases[::2], strict=True) for p in pair)
         # the limbs' clock of the axis begins at the phase of the first limb, which is now another one
         clock = phases[0] - self.limb_phases[0] if phases and not self.coupling else 0.0

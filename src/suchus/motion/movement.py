@@ -200,8 +200,15 @@ class Movement:
             limbs: phases of the limbs [cycle].
         """
         angle = 2 * np.pi * (limbs - self._touch_down[:, None] - self._behind)
-        count = len(self._signs)
-        return np.asarray(np.cos(angle) @ self._signs / count + 1j * (np.sin(angle) @ self._signs / count))
+        return np.asarray(self._mean(np.cos(angle)) + 1j * self._mean(np.sin(angle)))
+
+    def _mean(self, pulls: np.ndarray) -> np.ndarray:
+        """Return the mean over the limbs with their signs, summed in one order so that no batch changes a bit."""
+        terms = [pulls[..., i] * sign for i, sign in enumerate(self._signs)]
+        while len(terms) > 1:
+            half = (len(terms) + 1) // 2
+            terms = [sum(terms[i + half : i + half + 1], terms[i]) for i in range(half)]
+        return np.asarray(terms[0] / len(self._signs))
 
     def axis_of_clock(self, clock: Float[np.ndarray, "*batch"]) -> Complex[np.ndarray, "*batch"]:
         """Return what the axis follows at times since the beginning [cycle], without asking the limbs."""
@@ -502,9 +509,7 @@ def _metres(share: float, reach: float) -> float:
 
 def _references(gaits: Sequence[Gait]) -> tuple[np.ndarray, np.ndarray]:
     """Return by which sign each limb pulls on the axis [-], and the rest of the phase at which it does [cycle]."""
-    pulls = [
-        gait.coupling or tuple(phase - gait.limb_phases[0] for phase in gait.limb_phases) for gait in gaits
-    ]
+    pulls = [gait.coupling or tuple(phase - gait.limb_phases[0] for phase in gait.limb_phases) for gait in gaits]
     reference = np.array(pulls, dtype=float)
     half = np.round(2.0 * reference)
     return (1.0 - 2.0 * np.mod(half, 2.0))[0], reference - half / 2.0

@@ -74,7 +74,9 @@ def _box(robot: Crocodile, standing: bool) -> tuple[np.ndarray, np.ndarray]:
     return low, high
 
 
-def _kept(robot: Crocodile, gait: GaitInMetres, drawn: np.ndarray, standing: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _kept(
+    robot: Crocodile, gait: GaitInMetres, drawn: np.ndarray, standing: bool
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return snout, angles and pelvis of the configurations of a chunk that can be."""
     pelvis, trunk = drawn[:, :3], drawn[:, 3:]
     angles = np.zeros((len(drawn), len(joint_names(robot))))

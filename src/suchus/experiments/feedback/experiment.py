@@ -119,7 +119,8 @@ class Feedback(Experiment):
         Raises:
             OutsideLimits: its own gait is a table of angles.
         """
-        own = steerable(own_gait(robot), self.name())
+        own = own_gait(robot)
+        own.needs_steering(self.name())
         kick = (*self.kick, *(0.0,) * len(own.limb_phases))[: len(own.limb_phases)]
         return {"gait": own, "kick": kick}
 
