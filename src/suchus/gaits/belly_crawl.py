@@ -45,7 +45,7 @@ _ROWS: tuple[tuple[str, float, float, str], ...] = (
     ("stroke", 0.0, 0.1 / FRONT, _FITTED),
     ("trunk_bend", 0.0, 1.75, _FITTED),
     (
-        "spine_phase",
+        "axis_lag",
         -0.15,
         0.15,
         _LOST + "zero carries each girdle's swing foot farthest ahead at touch-down",
