@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from suchus.motion import Gait as Gait
     from suchus.motion import Swim as Swim
     from suchus.robots import ROBOTS as ROBOTS
+    from suchus.sources import project as project
     from suchus.water import swim as swim
 
     __version__: str
@@ -71,6 +72,7 @@ _HOMES = {
     "ROBOTS": "suchus.robots",
     "Gait": "suchus.motion",
     "Swim": "suchus.motion",
+    "project": "suchus.sources",
     "swim": "suchus.water",
     **dict.fromkeys(("Ground", "Live", "Push", "Run", "crawl", "simulate"), "suchus.land"),
     "Fault": "suchus.fault",

@@ -6,6 +6,9 @@ from pkgutil import resolve_name
 
 from suchus.errors import SuchusError
 
+PROJECT = "--project"
+"""Option of every command: the project folder, see ``suchus.sources``."""
+
 
 class BadCommand(SuchusError):
     """Words on the command line that make no sense."""

@@ -42,3 +42,4 @@ class Backlash(ServoFault):
 
 
 fault = Backlash
+harmless = (Backlash("LF_yaw", 0.0),)

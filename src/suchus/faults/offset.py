@@ -40,3 +40,4 @@ class Offset(ServoFault):
 
 
 fault = Offset
+harmless = (Offset("LF_yaw", 0.0),)

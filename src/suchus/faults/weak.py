@@ -30,3 +30,5 @@ class Weak(ServoFault):
 
 
 fault = Weak
+examples = (Weak("LF_pitch", 0.05),)  # half of the torque is enough for a crawl
+harmless = (Weak("LF_yaw", 1.0),)

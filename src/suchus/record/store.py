@@ -8,10 +8,10 @@ import numpy as np
 import xarray as xr
 
 from suchus.errors import IncompatibleRecord
+from suchus.reading import check_file, unreadable
 from suchus.record.foreign import open_foreign
 from suchus.record.place import new_file
 from suchus.record.provenance import plain
-from suchus.record.reading import check_file, unreadable
 from suchus.record.seal import holds, sealed
 
 _MARK = "suchus_record"

@@ -1,12 +1,22 @@
 """The shelf of robots: one file, one robot, declared as ``robot`` with its ``chosen`` numbers."""
 
+from operator import attrgetter
+from pathlib import Path
 from typing import Any
 
 from suchus.catalog import Catalog
 from suchus.design import AnyRobot
 from suchus.robots._size import RelativeSize, beside
 
-ROBOTS: Catalog[Any] = Catalog("robot", "suchus.robots", "suchus.design:AnyRobot")
+
+def _read(path: Path) -> AnyRobot:
+    from suchus import blueprint  # noqa: PLC0415  half of the time of an import that reads no file
+
+    robot: AnyRobot = blueprint.read(path, AnyRobot, ROBOTS)
+    return robot
+
+
+ROBOTS: Catalog[Any] = Catalog("robot", "suchus.robots", "suchus.design:AnyRobot", named=attrgetter("name"), read=_read)
 """Of either kind; who needs one of them says so by the type of its field."""
 
 

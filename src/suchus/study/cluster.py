@@ -13,6 +13,7 @@ from typing import Any, TypeVar
 import xarray as xr
 
 from suchus.errors import IncompatibleRecord, SuchusError
+from suchus.sources import Carried
 from suchus.study.makers import deciding
 
 Item = TypeVar("Item")
@@ -125,8 +126,8 @@ def spread(
         futures = client.map(
             _piece,
             range(len(items)),
-            items,
-            work=work,
+            [Carried(item) for item in items],
+            work=Carried(work),
             versions=versions,
             wanted=dict(versions()),
             pure=False,
@@ -240,7 +241,11 @@ def _piece(
 ) -> tuple[int, xr.Dataset]:
     """Do one piece of work, on a worker."""
     found = versions()
-    other = [f"{name} {value} (not {wanted.get(name)})" for name, value in found.items() if value != wanted.get(name)]
+    other = [
+        f"{name} {found.get(name)} (not {wanted.get(name)})"
+        for name in dict.fromkeys((*found, *wanted))
+        if found.get(name) != wanted.get(name)
+    ]
     if other:
         raise IncompatibleRecord(
             f"a worker has {', '.join(other)}; its bytes could differ: install the same versions everywhere."

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from importlib.metadata import PackageNotFoundError, version
 
 from suchus.record import code_digest, versions
+from suchus.sources import current
 
 _DECIDING = ("suchus", "python", "mujoco", "numpy", "scipy", "xarray", "h5netcdf")
 MADE_BY = (
@@ -21,14 +22,14 @@ MADE_BY = (
         "metrics",
         "model",
     ),
-    *("motion", "paper", "record", "robots", "rotation.py"),
+    *("blueprint", "motion", "paper", "reading.py", "record", "robots", "rotation.py", "sources.py"),
     *(f"study/{module}.py" for module in ("arm", "chunk", "measures", "plan", "study")),
 )
 """Whose code decides the numbers of a run on land."""
 
 
 def deciding(libraries: Sequence[str] = (), rooms: Sequence[str] = MADE_BY) -> dict[str, str]:
-    """Return the versions of what makes the bytes of a store.
+    """Return the versions of what makes the bytes of a store, the files of the user's project among them.
 
     Args:
         libraries: further packages whose versions decide.
@@ -37,6 +38,9 @@ def deciding(libraries: Sequence[str] = (), rooms: Sequence[str] = MADE_BY) -> d
     found = versions()
     makers = {name: found.get(name, "not installed") for name in _DECIDING}
     makers["source"] = code_digest(*rooms)[:12]
+    project = current()
+    if project is not None:
+        makers["project"] = project.digest()
     for name in libraries:
         try:
             makers[name] = version(name)

@@ -20,8 +20,9 @@ from suchus.study.store import Store
 Item = TypeVar("Item")
 Progress = Callable[[float], None]
 KIND = "sweep"
-FLOW = ("catalog.py", "design", "flow", "hydro", "kinds.py", "kinematics", "motion", "paper", "record", "robots",
-        "rotation.py", "water")  # fmt: skip
+FLOW = ("blueprint", "catalog.py", "design", "fingerprint.py", "flow", "hydro", "isosurface.py", "kinds.py",
+        "kinematics", "motion", "paper", "reading.py", "record", "robots", "rotation.py", "sources.py",
+        "water")  # fmt: skip
 """Rooms whose code decides the numbers of a swim by CFD."""
 
 
