@@ -14,6 +14,7 @@ from hypothesis import settings
 from jaxtyping import install_import_hook
 
 import first_calls
+from left_out import COLLECTED
 
 CHECKED = ("suchus.kinematics", "suchus.motion.phase", "suchus.motion.targets", "suchus.control", "suchus.metrics")
 """Rooms whose arrays' shapes are checked in the first calls of each test; production pays nothing."""
@@ -32,6 +33,11 @@ if "PYTEST_XDIST_WORKER" in os.environ:  # there are as many workers as cores
 xr.set_options(use_numbagg=False, use_bottleneck=False)  # as on the command line; numbagg compiles for half a minute
 settings.register_profile("suchus", deadline=None, derandomize=True)
 settings.load_profile("suchus")
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    config.stash[COLLECTED] = tuple(items)  # before any are deselected
 
 
 @pytest.hookimpl(tryfirst=True)

@@ -122,6 +122,7 @@ def test_robots_of_one_topology_share_a_batch(robot, crawl_gait, arms):
     assert not (mixed.centre_of_mass.isel(run=1) == arms.centre_of_mass.isel(run=0)).all()
 
 
+@pytest.mark.slow("a second run, in processes of its own")
 def test_same_seed_same_bytes_whatever_the_number_of_threads(tmp_path):
     code = (
         "import hashlib, suchus; r = suchus.ROBOTS['caiman']; g = suchus.GAITS['belly_crawl'];"

@@ -66,6 +66,7 @@ def page(tmp_path):
     return path
 
 
+@pytest.mark.slow("a process is killed, and the search run twice")
 def test_a_killed_search_loses_at_most_a_generation_and_ends_with_the_same_bytes(page, tmp_path):
     store = tmp_path / "killed"
     with subprocess.Popen([sys.executable, "-c", ALONE, str(page), str(store)]) as process:

@@ -27,25 +27,6 @@ WALKED = (
     "terrain",
     "turning",
 )
-LONG = (
-    "bipedal_reach",
-    "crawl_stability",
-    "death_roll",
-    "feedback",
-    "floating",
-    "gallop_limits",
-    "joint_faults",
-    "pattern_generator",
-    "shore",
-    "speed_range",
-    "swim_3d",
-    "swim_free",
-    "swimming",
-    "terrain",
-    "turning",
-)
-"""Experiments on the batch of others whose quick form alone takes more than four seconds of a processor."""
-
 GOLDEN = Path(__file__).parent.parent / "golden"
 
 
@@ -146,18 +127,9 @@ def test_what_walked_can_be_seen_as_a_page_that_can_be_mailed(quick):
         assert len(page.encode()) < 5_000_000
 
 
+@pytest.mark.slow("a second run of each quick form")
 def test_it_answers_the_same_twice_to_the_byte(quick):
-    experiment, outcome = quick
-    if experiment.name() in LONG:
-        pytest.skip("its second run is left to `make validate`")
-    _runs_the_same_again(experiment, outcome)
-
-
-@pytest.mark.validate
-@pytest.mark.parametrize("name", LONG)
-def test_a_long_one_answers_the_same_twice_to_the_byte(name):
-    experiment = EXPERIMENTS[name].quick()
-    _runs_the_same_again(experiment, experiment.run())
+    _runs_the_same_again(*quick)
 
 
 def _runs_the_same_again(experiment, outcome):

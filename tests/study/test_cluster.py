@@ -103,6 +103,7 @@ def squared(number, progress):
     return xr.Dataset({"x": ("i", np.arange(3.0) * number**2, {"units": "m"})}, attrs={"of": number})
 
 
+@pytest.mark.slow("a cluster, of which parts are killed, and a second run")
 def test_the_same_bytes_whatever_is_killed(asked, search, machines, tmp_path):
     with connected(machines.address) as client:
         client.wait_for_workers(2, timeout=60)

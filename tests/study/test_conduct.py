@@ -94,6 +94,7 @@ def test_progress_counts_up_to_all_runs(asked, tmp_path):
     assert "0 s left" in str(told[-1])
 
 
+@pytest.mark.slow("a process is killed, and the study run twice")
 def test_a_killed_study_loses_at_most_the_running_batch_and_ends_with_the_same_bytes(tmp_path):
     page = tmp_path / "strokes.toml"
     page.write_text(PAGE)
@@ -240,6 +241,7 @@ def test_a_table_comes_back_from_its_file_as_it_was(asked, tmp_path):
     assert packed(words_alone := table[["arm"]]) is words_alone
 
 
+@pytest.mark.slow("a second run, by processes of its own")
 def test_processes_do_not_change_a_byte_and_what_an_interrupt_leaves_is_finished(asked, tmp_path):
     told = []
 

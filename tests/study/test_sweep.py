@@ -25,6 +25,7 @@ def marked(item, progress):
     return squared(item, progress).assign_attrs(local=1)
 
 
+@pytest.mark.slow("a second run, by processes of its own")
 def test_processes_give_the_same_as_this_one(tmp_path):
     shares = []
     one = conduct_sweep("squares", squared, (1, 2, 3, 4), tmp_path / "one")
@@ -38,6 +39,7 @@ def test_processes_give_the_same_as_this_one(tmp_path):
     assert max(shares) <= 1.0
 
 
+@pytest.mark.slow("processes die")
 def test_an_error_or_a_death_of_a_process_loses_nothing_that_was_finished(tmp_path):
     with pytest.raises(InvalidDesign, match="no root"):
         conduct_sweep("roots", squared, (4, -1), tmp_path / "a", jobs=2)
