@@ -8,7 +8,8 @@ from typing import Any, get_args
 
 from suchus.design import AnyRobot
 from suchus.envs.goals import AnyGoal, Goal, Landing
-from suchus.envs.task import Breaks, Pushes, Rewards, Task
+from suchus.envs.reward import Rewards
+from suchus.envs.task import Breaks, Pushes, Task
 from suchus.errors import InvalidDesign, UnknownName
 from suchus.gaits import GAITS
 from suchus.land import Ground, Lake

@@ -1,24 +1,29 @@
-"""A task as a frozen value: the robot, the ground, faults and pushes, and the weights of the reward."""
+"""A task as a frozen value: the robot, the ground and the water, faults and pushes, and the weights of the reward."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from types import MappingProxyType
 from typing import Any, Literal, get_args
 
 import numpy as np
 
-from suchus.design import AnyRobot, check_needs, front_segment, layout, with_speed_lines
+from suchus.control import Swimming
+from suchus.design import AnyRobot, check_needs, crocodile, front_segment, layout, with_speed_lines
 from suchus.design.checks import Checks
 from suchus.design.scale import control_period, scaled, scaled_fields
 from suchus.envs.goals import AnyGoal
-from suchus.envs.water import check_floats, check_water, swimming
-from suchus.errors import UnknownName
+from suchus.envs.reward import Rewards
+from suchus.errors import InvalidDesign, UnknownName
 from suchus.fault import Fault
 from suchus.faults import FAULTS
 from suchus.gaits import GAITS, own_gait, suits
 from suchus.land import Ground, Lake
-from suchus.motion import AnyGait, Swim
+from suchus.land.afloat import capacity
+from suchus.land.lake import check_lake
+from suchus.motion import LIMBS_BACK, AnyGait, Swim
 from suchus.robots import ROBOTS
+from suchus.water import fit, printed_wave
 
 Start = Literal["lying", "upright", "swimming"]
 NEEDED: Mapping[str, tuple[str, ...]] = MappingProxyType(
@@ -29,38 +34,7 @@ NEEDED: Mapping[str, tuple[str, ...]] = MappingProxyType(
     }
 )
 """What a beginning needs of a robot: names of ``design.NEEDS``."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Rewards:
-    """Weights of the terms of the reward; each term is a quantity of one step in SI units, see ``envs.reward``.
-
-    None of them is from the article. They were chosen so that a whole episode of the shelf's own motion is worth about
-    ten, almost all of it from the one term that the task is about.
-    """
-
-    forward: float
-    """Weight of the displacement of the centre of mass along the world's x axis, the robot's first heading [1/m]."""
-    lateral_drift: float
-    """Weight of the increase of the distance of the centre of mass from that axis; negative, a penalty [1/m]."""
-    upright: float
-    """Weight of the time with the snout above ``Task.least_height`` [1/s]."""
-    work: float
-    """Weight of the work of all servos, braking counted as much as driving; negative, a penalty [1/J]."""
-    action_rate: float
-    """Weight of the sum of the squared changes of all commanded angles between two steps; negative, a penalty
-    [1/rad2]."""
-    fall: float
-    """Added once, when the episode ends by a fall or because the simulation diverged; negative, a penalty [-]."""
-    approach: float = 0.0
-    """Weight of the decrease of the distance that remains to ``Task.goal`` [1/m]."""
-    goal: float = 0.0
-    """Added once, when the goal is reached [-]."""
-
-    def __post_init__(self) -> None:
-        with Checks("rewards", self) as check:
-            for f in fields(self):
-                check.number(f.name, -1e4, 1e4, "")
+_FREQUENCY = 1.0  # [Hz]; as in the experiments swim_free and shore
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -301,3 +275,49 @@ class Task:
                 check_floats(self.robot, self.lake)
         if self.goal is not None:
             self.goal.check(self.ground, self.lake)
+
+
+@lru_cache(maxsize=16)
+def swimming(robot: AnyRobot, swim: Swim | None) -> Swimming:
+    """Return the swimming motion of a robot, at full amplitude from the first moment.
+
+    Args:
+        robot: a crocodile-like robot with a cable tail.
+        swim: the wave; None for that of (20) at 1 Hz, fitted to the robot's joints.
+
+    Raises:
+        UnsuitedRobot: the robot is given by another table.
+    """
+    if swim is None:
+        bare = replace(crocodile(robot, "a swim"), hull=None)
+        swim = fit(bare, printed_wave(bare, "I", frequency=_FREQUENCY, sign=-1)).swim
+    return Swimming(swim=swim, limb_pitch=LIMBS_BACK[1], ramp=0.0)
+
+
+def check_water(robot: AnyRobot, lake: Lake) -> None:
+    """Refuse water that changes while an episode lasts, or that a robot lacks the air for.
+
+    Raises:
+        InvalidDesign: level or breath are courses, or breath is let out that there is not.
+    """
+    if lake.changes():
+        raise InvalidDesign(
+            "task.lake has a level or a breath that changes with time; in a task both stay, since its episodes begin "
+            "at different times: give each as one number."
+        )
+    check_lake(robot, lake)
+
+
+def check_floats(robot: AnyRobot, lake: Lake) -> None:
+    """Refuse a robot that sinks.
+
+    Raises:
+        InvalidDesign: it displaces less than it weighs; the message says by how much.
+    """
+    litres, needed = (1e3 * value for value in capacity(robot, lake))
+    if litres <= needed:
+        raise InvalidDesign(
+            f"robot {robot.name!r} sinks: it weighs {robot.mass:.3g} kg and displaces at most {litres:.3g} l, of which "
+            f"it needs more than {needed:.3g}; a task that begins swimming needs a robot that floats, as "
+            "'floating_caiman', or a design.Hull."
+        )
