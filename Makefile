@@ -39,7 +39,7 @@ tests: .venv/.dev
 	$(PY) -m pytest -n auto --dist worksteal -m "not validate and not slow"
 
 mutate: .venv/.dev # every rule of a verdict broken in every way; also a part of the tests
-	$(PY) -m pytest tests/verdict/test_mutations.py -v -n0
+	$(PY) -m pytest tests/shelves/test_every_rule.py -k break -v -n0
 
 validate: .venv/.dev
 	$(PY) -m pytest -m validate -s

@@ -5,6 +5,7 @@ from functools import cached_property
 
 from suchus.errors import InvalidDesign
 from suchus.experiments import EXPERIMENTS
+from suchus.verdict.judging import Examples
 from suchus.verdict.rule import Rule
 
 
@@ -22,6 +23,12 @@ def rules_of(experiment: str) -> tuple[Rule, ...]:
         if not isinstance(rule, Rule) or rule.experiment != experiment:
             raise InvalidDesign(f"RULES of {experiment} hold {rule!r}, which is no Rule of this experiment.")
     return tuple(rules)
+
+
+def examples_of(experiment: str) -> Examples:
+    """Return measures by which the rules of an experiment are tested, from the ``EXAMPLES`` beside its rules."""
+    examples: Examples = EXPERIMENTS.beside(experiment, "EXAMPLES", {})
+    return examples
 
 
 class Rules(Mapping[str, Rule]):

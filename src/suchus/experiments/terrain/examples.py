@@ -2,6 +2,8 @@
 
 from math import nan
 
+from suchus.verdict.judging import Examples
+
 _WHY = {
     "flat_cost_ratio": 0.5,
     "flat_cost_ratio_low": 0.4,
@@ -24,7 +26,7 @@ _WHY = {
     "transition_after_least": 0.3,
 }
 
-EXAMPLES: dict[str, list[tuple[dict[str, float], str]]] = {
+EXAMPLES: Examples = {
     "crawl_structure_flat": [
         (_WHY | {"flat_cost_ratio_high": 0.999}, "reproduced"),
         (_WHY | {"flat_cost_ratio_high": 1.001}, "contradicted"),

@@ -1,5 +1,7 @@
 """Measures for which each rule of ``displacement`` says each of its words, close to both sides of every bound."""
 
+from suchus.verdict.judging import Examples
+
 _COORDINATED = {
     "forward_coordinated": 0.729,
     "forward_coordinated_low": 0.722,
@@ -35,7 +37,7 @@ _TAIL = {
     "gain_tail_contact": 0.1,
 }
 
-EXAMPLES = {
+EXAMPLES: Examples = {
     "displacement_coordinated": [
         (_COORDINATED, "fitted"),
         (_SHORT | {"forward_coordinated_high": 0.726}, "fitted"),  # the least that rounds to 0.73 is 0.725

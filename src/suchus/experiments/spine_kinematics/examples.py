@@ -1,5 +1,7 @@
 """Measures for which each rule of ``spine_kinematics`` says each of its words, close to both sides of its bound."""
 
+from suchus.verdict.judging import Examples
+
 _FORWARD = {
     "printed_error_share": 0.99e-9,
     "printed_error_max": 2.9e-10,
@@ -8,7 +10,7 @@ _FORWARD = {
     "straight_length_printed": 0.2925,
 }
 
-EXAMPLES = {
+EXAMPLES: Examples = {
     "spine_forward": [
         (_FORWARD, "reproduced"),
         (_FORWARD | {"printed_error_share": 1.01e-9}, "contradicted"),

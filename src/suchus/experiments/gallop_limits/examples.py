@@ -1,5 +1,7 @@
 """Measures of ``gallop_limits`` for which its rule says each of its words."""
 
+from suchus.verdict.judging import Examples
+
 _FAST = {
     "bound_over_walk": 1.01,
     "flight_bound": 0.101,
@@ -8,7 +10,7 @@ _FAST = {
     "speed_bound_best": 1.0,
 }
 
-EXAMPLES = {
+EXAMPLES: Examples = {
     "gallop_fastest": [
         (_FAST, "same sense"),
         (_FAST | {"bound_over_walk": 0.99}, "not testable"),

@@ -1,5 +1,7 @@
 """Measures for which each rule of ``working_space`` says each of its words, close to both sides of every bound."""
 
+from suchus.verdict.judging import Examples
+
 _ROOM = {
     "volume_ratio": 5.0,
     "volume_ratio_low": 2.02,
@@ -9,7 +11,7 @@ _ROOM = {
     "area_ratio_high": 4.0,
 }
 
-EXAMPLES = {
+EXAMPLES: Examples = {
     "working_space": [
         (_ROOM, "reproduced"),
         (_ROOM | {"volume_ratio_low": 1.98}, "contradicted"),

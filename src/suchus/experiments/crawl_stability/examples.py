@@ -2,6 +2,8 @@
 
 from math import radians
 
+from suchus.verdict.judging import Examples
+
 _HEIGHT = {
     "com_height_pp_change": -0.1,
     "com_height_pp_change_low": -0.2,
@@ -31,7 +33,7 @@ _TAIL = {
 }
 _WAG = {"wagging_pp_change": -0.1, "wagging_pp_change_low": -0.2, "wagging_pp_change_high": -0.001}
 
-EXAMPLES = {
+EXAMPLES: Examples = {
     "com_fluctuation": [
         (_HEIGHT, "reproduced"),
         (_HEIGHT | {"com_height_pp_change_high": 0.001}, "contradicted"),

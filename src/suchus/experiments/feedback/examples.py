@@ -2,6 +2,8 @@
 
 from math import nan
 
+from suchus.verdict.judging import Examples
+
 _WHY = {
     "converged_cross_load": 1.0,
     "converged_cross_load_low": 1.0,
@@ -32,7 +34,7 @@ _WHY = {
     "way_isolated_least": 0.1,
 }
 
-EXAMPLES: dict[str, list[tuple[dict[str, float], str]]] = {
+EXAMPLES: Examples = {
     "feedback_rules": [
         (_WHY, "reproduced"),
         (_WHY | {"converged_cross_load": 0.951}, "reproduced"),

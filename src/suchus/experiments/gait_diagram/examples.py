@@ -2,10 +2,12 @@
 
 from math import radians
 
+from suchus.verdict.judging import Examples
+
 _DIAGONAL = {"diagonal_phase_error": 0.124, "duty_factor_greatest": 0.949}
 _BENDS = {"spine_changes_per_cycle": 2.0, "tail_changes_per_cycle": 2.0}
 
-EXAMPLES = {
+EXAMPLES: Examples = {
     "diagonal_gait": [
         (_DIAGONAL, "reproduced"),
         (_DIAGONAL | {"diagonal_phase_error": 0.126}, "contradicted"),

@@ -2,6 +2,8 @@
 
 from math import radians
 
+from suchus.verdict.judging import Examples
+
 _SMALL = {"error_of_eq_17_max": 0.0411, "error_of_eq_17_plausible": 0.063}
 _CORDS = {"cords_opposed_share": 1.0, "slack_max": 0.006}
 _POSITIONS = {
@@ -16,7 +18,7 @@ _ALIKE = {
     "tail_joint_spread_share_straight": 0.61,
 }
 
-EXAMPLES = {
+EXAMPLES: Examples = {
     "tail_quadratic_small": [
         (_SMALL, "reproduced"),
         (_SMALL | {"error_of_eq_17_max": 0.0495}, "reproduced"),

@@ -2,6 +2,8 @@
 
 from itertools import product
 
+from suchus.verdict.judging import Examples
+
 _READINGS = list(product(("limp", "locked"), ("one", "both")))
 
 
@@ -41,7 +43,7 @@ _TOLERANCE = {
     "share_bear_better_hind_pitch": 0.8,
 }
 
-EXAMPLES = {
+EXAMPLES: Examples = {
     "fault_front_yaw_limbs_only": [
         (_loss("front_yaw", "limbs_only", -0.80), "reproduced"),
         (_loss("front_yaw", "limbs_only", -0.70, low=-0.796), "reproduced"),

@@ -1,12 +1,14 @@
 """Measures for which each rule of ``leg_kinematics`` says each of its words."""
 
+from suchus.verdict.judging import Examples
+
 _INVERSE = {
     "printed_inverse_holds_crawl": 1.0,
     "printed_inverse_holds_high_walk": 0.999,
     "printed_inverse_holds": 0.25,
 }
 
-EXAMPLES = {
+EXAMPLES: Examples = {
     "leg_inverse": [
         (_INVERSE, "reproduced"),
         (_INVERSE | {"printed_inverse_holds_crawl": 0.999}, "contradicted"),

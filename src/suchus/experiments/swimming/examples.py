@@ -2,6 +2,8 @@
 
 from math import nan
 
+from suchus.verdict.judging import Examples
+
 _WHY = {
     "tail_sine_share": 0.999,
     "tail_sine_share_low": 0.999,
@@ -50,7 +52,7 @@ _WHY = {
     "gain_spine_swim_high": 0.05,
 }
 
-EXAMPLES: dict[str, list[tuple[dict[str, float], str]]] = {
+EXAMPLES: Examples = {
     "swim_tail_sine": [
         (_WHY, "same sense"),
         (_WHY | {"tail_sine_share_low": 0.951}, "same sense"),

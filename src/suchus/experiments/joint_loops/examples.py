@@ -2,9 +2,11 @@
 
 from math import radians
 
+from suchus.verdict.judging import Examples
+
 _PID = {"step_error_pid": radians(0.396), "ripple_pid": radians(0.396), "droop_taken": 0.101, "load": 0.8}
 
-EXAMPLES = {
+EXAMPLES: Examples = {
     "joint_pid": [
         (_PID, "reproduced"),
         (_PID | {"step_error_pid": radians(0.404)}, "contradicted"),

@@ -1,5 +1,7 @@
 """Measures of ``speed_range`` for which each rule says each of its words."""
 
+from suchus.verdict.judging import Examples
+
 _WHY = {
     "animals_high_walk_slowest": 0.1,
     "animals_high_walk_fastest": 0.7,
@@ -15,7 +17,7 @@ _WHY = {
     "tail_on_ground_high_walk_high": 0.9,
 }
 
-EXAMPLES: dict[str, list[tuple[dict[str, float], str]]] = {
+EXAMPLES: Examples = {
     "high_walk_speed_low": [
         (_WHY | {"speed_high_walk_slowest": 1.251}, "same sense"),  # 4.5 km/h are 1.25 m/s
         (_WHY | {"speed_high_walk_slowest": 1.249}, "not testable"),

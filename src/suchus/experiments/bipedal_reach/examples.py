@@ -1,5 +1,7 @@
 """Measures for which each rule of ``bipedal_reach`` says each of its words, close to both sides of every bound."""
 
+from suchus.verdict.judging import Examples
+
 _CRAWL = {
     "reach_crawl": 0.16,
     "reach_crawl_repeated_low": 0.16,
@@ -39,7 +41,7 @@ _ALL = {
     "gain_head_standing": 1.0,
 }
 
-EXAMPLES = {
+EXAMPLES: Examples = {
     "height_crawl": [
         (_CRAWL, "reproduced"),
         (_LOW | {"reach_crawl_repeated_high": 0.156}, "reproduced"),
