@@ -66,9 +66,7 @@ def test_a_rule_beside_another_experiment_is_refused(tmp_path, monkeypatch):
     """And one file can hold a question, its rules and their examples."""
     text = "from suchus.verdict import Rule\nRULES = ({},)\n{}\n"
     rule = 'Rule(claim="joint_pid", experiment={!r}, measure="x", why="because")'
-    text = (
-        "from suchus.verdict import Rule\nRULES = ({},)\nEXAMPLES = {{'joint_pid': [({{'x': 1.0}}, 'reproduced')]}}\n"
-    )
+    examples = "EXAMPLES = {'joint_pid': [({'x': 1.0}, 'reproduced')]}"
     (tmp_path / "strange.py").write_text(text.format(rule.format("displacement"), examples))
     (tmp_path / "whole.py").write_text(text.format(rule.format("whole"), examples))
     monkeypatch.setattr(suchus.experiments, "__path__", [*suchus.experiments.__path__, str(tmp_path)])

@@ -1,4 +1,4 @@
-"""All rules, by claim and by experiment, read from the shelf of experiments when they are asked for."""
+"""The rules by experiment, of the user's as of ours, and ours by claim: read from the shelf when they are asked for."""
 
 from collections.abc import Iterator, Mapping
 from functools import cached_property
@@ -32,11 +32,12 @@ def examples_of(experiment: str) -> Examples:
 
 
 class Rules(Mapping[str, Rule]):
-    """The rules of all experiments on the shelf, by claim; they are read when the first is asked for."""
+    """The rules of all experiments of suchus, by claim; they are read when the first is asked for."""
 
     @cached_property
     def _by_claim(self) -> dict[str, Rule]:
-        return {rule.claim: rule for experiment in EXPERIMENTS for rule in rules_of(experiment)}
+        ours = [name for name, source in EXPERIMENTS.sources().items() if source.shipped]
+        return {rule.claim: rule for name in ours for rule in rules_of(name)}
 
     def __getitem__(self, claim: str) -> Rule:
         return self._by_claim[claim]
