@@ -21,7 +21,7 @@ CHECKED = ("suchus.kinematics", "suchus.motion.phase", "suchus.motion.targets", 
 assert not {*CHECKED} & {*sys.modules}, "imported before their shapes can be checked"
 install_import_hook(CHECKED, "first_calls.checked")  # jaxtyping's own option comes too late for us before its 0.3.6
 
-from suchus.design import Crocodile  # noqa: E402
+from suchus.design import Robot, crocodile  # noqa: E402
 from suchus.experiment import Outcome  # noqa: E402
 from suchus.experiments import EXPERIMENTS  # noqa: E402
 from suchus.gaits import GAITS  # noqa: E402
@@ -46,7 +46,7 @@ def pytest_runtest_setup() -> None:
 
 
 @pytest.fixture(scope="session")
-def robot() -> Crocodile:
+def robot() -> Robot:
     return ROBOTS["caiman"]
 
 
@@ -61,9 +61,9 @@ def limbs_gait() -> Gait:
 
 
 @pytest.fixture(scope="session")
-def long_tail(robot: Crocodile) -> Crocodile:
+def long_tail(robot: Robot) -> Robot:
     """A robot of another topology."""
-    return replace(robot, name="long_tail", tail=replace(robot.tail, joints=8, fin_segments=4))
+    return crocodile(replace(robot.tables, name="long_tail", tail=replace(robot.tail, joints=8, fin_segments=4)))
 
 
 @pytest.fixture(scope="session")

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from suchus.catalog import Catalog as Catalog
     from suchus.control import Coordinated as Coordinated
     from suchus.control import HeadingRule as HeadingRule
-    from suchus.design import Crocodile as Crocodile
+    from suchus.design import Robot as Robot
     from suchus.errors import Diverged as Diverged
     from suchus.errors import IncompatibleRecord as IncompatibleRecord
     from suchus.errors import InvalidDesign as InvalidDesign
@@ -51,7 +51,7 @@ if TYPE_CHECKING:
 _HOMES = {
     "Catalog": "suchus.catalog",
     **dict.fromkeys(("Coordinated", "HeadingRule"), "suchus.control"),
-    "Crocodile": "suchus.design",
+    "Robot": "suchus.design",
     **dict.fromkeys(
         (
             "Diverged",

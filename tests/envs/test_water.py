@@ -11,7 +11,7 @@ gymnasium = pytest.importorskip("gymnasium", reason="gymnasium is not installed:
 
 from suchus import envs  # noqa: E402
 from suchus.control import Amphibious, HeadingHold, HeadingRule  # noqa: E402
-from suchus.design import with_speed_lines  # noqa: E402
+from suchus.design import with_speed_lines  # noqa: E402, crocodile
 from suchus.envs.pack import Pack  # noqa: E402
 from suchus.envs.senses import felt  # noqa: E402
 from suchus.envs.task import swimming  # noqa: E402

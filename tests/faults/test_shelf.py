@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from suchus.control import LAWS, Command, Coordinated
-from suchus.design import servo_names
+from suchus.design import crocodile, servo_names
 from suchus.errors import InvalidDesign, SuchusError, UnknownName
 from suchus.fault import Fault, check_faults
 from suchus.faults import FAULTS, Backlash, Limp, Locked, Offset, Slow, from_table, numbers
@@ -23,7 +23,7 @@ from suchus.robots import ROBOTS
 CAIMAN = ROBOTS["caiman"]
 GAIT = replace(GAITS["belly_crawl"], period=1.0)
 OPEN = Coordinated(limbs=LAWS["off"], spine=None, tail=None)
-OTHER = replace(CAIMAN, head=replace(CAIMAN.head, mass=0.25))
+OTHER = crocodile(replace(CAIMAN.tables, head=replace(CAIMAN.tables.head, mass=0.25)))
 USUAL = ("LF_pitch", "LF", "foot_pressure")
 """Parts of the caiman that break here, where the module of a fault has no ``examples`` of its own."""
 HARMLESS = [fault for name in FAULTS for fault in FAULTS.beside(name, "harmless", ())]

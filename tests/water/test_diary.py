@@ -4,6 +4,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from suchus.design import crocodile
 from suchus.errors import UnreadableFile
 from suchus.motion import Swim
 from suchus.record.seal import sealed
@@ -42,7 +43,7 @@ def test_another_swim_does_not_go_on_from_it(robot, tmp_path):
     with pytest.raises(_Killed):
         free_swim(robot, MOTION, SETTING, checkpoint=file, progress=_killed_at(0.3))
     with pytest.raises(UnreadableFile, match=r"another (swim|setup)"):
-        free_swim(robot, replace(MOTION, tail=0.7), SETTING, checkpoint=file)
+        free_swim(robot, crocodile(replace(MOTION.tables, tail=0.7)), SETTING, checkpoint=file)
 
 
 def test_notes_come_back_as_they_were_and_no_later_than_asked(tmp_path):

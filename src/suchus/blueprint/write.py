@@ -29,7 +29,11 @@ def write(value: object, path: Path, *, notes: Mapping[str, str] | None = None, 
 
 
 def render(value: object, *, notes: Mapping[str, str] | None = None, head: Sequence[str] = ()) -> str:
-    """Return a robot or a gait as TOML; the meaning of each field follows as a comment, and its note if it has one."""
+    """Return a robot or a gait as TOML; the meaning of each field follows as a comment, and its note if it has one.
+
+    A robot of the article's kind is written as its tables, which are what people change.
+    """
+    value = getattr(value, "tables", None) or value
     words = [f"# {_plain(one)}" for one in head]
     return "\n".join([*words, *([""] if words else []), "\n".join(_table(value, (), notes or {})).strip(), ""])
 
@@ -39,7 +43,7 @@ def _table(
 ) -> list[str]:
     """A table's own values first, then the tables below it, as TOML wants it; a row of tables has double brackets."""
     about = meanings(type(value))
-    items = {f.name: getattr(value, f.name) for f in fields(value)}
+    items = {f.name: getattr(value, f.name) for f in fields(value) if f.init}
     name = ".".join(path)
     lines = ["", f"[[{name}]]" if row else f"[{name}]"] if path else []
     below: list[str] = []

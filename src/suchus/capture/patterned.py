@@ -8,7 +8,7 @@ import numpy as np
 from suchus.capture.retarget import Captured, Duty, mean_of
 from suchus.capture.slowed import within_speed
 from suchus.capture.walk import Walk
-from suchus.design import LEGS, AnyRobot, check_needs, hips_ahead, layout, servo_ranges
+from suchus.design import LEGS, Robot, check_needs, hips_ahead, layout, servo_ranges
 from suchus.errors import InvalidDesign, NotConverged, OutsideLimits, Unreachable
 from suchus.motion import AxialWave, FootPath, Pattern, check_limits
 
@@ -17,7 +17,7 @@ NEEDED = ("four_limbs", "foot_paths")
 _PAIRS = (LEGS[:2], LEGS[2:])
 
 
-def to_pattern(walk: Walk, robot: AnyRobot, base: Pattern, *, name: str, duty: Duty = "retraction") -> Captured:
+def to_pattern(walk: Walk, robot: Robot, base: Pattern, *, name: str, duty: Duty = "retraction") -> Captured:
     """Return the pattern by which a robot walks as was measured.
 
     Phases and angles are taken as they are, lengths in proportion to the trunk from hip to shoulder. The bend of the
@@ -61,7 +61,7 @@ def to_pattern(walk: Walk, robot: AnyRobot, base: Pattern, *, name: str, duty: D
     return Captured(gait=within_speed(robot, gait, notes), notes=(*walk.notes, *notes))
 
 
-def _bent(walk: Walk, robot: AnyRobot, duty: float, notes: list[str]) -> AxialWave:
+def _bent(walk: Walk, robot: Robot, duty: float, notes: list[str]) -> AxialWave:
     """Return the wave whose first harmonics at trunk and tail are the measured ones.
 
     A hinge at s bends the body to the left by -a cos 2 pi (p - c - phase - waves s) at phase p of the first limb, with
@@ -106,7 +106,7 @@ def _bent(walk: Walk, robot: AnyRobot, duty: float, notes: list[str]) -> AxialWa
     return AxialWave(amplitude=shape, waves=_rounded(waves), phase=_rounded(phase))
 
 
-def _shaped(walk: Walk, robot: AnyRobot, gait: Pattern, base: Pattern, notes: list[str]) -> Pattern:
+def _shaped(walk: Walk, robot: Robot, gait: Pattern, base: Pattern, notes: list[str]) -> Pattern:
     """Scale lengths in proportion to the trunk, and take from the base what was not measured."""
     trunk = hips_ahead(robot, 0)
     paths = []
@@ -133,7 +133,7 @@ def _share(length: float, reach: float) -> float:
     return _rounded(float(np.clip(length / reach, -1.0, 1.0)))
 
 
-def _within_limits(robot: AnyRobot, gait: Pattern, base: Pattern, notes: list[str]) -> Pattern:
+def _within_limits(robot: Robot, gait: Pattern, base: Pattern, notes: list[str]) -> Pattern:
     """Change as little as needed: the base's places of the feet, then shorter strokes."""
     if _fits(robot, gait):
         return gait
@@ -155,7 +155,7 @@ def _within_limits(robot: AnyRobot, gait: Pattern, base: Pattern, notes: list[st
     return shorter
 
 
-def _fits(robot: AnyRobot, gait: Pattern) -> bool:
+def _fits(robot: Robot, gait: Pattern) -> bool:
     try:
         check_limits(robot, gait)
     except (InvalidDesign, NotConverged, OutsideLimits, Unreachable):

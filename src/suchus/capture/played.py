@@ -5,7 +5,7 @@ import re
 import numpy as np
 
 from suchus.capture.angle_table import AngleCycle
-from suchus.design import AnyRobot, Layout, LimbPlace, layout
+from suchus.design import Layout, LimbPlace, Robot, layout
 from suchus.errors import OutsideLimits, UnknownName
 from suchus.kinematics import limb as limb_kinematics
 from suchus.motion import AngleTable, Curve
@@ -17,7 +17,7 @@ _FRONT = ("shoulder", "elbow")
 _STEPS = 200  # of the cycle, to see when a foot goes forward
 
 
-def to_angle_table(cycle: AngleCycle, robot: AnyRobot, *, name: str, period: float) -> AngleTable:
+def to_angle_table(cycle: AngleCycle, robot: Robot, *, name: str, period: float) -> AngleTable:
     """Return the gait that plays measured joint angles on a robot; nothing is fitted.
 
     A column is called after the robot's servo, or as in tables of animals: ``Axis 3``, the third lateral hinge from
@@ -85,7 +85,7 @@ def _spelled(place: Layout) -> tuple[str, ...]:
     return (*axis, *(("Left Shoulder-yaw", "Left Hip-yaw", "Left Elbow", "Left Knee") if place.limbs else ()))
 
 
-def _swing(robot: AnyRobot, table: AngleTable, limb: LimbPlace) -> tuple[float, float]:
+def _swing(robot: Robot, table: AngleTable, limb: LimbPlace) -> tuple[float, float]:
     """Return when the foot of a limb begins to go forward, and for which share of the cycle it does [cycle]."""
     clock = np.arange(_STEPS) / _STEPS
     design, place = limb.girdle.limb, layout(robot)

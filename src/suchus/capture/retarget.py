@@ -9,7 +9,7 @@ import numpy as np
 from suchus.capture.slowed import within_speed
 from suchus.capture.walk import UNSURE, Walk
 from suchus.capture.wave import STANDING
-from suchus.design import LEGS, AnyRobot, Crocodile, layout
+from suchus.design import LEGS, Robot, layout
 from suchus.errors import OutsideLimits, UnsuitedRobot
 from suchus.motion import Gait, Pattern, check_limits, tail_bend, trunk_bend
 
@@ -36,7 +36,7 @@ class Captured:
     changed."""
 
 
-def to_gait(walk: Walk, robot: AnyRobot, base: Gait, *, name: str, duty: Duty = "retraction") -> Captured:
+def to_gait(walk: Walk, robot: Robot, base: Gait, *, name: str, duty: Duty = "retraction") -> Captured:
     """Return the gait by which a robot walks as was measured.
 
     Phases and angles are taken as they are, lengths in proportion to the trunk from hip to shoulder. The bends are
@@ -53,7 +53,7 @@ def to_gait(walk: Walk, robot: AnyRobot, base: Gait, *, name: str, duty: Duty = 
     Raises:
         OutsideLimits: the robot cannot follow even with the base's posture and a small stroke.
     """
-    if not isinstance(robot, Crocodile):
+    if robot.tables is None:
         raise UnsuitedRobot(f"robot {robot.name!r} walks by a pattern; a captured gait of legs needs a crocodile's.")
     notes: list[str] = []
     gait = _timed(walk, replace(base, name=name), duty, notes)
@@ -64,7 +64,7 @@ def to_gait(walk: Walk, robot: AnyRobot, base: Gait, *, name: str, duty: Duty = 
     return Captured(gait=gait, notes=(*walk.notes, *notes, *_unheld(walk)))
 
 
-def driven_share(robot: Crocodile) -> float:
+def driven_share(robot: Robot) -> float:
     """Return where along its tail, from the pitch joint, a robot's last driven plate has its middle [-].
 
     The end beyond it is passive: it follows by itself, and no command holds it.
@@ -145,7 +145,7 @@ def _solve(seen: complex, unit: complex) -> tuple[float, float]:
     return abs(seen) / max(abs(unit), 1e-9), _within_half(float(np.angle(unit / seen)) / (2 * np.pi)) if seen else 0.0
 
 
-def _shaped(walk: Walk, robot: Crocodile, gait: Gait, base: Gait, notes: list[str]) -> Gait:
+def _shaped(walk: Walk, robot: Robot, gait: Gait, base: Gait, notes: list[str]) -> Gait:
     """Scale lengths in proportion to the trunk, and take from the base what was not measured."""
     trunk = robot.spine.length + robot.thorax.shoulder
     stroke = trunk * mean_of(walk, "stroke")
@@ -173,7 +173,7 @@ def _shaped(walk: Walk, robot: Crocodile, gait: Gait, base: Gait, notes: list[st
     )
 
 
-def _within_limits(robot: Crocodile, gait: Gait, base: Gait, notes: list[str]) -> Gait:
+def _within_limits(robot: Robot, gait: Gait, base: Gait, notes: list[str]) -> Gait:
     """Change as little as needed: bends to their limits, then the base's posture, then a shorter stroke."""
     trunk_most = len(layout(robot).trunk_yaw) * min(abs(end) for end in robot.spine.yaw_range)
     for field, asked, most in (
@@ -211,7 +211,7 @@ def _within_limits(robot: Crocodile, gait: Gait, base: Gait, notes: list[str]) -
     return gait
 
 
-def _fits(robot: Crocodile, gait: Gait) -> bool:
+def _fits(robot: Robot, gait: Gait) -> bool:
     try:
         check_limits(robot, gait)
     except OutsideLimits:

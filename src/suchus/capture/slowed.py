@@ -3,13 +3,13 @@
 from dataclasses import replace
 from typing import TypeVar
 
-from suchus.design import AnyRobot
+from suchus.design import Robot
 from suchus.motion import Gait, Pattern, shortest_period
 
 _Seen = TypeVar("_Seen", Gait, Pattern)
 
 
-def within_speed(robot: AnyRobot, gait: _Seen, notes: list[str]) -> _Seen:
+def within_speed(robot: Robot, gait: _Seen, notes: list[str]) -> _Seen:
     """Return a gait with a period in which no servo has to turn faster than it can.
 
     Args:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from suchus.control import Standing
-from suchus.design import Crocodile, crocodile
+from suchus.design import Robot, crocodile
 from suchus.design.scale import control_period
 from suchus.envs.task import Task, swimming
 from suchus.errors import Diverged, InvalidDesign
@@ -77,7 +77,7 @@ def _afloat(task: Task, model: Any) -> Beginning:
 
 
 @lru_cache(maxsize=16)
-def _upright(robot: Crocodile, ground: Ground, timestep: float) -> Beginning:
+def _upright(robot: Robot, ground: Ground, timestep: float) -> Beginning:
     """Let a robot stand up once, as the shelf does it, and return the state in which it stands still."""
     gait, period = GAITS[_STRAIGHT], control_period(robot)
     control = Standing(at=_SOON, hold=STILL)

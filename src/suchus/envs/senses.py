@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation
 
 from suchus import rotation
 from suchus.control import Sensed
-from suchus.design import GRAVITY, AnyRobot, layout, servo_ranges
+from suchus.design import GRAVITY, Robot, layout, servo_ranges
 from suchus.errors import UnknownName
 from suchus.robots import ROBOTS, beside_article
 
@@ -43,7 +43,7 @@ class Sense(NamedTuple):
 
 
 @lru_cache(maxsize=64)
-def senses(robot: AnyRobot, *, goal: bool = False) -> tuple[Sense, ...]:
+def senses(robot: Robot, *, goal: bool = False) -> tuple[Sense, ...]:
     """Return the columns of an observation of a robot, in order.
 
     Args:
@@ -84,7 +84,7 @@ def senses(robot: AnyRobot, *, goal: bool = False) -> tuple[Sense, ...]:
     )
 
 
-def turning(robot: AnyRobot) -> Bool[np.ndarray, " servo"]:
+def turning(robot: Robot) -> Bool[np.ndarray, " servo"]:
     """Return which servos are cranks, which turn round and round [-]."""
     return np.asarray(~np.isfinite(servo_ranges(robot)).all(axis=1))
 
@@ -93,9 +93,7 @@ SENSES = senses(_CAIMAN)
 """The columns of an observation of the article's robot."""
 
 
-def part(
-    observations: Float[np.ndarray, "*b n"], name: str, robot: AnyRobot | str = _CAIMAN
-) -> Float[np.ndarray, "*b m"]:
+def part(observations: Float[np.ndarray, "*b n"], name: str, robot: Robot | str = _CAIMAN) -> Float[np.ndarray, "*b m"]:
     """Return the columns of one reading of ``senses``.
 
     Args:
@@ -116,7 +114,7 @@ def part(
 
 
 @lru_cache(maxsize=64)
-def scales(robot: AnyRobot) -> Mapping[str, float | Float[np.ndarray, " servo"]]:
+def scales(robot: Robot) -> Mapping[str, float | Float[np.ndarray, " servo"]]:
     """Return the scale of every reading of a robot by its name, in SI units; numbers or one for each servo."""
     weight, slow = robot.mass * GRAVITY, sqrt(beside_article(robot).length)
     limits = np.array([robot.servo(name).torque for name in layout(robot).servos])
@@ -145,7 +143,7 @@ class Observer:
         goal: whether their task has a goal.
     """
 
-    def __init__(self, robot: AnyRobot, count: int, *, goal: bool) -> None:
+    def __init__(self, robot: Robot, count: int, *, goal: bool) -> None:
         known = senses(robot, goal=goal)
         self._rows = np.zeros((count, known[-1].columns.stop))
         self._columns = {sense.name: self._rows[:, sense.columns] for sense in known}
@@ -198,7 +196,7 @@ class Observer:
         return np.clip(rows, -1.0, 1.0).astype(np.float32)
 
 
-def felt(observations: Float[np.ndarray, "run n"], robot: AnyRobot, time: float) -> Sensed:
+def felt(observations: Float[np.ndarray, "run n"], robot: Robot, time: float) -> Sensed:
     """Return the readings that observations were made of; readings beyond their scales stay clipped.
 
     Args:

@@ -6,7 +6,7 @@ from math import radians, sin
 from types import MappingProxyType
 from typing import Any, get_args
 
-from suchus.design import AnyRobot
+from suchus.design import Robot
 from suchus.envs.goals import AnyGoal, Goal, Landing
 from suchus.envs.reward import Rewards
 from suchus.envs.task import Breaks, Pushes, Task
@@ -87,7 +87,7 @@ def chosen(task: Task | str, changes: Mapping[str, Any]) -> Task:
         for name, value in changes.items()
     }
     kinds: Mapping[str, tuple[type, ...]] = {
-        "robot": get_args(AnyRobot),
+        "robot": (Robot,),
         "gait": get_args(AnyGait),
         "ground": (Ground,),
         "rewards": (Rewards,),

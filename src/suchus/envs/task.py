@@ -9,7 +9,7 @@ from typing import Any, Literal, get_args
 import numpy as np
 
 from suchus.control import Swimming
-from suchus.design import AnyRobot, check_needs, crocodile, front_segment, layout, with_speed_lines
+from suchus.design import Robot, check_needs, crocodile, front_segment, layout, with_speed_lines
 from suchus.design.checks import Checks
 from suchus.design.scale import control_period, scaled, scaled_fields
 from suchus.envs.goals import AnyGoal
@@ -65,7 +65,7 @@ class Breaks:
             if kind not in allowed:
                 raise UnknownName("fault of a servo", str(kind)[:40], allowed)
 
-    def among(self, robot: AnyRobot) -> tuple[str, ...]:
+    def among(self, robot: Robot) -> tuple[str, ...]:
         """Return the servos of a robot among which it is drawn.
 
         Raises:
@@ -79,13 +79,13 @@ class Breaks:
                 raise UnknownName("servo", name, place.servos)
         return self.joints
 
-    def possible(self, robot: AnyRobot) -> tuple[Fault, ...]:
+    def possible(self, robot: Robot) -> tuple[Fault, ...]:
         """Return all faults of a robot that may be drawn, each from 0 s on."""
         if self.faults:
             return self.faults
         return tuple(self._fault(kind, joint) for kind in self.kinds for joint in self.among(robot))
 
-    def draw(self, random: np.random.Generator, robot: AnyRobot) -> Fault:
+    def draw(self, random: np.random.Generator, robot: Robot) -> Fault:
         """Draw one for a robot."""
         if self.faults:
             return self.faults[int(random.integers(len(self.faults)))]
@@ -121,7 +121,7 @@ class Pushes:
             check.number("lasting", 1e-3, 60.0, "s")
             _check_when(check, "pushes", self.earliest, self.latest)
 
-    def where(self, robot: AnyRobot) -> str:
+    def where(self, robot: Robot) -> str:
         """Return the body of a robot that is pushed."""
         if self.body is not None:
             return self.body
@@ -147,7 +147,7 @@ class Task:
     the robot. An action turns a crank further, at most at its servo's no-load speed.
     """
 
-    robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
+    robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot; ``speed_lines`` says whether the torque of its servos falls with their speed."""
     speed_lines: bool = True
     """Whether the torque of every servo falls linearly to nothing at its no-load speed, as that of a motor does.
@@ -195,7 +195,7 @@ class Task:
     """The goal, at which the episode ends; None: no goal."""
 
     @property
-    def body(self) -> AnyRobot:
+    def body(self) -> Robot:
         """The robot as its physics has it: with the torque-speed lines if ``speed_lines`` is true."""
         return with_speed_lines(self.robot) if self.speed_lines else self.robot
 
@@ -206,7 +206,7 @@ class Task:
             return 1.0 / swimming(self.robot, self.swim).swim.frequency
         return self.gait.period
 
-    def on(self, robot: AnyRobot, gait: AnyGait | None = None) -> "Task":
+    def on(self, robot: Robot, gait: AnyGait | None = None) -> "Task":
         """Return the same task for another robot.
 
         Where the robot can follow the gait and keeps the same control period, nothing else changes. If not, the gait
@@ -278,7 +278,7 @@ class Task:
 
 
 @lru_cache(maxsize=16)
-def swimming(robot: AnyRobot, swim: Swim | None) -> Swimming:
+def swimming(robot: Robot, swim: Swim | None) -> Swimming:
     """Return the swimming motion of a robot, at full amplitude from the first moment.
 
     Args:
@@ -294,7 +294,7 @@ def swimming(robot: AnyRobot, swim: Swim | None) -> Swimming:
     return Swimming(swim=swim, limb_pitch=LIMBS_BACK[1], ramp=0.0)
 
 
-def check_water(robot: AnyRobot, lake: Lake) -> None:
+def check_water(robot: Robot, lake: Lake) -> None:
     """Refuse water that changes while an episode lasts, or that a robot lacks the air for.
 
     Raises:
@@ -308,7 +308,7 @@ def check_water(robot: AnyRobot, lake: Lake) -> None:
     check_lake(robot, lake)
 
 
-def check_floats(robot: AnyRobot, lake: Lake) -> None:
+def check_floats(robot: Robot, lake: Lake) -> None:
     """Refuse a robot that sinks.
 
     Raises:

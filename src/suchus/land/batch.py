@@ -10,7 +10,7 @@ from jaxtyping import Float
 from mujoco.batch import Batch, SimulationError
 
 from suchus import hydro, threads
-from suchus.design import AnyRobot, layout
+from suchus.design import Robot, layout
 from suchus.design.ground import Ground
 from suchus.design.pieces import pieces
 from suchus.design.relief import Relief
@@ -337,7 +337,7 @@ class SimulationBatch:
             self.alive[sim], self.ended[sim], self.cause[sim] = False, time, cause
 
 
-def _model(robot: AnyRobot, timestep: float, relief: Relief | None, room: int) -> Any:
+def _model(robot: Robot, timestep: float, relief: Relief | None, room: int) -> Any:
     """Return a model of its own, which does not look for islands; for the water where there is room for pieces.
 
     A robot is one island, so that the bytes are the same, and a step takes a sixteenth less time.

@@ -6,7 +6,7 @@ from math import floor
 import numpy as np
 
 from suchus.control import Sensed
-from suchus.design import AnyRobot, layout
+from suchus.design import Robot, layout
 from suchus.fault import Fault
 from suchus.land.batch import SimulationBatch
 from suchus.land.run import Push, Run
@@ -25,7 +25,7 @@ class Injector:
         robot: one of the batch's robots, which share a layout.
     """
 
-    def __init__(self, batch: SimulationBatch, period: float, robot: AnyRobot) -> None:
+    def __init__(self, batch: SimulationBatch, period: float, robot: Robot) -> None:
         self._batch, self._period = batch, period
         place = layout(robot)
         self._columns = {

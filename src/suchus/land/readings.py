@@ -9,7 +9,7 @@ from jaxtyping import Float
 
 from suchus import hydro
 from suchus.control import Sensed
-from suchus.design import GRAVITY, AnyRobot, layout
+from suchus.design import GRAVITY, Robot, layout
 from suchus.design.pieces import chambers, pieces
 from suchus.hydro import column
 from suchus.land.batch import SimulationBatch
@@ -23,7 +23,7 @@ from suchus.record import WATER, dataset, ground_text
 class Sensors:
     """Where the sensors of the robots of a batch stand, and what they say now."""
 
-    def __init__(self, batch: SimulationBatch, robot: AnyRobot) -> None:
+    def __init__(self, batch: SimulationBatch, robot: Robot) -> None:
         self._batch = batch
         self.layout = place = layout(robot)
         model = batch.model

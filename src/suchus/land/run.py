@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from suchus.control import Control, OpenLoop
-from suchus.design import WATER_DENSITY, WATER_VISCOSITY, AnyRobot
+from suchus.design import WATER_DENSITY, WATER_VISCOSITY, Robot
 from suchus.design.checks import Checks, require
 from suchus.design.ground import Ground
 from suchus.errors import InvalidDesign, UnknownName
@@ -75,7 +75,7 @@ class Push:
 class Run:
     """One run of a batch; robot and gait may be given by their names on the shelves."""
 
-    robot: AnyRobot
+    robot: Robot
     """The robot that walks: a body of any kind, as ``suchus.ROBOTS`` names them."""
     gait: AnyGait
     """Its periodic movement, as ``suchus.GAITS`` names them."""
@@ -110,7 +110,7 @@ class Run:
             )
 
 
-def check_pushes(pushes: Sequence[Push], robot: AnyRobot, duration: float) -> None:
+def check_pushes(pushes: Sequence[Push], robot: Robot, duration: float) -> None:
     """Refuse pushes that cannot happen.
 
     Raises:

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from suchus.control import Control, Joinable, OpenLoop
-from suchus.design import AnyRobot
+from suchus.design import Robot
 from suchus.design.checks import require
 from suchus.design.ground import Ground
 from suchus.design.scale import check_step, control_period, physics_step
@@ -139,7 +139,7 @@ def _simulate_group(runs: Sequence[Run], ticks: int, timestep: float, every: int
 
 
 def crawl(
-    robot: AnyRobot | str,
+    robot: Robot | str,
     gait: AnyGait | str,
     *,
     duration: float | None = None,

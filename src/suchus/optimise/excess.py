@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from suchus.design import AnyRobot, servo_names, servo_ranges
+from suchus.design import Robot, servo_names, servo_ranges
 from suchus.motion import AnyGait, Gait, foot_targets, servo_targets
 from suchus.motion.any_body import check_limbs, pattern_targets
 from suchus.motion.targets import legs_for
@@ -12,7 +12,7 @@ PHASES = 128
 _LENGTH, _ANGLE, _SPEED = 0.01, 0.1, 1.0  # [m], [rad], [rad/s]; what counts as one
 
 
-def excess(robot: AnyRobot, gait: AnyGait) -> float:
+def excess(robot: Robot, gait: AnyGait) -> float:
     """Return how far a gait is from what a robot can follow; zero where it can [-].
 
     Counted are the distance by which feet lie outside their legs' reach, in centimetres, the angles by which joints
@@ -38,7 +38,7 @@ def excess(robot: AnyRobot, gait: AnyGait) -> float:
     return float(away / _LENGTH + beyond.sum() / _ANGLE + np.maximum(turned - fast, 0.0).sum() / _SPEED)
 
 
-def _out_of_reach(robot: AnyRobot, gait: Gait, phase: np.ndarray) -> float:
+def _out_of_reach(robot: Robot, gait: Gait, phase: np.ndarray) -> float:
     """Return the sum over the legs of how far their feet's paths lie outside their reach [m]."""
     feet, total = foot_targets(robot, gait, phase), 0.0
     for i, leg in enumerate(legs_for(robot, gait)):

@@ -5,22 +5,22 @@ from pathlib import Path
 from typing import Any
 
 from suchus.catalog import Catalog
-from suchus.design import AnyRobot
+from suchus.design import Robot
 from suchus.robots._size import RelativeSize, beside
 
 
-def _read(path: Path) -> AnyRobot:
+def _read(path: Path) -> Robot:
     from suchus import blueprint  # noqa: PLC0415  half of the time of an import that reads no file
 
-    robot: AnyRobot = blueprint.read(path, AnyRobot, ROBOTS)
+    robot: Robot = blueprint.read(path, Robot, ROBOTS)
     return robot
 
 
-ROBOTS: Catalog[Any] = Catalog("robot", "suchus.robots", "suchus.design:AnyRobot", named=attrgetter("name"), read=_read)
-"""Of either kind; who needs one of them says so by the type of its field."""
+ROBOTS: Catalog[Any] = Catalog("robot", "suchus.robots", "suchus.design:Robot", named=attrgetter("name"), read=_read)
+"""Robots by name."""
 
 
-def beside_article(robot: AnyRobot) -> RelativeSize:
+def beside_article(robot: Robot) -> RelativeSize:
     """Return the size of a robot over that of the article's robot."""
     return beside(ROBOTS, robot)
 

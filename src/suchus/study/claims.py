@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from suchus.design import Crocodile, unit_at, value_at
+from suchus.design import Robot, unit_at, value_at
 from suchus.design.checks import Checks
 from suchus.errors import UnreadableFile
 from suchus.gaits import GAITS, conditions
@@ -41,7 +41,7 @@ class Claims:
     every condition of spine and tail, see ``claim_measures.RUNS``.
     """
 
-    robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
+    robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot whose other fields all samples share."""
     gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
     """The crawl whose other fields all samples share."""

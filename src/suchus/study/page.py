@@ -7,7 +7,7 @@ from typing import Any
 
 from suchus import blueprint
 from suchus.catalog import Catalog
-from suchus.design import Crocodile
+from suchus.design import Robot
 from suchus.errors import InvalidDesign
 from suchus.fault import Fault
 from suchus.faults import from_table
@@ -81,7 +81,7 @@ def read_study(path: Path) -> Study:
     """
     page = blueprint.read(path, StudyFile, {EXAMPLE.name: EXAMPLE})
     run = Run(
-        robot=find(page.robot, path.parent, Crocodile, ROBOTS),
+        robot=find(page.robot, path.parent, Robot, ROBOTS),
         gait=find(page.gait, path.parent, Gait, GAITS),
         ground=page.ground,
         faults=tuple(from_table(table) for table in page.faults),
@@ -118,7 +118,7 @@ def _resolved(vary: Vary, place: Path) -> Vary:
 def _meant(field: str, value: Any, place: Path) -> Any:
     """Return what a value of a file stands for: robots and gaits have names, faults are tables, lists are tuples."""
     if field == "robot" and isinstance(value, str):
-        return find(value, place, Crocodile, ROBOTS)
+        return find(value, place, Robot, ROBOTS)
     if field == "gait" and isinstance(value, str):
         return find(value, place, Gait, GAITS)
     if field == "faults":

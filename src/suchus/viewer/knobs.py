@@ -6,7 +6,7 @@ from math import isfinite, radians
 from types import MappingProxyType
 from typing import Any
 
-from suchus.design import GRAVITY, AnyRobot
+from suchus.design import GRAVITY, Robot
 from suchus.errors import InvalidDesign, NotConverged, OutsideLimits
 from suchus.motion import AnyGait, FootPath, Gait, Pattern, Sweep, check_limits, with_bends, with_strokes
 from suchus.robots import beside_article
@@ -173,7 +173,7 @@ BREATH = Knob(
 )  # fmt: skip
 
 
-def force_on(robot: AnyRobot) -> Knob:
+def force_on(robot: Robot) -> Knob:
     """Return the knob of a push's force, which follows the weight of whom it pushes, in newtons or millinewtons."""
     weight = robot.mass * GRAVITY
     unit, scale = ("N", 1.0) if weight >= _FAINT else ("mN", 1e-3)
@@ -183,17 +183,17 @@ def force_on(robot: AnyRobot) -> Knob:
     return replace(FORCE, unit=unit, scale=scale, high=high, step=_rounded(high / 60.0), hint=hint)
 
 
-def push_on(robot: AnyRobot) -> float:
+def push_on(robot: Robot) -> float:
     """Return the force of a push as it is set at first [N]: 0.43 of the weight of a body of another size."""
     return _rounded(_PUSH * beside_article(robot).weight)
 
 
-def bumps_under(robot: AnyRobot) -> Knob:
+def bumps_under(robot: Robot) -> Knob:
     """Return the knob of the bumps' height, which follows the length of whom they are under."""
     return _resized(BUMPS, beside_article(robot).length)
 
 
-def knobs_of(robot: AnyRobot, gait: AnyGait) -> Mapping[str, Knob]:
+def knobs_of(robot: Robot, gait: AnyGait) -> Mapping[str, Knob]:
     """Return what can be turned of a movement, by name; nothing of a table of angles."""
     if isinstance(gait, Gait):
         share = beside_article(robot).length
@@ -240,7 +240,7 @@ def shown(gait: AnyGait, name: str) -> float:
     return float(f"{now / scale:.4g}")
 
 
-def tuned(robot: AnyRobot, gait: AnyGait, name: str, value: object) -> tuple[AnyGait, str]:
+def tuned(robot: Robot, gait: AnyGait, name: str, value: object) -> tuple[AnyGait, str]:
     """Return a gait with one field turned as far as the robot's joints follow, and a sentence if that is not as asked.
 
     Args:
@@ -265,7 +265,7 @@ def tuned(robot: AnyRobot, gait: AnyGait, name: str, value: object) -> tuple[Any
     return fits, f"{knob.label}: the robot cannot follow {knob.said(asked)}; it is {knob.said(reached)} now. {why}"
 
 
-def _tried(robot: AnyRobot, gait: AnyGait, name: str, value: float) -> tuple[AnyGait, str]:
+def _tried(robot: Robot, gait: AnyGait, name: str, value: float) -> tuple[AnyGait, str]:
     """Return a gait with one field changed, and why the robot cannot follow it; empty if it can."""
     try:
         changed = _with(robot, gait, name, value)
@@ -275,7 +275,7 @@ def _tried(robot: AnyRobot, gait: AnyGait, name: str, value: float) -> tuple[Any
     return changed, ""
 
 
-def _with(robot: AnyRobot, gait: AnyGait, name: str, value: float) -> AnyGait:
+def _with(robot: Robot, gait: AnyGait, name: str, value: float) -> AnyGait:
     """Return a gait with one field changed, in SI units."""
     change: dict[str, Any] = {name: value}
     if not isinstance(gait, Pattern) or name in ("period", "duty_factor", "height"):

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from suchus import flow
-from suchus.design import GRAVITY, Crocodile
+from suchus.design import GRAVITY, Robot
 from suchus.water.diary import Diary, Progress
 from suchus.water.held import SAMPLES
 from suchus.water.measures import swing
@@ -24,7 +24,7 @@ TRACK = 40
 
 
 def free_swim(
-    robot: Crocodile,
+    robot: Robot,
     motion: Motion,
     setting: Tether,
     *,
@@ -40,7 +40,7 @@ def free_swim(
     return pool.swum(_Free(pool), checkpoint=checkpoint, progress=progress)
 
 
-def check_free_swim(robot: Crocodile, motion: Motion, setting: Tether) -> None:
+def check_free_swim(robot: Robot, motion: Motion, setting: Tether) -> None:
     """Refuse what joints, servos or grid cannot follow, before anything runs; errors are those of ``free_swim``."""
     Pool.filled(robot, motion, setting, _BOX, None)
 

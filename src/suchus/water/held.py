@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from suchus import flow
-from suchus.design import Crocodile, cable_joints, layout
+from suchus.design import Robot, cable_joints, layout
 from suchus.motion.swim import trunk_yaws
 from suchus.water.diary import Diary, Progress
 from suchus.water.pool import SLACK, Pool, cycle_means
@@ -32,7 +32,7 @@ BOX = (2.75, 1.5)
 
 
 def tether(
-    robot: Crocodile,
+    robot: Robot,
     motion: Motion,
     setting: Tether,
     *,

@@ -10,7 +10,7 @@ import xarray as xr
 from jaxtyping import Float
 
 from suchus import flow
-from suchus.design import Crocodile
+from suchus.design import Robot
 from suchus.design.water import Water
 from suchus.water.diary import Diary, Progress, run_on
 from suchus.water.immersed import immersed
@@ -37,7 +37,7 @@ class Witness(Protocol):
 class Pool:
     """A robot's body in a box of water, snout at the origin."""
 
-    robot: Crocodile
+    robot: Robot
     """The robot that swims."""
     motion: Motion
     """Its swimming motion."""
@@ -54,7 +54,7 @@ class Pool:
 
     @classmethod
     def filled(
-        cls, robot: Crocodile, motion: Motion, setting: Tether, box: tuple[float, float], turn: complex | None
+        cls, robot: Robot, motion: Motion, setting: Tether, box: tuple[float, float], turn: complex | None
     ) -> "Pool":
         """Return the pool, after checks.
 

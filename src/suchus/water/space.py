@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from suchus import flow
-from suchus.design import GRAVITY, Crocodile, cable_joints, layout
+from suchus.design import GRAVITY, Robot, cable_joints, layout
 from suchus.design.checks import Checks
 from suchus.design.profile import stations
 from suchus.design.water import Water
@@ -88,7 +88,7 @@ def half_heights(outline: Outline, tail_height: float = 0.0) -> np.ndarray:
     return np.maximum(outline.silhouette.half_height, fin)
 
 
-def folded(robot: Crocodile) -> tuple[flow.Capsule, ...]:
+def folded(robot: Robot) -> tuple[flow.Capsule, ...]:
     """Return the limbs of a robot, stretched and turned straight back from the hips, which lie in the body's plane.
 
     Each link is a capsule and each foot a ball, rigid with the body at the hip.
@@ -136,7 +136,7 @@ def trunk(
     return flow.Trunk(spine=spine, half_height=high, cuts=cuts)
 
 
-def check_swim_in_space(robot: Crocodile, motion: Motion, basin: Basin) -> None:
+def check_swim_in_space(robot: Robot, motion: Motion, basin: Basin) -> None:
     """Refuse what joints, servos, grid, box or machine cannot follow, before anything runs.
 
     Raises:
@@ -166,7 +166,7 @@ def check_swim_in_space(robot: Crocodile, motion: Motion, basin: Basin) -> None:
     setup_of(robot, motion, basin).check()
 
 
-def setup_of(robot: Crocodile, motion: Motion, basin: Basin) -> flow.Setup:
+def setup_of(robot: Robot, motion: Motion, basin: Basin) -> flow.Setup:
     """Return what is simulated when a robot swims in a basin: the half above its plane of symmetry."""
     outline = Outline(robot, basin.cells + 1)
     sway, turn = recoil(outline, motion, 0.0, Water(viscosity=basin.viscosity))
@@ -182,7 +182,7 @@ def setup_of(robot: Crocodile, motion: Motion, basin: Basin) -> flow.Setup:
 
 
 def swim_in_space(
-    robot: Crocodile,
+    robot: Robot,
     motion: Motion,
     basin: Basin,
     *,
@@ -269,7 +269,7 @@ def _record(sim: flow.Simulation, diary: Diary, outline: Outline, motion: Motion
     return data.assign_coords(servo=list(_servos(robot)), cycle=np.arange(1, basin.cycles + 1)).merge(wake(sim))
 
 
-def _servos(robot: Crocodile) -> tuple[str, ...]:
+def _servos(robot: Robot) -> tuple[str, ...]:
     place = layout(robot)
     return (*trunk_yaws(robot), *(place.servos[i] for i in place.cables))
 

@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from suchus import flow
-from suchus.design import Crocodile
+from suchus.design import Robot
 from suchus.design.water import Water
 from suchus.errors import OutsideLimits
 from suchus.flow.memory import check_memory
@@ -33,7 +33,7 @@ _RAMP = 0.5
 
 
 def held_in_space(
-    robot: Crocodile,
+    robot: Robot,
     motion: Motion,
     basin: Basin,
     *,
@@ -98,7 +98,7 @@ def _nothing(sim: flow.Simulation, diary: Diary) -> None:
     """Note nothing: the flow's own record is enough."""
 
 
-def towed_in_space(robot: Crocodile, speed: float, basin: Basin, *, lengths: float = 4.0) -> float:
+def towed_in_space(robot: Robot, speed: float, basin: Basin, *, lengths: float = 4.0) -> float:
     """Return the drag of the straight body in a stream, its mean over the last length of the distance [N].
 
     Args:

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from suchus import flow
-from suchus.design import Crocodile
+from suchus.design import Robot
 from suchus.water.held import BOX
 from suchus.water.immersed import immersed
 from suchus.water.outline import Outline
@@ -13,7 +13,7 @@ from suchus.water.tank import DENSITY, Tether
 from suchus.water.undulation import STILL
 
 
-def towed(robot: Crocodile, speed: float, setting: Tether, *, lengths: float = 4.0) -> float:
+def towed(robot: Robot, speed: float, setting: Tether, *, lengths: float = 4.0) -> float:
     """Return the drag of the straight body in a stream, its mean over the last length of the distance [N/m].
 
     Args:

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from suchus.design import Crocodile, layout
+from suchus.design import Robot, layout
 from suchus.design.checks import Checks
 from suchus.motion import AngleTable, Curve, Gait, as_table
 
@@ -33,7 +33,7 @@ class Searched:
             check.number("trunk_amplitude", 0.0, 1.5, "rad")
             check.number("trunk_phase", -1.0, 1.0, "cycle")
 
-    def table(self, robot: Crocodile) -> AngleTable:
+    def table(self, robot: Robot) -> AngleTable:
         """Return the gait as a table of servo angles."""
         table = as_table(robot, self.gait, _SAMPLES)
         place = layout(robot)

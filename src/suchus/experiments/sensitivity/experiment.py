@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 from scipy import stats
 
-from suchus.design import Crocodile
+from suchus.design import Robot
 from suchus.design.checks import Checks
 from suchus.errors import InvalidDesign
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Simulated, silent, staged
@@ -43,7 +43,7 @@ class Sensitivity(Experiment):
     shows = "Section IV, Figs 12 to 21"
     needs = ("tables", "article_spine", "cable_tail")
 
-    robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
+    robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot whose other fields all samples share."""
     gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
     """The crawl whose other fields all samples share."""

@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 
 import xarray as xr
 
-from suchus.design import Crocodile
+from suchus.design import Robot
 from suchus.design.checks import Checks
 from suchus.design.water import Water
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
@@ -68,7 +68,7 @@ class Swim3d(Experiment):
     needs = ("tables", "article_spine", "cable_tail")
     reproduces: ClassVar[bool] = False
 
-    robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
+    robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that swims."""
     reading: str = "I"
     """Letter of the reading of (20), see ``kinematics.wave.READINGS``."""
@@ -232,12 +232,12 @@ Item = tuple[Motion, Basin]
 """What differs between the swims."""
 
 
-def swum_in_space(robot: Crocodile, item: Item, progress: Callable[[float], None]) -> xr.Dataset:
+def swum_in_space(robot: Robot, item: Item, progress: Callable[[float], None]) -> xr.Dataset:
     """Return a swim of a robot, see ``water.swim_in_space``; its bytes follow from robot and item alone."""
     return swim_in_space(robot, *item, progress=progress)
 
 
-def _swum_here(robot: Crocodile, keep: str, item: Item, progress: Callable[[float], None]) -> xr.Dataset:
+def _swum_here(robot: Robot, keep: str, item: Item, progress: Callable[[float], None]) -> xr.Dataset:
     """Return the same, and keep in a folder how far it has come."""
     return swim_in_space(robot, *item, checkpoint=kept_in(keep, fingerprint(item)[:16]), progress=progress)
 

@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 import numpy as np
 import xarray as xr
 
-from suchus.design import Crocodile
+from suchus.design import Robot
 from suchus.design.checks import Checks
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Simulated, silent, staged
 from suchus.experiments.swim_sweep.figure import draw_check, draw_maps
@@ -33,7 +33,7 @@ _SWUM = {"speed": "m/s", "cost_of_transport": "1", "gain": "1", "strouhal": "1",
 """What is kept of a swim by CFD, with units; see ``water.Swum``."""
 
 
-def swum_point(robot: Crocodile, setting: Tether, motion: Swim, progress: Callable[[float], None]) -> xr.Dataset:
+def swum_point(robot: Robot, setting: Tether, motion: Swim, progress: Callable[[float], None]) -> xr.Dataset:
     """Return the numbers of one swim from rest by CFD.
 
     Args:
@@ -62,7 +62,7 @@ class SwimSweep(Experiment):
     reproduces: ClassVar[bool] = False
     needs = ("tables", "article_spine", "cable_tail")
 
-    robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
+    robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that swims."""
     reading: str = "I"
     """Letter of the reading of (20); only this one has a wavelength to change."""

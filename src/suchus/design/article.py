@@ -1,18 +1,15 @@
-"""The crocodile-like robot of the article's tables in the form of any robot."""
+"""The robot that the article's tables make: segment by segment, joint by joint."""
 
-from functools import lru_cache
+from collections.abc import Callable
+from typing import Any
 
 from suchus.design.body import Robot
 from suchus.design.hinge import Cable, Hinge, Spring
-from suchus.design.leg import LEG_SHARES, Leg
 from suchus.design.limb import Foot, Girdle, Limb, Link
-from suchus.design.robot import Crocodile
 from suchus.design.segment import Rod, Segment, Shell
 from suchus.design.servo import Servo
-from suchus.design.tail import Tail, tail_segments
+from suchus.design.tables import LEG_SHARES, Leg, Tables, Tail, tail_segments
 
-AnyRobot = Crocodile | Robot
-"""A robot in either form."""
 PASSIVE_RANGE = 1.2
 """Stops of the passive joints of a tail to either side [rad]."""
 SLIM = 0.8
@@ -21,25 +18,40 @@ _PASSIVE_ARMATURE = 1e-4  # [kg m2]
 _SPARE = 1.5  # a joint may bend by more than its share before the plates touch
 
 
-@lru_cache(maxsize=256)
-def general(robot: AnyRobot) -> Robot:
-    """Return a robot in the general form."""
-    if isinstance(robot, Robot):
-        return robot
-    tail = robot.tail
-    cables = () if tail.drive == "servos" else (_cable(tail),)
-    return Robot(
-        name=robot.name,
+def crocodile(tables: Tables) -> Robot:
+    """Return the robot of the article's kind that has these measures.
+
+    It remembers them, so that ``with_values`` can change one of them and make the robot anew.
+
+    Raises:
+        InvalidDesign: these measures make no robot.
+    """
+    tail = tables.tail
+    robot = Robot(
+        name=tables.name,
         root="pelvis",
-        axis=(*_ahead(robot), _pelvis(robot), *_tail(tail)),
+        axis=(*_ahead(tables), _pelvis(tables), *_tail(tail)),
         girdles=(
-            _girdle("F", "thorax", robot.thorax.shoulder, robot.front_leg),
-            _girdle("H", "pelvis", 0.0, robot.hind_leg),
+            _girdle("F", "thorax", tables.thorax.shoulder, tables.front_leg),
+            _girdle("H", "pelvis", 0.0, tables.hind_leg),
         ),
-        cables=cables,
-        contact=robot.contact,
-        hull=robot.hull,
+        cables=() if tail.drive == "servos" else (_cable(tail),),
+        contact=tables.contact,
+        hull=tables.hull,
     )
+    object.__setattr__(robot, "tables", tables)
+    return robot
+
+
+def remade(robot: Robot, change: Callable[[Any], Any]) -> Robot:
+    """Return a robot with a change in what it was made of: in its tables if it has some, else in itself.
+
+    Args:
+        robot: the robot; it stays as it is.
+        change: takes ``Tables`` or a ``Robot`` and returns the same.
+    """
+    changed: Robot = change(robot) if robot.tables is None else crocodile(change(robot.tables))
+    return changed
 
 
 def cable_names(tail: Tail) -> tuple[str, ...]:
@@ -52,10 +64,10 @@ def fin_names(tail: Tail) -> tuple[str, ...]:
     return tuple(f"fin_{turn}_{i + 1}" for i in range(tail.fin_segments) for turn in ("yaw", "pitch"))
 
 
-def _ahead(robot: Crocodile) -> list[Segment]:
+def _ahead(tables: Tables) -> list[Segment]:
     """Return head with thorax, then the links of the spine back to the pelvis."""
-    spine, thorax, head = robot.spine, robot.thorax, robot.head
-    hinges = [_spine_hinge(robot, name) for name in spine.names]
+    spine, thorax, head = tables.spine, tables.thorax, tables.head
+    hinges = [_spine_hinge(tables, name) for name in spine.names]
     length = head.snout - thorax.shoulder
     front = Segment(
         name="thorax",
@@ -93,19 +105,19 @@ def _ahead(robot: Crocodile) -> list[Segment]:
     return [front, *reversed(links)]
 
 
-def _spine_hinge(robot: Crocodile, name: str) -> Hinge:
-    spine = robot.spine
+def _spine_hinge(tables: Tables, name: str) -> Hinge:
+    spine = tables.spine
     if "yaw" in name:
         return Hinge(name=name, turn="yaw", range=spine.yaw_range, drive=spine.yaw_servo)
     return Hinge(name=name, turn="pitch", range=spine.pitch_range, drive=spine.pitch_servo)
 
 
-def _pelvis(robot: Crocodile) -> Segment:
-    pelvis, tail = robot.pelvis, robot.tail
+def _pelvis(tables: Tables) -> Segment:
+    pelvis, tail = tables.pelvis, tables.tail
     half = (pelvis.length / 2, pelvis.width / 2, pelvis.height / 2)
     return Segment(
         name="pelvis",
-        front=robot.spine.base,
+        front=tables.spine.base,
         rear=tail.offset,
         shapes=(Shell(name="pelvis", at=(0, 0, 0), half=half, mass=pelvis.mass),),
         hinges=(Hinge(name="tail_pitch", turn="pitch", range=tail.pitch_range, drive=tail.pitch_servo),),
