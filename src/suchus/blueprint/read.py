@@ -73,6 +73,22 @@ def read(path: Path, kind: Any, shelf: Mapping[str, Any]) -> Any:
     return crocodile(value) if isinstance(value, Tables) else value
 
 
+def described_robot(values: Mapping[str, Any]) -> Robot:
+    """Return the robot that the plain values of a result's settings describe.
+
+    Args:
+        values: of a robot, or of the tables that it was made of, as ``dataclasses.asdict`` gives them.
+
+    Raises:
+        ValidationError: they describe none.
+        InvalidDesign: they describe an impossible one.
+    """
+    values = values.get("tables") or values
+    if _meant(values, (Robot, Tables)) is Tables:
+        return crocodile(TypeAdapter(Tables).validate_python(values))
+    return TypeAdapter(Robot).validate_python(values)
+
+
 def _meant(data: Mapping[str, Any], kinds: tuple[Any, ...]) -> Any:
     """Return the kind whose fields the top of a file names best; the first of those alike."""
     return max(kinds, key=lambda kind: len(set(data) & _said(kind)))

@@ -4,8 +4,9 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from pydantic import TypeAdapter, ValidationError
+from pydantic import ValidationError
 
+from suchus.blueprint import described_robot
 from suchus.design import Robot
 from suchus.errors import SuchusError
 from suchus.report.result import Result
@@ -13,7 +14,6 @@ from suchus.robots import ROBOTS
 
 ARTICLES = "caiman"
 """Name of the article's robot, shown where no result names one; verdicts are shown of no other."""
-_ADAPTER: TypeAdapter[Robot] = TypeAdapter(Robot)
 
 
 def robot_of(results: Sequence[Result]) -> tuple[Robot, dict[str, int]]:
@@ -31,6 +31,6 @@ def robot_of(results: Sequence[Result]) -> tuple[Robot, dict[str, int]]:
 def _robot(settings: Any) -> Robot | None:
     values = settings.get("robot") if isinstance(settings, Mapping) else None
     try:
-        return _ADAPTER.validate_python(values) if isinstance(values, Mapping) else None
+        return described_robot(values) if isinstance(values, Mapping) else None
     except (ValidationError, SuchusError):
         return None
