@@ -13,15 +13,12 @@ from suchus.design import Robot, check_needs
 from suchus.design.scale import coarse_step, scaled_fields
 from suchus.gaits import own_gait, suits
 from suchus.motion import AnyGait, straightened
+from suchus.progress import Progress, silent
 from suchus.verdict import Rule, Verdict, judge, rules_of
 
-Progress = Callable[[str, float], None]
-"""Called with what is being done and the share of it that is done, 0 to 1."""
-
-
-def silent(stage: str, share: float) -> None:
-    """Show no progress."""
-    del stage, share
+__all__ = [
+    "Experiment", "Measure", "Outcome", "Progress", "Replay", "Simulated", "silent", "staged", "stopwatch"
+]  # fmt: skip
 
 
 def staged(progress: Progress, stage: str, start: float, end: float) -> Callable[[float], None]:

@@ -30,6 +30,7 @@ from suchus.cli.commands import COMMANDS
 from suchus.design import Robot, layout, servo_names, value_at, with_values
 from suchus.errors import SuchusError
 from suchus.hardware import read_map, straight, write_map
+from suchus.jobs.store import Store
 from suchus.land import Deaf, Limp, Locked, Push, Run, Weak, simulate
 from suchus.motion import Gait, check_limits
 from suchus.optimise import read_optimisation
@@ -37,7 +38,6 @@ from suchus.record import load, save
 from suchus.replay.frames import checked
 from suchus.report import load_result, render_page
 from suchus.study import Plan, Study, Vary, read_study
-from suchus.study.store import Store
 from suchus.viewer.replay import Player, takes
 from suchus.viewer.swim import films
 

@@ -13,12 +13,13 @@ import pytest
 
 from suchus.cli import main
 from suchus.errors import IncompatibleRecord, InvalidDesign, SuchusError
+from suchus.jobs import NoCluster, connected
+from suchus.jobs.cluster import _check_versions, _reach
+from suchus.jobs.store import Store
 from suchus.land import Run, crawl
 from suchus.optimise import Optimisation
 from suchus.optimise.spec import Aim
-from suchus.study import MEASURES, NoCluster, Plan, Study, Vary, conduct, connected, read_study, run_chunk
-from suchus.study.cluster import _check_versions, _reach
-from suchus.study.store import Store
+from suchus.study import MEASURES, Plan, Study, Vary, conduct, read_study, run_chunk
 
 PAGE = """
 name = "s"

@@ -1,6 +1,6 @@
 """How does the robot's own body swim in the water of three dimensions, and what would a higher tail do?"""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -19,11 +19,11 @@ from suchus.experiments.swim_3d import findings
 from suchus.experiments.swim_3d.figure import draw_joints, draw_speeds, draw_tails, draw_wake
 from suchus.figures.vortices import draw_vortices, film_vortices
 from suchus.fingerprint import fingerprint
+from suchus.jobs import at_scheduler, conduct_sweep
 from suchus.kinematics.wave import READINGS
 from suchus.motion import Swim
 from suchus.replay import wake_replay
 from suchus.robots import ROBOTS
-from suchus.study import at_scheduler, conduct_sweep
 from suchus.water import (
     Basin,
     Motion,
@@ -151,7 +151,7 @@ class Swim3d(Experiment):
         with nullcontext(self.keep) if self.keep else TemporaryDirectory() as folder:
             found = conduct_sweep(
                 self.name(), partial(swum_in_space, self.robot), items, Path(folder) / "swims", client=client,
-                progress=staged(progress, f"{len(runs)} swims", 0.0, 0.9), jobs=self.jobs,
+                progress=lambda stage, share: progress(stage, 0.9 * share), jobs=self.jobs,
                 local=partial(_swum_here, self.robot, self.keep),
             )  # fmt: skip
         beside = self._beside(ours, staged(progress, "the slice", 0.9, 0.95))
@@ -232,14 +232,15 @@ Item = tuple[Motion, Basin]
 """What differs between the swims."""
 
 
-def swum_in_space(robot: Robot, item: Item, progress: Callable[[float], None]) -> xr.Dataset:
+def swum_in_space(robot: Robot, item: Item, progress: Progress) -> xr.Dataset:
     """Return a swim of a robot, see ``water.swim_in_space``; its bytes follow from robot and item alone."""
-    return swim_in_space(robot, *item, progress=progress)
+    return swim_in_space(robot, *item, progress=partial(progress, "swimming"))
 
 
-def _swum_here(robot: Robot, keep: str, item: Item, progress: Callable[[float], None]) -> xr.Dataset:
+def _swum_here(robot: Robot, keep: str, item: Item, progress: Progress) -> xr.Dataset:
     """Return the same, and keep in a folder how far it has come."""
-    return swim_in_space(robot, *item, checkpoint=kept_in(keep, fingerprint(item)[:16]), progress=progress)
+    checkpoint = kept_in(keep, fingerprint(item)[:16])
+    return swim_in_space(robot, *item, checkpoint=checkpoint, progress=partial(progress, "swimming"))
 
 
 def _replays(record: xr.Dataset) -> dict[str, Replay]:

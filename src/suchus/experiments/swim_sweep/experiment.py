@@ -15,9 +15,9 @@ from suchus.design import Robot
 from suchus.design.checks import Checks
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Simulated, silent, staged
 from suchus.experiments.swim_sweep.figure import draw_check, draw_maps
+from suchus.jobs import at_scheduler, conduct_sweep
 from suchus.motion import Swim
 from suchus.robots import ROBOTS
-from suchus.study import at_scheduler, conduct_sweep
 from suchus.verdict import Reading
 from suchus.water import MODELS, Swum, Tether, fit, free_swim, greatest, printed_wave, scaled, survey
 
@@ -33,7 +33,7 @@ _SWUM = {"speed": "m/s", "cost_of_transport": "1", "gain": "1", "strouhal": "1",
 """What is kept of a swim by CFD, with units; see ``water.Swum``."""
 
 
-def swum_point(robot: Robot, setting: Tether, motion: Swim, progress: Callable[[float], None]) -> xr.Dataset:
+def swum_point(robot: Robot, setting: Tether, motion: Swim, progress: Progress) -> xr.Dataset:
     """Return the numbers of one swim from rest by CFD.
 
     Args:
@@ -42,7 +42,9 @@ def swum_point(robot: Robot, setting: Tether, motion: Swim, progress: Callable[[
         motion: how, at 1 Hz.
         progress: called with the share that is done.
     """
-    found = Swum.of(free_swim(robot, motion, setting, progress=progress), motion.frequency)._asdict()
+    found = Swum.of(
+        free_swim(robot, motion, setting, progress=partial(progress, "swimming")), motion.frequency
+    )._asdict()
     return xr.Dataset({name: ((), found[name], {"units": unit}) for name, unit in _SWUM.items()})
 
 
@@ -156,7 +158,9 @@ class SwimSweep(Experiment):
         setting = Tether(cells=self.cells, viscosity=self.robot.length**2 / self.reynolds, cycles=self.cycles, frames=1)
         work = partial(swum_point, self.robot, setting)
         with nullcontext(self.keep) if self.keep else TemporaryDirectory() as folder:
-            swum = conduct_sweep(self.name(), work, motions, Path(folder), progress=progress, client=client)
+            swum = conduct_sweep(
+                self.name(), work, motions, Path(folder), progress=lambda _, share: progress(share), client=client
+            )
         slender = survey(self.robot, motions)
         data: dict[str, Any] = {
             **{

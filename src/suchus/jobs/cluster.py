@@ -1,4 +1,4 @@
-"""The parts of a store made on many machines, through Dask; the extra ``cluster`` installs it."""
+"""Pieces of work on many machines, through Dask; the extra ``cluster`` installs it."""
 
 import logging
 import re
@@ -10,11 +10,9 @@ from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pickle import PickleError
 from typing import Any, TypeVar
 
-import xarray as xr
-
 from suchus.errors import IncompatibleRecord, SuchusError
+from suchus.jobs.made_by import deciding
 from suchus.sources import Carried
-from suchus.study.makers import deciding
 
 Item = TypeVar("Item")
 Versions = Callable[[], Mapping[str, str]]
@@ -28,7 +26,6 @@ _ALIKE = (
     "msgpack",
     "numpy",
 )  # alike at both ends
-_RETRIES = 3  # how often a batch is begun again when its worker is lost
 _PATIENCE = 30.0  # [s]; for a first worker
 _AGAIN = 0.5  # [s]; between two looks whether somebody listens
 _GREETING = 2**20  # bytes of the first message, at most
@@ -77,28 +74,16 @@ def at_scheduler(address: str | None) -> AbstractContextManager[Any]:
     return connected(address) if address is not None else nullcontext()
 
 
-def here(client: Any) -> AbstractContextManager[Any]:
-    """Return a context in which files are written by this process alone, whatever client is Dask's default.
-
-    With a default client xarray asks the scheduler for a lock on every file, which a busy one may have forgotten.
-    """
-    if client is None:
-        return nullcontext()
-    import dask  # noqa: PLC0415  whoever has a client has it
-
-    context: AbstractContextManager[Any] = dask.config.set(scheduler="threads")
-    return context
-
-
 def spread(
-    work: Callable[[Item], xr.Dataset],
+    work: Callable[[Item], Any],
     items: Sequence[Item],
     client: Any,
     *,
     name: str,
     versions: Versions = deciding,
+    retries: int = 3,
     patience: float = _PATIENCE,
-) -> Generator[tuple[int, xr.Dataset], None, None]:
+) -> Generator[tuple[int, Any], None, None]:
     """Do one piece of work for each item on a cluster, and yield the results as they are finished, in any order.
 
     A worker that is lost loses its piece, which another one begins again.
@@ -109,6 +94,7 @@ def spread(
         client: a ``distributed.Client``.
         name: what the pieces are called on Dask's own pages.
         versions: returns what decides the bytes; it must return the same on a worker as here.
+        retries: how often a piece is begun again whose worker is lost [-].
         patience: how long to wait for a first worker [s].
 
     Yields:
@@ -131,7 +117,7 @@ def spread(
             versions=versions,
             wanted=dict(versions()),
             pure=False,
-            retries=_RETRIES,
+            retries=retries,
             key=f"suchus-{name}",
         )
         for future in as_completed(futures, loop=client.loop):
@@ -237,8 +223,8 @@ def _packages(versions: Mapping[str, Any]) -> dict[str, str]:
 
 
 def _piece(
-    number: int, item: Item, work: Callable[[Item], xr.Dataset], versions: Versions, wanted: Mapping[str, str]
-) -> tuple[int, xr.Dataset]:
+    number: int, item: Item, work: Callable[[Item], Any], versions: Versions, wanted: Mapping[str, str]
+) -> tuple[int, Any]:
     """Do one piece of work, on a worker."""
     found = versions()
     other = [

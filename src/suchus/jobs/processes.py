@@ -14,9 +14,8 @@ from typing import Any, NamedTuple
 
 from suchus import threads
 from suchus.errors import SuchusError
-
-Tell = Callable[[str, float], None]
-"""Called with the stage that a piece is in and the share of the stage that is done."""
+from suchus.jobs.job import Died
+from suchus.progress import Progress
 
 _EVERY = 0.1  # [s]; between two reports of one stage
 _PATIENCE = 10.0  # [s]; for a process that was told to stop
@@ -43,13 +42,6 @@ class Done(NamedTuple):
     """The result of the piece."""
 
 
-class Died(NamedTuple):
-    """The processes that were at a piece ended before it was finished."""
-
-    exit_code: int | None
-    """Of the last of them; negative for the signal that killed it."""
-
-
 class _Refused(NamedTuple):
     """A piece ended with one of our own errors."""
 
@@ -70,7 +62,7 @@ class Worker:
 
 
 def side_by_side(
-    work: Callable[[Any, Tell], Any], items: Sequence[Any], jobs: int, *, tries: int = 1
+    work: Callable[[Any, Progress], Any], items: Sequence[Any], jobs: int, *, tries: int = 1
 ) -> Generator[tuple[int, Begun | Far | Done | Died], None, None]:
     """Do one piece of work for each item in a few processes, and yield what is heard of the pieces as it is heard.
 
@@ -91,8 +83,9 @@ def side_by_side(
         SuchusError: what the work of a piece raised.
     """
     left, begun = list(range(len(items))), Counter[int]()
-    each = max(threads.count() // jobs, 1)
-    workers = [hire(work, each) for _ in range(min(jobs, len(left)))]
+    jobs = min(jobs, len(left))
+    each = max(threads.count() // max(jobs, 1), 1)
+    workers = [hire(work, each) for _ in range(jobs)]
 
     def give(worker: Worker) -> int:
         worker.piece = left.pop(0)
@@ -127,7 +120,7 @@ def side_by_side(
         dismiss(workers)
 
 
-def hire(work: Callable[[Any, Tell], Any], each: int) -> Worker:
+def hire(work: Callable[[Any, Progress], Any], each: int) -> Worker:
     """Start a process that takes ``each`` threads."""
     spawning = get_context("spawn")
     here, there = spawning.Pipe()
@@ -175,7 +168,7 @@ def _deaf() -> Iterator[None]:
 # --- in the process of its own ---------------------------------------------------------------------------------
 
 
-def _work(pipe: Connection, work: Callable[[Any, Tell], Any], each: int) -> None:
+def _work(pipe: Connection, work: Callable[[Any, Progress], Any], each: int) -> None:
     """Take one piece after the other until the other end of the pipe is closed."""
     os.environ["SUCHUS_THREADS"] = str(each)
     with suppress(*_GONE):
@@ -188,7 +181,7 @@ def _work(pipe: Connection, work: Callable[[Any, Tell], Any], each: int) -> None
             pipe.send(said)
 
 
-def _sender(pipe: Connection) -> Tell:
+def _sender(pipe: Connection) -> Progress:
     """Return what tells the other process now and then."""
     last_stage, last = "", -_EVERY
 

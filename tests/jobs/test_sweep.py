@@ -7,12 +7,11 @@ import pytest
 import xarray as xr
 
 from suchus.errors import InvalidDesign
-from suchus.study import conduct_sweep
-from suchus.study.sweep import ProcessDied
+from suchus.jobs import ProcessDied, conduct_sweep
 
 
 def squared(item, progress):
-    progress(0.5)
+    progress("squaring", 0.5)
     if item < 0:
         raise InvalidDesign("no root of this.")
     if item > 100:
@@ -29,7 +28,9 @@ def marked(item, progress):
 def test_processes_give_the_same_as_this_one(tmp_path):
     shares = []
     one = conduct_sweep("squares", squared, (1, 2, 3, 4), tmp_path / "one")
-    two = conduct_sweep("squares", squared, (1, 2, 3, 4), tmp_path / "two", jobs=2, progress=shares.append)
+    two = conduct_sweep(
+        "squares", squared, (1, 2, 3, 4), tmp_path / "two", jobs=2, progress=lambda _, share: shares.append(share)
+    )
     assert [float(part.value) for part in two] == [1.0, 4.0, 9.0, 16.0]
     assert all(a.identical(b) for a, b in zip(one, two, strict=True))
     for i in range(4):
@@ -43,7 +44,7 @@ def test_processes_give_the_same_as_this_one(tmp_path):
 def test_an_error_or_a_death_of_a_process_loses_nothing_that_was_finished(tmp_path):
     with pytest.raises(InvalidDesign, match="no root"):
         conduct_sweep("roots", squared, (4, -1), tmp_path / "a", jobs=2)
-    with pytest.raises(ProcessDied, match="exit code 3, twice at item 0"):
+    with pytest.raises(ProcessDied, match="at item 0 of sweep 'roots' ended with exit code 3, 3 times"):
         conduct_sweep("roots", squared, (101,), tmp_path / "b", jobs=2)
 
 

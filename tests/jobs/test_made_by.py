@@ -3,14 +3,13 @@
 import grimp
 import pytest
 
-from suchus.optimise.elsewhere import ROOMS
+from suchus.jobs.made_by import FLOW, MADE_BY, deciding
+from suchus.optimise.conduct import ROOMS
 from suchus.record import code_digest
 from suchus.record.provenance import deciding_source
-from suchus.study.makers import MADE_BY, deciding
-from suchus.study.sweep import FLOW
 
-HARMLESS = ("suchus.errors", "suchus.threads", "suchus.kernel_cache")
-"""Words, how many threads, and where kernels are kept, which change no byte."""
+HARMLESS = ("suchus.errors", "suchus.threads", "suchus.progress", "suchus.kernel_cache")
+"""Words, how many threads, how far something is, and where kernels are kept, which change no byte."""
 
 
 @pytest.fixture(scope="module")

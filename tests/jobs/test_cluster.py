@@ -17,11 +17,12 @@ from suchus.cli import main
 from suchus.errors import IncompatibleRecord, InvalidDesign
 from suchus.experiments.swim_3d.experiment import _swum_here, swum_in_space
 from suchus.fingerprint import fingerprint
+from suchus.jobs import NoCluster, conduct_sweep, connected
 from suchus.land import Run
 from suchus.optimise import Aim, Optimisation, optimise
-from suchus.optimise.elsewhere import evaluate_on
+from suchus.optimise.conduct import tried
 from suchus.optimise.evaluate import evaluate
-from suchus.study import NoCluster, Study, Vary, conduct, conduct_sweep, connected
+from suchus.study import Study, Vary, conduct
 from suchus.water import Basin, fit, printed_wave
 
 pytestmark = pytest.mark.filterwarnings("default")  # Dask's own
@@ -99,7 +100,7 @@ def contents(folder):
 
 def squared(number, progress):
     time.sleep(0.2)
-    progress(1.0)
+    progress("squaring", 1.0)
     return xr.Dataset({"x": ("i", np.arange(3.0) * number**2, {"units": "m"})}, attrs={"of": number})
 
 
@@ -108,11 +109,11 @@ def test_the_same_bytes_whatever_is_killed(asked, search, machines, tmp_path):
     with connected(machines.address) as client:
         client.wait_for_workers(2, timeout=60)
         optimise(search, tmp_path / "search", client=client)
-        conduct(asked, tmp_path / "study", progress=lambda told: machines.workers[0].kill(), client=client)
+        conduct(asked, tmp_path / "study", progress=lambda *_: machines.workers[0].kill(), client=client)
         assert len(client.nthreads()) == 1
         with pytest.raises(NoCluster, match=r"the cluster was lost \(.*\); what was finished is kept"):
             conduct_sweep(
-                "squares", squared, range(1, 6), tmp_path / "sweep", progress=lambda _: machines.stop(), client=client
+                "squares", squared, range(1, 6), tmp_path / "sweep", progress=lambda *_: machines.stop(), client=client
             )
     assert 1 <= len(list((tmp_path / "sweep" / "parts").iterdir())) < 5
     results = conduct_sweep("squares", squared, range(1, 6), tmp_path / "sweep")  # resumed, here
@@ -147,18 +148,24 @@ def test_a_swim_in_three_dimensions_has_the_bytes_of_one_here(robot, swims, mach
     assert float(swum.power[-1]) > 0.0
 
 
-def test_a_generation_in_pieces_is_the_generation(search, monkeypatch):
+class Backwards:
+    """A place that does three pieces at once, and finishes the last one first."""
+
+    at_once = 3
+
+    def results(self, job, items, begun):
+        self.sizes = [len(item) for item in items]
+        return ((i, job.work(items[i], begun(i))) for i in reversed(range(len(items))))
+
+
+def test_a_generation_in_pieces_is_the_generation(search):
     shares = np.random.default_rng(0).uniform(-0.2, 1.2, (5, 2))  # some cannot be
-    monkeypatch.setattr("suchus.optimise.elsewhere.cores", lambda client: 3)
-    sizes, told = [], []
-
-    def spread(work, items, client, **how):
-        sizes.extend(len(item) for item in items)
-        return reversed([(i, work(item)) for i, item in enumerate(items)])
-
-    monkeypatch.setattr("suchus.optimise.elsewhere.spread", spread)
-    xr.testing.assert_identical(evaluate_on(None, search, shares, told.append), evaluate(search, shares))
-    assert (sizes, told) == ([2, 2, 1], [1 / 3, 2 / 3, 1.0])
+    place, told = Backwards(), []
+    found = tried(place, search, shares, lambda _, share: told.append(share))
+    xr.testing.assert_identical(found, evaluate(search, shares))
+    assert place.sizes == [2, 2, 1]
+    assert told == sorted(told)
+    assert told[-1] == 1.0
 
 
 class Done:
@@ -182,7 +189,9 @@ def test_a_sweep_goes_on_with_what_is_missing_and_refuses_another(tmp_path):
         with pytest.raises(IncompatibleRecord, match=r"differs from 'halves' in (items|work)"):
             conduct_sweep(name, work, items, tmp_path / "s")
     shares = []
-    whole = conduct_sweep("halves", halved, (1, 2, 3, 4), tmp_path / "s", progress=shares.append)
+    whole = conduct_sweep(
+        "halves", halved, (1, 2, 3, 4), tmp_path / "s", progress=lambda _, share: shares.append(share)
+    )
     assert Done.numbers == [1, 2, 3, 3, 4]
     assert shares == [0.75, 1.0]
     assert [float(one.x) for one in whole] == [0.5, 1.0, 1.5, 2.0]

@@ -10,7 +10,8 @@ from pathlib import Path
 import pytest
 
 from suchus.errors import OutsideLimits
-from suchus.workers import Begun, Died, Done, Far, dismiss, hire, side_by_side
+from suchus.jobs import Died
+from suchus.jobs.processes import Begun, Done, Far, dismiss, hire, side_by_side
 
 
 def squared(item, tell):
