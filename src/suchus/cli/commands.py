@@ -90,7 +90,7 @@ COMMANDS = (
     ),
     Subcommand(
         "flow-atlas",
-        "[ROW ...] [--out DIR] [--jobs N]",
+        "[ROW ...] [--out DIR] [--jobs N | --scheduler ADDRESS]",
         "compute published flows and draw ours beside theirs",
         "suchus.cli.flow_atlas:flow_atlas",
     ),
