@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from suchus.catalog import Catalog as Catalog
+    from suchus.control import CONTROLLERS as CONTROLLERS
     from suchus.control import Coordinated as Coordinated
     from suchus.control import HeadingRule as HeadingRule
     from suchus.design import Robot as Robot
@@ -44,13 +45,15 @@ if TYPE_CHECKING:
     from suchus.motion import Swim as Swim
     from suchus.robots import ROBOTS as ROBOTS
     from suchus.sources import project as project
+    from suchus.study import MEASURES as MEASURES
     from suchus.water import swim as swim
 
     __version__: str
 
 _HOMES = {
     "Catalog": "suchus.catalog",
-    **dict.fromkeys(("Coordinated", "HeadingRule"), "suchus.control"),
+    **dict.fromkeys(("CONTROLLERS", "Coordinated", "HeadingRule"), "suchus.control"),
+    "MEASURES": "suchus.study",
     "Robot": "suchus.design",
     **dict.fromkeys(
         (

@@ -1,5 +1,6 @@
 """A shelf: things of one kind by name, from the package, a project folder, and packages of the user's."""
 
+import importlib
 import sys
 import traceback
 from collections.abc import Callable, ItemsView, Iterator, Mapping, ValuesView
@@ -250,15 +251,15 @@ def _where(source: Source, error: BaseException) -> str:
     """Return which line of the user's an error comes from: the last one in the folder of the module."""
     if isinstance(error, SyntaxError) and error.filename:
         return f"{_shown(Path(error.filename))}, line {error.lineno},"
-    frames = [(Path(f.filename), f.lineno) for f in traceback.extract_tb(error.__traceback__) if f.filename[:1] != "<"]
-    ours = Path(__file__).parent
-    theirs = [frame for frame in frames if frame[0].is_absolute() and not frame[0].is_relative_to(ours)]
+    frames = [(Path(f.filename), f.lineno) for f in traceback.extract_tb(error.__traceback__)]
+    ours = (Path(__file__).parent, Path(importlib.__file__).parent)
+    theirs = [(file, line) for file, line in frames if file.is_absolute() and not any(map(file.is_relative_to, ours))]
     if source.file:  # of a project, which may lie inside our own folder
         root = source.file.parent
-        theirs = [frame for frame in frames if frame[0].is_relative_to(root)]
+        theirs = [(file, line) for file, line in frames if file.is_relative_to(root)]
     elif theirs:
         root = theirs[0][0].parent
-        theirs = [frame for frame in theirs if frame[0].is_relative_to(root)]
+        theirs = [(file, line) for file, line in theirs if file.is_relative_to(root)]
     if not theirs:
         return source.place
     file, line = theirs[-1]

@@ -22,14 +22,14 @@ T = TypeVar("T")
 
 
 @overload
-def read(path: Path, kind: type[T], shelf: Mapping[str, Any]) -> T: ...
+def read(path: str | Path, kind: type[T], shelf: Mapping[str, Any]) -> T: ...
 
 
 @overload
-def read(path: Path, kind: UnionType, shelf: Mapping[str, Any]) -> Any: ...
+def read(path: str | Path, kind: UnionType, shelf: Mapping[str, Any]) -> Any: ...
 
 
-def read(path: Path, kind: Any, shelf: Mapping[str, Any]) -> Any:
+def read(path: str | Path, kind: Any, shelf: Mapping[str, Any]) -> Any:
     """Read a robot or a gait from a TOML file.
 
     ``base = "caiman"`` at the top starts from that one of the shelf and overrides what the file says. A file
@@ -45,6 +45,7 @@ def read(path: Path, kind: Any, shelf: Mapping[str, Any]) -> Any:
         UnreadableFile: the file is missing or no TOML.
         MistakenFile: values are missing, unknown, of the wrong kind or impossible; it names all of them.
     """
+    path = Path(path)
     data = read_toml(path)
     base = data.pop("base", None)
     known = base is None or (isinstance(base, str) and base in shelf)
@@ -87,6 +88,20 @@ def described_robot(values: Mapping[str, Any]) -> Robot:
     if _meant(values, (Robot, Tables)) is Tables:
         return crocodile(TypeAdapter(Tables).validate_python(values))
     return TypeAdapter(Robot).validate_python(values)
+
+
+def described(data: Mapping[str, Any], kind: type[T], about: str) -> T:
+    """Return the frozen value that a table of a file describes.
+
+    Args:
+        data: the table.
+        kind: the frozen dataclass.
+        about: what it is, for messages.
+
+    Raises:
+        MistakenFile: values are missing, unknown, of the wrong kind or impossible; it names all of them.
+    """
+    return _validated(dict(data), kind, {}, about, {})
 
 
 def _meant(data: Mapping[str, Any], kinds: tuple[Any, ...]) -> Any:

@@ -10,7 +10,7 @@ from suchus.design.meaning import meanings
 from suchus.record import new_file
 
 
-def write(value: object, path: Path, *, notes: Mapping[str, str] | None = None, head: Sequence[str] = ()) -> Path:
+def write(value: object, path: str | Path, *, notes: Mapping[str, str] | None = None, head: Sequence[str] = ()) -> Path:
     """Write a robot or a gait as TOML and return the path.
 
     Args:
@@ -22,7 +22,7 @@ def write(value: object, path: Path, *, notes: Mapping[str, str] | None = None, 
     Raises:
         Unwritable: the place cannot be written to.
     """
-    text = render(value, notes=notes, head=head)
+    path, text = Path(path), render(value, notes=notes, head=head)
     with new_file(path) as draft:
         draft.write_text(text, encoding="utf-8")
     return path

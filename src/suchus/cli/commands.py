@@ -95,6 +95,8 @@ COMMANDS = (
         "suchus.cli.flow_atlas:flow_atlas",
     ),
     Subcommand("doctor", "", "say whether suchus can run here, and what is missing", "suchus.cli.doctor:doctor"),
-    Subcommand("list", "", "show the robots, gaits, faults and experiments", "suchus.cli.shelves:show"),
+    Subcommand(
+        "list", "", "show what stands on the shelves: robots, gaits, faults and so on", "suchus.cli.shelves:show"
+    ),
 )
 """Every command, in the order of the help."""

@@ -17,8 +17,12 @@ _LISTED = {
     "gaits": "suchus.gaits:GAITS",
     "faults": "suchus.faults:FAULTS",
     "experiments": "suchus.experiments:EXPERIMENTS",
+    "controllers": "suchus.control:CONTROLLERS",
+    "measures": "suchus.study:MEASURES",
 }
 """Where each shelf is, by its name."""
+_SCATTERED = ("controllers", "measures")
+"""Shelves whose modules declare things with names of their own."""
 _USAGE = f"""usage: suchus list [{PROJECT} DIR]
 
 Show what stands on the shelves, each with its title. What a project folder or another package puts there is marked with
@@ -32,7 +36,9 @@ def show(words: Sequence[str]) -> int:
         return 0
     if words:
         raise BadCommand(f"suchus list takes no {words[0]!r}.")
-    shelves = {shelf: gather(shelf.removesuffix("s"), SHELVES[shelf]) for shelf in _LISTED}
+    shelves = {
+        shelf: gather(shelf.removesuffix("s"), SHELVES[shelf], scattered=shelf in _SCATTERED) for shelf in _LISTED
+    }
     width = max((len(name) for sources in shelves.values() for name in sources), default=0)
     for i, (shelf, sources) in enumerate(shelves.items()):
         print("\n" * bool(i) + shelf)
@@ -48,21 +54,25 @@ def entry(name: str, text: str, width: int) -> str:
 
 
 def title(source: Source) -> str:
-    """Return the first line of a module's docstring, or of a TOML file's comment at its top."""
+    """Return the first line of the docstring of what is declared or of its module, or of a TOML file's comment."""
     if source.file is None:
         return ""
     if source.file.suffix == ".toml":
         first = _text(source.file).lstrip().partition("\n")[0]
         return first.lstrip("# ") if first.startswith("#") else ""
     try:
-        text = ast.get_docstring(ast.parse(_text(source.file)))
+        tree = ast.parse(_text(source.file))
     except (SyntaxError, ValueError):
         return "(cannot be read)"
-    return (text or "").partition("\n")[0]
+    parts = [part for part in tree.body if isinstance(part, (ast.ClassDef, ast.FunctionDef))]
+    inside = next((part for part in parts if part.name == source.attribute), tree)
+    return (ast.get_docstring(inside) or "").partition("\n")[0]
 
 
 def _needs(source: Source) -> str:
     """Return what an experiment needs of a robot, and for whom a gait was made."""
+    if source.attribute:
+        return ""
     needs, robots = _stated(source, "needs"), _stated(source, "made_for")
     text = f" (needs {', '.join(needs).replace('_', ' ')})" if needs else ""
     return text + (f" (of {', '.join(robots)})" if robots else "")

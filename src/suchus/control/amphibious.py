@@ -7,6 +7,7 @@ from typing import Literal
 import numpy as np
 from jaxtyping import Bool, Float
 
+from suchus.control import swimming
 from suchus.control.controller import Command, Controller
 from suchus.control.heading import Heading, HeadingRule
 from suchus.control.sensed import Sensed, finite, keep
@@ -256,3 +257,7 @@ class Amphibian:
 def _eased(share: np.ndarray) -> np.ndarray:
     """Return shares that begin and end without a jump of their rate, shape (run, 1)."""
     return np.asarray(share**2 * (3.0 - 2.0 * share))[:, None]
+
+
+controller = Amphibious
+examples = (Amphibious(swim=swimming.examples[0]),)

@@ -255,3 +255,6 @@ def _grouped(robots: Sequence[AnyRobot], gaits: Sequence[Gait | Pattern]) -> lis
     for i, pair in enumerate(zip(robots, gaits, strict=True)):
         members.setdefault(pair, []).append(i)
     return [_Group(robot, gait, np.array(runs)) for (robot, gait), runs in members.items()]
+
+
+controller = Coordinated

@@ -357,3 +357,6 @@ def oscillate(
         wave=np.stack(wave, axis=1),
         names=generator.couplings[0].names,
     )
+
+
+controller = PatternGenerator

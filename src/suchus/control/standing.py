@@ -249,3 +249,7 @@ class Stander:
         back = g["hips_per_pitch"] * beyond + g["hips_per_rate"] * rate + self._crept
         bend = g["trunk_per_pitch"] * beyond + g["trunk_per_rate"] * rate
         return np.clip(back, -hips, hips), np.clip(bend, -trunk, trunk)
+
+
+controller = Standing
+examples = (Standing(at=0.1, hold=0.1),)

@@ -209,3 +209,6 @@ def grouped(robots: Sequence[AnyRobot], gaits: Sequence[Gait | Pattern]) -> Grou
     for run, pair in enumerate(zip(robots, gaits, strict=True)):
         members.setdefault(pair, []).append(run)
     return [(robot, gait, np.array(runs)) for (robot, gait), runs in members.items()]
+
+
+controller = Walking
