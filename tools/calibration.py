@@ -25,7 +25,8 @@ from suchus.land.prescribed import free_sections, held_sections, towed_sections
 from suchus.motion import Swim
 from suchus.progress import Progress
 from suchus.robots import ROBOTS
-from suchus.water import Basin, fit, held_in_space, printed_wave, scaled, swim_in_space, towed_in_space
+from suchus.water import Outline, Water, fit, printed_wave, recoil, scaled
+from suchus.water.resolved import FREE, HELD, SwimSetting, resolved_swim, towed_drag
 
 ROBOT = ROBOTS["caiman"]
 REYNOLDS = 7000.0
@@ -66,10 +67,10 @@ class Case:
     speed: float = 0.0
     """Of a towed body [m/s]."""
 
-    def basin(self) -> Basin:
-        """Return grid, water and time."""
-        cycles = HELD_CYCLES if self.kind == "held" else FREE_CYCLES
-        return Basin(cells=self.cells, viscosity=VISCOSITY, cycles=cycles)
+    def setting(self) -> SwimSetting:
+        """Return grid, water, time, and what moves the body."""
+        free, cycles = (FREE, FREE_CYCLES) if self.kind == "free" else (HELD, HELD_CYCLES)
+        return SwimSetting(axes=3, cells=self.cells, viscosity=VISCOSITY, cycles=cycles, free=free)
 
 
 def motions() -> dict[str, Swim]:
@@ -99,10 +100,13 @@ def cases() -> list[Case]:
 def flowed(case: Case, progress: Progress) -> xr.Dataset:
     """Return what the flow says: drag, forces over the last cycle, or speed and power per cycle."""
     if case.kind == "towed":
-        return xr.Dataset({"drag": ((), towed_in_space(ROBOT, case.speed, case.basin()), {"units": "N"})})
+        return xr.Dataset({"drag": ((), towed_drag(ROBOT, case.speed, case.setting()), {"units": "N"})})
     if case.kind == "held":
-        return held_in_space(ROBOT, case.swim, case.basin(), progress=partial(progress, "swimming"))
-    swum = swim_in_space(ROBOT, case.swim, case.basin(), progress=partial(progress, "swimming"))
+        sway, turn = recoil(Outline(ROBOT, case.cells + 1), case.swim, 0.0, Water())
+        return resolved_swim(
+            ROBOT, case.swim, case.setting(), sway=sway, turn=turn, progress=partial(progress, "swimming")
+        )
+    swum = resolved_swim(ROBOT, case.swim, case.setting(), progress=partial(progress, "swimming"))
     return swum[["speed", "thrust", "power"]]
 
 

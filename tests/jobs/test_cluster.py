@@ -23,7 +23,8 @@ from suchus.optimise import Aim, Optimisation, optimise
 from suchus.optimise.conduct import tried
 from suchus.optimise.evaluate import evaluate
 from suchus.study import Study, Vary, conduct
-from suchus.water import Basin, fit, printed_wave
+from suchus.water import fit, printed_wave
+from suchus.water.resolved import SwimSetting
 
 pytestmark = pytest.mark.filterwarnings("default")  # Dask's own
 
@@ -130,7 +131,11 @@ def test_the_same_bytes_whatever_is_killed(asked, search, machines, tmp_path):
 def swims(robot):
     """Name, calculation and items of a sweep of one small swim in three dimensions."""
     wave = fit(robot, printed_wave(robot, "I", sign=-1)).swim
-    return "swims", partial(swum_in_space, robot), [(wave, Basin(cells=54, viscosity=2e-3, cycles=1, frames=2))]
+    return (
+        "swims",
+        partial(swum_in_space, robot),
+        [(wave, SwimSetting(axes=3, cells=54, viscosity=2e-3, cycles=1, frames=2))],
+    )
 
 
 def test_a_worker_gets_the_swim_that_is_asked(swims):

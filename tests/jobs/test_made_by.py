@@ -19,7 +19,7 @@ def graph():
 
 @pytest.mark.parametrize(
     ("begins", "places"),
-    [("suchus.study.chunk", MADE_BY), ("suchus.optimise.evaluate", ROOMS), ("suchus.water.free", FLOW)],
+    [("suchus.study.chunk", MADE_BY), ("suchus.optimise.evaluate", ROOMS), ("suchus.water.resolved", FLOW)],
 )
 def test_all_code_that_makes_a_part_is_in_the_digest(graph, begins, places):
     used = {begins} | set(graph.find_upstream_modules(begins))

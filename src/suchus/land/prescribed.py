@@ -2,7 +2,7 @@
 
 The robot's own model without limbs, wholly under water and without weight, is moved along a motion of its joints, and
 the kernel of the runs says what the water does (``hydro``). So the section model can be set beside a flow in which the
-same body moves in the same manner. Names and signs are those of ``water.held_in_space`` and ``water.swim_in_space``.
+same body moves in the same manner. Names and signs are those of ``water.resolved`` in space, held and free.
 """
 
 from collections.abc import Callable

@@ -25,19 +25,14 @@ from suchus.motion import Swim
 from suchus.replay import wake_replay
 from suchus.robots import ROBOTS
 from suchus.water import (
-    Basin,
     Motion,
-    Tether,
-    check_free_swim,
-    check_swim_in_space,
     fit,
-    free_swim,
     printed_wave,
     swim,
-    swim_in_space,
 )
-from suchus.water.diary import forget_kept, kept_in
-from suchus.water.space import BESIDE
+from suchus.water.resolved import ON_THE_SPOT, SwimSetting, check_resolved_swim, resolved_swim
+from suchus.water.samples import forget_kept, kept_in
+from suchus.water.setting import BESIDE
 
 MOST_REYNOLDS = 2e4
 """Largest frequency times length squared over viscosity [-]."""
@@ -144,10 +139,10 @@ class Swim3d(Experiment):
         ours, printed = (self._motion(sign) for sign in (-1, 1))
         bent = midlines(self.robot, ours, self.compared_cells + 1) if self.taken else []
         runs = self._runs(ours, printed, bent)
-        for _, motion, basin in runs:
-            check_swim_in_space(self.robot, motion, basin)
-        check_free_swim(self.robot, ours, self._tether)
-        items = [(motion, basin) for _, motion, basin in runs]
+        for _, motion, setting in runs:
+            check_resolved_swim(self.robot, motion, setting)
+        check_resolved_swim(self.robot, ours, self._slice)
+        items = [(motion, setting) for _, motion, setting in runs]
         with nullcontext(self.keep) if self.keep else TemporaryDirectory() as folder:
             found = conduct_sweep(
                 self.name(), partial(swum_in_space, self.robot), items, Path(folder) / "swims", client=client,
@@ -171,24 +166,28 @@ class Swim3d(Experiment):
         return self.frequency * self.robot.length**2 / self.reynolds
 
     @property
-    def _tether(self) -> Tether:
+    def _slice(self) -> SwimSetting:
         """Grid, water and time of the slice."""
-        return Tether(cells=self.slice_cells, viscosity=self.viscosity, cycles=self.cycles)
+        return SwimSetting(cells=self.slice_cells, viscosity=self.viscosity, cycles=self.cycles)
 
-    def _runs(self, ours: Swim, printed: Swim, bent: Sequence[Midline] = ()) -> Sequence[tuple[str, Motion, Basin]]:
+    def _runs(
+        self, ours: Swim, printed: Swim, bent: Sequence[Midline] = ()
+    ) -> Sequence[tuple[str, Motion, SwimSetting]]:
         """Return name, motion, grid and time of every swim in space."""
 
-        def basin(cells: int, cycles: int, **other: Any) -> Basin:
-            return Basin(cells=cells, viscosity=self.viscosity, cycles=cycles, beside=self.beside, **other)
+        def setting(cells: int, cycles: int, **other: Any) -> SwimSetting:
+            return SwimSetting(
+                axes=3, cells=cells, viscosity=self.viscosity, cycles=cycles, beside=self.beside, **other
+            )
 
-        compared = basin(self.compared_cells, self.compared_cycles)
-        runs: list[tuple[str, Motion, Basin]] = [
-            (f"{cells} cells", ours, basin(cells, self.cycles)) for cells in self.cells[:-1]
+        compared = setting(self.compared_cells, self.compared_cycles)
+        runs: list[tuple[str, Motion, SwimSetting]] = [
+            (f"{cells} cells", ours, setting(cells, self.cycles)) for cells in self.cells[:-1]
         ]
-        runs.append((f"{self.cells[-1]} cells", ours, basin(self.cells[-1], self.cycles, frames=self.frames)))
+        runs.append((f"{self.cells[-1]} cells", ours, setting(self.cells[-1], self.cycles, frames=self.frames)))
         if self.compared_cells not in self.cells or self.compared_cycles > self.cycles:
             runs.append(("compared", ours, compared))
-        runs.append(("held", ours, basin(self.compared_cells, min(3, self.compared_cycles), moves_on=False)))
+        runs.append(("held", ours, setting(self.compared_cells, min(3, self.compared_cycles), free=ON_THE_SPOT)))
         if self.tail_heights:
             arms = {"trunk only": ours.trunk_only(), "tail only": ours.tail_only(), "as printed": printed}
             runs += [(name, motion, compared) for name, motion in arms.items()]
@@ -198,7 +197,7 @@ class Swim3d(Experiment):
 
     def _beside(self, ours: Any, progress: Any) -> xr.Dataset:
         """Return the speed of the slice and of the slender-body models at the same Reynolds number."""
-        plane = free_swim(self.robot, ours, self._tether, checkpoint=kept_in(self.keep, "slice"), progress=progress)
+        plane = resolved_swim(self.robot, ours, self._slice, checkpoint=kept_in(self.keep, "slice"), progress=progress)
         models, real = swim(self.robot, ours, water=Water(viscosity=self.viscosity)), swim(self.robot, ours)
         return xr.Dataset(
             {
@@ -228,19 +227,19 @@ class Swim3d(Experiment):
         return figures | ({"swim_3d_tails": draw_tails(record)} if record.sizes["compared"] > 1 else {})
 
 
-Item = tuple[Motion, Basin]
+Item = tuple[Motion, SwimSetting]
 """What differs between the swims."""
 
 
 def swum_in_space(robot: Robot, item: Item, progress: Progress) -> xr.Dataset:
-    """Return a swim of a robot, see ``water.swim_in_space``; its bytes follow from robot and item alone."""
-    return swim_in_space(robot, *item, progress=partial(progress, "swimming"))
+    """Return a swim of a robot, see ``water.resolved``; its bytes follow from robot and item alone."""
+    return resolved_swim(robot, *item, progress=partial(progress, "swimming"))
 
 
 def _swum_here(robot: Robot, keep: str, item: Item, progress: Progress) -> xr.Dataset:
     """Return the same, and keep in a folder how far it has come."""
     checkpoint = kept_in(keep, fingerprint(item)[:16])
-    return swim_in_space(robot, *item, checkpoint=checkpoint, progress=partial(progress, "swimming"))
+    return resolved_swim(robot, *item, checkpoint=checkpoint, progress=partial(progress, "swimming"))
 
 
 def _replays(record: xr.Dataset) -> dict[str, Replay]:

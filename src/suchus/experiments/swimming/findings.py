@@ -41,7 +41,7 @@ def measures(record: xr.Dataset, robot: Robot, frequency: float, reading: str) -
 
 
 def part(record: xr.Dataset, name: str) -> xr.Dataset:
-    """Return one swim of the record as ``tether`` or ``free_swim`` gave it."""
+    """Return one swim of the record as ``water.resolved`` gave it."""
     start = f"{name}_"
     mine = record[[str(v) for v in record.data_vars if str(v).startswith(start)]]
     return mine.rename(
