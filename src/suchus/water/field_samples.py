@@ -120,7 +120,7 @@ def _vortices(sim: flow.Simulation) -> np.ndarray:
     return outside
 
 
-class VortexFilm:
+class VortexSampler:
     """Looks at a body at equal intervals of its last cycle and samples its midline and the vortices around it."""
 
     def __init__(self, frequency: float, end: float, frames: int) -> None:

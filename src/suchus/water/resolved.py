@@ -29,7 +29,7 @@ _RAMP = 0.5
 """Distance over which the stream around a towed body grows [body length]."""
 
 
-class Observer(Protocol):
+class SwimObserver(Protocol):
     """Samples a swim after every step, and makes a record of it in the end."""
 
     def sample(self, sim: flow.Simulation, samples: Samples) -> None:
@@ -39,7 +39,7 @@ class Observer(Protocol):
         """Return what the swim's samples and the flow's own record say."""
 
 
-_OBSERVERS: dict[tuple[int, bool], Callable[[ResolvedSwim], Observer]] = {
+_OBSERVERS: dict[tuple[int, bool], Callable[[ResolvedSwim], SwimObserver]] = {
     (2, False): FreeSlice,
     (2, True): HeldSlice,
     (3, False): FreeInSpace,

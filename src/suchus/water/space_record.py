@@ -6,7 +6,7 @@ import xarray as xr
 from suchus import flow
 from suchus.design import GRAVITY, Robot, cable_joints, layout
 from suchus.motion.swim import trunk_yaws
-from suchus.water.field_samples import VortexFilm, midline, wake
+from suchus.water.field_samples import VortexSampler, midline, wake
 from suchus.water.outline import Outline
 from suchus.water.samples import Samples
 from suchus.water.setting import DENSITY
@@ -22,7 +22,7 @@ class FreeInSpace:
 
     def __init__(self, swim: ResolvedSwim) -> None:
         self._swim, self._end, self._period = swim, swim.end, swim.period
-        self._film = VortexFilm(swim.motion.frequency, swim.end, swim.setting.frames)
+        self._film = VortexSampler(swim.motion.frequency, swim.end, swim.setting.frames)
 
     def sample(self, sim: flow.Simulation, samples: Samples) -> None:
         """Sample what is due after a step."""
