@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 import suchus
-from suchus.design import crocodile
 from suchus.errors import InvalidDesign, OutsideLimits
 from suchus.motion import Swim
 from suchus.water import ExactWave, Outline

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 import suchus
-from suchus.design import crocodile
 from suchus.errors import InvalidDesign, OutsideLimits
 from suchus.motion import Swim
 from suchus.water import (
@@ -101,7 +100,7 @@ def test_small_motions_give_lighthills_linear_thrust(outline):
 
 
 def test_recoil_leaves_no_lateral_momentum_at_rest(outline, forward):
-    small = crocodile(replace(forward.tables, yaw=tuple(1e-4 * a for a in forward.yaw), tail=1e-4 * forward.tail))
+    small = replace(forward, yaw=tuple(1e-4 * a for a in forward.yaw), tail=1e-4 * forward.tail)
     curve = cycle(outline, small, *recoil(outline, small, 0.0, Water()))
     wide, high = outline.silhouette
     weight = wide * high + high**2
