@@ -6,16 +6,21 @@ export OMP_WAIT_POLICY := passive
 unexport PYTHONDONTWRITEBYTECODE # without bytecode every process would read all sources again: 5 s instead of 1
 export PIP_CONSTRAINT := constraints.txt
 
-.PHONY: reproduce test check single double lint types contract tests mutate validate atlas bench docs release matrix clean
+.PHONY: reproduce test test-all check single double space lint types contract tests mutate validate atlas bench docs
+.PHONY: release matrix sizes clean
 
 reproduce: .venv/.runtime
 	$(PY) -m suchus.cli reproduce --out out
 
-test:
-	@$(MAKE) --no-print-directory -j2 -O check
-	@$(MAKE) --no-print-directory tests
+test: # tests/README.md lists what it leaves out; the processor time is that of everything below it, installation included
+	@test -e .venv/.dev && from=here || from=fresh; \
+	$(MAKE) --no-print-directory -j2 -O check && $(MAKE) --no-print-directory tests; result=$$?; \
+	mkdir -p .venv && times > .venv/.times && tools/processor_time.sh $$from $$result .venv/.times; exit $$result
 
-check: single double space types lint contract
+test-all: test double # before a release: also what takes long for what it tells
+	$(PY) -m pytest -n auto --dist worksteal -m slow
+
+check: single space types lint contract
 
 lint: .venv/.dev
 	$(PY) -m ruff check .
@@ -27,14 +32,14 @@ types: .venv/.dev
 contract: .venv/.dev
 	$(PY) -c "from importlinter.cli import lint_imports_command; lint_imports_command()" --no-cache
 
-single double space: .venv/.dev # the flow's kernels, compiled once; else every test worker would
+single double space: .venv/.dev # the flow's kernels, compiled once; else every test worker would: double for test-all
 	SUCHUS_THREADS=1 $(PY) tools/compile_flow.py $@
 
 tests: .venv/.dev
-	$(PY) -m pytest -n auto --dist worksteal -m "not validate"
+	$(PY) -m pytest -n auto --dist worksteal -m "not validate and not slow"
 
 mutate: .venv/.dev # every rule of a verdict broken in every way; also a part of the tests
-	$(PY) -m pytest tests/verdict/test_mutations.py -v -n0
+	$(PY) -m pytest tests/shelves/test_every_rule.py -k break -v -n0
 
 validate: .venv/.dev
 	$(PY) -m pytest -m validate -s
@@ -69,6 +74,10 @@ release: .venv/.dev # wheel and sdist, tried in fresh environments; nothing is p
 
 matrix: .venv/.dev # every Python that is here, newest and lowest versions
 	$(PY) tools/matrix.py $(TESTS)
+
+sizes: .venv/.dev # tables in CONTRIBUTING.md and tests/README.md anew
+	$(PY) tools/sizes.py
+	SUCHUS_LISTS=write $(PY) -m pytest -n0 -k test_the_list_says_what_is_left_out tests
 
 clean:
 	rm -rf .venv out build dist site

@@ -48,17 +48,17 @@ class Arm:
     def __init__(self, arm: dict) -> None:
         runs = [Run(gait=GAIT, seed=i, noise=1e-6, **arm) for i in range(RUNS)]  # noise: no two of them go alike
         samples = (WARM + TURNS) * TICKS
-        self.steps, self.tick = physics_steps(0.002), 0
-        self.loop = Loop(runs, samples, self.steps, 0.002, samples=samples)
+        self.steps = physics_steps(0.002)
+        self.loop = Loop(runs, 0.002, ticks=samples)
+        self.recorder = self.loop.recorder(samples)
 
     def turn(self, clock) -> float:
         """Return steps per second of a clock over one turn."""
         start = clock()
         for _ in range(TICKS):
-            command = self.loop.disturb(self.tick, self.loop.decide(self.tick))
-            self.loop.readings.store(self.tick, command.phase, command.targets)
-            self.loop.advance(self.tick, command.targets)
-            self.tick += 1
+            self.loop.decide()
+            self.recorder.store(self.loop.tick, self.loop.command.phase, self.loop.command.targets)
+            self.loop.advance()
         return RUNS * TICKS * self.steps / (clock() - start)
 
 

@@ -1,17 +1,20 @@
-"""Steps per second of the land simulation beside MuJoCo's own rollout: same model, commands, threads, one process.
+"""Steps per second of batches and of environments beside MuJoCo's own rollout: same model, states, commands, threads.
 
-Every run has a noise of its own on its servos: equal runs would be simulated once (``land.deduplication``).
+Every run has a noise of its own on its servos: equal runs would be simulated once (``land.loop.Deduplication``).
+Environments take actions that were kept before, so that no policy is in their time; observations and rewards are.
 The time is that of the processors, all threads together, so that other work on the machine counts little.
 """
 
 import os
 import time
 
+import gymnasium
 import mujoco
 import numpy as np
 from mujoco import rollout
 
 from suchus import threads
+from suchus.envs import Follow
 from suchus.gaits import GAITS
 from suchus.land import Run, simulate
 from suchus.model import compile_model
@@ -19,6 +22,7 @@ from suchus.robots import ROBOTS
 
 TIMESTEP, DURATION, RUNS, REPEATS = 0.002, 4.0, 32, 5
 NOISE = 0.01  # rad on every commanded angle
+ACTIONS = {1: 160, RUNS: 20}  # of each environment, by their number
 
 
 def timed(task) -> float:
@@ -28,39 +32,99 @@ def timed(task) -> float:
     return time.process_time() - start
 
 
-def main() -> None:
+def rolled(model, states: np.ndarray, commands: np.ndarray, warmstart=None) -> np.ndarray:
+    """Return the states over time that MuJoCo's own rollout gives.
+
+    Args:
+        model: the ``mujoco.MjModel`` of all runs.
+        states: first ones, shape (run, state).
+        commands: shape (run, step, servo) [rad].
+        warmstart: accelerations from which the first constraints are solved, shape (run, dof); zeros if None.
+    """
+    nthread = min(threads.count(), len(states))
+    data = [mujoco.MjData(model) for _ in range(nthread)]
+    with rollout.Rollout(nthread=nthread) as roll:
+        return roll.rollout([model] * len(states), data, states, commands, initial_warmstart=warmstart)[0]
+
+
+def report(what: str, steps: int, raw, ours, begin=lambda: None) -> None:
+    """Print the steps per second of two tasks, timed in turns: what else the machine does then weighs on both."""
+    pairs = []
+    for _ in range(REPEATS):
+        begin()
+        pairs.append((timed(raw), timed(ours)))
+    raw_time, our_time = np.median(pairs, axis=0)
+    ratio = np.median([bare / full for bare, full in pairs])
+    print(f"{what}: rollout {steps / raw_time:8.0f} steps/s, suchus {steps / our_time:8.0f} steps/s, ratio {ratio:.2f}")
+
+
+def batches() -> None:
+    """Time batches of runs, control and record at 100 Hz."""
     robot, gait = ROBOTS["caiman"], GAITS["belly_crawl"]
     model = compile_model(robot, TIMESTEP)
-    steps = round(DURATION / TIMESTEP)
     runs = [Run(robot=robot, gait=gait, noise=NOISE, seed=i) for i in range(RUNS)]
     record = simulate(runs, duration=DURATION)
     assert len({values.tobytes() for values in record.position.values}) == RUNS
     targets = np.repeat(record.servo_target.values[:, :-1], round(0.01 / TIMESTEP), axis=1)
     states = np.array([_first_state(model, record, run) for run in range(RUNS)])
-
-    def raw(count: int, nthread: int) -> None:
-        data = [mujoco.MjData(model) for _ in range(nthread)]
-        with rollout.Rollout(nthread=nthread) as roll:
-            roll.rollout([model] * count, data, states[:count], targets[:count])
-
-    def ours(count: int) -> None:
-        simulate(runs[:count], duration=DURATION)
-
-    nthread = threads.count()
-    print(f"model {robot.name}: {model.nv} dof, time step {TIMESTEP} s, {DURATION} s a run, median of {REPEATS} pairs")
-    print(f"cores {os.cpu_count()}, threads {nthread}, MuJoCo {mujoco.__version__}, control and record at 100 Hz")
-    print(f"load {os.getloadavg()[0]:.1f}; processor time")
     for count in (1, RUNS):
-        # in pairs, one after the other: what else the machine does then weighs on both
-        pairs = np.array(
-            [(timed(lambda n=count: raw(n, min(n, nthread))), timed(lambda n=count: ours(n))) for _ in range(REPEATS)]
+        report(
+            f"{count:3d} runs of {DURATION} s at {TIMESTEP} s",
+            count * round(DURATION / TIMESTEP),
+            lambda n=count: rolled(model, states[:n], targets[:n]),
+            lambda n=count: simulate(runs[:n], duration=DURATION),
         )
-        raw_time, our_time = np.median(pairs, axis=0)
-        print(
-            f"{count:3d} runs: rollout {count * steps / raw_time:8.0f} steps/s, "
-            f"suchus {count * steps / our_time:8.0f} steps/s, "
-            f"ratio {np.median(pairs[:, 0] / pairs[:, 1]):.2f}, {count * DURATION / our_time:.0f} times real time"
-        )
+
+
+def environments(count: int, actions: int) -> None:
+    """Time so many environments over so many actions."""
+    env = gymnasium.make_vec("suchus/Crawl-v0", num_envs=count).unwrapped
+    policy = Follow(task=env.task, centre=tuple(env.pack.centre), gait=env.task.gait)
+    loop, steps = env.pack.loop, round(env.pack.loop.period / env.task.timestep)
+    batch, advance, commands, played = loop.batch, loop.advance, [], []
+
+    def kept(**how) -> None:
+        commands.extend([loop.command.targets.copy()] * steps)
+        advance(**how)
+
+    seen = env.reset(seed=0)[0]
+    every = mujoco.mjtState.mjSTATE_FULLPHYSICS
+    states, warmstart = np.empty((count, mujoco.mj_stateSize(batch.model, every))), np.empty((count, batch.model.nv))
+    for run in range(count):
+        data = batch.physics.get_data(run)
+        mujoco.mj_getState(batch.model, data, states[run], every)
+        warmstart[run] = data.qacc_warmstart
+    loop.advance = kept
+    for _ in range(actions):
+        played.append(policy(seen))
+        seen = env.step(played[-1])[0]
+    loop.advance = advance
+    controls = np.ascontiguousarray(np.swapaxes(commands, 0, 1))
+    places = slice(1, 1 + batch.model.nq)  # in a state, after the time
+    np.testing.assert_array_equal(rolled(batch.model, states, controls, warmstart)[:, -1, places], batch.qpos)
+
+    def ours() -> None:
+        for action in played:
+            env.step(action)
+
+    report(
+        f"{count:3d} environments over {actions} actions at {env.task.timestep} s",
+        controls.shape[0] * controls.shape[1],
+        lambda: rolled(batch.model, states, controls, warmstart),
+        ours,
+        lambda: env.reset(seed=0),
+    )
+
+
+def main() -> None:
+    """Print it all."""
+    print(
+        f"cores {os.cpu_count()}, threads {threads.count()}, MuJoCo {mujoco.__version__}, load {os.getloadavg()[0]:.1f}"
+    )
+    print(f"processor time, median of {REPEATS} pairs")
+    batches()
+    for count, actions in ACTIONS.items():
+        environments(count, actions)
 
 
 def _first_state(model: mujoco.MjModel, record, run: int) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""A hundred runs of 10 s through a study, learning environments, both beside the bare physics, in one process.
+"""A hundred runs of 10 s through a study beside the bare physics, in one process; environments: ``bench_land``.
 
 Usage: python bench/bench_study.py [--memory]   (with it only the memory of ten thousand short runs)
 """
@@ -11,13 +11,11 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
-import gymnasium
 import mujoco
 import numpy as np
 from mujoco import rollout
 
 from suchus import threads
-from suchus.envs import Follow
 from suchus.gaits import GAITS
 from suchus.land import Run, simulate
 from suchus.model import activations, compile_model, standing
@@ -118,24 +116,6 @@ def batches(timestep: float) -> None:
     print(what + took.beside(RUNS * DURATION / timestep, *bare(timestep)))
 
 
-def learners(robots: int, steps: int) -> None:
-    env = gymnasium.make_vec("suchus/Crawl-v0", num_envs=robots).unwrapped
-    policy = Follow(task=env.task, centre=tuple(env.pack.centre), gait=env.task.gait)
-    seen = [env.reset(seed=0)[0]]
-
-    def act() -> None:
-        for _ in range(steps):
-            seen[0] = env.step(policy(seen[0]))[0]
-
-    act()
-    took = spent(act)
-    physics = robots * steps * env.task.decision / env.task.timestep
-    print(
-        f"{robots:3d} robots learning to crawl: {robots * steps / took.wall:.0f} robot steps/s; "
-        + took.beside(physics, *bare(env.task.timestep))
-    )
-
-
 def memory() -> None:
     took, failed = run(10_000, 1.1, 0.01)
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6
@@ -152,8 +132,6 @@ def main() -> None:
         return
     run_chunk(study(1, 1.1, 0.01), 0)  # what is compiled once is none of it
     batches(largest_step())
-    for robots, steps in ((1, 100), (32, 10)):
-        learners(robots, steps)
 
 
 if __name__ == "__main__":

@@ -14,13 +14,14 @@ from hypothesis import settings
 from jaxtyping import install_import_hook
 
 import first_calls
+from left_out import COLLECTED
 
 CHECKED = ("suchus.kinematics", "suchus.motion.phase", "suchus.motion.targets", "suchus.control", "suchus.metrics")
 """Rooms whose arrays' shapes are checked in the first calls of each test; production pays nothing."""
 assert not {*CHECKED} & {*sys.modules}, "imported before their shapes can be checked"
 install_import_hook(CHECKED, "first_calls.checked")  # jaxtyping's own option comes too late for us before its 0.3.6
 
-from suchus.design import Crocodile  # noqa: E402
+from suchus.design import Robot, crocodile  # noqa: E402
 from suchus.experiment import Outcome  # noqa: E402
 from suchus.experiments import EXPERIMENTS  # noqa: E402
 from suchus.gaits import GAITS  # noqa: E402
@@ -35,12 +36,17 @@ settings.load_profile("suchus")
 
 
 @pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    config.stash[COLLECTED] = tuple(items)  # before any are deselected
+
+
+@pytest.hookimpl(tryfirst=True)
 def pytest_runtest_setup() -> None:
     first_calls.begin()
 
 
 @pytest.fixture(scope="session")
-def robot() -> Crocodile:
+def robot() -> Robot:
     return ROBOTS["caiman"]
 
 
@@ -55,9 +61,9 @@ def limbs_gait() -> Gait:
 
 
 @pytest.fixture(scope="session")
-def long_tail(robot: Crocodile) -> Crocodile:
+def long_tail(robot: Robot) -> Robot:
     """A robot of another topology."""
-    return replace(robot, name="long_tail", tail=replace(robot.tail, joints=8, fin_segments=4))
+    return crocodile(replace(robot.tables, name="long_tail", tail=replace(robot.tail, joints=8, fin_segments=4)))
 
 
 @pytest.fixture(scope="session")

@@ -45,6 +45,23 @@ def test_a_module_without_its_declaration_is_named(shelf, name, found):
         shelf[name]
 
 
+def test_a_folder_declares_in_modules_of_their_names_and_each_is_read_alone(shelf, tmp_path):
+    folder = tmp_path / "shelf_under_test" / "large"
+    folder.mkdir()
+    (folder / "__init__.py").write_text("SIZES = (9,)\n")
+    (folder / "thing.py").write_text("thing = 8\n")
+    (folder / "parts.py").write_text("PARTS = (1, 2)\n")
+    assert shelf.beside("large", "PARTS", ()) == (1, 2)
+    assert shelf.beside("large", "SIZES", ()) == (9,)
+    assert shelf.beside("large", "NOTHING", ()) == ()
+    assert "shelf_under_test.large.thing" not in sys.modules
+    assert shelf["large"] == 8
+    (folder / "thing.py").write_text("thing = 'eight'\n")
+    del sys.modules["shelf_under_test.large.thing"]
+    with pytest.raises(InvalidDesign, match=r"large/thing\.py must declare `thing`, a int, but declares a str"):
+        shelf["large"]
+
+
 def test_a_shelf_of_classes_wants_classes_and_a_shelf_of_values_values(shelf, tmp_path):
     package = tmp_path / "shelf_under_test"
     (package / "a_class.py").write_text("thing = bool\n")

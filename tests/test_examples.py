@@ -9,13 +9,16 @@ import pytest
 
 ROOT = Path(__file__).parent.parent
 EXAMPLES = sorted((ROOT / "examples").glob("[0-9][0-9]_*.py"))
-LONG = ("14", "15", "16", "17", "18")
-"""Flows of 10 s and more of processor time, which ``make validate`` runs."""
+LONG = ("05", "06", "14", "15", "16", "17", "18")
+"""Flows of 10 s and more of processor time."""
 
 
 @pytest.mark.parametrize(
     "example",
-    [pytest.param(e, id=e.stem, marks=[pytest.mark.validate] * (e.name[:2] in LONG)) for e in EXAMPLES],
+    [
+        pytest.param(e, id=e.stem, marks=[pytest.mark.slow("a whole flow, calculated anew")] * (e.name[:2] in LONG))
+        for e in EXAMPLES
+    ],
 )
 def test_example_runs(example, tmp_path):
     done = subprocess.run([sys.executable, str(example)], cwd=tmp_path, capture_output=True, text=True, check=False)

@@ -5,8 +5,8 @@ import sys
 
 import pytest
 
-RESOLVED = {"swimming", "swim_3d", "swim_sweep", "swim_free", "shore"}
-"""Experiments that resolve the water, measure against flows that were, or swim as a wave is fitted to the joints."""
+RESOLVED = {"swimming", "swim_3d", "swim_sweep", "swim_free"}
+"""Experiments that resolve the water, or measure against flows that were."""
 
 LOADED = """
 import importlib, sys
@@ -31,7 +31,7 @@ def walking():
 
 def test_what_walks_loads_no_flow_solver(walking):
     assert "suchus.experiments.displacement.experiment" in walking
-    doors = ["suchus.replay", "suchus.study", "suchus.optimise", "suchus.viewer"]
+    doors = ["suchus.replay", "suchus.study", "suchus.optimise", "suchus.envs", "suchus.cli.view", "suchus.viewer"]
     assert flow_modules_after(*walking, *doors) == "[]"
 
 

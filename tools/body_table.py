@@ -19,7 +19,7 @@ from pathlib import Path
 
 from suchus.capture import Camera, SyntheticAnimal, film_animal, write_table
 from suchus.cli.entry import main as suchus
-from suchus.design import AnyRobot, Crocodile
+from suchus.design import Robot
 from suchus.design.scale import coarse_step
 from suchus.experiments import EXPERIMENTS
 from suchus.gaits import GAITS, own_gait
@@ -77,7 +77,7 @@ def main() -> int:
     for row in () if asked.table else (*sorted(EXPERIMENTS, key=lambda name: name not in LEAST), *TOOLS):
         if asked.only and row not in asked.only:
             continue
-        for robot in sorted(ROBOTS, key=lambda name: isinstance(ROBOTS[name], Crocodile)):  # they take long
+        for robot in sorted(ROBOTS, key=lambda name: ROBOTS[name].tables is not None):  # they take long
             if row in asked.only or robot not in found.get(row, {}):
                 found.setdefault(row, {})[robot] = answer = tried(row, robot)
                 FOUND.write_text(json.dumps(found, indent=1, sort_keys=True) + "\n")
@@ -123,7 +123,7 @@ def command(row: str, name: str, folder: Path) -> list[str]:
     return [row, str(file), "--out", str(folder / "found")]
 
 
-def asked_of(row: str, name: str, robot: AnyRobot) -> str:
+def asked_of(row: str, name: str, robot: Robot) -> str:
     """Return a study or a search, of four runs of two seconds, of the period of a robot's own gait."""
     own = own_gait(robot)
     gait = next(one for one in GAITS if GAITS[one] == own)

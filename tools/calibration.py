@@ -5,8 +5,9 @@ that it may be stopped and begun again; then what the page states and its pictur
 """
 
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any, Literal
 
@@ -18,12 +19,14 @@ from lighter import lighten
 from pages.stated import keep, kept
 from pages.stated import main as write_pages
 from suchus.figures import COLOURS, panels, styled
+from suchus.jobs import conduct_sweep
 from suchus.land.calibration import NAMES, QUANTITIES, Coefficients, fitted, left, responses
 from suchus.land.prescribed import free_sections, held_sections, towed_sections
 from suchus.motion import Swim
+from suchus.progress import Progress
 from suchus.robots import ROBOTS
-from suchus.study import conduct_sweep
-from suchus.water import Basin, fit, held_in_space, printed_wave, scaled, swim_in_space, towed_in_space
+from suchus.water import Outline, Water, fit, printed_wave, recoil, scaled
+from suchus.water.resolved import FREE, HELD, SwimSetting, resolved_swim, towed_drag
 
 ROBOT = ROBOTS["caiman"]
 REYNOLDS = 7000.0
@@ -64,10 +67,10 @@ class Case:
     speed: float = 0.0
     """Of a towed body [m/s]."""
 
-    def basin(self) -> Basin:
-        """Return grid, water and time."""
-        cycles = HELD_CYCLES if self.kind == "held" else FREE_CYCLES
-        return Basin(cells=self.cells, viscosity=VISCOSITY, cycles=cycles)
+    def setting(self) -> SwimSetting:
+        """Return grid, water, time, and what moves the body."""
+        free, cycles = (FREE, FREE_CYCLES) if self.kind == "free" else (HELD, HELD_CYCLES)
+        return SwimSetting(axes=3, cells=self.cells, viscosity=VISCOSITY, cycles=cycles, free=free)
 
 
 def motions() -> dict[str, Swim]:
@@ -94,13 +97,17 @@ def cases() -> list[Case]:
     return found + [Case(name=name, kind="free", swim=swims[name]) for name in ANEW]
 
 
-def flowed(case: Case, progress: Callable[[float], None]) -> xr.Dataset:
+def flowed(case: Case, progress: Progress) -> xr.Dataset:
     """Return what the flow says: drag, forces over the last cycle, or speed and power per cycle."""
     if case.kind == "towed":
-        return xr.Dataset({"drag": ((), towed_in_space(ROBOT, case.speed, case.basin()), {"units": "N"})})
+        return xr.Dataset({"drag": ((), towed_drag(ROBOT, case.speed, case.setting()), {"units": "N"})})
     if case.kind == "held":
-        return held_in_space(ROBOT, case.swim, case.basin(), progress=progress)
-    return swim_in_space(ROBOT, case.swim, case.basin(), progress=progress)[["speed", "thrust", "power"]]
+        sway, turn = recoil(Outline(ROBOT, case.cells + 1), case.swim, 0.0, Water())
+        return resolved_swim(
+            ROBOT, case.swim, case.setting(), sway=sway, turn=turn, progress=partial(progress, "swimming")
+        )
+    swum = resolved_swim(ROBOT, case.swim, case.setting(), progress=partial(progress, "swimming"))
+    return swum[["speed", "thrust", "power"]]
 
 
 Found = Mapping[tuple[str, str, int], xr.Dataset]
@@ -242,8 +249,8 @@ def main(folder: Path) -> None:
     lighten(PICTURE)
 
 
-def _tell(share: float) -> None:
-    print(f"\r{share:.1%}", end="", flush=True)
+def _tell(stage: str, share: float) -> None:
+    print(f"\r{share:.1%}, {stage}", end="", flush=True)
 
 
 if __name__ == "__main__":

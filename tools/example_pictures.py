@@ -41,7 +41,7 @@ def broken_joints() -> Figure:
 
 def longer_tail() -> Figure:
     """Draw the robot of the third example with its dimensions."""
-    return dimension_drawing(replace(CAIMAN, name="tailed", tail=replace(CAIMAN.tail, fin_length=0.25)))
+    return dimension_drawing(with_values(CAIMAN, {"name": "tailed", "tail.fin_length": 0.25}))
 
 
 def workspace() -> Figure:

@@ -11,8 +11,7 @@ from typing import Any
 
 from pages.stated import keep
 from pages.stated import main as write_pages
-from suchus.atlas import sections
-from suchus.atlas.computing import FlowProgress, compute_all
+from suchus.atlas import Outcome, compute_all, sections
 from suchus.water.sections import attached, coefficients, held_out, measured, table, write_table
 
 
@@ -37,11 +36,10 @@ def stated() -> Mapping[str, Any]:
 def main(folder: Path, jobs: int) -> None:
     """Compute what is not there yet, and write the table."""
 
-    def tell(said: FlowProgress) -> None:
-        if said.outcome is not None:
-            print(f"{said.case}: {said.outcome.seconds:.0f} s {said.outcome.failed}", flush=True)
+    def tell(outcome: Outcome) -> None:
+        print(f"{outcome.case}: {outcome.seconds:.0f} s {outcome.failed}", flush=True)
 
-    outcomes = compute_all(sections.cases(), folder, jobs=jobs, quick=False, tell=tell)
+    outcomes = compute_all(sections.cases(), folder, jobs=jobs, quick=False, finished=tell)
     print(write_table(outcomes))
     keep("sections", stated())
     write_pages([])

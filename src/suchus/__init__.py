@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from suchus.catalog import Catalog as Catalog
+    from suchus.control import CONTROLLERS as CONTROLLERS
     from suchus.control import Coordinated as Coordinated
     from suchus.control import HeadingRule as HeadingRule
-    from suchus.design import Crocodile as Crocodile
+    from suchus.design import Robot as Robot
     from suchus.errors import Diverged as Diverged
     from suchus.errors import IncompatibleRecord as IncompatibleRecord
     from suchus.errors import InvalidDesign as InvalidDesign
@@ -43,14 +44,17 @@ if TYPE_CHECKING:
     from suchus.motion import Gait as Gait
     from suchus.motion import Swim as Swim
     from suchus.robots import ROBOTS as ROBOTS
+    from suchus.sources import project as project
+    from suchus.study import MEASURES as MEASURES
     from suchus.water import swim as swim
 
     __version__: str
 
 _HOMES = {
     "Catalog": "suchus.catalog",
-    **dict.fromkeys(("Coordinated", "HeadingRule"), "suchus.control"),
-    "Crocodile": "suchus.design",
+    **dict.fromkeys(("CONTROLLERS", "Coordinated", "HeadingRule"), "suchus.control"),
+    "MEASURES": "suchus.study",
+    "Robot": "suchus.design",
     **dict.fromkeys(
         (
             "Diverged",
@@ -71,6 +75,7 @@ _HOMES = {
     "ROBOTS": "suchus.robots",
     "Gait": "suchus.motion",
     "Swim": "suchus.motion",
+    "project": "suchus.sources",
     "swim": "suchus.water",
     **dict.fromkeys(("Ground", "Live", "Push", "Run", "crawl", "simulate"), "suchus.land"),
     "Fault": "suchus.fault",

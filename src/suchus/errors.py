@@ -83,6 +83,17 @@ class UnknownName(SuchusError, KeyError):
         super().__init__(f"there is no {kind} named {name!r}; there is {', '.join(self.available)}.{hint}")
 
 
+class AmbiguousName(SuchusError, ValueError):
+    """Two things of one name on a shelf."""
+
+    def __init__(self, kind: str, name: str, first: str, second: str) -> None:
+        super().__init__(f"there are two {kind}s named {name!r}: {first} and {second}; give one of them another name.")
+
+
+class BrokenFile(SuchusError, ImportError):
+    """A module or a file of the user's on a shelf that cannot be loaded; the message says where and why."""
+
+
 class Doubtful(UserWarning):
     """A result that stands and may be farther off than usual; the message says by how much and what helps."""
 

@@ -9,19 +9,16 @@ from typing import Any, ClassVar, Self
 
 import xarray as xr
 
-from suchus.design import AnyRobot, check_needs
+from suchus.design import Robot, check_needs
 from suchus.design.scale import coarse_step, scaled_fields
 from suchus.gaits import own_gait
 from suchus.motion import Gait, suits
+from suchus.progress import Progress, silent
 from suchus.verdict import Rule, Verdict, judge, rules_of
 
-Progress = Callable[[str, float], None]
-"""Called with what is being done and the share of it that is done, 0 to 1."""
-
-
-def silent(stage: str, share: float) -> None:
-    """Show no progress."""
-    del stage, share
+__all__ = [
+    "Experiment", "Measure", "Outcome", "Progress", "Replay", "Simulated", "silent", "staged", "stopwatch"
+]  # fmt: skip
 
 
 def staged(progress: Progress, stage: str, start: float, end: float) -> Callable[[float], None]:
@@ -169,7 +166,7 @@ class Experiment(ABC):
     def quick(self) -> "Experiment":
         """Return the same question, small enough for a test."""
 
-    def on(self, robot: AnyRobot) -> Self:
+    def on(self, robot: Robot) -> Self:
         """Return the same question for another robot.
 
         Where the robot can follow the gaits, nothing else changes. If not, they become its own gait, and lengths,
@@ -185,14 +182,14 @@ class Experiment(ABC):
         values = {name: getattr(self, name) for name in names}
         if all(suits(robot, gait) for value in values.values() for gait in _gaits(value)):
             return replace(self, robot=robot)  # type: ignore[type-var]
-        here: AnyRobot = values["robot"]
+        here: Robot = values["robot"]
         plain = [name for name, value in values.items() if name != "robot" and not _gaits(value)]
         sized = scaled_fields(self, plain, length=robot.length / here.length, mass=robot.mass / here.mass)
         if "timestep" in values:  # it divides the control period
             sized["timestep"] = values["timestep"] / coarse_step(here) * coarse_step(robot)
         return replace(self, robot=robot, **(sized | self.gaits_on(robot)))  # type: ignore[type-var]
 
-    def gaits_on(self, robot: AnyRobot) -> dict[str, Any]:
+    def gaits_on(self, robot: Robot) -> dict[str, Any]:
         """Return the fields that hold gaits, for a robot that cannot follow those of now: its own, and its limbs alone.
 
         Raises:

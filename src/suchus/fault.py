@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Protocol
 
 import numpy as np
 
-from suchus.design import AnyRobot, servo_names
+from suchus.design import Robot, servo_names
 from suchus.errors import InvalidDesign, UnknownName
 from suchus.kinds import misfits
 
@@ -91,7 +91,7 @@ class Fault(ABC):
 
     @classmethod
     @abstractmethod
-    def parts(cls, robot: AnyRobot) -> tuple[str, ...]:
+    def parts(cls, robot: Robot) -> tuple[str, ...]:
         """Return the names of the parts of a robot that this can befall."""
 
     @classmethod
@@ -104,7 +104,7 @@ class Fault(ABC):
         """What it is called in a table, as ``limp LF_yaw``."""
         return f"{self.kind()} {self.part}"
 
-    def refuse(self, robot: AnyRobot) -> None:
+    def refuse(self, robot: Robot) -> None:
         """Say in a sentence why a robot cannot have this fault, if it cannot.
 
         Raises:
@@ -144,12 +144,12 @@ class ServoFault(Fault):
         return self.joint
 
     @classmethod
-    def parts(cls, robot: AnyRobot) -> tuple[str, ...]:
+    def parts(cls, robot: Robot) -> tuple[str, ...]:
         """Return the names of the servos."""
         return servo_names(robot)
 
 
-def check_faults(faults: Sequence[Fault], robot: AnyRobot, duration: float) -> None:
+def check_faults(faults: Sequence[Fault], robot: Robot, duration: float) -> None:
     """Refuse faults that cannot happen.
 
     Args:

@@ -48,13 +48,19 @@ def yaw(q: Quaternion) -> Float[np.ndarray, "*b"]:
 def upward(q: Quaternion) -> Float[np.ndarray, "*b 3"]:
     """Return the world's upward direction in the frame of the body: the last row of the rotation matrix."""
     w, x, y, z = _parts(q)
-    return np.stack([2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)], axis=-1)
+    direction = np.empty((*w.shape, 3), w.dtype)
+    direction[..., 0], direction[..., 1] = 2 * (x * z - w * y), 2 * (y * z + w * x)
+    direction[..., 2] = 1 - 2 * (x * x + y * y)
+    return direction
 
 
 def ahead(q: Quaternion) -> Float[np.ndarray, "*b 3"]:
     """Return the world's x direction in the frame of the body: the first row of the rotation matrix."""
     w, x, y, z = _parts(q)
-    return np.stack([1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)], axis=-1)
+    direction = np.empty((*w.shape, 3), w.dtype)
+    direction[..., 0] = 1 - 2 * (y * y + z * z)
+    direction[..., 1], direction[..., 2] = 2 * (x * y - w * z), 2 * (x * z + w * y)
+    return direction
 
 
 def about(axis: Vector, angle: Float[np.ndarray, "*b"] | float) -> Quaternion:

@@ -4,6 +4,9 @@ Set ``SUCHUS_THREADS`` to choose another number than the cores this process may 
 """
 
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 
 from suchus.errors import OutsideLimits
 
@@ -14,6 +17,22 @@ os.environ.setdefault("OMP_WAIT_POLICY", "passive")  # threads that spin on and 
 # there are cores that spin is waste: set SUCHUS_THREADS=1 there.
 os.environ.setdefault("GOMP_SPINCOUNT", "20000")
 
+_SHARED_BY: ContextVar[int] = ContextVar("shared_by", default=1)
+
+
+@contextmanager
+def shared(by: int) -> Iterator[None]:
+    """Let what the block computes use an equal share of the threads, at least one.
+
+    Args:
+        by: number of such blocks, which run at the same time in threads of their own [-].
+    """
+    token = _SHARED_BY.set(by)
+    try:
+        yield
+    finally:
+        _SHARED_BY.reset(token)
+
 
 def count() -> int:
     """Return the number of threads to use.
@@ -21,6 +40,11 @@ def count() -> int:
     Raises:
         OutsideLimits: ``SUCHUS_THREADS`` is not a positive whole number.
     """
+    return max(_asked() // _SHARED_BY.get(), 1)
+
+
+def _asked() -> int:
+    """Return the number of threads that all of this process may use."""
     asked = os.environ.get("SUCHUS_THREADS")
     if asked is None:
         return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

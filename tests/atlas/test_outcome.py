@@ -10,23 +10,34 @@ import numpy as np
 import pytest
 
 import suchus.atlas
-from suchus import workers
-from suchus.atlas import CASES, Case, Effort, compute, compute_all, digest_of, finished, load_outcome, save_outcome
+from suchus.atlas import (
+    CASES,
+    Case,
+    Effort,
+    compute,
+    compute_all,
+    digest_of,
+    finished_outcome,
+    load_outcome,
+    save_outcome,
+)
 from suchus.errors import NotConverged, UnreadableFile, Unwritable
+from suchus.jobs import processes
+from suchus.progress import silent
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*fork.*:DeprecationWarning")
 
 
-def plain_run(effort, tell):
-    tell(0.5)
+def plain_run(effort, progress):
+    progress("computing", 0.5)
     return {"curve": np.array([[0.0, 1.0], [1.0, effort.cells / 3]]), "drag": np.array(1.5)}
 
 
-def refusing_run(effort, tell):
+def refusing_run(effort, progress):
     raise NotConverged("the series has 1 rises; run longer.")
 
 
-def dying_run(effort, tell):
+def dying_run(effort, progress):
     os._exit(3)
 
 
@@ -37,12 +48,8 @@ def case(name="one", run=plain_run, cells=4):
     )  # fmt: skip
 
 
-def quiet(told):
-    pass
-
-
 def test_an_outcome_comes_back_as_it_was_kept(tmp_path):
-    kept = compute(case(), quick=False, tell=lambda share: None)
+    kept = compute(case(), quick=False, progress=silent)
     save_outcome(kept, tmp_path)
     back = load_outcome(tmp_path, "one")
     assert replace(back, curves={}) == replace(kept, curves={})
@@ -77,7 +84,7 @@ def test_the_files_that_decide_a_flow_s_curves_are_there(name):
 
 
 def test_a_flow_that_is_refused_is_an_outcome_with_its_sentence(tmp_path):
-    kept = compute_all([case(run=refusing_run)], tmp_path, jobs=1, quick=False, tell=quiet)["one"]
+    kept = compute_all([case(run=refusing_run)], tmp_path, jobs=1, quick=False)["one"]
     assert kept.failed == "the series has 1 rises; run longer."
     assert load_outcome(tmp_path, "one").failed == kept.failed
 
@@ -85,37 +92,41 @@ def test_a_flow_that_is_refused_is_an_outcome_with_its_sentence(tmp_path):
 def test_what_is_finished_is_not_computed_again(tmp_path):
     ran = []
 
-    def counted(effort, tell):
+    def counted(effort, progress):
         ran.append(effort.cells)
-        return plain_run(effort, tell)
+        return plain_run(effort, progress)
 
     for _ in range(2):
-        compute_all([case(run=counted)], tmp_path, jobs=1, quick=False, tell=quiet)
+        compute_all([case(run=counted)], tmp_path, jobs=1, quick=False)
     assert ran == [4]
-    compute_all([case(run=counted, cells=5)], tmp_path, jobs=1, quick=False, tell=quiet)
-    compute_all([case(run=counted, cells=5)], tmp_path, jobs=1, quick=True, tell=quiet)
+    compute_all([case(run=counted, cells=5)], tmp_path, jobs=1, quick=False)
+    compute_all([case(run=counted, cells=5)], tmp_path, jobs=1, quick=True)
     assert ran == [4, 5, 2]
     (tmp_path / "flows" / "one.json").write_text("{")
-    compute_all([case(run=counted)], tmp_path, jobs=1, quick=False, tell=quiet)
+    compute_all([case(run=counted)], tmp_path, jobs=1, quick=False)
     assert ran == [4, 5, 2, 4]
-    assert finished(case(), tmp_path, quick=False) is not None
-    assert finished(case(), tmp_path, quick=True) is None
+    assert finished_outcome(case(), tmp_path, quick=False) is not None
+    assert finished_outcome(case(), tmp_path, quick=True) is None
 
 
 def test_ctrl_c_keeps_what_is_finished(tmp_path):
-    def stopped(effort, tell):
+    def stopped(effort, progress):
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        compute_all([case(), case("two", stopped)], tmp_path, jobs=1, quick=False, tell=quiet)
+        compute_all([case(), case("two", stopped)], tmp_path, jobs=1, quick=False)
     assert [path.name for path in (tmp_path / "flows").iterdir()] == ["one.json"]
 
 
 def test_progress_ends_with_the_outcome(tmp_path):
     said = []
-    compute_all([case()], tmp_path, jobs=1, quick=False, tell=said.append)
-    assert [told.share for told in said] == [0.5, 1.0]
-    assert [told.outcome is None for told in said] == [True, False]
+
+    def each(name):
+        return lambda stage, share: said.append((name, stage, share))
+
+    for _ in range(2):  # the second time of what is there
+        compute_all([case()], tmp_path, jobs=1, quick=False, each=each, finished=lambda one: said.append(one.case))
+    assert said == [("one", "computing", 0.5), "one", "one"]
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -125,9 +136,9 @@ def test_a_flow_can_be_handed_to_another_process(name):
 
 def test_side_by_side_a_process_that_dies_takes_only_its_own_flow(tmp_path, monkeypatch):
     """Forked here: a process that starts afresh imports for some seconds."""
-    monkeypatch.setattr("suchus.workers.get_context", lambda kind: get_context("fork"))
+    monkeypatch.setattr("suchus.jobs.processes.get_context", lambda kind: get_context("fork"))
     cases = [case(), case("dies", dying_run)]
-    came = compute_all(cases, tmp_path, jobs=2, quick=True, tell=quiet)
+    came = compute_all(cases, tmp_path, jobs=2, quick=True)
     assert came["one"].curves["curve"][1, 1] == pytest.approx(2 / 3)
     assert "exit code 3" in came["dies"].failed
     assert load_outcome(tmp_path, "one") is not None
@@ -135,21 +146,22 @@ def test_side_by_side_a_process_that_dies_takes_only_its_own_flow(tmp_path, monk
 
 
 def test_side_by_side_an_error_ends_the_processes(tmp_path, monkeypatch):
-    """What ``workers`` promises of its generator when it is closed is tested there; here, that it is closed at once."""
+    """What ``processes`` promises of its closed generator is tested there; here, that it is closed at once."""
     ended = []
 
-    def processes(work, cases, jobs):
+    def working(work, cases, jobs, *, tries):
         try:
-            yield 0, workers.Far("computing", 0.5)
+            yield 0, processes.Begun()
+            yield 0, processes.Far("computing", 0.5)
         finally:
             ended.append(jobs)
 
-    def stop(told):
+    def stop(stage, share):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(workers, "side_by_side", processes)
+    monkeypatch.setattr(processes, "side_by_side", working)
     with pytest.raises(KeyboardInterrupt) as caught:  # holds the frames, so that nothing ends by being forgotten
-        compute_all([case(), case("two")], tmp_path, jobs=2, quick=True, tell=stop)
+        compute_all([case(), case("two")], tmp_path, jobs=2, quick=True, each=lambda _: stop)
     assert ended == [2], caught
 
 
@@ -163,4 +175,4 @@ def test_a_file_of_something_else_is_refused(tmp_path):
 def test_a_place_that_takes_nothing_is_named(tmp_path):
     (tmp_path / "flows").write_text("a file")
     with pytest.raises(Unwritable, match="flows"):
-        compute_all([case()], tmp_path, jobs=1, quick=False, tell=quiet)
+        compute_all([case()], tmp_path, jobs=1, quick=False)

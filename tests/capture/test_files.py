@@ -23,6 +23,12 @@ def test_a_table_reads_back(lizard, clean, tmp_path, scale, heights):
     assert observe(back).value("duty_LF") == pytest.approx(observe(tracks).value("duty_LF"), abs=0.01)
 
 
+def test_a_path_may_be_a_text(lizard, clean, tmp_path):
+    tracks = film_animal(lizard, clean, cycles=1)
+    file = write_table(tracks, str(tmp_path / "a.csv"))
+    np.testing.assert_array_equal(read_tracks(str(file)).position, read_tracks(file).position)
+
+
 def test_units_and_confidence_of_a_table(tmp_path):
     file = tmp_path / "a.csv"
     file.write_text(

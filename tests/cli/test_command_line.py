@@ -187,6 +187,7 @@ def test_an_experiment_that_breaks_does_not_stop_the_others(capsys, tmp_path):
     assert not (tmp_path / "broken").exists()
 
 
+@pytest.mark.slow("a process is stopped")
 def test_ctrl_c_stops_with_130_and_leaves_nothing_half_written(tmp_path):
     out, started = tmp_path / "out", tmp_path / "started"
     assert main(["run", "wave", "--quick", "--out", str(out)]) == 0

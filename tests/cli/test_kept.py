@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from suchus.cli import main
-from suchus.cli.attempt import Job, attempt, kept
+from suchus.cli.attempt import Reproduction, attempt, kept
 from suchus.experiment import silent
 from suchus.experiments import EXPERIMENTS
 from suchus.report import Result
@@ -18,7 +18,7 @@ origin = sys.modules["suchus.record.provenance"]
 
 @pytest.fixture(scope="module")
 def first(tmp_path_factory):
-    task = Job(name="leg_kinematics", out=tmp_path_factory.mktemp("out"), quick=True)
+    task = Reproduction(name="leg_kinematics", out=tmp_path_factory.mktemp("out"), quick=True)
     assert isinstance(attempt(task, silent).result, Result)
     return task
 

@@ -74,6 +74,7 @@ def files(folder: Path) -> dict[str, bytes | dict[str, object]]:
 
 
 @pytest.mark.usefixtures("crashing")
+@pytest.mark.slow("a process dies")
 def test_who_breaks_or_dies_is_told_and_the_others_are_as_ever(capsys, tmp_path):
     assert main(["reproduce", "--jobs", "2", "--out", str(tmp_path / "out")]) == 1
     out, err = capsys.readouterr()
@@ -87,6 +88,7 @@ def test_who_breaks_or_dies_is_told_and_the_others_are_as_ever(capsys, tmp_path)
     assert files(tmp_path / "out/wave") == files(tmp_path / "alone/wave")
 
 
+@pytest.mark.slow("processes are stopped")
 def test_ctrl_c_while_one_is_saving_stops_all_and_leaves_nothing_half_written(tmp_path):
     out, started = tmp_path / "out", tmp_path / "started"
     (tmp_path / "slow.py").write_text(SLOW)

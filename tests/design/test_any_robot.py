@@ -172,10 +172,10 @@ def test_who_needs_a_crocodile_says_so():
     assert crocodile(CAIMAN, "it") is CAIMAN
     with pytest.raises(UnsuitedRobot, match=r"standing up needs a crocodile-like robot.*'salamander'"):
         crocodile(SALAMANDER, "standing up")
-    six = replace(CAIMAN, spine=replace(CAIMAN.spine, joints=6))
+    six = crocodile(replace(CAIMAN.tables, spine=replace(CAIMAN.spine, joints=6)))
     with pytest.raises(UnsuitedRobot, match=r"needs the article's spine of 5 joints.* has 6 joints"):
         crocodile(six, "standing up")
-    servos = replace(CAIMAN, tail=replace(CAIMAN.tail, drive="servos"))
+    servos = crocodile(replace(CAIMAN.tables, tail=replace(CAIMAN.tail, drive="servos")))
     with pytest.raises(UnsuitedRobot, match="a tail with servos"):
         crocodile(servos, "standing up")
     assert "tail_yaw_6" in servo_names(servos)

@@ -36,6 +36,7 @@ class Html(HTMLParser):
         self.words.append(data)
 
 
+@pytest.mark.slow("the documentation is built whole")
 def test_the_site_builds_strictly_and_is_whole(tmp_path):
     site = tmp_path / "site"
     command = [sys.executable, "-m", "mkdocs", "build", "--strict", "--site-dir", str(site)]

@@ -102,15 +102,16 @@ def test_a_robot_that_broke_begins_anew_as_if_nothing_had_happened(kind):
     used, fresh = (Pack(replace(FAULT, breaks=breaks), 2) for _ in range(2))
     used.restart([0, 1], [np.random.default_rng(1), np.random.default_rng(2)])
     used.act(np.ones((2, 19)), np.ones(2, dtype=bool))
-    limp = used._batch.physics.expanded("opt.disableactuator")
-    assert (limp != 0).all() if kind == "limp" else used._injector.broken(1) == (Locked("LF_pitch"),)
+    limp = used.loop.batch.physics.expanded("opt.disableactuator")
+    locked = used.loop.disturbances.injector.broken(1)
+    assert (limp != 0).all() if kind == "limp" else locked == (Locked("LF_pitch", at=0.0),)
     for pack in (used, fresh):
         pack.restart([1], [np.random.default_rng(7)])
-        pack.chances[1] = replace(pack.chances[1], breaks=-1)
+        pack.loop.disturbances.schedule(1, [], [])
         for _ in range(4):
             pack.act(np.full((2, 19), 0.3), np.array([False, True]))
     np.testing.assert_array_equal(used.feel()[1], fresh.feel()[1])
-    np.testing.assert_array_equal(used._batch.qpos[1], fresh._batch.qpos[1])
+    np.testing.assert_array_equal(used.loop.batch.qpos[1], fresh.loop.batch.qpos[1])
 
 
 def test_the_shelf_s_gait_fits_into_the_actions_and_comes_out_of_them():
@@ -163,8 +164,8 @@ def test_the_world_s_axes_are_felt_as_the_pelvis_turns():
 def test_readings_off_their_scale_are_cut_and_lost_ones_are_zero():
     env = envs.CrocodileVectorEnv(2, CRAWL)
     env.reset(seed=0)
-    env.pack._batch.readings[0, :19] = np.nan
-    env.pack._batch.readings[1, :19] = -7.0
+    env.pack.loop.batch.readings[0, :19] = np.nan
+    env.pack.loop.batch.readings[1, :19] = -7.0
     seen = env.pack.feel()
     np.testing.assert_array_equal(envs.part(seen, "servo_position"), np.repeat([[0.0], [-1.0]], 19, axis=1))
 
@@ -225,7 +226,7 @@ def test_faults_are_drawn_from_all_that_are_named():
     drawn = [draw(FAULT, random) for _ in range(300)]
     assert {chance.broken.part for chance in drawn} == set(leg_joints())
     assert {chance.broken.kind() for chance in drawn} == {"limp", "locked"}
-    assert max(chance.breaks for chance in drawn) <= 400
+    assert max(chance.broken.at for chance in drawn) <= 4.0
 
 
 def test_a_standing_robot_stays_up_unless_it_is_pushed_too_hard():
@@ -250,7 +251,7 @@ def test_a_robot_that_comes_apart_ends_its_episode_with_a_sentence_and_the_other
     env, alone = (envs.CrocodileVectorEnv(n, CRAWL) for n in (2, 1))
     env.reset(seed=[8, 9])
     alone.reset(seed=[9])
-    env.pack._batch.qvel[0, 7] = 1e9
+    env.pack.loop.batch.qvel[0, 7] = 1e9
     zero = np.zeros((2, 19))
     seen, rewards, fell, _, infos = env.step(zero)
     theirs, *_ = alone.step(zero[:1])
@@ -269,7 +270,7 @@ def test_servos_lose_torque_with_speed_unless_it_is_switched_off():
     for lines, damping in ((True, 3.0 / 7.0), (False, 0.05)):
         task = replace(CRAWL, speed_lines=lines)
         assert task.body.servo("LF_yaw").damping == pytest.approx(damping)
-        model = Pack(task, 1)._batch.model
+        model = Pack(task, 1).loop.batch.model
         assert model.joint("LF_yaw").damping[0] == pytest.approx(damping)
     assert CRAWL.speed_lines
     assert CRAWL.body.servo("tail_cable").damping == pytest.approx(2.5 / 7.0)
@@ -288,8 +289,8 @@ def test_a_snout_in_the_ground_is_a_fall_only_where_a_height_is_asked_for(least,
 def test_a_robot_on_its_back_has_fallen():
     env = gymnasium.make("suchus/Crawl-v0").unwrapped
     env.reset(seed=0)
-    env.pack._batch.qpos[0, 2] += 0.1
-    env.pack._batch.qpos[0, 3:7] = [0, 1, 0, 0]
+    env.pack.loop.batch.qpos[0, 2] += 0.1
+    env.pack.loop.batch.qpos[0, 3:7] = [0, 1, 0, 0]
     _, _, fell, _, info = env.step(np.zeros(19))
     assert fell
     assert "it rolled over" in info["cause"]
@@ -476,7 +477,7 @@ def test_the_senses_of_the_article_s_robot_are_its_readings_over_fixed_scales():
     env = envs.CrocodileVectorEnv(1, CRAWL)
     env.reset(seed=1)
     *_, (seen, *_) = acting(env, 3)
-    felt = env.pack._sensed()
+    felt = env.pack.loop.sensed()
     np.testing.assert_array_equal(
         envs.part(seen, "servo_velocity"), np.clip(felt.servo_velocity / 10, -1, 1, dtype="f4")
     )

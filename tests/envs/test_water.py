@@ -11,13 +11,13 @@ gymnasium = pytest.importorskip("gymnasium", reason="gymnasium is not installed:
 
 from suchus import envs  # noqa: E402
 from suchus.control import Amphibious, HeadingHold, HeadingRule  # noqa: E402
-from suchus.design import with_speed_lines  # noqa: E402
+from suchus.design import with_speed_lines  # noqa: E402, crocodile
 from suchus.envs.pack import Pack  # noqa: E402
 from suchus.envs.senses import felt  # noqa: E402
-from suchus.envs.water import swimming  # noqa: E402
+from suchus.envs.task import swimming  # noqa: E402
 from suchus.errors import InvalidDesign, OutsideLimits, SuchusError, UnknownName  # noqa: E402
 from suchus.land import Ground, Lake, Wave  # noqa: E402
-from suchus.land.batch import up  # noqa: E402
+from suchus.land.waters import up  # noqa: E402
 
 SWIM, SHORE = envs.TASKS["Swim"], envs.TASKS["Shore"]
 NEAR = envs.Goal(distance=0.4, within=0.1, bearing=0.3)
@@ -33,9 +33,9 @@ def begun(task, count=1, seed=0):
 
 def shifted(pack, by):
     """Put every robot of a pack elsewhere, by a vector [m], and bring the readings up to date."""
-    pack._batch.qpos[:, :3] += by
-    pack._batch.physics.forward()
-    pack._batch.read(slice(None))
+    pack.loop.batch.qpos[:, :3] += by
+    pack.loop.batch.physics.forward()
+    pack.loop.batch.read(slice(None))
 
 
 @pytest.mark.parametrize("name", ["Swim", "Shore"])
@@ -65,7 +65,7 @@ def test_an_episode_after_others_is_the_first_of_a_fresh_batch_to_the_byte(task)
     used, fresh = begun(task, 2), Pack(task, 2)
     for _ in range(3):
         used.act(np.ones((2, 19)), np.ones(2, dtype=bool))
-    floated = used._batch.qpos[0, :3].copy()
+    floated = used.loop.batch.qpos[0, :3].copy()
     for pack in (used, fresh):
         pack.restart([1], [np.random.default_rng(7)])
         first = pack.record(1)
@@ -73,9 +73,9 @@ def test_an_episode_after_others_is_the_first_of_a_fresh_batch_to_the_byte(task)
         for _ in range(4):
             pack.act(np.full((2, 19), 0.2), np.array([False, True]))
     np.testing.assert_array_equal(used.feel()[1], fresh.feel()[1])
-    np.testing.assert_array_equal(used._batch.qpos[1], fresh._batch.qpos[1])
-    np.testing.assert_array_equal(used._batch.waters.rows[1], fresh._batch.waters.rows[1])
-    np.testing.assert_array_equal(used._batch.qpos[0, :3], floated)  # the other one waits meanwhile
+    np.testing.assert_array_equal(used.loop.batch.qpos[1], fresh.loop.batch.qpos[1])
+    np.testing.assert_array_equal(used.loop.batch.waters.rows[1], fresh.loop.batch.waters.rows[1])
+    np.testing.assert_array_equal(used.loop.batch.qpos[0, :3], floated)  # the other one waits meanwhile
 
 
 def test_equal_seeds_give_equal_goals_and_others_do_not():
@@ -90,9 +90,9 @@ def test_equal_seeds_give_equal_goals_and_others_do_not():
 def test_the_goal_is_seen_in_the_frame_of_the_root():
     pack = begun(replace(SWIM, jitter=0.0))
     turn = Rotation.from_euler("zyx", [0.7, -0.2, 0.1])
-    pack._batch.qpos[0, 3:7] = turn.as_quat(scalar_first=True)
+    pack.loop.batch.qpos[0, 3:7] = turn.as_quat(scalar_first=True)
     shifted(pack, np.zeros(3))
-    centre = pack._read("centre_of_mass")[0, :2]
+    centre = pack.loop.sensors["centre_of_mass"][0, :2]
     pack._goals[0] = centre + 0.9 * np.array([0.6, 0.8])
     seen = pack.feel()
     np.testing.assert_allclose(
@@ -153,7 +153,7 @@ def test_a_controller_feels_through_the_observation_what_the_robot_feels(name):
     task = envs.TASKS[name]
     pack = begun(task, 2)
     pack.act(0.1 * np.ones((2, 19)), np.ones(2, dtype=bool))
-    ours, theirs = felt(pack.feel(), task.robot, 0.05), pack._sensed()
+    ours, theirs = felt(pack.feel(), task.robot, 0.05), pack.loop.sensed()
     for field in fields(ours):
         if field.name not in ("time", "depth", "orientation"):
             np.testing.assert_allclose(getattr(ours, field.name), getattr(theirs, field.name), atol=1e-5, rtol=1e-5)
@@ -198,7 +198,7 @@ def test_an_episode_ends_ashore_beyond_the_line_and_not_before(short_of, reached
     pack, line = env.pack, SHORE.lake.level / np.sin(SHORE.ground.uphill)
     assert (up(SHORE.ground) @ [line, 0.0, 0.0]) == pytest.approx(SHORE.lake.level)
     assert env.step(np.zeros(19))[2] is False
-    ahead = line + 1.0 - short_of - pack._read("centre_of_mass")[0, 0]
+    ahead = line + 1.0 - short_of - pack.loop.sensors["centre_of_mass"][0, 0]
     shifted(pack, [ahead, 0.3, 0.3])
     before = pack.remaining[0]
     _, reward, over, _, info = env.step(np.zeros(19))
@@ -210,8 +210,8 @@ def test_an_episode_ends_ashore_beyond_the_line_and_not_before(short_of, reached
 
 def test_a_robot_that_rolls_over_at_the_goal_has_not_reached_it():
     pack = begun(replace(SWIM, goal=envs.Goal(distance=0.2, within=0.19)))
-    pack._goals[0] = pack._read("centre_of_mass")[0, :2]
-    pack._batch.qpos[0, 3:7] = [0, 1, 0, 0]
+    pack._goals[0] = pack.loop.sensors["centre_of_mass"][0, :2]
+    pack.loop.batch.qpos[0, 3:7] = [0, 1, 0, 0]
     terms = pack.act(np.zeros((1, 19)), np.ones(1, dtype=bool))
     assert (terms.fall[0], terms.goal[0], terms.over[0]) == (True, False, True)
     assert "it rolled over" in pack.causes[0]
@@ -220,7 +220,7 @@ def test_a_robot_that_rolls_over_at_the_goal_has_not_reached_it():
 def test_servos_lose_torque_with_speed_in_water_too():
     assert SWIM.speed_lines
     assert SHORE.speed_lines
-    model = Pack(SWIM, 1)._batch.model
+    model = Pack(SWIM, 1).loop.batch.model
     joint = with_speed_lines(SWIM.robot).servo("LF_yaw").damping
     assert model.joint("LF_yaw").damping[0] == pytest.approx(joint)
     assert joint > SWIM.robot.servo("LF_yaw").damping

@@ -9,7 +9,7 @@ import pytest
 
 from suchus import blueprint
 from suchus.cli.options import choose
-from suchus.design import NEEDS, Crocodile, general, lacking, layout
+from suchus.design import NEEDS, Robot, general, lacking, layout
 from suchus.design.scale import coarse_step
 from suchus.errors import OutsideLimits, UnsuitedRobot
 from suchus.experiments import EXPERIMENTS
@@ -43,7 +43,7 @@ LEAST = {
 def six():
     """A crocodile with six spine joints and servos in its tail, as a file says it."""
     file = Path(__file__).parent / "six.toml"
-    return blueprint.read(file, Crocodile, ROBOTS)
+    return blueprint.read(file, Robot, ROBOTS)
 
 
 def robot_of(name):

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
+from suchus.design import crocodile
 from suchus.errors import OutsideLimits
 from suchus.experiment import Outcome
 from suchus.experiments import EXPERIMENTS
@@ -171,11 +172,13 @@ def test_sweep_ends_where_the_gaps_close():
 @pytest.mark.parametrize(("femur", "tibia", "joints", "gap"), [(0.05, 0.02, 1, 0.005), (0.03, 0.2, 30, 0.01)])
 def test_odd_robots_are_examined_too(femur, tibia, joints, gap):
     robot = ROBOTS["caiman"]
-    odd = replace(
-        robot,
-        hind_leg=replace(robot.hind_leg, femur=femur, tibia=tibia),
-        spine=replace(robot.spine, base=0.2, link=0.03),
-        tail=replace(robot.tail, joints=joints, gap=gap),
+    odd = crocodile(
+        replace(
+            robot.tables,
+            hind_leg=replace(robot.hind_leg, femur=femur, tibia=tibia),
+            spine=replace(robot.spine, base=0.2, link=0.03),
+            tail=replace(robot.tail, joints=joints, gap=gap),
+        )
     )
     for experiment in MODULES.values():
         quick = replace(experiment.quick(), robot=odd)

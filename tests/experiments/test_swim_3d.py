@@ -20,19 +20,9 @@ from suchus.figures import caption
 from suchus.flow import memory
 from suchus.hydro.table import column
 from suchus.robots import ROBOTS
-from suchus.water import (
-    Basin,
-    Outline,
-    check_swim_in_space,
-    displaced,
-    fit,
-    folded,
-    half_heights,
-    printed_wave,
-    swim_in_space,
-    trunk,
-    undulation,
-)
+from suchus.water import Outline, displaced, fit, printed_wave, undulation
+from suchus.water.immersed import folded, half_heights, trunk
+from suchus.water.resolved import SwimSetting, check_resolved_swim, resolved_swim
 
 ROBOT, ASKED = ROBOTS["caiman"], EXPERIMENTS["swim_3d"]
 MOTION = fit(ROBOT, printed_wave(ROBOT, "I", sign=-1)).swim
@@ -139,44 +129,46 @@ def test_a_layer_says_the_cells_and_hours_that_it_takes():
     with pytest.raises(
         InvalidDesign, match=r"at least (\d+) cells per body length, ([\d.e+]+) million cells"
     ) as caught:
-        swim_in_space(ROBOT, MOTION, Basin(cells=64, viscosity=1e-4 / 7, cycles=1))
+        resolved_swim(ROBOT, MOTION, SwimSetting(axes=3, cells=64, viscosity=1e-4 / 7, cycles=1))
     cells = int(re.search(r"least (\d+) cells", str(caught.value))[1])
-    check_swim_in_space(ROBOT, MOTION, Basin(cells=cells, viscosity=1e-4 / 7, cycles=1))  # they do
+    check_resolved_swim(ROBOT, MOTION, SwimSetting(axes=3, cells=cells, viscosity=1e-4 / 7, cycles=1))  # they do
     with pytest.raises(InvalidDesign, match="boundary layer"):
-        check_swim_in_space(ROBOT, MOTION, Basin(cells=cells - 1, viscosity=1e-4 / 7, cycles=1))
+        check_resolved_swim(ROBOT, MOTION, SwimSetting(axes=3, cells=cells - 1, viscosity=1e-4 / 7, cycles=1))
     with pytest.raises(InvalidDesign, match="more than the 1024 that are allowed"):
-        swim_in_space(ROBOT, MOTION, Basin(cells=64, viscosity=2e-7, cycles=1))
+        resolved_swim(ROBOT, MOTION, SwimSetting(axes=3, cells=64, viscosity=2e-7, cycles=1))
 
 
 def test_the_narrowest_box_that_is_allowed_holds_the_body():
-    basin = Basin(cells=56, viscosity=2e-3, cycles=1, beside=8 / 56 - 0.05)
-    check_swim_in_space(ROBOT, MOTION, basin)
-    swim_in_space(ROBOT, MOTION, basin, progress=lambda _: None)
+    setting = SwimSetting(axes=3, cells=56, viscosity=2e-3, cycles=1, beside=8 / 56 - 0.05)
+    check_resolved_swim(ROBOT, MOTION, setting)
+    resolved_swim(ROBOT, MOTION, setting, progress=lambda _: None)
     with pytest.raises(InvalidDesign, match="the body would leave it"):
-        check_swim_in_space(ROBOT, MOTION, replace(basin, beside=basin.beside - 1e-3))
+        check_resolved_swim(ROBOT, MOTION, replace(setting, beside=setting.beside - 1e-3))
 
 
 def test_a_motion_that_the_grid_or_the_joints_cannot_follow_is_refused():
     with pytest.raises(InvalidDesign, match="boundary layer"):
-        swim_in_space(ROBOT, MOTION, Basin(cells=64, viscosity=1e-6, cycles=1))
+        resolved_swim(ROBOT, MOTION, SwimSetting(axes=3, cells=64, viscosity=1e-6, cycles=1))
     with pytest.raises(InvalidDesign, match=r"cells is 8"):
-        Basin(cells=8, viscosity=1e-3, cycles=1)
+        SwimSetting(axes=3, cells=8, viscosity=1e-3, cycles=1)
     with pytest.raises(OutsideLimits, match="spine_yaw"):
-        swim_in_space(ROBOT, replace(MOTION, yaw=(2.0, 0.1, 0.1)), Basin(cells=64, viscosity=1e-3, cycles=1))
+        resolved_swim(
+            ROBOT, replace(MOTION, yaw=(2.0, 0.1, 0.1)), SwimSetting(axes=3, cells=64, viscosity=1e-3, cycles=1)
+        )
 
 
 def test_a_swim_that_was_interrupted_goes_on_to_the_same_numbers(tmp_path):
-    basin, seen = Basin(cells=54, viscosity=2e-3, cycles=1, frames=4), []
+    setting, seen = SwimSetting(axes=3, cells=54, viscosity=2e-3, cycles=1, frames=4), []
 
     def stop(share):
         if share > 0.6:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        swim_in_space(ROBOT, MOTION, basin, checkpoint=tmp_path / "swim", progress=stop)
-    found = swim_in_space(ROBOT, MOTION, basin, checkpoint=tmp_path / "swim", progress=seen.append)
+        resolved_swim(ROBOT, MOTION, setting, checkpoint=tmp_path / "swim", progress=stop)
+    found = resolved_swim(ROBOT, MOTION, setting, checkpoint=tmp_path / "swim", progress=seen.append)
     assert min(seen) > 0.5
-    assert found.identical(swim_in_space(ROBOT, MOTION, basin, progress=lambda _: None))
+    assert found.identical(resolved_swim(ROBOT, MOTION, setting, progress=lambda _: None))
     assert found.sizes["z"] * found.sizes["y"] * found.sizes["x"] == pytest.approx(1e6 * float(found.million_cells))
     assert float(found.power[-1]) > 0
     assert found.frame.values == pytest.approx([0.25, 0.5, 0.75, 1.0], abs=0.05)
@@ -192,17 +184,17 @@ def test_a_swim_that_was_interrupted_goes_on_to_the_same_numbers(tmp_path):
 
 
 def test_a_motion_that_is_handed_over_joint_by_joint_swims_to_the_same_numbers():
-    basin = Basin(cells=54, viscosity=2e-3, cycles=1)
-    outline = Outline(ROBOT, basin.cells + 1)
-    commanded = swim_in_space(ROBOT, MOTION, basin, progress=lambda _: None)
+    setting = SwimSetting(axes=3, cells=54, viscosity=2e-3, cycles=1)
+    outline = Outline(ROBOT, setting.cells + 1)
+    commanded = resolved_swim(ROBOT, MOTION, setting, progress=lambda _: None)
     handed = undulation(outline, MOTION)
-    assert swim_in_space(ROBOT, handed, basin, progress=lambda _: None).identical(commanded)
+    assert resolved_swim(ROBOT, handed, setting, progress=lambda _: None).identical(commanded)
     folded_end = handed.middles.copy()
     folded_end[1, -4:] += 0.3
-    other = swim_in_space(ROBOT, replace(handed, middles=folded_end), basin, progress=lambda _: None)
+    other = resolved_swim(ROBOT, replace(handed, middles=folded_end), setting, progress=lambda _: None)
     assert abs(float(other.speed[-1] / commanded.speed[-1]) - 1.0) > 1e-3
     with pytest.raises(InvalidDesign, match="has 55 stations along the midline, and 57 are asked for"):
-        swim_in_space(ROBOT, handed, replace(basin, cells=56), progress=lambda _: None)
+        resolved_swim(ROBOT, handed, replace(setting, cells=56), progress=lambda _: None)
 
 
 def bent():
@@ -216,9 +208,9 @@ def test_midlines_as_taken_swim_beside_those_commanded(monkeypatch):
     runs = ASKED._runs(MOTION, MOTION, bent())
     added = [one for one in runs if one[0] not in without]
     assert [name for name, *_ in added] == list(TAKEN)
-    for _, motion, basin in added:
-        assert basin == next(basin for name, _, basin in runs if name == "trunk only")
-        check_swim_in_space(ROBOT, motion, basin)
+    for _, motion, setting in added:
+        assert setting == next(setting for name, _, setting in runs if name == "trunk only")
+        check_resolved_swim(ROBOT, motion, setting)
     m = made(bent())
     assert m["speed_trunk_and_tail_as_taken"] == 0.03
     assert m["speed_tail_only_as_taken"] == -0.01
@@ -232,7 +224,7 @@ def test_midlines_as_taken_swim_beside_those_commanded(monkeypatch):
 
 def test_the_midlines_are_asked_for_only_if_they_are_to_swim(monkeypatch):
     monkeypatch.setattr("suchus.experiments.swim_3d.experiment.midlines", lambda *given: pytest.fail("nobody asked"))
-    monkeypatch.setattr("suchus.experiments.swim_3d.experiment.check_swim_in_space", _stopped)
+    monkeypatch.setattr("suchus.experiments.swim_3d.experiment.check_resolved_swim", _stopped)
     with pytest.raises(KeyboardInterrupt):
         ASKED.quick().run()
     with pytest.raises(pytest.fail.Exception, match="nobody asked"):

@@ -1,5 +1,7 @@
 """Shapes from outlines and from distances, against those that are known."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 
@@ -16,17 +18,30 @@ def round_corners(count=240):
     return np.stack(ELLIPSE.outline(count), axis=1)
 
 
-SHAPES = [
-    flow.Polygon(corners=SQUARE),
-    flow.from_outline(round_corners()[::-1]),
-    flow.from_sdf(lambda x, y: ELLIPSE.distance(x, y)[0], BOX),
-    flow.union(flow.Cylinder(diameter=0.8), flow.Plate(length=1.5, thick=0.3)),
-    flow.difference(flow.Cylinder(diameter=1.0), flow.Polygon(corners=SQUARE + np.array([0.75, 0.0]))),
-    flow.scaled(ELLIPSE, 0.5),
-]
+MAKERS = {
+    "square": lambda: flow.Polygon(corners=SQUARE),
+    "outline": lambda: flow.from_outline(round_corners()[::-1]),
+    "distance": lambda: flow.from_sdf(lambda x, y: ELLIPSE.distance(x, y)[0], BOX),
+    "union": lambda: flow.union(flow.Cylinder(diameter=0.8), flow.Plate(length=1.5, thick=0.3)),
+    "difference": lambda: flow.difference(
+        flow.Cylinder(diameter=1.0), flow.Polygon(corners=SQUARE + np.array([0.75, 0.0]))
+    ),
+    "scaled": lambda: flow.scaled(ELLIPSE, 0.5),
+}
 
 
-@pytest.mark.parametrize("shape", SHAPES)
+@cache
+def shape_of(name):
+    """An outline is searched for a second: when a test wants it, not when the tests are collected."""
+    return MAKERS[name]()
+
+
+@pytest.fixture
+def shape(request):
+    return shape_of(request.param)
+
+
+@pytest.mark.parametrize("shape", MAKERS, indirect=True)
 def test_distance_is_that_to_the_nearest_marker_and_the_normal_its_slope(shape):
     m = shape.markers(0.0, flow.Pose(), 0.004)
     x, y = POINTS[:, :200]
@@ -40,7 +55,7 @@ def test_distance_is_that_to_the_nearest_marker_and_the_normal_its_slope(shape):
     assert np.median((ahead - d)[near] / e) == pytest.approx(1, abs=1e-3)
 
 
-@pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.parametrize("shape", MAKERS, indirect=True)
 def test_markers_close_and_enclose_the_area(shape):
     m = shape.markers(0.0, flow.Pose(), 0.01)
     assert abs((m.normal_x * m.length).sum()) < 1e-9
@@ -55,12 +70,12 @@ def test_the_distance_to_a_square_is_exact():
     x, y = POINTS
     over = np.stack([np.abs(x) - 0.5, np.abs(y) - 0.5])
     exact = np.hypot(*np.maximum(over, 0)) + np.minimum(over.max(axis=0), 0)
-    assert SHAPES[0].distance(x, y)[0] == pytest.approx(exact, abs=1e-12)
-    assert SHAPES[0].thickness(0.0)[1][0] == pytest.approx(1.0, abs=0.02)
-    assert SHAPES[0].mass(0.0).moment == pytest.approx(1 / 6, rel=1e-3)
+    assert shape_of("square").distance(x, y)[0] == pytest.approx(exact, abs=1e-12)
+    assert shape_of("square").thickness(0.0)[1][0] == pytest.approx(1.0, abs=0.02)
+    assert shape_of("square").mass(0.0).moment == pytest.approx(1 / 6, rel=1e-3)
 
 
-@pytest.mark.parametrize("shape", SHAPES[1:3])
+@pytest.mark.parametrize("shape", ["outline", "distance"], indirect=True)
 def test_an_ellipse_by_its_outline_or_its_distance_is_the_ellipse(shape):
     x, y = POINTS
     right, got = ELLIPSE.distance(x, y), shape.distance(x, y)

@@ -18,7 +18,8 @@ from suchus.experiments.swim_3d.experiment import Swim3d
 from suchus.flow import signals
 from suchus.flow.added import added_mass
 from suchus.flow.compiled import PAD
-from suchus.water import space
+from suchus.water import setting
+from suchus.water.resolved import SwimSetting, resolved_swim
 
 pytestmark = [pytest.mark.validate, pytest.mark.usefixtures("validation_table")]
 
@@ -433,12 +434,12 @@ def test_the_box_around_the_swimming_robot(monkeypatch):
     In both it lies alike between the nodes: half a cell farther along, in a box of the same size, it is 0.7 % slower.
     """
     swim, sizes, found = Swim3d(), ("AHEAD", "BEHIND", "BESIDE", "ABOVE"), {}
-    motion, basin = swim._motion(-1), space.Basin(cells=64, viscosity=swim.viscosity, cycles=4)
-    default = tuple(getattr(space, name) for name in sizes)
+    motion, asked = swim._motion(-1), SwimSetting(axes=3, cells=64, viscosity=swim.viscosity, cycles=4)
+    default = tuple(getattr(setting, name) for name in sizes)
     for label, box in (("default", default), ("wide", (0.4, 0.85, 0.575, 0.4))):
         for name, size in zip(sizes, box, strict=True):
-            monkeypatch.setattr(space, name, size)
-        record = space.swim_in_space(swim.robot, motion, basin, progress=lambda _: None)
+            monkeypatch.setattr(setting, name, size)
+        record = resolved_swim(swim.robot, motion, asked, progress=lambda _: None)
         found[label] = np.array([float(record[name][-1]) for name in ("speed", "power")])
     print(f"robot at 64 cells a length, 4th cycle, speed and power in its box {found['default']}, wide {found['wide']}")
     about = "64 cells/L", "ahead, behind, beside, above {:g}, {:g}, {:g}, {:g} L".format(*default)

@@ -19,7 +19,7 @@ from suchus.flow import simulation
 from suchus.flow.compiled import PAD
 from suchus.flow.friction import Band, along_stations
 from suchus.robots import ROBOTS
-from suchus.water import Basin, Outline, cycle, fit, printed_wave, recoil, space
+from suchus.water import Outline, cycle, fit, printed_wave, recoil, resolved
 from suchus.water.sections import coefficients
 
 pytestmark = [pytest.mark.validate, pytest.mark.usefixtures("validation_table")]
@@ -211,8 +211,10 @@ def test_the_robot_swims_stably_but_its_sections_swing_too_far():
     behind = keulegan[outline.s[high > 0] > 2 / 3 * robot.length]
     speeds = {}
     for end in Band._fields:
-        with slipping(), rubbed(outline, end), patch.object(space, "check_swim_in_space", lambda *_: None):
-            swum = space.swim_in_space(robot, motion, Basin(cells=56, viscosity=1e-6, cycles=16))
+        with slipping(), rubbed(outline, end), patch.object(resolved, "check_resolved_swim", lambda *_, **__: None):
+            swum = resolved.resolved_swim(
+                robot, motion, resolved.SwimSetting(axes=3, cells=56, viscosity=1e-6, cycles=16)
+            )
         speeds[end] = swum.speed.values
         gain = speeds[end][-1] / speeds[end][-2] - 1
         print(f"the robot on 56 cells, {end}: {speeds[end][-1]:.3f} m/s, still gaining {gain:.1%} a cycle, "

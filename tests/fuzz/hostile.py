@@ -27,9 +27,10 @@ from suchus.capture import observe, read_tracks
 from suchus.capture.tracks import NEEDED
 from suchus.cli import main
 from suchus.cli.commands import COMMANDS
-from suchus.design import Crocodile, layout, servo_names, value_at, with_values
+from suchus.design import Robot, layout, servo_names, value_at, with_values
 from suchus.errors import SuchusError
 from suchus.hardware import read_map, straight, write_map
+from suchus.jobs.store import Store
 from suchus.land import Deaf, Limp, Locked, Push, Run, Weak, simulate
 from suchus.motion import Gait, check_limits
 from suchus.optimise import read_optimisation
@@ -37,7 +38,6 @@ from suchus.record import load, save
 from suchus.replay.frames import checked
 from suchus.report import load_result, render_page
 from suchus.study import Plan, Study, Vary, read_study
-from suchus.study.store import Store
 from suchus.viewer.replay import Player, takes
 from suchus.viewer.swim import films
 
@@ -276,7 +276,7 @@ def written(self: Range, name: str, dice: Random, how: Any = None, to: str | Non
 
 
 def robot_files(self: Range, dice: Random) -> None:
-    made = blueprint.read(written(self, "robot.toml", dice), Crocodile, suchus.ROBOTS)
+    made = blueprint.read(written(self, "robot.toml", dice), Robot, suchus.ROBOTS)
     check_limits(made, suchus.GAITS["belly_crawl"])
 
 

@@ -12,7 +12,7 @@ import pytest
 import xarray as xr
 
 from suchus.blueprint import MistakenFile
-from suchus.design import cable_joints, layout, servo_names
+from suchus.design import cable_joints, crocodile, layout, servo_names
 from suchus.errors import InvalidDesign, OutsideLimits
 from suchus.gaits import own_gait
 from suchus.hardware import (
@@ -109,7 +109,9 @@ def test_a_servo_too_weak_for_the_walk_is_named_with_its_share(robot, limbs_gait
     check_loads(robot, quick, borne)
     assert overloaded(borne) == []
     assert 0.2 < borne["LH_pitch"].torque < robot.hind_leg.servo.torque
-    weak = replace(robot, hind_leg=replace(robot.hind_leg, servo=replace(robot.hind_leg.servo, torque=0.5)))
+    weak = crocodile(
+        replace(robot.tables, hind_leg=replace(robot.hind_leg, servo=replace(robot.hind_leg.servo, torque=0.5)))
+    )
     borne = loads(weak, quick, cycles=1)
     load = borne["LH_pitch"]
     assert load.torque == pytest.approx(0.5)

@@ -4,7 +4,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from suchus.design import LEGS, joint_names, layout
+from suchus.design import LEGS, crocodile, joint_names, layout
 from suchus.errors import InvalidDesign
 from suchus.kinematics import body, landmarks
 from suchus.model import compile_model
@@ -13,10 +13,12 @@ from suchus.robots import ROBOTS
 CAIMAN = ROBOTS["caiman"]
 VARIANTS = {
     **{name: ROBOTS[name] for name in ROBOTS},
-    "other proportions": replace(
-        CAIMAN,
-        spine=replace(CAIMAN.spine, base=0.08, link=0.05),
-        tail=replace(CAIMAN.tail, joints=4, fin_segments=5, fin_length=0.3),
+    "other proportions": crocodile(
+        replace(
+            CAIMAN.tables,
+            spine=replace(CAIMAN.spine, base=0.08, link=0.05),
+            tail=replace(CAIMAN.tail, joints=4, fin_segments=5, fin_length=0.3),
+        )
     ),
 }
 

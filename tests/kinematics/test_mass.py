@@ -5,17 +5,19 @@ import numpy as np
 import pytest
 
 import suchus
-from suchus.design import joint_names
+from suchus.design import crocodile, joint_names
 from suchus.errors import InvalidDesign
 from suchus.kinematics import mass
 from suchus.model import compile_model, joint_addresses
 
 CAIMAN = suchus.ROBOTS["caiman"]
-LONG = replace(
-    CAIMAN,
-    spine=replace(CAIMAN.spine, link=0.08, link_mass=0.3),
-    tail=replace(CAIMAN.tail, joints=9, fin_segments=2, mass=0.8),
-    front_leg=replace(CAIMAN.front_leg, mass=0.4),
+LONG = crocodile(
+    replace(
+        CAIMAN.tables,
+        spine=replace(CAIMAN.spine, link=0.08, link_mass=0.3),
+        tail=replace(CAIMAN.tail, joints=9, fin_segments=2, mass=0.8),
+        front_leg=replace(CAIMAN.front_leg, mass=0.4),
+    )
 )
 
 
@@ -55,7 +57,7 @@ def test_the_cantilever_torque_is_the_static_servo_torque():
     mujoco.mj_forward(model, data)
     gravity = data.qfrc_bias[model.joint("spine_pitch_1").dofadr[0]]
     assert mass.cantilever_torque(CAIMAN) == pytest.approx(abs(gravity), rel=1e-6)
-    light = replace(CAIMAN, head=replace(CAIMAN.head, mass=0.02))
+    light = crocodile(replace(CAIMAN.tables, head=replace(CAIMAN.head, mass=0.02)))
     arm = 0.5 * (CAIMAN.thorax.shoulder + CAIMAN.head.snout) + 3 * CAIMAN.spine.link
     drop = mass.cantilever_torque(CAIMAN) - mass.cantilever_torque(light)
     assert drop == pytest.approx(0.20 * 9.81 * arm, rel=1e-9)

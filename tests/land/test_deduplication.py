@@ -8,7 +8,7 @@ import xarray as xr
 
 from suchus.control import Coordinated
 from suchus.land import Backlash, Ground, Limp, Locked, LostFoot, Offset, Push, Run, simulate
-from suchus.land.deduplication import Deduplication
+from suchus.land.loop import Deduplication
 
 COARSE = 0.01
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from suchus import hydro
-from suchus.land.meter import Meter
+from suchus.land.batch import Meter
 
 
 def test_power_is_torque_times_the_mean_of_the_speeds_before_and_after():

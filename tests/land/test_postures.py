@@ -3,6 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from suchus.design import crocodile
 from suchus.gaits import GAITS
 from suchus.land import Run, simulate
 from suchus.metrics import between, displacement, heading_change, roll_peak_to_peak
@@ -14,7 +15,7 @@ NAMES = ("low_crawl", "semi_erect", "high_walk")
 @pytest.fixture(scope="module")
 def limited(robot):
     front, hind = (replace(leg, servo=leg.servo.with_speed_line()) for leg in (robot.front_leg, robot.hind_leg))
-    return replace(robot, name="limited", front_leg=front, hind_leg=hind)
+    return crocodile(replace(robot.tables, name="limited", front_leg=front, hind_leg=hind))
 
 
 @pytest.fixture(scope="module")

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from suchus import blueprint
-from suchus.design import Crocodile, joint_names
+from suchus.design import Robot, crocodile, joint_names
 from suchus.errors import InvalidDesign, OutsideLimits, UnknownName, Unwritable
 from suchus.gaits import GAITS
 from suchus.kinematics.mass import GRAVITY
@@ -32,7 +32,7 @@ def any_robot(request, robot, long_tail):
         return robot
     odd = replace(robot.spine.yaw_servo, ki=1 / 3, kp=100 / 3, speed=22 / 3)
     leg = replace(robot.hind_leg, femur=0.086 + 1e-9 / 3, servo=odd)
-    return replace(long_tail, name="odd one", hind_leg=leg)
+    return crocodile(replace(long_tail.tables, name="odd one", hind_leg=leg))
 
 
 def poses(model, robot, count=5):
@@ -212,7 +212,7 @@ def test_a_folder_says_whose_it_is_and_what_is_missing(kind, robot, crawl_gait, 
     if kind == "usd":
         pytest.importorskip("pxr")
     folder = export(robot, crawl_gait, tmp_path / "it", kind)
-    assert blueprint.read(folder / "robot.toml", Crocodile, ROBOTS) == robot
+    assert blueprint.read(folder / "robot.toml", Robot, ROBOTS) == robot
     readme = (folder / "README.md").read_text()
     for file in folder.rglob("*"):
         if file.is_file() and file.name != "README.md":
@@ -220,7 +220,7 @@ def test_a_folder_says_whose_it_is_and_what_is_missing(kind, robot, crawl_gait, 
     if kind != "mjcf":
         left_out = {"urdf": unsaid, "usd": unsaid_in_usd}[kind]
         assert all(text in readme for text in left_out(robot))
-        stiffer = replace(robot, tail=replace(robot.tail, joint_stiffness=0.123))
+        stiffer = crocodile(replace(robot.tables, tail=replace(robot.tail, joint_stiffness=0.123)))
         assert "0.123 N m/rad" in "".join(left_out(stiffer))
     words = {
         "mjcf": ["gait", "pulley"],

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import suchus
-from suchus.design import joint_names, servo_names
+from suchus.design import crocodile, joint_names, servo_names
 from suchus.errors import InvalidDesign, OutsideLimits
 from suchus.kinematics import leg as leg_kinematics
 from suchus.model import compile_model, joint_addresses
@@ -101,7 +101,10 @@ def test_nothing_reaches_higher_than_the_stretched_robot():
 
 def test_a_longer_leg_makes_a_taller_posture():
     longer = replace(CAIMAN.hind_leg, femur=CAIMAN.hind_leg.femur + 0.02)
-    hips = [stand_up(replace(CAIMAN, hind_leg=leg)).postures[-1].hip_height for leg in (CAIMAN.hind_leg, longer)]
+    hips = [
+        stand_up(crocodile(replace(CAIMAN.tables, hind_leg=leg))).postures[-1].hip_height
+        for leg in (CAIMAN.hind_leg, longer)
+    ]
     assert hips[1] - hips[0] == pytest.approx(STRETCH * 0.02)
 
 

@@ -6,7 +6,7 @@ from math import pi
 import numpy as np
 import pytest
 
-from suchus.design import LEGS, joint_names
+from suchus.design import LEGS, crocodile, joint_names
 from suchus.gaits import GAITS
 from suchus.gaits.belly_crawl import LIMBS
 from suchus.kinematics.body import landmarks
@@ -67,13 +67,15 @@ def test_no_snout_is_higher_than_a_straight_robot(found, robot):
 
 
 def test_a_robot_whose_trunk_is_stiff_reaches_less(robot):
-    stiff = replace(robot, spine=replace(robot.spine, yaw_range=(-0.01, 0.01), pitch_range=(-0.01, 0.01)))
+    stiff = crocodile(
+        replace(robot.tables, spine=replace(robot.spine, yaw_range=(-0.01, 0.01), pitch_range=(-0.01, 0.01)))
+    )
     ours, theirs = (reached(one, CRAWL, standing=True, count=2**12).snout for one in (robot, stiff))
     assert np.ptp(theirs[:, 1]) < 0.1 * np.ptp(ours[:, 1])
 
 
 def test_a_leg_keeps_to_a_narrow_range_and_the_trunk_off_the_ground(robot):
-    narrow = replace(robot, hind_leg=replace(robot.hind_leg, knee_range=(0.0, 1.0)))
+    narrow = crocodile(replace(robot.tables, hind_leg=replace(robot.hind_leg, knee_range=(0.0, 1.0))))
     for standing in (False, True):
         some = reached(narrow, CRAWL, standing=standing, count=2**14)
         assert some.angles[:, joint_names(robot).index("LH_knee")].max() <= 1.0

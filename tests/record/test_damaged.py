@@ -12,8 +12,8 @@ import pytest
 import xarray as xr
 
 from suchus.errors import IncompatibleRecord, SuchusError, UnreadableFile, Unwritable, shortened
+from suchus.reading import LARGEST
 from suchus.record import check_name, check_writable, load, new_folder, read_json, read_toml, save
-from suchus.record.reading import LARGEST
 
 
 @pytest.fixture

@@ -33,6 +33,13 @@ def test_a_record_comes_back_equal(record, tmp_path):
     }
 
 
+def test_a_path_may_be_a_text(record, tmp_path):
+    file = save(record, str(tmp_path / "r.nc"))
+    xr.testing.assert_identical(load(str(file)), record)
+    with pytest.raises(UnreadableFile, match="there is no file"):
+        load(str(tmp_path / "none.nc"))
+
+
 def test_saving_leaves_the_record_alone(record, tmp_path):
     before = record.copy(deep=True)
     save(record, tmp_path / "r.nc")

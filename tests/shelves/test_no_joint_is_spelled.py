@@ -49,7 +49,7 @@ COLUMNS = {
     "hydro/forces.py": "rows of the table of pieces and of inertia",
     "design/pieces.py": "a row of the table of pieces",
     "record/provenance.py": "letters of a digest",
-    "study/makers.py": "letters of a digest",
+    "jobs/made_by.py": "letters of a digest",
     "study/claims_table.py": "letters of a digest",
 }
 """Files with such a number in brackets, and what it means there."""

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial import cKDTree
 
-from suchus.design import LEGS, Crocodile, joint_names, layout
+from suchus.design import LEGS, crocodile, joint_names, layout
 from suchus.errors import InvalidDesign, SuchusError
 from suchus.model import compile_model, joint_addresses
 from suchus.robots import ROBOTS
@@ -38,7 +38,7 @@ def shelf(request):
     return ROBOTS[request.param]
 
 
-@pytest.fixture(scope="module", params=[name for name in sorted(ROBOTS) if isinstance(ROBOTS[name], Crocodile)])
+@pytest.fixture(scope="module", params=[name for name in sorted(ROBOTS) if ROBOTS[name].tables is not None])
 def animal(request):
     """The robots that wear a crocodile's skin."""
     return ROBOTS[request.param]
@@ -208,20 +208,22 @@ def robots(draw):
         return replace(part, **{name: getattr(part, name) * draw(share) for name in names})
 
     try:
-        return replace(
-            base,
-            name="drawn",
-            pelvis=scaled(base.pelvis, "length", "width", "height"),
-            spine=scaled(base.spine, "base", "link", "radius"),
-            thorax=scaled(base.thorax, "shoulder", "width", "height"),
-            head=scaled(base.head, "snout", "width", "height"),
-            hind_leg=scaled(base.hind_leg, "hip_offset", "femur", "tibia", "foot_radius", "radius"),
-            front_leg=scaled(base.front_leg, "hip_offset", "femur", "tibia", "foot_radius", "radius"),
-            tail=replace(
-                scaled(base.tail, "offset", "root", "plate", "gap", "fin_length", "radius_root", "radius_tip"),
-                joints=draw(st.integers(1, 12)),
-                fin_segments=draw(st.integers(1, 6)),
-            ),
+        return crocodile(
+            replace(
+                base.tables,
+                name="drawn",
+                pelvis=scaled(base.pelvis, "length", "width", "height"),
+                spine=scaled(base.spine, "base", "link", "radius"),
+                thorax=scaled(base.thorax, "shoulder", "width", "height"),
+                head=scaled(base.head, "snout", "width", "height"),
+                hind_leg=scaled(base.hind_leg, "hip_offset", "femur", "tibia", "foot_radius", "radius"),
+                front_leg=scaled(base.front_leg, "hip_offset", "femur", "tibia", "foot_radius", "radius"),
+                tail=replace(
+                    scaled(base.tail, "offset", "root", "plate", "gap", "fin_length", "radius_root", "radius_tip"),
+                    joints=draw(st.integers(1, 12)),
+                    fin_segments=draw(st.integers(1, 6)),
+                ),
+            )
         )
     except SuchusError:
         return base

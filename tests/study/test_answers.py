@@ -1,6 +1,5 @@
 """Which parameters decide, on quantities whose answer is known; measures in company and alone."""
 
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -8,8 +7,8 @@ import pytest
 import xarray as xr
 
 from suchus.errors import Unwritable
-from suchus.land import Run, simulate
-from suchus.study import MEASURES, Arm, Claims, Plan, Study, Vary, conduct
+from suchus.land import Run
+from suchus.study import Arm, Claims, Plan, Study, Vary, conduct
 from suchus.study.answers import agreement, first_order, share_interval
 
 
@@ -74,16 +73,6 @@ def test_a_claim_that_always_turns_the_same_way_is_no_chance():
     told = agreement(one.assign(holds=(("claim", "sample"), often)), one)
     assert told.chance == pytest.approx(2 * 2 / 2**7)  # seven of seven, either way, two claims
     assert told.claim == "b"
-
-
-def test_every_measure_gives_a_run_the_same_bytes_in_company_as_alone(robot, crawl_gait):
-    runs = [Run(robot=robot, gait=replace(crawl_gait, period=4.0 - i), noise=0.01, seed=i) for i in range(3)]
-    record = simulate(runs, duration=2.0, timestep=0.01)
-    for name, measure in MEASURES.items():
-        together = measure(record)
-        for i in range(3):
-            alone = measure(record.isel(run=i))
-            assert together.isel(run=i).values.tobytes() == alone.values.tobytes(), name
 
 
 def test_an_arm_wins_over_what_varies_and_every_point_has_each(robot, crawl_gait):

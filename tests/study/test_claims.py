@@ -10,13 +10,13 @@ import pytest
 from suchus.catalog import Catalog
 from suchus.errors import IncompatibleRecord, UnreadableFile
 from suchus.gaits import GAITS
+from suchus.jobs.made_by import deciding
 from suchus.study import Claims, answer_finished, claims, conduct_claims
 from suchus.study.answers import first_order
 from suchus.study.claim_measures import RUNS, asked_rules
 from suchus.study.claims_page import OUTCOME, SHARES, TABLE, write_claims
 from suchus.study.claims_table import claim_row, deciders, turned
 from suchus.study.claims_table import shares as shares_of
-from suchus.study.makers import deciding
 from suchus.verdict.shares import Share, digest
 
 EVERY = Catalog.beside
@@ -39,14 +39,14 @@ def small():
 def conducted(small, tmp_path_factory):
     folder = tmp_path_factory.mktemp("claims")
     places = []
-    record = conduct_claims(small, folder, progress=lambda place, told: places.append(place))
+    record = conduct_claims(small, folder, progress=lambda stage, _: places.append(stage.partition(":")[0]))
     some = record.isel(claim=slice(0, 2))  # every further claim is a further picture
     return record, write_claims(some, folder / "result"), list(dict.fromkeys(places)), folder
 
 
 def test_a_time_step_agrees_with_itself_and_is_taken(conducted):
     record, _, places, _ = conducted
-    assert places == ["compared_10ms", "runs"]  # FINE is 10 ms here: the same store, asked twice
+    assert places == ["compared 10ms", "runs"]  # FINE is 10 ms here: the same store, asked twice
     (tried,) = json.loads(record.attrs["agreed"])
     assert (tried["timestep"], tried["same"], tried["wide"], tried["chance"]) == (0.01, 1.0, 0.0, 1.0)
     assert record.attrs["timestep"] == 0.01

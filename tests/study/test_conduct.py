@@ -6,6 +6,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 from dataclasses import replace
 
@@ -14,14 +15,12 @@ import pytest
 import xarray as xr
 
 from suchus.errors import IncompatibleRecord, OutsideLimits, Unwritable
+from suchus.jobs import Died, ProcessDied, processes
+from suchus.jobs.store import MARK, RESULTS, TABLE, Store, packed, unpacked
 from suchus.land import Run, simulate
 from suchus.metrics import displacement
 from suchus.record import load
 from suchus.study import Plan, Study, Vary, conduct, read_study, run_chunk
-from suchus.study.conduct import ProcessesDied
-from suchus.study.packing import packed, unpacked
-from suchus.study.store import MARK, RESULTS, TABLE, Store
-from suchus.workers import Died
 
 PAGE = """
 name = "strokes"
@@ -86,14 +85,16 @@ def test_threads_and_company_do_not_change_a_byte(asked, tmp_path, monkeypatch):
 
 def test_progress_counts_up_to_all_runs(asked, tmp_path):
     told = []
-    conduct(asked, tmp_path / "s", progress=told.append)
-    done = [t.done for t in told]
-    assert done == sorted(done)
-    assert (told[-1].done, told[-1].total, told[-1].failed, told[-1].left) == (5, 5, 0, 0.0)
-    assert "5 of 5 runs" in str(told[-1])
-    assert "0 s left" in str(told[-1])
+    conduct(asked, tmp_path / "s", progress=lambda *said: told.append(said))
+    shares = [share for _, share in told]
+    assert shares == sorted(shares)
+    stage, share = told[-1]
+    assert share == 1.0
+    assert stage.startswith("5 of 5 runs, ")
+    assert stage.endswith("/s, 0 s left")
 
 
+@pytest.mark.slow("a process is killed, and the study run twice")
 def test_a_killed_study_loses_at_most_the_running_batch_and_ends_with_the_same_bytes(tmp_path):
     page = tmp_path / "strokes.toml"
     page.write_text(PAGE)
@@ -131,14 +132,19 @@ def test_drafts_and_torn_parts_of_a_crash_are_mended(asked, tmp_path):
 
 
 def test_an_interrupt_keeps_what_was_finished(asked, tmp_path):
-    def stop(told):
-        if told.done >= 2.5:
+    before = threading.active_count()
+
+    def stop(stage, share):
+        if list((tmp_path / "s" / "parts").glob("*.nc")):
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
         conduct(asked, tmp_path / "s", progress=stop)
-    assert [p.name for p in (tmp_path / "s" / "parts").iterdir()] == ["000000.nc"]
+    assert threading.active_count() == before
+    (kept,) = (tmp_path / "s" / "parts").iterdir()
+    when = kept.stat().st_mtime_ns
     conduct(asked, tmp_path / "s")
+    assert kept.stat().st_mtime_ns == when  # not run again
     conduct(asked, tmp_path / "whole")
     assert contents(tmp_path / "s") == contents(tmp_path / "whole")
 
@@ -169,8 +175,8 @@ def test_a_batch_in_which_all_fail_still_has_its_columns_in_the_end(asked, tmp_p
     assert (results.error != "").values.tolist() == [True, True, False]
     told = []
     (tmp_path / "s" / "parts" / "000001.nc").unlink()
-    conduct(high, tmp_path / "s", progress=told.append)
-    assert told[-1].failed == 2
+    conduct(high, tmp_path / "s", progress=lambda stage, _: told.append(stage))
+    assert told[-1].endswith(", 2 failed")
 
 
 def test_a_run_that_comes_apart_says_when(asked):
@@ -214,7 +220,7 @@ def test_a_folder_of_something_else_or_a_busy_store_is_refused(asked, tmp_path):
     with pytest.raises(Unwritable, match="cannot be written"):
         conduct(asked, tmp_path / "file" / "below")
 
-    def again(told):
+    def again(stage, share):
         with pytest.raises(Unwritable, match="by another process"):
             conduct(asked, tmp_path / "s")
         raise KeyboardInterrupt
@@ -234,17 +240,17 @@ def test_a_table_comes_back_from_its_file_as_it_was(asked, tmp_path):
     assert len(packed(table).data_vars) == 3
     store = Store(tmp_path / "s", asked)
     store.put(0, table)
-    back = store.table(0)
+    back = store.get(0)
     xr.testing.assert_identical(back.drop_attrs(deep=False), table.drop_attrs(deep=False))
     assert list(back.data_vars) == list(table.data_vars)
     assert packed(words_alone := table[["arm"]]) is words_alone
 
 
+@pytest.mark.slow("a second run, by processes of its own")
 def test_processes_do_not_change_a_byte_and_what_an_interrupt_leaves_is_finished(asked, tmp_path):
     told = []
 
-    def stop(now):
-        told.append(now)
+    def stop(stage, share):
         if list((tmp_path / "two" / "parts").glob("*.nc")):
             raise KeyboardInterrupt
 
@@ -255,10 +261,11 @@ def test_processes_do_not_change_a_byte_and_what_an_interrupt_leaves_is_finished
     kept = list((tmp_path / "two" / "parts").glob("*.nc"))
     assert len(kept) == 1
     when = kept[0].stat().st_mtime_ns
-    conduct(asked, tmp_path / "two", progress=told.append, jobs=2)
+    conduct(asked, tmp_path / "two", progress=lambda *said: told.append(said), jobs=2)
     assert kept[0].stat().st_mtime_ns == when  # not run again
     assert contents(tmp_path / "two") == contents(tmp_path / "one")
-    assert (told[-1].done, told[-1].total, told[-1].failed) == (5, 5, 0)
+    assert told[-1][0].startswith("5 of 5 runs, ")
+    assert told[-1][1] == 1.0
 
 
 def test_no_process_and_processes_beside_a_cluster_are_refused(asked, tmp_path):
@@ -270,9 +277,6 @@ def test_no_process_and_processes_beside_a_cluster_are_refused(asked, tmp_path):
 
 
 def test_a_batch_whose_processes_die_is_told(asked, tmp_path, monkeypatch):
-    room = sys.modules[conduct.__module__]
-    monkeypatch.setattr(room, "side_by_side", lambda *_, **__: (said for said in [(1, Died(-9))]))
-    with pytest.raises(
-        ProcessesDied, match="the process at batch 1 of study 'strokes' ended with exit code -9, 3 times"
-    ):
+    monkeypatch.setattr(processes, "side_by_side", lambda *_, **__: (said for said in [(1, Died(-9))]))
+    with pytest.raises(ProcessDied, match="the process at batch 1 of study 'strokes' ended with exit code -9, 3 times"):
         conduct(asked, tmp_path / "s", jobs=2)

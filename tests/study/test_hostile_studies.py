@@ -12,13 +12,15 @@ import numpy as np
 import pytest
 
 from suchus.cli import main
+from suchus.control import PatternGenerator
 from suchus.errors import IncompatibleRecord, InvalidDesign, SuchusError
+from suchus.jobs import NoCluster, connected
+from suchus.jobs.cluster import _check_versions, _reach
+from suchus.jobs.store import Store
 from suchus.land import Run, crawl
 from suchus.optimise import Optimisation
 from suchus.optimise.spec import Aim
-from suchus.study import MEASURES, NoCluster, Plan, Study, Vary, conduct, connected, read_study, run_chunk
-from suchus.study.cluster import _check_versions, _reach
-from suchus.study.store import Store
+from suchus.study import MEASURES, Plan, Study, Vary, conduct, read_study, run_chunk
 
 PAGE = """
 name = "s"
@@ -129,6 +131,21 @@ def test_whole_numbers_of_a_range_are_whole_and_equally_frequent(asked):
         replace(asked, vary=(replace(vary, low=4.5),), design="sobol", samples=4)
     with pytest.raises(InvalidDesign, match="takes whole numbers; a search moves in real ones"):
         Optimisation(name="x", run=asked.run, vary=(vary,), aims=(Aim(name="displacement"),))
+
+
+def test_a_file_names_its_controller_and_the_fields_of_it(tmp_path):
+    page = tmp_path / "s.toml"
+    page.write_text('control = {kind = "pattern_generator", drive = 2.5}\n' + PAGE)
+    assert read_study(page).run.control == PatternGenerator(drive=2.5)
+    for table, words in (
+        ('{kind = "patern_generator"}', "Did you mean 'pattern_generator'"),
+        ("{drive = 2.5}", "a control needs a kind"),
+        ('{kind = "walking", drive = 2.5}', "the controller walking has a mistake: drive is not known"),
+        ('{kind = "walking", bend = "x"}', "bend"),
+    ):
+        page.write_text(f"control = {table}\n" + PAGE)
+        with pytest.raises(SuchusError, match=words):
+            read_study(page)
 
 
 def test_names_do_wherever_a_robot_or_a_gait_is_asked_for(asked, tmp_path, robot, limbs_gait, crawl_gait):

@@ -1,40 +1,19 @@
-"""What each rule says of measures, on both sides of everything that it looks at."""
+"""How rules judge; what holds for those of every experiment is in ``tests/shelves/test_every_rule.py``."""
 
+import subprocess
+import sys
 from dataclasses import replace
 from math import nan
 
 import pytest
 
-from suchus.errors import IncompatibleRecord
-from suchus.experiments import EXPERIMENTS
-from suchus.paper import CLAIMS
-from suchus.verdict import RULES, Clause, Share, judge
+import suchus.experiments
+from suchus.errors import IncompatibleRecord, InvalidDesign
+from suchus.verdict import RULES, Clause, Share, examples_of, judge, rules_of
 from suchus.verdict.shares import ROBUST
 
-from .examples import ALL
-
+SWINGS = examples_of("displacement")["tail_swing"]
 SHARE = Share(claim="tail_swing", share=0.95, low=0.9, high=0.97, designs=100, turned_by="", at=None, above=False)
-
-
-@pytest.mark.parametrize(("claim", "measures", "word"), [(c, m, w) for c, rows in ALL.items() for m, w in rows])
-def test_a_rule_says_of_measures_what_they_mean(claim, measures, word):
-    verdict = judge(RULES[claim], measures)
-    assert verdict.verdict == word
-    assert len(verdict.why) > 20
-
-
-def test_every_rule_has_examples_of_two_words_at_least():
-    assert set(ALL) == set(RULES)
-    for claim, rows in ALL.items():
-        assert len({word for _, word in rows}) > 1, claim
-
-
-def test_every_rule_is_of_a_claim_and_of_an_experiment_that_measures():
-    for claim, rule in RULES.items():
-        assert claim in CLAIMS
-        assert rule.experiment in EXPERIMENTS
-        assert rule.holds or (rule.kind == "construction" and CLAIMS[claim].value is not None), claim
-        assert all(clause.why for clause in rule.holds), claim
 
 
 def test_a_measure_that_is_missing_is_named():
@@ -60,11 +39,11 @@ def test_a_clause_compares(relation, below, at, above):
 
 
 def test_a_verdict_is_fragile_where_other_designs_say_otherwise():
-    measures = ALL["tail_swing"][0][0]  # reproduced
+    measures = SWINGS[0][0]  # reproduced
     for share, held in ((ROBUST + 0.01, False), (ROBUST - 0.01, True)):
         verdict = judge(RULES["tail_swing"], measures, {"tail_swing": replace(SHARE, share=share)})
         assert verdict.fragile is held
-    contradicted = ALL["tail_swing"][1][0]
+    contradicted = SWINGS[1][0]
     for share, held in ((1 - ROBUST - 0.01, False), (1 - ROBUST + 0.01, True)):
         verdict = judge(RULES["tail_swing"], contradicted, {"tail_swing": replace(SHARE, share=share)})
         assert verdict.fragile is held
@@ -72,6 +51,33 @@ def test_a_verdict_is_fragile_where_other_designs_say_otherwise():
 
 
 def test_what_was_built_in_is_not_fragile():
-    measures = ALL["spine_sinusoidal"][0][0]
+    measures = examples_of(RULES["spine_sinusoidal"].experiment)["spine_sinusoidal"][0][0]
     share = replace(SHARE, claim="spine_sinusoidal", share=0.1)
     assert not judge(RULES["spine_sinusoidal"], measures, {"spine_sinusoidal": share}).fragile
+
+
+def test_rules_are_read_without_their_experiments():
+    code = "import sys; from suchus.verdict import RULES; [*RULES]; print({'numpy', 'mujoco'} & {*sys.modules})"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "set()"
+
+
+def test_a_rule_beside_another_experiment_is_refused(tmp_path, monkeypatch):
+    """And one file can hold a question, its rules and their examples."""
+    text = "from suchus.verdict import Rule\nRULES = ({},)\n{}\n"
+    rule = 'Rule(claim="joint_pid", experiment={!r}, measure="x", why="because")'
+    examples = "EXAMPLES = {'joint_pid': [({'x': 1.0}, 'reproduced')]}"
+    (tmp_path / "strange.py").write_text(text.format(rule.format("displacement"), examples))
+    (tmp_path / "whole.py").write_text(text.format(rule.format("whole"), examples))
+    monkeypatch.setattr(suchus.experiments, "__path__", [*suchus.experiments.__path__, str(tmp_path)])
+    with pytest.raises(InvalidDesign, match=r"RULES of strange hold Rule.*no Rule of this experiment"):
+        rules_of("strange")
+    assert [rule.claim for rule in rules_of("whole")] == ["joint_pid"]
+    assert examples_of("whole") == {"joint_pid": [({"x": 1.0}, "reproduced")]}
+    for name in ("strange", "whole"):
+        monkeypatch.delitem(sys.modules, f"suchus.experiments.{name}")
+
+
+def test_an_experiment_without_rules_has_none():
+    assert rules_of("turning") == ()
+    assert rules_of("of no shelf") == ()

@@ -53,7 +53,7 @@ def test_it_walks_where_it_is_told_to_and_swims_again():
     for swims in (False, True):
         assert session.switch("swims", swims) == ""
         session.advance(0.02)
-        asked.append(session._live._command.targets.copy())
+        asked.append(session._live._loop.command.targets.copy())
     assert np.abs(asked[1] - asked[0]).max() > 0.5  # limbs on the ground, or back along the body
     session.reset()
     session.advance(0.05)

@@ -2,7 +2,9 @@ import numpy as np
 
 from suchus import flow
 from suchus.flow import swimmer
-from suchus.water import Outline, Tether, fit, immersed, printed_wave
+from suchus.water import Outline, fit, printed_wave
+from suchus.water.immersed import immersed
+from suchus.water.resolved import SwimSetting
 
 
 def _books(robot):
@@ -12,7 +14,7 @@ def _books(robot):
     """
     cells = 48
     shape = immersed(Outline(robot, cells + 1), fit(robot, printed_wave(robot)).swim, grow=0.5)
-    grid = Tether(cells=cells, viscosity=1e-3, cycles=1).grid(robot.length, (3.5, 2.0))
+    grid = SwimSetting(cells=cells, viscosity=1e-3, cycles=1).grid(robot.length)
     body = flow.FreeBody(shape=shape, start=(0.5 * robot.length, 0.0))
     sim = flow.Simulation(flow.Setup(grid=grid, viscosity=1e-3, density=1000.0, bodies=(body,), courant=0.3))
     sim.control(0.2 * robot.length)

@@ -6,10 +6,13 @@ import pytest
 import suchus
 from suchus.errors import InvalidDesign, OutsideLimits
 from suchus.motion import Swim
-from suchus.water import ExactWave, Outline, Tether, free_swim, immersed, tether, towed
+from suchus.water import ExactWave, Outline
+from suchus.water.immersed import immersed
+from suchus.water.resolved import HELD, ON_THE_SPOT, SwimSetting, check_resolved_swim, resolved_swim, towed_drag
 
 MOTION = Swim(name="wave", frequency=1.0, yaw=(0.35, 0.15, 0.1), yaw_lag=(0.1, -0.1, -0.3), tail=0.75, tail_lag=-0.1)
-COARSE = Tether(cells=32, viscosity=1e-3, cycles=1)
+COARSE = SwimSetting(cells=32, viscosity=1e-3, cycles=1)
+TETHERED = replace(COARSE, free=HELD)
 
 
 def mirrored(motion: Swim) -> Swim:
@@ -34,13 +37,13 @@ def test_a_motion_grows_from_a_straight_body_at_rest(robot):
 
 
 def test_a_body_that_does_not_move_feels_nothing(robot):
-    record = tether(robot, replace(MOTION, yaw=(0.0, 0.0, 0.0), tail=0.0), COARSE)
+    record = resolved_swim(robot, replace(MOTION, yaw=(0.0, 0.0, 0.0), tail=0.0), TETHERED)
     assert float(abs(record.thrust).max()) < 1e-9
     assert float(abs(record.joint_torque).max()) < 1e-9
 
 
 def test_a_mirrored_start_gives_a_mirrored_track(robot):
-    here, there = (free_swim(robot, motion, COARSE) for motion in (MOTION, mirrored(MOTION)))
+    here, there = (resolved_swim(robot, motion, COARSE) for motion in (MOTION, mirrored(MOTION)))
     assert float(here.speed[-1]) == pytest.approx(float(there.speed[-1]), abs=1e-4)
     np.testing.assert_allclose(here.snout_y, -there.snout_y, atol=1e-4)
     assert float(abs(here.snout_y).max()) > 1e-3
@@ -63,7 +66,7 @@ class _Flat:
 
 def test_a_reversed_wave_gives_a_reversed_thrust(robot):
     to_tail, to_head = (
-        float(tether(robot, ExactWave(name="flat", wave=_Flat(robot.length, sign)), COARSE).thrust.mean())
+        float(resolved_swim(robot, ExactWave(name="flat", wave=_Flat(robot.length, sign)), TETHERED).thrust.mean())
         for sign in (-1, 1)
     )
     assert to_tail > 0 > to_head
@@ -71,13 +74,13 @@ def test_a_reversed_wave_gives_a_reversed_thrust(robot):
 
 def test_a_towed_body_is_dragged_more_than_a_plate_and_less_than_a_wall(robot):
     speed, setting = 0.1, COARSE
-    drag = towed(robot, speed, setting, lengths=2.5)
+    drag = towed_drag(robot, speed, setting, lengths=2.5)
     plate = 2 * 0.664 * 1000.0 * speed**2 * robot.length / np.sqrt(speed * robot.length / setting.viscosity)
     assert plate < drag < 0.5 * 1000.0 * speed**2 * robot.length
 
 
 def test_a_longer_box_holds_the_same_body(robot):
-    record = free_swim(robot, MOTION, replace(COARSE, box=(3.0, 1.5)))
+    record = resolved_swim(robot, MOTION, replace(COARSE, box=(3.0, 1.5)))
     assert float(abs(record.speed[-1])) > 0
 
 
@@ -91,8 +94,39 @@ def test_a_box_too_small_for_the_body_is_refused(box, said):
 
 def test_impossible_swims_are_refused(robot):
     with pytest.raises(OutsideLimits, match="tail_cable"):
-        free_swim(robot, replace(MOTION, frequency=3.0), COARSE)
+        resolved_swim(robot, replace(MOTION, frequency=3.0), COARSE)
     with pytest.raises(InvalidDesign, match="cells"):
-        Tether(cells=8, viscosity=1e-3, cycles=1)
+        SwimSetting(cells=8, viscosity=1e-3, cycles=1)
     with pytest.raises(InvalidDesign, match="boundary layer"):
-        tether(suchus.ROBOTS["caiman"], MOTION, replace(COARSE, viscosity=1e-6))
+        resolved_swim(suchus.ROBOTS["caiman"], MOTION, replace(TETHERED, viscosity=1e-6))
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"axes": 4}, "setting.axes is 4; 2 is a slice and 3 the body in space"),
+        (
+            {"limbs": True, "tail_height": 0.1},
+            "setting.tail_height, limbs is for a body in space, and",
+        ),
+        ({"axes": 3, "blunt": 1.75}, "setting.blunt is for a slice, and setting.axes is 3: leave it out"),
+        ({"axes": 3, "cells": 2048}, "cells is 2048"),
+    ],
+)
+def test_a_setting_of_the_other_kind_is_refused(given, said):
+    with pytest.raises(InvalidDesign, match=said):
+        replace(COARSE, **given)
+    assert replace(COARSE, cells=2048).cells == 2048
+
+
+def test_a_free_body_is_given_no_motion_of_its_head(robot):
+    with pytest.raises(InvalidDesign, match=r"turn of the head are 0\+0j m and 0.1\+0j rad, and the body is free"):
+        check_resolved_swim(robot, MOTION, COARSE, turn=0.1 + 0j)
+    check_resolved_swim(robot, MOTION, TETHERED, turn=0.1 + 0j)
+
+
+def test_a_slice_kept_from_moving_on_stays_and_sways(robot):
+    record = resolved_swim(robot, MOTION, replace(COARSE, free=ON_THE_SPOT), progress=lambda _: None)
+    assert float(abs(record.speed).max()) == 0.0
+    assert float(np.ptp(record.centre_x.values)) == 0.0
+    assert float(np.ptp(record.centre_y.values)) > 1e-3

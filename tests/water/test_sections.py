@@ -10,6 +10,7 @@ from suchus.atlas import sections
 from suchus.atlas.outcome import Outcome, compute
 from suchus.design.water import Water
 from suchus.errors import InvalidDesign, UnreadableFile
+from suchus.progress import silent
 from suchus.water.sections import TABLE, attached, coefficients, held_out, likely, measured, points, table, write_table
 
 
@@ -132,7 +133,7 @@ def test_another_file_is_no_table(tmp_path, text):
 
 def test_a_flow_of_the_table_is_computed():
     (case,) = [one for one in sections.cases() if one.name == "section_1_1"]
-    found = compute(case, quick=True, tell=lambda share: None)
+    found = compute(case, quick=True, progress=silent)
     assert not found.failed
     assert found.curves["drag"][1, -1] == pytest.approx(attached(1.0)[0], rel=0.25)
     assert found.curves["added"][1, -1] == pytest.approx(attached(1.0)[1], rel=0.25)

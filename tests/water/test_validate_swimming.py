@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 
 from suchus.robots import ROBOTS
-from suchus.water import Swum, Tether, fit, free_swim, printed_wave, tether
+from suchus.water import Swum, fit, printed_wave
+from suchus.water.resolved import HELD, SwimSetting, resolved_swim
 
 pytestmark = pytest.mark.validate
 
@@ -26,8 +27,9 @@ def grids():
     fitted, viscosity = fit(robot, printed_wave(robot)), robot.length**2 / REYNOLDS
     rows = {}
     for cells in CELLS:
-        held = tether(robot, fitted.swim, Tether(cells=cells, viscosity=viscosity, cycles=3), turn=fitted.head)
-        free = free_swim(robot, fitted.swim, Tether(cells=cells, viscosity=viscosity, cycles=CYCLES, frames=1))
+        setting = SwimSetting(cells=cells, viscosity=viscosity, cycles=3, free=HELD)
+        held = resolved_swim(robot, fitted.swim, setting, turn=fitted.head)
+        free = resolved_swim(robot, fitted.swim, SwimSetting(cells=cells, viscosity=viscosity, cycles=CYCLES))
         swum = Swum.of(free, 1.0)
         rows[cells] = {
             "speed": swum.speed,

@@ -4,9 +4,9 @@ A ``Case`` is a flow that is computed once; a ``Row`` is one published data set 
 a row follows from the scatter of its sources, before anything is computed.
 """
 
-from suchus.atlas.case import Case, Curves, Effort, Row, Tell, bound
+from suchus.atlas.case import Case, Curves, Effort, Row, bound
 from suchus.atlas.comparison import Comparison, compare, rms_over_peak
-from suchus.atlas.computing import FlowProgress, compute_all, finished
+from suchus.atlas.computing import compute_all, finished_outcome
 from suchus.atlas.outcome import Outcome, compute, digest_of, load_outcome, save_outcome
 from suchus.atlas.published import Published, published
 from suchus.atlas.refine import refined
@@ -22,19 +22,17 @@ __all__ = [
     "Comparison",
     "Curves",
     "Effort",
-    "FlowProgress",
     "Outcome",
     "Published",
     "Row",
     "Skin",
-    "Tell",
     "bound",
     "chosen",
     "compare",
     "compute",
     "compute_all",
     "digest_of",
-    "finished",
+    "finished_outcome",
     "load_outcome",
     "published",
     "read_skin",

@@ -6,8 +6,7 @@ from typing import Literal
 
 import numpy as np
 
-Tell = Callable[[float], None]
-"""Takes the share of a run that is done [-]."""
+from suchus.progress import Progress
 
 Curves = Mapping[str, np.ndarray]
 """Results of a flow by name: a curve of shape (2, point), abscissa and ordinate, or a number of shape ()."""
@@ -41,7 +40,7 @@ class Case:
     """Name of the flow, and of the file of its outcome."""
     setup: str
     """Domain, motion and averaging in one or two sentences; ``{cells}`` stands for the cells."""
-    run: Callable[[Effort, Tell], Curves]
+    run: Callable[[Effort, Progress], Curves]
     """Function that computes its curves."""
     full: Effort
     """The effort of a judged run."""

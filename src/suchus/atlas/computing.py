@@ -1,33 +1,27 @@
 """Flows side by side, each in a process of its own. What is finished is kept, whatever happens to the others."""
 
-from collections.abc import Callable, Generator, Iterable, Sequence
-from contextlib import closing, suppress
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
+from typing import Any
 
-from suchus import workers
-from suchus.atlas.case import Case, Tell
+from suchus.atlas.case import Case
 from suchus.atlas.outcome import Outcome, compute, digest_of, load_outcome, save_outcome
 from suchus.errors import UnreadableFile
-
-_STAGE = "computing"  # a flow has one stage
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FlowProgress:
-    """Progress of the computation of a flow."""
-
-    case: str
-    """Name of the flow."""
-    share: float
-    """Share of it that is done [-]."""
-    outcome: Outcome | None = None
-    """Its outcome, when it has ended; before None."""
+from suchus.jobs import Job, deciding, finish, place_for
+from suchus.progress import Progress, silent
 
 
 def compute_all(
-    cases: Iterable[Case], folder: Path, *, jobs: int, quick: bool, tell: Callable[[FlowProgress], None]
+    cases: Iterable[Case],
+    folder: Path,
+    *,
+    jobs: int,
+    quick: bool,
+    client: Any = None,
+    each: Callable[[str], Progress] = lambda _: silent,
+    finished: Callable[[Outcome], None] = lambda _: None,
 ) -> dict[str, Outcome]:
     """Compute flows that are not there yet, ``jobs`` at a time, and return the outcomes of all by name.
 
@@ -38,29 +32,42 @@ def compute_all(
         folder: of the outcomes.
         jobs: processes at a time, which share the threads; with 1 all is done here.
         quick: whether only a trial is wanted.
-        tell: called with the progress of each flow.
+        client: a ``distributed.Client``, whose workers then compute the flows; this machine if None.
+        each: returns what is told how far a flow is, by its name.
+        finished: called with each outcome when it is there, with those of an earlier start first.
 
     Raises:
         Unwritable: an outcome cannot be written.
+        NoCluster: the cluster was lost.
     """
-    done, left = dict[str, Outcome](), list[Case]()
-    for case in cases:
-        old = finished(case, folder, quick=quick)
-        if old is None:
-            left.append(case)
-        else:
-            done[case.name] = old
-            tell(FlowProgress(case=case.name, share=1.0, outcome=old))
-    with closing(_computed(left, jobs, quick, tell)) as outcomes:
-        for outcome in outcomes:
-            done[outcome.case] = outcome
-            if outcome.digest:  # that of a process that died says nothing of the flow
-                save_outcome(outcome, folder)
-            tell(FlowProgress(case=outcome.case, share=1.0, outcome=outcome))
-    return done
+    place = place_for("the atlas", client=client, jobs=jobs)
+    outcomes = _Outcomes(cases, folder, quick)
+    flows = outcomes.cases
+    job = Job(
+        name="atlas",
+        kind="atlas",
+        piece="flow",
+        unit="flows",
+        work=partial(_computed, quick=quick),
+        items=flows,
+        versions=partial(deciding, ("atlas", "flow"), ("numba",)),
+        tries=1,  # a flow that takes too much memory takes it again
+        died=partial(_died, quick),
+    )
+    for number in range(len(flows)):
+        if outcomes.has(number):
+            finished(outcomes.get(number))
+    finish(
+        job,
+        outcomes,
+        place=place,
+        each=lambda number: each(flows[number].name),
+        finished=lambda _, outcome: finished(outcome),
+    )
+    return {case.name: outcomes.get(number) for number, case in enumerate(flows)}
 
 
-def finished(case: Case, folder: Path, *, quick: bool) -> Outcome | None:
+def finished_outcome(case: Case, folder: Path, *, quick: bool) -> Outcome | None:
     """Return the outcome of a flow if it is there and of this set-up and code; one that is broken does not count."""
     with suppress(UnreadableFile):
         old = load_outcome(folder, case.name)
@@ -69,33 +76,35 @@ def finished(case: Case, folder: Path, *, quick: bool) -> Outcome | None:
     return None
 
 
-def _computed(
-    cases: Sequence[Case], jobs: int, quick: bool, tell: Callable[[FlowProgress], None]
-) -> Generator[Outcome, None, None]:  # fmt: skip
-    """Yield outcomes as they are finished; when the caller stops, by Ctrl-C or an error, the processes end."""
-    if jobs == 1:
-        yield from (compute(case, quick=quick, tell=_telling(case.name, tell)) for case in cases)
-        return
-    with closing(workers.side_by_side(partial(_compute, quick=quick), cases, jobs)) as heard:
-        for number, said in heard:
-            if isinstance(said, workers.Done):
-                yield said.value
-            elif isinstance(said, workers.Died):
-                yield _died(cases[number], quick, said.exit_code)
-            elif isinstance(said, workers.Far):
-                tell(FlowProgress(case=cases[number].name, share=said.share))
+class _Outcomes:
+    """The outcomes of flows, each a JSON file in a folder."""
+
+    def __init__(self, cases: Iterable[Case], folder: Path, quick: bool) -> None:
+        self.cases: Sequence[Case] = tuple(cases)
+        self._folder = folder
+        held = {number: finished_outcome(case, folder, quick=quick) for number, case in enumerate(self.cases)}
+        self._outcomes = {number: outcome for number, outcome in held.items() if outcome is not None}
+
+    def has(self, number: int) -> bool:
+        """Return whether an outcome is there."""
+        return number in self._outcomes
+
+    def get(self, number: int) -> Outcome:
+        """Return an outcome that is there."""
+        return self._outcomes[number]
+
+    def put(self, number: int, outcome: Outcome) -> None:
+        """Write an outcome."""
+        if outcome.digest:  # that of a process that died says nothing of the flow
+            save_outcome(outcome, self._folder)
+        self._outcomes[number] = outcome
 
 
-def _telling(name: str, tell: Callable[[FlowProgress], None]) -> Tell:
-    return lambda share: tell(FlowProgress(case=name, share=share))
+def _computed(case: Case, progress: Progress, quick: bool) -> Outcome:
+    return compute(case, quick=quick, progress=progress)
 
 
-def _compute(case: Case, tell: workers.Tell, quick: bool) -> Outcome:
-    """Compute one flow in a process of its own."""
-    return compute(case, quick=quick, tell=partial(tell, _STAGE))
-
-
-def _died(case: Case, quick: bool, code: int | None) -> Outcome:
+def _died(quick: bool, case: Case, code: int | None) -> Outcome:
     effort = case.quick if quick else case.full
     return Outcome(
         case=case.name, digest="", quick=quick, cells=effort.cells, seconds=0.0,

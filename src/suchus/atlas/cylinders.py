@@ -7,10 +7,11 @@ from functools import partial
 import numpy as np
 
 from suchus import flow
-from suchus.atlas.case import Case, Curves, Effort, Tell
+from suchus.atlas.case import Case, Curves, Effort
 from suchus.atlas.marching import march, middles, nudged, shedding
 from suchus.atlas.refine import refined
 from suchus.atlas.skin import Skin, read_skin
+from suchus.progress import Progress, staged
 
 _CODE = ("cylinders.py", "marching.py", "refine.py", "skin.py")
 _PERIODS = 5  # of shedding, over which the wake at Re 100 is averaged
@@ -39,20 +40,22 @@ def wake_length(sim: flow.Simulation) -> float:
     return float(behind[k] - u[k] * (behind[k + 1] - behind[k]) / (u[k + 1] - u[k]) - 0.5)
 
 
-def _started(effort: Effort, tell: Tell, *, reynolds: float, x: tuple[float, float], y: tuple[float, float]) -> Curves:
+def _started(
+    effort: Effort, progress: Progress, *, reynolds: float, x: tuple[float, float], y: tuple[float, float]
+) -> Curves:
     sim = flow.Simulation(_cylinder(effort.cells, reynolds, x, y))
     lengths: list[tuple[float, float]] = []
 
     def note(now: flow.Simulation) -> None:
         lengths.append((now.time, wake_length(now)))
 
-    record = march(sim, effort.until, tell, watch=(note,), every=0.05)
+    record = march(sim, effort.until, progress, watch=(note,), every=0.05)
     return {"drag": np.stack([middles(record), 2 * record.force()[:, 0]]), "length": np.array(lengths).T}
 
 
-def _steady(effort: Effort, tell: Tell) -> Curves:
-    sim = _on_two_grids(effort, 40.0, (1.0, 0.0), tell)
-    record = march(sim, effort.until, lambda share: tell(0.5 + share / 2))
+def _steady(effort: Effort, progress: Progress) -> Curves:
+    sim = _on_two_grids(effort, 40.0, (1.0, 0.0), progress)
+    record = march(sim, effort.until, staged(progress, "fine grid", 0.5, 1.0))
     skin = read_skin(sim)
     return {
         "drag": np.array(2 * record.after(0.8 * effort.until).force()[:, 0].mean()),
@@ -60,14 +63,14 @@ def _steady(effort: Effort, tell: Tell) -> Curves:
     }  # fmt: skip
 
 
-def _shedding(effort: Effort, tell: Tell) -> Curves:
-    sim = _on_two_grids(effort, 100.0, nudged, tell)
+def _shedding(effort: Effort, progress: Progress) -> Curves:
+    sim = _on_two_grids(effort, 100.0, nudged, progress)
     skins: list[tuple[float, Skin]] = []
 
     def note(now: flow.Simulation) -> None:
         skins.append((now.time, read_skin(now)))
 
-    record = march(sim, effort.until, lambda share: tell(0.5 + share / 2), watch=(note,), every=_READINGS)
+    record = march(sim, effort.until, staged(progress, "fine grid", 0.5, 1.0), watch=(note,), every=_READINGS)
     numbers = shedding(record.after(_SETTLED), _PERIODS)
     since = effort.until - _PERIODS / float(numbers["Strouhal"])
     late = [skin for time, skin in skins if time > since]
@@ -76,11 +79,11 @@ def _shedding(effort: Effort, tell: Tell) -> Curves:
     return {**numbers, "pressure": both.curve("pressure")}
 
 
-def _on_two_grids(effort: Effort, reynolds: float, stream: Stream, tell: Tell) -> flow.Simulation:
+def _on_two_grids(effort: Effort, reynolds: float, stream: Stream, progress: Progress) -> flow.Simulation:
     """Return a wake in 24 x 16 diameters that has formed on the coarse grid, at the start of its time on the fine."""
     box = ((-8.0, 16.0), (-8.0, 8.0))
     wake = flow.Simulation(replace(_cylinder(effort.coarse, reynolds, *box), stream=stream))
-    march(wake, effort.before, lambda share: tell(share / 2))
+    march(wake, effort.before, staged(progress, "coarse grid", 0.0, 0.5))
     return refined(wake, _cylinder(effort.cells, reynolds, *box))
 
 

@@ -5,15 +5,15 @@ from collections.abc import Sequence
 import numpy as np
 
 from suchus import flow
-from suchus.atlas.case import Tell
 from suchus.flow.signals import last_periods
 from suchus.flow.simulation import Watcher
+from suchus.progress import Progress
 
 _REPORTS = 200  # times per run that the progress is reported
 
 
 def march(
-    sim: flow.Simulation, until: float, tell: Tell, *, end: float | None = None, watch: Sequence[Watcher] = (),
+    sim: flow.Simulation, until: float, progress: Progress, *, end: float | None = None, watch: Sequence[Watcher] = (),
     every: float | None = None,
 ) -> flow.Record:  # fmt: skip
     """Advance to a time, tell the share of the whole run that is done, and return the record.
@@ -21,13 +21,13 @@ def march(
     Args:
         sim: the simulation.
         until: time to reach [s].
-        tell: takes the share.
+        progress: told the share.
         end: when the whole run ends; None is ``until`` [s].
         watch: called ``every`` seconds.
         every: interval of ``watch`` [s]; None is a two-hundredth of the whole run.
     """
     whole = until if end is None else end
-    watchers: Sequence[Watcher] = (*watch, lambda now: tell(now.time / whole))
+    watchers: Sequence[Watcher] = (*watch, lambda now: progress("computing", now.time / whole))
     return sim.run(until, watch=watchers, every=whole / _REPORTS if every is None else every, progress=False)
 
 

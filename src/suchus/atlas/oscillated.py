@@ -6,10 +6,11 @@ from functools import partial
 import numpy as np
 
 from suchus import flow
-from suchus.atlas.case import Case, Curves, Effort, Tell
+from suchus.atlas.case import Case, Curves, Effort
 from suchus.atlas.marching import march, middles, nudged, shedding
 from suchus.atlas.refine import refined
 from suchus.atlas.skin import Skin, read_skin
+from suchus.progress import Progress, staged
 
 RATIOS = (0.8, 0.9, 1.0, 1.1, 1.12, 1.2)
 """Frequencies of the motion over the natural one [-]."""
@@ -35,20 +36,18 @@ _SETTLED = 6.0  # [s] on the finer grid until the wake is its own
 _PERIODS = 5  # of vortex shedding, over which is averaged
 
 
-def _oscillated(effort: Effort, tell: Tell, *, ratio: float) -> Curves:
+def _oscillated(effort: Effort, progress: Progress, *, ratio: float) -> Curves:
     """Compute ``effort.before`` periods and then ``effort.until`` finer ones, of which all but the first are read."""
     rate = 2 * np.pi * ratio * NATURAL
     period = 2 * np.pi / rate
     whole, first = round(effort.until), round(effort.before)
     wake = flow.Simulation(_setup(effort.coarse, rate))
-    march(wake, first * period, lambda share: tell(_COARSE_SHARE * share))
+    march(wake, first * period, staged(progress, "coarse grid", 0.0, _COARSE_SHARE))
     sim = refined(wake, _setup(effort.cells, rate))
     uppermost, down = list[Skin](), list[Skin]()
 
     def onward(until: float) -> flow.Record:
-        return march(
-            sim, until * period, lambda share: tell(_COARSE_SHARE + (1 - _COARSE_SHARE) * share), end=whole * period
-        )
+        return march(sim, until * period, staged(progress, "fine grid", _COARSE_SHARE, 1.0), end=whole * period)
 
     numbers = range(min(1, whole - 1), whole)
     for turn in numbers:
@@ -80,12 +79,12 @@ def _setup(cells: int, rate: float) -> flow.Setup:
     )  # fmt: skip
 
 
-def _at_rest(effort: Effort, tell: Tell) -> Curves:
+def _at_rest(effort: Effort, progress: Progress) -> Curves:
     """Compute the cylinder at rest, first on the coarse grid with a gust."""
     wake = flow.Simulation(replace(_setup(effort.coarse, 0.0), stream=nudged))
-    march(wake, effort.before, lambda share: tell(_COARSE_SHARE * share))
+    march(wake, effort.before, staged(progress, "coarse grid", 0.0, _COARSE_SHARE))
     sim = refined(wake, _setup(effort.cells, 0.0))
-    record = march(sim, effort.until, lambda share: tell(_COARSE_SHARE + (1 - _COARSE_SHARE) * share))
+    record = march(sim, effort.until, staged(progress, "fine grid", _COARSE_SHARE, 1.0))
     return shedding(record.after(_SETTLED), _PERIODS)
 
 

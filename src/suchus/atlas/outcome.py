@@ -8,8 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
-from suchus.atlas.case import Case, Curves, Tell
+from suchus.atlas.case import Case, Curves
 from suchus.errors import SuchusError, UnreadableFile
+from suchus.progress import Progress, silent
 from suchus.record import code_digest, digest, new_file, plain, read_json
 
 _DIGITS = 7  # of the numbers that are kept: single precision
@@ -42,13 +43,13 @@ def digest_of(case: Case, *, quick: bool) -> str:
     return digest({"case": case.name, "effort": effort, "quick": quick, "code": code})
 
 
-def compute(case: Case, *, quick: bool, tell: Tell) -> Outcome:
+def compute(case: Case, *, quick: bool, progress: Progress = silent) -> Outcome:
     """Compute a flow; an error of the solver is kept as an outcome too, with its sentence."""
     effort = case.quick if quick else case.full
     began = time.process_time()
     curves, failed = dict[str, np.ndarray](), ""
     try:
-        curves = {name: np.asarray(curve, float) for name, curve in case.run(effort, tell).items()}
+        curves = {name: np.asarray(curve, float) for name, curve in case.run(effort, progress).items()}
     except SuchusError as error:
         failed = str(error)
     return Outcome(

@@ -9,8 +9,9 @@ from functools import partial
 import numpy as np
 
 from suchus import flow
-from suchus.atlas.case import Case, Curves, Effort, Tell
+from suchus.atlas.case import Case, Curves, Effort
 from suchus.atlas.marching import march, middles
+from suchus.progress import Progress
 
 STOKES = 20.0
 """Number beta of Stokes, frequency times height squared over viscosity: the Reynolds number over that of Keulegan [-].
@@ -34,7 +35,7 @@ def name_of(aspect: float, keulegan: float, cells: int = _CELLS) -> str:
     return f"section_{aspect:g}_{keulegan:g}" + (f"_on_{cells}" if cells != _CELLS else "")
 
 
-def _moved(effort: Effort, tell: Tell, *, aspect: float, keulegan: float) -> Curves:
+def _moved(effort: Effort, progress: Progress, *, aspect: float, keulegan: float) -> Curves:
     """Compute a section of height 1 that moves with ``-keulegan cos(2 pi t)``; read every period but the first."""
     swing, thickness = keulegan / (2 * np.pi), 1 / aspect
     shape = flow.Cylinder(diameter=1.0) if aspect == 1.0 else flow.Ellipse(length=thickness, width=1.0)
@@ -45,7 +46,7 @@ def _moved(effort: Effort, tell: Tell, *, aspect: float, keulegan: float) -> Cur
             bodies=(flow.Body(shape=shape, motion=flow.Oscillation(frequency=1.0, heave=(-swing, 0.0))),), coarse=True,
         )
     )  # fmt: skip
-    record = march(sim, effort.until, tell)
+    record = march(sim, effort.until, progress)
     time, force = middles(record), record.force()[:, 0]
     found = []
     for period in range(1, round(effort.until)):

@@ -5,10 +5,11 @@ from functools import partial
 import numpy as np
 
 from suchus import flow
-from suchus.atlas.case import Case, Curves, Effort, Tell
+from suchus.atlas.case import Case, Curves, Effort
 from suchus.atlas.marching import march, middles
 from suchus.atlas.published import published
 from suchus.atlas.refine import refined
+from suchus.progress import Progress, staged
 
 # At a Reynolds number of 2000 the wake has two states, in one of which the lift is a quarter larger. At 35 degrees it
 # goes over into that one after some 48 chords on 64 cells, and later on 32; see docs/flow_limits.md.
@@ -16,11 +17,11 @@ _CODE = ("snake.py", "marching.py", "published.py", "refine.py")
 _SETTLED = 8.0  # [s] on the finer grid until the wake is its own
 
 
-def _snake(effort: Effort, tell: Tell, *, reynolds: float, degrees: int) -> Curves:
+def _snake(effort: Effort, progress: Progress, *, reynolds: float, degrees: int) -> Curves:
     wake = flow.Simulation(_setup(effort.coarse, reynolds, degrees))
-    march(wake, effort.before, lambda share: tell(0.2 * share))
+    march(wake, effort.before, staged(progress, "coarse grid", 0.0, 0.2))
     sim = refined(wake, _setup(effort.cells, reynolds, degrees))
-    record = march(sim, effort.until, lambda share: tell(0.2 + 0.8 * share))
+    record = march(sim, effort.until, staged(progress, "fine grid", 0.2, 1.0))
     late = record.after(_SETTLED)
     drag, lift = 2 * np.average(late.force(), axis=0, weights=late.step)
     strouhal = flow.strouhal(middles(late), late.force()[:, 1], length=1.0, speed=1.0)

@@ -3,8 +3,9 @@
 import numpy as np
 
 from suchus import flow
-from suchus.atlas.case import Case, Curves, Effort, Tell
+from suchus.atlas.case import Case, Curves, Effort
 from suchus.atlas.marching import march, middles
+from suchus.progress import Progress
 
 _CODE = ("still.py", "marching.py")
 _KEULEGAN = 5.0  # [-]; largest speed over frequency and diameter
@@ -13,7 +14,7 @@ _FREQUENCY = 0.25  # [Hz]
 _SWING = np.pi / 4  # [rad]
 
 
-def _in_line(effort: Effort, tell: Tell) -> Curves:
+def _in_line(effort: Effort, progress: Progress) -> Curves:
     """Compute a cylinder that moves with ``-U cos(2 pi t / T)``; diameter and period are 1."""
     speed = _KEULEGAN
     motion = flow.Oscillation(frequency=1.0, heave=(-speed / (2 * np.pi), 0.0))
@@ -23,7 +24,7 @@ def _in_line(effort: Effort, tell: Tell) -> Curves:
             bodies=(flow.Body(shape=flow.Cylinder(diameter=1.0), motion=motion),), coarse=True,
         )
     )  # fmt: skip
-    late = march(sim, effort.until, tell).after(effort.until - 1.0)
+    late = march(sim, effort.until, progress).after(effort.until - 1.0)
     return {"force": np.stack([middles(late) % 1.0, late.force()[:, 0] / speed**2])}
 
 
@@ -51,7 +52,7 @@ def quasi_steady_peaks() -> tuple[float, float]:
     return float(drag.max()), float(lift.max())
 
 
-def _flapping(effort: Effort, tell: Tell) -> Curves:
+def _flapping(effort: Effort, progress: Progress) -> Curves:
     speed = np.pi * _FREQUENCY * _STROKE
     sim = flow.Simulation(
         flow.Setup(
@@ -59,7 +60,7 @@ def _flapping(effort: Effort, tell: Tell) -> Curves:
             bodies=(flow.Body(shape=flow.Ellipse(length=1.0, width=0.1), motion=flapping),), coarse=True,
         )
     )  # fmt: skip
-    record = march(sim, effort.until, tell)
+    record = march(sim, effort.until, progress)
     time, (along, across) = middles(record), record.force().T
     drag, lift = quasi_steady_peaks()
     against = np.sign(np.sin(2 * np.pi * _FREQUENCY * time))  # the motion begins towards -x: drag is then along x

@@ -5,10 +5,11 @@ from functools import partial
 import numpy as np
 
 from suchus import flow
-from suchus.atlas.case import Case, Curves, Effort, Tell
+from suchus.atlas.case import Case, Curves, Effort
 from suchus.atlas.marching import march, middles
 from suchus.atlas.refine import refined
 from suchus.flow.signals import last_periods
+from suchus.progress import Progress, staged
 
 _CODE = ("walls.py", "marching.py", "refine.py")
 _HEIGHT, _DIAMETER = 0.41, 0.1  # [m]; of the DFG channel and of its cylinder
@@ -17,25 +18,25 @@ _SINKING = 2.1  # [m/s]; of the frame that a settling cylinder is seen from
 _VISCOSITY = 0.008088  # [m^2/s]; of the water that it settles in
 
 
-def _cavity(effort: Effort, tell: Tell, *, reynolds: float) -> Curves:
+def _cavity(effort: Effort, progress: Progress, *, reynolds: float) -> Curves:
     n = effort.cells
     sides = flow.Sides(left=flow.Wall(), right=flow.Wall(), bottom=flow.Wall(), top=flow.Wall(speed=1.0))
     sim = flow.Simulation(
         flow.Setup(grid=flow.Grid(cells=(n, n), cell=1 / n), viscosity=1 / reynolds, sides=sides, coarse=True)
     )
-    march(sim, effort.until, tell)
+    march(sim, effort.until, progress)
     mids = (np.arange(n) + 0.5) / n
     half = np.full(n, 0.5)
     up, across = sim.probe(np.stack([half, mids], axis=1)), sim.probe(np.stack([mids, half], axis=1))
     return {"u": np.stack([mids, up.velocity[:, 0]]), "v": np.stack([mids, across.velocity[:, 1]])}
 
 
-def _channel(effort: Effort, tell: Tell, *, mean_speed: float) -> Curves:
+def _channel(effort: Effort, progress: Progress, *, mean_speed: float) -> Curves:
     """Compute the DFG channel, 2.2 m long: from rest on the coarse grid, then on the finer one."""
     before = flow.Simulation(_channel_setup(effort.coarse, effort.coarse, mean_speed))
-    march(before, effort.before, lambda share: tell(0.3 * share))
+    march(before, effort.before, staged(progress, "coarse grid", 0.0, 0.3))
     sim = refined(before, _channel_setup(effort.cells, effort.coarse, mean_speed))
-    record = march(sim, effort.until, lambda share: tell(0.3 + 0.7 * share))
+    record = march(sim, effort.until, staged(progress, "fine grid", 0.3, 1.0))
     drag, lift = (record.force() * 2 / (mean_speed**2 * _DIAMETER)).T
     if mean_speed < 0.5:
         late = record.time > effort.until - _STEADY
@@ -74,7 +75,7 @@ def _pressure_drop(sim: flow.Simulation) -> float:
     return float(front - rear)
 
 
-def _settling(effort: Effort, tell: Tell) -> Curves:
+def _settling(effort: Effort, progress: Progress) -> Curves:
     """Compute a cylinder of relative density 1.5 that settles from (1, 40) in a channel of width 4; gravity is 10.
 
     In a frame that sinks with ``_SINKING`` the walls and the water go up, and 40 diameters of the channel are enough.
@@ -96,7 +97,7 @@ def _settling(effort: Effort, tell: Tell) -> Curves:
             grid=grid, viscosity=_VISCOSITY, sides=sides, bodies=(body,), stream=(0.0, _SINKING), coarse=True
         )
     )  # fmt: skip
-    record = march(sim, effort.until, tell)
+    record = march(sim, effort.until, progress)
     x, y, speed = (record.column(name) for name in ("x", "y", "velocity_y"))
     late = record.time > 0.6 * effort.until
     steady = _SINKING - float(np.average(speed[late], weights=record.step[late]))

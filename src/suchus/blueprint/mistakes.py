@@ -109,7 +109,7 @@ def _fields_at(place: Place, kind: Any) -> list[str]:
             kind = next(iter(get_args(kind)), None)
         else:
             kind = next((f.type for f in fields(kind) if f.name == key), None) if is_dataclass(kind) else None
-    return [f.name for f in fields(kind)] if is_dataclass(kind) else []
+    return [f.name for f in fields(kind) if f.init] if is_dataclass(kind) else []
 
 
 def _show(value: Any) -> str:

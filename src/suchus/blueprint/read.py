@@ -1,4 +1,7 @@
-"""From a TOML file to a frozen value; what the file does not say can come from a shelf."""
+"""From a TOML file to a frozen value; what the file does not say can come from a shelf.
+
+A file of a robot describes it part by part, or gives the article's tables, of which ``design.crocodile`` makes one.
+"""
 
 import json
 from collections.abc import Mapping
@@ -11,6 +14,7 @@ from typing import Any, TypeVar, get_args, overload
 from pydantic import TypeAdapter, ValidationError
 
 from suchus.blueprint.mistakes import MistakenFile, Place, explain
+from suchus.design import Robot, Tables, crocodile
 from suchus.errors import UnreadableFile
 from suchus.record import read_toml
 
@@ -18,19 +22,19 @@ T = TypeVar("T")
 
 
 @overload
-def read(path: Path, kind: type[T], shelf: Mapping[str, Any]) -> T: ...
+def read(path: str | Path, kind: type[T], shelf: Mapping[str, Any]) -> T: ...
 
 
 @overload
-def read(path: Path, kind: UnionType, shelf: Mapping[str, Any]) -> Any: ...
+def read(path: str | Path, kind: UnionType, shelf: Mapping[str, Any]) -> Any: ...
 
 
-def read(path: Path, kind: Any, shelf: Mapping[str, Any]) -> Any:
+def read(path: str | Path, kind: Any, shelf: Mapping[str, Any]) -> Any:
     """Read a robot or a gait from a TOML file.
 
     ``base = "caiman"`` at the top starts from that one of the shelf and overrides what the file says. A file
-    without a ``name`` lends its own. Where ``kind`` is a union, a file without ``base`` is of the first kind that has
-    all the tables and values at its top.
+    without a ``name`` lends its own. Where ``kind`` is a union, a file without ``base`` is of the kind that has most of
+    what stands at its top, the first of those alike.
 
     Args:
         path: the file.
@@ -41,32 +45,73 @@ def read(path: Path, kind: Any, shelf: Mapping[str, Any]) -> Any:
         UnreadableFile: the file is missing or no TOML.
         MistakenFile: values are missing, unknown, of the wrong kind or impossible; it names all of them.
     """
+    path = Path(path)
     data = read_toml(path)
     base = data.pop("base", None)
     known = base is None or (isinstance(base, str) and base in shelf)
     kinds = get_args(kind) or (kind,)
+    described: tuple[Any, ...] = (*kinds, Tables) if Robot in kinds else kinds
     if base is not None and known:
         model = shelf[base]
+        if isinstance(model, Robot) and model.tables is not None and _meant(data, (Tables, Robot)) is Tables:
+            model = model.tables
     else:
-        meant = _meant(data, kinds)
-        model = next(thing for thing in shelf.values() if isinstance(thing, meant))
-    if not isinstance(model, kinds):
+        meant = _meant(data, described)
+        things = (getattr(thing, "tables", None) if meant is Tables else thing for thing in shelf.values())
+        model = next(thing for thing in things if isinstance(thing, meant))
+    if not isinstance(model, described):
         raise UnreadableFile(
             f"{path.name} starts from {base!r}, which is a {type(model).__name__}; a "
             f"{' or '.join(one.__name__ for one in kinds)} is needed here."
         )
-    spare = _plain(asdict(model))
+    spare = _plain({name: value for name, value in asdict(model).items() if name in _said(model)})
     mistakes: dict[Place, str] = {}
     if not known:
         mistakes["base",] = f"is {base!r}; there is {', '.join(shelf)}"
     if base is not None:
         data = _merge({**spare, "name": path.stem}, data)
-    return _validated({"name": path.stem, **data}, type(model), spare, path.name, mistakes)
+    value = _validated({"name": path.stem, **data}, type(model), spare, path.name, mistakes)
+    return crocodile(value) if isinstance(value, Tables) else value
+
+
+def described_robot(values: Mapping[str, Any]) -> Robot:
+    """Return the robot that the plain values of a result's settings describe.
+
+    Args:
+        values: of a robot, or of the tables that it was made of, as ``dataclasses.asdict`` gives them.
+
+    Raises:
+        ValidationError: they describe none.
+        InvalidDesign: they describe an impossible one.
+    """
+    values = values.get("tables") or values
+    if _meant(values, (Robot, Tables)) is Tables:
+        return crocodile(TypeAdapter(Tables).validate_python(values))
+    return TypeAdapter(Robot).validate_python(values)
+
+
+def described(data: Mapping[str, Any], kind: type[T], about: str) -> T:
+    """Return the frozen value that a table of a file describes.
+
+    Args:
+        data: the table.
+        kind: the frozen dataclass.
+        about: what it is, for messages.
+
+    Raises:
+        MistakenFile: values are missing, unknown, of the wrong kind or impossible; it names all of them.
+    """
+    return _validated(dict(data), kind, {}, about, {})
 
 
 def _meant(data: Mapping[str, Any], kinds: tuple[Any, ...]) -> Any:
     """Return the kind whose fields the top of a file names best; the first of those alike."""
-    return max(kinds, key=lambda kind: len(set(data) & {field.name for field in fields(kind)}))
+    return max(kinds, key=lambda kind: len(set(data) & _said(kind)))
+
+
+def _said(model: Any) -> set[str]:
+    """Return the fields that a file can say."""
+    return {field.name for field in fields(model) if field.init}
 
 
 def _plain(value: Any) -> Any:

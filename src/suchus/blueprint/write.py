@@ -10,7 +10,7 @@ from suchus.design.meaning import meanings
 from suchus.record import new_file
 
 
-def write(value: object, path: Path, *, notes: Mapping[str, str] | None = None, head: Sequence[str] = ()) -> Path:
+def write(value: object, path: str | Path, *, notes: Mapping[str, str] | None = None, head: Sequence[str] = ()) -> Path:
     """Write a robot or a gait as TOML and return the path.
 
     Args:
@@ -22,14 +22,18 @@ def write(value: object, path: Path, *, notes: Mapping[str, str] | None = None, 
     Raises:
         Unwritable: the place cannot be written to.
     """
-    text = render(value, notes=notes, head=head)
+    path, text = Path(path), render(value, notes=notes, head=head)
     with new_file(path) as draft:
         draft.write_text(text, encoding="utf-8")
     return path
 
 
 def render(value: object, *, notes: Mapping[str, str] | None = None, head: Sequence[str] = ()) -> str:
-    """Return a robot or a gait as TOML; the meaning of each field follows as a comment, and its note if it has one."""
+    """Return a robot or a gait as TOML; the meaning of each field follows as a comment, and its note if it has one.
+
+    A robot of the article's kind is written as its tables, which are what people change.
+    """
+    value = getattr(value, "tables", None) or value
     words = [f"# {_plain(one)}" for one in head]
     return "\n".join([*words, *([""] if words else []), "\n".join(_table(value, (), notes or {})).strip(), ""])
 
@@ -39,7 +43,7 @@ def _table(
 ) -> list[str]:
     """A table's own values first, then the tables below it, as TOML wants it; a row of tables has double brackets."""
     about = meanings(type(value))
-    items = {f.name: getattr(value, f.name) for f in fields(value)}
+    items = {f.name: getattr(value, f.name) for f in fields(value) if f.init}
     name = ".".join(path)
     lines = ["", f"[[{name}]]" if row else f"[{name}]"] if path else []
     below: list[str] = []

@@ -8,7 +8,7 @@ import xarray as xr
 
 from suchus import rotation
 from suchus.capture.tracks import Tracks
-from suchus.design import LEGS, AnyRobot, Crocodile, crocodile, leg_joints, spine_joints
+from suchus.design import LEGS, Robot, crocodile, leg_joints, spine_joints
 from suchus.design.checks import Checks
 from suchus.kinematics import body, spine
 from suchus.motion import START
@@ -46,7 +46,7 @@ class Camera:
             check.whole("seed", 0, 2**32 - 1)
 
 
-def film(robot: AnyRobot, record: xr.Dataset, camera: Camera, *, start: float = START) -> Tracks:
+def film(robot: Robot, record: xr.Dataset, camera: Camera, *, start: float = START) -> Tracks:
     """Return the keypoints of a robot as a camera would have tracked them.
 
     Args:
@@ -84,7 +84,7 @@ def tracked(points: Mapping[str, np.ndarray], time: np.ndarray, camera: Camera, 
     )
 
 
-def keypoints(robot: AnyRobot, record: xr.Dataset) -> dict[str, np.ndarray]:
+def keypoints(robot: Robot, record: xr.Dataset) -> dict[str, np.ndarray]:
     """Return where the keypoints of a robot are in the world, each of shape (time, 3) [m].
 
     Args:
@@ -101,7 +101,7 @@ def keypoints(robot: AnyRobot, record: xr.Dataset) -> dict[str, np.ndarray]:
     return {name: at + np.einsum("tij,tj->ti", R, point) for name, point in points.items()}
 
 
-def _midline(robot: Crocodile, bends: np.ndarray) -> dict[str, np.ndarray]:
+def _midline(robot: Robot, bends: np.ndarray) -> dict[str, np.ndarray]:
     """Points of the trunk in the pelvis's frame: the yaw joints, and the front girdle."""
     T = spine.forward(robot.spine, bends)
     shoulder = T[:, :3, 3] + robot.thorax.shoulder * T[:, :3, 0]
@@ -118,7 +118,7 @@ def _midline(robot: Crocodile, bends: np.ndarray) -> dict[str, np.ndarray]:
     return points | {"hip": np.zeros((len(bends), 3))}
 
 
-def _tail(robot: Crocodile, angles: np.ndarray) -> dict[str, np.ndarray]:
+def _tail(robot: Robot, angles: np.ndarray) -> dict[str, np.ndarray]:
     """Points of the tail in the pelvis's frame: every other cable joint, both ends of the last plate, the tip."""
     points = body.tail_points(robot, angles)
     last = points.shape[1] - 1

@@ -34,7 +34,7 @@ class ReadingOptions:
     """Whether y points to the right of x, seen from above; None: as the file's kind has it."""
 
 
-def read_tracks(path: Path, how: ReadingOptions | None = None) -> Tracks:
+def read_tracks(path: str | Path, how: ReadingOptions | None = None) -> Tracks:
     """Read tracks from a CSV table, or from a file of DeepLabCut, SLEAP or LightningPose.
 
     Args:
@@ -45,7 +45,7 @@ def read_tracks(path: Path, how: ReadingOptions | None = None) -> Tracks:
         UnreadableFile: there is no such file, it is empty or broken, or the library that reads it is not installed.
         UnusableTracks: it holds not what is needed.
     """
-    how = how or ReadingOptions()
+    how, path = how or ReadingOptions(), Path(path)
     if how.software is not None and how.software not in SOFTWARE:
         raise UnknownName("software", how.software, SOFTWARE)
     check_file(path)

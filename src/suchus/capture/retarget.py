@@ -11,7 +11,7 @@ import numpy as np
 from suchus.capture.angle_table import AngleCycle
 from suchus.capture.walk import UNSURE, Walk
 from suchus.capture.wave import STANDING
-from suchus.design import LEGS, AnyRobot, Layout, LimbPlace, check_needs, hips_ahead, layout, servo_ranges
+from suchus.design import LEGS, Robot, Layout, LimbPlace, check_needs, hips_ahead, layout, servo_ranges
 from suchus.errors import InvalidDesign, OutsideLimits, UnknownName
 from suchus.kinematics import limb as limb_kinematics
 from suchus.motion import (
@@ -70,7 +70,7 @@ class _Feet(NamedTuple):
 
 
 def to_gait(
-    walk: Walk, robot: AnyRobot, base: Gait, *, name: str, duty: Duty = "retraction", girdles: Girdles = "alike"
+    walk: Walk, robot: Robot, base: Gait, *, name: str, duty: Duty = "retraction", girdles: Girdles = "alike"
 ) -> Captured:
     """Return the gait by which a robot walks as was measured.
 
@@ -106,7 +106,7 @@ def to_gait(
     return Captured(gait=gait, notes=(*walk.notes, *notes, *_unheld(walk)))
 
 
-def driven_share(robot: AnyRobot) -> float:
+def driven_share(robot: Robot) -> float:
     """Return where along its tail, from its first joint, a robot's last driven segment has its middle [-].
 
     The end beyond it is passive: it follows by itself, and no command holds it. It is 1 without such an end.
@@ -146,7 +146,7 @@ def _timed(walk: Walk, gait: Gait, duty: Duty, notes: list[str]) -> Gait:
     return replace(gait, period=_rounded(walk.value("period")), duty_factor=_rounded(share), limb_phases=phases)
 
 
-def _bent(walk: Walk, robot: AnyRobot, gait: Gait, notes: list[str]) -> Gait:
+def _bent(walk: Walk, robot: Robot, gait: Gait, notes: list[str]) -> Gait:
     """Give trunk and tail the first harmonics that were measured; steady bends up and down stay the base's."""
     # both clocks have LF's mid-stance in common: the gait's begins half the difference of the duty factors off
     clock = np.exp(1j * np.pi * (gait.duty_factor - mean_of(walk, "duty")))
@@ -177,7 +177,7 @@ def _bent(walk: Walk, robot: AnyRobot, gait: Gait, notes: list[str]) -> Gait:
     return replace(gait, axis=tuple(bends))
 
 
-def _most(robot: AnyRobot, part: Literal["trunk", "tail"]) -> list[float]:
+def _most(robot: Robot, part: Literal["trunk", "tail"]) -> list[float]:
     """Return how far each hinge that bends a part sideways can bend it to either side [rad]."""
     place, ranges, hinges = layout(robot), np.abs(servo_ranges(robot)).min(axis=1), yaw_hinges(robot)
     cables = {servo: place.cable(servo).bend_limit / place.cable(servo).joints for servo in place.cables}
@@ -185,7 +185,7 @@ def _most(robot: AnyRobot, part: Literal["trunk", "tail"]) -> list[float]:
 
 
 def _stepping(
-    walk: Walk, robot: AnyRobot, gait: Gait, base: Gait, girdles: Girdles, notes: list[str]
+    walk: Walk, robot: Robot, gait: Gait, base: Gait, girdles: Girdles, notes: list[str]
 ) -> Gait:
     """Give the feet the measured paths in proportion to the trunk; what the limbs cannot follow becomes the base's."""
     trunk, reaches = hips_ahead(robot, 0), [girdle.limb.reach for girdle in layout(robot).robot.girdles]
@@ -223,7 +223,7 @@ def _stepping(
 
 
 def _feet(
-    walk: Walk, robot: AnyRobot, lent: Sequence[_Feet], girdles: Girdles, notes: list[str]
+    walk: Walk, robot: Robot, lent: Sequence[_Feet], girdles: Girdles, notes: list[str]
 ) -> list[_Feet]:
     """Return the measured paths of the feet at the robot's size."""
     trunk, sides = hips_ahead(robot, 0), [girdle.aside for girdle in layout(robot).robot.girdles]
@@ -253,7 +253,7 @@ def _feet_of(limb: object, reach: float) -> _Feet:
     return _Feet(*(reach * getattr(limb, field) for field in _Feet._fields))
 
 
-def _placed(robot: AnyRobot, gait: Gait, feet: Sequence[_Feet]) -> Gait | None:
+def _placed(robot: Robot, gait: Gait, feet: Sequence[_Feet]) -> Gait | None:
     """Return the gait with these paths of the feet; None where the robot cannot follow it."""
     reaches = [girdle.limb.reach for girdle in layout(robot).robot.girdles]
     try:
@@ -267,7 +267,7 @@ def _placed(robot: AnyRobot, gait: Gait, feet: Sequence[_Feet]) -> Gait | None:
     return placed if suits(robot, placed) else None
 
 
-def _slowed(robot: AnyRobot, gait: Gait, notes: list[str]) -> Gait:
+def _slowed(robot: Robot, gait: Gait, notes: list[str]) -> Gait:
     """Return the gait with a period in which no servo has to turn faster than it can."""
     needed, slow = shortest_period(robot, gait)
     if needed <= gait.period:
@@ -307,7 +307,7 @@ def _unheld(walk: Walk) -> list[str]:
     return notes
 
 
-def to_curves(cycle: AngleCycle, robot: AnyRobot, *, name: str, period: float) -> Gait:
+def to_curves(cycle: AngleCycle, robot: Robot, *, name: str, period: float) -> Gait:
     """Return the gait that plays measured joint angles on a robot; nothing is fitted.
 
     A column is called after the robot's servo, or as in tables of animals: ``Axis 3``, the third lateral hinge from
@@ -378,7 +378,7 @@ def _spelled(place: Layout) -> tuple[str, ...]:
     return (*axis, *(("Left Shoulder-yaw", "Left Hip-yaw", "Left Elbow", "Left Knee") if place.limbs else ()))
 
 
-def _swing(robot: AnyRobot, gait: Gait, limb: LimbPlace) -> tuple[float, float]:
+def _swing(robot: Robot, gait: Gait, limb: LimbPlace) -> tuple[float, float]:
     """Return when the foot of a limb begins to go forward, and for which share of the cycle it does [cycle]."""
     clock = np.arange(_STEPS) / _STEPS
     design, place = limb.girdle.limb, layout(robot)

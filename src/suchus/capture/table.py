@@ -72,12 +72,13 @@ def read_table(path: Path, *, names: Mapping[str, str], confidence: float, y_dow
     )
 
 
-def write_table(tracks: Tracks, path: Path) -> Path:
+def write_table(tracks: Tracks, path: str | Path) -> Path:
     """Write tracks as a CSV table, lengths in millimetres or pixels, and return the path.
 
     Raises:
         Unwritable: the place cannot be written to.
     """
+    path = Path(path)
     unit, scale, sign = ("px", 1.0, -1.0) if tracks.unit == "px" else ("mm", 1000.0, 1.0)
     axes = "xyz"[: tracks.position.shape[-1]]
     headings = [f"{point}_{axis} [{unit}]" for point in tracks.points for axis in axes]

@@ -8,15 +8,16 @@ from pathlib import Path
 import suchus
 from suchus.cli.perform import perform
 from suchus.errors import IncompatibleRecord, SuchusError, UnreadableFile
-from suchus.experiment import Experiment, Progress
+from suchus.experiment import Experiment
 from suchus.experiments import EXPERIMENTS
+from suchus.progress import Progress
 from suchus.record import made_alike
 from suchus.report import Failure, Result, load_result, whole
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Job:
-    """An experiment that is to be run."""
+class Reproduction:
+    """An experiment that is to be run again."""
 
     name: str
     """On the shelf."""
@@ -38,7 +39,7 @@ class Job:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class JobResult:
+class Reproduced:
     """Result of an experiment, or the reason why it failed."""
 
     result: Result | Failure
@@ -47,7 +48,7 @@ class JobResult:
     """The same in a line."""
 
 
-def attempt(task: Job, progress: Progress) -> JobResult:
+def attempt(task: Reproduction, progress: Progress) -> Reproduced:
     """Run an experiment into its folder and read the result back.
 
     Args:
@@ -61,10 +62,10 @@ def attempt(task: Job, progress: Progress) -> JobResult:
         return failed(task.name, str(error))
     except Exception as error:
         return failed(task.name, f"{type(error).__name__}: {error}", traceback.format_exc())
-    return JobResult(result=result, summary=f"{_summary(result)} ({done.seconds:.1f} s)")
+    return Reproduced(result=result, summary=f"{_summary(result)} ({done.seconds:.1f} s)")
 
 
-def kept(task: Job) -> JobResult | None:
+def kept(task: Reproduction) -> Reproduced | None:
     """Return the result that an earlier run left, if it is whole and a run would give the same again.
 
     That is so if the settings, the files of suchus and the versions of libraries are the same. An experiment that is no
@@ -78,7 +79,7 @@ def kept(task: Job) -> JobResult | None:
         return None
     if not (same and whole(result) and result.outcome["command"] == task.command and _is_ours(experiment)):
         return None
-    return JobResult(result=result, summary=f"{_summary(result)} (kept from an earlier run)")
+    return Reproduced(result=result, summary=f"{_summary(result)} (kept from an earlier run)")
 
 
 def _is_ours(experiment: Experiment) -> bool:
@@ -91,7 +92,7 @@ def _summary(result: Result) -> str:
     return f"{result.name}: {', '.join(f'{words.count(word)} {word}' for word in dict.fromkeys(words)) or 'no verdict'}"
 
 
-def failed(name: str, sentence: str, trace: str = "") -> JobResult:
+def failed(name: str, sentence: str, trace: str = "") -> Reproduced:
     """Return what is reported of an experiment that failed.
 
     Args:
@@ -99,4 +100,4 @@ def failed(name: str, sentence: str, trace: str = "") -> JobResult:
         sentence: what went wrong.
         trace: where in the code, if it was none of our own errors.
     """
-    return JobResult(result=Failure(name=name, sentence=sentence, trace=trace), summary=f"{name}: failed: {sentence}")
+    return Reproduced(result=Failure(name=name, sentence=sentence, trace=trace), summary=f"{name}: failed: {sentence}")

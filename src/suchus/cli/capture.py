@@ -28,7 +28,7 @@ from suchus.capture import (
 from suchus.cli.commands import BadCommand
 from suchus.cli.options import parse
 from suchus.cli.terminal import working
-from suchus.design import AnyRobot, Crocodile, check_needs
+from suchus.design import Robot, check_needs
 from suchus.errors import OutsideLimits
 from suchus.figures import captioned, save
 from suchus.figures.gait_diagram import GaitTrack, gait_diagram
@@ -48,7 +48,7 @@ class CaptureOptions:
     """CSV table of keypoints or of joint angles, or a file of DeepLabCut, SLEAP or LightningPose."""
     out: Path = Path("captured.toml")
     """The gait file; its diagram is saved beside it."""
-    robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
+    robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot for which the gait is made."""
     base: AnyGait | None = None
     """Gait from which the numbers are taken that cannot be seen; by default the robot's own."""
@@ -99,7 +99,7 @@ def capture(words: Sequence[str]) -> int:
         move("reading", 0.1)
         tracks = read_tracks(options.tracks, _how(options)).between(options.start, options.end)
         move("looking for the cycle", 0.3)
-        driven = driven_share(robot) if isinstance(robot, Crocodile) else 1.0
+        driven = driven_share(robot) if robot.tables is not None else 1.0
         walk = observe(tracks, tail_share=driven if options.tail_share is None else options.tail_share)
         move("writing", 0.8)
         captured = _retargeted(walk, options, base)

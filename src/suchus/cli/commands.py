@@ -6,6 +6,9 @@ from pkgutil import resolve_name
 
 from suchus.errors import SuchusError
 
+PROJECT = "--project"
+"""Option of every command: the project folder, see ``suchus.sources``."""
+
 
 class BadCommand(SuchusError):
     """Words on the command line that make no sense."""
@@ -87,11 +90,13 @@ COMMANDS = (
     ),
     Subcommand(
         "flow-atlas",
-        "[ROW ...] [--out DIR] [--jobs N]",
+        "[ROW ...] [--out DIR] [--jobs N | --scheduler ADDRESS]",
         "compute published flows and draw ours beside theirs",
         "suchus.cli.flow_atlas:flow_atlas",
     ),
     Subcommand("doctor", "", "say whether suchus can run here, and what is missing", "suchus.cli.doctor:doctor"),
-    Subcommand("list", "", "show the robots, gaits, faults and experiments", "suchus.cli.shelves:show"),
+    Subcommand(
+        "list", "", "show what stands on the shelves: robots, gaits, faults and so on", "suchus.cli.shelves:show"
+    ),
 )
 """Every command, in the order of the help."""

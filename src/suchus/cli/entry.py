@@ -3,9 +3,10 @@
 import sys
 from collections.abc import Sequence
 
-from suchus.cli.commands import COMMANDS, BadCommand
+from suchus.cli.commands import COMMANDS, PROJECT, BadCommand
 from suchus.cli.streams import drop_output, prepare_streams, printable
 from suchus.errors import Diverged, NotConverged, SuchusError, UnknownName, Unwritable, plain_warnings
+from suchus.sources import within
 
 _EXAMPLES = (
     ("suchus demo", "a first walk, in the browser"),
@@ -28,7 +29,8 @@ def main(words: Sequence[str] | None = None) -> int:
     words = list(sys.argv[1:] if words is None else words)
     prepare_streams()
     try:
-        with plain_warnings():
+        words, folder = _apart(words)
+        with plain_warnings(), within(folder):
             return _flushed(words)
     except (Diverged, NotConverged) as error:
         return _complain(str(error), 1)
@@ -39,6 +41,26 @@ def main(words: Sequence[str] | None = None) -> int:
     except BrokenPipeError:  # the reader of our output has gone, as in `suchus list | head -1`
         drop_output()
         return 0
+
+
+def _apart(words: list[str]) -> tuple[list[str], str | None]:
+    """Return the words of the command, and the project folder that ``--project`` names among them; None for none.
+
+    Raises:
+        BadCommand: no folder follows, or two do.
+    """
+    rest, folders = list[str](), list[str]()
+    left = iter(words)
+    for word in left:
+        if word == PROJECT:
+            folders.append(next(left, ""))
+        elif word.startswith(f"{PROJECT}="):
+            folders.append(word.partition("=")[2])
+        else:
+            rest.append(word)
+    if len(folders) > 1 or "" in folders:
+        raise BadCommand(f"{PROJECT} needs one folder, as in suchus list {PROJECT} my_lab.")
+    return rest, folders[0] if folders else None
 
 
 def _flushed(words: list[str]) -> int:
@@ -94,6 +116,8 @@ def _help() -> str:
             *(f"  {example:<{right}}  {text}" for example, text in _EXAMPLES),
             "",
             "suchus COMMAND --help describes a command; --version prints the version.",
+            f"suchus COMMAND ... {PROJECT} DIR takes along what stands in a project folder; without it, what stands in",
+            "the working folder, if that has a suchus.toml.",
         )
     )
 

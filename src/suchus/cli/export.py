@@ -9,7 +9,7 @@ from typing import Annotated, get_args
 import tyro
 
 from suchus.cli.options import parse
-from suchus.design import AnyRobot
+from suchus.design import Robot
 from suchus.errors import UnknownName
 from suchus.gaits import own_gait
 from suchus.model.export import Format, export
@@ -24,7 +24,7 @@ class ExportOptions:
 
     format: Format = "mjcf"
     """MJCF for MuJoCo, USD for Isaac, Newton and Omniverse (extra usd), URDF for nearly everything else."""
-    robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
+    robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that is exported."""
     home: AnyGait | None = None
     """Gait whose mid-stance is the home posture of the MJCF; by default the robot's own."""

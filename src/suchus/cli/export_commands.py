@@ -12,7 +12,7 @@ from suchus import blueprint
 from suchus.cli.commands import BadCommand
 from suchus.cli.options import parse
 from suchus.cli.terminal import working
-from suchus.design import AnyRobot
+from suchus.design import Robot
 from suchus.design.checks import require
 from suchus.errors import OutsideLimits
 from suchus.gaits import GAITS, own_gait, suits
@@ -43,7 +43,7 @@ class ExportCommandsOptions:
 
     gait: Annotated[AnyGait, tyro.conf.Positional] = field(default_factory=lambda: GAITS["belly_crawl"])
     """The gait; by default, if the robot cannot follow this one, the robot's own."""
-    robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
+    robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """Robot whose joints and servos are commanded."""
     map: Path | None = None
     """Servo map; by default 270 degree servos mounted in the middle, channels in order."""

@@ -1,7 +1,7 @@
 """``suchus optimise NAME|FILE.toml``: the search for a better gait or body, resumable."""
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Annotated
@@ -9,12 +9,12 @@ from typing import Annotated
 import tyro
 
 from suchus.cli.options import SCHEDULER, parse
-from suchus.cli.terminal import Bars, working
+from suchus.cli.terminal import working
 from suchus.errors import UnknownName
-from suchus.optimise import AIMS, READY, Optimisation, SearchProgress, read_optimisation, write_results
+from suchus.jobs import at_scheduler
+from suchus.optimise import AIMS, READY, Optimisation, read_optimisation, write_results
 from suchus.optimise import optimise as conduct
 from suchus.record import check_name, check_writable, there
-from suchus.study import at_scheduler
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -48,7 +48,7 @@ def optimise(words: Sequence[str]) -> int:
     check_writable(folder)
     cpu = time.process_time()
     with at_scheduler(options.scheduler) as client, working() as bars:
-        found = conduct(spec, folder, progress=_shown(bars, spec), client=client)
+        found = conduct(spec, folder, progress=bars.reporter(spec.name), client=client)
         bars.say("the best are run again, drawn and packed for replay")
         result = write_results(spec, found, folder)
     for one in found:
@@ -76,9 +76,3 @@ def _asked(options: OptimiseOptions) -> Optimisation:
     if options.evaluations is not None:
         spec = replace(spec, evaluations=options.evaluations)
     return spec if options.seed is None else replace(spec, seed=options.seed)
-
-
-def _shown(bars: Bars, spec: Optimisation) -> Callable[[SearchProgress], None]:
-    """Return what moves a bar for each condition."""
-    tells = {arm.name: bars.reporter(f"{spec.name} {arm.name}") for arm in spec.arms}
-    return lambda state: tells[state.arm](state, min(state.done / state.budget, 1.0))

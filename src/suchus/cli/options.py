@@ -17,7 +17,7 @@ from tyro.constructors import ConstructorRegistry, PrimitiveConstructorSpec, Pri
 from suchus import blueprint
 from suchus.catalog import Catalog
 from suchus.cli.commands import BadCommand
-from suchus.design import AnyRobot, Crocodile
+from suchus.design import Robot
 from suchus.errors import SuchusError, UnknownName
 from suchus.experiment import Experiment
 from suchus.gaits import GAITS
@@ -88,7 +88,7 @@ def choose(experiment: Experiment, name: str, words: Sequence[str]) -> RunReques
     return RunRequest(experiment=chosen.experiment, quick=quick, out=chosen.out, csv=chosen.csv)
 
 
-def _robot(words: Sequence[str]) -> AnyRobot | None:
+def _robot(words: Sequence[str]) -> Robot | None:
     """Return the robot that the words name, so that the defaults of the other options can be its own.
 
     None where they name none, or none that there is: what is wrong is said when all words are read.
@@ -98,7 +98,7 @@ def _robot(words: Sequence[str]) -> AnyRobot | None:
     if not named or named[-1].startswith("-"):
         return None
     try:
-        found: AnyRobot = _find(named[-1], AnyRobot, ROBOTS)
+        found: Robot = _find(named[-1], Robot, ROBOTS)
     except SuchusError:
         return None
     return found
@@ -152,9 +152,8 @@ def _registry() -> ConstructorRegistry:
     """Robots and gaits are named on the command line, or written in a file."""
     registry = ConstructorRegistry()
     shelves: tuple[tuple[Any, Catalog[Any], str], ...] = (
-        (AnyRobot, ROBOTS, "ROBOT"),
-        (Crocodile, ROBOTS, "ROBOT"),
-        (AnyRobot | None, ROBOTS, "ROBOT"),
+        (Robot, ROBOTS, "ROBOT"),
+        (Robot | None, ROBOTS, "ROBOT"),
         (AnyGait, GAITS, "GAIT"),
         (AnyGait | None, GAITS, "GAIT"),
         (Gait, GAITS, "GAIT"),

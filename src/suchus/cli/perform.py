@@ -8,8 +8,9 @@ from pathlib import Path
 import xarray as xr
 
 from suchus.errors import plain_warnings
-from suchus.experiment import Experiment, Outcome, Progress
+from suchus.experiment import Experiment, Outcome
 from suchus.figures import styled
+from suchus.progress import Progress
 from suchus.report import check_place, save_outcome
 
 

@@ -11,7 +11,7 @@ import xarray as xr
 from suchus import record
 from suchus.cli.commands import BadCommand
 from suchus.cli.options import parse
-from suchus.design import AnyRobot
+from suchus.design import Robot
 from suchus.record import check_file
 from suchus.replay import replay, save
 from suchus.robots import ROBOTS
@@ -27,7 +27,7 @@ class ReplayOptions:
     """The run of the record, by its label or its number from 0; needed if it holds several."""
     ghost: str | None = None
     """Another run of the record, for comparison, by its label or its number."""
-    robot: AnyRobot | None = None
+    robot: Robot | None = None
     """Robot of the record; by default the one that the record names."""
     title: str = ""
     """Heading of the page; by default robot and gait."""

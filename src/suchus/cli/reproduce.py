@@ -2,19 +2,22 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
 import tyro
 
+import suchus.experiments
 from suchus import threads
-from suchus.cli.attempt import Job, JobResult, attempt, kept
+from suchus.cli.attempt import Reproduced, Reproduction, attempt, failed, kept
 from suchus.cli.commands import BadCommand
 from suchus.cli.options import OUT, QUICK, parse
-from suchus.cli.processes import side_by_side
 from suchus.cli.terminal import Bars, working
 from suchus.experiments import EXPERIMENTS
-from suchus.record import check_writable
+from suchus.jobs import Job, finish, place_for
+from suchus.progress import Progress
+from suchus.record import check_writable, sweep
 from suchus.report import Failure, Result, check_place, write_page
 
 _MOST = 4
@@ -61,7 +64,9 @@ def reproduce(words: Sequence[str]) -> int:
         ReproduceOptions, "suchus reproduce", words, about, ("out", "quick", "jobs", "anew")
     )
     tasks = [
-        Job(name=name, out=options.out, quick=options.quick) for name, one in EXPERIMENTS.items() if one.reproduces
+        Reproduction(name=name, out=options.out, quick=options.quick)
+        for name, one in EXPERIMENTS.items()
+        if one.reproduces
     ]
     if not tasks:
         raise BadCommand("there is no experiment on the shelf.")
@@ -72,11 +77,7 @@ def reproduce(words: Sequence[str]) -> int:
         check_place(options.out / task.name)
     jobs = min(threads.count(), _MOST) if options.jobs is None else options.jobs
     with working() as bars:
-        done = {} if options.anew else {task.name: one for task in tasks if (one := kept(task)) is not None}
-        for one in done.values():
-            bars.say(one.summary)
-        done |= _run([task for task in tasks if task.name not in done], jobs, bars)
-        outcomes = [done[task.name].result for task in tasks]
+        outcomes = [done.result for done in _reproduced(tasks, bars, jobs=jobs, anew=options.anew)]
         results = [one for one in outcomes if isinstance(one, Result)]
         failures = [one for one in outcomes if isinstance(one, Failure)]
         page = write_page(results, failures, options.out / "report.html")
@@ -84,17 +85,74 @@ def reproduce(words: Sequence[str]) -> int:
     return 1 if failures else 0
 
 
-def _run(tasks: Sequence[Job], jobs: int, bars: Bars) -> dict[str, JobResult]:
-    """Return the result of each task by name; the longest are begun first."""
-    tasks = sorted(tasks, key=_place)
-    if min(jobs, len(tasks)) > 1:
-        return side_by_side(tasks, min(jobs, len(tasks)), bars)
-    done = {}
-    for task in tasks:
-        done[task.name] = attempt(task, bars.task(task.name))
-        bars.say(done[task.name].summary)
-    return done
+def _reproduced(tasks: Sequence[Reproduction], bars: Bars, *, jobs: int, anew: bool) -> list[Reproduced]:
+    """Return the result of each task; the longest are begun first.
+
+    A process that dies takes its experiment with it and nothing else. When this one is stopped, by Ctrl-C or an error,
+    the others end too, and leave nothing half-written.
+    """
+    order = sorted(tasks, key=_rank)
+    results = _Results(order, anew)
+    for number in range(len(order)):
+        if results.has(number):
+            bars.say(results.get(number).summary)
+    job = Job(
+        name="reproduce",
+        kind="reproduction",
+        piece="experiment",
+        unit="experiments",
+        work=partial(_attempted, shelf=list(suchus.experiments.__path__)),
+        items=order,
+        tries=1,  # an experiment that takes too much memory takes it again
+        died=_died,
+    )
+    try:
+        finish(
+            job,
+            results,
+            place=place_for("reproduce", jobs=min(jobs, sum(not results.has(n) for n in range(len(order))) or 1)),
+            each=lambda number: bars.task(order[number].name),
+            finished=lambda _, done: bars.say(done.summary),
+        )
+    finally:
+        for number, task in enumerate(order):
+            if not results.has(number):
+                sweep(task.out / task.name)
+    return [results.get(order.index(task)) for task in tasks]
 
 
-def _place(task: Job) -> int:
+class _Results:
+    """Results of experiments, each a folder that the run itself writes; those of a run that would repeat them stay."""
+
+    def __init__(self, tasks: Sequence[Reproduction], anew: bool) -> None:
+        old = {} if anew else {number: kept(task) for number, task in enumerate(tasks)}
+        self._results = {number: result for number, result in old.items() if result is not None}
+
+    def has(self, number: int) -> bool:
+        """Return whether a result is there."""
+        return number in self._results
+
+    def get(self, number: int) -> Reproduced:
+        """Return a result that is there."""
+        return self._results[number]
+
+    def put(self, number: int, result: Reproduced) -> None:
+        """Take up a result, whose folder is written."""
+        self._results[number] = result
+
+
+def _attempted(task: Reproduction, progress: Progress, shelf: list[str]) -> Reproduced:
+    """Attempt an experiment, also in a process of its own, which knows the same shelf."""
+    suchus.experiments.__path__[:] = shelf
+    return attempt(task, progress)
+
+
+def _died(task: Reproduction, exit_code: int | None) -> Reproduced:
+    sweep(task.out / task.name)
+    return failed(
+        task.name, f"its process ended with exit code {exit_code}; where memory was short, --jobs 1 takes less of it."
+    )
+
+
+def _rank(task: Reproduction) -> int:
     return _LONG.index(task.name) if task.name in _LONG else len(_LONG)

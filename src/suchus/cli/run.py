@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from suchus.cli.commands import BadCommand
 from suchus.cli.options import TABLES, choose
 from suchus.cli.perform import perform
-from suchus.cli.shelves import entry, titles
+from suchus.cli.shelves import entry, title
 from suchus.cli.terminal import show_outcome, working
 from suchus.experiments import EXPERIMENTS
 from suchus.record import check_writable, write_tables
@@ -36,7 +36,7 @@ def run(words: Sequence[str]) -> int:
 
 
 def _help() -> str:
-    shelf = titles("suchus.experiments")
+    shelf = EXPERIMENTS.sources()
     width = max((len(name) for name in shelf), default=0)
     return "\n".join(
         (
@@ -45,7 +45,7 @@ def _help() -> str:
             "Run one experiment. Its numbers, verdicts, figures and record go into DIR/NAME.",
             "",
             "experiments:",
-            *(entry(name, title, width) for name, title in shelf.items()),
+            *(entry(name, title(source), width) for name, source in shelf.items()),
             "",
             "suchus run NAME --help lists what can be changed about an experiment.",
         )

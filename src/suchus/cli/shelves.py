@@ -1,21 +1,32 @@
-"""``suchus list``: what stands on the shelves, listed without importing any of it."""
+"""``suchus list``: what stands on the shelves; of suchus' own nothing is imported."""
 
 import ast
+import tokenize
 from collections.abc import Sequence
-from importlib.util import find_spec
 from pathlib import Path
+from pkgutil import resolve_name
 from shutil import get_terminal_size
 from textwrap import fill
 
-from suchus.cli.commands import BadCommand
+from suchus.cli.commands import PROJECT, BadCommand
+from suchus.errors import SuchusError
+from suchus.sources import SHELVES, Source, gather
 
-_SHELVES = (
-    ("robots", "suchus.robots"),
-    ("gaits", "suchus.gaits"),
-    ("faults", "suchus.faults"),
-    ("experiments", "suchus.experiments"),
-)
-_USAGE = "usage: suchus list\n\nShow the robots, the gaits, the faults and the experiments, each with its title."
+_LISTED = {
+    "robots": "suchus.robots:ROBOTS",
+    "gaits": "suchus.gaits:GAITS",
+    "faults": "suchus.faults:FAULTS",
+    "experiments": "suchus.experiments:EXPERIMENTS",
+    "controllers": "suchus.control:CONTROLLERS",
+    "measures": "suchus.study:MEASURES",
+}
+"""Where each shelf is, by its name."""
+_SCATTERED = ("controllers", "measures")
+"""Shelves whose modules declare things with names of their own."""
+_USAGE = f"""usage: suchus list [{PROJECT} DIR]
+
+Show what stands on the shelves, each with its title. What a project folder or another package puts there is marked with
+where it comes from; it is loaded, and shown as broken where that fails."""
 
 
 def show(words: Sequence[str]) -> int:
@@ -25,51 +36,76 @@ def show(words: Sequence[str]) -> int:
         return 0
     if words:
         raise BadCommand(f"suchus list takes no {words[0]!r}.")
-    shelves = [(heading, package, titles(package)) for heading, package in _SHELVES]
-    width = max((len(name) for _, _, shelf in shelves for name in shelf), default=0)
-    for i, (heading, package, shelf) in enumerate(shelves):
-        print("\n" * bool(i) + heading)
-        for name, title in shelf.items():
-            needs, robots = _stated(package, name, "needs"), _stated(package, name, "made_for")
-            more = f" (needs {', '.join(needs).replace('_', ' ')})" if needs else ""
-            more += f" (of {', '.join(robots)})" if robots else ""
-            print(entry(name, title + more, width))
+    shelves = {
+        shelf: gather(shelf.removesuffix("s"), SHELVES[shelf], scattered=shelf in _SCATTERED) for shelf in _LISTED
+    }
+    width = max((len(name) for sources in shelves.values() for name in sources), default=0)
+    for i, (shelf, sources) in enumerate(shelves.items()):
+        print("\n" * bool(i) + shelf)
+        for name, source in sources.items():
+            print(entry(name, title(source) + _needs(source) + _origin(source, shelf), width))
     return 0
 
 
-def entry(name: str, title: str, width: int) -> str:
+def entry(name: str, text: str, width: int) -> str:
     """Return a name and its title side by side, the title wrapped to the terminal."""
     columns = max(60, min(110, get_terminal_size().columns))
-    return fill(title, columns, initial_indent=f"  {name:<{width}}  ", subsequent_indent=" " * (width + 4))
+    return fill(text, columns, initial_indent=f"  {name:<{width}}  ", subsequent_indent=" " * (width + 4))
 
 
-def titles(package: str) -> dict[str, str]:
-    """Return the first line of each module's docstring by name, sorted by name."""
-    spec = find_spec(package)
-    folders = [Path(place) for place in (spec.submodule_search_locations or ())] if spec else []
-    files = (file for folder in folders for file in folder.glob("*.py") if not file.stem.startswith("_"))
-    return {file.stem: _title(file) for file in sorted(files, key=lambda file: file.stem)}
-
-
-def _stated(package: str, name: str, what: str) -> tuple[str, ...]:
-    """Return the texts of an assignment in a module, or in a class of it, read without importing it."""
-    spec = find_spec(package)
-    folders = (spec.submodule_search_locations or ()) if spec else ()
-    file = next((Path(place) / f"{name}.py" for place in folders if (Path(place) / f"{name}.py").exists()), None)
+def title(source: Source) -> str:
+    """Return the first line of the docstring of what is declared or of its module, or of a TOML file's comment."""
+    if source.file is None:
+        return ""
+    if source.file.suffix == ".toml":
+        first = _text(source.file).lstrip().partition("\n")[0]
+        return first.lstrip("# ") if first.startswith("#") else ""
     try:
-        tree = ast.parse(file.read_text(encoding="utf-8")) if file else ast.Module(body=[], type_ignores=[])
-    except (SyntaxError, UnicodeDecodeError):
+        tree = ast.parse(_text(source.file))
+    except (SyntaxError, ValueError):
+        return "(cannot be read)"
+    parts = [part for part in tree.body if isinstance(part, (ast.ClassDef, ast.FunctionDef))]
+    inside = next((part for part in parts if part.name == source.attribute), tree)
+    return (ast.get_docstring(inside) or "").partition("\n")[0]
+
+
+def _needs(source: Source) -> str:
+    """Return what an experiment needs of a robot, and for whom a gait was made."""
+    if source.attribute:
+        return ""
+    needs, robots = _stated(source, "needs"), _stated(source, "made_for")
+    text = f" (needs {', '.join(needs).replace('_', ' ')})" if needs else ""
+    return text + (f" (of {', '.join(robots)})" if robots else "")
+
+
+def _origin(source: Source, shelf: str) -> str:
+    """Return where a thing of the user's comes from, and what is wrong with it."""
+    if source.shipped:
+        return ""
+    try:
+        resolve_name(_LISTED[shelf])[source.name]
+    except SuchusError as error:
+        return f" [broken: {error}]"
+    return f" [{source.place}]"
+
+
+def _stated(source: Source, what: str) -> tuple[str, ...]:
+    """Return the texts of an assignment in a module, or in a class of it, read without importing it."""
+    if source.file is None or source.file.suffix != ".py":
         return ()
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Assign) and any(isinstance(t, ast.Name) and t.id == what for t in node.targets):
-            value = ast.literal_eval(node.value)
-            return tuple(str(one) for one in value)
+    try:
+        for node in ast.walk(ast.parse(_text(source.file))):
+            if isinstance(node, ast.Assign) and any(isinstance(t, ast.Name) and t.id == what for t in node.targets):
+                return tuple(str(part) for part in ast.literal_eval(node.value))
+    except (SyntaxError, ValueError, TypeError):  # a text that is not written out
+        return ()
     return ()
 
 
-def _title(file: Path) -> str:
+def _text(file: Path) -> str:
+    """Return the text of a module or a TOML file."""
     try:
-        text = ast.get_docstring(ast.parse(file.read_text(encoding="utf-8")))
-    except (SyntaxError, UnicodeDecodeError):
-        return "(cannot be read)"
-    return (text or "").partition("\n")[0]
+        with tokenize.open(file) if file.suffix == ".py" else file.open(encoding="utf-8") as stream:
+            return stream.read()
+    except (OSError, SyntaxError, UnicodeDecodeError) as error:
+        raise ValueError(str(error)) from error

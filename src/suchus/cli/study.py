@@ -1,6 +1,6 @@
 """``suchus study FILE.toml``: many runs, their results into a folder that a kill cannot spoil."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Annotated
@@ -11,10 +11,11 @@ import xarray as xr
 from suchus.cli.commands import BadCommand
 from suchus.cli.options import CSV, SCHEDULER, TABLES, parse
 from suchus.cli.terminal import working
+from suchus.jobs import at_scheduler
+from suchus.jobs.store import RESULTS, TABLE
 from suchus.record import check_name, there, write_tables
-from suchus.study import Claims, StudyProgress, answer_finished, at_scheduler, conduct, conduct_claims, read_study
+from suchus.study import Claims, answer_finished, conduct, conduct_claims, read_study
 from suchus.study.claims_page import write_claims
-from suchus.study.store import RESULTS, TABLE
 
 CLAIMS = "claims"
 
@@ -62,14 +63,7 @@ def study(words: Sequence[str]) -> int:
         check_name(asked.name, "study")
     folder = options.out or Path("out") / "studies" / asked.name
     with at_scheduler(options.scheduler) as client, working() as bars:
-        tell = bars.reporter(asked.name)
-        results = conduct(
-            asked,
-            folder,
-            progress=lambda state: tell(state, state.done / state.total),
-            client=client,
-            jobs=options.jobs,
-        )
+        results = conduct(asked, folder, progress=bars.reporter(asked.name), client=client, jobs=options.jobs)
     failed = {sample: str(error) for sample, error in enumerate(results.error.values) if error}
     print(f"{results.sizes['sample']} runs, {len(failed)} failed: {folder / RESULTS}, {folder / TABLE}")
     if options.csv:
@@ -86,14 +80,8 @@ def _claims(options: StudyOptions) -> int:
     if options.finished:
         return _answered(answer_finished(asked, folder), folder)
     with at_scheduler(options.scheduler) as client, working() as bars:
-        shown: dict[str, Callable[[object, float], None]] = {}
-
-        def show(place: str, state: StudyProgress) -> None:
-            if place not in shown:
-                shown[place] = bars.reporter(f"{CLAIMS} {place.replace('_', ' ')}")
-            shown[place](state, state.done / state.total)
-
-        record = conduct_claims(asked, folder, progress=show, client=client, jobs=options.jobs)
+        progress = bars.reporter(CLAIMS)
+        record = conduct_claims(asked, folder, progress=progress, client=client, jobs=options.jobs)
         return _answered(record, folder)
 
 

@@ -1,17 +1,19 @@
 """What people see in the terminal: bars while it works, then a table of verdicts."""
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 
+from rich import progress as rich_progress
 from rich.console import Console
 from rich.markup import escape
-from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
+from rich.progress import BarColumn, TaskID, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
 from suchus import experiment as contract
 from suchus.cli.perform import Done
+from suchus.progress import Progress
 from suchus.report import quantity
 
 _EVERY = 10.0  # [s]; between lines where there is no terminal for a bar
@@ -29,9 +31,9 @@ _COLOURS = {
 class Bars:
     """Progress bars on standard error; nothing where that is no terminal."""
 
-    _progress: Progress
+    _progress: rich_progress.Progress
 
-    def task(self, name: str) -> contract.Progress:
+    def task(self, name: str) -> Progress:
         """Add a bar and return what moves it."""
         task: TaskID = self._progress.add_task(name, total=1.0, stage="")
 
@@ -45,19 +47,16 @@ class Bars:
         """Whether there is a terminal to show them on."""
         return self._progress.console.is_terminal
 
-    def reporter(self, name: str) -> Callable[[object, float], None]:
-        """Add a bar and return what moves it, or says a line now and then where there is no terminal.
-
-        What it returns takes what to show, which becomes text only where it is shown, and the share that is done.
-        """
+    def reporter(self, name: str) -> Progress:
+        """Add a bar and return what moves it, or says a line now and then where there is no terminal."""
         move, last = self.task(name), time.monotonic()
 
-        def tell(what: object, share: float) -> None:
+        def tell(stage: str, share: float) -> None:
             nonlocal last
-            move(str(what), share)
+            move(stage, share)
             if not self.seen and time.monotonic() - last > _EVERY:
                 last = time.monotonic()
-                self.say(f"{name}: {what}")
+                self.say(f"{name}: {stage}, {share:.0%}")
 
         return tell
 
@@ -76,7 +75,7 @@ def working() -> Iterator[Bars]:
         TimeElapsedColumn(),
         TextColumn("[dim]{task.fields[stage]}"),
     )
-    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress:
+    with rich_progress.Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress:
         yield Bars(progress)
 
 

@@ -11,7 +11,7 @@ import tyro
 from suchus.capture import ReadingOptions, read_tracks
 from suchus.cli.commands import BadCommand
 from suchus.cli.options import parse
-from suchus.design import AnyRobot, crocodile
+from suchus.design import Robot, crocodile, with_values
 from suchus.design.checks import require
 from suchus.gaits import own_gait
 from suchus.motion import AnyGait, Swim
@@ -49,7 +49,7 @@ class Where:
 class ViewWalkOptions(Where):
     """Options of ``suchus view`` for a live walk."""
 
-    robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
+    robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that walks."""
     gait: AnyGait | None = None
     """Gait at the beginning; by default the robot's own."""
@@ -71,7 +71,7 @@ class Replaying(Where):
     """Tracked keypoints of a walking animal, which walks beside the robot at its size and pace."""
     fps: float | None = None
     """Frames per second of the animal's film [Hz], if its file does not say."""
-    robot: AnyRobot | None = None
+    robot: Robot | None = None
     """Robot of the record; by default the one that the record names."""
 
 
@@ -141,13 +141,13 @@ def serve_walk(options: ViewWalkOptions, opened: Callable[[str], object] | None 
     )  # fmt: skip
 
 
-def _wave_of(robot: AnyRobot) -> Swim:
+def _wave_of(robot: Robot) -> Swim:
     """Return the article's wave on the joints of a robot.
 
     Raises:
         UnsuitedRobot: it does not swim by trunk and cable.
     """
-    bare = replace(crocodile(robot, "suchus view --lake"), hull=None)
+    bare = with_values(crocodile(robot, "suchus view --lake"), {"hull": None})
     return fit(bare, printed_wave(bare, "I", frequency=_SWIM, sign=-1)).swim
 
 

@@ -1,5 +1,6 @@
 """From what the robot senses to the commands of its servos, for a whole batch at once."""
 
+from suchus.catalog import Catalog
 from suchus.control.amphibious import Amphibious
 from suchus.control.attitude import AttitudeRule
 from suchus.control.controller import Command, Control, Controller, Runs
@@ -23,8 +24,14 @@ from suchus.control.trim import PitchHold
 from suchus.control.turning import CURVES, TurningCurve, turn
 from suchus.control.walking import Change, Walking
 
+CONTROLLERS: Catalog[type[Control]] = Catalog(
+    "controller", "suchus.control", "suchus.control.controller:Control", scattered=True
+)
+"""The controls by name, ``pattern_generator`` for ``PatternGenerator``: classes of values for ``Run.control``."""
+
 __all__ = [
     "BALANCE",
+    "CONTROLLERS",
     "CURVES",
     "LAWS",
     "OWNERS",

@@ -7,11 +7,12 @@ from typing import Literal
 import numpy as np
 from jaxtyping import Bool, Float
 
+from suchus.control import swimming
 from suchus.control.controller import Command, Controller, Runs
 from suchus.control.heading import Heading, HeadingRule
 from suchus.control.sensed import Sensed, finite, keep
 from suchus.control.swimming import Swimming
-from suchus.design import GRAVITY, AnyRobot, general, layout
+from suchus.design import GRAVITY, Robot, general, layout
 from suchus.design.checks import Checks
 from suchus.errors import InvalidDesign
 from suchus.motion import START, Batch, Gait, Steer
@@ -117,7 +118,7 @@ class Amphibian:
     def __init__(
         self,
         controls: Sequence[Amphibious],
-        robots: Sequence[AnyRobot],
+        robots: Sequence[Robot],
         gaits: Sequence[Gait],
         wades: Sequence[Gait],
         swims: Controller,
@@ -232,3 +233,7 @@ class Amphibian:
 def _eased(share: np.ndarray) -> np.ndarray:
     """Return shares that begin and end without a jump of their rate, shape (run, 1)."""
     return np.asarray(share**2 * (3.0 - 2.0 * share))[:, None]
+
+
+controller = Amphibious
+examples = (Amphibious(swim=swimming.examples[0]),)

@@ -8,7 +8,7 @@ from jaxtyping import Float
 
 from suchus import rotation
 from suchus.control.sensed import Sensed
-from suchus.design import AnyRobot, hips_ahead, layout
+from suchus.design import Robot, hips_ahead, layout
 from suchus.design.checks import Checks
 
 _REACH = 0.175  # [m]; of the hind limbs of the article's robot
@@ -48,7 +48,7 @@ class AttitudeRule:
 class Attitude:
     """The attitude of a batch, and what the feet do about it; each run has its own rule or none."""
 
-    def __init__(self, rules: Sequence[AttitudeRule | None], robots: Sequence[AnyRobot], period: float) -> None:
+    def __init__(self, rules: Sequence[AttitudeRule | None], robots: Sequence[Robot], period: float) -> None:
         given = [rule if rule is not None else _NONE for rule in rules]
         self._gain = np.array([(r.roll, r.roll_rate, r.pitch, r.pitch_rate) for r in given]).T[..., None]  # (4, run, 1)
         self._most = np.array([[rule.most * _size(robot)] for rule, robot in zip(given, robots, strict=True)])
@@ -75,14 +75,14 @@ class Attitude:
 _NONE = AttitudeRule(roll=0.0, roll_rate=0.0, pitch=0.0, pitch_rate=0.0)
 
 
-def _ahead(robot: AnyRobot) -> list[float]:
+def _ahead(robot: Robot) -> list[float]:
     """Return how far each limb's hips are ahead of the middle between the foremost and the hindmost girdle [m]."""
     hips = [hips_ahead(robot, limb.number) for limb in layout(robot).limbs]
     middle = (hips[0] + hips[-1]) / 2 if hips else 0.0
     return [one - middle for one in hips]
 
 
-def _size(robot: AnyRobot) -> float:
+def _size(robot: Robot) -> float:
     """Return how long the hind limbs are beside those of the article's robot [-]."""
     limbs = layout(robot).limbs
     return round(limbs[-1].girdle.limb.reach / _REACH, 9) if limbs else 1.0

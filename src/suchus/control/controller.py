@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Float
 
 from suchus.control.sensed import Sensed
-from suchus.design import AnyRobot
+from suchus.design import Robot
 from suchus.motion import Gait
 
 
@@ -38,7 +38,7 @@ class Runs(NamedTuple):
 
     controls: tuple[Any, ...]
     """Settings, all of one class."""
-    robots: tuple[AnyRobot, ...]
+    robots: tuple[Robot, ...]
     """Designs, all of one layout."""
     gaits: tuple[Gait, ...]
     """Gaits."""
@@ -48,7 +48,7 @@ class Runs(NamedTuple):
     """Number of control periods to come."""
 
     @classmethod
-    def alike(cls, control: Any, robot: AnyRobot, gait: Gait, *, count: int = 1, ticks: int = 1) -> "Runs":
+    def alike(cls, control: Any, robot: Robot, gait: Gait, *, count: int = 1, ticks: int = 1) -> "Runs":
         """Return runs that differ in nothing, not even in the seed, 0."""
         return cls((control,) * count, (robot,) * count, (gait,) * count, (0,) * count, ticks)
 

@@ -13,7 +13,7 @@ from suchus.control.sensed import Sensed
 from suchus.control.shared import silence
 from suchus.control.spine import SpineController, SpineRule
 from suchus.control.tail import TailController, TailRule
-from suchus.design import AnyRobot, layout
+from suchus.design import Robot, layout
 from suchus.design.checks import Checks, require
 from suchus.errors import InvalidDesign, UnsuitedRobot
 from suchus.motion import START, Batch, Gait, Steer
@@ -71,7 +71,7 @@ class Coordinated:
         """Whether any rule is on."""
         return self.limbs.feels or any(rule is not None for rule in (self.spine, self.tail, self.heading))
 
-    def suited(self, robot: AnyRobot, gait: Gait) -> "Coordinated":
+    def suited(self, robot: Robot, gait: Gait) -> "Coordinated":
         """Return it with those of its rules that a robot's parts make possible in a gait.
 
         A law that makes diagonal pairs is switched off in a gait without them.
@@ -180,7 +180,7 @@ class Coordinator:
         return replace(sensed, foot_pressure=pressure)
 
 
-def _refuse_others(control: Coordinated, robot: AnyRobot, gait: Gait) -> None:
+def _refuse_others(control: Coordinated, robot: Robot, gait: Gait) -> None:
     place = layout(robot)
     for kick in control.kicks:
         if len(kick.ahead) != len(place.limbs):
@@ -203,3 +203,6 @@ def _refuse_others(control: Coordinated, robot: AnyRobot, gait: Gait) -> None:
                 f"the feedback rule {rule} to {rule} needs {needs}; robot {robot.name!r} with gait {gait.name!r} lacks "
                 "that: leave the rule out, as Coordinated.suited does."
             )
+
+
+controller = Coordinated

@@ -8,7 +8,7 @@ from jaxtyping import Float
 
 from suchus import rotation
 from suchus.control.sensed import Sensed, finite
-from suchus.design import AnyRobot, layout
+from suchus.design import Robot, layout
 
 
 class Facing:
@@ -19,7 +19,7 @@ class Facing:
         cycle: length of each robot's cycle in control periods.
     """
 
-    def __init__(self, robots: Sequence[AnyRobot], cycle: Sequence[int]) -> None:
+    def __init__(self, robots: Sequence[Robot], cycle: Sequence[int]) -> None:
         self._yaw = list(layout(robots[0]).trunk_yaw)
         self._cycle, self._runs = np.array(cycle), np.arange(len(cycle))
         self._summed = np.zeros((int(self._cycle.max()) + 1, len(cycle)))  # a ring, as long as the longest cycle

@@ -10,7 +10,7 @@ from jaxtyping import Bool, Float
 
 from suchus.control.facing import Facing
 from suchus.control.sensed import Sensed
-from suchus.design import AnyRobot, layout
+from suchus.design import Robot, layout
 from suchus.design.checks import Checks
 from suchus.motion import Gait, longest_strokes
 
@@ -68,7 +68,7 @@ class Heading:
     def __init__(
         self,
         rules: Sequence[HeadingRule | None],
-        robots: Sequence[AnyRobot],
+        robots: Sequence[Robot],
         gaits: Sequence[Gait],
         period: float,
     ) -> None:
@@ -107,7 +107,7 @@ class Heading:
         self._offset = np.clip(before._offset, -self._most, self._most)
 
 
-def _most(rule: HeadingRule, robot: AnyRobot, gait: Gait) -> float:
+def _most(rule: HeadingRule, robot: Robot, gait: Gait) -> float:
     if not gait.has("strokes"):
         return 0.0
     return min(rule.most, max(longest_strokes(robot, gait) - 1.0, 0.0))

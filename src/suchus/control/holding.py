@@ -9,7 +9,7 @@ from jaxtyping import Float
 
 from suchus.control.facing import Facing
 from suchus.control.sensed import Sensed, finite, keep
-from suchus.design import AnyRobot
+from suchus.design import Robot
 from suchus.design.checks import Checks
 from suchus.design.pieces import chambers
 from suchus.kinematics.trim import spare_volume
@@ -75,7 +75,7 @@ class DepthHold:
             check.number("pump", 1e-3, 100.0, "1/s")
 
 
-def neutral_breath(robot: AnyRobot) -> float:
+def neutral_breath(robot: Robot) -> float:
     """Return the share of its hull's air with which a robot under fresh water neither sinks nor rises [-].
 
     Raises:
@@ -88,7 +88,7 @@ class Headings:
     """The heading holds of a batch."""
 
     def __init__(
-        self, rules: Sequence[HeadingHold | None], robots: Sequence[AnyRobot], cycle: Sequence[int], period: float
+        self, rules: Sequence[HeadingHold | None], robots: Sequence[Robot], cycle: Sequence[int], period: float
     ) -> None:
         off = HeadingHold(gain=0.0, integral_gain=0.0, turn=0.0, trunk_turn=0.0)
         given = [rule or off for rule in rules]
@@ -110,7 +110,7 @@ class Headings:
 class Depths:
     """The depth holds of a batch."""
 
-    def __init__(self, rules: Sequence[DepthHold | None], robots: Sequence[AnyRobot], period: float) -> None:
+    def __init__(self, rules: Sequence[DepthHold | None], robots: Sequence[Robot], period: float) -> None:
         self._on = np.array([rule is not None for rule in rules])
         off = DepthHold(depth=0.0)
         given = [rule or off for rule in rules]

@@ -10,7 +10,7 @@ from jaxtyping import Float
 
 from suchus.control.sensed import Sensed, finite, keep
 from suchus.control.shared import Shared
-from suchus.design import GRAVITY, AnyRobot, Layout, layout
+from suchus.design import GRAVITY, Robot, Layout, layout
 from suchus.design.checks import Checks
 from suchus.errors import OutsideLimits
 from suchus.motion import Gait
@@ -98,7 +98,7 @@ class Loads:
     """
 
     def __init__(
-        self, laws: Sequence[LimbLaw], robots: Sequence[AnyRobot], gaits: Sequence[Gait], period: float
+        self, laws: Sequence[LimbLaw], robots: Sequence[Robot], gaits: Sequence[Gait], period: float
     ) -> None:
         place = layout(robots[0])
         self.felt = any(law.feels for law in laws)
@@ -145,7 +145,7 @@ class Limbs:
     def __init__(
         self,
         laws: Sequence[LimbLaw],
-        robots: Sequence[AnyRobot],
+        robots: Sequence[Robot],
         gaits: Sequence[Gait],
         ahead: Float[np.ndarray, "run limb"],
         period: float,
@@ -186,7 +186,7 @@ class Limbs:
         self.ahead[run] += ahead
 
 
-def _trunk_torque(robot: AnyRobot) -> float:
+def _trunk_torque(robot: Robot) -> float:
     """Return the sum of what the trunk's yaw servos can give, 1 of a robot without any [N m]."""
     place = layout(robot)
     return sum(place.robot.servo(place.servos[i]).torque for i in place.trunk_yaw) or 1.0

@@ -51,3 +51,6 @@ class GaitTable:
         """Look up one tick."""
         del sensed
         return Command(self._targets[self._row, tick], self._phase[self._row, tick])
+
+
+controller = OpenLoop

@@ -18,7 +18,7 @@ from suchus.control.pattern_rules import Rules
 from suchus.control.sensed import Sensed
 from suchus.control.spine import SpineRule
 from suchus.control.tail import TailRule
-from suchus.design import AnyRobot, layout
+from suchus.design import Robot, layout
 from suchus.design.checks import Checks, require
 from suchus.design.scale import control_period
 from suchus.errors import InvalidDesign
@@ -116,7 +116,7 @@ class Generator:
     def __init__(
         self,
         controls: Sequence[PatternGenerator],
-        robots: Sequence[AnyRobot],
+        robots: Sequence[Robot],
         gaits: Sequence[Gait],
         seeds: Sequence[int],
         period: float,
@@ -227,7 +227,7 @@ class Generator:
 
 
 def _grouped(
-    controls: Sequence[PatternGenerator], robots: Sequence[AnyRobot], gaits: Sequence[Gait]
+    controls: Sequence[PatternGenerator], robots: Sequence[Robot], gaits: Sequence[Gait]
 ) -> list[tuple[PatternPosture, np.ndarray]]:
     for robot, gait in set(zip(robots, gaits, strict=True)):
         check_limits(robot, gait)
@@ -245,7 +245,7 @@ def _least(numbers: Oscillators) -> float:
     return float(numbers.limbs(np.array(numbers.limb_drives[0]))[1])
 
 
-def _pace(control: PatternGenerator, robot: AnyRobot, gait: Gait) -> float:
+def _pace(control: PatternGenerator, robot: Robot, gait: Gait) -> float:
     if control.pace is not None:
         return control.pace
     numbers = control.oscillators
@@ -261,7 +261,7 @@ def _pace(control: PatternGenerator, robot: AnyRobot, gait: Gait) -> float:
 
 def _initial(
     control: PatternGenerator,
-    robot: AnyRobot,
+    robot: Robot,
     gait: Gait,
     seed: int,
     posture: PatternPosture,
@@ -300,7 +300,7 @@ class OscillatorStates(NamedTuple):
 
 def oscillate(
     controls: Sequence[PatternGenerator],
-    robot: AnyRobot,
+    robot: Robot,
     gait: Gait,
     *,
     duration: float,
@@ -338,3 +338,6 @@ def oscillate(
         wave=np.stack(wave, axis=1),
         names=generator.couplings[0].names,
     )
+
+
+controller = PatternGenerator

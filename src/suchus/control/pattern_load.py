@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float
 
 from suchus.control.sensed import Sensed, finite, keep
-from suchus.design import GRAVITY, AnyRobot
+from suchus.design import GRAVITY, Robot
 from suchus.design.checks import Checks
 
 
@@ -39,7 +39,7 @@ class LoadRule:
 class FeltDrive:
     """The load that each run of a batch feels, and the drive that it adds."""
 
-    def __init__(self, rules: Sequence[LoadRule | None], robots: Sequence[AnyRobot], period: float) -> None:
+    def __init__(self, rules: Sequence[LoadRule | None], robots: Sequence[Robot], period: float) -> None:
         self.felt = any(rule is not None for rule in rules)
         """Whether any run has such a rule."""
         given = [rule or LoadRule(afloat=0.0) for rule in rules]

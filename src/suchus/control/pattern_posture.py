@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float
 
 from suchus.control.oscillators import AxisPart
-from suchus.design import AnyRobot, Crank, Layout, hips_behind_snout, layout, servo_ranges
+from suchus.design import Robot, Crank, Layout, hips_behind_snout, layout, servo_ranges
 from suchus.errors import UnsuitedRobot
 from suchus.kinematics import tail as tail_kinematics
 from suchus.motion import Gait, Held, Sweep, limb_movement, middle_stance, movement
@@ -36,7 +36,7 @@ class AxisSegment:
     """Whether an offset on it turns the robot: it lies ahead of the hindmost limbs, or there are none."""
 
 
-def axis_segments(robot: AnyRobot, gait: Gait) -> tuple[AxisSegment, ...]:
+def axis_segments(robot: Robot, gait: Gait) -> tuple[AxisSegment, ...]:
     """Return the segments of a robot's axis from head to tail.
 
     Each girdle drives the axis from itself to the next girdle, the first one also what is ahead of it: fore limbs the
@@ -81,7 +81,7 @@ class PatternPosture:
         standing: whether silent limbs stand in the middle of their path; else they fold back along the body.
     """
 
-    def __init__(self, robot: AnyRobot, gait: Gait, *, standing: bool) -> None:
+    def __init__(self, robot: Robot, gait: Gait, *, standing: bool) -> None:
         self.segments = axis_segments(robot, gait)
         self.shift = 0.25 - gait.duty_factor / 2
         """What a limb's phase is ahead of its oscillator: a left oscillator bends the body to the left [cycle]."""

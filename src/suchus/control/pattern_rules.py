@@ -9,7 +9,7 @@ from jaxtyping import Float
 from suchus.control.sensed import Sensed
 from suchus.control.spine import SpineController, SpineRule
 from suchus.control.tail import TailController, TailRule
-from suchus.design import AnyRobot, layout
+from suchus.design import Robot, layout
 from suchus.errors import UnsuitedRobot
 from suchus.motion import Gait
 
@@ -21,7 +21,7 @@ class Rules:
         self,
         spines: Sequence[SpineRule | None],
         tails: Sequence[TailRule | None],
-        robots: Sequence[AnyRobot],
+        robots: Sequence[Robot],
         gaits: Sequence[Gait],
         period: float,
     ) -> None:
@@ -56,7 +56,7 @@ class Rules:
         return targets
 
 
-def _with_tail(robot: AnyRobot, gait: Gait) -> Gait:
+def _with_tail(robot: Robot, gait: Gait) -> Gait:
     if not (gait.has("tail pitch") and layout(robot).tail_pitch):
         raise UnsuitedRobot(
             f"the rule tail to tail needs a servo that pitches the tail and a gait that lays it down, as "

@@ -42,3 +42,10 @@ class Rolling:
             targets[i] = roll_targets(robot, roll, time)
             phase[i] = (roll.frequency * time)[:, None]
         return GaitTable(targets, phase, np.array([unique[pair] for pair in pairs]))
+
+
+_ROLL = Roll(
+    frequency=0.5, trunk_lateral=0.2, trunk_vertical=0.2, tail_lateral=0.2, tail_vertical=0.2, lag=0.25, tail_lag=0.25
+)
+controller = Rolling
+examples = (Rolling(_ROLL),)

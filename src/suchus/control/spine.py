@@ -8,7 +8,7 @@ from jaxtyping import Float
 
 from suchus.control.sensed import Sensed, finite, keep
 from suchus.control.shared import Shared
-from suchus.design import AnyRobot, layout, servo_ranges
+from suchus.design import Robot, layout, servo_ranges
 from suchus.design.checks import Checks
 from suchus.motion import Batch
 
@@ -39,7 +39,7 @@ class SpineController:
     def __init__(
         self,
         rules: Sequence[SpineRule | None],
-        robots: Sequence[AnyRobot],
+        robots: Sequence[Robot],
         period: float,
     ) -> None:
         self._on = np.array([rule is not None for rule in rules])

@@ -11,7 +11,7 @@ from suchus import rotation
 from suchus.control.controller import Command, Runs
 from suchus.control.sensed import Sensed
 from suchus.control.suited import crocodiles
-from suchus.design import AnyRobot, Crocodile, Layout, Leg, crocodile, layout
+from suchus.design import Robot, Crocodile, Layout, Leg, crocodile, layout
 from suchus.design.checks import Checks
 from suchus.motion import Gait, intended
 from suchus.motion.posture import Keyed, hind_leg, plan
@@ -110,19 +110,19 @@ class Standing:
         """Whether anything is corrected."""
         return self.balance is not None
 
-    def upright_from(self, robot: AnyRobot) -> float:
+    def upright_from(self, robot: Robot) -> float:
         """Return when rising ends [s]."""
         return self.at + self.blend + self._rise(robot).duration
 
-    def upright_until(self, robot: AnyRobot) -> float:
+    def upright_until(self, robot: Robot) -> float:
         """Return when lying down begins [s]."""
         return self.upright_from(robot) + self.hold
 
-    def down_from(self, robot: AnyRobot) -> float:
+    def down_from(self, robot: Robot) -> float:
         """Return when the robot crawls again [s]."""
         return self.upright_until(robot) + self.slower_down * self._rise(robot).duration + self.blend
 
-    def _rise(self, robot: AnyRobot) -> Keyed:
+    def _rise(self, robot: Robot) -> Keyed:
         return stand_up(crocodile(robot, "standing up")) if self.rise is None else self.rise
 
     @staticmethod
@@ -234,3 +234,7 @@ class Stander:
         back = g["hips_per_pitch"] * beyond + g["hips_per_rate"] * rate + self._crept
         bend = g["trunk_per_pitch"] * beyond + g["trunk_per_rate"] * rate
         return np.clip(back, -hips, hips), np.clip(bend, -trunk, trunk)
+
+
+controller = Standing
+examples = (Standing(at=0.1, hold=0.1),)

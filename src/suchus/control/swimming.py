@@ -161,3 +161,13 @@ def _check(robot: Crocodile, targets: np.ndarray) -> None:
                 f"swimming asks {name} of robot {robot.name!r} for {low:.3f} to {high:.3f} rad; {least_here:.3f} to "
                 f"{most_here:.3f} rad is allowed: bend less, or steer less."
             )
+
+
+controller = Swimming
+examples = (
+    Swimming(
+        swim=Swim(
+            name="wave", frequency=1.0, yaw=(0.36, 0.13, 0.11), yaw_lag=(0.08, -0.11, -0.29), tail=0.75, tail_lag=-0.11
+        )
+    ),
+)

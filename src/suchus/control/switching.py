@@ -8,7 +8,7 @@ from jaxtyping import Float
 
 from suchus import rotation
 from suchus.control.sensed import Sensed
-from suchus.design import GRAVITY, AnyRobot
+from suchus.design import GRAVITY, Robot
 from suchus.design.checks import Checks
 from suchus.errors import UnknownName
 from suchus.motion import Gait
@@ -59,7 +59,7 @@ class Switcher:
     def __init__(
         self,
         rules: Sequence[SwitchRule | None],
-        robots: Sequence[AnyRobot],
+        robots: Sequence[Robot],
         gaits: Sequence[Gait],
         period: float,
     ) -> None:

@@ -8,7 +8,7 @@ from jaxtyping import Float
 
 from suchus.control.sensed import Sensed, finite
 from suchus.control.shared import Shared
-from suchus.design import AnyRobot, layout, servo_ranges
+from suchus.design import Robot, layout, servo_ranges
 from suchus.design.checks import Checks
 from suchus.motion import Batch, Gait
 
@@ -43,7 +43,7 @@ class TailController:
     def __init__(
         self,
         rules: Sequence[TailRule | None],
-        robots: Sequence[AnyRobot],
+        robots: Sequence[Robot],
         gaits: Sequence[Gait],
         period: float,
     ) -> None:

@@ -12,7 +12,7 @@ from suchus.control.sensed import Sensed
 from suchus.control.shared import OWNERS, Shared, silence
 from suchus.control.spine import SpineController
 from suchus.control.tail import TailController
-from suchus.design import AnyRobot, Layout, layout
+from suchus.design import Robot, Layout, layout
 from suchus.design.scale import control_period
 from suchus.motion import Batch, Gait
 
@@ -30,7 +30,7 @@ class ControlPart(NamedTuple):
     """Shared variables that it wrote."""
 
 
-def topology(robot: AnyRobot, gait: Gait, control: Coordinated | None = None) -> tuple[ControlPart, ...]:
+def topology(robot: Robot, gait: Gait, control: Coordinated | None = None) -> tuple[ControlPart, ...]:
     """Return what each controller reads and writes when it takes a step, in the order in which they act.
 
     Args:

@@ -9,7 +9,7 @@ from jaxtyping import Float
 
 from suchus import rotation
 from suchus.control.sensed import Sensed, finite, keep
-from suchus.design import AnyRobot
+from suchus.design import Robot
 from suchus.design.checks import Checks
 from suchus.design.pieces import chambers
 from suchus.errors import InvalidDesign
@@ -69,7 +69,7 @@ class Pitches:
     """
 
     def __init__(
-        self, rules: Sequence[PitchHold | None], depths: Sequence[float], robots: Sequence[AnyRobot], period: float
+        self, rules: Sequence[PitchHold | None], depths: Sequence[float], robots: Sequence[Robot], period: float
     ) -> None:
         off = PitchHold(gain=0.0, rate_gain=0.0, integral_gain=0.0)
         self._on = np.array([rule is not None for rule in rules])

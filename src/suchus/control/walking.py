@@ -9,7 +9,7 @@ from suchus.control.attitude import Attitude, AttitudeRule
 from suchus.control.controller import Command, Runs
 from suchus.control.sensed import Sensed
 from suchus.control.switching import Switcher, SwitchRule
-from suchus.design import AnyRobot, layout, servo_ranges
+from suchus.design import Robot, layout, servo_ranges
 from suchus.design.checks import Checks, require
 from suchus.errors import OutsideLimits
 from suchus.motion import START, Batch, Gait, Steer, trunk_amplitude
@@ -82,7 +82,7 @@ class Walking:
         return Walker(runs, period)
 
 
-def _check_bend(control: Walking, robot: AnyRobot, gait: Gait) -> None:
+def _check_bend(control: Walking, robot: Robot, gait: Gait) -> None:
     place = layout(robot)
     if control.bend and not place.trunk_yaw:
         raise OutsideLimits(
@@ -176,3 +176,6 @@ class Walker:
         phases = clock[:, None] + self._batch.phases
         steer = Steer(size=size, stroke=self._stroke, lower=self._lower, bend=self._bend)
         return Command(self._batch.targets(phases, self._batch.axis_phase(phases, clock), steer), phases)
+
+
+controller = Walking

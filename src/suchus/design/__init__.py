@@ -3,7 +3,6 @@
 from suchus.design.body import Robot
 from suchus.design.chosen import Chosen, unit_at, value_at, with_values
 from suchus.design.contact import Contact
-from suchus.design.general import AnyRobot, general
 from suchus.design.hinge import Cable, Crank, Hinge, Spring, Turn
 from suchus.design.hull import Chamber, Foam, Hull
 from suchus.design.joints import (
@@ -17,18 +16,14 @@ from suchus.design.joints import (
     spine_joints,
 )
 from suchus.design.layout import Layout, LimbPlace, front_segment, hips_ahead, hips_behind_snout, layout, servo_ranges
-from suchus.design.leg import Leg
 from suchus.design.limb import Foot, Girdle, Limb, Link
 from suchus.design.needs import NEEDS, check_needs, lacking
 from suchus.design.physics import GRAVITY, WATER_DENSITY, WATER_VISCOSITY
-from suchus.design.robot import Crocodile
 from suchus.design.segment import Rod, Segment, Shell
 from suchus.design.servo import Servo
 from suchus.design.servos import with_servos, with_speed_lines
-from suchus.design.spine import Spine
-from suchus.design.suited import crocodile
-from suchus.design.tail import Tail
-from suchus.design.trunk import Head, Pelvis, Thorax
+from suchus.design.suited import AnyRobot, Crocodile, crocodile, general
+from suchus.design.tables import Head, Leg, Pelvis, Spine, Tables, Tail, Thorax
 
 __all__ = [
     "GRAVITY",
@@ -63,6 +58,7 @@ __all__ = [
     "Shell",
     "Spine",
     "Spring",
+    "Tables",
     "Tail",
     "Thorax",
     "Turn",

@@ -1,8 +1,9 @@
 """Any robot: an axis, girdles with limbs, what drives them, and how it meets the ground."""
 
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import dataclass, field, fields
 from itertools import pairwise
+from math import fsum
 
 from suchus.design.checks import Checks
 from suchus.design.contact import Contact
@@ -11,6 +12,7 @@ from suchus.design.hull import Hull
 from suchus.design.limb import Girdle
 from suchus.design.segment import Segment
 from suchus.design.servo import Servo
+from suchus.design.tables import Head, Leg, Pelvis, Spine, Tables, Tail, Thorax
 
 _TRUNK_YAW = "spine_yaw_"
 """How the names begin of the yaw hinges between the root and the foremost girdle, and of no others."""
@@ -18,8 +20,15 @@ MOST_SERVOS = 31
 """Servos at most [-]: MuJoCo can switch off so many one by one."""
 
 
+class _Hashed:
+    """Remembers its hash: functions of a whole robot are cached, and a robot has hundreds of numbers."""
+
+    __slots__ = ("_hash",)
+    _hash: int
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Robot:
+class Robot(_Hashed):
     """Any robot with an axis, as data.
 
     World: x forward, y left, z up. At zero posture all frames are parallel and every limb points where its links say.
@@ -39,6 +48,8 @@ class Robot:
     """Friction, stiffness and damping of the contact of its surfaces with the ground."""
     hull: Hull | None = None
     """Foam and air that make it float; None for a robot without."""
+    tables: Tables | None = field(default=None, init=False, compare=False, repr=False)
+    """The article's tables where ``design.crocodile`` made it of them, for ``with_values`` and files; else None."""
 
     def __post_init__(self) -> None:
         with Checks("robot", self) as check:
@@ -48,17 +59,25 @@ class Robot:
             _check_limbs(self, check)
             _check_drives(self, check)
 
+    def __hash__(self) -> int:
+        try:
+            return self._hash
+        except AttributeError:
+            compared = tuple(getattr(self, one.name) for one in fields(self) if one.compare)
+            object.__setattr__(self, "_hash", hash(compared))
+            return self._hash
+
     @property
     def mass(self) -> float:
         """Mass of the whole robot [kg]."""
-        axis = sum(shape.mass for segment in self.axis for shape in segment.shapes)
-        foam = 0.0 if self.hull is None else self.hull.mass
-        return axis + 2 * sum(girdle.limb.mass for girdle in self.girdles) + foam
+        shapes = [shape.mass for segment in self.axis for shape in segment.shapes]
+        limbs = [mass for girdle in self.girdles for mass in girdle.limb.masses]
+        return fsum([*shapes, *limbs, *limbs, 0.0 if self.hull is None else self.hull.mass])
 
     @property
     def length(self) -> float:
         """Length from the tip of the snout to the tip of the tail when straight [m]."""
-        return sum(segment.front + segment.rear for segment in self.axis)
+        return fsum(end for segment in self.axis for end in (segment.front, segment.rear))
 
     @property
     def axis_hinges(self) -> tuple[Hinge, ...]:
@@ -73,6 +92,50 @@ class Robot:
     def servo(self, name: str) -> Servo:
         """Return the servo that carries a name of ``design.servo_names(robot)``."""
         return servos_of(self)[name]
+
+    @property
+    def _article(self) -> Tables:
+        assert self.tables is not None
+        return self.tables
+
+    @property
+    def hind_leg(self) -> Leg:
+        """Bridge, to be removed."""
+        return self._article.hind_leg
+
+    @property
+    def front_leg(self) -> Leg:
+        """Bridge, to be removed."""
+        return self._article.front_leg
+
+    @property
+    def pelvis(self) -> Pelvis:
+        """Bridge, to be removed."""
+        return self._article.pelvis
+
+    @property
+    def spine(self) -> Spine:
+        """Bridge, to be removed."""
+        return self._article.spine
+
+    @property
+    def thorax(self) -> Thorax:
+        """Bridge, to be removed."""
+        return self._article.thorax
+
+    @property
+    def head(self) -> Head:
+        """Bridge, to be removed."""
+        return self._article.head
+
+    @property
+    def tail(self) -> Tail:
+        """Bridge, to be removed."""
+        return self._article.tail
+
+    def leg(self, name: str) -> Leg:
+        """Bridge, to be removed."""
+        return self.front_leg if name.endswith("F") else self.hind_leg
 
 
 def servos_of(robot: Robot) -> dict[str, Servo]:

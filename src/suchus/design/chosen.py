@@ -5,6 +5,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields, is_dataclass, replace
 from typing import Any, Protocol, Self, TypeVar, runtime_checkable
 
+from suchus.design.article import crocodile
+from suchus.design.body import Robot
 from suchus.design.meaning import meanings, unit
 from suchus.errors import UnknownName
 
@@ -51,12 +53,15 @@ def value_at(design: Any, path: str) -> Any:
         UnknownName: there is no such field.
     """
     for step in _steps(path):
-        design = _step(design, step)
+        design = _step(_holder(design, step), step)
     return design
 
 
 def with_values(design: T, values: Mapping[str, Any]) -> T:
     """Return a robot or gait that differs in some fields, checked once all of them are set.
+
+    A robot of the article's kind has the fields of its tables too; where only those are named, it is made anew of the
+    changed tables, so that all that follows from them changes with them.
 
     Args:
         design: the robot, the gait, or a part; it stays as it is.
@@ -66,6 +71,9 @@ def with_values(design: T, values: Mapping[str, Any]) -> T:
         UnknownName: there is no such field.
         InvalidDesign: the values cannot be, alone or together.
     """
+    tables = design.tables if isinstance(design, Robot) else None
+    if tables is not None and all(hasattr(tables, str(_steps(path)[0])) for path in values):
+        return crocodile(with_values(tables, values))  # type: ignore[return-value]
     branches: dict[str | int, dict[str, Any]] = {}
     numbers: dict[str, Any] = {}
     for path, value in values.items():
@@ -99,7 +107,7 @@ def unit_at(design: Any, path: str) -> str:
     holder = value_at(design, above) if above else design
     if name in _numbers(holder):
         return _numbers(holder)[name]
-    owner, name = type(holder), name.partition("[")[0]
+    owner, name = type(_holder(holder, name)), name.partition("[")[0]
     return unit(meanings(owner).get(name, "")) or "-"
 
 
@@ -116,6 +124,13 @@ def _numbers(design: Any) -> Mapping[str, str]:
         return {}
     own = {field.name for field in fields(design)} if is_dataclass(design) else set()
     return {name: unit for name, unit in design.numbers().items() if name not in own}
+
+
+def _holder(design: Any, step: str | int) -> Any:
+    """Return the tables of a robot where they, and not the robot itself, have a field; else the design."""
+    tables = design.tables if isinstance(design, Robot) else None
+    own = isinstance(design, Robot) and step in {field.name for field in fields(design) if field.init}
+    return design if tables is None or own else tables
 
 
 def _step(design: Any, step: str | int) -> Any:

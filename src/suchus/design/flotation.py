@@ -1,7 +1,7 @@
 """How much foam a robot needs to float, body by body, so that it floats level however it bends."""
 
+from suchus.design.body import Robot
 from suchus.design.checks import require
-from suchus.design.general import AnyRobot
 from suchus.design.hull import Foam, Hull
 from suchus.design.physics import WATER_DENSITY
 from suchus.design.pieces import masses, volumes
@@ -12,7 +12,7 @@ THICKEST = 9.0
 
 
 def float_hull(
-    robot: AnyRobot, *, above: float = 0.05, raised: float = 0.0, air: float = 0.0, density: float = 40.0
+    robot: Robot, *, above: float = 0.05, raised: float = 0.0, air: float = 0.0, density: float = 40.0
 ) -> Hull:
     """Return a hull that lets every body that is too heavy for its water displace its own weight and no more.
 

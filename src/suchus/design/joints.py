@@ -2,9 +2,9 @@
 
 from typing import Literal
 
-from suchus.design.general import AnyRobot, cable_names, fin_names
+from suchus.design.article import cable_names, fin_names
+from suchus.design.body import Robot
 from suchus.design.layout import layout
-from suchus.design.robot import Crocodile
 
 LegName = Literal["LF", "RF", "LH", "RH"]
 LEGS: tuple[LegName, ...] = ("LF", "RF", "LH", "RH")
@@ -21,23 +21,23 @@ def spine_joints() -> tuple[str, ...]:
     return _SPINE
 
 
-def cable_joints(robot: Crocodile) -> tuple[str, ...]:
+def cable_joints(robot: Robot) -> tuple[str, ...]:
     """Return the driven yaw joints of the tail from root to tip."""
     return cable_names(robot.tail)
 
 
-def fin_joints(robot: Crocodile) -> tuple[str, ...]:
+def fin_joints(robot: Robot) -> tuple[str, ...]:
     """Return the passive joints of the tail from root to tip, yaw before pitch in each."""
     return fin_names(robot.tail)
 
 
-def servo_names(robot: AnyRobot | None = None) -> tuple[str, ...]:
+def servo_names(robot: Robot | None = None) -> tuple[str, ...]:
     """Return the servos of a robot; without one, those of the article's."""
     if robot is not None:
         return layout(robot).servos
     return (*leg_joints(), *_SPINE, "tail_pitch", "tail_cable")
 
 
-def joint_names(robot: AnyRobot) -> tuple[str, ...]:
+def joint_names(robot: Robot) -> tuple[str, ...]:
     """Return every hinge of a robot."""
     return layout(robot).hinges

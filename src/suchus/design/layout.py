@@ -11,7 +11,6 @@ from functools import lru_cache
 import numpy as np
 
 from suchus.design.body import Robot, bends_trunk
-from suchus.design.general import AnyRobot, general
 from suchus.design.hinge import Cable, Hinge
 from suchus.design.limb import Girdle
 from suchus.errors import UnknownName
@@ -136,9 +135,9 @@ class Layout:
 
 
 @lru_cache(maxsize=256)
-def layout(robot: AnyRobot) -> Layout:
+def layout(robot: Robot) -> Layout:
     """Return the layout of a robot."""
-    body = general(robot)
+    body = robot
     root = body.root_place
     ahead = [_ahead_body(body, i) for i in range(root - 1, -1, -1)]
     behind = [_behind_body(body, i) for i in range(root + 1, len(body.axis))]
@@ -189,7 +188,7 @@ def layout(robot: AnyRobot) -> Layout:
     )
 
 
-def servo_ranges(robot: AnyRobot) -> np.ndarray:
+def servo_ranges(robot: Robot) -> np.ndarray:
     """Return the range of what each servo turns, shape (servo, 2) [rad]; a crank has none, for a cable see the pulley.
 
     A pulley that bends N hinges by b together turns by N d sin(b / (2 N)) / r.
@@ -207,15 +206,15 @@ def servo_ranges(robot: AnyRobot) -> np.ndarray:
     return np.array(found)
 
 
-def front_segment(robot: AnyRobot) -> str:
+def front_segment(robot: Robot) -> str:
     """Return the name of the segment of the front girdle, or of the root of a robot without limbs."""
-    body = general(robot)
+    body = robot
     return body.girdles[0].segment if body.girdles else body.root
 
 
-def hips_behind_snout(robot: AnyRobot, girdle: int) -> float:
+def hips_behind_snout(robot: Robot, girdle: int) -> float:
     """Return how far a girdle's hips are behind the tip of the snout with a straight axis [m]."""
-    body, ahead = general(robot), 0.0
+    body, ahead = robot, 0.0
     for segment in body.axis:
         if segment.name == body.girdles[girdle].segment:
             return ahead + segment.front - body.girdles[girdle].at
@@ -223,9 +222,9 @@ def hips_behind_snout(robot: AnyRobot, girdle: int) -> float:
     raise UnknownName("segment", body.girdles[girdle].segment, [one.name for one in body.axis])
 
 
-def hips_ahead(robot: AnyRobot, girdle: int) -> float:
+def hips_ahead(robot: Robot, girdle: int) -> float:
     """Return how far a girdle's hips are ahead of those of the hindmost girdle with a straight axis [m]."""
-    body = general(robot)
+    body = robot
     if girdle == len(body.girdles) - 1:
         return 0.0
     names, distance = [segment.name for segment in body.axis], -body.girdles[-1].at

@@ -1,7 +1,7 @@
 """Limbs: chains of hinges and links that end in a foot, a mirrored pair on each girdle."""
 
 from dataclasses import dataclass
-from math import hypot
+from math import fsum, hypot
 
 from suchus.design.checks import Checks
 from suchus.design.hinge import Hinge
@@ -79,7 +79,12 @@ class Limb:
     @property
     def mass(self) -> float:
         """Mass of one limb [kg]."""
-        return sum(link.mass for link in self.links) + self.foot.mass
+        return fsum(self.masses)
+
+    @property
+    def masses(self) -> tuple[float, ...]:
+        """Mass of each link from the hip, then of the foot [kg]."""
+        return (*(link.mass for link in self.links), self.foot.mass)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -4,10 +4,9 @@ from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 from typing import NamedTuple
 
-from suchus.design.general import AnyRobot
+from suchus.design.body import Robot
 from suchus.design.layout import layout
-from suchus.design.robot import Crocodile
-from suchus.design.spine import ARTICLE_JOINTS
+from suchus.design.tables import ARTICLE_JOINTS
 from suchus.errors import UnsuitedRobot
 
 
@@ -16,16 +15,16 @@ class Need(NamedTuple):
 
     words: str
     """How it is called, after ``needs``."""
-    met: Callable[[AnyRobot], bool]
+    met: Callable[[Robot], bool]
     """Whether a robot has it."""
 
 
-def _feet(robot: AnyRobot) -> bool:
+def _feet(robot: Robot) -> bool:
     limbs = layout(robot).limbs
     return bool(limbs) and all(len(limb.girdle.limb.hinges) > 1 for limb in limbs)
 
 
-def _trunk(robot: AnyRobot) -> bool:
+def _trunk(robot: Robot) -> bool:
     return bool(layout(robot).trunk_yaw)
 
 
@@ -40,15 +39,15 @@ NEEDS: Mapping[str, Need] = MappingProxyType(
         ),
         "tables": Need(
             "a crocodile-like robot given by the article's tables, as 'caiman'",
-            lambda robot: isinstance(robot, Crocodile),
+            lambda robot: robot.tables is not None,
         ),
         "article_spine": Need(
             f"the article's spine of {ARTICLE_JOINTS} joints",
-            lambda robot: isinstance(robot, Crocodile) and robot.spine.joints == ARTICLE_JOINTS,
+            lambda robot: robot.tables is not None and robot.spine.joints == ARTICLE_JOINTS,
         ),
         "cable_tail": Need(
             "the article's tail with a cable",
-            lambda robot: isinstance(robot, Crocodile) and robot.tail.drive == "cable",
+            lambda robot: robot.tables is not None and robot.tail.drive == "cable",
         ),
         "salamander_joints": Need(
             "the joints of the robot 'salamander'",
@@ -59,12 +58,12 @@ NEEDS: Mapping[str, Need] = MappingProxyType(
 """Everything that is asked of a robot anywhere, by name."""
 
 
-def lacking(robot: AnyRobot, needs: Sequence[str]) -> list[str]:
+def lacking(robot: Robot, needs: Sequence[str]) -> list[str]:
     """Return those of several needs that a robot does not meet."""
     return [name for name in needs if not NEEDS[name].met(robot)]
 
 
-def check_needs(robot: AnyRobot, needs: Sequence[str], what: str) -> None:
+def check_needs(robot: Robot, needs: Sequence[str], what: str) -> None:
     """Refuse a robot that lacks something.
 
     Args:

@@ -9,7 +9,7 @@ from math import ceil, hypot, pi, sqrt
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design.general import AnyRobot
+from suchus.design.body import Robot
 from suchus.design.hull import Hull
 from suchus.design.layout import Layout, LimbPlace, layout
 from suchus.design.profile import profile, stations
@@ -34,7 +34,7 @@ _BALL_DRAG = 0.47 / 1.1
 
 
 @lru_cache(maxsize=64)
-def pieces(robot: AnyRobot) -> Float[np.ndarray, "piece column"]:
+def pieces(robot: Robot) -> Float[np.ndarray, "piece column"]:
     """Return the pieces of a robot, with its foam if it has any; read-only.
 
     Raises:
@@ -49,14 +49,14 @@ def pieces(robot: AnyRobot) -> Float[np.ndarray, "piece column"]:
     return table
 
 
-def volumes(robot: AnyRobot) -> dict[str, float]:
+def volumes(robot: Robot) -> dict[str, float]:
     """Return the volume of each body with its foam [m3]."""
     table, place = pieces(robot), layout(robot)
     sums = np.bincount(table[:, 0].astype(int), table[:, COLUMNS["volume"][0]], len(place.bodies))
     return {body.name: float(volume) for body, volume in zip(place.bodies, sums, strict=True)}
 
 
-def masses(robot: AnyRobot) -> dict[str, float]:
+def masses(robot: Robot) -> dict[str, float]:
     """Return the mass of each body, without foam [kg]."""
     place = layout(robot)
     found = {segment.name: sum(shape.mass for shape in segment.shapes) for segment in place.robot.axis}
@@ -224,7 +224,7 @@ def _check_hollow(place: Layout, body: str, air: float, volume: float) -> None:
         )
 
 
-def foam_centres(robot: AnyRobot) -> dict[str, tuple[float, float, float]]:
+def foam_centres(robot: Robot) -> dict[str, tuple[float, float, float]]:
     """Return where the centre of the foam of each body is that has some, in the frame of that body [m]."""
     place, table = layout(robot), pieces(robot)
     number = {body.name: i for i, body in enumerate(place.bodies)}
@@ -236,7 +236,7 @@ def foam_centres(robot: AnyRobot) -> dict[str, tuple[float, float, float]]:
     return found
 
 
-def chambers(robot: AnyRobot) -> tuple[float, float]:
+def chambers(robot: Robot) -> tuple[float, float]:
     """Return the air in the front and in the rear chambers of a robot's hull [m3]; both 0 without."""
     front, rear = column(pieces(robot), "air").sum(axis=0)
     return float(front), float(rear)

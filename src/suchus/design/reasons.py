@@ -26,6 +26,8 @@ def numbers(design: Any, path: str = "") -> Iterator[tuple[str, float]]:
     """Yield the path and the value of every number of a design that is not zero."""
     if is_dataclass(design):
         for field in fields(design):
+            if not field.init:
+                continue
             yield from numbers(getattr(design, field.name), f"{path}.{field.name}".lstrip("."))
     elif isinstance(design, tuple):
         for i, part in enumerate(design):

@@ -10,9 +10,9 @@ from dataclasses import fields, is_dataclass, replace
 from math import floor, log10, sqrt
 from typing import Any, TypeVar
 
+from suchus.design.body import Robot
 from suchus.design.checks import require
 from suchus.design.contact import Contact
-from suchus.design.general import AnyRobot
 from suchus.design.hinge import Spring
 from suchus.design.meaning import meanings, unit
 from suchus.design.physics import GRAVITY
@@ -35,7 +35,7 @@ def gravity_time(length: float) -> float:
     return sqrt(length / GRAVITY)
 
 
-def control_period(robot: AnyRobot) -> float:
+def control_period(robot: Robot) -> float:
     """Return the control period of a robot: the greatest of 1, 2, 5 times a power of ten below T / 20 [s].
 
     It is 10 ms for bodies of 0.4 to 1.6 m.
@@ -46,12 +46,12 @@ def control_period(robot: AnyRobot) -> float:
     return round(digit * 10.0**power, 12)
 
 
-def physics_step(robot: AnyRobot) -> float:
+def physics_step(robot: Robot) -> float:
     """Return the time step of the physics of a robot, a fifth of its control period [s]."""
     return control_period(robot) / PHYSICS_STEPS
 
 
-def coarse_step(robot: AnyRobot) -> float:
+def coarse_step(robot: Robot) -> float:
     """Return the time step for many runs of a robot, half of its control period [s].
 
     The article's robot gets as far with it within 0.1 %; see ``COARSEST`` for others.
@@ -59,7 +59,7 @@ def coarse_step(robot: AnyRobot) -> float:
     return control_period(robot) / 2
 
 
-def check_step(robot: AnyRobot, timestep: float) -> None:
+def check_step(robot: Robot, timestep: float) -> None:
     """Refuse a time step of the physics that is too long for a robot of its size.
 
     Raises:
@@ -133,8 +133,8 @@ def contact_for(length: float, *, foot_friction: float, skin_friction: float) ->
 def scaled(design: T, *, length: float, mass: float | None = None) -> T:
     """Return a robot, a gait or a part in another size: every number by the power of its unit, gravity as it is.
 
-    Times go with the square root of the length. A robot of the article's tables keeps a few millimetres of its shells
-    as they are; scale ``general(robot)`` for a body that is alike in everything.
+    Times go with the square root of the length. A robot of the article's kind is then one
+    that no tables make: what they leave as it is, as a few millimetres of its shells, scales too.
 
     Args:
         design: a frozen value whose docstrings name the units.
@@ -176,7 +176,7 @@ def _scaled(design: Any, factors: tuple[float, float, float]) -> Any:
         return design
     about = meanings(type(design))
     changed = {}
-    for field in fields(design):
+    for field in (field for field in fields(design) if field.init):
         value = getattr(design, field.name)
         if is_dataclass(value) or (isinstance(value, tuple) and value and is_dataclass(value[0])):
             changed[field.name] = _scaled(value, factors)

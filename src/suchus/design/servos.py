@@ -2,33 +2,34 @@
 
 from collections.abc import Callable
 from dataclasses import fields, is_dataclass, replace
-from typing import Any, TypeVar
+from typing import Any
 
-from suchus.design.general import AnyRobot
-from suchus.design.robot import Crocodile
+from suchus.design.article import remade
+from suchus.design.body import Robot
 from suchus.design.servo import Servo
 
-Kind = TypeVar("Kind", bound=AnyRobot)
+_LIMBS = ("girdles", "front_leg", "hind_leg")
+"""Fields of a robot or of the article's tables that hold limbs."""
 
 
-def with_leg_servos(robot: AnyRobot, change: Callable[[Servo], Servo]) -> AnyRobot:
+def with_leg_servos(robot: Robot, change: Callable[[Servo], Servo]) -> Robot:
     """Return a robot with the servos of its limbs changed."""
-    if isinstance(robot, Crocodile):
-        front, hind = (replace(leg, servo=change(leg.servo)) for leg in (robot.front_leg, robot.hind_leg))
-        return replace(robot, front_leg=front, hind_leg=hind)
-    girdles: tuple[Any, ...] = _changed(robot.girdles, change)
-    return replace(robot, girdles=girdles)
+
+    def in_limbs(design: Any) -> Any:
+        parts = {name: getattr(design, name) for name in _LIMBS if hasattr(design, name)}
+        return replace(design, **{name: _changed(part, change) for name, part in parts.items()})
+
+    return remade(robot, in_limbs)
 
 
-def with_speed_lines(robot: Kind) -> Kind:
+def with_speed_lines(robot: Robot) -> Robot:
     """Return a robot with ``Servo.with_speed_line`` in each of its servos."""
     return with_servos(robot, Servo.with_speed_line)
 
 
-def with_servos(robot: Kind, change: Callable[[Servo], Servo]) -> Kind:
+def with_servos(robot: Robot, change: Callable[[Servo], Servo]) -> Robot:
     """Return a robot with each of its servos changed."""
-    changed: Kind = _changed(robot, change)
-    return changed
+    return remade(robot, lambda design: _changed(design, change))
 
 
 def _changed(part: Any, change: Callable[[Servo], Servo]) -> Any:

@@ -1,22 +1,42 @@
-"""Who needs the article's kind of robot says so: what cannot be done with any body is refused in a sentence."""
+"""Bridge, to be removed: who needs the article's kind of robot says so."""
 
-from suchus.design.general import AnyRobot
-from suchus.design.robot import Crocodile
-from suchus.design.spine import ARTICLE_JOINTS
+from typing import overload
+
+from suchus.design import article
+from suchus.design.body import Robot
+from suchus.design.tables import ARTICLE_JOINTS, Tables
 from suchus.errors import UnsuitedRobot
 
+AnyRobot = Robot
+Crocodile = Robot
 
-def crocodile(robot: AnyRobot, what: str) -> Crocodile:
+
+def general(robot: Robot) -> Robot:
+    """Return the robot."""
+    return robot
+
+
+@overload
+def crocodile(robot: Tables) -> Robot: ...
+
+
+@overload
+def crocodile(robot: Robot, what: str) -> Robot: ...
+
+
+def crocodile(robot: Robot | Tables, what: str = "") -> Robot:
     """Return a robot as the article's kind: four legs, a spine of five joints, a tail with one cable.
 
     Args:
-        robot: in either form.
+        robot: any, or tables to make one of.
         what: needs it, as the beginning of a sentence: ``standing up``.
 
     Raises:
         UnsuitedRobot: it is another kind.
     """
-    if not isinstance(robot, Crocodile):
+    if isinstance(robot, Tables):
+        return article.crocodile(robot)
+    if robot.tables is None:
         raise UnsuitedRobot(
             f"{what} needs a crocodile-like robot given by the article's tables, as 'caiman'; robot {robot.name!r} is "
             "a body of its own: choose another robot."

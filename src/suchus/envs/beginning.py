@@ -8,17 +8,15 @@ from typing import Any
 import numpy as np
 
 from suchus.control import Standing
-from suchus.design import Crocodile, crocodile
+from suchus.design import Robot, crocodile
 from suchus.design.scale import control_period
-from suchus.envs.task import Task
-from suchus.envs.water import swimming
+from suchus.envs.task import Task, swimming
 from suchus.errors import Diverged, InvalidDesign
 from suchus.gaits import GAITS
 from suchus.land import Ground, Run
 from suchus.land.afloat import surfaced
-from suchus.land.batch import SimulationBatch
-from suchus.land.readings import Readings
-from suchus.land.restarting import Beginning
+from suchus.land.batch import Beginning
+from suchus.land.loop import Loop
 from suchus.land.waters import up
 from suchus.model import activations, compile_model, standing
 from suchus.model.export import home
@@ -79,24 +77,21 @@ def _afloat(task: Task, model: Any) -> Beginning:
 
 
 @lru_cache(maxsize=16)
-def _upright(robot: Crocodile, ground: Ground, timestep: float) -> Beginning:
+def _upright(robot: Robot, ground: Ground, timestep: float) -> Beginning:
     """Let a robot stand up once, as the shelf does it, and return the state in which it stands still."""
     gait, period = GAITS[_STRAIGHT], control_period(robot)
     control = Standing(at=_SOON, hold=STILL)
     run = Run(robot=robot, gait=gait, ground=ground, control=control)
     ticks = ceil((control.upright_from(robot) + STILL) / period)
-    batch = SimulationBatch([run], timestep)
-    readings = Readings(batch, [run], 1)
-    controller = control.start([robot], [gait], [0], ticks, period)
-    batch.place([run], controller.rest())
-    targets = controller.rest()
-    for tick in range(ticks):
-        targets = controller.command(tick, readings.sensed(tick * period)).targets
-        batch.advance(targets, round(period / timestep), tick * period)
+    loop = Loop([run], timestep, ticks=ticks)
+    for _ in range(ticks):
+        loop.decide()
+        loop.advance()
+    batch = loop.batch
     if not batch.alive.all():
         raise Diverged(
             f"robot {robot.name!r} does not stand up: {batch.cause[0]}; an upright start needs one that does.",
             time=float(batch.ended[0]),
         )
-    qpos, qvel, act = (np.array(part[0]) for part in (batch.qpos, batch.qvel, batch.physics.bind("act")))
-    return Beginning(qpos, qvel, act, np.array(targets[0]))
+    qpos, qvel, act = (np.array(part[0]) for part in (batch.qpos, batch.qvel, batch.activations))
+    return Beginning(qpos, qvel, act, np.array(loop.command.targets[0]))

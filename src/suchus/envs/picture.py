@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.patches import Circle
 
-from suchus.design import AnyRobot
+from suchus.design import Robot
 from suchus.envs.goals import AnyGoal, Landing
 from suchus.figures import COLOURS, new, styled
 from suchus.figures.posture import draw_posture
@@ -45,9 +45,7 @@ class Surroundings:
     """Where it is, forward and left in the world [m]."""
 
 
-def picture(
-    robot: AnyRobot, record: xr.Dataset, text: str, around: Surroundings
-) -> UInt8[np.ndarray, "height width 3"]:
+def picture(robot: Robot, record: xr.Dataset, text: str, around: Surroundings) -> UInt8[np.ndarray, "height width 3"]:
     """Return a robot from above and from its right side, with its centre of mass, as red, green and blue.
 
     Water is blue, its surface a line; the goal is a ring, or a line where it is land, and an arrow at the edge of the

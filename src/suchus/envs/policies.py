@@ -12,9 +12,8 @@ from suchus.design import crocodile, layout
 from suchus.design.scale import control_period
 from suchus.envs.registering import STEPS
 from suchus.envs.senses import felt, part, turning
-from suchus.envs.task import Task
+from suchus.envs.task import Task, swimming
 from suchus.envs.vector import CrocodileVectorEnv
-from suchus.envs.water import swimming
 from suchus.motion import Gait, cycle_targets
 
 Policy = Callable[[Float[np.ndarray, "run n"]], Float[np.ndarray, "run servo"]]

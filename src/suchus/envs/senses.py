@@ -1,7 +1,9 @@
 """Observations: what the sensors of the robot measure, each divided by its scale, as one row of -1 to 1."""
 
+from collections.abc import Mapping
 from functools import lru_cache
 from math import sqrt
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -10,7 +12,7 @@ from scipy.spatial.transform import Rotation
 
 from suchus import rotation
 from suchus.control import Sensed
-from suchus.design import GRAVITY, AnyRobot, layout, servo_ranges
+from suchus.design import GRAVITY, Robot, layout, servo_ranges
 from suchus.errors import UnknownName
 from suchus.robots import ROBOTS, beside_article
 
@@ -23,8 +25,6 @@ RATE = 10.0
 """Scale of the gyroscope [rad/s] for a body as long as the article's; twice what a death roll reaches."""
 ACCELERATION = 4 * GRAVITY
 """Scale of the accelerometer [m/s2]; the range that a cheap one is set to."""
-
-
 FAR = 4.0
 """Scale of the distance to a goal, over the robot's length [-]."""
 
@@ -43,7 +43,7 @@ class Sense(NamedTuple):
 
 
 @lru_cache(maxsize=64)
-def senses(robot: AnyRobot, *, goal: bool = False) -> tuple[Sense, ...]:
+def senses(robot: Robot, *, goal: bool = False) -> tuple[Sense, ...]:
     """Return the columns of an observation of a robot, in order.
 
     Args:
@@ -84,7 +84,7 @@ def senses(robot: AnyRobot, *, goal: bool = False) -> tuple[Sense, ...]:
     )
 
 
-def turning(robot: AnyRobot) -> Bool[np.ndarray, " servo"]:
+def turning(robot: Robot) -> Bool[np.ndarray, " servo"]:
     """Return which servos are cranks, which turn round and round [-]."""
     return np.asarray(~np.isfinite(servo_ranges(robot)).all(axis=1))
 
@@ -93,9 +93,7 @@ SENSES = senses(_CAIMAN)
 """The columns of an observation of the article's robot."""
 
 
-def part(
-    observations: Float[np.ndarray, "*b n"], name: str, robot: AnyRobot | str = _CAIMAN
-) -> Float[np.ndarray, "*b m"]:
+def part(observations: Float[np.ndarray, "*b n"], name: str, robot: Robot | str = _CAIMAN) -> Float[np.ndarray, "*b m"]:
     """Return the columns of one reading of ``senses``.
 
     Args:
@@ -115,52 +113,90 @@ def part(
     return observations[..., columns[name]]
 
 
-def observations(
-    robot: AnyRobot,
-    sensed: Sensed,
-    phase: Float[np.ndarray, " run"],
-    commanded: Float[np.ndarray, "run servo"],
-    goal: tuple[Float[np.ndarray, "run 2"], Float[np.ndarray, " run"]] | None = None,
-) -> Float[np.ndarray, "run n"]:
-    """Return one row for each robot; readings beyond their scales are clipped to -1 and 1, missing ones are 0.
+@lru_cache(maxsize=64)
+def scales(robot: Robot) -> Mapping[str, float | Float[np.ndarray, " servo"]]:
+    """Return the scale of every reading of a robot by its name, in SI units; numbers or one for each servo."""
+    weight, slow = robot.mass * GRAVITY, sqrt(beside_article(robot).length)
+    limits = np.array([robot.servo(name).torque for name in layout(robot).servos])
+    limits.flags.writeable = False
+    return MappingProxyType(
+        {
+            "servo_position": ANGLE,
+            "servo_velocity": SPEED / slow,
+            "servo_torque": limits,
+            "foot_pressure": weight,
+            "belly_pressure": weight,
+            "tail_pressure": weight,
+            "angular_velocity": RATE / slow,
+            "acceleration": ACCELERATION,
+            "goal_distance": FAR * robot.length,
+        }
+    )
+
+
+class Observer:
+    """Writes the observations of robots of one kind, whose columns and scales are looked up once.
 
     Args:
         robot: the robot; its limits, weight and length are the scales.
-        sensed: the readings of its sensors.
-        phase: of the clock [cycle].
-        commanded: angles of the servos relative to their centres, over the span [-].
-        goal: vector in the world from each centre of mass to its goal, and the distance that remains [m]; None if the
-            task has none.
+        count: number of robots.
+        goal: whether their task has a goal.
     """
-    limits = np.array([robot.servo(name).torque for name in layout(robot).servos])
-    weight, slow = robot.mass * GRAVITY, sqrt(beside_article(robot).length)
-    turned = turning(robot)
-    position = np.where(turned, np.mod(sensed.servo_position + np.pi, 2 * np.pi) - np.pi, sensed.servo_position)
-    upward, ahead = rotation.upward(sensed.orientation), rotation.ahead(sensed.orientation)
-    turn = 2 * np.pi * phase
-    towards = [] if goal is None else _towards(*goal, upward, ahead, robot.length)
-    rows = np.concatenate(
-        [
-            position / ANGLE,
-            sensed.servo_velocity / (SPEED / slow),
-            sensed.servo_torque / limits,
-            sensed.foot_pressure / weight,
-            sensed.belly_pressure / weight,
-            sensed.tail_pressure[:, None] / weight,
-            upward,
-            ahead,
-            sensed.angular_velocity / (RATE / slow),
-            sensed.acceleration / ACCELERATION,
-            np.stack([np.sin(turn), np.cos(turn)], axis=1),
-            commanded,
-            *towards,
-        ],
-        axis=1,
-    )
-    return np.clip(np.where(np.isfinite(rows), rows, 0.0), -1.0, 1.0).astype(np.float32)
+
+    def __init__(self, robot: Robot, count: int, *, goal: bool) -> None:
+        known = senses(robot, goal=goal)
+        self._rows = np.zeros((count, known[-1].columns.stop))
+        self._columns = {sense.name: self._rows[:, sense.columns] for sense in known}
+        self._scale = np.ones(self._rows.shape[1])
+        for sense in known:
+            self._scale[sense.columns] = scales(robot).get(sense.name, 1.0)
+        self._cranks = turning(robot)
+
+    def observe(
+        self,
+        sensed: Sensed,
+        phase: Float[np.ndarray, " run"],
+        commanded: Float[np.ndarray, "run servo"],
+        goal: tuple[Float[np.ndarray, "run 2"], Float[np.ndarray, " run"]] | None = None,
+    ) -> Float[np.ndarray, "run n"]:
+        """Return one row for each robot; readings beyond their scales are clipped to -1 and 1, missing ones are 0.
+
+        Args:
+            sensed: the readings of its sensors.
+            phase: of the clock [cycle].
+            commanded: angles of the servos relative to their centres, over the span [-].
+            goal: vector in the world from each centre of mass to its goal, and the distance that remains [m]; None if
+                the task has none.
+        """
+        columns, turn = self._columns, 2 * np.pi * phase
+        position = sensed.servo_position
+        if self._cranks.any():
+            position = np.where(self._cranks, np.mod(position + np.pi, 2 * np.pi) - np.pi, position)
+        upward, ahead = rotation.upward(sensed.orientation), rotation.ahead(sensed.orientation)
+        columns["servo_position"][:] = position
+        columns["servo_velocity"][:] = sensed.servo_velocity
+        columns["servo_torque"][:] = sensed.servo_torque
+        columns["foot_pressure"][:] = sensed.foot_pressure
+        columns["belly_pressure"][:] = sensed.belly_pressure
+        columns["tail_pressure"][:, 0] = sensed.tail_pressure
+        columns["upward"][:] = upward
+        columns["ahead"][:] = ahead
+        columns["angular_velocity"][:] = sensed.angular_velocity
+        columns["acceleration"][:] = sensed.acceleration
+        columns["clock"][:, 0], columns["clock"][:, 1] = np.sin(turn), np.cos(turn)
+        columns["last_action"][:] = commanded
+        if goal is not None:
+            offset, remaining = goal
+            columns["goal_direction"][:] = _direction(offset, upward, ahead)
+            columns["goal_distance"][:, 0] = remaining
+        rows = self._rows
+        rows /= self._scale
+        if not np.isfinite(rows).all():
+            rows[~np.isfinite(rows)] = 0.0
+        return np.clip(rows, -1.0, 1.0).astype(np.float32)
 
 
-def felt(observations: Float[np.ndarray, "run n"], robot: AnyRobot, time: float) -> Sensed:
+def felt(observations: Float[np.ndarray, "run n"], robot: Robot, time: float) -> Sensed:
     """Return the readings that observations were made of; readings beyond their scales stay clipped.
 
     Args:
@@ -169,28 +205,24 @@ def felt(observations: Float[np.ndarray, "run n"], robot: AnyRobot, time: float)
         time: time of the readings [s].
     """
     seen = {sense.name: part(observations, sense.name, robot).astype(float) for sense in senses(robot)}
-    weight, pace = robot.mass * GRAVITY, 1.0 / sqrt(beside_article(robot).length)
-    limits = np.array([robot.servo(name).torque for name in layout(robot).servos])
+    scale = scales(robot)
     rows = np.stack([seen["ahead"], np.cross(seen["upward"], seen["ahead"]), seen["upward"]], axis=1)
     return Sensed(
         time=time,
-        servo_position=ANGLE * seen["servo_position"],
-        servo_velocity=SPEED * pace * seen["servo_velocity"],
-        servo_torque=limits * seen["servo_torque"],
-        foot_pressure=weight * seen["foot_pressure"],
-        belly_pressure=weight * seen["belly_pressure"],
-        tail_pressure=weight * seen["tail_pressure"][:, 0],
+        servo_position=scale["servo_position"] * seen["servo_position"],
+        servo_velocity=scale["servo_velocity"] * seen["servo_velocity"],
+        servo_torque=scale["servo_torque"] * seen["servo_torque"],
+        foot_pressure=scale["foot_pressure"] * seen["foot_pressure"],
+        belly_pressure=scale["belly_pressure"] * seen["belly_pressure"],
+        tail_pressure=scale["tail_pressure"] * seen["tail_pressure"][:, 0],
         orientation=Rotation.from_matrix(rows).as_quat(scalar_first=True),
-        angular_velocity=RATE * pace * seen["angular_velocity"],
-        acceleration=ACCELERATION * seen["acceleration"],
+        angular_velocity=scale["angular_velocity"] * seen["angular_velocity"],
+        acceleration=scale["acceleration"] * seen["acceleration"],
     )
 
 
-def _towards(
-    offset: np.ndarray, remaining: np.ndarray, upward: np.ndarray, ahead: np.ndarray, length: float
-) -> list[np.ndarray]:
-    """Return the direction to the goal in the root, shape (run, 3), 0 at the goal, and its distance over the scale."""
+def _direction(offset: np.ndarray, upward: np.ndarray, ahead: np.ndarray) -> np.ndarray:
+    """Return the direction to the goal in the root, shape (run, 3), 0 at the goal [-]."""
     far = np.linalg.norm(offset, axis=1, keepdims=True)
     unit = np.divide(offset, far, out=np.zeros_like(offset), where=far > 0.0)
-    direction = unit[:, :1] * ahead + unit[:, 1:] * np.cross(upward, ahead)
-    return [direction, remaining[:, None] / (FAR * length)]
+    return np.asarray(unit[:, :1] * ahead + unit[:, 1:] * np.cross(upward, ahead))

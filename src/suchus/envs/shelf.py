@@ -6,9 +6,10 @@ from math import radians, sin
 from types import MappingProxyType
 from typing import Any, get_args
 
-from suchus.design import AnyRobot
+from suchus.design import Robot
 from suchus.envs.goals import AnyGoal, Goal, Landing
-from suchus.envs.task import Breaks, Pushes, Rewards, Task
+from suchus.envs.reward import Rewards
+from suchus.envs.task import Breaks, Pushes, Task
 from suchus.errors import InvalidDesign, UnknownName
 from suchus.gaits import GAITS
 from suchus.land import Ground, Lake
@@ -86,8 +87,8 @@ def chosen(task: Task | str, changes: Mapping[str, Any]) -> Task:
         for name, value in changes.items()
     }
     kinds: Mapping[str, tuple[type, ...]] = {
-        "robot": get_args(AnyRobot),
-        "gait": get_args(Gait),
+        "robot": (Robot,),
+        "gait": (Gait,),
         "ground": (Ground,),
         "rewards": (Rewards,),
         "breaks": (Breaks, type(None)),

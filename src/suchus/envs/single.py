@@ -1,6 +1,5 @@
 """One robot as a ``gymnasium.Env``."""
 
-from dataclasses import fields
 from typing import Any
 
 import gymnasium
@@ -8,7 +7,7 @@ import numpy as np
 
 from suchus.envs.pack import Pack
 from suchus.envs.picture import Surroundings, picture
-from suchus.envs.reward import Terms
+from suchus.envs.reward import TERMS, Terms
 from suchus.envs.shelf import chosen
 from suchus.envs.spaces import RENDER_MODES, action_space, check_render_mode, checked, observation_space
 from suchus.envs.task import Task
@@ -80,13 +79,8 @@ class CrocodileEnv(gymnasium.Env):  # type: ignore[misc]  # gymnasium is not rea
 
 def step_info(pack: Pack, terms: Terms) -> dict[str, np.ndarray]:
     """Return the entries of ``info`` after a step, each with one value for each robot."""
-    said = {f.name: np.array(getattr(terms, f.name)) for f in fields(Terms) if f.name != "fall"}
-    return {
-        **said,
-        "time": np.array(pack.time),
-        "fault": np.array([chance.fault for chance in pack.chances], dtype=object),
-        "cause": np.array(pack.causes, dtype=object),
-    }
+    info = {name: getattr(terms, name) for name in TERMS if name != "fall"}
+    return info | {"time": pack.time, "fault": pack.faults.copy(), "cause": pack.causes.copy()}
 
 
 def portrait(pack: Pack, robot: int) -> np.ndarray:

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import AnyRobot, layout
+from suchus.design import Robot, layout
 from suchus.envs.senses import senses
 from suchus.errors import OutsideLimits, SuchusError, UnknownName
 
@@ -22,12 +22,12 @@ except ImportError as _error:
 RENDER_MODES = ("rgb_array",)
 
 
-def action_space(robot: AnyRobot) -> Any:
+def action_space(robot: Robot) -> Any:
     """Return the ``gymnasium.spaces.Box`` of a robot's actions: one number of -1 to 1 for each servo."""
     return gymnasium.spaces.Box(-1.0, 1.0, (len(layout(robot).servos),), np.float32)
 
 
-def observation_space(robot: AnyRobot, *, goal: bool = False) -> Any:
+def observation_space(robot: Robot, *, goal: bool = False) -> Any:
     """Return the ``gymnasium.spaces.Box`` of a robot's observations, with or without a goal: see ``senses.senses``."""
     return gymnasium.spaces.Box(-1.0, 1.0, (senses(robot, goal=goal)[-1].columns.stop,), np.float32)
 

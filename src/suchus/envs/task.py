@@ -1,24 +1,29 @@
-"""A task as a frozen value: the robot, the ground, faults and pushes, and the weights of the reward."""
+"""A task as a frozen value: the robot, the ground and the water, faults and pushes, and the weights of the reward."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from types import MappingProxyType
 from typing import Any, Literal, get_args
 
 import numpy as np
 
-from suchus.design import AnyRobot, check_needs, front_segment, layout, with_speed_lines
+from suchus.control import Swimming
+from suchus.design import Robot, check_needs, crocodile, front_segment, layout, with_speed_lines, with_values
 from suchus.design.checks import Checks
 from suchus.design.scale import control_period, scaled, scaled_fields
 from suchus.envs.goals import AnyGoal
-from suchus.envs.water import check_floats, check_water, swimming
-from suchus.errors import UnknownName
+from suchus.envs.reward import Rewards
+from suchus.errors import InvalidDesign, UnknownName
 from suchus.fault import Fault
 from suchus.faults import FAULTS
 from suchus.gaits import GAITS, own_gait, suits
 from suchus.land import Ground, Lake
-from suchus.motion import Gait, Swim
+from suchus.land.afloat import capacity
+from suchus.land.lake import check_lake
+from suchus.motion import LIMBS_BACK, Gait, Swim
 from suchus.robots import ROBOTS
+from suchus.water import fit, printed_wave
 
 Start = Literal["lying", "upright", "swimming"]
 NEEDED: Mapping[str, tuple[str, ...]] = MappingProxyType(
@@ -29,38 +34,7 @@ NEEDED: Mapping[str, tuple[str, ...]] = MappingProxyType(
     }
 )
 """What a beginning needs of a robot: names of ``design.NEEDS``."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Rewards:
-    """Weights of the terms of the reward; each term is a quantity of one step in SI units, see ``envs.reward``.
-
-    None of them is from the article. They were chosen so that a whole episode of the shelf's own motion is worth about
-    ten, almost all of it from the one term that the task is about.
-    """
-
-    forward: float
-    """Weight of the displacement of the centre of mass along the world's x axis, the robot's first heading [1/m]."""
-    lateral_drift: float
-    """Weight of the increase of the distance of the centre of mass from that axis; negative, a penalty [1/m]."""
-    upright: float
-    """Weight of the time with the snout above ``Task.least_height`` [1/s]."""
-    work: float
-    """Weight of the work of all servos, braking counted as much as driving; negative, a penalty [1/J]."""
-    action_rate: float
-    """Weight of the sum of the squared changes of all commanded angles between two steps; negative, a penalty
-    [1/rad2]."""
-    fall: float
-    """Added once, when the episode ends by a fall or because the simulation diverged; negative, a penalty [-]."""
-    approach: float = 0.0
-    """Weight of the decrease of the distance that remains to ``Task.goal`` [1/m]."""
-    goal: float = 0.0
-    """Added once, when the goal is reached [-]."""
-
-    def __post_init__(self) -> None:
-        with Checks("rewards", self) as check:
-            for f in fields(self):
-                check.number(f.name, -1e4, 1e4, "")
+_FREQUENCY = 1.0  # [Hz]; as in the experiments swim_free and shore
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -91,7 +65,7 @@ class Breaks:
             if kind not in allowed:
                 raise UnknownName("fault of a servo", str(kind)[:40], allowed)
 
-    def among(self, robot: AnyRobot) -> tuple[str, ...]:
+    def among(self, robot: Robot) -> tuple[str, ...]:
         """Return the servos of a robot among which it is drawn.
 
         Raises:
@@ -105,13 +79,13 @@ class Breaks:
                 raise UnknownName("servo", name, place.servos)
         return self.joints
 
-    def possible(self, robot: AnyRobot) -> tuple[Fault, ...]:
+    def possible(self, robot: Robot) -> tuple[Fault, ...]:
         """Return all faults of a robot that may be drawn, each from 0 s on."""
         if self.faults:
             return self.faults
         return tuple(self._fault(kind, joint) for kind in self.kinds for joint in self.among(robot))
 
-    def draw(self, random: np.random.Generator, robot: AnyRobot) -> Fault:
+    def draw(self, random: np.random.Generator, robot: Robot) -> Fault:
         """Draw one for a robot."""
         if self.faults:
             return self.faults[int(random.integers(len(self.faults)))]
@@ -147,7 +121,7 @@ class Pushes:
             check.number("lasting", 1e-3, 60.0, "s")
             _check_when(check, "pushes", self.earliest, self.latest)
 
-    def where(self, robot: AnyRobot) -> str:
+    def where(self, robot: Robot) -> str:
         """Return the body of a robot that is pushed."""
         if self.body is not None:
             return self.body
@@ -173,7 +147,7 @@ class Task:
     the robot. An action turns a crank further, at most at its servo's no-load speed.
     """
 
-    robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
+    robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot; ``speed_lines`` says whether the torque of its servos falls with their speed."""
     speed_lines: bool = True
     """Whether the torque of every servo falls linearly to nothing at its no-load speed, as that of a motor does.
@@ -221,7 +195,7 @@ class Task:
     """The goal, at which the episode ends; None: no goal."""
 
     @property
-    def body(self) -> AnyRobot:
+    def body(self) -> Robot:
         """The robot as its physics has it: with the torque-speed lines if ``speed_lines`` is true."""
         return with_speed_lines(self.robot) if self.speed_lines else self.robot
 
@@ -232,7 +206,7 @@ class Task:
             return 1.0 / swimming(self.robot, self.swim).swim.frequency
         return self.gait.period
 
-    def on(self, robot: AnyRobot, gait: Gait | None = None) -> "Task":
+    def on(self, robot: Robot, gait: Gait | None = None) -> "Task":
         """Return the same task for another robot.
 
         Where the robot can follow the gait and keeps the same control period, nothing else changes. If not, the gait
@@ -301,3 +275,49 @@ class Task:
                 check_floats(self.robot, self.lake)
         if self.goal is not None:
             self.goal.check(self.ground, self.lake)
+
+
+@lru_cache(maxsize=16)
+def swimming(robot: Robot, swim: Swim | None) -> Swimming:
+    """Return the swimming motion of a robot, at full amplitude from the first moment.
+
+    Args:
+        robot: a crocodile-like robot with a cable tail.
+        swim: the wave; None for that of (20) at 1 Hz, fitted to the robot's joints.
+
+    Raises:
+        UnsuitedRobot: the robot is given by another table.
+    """
+    if swim is None:
+        bare = with_values(crocodile(robot, "a swim"), {"hull": None})
+        swim = fit(bare, printed_wave(bare, "I", frequency=_FREQUENCY, sign=-1)).swim
+    return Swimming(swim=swim, limb_pitch=LIMBS_BACK[1], ramp=0.0)
+
+
+def check_water(robot: Robot, lake: Lake) -> None:
+    """Refuse water that changes while an episode lasts, or that a robot lacks the air for.
+
+    Raises:
+        InvalidDesign: level or breath are courses, or breath is let out that there is not.
+    """
+    if lake.changes():
+        raise InvalidDesign(
+            "task.lake has a level or a breath that changes with time; in a task both stay, since its episodes begin "
+            "at different times: give each as one number."
+        )
+    check_lake(robot, lake)
+
+
+def check_floats(robot: Robot, lake: Lake) -> None:
+    """Refuse a robot that sinks.
+
+    Raises:
+        InvalidDesign: it displaces less than it weighs; the message says by how much.
+    """
+    litres, needed = (1e3 * value for value in capacity(robot, lake))
+    if litres <= needed:
+        raise InvalidDesign(
+            f"robot {robot.name!r} sinks: it weighs {robot.mass:.3g} kg and displaces at most {litres:.3g} l, of which "
+            f"it needs more than {needed:.3g}; a task that begins swimming needs a robot that floats, as "
+            "'floating_caiman', or a design.Hull."
+        )

@@ -124,12 +124,14 @@ class CrocodileVectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[misc]  # g
         self._steps[who], self._over[who] = 0, False
 
     def _beginnings(self) -> dict[str, np.ndarray]:
-        faults = np.array([chance.fault for chance in self.pack.chances], dtype=object)
-        return dict(zip(_AT_RESET, (np.array(self.pack.time), faults), strict=True))
+        return dict(zip(_AT_RESET, (self.pack.time, self.pack.faults.copy()), strict=True))
 
     def _say(self, infos: dict[str, Any], said: dict[str, np.ndarray], who: np.ndarray) -> None:
         """Put the values of some robots into ``infos``, and beside each name the mask of these robots."""
         if not who.any():
+            return
+        if who.all():
+            infos |= said | {f"_{name}": who.copy() for name in said}
             return
         for name, values in said.items():
             nothing = np.full(self.num_envs, None) if values.dtype == object else np.zeros_like(values)

@@ -1,10 +1,9 @@
 """The midlines that a robot's joints take of a commanded swim in six degrees of freedom, for the swims by CFD."""
 
-from dataclasses import replace
 from typing import NamedTuple
 
 from suchus.control import Swimming
-from suchus.design import Crocodile
+from suchus.design import Robot, with_values
 from suchus.design.flotation import float_hull
 from suchus.gaits import GAITS
 from suchus.land import Lake, Run, simulate
@@ -29,7 +28,7 @@ class Midline(NamedTuple):
     """Rms angle off what was commanded, over that [-]."""
 
 
-def midlines(robot: Crocodile, motion: Swim, stations: int) -> list[Midline]:
+def midlines(robot: Robot, motion: Swim, stations: int) -> list[Midline]:
     """Return the midlines of trunk and tail, and of the tail alone, as the joints take them at the surface.
 
     Args:
@@ -37,8 +36,8 @@ def midlines(robot: Crocodile, motion: Swim, stations: int) -> list[Midline]:
         motion: that is commanded.
         stations: of the midline [-].
     """
-    bare = replace(robot, hull=None)
-    floating = robot if robot.hull is not None else replace(bare, hull=float_hull(bare))
+    bare = with_values(robot, {"hull": None})
+    floating = robot if robot.hull is not None else with_values(bare, {"hull": float_hull(bare)})
     meant = (motion, motion.tail_only())
     runs = [
         Run(robot=floating, gait=GAITS["belly_crawl"], lake=Lake(level=2.0), control=Swimming(swim=one))

@@ -6,7 +6,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from suchus.design import AnyRobot
+from suchus.design import Robot
 from suchus.design.checks import Checks
 from suchus.experiment import Experiment
 from suchus.gaits import GAITS
@@ -23,7 +23,7 @@ class TwoGroups(Experiment):
     judged_with = ("robot", "gait", "control", "cycles")
     judged_from: ClassVar[Mapping[str, float]] = {"repeats": 8}
 
-    robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
+    robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that crawls."""
     gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
     """The crawl with spine and tail."""

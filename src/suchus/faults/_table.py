@@ -2,13 +2,16 @@
 
 from collections.abc import Mapping
 from dataclasses import MISSING, Field, fields
+from operator import methodcaller
 from typing import Any, get_args, get_type_hints
 
 from suchus.catalog import Catalog
 from suchus.errors import InvalidDesign, UnknownName
 from suchus.fault import Fault
 
-FAULTS: Catalog[type[Fault]] = Catalog("fault", "suchus.faults", "suchus.fault:Fault", classes=True)
+FAULTS: Catalog[type[Fault]] = Catalog(
+    "fault", "suchus.faults", "suchus.fault:Fault", classes=True, named=methodcaller("kind")
+)
 """The kinds of fault by name."""
 
 

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from suchus.design import AnyRobot
+from suchus.design import Robot
 from suchus.fault import Plant, ServoFault, refuse_number
 
 
@@ -22,7 +22,7 @@ class Backlash(ServoFault):
     at: float = 0.0
     """Time at which the fault begins [s], at least 0."""
 
-    def refuse(self, robot: AnyRobot) -> None:
+    def refuse(self, robot: Robot) -> None:
         """Refuse a gap that no gear has, too."""
         ServoFault.refuse(self, robot)
         refuse_number(self, self.gap, 0.0, 1.0, "has a gap of", " rad")
@@ -42,3 +42,4 @@ class Backlash(ServoFault):
 
 
 fault = Backlash
+harmless = (Backlash("LF_yaw", 0.0),)

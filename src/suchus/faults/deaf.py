@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from suchus.design import AnyRobot
+from suchus.design import Robot
 from suchus.fault import SENSORS, Fault, Plant
 
 
@@ -25,7 +25,7 @@ class Deaf(Fault):
         return self.sensor
 
     @classmethod
-    def parts(cls, robot: AnyRobot) -> tuple[str, ...]:
+    def parts(cls, robot: Robot) -> tuple[str, ...]:
         """Return the names of the groups."""
         del robot
         return SENSORS

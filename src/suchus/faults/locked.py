@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from suchus.design import AnyRobot
+from suchus.design import Robot
 from suchus.errors import OutsideLimits
 from suchus.fault import Plant, ServoFault
 from suchus.motion import servo_range
@@ -19,7 +19,7 @@ class Locked(ServoFault):
     angle: float | None = None
     """The angle it holds [rad]; None: the one it has at that time."""
 
-    def refuse(self, robot: AnyRobot) -> None:
+    def refuse(self, robot: Robot) -> None:
         """Refuse an angle that the joint cannot reach, too."""
         ServoFault.refuse(self, robot)
         if self.angle is not None:

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from suchus.design import AnyRobot, layout
+from suchus.design import Robot, layout
 from suchus.fault import Fault, Plant
 
 
@@ -27,7 +27,7 @@ class LostFoot(Fault):
         return self.limb
 
     @classmethod
-    def parts(cls, robot: AnyRobot) -> tuple[str, ...]:
+    def parts(cls, robot: Robot) -> tuple[str, ...]:
         """Return the names of the legs."""
         return layout(robot).limb_names
 

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from suchus.design import AnyRobot
+from suchus.design import Robot
 from suchus.errors import InvalidDesign
 from suchus.fault import Plant, ServoFault
 
@@ -18,7 +18,7 @@ class Weak(ServoFault):
     at: float = 0.0
     """Time at which the fault begins [s], at least 0."""
 
-    def refuse(self, robot: AnyRobot) -> None:
+    def refuse(self, robot: Robot) -> None:
         """Refuse a fraction outside 0 to 1, too."""
         ServoFault.refuse(self, robot)
         if not 0.0 <= self.fraction <= 1.0:
@@ -30,3 +30,5 @@ class Weak(ServoFault):
 
 
 fault = Weak
+examples = (Weak("LF_pitch", 0.05),)  # half of the torque is enough for a crawl
+harmless = (Weak("LF_yaw", 1.0),)

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Polygon
 
-from suchus.design import AnyRobot, Crocodile, Leg, layout
+from suchus.design import Leg, Robot, layout
 from suchus.figures.plan import draw_plan
 from suchus.figures.style import COLOURS, captioned, panels, styled
 
@@ -16,12 +16,12 @@ _BODY, _FIN, _LIMB = "#C9DCCB", "#E4EEE5", "#4D6B57"
 _EDGE: dict[str, Any] = {"edgecolor": _LIMB, "linewidth": 1.2}
 
 
-def dimension_drawing(robot: AnyRobot) -> Figure:
+def dimension_drawing(robot: Robot) -> Figure:
     """Return a robot from above and from the side with its main dimensions [mm]."""
-    tables = isinstance(robot, Crocodile)
+    tables = robot.tables is not None
     with styled(axes__grid=False):
         figure, axes = panels(2, 1, height=5.4, sharex=True, height_ratios=[1.5, 1])
-        if isinstance(robot, Crocodile):
+        if robot.tables is not None:
             _from_above(axes[0, 0], robot)
             _from_the_side(axes[1, 0], robot)
         else:
@@ -31,7 +31,7 @@ def dimension_drawing(robot: AnyRobot) -> Figure:
             ax.set_aspect("equal")
             ax.set_axis_off()
             ax.set_title(title, color=COLOURS["neutral"])
-    tail = f"{_mm(robot.tail.length)} mm of it tail, " if isinstance(robot, Crocodile) else ""
+    tail = f"{_mm(robot.tail.length)} mm of it tail, " if robot.tables is not None else ""
     return captioned(
         figure,
         f"The robot {robot.name} from above and from the side: {_mm(robot.length)} mm long, "
@@ -40,7 +40,7 @@ def dimension_drawing(robot: AnyRobot) -> Figure:
     )
 
 
-def _from_above(ax: Axes, robot: Crocodile) -> None:
+def _from_above(ax: Axes, robot: Robot) -> None:
     front = robot.spine.length + robot.thorax.shoulder
     for x, leg in ((0.0, robot.hind_leg), (front, robot.front_leg)):
         for side in (1, -1):
@@ -59,7 +59,7 @@ def _from_above(ax: Axes, robot: Crocodile) -> None:
     _measure(ax, 0.0, front, -below + 0.025)
 
 
-def _from_the_side(ax: Axes, robot: Crocodile) -> None:
+def _from_the_side(ax: Axes, robot: Robot) -> None:
     height = _stance(robot.hind_leg)
     front = robot.spine.length + robot.thorax.shoulder
     nose = robot.spine.length + robot.head.snout
@@ -92,7 +92,7 @@ def _leg(ax: Axes, x: float, leg: Leg, side: int) -> None:
         _joint(ax, x, side * y)
 
 
-def _tail(ax: Axes, robot: Crocodile, height: float, tip_height: float) -> None:
+def _tail(ax: Axes, robot: Robot, height: float, tip_height: float) -> None:
     """The cable section, a line for each joint, and the passive end in a paler tint."""
     tail = robot.tail
     total = tail.length - tail.offset
@@ -117,7 +117,7 @@ def _box(ax: Axes, start: float, end: float, half: float, height: float = 0.0) -
     ax.add_patch(Polygon(corners, facecolor=_BODY, joinstyle="round", **_EDGE))
 
 
-def _head(ax: Axes, robot: Crocodile, half: float, height: float) -> None:
+def _head(ax: Axes, robot: Robot, half: float, height: float) -> None:
     start = robot.spine.length + robot.thorax.shoulder
     end = robot.spine.length + robot.head.snout
     jaw = start + 0.35 * (end - start)

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Circle, Ellipse, FancyBboxPatch
 
-from suchus.design import AnyRobot, Layout, LimbPlace, Rod, layout
+from suchus.design import Layout, LimbPlace, Robot, Rod, layout
 from suchus.figures.style import COLOURS
 from suchus.skin import bone_rest
 from suchus.skin.plain import ends
@@ -15,7 +15,7 @@ _BODY, _LIMB = "#C9DCCB", "#4D6B57"
 _EDGE: dict[str, Any] = {"edgecolor": _LIMB, "linewidth": 1.2}
 
 
-def draw_plan(ax: Axes, robot: AnyRobot, *, from_the_side: bool) -> None:
+def draw_plan(ax: Axes, robot: Robot, *, from_the_side: bool) -> None:
     """Draw a body with all joints at zero, from above, or from the side with its limbs hanging down.
 
     Args:

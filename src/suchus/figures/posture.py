@@ -12,7 +12,7 @@ from matplotlib.patches import Circle, PathPatch, Polygon
 from matplotlib.path import Path
 
 from suchus import rotation
-from suchus.design import GRAVITY, AnyRobot, Layout, LimbPlace, layout
+from suchus.design import GRAVITY, Layout, LimbPlace, Robot, layout
 from suchus.figures.silhouette import Silhouette, silhouette
 from suchus.figures.style import COLOURS
 from suchus.kinematics.tree import BodyFrames, frames, landmarks
@@ -38,7 +38,7 @@ class Skeleton(NamedTuple):
     """Midline, hip, joints and foot of each limb, (point, 3) [m]."""
 
 
-def skeleton(robot: AnyRobot, record: xr.Dataset, time: float) -> Skeleton:
+def skeleton(robot: Robot, record: xr.Dataset, time: float) -> Skeleton:
     """Return the body's points in the world at one time.
 
     Args:
@@ -74,7 +74,7 @@ def _leg(place: Layout, limb: LimbPlace, found: BodyFrames, foot: np.ndarray) ->
     return np.array([midline, *found.places[first : limb.tip + 1], foot])
 
 
-def _silhouette(robot: AnyRobot, record: xr.Dataset, time: float, axes: tuple[int, int]) -> Silhouette:
+def _silhouette(robot: Robot, record: xr.Dataset, time: float, axes: tuple[int, int]) -> Silhouette:
     now = record.sel(time=time, method="nearest")
     at = (now[name].values.astype(float) for name in ("position", "orientation", "joint_angle"))
     return silhouette(robot, skin(robot).posed(*poses(robot, *at)), axes)
@@ -82,7 +82,7 @@ def _silhouette(robot: AnyRobot, record: xr.Dataset, time: float, axes: tuple[in
 
 def draw_posture(
     ax: Axes,
-    robot: AnyRobot,
+    robot: Robot,
     record: xr.Dataset,
     time: float,
     *,
@@ -135,7 +135,7 @@ def draw_posture(
 
 
 def draw_strip(
-    ax: Axes, robot: AnyRobot, record: xr.Dataset, times: Sequence[float], *, role: str, aside: float = 0.0
+    ax: Axes, robot: Robot, record: xr.Dataset, times: Sequence[float], *, role: str, aside: float = 0.0
 ) -> None:
     """Draw a robot from above at several times, the earlier ones paler, with the track of its centre of mass.
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.spatial import ConvexHull
 
-from suchus.design import LEGS, AnyRobot, Crocodile, Layout, layout
+from suchus.design import LEGS, Layout, Robot, layout
 from suchus.skin.head import JAW_AROUND
 from suchus.skin.legs import LEG_AROUND
 from suchus.skin.look import SKIN
@@ -29,7 +29,7 @@ class Silhouette(NamedTuple):
     """In the order of the robot's limbs: convex pieces from haunch to claws that overlap; together they are the leg."""
 
 
-def silhouette(robot: AnyRobot, vertices: np.ndarray, axes: tuple[int, int]) -> Silhouette:
+def silhouette(robot: Robot, vertices: np.ndarray, axes: tuple[int, int]) -> Silhouette:
     """Return the silhouette of a posed skin.
 
     Args:
@@ -41,7 +41,7 @@ def silhouette(robot: AnyRobot, vertices: np.ndarray, axes: tuple[int, int]) -> 
     starts = np.flatnonzero(np.diff(surface.part, prepend=-1))
     parts = np.split(flat, starts[1:])
     sizes = np.array([len(part) for part in parts])
-    if not isinstance(robot, Crocodile):
+    if robot.tables is None:
         return _plain(layout(robot), surface, starts, parts)
     legs: list[list[np.ndarray]] = [[], [], [], []]
     names = _owners(surface, starts)

@@ -16,7 +16,7 @@ import numpy as np
 from cycler import cycler
 from matplotlib.figure import Figure
 
-from suchus.design import LEGS, AnyRobot, layout
+from suchus.design import LEGS, Robot, layout
 from suchus.figures.data import table
 from suchus.record import new_file
 
@@ -48,7 +48,7 @@ COLOURS: Final[Mapping[str, str]] = MappingProxyType(
 _MORE: Final = ("#009E73", "#B0558A", "#56B4E9", "#E69F00", "#767676", "#333333")
 
 
-def limb_colours(robot: AnyRobot) -> list[tuple[str, str]]:
+def limb_colours(robot: Robot) -> list[tuple[str, str]]:
     """Return each limb of a robot with its colour: those of the article's legs, then others in turn."""
     names = layout(robot).limb_names
     spare = iter(_MORE * (len(names) // len(_MORE) + 1))

@@ -1,17 +1,28 @@
 """The shelf of gaits: one file, one gait, declared as ``gait`` with its ``chosen`` numbers."""
 
+from operator import attrgetter
+from pathlib import Path
+
 from suchus.catalog import Catalog
-from suchus.design import AnyRobot
+from suchus.design import Robot
 from suchus.gaits._animal_swim import ANIMAL_SWIM
 from suchus.gaits._conditions import CONDITIONS, conditions_of
 from suchus.gaits._own import gait_of
 from suchus.motion import Gait, suits
 
-GAITS: Catalog[Gait] = Catalog("gait", "suchus.gaits", "suchus.motion:Gait")
+
+def _read(path: Path) -> Gait:
+    from suchus import blueprint  # noqa: PLC0415  half of the time of an import that reads no file
+
+    gait: Gait = blueprint.read(path, Gait, GAITS)
+    return gait
+
+
+GAITS: Catalog[Gait] = Catalog("gait", "suchus.gaits", "suchus.motion:Gait", named=attrgetter("name"), read=_read)
 """The gaits of the shelf."""
 
 
-def own_gait(robot: AnyRobot) -> Gait:
+def own_gait(robot: Robot) -> Gait:
     """Return the gait in which a robot walks unless another one is asked for; see ``made_for`` in the gaits' files.
 
     Raises:

@@ -1,6 +1,6 @@
 """The conditions of the crawl that are compared: each differs from another one in one thing."""
 
-from suchus.design import AnyRobot, layout
+from suchus.design import Robot, layout
 from suchus.gaits.limbs_tail_lifted import LIFTED
 from suchus.motion import Gait
 
@@ -9,7 +9,7 @@ CONDITIONS = ("coordinated", "limbs_only", "limbs_tail_lifted", "tail_still", "s
 a tail dragged still; with the trunk and the tail in the air; with a straight trunk and a tail that swings."""
 
 
-def conditions_of(robot: AnyRobot, gait: Gait, control: Gait) -> dict[str, Gait]:
+def conditions_of(robot: Robot, gait: Gait, control: Gait) -> dict[str, Gait]:
     """Return the gaits of those of ``CONDITIONS`` that a robot's parts make possible, in their order.
 
     Without a servo that pitches the tail nothing lifts it; without one that bends the tail, or the trunk, that part

@@ -1,18 +1,16 @@
 """Which gait belongs to a robot: gaits say for whom they were made, and nothing else does."""
 
 from suchus.catalog import Catalog
-from suchus.design import AnyRobot, Crocodile, layout
+from suchus.design import Robot, layout
 from suchus.errors import UnsuitedRobot
 from suchus.motion import Gait, suits
 
-_CRAWL = "belly_crawl"
 
-
-def gait_of(shelf: Catalog[Gait], robot: AnyRobot) -> Gait:
+def gait_of(shelf: Catalog[Gait], robot: Robot) -> Gait:
     """Return the gait in which a robot walks unless another one is asked for.
 
-    A gait made for a robot of its name comes first, then one made for another robot whose limbs it can move; robots of
-    the article's tables crawl.
+    A gait made for a robot of its name comes first, then one made for another robot whose limbs it can move: of a robot
+    that pitches its tail those first that lay it down, of any other robot those that leave it alone.
 
     Args:
         shelf: of gaits; a module says by ``made_for`` for which robots its gait is.
@@ -23,8 +21,10 @@ def gait_of(shelf: Catalog[Gait], robot: AnyRobot) -> Gait:
     """
     made = {name: tuple(shelf.beside(name, "made_for", ())) for name in shelf}
     named = [name for name, robots in made.items() if robot.name in robots]
+    pitches = bool(layout(robot).tail_pitch)
     others = [name for name, robots in made.items() if robots and name not in named]
-    for name in named + ([_CRAWL] if isinstance(robot, Crocodile) else others):
+    others.sort(key=lambda name: shelf[name].has("tail pitch") != pitches)
+    for name in named + others:
         if suits(robot, shelf[name]):
             return shelf[name]
     limbs = ", ".join(layout(robot).limb_names) or "no limbs"

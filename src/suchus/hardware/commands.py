@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import AnyRobot, Crank, layout
+from suchus.design import Crank, Robot, layout
 from suchus.design.checks import require
 from suchus.errors import OutsideLimits
 from suchus.hardware.servo_map import ServoLine, ServoMap
@@ -28,7 +28,7 @@ class Commands(NamedTuple):
     """Names of the servos."""
 
 
-def commands(robot: AnyRobot, gait: Gait, servo_map: ServoMap, cycles: int = 1) -> Commands:
+def commands(robot: Robot, gait: Gait, servo_map: ServoMap, cycles: int = 1) -> Commands:
     """Return the commands of some cycles, so that they can be repeated without a jump.
 
     A cycle is divided into the whole number of intervals that is nearest to the map's rate.
@@ -66,7 +66,7 @@ def commands(robot: AnyRobot, gait: Gait, servo_map: ServoMap, cycles: int = 1) 
     return Commands(along * step, angles, speed[along % samples], pulses, layout(robot).servos)
 
 
-def _cranks(robot: AnyRobot) -> np.ndarray:
+def _cranks(robot: Robot) -> np.ndarray:
     """Return by how much each servo's angle has grown after a cycle: a turn of a crank, nothing of others [rad]."""
     place, grown = layout(robot), np.zeros(len(layout(robot).servos))
     for limb in place.limbs:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from suchus.design import AnyRobot, layout
+from suchus.design import Robot, layout
 from suchus.hardware.commands import Commands
 from suchus.kinematics.tail import bend_of_servo
 
@@ -18,7 +18,7 @@ def csv_text(samples: Commands) -> str:
     return "\n".join(lines) + "\n"
 
 
-def trajectory_text(robot: AnyRobot, samples: Commands) -> str:
+def trajectory_text(robot: Robot, samples: Commands) -> str:
     """Return a ROS 2 ``trajectory_msgs/JointTrajectory`` as YAML, for the joints of the exported URDF.
 
     That has no cable: the bend that the pulley gives the tail is shared evenly by the hinges that the cable bends.

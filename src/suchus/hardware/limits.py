@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import xarray as xr
 
-from suchus.design import AnyRobot, layout, with_servos
+from suchus.design import Robot, layout, with_servos
 from suchus.errors import OutsideLimits
 from suchus.hardware.commands import Commands
 from suchus.hardware.servo_map import ServoMap
@@ -63,7 +63,7 @@ class ServoLoad:
         return f"{self.named} ({CLASSES[self.named]:.3g} N m)" if self.named else f"none up to {most:.3g} N m"
 
 
-def check_commands(robot: AnyRobot, gait: Gait, servo_map: ServoMap, samples: Commands) -> None:
+def check_commands(robot: Robot, gait: Gait, servo_map: ServoMap, samples: Commands) -> None:
     """Refuse commands that are faster than a servo, or pulses outside the map's limits.
 
     Raises:
@@ -90,7 +90,7 @@ def check_commands(robot: AnyRobot, gait: Gait, servo_map: ServoMap, samples: Co
 
 
 def loads(
-    robot: AnyRobot, gait: Gait, *, cycles: int = 2, progress: Callable[[float], None] | None = None
+    robot: Robot, gait: Gait, *, cycles: int = 2, progress: Callable[[float], None] | None = None
 ) -> Mapping[str, ServoLoad]:
     """Return what each servo bears in a simulated walk on level ground.
 
@@ -109,7 +109,7 @@ def loads(
 
 
 def loads_of_each(
-    robot: AnyRobot,
+    robot: Robot,
     gaits: Sequence[Gait],
     *,
     cycles: int = 2,
@@ -143,7 +143,7 @@ def loads_of_each(
     return every
 
 
-def _borne(robot: AnyRobot, walk: xr.Dataset) -> Mapping[str, ServoLoad]:
+def _borne(robot: Robot, walk: xr.Dataset) -> Mapping[str, ServoLoad]:
     """Return what each servo bears in a walk of the robot, and of the same with strong servos."""
     shares, first = share_at_limit(robot, walk.isel(run=0)), walk.time.values - START
     torques, off = np.abs(walk.servo_torque), np.abs(walk.servo_target - walk.servo_angle).isel(run=0)
@@ -168,7 +168,7 @@ def _weak(borne: Mapping[str, ServoLoad]) -> dict[str, ServoLoad]:
 
 
 def _tried(
-    robot: AnyRobot, walks: Sequence[tuple[Gait, float, Mapping[str, ServoLoad]]], timestep: float | None
+    robot: Robot, walks: Sequence[tuple[Gait, float, Mapping[str, ServoLoad]]], timestep: float | None
 ) -> list[Mapping[str, ServoLoad]]:
     """Return loads that know which of the servos that they name were at their limits for too long in the same walk.
 
@@ -193,7 +193,7 @@ def _tried(
     return found
 
 
-def stronger(robot: AnyRobot, borne: Mapping[str, ServoLoad]) -> AnyRobot:
+def stronger(robot: Robot, borne: Mapping[str, ServoLoad]) -> Robot:
     """Return a robot whose servos are of the classes that are named, wherever it has the same servo as there."""
     torques: dict[int, float] = {}
     for name, load in _weak(borne).items():
@@ -202,7 +202,7 @@ def stronger(robot: AnyRobot, borne: Mapping[str, ServoLoad]) -> AnyRobot:
     return with_servos(robot, lambda servo: replace(servo, torque=torques.get(id(servo), servo.torque)))
 
 
-def share_at_limit(robot: AnyRobot, record: xr.Dataset) -> xr.DataArray:
+def share_at_limit(robot: Robot, record: xr.Dataset) -> xr.DataArray:
     """Return the share of the time that each servo spends at its torque limit [-], over whatever else a record has.
 
     Args:
@@ -225,7 +225,7 @@ def overloaded(borne: Mapping[str, ServoLoad], at_limit: float = AT_LIMIT) -> li
 
 
 def check_loads(
-    robot: AnyRobot,
+    robot: Robot,
     gait: Gait,
     borne: Mapping[str, ServoLoad],
     at_limit: float = AT_LIMIT,

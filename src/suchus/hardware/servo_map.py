@@ -5,7 +5,7 @@ from math import pi
 from pathlib import Path
 
 from suchus import blueprint
-from suchus.design import AnyRobot, layout
+from suchus.design import Robot, layout
 from suchus.design.checks import Checks
 from suchus.design.meaning import meanings
 from suchus.errors import InvalidDesign
@@ -78,7 +78,7 @@ class ServoMap:
                     "is allowed."
                 )
 
-    def ordered(self, robot: AnyRobot) -> tuple[ServoLine, ...]:
+    def ordered(self, robot: Robot) -> tuple[ServoLine, ...]:
         """Return the servos in the order of a robot's layout.
 
         Raises:
@@ -99,7 +99,7 @@ class ServoMap:
         return tuple(by_name[name] for name in wanted)
 
 
-def straight(robot: AnyRobot) -> ServoMap:
+def straight(robot: Robot) -> ServoMap:
     """Return a map to start from: servos that turn 270 degrees over 500 to 2500 us, mounted in the middle.
 
     They hang on boards of 16 channels in the order of the robot's layout.
@@ -124,7 +124,7 @@ def straight(robot: AnyRobot) -> ServoMap:
     )
 
 
-def read_map(path: Path, robot: AnyRobot) -> ServoMap:
+def read_map(path: Path, robot: Robot) -> ServoMap:
     """Read a servo map of a robot from a TOML file.
 
     Raises:

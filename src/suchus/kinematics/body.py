@@ -7,7 +7,7 @@ z up. Angles come in the order of ``suchus.design.joint_names``.
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import LEGS, AnyRobot, Crocodile, cable_joints, fin_joints
+from suchus.design import LEGS, Robot, cable_joints, fin_joints
 from suchus.errors import UnknownName
 from suchus.kinematics.given import rows
 from suchus.kinematics.tree import Landmarks, landmarks
@@ -15,7 +15,7 @@ from suchus.kinematics.tree import Landmarks, landmarks
 __all__ = ["Landmarks", "feet", "from_leg_frame", "landmarks", "tail_points", "to_leg_frame"]
 
 
-def feet(robot: AnyRobot, angles: Float[np.ndarray, "*batch joint"]) -> Float[np.ndarray, "*batch limb 3"]:
+def feet(robot: Robot, angles: Float[np.ndarray, "*batch joint"]) -> Float[np.ndarray, "*batch limb 3"]:
     """Return the centres of the feet in the order of the layout's limbs [m].
 
     Args:
@@ -40,7 +40,7 @@ def to_leg_frame(point: Float[np.ndarray, "*batch 3"], name: str) -> Float[np.nd
     return np.stack([left * point[..., 1], point[..., 0], -point[..., 2]], axis=-1)
 
 
-def tail_points(robot: Crocodile, angles: Float[np.ndarray, "*batch joint"]) -> Float[np.ndarray, "*batch point 3"]:
+def tail_points(robot: Robot, angles: Float[np.ndarray, "*batch joint"]) -> Float[np.ndarray, "*batch point 3"]:
     """Return the tail from its pitch joint to its tip: pitch joint, cable joints, joints of the end, tip [m].
 
     Args:

@@ -8,9 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import GRAVITY, LEGS, AnyRobot, Crocodile, cable_joints, crocodile, joint_names, layout
-from suchus.design.leg import LEG_SHARES
-from suchus.design.tail import TailSegments, tail_segments
+from suchus.design import GRAVITY, LEGS, Robot, cable_joints, crocodile, joint_names, layout
+from suchus.design.tables import LEG_SHARES, TailSegments, tail_segments
 from suchus.kinematics import body, leg, spine
 from suchus.kinematics.given import rows
 
@@ -35,7 +34,7 @@ class Pieces(NamedTuple):
     """Their centres of mass in the frame of the pelvis [m]."""
 
 
-def pieces(robot: AnyRobot, angles: Float[np.ndarray, "*batch joint"]) -> Pieces:
+def pieces(robot: Robot, angles: Float[np.ndarray, "*batch joint"]) -> Pieces:
     """Return every piece of the body.
 
     Args:
@@ -55,7 +54,7 @@ def pieces(robot: AnyRobot, angles: Float[np.ndarray, "*batch joint"]) -> Pieces
     return Pieces(np.array(masses), np.stack(centres, axis=-2))
 
 
-def centre_of_mass(robot: AnyRobot, angles: Float[np.ndarray, "*batch joint"]) -> Float[np.ndarray, "*batch 3"]:
+def centre_of_mass(robot: Robot, angles: Float[np.ndarray, "*batch joint"]) -> Float[np.ndarray, "*batch 3"]:
     """Return the centre of mass of a posture in the frame of the pelvis [m].
 
     Args:
@@ -69,7 +68,7 @@ def centre_of_mass(robot: AnyRobot, angles: Float[np.ndarray, "*batch joint"]) -
     return np.einsum("p,...pi->...i", found.masses / found.masses.sum(), found.centres)
 
 
-def cantilever_torque(robot: Crocodile) -> float:
+def cantilever_torque(robot: Robot) -> float:
     """Return what the first pitch joint of a straight trunk must give to lift the level forebody off the ground [N m].
 
     The front legs hang out sideways, so that their weight acts at the shoulders.
@@ -80,7 +79,7 @@ def cantilever_torque(robot: Crocodile) -> float:
     return float(GRAVITY * np.sum(found.masses[ahead > 0] * ahead[ahead > 0]))
 
 
-def _trunk(robot: Crocodile, angles: np.ndarray) -> list[np.ndarray]:
+def _trunk(robot: Robot, angles: np.ndarray) -> list[np.ndarray]:
     bends = angles[..., layout(robot).ahead]
     joints = spine.joints(robot.spine, bends)
     T = spine.forward(robot.spine, bends)
@@ -93,7 +92,7 @@ def _trunk(robot: Crocodile, angles: np.ndarray) -> list[np.ndarray]:
     ]
 
 
-def _legs(robot: Crocodile, angles: np.ndarray) -> list[np.ndarray]:
+def _legs(robot: Robot, angles: np.ndarray) -> list[np.ndarray]:
     T = spine.forward(robot.spine, angles[..., layout(robot).ahead])
     shoulder = T[..., :3, 3] + robot.thorax.shoulder * T[..., :3, 0]
     found = []
@@ -109,7 +108,7 @@ def _legs(robot: Crocodile, angles: np.ndarray) -> list[np.ndarray]:
     return found
 
 
-def _tail(robot: Crocodile, angles: np.ndarray) -> list[np.ndarray]:
+def _tail(robot: Robot, angles: np.ndarray) -> list[np.ndarray]:
     points = body.tail_points(robot, angles[..., layout(robot).behind])
     cables = len(cable_joints(robot))
     # the middle of the last plate ends a segment, though no joint is there: the passive end begins

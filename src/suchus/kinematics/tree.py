@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import AnyRobot, layout
+from suchus.design import Robot, layout
 from suchus.design.layout import Axis
 from suchus.design.pieces import foam_centres
 from suchus.kinematics.given import numbers, rows, spread_over
@@ -36,7 +36,7 @@ class Landmarks(NamedTuple):
     """Tip of the tail [m]."""
 
 
-def frames(robot: AnyRobot, angles: Float[np.ndarray, "*batch joint"]) -> BodyFrames:
+def frames(robot: Robot, angles: Float[np.ndarray, "*batch joint"]) -> BodyFrames:
     """Return where every body is.
 
     Args:
@@ -73,7 +73,7 @@ def rotation(axis: Axis, angle: Float[np.ndarray, "*batch"]) -> Float[np.ndarray
     return np.asarray(np.eye(3) + s * cross + (1.0 - c) * (cross @ cross))
 
 
-def landmarks(robot: AnyRobot, angles: Float[np.ndarray, "*batch joint"]) -> Landmarks:
+def landmarks(robot: Robot, angles: Float[np.ndarray, "*batch joint"]) -> Landmarks:
     """Return feet, snout and tail tip.
 
     Args:
@@ -98,7 +98,7 @@ def landmarks(robot: AnyRobot, angles: Float[np.ndarray, "*batch joint"]) -> Lan
     )
 
 
-def centre_of_mass(robot: AnyRobot, angles: Float[np.ndarray, "*batch joint"]) -> Float[np.ndarray, "*batch 3"]:
+def centre_of_mass(robot: Robot, angles: Float[np.ndarray, "*batch joint"]) -> Float[np.ndarray, "*batch 3"]:
     """Return the centre of mass of a posture [m]; arguments as for ``landmarks``."""
     bodies, points, masses = _masses(robot)
     found = frames(robot, angles)
@@ -107,7 +107,7 @@ def centre_of_mass(robot: AnyRobot, angles: Float[np.ndarray, "*batch joint"]) -
 
 
 @lru_cache(maxsize=64)
-def _masses(robot: AnyRobot) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _masses(robot: Robot) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return the body, the place in its frame [m] and the mass [kg] of every piece, foam included."""
     place = layout(robot)
     segments = {segment.name: segment for segment in place.robot.axis}

@@ -3,7 +3,7 @@
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import WATER_DENSITY, AnyRobot, Chamber, general, layout
+from suchus.design import WATER_DENSITY, Chamber, Robot, general, layout
 from suchus.design.pieces import pieces, volumes
 from suchus.errors import InvalidDesign, UnknownName
 from suchus.hydro import column
@@ -11,7 +11,7 @@ from suchus.kinematics.tree import centre_of_mass, frames
 
 
 def level_chambers(
-    robot: AnyRobot, angles: Float[np.ndarray, " joint"], *, front: str, rear: str
+    robot: Robot, angles: Float[np.ndarray, " joint"], *, front: str, rear: str
 ) -> tuple[Chamber, Chamber]:
     """Return two chambers with which a robot at neutral buoyancy has no trim moment in a level posture.
 
@@ -50,7 +50,7 @@ def level_chambers(
     return Chamber(body=front, share=share), Chamber(body=rear, share=1.0 - share)
 
 
-def spare_volume(robot: AnyRobot) -> float:
+def spare_volume(robot: Robot) -> float:
     """Return how much air a robot under fresh water lets out to hover, neither sinking nor rising [m3].
 
     Raises:

@@ -4,15 +4,13 @@ from suchus.design.ground import Ground
 from suchus.fault import Fault
 from suchus.faults import Backlash, Deaf, Limp, Locked, LostFoot, Offset, Slow, Weak
 from suchus.land.arenas import ARENAS
-from suchus.land.crawling import crawl
 from suchus.land.failed import FAILED_JOINTS, KINDS, KNEES, LEGS_FAILED, angle_at, failing_joints, joint_failure
 from suchus.land.lake import Lake, Wave
 from suchus.land.live import Live
 from suchus.land.loop import CONTROL_PERIOD
-from suchus.land.push import Push
 from suchus.land.push_search import smallest_pushes
-from suchus.land.run import VACUUM, WATER, Afloat, Run
-from suchus.land.simulation import simulate
+from suchus.land.run import VACUUM, WATER, Afloat, Push, Run
+from suchus.land.simulation import crawl, simulate
 
 __all__ = [
     "ARENAS",

@@ -5,7 +5,7 @@ import numpy as np
 from jaxtyping import Float
 from scipy.optimize import brentq
 
-from suchus.design import AnyRobot
+from suchus.design import Robot
 from suchus.design.hull import Hull
 from suchus.design.pieces import pieces
 from suchus.errors import InvalidDesign
@@ -17,7 +17,7 @@ from suchus.model.wet import wet_model
 from suchus.rotation import about, multiply
 
 
-def capacity(robot: AnyRobot, lake: Lake) -> tuple[float, float]:
+def capacity(robot: Robot, lake: Lake) -> tuple[float, float]:
     """Return the volume of a robot wholly under water with the air that it keeps, and that of its weight [m3].
 
     Args:
@@ -29,7 +29,7 @@ def capacity(robot: AnyRobot, lake: Lake) -> tuple[float, float]:
     return float(column(table, "volume").sum() - lost), robot.mass / lake.water.density
 
 
-def check_floats(robot: AnyRobot, lake: Lake) -> None:
+def check_floats(robot: Robot, lake: Lake) -> None:
     """Refuse a robot that is heavier than the water that it displaces.
 
     Args:
@@ -50,7 +50,7 @@ def check_floats(robot: AnyRobot, lake: Lake) -> None:
 
 
 def surfaced(
-    robot: AnyRobot, lake: Lake, up: Float[np.ndarray, "3"], qpos: Float[np.ndarray, " q"], timestep: float
+    robot: Robot, lake: Lake, up: Float[np.ndarray, "3"], qpos: Float[np.ndarray, " q"], timestep: float
 ) -> Float[np.ndarray, " q"]:
     """Return a posture lifted to the surface, level with it but for its heel, if the robot floats clear of the ground.
 

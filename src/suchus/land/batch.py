@@ -1,22 +1,21 @@
-"""A batch of MuJoCo simulations with each run's own ground and faults."""
+"""A batch of MuJoCo simulations, each with its own ground, water and faults, and what its sensors say of a period."""
 
 import copy
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import mujoco
 import numpy as np
+from jaxtyping import Float
 from mujoco.batch import Batch, SimulationError
 
-from suchus import threads
-from suchus.design import AnyRobot, layout
+from suchus import hydro, threads
+from suchus.design import Robot, layout
 from suchus.design.ground import Ground
 from suchus.design.pieces import pieces
 from suchus.design.relief import Relief
 from suchus.land import wetting
 from suchus.land.afloat import surfaced
-from suchus.land.deduplication import Deduplication
-from suchus.land.meter import Meter
 from suchus.land.run import Afloat, Run
 from suchus.land.waters import Waters, gravity, up
 from suchus.model import activations, compile_model, force_sensors, standing
@@ -24,7 +23,64 @@ from suchus.model.wet import wet_model
 from suchus.motion import hip_height
 
 _TOO_FAST = 1e3  # [rad/s] or [m/s]; nothing on a robot moves so fast: the physics has diverged
-_CURRENT = mujoco.mjtStage.mjSTAGE_VEL  # after a step, positions and velocities describe the new state
+_CURRENT = int(mujoco.mjtStage.mjSTAGE_VEL)  # after a step, positions and velocities describe the new state
+
+
+class Beginning(NamedTuple):
+    """State in which a robot begins."""
+
+    qpos: Float[np.ndarray, " q"]
+    """Generalised positions [m], [rad]."""
+    qvel: Float[np.ndarray, " v"]
+    """Generalised velocities [m/s], [rad/s]."""
+    act: Float[np.ndarray, " a"]
+    """Inner states of the servos: slew-limited targets and integrals."""
+    commanded: Float[np.ndarray, " servo"]
+    """Last commanded angle of each servo [rad]."""
+
+
+class Meter:
+    """Keeps step by step what the water does to the robots and what their servos do; both jitter within a period.
+
+    Args:
+        water: of the batch, shape (run, ``hydro.NUMBERS``); read anew at every step.
+        sensors: of the batch, shape (run, sensor); likewise.
+        velocities: where the servos' speeds are among the sensors.
+        torques: where their torques are.
+        steps: of the physics in a control period.
+    """
+
+    def __init__(self, water: np.ndarray, sensors: np.ndarray, velocities: slice, torques: slice, steps: int) -> None:
+        first, last = min(velocities.start, torques.start), max(velocities.stop, torques.stop)
+        self._acts, self._felt = water[:, hydro.FORCE : hydro.FORCE + 4], sensors[:, first:last]
+        self._did, self._all = np.zeros((steps, *self._acts.shape)), np.zeros((steps + 1, *self._felt.shape))
+        speeds = self._all[..., velocities.start - first : velocities.stop - first]
+        self._before, self._after = speeds[:-1], speeds[1:]
+        self._torque = self._all[1:, :, torques.start - first : torques.stop - first]
+        self._sum = np.zeros(self._torque.shape)
+        self._share = np.full(steps, 1.0 / steps)
+
+    def begin(self) -> None:
+        """Keep what is felt before the first step."""
+        self._all[0] = self._felt
+
+    def read(self, step: int) -> None:
+        """Keep what a physics step has left."""
+        self._did[step] = self._acts
+        self._all[step + 1] = self._felt
+
+    def mean(self, into: np.ndarray, who: np.ndarray | slice) -> None:
+        """Write the means of force and power of the water and of the power of the servos, shape (run, 5).
+
+        The power of a servo in a step is its torque times the mean of its speeds before and after.
+
+        Args:
+            into: where to.
+            who: runs for which they are written.
+        """
+        np.add(self._before, self._after, out=self._sum)
+        into[who, :4] = (self._share @ self._did.reshape(len(self._did), -1)).reshape(-1, 4)[who]
+        into[who, 4] = (0.5 * self._share @ np.vecdot(self._sum, self._torque))[who]
 
 
 class SimulationBatch:
@@ -56,10 +112,13 @@ class SimulationBatch:
         self.qpos, self.qvel, self.ctrl, self.sensors = (
             self.physics.bind(name) for name in ("qpos", "qvel", "ctrl", "sensordata")
         )
+        self.activations, self._pushed = self.physics.bind("act"), self.physics.bind("xfrc_applied")
         self.readings = self.sensors.copy()
         self.waters = Waters(runs, self.physics)
         forces = force_sensors(runs[0].robot)
         self._forces = slice(int(shared.sensor(forces[0]).adr[0]), int(shared.sensor(forces[-1]).adr[0]) + 3)
+        self._felt, self._mean = self.sensors[:, self._forces], self.readings[:, self._forces]
+        self._sum, self._speeds = np.zeros_like(self._felt), np.zeros_like(self.qvel)
         servos = [shared.sensor(f"{name}_position") for name in layout(runs[0].robot).servos]
         self._positions = slice(int(servos[0].adr[0]), int(servos[-1].adr[0]) + 1)
         names = layout(runs[0].robot).servos
@@ -145,7 +204,7 @@ class SimulationBatch:
             body: name of the body.
             force: in the world, shape (3,) [N]; zeros end the push.
         """
-        self.physics.bind("xfrc_applied")[sim, self.model.body(body).id, :3] = force
+        self._pushed[sim, self.model.body(body).id, :3] = force
 
     def place(self, runs: Sequence[Run], first: np.ndarray) -> None:
         """Put every robot on the ground in its first posture, nothing below the surface.
@@ -154,7 +213,6 @@ class SimulationBatch:
             runs: the runs.
             first: the servo angles at the start, shape (run, servo) [rad].
         """
-        act = self.physics.bind("act")
         found: dict[object, tuple[np.ndarray, np.ndarray]] = {}
         afloat: dict[object, np.ndarray] = {}
         for sim, run in enumerate(runs):
@@ -164,7 +222,7 @@ class SimulationBatch:
                 model = compile_model(run.robot, self._timestep)  # every run begins on even ground
                 posture = standing(model, run.robot, height, first[sim])
                 found[key] = posture, activations(model, first[sim])
-            self.qpos[sim], act[sim] = found[key]
+            self.qpos[sim], self.activations[sim] = found[key]
             if run.lake is not None:
                 float_key = (key, run.lake, run.ground)
                 if float_key not in afloat:
@@ -180,7 +238,27 @@ class SimulationBatch:
         if self.waters:
             self.worked[who, :4] = self.waters.acts()[who]
 
-    def advance(self, targets: np.ndarray, steps: int, time: float, shared: Deduplication | None = None) -> None:
+    def restart(self, sim: int, begin: Beginning) -> None:
+        """Put one robot into a state, without a push, also after it has diverged; its faults are the injector's.
+
+        The others stay as they are. From then on it moves as a robot of a fresh batch does, to the last bit.
+
+        Args:
+            sim: index of the robot in the batch.
+            begin: the state in which it begins.
+        """
+        who = np.array([sim])
+        self.physics.reset(who, stage=mujoco.mjtStage.mjSTAGE_NONE)
+        self.qpos[sim], self.qvel[sim], self.ctrl[sim] = begin.qpos, begin.qvel, begin.commanded
+        self.activations[sim] = begin.act
+        self.waters.refill(sim)
+        self.physics.forward(who)
+        self.read(sim)
+        self.alive[sim], self.ended[sim], self.cause[sim] = True, np.inf, ""
+
+    def advance(
+        self, targets: np.ndarray, steps: int, time: float, who: np.ndarray | None = None, *, felt: bool = True
+    ) -> None:
         """Command servo angles and advance the living by some steps; who diverges dies, with the time and the cause.
 
         On return ``readings`` holds what the sensors say: contact forces as their mean over the steps, as a pressure
@@ -190,43 +268,51 @@ class SimulationBatch:
             targets: shape (run, servo) [rad].
             steps: number of physics steps.
             time: at which they begin [s].
-            shared: runs of which one stands for all; None if there are none.
+            who: whether each run is advanced, shape (run,); None for all.
+            felt: whether contact forces will be read; if not, they are those of the last step, which takes less time.
         """
-        if shared is not None and shared.others.size:
-            self._advance(targets, steps, time, shared.first)
-            self._copy(shared.others, shared.whom)
-        else:
-            self._advance(targets, steps, time, None)
-
-    def _advance(self, targets: np.ndarray, steps: int, time: float, who: np.ndarray | None) -> None:
         # what all runs share is done at once: with one run alone each of these lines shows in its time
-        if self.alive.all():
+        going = self._going(who)
+        if going is None or self.alive.all():
             self.ctrl[:] = targets
         else:
             self.ctrl[self.alive] = targets[self.alive]
-        felt = self.sensors[:, self._forces]
-        pressed = np.zeros_like(felt)
-        going = self._going(who)
         meter = self._meter(steps)
-        for step in range(steps):
+        calls = steps if felt or meter is not None else 1
+        self._sum.fill(0.0)
+        for call in range(calls):
             try:
-                self.physics.step(going, stage=_CURRENT)
+                self.physics.step(going, steps // calls, _CURRENT)
             except SimulationError as error:
                 for sim in error.ids:
                     self._end(int(sim), time, self.physics.error(int(sim)))
                 going = self._going(who)
-            pressed += felt
+            self._sum += self._felt
             if meter is not None:
-                meter.read(step)
+                meter.read(call)
         if meter is not None:
             meter.mean(self.worked, slice(None) if who is None else who)
         self.readings[:] = self.sensors
-        self.readings[:, self._forces] = pressed / steps
-        fastest = np.abs(self.qvel).max(axis=1)
-        sound = fastest < _TOO_FAST  # a NaN is not below anything
-        if not sound.all():
-            for sim in np.flatnonzero(self._living(who) & ~sound):
+        np.divide(self._sum, calls, out=self._mean)
+        np.abs(self.qvel, out=self._speeds)
+        if not self._speeds.max() < _TOO_FAST:  # a NaN is not below anything
+            fastest = self._speeds.max(axis=1)
+            for sim in np.flatnonzero(self._living(who) & ~(fastest < _TOO_FAST)):
                 self._end(int(sim), time, f"a speed of {fastest[sim]:.3g} was reached")
+
+    def copy(self, sims: np.ndarray, whom: np.ndarray) -> None:
+        """Let runs be where others are, and feel and suffer the same.
+
+        Args:
+            sims: indices of the runs, shape (n,).
+            whom: for each of them the index of the other, shape (n,).
+        """
+        self.physics.state[sims] = self.physics.state[whom]
+        self.readings[sims] = self.readings[whom]
+        self.worked[sims] = self.worked[whom]
+        for sim, other in zip(sims, whom, strict=True):
+            if not self.alive[other]:
+                self._end(int(sim), float(self.ended[other]), self.cause[other])
 
     def _meter(self, steps: int) -> Meter | None:
         """Return the meter of a control period, which is kept from one to the next; None on dry land."""
@@ -246,21 +332,12 @@ class SimulationBatch:
         going = self._living(who)
         return None if going.all() else np.flatnonzero(going)
 
-    def _copy(self, sims: np.ndarray, whom: np.ndarray) -> None:
-        """Let runs be where others are, and feel and suffer the same."""
-        self.physics.state[sims] = self.physics.state[whom]
-        self.readings[sims] = self.readings[whom]
-        self.worked[sims] = self.worked[whom]
-        for sim, other in zip(sims, whom, strict=True):
-            if not self.alive[other]:
-                self._end(int(sim), float(self.ended[other]), self.cause[other])
-
     def _end(self, sim: int, time: float, cause: str) -> None:
         if self.alive[sim]:
             self.alive[sim], self.ended[sim], self.cause[sim] = False, time, cause
 
 
-def _model(robot: AnyRobot, timestep: float, relief: Relief | None, room: int) -> Any:
+def _model(robot: Robot, timestep: float, relief: Relief | None, room: int) -> Any:
     """Return a model of its own, which does not look for islands; for the water where there is room for pieces.
 
     A robot is one island, so that the bytes are the same, and a step takes a sixteenth less time.

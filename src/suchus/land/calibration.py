@@ -10,7 +10,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 import xarray as xr
 
-from suchus.design import Crocodile
+from suchus.design import Robot
 from suchus.design.water import Water
 from suchus.land.lake import Course, Lake
 from suchus.land.prescribed import held_sections
@@ -42,7 +42,7 @@ NAMES = tuple(one.name for one in fields(Coefficients))
 
 
 def responses(
-    robot: Crocodile, swim: Swim, viscosity: float, *, sway: complex = 0j, turn: complex = 0j
+    robot: Robot, swim: Swim, viscosity: float, *, sway: complex = 0j, turn: complex = 0j
 ) -> Mapping[str, xr.Dataset]:
     """Return what each of ``Coefficients`` does by one unit of it, and what is left without them, as ``rest``.
 

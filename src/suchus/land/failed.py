@@ -4,7 +4,7 @@ from typing import Literal
 
 import numpy as np
 
-from suchus.design import AnyRobot, layout
+from suchus.design import Robot, layout
 from suchus.errors import UnknownName
 from suchus.fault import Fault
 from suchus.faults import Limp, Locked
@@ -21,7 +21,7 @@ KINDS: tuple[Kind, ...] = ("limp", "locked")
 LEGS_FAILED: tuple[Legs, ...] = ("one", "both")
 
 
-def failing_joints(robot: AnyRobot) -> tuple[str, ...]:
+def failing_joints(robot: Robot) -> tuple[str, ...]:
     """Return the joints of limbs that can fail, hinge by hinge from the hip, girdle by girdle.
 
     A girdle is ``front``, ``hind``, or ``middle`` with its number where there are several; only the hind one is there
@@ -44,7 +44,7 @@ def girdle_words(count: int) -> tuple[str, ...]:
 
 
 def joint_failure(
-    robot: AnyRobot, gait: Gait, joint: str, kind: Kind, legs: Legs = "one", *, hold: float = 0.5
+    robot: Robot, gait: Gait, joint: str, kind: Kind, legs: Legs = "one", *, hold: float = 0.5
 ) -> tuple[Fault, ...]:
     """Return the faults of a run in which joints have failed from the start; one leg is the left one.
 
@@ -70,7 +70,7 @@ def joint_failure(
     return tuple(Locked(name, angle=angle_at(robot, gait, name, hold)) for name in names)
 
 
-def angle_at(robot: AnyRobot, gait: Gait, servo: str, share: float) -> float:
+def angle_at(robot: Robot, gait: Gait, servo: str, share: float) -> float:
     """Return an angle in the range that a gait asks of a servo: 0 the least, 1 the greatest [rad]."""
     clock = np.arange(128) / 128
     asked = cycle_targets(robot, gait, clock)[:, layout(robot).servos.index(servo)]

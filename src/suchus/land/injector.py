@@ -1,13 +1,15 @@
-"""The injector: it begins, keeps up and mends the faults of the runs of a batch, whoever steps the batch."""
+"""What goes wrong in the runs of a batch: faults, which the injector begins, keeps up and mends, pushes and noise."""
 
-from collections.abc import Iterator, Mapping, MutableMapping
+from collections.abc import Iterator, Mapping, MutableMapping, Sequence
+from math import floor
 
 import numpy as np
 
 from suchus.control import Sensed
-from suchus.design import AnyRobot, layout
+from suchus.design import Robot, layout
 from suchus.fault import Fault
 from suchus.land.batch import SimulationBatch
+from suchus.land.run import Push, Run
 from suchus.model import SLEW
 
 _KINDS = {"actuator": "actuator", "geom": "geom", "body": "body", "jnt": "joint"}
@@ -23,7 +25,7 @@ class Injector:
         robot: one of the batch's robots, which share a layout.
     """
 
-    def __init__(self, batch: SimulationBatch, period: float, robot: AnyRobot) -> None:
+    def __init__(self, batch: SimulationBatch, period: float, robot: Robot) -> None:
         self._batch, self._period = batch, period
         place = layout(robot)
         self._columns = {
@@ -161,3 +163,97 @@ class Named(MutableMapping[str, float]):
 
     def __len__(self) -> int:
         return len(self._columns)
+
+
+_NEVER = np.iinfo(np.int64).max
+_EARLY = 1e-6
+"""By how much too early rather than too late a push may be awaited [control period]."""
+
+
+class Disturbances:
+    """The faults, the pushes and the noise of all runs of a batch, each run by a clock of its own.
+
+    Args:
+        runs: of the batch.
+        batch: the simulations.
+        ticks: number of control periods for which there is noise.
+        period: of control [s].
+    """
+
+    def __init__(self, runs: Sequence[Run], batch: SimulationBatch, ticks: int, period: float) -> None:
+        self._batch, self._period = batch, period
+        self.injector = Injector(batch, period, runs[0].robot)
+        self._faults: list[dict[int, list[Fault]]] = [{} for _ in runs]
+        self._pushes: list[list[Push]] = [[] for _ in runs]
+        self._next, self._ahead = np.full(len(runs), _NEVER), False
+        for sim, run in enumerate(runs):
+            self.schedule(sim, run.faults, run.pushes)
+        servos = len(layout(runs[0].robot).servos)
+        self._noise = {
+            sim: run.noise * np.random.default_rng(run.seed).standard_normal((ticks, servos))
+            for sim, run in enumerate(runs)
+            if run.noise > 0
+        }
+
+    def schedule(self, sim: int, faults: Sequence[Fault], pushes: Sequence[Push]) -> None:
+        """Let other faults and pushes than before be ahead of a run, whose clock is at 0; all that is broken is mended.
+
+        Args:
+            sim: the run.
+            faults: what breaks, each at its time.
+            pushes: forces from outside, each at its time.
+        """
+        self.injector.mend(sim)
+        self._faults[sim], self._pushes[sim] = {}, list(pushes)
+        for fault in faults:
+            self._faults[sim].setdefault(int(np.ceil(fault.at / self._period - 1e-9)), []).append(fault)
+        self._await(sim, -1)
+
+    def push(self, sim: int, push: Push) -> None:
+        """Add a push to those that are ahead of a run."""
+        self._pushes[sim].append(push)
+        self._await(sim, -1)
+
+    def happen(self, clocks: np.ndarray, going: np.ndarray) -> None:
+        """Let the faults of this control period begin, and push.
+
+        Args:
+            clocks: number of the control period of each run since it began, shape (run,).
+            going: whether each run goes on in it, shape (run,).
+        """
+        if self._ahead:
+            for sim in np.flatnonzero((self._next <= clocks) & going):
+                self._happen(int(sim), int(clocks[sim]))
+
+    def disturb(self, clocks: np.ndarray, tick: int, targets: np.ndarray) -> np.ndarray:
+        """Return the angles that the servos are commanded in the end, a new array of shape (run, servo) [rad].
+
+        Args:
+            clocks: number of the control period of each run since it began, shape (run,).
+            tick: number of the control period of the batch.
+            targets: what the controllers command, shape (run, servo) [rad].
+        """
+        if self._noise:
+            targets = targets.copy()
+            for sim, noise in self._noise.items():
+                targets[sim] += noise[clocks[sim]]
+        return self.injector.command(tick, targets)
+
+    def _happen(self, sim: int, tick: int) -> None:
+        start, end = tick * self._period, (tick + 1) * self._period
+        forces: dict[str, np.ndarray] = {}
+        for push in self._pushes[sim]:
+            force = push.share(start, end) * np.array(push.force)
+            forces[push.body] = forces.get(push.body, np.zeros(3)) + force
+        for body, force in forces.items():
+            self._batch.push(sim, body, force)
+        self._pushes[sim] = [push for push in self._pushes[sim] if push.at + push.duration > start]
+        for fault in self._faults[sim].pop(tick, ()):
+            self.injector.begin(sim, fault)
+        self._await(sim, tick)
+
+    def _await(self, sim: int, tick: int) -> None:
+        """Note the next control period after ``tick`` in which something may happen to a run."""
+        begins = [floor(push.at / self._period - _EARLY) for push in self._pushes[sim]]
+        self._next[sim] = max(min([*self._faults[sim], *begins], default=_NEVER), tick + 1)
+        self._ahead = bool((self._next < _NEVER).any())

@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import Float
 
 from suchus import hydro
-from suchus.design import GRAVITY, AnyRobot, general
+from suchus.design import GRAVITY, Robot, general
 from suchus.design.checks import Checks
 from suchus.design.water import Water
 from suchus.errors import InvalidDesign
@@ -129,7 +129,7 @@ def lake_text(lake: Lake | None) -> str:
     return "" if lake is None else json.dumps(asdict(lake), sort_keys=True)
 
 
-def check_lake(robot: AnyRobot, lake: Lake) -> None:
+def check_lake(robot: Robot, lake: Lake) -> None:
     """Refuse a breath that a robot's hull has no air for.
 
     Raises:

@@ -12,9 +12,8 @@ from suchus.design.scale import check_step, control_period, physics_step
 from suchus.errors import Diverged, InvalidDesign
 from suchus.fault import Fault, check_faults
 from suchus.land.lake import Lake, check_lake
-from suchus.land.loop import Loop, physics_steps, start
-from suchus.land.push import Push, check_pushes
-from suchus.land.run import Run
+from suchus.land.loop import Loop, start
+from suchus.land.run import Push, Run, check_pushes
 from suchus.motion import START, Gait, check_limits
 
 
@@ -46,20 +45,20 @@ class Live:
             check_lake(run.robot, run.lake)
         self._period = control_period(run.robot)
         timestep = physics_step(run.robot) if timestep is None else timestep
-        steps = physics_steps(timestep, self._period)
         check_step(run.robot, timestep)
         self._start = round(START / self._period)  # [control period]
         check_faults(run.faults, run.robot, inf)
         check_pushes(run.pushes, run.robot, inf)
         self.run = self._whole(run)
-        self._loop = Loop([self.run], self._ticks(self.run), steps, timestep, samples=1)
-        self._tick = self._beat = 0
+        self._loop = Loop([self.run], timestep, ticks=self._ticks(self.run))
+        self._recorder = self._loop.recorder(1)
+        self._beat = 0
         self._look()
 
     @property
     def time(self) -> float:
         """Since the beginning [s]."""
-        return self._tick * self._period
+        return self._loop.time
 
     @property
     def now(self) -> dict[str, np.ndarray]:
@@ -77,11 +76,10 @@ class Live:
         Raises:
             Diverged: the simulation diverged, now or before.
         """
-        self._loop.advance(self._tick, self._command.targets)
+        self._loop.advance()
         if not self._loop.batch.alive[0]:
             time, cause = float(self._loop.batch.ended[0]), self._loop.batch.cause[0]
             raise Diverged(f"the walk diverged at {time:.2f} s: {cause}.", time=time)
-        self._tick += 1
         self._beat += 1
         if self._beat >= self._start + self._cycle(self.run):
             self._beat -= self._cycle(self.run)
@@ -115,11 +113,13 @@ class Live:
         """
         check_faults([replace(fault, at=0.0)], self.run.robot, inf)  # type: ignore[type-var]  # all are dataclasses
         self._loop.disturbances.injector.begin(0, fault)
+        self._loop.disturb()
         self._read()
 
     def mend(self, part: str) -> None:
         """Repair a part."""
         self._loop.disturbances.injector.mend(0, part)
+        self._loop.disturb()
         self._read()
 
     def push(self, push: Push) -> None:
@@ -149,13 +149,12 @@ class Live:
 
     def _look(self) -> None:
         """Decide what the servos are commanded next, and read everything."""
-        self._asked = self._loop.decide(self._tick, self._beat)
+        self._loop.decide(self._beat)
         self._read()
 
     def _read(self) -> None:
-        self._command = self._loop.disturb(self._tick, self._asked)
-        self._loop.readings.store(0, self._command.phase, self._command.targets)
-        self._now = self._loop.readings.sample(0, 0)
+        self._recorder.store(0, self._loop.command.phase, self._loop.command.targets)
+        self._now = self._recorder.sample(0, 0)
 
     def _cycle(self, run: Run) -> int:
         """Return the length of a cycle in control periods."""

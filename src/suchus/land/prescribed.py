@@ -2,7 +2,7 @@
 
 The robot's own model without limbs, wholly under water and without weight, is moved along a motion of its joints, and
 the kernel of the runs says what the water does (``hydro``). So the section model can be set beside a flow in which the
-same body moves in the same manner. Names and signs are those of ``water.held_in_space`` and ``water.swim_in_space``.
+same body moves in the same manner. Names and signs are those of ``water.resolved`` in space, held and free.
 """
 
 from collections.abc import Callable
@@ -18,7 +18,7 @@ from jaxtyping import Float
 from scipy.integrate import solve_ivp
 
 from suchus import hydro
-from suchus.design import Crocodile, cable_joints, general
+from suchus.design import Robot, cable_joints, general
 from suchus.design.pieces import pieces
 from suchus.hydro import column, unpacked
 from suchus.land import wetting
@@ -37,7 +37,7 @@ _PLANE = np.array([0, 1, 5])
 _TIMESTEP = 0.002
 
 
-def towed_sections(robot: Crocodile, speed: float, lake: Lake) -> float:
+def towed_sections(robot: Robot, speed: float, lake: Lake) -> float:
     """Return the drag of the straight body without limbs that moves forward [N].
 
     Args:
@@ -50,7 +50,7 @@ def towed_sections(robot: Crocodile, speed: float, lake: Lake) -> float:
     return -float(body.force[0])
 
 
-def held_sections(robot: Crocodile, swim: Swim, lake: Lake, *, sway: complex = 0j, turn: complex = 0j) -> xr.Dataset:
+def held_sections(robot: Robot, swim: Swim, lake: Lake, *, sway: complex = 0j, turn: complex = 0j) -> xr.Dataset:
     """Return the forces over a cycle on a body that swims on the spot, its head moved as it is said.
 
     Args:
@@ -84,7 +84,7 @@ def held_sections(robot: Crocodile, swim: Swim, lake: Lake, *, sway: complex = 0
     return xr.Dataset(series, coords={"phase": phase})
 
 
-def free_sections(robot: Crocodile, swim: Swim, lake: Lake, cycles: int) -> xr.Dataset:
+def free_sections(robot: Robot, swim: Swim, lake: Lake, cycles: int) -> xr.Dataset:
     """Return a swim from rest in the plane, as heavy as the water that the body displaces, its motion growing at first.
 
     Args:
@@ -125,7 +125,7 @@ def free_sections(robot: Crocodile, swim: Swim, lake: Lake, cycles: int) -> xr.D
 class _Submerged:
     """The model of a robot without limbs, wholly under water and without weight."""
 
-    def __init__(self, robot: Crocodile, lake: Lake) -> None:
+    def __init__(self, robot: Robot, lake: Lake) -> None:
         self._robot, bare = robot, replace(general(robot), girdles=(), hull=None)
         wetting.install()
         self._model = copy(wet_model(bare, _TIMESTEP, None, len(pieces(bare)), acting=True))

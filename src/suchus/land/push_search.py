@@ -9,8 +9,7 @@ import xarray as xr
 from jaxtyping import Bool, Float
 
 from suchus.errors import InvalidDesign
-from suchus.land.push import Push
-from suchus.land.run import Run
+from suchus.land.run import Push, Run
 from suchus.land.simulation import simulate
 
 

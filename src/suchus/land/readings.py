@@ -1,14 +1,15 @@
-"""Reading a batch's sensors: for the controller at every period, for the record at every sample."""
+"""The sensors of a batch: what they say now, for controllers, and what is kept of it, as a record."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 import xarray as xr
+from jaxtyping import Float
 
 from suchus import hydro
 from suchus.control import Sensed
-from suchus.design import GRAVITY, layout
+from suchus.design import GRAVITY, Robot, layout
 from suchus.design.pieces import chambers, pieces
 from suchus.hydro import column
 from suchus.land.batch import SimulationBatch
@@ -19,56 +20,100 @@ from suchus.model import joint_addresses, sensor_names
 from suchus.record import WATER, dataset, ground_text
 
 
-class Readings:
-    """The sensors of a batch, and everything that was read."""
+class Sensors:
+    """Where the sensors of the robots of a batch stand, and what they say now."""
 
-    def __init__(self, batch: SimulationBatch, runs: Sequence[Run], samples: int) -> None:
+    def __init__(self, batch: SimulationBatch, robot: Robot) -> None:
         self._batch = batch
-        self._runs = runs
-        self._place = place = layout(runs[0].robot)
+        self.layout = place = layout(robot)
         model = batch.model
-        self._at = {
+        self._columns = {
             name: slice(int(model.sensor(name).adr[0]), int(model.sensor(name).adr[0] + model.sensor(name).dim[0]))
             for name in sensor_names(place.robot)
         }
         self._felt = {
-            "servo_position": self._span(place.servos, "position"),
-            "servo_velocity": self._span(place.servos, "velocity"),
-            "servo_torque": self._span(place.servos, "torque"),
-            "orientation": self._at["imu_orientation"],
-            "angular_velocity": self._at["imu_gyroscope"],
-            "acceleration": self._at["imu_accelerometer"],
+            "servo_position": self.span(place.servos, "position"),
+            "servo_velocity": self.span(place.servos, "velocity"),
+            "servo_torque": self.span(place.servos, "torque"),
+            "orientation": self._columns["imu_orientation"],
+            "angular_velocity": self._columns["imu_gyroscope"],
+            "acceleration": self._columns["imu_accelerometer"],
         }
         self._pressed = {
             "foot_pressure": self._upward(place.limb_names),
             "belly_pressure": self._upward(place.trunk),
         }
-        self._joints = joint_addresses(model, place.hinges)
-        n = len(runs)
-        self._sensors = np.full((n, samples, model.nsensordata), np.nan)
-        self._qpos = np.full((n, samples, model.nq), np.nan)
-        self._phase = np.full((n, samples, len(place.limbs)), np.nan)
-        self._targets = np.full((n, samples, len(place.servos)), np.nan)
-        self._water = np.full((n, samples, batch.waters.rows.shape[1]), np.nan)
-        self._worked = np.full((n, samples, batch.worked.shape[1]), np.nan)
+
+    def __getitem__(self, name: str) -> Float[np.ndarray, "run n"]:
+        """Return what a sensor says of every run now; a view, which the next control period overwrites."""
+        return self._batch.readings[:, self._columns[name]]
+
+    def columns(self, name: str) -> slice:
+        """Return where the values of one sensor stand in a row of readings."""
+        return self._columns[name]
+
+    def span(self, names: Sequence[str], suffix: str) -> slice:
+        """Return where the values of neighbouring sensors, ``NAME_SUFFIX`` for each name, stand in a row."""
+        if not names:
+            return slice(0, 0)
+        return slice(self._columns[f"{names[0]}_{suffix}"].start, self._columns[f"{names[-1]}_{suffix}"].stop)
+
+    def tail(self, rows: np.ndarray) -> np.ndarray:
+        """Return the force of the tail on the ground in rows of readings; zero where there is no tail [N]."""
+        columns = self._columns.get("tail_force")
+        return np.zeros((*rows.shape[:-1], 3)) if columns is None else rows[..., columns]
+
+    def sensed(self, time: float) -> Sensed:
+        """Return what the robots feel now, in arrays of its own."""
+        rows = self._batch.readings
+        felt = {name: rows[:, columns].copy() for name, columns in self._felt.items()}
+        pressed = {name: -rows[:, columns] for name, columns in self._pressed.items()}
+        depth = self._batch.waters.depths(self._batch.qpos[:, :3])
+        return Sensed(time=time, **felt, **pressed, tail_pressure=-self.tail(rows)[..., 2], depth=depth)
+
+    def _upward(self, names: Sequence[str]) -> slice:
+        """Return where the vertical parts of neighbouring forces stand."""
+        all_parts = self.span(names, "force")
+        return slice(min(all_parts.start + 2, all_parts.stop), all_parts.stop, 3)
+
+
+class Recorder:
+    """Keeps samples of a batch, for which there is room from the beginning, and makes them a record.
+
+    Args:
+        batch: the simulations.
+        sensors: of the batch.
+        runs: of the batch.
+        samples: for how many there is room.
+    """
+
+    def __init__(self, batch: SimulationBatch, sensors: Sensors, runs: Sequence[Run], samples: int) -> None:
+        self._batch, self._sensors, self._runs = batch, sensors, runs
+        self._layout = place = sensors.layout
+        self._joints = joint_addresses(batch.model, place.hinges)
+        shape = len(runs), samples
+        self._readings = np.full((*shape, batch.readings.shape[1]), np.nan)
+        self._qpos = np.full((*shape, batch.qpos.shape[1]), np.nan)
+        self._phase = np.full((*shape, len(place.limbs)), np.nan)
+        self._targets = np.full((*shape, len(place.servos)), np.nan)
+        self._water = np.full((*shape, batch.waters.rows.shape[1]), np.nan)
+        self._worked = np.full((*shape, batch.worked.shape[1]), np.nan)
 
     def store(self, sample: int, phase: np.ndarray, targets: np.ndarray) -> None:
-        """Keep one sample of the living."""
+        """Keep one sample of the living.
+
+        Args:
+            sample: its number.
+            phase: of the limbs, shape (run, limb) [cycle].
+            targets: commanded servo angles, shape (run, servo) [rad].
+        """
         alive = slice(None) if self._batch.alive.all() else self._batch.alive
-        self._sensors[alive, sample] = self._batch.readings[alive]
+        self._readings[alive, sample] = self._batch.readings[alive]
         self._qpos[alive, sample] = self._batch.qpos[alive]
         self._phase[alive, sample] = phase[alive]
         self._targets[alive, sample] = targets[alive]
         self._water[alive, sample] = self._batch.waters.rows[alive]
         self._worked[alive, sample] = self._batch.worked[alive]
-
-    def sensed(self, time: float) -> Sensed:
-        """Return what the robots feel now."""
-        read = self._batch.readings
-        felt = {name: read[:, where].copy() for name, where in self._felt.items()}
-        pressed = {name: -read[:, where] for name, where in self._pressed.items()}
-        depth = self._batch.waters.depths(self._batch.qpos[:, :3])
-        return Sensed(time=time, **felt, **pressed, tail_pressure=-self._tail(read)[..., 2], depth=depth)
 
     def sample(self, run: int, sample: int) -> dict[str, np.ndarray]:
         """Return one stored sample of one run: the variables of ``record.VARIABLES`` without run and time.
@@ -96,10 +141,10 @@ class Readings:
         coordinates: dict[str, Sequence[object] | np.ndarray] = {
             "run": np.arange(len(robots)),
             "time": time,
-            "leg": self._place.limb_names,
-            "segment": self._place.trunk,
-            "joint": self._place.hinges,
-            "servo": self._place.servos,
+            "leg": self._layout.limb_names,
+            "segment": self._layout.trunk,
+            "joint": self._layout.hinges,
+            "servo": self._layout.servos,
             "robot": [robot.name for robot in robots],
             "gait": [run.gait.name for run in self._runs],
             "label": [run.label or run.gait.name for run in self._runs],
@@ -130,51 +175,35 @@ class Readings:
         }
 
     def _arrays(self) -> dict[str, np.ndarray]:
-        read, place = self._sensors, self._place
+        rows, place = self._readings, self._layout
 
         def block(names: Sequence[str], suffix: str) -> np.ndarray:
-            return np.array(read[..., self._span(names, suffix)])
+            return np.array(rows[..., self._sensors.span(names, suffix)])
 
         def points(names: Sequence[str], suffix: str) -> np.ndarray:
-            return block(names, suffix).reshape(*read.shape[:2], len(names), 3)
+            return block(names, suffix).reshape(*rows.shape[:2], len(names), 3)
 
         return {
             "position": self._qpos[..., :3],
             "orientation": self._qpos[..., 3:7],
             "joint_angle": self._qpos[..., self._joints],
-            "centre_of_mass": read[..., self._at["centre_of_mass"]],
-            "angular_momentum": read[..., self._at["angular_momentum"]],
+            "centre_of_mass": rows[..., self._sensors.columns("centre_of_mass")],
+            "angular_momentum": rows[..., self._sensors.columns("angular_momentum")],
             "snout": block(("snout",), "position"),
             "tail_tip": block(("tail_tip",), "position"),
             "foot_position": points([f"{limb}_foot" for limb in place.limb_names], "position"),
             # the sensors read the robot's force on the ground; the record holds the ground's on the robot
             "foot_force": -points(place.limb_names, "force"),
             "belly_force": -points(place.trunk, "force"),
-            "tail_force": -self._tail(read),
+            "tail_force": -self._sensors.tail(rows),
             "servo_angle": block(place.servos, "position"),
             "servo_velocity": block(place.servos, "velocity"),
             "servo_torque": block(place.servos, "torque"),
             "servo_target": self._targets,
             "limb_phase": self._phase,
-            "angular_velocity": read[..., self._at["imu_gyroscope"]],
-            "acceleration": read[..., self._at["imu_accelerometer"]],
+            "angular_velocity": rows[..., self._sensors.columns("imu_gyroscope")],
+            "acceleration": rows[..., self._sensors.columns("imu_accelerometer")],
         }
-
-    def _tail(self, read: np.ndarray) -> np.ndarray:
-        """Return the force of the tail on the ground; zero where there is none."""
-        where = self._at.get("tail_force")
-        return np.zeros((*read.shape[:-1], 3)) if where is None else read[..., where]
-
-    def _span(self, names: Sequence[str], suffix: str) -> slice:
-        """Return where neighbouring sensors stand."""
-        if not names:
-            return slice(0, 0)
-        return slice(self._at[f"{names[0]}_{suffix}"].start, self._at[f"{names[-1]}_{suffix}"].stop)
-
-    def _upward(self, names: Sequence[str]) -> slice:
-        """Return where the vertical parts of neighbouring forces stand."""
-        all_parts = self._span(names, "force")
-        return slice(min(all_parts.start + 2, all_parts.stop), all_parts.stop, 3)
 
 
 def with_equal_variables(records: Sequence[xr.Dataset]) -> list[xr.Dataset]:

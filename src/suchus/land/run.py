@@ -1,15 +1,17 @@
 """A run: which robot walks how, on what, with what broken, pushed when."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from suchus.control import Control, OpenLoop
-from suchus.design import WATER_DENSITY, WATER_VISCOSITY, AnyRobot
+from suchus.design import WATER_DENSITY, WATER_VISCOSITY, Robot
 from suchus.design.checks import Checks, require
 from suchus.design.ground import Ground
+from suchus.errors import InvalidDesign, UnknownName
 from suchus.fault import Fault
 from suchus.gaits import GAITS
 from suchus.land.lake import Lake
-from suchus.land.push import Push
+from suchus.model import compile_model
 from suchus.motion import Gait
 from suchus.robots import ROBOTS
 
@@ -37,13 +39,43 @@ VACUUM = Afloat(density=0.0, viscosity=0.0)
 """Surroundings that exert no force."""
 WATER = Afloat(density=WATER_DENSITY, viscosity=WATER_VISCOSITY)
 """Fresh water of 20 degrees Celsius."""
+_MOST = 1e4  # [N]; more is a slip of the keyboard, not a push
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Push:
+    """A constant force on the centre of mass of one body.
+
+    It is applied at every physics step; a control period that it covers in part gets a part of the force, so that
+    the impulse is force times duration whatever the times.
+    """
+
+    force: tuple[float, float, float]
+    """Force in the world frame: forward, left, up [N]."""
+    at: float
+    """Time at which the push begins [s]."""
+    duration: float = 0.2
+    """Duration of the push [s]."""
+    body: str = "thorax"
+    """Name of the body that is pushed, as ``pelvis``, ``thorax``, ``LF_tibia`` or ``tail_root``."""
+
+    def __post_init__(self) -> None:
+        with Checks("push", self) as check:
+            check.each("force", ("x", "y", "z"), -_MOST, _MOST, "N")
+            check.number("at", 0.0, 86400.0, "s")
+            check.number("duration", 1e-3, 86400.0, "s")
+
+    def share(self, start: float, end: float) -> float:
+        """Return how much of the time from ``start`` to ``end`` the push lasts, 0 to 1 [-]."""
+        overlap = min(end, self.at + self.duration) - max(start, self.at)
+        return max(overlap, 0.0) / (end - start)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Run:
     """One run of a batch; robot and gait may be given by their names on the shelves."""
 
-    robot: AnyRobot
+    robot: Robot
     """The robot that walks: a body of any kind, as ``suchus.ROBOTS`` names them."""
     gait: Gait
     """Its periodic movement, as ``suchus.GAITS`` names them."""
@@ -75,4 +107,25 @@ class Run:
             check.that(
                 self.lake is None or self.afloat is None,
                 "a run floats in a lake or in a vacuum without gravity, not in both: leave out lake or afloat",
+            )
+
+
+def check_pushes(pushes: Sequence[Push], robot: Robot, duration: float) -> None:
+    """Refuse pushes that cannot happen.
+
+    Raises:
+        UnknownName: the robot has no such body.
+        InvalidDesign: a push does not end within the run.
+    """
+    if not pushes:
+        return
+    model = compile_model(robot)
+    bodies = [model.body(i).name for i in range(1, model.nbody)]
+    for push in pushes:
+        if push.body not in bodies:
+            raise UnknownName("body", push.body, bodies)
+        if push.at + push.duration > duration + 1e-9:
+            raise InvalidDesign(
+                f"a push from {push.at:g} to {push.at + push.duration:g} s does not fit into a run of {duration:g} s: "
+                "push earlier or shorter, or run longer."
             )

@@ -1,21 +1,25 @@
-"""Simulate runs: physics in MuJoCo, a controller for the whole batch at every control period."""
+"""Simulate a batch of runs from beginning to end, or one: physics in MuJoCo, a controller for the whole batch."""
 
 from collections.abc import Callable, Sequence
 
 import numpy as np
 import xarray as xr
 
+from suchus.control import Control, OpenLoop
+from suchus.design import Robot
 from suchus.design.checks import require
+from suchus.design.ground import Ground
 from suchus.design.scale import check_step, control_period, physics_step
-from suchus.errors import InvalidDesign
-from suchus.fault import check_faults
-from suchus.land.lake import check_lake
+from suchus.errors import Diverged, InvalidDesign
+from suchus.fault import Fault, check_faults
+from suchus.gaits import GAITS
+from suchus.land.lake import Lake, check_lake
 from suchus.land.loop import Loop, physics_steps
-from suchus.land.push import check_pushes
 from suchus.land.readings import with_equal_variables
-from suchus.land.run import Run
+from suchus.land.run import Push, Run, check_pushes
 from suchus.model import topology
-from suchus.motion import check_limits
+from suchus.motion import START, Gait, check_limits
+from suchus.robots import ROBOTS
 
 Progress = Callable[[float], None]
 
@@ -53,7 +57,7 @@ def simulate(
     if not runs:
         raise InvalidDesign("there are no runs to simulate; give at least one.")
     timestep = physics_step(runs[0].robot) if timestep is None else timestep
-    steps, period = _check(runs, duration, timestep, every)
+    period = _check(runs, duration, timestep, every)
     ticks = round(duration / period)
     parts, order = [], []
     groups = _groups(runs)
@@ -64,7 +68,7 @@ def simulate(
             if progress is not None:
                 progress((done + share) / len(groups))
 
-        parts.append(_simulate_group(grouped, ticks, steps, timestep, every, report))
+        parts.append(_simulate_group(grouped, ticks, timestep, every, report))
         order.extend(members)
     parts = with_equal_variables(parts)
     record = parts[0] if len(parts) == 1 else xr.concat(parts, "run", join="exact", data_vars="minimal")
@@ -75,8 +79,8 @@ def simulate(
     return record
 
 
-def _check(runs: Sequence[Run], duration: float, timestep: float, every: int) -> tuple[int, float]:
-    """Refuse what cannot be simulated; return the physics steps in a control period, and that period [s]."""
+def _check(runs: Sequence[Run], duration: float, timestep: float, every: int) -> float:
+    """Refuse what cannot be simulated; return the control period [s]."""
     periods = {control_period(run.robot) for run in runs}
     if len(periods) > 1:
         raise InvalidDesign(
@@ -86,7 +90,7 @@ def _check(runs: Sequence[Run], duration: float, timestep: float, every: int) ->
     (period,) = periods
     require("simulate", "duration", duration, period, 86400.0, "s")
     require("simulate", "every", every, 1, 10000, "control periods")
-    steps = physics_steps(timestep, period)
+    physics_steps(timestep, period)
     for robot in {run.robot for run in runs}:
         check_step(robot, timestep)
     if len({topology(run.robot) for run in runs}) > 1:
@@ -102,7 +106,7 @@ def _check(runs: Sequence[Run], duration: float, timestep: float, every: int) ->
         check_pushes(run.pushes, run.robot, duration)
         if run.lake is not None:
             check_lake(run.robot, run.lake)
-    return steps, period
+    return period
 
 
 def _groups(runs: Sequence[Run]) -> list[list[int]]:
@@ -118,17 +122,97 @@ def _groups(runs: Sequence[Run]) -> list[list[int]]:
     return list(groups.values())
 
 
-def _simulate_group(
-    runs: Sequence[Run], ticks: int, steps: int, timestep: float, every: int, progress: Progress
-) -> xr.Dataset:
-    loop = Loop(runs, ticks + 1, steps, timestep, samples=ticks // every + 1)
+def _simulate_group(runs: Sequence[Run], ticks: int, timestep: float, every: int, progress: Progress) -> xr.Dataset:
+    loop = Loop(runs, timestep, ticks=ticks + 1)
+    recorder = loop.recorder(ticks // every + 1)
     for tick in range(ticks + 1):
-        command = loop.disturb(tick, loop.decide(tick))
+        loop.decide()
         if tick % every == 0:
-            loop.readings.store(tick // every, command.phase, command.targets)
+            recorder.store(tick // every, loop.command.phase, loop.command.targets)
         if tick < ticks:
-            loop.advance(tick, command.targets)
+            loop.advance(felt=loop.feels or (tick + 1) % every == 0)
         if tick % 16 == 0:
             progress(tick / ticks)
     progress(1.0)
-    return loop.readings.record(np.arange(0, ticks + 1, every) * control_period(runs[0].robot))
+    return recorder.record(np.arange(0, ticks + 1, every) * loop.period)
+
+
+def crawl(
+    robot: Robot | str,
+    gait: Gait | str,
+    *,
+    duration: float | None = None,
+    cycles: float | None = None,
+    faults: Sequence[Fault] = (),
+    pushes: Sequence[Push] = (),
+    ground: Ground | None = None,
+    lake: Lake | None = None,
+    control: Control | None = None,
+    noise: float = 0.0,
+    seed: int = 0,
+    timestep: float | None = None,
+) -> xr.Dataset:
+    """Let a robot walk.
+
+    Args:
+        robot: the robot that walks, or its name on the shelf.
+        gait: the gait, or its name on the shelf.
+        duration: including the first second, in which the robot settles [s]; 9 s where ``cycles`` is not given.
+        cycles: cycles of the gait after that second, in the place of ``duration``, above 0 [-]: gaits of other cycle
+            times are compared over equal cycles, and by their speed.
+        faults: what breaks, and when.
+        pushes: forces from outside.
+        ground: the ground; level if None.
+        lake: the water around the robot; dry land if None.
+        control: open loop if None.
+        noise: standard deviation of noise on every servo angle commanded [rad].
+        seed: of the noise.
+        timestep: of the physics [s]; that of the robot's size if None.
+
+    Returns:
+        The record, without the dimension ``run`` (see ``record.schema``).
+
+    Raises:
+        InvalidDesign: both ``duration`` and ``cycles`` are given, or one of them is out of range.
+        Diverged: the simulation diverged; the error carries the time and the record so far.
+        OutsideLimits: the robot's joints cannot follow the gait.
+    """
+    run = Run(
+        robot=ROBOTS.resolve(robot),
+        gait=GAITS.resolve(gait),
+        ground=ground or Ground(),
+        lake=lake,
+        faults=tuple(faults),
+        pushes=tuple(pushes),
+        control=control or OpenLoop(),
+        noise=noise,
+        seed=seed,
+    )
+    record = simulate([run], duration=_duration(run.gait, duration, cycles), timestep=timestep).isel(run=0)
+    if record.cause.item():
+        time = float(record.ended)
+        raise Diverged(
+            f"the crawl diverged at {time:.2f} s: {record.cause.item()}. "
+            f"A shorter timestep than {record.timestep} s may help.",
+            time=time,
+            record=record.sel(time=slice(None, time + 1e-9)),
+        )
+    return record
+
+
+_USUAL = 9.0
+"""Duration of a crawl that names none [s]: one second to settle, and two cycles of the article's gait."""
+
+
+def _duration(gait: Gait, duration: float | None, cycles: float | None) -> float:
+    """Return how long to simulate [s].
+
+    Raises:
+        InvalidDesign: both are given, or ``cycles`` is out of range.
+    """
+    if cycles is None:
+        return _USUAL if duration is None else duration
+    if duration is not None:
+        raise InvalidDesign(f"crawl was given duration = {duration!r} s and cycles = {cycles!r}; give one of the two.")
+    require("crawl", "cycles", cycles, 0.01, 10_000.0, "")
+    return START + cycles * gait.period

@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 from jaxtyping import Bool, Float
 
-from suchus.design import AnyRobot, layout
+from suchus.design import Robot, layout
 from suchus.errors import Diverged, InvalidDesign, UnknownName
 from suchus.model import activations, build
 
@@ -26,7 +26,7 @@ class Response(NamedTuple):
 
 
 def on_stand(
-    robot: AnyRobot,
+    robot: Robot,
     joint: str,
     *,
     target: Float[np.ndarray, " time"],
@@ -73,7 +73,7 @@ def on_stand(
     return Response(timestep * np.arange(1, len(target) + 1), angle, torque)
 
 
-def _model(robot: AnyRobot, joint: str, timestep: float) -> mujoco.MjModel:
+def _model(robot: Robot, joint: str, timestep: float) -> mujoco.MjModel:
     spec = build(robot, timestep=timestep)
     if spec.joint(joint) is None:
         raise InvalidDesign(f"servo {joint!r} turns no joint of its own; name one that does.")

@@ -102,3 +102,6 @@ def _changes(angle: np.ndarray) -> float:
     """Return how often an angle that repeats itself changes its side, small wiggles about the middle not counted."""
     sides = np.sign(angle[abs(angle) > _WIGGLE * max(float(np.ptp(angle)), 1e-12)])
     return float(np.count_nonzero(sides != np.roll(sides, 1))) if sides.size else 0.0
+
+
+measures = (spine_amplitude, spine_sine_share, spine_swings, tail_amplitude, tail_swing_least, tail_swings)

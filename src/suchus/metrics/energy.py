@@ -33,3 +33,6 @@ def cost_of_transport(record: xr.Dataset, start: float = START, end: float | Non
 def peak_torque(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
     """Return the greatest torque of each servo [N m]."""
     return abs(between(record, start, end).servo_torque).max("time")
+
+
+measures = (cost_of_transport, peak_torque, work)

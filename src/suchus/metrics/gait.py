@@ -96,3 +96,6 @@ def flight_share(record: xr.Dataset, start: float = START, end: float | None = N
         + part.tail_force.sel(xyz="z")
     )
     return (up < 1e-3 * record.mass * GRAVITY).mean("time")
+
+
+measures = (diagonal_phase_error, duty_factor, flight_share, foot_clearance, sensed_phase, two_feet_share)

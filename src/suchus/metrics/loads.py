@@ -55,3 +55,6 @@ def swing_unloaded(record: xr.Dataset, leg: str, start: float = START, end: floa
 
 def _swings(part: xr.Dataset, leg: str) -> xr.DataArray:
     return np.mod(part.limb_phase.sel(leg=leg, drop=True), 1.0) < 1.0 - part.duty_factor
+
+
+measures = (tail_load_share,)

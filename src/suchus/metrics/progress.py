@@ -67,3 +67,6 @@ def slip(record: xr.Dataset, start: float = START, end: float | None = None) -> 
     slid = ((steps**2).sum("xyz") ** 0.5 * carried).sum(["time", "leg"])
     displaced = displacement(part, start, end).sel(xyz=["x", "y"])
     return slid / (displaced**2).sum("xyz") ** 0.5
+
+
+measures = (displacement, heading_change, path_length, slip, speed)

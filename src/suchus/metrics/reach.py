@@ -5,11 +5,11 @@ import xarray as xr
 from jaxtyping import Float
 
 from suchus import rotation
-from suchus.design import AnyRobot, Rod, layout
+from suchus.design import Robot, Rod, layout
 from suchus.kinematics.tree import frames
 
 
-def reach(robot: AnyRobot, record: xr.Dataset) -> xr.DataArray:
+def reach(robot: Robot, record: xr.Dataset) -> xr.DataArray:
     """Return the height of the highest point of head and trunk over time, whatever part that is [m].
 
     This is what the robot could touch from below: when it crawls, the top of its back; when it stands, its snout.
@@ -29,9 +29,7 @@ def reach(robot: AnyRobot, record: xr.Dataset) -> xr.DataArray:
     return tops.assign_attrs(units="m", long_name="highest point of head and trunk")
 
 
-def _tops(
-    robot: AnyRobot, q: np.ndarray, position: np.ndarray, angles: np.ndarray
-) -> Float[np.ndarray, "*batch shape"]:
+def _tops(robot: Robot, q: np.ndarray, position: np.ndarray, angles: np.ndarray) -> Float[np.ndarray, "*batch shape"]:
     """Return the highest point of every shape from the root forward [m]."""
     place, found, up = layout(robot), frames(robot, angles), rotation.upward(q)
     segments = {segment.name: segment for segment in place.robot.axis}

@@ -43,3 +43,6 @@ def roll_rate(record: xr.Dataset, start: float = 0.0, end: float | None = None) 
     """
     angle = roll_angle(record, start, end)
     return (angle.isel(time=-1, drop=True) - angle.isel(time=0, drop=True)) / float(angle.time[-1] - angle.time[0])
+
+
+measures = (roll_rate,)

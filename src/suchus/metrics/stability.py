@@ -117,3 +117,6 @@ def _inside(point: np.ndarray, corners: np.ndarray) -> bool:
     to = point - corners
     cross = ahead[:, 0] * to[:, 1] - ahead[:, 1] * to[:, 0]
     return bool((cross >= 0).all() or (cross <= 0).all())
+
+
+measures = (height_peak_to_peak, height_std, line_distance_max, roll_peak_to_peak)

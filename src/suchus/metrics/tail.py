@@ -26,3 +26,6 @@ def tail_joint_spread_max(record: xr.Dataset, start: float = START, end: float |
     part = between(record, start, end)
     names = [str(name) for name in part.joint.values if str(name).startswith("tail_yaw")]
     return tail_joint_spread(part.joint_angle, names).max("time").assign_attrs(units="rad")
+
+
+measures = (tail_joint_spread_max,)

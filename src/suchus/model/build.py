@@ -6,7 +6,7 @@ from typing import Any
 
 import mujoco
 
-from suchus.design import GRAVITY, AnyRobot, Layout, Servo, layout
+from suchus.design import GRAVITY, Layout, Robot, Servo, layout
 from suchus.design.relief import Relief
 from suchus.errors import InvalidDesign
 from suchus.model.bodies import add_bodies, add_foam, lay_cables
@@ -19,7 +19,7 @@ SLEW = 1
 _POSITION_INPUT = 1  # the servo takes an angle; the other inputs of MuJoCo's pid stay unused
 
 
-def build(robot: AnyRobot, *, timestep: float = TIMESTEP, relief: Relief | None = None) -> Any:
+def build(robot: Robot, *, timestep: float = TIMESTEP, relief: Relief | None = None) -> Any:
     """Write a robot on the ground as a ``mujoco.MjSpec``.
 
     World: x forward, y left, z up; the free joint carries the root, in a crocodile the pelvis, the spine's frame 0.
@@ -49,7 +49,7 @@ def build(robot: AnyRobot, *, timestep: float = TIMESTEP, relief: Relief | None 
     return spec
 
 
-def compile_model(robot: AnyRobot, timestep: float = TIMESTEP, relief: Relief | None = None) -> Any:
+def compile_model(robot: Robot, timestep: float = TIMESTEP, relief: Relief | None = None) -> Any:
     """Compile a robot on its ground; the same values give the same ``mujoco.MjModel`` again: copy it before an edit.
 
     Raises:
@@ -59,7 +59,7 @@ def compile_model(robot: AnyRobot, timestep: float = TIMESTEP, relief: Relief | 
 
 
 @lru_cache(maxsize=64)
-def _compiled(robot: AnyRobot, timestep: float, relief: Relief | None) -> Any:
+def _compiled(robot: Robot, timestep: float, relief: Relief | None) -> Any:
     """Compile once, whether the caller named what is the default or not."""
     try:
         return build(robot, timestep=timestep, relief=relief).compile()
@@ -67,7 +67,7 @@ def _compiled(robot: AnyRobot, timestep: float, relief: Relief | None) -> Any:
         raise InvalidDesign(f"robot {robot.name!r} does not compile: {error}") from error
 
 
-def topology(robot: AnyRobot) -> tuple[object, ...]:
+def topology(robot: Robot) -> tuple[object, ...]:
     """Return what two robots must share to run in one batch: all that decides the sizes of states and sensors.
 
     That is every body with its parent and its hinges, which of them are free of limits or springs, the servos, and
@@ -86,7 +86,7 @@ def joint_addresses(model: Any, names: Sequence[str]) -> list[int]:
     return [int(model.joint(name).qposadr[0]) for name in names]
 
 
-def servo_of(robot: AnyRobot, name: str) -> Servo:
+def servo_of(robot: Robot, name: str) -> Servo:
     """Return the servo that carries a name of ``design.servo_names(robot)``."""
     return robot.servo(name)
 

@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Float
 from scipy.optimize import brentq
 
-from suchus.design import WATER_DENSITY, AnyRobot, layout, servo_names
+from suchus.design import WATER_DENSITY, Robot, layout, servo_names
 from suchus.design.checks import require
 from suchus.design.pieces import pieces
 from suchus.errors import InvalidDesign
@@ -68,7 +68,7 @@ class Hydrostatics:
 class _Rigid:
     """A robot frozen in a posture: its pieces, its weight and its centre of mass, root at the origin."""
 
-    def __init__(self, robot: AnyRobot, servos: np.ndarray, density: float, breath: Breath) -> None:
+    def __init__(self, robot: Robot, servos: np.ndarray, density: float, breath: Breath) -> None:
         table = np.array(pieces(robot))
         model = wet_model(robot, TIMESTEP, None, len(table))
         self.data = data = mujoco.MjData(model)
@@ -123,14 +123,14 @@ def _root(function: Any, near: float) -> float:
     return near
 
 
-def _bend(model: Any, data: Any, robot: AnyRobot, servos: np.ndarray) -> None:
+def _bend(model: Any, data: Any, robot: Robot, servos: np.ndarray) -> None:
     place = layout(robot)
     direct = [i for i in range(len(place.servos)) if i not in place.cables]
     data.qpos[joint_addresses(model, [place.servos[i] for i in direct])] = servos[direct]
 
 
 def hydrostatics(
-    robot: AnyRobot,
+    robot: Robot,
     servos: Float[np.ndarray, " servo"] | None = None,
     *,
     density: float = WATER_DENSITY,

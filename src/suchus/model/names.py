@@ -1,17 +1,17 @@
 """Names of the sites and sensors of a robot's model."""
 
-from suchus.design import AnyRobot, layout
+from suchus.design import Robot, layout
 
 SNOUT, TAIL_TIP, IMU = "snout", "tail_tip", "imu"
 """Sites that every model carries."""
 
 
-def sites(robot: AnyRobot) -> tuple[str, ...]:
+def sites(robot: Robot) -> tuple[str, ...]:
     """Return the points whose world positions are sensed: the feet's centres, the snout's tip, the tail's tip."""
     return (*(f"{limb}_foot" for limb in layout(robot).limb_names), SNOUT, TAIL_TIP)
 
 
-def force_sensors(robot: AnyRobot) -> tuple[str, ...]:
+def force_sensors(robot: Robot) -> tuple[str, ...]:
     """Return the sensors of contact forces: feet, bodies of the trunk from the root forward, the tail if there is one.
 
     They stand side by side in the model's readings.
@@ -24,7 +24,7 @@ def force_sensors(robot: AnyRobot) -> tuple[str, ...]:
     )
 
 
-def sensor_names(robot: AnyRobot) -> tuple[str, ...]:
+def sensor_names(robot: Robot) -> tuple[str, ...]:
     """Return every sensor, in the order in which the model lists them."""
     servos = layout(robot).servos
     return (

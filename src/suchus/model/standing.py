@@ -5,12 +5,12 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from suchus.design import AnyRobot, layout
+from suchus.design import Robot, layout
 from suchus.model.build import joint_addresses
 from suchus.rotation import about
 
 
-def standing(model: Any, robot: AnyRobot, hip_height: float, servos: np.ndarray) -> np.ndarray:
+def standing(model: Any, robot: Robot, hip_height: float, servos: np.ndarray) -> np.ndarray:
     """Return the generalised positions of a robot that stands on the ground with given servo angles.
 
     It faces forward on the whole: a bent trunk turns the girdles to either side of +x by equal angles.

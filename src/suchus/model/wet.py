@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from suchus.design import AnyRobot, layout
+from suchus.design import Robot, layout
 from suchus.design.pieces import pieces
 from suchus.design.relief import Relief
 from suchus.errors import InvalidDesign
@@ -21,7 +21,7 @@ PLUGIN = "suchus.water"
 
 
 @lru_cache(maxsize=32)
-def wet_model(robot: AnyRobot, timestep: float, relief: Relief | None, room: int, *, acting: bool = False) -> Any:
+def wet_model(robot: Robot, timestep: float, relief: Relief | None, room: int, *, acting: bool = False) -> Any:
     """Compile a robot for the water; the same values give the same ``mujoco.MjModel`` again: copy it before an edit.
 
     Args:
@@ -40,7 +40,7 @@ def wet_model(robot: AnyRobot, timestep: float, relief: Relief | None, room: int
         raise InvalidDesign(f"robot {robot.name!r} does not compile: {error}") from error
 
 
-def carrying(spec: Any, robot: AnyRobot, room: int | None = None, *, acting: bool = False) -> Any:
+def carrying(spec: Any, robot: Robot, room: int | None = None, *, acting: bool = False) -> Any:
     """Return a compiled ``mujoco.MjSpec`` that carries a robot's pieces.
 
     Args:

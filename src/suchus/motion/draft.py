@@ -8,7 +8,7 @@ from math import cos, pi, radians
 import numpy as np
 from scipy.spatial import cKDTree
 
-from suchus.design import AnyRobot, Crank, Girdle, Limb, layout, servo_ranges
+from suchus.design import Robot, Crank, Girdle, Limb, layout, servo_ranges
 from suchus.design.scale import gravity_time
 from suchus.errors import NotConverged, OutsideLimits, Unreachable
 from suchus.kinematics import limb as limb_kinematics
@@ -34,7 +34,7 @@ _SPEED = 0.6  # of its servo's speed that a joint is asked for at most
 _PLANAR = 2  # hinges of a limb whose foot moves on a surface only
 
 
-def draft_gait(robot: AnyRobot, name: str) -> Gait:
+def draft_gait(robot: Robot, name: str) -> Gait:
     """Return a walk that a robot's limbs can follow, in lengths of its own; of a body without limbs, an undulation.
 
     Diagonal limbs go together; trunk joints bend a little with them. It is a beginning, not the best. Limbs of
@@ -66,7 +66,7 @@ def draft_gait(robot: AnyRobot, name: str) -> Gait:
     return gait
 
 
-def _walk(robot: AnyRobot, name: str, phases: tuple[float, ...], period: float) -> Gait:
+def _walk(robot: Robot, name: str, phases: tuple[float, ...], period: float) -> Gait:
     """Return the first walk of those that are tried, the longest strokes first."""
     girdles = layout(robot).robot.girdles
     clouds, budget = [_cloud(girdle.limb) for girdle in girdles], iter(range(_PATHS))
@@ -95,7 +95,7 @@ def _walk(robot: AnyRobot, name: str, phases: tuple[float, ...], period: float) 
     )
 
 
-def _undulation(robot: AnyRobot, name: str, period: float) -> Gait:
+def _undulation(robot: Robot, name: str, period: float) -> Gait:
     """Return a wave along the whole axis that grows toward the tail."""
     least, count = float(np.abs(servo_ranges(robot)).min()), len(yaw_hinges(robot).servos)
     amplitude = (count * min(radians(15), _SHARE * least), count * min(radians(35), 0.5 * least))
@@ -103,7 +103,7 @@ def _undulation(robot: AnyRobot, name: str, period: float) -> Gait:
     return Gait(name=name, period=period, duty_factor=_DUTY, axis=(wave,))
 
 
-def _heights(robot: AnyRobot) -> list[float]:
+def _heights(robot: Robot) -> list[float]:
     """Return heights of the hindmost hips [limb reach]: those first at which the belly is clear, cranks' own alone."""
     body = layout(robot).robot
     hind = body.girdles[-1]
@@ -116,7 +116,7 @@ def _heights(robot: AnyRobot) -> list[float]:
 
 
 def _does(
-    robot: AnyRobot, girdle: Girdle, cloud: cKDTree, height: float, stroke: float, budget: Iterator[int]
+    robot: Robot, girdle: Girdle, cloud: cKDTree, height: float, stroke: float, budget: Iterator[int]
 ) -> FootPath | Sweep | None:
     """Return what a girdle's limbs do at a height of the hindmost hips, if they can."""
     limb = girdle.limb
@@ -186,7 +186,7 @@ def _down(limb: Limb) -> tuple[float, float]:
     return float(angles[np.argmax(depth)]), float(depth.max())
 
 
-def _axis(robot: AnyRobot) -> tuple[Bend, ...]:
+def _axis(robot: Robot) -> tuple[Bend, ...]:
     """Return a bend of the trunk with the limbs."""
     trunk = layout(robot).trunk_yaw
     limits = np.abs(servo_ranges(robot)).min(axis=1)
@@ -194,6 +194,6 @@ def _axis(robot: AnyRobot) -> tuple[Bend, ...]:
     return (Bend(part="trunk", amplitude=amplitude),) if amplitude else ()
 
 
-def _slow_enough(robot: AnyRobot, gait: Gait) -> Gait:
+def _slow_enough(robot: Robot, gait: Gait) -> Gait:
     """Return a gait with a period at which no servo is asked for more speed than it has to spare."""
     return replace(gait, period=float(np.round(max(gait.period, shortest_period(robot, gait)[0] / _SPEED), 4)))

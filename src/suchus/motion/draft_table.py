@@ -11,7 +11,7 @@ import numpy as np
 from jaxtyping import Float
 from scipy.optimize import least_squares
 
-from suchus.design import AnyRobot, Crank, Girdle, Limb, layout
+from suchus.design import Robot, Crank, Girdle, Limb, layout
 from suchus.errors import OutsideLimits
 from suchus.kinematics import limb as limb_kinematics
 from suchus.motion.gait import Bend, Curve, Gait
@@ -32,7 +32,7 @@ _NEEDED = 2
 
 
 def table_walk(
-    robot: AnyRobot,
+    robot: Robot,
     *,
     name: str,
     period: float,
@@ -80,7 +80,7 @@ def table_walk(
     )
 
 
-def _check_hinges(robot: AnyRobot, girdle: Girdle) -> None:
+def _check_hinges(robot: Robot, girdle: Girdle) -> None:
     driven = [hinge for hinge in girdle.limb.hinges if hinge.servo is not None]
     limbs = f"limbs L{girdle.name} and R{girdle.name}"
     if len(driven) < _NEEDED or any(isinstance(hinge.drive, Crank) for hinge in driven):
@@ -162,7 +162,7 @@ def _solved(
 
 
 def _tabled(
-    robot: AnyRobot,
+    robot: Robot,
     name: str,
     period: float,
     duty_factor: float,

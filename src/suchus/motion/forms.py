@@ -12,7 +12,7 @@ from typing import Any, Literal, Self
 
 import numpy as np
 
-from suchus.design import LEGS, AnyRobot, layout
+from suchus.design import LEGS, Robot, layout
 from suchus.design.checks import Checks
 from suchus.errors import OutsideLimits
 from suchus.motion.gait import Bend, Curve, FootPath, Gait, Held, Limbs, Sweep
@@ -204,7 +204,7 @@ class AxialWave:
                 "-3.14 to 3.14 rad are needed",
             )
 
-    def bends(self, robot: AnyRobot) -> tuple[Bend, ...]:
+    def bends(self, robot: Robot) -> tuple[Bend, ...]:
         """Return the bends of the parts of a robot's axis, each with a knot for every hinge."""
         places, angles = zip(*self.amplitude, strict=True)
         hinges, found = yaw_hinges(robot), []
@@ -250,7 +250,7 @@ class FootPathByPlane:
     plane: float = 0.0
     """Of a limb of four hinges: how far the elbow is turned forward about the line from hip to foot [rad]."""
 
-    def limbs(self, robot: AnyRobot, girdle: int) -> FootPath:
+    def limbs(self, robot: Robot, girdle: int) -> FootPath:
         """Return the path; a limb of yaw, pitch and knee has no plane."""
         hinges = len(layout(robot).robot.girdles[girdle].limb.hinges)
         swivel = self.plane if hinges > len(("yaw", "pitch", "knee")) else 0.0
@@ -276,7 +276,7 @@ class GaitByPlaces:
     wave: AxialWave
     """Wave by which the axis bends."""
 
-    def gait(self, robot: AnyRobot) -> Gait:
+    def gait(self, robot: Robot) -> Gait:
         """Return the gait for a robot, whose hinges' places the wave is read at."""
         limbs: list[Limbs] = []
         for i, girdle in enumerate(self.girdles):
@@ -296,7 +296,7 @@ class GaitByPlaces:
         )
 
 
-def _check_girdles(robot: AnyRobot, name: str, count: int) -> None:
+def _check_girdles(robot: Robot, name: str, count: int) -> None:
     girdles = layout(robot).robot.girdles
     if len(girdles) != count:
         raise OutsideLimits(
@@ -330,7 +330,7 @@ class GaitByAngles:
     curves: tuple[AnglesOfServo, ...]
     """One for every servo that moves."""
 
-    def gait(self, robot: AnyRobot) -> Gait:
+    def gait(self, robot: Robot) -> Gait:
         """Return the gait for a robot, whose servos say which part of the body each curve moves."""
         parts = servo_parts(robot)
         return Gait(
@@ -345,7 +345,7 @@ class GaitByAngles:
         )
 
 
-def limb_reaches(robot: AnyRobot) -> tuple[float, float]:
+def limb_reaches(robot: Robot) -> tuple[float, float]:
     """Return the lengths of a robot's front and hind limbs, for gaits in metres [m].
 
     Raises:

@@ -5,7 +5,7 @@ from typing import Literal
 
 import numpy as np
 
-from suchus.design import AnyRobot, layout, servo_ranges
+from suchus.design import Robot, layout, servo_ranges
 from suchus.errors import InvalidDesign, NotConverged, OutsideLimits, UnknownName, Unreachable
 from suchus.motion.gait import Curve, Gait, ServoPart
 from suchus.motion.movement import Movement, cycle_targets, movement
@@ -18,7 +18,7 @@ _LENGTH, _ANGLE, _SPEED = 0.01, 0.1, 1.0  # [m], [rad], [rad/s]; what counts as 
 _ROUNDING = 1e-9  # [rad]; by which a bend may leave its limit
 
 
-def check_limits(robot: AnyRobot, gait: Gait) -> None:
+def check_limits(robot: Robot, gait: Gait) -> None:
     """Refuse a gait that a robot's joints cannot follow.
 
     Raises:
@@ -53,7 +53,7 @@ def _check_cables(here: Movement, clock: np.ndarray) -> None:
             )
 
 
-def suits(robot: AnyRobot, gait: Gait) -> bool:
+def suits(robot: Robot, gait: Gait) -> bool:
     """Return whether a robot's joints can follow a gait."""
     try:
         check_limits(robot, gait)
@@ -62,7 +62,7 @@ def suits(robot: AnyRobot, gait: Gait) -> bool:
     return True
 
 
-def shortest_period(robot: AnyRobot, gait: Gait) -> tuple[float, str]:
+def shortest_period(robot: Robot, gait: Gait) -> tuple[float, str]:
     """Return the period below which a servo would have to turn faster than it can [s], and which servo that is.
 
     Args:
@@ -77,7 +77,7 @@ def shortest_period(robot: AnyRobot, gait: Gait) -> tuple[float, str]:
     return float(needed[slowest]), servos[slowest]
 
 
-def longest_strokes(robot: AnyRobot, gait: Gait) -> float:
+def longest_strokes(robot: Robot, gait: Gait) -> float:
     """Return the greatest share of its strokes that a robot's limbs can follow, up to eight times [-]."""
     if not gait.has("strokes"):
         return 1.0
@@ -88,14 +88,14 @@ def longest_strokes(robot: AnyRobot, gait: Gait) -> float:
     return low
 
 
-def _strides(robot: AnyRobot, gait: Gait, share: float) -> bool:
+def _strides(robot: Robot, gait: Gait, share: float) -> bool:
     try:
         return suits(robot, gait.strode(share))
     except InvalidDesign:
         return False
 
 
-def excess(robot: AnyRobot, gait: Gait) -> float:
+def excess(robot: Robot, gait: Gait) -> float:
     """Return how far a gait is from what a robot can follow; zero where it can [-].
 
     Counted are the distance by which feet lie outside their limbs' reach, in centimetres, the angles by which joints
@@ -118,7 +118,7 @@ def excess(robot: AnyRobot, gait: Gait) -> float:
     return float(far / _LENGTH + beyond.sum() / _ANGLE + np.maximum(turned - fast, 0.0).sum() / _SPEED)
 
 
-def as_table(robot: AnyRobot, gait: Gait, samples: int = 64) -> Gait:
+def as_table(robot: Robot, gait: Gait, samples: int = 64) -> Gait:
     """Return a gait as measured curves: what every servo does over one cycle, to be changed by hand or in a file.
 
     Between the samples a curve is smooth where a gait may have a corner, at lift-off and touch-down of a foot; with
@@ -150,7 +150,7 @@ def as_table(robot: AnyRobot, gait: Gait, samples: int = 64) -> Gait:
     )
 
 
-def servo_parts(robot: AnyRobot) -> dict[str, Literal["limb", "neck", "trunk", "tail"]]:
+def servo_parts(robot: Robot) -> dict[str, Literal["limb", "neck", "trunk", "tail"]]:
     """Return the part of the body that each servo moves: ``limb``, ``neck``, ``trunk`` or ``tail``."""
     here = layout(robot)
     trunk = {*here.trunk_yaw, *here.trunk_pitch}
@@ -165,7 +165,7 @@ def servo_parts(robot: AnyRobot) -> dict[str, Literal["limb", "neck", "trunk", "
     return parts
 
 
-def servo_range(robot: AnyRobot, name: str) -> tuple[float, float]:
+def servo_range(robot: Robot, name: str) -> tuple[float, float]:
     """Return the range of the joint that a servo turns [rad]; for a cable, of the pulley."""
     low, high = servo_ranges(robot)[layout(robot).servos.index(name)]
     return float(low), float(high)

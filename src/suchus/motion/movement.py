@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from jaxtyping import Complex, Float
 
-from suchus.design import AnyRobot, Crank, Layout, layout, servo_ranges
+from suchus.design import Robot, Crank, Layout, layout, servo_ranges
 from suchus.errors import OutsideLimits, UnknownName, Unreachable
 from suchus.kinematics import leg as leg_kinematics
 from suchus.kinematics import limb as limb_kinematics
@@ -69,7 +69,7 @@ class Hinges(NamedTuple):
 
 
 @lru_cache(maxsize=256)
-def yaw_hinges(robot: AnyRobot) -> Hinges:
+def yaw_hinges(robot: Robot) -> Hinges:
     """Return the driven hinges that bend a robot sideways; positive is concave to the left."""
     place = layout(robot)
     rows: list[tuple[float, int, float, Part]] = []
@@ -85,7 +85,7 @@ def yaw_hinges(robot: AnyRobot) -> Hinges:
 
 
 @lru_cache(maxsize=256)
-def pitch_hinges(robot: AnyRobot) -> Hinges:
+def pitch_hinges(robot: Robot) -> Hinges:
     """Return the driven hinges that bend a robot up and down; positive is concave below."""
     place = layout(robot)
 
@@ -178,7 +178,7 @@ class Movement:
         UnknownName: a curve is for a servo that the robot lacks.
     """
 
-    def __init__(self, robot: AnyRobot, gaits: Sequence[Gait]) -> None:
+    def __init__(self, robot: Robot, gaits: Sequence[Gait]) -> None:
         for gait in gaits:
             check_limbs(robot, gait)
         self.robot, self.gaits, self.place = robot, tuple(gaits), layout(robot)
@@ -359,7 +359,7 @@ class Movement:
             targets[..., servo] = (turns * harmonics).sum(axis=-1).real
 
 
-def trunk_amplitude(robot: AnyRobot, gait: Gait) -> float:
+def trunk_amplitude(robot: Robot, gait: Gait) -> float:
     """Return the most that a gait bends the trunk sideways [rad]."""
     yaw = movement(robot, gait).yaw
     among = yaw.hinges.within("trunk")
@@ -375,7 +375,7 @@ class Batch:
         gaits: the gait of each run.
     """
 
-    def __init__(self, robots: Sequence[AnyRobot], gaits: Sequence[Gait]) -> None:
+    def __init__(self, robots: Sequence[Robot], gaits: Sequence[Gait]) -> None:
         members: dict[Any, list[int]] = {}
         for run, (robot, gait) in enumerate(zip(robots, gaits, strict=True)):
             members.setdefault((robot, structure(gait)), []).append(run)
@@ -427,12 +427,12 @@ def structure(gait: Gait) -> Any:
 
 
 @lru_cache(maxsize=256)
-def movement(robot: AnyRobot, gait: Gait) -> Movement:
+def movement(robot: Robot, gait: Gait) -> Movement:
     """Return one gait worked out for a robot."""
     return Movement(robot, [gait])
 
 
-def intended(robot: AnyRobot, gait: Gait, time: Float[np.ndarray, "*batch"]) -> Intended:
+def intended(robot: Robot, gait: Gait, time: Float[np.ndarray, "*batch"]) -> Intended:
     """Return phases and servo angles of a gait at some times; before the walk begins the phases stand still.
 
     Args:
@@ -447,7 +447,7 @@ def intended(robot: AnyRobot, gait: Gait, time: Float[np.ndarray, "*batch"]) -> 
     return Intended(clock[..., None] + np.array(gait.limb_phases), cycle_targets(robot, gait, clock))
 
 
-def cycle_targets(robot: AnyRobot, gait: Gait, clock: Float[np.ndarray, "*batch"]) -> Float[np.ndarray, "*batch servo"]:
+def cycle_targets(robot: Robot, gait: Gait, clock: Float[np.ndarray, "*batch"]) -> Float[np.ndarray, "*batch servo"]:
     """Return the servo angles of a gait that has begun [rad].
 
     Args:
@@ -465,7 +465,7 @@ def cycle_targets(robot: AnyRobot, gait: Gait, clock: Float[np.ndarray, "*batch"
 
 
 def limb_targets(
-    robot: AnyRobot, gait: Gait, phase: Float[np.ndarray, "*batch limb"]
+    robot: Robot, gait: Gait, phase: Float[np.ndarray, "*batch limb"]
 ) -> Float[np.ndarray, "*batch servo"]:
     """Return the servo angles of limbs at phases of their own; the axis is not bent sideways [rad].
 
@@ -483,13 +483,13 @@ def limb_targets(
 
 
 @lru_cache(maxsize=256)
-def limb_movement(robot: AnyRobot, gait: Gait) -> Movement:
+def limb_movement(robot: Robot, gait: Gait) -> Movement:
     """Return a gait's limbs alone, worked out for a robot: its axis is not bent sideways, and not waved up and down."""
     still = gait.straightened()
     return Movement(robot, [replace(still, axis=tuple(bend for bend in still.axis if bend.turn == "pitch"))])
 
 
-def middle_stance(robot: AnyRobot, gait: Gait) -> Float[np.ndarray, " servo"]:
+def middle_stance(robot: Robot, gait: Gait) -> Float[np.ndarray, " servo"]:
     """Return the servo angles in which all feet stand in the middle of their path and the axis is straight [rad].
 
     Of a robot without limbs, or with limbs that are held, it is those with a straight axis.
@@ -497,7 +497,7 @@ def middle_stance(robot: AnyRobot, gait: Gait) -> Float[np.ndarray, " servo"]:
     return limb_targets(robot, gait, np.full(len(gait.limb_phases), 1.0 - gait.duty_factor / 2))
 
 
-def hip_height(robot: AnyRobot, gait: Gait) -> float:
+def hip_height(robot: Robot, gait: Gait) -> float:
     """Return how high the root's axis is above the ground in a gait [m]; 0 where the gait does not say."""
     girdles = layout(robot).robot.girdles
     return _metres(gait.height, girdles[-1].limb.reach) - girdles[-1].above if girdles and gait.limbs else 0.0
@@ -548,7 +548,7 @@ class _Crank(NamedTuple):
     down: np.ndarray
 
 
-def _path_numbers(robot: AnyRobot, gaits: Sequence[Gait], number: int) -> "_Path | _Crank | np.ndarray | None":
+def _path_numbers(robot: Robot, gaits: Sequence[Gait], number: int) -> "_Path | _Crank | np.ndarray | None":
     """Return what the gaits say of the limbs of a girdle."""
     if not gaits[0].limbs:
         return None
@@ -608,7 +608,7 @@ def _drawn(foot: np.ndarray, hip: np.ndarray, reach: tuple[float, float]) -> np.
     return np.asarray(np.where((length < near) | (length > far), moved, foot))
 
 
-def check_limbs(robot: AnyRobot, gait: Gait) -> None:
+def check_limbs(robot: Robot, gait: Gait) -> None:
     """Refuse a gait for other limbs or servos than a robot has.
 
     Raises:

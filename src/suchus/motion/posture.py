@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import AnyRobot, Crocodile, Leg, crocodile, joint_names, layout, servo_names
+from suchus.design import Robot, Crocodile, Leg, crocodile, joint_names, layout, servo_names
 from suchus.design.checks import Checks
 from suchus.errors import InvalidDesign, OutsideLimits, Unreachable
 from suchus.kinematics import leg as leg_kinematics
@@ -114,7 +114,7 @@ class Planned(NamedTuple):
     """Distance by which the tip of the tail lies behind the centres of the hind feet [m]."""
 
 
-def plan(robot: AnyRobot, sequence: Keyed, time: Float[np.ndarray, "*batch"]) -> Planned:
+def plan(robot: Robot, sequence: Keyed, time: Float[np.ndarray, "*batch"]) -> Planned:
     """Return a sequence at some times.
 
     In every key the hips are where the centre of mass lies ``lead`` behind the feet. Between two keys they and every

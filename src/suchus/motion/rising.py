@@ -6,7 +6,7 @@ from math import radians
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import AnyRobot, Crocodile, crocodile, joint_names, layout
+from suchus.design import Robot, Crocodile, crocodile, joint_names, layout
 from suchus.kinematics.body import landmarks
 from suchus.kinematics.mass import centre_of_mass
 from suchus.motion.posture import Keyed, Posture, hind_leg, mass_ahead
@@ -30,7 +30,7 @@ _ARMS_RAISED = {"arm_yaw": 0.2, "arm_pitch": -0.3, "arm_knee": 1.2}  # off the g
 
 
 def stand_up(
-    robot: AnyRobot,
+    robot: Robot,
     *,
     pelvis_pitch: float = PELVIS_PITCH,
     stretch: float = STRETCH,
@@ -104,7 +104,7 @@ def _feet_ahead(robot: Crocodile, level: Posture) -> float:
     return float(min(mass_ahead(robot, level, longest) + 0.17 * length, longest))
 
 
-def stretched(robot: AnyRobot) -> float:
+def stretched(robot: Robot) -> float:
     """Return hind leg, spine and head in one straight line [m]; no posture reaches higher over the feet's centres."""
     robot = crocodile(robot, "standing up")
     leg = robot.hind_leg
@@ -112,7 +112,7 @@ def stretched(robot: AnyRobot) -> float:
 
 
 def tallest(
-    robot: AnyRobot, lead: Float[np.ndarray, "*batch"], *, stance: float = _STANCE
+    robot: Robot, lead: Float[np.ndarray, "*batch"], *, stance: float = _STANCE
 ) -> Float[np.ndarray, "*batch"]:
     """Return how high the snout can be while the centre of mass lies ``lead`` behind the feet [m].
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import AnyRobot, crocodile, layout, servo_names
+from suchus.design import Robot, crocodile, layout, servo_names
 from suchus.design.checks import Checks
 from suchus.errors import OutsideLimits
 from suchus.kinematics import tail as tail_kinematics
@@ -47,7 +47,7 @@ class Roll:
             check.number("tail_lag", -1.0, 1.0, "cycle")
 
 
-def roll_targets(robot: AnyRobot, roll: Roll, time: Float[np.ndarray, "*b"]) -> Float[np.ndarray, "*b servo"]:
+def roll_targets(robot: Robot, roll: Roll, time: Float[np.ndarray, "*b"]) -> Float[np.ndarray, "*b servo"]:
     """Return the servo angles of a roll, in the order of ``design.servo_names()`` [rad].
 
     Args:
@@ -74,7 +74,7 @@ def roll_targets(robot: AnyRobot, roll: Roll, time: Float[np.ndarray, "*b"]) -> 
     return targets
 
 
-def check_roll(robot: AnyRobot, roll: Roll) -> None:
+def check_roll(robot: Robot, roll: Roll) -> None:
     """Refuse a roll that a robot's joints or servos cannot follow.
 
     Raises:

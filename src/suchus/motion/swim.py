@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import AnyRobot, crocodile, layout
+from suchus.design import Robot, crocodile, layout
 from suchus.design.checks import Checks, require
 from suchus.errors import InvalidDesign, OutsideLimits
 from suchus.kinematics import tail as tail_kinematics
@@ -15,7 +15,7 @@ LIMBS_BACK = (-np.pi / 2, -0.15)
 """Yaw, forward positive, and pitch, down positive, of limbs that lie back along the body as it swims [rad]."""
 
 
-def limbs_back(robot: AnyRobot) -> Float[np.ndarray, " joint"]:
+def limbs_back(robot: Robot) -> Float[np.ndarray, " joint"]:
     """Return the angles of all hinges of a straight body whose limbs lie back along it [rad]."""
     place = layout(robot)
     angles = np.zeros(len(place.hinges))
@@ -24,7 +24,7 @@ def limbs_back(robot: AnyRobot) -> Float[np.ndarray, " joint"]:
     return angles
 
 
-def trunk_yaws(robot: AnyRobot) -> tuple[str, ...]:
+def trunk_yaws(robot: Robot) -> tuple[str, ...]:
     """Return the trunk's yaw servos from the root forward."""
     place = layout(robot)
     return tuple(place.servos[i] for i in place.trunk_yaw)
@@ -106,7 +106,7 @@ def bends(swim: Swim, time: Float[np.ndarray, "*b"]) -> Bends:
     )
 
 
-def swim_targets(robot: AnyRobot, swim: Swim, time: Float[np.ndarray, "*b"]) -> Float[np.ndarray, "*b servo"]:
+def swim_targets(robot: Robot, swim: Swim, time: Float[np.ndarray, "*b"]) -> Float[np.ndarray, "*b servo"]:
     """Return the servo angles of a swimming motion, in the order of ``design.servo_names()`` [rad].
 
     Args:
@@ -124,7 +124,7 @@ def swim_targets(robot: AnyRobot, swim: Swim, time: Float[np.ndarray, "*b"]) -> 
     return targets
 
 
-def check_swim(robot: AnyRobot, swim: Swim) -> None:
+def check_swim(robot: Robot, swim: Swim) -> None:
     """Refuse a swimming motion that a robot's joints or servos cannot follow.
 
     Raises:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import AnyRobot, layout, servo_ranges
+from suchus.design import Robot, layout, servo_ranges
 from suchus.design.scale import gravity_time
 from suchus.motion.gait import Gait
 from suchus.motion.movement import Steer, movement
@@ -45,7 +45,7 @@ class Transition(NamedTuple):
 
 
 @lru_cache(maxsize=64)
-def transition(robot: AnyRobot, here: Gait, there: Gait, *, slower: float = 1.0) -> Transition:
+def transition(robot: Robot, here: Gait, there: Gait, *, slower: float = 1.0) -> Transition:
     """Return the course from one gait's posture to another's: 3.5 s for a body of a metre, less for a smaller one.
 
     The robot stops and goes to a height at which both postures can stand. Then the limbs that swing in the first half of

@@ -2,7 +2,7 @@
 
 from suchus.optimise.aims import AIMS, LIMITS
 from suchus.optimise.clearance import clearance
-from suchus.optimise.conduct import SearchProgress, optimise
+from suchus.optimise.conduct import optimise
 from suchus.optimise.page import read_optimisation
 from suchus.optimise.ready import READY
 from suchus.optimise.results import write_results
@@ -18,7 +18,6 @@ __all__ = [
     "Limit",
     "NoOptimiser",
     "Optimisation",
-    "SearchProgress",
     "SearchResult",
     "clearance",
     "optimise",

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from suchus.design import LEGS, AnyRobot, Crocodile, crocodile, layout
+from suchus.design import LEGS, Robot, crocodile, layout
 from suchus.kinematics import body, spine
 from suchus.kinematics import leg as leg_kinematics
 from suchus.kinematics.links import LegLinks
@@ -28,7 +28,7 @@ class _Capsule(NamedTuple):
     radius: float
 
 
-def clearance(robot: AnyRobot, record: xr.Dataset, *, every: int = 1) -> xr.DataArray:
+def clearance(robot: Robot, record: xr.Dataset, *, every: int = 1) -> xr.DataArray:
     """Return the least distance between parts of the body that could touch each other, negative where they overlap [m].
 
     The parts are capsules: femur and shank of each leg, pelvis, links of the trunk, thorax, head, segments of the
@@ -45,7 +45,7 @@ def clearance(robot: AnyRobot, record: xr.Dataset, *, every: int = 1) -> xr.Data
     return xr.DataArray(least, dims=angles.dims[:-2], attrs={"units": "m", "long_name": "clearance between parts"})
 
 
-def between_parts(robot: AnyRobot, angles: np.ndarray) -> np.ndarray:
+def between_parts(robot: Robot, angles: np.ndarray) -> np.ndarray:
     """Return the least distance between parts for postures [m].
 
     Args:
@@ -66,7 +66,7 @@ def between_parts(robot: AnyRobot, angles: np.ndarray) -> np.ndarray:
     return np.asarray(np.minimum.reduce(gaps))
 
 
-def _trunk(robot: Crocodile, bends: np.ndarray) -> list[_Capsule]:
+def _trunk(robot: Robot, bends: np.ndarray) -> list[_Capsule]:
     """Return pelvis, links, thorax and head."""
     T, joints = spine.forward(robot.spine, bends), spine.joints(robot.spine, bends)
     end, ahead = T[..., :3, 3], T[..., :3, 0]
@@ -84,7 +84,7 @@ def _trunk(robot: Crocodile, bends: np.ndarray) -> list[_Capsule]:
     return [pelvis, *links, thorax, head]
 
 
-def _tail(robot: Crocodile, angles: np.ndarray) -> list[_Capsule]:
+def _tail(robot: Robot, angles: np.ndarray) -> list[_Capsule]:
     points = body.tail_points(robot, angles)
     radii = tail_segments(robot.tail).radii
     return [
@@ -93,7 +93,7 @@ def _tail(robot: Crocodile, angles: np.ndarray) -> list[_Capsule]:
     ]
 
 
-def _leg(robot: Crocodile, name: str, angles: np.ndarray) -> tuple[_Capsule, _Capsule]:
+def _leg(robot: Robot, name: str, angles: np.ndarray) -> tuple[_Capsule, _Capsule]:
     leg, i = robot.leg(name), LEGS.index(name)
     own = angles[..., layout(robot).limbs[i].hinges]
     bones: tuple[LegLinks, ...] = (_Bone(leg.hip_offset, 0.0, 0.0), _Bone(leg.hip_offset, leg.femur, 0.0), leg)

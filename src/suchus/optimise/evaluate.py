@@ -1,6 +1,7 @@
 """One generation: its candidates in one batch, what each reaches, what each breaks."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -14,21 +15,21 @@ from suchus.land import Run, simulate
 from suchus.motion import check_limits, excess
 from suchus.optimise.aims import AIMS, LIMITS, Kind
 from suchus.optimise.spec import Optimisation
+from suchus.progress import Progress, silent
 
 WALKED, REFUSED, APART = "walked", "refused", "diverged"
 _EVERY = 2  # control periods; 50 looks a second
-Progress = Callable[[float], None]
 
 
 def evaluate(
-    spec: Optimisation, shares: np.ndarray, progress: Progress | None = None, *, timestep: float | None = None
+    spec: Optimisation, shares: np.ndarray, progress: Progress = silent, *, timestep: float | None = None
 ) -> xr.Dataset:
     """Try candidates, all that can be built in one batch.
 
     Args:
         spec: the search, of one condition.
         shares: where each candidate's fields lie in their ranges, shape (candidate, field), 0 to 1.
-        progress: called with the share that is done.
+        progress: told the share that is done.
         timestep: of the physics [s]; that of the search if None.
 
     Returns:
@@ -73,14 +74,16 @@ def columns(spec: Optimisation) -> dict[str, Kind]:
 
 
 def _walked(
-    spec: Optimisation, runs: Mapping[int, Run], progress: Progress | None, timestep: float
+    spec: Optimisation, runs: Mapping[int, Run], progress: Progress, timestep: float
 ) -> dict[int, dict[str, float] | None]:
     """Return what each candidate reached, None for one that diverged; on every ground, the worst limit counts."""
     if not runs:
         return {}
     scales = spec.friction_scales
     laid = [with_values(run, {"ground.friction_scale": scale}) for run in runs.values() for scale in scales]
-    record = simulate(laid, duration=spec.duration, timestep=timestep, every=_EVERY, progress=progress)
+    record = simulate(
+        laid, duration=spec.duration, timestep=timestep, every=_EVERY, progress=partial(progress, "walking")
+    )
     measured = measure(spec, laid, record)
     broken = (record.cause.values != "").reshape(len(runs), -1).any(axis=1)
     found: dict[int, dict[str, float] | None] = {}

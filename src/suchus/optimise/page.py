@@ -8,7 +8,7 @@ from typing import Literal
 
 from suchus import blueprint
 from suchus.control import Control, OpenLoop, Standing, Walking
-from suchus.design import Crocodile
+from suchus.design import Robot
 from suchus.gaits import GAITS
 from suchus.land import Ground, Run
 from suchus.motion import Gait
@@ -62,7 +62,7 @@ def read_optimisation(path: Path) -> Optimisation:
     """
     page = blueprint.read(path, SearchFile, {EXAMPLE.name: EXAMPLE})
     run = Run(
-        robot=find(page.robot, path.parent, Crocodile, ROBOTS),
+        robot=find(page.robot, path.parent, Robot, ROBOTS),
         gait=find(page.gait, path.parent, Gait, GAITS),
         ground=page.ground,
         control=TASKS[page.task],

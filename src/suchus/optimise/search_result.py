@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import xarray as xr
 
-from suchus.design import value_at
+from suchus.design import value_at, with_values
 from suchus.land import Run
 from suchus.optimise.score import ACTIVE, allowed, losses, over, units
 from suchus.optimise.search import library, reference_of
@@ -114,7 +114,7 @@ def titled(spec: Optimisation, run: Run, name: str) -> Run:
     """Return a run whose gait, and robot if it varies, is called after search and condition."""
     called = f"{spec.name}_{name}"
     varied = any(v.field.startswith("robot.") for v in spec.vary)
-    robot = replace(run.robot, name=called) if varied else run.robot
+    robot = with_values(run.robot, {"name": called}) if varied else run.robot
     return replace(run, gait=replace(run.gait, name=called), robot=robot, label=name)
 
 

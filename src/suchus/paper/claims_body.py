@@ -44,7 +44,7 @@ ANIMALS = (
         unit="m",
         rounding=0.5,  # printed as "approximately 4 meters": half of the last digit
         sense="The largest crocodile is the Nile crocodile, about 4 m long.",
-        quote="the African Nile Crocodile, the largest among them, ... approximately 4 meters",
+        quote="the African Nile Robot, the largest among them, ... approximately 4 meters",
     ),
     Claim(
         key="smallest_length",

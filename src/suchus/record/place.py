@@ -10,7 +10,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from suchus.errors import InvalidDesign, Unwritable
-from suchus.record.reading import there
+from suchus.reading import there
 
 _LONGEST = 200  # bytes of a name, so that a draft's name, which is longer, is a name too
 

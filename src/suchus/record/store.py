@@ -8,10 +8,10 @@ import numpy as np
 import xarray as xr
 
 from suchus.errors import IncompatibleRecord
+from suchus.reading import check_file, unreadable
 from suchus.record.foreign import open_foreign
 from suchus.record.place import new_file
 from suchus.record.provenance import plain
-from suchus.record.reading import check_file, unreadable
 from suchus.record.seal import holds, sealed
 
 _MARK = "suchus_record"
@@ -19,7 +19,7 @@ _ATTRIBUTES = "suchus_attributes"
 _VERSION = 1
 
 
-def save(record: xr.Dataset, path: Path) -> Path:
+def save(record: xr.Dataset, path: str | Path) -> Path:
     """Write a record as compressed NetCDF and return its path; equal records give equal bytes.
 
     Attributes of the record may nest: they are stored as JSON, so tuples come back as lists.
@@ -27,6 +27,7 @@ def save(record: xr.Dataset, path: Path) -> Path:
     Raises:
         Unwritable: the place cannot be written to.
     """
+    path = Path(path)
     attributes = json.dumps(plain(record.attrs), sort_keys=True)
     marked = record.assign_attrs().drop_attrs(deep=False)
     marked.attrs = {_MARK: _VERSION, _ATTRIBUTES: attributes}
@@ -37,7 +38,7 @@ def save(record: xr.Dataset, path: Path) -> Path:
     return path
 
 
-def load(path: Path, *, whole: bool = False) -> xr.Dataset:
+def load(path: str | Path, *, whole: bool = False) -> xr.Dataset:
     """Read a record into memory.
 
     Args:
@@ -48,6 +49,7 @@ def load(path: Path, *, whole: bool = False) -> xr.Dataset:
         UnreadableFile: there is no such file.
         IncompatibleRecord: the file is damaged, no record of suchus, or of a later version.
     """
+    path = Path(path)
     check_file(path)
     try:
         data = path.read_bytes()

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from suchus.design import AnyRobot, joint_names, layout
+from suchus.design import Robot, joint_names, layout
 from suchus.errors import IncompatibleRecord
 from suchus.record import check_land
 from suchus.skin import Poses, poses
@@ -41,7 +41,7 @@ class Frames(NamedTuple):
     """Level of the water above the world's origin, against gravity, (frame,) [m]; None on dry land."""
 
 
-def checked(record: xr.Dataset, robot: AnyRobot) -> xr.Dataset:
+def checked(record: xr.Dataset, robot: Robot) -> xr.Dataset:
     """Return one run of a robot, with what a replay needs of it.
 
     Raises:
@@ -77,7 +77,7 @@ def checked(record: xr.Dataset, robot: AnyRobot) -> xr.Dataset:
     return kept.isel(time=slice(0, count))
 
 
-def frames(record: xr.Dataset, robot: AnyRobot, rate: float | None = None) -> Frames:
+def frames(record: xr.Dataset, robot: Robot, rate: float | None = None) -> Frames:
     """Return the frames of one run.
 
     Args:

@@ -11,7 +11,7 @@ import xarray as xr
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
-from suchus.design import AnyRobot
+from suchus.design import Robot
 from suchus.design.ground import Ground
 from suchus.figures import limb_colours, panels, styled
 from suchus.figures.posture import draw_posture
@@ -22,7 +22,7 @@ from suchus.replay.scene import ARROW, KEYS, scene
 
 def replay(
     record: xr.Dataset,
-    robot: AnyRobot,
+    robot: Robot,
     *,
     ghost: xr.Dataset | None = None,
     labels: Sequence[str] = ("this run", "the other run"),
@@ -111,7 +111,7 @@ def _on(grounds: Sequence[Ground]) -> str:
     return text
 
 
-def _in_words(robot: AnyRobot, moving: Sequence[Frames], labels: Sequence[str]) -> str:
+def _in_words(robot: Robot, moving: Sequence[Frames], labels: Sequence[str]) -> str:
     """Return the replay in words, for those who cannot see it."""
     paths = [
         f"{label}: {one.mass[-1, 0] - one.mass[0, 0]:.2f} m forward in {(len(one.mass) - 1) / one.rate:.1f} s"
@@ -121,7 +121,7 @@ def _in_words(robot: AnyRobot, moving: Sequence[Frames], labels: Sequence[str]) 
     return f"Three-dimensional replay of the robot {robot.name} {where}. {'; '.join(paths)}."
 
 
-def _still(robot: AnyRobot, record: xr.Dataset) -> tuple[str, str]:
+def _still(robot: Robot, record: xr.Dataset) -> tuple[str, str]:
     """Return a still picture as SVG, and its time."""
     time = float(record.time[record.sizes["time"] // 2])
     with styled(svg__hashsalt="replay"):

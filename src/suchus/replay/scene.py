@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from suchus.design import GRAVITY, AnyRobot, layout
+from suchus.design import GRAVITY, Robot, layout
 from suchus.design.ground import Ground, slope
 from suchus.design.relief import ASIDE, REACH, Bumps, Relief, Step, field
 from suchus.figures import COLOURS, limb_colours
@@ -31,7 +31,7 @@ _BESIDE = 0.62  # how far a second robot walks beside the first, over the robot'
 
 
 def scene(
-    robot: AnyRobot, moving: Sequence[Frames], labels: Sequence[str], ground: Ground, *, overlaid: bool
+    robot: Robot, moving: Sequence[Frames], labels: Sequence[str], ground: Ground, *, overlaid: bool
 ) -> tuple[dict[str, Any], str]:
     """Return what there is to be shown, and its arrays as base64.
 
@@ -83,7 +83,7 @@ def _packed_skin(surface: Skin, pack: PackedArrays) -> dict[str, Any]:
     }
 
 
-def _packed(robot: AnyRobot, one: Frames, label: str, relief: Relief | None, pack: PackedArrays) -> dict[str, Any]:
+def _packed(robot: Robot, one: Frames, label: str, relief: Relief | None, pack: PackedArrays) -> dict[str, Any]:
     bones = ankles(robot, one.bones, one.feet, relief)
     places = bones.positions
     origin = (places.max(axis=(0, 1)) + places.min(axis=(0, 1))) / 2

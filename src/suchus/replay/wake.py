@@ -24,7 +24,7 @@ def wake_replay(record: xr.Dataset, *, title: str = "", caption: str = "") -> st
     """Return a cycle of a swim as an HTML page that plays offline and needs nothing else.
 
     Args:
-        record: of ``water.swim_in_space`` with frames, or of the experiment ``swim_3d``.
+        record: of ``water.resolved`` in space with frames, or of the experiment ``swim_3d``.
         title: heading.
         caption: one or two sentences: what there is to see.
 

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
-from suchus.design import LEGS, AnyRobot, Crocodile
+from suchus.design import LEGS, Robot
 from suchus.paper import CLAIMS, CRAWL_END, CRAWL_START
 from suchus.paper.animals import ANIMALS, Animal
 from suchus.report.numbers import number, quantity
@@ -32,7 +32,7 @@ _DURATION = CRAWL_END - CRAWL_START
 _COORDINATED, _LIMBS_ONLY = CLAIMS["displacement_coordinated"].value, CLAIMS["displacement_limbs_only"].value
 
 
-def beside(robot: AnyRobot, results: Results) -> tuple[ComparisonRow, ...]:
+def beside(robot: Robot, results: Results) -> tuple[ComparisonRow, ...]:
     """Return the rows whose experiment was run.
 
     Args:
@@ -43,7 +43,7 @@ def beside(robot: AnyRobot, results: Results) -> tuple[ComparisonRow, ...]:
     return tuple(row for row in rows if row is not None)
 
 
-def _row(animal: Animal, robot: AnyRobot, results: Results) -> ComparisonRow | None:
+def _row(animal: Animal, robot: Robot, results: Results) -> ComparisonRow | None:
     experiment, measure, printed = _OURS[animal.key]
     value = measure(robot, results)
     if value is None:
@@ -72,44 +72,44 @@ def _measured(results: Results, experiment: str, *names: str) -> list[float] | N
     return None if any(value is None for value in values) else values
 
 
-def _tail_length(robot: AnyRobot, _: Results) -> float | None:
-    return robot.tail.length / robot.length if isinstance(robot, Crocodile) else None
+def _tail_length(robot: Robot, _: Results) -> float | None:
+    return robot.tail.length / robot.length if robot.tables is not None else None
 
 
-def _tail_mass(robot: AnyRobot, _: Results) -> float | None:
-    return robot.tail.mass / robot.mass if isinstance(robot, Crocodile) else None
+def _tail_mass(robot: Robot, _: Results) -> float | None:
+    return robot.tail.mass / robot.mass if robot.tables is not None else None
 
 
-def _mass(robot: AnyRobot, _: Results) -> float | None:
+def _mass(robot: Robot, _: Results) -> float | None:
     return robot.mass if 0.46 <= robot.length <= 1.27 else None
 
 
-def _speed(_: AnyRobot, results: Results) -> float | None:
+def _speed(_: Robot, results: Results) -> float | None:
     found = _measured(results, "displacement", "forward_coordinated")
     return found[0] / _DURATION if found else None
 
 
-def _high_walk_speed(_: AnyRobot, results: Results) -> float | None:
+def _high_walk_speed(_: Robot, results: Results) -> float | None:
     found = _measured(results, "speed_range", "speed_high_walk")
     return found[0] if found else None
 
 
-def _stride_share(_: AnyRobot, results: Results) -> float | None:
+def _stride_share(_: Robot, results: Results) -> float | None:
     found = _measured(results, "displacement", "forward_coordinated", "forward_limbs_only")
     return 1.0 - found[1] / found[0] if found else None
 
 
-def _duty_factor(_: AnyRobot, results: Results) -> float | None:
+def _duty_factor(_: Robot, results: Results) -> float | None:
     found = _measured(results, "gait_diagram", *(f"duty_factor_{leg}" for leg in LEGS))
     return sum(found) / len(found) if found else None
 
 
-def _death_roll(_: AnyRobot, results: Results) -> float | None:
+def _death_roll(_: Robot, results: Results) -> float | None:
     found = _measured(results, "death_roll", "rate_c_shape_water")
     return abs(found[0]) if found else None
 
 
-_Measured = Callable[[AnyRobot, Results], float | None]
+_Measured = Callable[[Robot, Results], float | None]
 _OURS: Mapping[str, tuple[str, _Measured, float | None]] = MappingProxyType(
     {
         "tail_length": ("", _tail_length, CLAIMS["tail_share"].value),

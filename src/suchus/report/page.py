@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from suchus import figures
-from suchus.design import AnyRobot
+from suchus.design import Robot
 from suchus.gaits import GAITS
 from suchus.paper import AUTHORS, CLAIMS, ERRATA, TITLE
 from suchus.record import new_file, versions
@@ -163,7 +163,7 @@ def _place(result: Result, order: Mapping[str, int]) -> int:
     return max((order.get(v["claim"], len(order)) for v in result.outcome["verdicts"]), default=len(order))
 
 
-def _drawing(robot: AnyRobot) -> dict[str, str]:
+def _drawing(robot: Robot) -> dict[str, str]:
     figure = figures.dimension_drawing(robot)
     with tempfile.TemporaryDirectory() as folder:
         svg, png = figures.save(figure, Path(folder), "robot")

@@ -4,19 +4,19 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from pydantic import TypeAdapter, ValidationError
+from pydantic import ValidationError
 
-from suchus.design import AnyRobot
+from suchus.blueprint import described_robot
+from suchus.design import Robot
 from suchus.errors import SuchusError
 from suchus.report.result import Result
 from suchus.robots import ROBOTS
 
 ARTICLES = "caiman"
 """Name of the article's robot, shown where no result names one; verdicts are shown of no other."""
-_ADAPTER: TypeAdapter[AnyRobot] = TypeAdapter(AnyRobot)
 
 
-def robot_of(results: Sequence[Result]) -> tuple[AnyRobot, dict[str, int]]:
+def robot_of(results: Sequence[Result]) -> tuple[Robot, dict[str, int]]:
     """Return the robot of most results, and how many results each other robot has, by name.
 
     A robot that this version of suchus cannot build any more does not count.
@@ -28,9 +28,9 @@ def robot_of(results: Sequence[Result]) -> tuple[AnyRobot, dict[str, int]]:
     return most, {robot.name: count for robot, count in others}
 
 
-def _robot(settings: Any) -> AnyRobot | None:
+def _robot(settings: Any) -> Robot | None:
     values = settings.get("robot") if isinstance(settings, Mapping) else None
     try:
-        return _ADAPTER.validate_python(values) if isinstance(values, Mapping) else None
+        return described_robot(values) if isinstance(values, Mapping) else None
     except (ValidationError, SuchusError):
         return None

@@ -1,16 +1,26 @@
 """The shelf of robots: one file, one robot, declared as ``robot`` with its ``chosen`` numbers."""
 
+from operator import attrgetter
+from pathlib import Path
 from typing import Any
 
 from suchus.catalog import Catalog
-from suchus.design import AnyRobot
+from suchus.design import Robot
 from suchus.robots._size import RelativeSize, beside
 
-ROBOTS: Catalog[Any] = Catalog("robot", "suchus.robots", "suchus.design:AnyRobot")
-"""Of either kind; who needs one of them says so by the type of its field."""
+
+def _read(path: Path) -> Robot:
+    from suchus import blueprint  # noqa: PLC0415  half of the time of an import that reads no file
+
+    robot: Robot = blueprint.read(path, Robot, ROBOTS)
+    return robot
 
 
-def beside_article(robot: AnyRobot) -> RelativeSize:
+ROBOTS: Catalog[Any] = Catalog("robot", "suchus.robots", "suchus.design:Robot", named=attrgetter("name"), read=_read)
+"""Robots by name."""
+
+
+def beside_article(robot: Robot) -> RelativeSize:
     """Return the size of a robot over that of the article's robot."""
     return beside(ROBOTS, robot)
 

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from suchus.catalog import Catalog
-from suchus.design import AnyRobot
+from suchus.design import Robot
 
 _ARTICLE = "caiman"
 
@@ -17,7 +17,7 @@ class RelativeSize(NamedTuple):
     """Of the body [-]."""
 
 
-def beside(shelf: Catalog[AnyRobot], robot: AnyRobot) -> RelativeSize:
+def beside(shelf: Catalog[Robot], robot: Robot) -> RelativeSize:
     """Return the size of a robot over that of the article's.
 
     Args:

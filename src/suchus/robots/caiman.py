@@ -2,7 +2,7 @@
 
 from math import pi, radians
 
-from suchus.design import Chosen, Contact, Crocodile, Head, Leg, Pelvis, Servo, Spine, Tail, Thorax
+from suchus.design import Chosen, Contact, Head, Leg, Pelvis, Servo, Spine, Tables, Tail, Thorax, crocodile
 from suchus.paper import FEMUR, HIP_OFFSET, SPINE_BASE, SPINE_LINK, TAIL_JOINTS, TIBIA
 
 _KP, _KD, _SPEED = 40.0, 0.6, 7.0
@@ -50,7 +50,7 @@ _front_leg = Leg(
     servo=_LIMB_SERVO,
 )
 
-robot = Crocodile(
+tables = Tables(
     name="caiman",
     hind_leg=_hind_leg,
     front_leg=_front_leg,
@@ -92,6 +92,8 @@ robot = Crocodile(
     ),
     contact=Contact(foot_friction=0.8, skin_friction=0.4, time_constant=0.02),
 )
+"""Its measures."""
+robot = crocodile(tables)
 """The article's robot."""
 
 _PID = "1 to 2 degrees of static droop in stance, damping close to critical; integral action would wind up in stance"

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+from suchus.design import crocodile
 from suchus.design.flotation import float_hull
 from suchus.design.reasons import Reason, chosen_numbers
 from suchus.kinematics.trim import level_chambers
@@ -11,9 +12,11 @@ from suchus.robots import caiman
 _ABOVE, _RAISED, _AIR = 0.05, 0.016, 0.0004
 
 _hull = float_hull(caiman.robot, above=_ABOVE, raised=_RAISED, air=_AIR)
-_afloat = replace(caiman.robot, name="floating_caiman", hull=_hull)
+_afloat = crocodile(replace(caiman.tables, name="floating_caiman", hull=_hull))
 _chambers = level_chambers(_afloat, limbs_back(_afloat), front="thorax", rear="pelvis")
-robot = replace(_afloat, hull=replace(_hull, chambers=_chambers))
+tables = replace(caiman.tables, name="floating_caiman", hull=replace(_hull, chambers=_chambers))
+"""Its measures."""
+robot = crocodile(tables)
 """A robot that swims at the surface with 5 % of its volume above it, its limbs held out, and level where it hovers."""
 
 _OWN = (
@@ -23,5 +26,5 @@ _OWN = (
     Reason(r"^hull\.chambers\[\d+\]\.share$", 0.9, 1.1, "level at neutral buoyancy, its limbs back"),
     Reason(r"^hull\.air$", 0.5, 1.2, "a tenth of the volume let out brings the feet down on a steep shore"),
 )
-chosen = (*caiman.chosen, *chosen_numbers(replace(robot), _OWN, (r"^(?!hull\.)",)))
+chosen = (*caiman.chosen, *chosen_numbers(robot, _OWN, (r"^(?!hull\.)",)))
 """Every number of the robot that the article does not give, with its plausible range and the reason."""

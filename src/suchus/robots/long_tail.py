@@ -2,14 +2,16 @@
 
 from dataclasses import replace
 
-from suchus.design import Chosen
+from suchus.design import Chosen, crocodile
 from suchus.robots import caiman
 
-robot = replace(
-    caiman.robot,
+tables = replace(
+    caiman.tables,
     name="long_tail",
-    tail=replace(caiman.robot.tail, joints=8, fin_segments=4, fin_length=0.200, mass=0.60),
+    tail=replace(caiman.tables.tail, joints=8, fin_segments=4, fin_length=0.200, mass=0.60),
 )
+"""Its measures."""
+robot = crocodile(tables)
 """A robot of another topology, for studies of what a tail is worth."""
 
 _OWN = (

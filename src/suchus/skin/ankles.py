@@ -9,7 +9,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from suchus.design import LEGS, AnyRobot, Crocodile
+from suchus.design import LEGS, Robot
 from suchus.design.relief import Relief, heights
 from suchus.rotation import about, multiply, rotate
 from suchus.skin.bones import Poses, bone_names
@@ -24,10 +24,10 @@ NEAR = (0.012, 0.06)
 
 
 @lru_cache(maxsize=8)
-def footed(robot: AnyRobot) -> Skin:
+def footed(robot: Robot) -> Skin:
     """Return the skin of a robot with its feet hung on ankles; the round feet of a plain body have none."""
     surface = skin(robot)
-    if not isinstance(robot, Crocodile):
+    if robot.tables is None:
         return surface
     indices, rest = surface.indices.copy(), [*surface.rest]
     starts = np.flatnonzero(np.diff(surface.part, prepend=-1))
@@ -41,7 +41,7 @@ def footed(robot: AnyRobot) -> Skin:
     return replace(surface, bones=(*surface.bones, *ANKLES), rest=np.array(rest), indices=indices)
 
 
-def ankles(robot: AnyRobot, bones: Poses, feet: np.ndarray, relief: Relief | None = None) -> Poses:
+def ankles(robot: Robot, bones: Poses, feet: np.ndarray, relief: Relief | None = None) -> Poses:
     """Return the bones of ``footed``: those of the bodies, and one more for each foot.
 
     Args:
@@ -50,7 +50,7 @@ def ankles(robot: AnyRobot, bones: Poses, feet: np.ndarray, relief: Relief | Non
         feet: centres of the feet, (frame, 4, 3) [m].
         relief: what stands up from the ground; None where it is even.
     """
-    if not isinstance(robot, Crocodile):
+    if robot.tables is None:
         return bones
     names, turned = bone_names(robot), []
     above = feet[..., 2] - heights(relief, feet[..., 0], feet[..., 1])

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from suchus.design import Crocodile
+from suchus.design import Robot
 from suchus.kinematics.mass import tail_segments
 from suchus.skin.head import Knot, head_knots
 from suchus.skin.look import Look
@@ -29,7 +29,7 @@ class BodyShape:
     """Depth below the axis over x."""
 
 
-def shape(robot: Crocodile, look: Look) -> BodyShape:
+def shape(robot: Robot, look: Look) -> BodyShape:
     """Return the outline of a robot's body; on the head it is that of the skull without the lower jaw."""
     knots = [*_tail_knots(robot, look), *_trunk_knots(robot, look), *head_knots(robot, look)]
     knots = [knot for i, knot in enumerate(knots) if i == 0 or knot[0] > max(k[0] for k in knots[:i]) + 1e-6]
@@ -38,7 +38,7 @@ def shape(robot: Crocodile, look: Look) -> BodyShape:
     return BodyShape(x[0], x[-1], width, top, bottom)
 
 
-def _tail_knots(robot: Crocodile, look: Look) -> list[Knot]:
+def _tail_knots(robot: Robot, look: Look) -> list[Knot]:
     """Return (x, half width, top, bottom) from the tip to the root; it encloses the segments beneath."""
     tail = robot.tail
     tip = -tail.length
@@ -58,7 +58,7 @@ def _tail_knots(robot: Crocodile, look: Look) -> list[Knot]:
     return knots
 
 
-def _trunk_knots(robot: Crocodile, look: Look) -> list[Knot]:
+def _trunk_knots(robot: Robot, look: Look) -> list[Knot]:
     pelvis, thorax, spine, tail = robot.pelvis, robot.thorax, robot.spine, robot.tail
     m = look.margin
     radius = m * spine.radius
@@ -79,7 +79,7 @@ def _trunk_knots(robot: Crocodile, look: Look) -> list[Knot]:
     ]
 
 
-def body(robot: Crocodile, look: Look) -> Mesh:
+def body(robot: Robot, look: Look) -> Mesh:
     """Return snout to tail tip in one piece, without the lower jaw."""
     outline = shape(robot, look)
     length = outline.front - outline.back

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from suchus.design import AnyRobot, joint_names, layout
+from suchus.design import Robot, joint_names, layout
 from suchus.errors import InvalidDesign
 from suchus.rotation import about, multiply, rotate
 
@@ -22,12 +22,12 @@ class Poses(NamedTuple):
     """Orientations as unit quaternions wxyz, (..., bone, 4) [-]."""
 
 
-def bone_names(robot: AnyRobot) -> tuple[str, ...]:
+def bone_names(robot: Robot) -> tuple[str, ...]:
     """Return the names of the bones, which are those of the model's bodies."""
     return tuple(body.name for body in layout(robot).bodies)
 
 
-def bone_rest(robot: AnyRobot) -> np.ndarray:
+def bone_rest(robot: Robot) -> np.ndarray:
     """Return the origins of the bones at zero posture in the frame of the root, (bone, 3) [m]."""
     rest: list[np.ndarray] = []
     for body in layout(robot).bodies:
@@ -35,7 +35,7 @@ def bone_rest(robot: AnyRobot) -> np.ndarray:
     return np.array(rest)
 
 
-def poses(robot: AnyRobot, position: np.ndarray, orientation: np.ndarray, angles: np.ndarray) -> Poses:
+def poses(robot: Robot, position: np.ndarray, orientation: np.ndarray, angles: np.ndarray) -> Poses:
     """Return where every bone is in the world.
 
     Args:

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from suchus.design import Crocodile
+from suchus.design import Robot
 from suchus.skin.look import Look
 from suchus.skin.mesh import Mesh, curve, ellipsoid, loft, ring, spike
 from suchus.skin.paint import EYE, PUPIL, TOOTH, brow, jaw_paint
@@ -56,21 +56,21 @@ class Frame(NamedTuple):
     """Half height [m]."""
 
 
-def frame(robot: Crocodile, look: Look) -> Frame:
+def frame(robot: Robot, look: Look) -> Frame:
     """Return where the head is and how large."""
     length, start = robot.head.snout - robot.thorax.shoulder, robot.spine.length + robot.thorax.shoulder
     neck = look.skull * length
     return Frame(start + neck, length - neck, neck, robot.head.width / 2, robot.head.height / 2)
 
 
-def head_knots(robot: Crocodile, look: Look) -> list[Knot]:
+def head_knots(robot: Robot, look: Look) -> list[Knot]:
     """Return the outline from shoulders to snout, without the lower jaw."""
     f = frame(robot, look)
     rows = [(u * f.neck, *sizes) for u, *sizes in _NECK] + [(u * f.reach, *sizes) for u, *sizes in _SKULL]
     return [(f.joint + x, a * f.w, b * f.h, c * f.h) for x, a, b, c in rows]
 
 
-def jaw(robot: Crocodile, look: Look) -> Mesh:
+def jaw(robot: Robot, look: Look) -> Mesh:
     """Return the lower jaw, a little open."""
     f = frame(robot, look)
     u = np.concatenate([[-0.06], np.linspace(0.0, 0.94, 24), [0.965, 0.98, 0.988]])
@@ -91,7 +91,7 @@ def _opened(points: np.ndarray, f: Frame, look: Look) -> np.ndarray:
     return np.stack([f.joint + c * x + s * z, y, c * z - s * x], axis=-1)
 
 
-def eyes(robot: Crocodile, look: Look) -> list[Mesh]:
+def eyes(robot: Robot, look: Look) -> list[Mesh]:
     """Return the left eye, its pupil and its brow, and the left nostril."""
     f = frame(robot, look)
     x, y, z = f.joint + 0.27 * f.reach, 0.60 * f.w, 0.98 * f.h
@@ -107,7 +107,7 @@ def eyes(robot: Crocodile, look: Look) -> list[Mesh]:
     ]
 
 
-def teeth(robot: Crocodile, look: Look) -> list[Mesh]:
+def teeth(robot: Robot, look: Look) -> list[Mesh]:
     """Return the left teeth of both jaws; every fourth is long."""
     f = frame(robot, look)
     found = []

@@ -4,7 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from suchus.design import Crocodile, Leg
+from suchus.design import Leg, Robot
 from suchus.skin.mesh import Mesh, curve, ellipsoid, loft, ring, spike
 from suchus.skin.paint import CLAW, SOLE, mixed, shaded, smooth
 
@@ -12,7 +12,7 @@ LEG_AROUND = 16
 """Points around a leg, a multiple of four [-]."""
 
 
-def left_leg(robot: Crocodile, girdle: str) -> list[Mesh]:
+def left_leg(robot: Robot, girdle: str) -> list[Mesh]:
     """Return the left leg of a girdle, its foot and claws.
 
     Args:
@@ -25,7 +25,7 @@ def left_leg(robot: Crocodile, girdle: str) -> list[Mesh]:
     return [_limb(robot, leg, front, ahead), *_foot(leg, front, ahead)]
 
 
-def _limb(robot: Crocodile, leg: Leg, front: bool, ahead: float) -> Mesh:
+def _limb(robot: Robot, leg: Leg, front: bool, ahead: float) -> Mesh:
     r, hip, knee = leg.radius, leg.hip_offset, leg.hip_offset + leg.femur
     end = knee + leg.tibia
     girdle = robot.thorax if front else robot.pelvis

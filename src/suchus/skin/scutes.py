@@ -2,14 +2,14 @@
 
 import numpy as np
 
-from suchus.design import Crocodile
+from suchus.design import Robot
 from suchus.skin.body import BodyShape
 from suchus.skin.look import Look
 from suchus.skin.mesh import Mesh, ring, spike
 from suchus.skin.paint import SCUTE
 
 
-def middle_scutes(robot: Crocodile, outline: BodyShape) -> list[Mesh]:
+def middle_scutes(robot: Robot, outline: BodyShape) -> list[Mesh]:
     """Return the crests on the midline of the rear part of the tail."""
     fork, spacing = _fork(robot), _spacing(robot)
     found = []
@@ -20,7 +20,7 @@ def middle_scutes(robot: Crocodile, outline: BodyShape) -> list[Mesh]:
     return found
 
 
-def left_scutes(robot: Crocodile, outline: BodyShape, look: Look) -> list[Mesh]:
+def left_scutes(robot: Robot, outline: BodyShape, look: Look) -> list[Mesh]:
     """Return the left rows: crests on the root of the tail, plates on back and neck."""
     fork, spacing = _fork(robot), _spacing(robot)
     nape = robot.spine.length + robot.thorax.shoulder + 0.8 * look.skull * (robot.head.snout - robot.thorax.shoulder)
@@ -40,12 +40,12 @@ def left_scutes(robot: Crocodile, outline: BodyShape, look: Look) -> list[Mesh]:
     return found
 
 
-def _fork(robot: Crocodile) -> float:
+def _fork(robot: Robot) -> float:
     """Return x where the two rows on the tail become one; about half way in the animal [m]."""
     return -robot.tail.offset - 0.5 * (robot.tail.length - robot.tail.offset)
 
 
-def _spacing(robot: Crocodile) -> float:
+def _spacing(robot: Robot) -> float:
     """Return the length of a scute with its gap [m]: some 45 of them from neck to tip."""
     return (robot.tail.length + robot.spine.length) / 28
 

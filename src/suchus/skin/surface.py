@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from suchus.design import AnyRobot, Crocodile, Layout, layout
+from suchus.design import Layout, Robot, layout
 from suchus.errors import InvalidDesign
 from suchus.rotation import rotate
 from suchus.skin.body import body, shape
@@ -73,14 +73,14 @@ class Skin:
 
 
 @lru_cache(maxsize=16)
-def skin(robot: AnyRobot, look: Look = SKIN) -> Skin:
+def skin(robot: Robot, look: Look = SKIN) -> Skin:
     """Return the skin of a robot; the same robot gives the same skin again.
 
     Args:
         robot: any robot; one of the article's tables is a crocodile, any other a plain hide with rods for limbs.
         look: proportions of the animal where the robot has none.
     """
-    parts = _crocodile(robot, look) if isinstance(robot, Crocodile) else _plain(layout(robot))
+    parts = _crocodile(robot, look) if robot.tables is not None else _plain(layout(robot))
     hung = [_hung(robot, mesh.vertices, on) for mesh, on in parts]
     whole = joined([mesh for mesh, _ in parts])
     found = Skin(
@@ -100,7 +100,7 @@ def skin(robot: AnyRobot, look: Look = SKIN) -> Skin:
     return found
 
 
-def _crocodile(robot: Crocodile, look: Look) -> list[tuple[Mesh, str | int]]:
+def _crocodile(robot: Robot, look: Look) -> list[tuple[Mesh, str | int]]:
     """Return the parts of a crocodile, each with the limb that it hangs on, or nothing for the axis."""
     limbs = [(mesh, girdle) for girdle in "FH" for mesh in left_leg(robot, girdle)]
     parts: list[tuple[Mesh, str | int]] = [(mesh, "") for mesh in _axial(robot, look)]
@@ -114,16 +114,16 @@ def _plain(place: Layout) -> list[tuple[Mesh, str | int]]:
     return parts + [part for limb in place.limbs for part in limb_meshes(place, limb)]
 
 
-def _hung(robot: AnyRobot, vertices: np.ndarray, on: str | int) -> tuple[np.ndarray, np.ndarray]:
+def _hung(robot: Robot, vertices: np.ndarray, on: str | int) -> tuple[np.ndarray, np.ndarray]:
     """Hang vertices on one bone, on the axis or on a leg: return bones and weights."""
     if isinstance(on, int):
         indices, weights = np.full((len(vertices), _HANGS), on, dtype=np.int32), np.zeros((len(vertices), _HANGS))
         weights[:, 0] = 1.0
         return indices, weights
-    return _on_leg(robot, vertices, on) if on and isinstance(robot, Crocodile) else _on_axis(robot, vertices)
+    return _on_leg(robot, vertices, on) if on and robot.tables is not None else _on_axis(robot, vertices)
 
 
-def _axial(robot: Crocodile, look: Look) -> list[Mesh]:
+def _axial(robot: Robot, look: Look) -> list[Mesh]:
     """Return the parts of head, trunk and tail."""
     outline = shape(robot, look)
     left = [*eyes(robot, look), *teeth(robot, look), *left_scutes(robot, outline, look)]
@@ -131,7 +131,7 @@ def _axial(robot: Crocodile, look: Look) -> list[Mesh]:
     return [body(robot, look), jaw(robot, look), *middle_scutes(robot, outline), *both]
 
 
-def _on_axis(robot: AnyRobot, vertices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _on_axis(robot: Robot, vertices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Hang vertices on the bodies of the axis by their place along the straight body."""
     place, rest = layout(robot), bone_rest(robot)
     names = [body.name for body in place.bodies]
@@ -143,7 +143,7 @@ def _on_axis(robot: AnyRobot, vertices: np.ndarray) -> tuple[np.ndarray, np.ndar
     return _blended(vertices[:, 0], joints, np.diff([back, *joints, front]), order)
 
 
-def _on_leg(robot: Crocodile, vertices: np.ndarray, leg: str) -> tuple[np.ndarray, np.ndarray]:
+def _on_leg(robot: Robot, vertices: np.ndarray, leg: str) -> tuple[np.ndarray, np.ndarray]:
     """Hang vertices on girdle, femur and tibia by their distance from the midline."""
     names, links = bone_names(robot), robot.leg(leg)
     order = [names.index("thorax" if leg.endswith("F") else "pelvis"), names.index(f"{leg}_femur")]

@@ -1,6 +1,7 @@
 """One batch of a study: from points to a table of results."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -10,14 +11,13 @@ from suchus.design import unit_at
 from suchus.errors import SuchusError
 from suchus.land import Run, simulate
 from suchus.motion import check_limits
+from suchus.progress import Progress, silent
 from suchus.study.measures import measured, unit_of
 from suchus.study.plan import Plan
 from suchus.study.study import Study
 
-Progress = Callable[[float], None]
 
-
-def run_chunk(study: Study, number: int, progress: Progress | None = None) -> xr.Dataset:
+def run_chunk(study: Study, number: int, progress: Progress = silent) -> xr.Dataset:
     """Run one batch of a study; it depends on nothing but the study and the number.
 
     A run that cannot be built, refuses to walk or diverges has NaN for numbers and says why in ``error``.
@@ -25,7 +25,7 @@ def run_chunk(study: Study, number: int, progress: Progress | None = None) -> xr
     Args:
         study: the study.
         number: of the batch.
-        progress: called with the share that is done.
+        progress: told the share that is done.
 
     Returns:
         A table along ``sample``: a column for each field that varies, one or more for each measure, ``seed``, ``arm``
@@ -43,7 +43,7 @@ def run_chunk(study: Study, number: int, progress: Progress | None = None) -> xr
             runs[sample] = run
         except SuchusError as error:
             errors[sample] = _say(error)
-    _walk(study, runs, rows, errors, progress or _silent)
+    _walk(study, runs, rows, errors, progress)
     return _table(study, [plan[s] for s in samples], samples, rows, errors)
 
 
@@ -59,7 +59,7 @@ def _walk(
             duration=study.duration,
             timestep=study.timestep,
             every=study.every,
-            progress=progress,
+            progress=partial(progress, "walking"),
         )
     except SuchusError as error:
         if len(runs) == 1:
@@ -139,7 +139,3 @@ def called(value: Any) -> str:
 
 def _say(error: SuchusError) -> str:
     return f"{type(error).__name__}: {' '.join(str(error).split())}"
-
-
-def _silent(share: float) -> None:
-    del share

@@ -1,7 +1,7 @@
 """The ready-made study of the article's claims: plausible designs and gaits, with and without spine, tail, joints."""
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -9,27 +9,25 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from suchus.design import Crocodile, unit_at, value_at
+from suchus.design import Robot, unit_at, value_at
 from suchus.design.checks import Checks
 from suchus.errors import UnreadableFile
 from suchus.gaits import GAITS, conditions_of
+from suchus.jobs import deciding
+from suchus.jobs.store import made_by
 from suchus.land import FAILED_JOINTS, Run, joint_failure
 from suchus.motion import START, Gait
 from suchus.paper import CYCLES
+from suchus.progress import Progress, silent
 from suchus.robots import ROBOTS
 from suchus.study.answers import agreement, answers
 from suchus.study.arm import Arm
 from suchus.study.claim_measures import FAULTY, METRICS, RUNS, asked_rules, held, measures_of
-from suchus.study.conduct import StudyProgress, conduct, finished
-from suchus.study.makers import deciding
-from suchus.study.store import made_by
+from suchus.study.conduct import conduct, finished
 from suchus.study.study import Study, Vary
 
 FINE = 0.002  # [s]; the time step of results
 _TRUNK = ("trunk_bend", "tail_bend", "tail_pitch")  # what the conditions differ in; the rest of a gait is its legs
-
-Progress = Callable[[str, StudyProgress], None]
-"""Called with which of the studies runs, and how far it is."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -41,7 +39,7 @@ class Claims:
     every condition of spine and tail, see ``claim_measures.RUNS``.
     """
 
-    robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
+    robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot whose other fields all samples share."""
     gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
     """The crawl whose other fields all samples share."""
@@ -138,14 +136,14 @@ class Claims:
 
 
 def conduct_claims(
-    asked: Claims, folder: Path, *, progress: Progress | None = None, client: Any = None, jobs: int = 1
+    asked: Claims, folder: Path, *, progress: Progress = silent, client: Any = None, jobs: int = 1
 ) -> xr.Dataset:
     """Find the time step that agrees with the full one, run what is not in the stores yet, and answer.
 
     Args:
         asked: the study.
         folder: for its stores, one below it for each time step that is compared and one for the runs.
-        progress: called with which study runs, and how far it is.
+        progress: told which study runs, and how many of its runs are done.
         client: a ``distributed.Client``, whose workers then run the batches; this process if None.
         jobs: number of processes of this machine, see ``conduct``.
 
@@ -164,8 +162,11 @@ def conduct_claims(
 
     def run(samples: int, timestep: float, place: str) -> xr.Dataset:
         study = replace(asked.study(samples, timestep), name=f"claims_{place}")
-        shown = None if progress is None else (lambda state: progress(place, state))
-        return asked.record(study, conduct(study, folder / place, progress=shown, client=client, jobs=jobs))
+
+        def tell(stage: str, share: float) -> None:
+            progress(f"{place.replace('_', ' ')}: {stage}", share)
+
+        return asked.record(study, conduct(study, folder / place, progress=tell, client=client, jobs=jobs))
 
     full = run(asked.compared, FINE, _compared(FINE))
     taken, agreed = FINE, []

@@ -1,35 +1,19 @@
-"""What can be measured: the functions of ``suchus.metrics`` that turn a record and a window into numbers."""
+"""What can be measured of a run: functions from a record to numbers, by name."""
 
 import inspect
-from collections.abc import Callable, Mapping
-from types import MappingProxyType
+from collections.abc import Callable
 
 import numpy as np
 import xarray as xr
 
-from suchus import metrics
+from suchus.catalog import Catalog
 from suchus.design.meaning import unit
+from suchus.errors import InvalidDesign
+from suchus.kinds import show
 
 Metric = Callable[[xr.Dataset], xr.DataArray]
-
-
-def _is_measure(function: object) -> bool:
-    """Whether it needs a record alone, takes a start and an end, and returns an array."""
-    if not inspect.isfunction(function):
-        return False
-    signature = inspect.signature(function)
-    needed = [p.name for p in signature.parameters.values() if p.default is p.empty]
-    return needed == ["record"] and {"start", "end"} <= set(signature.parameters) and _arrays(function)
-
-
-def _arrays(function: Callable[..., object]) -> bool:
-    return inspect.signature(function).return_annotation in (xr.DataArray, "xr.DataArray")
-
-
-MEASURES: Mapping[str, Metric] = MappingProxyType(
-    {name: getattr(metrics, name) for name in sorted(metrics.__all__) if _is_measure(getattr(metrics, name))}
-)
-"""By name."""
+MEASURES: Catalog[Metric] = Catalog("measure", "suchus.metrics", "collections.abc:Callable", scattered=True)
+"""The measures by name: those that the modules of ``suchus.metrics`` declare, and the user's."""
 
 
 def measured(record: xr.Dataset, names: tuple[str, ...]) -> list[dict[str, float]]:
@@ -41,10 +25,11 @@ def measured(record: xr.Dataset, names: tuple[str, ...]) -> list[dict[str, float
 
     Raises:
         IncompatibleRecord: the record is too short to be measured.
+        InvalidDesign: a measure of the user's is no array with a number for each run.
     """
     rows: list[dict[str, float]] = [{} for _ in range(record.sizes["run"])]
     for name in names:
-        array = MEASURES[name](record).transpose("run", ...)
+        array = _of_each_run(name, MEASURES[name](record))
         dims = [str(d) for d in array.dims[1:]]
         for index in np.ndindex(*array.shape[1:]):
             labels = [str(array[dim].values[i]) for dim, i in zip(dims, index, strict=True)]
@@ -52,6 +37,16 @@ def measured(record: xr.Dataset, names: tuple[str, ...]) -> list[dict[str, float
             for row, values in zip(rows, array.values, strict=True):
                 row[column] = float(values[index])
     return rows
+
+
+def _of_each_run(name: str, array: object) -> xr.DataArray:
+    """Return a measured array with the runs as its first dimension."""
+    if not isinstance(array, xr.DataArray) or "run" not in array.dims or "time" in array.dims:
+        what = f"the dimensions {', '.join(map(str, array.dims))}" if isinstance(array, xr.DataArray) else show(array)
+        raise InvalidDesign(
+            f"the measure {name} returns {what}; an xarray.DataArray with the dimension run and without time is needed."
+        )
+    return array.transpose("run", ...)
 
 
 def unit_of(name: str) -> str:

@@ -7,7 +7,8 @@ from typing import Any
 
 from suchus import blueprint
 from suchus.catalog import Catalog
-from suchus.design import Crocodile
+from suchus.control import CONTROLLERS, Control
+from suchus.design import Robot
 from suchus.errors import InvalidDesign
 from suchus.fault import Fault
 from suchus.faults import from_table
@@ -38,6 +39,8 @@ class StudyFile:
     """Ground: its friction scale, slopes and relief."""
     faults: tuple[dict[str, Any], ...] = ()
     """Faults as tables, see ``faults.from_table``."""
+    control: dict[str, Any] = field(default_factory=lambda: {"kind": "open_loop"})
+    """Controller as a table: its kind, a name on the shelf of controllers, and its fields."""
     noise: float = 0.0
     """Standard deviation of noise on every servo angle commanded [rad]."""
     design: Design = "factorial"
@@ -81,10 +84,11 @@ def read_study(path: Path) -> Study:
     """
     page = blueprint.read(path, StudyFile, {EXAMPLE.name: EXAMPLE})
     run = Run(
-        robot=find(page.robot, path.parent, Crocodile, ROBOTS),
+        robot=find(page.robot, path.parent, Robot, ROBOTS),
         gait=find(page.gait, path.parent, Gait, GAITS),
         ground=page.ground,
         faults=tuple(from_table(table) for table in page.faults),
+        control=_control(page.control),
         noise=page.noise,
     )
     return Study(
@@ -93,6 +97,22 @@ def read_study(path: Path) -> Study:
         arms=tuple(resolved_arm(arm, path.parent) for arm in page.arms),
         **{f.name: getattr(page, f.name) for f in fields(Study) if f.name not in ("run", "vary", "arms")},
     )
+
+
+def _control(table: Mapping[str, Any]) -> Control:
+    """Return the control that a table describes, as ``{kind = "pattern_generator", drive = 2.0}``.
+
+    Raises:
+        UnknownName: there is no controller of this kind.
+        InvalidDesign: it has no kind.
+        MistakenFile: a field is missing, unknown or impossible.
+    """
+    kind = table.get("kind")
+    if not isinstance(kind, str):
+        raise InvalidDesign(f"a control needs a kind ({', '.join(CONTROLLERS)}); {show(dict(table))} has none.")
+    fields = {key: value for key, value in table.items() if key != "kind"}
+    control: Control = blueprint.described(fields, CONTROLLERS[kind[:60]], f"the controller {kind}")
+    return control
 
 
 def resolved_arm(arm: Arm, place: Path) -> Arm:
@@ -118,7 +138,7 @@ def _resolved(vary: Vary, place: Path) -> Vary:
 def _meant(field: str, value: Any, place: Path) -> Any:
     """Return what a value of a file stands for: robots and gaits have names, faults are tables, lists are tuples."""
     if field == "robot" and isinstance(value, str):
-        return find(value, place, Crocodile, ROBOTS)
+        return find(value, place, Robot, ROBOTS)
     if field == "gait" and isinstance(value, str):
         return find(value, place, Gait, GAITS)
     if field == "faults":

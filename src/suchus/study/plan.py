@@ -78,9 +78,10 @@ class Plan(Sequence[Point]):
         return -(-len(self) // self.study.chunk)
 
     def chunk(self, number: int) -> range:
-        """Return which runs a batch holds."""
-        first = number * self.study.chunk
-        return range(first, min(first + self.study.chunk, len(self)))
+        """Return which runs a batch holds; batches of a study differ by one run at most."""
+        least, more = divmod(len(self), self.chunks)
+        first = number * least + min(number, more)
+        return range(first, first + least + (number < more))
 
     def run(self, index: int) -> Run:
         """Return one run.

@@ -106,7 +106,7 @@ class Study:
     timestep: float = 0.005
     """Time step of the physics [s]; up to 5 ms the crawl's displacement was measured to stay the same within 0.1 %."""
     chunk: int = 32
-    """Number of runs that are simulated together, and lost when the study is killed [-]; about 3 MB of memory for
+    """Most runs that are simulated together, and lost when the study is killed [-]; about 3 MB of memory for
     each."""
     arms: tuple[Arm, ...] = ()
     """Conditions of a comparison; every run is made in each of them."""

@@ -1,16 +1,17 @@
 """Verdicts on the article's claims: rules as data, what they say of measures, and how many designs agree."""
 
-from suchus.verdict.judging import Verdict, Word, judge
+from suchus.verdict.judging import Examples, Verdict, Word, judge
 from suchus.verdict.reading import Reading, compared, listed
 from suchus.verdict.rule import Band, Clause, Kind, Rule
 from suchus.verdict.shares import SHARES, Share
-from suchus.verdict.table import RULES, rules_of
+from suchus.verdict.table import RULES, examples_of, rules_of
 
 __all__ = [
     "RULES",
     "SHARES",
     "Band",
     "Clause",
+    "Examples",
     "Kind",
     "Reading",
     "Rule",
@@ -18,6 +19,7 @@ __all__ = [
     "Verdict",
     "Word",
     "compared",
+    "examples_of",
     "judge",
     "listed",
     "rules_of",

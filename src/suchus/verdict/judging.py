@@ -1,6 +1,6 @@
 """From a rule and measures to a verdict."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import isfinite
 from typing import Literal, get_args
@@ -17,6 +17,8 @@ the statement holds; or the robot does what is said of animals. ``contradicted``
 that is read back. ``fitted``: a free number was chosen so that it comes out.
 """
 WORDS: tuple[Word, ...] = get_args(Word)
+Examples = Mapping[str, Sequence[tuple[Mapping[str, float], Word]]]
+"""By claim: measures, and the word that its rule must say of them, on both sides of everything that it looks at."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -1,10 +1,11 @@
-"""All rules, by claim and by experiment, read from the shelf of experiments when they are asked for."""
+"""The rules by experiment, of the user's as of ours, and ours by claim: read from the shelf when they are asked for."""
 
 from collections.abc import Iterator, Mapping
 from functools import cached_property
 
 from suchus.errors import InvalidDesign
 from suchus.experiments import EXPERIMENTS
+from suchus.verdict.judging import Examples
 from suchus.verdict.rule import Rule
 
 
@@ -24,12 +25,19 @@ def rules_of(experiment: str) -> tuple[Rule, ...]:
     return tuple(rules)
 
 
+def examples_of(experiment: str) -> Examples:
+    """Return measures by which the rules of an experiment are tested, from the ``EXAMPLES`` beside its rules."""
+    examples: Examples = EXPERIMENTS.beside(experiment, "EXAMPLES", {})
+    return examples
+
+
 class Rules(Mapping[str, Rule]):
-    """The rules of all experiments on the shelf, by claim; they are read when the first is asked for."""
+    """The rules of all experiments of suchus, by claim; they are read when the first is asked for."""
 
     @cached_property
     def _by_claim(self) -> dict[str, Rule]:
-        return {rule.claim: rule for experiment in EXPERIMENTS for rule in rules_of(experiment)}
+        ours = [name for name, source in EXPERIMENTS.sources().items() if source.shipped]
+        return {rule.claim: rule for name in ours for rule in rules_of(name)}
 
     def __getitem__(self, claim: str) -> Rule:
         return self._by_claim[claim]

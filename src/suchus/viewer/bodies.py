@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 from scipy.cluster.vq import kmeans2
 
-from suchus.design import AnyRobot, layout
+from suchus.design import Robot, layout
 from suchus.design.relief import Relief
 from suchus.model import compile_model, joint_addresses
 from suchus.skin import Poses, ankles, bone_names, footed
@@ -25,7 +25,7 @@ class BodyPoses:
         robot: whose bodies.
     """
 
-    def __init__(self, robot: AnyRobot) -> None:
+    def __init__(self, robot: Robot) -> None:
         self.robot = robot
         self._place = layout(robot)
         self.model = compile_model(robot)
@@ -95,7 +95,7 @@ class SkinPiece:
 
 
 @lru_cache(maxsize=8)
-def pieces(robot: AnyRobot, count: int = COLOURS) -> tuple[SkinPiece, ...]:
+def pieces(robot: Robot, count: int = COLOURS) -> tuple[SkinPiece, ...]:
     """Return the skin of a robot cut by colour, since a browser's skinned mesh has but one.
 
     Args:

@@ -6,7 +6,7 @@ from typing import Any, Literal
 import numpy as np
 from mjviser.conversions import create_primitive_mesh
 
-from suchus.design import AnyRobot
+from suchus.design import Robot
 from suchus.design.relief import Relief
 from suchus.fault import Fault
 from suchus.robots import beside_article
@@ -30,7 +30,7 @@ class DrawnRobot:
         ghost: whether it is there for comparison: pale, one colour.
     """
 
-    def __init__(self, scene: Any, root: str, robot: AnyRobot, *, ghost: bool = False) -> None:
+    def __init__(self, scene: Any, root: str, robot: Robot, *, ghost: bool = False) -> None:
         self._scene, self._root, self._ghost = scene, root, ghost
         self.posture = BodyPoses(robot)
         self.relief: Relief | None = None

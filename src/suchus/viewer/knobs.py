@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from math import isfinite, radians
 from types import MappingProxyType
 
-from suchus.design import GRAVITY, AnyRobot, layout
+from suchus.design import GRAVITY, Robot, layout
 from suchus.errors import InvalidDesign, NotConverged, OutsideLimits
 from suchus.motion import Gait, check_limits
 from suchus.robots import beside_article
@@ -148,7 +148,7 @@ BREATH = Knob(
 )  # fmt: skip
 
 
-def force_on(robot: AnyRobot) -> Knob:
+def force_on(robot: Robot) -> Knob:
     """Return the knob of a push's force, which follows the weight of whom it pushes, in newtons or millinewtons."""
     weight = robot.mass * GRAVITY
     unit, scale = ("N", 1.0) if weight >= _FAINT else ("mN", 1e-3)
@@ -158,17 +158,17 @@ def force_on(robot: AnyRobot) -> Knob:
     return replace(FORCE, unit=unit, scale=scale, high=high, step=_rounded(high / 60.0), hint=hint)
 
 
-def push_on(robot: AnyRobot) -> float:
+def push_on(robot: Robot) -> float:
     """Return the force of a push as it is set at first [N]: 0.43 of the weight of a body of another size."""
     return _rounded(_PUSH * beside_article(robot).weight)
 
 
-def bumps_under(robot: AnyRobot) -> Knob:
+def bumps_under(robot: Robot) -> Knob:
     """Return the knob of the bumps' height, which follows the length of whom they are under."""
     return _resized(BUMPS, beside_article(robot).length)
 
 
-def knobs_of(robot: AnyRobot, gait: Gait) -> Mapping[str, Knob]:
+def knobs_of(robot: Robot, gait: Gait) -> Mapping[str, Knob]:
     """Return what can be turned of a gait, by name: the numbers that it has and that move something of the robot."""
     place = layout(robot)
     lacking = {
@@ -196,7 +196,7 @@ def shown(gait: Gait, name: str) -> float:
     return float(f"{gait.number(name) / GAIT_KNOBS[name].scale:.4g}")
 
 
-def tuned(robot: AnyRobot, gait: Gait, name: str, value: object) -> tuple[Gait, str]:
+def tuned(robot: Robot, gait: Gait, name: str, value: object) -> tuple[Gait, str]:
     """Return a gait with one field turned as far as the robot's joints follow, and a sentence if that is not as asked.
 
     Args:
@@ -221,7 +221,7 @@ def tuned(robot: AnyRobot, gait: Gait, name: str, value: object) -> tuple[Gait, 
     return fits, f"{knob.label}: the robot cannot follow {knob.said(asked)}; it is {knob.said(reached)} now. {why}"
 
 
-def _tried(robot: AnyRobot, gait: Gait, name: str, value: float) -> tuple[Gait, str]:
+def _tried(robot: Robot, gait: Gait, name: str, value: float) -> tuple[Gait, str]:
     """Return a gait with one field changed, and why the robot cannot follow it; empty if it can."""
     try:
         changed = gait.with_numbers(**{name: value})

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from scipy.ndimage import uniform_filter1d
 
-from suchus.design import GRAVITY, AnyRobot
+from suchus.design import GRAVITY, Robot
 from suchus.figures import COLOURS
 from suchus.figures.style import limb_colours
 from suchus.metrics.gait import LOADED_SHARE
@@ -47,7 +47,7 @@ class PlotLayout:
     """Over how long values are averaged [s]; feet that touch down make spikes that hide the rest."""
 
 
-def plans(robot: AnyRobot) -> tuple[PlotLayout, ...]:
+def plans(robot: Robot) -> tuple[PlotLayout, ...]:
     """Return the charts of a robot, from above."""
     light = robot.mass < _LIGHT
     return (
@@ -144,7 +144,7 @@ def series(uplot: Any, line: Line) -> Any:
     return uplot.Series(label=line.label, stroke=line.colour, width=1.6, **dashes)
 
 
-def gait_bars(robot: AnyRobot, table: Mapping[str, np.ndarray], *, now: float | None = None, width: int = 330) -> str:
+def gait_bars(robot: Robot, table: Mapping[str, np.ndarray], *, now: float | None = None, width: int = 330) -> str:
     """Return the gait as an SVG picture: a bar for every stance of every foot; empty for a robot without limbs.
 
     Args:
@@ -199,7 +199,7 @@ class Plots:
         compared: whether there is a second run, drawn pale.
     """
 
-    def __init__(self, gui: Any, uplot: Any, robot: AnyRobot, *, compared: bool = False) -> None:
+    def __init__(self, gui: Any, uplot: Any, robot: Robot, *, compared: bool = False) -> None:
         self._robot = robot
         panel = gui.add_panel()
         with panel.add_tab("Measured"):

@@ -7,7 +7,7 @@ from threading import RLock
 import numpy as np
 import xarray as xr
 
-from suchus.design import AnyRobot, joint_names
+from suchus.design import Robot, joint_names
 from suchus.design.ground import Ground
 from suchus.errors import IncompatibleRecord, UnknownName
 from suchus.motion import START
@@ -25,7 +25,7 @@ class Take:
 
     label: str
     """Name, for the page."""
-    robot: AnyRobot
+    robot: Robot
     """The robot that walks in it."""
     record: xr.Dataset
     """The run, without the dimension ``run``."""
@@ -66,7 +66,7 @@ class Take:
         return table_of(self.record, self.origin)
 
 
-def takes(path: Path, robot: AnyRobot | None = None) -> tuple[Take, ...]:
+def takes(path: Path, robot: Robot | None = None) -> tuple[Take, ...]:
     """Return the runs of a record on land.
 
     Args:
@@ -95,7 +95,7 @@ def _tells_level(record: xr.Dataset) -> bool:
     return level.dtype.kind == "f" and set(level.dims) in ({"time"}, {"run", "time"})
 
 
-def _take(path: Path, run: xr.Dataset, number: int, robot: AnyRobot | None) -> Take:
+def _take(path: Path, run: xr.Dataset, number: int, robot: Robot | None) -> Take:
     who = robot or _robot(path, str(run.coords["robot"].item()) if "robot" in run.coords else "caiman")
     if tuple(run.joint.values) != joint_names(who):
         raise IncompatibleRecord(
@@ -110,9 +110,9 @@ def _take(path: Path, run: xr.Dataset, number: int, robot: AnyRobot | None) -> T
     return Take(label=f"{number}: {label}", robot=who, record=run.isel(time=valid).load(), ground=ground)
 
 
-def _robot(path: Path, name: str) -> AnyRobot:
+def _robot(path: Path, name: str) -> Robot:
     try:
-        found: AnyRobot = ROBOTS[name]
+        found: Robot = ROBOTS[name]
     except UnknownName as error:
         raise IncompatibleRecord(
             f"{path} was walked by robot {name!r}, which is not on the shelf: give its file with --robot FILE.toml."

@@ -4,7 +4,7 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from suchus.blueprint import render
-from suchus.design import AnyRobot
+from suchus.design import Robot
 from suchus.gaits import GAITS
 from suchus.viewer.session import Settings
 
@@ -18,7 +18,7 @@ class SavedFile(NamedTuple):
     """Its text, in UTF-8."""
 
 
-def gait_file(robot: AnyRobot, settings: Settings) -> SavedFile:
+def gait_file(robot: Robot, settings: Settings) -> SavedFile:
     """Return the gait that is walked; one that differs from the shelf's gait of its name is called ``NAME_tuned``.
 
     Args:
@@ -32,7 +32,7 @@ def gait_file(robot: AnyRobot, settings: Settings) -> SavedFile:
     return _file(gait.name, render(gait, head=head))
 
 
-def robot_file(robot: AnyRobot) -> SavedFile:
+def robot_file(robot: Robot) -> SavedFile:
     """Return the robot that is watched."""
     return _file(robot.name, render(robot, head=("Saved from a live walk.",)))
 

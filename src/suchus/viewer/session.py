@@ -8,7 +8,7 @@ from typing import Any, Literal
 import numpy as np
 
 from suchus.control import LAWS, Coordinated, HeadingRule, Swimming
-from suchus.design import AnyRobot, front_segment, layout
+from suchus.design import Robot, front_segment, layout
 from suchus.design.relief import Bumps
 from suchus.design.scale import coarse_step, control_period
 from suchus.errors import Diverged, SuchusError
@@ -81,7 +81,7 @@ class Settings:
     broken: tuple[Fault, ...] = ()
     """Faults, each from the beginning of the next walk on."""
 
-    def walked(self, robot: AnyRobot) -> Gait:
+    def walked(self, robot: Robot) -> Gait:
         """Return the gait of a robot with the switches of spine and tail."""
         if self.spine and self.tail:
             return self.gait
@@ -115,7 +115,7 @@ _PLAIN: dict[str, Knob] = {
 }  # fmt: skip
 
 
-def plain_knobs(robot: AnyRobot) -> dict[str, Knob]:
+def plain_knobs(robot: Robot) -> dict[str, Knob]:
     """Return the knobs of the fields of ``Settings`` that are numbers, for a robot."""
     return {**_PLAIN, "bumps": bumps_under(robot), "force": force_on(robot)}
 
@@ -154,9 +154,7 @@ class Session:
         InvalidDesign: the time step does not divide the control period.
     """
 
-    def __init__(
-        self, robot: AnyRobot, gait: Gait, *, timestep: float | None = None, swim: Swim | None = None
-    ) -> None:
+    def __init__(self, robot: Robot, gait: Gait, *, timestep: float | None = None, swim: Swim | None = None) -> None:
         check_limits(robot, gait)
         self.robot = robot
         share = beside_article(robot).length

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from mjviser.conversions import create_primitive_mesh
 
-from suchus.design import GRAVITY, AnyRobot, front_segment, layout
+from suchus.design import GRAVITY, Robot, front_segment, layout
 from suchus.design.ground import slope
 from suchus.design.relief import Relief, heights
 from suchus.fault import Fault
@@ -45,7 +45,7 @@ def rgb(colour: str) -> tuple[int, int, int]:
     return int(colour[1:3], 16), int(colour[3:5], 16), int(colour[5:7], 16)
 
 
-def camera(robot: AnyRobot) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
+def camera(robot: Robot) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
     """Return where the camera is at first and where it looks, to have a robot in view [m]."""
     (a, b, c), (x, y, z), far = CAMERA, LOOKS_AT, beside_article(robot).length
     return (far * a, far * b, far * c), (far * x, far * y, far * z)
@@ -69,7 +69,7 @@ class Stage:
         robot: who walks.
     """
 
-    def __init__(self, scene: Any, robot: AnyRobot) -> None:
+    def __init__(self, scene: Any, robot: Robot) -> None:
         self._scene, self._size = scene, beside_article(robot).length
         weight = robot.mass * GRAVITY
         self._per_newton, self._least = self._size * _WEIGHT / weight, LOADED_SHARE * weight
@@ -135,7 +135,7 @@ class Stage:
                 position=np.array(geom.pos),
             )
 
-    def compare(self, robot: AnyRobot) -> None:
+    def compare(self, robot: Robot) -> None:
         """Add a ghost for comparison."""
         self.ghost = DrawnRobot(self._scene, f"{WORLD}/ghost", robot, ghost=True)
         self.ghost.relief = self.robot.relief

@@ -28,7 +28,7 @@ class VortexFilm:
     """The last cycle of a swim in three dimensions, frame by frame.
 
     Args:
-        record: of the experiment ``swim_3d``, or of ``water.swim_in_space`` with frames; see ``figures.vortices``.
+        record: of the experiment ``swim_3d``, or of ``water.resolved`` in space with frames; see ``figures.vortices``.
         whose: how a sentence about it begins.
 
     Raises:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import Crocodile, cable_joints, layout
+from suchus.design import Robot, cable_joints, layout
 from suchus.errors import InvalidDesign, OutsideLimits
 from suchus.motion import Swim, bends
 from suchus.motion.swim import trunk_yaws
@@ -34,7 +34,7 @@ class Fit:
     """Greatest bend that the wave asks of each joint where it stands, in the order of ``Outline.places`` [rad]."""
 
 
-def fit(robot: Crocodile, wave: BodyWave, *, name: str = "wave", most: float = 0.25) -> Fit:
+def fit(robot: Robot, wave: BodyWave, *, name: str = "wave", most: float = 0.25) -> Fit:
     """Return the motion of the joints that comes nearest to a wave, least squares on tangent angles.
 
     Angles are compared at equal arc lengths over one cycle, their first harmonic in time; the head's direction is
@@ -107,18 +107,18 @@ def _asked(outline: Outline, heading: np.ndarray) -> np.ndarray:
     return np.asarray(np.abs(ends[1] - ends[0]).max(axis=0))
 
 
-def _limits(robot: Crocodile) -> np.ndarray:
+def _limits(robot: Robot) -> np.ndarray:
     low, high = robot.spine.yaw_range
     count = len(cable_joints(robot))
     cable, passive = robot.tail.bend_limit / count, 1.2  # [rad]; the model stops a passive joint there
     return np.array([*3 * [min(-low, high)], *count * [cable], *robot.tail.fin_segments * [passive]])
 
 
-def _joints(robot: Crocodile) -> tuple[str, ...]:
+def _joints(robot: Robot) -> tuple[str, ...]:
     return (*trunk_yaws(robot), *cable_joints(robot), *(f"fin_yaw_{i + 1}" for i in range(robot.tail.fin_segments)))
 
 
-def _check_amplitudes(robot: Crocodile, name: str, amplitudes: np.ndarray) -> None:
+def _check_amplitudes(robot: Robot, name: str, amplitudes: np.ndarray) -> None:
     low, high = robot.spine.yaw_range
     limits = [*3 * [min(-low, high)], robot.tail.bend_limit]
     place = layout(robot)

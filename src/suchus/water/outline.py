@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import AnyRobot, Crocodile, cable_joints, crocodile, general
+from suchus.design import Robot, cable_joints, crocodile, general
 from suchus.design.profile import profile
 from suchus.errors import InvalidDesign
 from suchus.motion import Bends
@@ -29,7 +29,7 @@ class BodySilhouette(NamedTuple):
     """Up and down [m]."""
 
 
-def silhouette(robot: AnyRobot, s: Float[np.ndarray, " station"]) -> BodySilhouette:
+def silhouette(robot: Robot, s: Float[np.ndarray, " station"]) -> BodySilhouette:
     """Return how far the straight robot reaches sideways and upwards, limbs left out.
 
     Args:
@@ -83,7 +83,7 @@ class Outline:
     curvature is even.
     """
 
-    robot: Crocodile
+    robot: Robot
     """Robot whose midline it is."""
     stations: int = STATIONS
     """Points along it [-]."""

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
-from suchus.design import Crocodile
+from suchus.design import Robot
 from suchus.errors import OutsideLimits
 from suchus.kinematics.wave import READINGS
 from suchus.water.fit import Fit, fit
@@ -21,7 +21,7 @@ class Attempt(NamedTuple):
     """Why not: the joint and by how much."""
 
 
-def attempts(robot: Crocodile, *, frequency: float, sign: int = -1) -> list[Attempt]:
+def attempts(robot: Robot, *, frequency: float, sign: int = -1) -> list[Attempt]:
     """Return what a robot's joints make of (20) in each of its readings.
 
     Args:

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
-from suchus.design import GRAVITY, Crocodile
+from suchus.design import GRAVITY, Robot
 from suchus.design.water import Water
 from suchus.errors import OutsideLimits
 from suchus.motion import Swim, check_swim
@@ -32,7 +32,7 @@ def scaled(motion: Swim, amplitude: float, frequency: float) -> Swim:
     return replace(motion, yaw=(first, second, third), tail=amplitude * motion.tail, frequency=frequency)
 
 
-def survey(robot: Crocodile, motions: Sequence[Swim], *, water: Water | None = None, stations: int = 65) -> xr.Dataset:
+def survey(robot: Robot, motions: Sequence[Swim], *, water: Water | None = None, stations: int = 65) -> xr.Dataset:
     """Return what both slender-body models say of motions, and which of them the robot can follow.
 
     Args:
@@ -51,7 +51,7 @@ def survey(robot: Crocodile, motions: Sequence[Swim], *, water: Water | None = N
     return xr.Dataset({**data, "possible": ("motion", possible, {"units": "1"})}, coords={"model": list(MODELS)})
 
 
-def greatest(robot: Crocodile, motion: Swim, *, most: float = 4.0) -> float:
+def greatest(robot: Robot, motion: Swim, *, most: float = 4.0) -> float:
     """Return the greatest factor of every angle at which joints and servos still follow a motion, to 1e-4 [-].
 
     Args:
@@ -90,7 +90,7 @@ def _one(outline: Outline, motion: Swim, model: Model, water: Water) -> tuple[fl
     )
 
 
-def _possible(robot: Crocodile, motion: Swim) -> bool:
+def _possible(robot: Robot, motion: Swim) -> bool:
     try:
         check_swim(robot, motion)
     except OutsideLimits:

@@ -3,7 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from suchus.design import GRAVITY, WATER_DENSITY, Crocodile, crocodile
+from suchus.design import GRAVITY, WATER_DENSITY, Robot, crocodile
 from suchus.design.water import Water
 from suchus.motion import Swim, check_swim
 from suchus.robots import ROBOTS
@@ -15,7 +15,7 @@ MODELS: dict[str, Model] = {"resistive": resistive, "reactive": reactive}
 """The models by name."""
 
 
-def swim(robot: Crocodile | str, motion: Motion, *, water: Water | None = None, stations: int = 257) -> xr.Dataset:
+def swim(robot: Robot | str, motion: Motion, *, water: Water | None = None, stations: int = 257) -> xr.Dataset:
     """Return how a robot swims by the resistive and the reactive model.
 
     ``thrust_held`` is the mean force on a body that is kept from moving on but free to sway and turn; everything else
@@ -67,7 +67,7 @@ _PER_MODEL = {
 
 
 def _numbers(
-    robot: Crocodile, motion: Motion, outline: Outline, curve: MidlineCurve, speed: float, power: float
+    robot: Robot, motion: Motion, outline: Outline, curve: MidlineCurve, speed: float, power: float
 ) -> dict[str, float]:
     swing = float(np.ptp(curve.y[:, -1]))
     weight = GRAVITY * displaced(outline)

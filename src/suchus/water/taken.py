@@ -7,7 +7,7 @@ cannot see that.
 import numpy as np
 import xarray as xr
 
-from suchus.design import Crocodile, cable_joints
+from suchus.design import Robot, cable_joints
 from suchus.design.joints import fin_joints
 from suchus.errors import InvalidDesign
 from suchus.water.outline import Outline
@@ -17,7 +17,7 @@ HARMONICS = 4
 """Harmonics that are kept, the mean among them [-]; a mean bend would steer, and is left out."""
 
 
-def lateral_joints(robot: Crocodile) -> tuple[str, ...]:
+def lateral_joints(robot: Robot) -> tuple[str, ...]:
     """Return the joints that bend the midline, in the order of ``Outline.places``: trunk, cable, passive end."""
     trunk = tuple(f"spine_yaw_{i}" for i in (1, 2, 3))
     return (*trunk, *cable_joints(robot), *fin_joints(robot)[::2])

@@ -5,7 +5,7 @@ from typing import Protocol, runtime_checkable
 
 import numpy as np
 
-from suchus.design import Crocodile
+from suchus.design import Robot
 from suchus.kinematics import wave as wave_kinematics
 from suchus.kinematics.wave import READINGS, TravellingWave
 
@@ -87,7 +87,7 @@ class EelWave:
 
 
 def printed_wave(
-    robot: Crocodile, reading: str = "I", *, frequency: float = 1.0, sign: int = -1, waves_per_body: float = 1.0
+    robot: Robot, reading: str = "I", *, frequency: float = 1.0, sign: int = -1, waves_per_body: float = 1.0
 ) -> PrintedWave:
     """Return (20) on a robot in one of its readings.
 

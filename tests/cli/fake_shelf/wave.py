@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from suchus.design import Crocodile
+from suchus.design import Robot
 from suchus.errors import InvalidDesign
 from suchus.experiment import Experiment, Measure, Simulated, silent
 from suchus.figures import LINES, captioned, panels
@@ -24,7 +24,7 @@ class Wave(Experiment):
     shows = "Fig. 16"
     judged_with = ()
 
-    robot: Crocodile = ROBOTS["caiman"]
+    robot: Robot = ROBOTS["caiman"]
     """Who waves."""
     gait: Gait = GAITS["belly_crawl"]
     """How it walks."""

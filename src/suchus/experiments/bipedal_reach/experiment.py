@@ -10,7 +10,7 @@ import xarray as xr
 
 from suchus.control import OpenLoop
 from suchus.control.standing import BALANCE, Balance, Standing
-from suchus.design import Crocodile
+from suchus.design import Robot
 from suchus.design.checks import Checks
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.experiments.bipedal_reach import findings
@@ -47,7 +47,7 @@ class BipedalReach(Experiment):
     judged_with = ("robot", "gait", "balance", "least")
     judged_from: ClassVar[Mapping[str, float]] = {"hold": 10.0, "repeats": 4, "hips": 3}
 
-    robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
+    robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that stands up."""
     gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
     """The crawl before and after."""
@@ -175,7 +175,7 @@ class BipedalReach(Experiment):
         data.attrs["stages"] = [*stages, standing.down_from(self.robot), duration]
         return data
 
-    def _settled(self, robots: Sequence[Crocodile], leads: Sequence[float], progress: Any) -> xr.Dataset:
+    def _settled(self, robots: Sequence[Robot], leads: Sequence[float], progress: Any) -> xr.Dataset:
         """Return reach and lead of robots that stood up; zero where the postures are out of reach."""
         controls = [stand_soon(robot, ahead, self.balance) for robot, ahead in zip(robots, leads, strict=True)]
         able = [control is not None for control in controls]

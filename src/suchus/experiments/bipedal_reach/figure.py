@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from suchus.design import Crocodile
+from suchus.design import Robot
 from suchus.figures.style import COLOURS, LINES, SEQUENTIAL, captioned, panels, styled
 from suchus.paper import CLAIMS
 
@@ -64,7 +64,7 @@ def _lay_heights(ax: Axes, record: xr.Dataset, begin: float, stop: float) -> Non
     ax.set_xlim(begin, stop)
 
 
-def draw_limits(robot: Crocodile, record: xr.Dataset, up: float) -> Figure:
+def draw_limits(robot: Robot, record: xr.Dataset, up: float) -> Figure:
     """Draw which robots stand up, over the torque of the trunk's servos and the mass of the forebody.
 
     Args:
@@ -111,7 +111,7 @@ def draw_limits(robot: Crocodile, record: xr.Dataset, up: float) -> Figure:
     )
 
 
-def draw_ceiling(robot: Crocodile, record: xr.Dataset) -> Figure:
+def draw_ceiling(robot: Robot, record: xr.Dataset) -> Figure:
     """Draw the lengths that make up the greatest reach, and what is left of it for a stand that is safe.
 
     Args:

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from suchus import rotation
-from suchus.design import Crocodile, layout
+from suchus.design import Robot, layout
 from suchus.figures.posture import draw_posture, skeleton
 from suchus.figures.style import COLOURS, captioned, panels, styled
 from suchus.metrics import tilt
@@ -17,7 +17,7 @@ _TOUCHES = 0.5  # [N]; less is no support
 _GAP = 0.06  # [m] between two robots of the strip
 
 
-def draw_side_views(robot: Crocodile, record: xr.Dataset) -> Figure:
+def draw_side_views(robot: Robot, record: xr.Dataset) -> Figure:
     """Draw the robot from its right side at five times while it rises, with mass, support and reach.
 
     Args:
@@ -79,7 +79,7 @@ def _shift(record: xr.Dataset, x: float) -> xr.DataArray:
     return xr.DataArray([x - float(now), 0.0, 0.0], dims="xyz", coords={"xyz": record.xyz})
 
 
-def _extent(robot: Crocodile, record: xr.Dataset, time: float) -> tuple[float, float]:
+def _extent(robot: Robot, record: xr.Dataset, time: float) -> tuple[float, float]:
     """Return how far the robot extends behind and ahead of the middle of its hind feet [m]."""
     bones = skeleton(robot, record, time)
     x = np.concatenate([part[:, 0] for part in (bones.trunk, bones.tail, *bones.legs)])
@@ -110,7 +110,7 @@ def _mark_support(ax: Axes, now: xr.Dataset) -> None:
     ax.plot(x, [-0.012] * len(x), "^", color="#B8860B", markersize=7, zorder=6, clip_on=False)
 
 
-def draw_angles(robot: Crocodile, record: xr.Dataset) -> Figure:
+def draw_angles(robot: Robot, record: xr.Dataset) -> Figure:
     """Draw the angles of pelvis, trunk and tail over time, up positive, while it rises and while it lies down.
 
     Args:

@@ -5,7 +5,7 @@ from operator import attrgetter
 import numpy as np
 
 from suchus.control.standing import Balance, Standing
-from suchus.design import Crocodile, with_values
+from suchus.design import Robot, with_values
 from suchus.errors import OutsideLimits
 from suchus.motion import Gait
 from suchus.motion.posture import plan
@@ -21,7 +21,7 @@ PARTS = {
 """Names of the numbers that make up the length of a part."""
 
 
-def heavier(robot: Crocodile, mass: float, torque: float) -> Crocodile:
+def heavier(robot: Robot, mass: float, torque: float) -> Robot:
     """Return the robot with another forebody, the pelvis taking the rest, and other pitch servos in the trunk."""
     own = robot.thorax.mass + robot.head.mass
     return with_values(
@@ -35,24 +35,24 @@ def heavier(robot: Crocodile, mass: float, torque: float) -> Crocodile:
     )
 
 
-def lengthened(robot: Crocodile, part: str, factor: float) -> Crocodile:
+def lengthened(robot: Robot, part: str, factor: float) -> Robot:
     """Return the robot with longer legs, a longer spine, or a longer head; masses stay."""
     return with_values(robot, {path: factor * attrgetter(path)(robot) for path in PARTS[part]})
 
 
-def length(robot: Crocodile, part: str) -> float:
+def length(robot: Robot, part: str) -> float:
     """Return the length of a part, of the hind leg for the legs [m]."""
     leg = robot.hind_leg
     return {"leg": leg.femur + leg.tibia, "spine": robot.spine.length, "head": robot.head.snout}[part]
 
 
-def fitted(gait: Gait, robot: Crocodile, original: Crocodile) -> Gait:
+def fitted(gait: Gait, robot: Robot, original: Robot) -> Gait:
     """Return the gait with its heights and reaches in proportion to a robot's legs, its strokes and lifts as before."""
     factor = length(robot, "leg") / length(original, "leg")
     return gait.with_numbers(stroke=gait.number("stroke") / factor, lift=gait.number("lift") / factor)
 
 
-def stand_soon(robot: Crocodile, ahead: float, balance: Balance | None) -> Standing | None:
+def stand_soon(robot: Robot, ahead: float, balance: Balance | None) -> Standing | None:
     """Return a control that stands up at once and stays, or None for a robot that cannot take the postures."""
     try:
         rise = stand_up(robot, lead=ahead)
@@ -62,6 +62,6 @@ def stand_soon(robot: Crocodile, ahead: float, balance: Balance | None) -> Stand
     return Standing(at=SOON, hold=86400.0, balance=balance, rise=rise)
 
 
-def up_at(robot: Crocodile) -> float:
+def up_at(robot: Robot) -> float:
     """Return when a robot that stands up at once is upright [s]."""
     return Standing(at=SOON, hold=0.0).upright_from(robot)

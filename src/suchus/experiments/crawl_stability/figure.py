@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from suchus.design import AnyRobot
+from suchus.design import Robot
 from suchus.figures.posture import draw_posture
 from suchus.figures.style import COLOURS, LINES, captioned, panels, styled
 from suchus.figures.timeseries import draw_lines, mark_cycles
@@ -74,7 +74,7 @@ def draw_spreads(record: xr.Dataset, names: Sequence[str]) -> Figure:
     )
 
 
-def draw_snapshots(robot: AnyRobot, record: xr.Dataset, arms: Mapping[str, int], times: Sequence[float]) -> Figure:
+def draw_snapshots(robot: Robot, record: xr.Dataset, arms: Mapping[str, int], times: Sequence[float]) -> Figure:
     """Draw postures from above with support and projected centre of mass.
 
     Args:

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from suchus.control import Rolling
-from suchus.design import Crocodile
+from suchus.design import Robot
 from suchus.design.checks import Checks
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Simulated, silent, staged
 from suchus.experiments.death_roll.figure import draw_cost, draw_rates, draw_roll
@@ -39,7 +39,7 @@ class DeathRoll(Experiment):
     shows = "The roll that section I names; beyond the article"
     needs = ("tables", "article_spine", "cable_tail")
 
-    robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
+    robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that rolls."""
     frequency: float = 1.0
     """Frequency of the bends [Hz], 0.05 to 5."""

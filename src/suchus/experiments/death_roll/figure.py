@@ -10,7 +10,7 @@ from matplotlib.patches import Circle, Polygon
 from scipy.interpolate import CubicSpline, PchipInterpolator
 
 from suchus import rotation
-from suchus.design import LEGS, Crocodile
+from suchus.design import LEGS, Robot
 from suchus.figures.posture import skeleton
 from suchus.figures.style import COLOURS, captioned, panels, styled
 from suchus.metrics import peak_torque, roll_angle
@@ -35,7 +35,7 @@ _ANIMAL = ANIMAL["death_roll"].high
 _TURN = 2 * np.pi
 
 
-def draw_roll(robot: Crocodile, record: xr.Dataset) -> Figure:
+def draw_roll(robot: Robot, record: xr.Dataset) -> Figure:
     """Draw the robot from its right side while it turns once, in vacuum, bent as a C.
 
     Args:
@@ -102,7 +102,7 @@ def draw_rates(record: xr.Dataset) -> Figure:
     )
 
 
-def draw_cost(robot: Crocodile, record: xr.Dataset, start: float) -> Figure:
+def draw_cost(robot: Robot, record: xr.Dataset, start: float) -> Figure:
     """Draw peak torques and speeds against what the servos can do, and the check of the angular momentum.
 
     Args:
@@ -169,7 +169,7 @@ def _c_points(ax: Axes, record: xr.Dataset) -> None:
         )  # fmt: skip
 
 
-def _loads(ax: Axes, robot: Crocodile, record: xr.Dataset, start: float) -> None:
+def _loads(ax: Axes, robot: Robot, record: xr.Dataset, start: float) -> None:
     groups = ("spine_yaw", "spine_pitch", "tail_pitch", "tail_cable")
     names = ("trunk yaw", "trunk pitch", "tail pitch", "tail cable")
     place = np.arange(len(groups))
@@ -196,7 +196,7 @@ def _loads(ax: Axes, robot: Crocodile, record: xr.Dataset, start: float) -> None
     ax.legend(loc="upper right", ncols=2, fontsize=10)
 
 
-def _body(ax: Axes, robot: Crocodile, run: xr.Dataset, time: float) -> None:
+def _body(ax: Axes, robot: Robot, run: xr.Dataset, time: float) -> None:
     """Draw the body from its side, right of the page being ahead; y of the world points into the page."""
     bones = skeleton(robot, run, time)
     now = run.sel(time=time, method="nearest")

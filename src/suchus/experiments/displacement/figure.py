@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
-from suchus.design import AnyRobot
+from suchus.design import Robot
 from suchus.figures.data import carry
 from suchus.figures.posture import draw_strip
 from suchus.figures.style import COLOURS, LINES, SEQUENTIAL, captioned, panels, styled
@@ -17,7 +17,7 @@ from suchus.motion import START
 _USUAL = 1.01  # [m]; length of the article's robot, for which distances between the strips are
 
 
-def draw_crawls(robot: AnyRobot, record: xr.Dataset, arms: Sequence[str]) -> Figure:
+def draw_crawls(robot: Robot, record: xr.Dataset, arms: Sequence[str]) -> Figure:
     """Draw one robot per run from above at the beginning, between and at the end of its walk.
 
     Args:

@@ -10,7 +10,7 @@ import xarray as xr
 
 from suchus.control import LAWS, Coordinated, HeadingRule, Kick
 from suchus.control.topology import topology
-from suchus.design import AnyRobot, layout
+from suchus.design import Robot, layout
 from suchus.design.checks import Checks
 from suchus.design.scale import coarse_step, control_period
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
@@ -73,7 +73,7 @@ class Feedback(Experiment):
     judged_with = ("robot", "gait", "kick", "slope", "push", "noise")
     judged_from: ClassVar[Mapping[str, float]] = {"starts": 16, "cycles": 12, "hold": 2.0, "after": 5}
 
-    robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
+    robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that crawls."""
     gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
     """Gait of the robot; its limbs must form diagonal pairs."""
@@ -113,7 +113,7 @@ class Feedback(Experiment):
         """Two starts, few and short cycles."""
         return replace(self, gait=replace(self.gait, period=2.0), starts=2, cycles=2, hold=0.5, after=1)
 
-    def gaits_on(self, robot: AnyRobot) -> dict[str, Any]:
+    def gaits_on(self, robot: Robot) -> dict[str, Any]:
         """Return the robot's own gait, and a kick for each of its limbs.
 
         Raises:

@@ -11,7 +11,7 @@ import xarray as xr
 
 from suchus import rotation
 from suchus.control import Swimming
-from suchus.design import AnyRobot, Crocodile
+from suchus.design import Robot
 from suchus.design.checks import Checks
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.experiments.floating import cases
@@ -44,9 +44,9 @@ class Floating(Experiment):
     shows = "Beyond the article, whose robot is amphibious and whose body is not said to float"
     needs = ("tables", "cable_tail")  # as the controller that holds the limbs out
 
-    robot: AnyRobot = field(default_factory=lambda: ROBOTS["floating_caiman"])
+    robot: Robot = field(default_factory=lambda: ROBOTS["floating_caiman"])
     """The robot that floats."""
-    bare: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
+    bare: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot without its hull, whose hydrostatics are set beside."""
     heels: tuple[float, ...] = (radians(60), radians(120), radians(150))
     """Angles of heel from which the robot is let go [rad]; the last one is the measure."""
@@ -150,8 +150,8 @@ class Floating(Experiment):
             found[f"static_{name}"] = ("hull", np.array([float(getattr(one, name)) for one in both]), {"units": unit})
         return found
 
-    def _posture(self, robot: AnyRobot) -> np.ndarray | None:
-        return Swimming(swim=STILL).targets(robot, np.zeros(1))[0] if isinstance(robot, Crocodile) else None
+    def _posture(self, robot: Robot) -> np.ndarray | None:
+        return Swimming(swim=STILL).targets(robot, np.zeros(1))[0] if robot.tables is not None else None
 
     def _let_go(self, progress: Any) -> xr.Dataset:
         crawl = GAITS["belly_crawl"]

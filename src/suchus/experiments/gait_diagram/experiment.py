@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from suchus import blueprint
-from suchus.design import AnyRobot, layout
+from suchus.design import Robot, layout
 from suchus.design.checks import Checks
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.figures import captioned
@@ -51,7 +51,7 @@ class GaitDiagram(Experiment):
     needs = ("limbs",)
     judged_with = ("robot", "gait", "cycles")
 
-    robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
+    robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that crawls."""
     gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
     """The gait that is shown."""
@@ -179,7 +179,7 @@ def _upright(m: Mapping[str, Reading]) -> str:
     return f" Up and down moves {moves}; down is positive." if moves else ""
 
 
-def _sensed(robot: AnyRobot, record: xr.Dataset) -> dict[str, np.ndarray]:
+def _sensed(robot: Robot, record: xr.Dataset) -> dict[str, np.ndarray]:
     """Return the angles of spine and tail in the article's signs, right and down positive [rad]."""
     place = layout(robot)
     tail = {place.servos[i] for i in place.tail_yaw} | {name for i in place.cables for name in place.cable(i).hinges}
@@ -192,7 +192,7 @@ def _sensed(robot: AnyRobot, record: xr.Dataset) -> dict[str, np.ndarray]:
     }
 
 
-def _commanded(robot: AnyRobot, record: xr.Dataset) -> dict[str, np.ndarray]:
+def _commanded(robot: Robot, record: xr.Dataset) -> dict[str, np.ndarray]:
     """Return the commanded angles of those parts that a servo bends [rad]."""
     place, commanded = layout(robot), record.servo_target.transpose("time", "servo").values
     found: dict[str, np.ndarray] = {}
@@ -205,7 +205,7 @@ def _commanded(robot: AnyRobot, record: xr.Dataset) -> dict[str, np.ndarray]:
     return found | vertical
 
 
-def _pitching(robot: AnyRobot) -> dict[str, tuple[int, ...]]:
+def _pitching(robot: Robot) -> dict[str, tuple[int, ...]]:
     """Return the servos that bend spine and tail up and down, of those parts that have some."""
     place = layout(robot)
     return {part: servos for part, servos in (("spine", place.trunk_pitch), ("tail", place.tail_pitch)) if servos}

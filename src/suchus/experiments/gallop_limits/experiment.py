@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 import xarray as xr
 
-from suchus.design import Crocodile, Servo, layout
+from suchus.design import Robot, Servo, layout
 from suchus.design.checks import Checks
 from suchus.design.servos import with_servos
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
@@ -43,7 +43,7 @@ class GallopLimits(Experiment):
     judged_with = ("robot", "bounds", "trots", "walks", "noise")
     judged_from: ClassVar[Mapping[str, float]] = {"speeds": 4, "torques": 3, "seconds": 3.0}
 
-    robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
+    robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that is to gallop."""
     bounds: tuple[Searched, ...] = BOUNDS
     """Bounding gaits, each found for another servo: both front feet, then both hind feet."""
@@ -130,7 +130,7 @@ class GallopLimits(Experiment):
         place = layout(self.robot)
         return [index for limb in place.limbs for index in range(*limb.servos.indices(len(place.servos)))]
 
-    def _with(self, torque: float, speed: float) -> Crocodile:
+    def _with(self, torque: float, speed: float) -> Robot:
         """Return the robot with other servos, each with a torque-speed line."""
         stronger = torque / self._own.torque
 

@@ -12,7 +12,7 @@ import xarray as xr
 from scipy.stats import qmc
 
 from suchus.control import Control, Coordinated, HeadingRule, OpenLoop
-from suchus.design import AnyRobot, Chosen, layout, unit_at, value_at, with_values
+from suchus.design import Chosen, Robot, layout, unit_at, value_at, with_values
 from suchus.design.checks import Checks
 from suchus.design.scale import coarse_step
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
@@ -68,7 +68,7 @@ class JointFaults(Experiment):
     judged_with = ("robot", "gait", "control", "lifted", "cycles", "hold", "kind", "legs")
     judged_from: ClassVar[Mapping[str, float]] = {"variations": 8, "repeats": 4}
 
-    robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
+    robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot whose joints fail."""
     gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
     """The crawl with spine and tail."""

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 import xarray as xr
 
-from suchus.design import AnyRobot, layout
+from suchus.design import Robot, layout
 from suchus.design.checks import Checks
 from suchus.design.scale import control_period, physics_step
 from suchus.design.servos import with_servos
@@ -43,7 +43,7 @@ class JointLoops(Experiment):
     judged_with = ("robot", "gait", "joint", "step")
     judged_from: ClassVar[Mapping[str, float]] = {"integrals": 3, "cycles": CYCLES, "seconds": 4.0}
 
-    robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
+    robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot whose servos are tested."""
     gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
     """The crawl whose torque is the load."""
@@ -70,7 +70,7 @@ class JointLoops(Experiment):
         """Return two gains, a second each, one cycle."""
         return replace(self, integrals=(0.0, 20.0), seconds=1.0, cycles=1)
 
-    def gaits_on(self, robot: AnyRobot) -> dict[str, Any]:
+    def gaits_on(self, robot: Robot) -> dict[str, Any]:
         """Return the robot's own gait, and the left hind servo that lifts the limb, or its only one."""
         hind = layout(robot).limbs[-2]
         servos = layout(robot).servos[hind.servos]
@@ -100,14 +100,14 @@ class JointLoops(Experiment):
         """Duration for which the joint is clamped, a second for the article's robot [s]."""
         return _GRIPPED * control_period(self.robot)
 
-    def _crawled(self, number: int, robot: AnyRobot, progress: Progress) -> xr.Dataset:
+    def _crawled(self, number: int, robot: Robot, progress: Progress) -> xr.Dataset:
         """Return the crawl with one of the gains; servos with and without an integral share no batch."""
         run = Run(robot=robot, gait=self.gait, label=f"ki {self.integrals[number]:g}")
         share = 0.7 / len(self.integrals)
         stage = staged(progress, "crawl", number * share, (number + 1) * share)
         return simulate([run], duration=START + self.cycles * self.gait.period, progress=stage)
 
-    def _tested(self, robots: list[AnyRobot], load: float) -> list[list[np.ndarray]]:
+    def _tested(self, robots: list[Robot], load: float) -> list[list[np.ndarray]]:
         """Return the joint's angle in each test with each gain [rad]."""
         step = physics_step(self.robot)
         free, held = round(self.seconds / step), round(self._gripped / step)
@@ -221,7 +221,7 @@ def overshoot(angle: np.ndarray, step: float) -> float:
     return max(float(angle.max()) / step - 1.0, 0.0)
 
 
-def _tracking(walk: xr.Dataset, robot: AnyRobot, forward: np.ndarray) -> xr.Dataset:
+def _tracking(walk: xr.Dataset, robot: Robot, forward: np.ndarray) -> xr.Dataset:
     """Return what the crawls left of their commands, and what droop and damping account for.
 
     Without an integral term a servo's torque is kp times what its angle lacks of its own, slew-limited target, less kd

@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 import numpy as np
 import xarray as xr
 
-from suchus.design import LEGS, Crocodile, Leg, leg_joints, servo_names
+from suchus.design import LEGS, Leg, Robot, leg_joints, servo_names
 from suchus.design.checks import Checks
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Simulated, silent
 from suchus.experiments.leg_kinematics import figure as pictures
@@ -35,7 +35,7 @@ class LegKinematics(Experiment):
     judged_with = ("robot", "gait", "other_gait")
     judged_from: ClassVar[Mapping[str, float]] = {"points": 10_000, "phases": 100}
 
-    robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
+    robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot; its hind leg is examined."""
     gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
     """The gait whose foot positions (14) has to solve: the article's crawl with sprawled legs."""

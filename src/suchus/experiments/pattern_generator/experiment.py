@@ -12,7 +12,7 @@ import xarray as xr
 from suchus.capture.wave import STANDING, standing_index
 from suchus.control import Oscillators, PatternGenerator, oscillate
 from suchus.control.pattern_posture import axis_segments
-from suchus.design import AnyRobot, layout
+from suchus.design import Robot, layout
 from suchus.design.checks import Checks
 from suchus.errors import UnsuitedRobot
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
@@ -47,7 +47,7 @@ class PatternGeneratorExperiment(Experiment):
     shows = "Beyond the article: Ijspeert et al. 2007, Science 315, 1416"
     needs = ("axis",)
 
-    robot: AnyRobot = field(default_factory=lambda: ROBOTS["salamander"])
+    robot: Robot = field(default_factory=lambda: ROBOTS["salamander"])
     """The robot, with limbs and an axis that bends sideways."""
     gait: Gait = field(default_factory=lambda: GAITS["salamander_walk"])
     """Gait whose foot paths, bends and period the oscillators drive."""
@@ -71,7 +71,7 @@ class PatternGeneratorExperiment(Experiment):
     """Duration of each walk on land, in periods of the gait [-]."""
     ramp: float = 14.0
     """Duration over which the drive rises from 1 to 5 and falls again, in periods of the gait [-]."""
-    swimmer: AnyRobot = field(default_factory=lambda: ROBOTS["floating_caiman"])
+    swimmer: Robot = field(default_factory=lambda: ROBOTS["floating_caiman"])
     """The robot that goes from the water onto the land by one drive, ``walk``; it must float."""
     swimmer_gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
     """Gait whose foot paths, bends and period its oscillators drive."""

@@ -7,11 +7,11 @@ import xarray as xr
 from matplotlib.axes import Axes
 
 from suchus.control import Oscillators
-from suchus.design import AnyRobot
+from suchus.design import Robot
 from suchus.figures.style import COLOURS, captioned, limb_colours, panels, styled
 
 
-def draw_ramp(record: xr.Dataset, robot: AnyRobot) -> Any:
+def draw_ramp(record: xr.Dataset, robot: Robot) -> Any:
     """Return drive, limbs, bends of the axis and frequencies over a ramp of the drive.
 
     Args:

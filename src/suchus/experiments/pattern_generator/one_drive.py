@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from suchus.control import LoadRule, PatternGenerator
-from suchus.design import AnyRobot
+from suchus.design import Robot
 from suchus.design.ground import Ground
 from suchus.experiment import Measure
 from suchus.land import Lake, Run
@@ -20,7 +20,7 @@ _SILENT = 0.02
 """Rate below which the limbs' clock stands still [cycle/s]; walking at the lowest drive it is six times as much."""
 
 
-def runs(robot: AnyRobot, gait: Gait, drive: float, slope: float, line: float) -> list[Run]:
+def runs(robot: Robot, gait: Gait, drive: float, slope: float, line: float) -> list[Run]:
     """Return a run towards a shore with the load felt, and one without.
 
     Args:

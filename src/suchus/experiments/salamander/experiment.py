@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from suchus.design import AnyRobot, layout
+from suchus.design import Robot, layout
 from suchus.design.checks import Checks
 from suchus.errors import UnsuitedRobot
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
@@ -48,7 +48,7 @@ class Salamander(Experiment):
     shows = "Beyond the article: kinematics and foot forces of salamanders"
     needs = ("salamander_joints",)
 
-    robot: AnyRobot = field(default_factory=lambda: ROBOTS["salamander"])
+    robot: Robot = field(default_factory=lambda: ROBOTS["salamander"])
     """The robot that walks; two pairs of limbs at least and a table of angles made for it are needed."""
     gait: Gait = field(default_factory=lambda: GAITS["animal_walk"])
     """The table of joint angles that is played."""

@@ -7,7 +7,7 @@ import xarray as xr
 from jaxtyping import Float
 
 from suchus import rotation
-from suchus.design import AnyRobot, layout
+from suchus.design import Robot, layout
 from suchus.gaits import ANIMAL_SWIM
 from suchus.kinematics.tree import frames, landmarks
 from suchus.motion import Curve, Gait, servo_parts
@@ -20,7 +20,7 @@ FREQUENCIES = (2.6, 2.9, 3.4, 3.8)
 """At which it was filmed [Hz]."""
 
 
-def played(robot: AnyRobot, frequency: float) -> Gait:
+def played(robot: Robot, frequency: float) -> Gait:
     """Return the animal's swim for a robot with its joints, limbs folded back."""
     place = layout(robot)
     angles = ANIMAL_SWIM | {f"{limb.name}_yaw": (FOLDED,) for limb in place.limbs}
@@ -43,7 +43,7 @@ class Envelope(NamedTuple):
     """From end to end, across the course of each cycle, the mean over the cycles [body length]."""
 
 
-def envelope(robot: AnyRobot, record: xr.Dataset, start: float, period: float) -> Envelope:
+def envelope(robot: Robot, record: xr.Dataset, start: float, period: float) -> Envelope:
     """Return how far snout, joints of the axis and tail tip swing in the whole cycles of one run from a time on.
 
     Args:
@@ -68,7 +68,7 @@ def envelope(robot: AnyRobot, record: xr.Dataset, start: float, period: float) -
     return Envelope((straight[0, 0] - straight[:, 0]) / robot.length, np.mean(swings, axis=0) / robot.length)
 
 
-def _midline(robot: AnyRobot, angles: Float[np.ndarray, "time joint"]) -> Float[np.ndarray, "time point 3"]:
+def _midline(robot: Robot, angles: Float[np.ndarray, "time joint"]) -> Float[np.ndarray, "time point 3"]:
     """Return snout, joints of the axis and tail tip in the frame of the root [m]."""
     found, marks = frames(robot, angles), landmarks(robot, angles)
     names = [body.name for body in layout(robot).bodies]

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from suchus import rotation
-from suchus.design import AnyRobot
+from suchus.design import Robot
 from suchus.design.checks import Checks
 from suchus.design.water import Water
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
@@ -34,7 +34,7 @@ class SalamanderSwim(Experiment):
     shows = "Beyond the article: kinematics of swimming salamanders"
     needs = ("salamander_joints",)
 
-    robot: AnyRobot = field(default_factory=lambda: ROBOTS["salamander"])
+    robot: Robot = field(default_factory=lambda: ROBOTS["salamander"])
     """The robot that swims; a table of angles made for it is played."""
     frequencies: tuple[float, ...] = animal.FREQUENCIES
     """Frequencies of the swims [Hz]."""

@@ -10,10 +10,10 @@ import numpy as np
 import xarray as xr
 from scipy import stats
 
-from suchus.design import Crocodile
+from suchus.design import Robot
 from suchus.design.checks import Checks
 from suchus.errors import InvalidDesign
-from suchus.experiment import Experiment, Measure, Outcome, Progress, Simulated, silent, staged
+from suchus.experiment import Experiment, Measure, Outcome, Progress, Simulated, silent
 from suchus.figures.sensitivity import draw_shares, spoken
 from suchus.gaits import GAITS
 from suchus.motion import Gait
@@ -43,7 +43,7 @@ class Sensitivity(Experiment):
     shows = "Section IV, Figs 12 to 21"
     needs = ("tables", "article_spine", "cable_tail")
 
-    robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
+    robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot whose other fields all samples share."""
     gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
     """The crawl whose other fields all samples share."""
@@ -74,7 +74,7 @@ class Sensitivity(Experiment):
         """Run every sample in every condition, and judge each by the rules of the verdicts."""
         asked = Claims(robot=self.robot, gait=self.gait, samples=self.samples, cycles=self.cycles, seed=self.seed)
         study = asked.study(self.samples, self.timestep)
-        record = asked.record(study, conducted(study, staged(progress, "designs", 0.0, 1.0)))
+        record = asked.record(study, conducted(study, progress))
         record.attrs["shipped"] = int(self.comparable())
         return Simulated(record=record, tables={"sensitivity.csv": table(_rows(record))})
 

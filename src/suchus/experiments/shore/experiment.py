@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from suchus.control import Amphibious, Control, DepthHold, HeadingHold, HeadingRule, OpenLoop, Swimming
-from suchus.design import Crocodile
+from suchus.design import Robot, with_values
 from suchus.design.checks import Checks
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.experiments.shore import findings
@@ -59,7 +59,7 @@ class Shore(Experiment):
     reproduces: ClassVar[bool] = False
     needs = ("tables", "article_spine", "cable_tail")
 
-    robot: Crocodile = field(default_factory=lambda: ROBOTS["floating_caiman"])
+    robot: Robot = field(default_factory=lambda: ROBOTS["floating_caiman"])
     """The robot; it must float, and have air to let out."""
     gait: Gait = field(default_factory=lambda: GAITS["semi_erect"])
     """Gait in which it walks ashore."""
@@ -180,7 +180,7 @@ class Shore(Experiment):
         return cases
 
     def _swim(self) -> Swim:
-        robot = replace(self.robot, hull=None)
+        robot = with_values(self.robot, {"hull": None})
         return fit(robot, printed_wave(robot, "I", frequency=self.frequency, sign=-1)).swim
 
     def _run(self, gait: Gait, uphill: float, scale: float, out: float, seed: int) -> Run:

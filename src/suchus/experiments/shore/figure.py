@@ -7,7 +7,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from suchus.design import AnyRobot
+from suchus.design import Robot
 from suchus.design.ground import slope
 from suchus.figures.posture import draw_posture
 from suchus.figures.style import COLOURS, SEQUENTIAL, captioned, panels, styled
@@ -37,7 +37,7 @@ def levelled(record: xr.Dataset) -> xr.Dataset:
     return record.assign(found)
 
 
-def draw_ashore(robot: AnyRobot, record: xr.Dataset) -> Figure:
+def draw_ashore(robot: Robot, record: xr.Dataset) -> Figure:
     """Draw a robot from the side as it comes ashore, and the shares of weight on the feet and of volume under water.
 
     Args:

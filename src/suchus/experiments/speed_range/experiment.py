@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from suchus import rotation
-from suchus.design import AnyRobot, Rod, Segment, Servo, layout
+from suchus.design import Robot, Rod, Segment, Servo, layout
 from suchus.design.checks import Checks
 from suchus.design.scale import control_period
 from suchus.design.servos import with_leg_servos
@@ -46,7 +46,7 @@ class SpeedRange(Experiment):
     judged_with = ("robot", "gaits")
     judged_from: ClassVar[Mapping[str, float]] = {"slower": 4, "cycles": 3}
 
-    robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
+    robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that walks."""
     gaits: tuple[Gait, ...] = field(
         default_factory=lambda: tuple(GAITS[n] for n in ("belly_crawl", "low_crawl", "semi_erect", "high_walk"))
@@ -227,12 +227,12 @@ def _ranged(name: str, value: Any, repeats: xr.DataArray, unit: str) -> dict[str
     }
 
 
-def _limited(robot: AnyRobot) -> AnyRobot:
+def _limited(robot: Robot) -> Robot:
     """Return the robot with a torque-speed line in its legs' servos."""
     return with_leg_servos(robot, Servo.with_speed_line)
 
 
-def _lying(robot: AnyRobot, part: xr.Dataset) -> float:
+def _lying(robot: Robot, part: xr.Dataset) -> float:
     """Return the share of the tail's length that lies on the ground, on average; 0 of a body without a tail [-]."""
     place = layout(robot)
     if not place.tail:

@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 import numpy as np
 import xarray as xr
 
-from suchus.design import Crocodile, Spine, spine_joints
+from suchus.design import Robot, Spine, spine_joints
 from suchus.design.checks import Checks
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Simulated, silent
 from suchus.experiments.spine_kinematics import figure as pictures
@@ -33,7 +33,7 @@ class SpineKinematics(Experiment):
     judged_with = ("robot",)
     judged_from: ClassVar[Mapping[str, float]] = {"postures": 10_000}
 
-    robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
+    robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot whose spine is examined."""
     postures: int = 100_000
     """Number of random postures [-]."""
@@ -245,7 +245,7 @@ def _turns(back: Spine) -> xr.Dataset:
     )
 
 
-def _family(robot: Crocodile) -> xr.Dataset:
+def _family(robot: Robot) -> xr.Dataset:
     """Return every posture that brings joint 5 to one point with one azimuth, and the least bent one."""
     back = robot.spine
     aim = spine.forward(back, np.radians([20.0, 20, -45, 40, -45]))

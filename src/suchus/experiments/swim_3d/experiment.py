@@ -1,6 +1,6 @@
 """How does the robot's own body swim in the water of three dimensions, and what would a higher tail do?"""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 
 import xarray as xr
 
-from suchus.design import Crocodile
+from suchus.design import Robot
 from suchus.design.checks import Checks
 from suchus.design.water import Water
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
@@ -19,25 +19,20 @@ from suchus.experiments.swim_3d import findings
 from suchus.experiments.swim_3d.figure import draw_joints, draw_speeds, draw_tails, draw_wake
 from suchus.figures.vortices import draw_vortices, film_vortices
 from suchus.fingerprint import fingerprint
+from suchus.jobs import at_scheduler, conduct_sweep
 from suchus.kinematics.wave import READINGS
 from suchus.motion import Swim
 from suchus.replay import wake_replay
 from suchus.robots import ROBOTS
-from suchus.study import at_scheduler, conduct_sweep
 from suchus.water import (
-    Basin,
     Motion,
-    Tether,
-    check_free_swim,
-    check_swim_in_space,
     fit,
-    free_swim,
     printed_wave,
     swim,
-    swim_in_space,
 )
-from suchus.water.diary import forget_kept, kept_in
-from suchus.water.space import BESIDE
+from suchus.water.resolved import ON_THE_SPOT, SwimSetting, check_resolved_swim, resolved_swim
+from suchus.water.samples import forget_kept, kept_in
+from suchus.water.setting import BESIDE
 
 MOST_REYNOLDS = 2e4
 """Largest frequency times length squared over viscosity [-]."""
@@ -68,7 +63,7 @@ class Swim3d(Experiment):
     needs = ("tables", "article_spine", "cable_tail")
     reproduces: ClassVar[bool] = False
 
-    robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
+    robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that swims."""
     reading: str = "I"
     """Letter of the reading of (20), see ``kinematics.wave.READINGS``."""
@@ -144,14 +139,14 @@ class Swim3d(Experiment):
         ours, printed = (self._motion(sign) for sign in (-1, 1))
         bent = midlines(self.robot, ours, self.compared_cells + 1) if self.taken else []
         runs = self._runs(ours, printed, bent)
-        for _, motion, basin in runs:
-            check_swim_in_space(self.robot, motion, basin)
-        check_free_swim(self.robot, ours, self._tether)
-        items = [(motion, basin) for _, motion, basin in runs]
+        for _, motion, setting in runs:
+            check_resolved_swim(self.robot, motion, setting)
+        check_resolved_swim(self.robot, ours, self._slice)
+        items = [(motion, setting) for _, motion, setting in runs]
         with nullcontext(self.keep) if self.keep else TemporaryDirectory() as folder:
             found = conduct_sweep(
                 self.name(), partial(swum_in_space, self.robot), items, Path(folder) / "swims", client=client,
-                progress=staged(progress, f"{len(runs)} swims", 0.0, 0.9), jobs=self.jobs,
+                progress=lambda stage, share: progress(stage, 0.9 * share), jobs=self.jobs,
                 local=partial(_swum_here, self.robot, self.keep),
             )  # fmt: skip
         beside = self._beside(ours, staged(progress, "the slice", 0.9, 0.95))
@@ -171,24 +166,28 @@ class Swim3d(Experiment):
         return self.frequency * self.robot.length**2 / self.reynolds
 
     @property
-    def _tether(self) -> Tether:
+    def _slice(self) -> SwimSetting:
         """Grid, water and time of the slice."""
-        return Tether(cells=self.slice_cells, viscosity=self.viscosity, cycles=self.cycles)
+        return SwimSetting(cells=self.slice_cells, viscosity=self.viscosity, cycles=self.cycles)
 
-    def _runs(self, ours: Swim, printed: Swim, bent: Sequence[Midline] = ()) -> Sequence[tuple[str, Motion, Basin]]:
+    def _runs(
+        self, ours: Swim, printed: Swim, bent: Sequence[Midline] = ()
+    ) -> Sequence[tuple[str, Motion, SwimSetting]]:
         """Return name, motion, grid and time of every swim in space."""
 
-        def basin(cells: int, cycles: int, **other: Any) -> Basin:
-            return Basin(cells=cells, viscosity=self.viscosity, cycles=cycles, beside=self.beside, **other)
+        def setting(cells: int, cycles: int, **other: Any) -> SwimSetting:
+            return SwimSetting(
+                axes=3, cells=cells, viscosity=self.viscosity, cycles=cycles, beside=self.beside, **other
+            )
 
-        compared = basin(self.compared_cells, self.compared_cycles)
-        runs: list[tuple[str, Motion, Basin]] = [
-            (f"{cells} cells", ours, basin(cells, self.cycles)) for cells in self.cells[:-1]
+        compared = setting(self.compared_cells, self.compared_cycles)
+        runs: list[tuple[str, Motion, SwimSetting]] = [
+            (f"{cells} cells", ours, setting(cells, self.cycles)) for cells in self.cells[:-1]
         ]
-        runs.append((f"{self.cells[-1]} cells", ours, basin(self.cells[-1], self.cycles, frames=self.frames)))
+        runs.append((f"{self.cells[-1]} cells", ours, setting(self.cells[-1], self.cycles, frames=self.frames)))
         if self.compared_cells not in self.cells or self.compared_cycles > self.cycles:
             runs.append(("compared", ours, compared))
-        runs.append(("held", ours, basin(self.compared_cells, min(3, self.compared_cycles), moves_on=False)))
+        runs.append(("held", ours, setting(self.compared_cells, min(3, self.compared_cycles), free=ON_THE_SPOT)))
         if self.tail_heights:
             arms = {"trunk only": ours.trunk_only(), "tail only": ours.tail_only(), "as printed": printed}
             runs += [(name, motion, compared) for name, motion in arms.items()]
@@ -198,7 +197,7 @@ class Swim3d(Experiment):
 
     def _beside(self, ours: Any, progress: Any) -> xr.Dataset:
         """Return the speed of the slice and of the slender-body models at the same Reynolds number."""
-        plane = free_swim(self.robot, ours, self._tether, checkpoint=kept_in(self.keep, "slice"), progress=progress)
+        plane = resolved_swim(self.robot, ours, self._slice, checkpoint=kept_in(self.keep, "slice"), progress=progress)
         models, real = swim(self.robot, ours, water=Water(viscosity=self.viscosity)), swim(self.robot, ours)
         return xr.Dataset(
             {
@@ -228,18 +227,19 @@ class Swim3d(Experiment):
         return figures | ({"swim_3d_tails": draw_tails(record)} if record.sizes["compared"] > 1 else {})
 
 
-Item = tuple[Motion, Basin]
+Item = tuple[Motion, SwimSetting]
 """What differs between the swims."""
 
 
-def swum_in_space(robot: Crocodile, item: Item, progress: Callable[[float], None]) -> xr.Dataset:
-    """Return a swim of a robot, see ``water.swim_in_space``; its bytes follow from robot and item alone."""
-    return swim_in_space(robot, *item, progress=progress)
+def swum_in_space(robot: Robot, item: Item, progress: Progress) -> xr.Dataset:
+    """Return a swim of a robot, see ``water.resolved``; its bytes follow from robot and item alone."""
+    return resolved_swim(robot, *item, progress=partial(progress, "swimming"))
 
 
-def _swum_here(robot: Crocodile, keep: str, item: Item, progress: Callable[[float], None]) -> xr.Dataset:
+def _swum_here(robot: Robot, keep: str, item: Item, progress: Progress) -> xr.Dataset:
     """Return the same, and keep in a folder how far it has come."""
-    return swim_in_space(robot, *item, checkpoint=kept_in(keep, fingerprint(item)[:16]), progress=progress)
+    checkpoint = kept_in(keep, fingerprint(item)[:16])
+    return resolved_swim(robot, *item, checkpoint=checkpoint, progress=partial(progress, "swimming"))
 
 
 def _replays(record: xr.Dataset) -> dict[str, Replay]:

@@ -6,7 +6,7 @@ from typing import Protocol
 import numpy as np
 import xarray as xr
 
-from suchus.design import GRAVITY, Crocodile
+from suchus.design import GRAVITY, Robot
 from suchus.design.water import Water
 from suchus.experiment import Measure
 from suchus.experiments._taken import TAKEN, Midline
@@ -82,7 +82,7 @@ def with_midlines(beside: xr.Dataset, bent: Sequence[Midline]) -> xr.Dataset:
     return beside.assign(taken_away=away).assign_coords(taken_arm=[one.name for one in bent])
 
 
-def measures(record: xr.Dataset, robot: Crocodile, frequency: float) -> Mapping[str, Measure]:
+def measures(record: xr.Dataset, robot: Robot, frequency: float) -> Mapping[str, Measure]:
     """Return every number of the experiment.
 
     Args:
@@ -99,7 +99,7 @@ def measures(record: xr.Dataset, robot: Crocodile, frequency: float) -> Mapping[
     }
 
 
-def _body(record: xr.Dataset, robot: Crocodile, frequency: float) -> Iterator[tuple[str, Measure]]:
+def _body(record: xr.Dataset, robot: Robot, frequency: float) -> Iterator[tuple[str, Measure]]:
     speeds, power = record.speed.values[-1], float(record.power[-1, -1])
     speed, weight = float(speeds[-1]), float(record.weight)
     yield "reynolds", Measure(float(record.reynolds), "-")

@@ -11,7 +11,7 @@ import xarray as xr
 
 from suchus import rotation
 from suchus.control import Swimming
-from suchus.design import GRAVITY, Crocodile, cable_joints
+from suchus.design import GRAVITY, Robot, cable_joints, with_values
 from suchus.design.checks import Checks
 from suchus.design.water import Water
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
@@ -53,7 +53,7 @@ class SwimFree(Experiment):
     shows = "Section IV.B, eq. (20); beyond the article"
     needs = ("tables", "article_spine", "cable_tail")
 
-    robot: Crocodile = field(default_factory=lambda: ROBOTS["floating_caiman"])
+    robot: Robot = field(default_factory=lambda: ROBOTS["floating_caiman"])
     """The robot that swims; it must float."""
     reading: str = "I"
     """Letter of the reading of (20), see ``kinematics.wave.READINGS``."""
@@ -111,7 +111,8 @@ class SwimFree(Experiment):
         """Swim in every motion, stiffer, steered, in other waters, and at half the time step."""
         check_floats(self.robot, Lake(level=self.level))
         motion = fit(
-            replace(self.robot, hull=None), printed_wave(self.robot, self.reading, frequency=self.frequency, sign=-1)
+            with_values(self.robot, {"hull": None}),
+            printed_wave(self.robot, self.reading, frequency=self.frequency, sign=-1),
         ).swim
         motions = {
             "whole": motion,
@@ -152,7 +153,7 @@ class SwimFree(Experiment):
 
     def _by_table(self, motion: Swim) -> Mapping[str, float]:
         """Return the factors by which the table of sections differs from the coefficients of the swims [-]."""
-        outline = Outline(replace(self.robot, hull=None))
+        outline = Outline(with_values(self.robot, {"hull": None}))
         swum = cruise(outline, motion, reactive, Water())
         side = np.ptp(cycle(outline, motion, swum.sway, swum.turn).y, axis=0) / 2
         return dict(zip(("cross_drag", "added_mass"), likely(*outline.silhouette, side), strict=True))
@@ -160,7 +161,7 @@ class SwimFree(Experiment):
     def _runs(self, motions: Mapping[str, Swim], factors: Mapping[str, tuple[float, float]]) -> list[Run]:
         """Return every run; their labels say what they are."""
         lake, gait = Lake(level=self.level), GAITS["belly_crawl"]
-        stiff = replace(self.robot, tail=replace(self.robot.tail, joint_stiffness=self.stiffness))
+        stiff = with_values(self.robot, {"tail.joint_stiffness": self.stiffness})
         plain = partial(Swimming, limb_pitch=self.limb_pitch)
         runs = [
             Run(robot=robot, gait=gait, lake=lake, control=plain(swim=one), label=name + ending)
@@ -178,7 +179,7 @@ class SwimFree(Experiment):
 
     def _models(self, motions: Mapping[str, Swim]) -> xr.Dataset:
         """Return the speeds of the models whose midline is commanded, and the speed of the body wave [m/s]."""
-        bare = replace(self.robot, hull=None)
+        bare = with_values(self.robot, {"hull": None})
         found = {name: swim(bare, one) for name, one in motions.items()}
         speeds = [[float(found[name].speed.sel(model=model)) for model in _MODELS] for name in MOTIONS]
         whole = found["whole"].sel(model="reactive")

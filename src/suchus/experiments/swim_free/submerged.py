@@ -10,7 +10,7 @@ import xarray as xr
 from suchus import rotation
 from suchus.control import DepthHold, HeadingHold, PitchHold, Swimming
 from suchus.control.holding import neutral_breath
-from suchus.design import Crocodile
+from suchus.design import Robot, with_values
 from suchus.design.pieces import chambers, volumes
 from suchus.experiment import Measure
 from suchus.gaits import GAITS
@@ -29,13 +29,13 @@ _DIVE = 1.0
 """How steeply the swim that dives by pitch pitches for each metre that it is too high [rad/m]."""
 
 
-def hovers(robot: Crocodile, lake: Lake) -> bool:
+def hovers(robot: Robot, lake: Lake) -> bool:
     """Return whether a robot has so much air that it hovers when it lets a part of it out."""
     spare = sum(volumes(robot).values()) - robot.mass / lake.water.density
     return 0.0 < spare <= sum(chambers(robot))
 
 
-def deep_runs(robot: Crocodile, swim: Swimming, lake: Lake, depth: float) -> list[Run]:
+def deep_runs(robot: Robot, swim: Swimming, lake: Lake, depth: float) -> list[Run]:
     """Return swims that dive from the surface to a depth; none if the robot has not the air to hover.
 
     Args:
@@ -47,12 +47,12 @@ def deep_runs(robot: Crocodile, swim: Swimming, lake: Lake, depth: float) -> lis
     if not hovers(robot, lake):
         return []
     plain = replace(swim, heading=HeadingHold(), depth=DepthHold(depth=depth))
-    cases: dict[str, tuple[Crocodile, Swimming]] = {"deep": (robot, plain)}
+    cases: dict[str, tuple[Robot, Swimming]] = {"deep": (robot, plain)}
     if min(chambers(robot)) > 0.0:
         cases["held"] = robot, replace(plain, pitch=PitchHold())
         cases["pitched"] = robot, replace(plain, pitch=PitchHold(dive=_DIVE))
     if robot.hull is not None and robot.hull.chambers:
-        cases["in_foam"] = replace(robot, hull=replace(robot.hull, chambers=())), plain
+        cases["in_foam"] = with_values(robot, {"hull.chambers": ()}), plain
     return [
         Run(robot=one, gait=GAITS["belly_crawl"], lake=lake, control=control, label=name)
         for name, (one, control) in cases.items()
@@ -91,7 +91,7 @@ def kept(record: xr.Dataset, runs: Sequence[Run]) -> xr.Dataset:
 def _hovering(run: Run) -> float:
     """Return the pitch of a robot that hovers in the first posture of its swim, nose down positive [rad]."""
     assert isinstance(run.control, Swimming)
-    assert isinstance(run.robot, Crocodile)
+    assert run.robot.tables is not None
     posture = run.control.targets(run.robot, np.zeros(1))[0]
     return -hydrostatics(run.robot, posture, breath=neutral_breath(run.robot), heels=3).trim_submerged
 

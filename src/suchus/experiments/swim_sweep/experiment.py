@@ -11,15 +11,16 @@ from typing import Any, ClassVar
 import numpy as np
 import xarray as xr
 
-from suchus.design import Crocodile
+from suchus.design import Robot
 from suchus.design.checks import Checks
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Simulated, silent, staged
 from suchus.experiments.swim_sweep.figure import draw_check, draw_maps
+from suchus.jobs import at_scheduler, conduct_sweep
 from suchus.motion import Swim
 from suchus.robots import ROBOTS
-from suchus.study import at_scheduler, conduct_sweep
 from suchus.verdict import Reading
-from suchus.water import MODELS, Swum, Tether, fit, free_swim, greatest, printed_wave, scaled, survey
+from suchus.water import MODELS, Swum, fit, greatest, printed_wave, scaled, survey
+from suchus.water.resolved import SwimSetting, resolved_swim
 
 _PEERS = (
     ("C. porosus, 0.3 to 1.1 m", "sustained speed rises with size, in body lengths it falls", "Elsworth et al. 2003"),
@@ -33,7 +34,7 @@ _SWUM = {"speed": "m/s", "cost_of_transport": "1", "gain": "1", "strouhal": "1",
 """What is kept of a swim by CFD, with units; see ``water.Swum``."""
 
 
-def swum_point(robot: Crocodile, setting: Tether, motion: Swim, progress: Callable[[float], None]) -> xr.Dataset:
+def swum_point(robot: Robot, setting: SwimSetting, motion: Swim, progress: Progress) -> xr.Dataset:
     """Return the numbers of one swim from rest by CFD.
 
     Args:
@@ -42,7 +43,9 @@ def swum_point(robot: Crocodile, setting: Tether, motion: Swim, progress: Callab
         motion: how, at 1 Hz.
         progress: called with the share that is done.
     """
-    found = Swum.of(free_swim(robot, motion, setting, progress=progress), motion.frequency)._asdict()
+    found = Swum.of(
+        resolved_swim(robot, motion, setting, progress=partial(progress, "swimming")), motion.frequency
+    )._asdict()
     return xr.Dataset({name: ((), found[name], {"units": unit}) for name, unit in _SWUM.items()})
 
 
@@ -62,7 +65,7 @@ class SwimSweep(Experiment):
     reproduces: ClassVar[bool] = False
     needs = ("tables", "article_spine", "cable_tail")
 
-    robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
+    robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that swims."""
     reading: str = "I"
     """Letter of the reading of (20); only this one has a wavelength to change."""
@@ -153,10 +156,12 @@ class SwimSweep(Experiment):
     def _points(self, progress: Callable[[float], None], client: Any) -> xr.Dataset:
         """Return the points by CFD at 1 Hz, and their speeds by the slender-body models."""
         motions = [scaled(self._fit(waves), amplitude, 1.0) for amplitude, waves in self.points]
-        setting = Tether(cells=self.cells, viscosity=self.robot.length**2 / self.reynolds, cycles=self.cycles, frames=1)
+        setting = SwimSetting(cells=self.cells, viscosity=self.robot.length**2 / self.reynolds, cycles=self.cycles)
         work = partial(swum_point, self.robot, setting)
         with nullcontext(self.keep) if self.keep else TemporaryDirectory() as folder:
-            swum = conduct_sweep(self.name(), work, motions, Path(folder), progress=progress, client=client)
+            swum = conduct_sweep(
+                self.name(), work, motions, Path(folder), progress=lambda _, share: progress(share), client=client
+            )
         slender = survey(self.robot, motions)
         data: dict[str, Any] = {
             **{

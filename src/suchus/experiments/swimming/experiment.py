@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 import numpy as np
 import xarray as xr
 
-from suchus.design import Crocodile
+from suchus.design import Robot
 from suchus.design.checks import Checks
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Simulated, silent, staged
 from suchus.experiments._taken import TAKEN, midlines
@@ -28,18 +28,14 @@ from suchus.water import (
     ExactWave,
     Fit,
     Motion,
-    Tether,
     attempts,
     fit,
-    free_swim,
-    portion,
     printed_wave,
     readings_table,
     swim,
-    tether,
-    towed,
 )
-from suchus.water.diary import forget_kept, kept_in
+from suchus.water.resolved import FREE, HELD, SwimSetting, resolved_swim, towed_drag
+from suchus.water.samples import forget_kept, kept_in, portion
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -79,7 +75,7 @@ class Swimming(Experiment):
         "cells": 128, "coarse_cells": 80, "cycles": 4, "free_cycles": 8, "arm_cycles": 6,
     }  # fmt: skip
 
-    robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
+    robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that swims."""
     reading: str = "I"
     """Letter of the reading of (20), see ``kinematics.wave.READINGS``."""
@@ -139,8 +135,8 @@ class Swimming(Experiment):
     def simulate(self, progress: Progress = silent) -> Simulated:
         """Swim tethered and free, in every motion."""
         ours, printed = (self._fit(sign) for sign in (-1, 1))
-        held = self._tethered("ours", ours, staged(progress, "tethered", 0.0, 0.08))
-        printed_swim = self._tethered("as printed", printed, staged(progress, "as printed", 0.08, 0.16))
+        held = self._held("ours", ours, staged(progress, "tethered", 0.0, 0.08))
+        printed_swim = self._held("as printed", printed, staged(progress, "as printed", 0.08, 0.16))
         free = self._free("ours", ours.swim, self.cells, self.free_cycles, staged(progress, "free", 0.16, 0.5))
         conditions = self._conditions(ours, printed, free, staged(progress, "trunk and tail separately", 0.5, 0.8))
         bent = self._taken(ours.swim, staged(progress, "midline of the joints", 0.8, 0.92)) if self.taken else []
@@ -177,23 +173,25 @@ class Swimming(Experiment):
         """Say what tail, trunk and direction of the wave do to the speed."""
         return findings.explain(measures)
 
-    def _setting(self, cells: int, cycles: int, reynolds: float | None = None) -> Tether:
+    def _setting(
+        self, free: tuple[bool, bool, bool], cells: int, cycles: int, reynolds: float | None = None
+    ) -> SwimSetting:
         viscosity = self.frequency * self.robot.length**2 / (reynolds or self.reynolds)
-        return Tether(cells=cells, viscosity=viscosity, cycles=cycles, frames=self.frames)
+        return SwimSetting(cells=cells, viscosity=viscosity, cycles=cycles, free=free, frames=self.frames)
 
     def _fit(self, sign: int) -> Fit:
         wave = printed_wave(self.robot, self.reading, frequency=self.frequency, sign=sign)
         return fit(self.robot, wave, name=f"(20), reading {self.reading}")
 
-    def _tethered(self, name: str, fitted: Fit, progress: Callable[[float], None]) -> xr.Dataset:
-        kept, setting = kept_in(self.keep, f"held {name}"), self._setting(self.cells, self.cycles)
-        return tether(self.robot, fitted.swim, setting, turn=fitted.head, checkpoint=kept, progress=progress)
+    def _held(self, name: str, fitted: Fit, progress: Callable[[float], None]) -> xr.Dataset:
+        kept, setting = kept_in(self.keep, f"held {name}"), self._setting(HELD, self.cells, self.cycles)
+        return resolved_swim(self.robot, fitted.swim, setting, turn=fitted.head, checkpoint=kept, progress=progress)
 
     def _free(
         self, name: str, motion: Motion, cells: int, cycles: int, progress: Callable[[float], None]
     ) -> xr.Dataset:
-        kept, setting = kept_in(self.keep, f"free {name}"), self._setting(cells, cycles)
-        return free_swim(self.robot, motion, setting, checkpoint=kept, progress=progress)
+        kept, setting = kept_in(self.keep, f"free {name}"), self._setting(FREE, cells, cycles)
+        return resolved_swim(self.robot, motion, setting, checkpoint=kept, progress=progress)
 
     def _conditions(self, ours: Fit, printed: Fit, free: xr.Dataset, progress: Callable[[float], None]) -> xr.Dataset:
         """Return the speed in every condition and cycle; the first is the free swim itself on equal grids."""
@@ -232,11 +230,14 @@ class Swimming(Experiment):
     def _readings(self, progress: Callable[[float], None]) -> tuple[xr.Dataset, str]:
         """Return the mean thrust of further readings, and a table of all of them."""
         tried = {one.letter: one for one in attempts(self.robot, frequency=self.frequency)}
-        setting, thrust = self._setting(self.readings_cells, self.cycles, self.readings_reynolds), []
+        setting, thrust = self._setting(HELD, self.readings_cells, self.cycles, self.readings_reynolds), []
         for i, letter in enumerate(self.readings):
             fitted, part = tried[letter].fitted, portion(progress, i, len(self.readings))
-            held = None if fitted is None else tether(self.robot, fitted.swim, setting, turn=fitted.head, progress=part)
-            thrust.append(float("nan") if held is None else float(held.cycle_thrust[1:].mean()))
+            if fitted is None:
+                thrust.append(float("nan"))
+                continue
+            held = resolved_swim(self.robot, fitted.swim, setting, turn=fitted.head, progress=part)
+            thrust.append(float(held.cycle_thrust[1:].mean()))
         thrusts = {
             letter: f"{value:.1f} N/m at Re {self.readings_reynolds:.0f}"
             for letter, value in zip(self.readings, thrust, strict=True)
@@ -247,7 +248,8 @@ class Swimming(Experiment):
     def _drag(self, speed: float, progress: Callable[[float], None]) -> float:
         progress(0.0)
         least = 0.02 * self.robot.length
-        return towed(self.robot, max(abs(speed), least), self._setting(self.coarse_cells, 1), lengths=self.tow)
+        setting = self._setting(HELD, self.coarse_cells, 1)
+        return towed_drag(self.robot, max(abs(speed), least), setting, lengths=self.tow)
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw the fields, the two sides of the tail, the forces, the free swim."""

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 import xarray as xr
 
-from suchus.design import Crocodile
+from suchus.design import Robot
 from suchus.experiment import Measure
 from suchus.verdict import Reading
 from suchus.water import Quarters, Sway, Swum, convex_higher, efficiency, wave_form
@@ -18,7 +18,7 @@ _GAINS = {"tail": "trunk only", "spine": "tail only"}
 """The condition that lacks the swing of a part, by the name of the part."""
 
 
-def measures(record: xr.Dataset, robot: Crocodile, frequency: float, reading: str) -> Mapping[str, Measure]:
+def measures(record: xr.Dataset, robot: Robot, frequency: float, reading: str) -> Mapping[str, Measure]:
     """Return every number of the experiment.
 
     Args:
@@ -41,7 +41,7 @@ def measures(record: xr.Dataset, robot: Crocodile, frequency: float, reading: st
 
 
 def part(record: xr.Dataset, name: str) -> xr.Dataset:
-    """Return one swim of the record as ``tether`` or ``free_swim`` gave it."""
+    """Return one swim of the record as ``water.resolved`` gave it."""
     start = f"{name}_"
     mine = record[[str(v) for v in record.data_vars if str(v).startswith(start)]]
     return mine.rename(
@@ -100,7 +100,7 @@ def _tethered(held: xr.Dataset) -> Iterator[tuple[str, Measure]]:
     yield from _ranged("thrust_asymmetry", [one.asymmetry for one in each], "-")
 
 
-def _free(record: xr.Dataset, free: xr.Dataset, robot: Crocodile, frequency: float) -> Iterator[tuple[str, Measure]]:
+def _free(record: xr.Dataset, free: xr.Dataset, robot: Robot, frequency: float) -> Iterator[tuple[str, Measure]]:
     swum = Swum.of(free, frequency)
     yield "speed_free", Measure(swum.speed, "m/s")
     yield "speed_free_lengths", Measure(swum.speed / robot.length, "1/s")
@@ -115,7 +115,7 @@ def _free(record: xr.Dataset, free: xr.Dataset, robot: Crocodile, frequency: flo
         yield f"speed_as_printed_{model}", Measure(float(record.printed_model_speed.sel(model=model)), "m/s")
 
 
-def _wave(free: xr.Dataset, robot: Crocodile) -> Iterator[tuple[str, Measure]]:
+def _wave(free: xr.Dataset, robot: Robot) -> Iterator[tuple[str, Measure]]:
     """Return the share of a sine in the tail's swing, and the share of a wave of the form (20) in the midline's."""
     tip, swings, s = free.tip_share.values, free.swing.values, np.linspace(0.0, 1.0, free.swing.size)
     yield "tail_sine_share", Measure(float(free.sine_share[-1]), "-")
@@ -135,7 +135,7 @@ def _wave(free: xr.Dataset, robot: Crocodile) -> Iterator[tuple[str, Measure]]:
     yield "wave_envelope_tip", Measure(abs(linear + quadratic) / robot.length, "-")
 
 
-def _track(free: xr.Dataset, robot: Crocodile) -> Iterator[tuple[str, Measure]]:
+def _track(free: xr.Dataset, robot: Robot) -> Iterator[tuple[str, Measure]]:
     """Return how far the centre of mass sways to the side over the last cycles."""
     cycles = free.sizes["cycle"]
     count, each = max(min(SETTLED, cycles - 1), 1), (free.sizes["moment"] - 1) // cycles
@@ -164,7 +164,7 @@ def _compared(record: xr.Dataset) -> Iterator[tuple[str, Measure]]:
     yield from _ranged("gain_tail_swim_share", list((both - last["trunk only"]) / both), "-")
 
 
-def _loads(held: xr.Dataset, robot: Crocodile) -> Iterator[tuple[str, Measure]]:
+def _loads(held: xr.Dataset, robot: Robot) -> Iterator[tuple[str, Measure]]:
     for joint in held.joint.values:
         yield f"joint_torque_peak_{joint}", Measure(float(abs(held.joint_torque.sel(joint=joint)).max()), "N m/m")
     for servo in held.servo.values:

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 import xarray as xr
 
-from suchus.design import Crocodile, Tail, cable_joints, servo_names
+from suchus.design import Robot, Tail, cable_joints, servo_names
 from suchus.errors import OutsideLimits
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Simulated, silent, staged
 from suchus.experiments.tail_bending import figure as pictures
@@ -41,7 +41,7 @@ class TailBending(Experiment):
     judged_with = ("robot", "furthest", "gait", "cycles")
     judged_from: ClassVar[Mapping[str, float]] = {"steps": 91}
 
-    robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
+    robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot whose tail is examined."""
     furthest: float = pi
     """The greatest bend [rad]; less if the gaps between the plates close before."""
@@ -227,7 +227,7 @@ def _errors(plates: Tail, furthest: float) -> xr.Dataset:
     )
 
 
-def _facts(robot: Crocodile) -> dict[str, float]:
+def _facts(robot: Robot) -> dict[str, float]:
     """Return lengths [m], limits [rad] and counts of a tail."""
     plates = robot.tail
     return {

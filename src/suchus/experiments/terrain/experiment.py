@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from suchus.control import AttitudeRule, Change, Control, SwitchRule, Walking
-from suchus.design import GRAVITY, AnyRobot, layout
+from suchus.design import GRAVITY, Robot, layout
 from suchus.design.checks import Checks
 from suchus.design.relief import Bumps, Relief, Step, Stone, profile
 from suchus.design.scale import control_period
@@ -56,7 +56,7 @@ class Terrain(Experiment):
         "bumps": 2, "steps": 3, "stones": 3, "transitions": 6, "seeds": 4, "walked": 8.0,
     }  # fmt: skip
 
-    robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
+    robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that walks."""
     crawl: Gait = field(default_factory=lambda: GAITS["low_crawl"])
     """The sprawled gait."""
@@ -108,7 +108,7 @@ class Terrain(Experiment):
             self, bumps=(0.03,), steps=(), stones=(0.04,), surfaces=("even",), transitions=2, seeds=1, walked=1.5
         )
 
-    def gaits_on(self, robot: AnyRobot) -> dict[str, Any]:
+    def gaits_on(self, robot: Robot) -> dict[str, Any]:
         """Return three postures of the robot's own gait, low, usual and high, as far as its limbs reach.
 
         Raises:

@@ -8,7 +8,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from suchus.design import AnyRobot
+from suchus.design import Robot
 from suchus.figures.gait_lines import GAIT_LINES
 from suchus.figures.posture import draw_posture
 from suchus.figures.style import COLOURS, captioned, panels, styled
@@ -87,7 +87,7 @@ def draw_ground(ax: Axes, x: np.ndarray, height: Sequence[float] | np.ndarray) -
     ax.plot(x, height, color=COLOURS["ground"], linewidth=1.4, zorder=0.3)
 
 
-def draw_on_bumps(robot: AnyRobot, record: xr.Dataset, said: str) -> Figure:
+def draw_on_bumps(robot: Robot, record: xr.Dataset, said: str) -> Figure:
     """Draw every run of a record from the side at its end, on the ground under it.
 
     Args:

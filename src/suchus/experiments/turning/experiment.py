@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from suchus.control import TurningCurve, Walking, turn
-from suchus.design import AnyRobot, layout, servo_ranges
+from suchus.design import Robot, layout, servo_ranges
 from suchus.design.checks import Checks
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.experiments.turning.figure import draw_turning
@@ -37,7 +37,7 @@ class Turning(Experiment):
     shows = "Section II.B"
     needs = ("limbs",)
 
-    robot: AnyRobot = field(default_factory=lambda: ROBOTS["caiman"])
+    robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that turns."""
     gaits: tuple[Gait, ...] = field(
         default_factory=lambda: tuple(GAITS[n] for n in ("low_crawl", "semi_erect", "high_walk"))

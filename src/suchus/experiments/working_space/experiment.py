@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 import numpy as np
 import xarray as xr
 
-from suchus.design import LEGS, Crocodile
+from suchus.design import LEGS, Robot
 from suchus.design.checks import Checks
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Simulated, silent
 from suchus.experiments.working_space.figure import room
@@ -35,7 +35,7 @@ class WorkingSpace(Experiment):
     judged_with = ("robot", "gait")
     judged_from: ClassVar[Mapping[str, float]] = {"crawling": 2**19, "standing": 2**18}
 
-    robot: Crocodile = field(default_factory=lambda: ROBOTS["caiman"])
+    robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that reaches."""
     gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
     """Gait whose stance gives the places of the feet."""
@@ -126,7 +126,7 @@ def _quotient(over: Extent, under: Extent) -> dict[str, float]:
     return {end: a / b if b > 0 else float("nan") for end, (a, b) in pairs.items()}
 
 
-def _highest(robot: Crocodile, found: Reached, state: str) -> xr.Dataset:
+def _highest(robot: Robot, found: Reached, state: str) -> xr.Dataset:
     """Return the body's line and the left legs of the configuration that reaches highest [m]."""
     if not len(found.snout):
         return xr.Dataset()

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Literal, get_args
 
 from suchus import blueprint
-from suchus.design import AnyRobot, Crocodile
+from suchus.design import Robot
 from suchus.design.checks import require
 from suchus.errors import InvalidDesign, UnknownName
 from suchus.model.build import TIMESTEP
@@ -25,7 +25,7 @@ Its numbers come from robot.toml; keep this note with copies.
 """
 
 
-def export(robot: AnyRobot, gait: Gait, folder: Path, kind: Format, *, timestep: float = TIMESTEP) -> Path:
+def export(robot: Robot, gait: Gait, folder: Path, kind: Format, *, timestep: float = TIMESTEP) -> Path:
     """Write a robot for another tool and return the folder, which appears whole or not at all.
 
     Args:
@@ -62,13 +62,13 @@ def export(robot: AnyRobot, gait: Gait, folder: Path, kind: Format, *, timestep:
     return folder
 
 
-def _texts(robot: AnyRobot, gait: Gait, kind: Format, timestep: float) -> dict[str, str]:
+def _texts(robot: Robot, gait: Gait, kind: Format, timestep: float) -> dict[str, str]:
     if kind == "mjcf":
         return _mjcf(robot, gait, timestep)
     return _urdf(robot) if kind == "urdf" else _usd(robot, gait)
 
 
-def _mjcf(robot: AnyRobot, gait: Gait, timestep: float) -> dict[str, str]:
+def _mjcf(robot: Robot, gait: Gait, timestep: float) -> dict[str, str]:
     model, scene = mjcf(robot, gait, timestep=timestep)
     files = {
         f"{robot.name}.xml": "the robot: bodies, joints, tendon, servos, sensors, keyframe `home`",
@@ -91,7 +91,7 @@ def _mjcf(robot: AnyRobot, gait: Gait, timestep: float) -> dict[str, str]:
     return {f"{robot.name}.xml": model, "scene.xml": scene, "README.md": text}
 
 
-def _urdf(robot: AnyRobot) -> dict[str, str]:
+def _urdf(robot: Robot) -> dict[str, str]:
     files = {f"{robot.name}.urdf": "the robot: links, joints, limits, shapes", BALL: "a ball that ellipsoids stretch"}
     about = (
         "Joints and frames (feet, snout, tail_tip, imu) carry the names that suchus gives them; x forward, y left, z "
@@ -101,7 +101,7 @@ def _urdf(robot: AnyRobot) -> dict[str, str]:
     return {f"{robot.name}.urdf": urdf(robot), BALL: ball(), "README.md": text}
 
 
-def _usd(robot: AnyRobot, gait: Gait) -> dict[str, str]:
+def _usd(robot: Robot, gait: Gait) -> dict[str, str]:
     name = f"{robot.name}.usda"
     files = {
         name: "the robot: bodies, joints with limits and drives, shapes, frames",
@@ -116,14 +116,14 @@ def _usd(robot: AnyRobot, gait: Gait) -> dict[str, str]:
     return {name: usd(robot, gait), "scene.usda": scene(robot), "README.md": text}
 
 
-def _readme(robot: AnyRobot, files: Mapping[str, str], look: str, about: str, left_out: tuple[str, ...]) -> str:
+def _readme(robot: Robot, files: Mapping[str, str], look: str, about: str, left_out: tuple[str, ...]) -> str:
     files = {
         **files,
         "robot.toml": "every number, with its meaning and unit",
         "LICENSE": "Apache-2.0",
         MARK: "which robot, which software",
     }
-    what = "A crocodile-like robot" if isinstance(robot, Crocodile) else "A robot"
+    what = "A crocodile-like robot" if robot.tables is not None else "A robot"
     lines = [
         f"# {robot.name}",
         "",

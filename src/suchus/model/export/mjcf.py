@@ -6,7 +6,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from suchus.design import AnyRobot
+from suchus.design import Robot
 from suchus.model.build import TIMESTEP, build
 from suchus.model.standing import activations, standing
 from suchus.motion import Gait, hip_height, middle_stance
@@ -16,7 +16,7 @@ _KINDS = ("body", "geom", "joint", "site", "light", "tendon", "actuator")
 _SKY = {"type": "skybox", "builtin": "gradient", "rgb1": "0.93 0.95 0.97", "rgb2": "0.55 0.62 0.70"}
 
 
-def mjcf(robot: AnyRobot, gait: Gait, *, timestep: float = TIMESTEP) -> tuple[str, str]:
+def mjcf(robot: Robot, gait: Gait, *, timestep: float = TIMESTEP) -> tuple[str, str]:
     """Return a robot as two MJCF texts: itself, with a keyframe ``home``, and a scene that includes it.
 
     The scene compiles to the same numbers as ``build(robot)``, to the last bit.
@@ -45,7 +45,7 @@ def mjcf(robot: AnyRobot, gait: Gait, *, timestep: float = TIMESTEP) -> tuple[st
     return _text(root), _text(scene)
 
 
-def home(model: Any, robot: AnyRobot, gait: Gait) -> tuple[np.ndarray, np.ndarray]:
+def home(model: Any, robot: Robot, gait: Gait) -> tuple[np.ndarray, np.ndarray]:
     """Return the generalised positions and the servo angles [rad] in which all feet stand in the middle of their path.
 
     Trunk and tail are straight.
@@ -59,7 +59,7 @@ def numbers(values: Sequence[float] | np.ndarray) -> str:
     return " ".join(repr(float(v) + 0.0).removesuffix(".0") for v in np.ravel(np.asarray(values)))
 
 
-def _home(model: Any, robot: AnyRobot, gait: Gait) -> ElementTree.Element:
+def _home(model: Any, robot: Robot, gait: Gait) -> ElementTree.Element:
     qpos, servos = home(model, robot, gait)
     keys = ElementTree.Element("keyframe")
     values = {"qpos": qpos, "act": activations(model, servos), "ctrl": servos}

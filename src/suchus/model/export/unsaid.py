@@ -2,13 +2,13 @@
 
 from collections.abc import Sequence
 
-from suchus.design import AnyRobot, Spring, layout
+from suchus.design import Robot, Spring, layout
 
 _CABLES, _SPRINGS = "The cable.", "Springs"
 _BESIDE = "{name} {stiffness:g} N m/rad"
 
 
-def filled(texts: Sequence[str], robot: AnyRobot, **own: object) -> tuple[str, ...]:
+def filled(texts: Sequence[str], robot: Robot, **own: object) -> tuple[str, ...]:
     """Return sentences with the robot's numbers in their braces; those about cables or springs only if it has some.
 
     Args:

@@ -8,7 +8,7 @@ import mujoco
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from suchus.design import AnyRobot, layout
+from suchus.design import Robot, layout
 from suchus.model.build import compile_model, servo_of
 from suchus.model.export.mjcf import numbers
 from suchus.model.export.unsaid import filled
@@ -46,7 +46,7 @@ _RINGS, _SECTORS = 24, 48
 _FREE_SPEED = 100.0  # [rad/s]; a limit must be given; nothing on the robot turns so fast
 
 
-def urdf(robot: AnyRobot) -> str:
+def urdf(robot: Robot) -> str:
     """Return a robot as URDF, with the joints and frames of the MuJoCo model by the same names, in full precision.
 
     Args:
@@ -67,7 +67,7 @@ def urdf(robot: AnyRobot) -> str:
     return '<?xml version="1.0"?>\n' + ElementTree.tostring(root, encoding="unicode") + "\n"
 
 
-def unsaid(robot: AnyRobot) -> tuple[str, ...]:
+def unsaid(robot: Robot) -> tuple[str, ...]:
     """Return what the URDF of a robot leaves out, and what to do about it."""
     return filled(UNSAID, robot, faceted=100 * (1 - np.cos(np.pi / _SECTORS)))
 
@@ -96,7 +96,7 @@ def ball() -> str:
     return "\n".join(lines) + "\n"
 
 
-def _add_body(root: ElementTree.Element, model: Any, body: int, robot: AnyRobot) -> None:
+def _add_body(root: ElementTree.Element, model: Any, body: int, robot: Robot) -> None:
     """Add a body's link, and before it the joints that carry it: all but the last end in a massless link."""
     name = model.body(body).name
     parent = model.body(int(model.body_parentid[body])).name
@@ -130,7 +130,7 @@ def _joint(root: ElementTree.Element, name: str, kind: str, parent: str, child: 
     return joint
 
 
-def _turn(joint: ElementTree.Element, model: Any, hinge: int, robot: AnyRobot) -> None:
+def _turn(joint: ElementTree.Element, model: Any, hinge: int, robot: Robot) -> None:
     """Say about what axis, how far, with what friction, and within what limits a hinge turns."""
     name = model.joint(hinge).name
     dof = int(model.jnt_dofadr[hinge])

@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from suchus.design import GRAVITY, AnyRobot, layout
+from suchus.design import GRAVITY, Robot, layout
 from suchus.errors import SuchusError
 from suchus.model.build import compile_model, servo_of
 from suchus.model.export.mjcf import home
@@ -49,7 +49,7 @@ class _Link(NamedTuple):
     turn: Rotation
 
 
-def usd(robot: AnyRobot, gait: Gait) -> str:
+def usd(robot: Robot, gait: Gait) -> str:
     """Return a robot as USD text, all joints at zero, the lowest part touching the ground.
 
     Metres, kilograms, z up; bodies lie side by side below the robot, their places in the world in full precision.
@@ -83,7 +83,7 @@ def usd(robot: AnyRobot, gait: Gait) -> str:
     return text
 
 
-def scene(robot: AnyRobot) -> str:
+def scene(robot: Robot) -> str:
     """Return a USD text with gravity, light and level ground, that refers to the robot beside it."""
     return f"""#usda 1.0
 (
@@ -127,13 +127,13 @@ def Xform "World"
 """
 
 
-def unsaid_in_usd(robot: AnyRobot) -> tuple[str, ...]:
+def unsaid_in_usd(robot: Robot) -> tuple[str, ...]:
     """Return what the USD of a robot leaves out, and what to do about it."""
     speeds = sorted({servo_of(robot, name).speed for name in layout(robot).servos})
     return filled(UNSAID, robot, speeds=" or ".join(f"{v:g}" for v in speeds), link=LINK_MASS)
 
 
-def prim_name(robot: AnyRobot) -> str:
+def prim_name(robot: Robot) -> str:
     """Return the robot's name as USD allows it: letters, digits and underscores, no digit first."""
     plain = "".join(c if c.isascii() and c.isalnum() else "_" for c in robot.name)
     return f"_{plain}" if plain[:1].isdigit() else plain
@@ -151,7 +151,7 @@ def _library() -> Any:
 class _Writer:
     """What is being written; it fills its stage."""
 
-    def __init__(self, pxr: Any, stage: Any, robot: AnyRobot, model: Any, root: str) -> None:
+    def __init__(self, pxr: Any, stage: Any, robot: Robot, model: Any, root: str) -> None:
         self.pxr, self.stage, self.robot, self.model, self.root = pxr, stage, robot, model, root
         self.targets: dict[str, float] = {}
         self.links: dict[str, _Link] = {}

@@ -13,7 +13,7 @@ from suchus.model.importing.drives import Drive
 from suchus.model.importing.mjcf_file import clean_mjcf, inside, with_includes
 from suchus.model.importing.safe_xml import parse
 from suchus.model.importing.urdf_file import clean_urdf
-from suchus.record.reading import check_file
+from suchus.reading import check_file
 
 Format = Literal["URDF", "MJCF"]
 _BODIES = 1000  # at most; MuJoCo walks down a chain by recursion

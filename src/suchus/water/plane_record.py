@@ -1,0 +1,204 @@
+"""What is sampled and recorded of a slice through the robot: held by its snout, as in Fig. 17, or free."""
+
+import numpy as np
+import xarray as xr
+
+from suchus import flow
+from suchus.design import GRAVITY, cable_joints, layout
+from suchus.motion.swim import trunk_yaws
+from suchus.water.field_samples import FieldWindow, midline, midline_values
+from suchus.water.measures import swing
+from suchus.water.samples import Samples
+from suchus.water.setting import DENSITY
+from suchus.water.skin import (
+    PLACES,
+    bend,
+    convex_less_concave,
+    joint_torques,
+    place_of_difference,
+    servo_torques,
+    tail_sides,
+)
+from suchus.water.slender import cycle
+from suchus.water.swim_setup import PHASES, SLACK, ResolvedSwim, cycle_means
+from suchus.water.swimming import wave_speed
+
+QUARTERS = (0.25, 0.5, 0.75, 1.0)
+"""Instants of the measured cycle at which the article shows the pressure [cycle]."""
+TRACK = 40
+"""Samples of the track in a cycle [-]."""
+
+
+class HeldSlice:
+    """Forces, loads along the skin and fields of a slice whose motion is given."""
+
+    def __init__(self, swim: ResolvedSwim) -> None:
+        self._robot = swim.robot
+        self._outline, self._view = swim.outline, FieldWindow(swim.setup.grid, swim.robot.length, 1.9, 0.6)
+        self._start, self._period, self._cycles = swim.end - swim.period, swim.period, swim.setting.cycles
+        self._settled = min(1, self._cycles - 1)
+
+    def sample(self, sim: flow.Simulation, samples: Samples) -> None:
+        """Sample what is due after a step."""
+        phase = (sim.time - self._start) / self._period
+        turn = sim.time / self._period > self._settled + 0.25 * (samples.count("turns") + 1) - SLACK
+        if phase <= SLACK and not turn:
+            return
+        surface = sim.surface()
+        midline = sim.setup.bodies[0].shape.spine(sim.time)  # type: ignore[union-attr]
+        sides = tail_sides(self._outline, surface)
+        seen = {
+            "difference": convex_less_concave(self._outline, surface, midline),
+            "place": place_of_difference(sides),
+        }
+        if turn:
+            samples.add("turns", sim.time, **seen)
+        if phase <= SLACK:
+            return
+        samples.add(
+            "steps",
+            sim.time,
+            **seen,
+            bend=bend(self._outline, midline),
+            torque=joint_torques(self._outline, surface, midline),
+            servo=servo_torques(self._outline, surface, midline),
+        )
+        if phase > 0.25 * (samples.count("quarters") + 1) - SLACK:
+            fields = self._view.fields(sim)
+            samples.add("quarters", sim.time, sides=sides, **fields, **midline_values(midline))
+
+    def record(self, sim: flow.Simulation, samples: Samples) -> xr.Dataset:
+        """Return what was sampled, at even phases, with the means of every cycle."""
+        place, yaws = layout(self._robot), trunk_yaws(self._robot)
+        series, steps, quarters = sim.record.after(self._start), samples.series("steps"), samples.series("quarters")
+        phase = np.arange(1, PHASES + 1) / PHASES
+        seen = (steps["time"] - self._start) / self._period
+        force, when = series.force(), (series.time - 0.5 * series.step - self._start) / self._period
+        torques, servos = (
+            np.column_stack([np.interp(phase, seen, column) for column in steps[name].T])
+            for name in ("torque", "servo")
+        )
+        shown = self._view.dataset(quarters, "instant")
+        ahead, power = cycle_means(sim.record, self._period, self._cycles, ("force_x", "power"))
+        data = xr.Dataset(
+            {
+                "cycle_thrust": ("cycle", -ahead, {"units": "N/m"}),
+                "cycle_power": ("cycle", power, {"units": "W/m"}),
+                "thrust": ("phase", np.interp(phase, when, -force[:, 0]), {"units": "N/m"}),
+                "aside": ("phase", np.interp(phase, when, force[:, 1]), {"units": "N/m"}),
+                "power": ("phase", np.interp(phase, when, series.column("power")), {"units": "W/m"}),
+                "joint_torque": (("phase", "joint"), torques, {"units": "N m/m"}),
+                "servo_torque": (("phase", "servo"), servos, {"units": "N m"}),
+                "difference": ("phase", np.interp(phase, seen, steps["difference"]), {"units": "Pa"}),
+                "bend": ("phase", np.interp(phase, seen, steps["bend"]), {"units": "rad"}),
+                "place": ("phase", np.interp(phase, seen, steps["place"]), {"units": "1"}),
+                "sides": (("instant", "side", "tail"), quarters["sides"], {"units": "Pa"}),
+                "noise": ((), _noise(series, self._period), {"units": "1"}),
+                "thin": ((), sim.thin["body"], {"units": "1"}),
+            },
+            coords={
+                "phase": phase,
+                "instant": list(QUARTERS),
+                "side": ["left", "right"],
+                "tail": ("tail", np.linspace(0.0, 1.0, PLACES), {"units": "1"}),
+                "joint": [*yaws, cable_joints(self._robot)[0]],
+                "servo": [*yaws, *(place.servos[i] for i in place.cables)],
+            },
+        )
+        return data.merge(shown).merge(self._turns(sim.record, samples))
+
+    def _turns(self, series: flow.Record, samples: Samples) -> xr.Dataset:
+        """Return what was at the four quarters of every cycle but the first, see ``measures.Quarters``."""
+        seen, shape = samples.series("turns"), (self._cycles - self._settled, len(QUARTERS))
+        when, force = series.time - 0.5 * series.step, series.force()
+        at = {
+            "difference": (seen["difference"], "Pa"),
+            "place": (seen["place"], "1"),
+            "thrust": (np.interp(seen["time"], when, -force[:, 0]), "N/m"),
+            "aside": (np.interp(seen["time"], when, force[:, 1]), "N/m"),
+        }
+        dims = ("settled", "instant")
+        data = {
+            f"quarter_{name}": (dims, values.reshape(shape), {"units": unit}) for name, (values, unit) in at.items()
+        }
+        return xr.Dataset(data, coords={"settled": np.arange(self._settled, self._cycles) + 1})
+
+
+def _noise(series: flow.Record, period: float) -> float:
+    """Return the noise of the force along the body; not a number where the series is too short or constant [-]."""
+    force = series.force()[:, 0]
+    window = max(period / 12, 10 * float(series.step.mean()))  # enough steps for a cubic
+    if series.time[-1] - series.time[0] < 2 * window or np.ptp(force) == 0.0:
+        return float("nan")
+    return flow.noise(series.time, force, window=window)
+
+
+class FreeSlice:
+    """Track, speed and fields of a slice that swims freely."""
+
+    def __init__(self, swim: ResolvedSwim) -> None:
+        self._swim, self._view = swim, FieldWindow(swim.setup.grid, swim.robot.length, 2.25, 0.6)
+        self._end, self._period, self._frames = swim.end, swim.period, swim.setting.frames
+
+    def sample(self, sim: flow.Simulation, samples: Samples) -> None:
+        """Sample what is due after a step."""
+        left = (self._end - sim.time) / self._period
+        if left > 2.0 + SLACK:
+            return
+        spine, (position, _) = midline(sim), sim.frame
+        snout = np.array([spine.x[0] + position[0], spine.heading[0]])
+        samples.add("track", sim.time, snout=snout, across=spine.y + position[1])
+        count = samples.count("frames")
+        if count < self._frames and left < 1.0 - (count + 1) / self._frames + SLACK:
+            fields = self._view.fields(sim)
+            samples.add(
+                "frames", sim.time, **{n: fields[n] for n in ("vorticity", "pressure")}, **midline_values(spine)
+            )
+
+    def record(self, sim: flow.Simulation, samples: Samples) -> xr.Dataset:
+        """Return what was sampled, at even phases, with the means of every cycle."""
+        period, outline, motion = self._period, self._swim.outline, self._swim.motion
+        speed, power = cycle_means(sim.record, period, self._swim.setting.cycles, ("velocity_x", "power"))
+        track = samples.series("track")
+        even = self._end + period * (np.arange(2 * PHASES + 1) / PHASES - 2.0)
+        snout, across = (
+            np.column_stack([np.interp(even, track["time"], column) for column in track[name].T])
+            for name in ("snout", "across")
+        )
+        swung, tip = swing(across), across[:, -1:]
+        moment = self._period * np.arange(TRACK * self._swim.setting.cycles + 1) / TRACK
+        centre = [np.interp(moment, sim.record.time, sim.record.column(name)) for name in ("x", "y")]
+        data = xr.Dataset(
+            {
+                "speed": ("cycle", -speed, {"units": "m/s"}),
+                "power": ("cycle", power, {"units": "W/m"}),
+                "snout_x": ("sample", snout[:, 0], {"units": "m"}),
+                "snout_y": ("sample", across[:, 0], {"units": "m"}),
+                "heading": ("sample", snout[:, 1], {"units": "rad"}),
+                "tail_y": ("sample", across[:, -1], {"units": "m"}),
+                "swing": ("station", swung.amplitude, {"units": "m"}),
+                "swing_late": (
+                    "station",
+                    swung.phase_lag,
+                    {"units": "1", "long_name": "its phase lag [cycle]"},
+                ),
+                "sine_share": ("station", swung.share, {"units": "1"}),
+                "tip_share": ("single", [_share(tip[:-PHASES]), _share(tip[PHASES:])], {"units": "1"}),
+                "centre_x": ("moment", centre[0], {"units": "m", "long_name": "centre of mass, to the tail"}),
+                "centre_y": ("moment", centre[1], {"units": "m", "long_name": "centre of mass, to the right"}),
+                "weight": ((), DENSITY * GRAVITY * sim.setup.bodies[0].shape.mass(sim.time).size, {"units": "N/m"}),
+                "wave_speed": ((), wave_speed(outline, motion, cycle(outline, motion)), {"units": "m/s"}),
+                "thin": ((), sim.thin["body"], {"units": "1"}),
+            }
+        )
+        if self._frames == 0:
+            return data
+        frames = samples.series("frames")
+        shown = self._view.dataset(frames, "frame")
+        phase = (frames["time"] - self._end) / period + 1.0
+        return data.merge(shown.assign_coords(frame=("frame", phase, {"units": "1"})))
+
+
+def _share(track: np.ndarray) -> float:
+    """Return which share of a track's swing over one cycle is a sine, shape of the track (sample, 1) [-]."""
+    return float(swing(track, 1).share[0])

@@ -1,0 +1,114 @@
+"""What is sampled and recorded of the robot's own body in space: free, or its motion given."""
+
+import numpy as np
+import xarray as xr
+
+from suchus import flow
+from suchus.design import GRAVITY, Robot, cable_joints, layout
+from suchus.motion.swim import trunk_yaws
+from suchus.water.field_samples import VortexSampler, midline, wake
+from suchus.water.outline import Outline
+from suchus.water.samples import Samples
+from suchus.water.setting import DENSITY
+from suchus.water.slender import cycle
+from suchus.water.swim_setup import PHASES, SLACK, ResolvedSwim, cycle_means
+from suchus.water.swimming import wave_speed
+
+_PER_CYCLE = {"velocity_x": ("speed", "m/s"), "force_x": ("thrust", "N"), "power": ("power", "W")}
+
+
+class FreeInSpace:
+    """Speed, moments at the joints, wake and vortices of a body that the water moves."""
+
+    def __init__(self, swim: ResolvedSwim) -> None:
+        self._swim, self._end, self._period = swim, swim.end, swim.period
+        self._film = VortexSampler(swim.motion.frequency, swim.end, swim.setting.frames)
+
+    def sample(self, sim: flow.Simulation, samples: Samples) -> None:
+        """Sample what is due after a step."""
+        self._film.sample(sim, samples)
+        if self._end - sim.time > self._period * (1.0 + SLACK):
+            return
+        spine, (position, _) = midline(sim), sim.frame
+        samples.add("track", sim.time, heading=spine.heading[0], tail=spine.y[-1] + position[1])
+
+    def record(self, sim: flow.Simulation, samples: Samples) -> xr.Dataset:
+        """Return what was sampled, at even phases, with the means of every cycle."""
+        period, cycles, series = self._swim.period, self._swim.setting.cycles, sim.record
+        outline, motion, robot = self._swim.outline, self._swim.motion, self._swim.robot
+        means = dict(zip(_PER_CYCLE, cycle_means(series, period, cycles, tuple(_PER_CYCLE)), strict=True))
+        track, last = samples.series("track"), series.after((cycles - 1) * period * (1.0 + SLACK))
+        torques = last.along("torque_behind")[:, 1 + np.argsort(np.argsort(outline.places))]
+        sign = {"velocity_x": -1.0, "force_x": -1.0, "power": 1.0}  # the body swims towards -x
+        data = xr.Dataset(
+            {
+                name: ("cycle", sign[column] * means[column], {"units": unit})
+                for column, (name, unit) in _PER_CYCLE.items()
+            }
+        )
+        data = data.assign(
+            moment=("moment", last.time, {"units": "s"}),
+            joint_torque=(("moment", "joint"), torques, {"units": "N m"}),
+            servo_torque=(("moment", "servo"), _at_servos(outline, torques), {"units": "N m"}),
+            servo_limit=("servo", [robot.servo(name).torque for name in _servos(robot)], {"units": "N m"}),
+            swing=((), float(np.ptp(track["tail"])), {"units": "m", "long_name": "of the tail's tip, peak to peak"}),
+            head_yaw=((), 0.5 * float(np.ptp(track["heading"])), {"units": "rad"}),
+            weight=((), DENSITY * GRAVITY * sim.setup.bodies[0].shape.mass(sim.time).size, {"units": "N"}),
+            wave_speed=((), wave_speed(outline, motion, cycle(outline, motion)), {"units": "m/s"}),
+            thin=((), sim.thin["body"], {"units": "1"}),
+            steps=((), float(len(last.time)), {"units": "1", "long_name": "in the last cycle"}),
+            million_cells=((), float(np.prod(sim.setup.grid.cells)) / 1e6, {"units": "1"}),
+            joint_place=("joint", outline.places, {"units": "m"}),
+        )
+        data = data.assign_coords(servo=list(_servos(robot)), cycle=np.arange(1, cycles + 1)).merge(wake(sim))
+        return data.merge(self._film.record(samples))
+
+
+class HeldInSpace:
+    """Forces on a body whose motion is given; the flow's own record is enough."""
+
+    def __init__(self, swim: ResolvedSwim) -> None:
+        self._swim = swim
+
+    def sample(self, sim: flow.Simulation, samples: Samples) -> None:
+        """Sample nothing."""
+
+    def record(self, sim: flow.Simulation, samples: Samples) -> xr.Dataset:
+        """Return what was sampled, at even phases, with the means of every cycle."""
+        del samples
+        period, cycles, (sway, turn) = self._swim.period, self._swim.setting.cycles, self._swim.head
+        ahead, power = cycle_means(sim.record, period, cycles, ("force_x", "power"))
+        phase = np.arange(1, PHASES + 1) / PHASES
+        when, force = (sim.record.time - 0.5 * sim.record.step - self._swim.end + period) / period, sim.record.force()
+        series = {
+            "thrust": (-force[:, 0], "N"),
+            "aside": (force[:, 1], "N"),
+            "power": (sim.record.column("power"), "W"),
+        }
+        data = {
+            name: ("phase", np.interp(phase, when, values), {"units": unit}) for name, (values, unit) in series.items()
+        }
+        data |= {
+            "cycle_thrust": ("cycle", -ahead, {"units": "N"}),
+            "cycle_power": ("cycle", power, {"units": "W"}),
+            "sway": ("part", [sway.real, -sway.imag], {"units": "m"}),
+            "turn": ("part", [turn.real, -turn.imag], {"units": "rad"}),
+        }
+        return xr.Dataset(data, coords={"part": ["cosine", "sine"], "phase": phase, "cycle": np.arange(1, cycles + 1)})
+
+
+def _servos(robot: Robot) -> tuple[str, ...]:
+    place = layout(robot)
+    return (*trunk_yaws(robot), *(place.servos[i] for i in place.cables))
+
+
+def _at_servos(outline: Outline, torques: np.ndarray) -> np.ndarray:
+    """Return what the water asks of the yaw servos and of the cable's servo, shape (moment, servo) [N m].
+
+    The cable bends its joints alike, so that its servo takes the mean of their moments, over the ratio of half the
+    cords' distance to the pulley.
+    """
+    robot, yaws = outline.robot, len(trunk_yaws(outline.robot))
+    behind = torques[:, yaws : yaws + len(cable_joints(robot))].mean(axis=1)
+    cable = behind * robot.tail.pulley / (0.5 * robot.tail.cord_spacing)
+    return np.column_stack([torques[:, :yaws], cable])

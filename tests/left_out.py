@@ -1,0 +1,48 @@
+"""Which tests ``make test`` leaves out, why, and what runs them: read from the marks of all that was collected."""
+
+from collections.abc import Iterable, Sequence
+
+import pytest
+
+COMMANDS = {"slow": "make test-all", "validate": "make validate"}
+"""What runs the tests with a mark."""
+WHY = "compared with published numbers, or a result that docs state made again"
+"""Why a test has the mark ``validate``, which says no more."""
+COLLECTED = pytest.StashKey[tuple[pytest.Item, ...]]()
+"""All tests that were collected, before any was deselected."""
+_HEAD = "| test | why | what runs it |\n|---|---|---|\n"
+
+
+def command(item: pytest.Item) -> str:
+    """Return what runs a test that ``make test`` leaves out; empty for all others."""
+    return next((COMMANDS[mark.name] for mark in item.iter_markers() if mark.name in COMMANDS), "")
+
+
+def reason(item: pytest.Item) -> str:
+    """Return why ``make test`` leaves a test out."""
+    return next((mark.args[0] for mark in item.iter_markers("slow")), WHY)
+
+
+def rows(items: Iterable[pytest.Item]) -> list[str]:
+    """Return a row of the table for each function of which cases are slow, and each file with published numbers."""
+    functions: dict[str, list[pytest.Item]] = {}
+    for item in items:
+        functions.setdefault(item.nodeid.partition("[")[0].removeprefix("tests/"), []).append(item)
+    told = set()
+    for name, cases in functions.items():
+        for case in cases:
+            if runs := command(case):
+                some = " (some cases)" if any(command(other) != runs for other in cases) else ""
+                what = f"{name}`{some}" if runs == COMMANDS["slow"] else f"{name.partition('::')[0]}`"
+                told.add(f"| `{what} | {reason(case)} | `{runs}` |")
+    return sorted(told)
+
+
+def table(told: Sequence[str]) -> str:
+    """Return rows as a table."""
+    return _HEAD + "".join(f"{row}\n" for row in told)
+
+
+def file_of(row: str) -> str:
+    """Return the file that a row is about, from the folder of the tests."""
+    return row.removeprefix("| `").partition("`")[0].partition("::")[0]

@@ -1,0 +1,56 @@
+"""What holds for every controller on the shelf, on the caiman in its crawl."""
+
+from dataclasses import FrozenInstanceError, fields, is_dataclass, replace
+
+import numpy as np
+import pytest
+
+from suchus.control import CONTROLLERS, Control
+from suchus.land import Run, simulate
+from suchus.sources import snake
+
+SHORT = 1.3
+"""Duration of a walk, of which 1 s is settling [s]."""
+
+
+@pytest.fixture(params=list(CONTROLLERS))
+def control(request):
+    """A value of each kind: the first of the ``examples`` beside it, or what its defaults give."""
+    examples = CONTROLLERS.beside(request.param, "examples", ())
+    return examples[0] if examples else CONTROLLERS[request.param]()
+
+
+def walk(robot, gait, *controls):
+    runs = [Run(robot=robot, gait=gait, control=control, noise=0.01, seed=3) for control in controls]
+    return simulate(runs, duration=SHORT, timestep=0.01)
+
+
+def test_it_is_called_as_its_class_and_is_a_frozen_value(control):
+    assert CONTROLLERS[snake(type(control).__name__)] is type(control)
+    assert isinstance(control, Control)
+    assert is_dataclass(control)
+    assert control == replace(control)
+    assert hash(control) == hash(replace(control))
+    for field in fields(control)[:1]:
+        with pytest.raises(FrozenInstanceError):
+            setattr(control, field.name, None)
+
+
+def test_it_commands_every_servo_and_answers_the_same_twice_to_the_byte(control, robot, crawl_gait):
+    record = walk(robot, crawl_gait, control)
+    assert np.isfinite(record.servo_target.values).all()
+    assert record.servo_target.std() > 0.0
+    assert record.identical(walk(robot, crawl_gait, control))
+
+
+def test_a_run_comes_out_the_same_alone_and_beside_others(control, robot, crawl_gait):
+    alone = walk(robot, crawl_gait, control)
+    beside = walk(robot, replace(crawl_gait, period=3.0), control)
+    runs = [
+        Run(robot=robot, gait=gait, control=control, noise=0.01, seed=3)
+        for gait in (crawl_gait, replace(crawl_gait, period=3.0))
+    ]
+    both = simulate(runs, duration=SHORT, timestep=0.01)
+    for i, single in enumerate((alone, beside)):
+        for name in ("position", "servo_target", "joint_angle"):
+            assert both[name].isel(run=i).values.tobytes() == single[name].isel(run=0).values.tobytes(), name

@@ -1,0 +1,94 @@
+"""What holds for the rules of every experiment: what each says of its examples, and that they notice any break of it.
+
+A test of the tests: each rule is broken in every way that could hide a wrong verdict, and its examples must notice.
+"""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import get_args
+
+import pytest
+
+from suchus.experiments import EXPERIMENTS
+from suchus.paper import CLAIMS
+from suchus.verdict import Clause, Kind, Rule, examples_of, judge, judging, rules_of
+
+ALL = {rule.claim: (name, rule) for name in EXPERIMENTS for rule in rules_of(name)}
+ROWS = [(claim, measures, word) for name in EXPERIMENTS for claim, rows in examples_of(name).items()
+        for measures, word in rows]  # fmt: skip
+_REVERSED = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
+_OFF = 0.05
+"""How far a bound is moved [-]."""
+_KINDS: tuple[Kind, ...] = get_args(Kind)
+
+
+@pytest.mark.parametrize(("claim", "measures", "word"), ROWS)
+def test_a_rule_says_of_measures_what_they_mean(claim, measures, word):
+    verdict = judge(ALL[claim][1], measures)
+    assert verdict.verdict == word
+    assert len(verdict.why) > 20
+
+
+@pytest.mark.parametrize("name", EXPERIMENTS)
+def test_its_rules_have_examples_of_two_words_at_least(name):
+    examples = examples_of(name)
+    assert set(examples) == {rule.claim for rule in rules_of(name)}
+    for claim, rows in examples.items():
+        assert len({word for _, word in rows}) > 1, claim
+
+
+@pytest.mark.parametrize("claim", ALL)
+def test_a_rule_is_of_a_claim_and_of_the_experiment_beside_which_it_stands(claim):
+    name, rule = ALL[claim]
+    assert rule.experiment == name
+    assert claim in CLAIMS
+    assert rule.holds or (rule.kind == "construction" and CLAIMS[claim].value is not None)
+    assert all(clause.why for clause in rule.holds)
+
+
+def test_no_claim_has_two_rules():
+    assert len(ALL) == sum(len(rules_of(name)) for name in EXPERIMENTS)
+
+
+@pytest.mark.parametrize("claim", ALL)
+def test_every_way_to_break_a_rule_changes_a_word(claim, monkeypatch):
+    survived = []
+    (name, rule), printed = ALL[claim], CLAIMS[claim]
+    rows = examples_of(name)[claim]
+    for what, broken, rounding in mutated(rule, numeric=printed.value is not None):
+        if rounding != 1.0 and printed.rounding == 0.0:
+            continue  # a count has no rounding
+        monkeypatch.setattr(judging, "CLAIMS", {claim: replace(printed, rounding=rounding * printed.rounding)})
+        if all(judging.judge(broken, measures, {}).verdict == word for measures, word in rows):
+            survived.append(what)
+    assert survived == []
+
+
+def mutated(rule: Rule, numeric: bool) -> Iterator[tuple[str, Rule, float]]:
+    """Yield what was done to the rule, the broken rule, and the factor on the claim's rounding.
+
+    Args:
+        rule: which is broken.
+        numeric: whether the article prints a number of the claim.
+    """
+    for i, clause in enumerate(rule.holds):
+        name = f"{rule.claim}: {clause.measure} {clause.relation} {clause.bound}"
+        yield f"{name} dropped", _with(rule, i, ()), 1.0
+        yield f"{name} never", _with(rule, i, (Clause(rule.measure, ">", float("inf"), "never"),)), 1.0
+        yield f"{name} reversed", _with(rule, i, (replace(clause, relation=_REVERSED[clause.relation]),)), 1.0
+        if not isinstance(clause.bound, str):
+            for sign in (-1, 1):
+                moved = clause.bound + sign * _OFF * (abs(clause.bound) or 1.0)
+                yield f"{name} moved to {moved:.4g}", _with(rule, i, (replace(clause, bound=moved),)), 1.0
+    for kind in _KINDS:
+        if kind != rule.kind:
+            yield f"{rule.claim}: {kind} instead of {rule.kind}", replace(rule, kind=kind), 1.0
+    if numeric and rule.kind != "animals":
+        yield f"{rule.claim}: rounding doubled", rule, 2.0
+        yield f"{rule.claim}: rounding removed", rule, 0.0
+        if rule.band is not None:
+            yield f"{rule.claim}: without the spread of repeats", replace(rule, band=None), 1.0
+
+
+def _with(rule: Rule, at: int, clauses: tuple[Clause, ...]) -> Rule:
+    return replace(rule, holds=(*rule.holds[:at], *clauses, *rule.holds[at + 1 :]))
