@@ -10,7 +10,7 @@ from typing import Any, TypeVar, get_args, overload
 
 from pydantic import TypeAdapter, ValidationError
 
-from suchus.blueprint.mistakes import MistakenFile, Place, explain
+from suchus.blueprint.mistakes import MistakenFile, Place, closest, explain
 from suchus.errors import UnreadableFile
 from suchus.record import read_toml
 
@@ -48,38 +48,44 @@ def read(path: Path, kind: Any, shelf: Mapping[str, Any]) -> Any:
     if base is not None and known:
         model = shelf[base]
     else:
-        meant = _meant(data, kinds)
+        meant = closest(data, kinds)
         model = next(thing for thing in shelf.values() if isinstance(thing, meant))
     if not isinstance(model, kinds):
         raise UnreadableFile(
             f"{path.name} starts from {base!r}, which is a {type(model).__name__}; a "
             f"{' or '.join(one.__name__ for one in kinds)} is needed here."
         )
-    spare = _plain(asdict(model))
+    spare = plain(asdict(model))
     mistakes: dict[Place, str] = {}
     if not known:
         mistakes["base",] = f"is {base!r}; there is {', '.join(shelf)}"
     if base is not None:
-        data = _merge({**spare, "name": path.stem}, data)
-    return _validated({"name": path.stem, **data}, type(model), spare, path.name, mistakes)
+        data = merged({**spare, "name": path.stem}, data)
+    return validated({"name": path.stem, **data}, type(model), spare, path.name, mistakes)
 
 
-def _meant(data: Mapping[str, Any], kinds: tuple[Any, ...]) -> Any:
-    """Return the kind whose fields the top of a file names best; the first of those alike."""
-    return max(kinds, key=lambda kind: len(set(data) & {field.name for field in fields(kind)}))
-
-
-def _plain(value: Any) -> Any:
+def plain(value: Any) -> Any:
     """Return a value without the tables and fields that are None, which TOML does not have."""
     if isinstance(value, dict):
-        return {key: _plain(item) for key, item in value.items() if item is not None}
-    return tuple(_plain(item) for item in value) if isinstance(value, (list, tuple)) else value
+        return {key: plain(item) for key, item in value.items() if item is not None}
+    return tuple(plain(item) for item in value) if isinstance(value, (list, tuple)) else value
 
 
-def _validated(
+def validated(
     data: dict[str, Any], kind: type[T], spare: Mapping[str, Any], name: str, mistakes: dict[Place, str]
 ) -> T:
-    """Validate, mend what is wrong with spare values and look again, until nothing new is found."""
+    """Return the value that a table describes; where it does not, mend it with spare values until nothing new is found.
+
+    Args:
+        data: the table; what is wrong with it is mended in place.
+        kind: of the value.
+        spare: values that are right, to look on with.
+        name: of the file.
+        mistakes: those that are known already, by place.
+
+    Raises:
+        MistakenFile: it describes none; all mistakes are named.
+    """
     adapter = TypeAdapter(kind)
     mended: set[Place] = set()
     while True:
@@ -88,7 +94,7 @@ def _validated(
         except ValidationError as error:
             found: dict[Place, str] = {}
             for one in error.errors(include_url=False):
-                found |= explain(one, kind)
+                found |= explain(one, kind, data)
         else:
             break
         fresh = {p: text for p, text in found.items() if _whole(p) not in mended and not _follows(p, mended)}
@@ -128,9 +134,10 @@ def _mend(data: Any, place: Place, spare: Any) -> bool:
     return True
 
 
-def _merge(base: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:
-    merged = dict(deepcopy(base))
+def merged(base: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a table with what another one says in the place of its own."""
+    whole = dict(deepcopy(base))
     for key, value in over.items():
-        there = merged.get(key)
-        merged[key] = _merge(there, value) if isinstance(there, dict) and isinstance(value, dict) else value
-    return merged
+        there = whole.get(key)
+        whole[key] = merged(there, value) if isinstance(there, dict) and isinstance(value, dict) else value
+    return whole
