@@ -15,7 +15,7 @@ from suchus.motion import GaitInMetres
 from suchus.motion.working_space import extent, outline, over, reached
 
 CRAWL = GAITS["belly_crawl"]
-METRES = GaitInMetres.of(CRAWL, LIMBS)
+METRES = GaitInMetres.near(CRAWL, LIMBS)
 
 
 def world(pelvis, points):

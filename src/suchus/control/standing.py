@@ -11,7 +11,7 @@ from suchus import rotation
 from suchus.control.controller import Command, Runs
 from suchus.control.sensed import Sensed
 from suchus.control.suited import crocodiles
-from suchus.design import Robot, Crocodile, Layout, Leg, crocodile, layout
+from suchus.design import Robot, Layout, Leg, crocodile, layout
 from suchus.design.checks import Checks
 from suchus.motion import Gait, intended
 from suchus.motion.posture import Keyed, hind_leg, plan
@@ -142,7 +142,7 @@ class Standing:
         rows = np.array([unique[key] for key in keys])
         return Stander(balances, course, rows, legs, layout(robots[0]), period)
 
-    def _course(self, robot: Crocodile, gait: Gait, time: np.ndarray) -> "Course":
+    def _course(self, robot: Robot, gait: Gait, time: np.ndarray) -> "Course":
         up, leave, end = self._rise(robot), self.upright_until(robot), self.down_from(robot)
         way_up = np.minimum(time - self.at - self.blend, up.duration)
         way_down = up.duration - (time - leave) / self.slower_down

@@ -2,10 +2,10 @@
 
 from collections.abc import Sequence
 
-from suchus.design import Robot, Crocodile, crocodile
+from suchus.design import Robot, crocodile
 
 
-def crocodiles(robots: Sequence[Robot], what: str) -> list[Crocodile]:
+def crocodiles(robots: Sequence[Robot], what: str) -> list[Robot]:
     """Return the robots of a batch as the article's kind.
 
     Args:

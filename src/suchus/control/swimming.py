@@ -12,7 +12,7 @@ from suchus.control.holding import DepthHold, Depths, HeadingHold, Headings
 from suchus.control.sensed import Sensed
 from suchus.control.suited import crocodiles
 from suchus.control.trim import Pitches, PitchHold
-from suchus.design import Crocodile, layout, servo_ranges
+from suchus.design import Robot, layout, servo_ranges
 from suchus.design.checks import Checks
 from suchus.errors import OutsideLimits
 from suchus.kinematics import tail as tail_kinematics
@@ -65,7 +65,7 @@ class Swimming:
         """Whether heading, depth or pitch are controlled."""
         return self.heading is not None or self.depth is not None
 
-    def targets(self, robot: Crocodile, time: Float[np.ndarray, " time"]) -> Float[np.ndarray, "time servo"]:
+    def targets(self, robot: Robot, time: Float[np.ndarray, " time"]) -> Float[np.ndarray, "time servo"]:
         """Return the servo angles over time, in the order of ``design.servo_names()`` [rad]."""
         place, now = layout(robot), bends(self.swim, time)
         grown = np.clip(time / self.ramp, 0.0, 1.0) if self.ramp > 0 else np.ones_like(time)
@@ -93,7 +93,7 @@ class Swimming:
 class SwimmingController:
     """The running swims of a batch: a table for each, to which what is felt adds."""
 
-    def __init__(self, controls: Sequence[Swimming], robots: Sequence[Crocodile], ticks: int, period: float) -> None:
+    def __init__(self, controls: Sequence[Swimming], robots: Sequence[Robot], ticks: int, period: float) -> None:
         pairs = list(zip(controls, robots, strict=True))
         unique = {pair: i for i, pair in enumerate(dict.fromkeys(pairs))}
         self._row = np.array([unique[pair] for pair in pairs])
@@ -133,7 +133,7 @@ class SwimmingController:
         return Command(targets, self._frequency * (tick * self._period), breath)
 
 
-def bent(targets: np.ndarray, robot: Crocodile, tail: np.ndarray, trunk: np.ndarray) -> np.ndarray:
+def bent(targets: np.ndarray, robot: Robot, tail: np.ndarray, trunk: np.ndarray) -> np.ndarray:
     """Return servo angles with mean bends of tail and trunk besides, within the tail's limit, shape (row, servo) [rad].
 
     Args:
@@ -151,7 +151,7 @@ def bent(targets: np.ndarray, robot: Crocodile, tail: np.ndarray, trunk: np.ndar
     return out
 
 
-def _check(robot: Crocodile, targets: np.ndarray) -> None:
+def _check(robot: Robot, targets: np.ndarray) -> None:
     """Refuse angles beyond the joints' ranges."""
     ranges = servo_ranges(robot)
     least, most = targets.min(axis=0), targets.max(axis=0)

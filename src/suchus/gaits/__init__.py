@@ -5,15 +5,22 @@ from pathlib import Path
 
 from suchus.catalog import Catalog
 from suchus.design import Robot
+from suchus.errors import UnreadableFile
 from suchus.gaits._animal_swim import ANIMAL_SWIM
 from suchus.gaits._conditions import CONDITIONS, conditions_of
 from suchus.gaits._own import gait_of
-from suchus.motion import Gait, suits
+from suchus.motion import Gait, form_of, suits
+from suchus.record import read_toml
 
 
 def _read(path: Path) -> Gait:
     from suchus import blueprint  # noqa: PLC0415  half of the time of an import that reads no file
 
+    if form_of(read_toml(path)) is not None:
+        raise UnreadableFile(
+            f"{path.name} gives metres or places along the body, which are those of a robot: give the file's path with "
+            "its robot, or write the gait in limbs and axis, whose lengths are shares of the limbs' reach."
+        )
     gait: Gait = blueprint.read(path, Gait, GAITS)
     return gait
 

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import Robot, Crocodile, Leg, crocodile, joint_names, layout, servo_names
+from suchus.design import Robot, Leg, crocodile, joint_names, layout, servo_names
 from suchus.design.checks import Checks
 from suchus.errors import InvalidDesign, OutsideLimits, Unreachable
 from suchus.kinematics import leg as leg_kinematics
@@ -149,7 +149,7 @@ def plan(robot: Robot, sequence: Keyed, time: Float[np.ndarray, "*batch"]) -> Pl
     )
 
 
-def mass_ahead(robot: Crocodile, posture: Posture, feet_ahead: float) -> float:
+def mass_ahead(robot: Robot, posture: Posture, feet_ahead: float) -> float:
     """Return how far the centre of mass lies ahead of the hips in a posture [m], whatever its own ``lead``.
 
     Args:
@@ -200,7 +200,7 @@ def _ahead(pitch: np.ndarray, point: np.ndarray) -> np.ndarray:
     return np.asarray(np.cos(pitch) * point[..., 0] - np.sin(pitch) * point[..., 2])
 
 
-def _balance(robot: Crocodile, keys: np.ndarray) -> np.ndarray:
+def _balance(robot: Robot, keys: np.ndarray) -> np.ndarray:
     """Return how far behind the feet the hips bring the centre of mass to its place in each key [m].
 
     The centre of mass moves a little with the hind legs, and the hind legs follow from it: a few rounds agree.
@@ -216,7 +216,7 @@ def _named(numbers: np.ndarray) -> dict[str, np.ndarray]:
     return dict(zip(FIELDS, np.moveaxis(numbers, -1, 0), strict=False))
 
 
-def _angles(robot: Crocodile, given: dict[str, np.ndarray], behind: np.ndarray, *, clip: bool = False) -> np.ndarray:
+def _angles(robot: Robot, given: dict[str, np.ndarray], behind: np.ndarray, *, clip: bool = False) -> np.ndarray:
     """Return the angles of every hinge."""
     angles = np.zeros((*behind.shape, len(joint_names(robot))))
     place = layout(robot)
@@ -238,12 +238,12 @@ def _angles(robot: Crocodile, given: dict[str, np.ndarray], behind: np.ndarray, 
     return angles
 
 
-def _feet(robot: Crocodile, given: dict[str, np.ndarray], behind: np.ndarray) -> np.ndarray:
+def _feet(robot: Robot, given: dict[str, np.ndarray], behind: np.ndarray) -> np.ndarray:
     down = given["hip_height"] - robot.hind_leg.foot_radius - given["lift"]
     return np.stack([given["stance"], behind, down], axis=-1)
 
 
-def _tail_pitch(robot: Crocodile, given: dict[str, np.ndarray]) -> np.ndarray:
+def _tail_pitch(robot: Robot, given: dict[str, np.ndarray]) -> np.ndarray:
     """Return the pitch that brings the tip of a straight tail to its depth [rad]."""
     tail, theta = robot.tail, given["pelvis_pitch"]
     root = given["hip_height"] - tail.offset * np.sin(theta)
@@ -251,7 +251,7 @@ def _tail_pitch(robot: Crocodile, given: dict[str, np.ndarray]) -> np.ndarray:
     return np.asarray(np.arcsin(np.clip(drop / (tail.length - tail.offset), -1.0, 1.0)) - theta)
 
 
-def _check_ranges(robot: Crocodile, targets: np.ndarray) -> None:
+def _check_ranges(robot: Robot, targets: np.ndarray) -> None:
     for i, name in enumerate(servo_names()[:-1]):
         low, high = servo_range(robot, name)
         worst = targets[..., i].ravel()[np.argmax(np.maximum(low - targets[..., i], targets[..., i] - high))]

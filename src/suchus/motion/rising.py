@@ -6,7 +6,7 @@ from math import radians
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import Robot, Crocodile, crocodile, joint_names, layout
+from suchus.design import Robot, crocodile, joint_names, layout
 from suchus.kinematics.body import landmarks
 from suchus.kinematics.mass import centre_of_mass
 from suchus.motion.posture import Keyed, Posture, hind_leg, mass_ahead
@@ -91,7 +91,7 @@ def stand_up(
     return Keyed(name="stand_up", times=times, postures=postures)
 
 
-def _feet_ahead(robot: Crocodile, level: Posture) -> float:
+def _feet_ahead(robot: Robot, level: Posture) -> float:
     """Return how far ahead of its hips a lying robot sets its hind feet [m].
 
     That is 0.17 of the leg's length, the caiman's 30 mm, past the centre of mass, or as far as the legs reach if the

@@ -12,7 +12,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 from scipy.stats import qmc
 
-from suchus.design import LEGS, Crocodile, joint_names, layout, spine_joints
+from suchus.design import LEGS, Robot, joint_names, layout, spine_joints
 from suchus.kinematics import leg as leg_kinematics
 from suchus.kinematics import spine
 from suchus.kinematics.body import from_leg_frame, landmarks, tail_points, to_leg_frame
@@ -42,7 +42,7 @@ class Reached(NamedTuple):
     """Number of postures that were drawn [-]."""
 
 
-def reached(robot: Crocodile, gait: Gait, *, standing: bool, count: int, seed: int = 0) -> Reached:
+def reached(robot: Robot, gait: Gait, *, standing: bool, count: int, seed: int = 0) -> Reached:
     """Return configurations of a robot that keeps its feet where they are.
 
     Hind feet, and on all fours front feet, stand where they stand in the middle of the gait's stance with the trunk
@@ -56,7 +56,7 @@ def reached(robot: Crocodile, gait: Gait, *, standing: bool, count: int, seed: i
         seed: of the drawing.
     """
     low, high = _box(robot, standing)
-    metres = GaitInMetres.of(gait, limb_reaches(robot))
+    metres = GaitInMetres.near(gait, limb_reaches(robot))
     shares = qmc.Sobol(len(low), rng=seed).random_base2(max(count - 1, 1).bit_length())
     drawn = low + (high - low) * shares
     parts = [_kept(robot, metres, drawn[at : at + _CHUNK], standing) for at in range(0, len(drawn), _CHUNK)]
@@ -64,7 +64,7 @@ def reached(robot: Crocodile, gait: Gait, *, standing: bool, count: int, seed: i
     return Reached(snout, angles, pelvis, len(drawn))
 
 
-def _box(robot: Crocodile, standing: bool) -> tuple[np.ndarray, np.ndarray]:
+def _box(robot: Robot, standing: bool) -> tuple[np.ndarray, np.ndarray]:
     """Return the least and the greatest of what is drawn: the pelvis' x, z and pitch, the trunk's joints."""
     far, links = robot.hind_leg.reach[1], robot.spine
     ranges = [links.yaw_range if "yaw" in name else links.pitch_range for name in spine_joints()]
@@ -75,7 +75,7 @@ def _box(robot: Crocodile, standing: bool) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _kept(
-    robot: Crocodile, gait: GaitInMetres, drawn: np.ndarray, standing: bool
+    robot: Robot, gait: GaitInMetres, drawn: np.ndarray, standing: bool
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return snout, angles and pelvis of the configurations of a chunk that can be."""
     pelvis, trunk = drawn[:, :3], drawn[:, 3:]
@@ -113,7 +113,7 @@ def _kept(
     return snout[upright], angles[upright], pelvis[upright]
 
 
-def _place(robot: Crocodile, angles: np.ndarray, good: np.ndarray, names: tuple[str, str], *feet: np.ndarray) -> None:
+def _place(robot: Robot, angles: np.ndarray, good: np.ndarray, names: tuple[str, str], *feet: np.ndarray) -> None:
     """Write the angles of two legs whose feet, in the frame of their girdle, are given; note who cannot."""
     for name, foot in zip(names, feet, strict=True):
         links, at = robot.leg(name), 3 * LEGS.index(name)
@@ -124,7 +124,7 @@ def _place(robot: Crocodile, angles: np.ndarray, good: np.ndarray, names: tuple[
         good &= ((angles[:, at : at + 3] >= low) & (angles[:, at : at + 3] <= high)).all(axis=1)
 
 
-def _tail_laid(robot: Crocodile, angles: np.ndarray, pelvis: np.ndarray) -> Bool[np.ndarray, " n"]:
+def _tail_laid(robot: Robot, angles: np.ndarray, pelvis: np.ndarray) -> Bool[np.ndarray, " n"]:
     """Write the pitch at which the tip of the straight tail touches the ground; return who can."""
     tail = robot.tail
     drop = (pelvis[:, 1] - tail.offset * np.sin(pelvis[:, 2]) - tail.radius_tip) / (tail.length - tail.offset)
@@ -165,7 +165,7 @@ def over(point: Float[np.ndarray, "n 2"], corners: Float[np.ndarray, "n corner 2
 
 
 def outline(
-    robot: Crocodile, angles: Float[np.ndarray, "n joint"], pelvis: Float[np.ndarray, "n 3"]
+    robot: Robot, angles: Float[np.ndarray, "n joint"], pelvis: Float[np.ndarray, "n 3"]
 ) -> tuple[Float[np.ndarray, "n point 3"], Float[np.ndarray, "n 4 3 3"]]:
     """Return the midline from tail tip to snout, and hip, knee and foot of each leg, in the world [m].
 
