@@ -13,7 +13,8 @@ _SHOWN = 60  # characters of a value in a message
 
 def misfits(value: object) -> Iterator[tuple[str, str]]:
     """Yield name and complaint of each field of a dataclass that holds another kind of thing than it declares."""
-    for name, hint, fits in _declared(type(value)):
+    kind: Any = type(value)
+    for name, hint, fits in _declared(kind):
         has = getattr(value, name)
         if not fits(has):
             wanted = "a smaller number" if _huge(has) and fits(0.0) else _wanted(hint)
@@ -48,11 +49,11 @@ def _huge(value: Any) -> bool:
 def _number(value: Any) -> bool:
     if type(value) is float:  # most are
         return True
-    return isinstance(value, Real) and not isinstance(value, bool) and not _huge(value)
+    return not isinstance(value, bool) and isinstance(value, Real) and not _huge(value)
 
 
 def _whole(value: Any) -> bool:
-    return isinstance(value, Integral) and not isinstance(value, bool) and not _huge(value)
+    return not isinstance(value, bool) and isinstance(value, Integral) and not _huge(value)
 
 
 def _check(hint: Any) -> Fits:

@@ -6,7 +6,7 @@ from math import tau
 import numpy as np
 import pytest
 
-from suchus.design import crocodile, general
+from suchus.design import general
 from suchus.design.pieces import pieces
 from suchus.design.water import Water
 from suchus.hydro import column
@@ -19,7 +19,7 @@ from suchus.robots import ROBOTS
 ROBOT = ROBOTS["caiman"]
 TABLE = pieces(replace(general(ROBOT), girdles=(), hull=None))
 SWIM = Swim(name="w", frequency=0.8, yaw=(0.36, 0.13, 0.11), yaw_lag=(0.08, -0.11, -0.29), tail=0.75, tail_lag=-0.11)
-STILL = crocodile(replace(SWIM.tables, yaw=(0.0, 0.0, 0.0), tail=0.0))
+STILL = replace(SWIM, yaw=(0.0, 0.0, 0.0), tail=0.0)
 HEAD = {"sway": -0.03 + 0.01j, "turn": 0.13 + 0.02j}
 THICK = 1.5e-4
 NOTHING = WaterCoefficients(cross_drag=0.0, thickening=0.0, added_mass=0.0)
