@@ -20,7 +20,7 @@ from pages.stated import keep, kept
 from pages.stated import main as write_pages
 from suchus.figures import COLOURS, panels, styled
 from suchus.jobs import conduct_sweep
-from suchus.land.calibration import NAMES, QUANTITIES, Coefficients, fitted, left, responses
+from suchus.land.calibration import NAMES, QUANTITIES, WaterCoefficients, fitted, left, responses
 from suchus.land.prescribed import free_sections, held_sections, towed_sections
 from suchus.motion import Swim
 from suchus.progress import Progress
@@ -46,7 +46,7 @@ TOWED = "0.1 m/s"
 WHOLE = "whole wave"
 """Name of the motion that the coefficients are fitted to [-]."""
 FITTED = ("cross_drag", "thickening")
-"""Coefficients that are fitted, to the whole wave of the body that is held."""
+"""WaterCoefficients that are fitted, to the whole wave of the body that is held."""
 PICTURE = Path(__file__).parents[1] / "docs" / "pictures" / "calibration.png"
 HELD_CYCLES, FREE_CYCLES = 3, 6
 """Cycles from rest, of which the last counts [-]."""
@@ -117,7 +117,7 @@ Found = Mapping[tuple[str, str, int], xr.Dataset]
 def stated(found: Found) -> Mapping[str, Any]:
     """Return what the page states: flow, model of the runs and fitted model beside each other, and the grids."""
     swims, kinds = motions(), ("held", "free", "towed")
-    both = Coefficients(), _fit(found, WHOLE, GRIDS[0], FITTED)
+    both = WaterCoefficients(), _fit(found, WHOLE, GRIDS[0], FITTED)
     names = {kind: [name for one, name, cells in found if one == kind and cells == GRIDS[0]] for kind in kinds}
     beside = {kind: {name: _beside(found, kind, name, swims, both) for name in names[kind]} for kind in kinds}
     flows = {name: found["held", name, GRIDS[0]] for name in names["held"]}
@@ -158,7 +158,7 @@ def _on_grids(values: Sequence[float]) -> dict[str, Any]:
     return {"values": list(values), "foretold": float(line(1.0 / FINEST)), "limit": float(line(0.0))}
 
 
-def _held(swim: Swim, flow: xr.Dataset, one: Coefficients) -> xr.Dataset:
+def _held(swim: Swim, flow: xr.Dataset, one: WaterCoefficients) -> xr.Dataset:
     """Return what the model of the runs says with coefficients of a body that is held as in a flow."""
     return held_sections(ROBOT, swim, one.lake(VISCOSITY), **_head(flow))
 
@@ -168,7 +168,7 @@ def _head(flow: xr.Dataset) -> dict[str, complex]:
     return {name: complex(flow[name][0], -flow[name][1]) for name in ("sway", "turn")}
 
 
-def _fit(found: Found, name: str, cells: int, fitted_names: Sequence[str]) -> Coefficients:
+def _fit(found: Found, name: str, cells: int, fitted_names: Sequence[str]) -> WaterCoefficients:
     flow = found["held", name, cells]
     return fitted(flow, responses(ROBOT, motions()[name], VISCOSITY, **_head(flow)), fitted_names)
 
@@ -184,7 +184,7 @@ def numbers(kind: str, flow: xr.Dataset) -> dict[str, float]:
 
 
 def _beside(
-    found: Found, kind: str, name: str, swims: Mapping[str, Swim], both: Sequence[Coefficients]
+    found: Found, kind: str, name: str, swims: Mapping[str, Swim], both: Sequence[WaterCoefficients]
 ) -> dict[str, list[float]]:
     """Return, by quantity, what the flow says, the model of the runs and the fitted one."""
     flow = found[kind, name, GRIDS[0]]
@@ -213,7 +213,7 @@ def from_swim_3d(measures: Mapping[str, float]) -> dict[tuple[str, str, int], xr
 def draw(found: Found) -> Figure:
     """Draw thrust, side force and power of the body that is held over a cycle: the flow and the models."""
     swim, flow = motions()[WHOLE], found["held", WHOLE, GRIDS[0]]
-    plain, nearest = (_held(swim, flow, one) for one in (Coefficients(), _fit(found, WHOLE, GRIDS[0], FITTED)))
+    plain, nearest = (_held(swim, flow, one) for one in (WaterCoefficients(), _fit(found, WHOLE, GRIDS[0], FITTED)))
     with styled():
         figure, axes = panels(1, 3, width=12.0, height=4.2)
         lines: list[tuple[xr.Dataset, str, dict[str, Any]]] = [

@@ -14,12 +14,11 @@ _SHOWN = 60  # characters of a value in a message
 def misfits(value: object) -> Iterator[tuple[str, str]]:
     """Yield name and complaint of each field of a dataclass that holds another kind of thing than it declares."""
     kind: Any = type(value)
-    hints = _hints(kind)
-    for field in fields(value):  # type: ignore[arg-type]
-        has, hint = getattr(value, field.name), hints[field.name]
-        if not _fits(has, hint):
-            wanted = "a smaller number" if _huge(has) and _fits(0.0, hint) else _wanted(hint)
-            yield field.name, f"is {show(has)}; {wanted} is needed"
+    for name, hint, fits in _declared(kind):
+        has = getattr(value, name)
+        if not fits(has):
+            wanted = "a smaller number" if _huge(has) and fits(0.0) else _wanted(hint)
+            yield name, f"is {show(has)}; {wanted} is needed"
 
 
 def show(value: object) -> str:
@@ -31,9 +30,15 @@ def show(value: object) -> str:
     return text if len(text) <= _SHOWN else f"{text[: _SHOWN - 3]}..."
 
 
+Fits = Callable[[Any], bool]
+"""Whether a value is of a kind."""
+
+
 @cache
-def _hints(kind: type) -> dict[str, Any]:
-    return get_type_hints(kind)
+def _declared(kind: Any) -> tuple[tuple[str, Any, Fits], ...]:
+    """Return name, hint and check of each field of a dataclass; many values of few classes are made in a study."""
+    hints = get_type_hints(kind)
+    return tuple((field.name, hints[field.name], _check(hints[field.name])) for field in fields(kind))
 
 
 def _huge(value: Any) -> bool:
@@ -41,32 +46,51 @@ def _huge(value: Any) -> bool:
     return isinstance(value, Integral) and not -(2**1023) < int(value) < 2**1023
 
 
-def _fits(value: Any, hint: Any) -> bool:
+def _number(value: Any) -> bool:
+    if type(value) is float:  # most are
+        return True
+    return not isinstance(value, bool) and isinstance(value, Real) and not _huge(value)
+
+
+def _whole(value: Any) -> bool:
+    return not isinstance(value, bool) and isinstance(value, Integral) and not _huge(value)
+
+
+def _check(hint: Any) -> Fits:
+    """Return what tells whether a value is what a hint declares."""
     origin, inner = get_origin(hint), get_args(hint)
-    if hint is Any:
-        return True
     if hint in (float, int):
-        number = isinstance(value, Real if hint is float else Integral) and not isinstance(value, bool)
-        return number and not _huge(value)
+        return _number if hint is float else _whole
     if origin in (Union, UnionType):
-        return any(_fits(value, one) for one in inner)
+        members = [_check(member) for member in inner]
+        return lambda value: any(fits(value) for fits in members)
     if origin is Literal:
-        return isinstance(value, (str, int)) and value in inner
+        return lambda value: isinstance(value, (str, int)) and value in inner
     if origin is tuple:
-        if not isinstance(value, tuple):
-            return False
-        each = [inner[0]] * len(value) if Ellipsis in inner else inner
-        return len(each) == len(value) and all(_fits(item, one) for item, one in zip(value, each, strict=True))
+        return _row(inner)
     if origin is Mapping:
-        return isinstance(value, Mapping)
+        return lambda value: isinstance(value, Mapping)
     if origin is Callable:
-        return callable(value)
+        return callable
     if hint is None or hint is type(None):
-        return value is None
-    if not isinstance(hint, type) or origin is not None:
-        return True
-    look = not getattr(hint, "_is_protocol", False) or getattr(hint, "_is_runtime_protocol", False)
-    return isinstance(value, hint) if look else True
+        return lambda value: value is None
+    protocol, runtime = getattr(hint, "_is_protocol", False), getattr(hint, "_is_runtime_protocol", False)
+    if hint is Any or not isinstance(hint, type) or origin is not None or (protocol and not runtime):
+        return lambda _: True
+    return lambda value: isinstance(value, hint)
+
+
+def _row(inner: tuple[Any, ...]) -> Fits:
+    """Return what tells whether a value is a tuple of declared items, of any length where the hints end with dots."""
+    if Ellipsis in inner:
+        fits = _check(inner[0])
+        return lambda value: isinstance(value, tuple) and all(map(fits, value))
+    each = [_check(item) for item in inner]
+    return lambda value: (
+        isinstance(value, tuple)
+        and len(value) == len(each)
+        and all(fits(item) for fits, item in zip(each, value, strict=True))
+    )
 
 
 def _wanted(hint: Any) -> str:

@@ -7,7 +7,7 @@ import pytest
 import calibration
 from pages.stated import kept
 from pages.stated_calibration import WORTH, earned, held_out, mean_off, off, worth
-from suchus.land.calibration import Coefficients
+from suchus.land.calibration import WaterCoefficients
 from suchus.land.prescribed import free_sections, held_sections, towed_sections
 from suchus.water import Outline, Water, recoil
 
@@ -16,7 +16,7 @@ KEPT = kept("calibration")
 
 def test_the_model_of_the_runs_says_what_is_kept():
     """Renew with ``python tools/calibration.py``."""
-    lake, whole = Coefficients().lake(calibration.VISCOSITY), calibration.motions()[calibration.WHOLE]
+    lake, whole = WaterCoefficients().lake(calibration.VISCOSITY), calibration.motions()[calibration.WHOLE]
     for name, one in KEPT["towed"].items():
         assert towed_sections(calibration.ROBOT, float(name.split()[0]), lake) == pytest.approx(
             one["drag"][1], rel=1e-6
@@ -30,7 +30,7 @@ def test_the_model_of_the_runs_says_what_is_kept():
 
 
 def test_the_model_swims_freely_as_is_kept():
-    lake, swim = Coefficients().lake(calibration.VISCOSITY), calibration.motions()["tail only"]
+    lake, swim = WaterCoefficients().lake(calibration.VISCOSITY), calibration.motions()["tail only"]
     swum = free_sections(calibration.ROBOT, swim, lake, calibration.FREE_CYCLES)
     one = KEPT["free"]["tail only"]
     assert (float(swum.speed[-1]), float(swum.power[-1])) == pytest.approx((one["speed"][1], one["power"][1]), rel=1e-3)

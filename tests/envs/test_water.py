@@ -17,7 +17,7 @@ from suchus.envs.senses import felt  # noqa: E402
 from suchus.envs.task import swimming  # noqa: E402
 from suchus.errors import InvalidDesign, OutsideLimits, SuchusError, UnknownName  # noqa: E402
 from suchus.land import Ground, Lake, Wave  # noqa: E402
-from suchus.land.waters import up  # noqa: E402
+from suchus.land.lake import up  # noqa: E402
 
 SWIM, SHORE = envs.TASKS["Swim"], envs.TASKS["Shore"]
 NEAR = envs.Goal(distance=0.4, within=0.1, bearing=0.3)

@@ -7,7 +7,6 @@ import pytest
 import xarray as xr
 
 from suchus.control import Swimming
-from suchus.design import crocodile
 from suchus.errors import InvalidDesign
 from suchus.experiments import EXPERIMENTS
 from suchus.experiments.swim_free.experiment import _ends, _radius, _speed, _uneven
@@ -54,7 +53,7 @@ def test_the_band_is_as_wide_as_the_table_of_sections_asks(drag, expected):
 def test_the_table_is_read_where_this_body_swims():
     """A wider swing has larger Keulegan numbers: more drag beyond the attached layer, and more added mass."""
     one = EXPERIMENTS["swim_free"]
-    small = crocodile(replace(SWIM.tables, yaw=tuple(0.2 * a for a in SWIM.yaw), tail=0.2 * SWIM.tail))
+    small = replace(SWIM, yaw=tuple(0.2 * a for a in SWIM.yaw), tail=0.2 * SWIM.tail)
     found = [one._by_table(motion) for motion in (small, SWIM)]
     for name in ("cross_drag", "added_mass"):
         assert 0.2 < found[0][name] < found[1][name] < 3.0

@@ -100,7 +100,7 @@ def test_buoyancy_is_against_gravity_where_the_ground_slopes():
 
 
 def test_a_robot_that_floats_begins_at_the_surface_and_one_that_sinks_stands():
-    still = Swimming(swim=crocodile(replace(WAVE.tables, yaw=(0, 0, 0), tail=0.0)))
+    still = Swimming(swim=replace(WAVE, yaw=(0, 0, 0), tail=0.0))
     lake = Lake(level=1.0)
     light, heavy = (
         crawl(name, "belly_crawl", duration=0.01, lake=lake, control=still) for name in ("floating_caiman", "caiman")
@@ -113,7 +113,7 @@ def test_a_robot_that_floats_begins_at_the_surface_and_one_that_sinks_stands():
 def test_let_go_heeled_by_150_degrees_it_rights_itself_and_with_its_foam_no_higher_it_does_not():
     robot = ROBOTS["floating_caiman"]
     flat = replace(robot, hull=replace(robot.hull, foam=tuple(replace(foam, raised=0.0) for foam in robot.hull.foam)))
-    still = Swimming(swim=crocodile(replace(WAVE.tables, yaw=(0, 0, 0), tail=0.0)))
+    still = Swimming(swim=replace(WAVE, yaw=(0, 0, 0), tail=0.0))
     some = [
         Run(robot=one, gait="belly_crawl", lake=Lake(level=3.0, heel=radians(150)), control=still)
         for one in (robot, flat)

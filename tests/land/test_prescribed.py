@@ -6,12 +6,12 @@ from math import tau
 import numpy as np
 import pytest
 
-from suchus.design import crocodile, general
+from suchus.design import general
 from suchus.design.pieces import pieces
 from suchus.design.water import Water
 from suchus.hydro import column
 from suchus.land import Lake
-from suchus.land.calibration import NAMES, QUANTITIES, Coefficients, composed, fitted, left, responses
+from suchus.land.calibration import NAMES, QUANTITIES, WaterCoefficients, composed, fitted, left, responses
 from suchus.land.prescribed import INSTANTS, _Submerged, free_sections, held_sections, towed_sections
 from suchus.motion import Swim
 from suchus.robots import ROBOTS
@@ -19,10 +19,10 @@ from suchus.robots import ROBOTS
 ROBOT = ROBOTS["caiman"]
 TABLE = pieces(replace(general(ROBOT), girdles=(), hull=None))
 SWIM = Swim(name="w", frequency=0.8, yaw=(0.36, 0.13, 0.11), yaw_lag=(0.08, -0.11, -0.29), tail=0.75, tail_lag=-0.11)
-STILL = crocodile(replace(SWIM.tables, yaw=(0.0, 0.0, 0.0), tail=0.0))
+STILL = replace(SWIM, yaw=(0.0, 0.0, 0.0), tail=0.0)
 HEAD = {"sway": -0.03 + 0.01j, "turn": 0.13 + 0.02j}
 THICK = 1.5e-4
-NOTHING = Coefficients(cross_drag=0.0, thickening=0.0, added_mass=0.0)
+NOTHING = WaterCoefficients(cross_drag=0.0, thickening=0.0, added_mass=0.0)
 PHASE = np.arange(1, INSTANTS + 1) / INSTANTS
 
 
@@ -41,9 +41,9 @@ def test_a_tow_is_friction_along_the_skin_and_the_nose(speed):
 
 
 def test_a_body_at_rest_feels_nothing():
-    found = held_sections(ROBOT, STILL, Coefficients().lake(THICK))
+    found = held_sections(ROBOT, STILL, WaterCoefficients().lake(THICK))
     assert all(np.abs(found[name].values).max() < 1e-12 for name in QUANTITIES)
-    still = free_sections(ROBOT, STILL, Coefficients().lake(THICK), 1)
+    still = free_sections(ROBOT, STILL, WaterCoefficients().lake(THICK), 1)
     assert np.abs([still.speed.values, still.power.values]).max() < 1e-12
 
 
@@ -64,7 +64,7 @@ def test_a_straight_body_that_sways_feels_its_added_mass_and_its_drag():
 
 def test_the_mirrored_swim_is_pushed_to_the_other_side(parts):
     mirrored = replace(SWIM, yaw_lag=tuple(lag + 0.5 for lag in SWIM.yaw_lag), tail_lag=SWIM.tail_lag + 0.5)
-    whole, other = composed(parts, Coefficients()), Coefficients().lake(THICK)
+    whole, other = composed(parts, WaterCoefficients()), WaterCoefficients().lake(THICK)
     there = held_sections(ROBOT, mirrored, other, **{name: -value for name, value in HEAD.items()})
     assert there.aside.values == pytest.approx(-whole.aside.values, abs=1e-9)
     assert there.thrust.values == pytest.approx(whole.thrust.values, abs=1e-9)
@@ -74,32 +74,32 @@ def test_the_mirrored_swim_is_pushed_to_the_other_side(parts):
 
 
 def test_what_a_body_feels_is_linear_in_the_coefficients(parts):
-    some = Coefficients(cross_drag=2.7, thickening=11.0, added_mass=1.4)
+    some = WaterCoefficients(cross_drag=2.7, thickening=11.0, added_mass=1.4)
     felt = held_sections(ROBOT, SWIM, some.lake(THICK), **HEAD)
     for name in QUANTITIES:
         assert composed(parts, some)[name].values == pytest.approx(felt[name].values, abs=1e-9)
 
 
 def test_a_fit_finds_the_coefficients_that_a_force_was_made_with(parts):
-    some = Coefficients(cross_drag=2.7, thickening=11.0, added_mass=1.4)
+    some = WaterCoefficients(cross_drag=2.7, thickening=11.0, added_mass=1.4)
     made = composed(parts, some)
     found = fitted(made, parts, NAMES)
     assert [found.cross_drag, found.thickening, found.added_mass] == pytest.approx([2.7, 11.0, 1.4])
     assert max(left(made, composed(parts, found)).values()) < 1e-9
     two = fitted(made, parts, ("cross_drag", "thickening"))
-    assert two.added_mass == Coefficients().added_mass
+    assert two.added_mass == WaterCoefficients().added_mass
     assert max(left(made, composed(parts, two)).values()) > 1e-3  # one of them is not what it was made with
-    assert max(left(made, composed(parts, Coefficients())).values()) > 0.1
+    assert max(left(made, composed(parts, WaterCoefficients())).values()) > 0.1
 
 
 def test_a_swim_without_water_stays_where_it_is():
     """Nothing acts from outside: the centre of mass rests, however the body bends; with drag it does not."""
     alone = free_sections(ROBOT, SWIM, NOTHING.lake(THICK), 2)
     assert np.abs(alone.speed.values).max() < 1e-5
-    swum = free_sections(ROBOT, SWIM, Coefficients().lake(THICK), 2)
+    swum = free_sections(ROBOT, SWIM, WaterCoefficients().lake(THICK), 2)
     assert swum.speed.values[-1] > 0.01
     assert swum.power.values[-1] > 0.01
-    back = free_sections(ROBOT, SWIM.reversed(), Coefficients().lake(THICK), 2)
+    back = free_sections(ROBOT, SWIM.reversed(), WaterCoefficients().lake(THICK), 2)
     assert back.speed.values[-1] < 0.5 * swum.speed.values[-1]
 
 

@@ -100,14 +100,14 @@ def test_the_command_refuses_a_file_without_tracks_in_one_sentence(walk, tmp_pat
 
 
 def test_lines_and_feet_are_drawn_where_the_animal_is(take, tracks):
-    drawn_animal = pytest.importorskip("suchus.viewer.drawn_animal", reason="the extra viewer is not installed")
+    drawn = pytest.importorskip("suchus.viewer.drawn", reason="the extra viewer is not installed")
     made: dict[str, SimpleNamespace] = {}
 
     def node(name, *_, **settings):
         return made.setdefault(name, SimpleNamespace(**settings))
 
     animal = beside(tracks, take)
-    drawn_animal.DrawnAnimal(SimpleNamespace(add_line_segments=node, add_icosphere=node), "/w", animal).show(2.0)
+    drawn.DrawnAnimal(SimpleNamespace(add_line_segments=node, add_icosphere=node), "/w", animal).show(2.0)
     place = animal.at(2.0)
     assert made["/w/lines"].points.shape == (len(animal.bones), 2, 3)
     np.testing.assert_allclose(made["/w/lines"].points[0], place[list(animal.bones[0])], atol=1e-6)

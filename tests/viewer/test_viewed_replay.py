@@ -86,16 +86,16 @@ def test_a_take_says_where_the_water_stands_and_a_dry_one_that_there_is_none(tmp
 def test_the_camera_follows_a_swimmer_up_and_down_and_a_walker_along_the_ground(visible, height, follow, below):
     water = None if visible is None else SimpleNamespace(visible=visible)
     seen = SimpleNamespace(_world=SimpleNamespace(), _water=water, _size=1.0)
-    stage.Stage.place(seen, {"centre_of_mass": np.array([2.0, 0.0, height])}, (0.0, 0.0), follow=follow)
+    stage.WalkScene.place(seen, {"centre_of_mass": np.array([2.0, 0.0, height])}, (0.0, 0.0), follow=follow)
     np.testing.assert_allclose(seen._world.position, [-2.0 if follow else 0.0, 0.0, -below], atol=1e-12)
 
 
 def test_water_that_a_run_does_not_have_is_hidden():
     box = SimpleNamespace(visible=True, position=None)
     seen = SimpleNamespace(_world=SimpleNamespace(position=np.array([0.0, 0.0, -0.2])), _water=box)
-    stage.Stage.flood(seen, None)
+    stage.WalkScene.flood(seen, None)
     assert not box.visible
-    stage.Stage.flood(seen, 0.6)
+    stage.WalkScene.flood(seen, 0.6)
     assert box.visible
     assert box.position[2] == pytest.approx(0.4)
 

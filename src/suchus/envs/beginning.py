@@ -16,8 +16,8 @@ from suchus.gaits import GAITS
 from suchus.land import Ground, Run
 from suchus.land.afloat import surfaced
 from suchus.land.batch import Beginning
+from suchus.land.lake import up
 from suchus.land.loop import Loop
-from suchus.land.waters import up
 from suchus.model import activations, compile_model, standing
 from suchus.model.export import home
 from suchus.motion import check_swim, hip_height

@@ -191,10 +191,10 @@ class Pack:
         low = (height < self.task.least_height) & (self.task.least_height > 0.0)
         fell = low | (level < self.task.least_level)
         left = self.remaining
-        there = who & (left <= 0.0) & ~(fell | diverged) & (self.task.goal is not None)
+        reached = who & (left <= 0.0) & ~(fell | diverged) & (self.task.goal is not None)
         for i in np.flatnonzero(who & (fell | diverged)):
             self.causes[i] = self._why(int(i), bool(diverged[i]), float(height[i]), float(level[i]))
-        for i in np.flatnonzero(there):
+        for i in np.flatnonzero(reached):
             self.causes[i] = f"it reached the goal at {self.time[i]:.2f} s"
         return Terms(
             forward=moved[:, 0],
@@ -203,7 +203,7 @@ class Pack:
             work=np.where(diverged, 0.0, work),
             action_rate=action_rate,
             approach=np.where(diverged, 0.0, far - left),
-            goal=there,
+            goal=reached,
             fall=fell | diverged,
         )
 

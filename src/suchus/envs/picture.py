@@ -96,7 +96,7 @@ def draw_water(above: Axes, side: Axes, level: float, up: Float[np.ndarray, "3"]
     if (depth > 0.0).any():
         above.contourf(x, y, depth, levels=[0.0, max(depth.max(), 1e-9)], colors=[COLOURS["water"]], alpha=_TINT)
     line = [(level - up[1] * left) / up[0]] if up[0] else []  # where the surface meets the ground
-    ends = np.sort([*x, *(one for one in line if x[0] < one < x[1])])
+    ends = np.sort([*x, *(shore for shore in line if x[0] < shore < x[1])])
     for pair in pairwise(ends):
         heights = (level - up[0] * np.array(pair) - up[1] * left) / up[2]
         if heights.mean() > 0.0:

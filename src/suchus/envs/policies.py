@@ -10,8 +10,8 @@ from suchus.control import Control, Controller, HeadingHold
 from suchus.control.swimming import bent
 from suchus.design import crocodile, layout
 from suchus.design.scale import control_period
-from suchus.envs.registering import STEPS
 from suchus.envs.senses import felt, part, turning
+from suchus.envs.shelf import STEPS
 from suchus.envs.task import Task, swimming
 from suchus.envs.vector import CrocodileVectorEnv
 from suchus.motion import Gait, cycle_targets

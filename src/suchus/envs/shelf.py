@@ -1,10 +1,12 @@
-"""The tasks by name, and how one is varied by naming its fields."""
+"""The tasks by name, how one is varied by naming its fields, and the environments that gymnasium knows by name."""
 
 from collections.abc import Mapping
 from dataclasses import fields, replace
 from math import radians, sin
 from types import MappingProxyType
 from typing import Any, get_args
+
+import gymnasium
 
 from suchus.design import Robot
 from suchus.envs.goals import AnyGoal, Goal, Landing
@@ -82,7 +84,7 @@ def chosen(task: Task | str, changes: Mapping[str, Any]) -> Task:
         if name not in names:
             raise UnknownName("field of a task", name, names)
     shelves: Mapping[str, Mapping[str, Any]] = {"robot": ROBOTS, "gait": GAITS}
-    found = {
+    values = {
         name: shelves[name][value] if name in shelves and isinstance(value, str) else value
         for name, value in changes.items()
     }
@@ -97,10 +99,32 @@ def chosen(task: Task | str, changes: Mapping[str, Any]) -> Task:
         "swim": (Swim, type(None)),
         "goal": (*get_args(AnyGoal), type(None)),
     }
-    for name, value in found.items():
+    for name, value in values.items():
         if name in kinds and not isinstance(value, kinds[name]):
             wanted = " or ".join("None" if kind is type(None) else kind.__name__ for kind in kinds[name])
             raise InvalidDesign(f"task.{name} is {str(value)[:80]!r}; a {wanted} is needed.")
-    if "robot" in found:
-        task = task.on(found.pop("robot"), found.pop("gait", None))
-    return replace(task, **found)
+    if "robot" in values:
+        task = task.on(values.pop("robot"), values.pop("gait", None))
+    return replace(task, **values)
+
+
+STEPS = 200
+"""Greatest number of steps of an episode [-]: 10 s, two and a half cycles of the article's crawl."""
+LONGER: Mapping[str, int] = MappingProxyType({"Swim": 400, "Shore": 1000})
+"""Steps of an episode of the tasks that take longer [-]: 20 s, three times what the steered swim to the goal
+takes; 50 s, as in the experiment ``shore``."""
+IDS = tuple(f"suchus/{name}-v0" for name in TASKS)
+"""Names of the environments."""
+
+
+def register() -> None:
+    """Make the environments known to ``gymnasium.make`` and ``gymnasium.make_vec``; once is enough."""
+    for name, identity in zip(TASKS, IDS, strict=True):
+        if identity not in gymnasium.registry:
+            gymnasium.register(
+                identity,
+                entry_point="suchus.envs.single:CrocodileEnv",
+                vector_entry_point="suchus.envs.vector:CrocodileVectorEnv",
+                max_episode_steps=LONGER.get(name, STEPS),
+                kwargs={"task": name},
+            )

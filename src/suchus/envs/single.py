@@ -11,7 +11,7 @@ from suchus.envs.reward import TERMS, Terms
 from suchus.envs.shelf import chosen
 from suchus.envs.spaces import RENDER_MODES, action_space, check_render_mode, checked, observation_space
 from suchus.envs.task import Task
-from suchus.land.waters import up
+from suchus.land.lake import up
 
 
 class CrocodileEnv(gymnasium.Env):  # type: ignore[misc]  # gymnasium is not read by mypy

@@ -74,9 +74,9 @@ class CrocodileVectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[misc]  # g
             InvalidDesign: not as many seeds as robots, or a mask of another shape.
         """
         who = _mask(options, self.num_envs)
-        for i, one in enumerate(_seeds(seed, self.num_envs)):
-            if one is not None and who[i]:
-                self._randoms[i] = seeding.np_random(one)[0]
+        for i, episode_seed in enumerate(_seeds(seed, self.num_envs)):
+            if episode_seed is not None and who[i]:
+                self._randoms[i] = seeding.np_random(episode_seed)[0]
         self._restart(who)
         infos: dict[str, Any] = {}
         self._say(infos, self._beginnings(), who)

@@ -71,10 +71,10 @@ def surfaced(
     wetting.install()
     model = wet_model(robot, timestep, None, len(table), acting=True)
     data = mujoco.MjData(model)
-    here = np.array(qpos)
-    here[3:7] = multiply(multiply(_raising(up), about(np.array([1.0, 0.0, 0.0]), lake.heel)), qpos[3:7])
-    here[:3] = 0.0
-    data.qpos[:] = here
+    floating = np.array(qpos)
+    floating[3:7] = multiply(multiply(_raising(up), about(np.array([1.0, 0.0, 0.0]), lake.heel)), qpos[3:7])
+    floating[:3] = 0.0
+    data.qpos[:] = floating
     mujoco.mj_kinematics(model, data)
     bodies = unpacked(model.numeric_data)
 
@@ -83,11 +83,11 @@ def surfaced(
 
     reach = float(robot.length)
     height = brentq(lacking, -reach, reach, xtol=1e-9)  # of the root above the surface
-    here[:3] = qpos[:3] + (level + height - float(up @ qpos[:3])) * up
-    data.qpos[:] = here
+    floating[:3] = qpos[:3] + (level + height - float(up @ qpos[:3])) * up
+    data.qpos[:] = floating
     mujoco.mj_forward(model, data)
     touching = any(contact.dist < 0.0 for contact in data.contact)
-    return qpos if touching else here
+    return qpos if touching else floating
 
 
 def _raising(up: np.ndarray) -> np.ndarray:

@@ -16,8 +16,8 @@ from suchus.design.pieces import pieces
 from suchus.design.relief import Relief
 from suchus.land import wetting
 from suchus.land.afloat import surfaced
+from suchus.land.lake import Waters, gravity, up
 from suchus.land.run import Afloat, Run
-from suchus.land.waters import Waters, gravity, up
 from suchus.model import activations, compile_model, force_sensors, standing
 from suchus.model.wet import wet_model
 from suchus.motion import hip_height
@@ -114,7 +114,7 @@ class SimulationBatch:
         )
         self.activations, self._pushed = self.physics.bind("act"), self.physics.bind("xfrc_applied")
         self.readings = self.sensors.copy()
-        self.waters = Waters(runs, self.physics)
+        self.waters = Waters([run.lake for run in runs], [run.ground for run in runs], self.physics)
         forces = force_sensors(runs[0].robot)
         self._forces = slice(int(shared.sensor(forces[0]).adr[0]), int(shared.sensor(forces[-1]).adr[0]) + 3)
         self._felt, self._mean = self.sensors[:, self._forces], self.readings[:, self._forces]
@@ -213,16 +213,16 @@ class SimulationBatch:
             runs: the runs.
             first: the servo angles at the start, shape (run, servo) [rad].
         """
-        found: dict[object, tuple[np.ndarray, np.ndarray]] = {}
+        postures: dict[object, tuple[np.ndarray, np.ndarray]] = {}
         afloat: dict[object, np.ndarray] = {}
         for sim, run in enumerate(runs):
             height = hip_height(run.robot, run.gait)
             key = (run.robot, height, first[sim].tobytes())
-            if key not in found:
+            if key not in postures:
                 model = compile_model(run.robot, self._timestep)  # every run begins on even ground
                 posture = standing(model, run.robot, height, first[sim])
-                found[key] = posture, activations(model, first[sim])
-            self.qpos[sim], self.activations[sim] = found[key]
+                postures[key] = posture, activations(model, first[sim])
+            self.qpos[sim], self.activations[sim] = postures[key]
             if run.lake is not None:
                 float_key = (key, run.lake, run.ground)
                 if float_key not in afloat:

@@ -21,7 +21,7 @@ QUANTITIES = ("thrust", "aside", "power")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Coefficients:
+class WaterCoefficients:
     """What the section model of the runs makes of the water."""
 
     cross_drag: float = Water().cross_drag
@@ -37,14 +37,14 @@ class Coefficients:
         return Lake(level=level, water=water, added_mass=self.added_mass)
 
 
-NAMES = tuple(one.name for one in fields(Coefficients))
+NAMES = tuple(field.name for field in fields(WaterCoefficients))
 """Names of the coefficients."""
 
 
 def responses(
     robot: Robot, swim: Swim, viscosity: float, *, sway: complex = 0j, turn: complex = 0j
 ) -> Mapping[str, xr.Dataset]:
-    """Return what each of ``Coefficients`` does by one unit of it, and what is left without them, as ``rest``.
+    """Return what each of ``WaterCoefficients`` does by one unit of it, and what is left without them, as ``rest``.
 
     Args:
         robot: whose body, limbs left out.
@@ -54,23 +54,23 @@ def responses(
         turn: see ``held_sections`` [rad].
     """
 
-    def felt(**one: float) -> xr.Dataset:
-        lake = Coefficients(**({"cross_drag": 0.0, "thickening": 0.0, "added_mass": 0.0} | one)).lake(viscosity)
+    def response(**unit: float) -> xr.Dataset:
+        lake = WaterCoefficients(**({"cross_drag": 0.0, "thickening": 0.0, "added_mass": 0.0} | unit)).lake(viscosity)
         return held_sections(robot, swim, lake, sway=sway, turn=turn)
 
-    rest = felt()
-    return {"rest": rest, **{name: felt(**{name: 1.0}) - rest for name in NAMES}}
+    rest = response()
+    return {"rest": rest, **{name: response(**{name: 1.0}) - rest for name in NAMES}}
 
 
-def composed(parts: Mapping[str, xr.Dataset], coefficients: Coefficients) -> xr.Dataset:
+def composed(parts: Mapping[str, xr.Dataset], coefficients: WaterCoefficients) -> xr.Dataset:
     """Return what a body feels with coefficients, from ``responses``."""
-    felt = parts["rest"]
+    load = parts["rest"]
     for name in NAMES:
-        felt = felt + getattr(coefficients, name) * parts[name]
-    return felt
+        load = load + getattr(coefficients, name) * parts[name]
+    return load
 
 
-def fitted(flow: xr.Dataset, parts: Mapping[str, xr.Dataset], names: Sequence[str]) -> Coefficients:
+def fitted(flow: xr.Dataset, parts: Mapping[str, xr.Dataset], names: Sequence[str]) -> WaterCoefficients:
     """Return the coefficients with which the model comes nearest to a flow; those that are not named stay.
 
     Thrust, side force and power count alike, each over its peak in the flow.
@@ -80,15 +80,15 @@ def fitted(flow: xr.Dataset, parts: Mapping[str, xr.Dataset], names: Sequence[st
         parts: of ``responses`` to the same motion.
         names: of the coefficients that are fitted.
     """
-    kept = Coefficients(**dict.fromkeys(names, 0.0))
+    others = WaterCoefficients(**dict.fromkeys(names, 0.0))
     peaks = {name: float(np.abs(flow[name]).max()) for name in QUANTITIES}
 
-    def row(one: xr.Dataset) -> np.ndarray:
-        return np.concatenate([one[name].values / peaks[name] for name in QUANTITIES])
+    def row(load: xr.Dataset) -> np.ndarray:
+        return np.concatenate([load[name].values / peaks[name] for name in QUANTITIES])
 
     columns = np.column_stack([row(parts[name]) for name in names])
-    found = np.linalg.lstsq(columns, row(flow) - row(composed(parts, kept)), rcond=None)[0]
-    return Coefficients(**{name: float(value) for name, value in zip(names, found, strict=True)})
+    values = np.linalg.lstsq(columns, row(flow) - row(composed(parts, others)), rcond=None)[0]
+    return WaterCoefficients(**{name: float(value) for name, value in zip(names, values, strict=True)})
 
 
 def left(flow: xr.Dataset, model: xr.Dataset) -> dict[str, float]:

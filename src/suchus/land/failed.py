@@ -29,12 +29,12 @@ def failing_joints(robot: Robot) -> tuple[str, ...]:
     """
     place = layout(robot)
     words = girdle_words(len(place.robot.girdles))
-    found = [
+    ranked = [
         (i, number, f"{words[number]}_{name.partition('_')[2]}")
         for number in range(len(words))
         for i, name in enumerate(place.servos[place.limbs[2 * number].servos])
     ]
-    return tuple(name for _, _, name in sorted(found))
+    return tuple(name for _, _, name in sorted(ranked))
 
 
 def girdle_words(count: int) -> tuple[str, ...]:
@@ -73,5 +73,5 @@ def joint_failure(
 def angle_at(robot: Robot, gait: Gait, servo: str, share: float) -> float:
     """Return an angle in the range that a gait asks of a servo: 0 the least, 1 the greatest [rad]."""
     clock = np.arange(128) / 128
-    asked = cycle_targets(robot, gait, clock)[:, layout(robot).servos.index(servo)]
-    return float(asked.min() + share * (asked.max() - asked.min()))
+    angles = cycle_targets(robot, gait, clock)[:, layout(robot).servos.index(servo)]
+    return float(angles.min() + share * (angles.max() - angles.min()))

@@ -1,6 +1,10 @@
-"""The water of a run: where its surface is, how heavy it is, how it moves; some of it may change while the run goes."""
+"""The water of a run: where its surface is, how heavy it is, how it moves; some of it may change while the run goes.
+
+A ``Lake`` is the frozen value of one run; ``Waters`` are those of a batch, in the memory that the physics reads.
+"""
 
 import json
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
 from itertools import pairwise
 from math import cos, isfinite, pi, sin, sqrt, tau
@@ -12,6 +16,7 @@ from jaxtyping import Float
 from suchus import hydro
 from suchus.design import GRAVITY, Robot, general
 from suchus.design.checks import Checks
+from suchus.design.ground import Ground
 from suchus.design.water import Water
 from suchus.errors import InvalidDesign
 
@@ -147,7 +152,7 @@ def _course(name: str, course: Any, low: float, high: float, unit: str) -> tuple
     allowed = f"{low:g} to {high:g} {unit}".rstrip()
     if isinstance(course, (int, float)) and not isinstance(course, bool):
         return low <= course <= high, f"lake.{name} is {course:g} {unit}; {allowed} is allowed".replace(" ;", ";")
-    pairs = isinstance(course, tuple) and bool(course) and all(_pair(one) for one in course)
+    pairs = isinstance(course, tuple) and bool(course) and all(_pair(pair) for pair in course)
     good = pairs and all(low <= value <= high for _, value in course)
     rising = pairs and all(a[0] < b[0] for a, b in pairwise(course))
     return good and rising, (
@@ -156,14 +161,14 @@ def _course(name: str, course: Any, low: float, high: float, unit: str) -> tuple
     )
 
 
-def _pair(one: Any) -> bool:
-    return isinstance(one, tuple) and len(one) == 2 and all(isinstance(x, (int, float)) and isfinite(x) for x in one)
+def _pair(pair: Any) -> bool:
+    return isinstance(pair, tuple) and len(pair) == 2 and all(isinstance(x, (int, float)) and isfinite(x) for x in pair)
 
 
 def _now(course: Course, time: float) -> float:
     if isinstance(course, (int, float)):
         return float(course)
-    return float(np.interp(time, [at for at, _ in course], [value for _, value in course]))
+    return float(np.interp(time, [instant for instant, _ in course], [value for _, value in course]))
 
 
 def _level_axes(up: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -171,3 +176,93 @@ def _level_axes(up: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     ahead = np.array([1.0, 0.0, 0.0]) - up[0] * up
     ahead /= np.linalg.norm(ahead)
     return ahead, np.cross(up, ahead)
+
+
+_BREATH = slice(hydro.BREATH, hydro.BREATH + 2)
+
+
+class Waters:
+    """The numbers of the water of every run, in the memory that the physics reads and writes.
+
+    Args:
+        lakes: of the runs of a batch; None for those on dry land.
+        grounds: of the runs.
+        physics: the ``mujoco.batch.Batch``.
+    """
+
+    def __init__(self, lakes: Sequence[Lake | None], grounds: Sequence[Ground], physics: Any) -> None:
+        self._lakes = {sim: lake for sim, lake in enumerate(lakes) if lake is not None}
+        self._changing = {sim: lake for sim, lake in self._lakes.items() if lake.changes()}
+        self._ups = np.array([up(ground) for ground in grounds])
+        self.rows: Float[np.ndarray, "run number"] = (
+            physics.bind("userdata") if self._lakes else np.zeros((len(grounds), 0))
+        )
+        """See ``hydro.table``; without columns where all is dry."""
+        for sim in self._lakes:
+            self.refill(sim)
+
+    def __bool__(self) -> bool:
+        return bool(self._lakes)
+
+    def flood(self, time: float, breath: Float[np.ndarray, "run chamber"] | None = None) -> None:
+        """Let level and breath of the lakes be what they are at a time, where they change or are commanded.
+
+        Args:
+            time: [s].
+            breath: what controllers command of front and rear chambers, NaN where they leave it to the lake [-]; None
+                for all.
+        """
+        for sim, lake in self._changing.items():
+            self.rows[sim, hydro.LEVEL], self.rows[sim, _BREATH] = lake.at(time)
+        if breath is not None and self._lakes:
+            commanded = np.isfinite(breath).all(axis=1)
+            self.rows[commanded, _BREATH] = breath[commanded]
+
+    def fill(self, sim: int, lake: Lake, time: float) -> None:
+        """Let the water of a run be another one from now on; what the water did last stays to be read.
+
+        Args:
+            sim: a run that has a lake.
+            lake: the other one.
+            time: [s].
+        """
+        self._lakes[sim] = lake
+        self._changing = {run: other for run, other in self._lakes.items() if other.changes()}
+        self.rows[sim, : hydro.FORCE] = lake.numbers(self._ups[sim], time)[: hydro.FORCE]
+
+    def refill(self, sim: int) -> None:
+        """Write the water of a run anew, as it is at the beginning; a reset of the physics drains it."""
+        if sim in self._lakes:
+            self.rows[sim] = self._lakes[sim].numbers(self._ups[sim])
+
+    def tilt(self, sim: int, ground: Ground) -> None:
+        """Let the ground of a run slope otherwise from now on; the level stays level."""
+        if sim in self._lakes:
+            self._ups[sim] = up(ground)
+
+    def depths(self, roots: Float[np.ndarray, "run 3"]) -> Float[np.ndarray, " run"] | None:
+        """Return how deep the roots are below the level of their water, 0 above it [m]; None if all is dry.
+
+        Args:
+            roots: their places in the world [m].
+        """
+        if not self._lakes:
+            return None
+        height = np.einsum("ij,ij->i", roots, self._ups)
+        return np.asarray(np.maximum(self.rows[:, hydro.LEVEL] - height, 0.0))
+
+    def acts(self) -> Float[np.ndarray, "run 4"]:
+        """Return force [N] and power [W] of the water, as the physics left them; a view."""
+        return self.rows[:, hydro.FORCE : hydro.FORCE + 4]
+
+
+def up(ground: Ground) -> Float[np.ndarray, "3"]:
+    """Return the direction against gravity in the frame of a tilted ground, a unit vector."""
+    return -gravity(ground) / GRAVITY
+
+
+def gravity(ground: Ground) -> Float[np.ndarray, "3"]:
+    """Return gravity in the frame of a tilted ground [m/s2]."""
+    down = np.array([-np.sin(ground.uphill), 0.0, -np.cos(ground.uphill)])
+    c, s = np.cos(ground.sideways), np.sin(ground.sideways)
+    return GRAVITY * np.array([down[0], down[2] * s, down[2] * c])

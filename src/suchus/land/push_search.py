@@ -59,15 +59,17 @@ def smallest_pushes(
     forces = np.broadcast_to(scan[1:], (len(runs), len(directions), len(levels)))
     coarse = topples(forces, lambda share: progress(0.6 * share))
     first = np.where(coarse.any(axis=-1), coarse.argmax(axis=-1), len(levels))
-    low, found = scan[first], np.append(scan[1:], np.inf)[first]
+    low, smallest = scan[first], np.append(scan[1:], np.inf)[first]
     if finer:
-        gap = np.where(np.isfinite(found), found - low, 1.0)  # of those that never fall any will do: it is not used
+        gap = np.where(
+            np.isfinite(smallest), smallest - low, 1.0
+        )  # of those that never fall any will do: it is not used
         between = low[..., None] + gap[..., None] * (np.arange(1, finer + 1) / (finer + 1))
         fine = topples(between, lambda share: progress(0.6 + 0.4 * share))
         nearer = np.take_along_axis(between, fine.argmax(axis=-1)[..., None], axis=-1)[..., 0]
-        found = np.where(fine.any(axis=-1) & np.isfinite(found), nearer, found)
+        smallest = np.where(fine.any(axis=-1) & np.isfinite(smallest), nearer, smallest)
     progress(1.0)
-    return found
+    return smallest
 
 
 class _Trial(NamedTuple):

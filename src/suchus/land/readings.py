@@ -13,9 +13,8 @@ from suchus.design import GRAVITY, Robot, layout
 from suchus.design.pieces import chambers, pieces
 from suchus.hydro import column
 from suchus.land.batch import SimulationBatch
-from suchus.land.lake import lake_text
+from suchus.land.lake import lake_text, up
 from suchus.land.run import Run
-from suchus.land.waters import up
 from suchus.model import joint_addresses, sensor_names
 from suchus.record import WATER, dataset, ground_text
 
@@ -161,12 +160,12 @@ class Recorder:
         ups = np.array([up(run.ground) for run in self._runs])
         air = np.array([chambers(run.robot) for run in self._runs])
         air[air.sum(axis=1) == 0.0] = 1.0  # nothing to share out
-        kept = water[..., hydro.BREATH : hydro.BREATH + 2]
+        air_kept = water[..., hydro.BREATH : hydro.BREATH + 2]
         weight = GRAVITY * np.array([run.robot.mass for run in self._runs])
         return {
             "water_level": water[..., hydro.LEVEL],
-            "breath": np.einsum("rtc,rc->rt", kept, air / air.sum(axis=1, keepdims=True)),
-            "breath_front": kept[..., 0],
+            "breath": np.einsum("rtc,rc->rt", air_kept, air / air.sum(axis=1, keepdims=True)),
+            "breath_front": air_kept[..., 0],
             "share_under": water[..., hydro.UNDER] / total[:, None],
             "water_force": worked[..., :3],
             "water_power": worked[..., 3],
@@ -210,15 +209,15 @@ def with_equal_variables(records: Sequence[xr.Dataset]) -> list[xr.Dataset]:
     """Return records that hold the same variables: on dry land the water does nothing, and its level is NaN."""
     if len({"water_level" in record for record in records}) < 2:
         return list(records)
-    found = []
+    equal = []
     for record in records:
         if "water_level" in record:
-            found.append(record)
+            equal.append(record)
             continue
         shape = record.sizes["run"], record.sizes["time"]
         dry = {name: np.zeros((*shape, *(3 for dim in dims if dim == "xyz"))) for name, (dims, _, _) in WATER.items()}
-        found.append(_put(record, dry | {"water_level": np.full(shape, np.nan)}, shape[0] * [""]))
-    return found
+        equal.append(_put(record, dry | {"water_level": np.full(shape, np.nan)}, shape[0] * [""]))
+    return equal
 
 
 def _put(record: xr.Dataset, values: Mapping[str, np.ndarray], lakes: Sequence[str]) -> xr.Dataset:

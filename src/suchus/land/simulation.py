@@ -83,8 +83,9 @@ def _check(runs: Sequence[Run], duration: float, timestep: float, every: int) ->
     """Refuse what cannot be simulated; return the control period [s]."""
     periods = {control_period(run.robot) for run in runs}
     if len(periods) > 1:
+        known = " and ".join(f"{period:g}" for period in sorted(periods))
         raise InvalidDesign(
-            f"the robots of one batch have control periods of {' and '.join(f'{one:g}' for one in sorted(periods))} s, "
+            f"the robots of one batch have control periods of {known} s, "
             "since they differ so much in size; simulate them one after another."
         )
     (period,) = periods

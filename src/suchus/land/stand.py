@@ -60,16 +60,18 @@ def on_stand(
     model = _model(robot, joint, timestep)
     data = mujoco.MjData(model)
     data.act[:] = activations(model, np.zeros(model.nu))
-    servo, at = model.actuator(joint).id, model.joint(joint)
+    servo, hinge = model.actuator(joint).id, model.joint(joint)
     angle, torque = np.empty(len(target)), np.empty(len(target))
     for i in range(len(target)):
         data.ctrl[servo] = target[i]
-        data.qfrc_applied[at.dofadr[0]] = load[i]
+        data.qfrc_applied[hinge.dofadr[0]] = load[i]
         data.eq_active[0] = gripped[i]
         mujoco.mj_step(model, data)
-        angle[i], torque[i] = data.qpos[at.qposadr[0]], data.actuator_force[servo]
+        angle[i], torque[i] = data.qpos[hinge.qposadr[0]], data.actuator_force[servo]
         if not np.isfinite(angle[i]):
-            raise Diverged(f"{joint} on the stand diverged at {data.time:.3f} s.", time=float(data.time), record=None)
+            raise Diverged(
+                f"{joint} on the stand diverged hinge {data.time:.3f} s.", time=float(data.time), record=None
+            )
     return Response(timestep * np.arange(1, len(target) + 1), angle, torque)
 
 

@@ -45,12 +45,12 @@ def offset(struct: str, field: str) -> int:
     kind = _struct(struct)
     if not hasattr(kind, first):
         raise OtherMuJoCo(f"{struct}.{field}", mujoco.__version__, "its description has no such field")
-    here = int(getattr(kind, first).offset)
+    begins = int(getattr(kind, first).offset)
     if not rest:
-        return here
+        return begins
     members: Any = kind._fields_
-    inner = next(one[1] for one in members if one[0] == first)
-    return here + offset(inner.__name__, rest)
+    inner = next(member[1] for member in members if member[0] == first)
+    return begins + offset(inner.__name__, rest)
 
 
 @lru_cache(maxsize=1)
@@ -64,9 +64,9 @@ def plugin_struct() -> type[ctypes.Structure]:
     """
     header = Path(mujoco.__file__).parent / "include" / "mujoco" / "mjplugin.h"
     text = re.sub(r"//[^\n]*", "", header.read_text(encoding="utf-8")) if header.is_file() else ""
-    found = re.search(r"typedef struct mjpPlugin_ \{(.*?)\} mjpPlugin;", text, re.DOTALL)
+    body = re.search(r"typedef struct mjpPlugin_ \{(.*?)\} mjpPlugin;", text, re.DOTALL)
     fields: list[tuple[str, Any]] = []
-    for declaration in found.group(1).split(";") if found else ():
+    for declaration in body.group(1).split(";") if body else ():
         name = re.search(r"(?<=\(\*)\w+(?=\))|\w+\s*$", declaration.strip())
         if name is None:
             continue
@@ -118,11 +118,13 @@ def verify(struct: str, instance: Any, fields: Sequence[str]) -> None:
     Raises:
         OtherMuJoCo: another thing lies there; the message names field and version.
     """
-    for field, here in _found(struct, instance._address, fields):
-        there = _bound(instance, field)
-        same = here == there.ctypes.data if isinstance(there, np.ndarray) else here == there
+    for field, derived in _found(struct, instance._address, fields):
+        bound = _bound(instance, field)
+        same = derived == bound.ctypes.data if isinstance(bound, np.ndarray) else derived == bound
         if not same:
-            raise OtherMuJoCo(f"{struct}.{field}", mujoco.__version__, f"{here} lies at its offset, not what it holds")
+            raise OtherMuJoCo(
+                f"{struct}.{field}", mujoco.__version__, f"{derived} lies at its offset, not what it holds"
+            )
 
 
 def _bound(instance: Any, field: str) -> Any:
@@ -134,15 +136,15 @@ def _bound(instance: Any, field: str) -> Any:
 def _found(struct: str, address: int, fields: Sequence[str]) -> Iterator[tuple[str, float]]:
     """Yield what lies at the offset of each field: the address of an array, or the number itself."""
     for field in fields:
-        at = address + offset(struct, field)
+        place = address + offset(struct, field)
         owner, name = (structs.STRUCTS[struct], field)
         while "." in name:
             first, _, name = name.partition(".")
-            owner = structs.STRUCTS[next(one.type.name for one in owner.fields if one.name == first)]
-        declared = next(one.type for one in owner.fields if one.name == name)
+            owner = structs.STRUCTS[next(member.type.name for member in owner.fields if member.name == first)]
+        declared = next(member.type for member in owner.fields if member.name == name)
         if isinstance(declared, ArrayType):
-            yield field, at
+            yield field, place
         elif isinstance(declared, PointerType):
-            yield field, ctypes.c_size_t.from_address(at).value
+            yield field, ctypes.c_size_t.from_address(place).value
         else:
-            yield field, _PLAIN[declared.name].from_address(at).value
+            yield field, _PLAIN[declared.name].from_address(place).value

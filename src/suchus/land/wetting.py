@@ -54,12 +54,14 @@ def offsets() -> np.ndarray:
     data.time = 0.375
     verify("mjModel", model, FIELDS)
     verify("mjData", data, DATA_FIELDS)
-    found = [("mjModel", field) for field in FIELDS] + [("mjData", field) for field in DATA_FIELDS]
-    at = np.array([offset(struct, field) for struct, field in found])
-    for (struct, field), here in zip(found, at, strict=True):
-        if here % 8:
-            raise OtherMuJoCo(f"{struct}.{field}", mujoco.__version__, f"it begins at byte {here}, not at a whole word")
-    return at
+    needed = [("mjModel", field) for field in FIELDS] + [("mjData", field) for field in DATA_FIELDS]
+    places = np.array([offset(struct, field) for struct, field in needed])
+    for (struct, field), place in zip(needed, places, strict=True):
+        if place % 8:
+            raise OtherMuJoCo(
+                f"{struct}.{field}", mujoco.__version__, f"it begins places byte {place}, not places a whole word"
+            )
+    return places
 
 
 def _register(at: np.ndarray) -> list[Any]:

@@ -11,7 +11,7 @@ from suchus.viewer.controls import Controls
 from suchus.viewer.plots import Plots
 from suchus.viewer.saving import SavedFile
 from suchus.viewer.session import Instant, Session, Settings
-from suchus.viewer.stage import Stage
+from suchus.viewer.stage import WalkScene
 
 FRAME = 1 / 20
 """Time between two pictures [s]."""
@@ -47,7 +47,7 @@ class LivePage:
         gui.main_panel.dock_right()
         gui.main_panel.set_width(330)
         self._plots = Plots(gui, uplot, session.robot)
-        self._stage = Stage(client.scene, session.robot)
+        self._stage = WalkScene(client.scene, session.robot)
         self._stage.look("skin")
         self._skin.on_update(lambda _: self._stage.look("skin" if self._skin.value else "collision geoms"))
         self._switches = switches

@@ -9,12 +9,12 @@ from typing import Any
 from viser import uplot
 
 from suchus.viewer.animal import FilmedAnimal
-from suchus.viewer.drawn_animal import DrawnAnimal
+from suchus.viewer.drawn import DrawnAnimal
 from suchus.viewer.knobs import SPEED
 from suchus.viewer.live_page import DRAWN, FRAME, PLOT
 from suchus.viewer.plots import Plots
 from suchus.viewer.replay import Player, Take
-from suchus.viewer.stage import WORLD, Stage
+from suchus.viewer.stage import WORLD, WalkScene
 
 
 class ReplayPage:
@@ -52,7 +52,7 @@ class ReplayPage:
         gui.main_panel.dock_right()
         gui.main_panel.set_width(330)
         self._plots = Plots(gui, uplot, takes[0].robot, compared=bool(ghosts))
-        self._stage = Stage(client.scene, takes[0].robot)
+        self._stage = WalkScene(client.scene, takes[0].robot)
         if ghosts:
             self._stage.compare(ghosts[0].robot)
         self._stage.look("skin")

@@ -61,7 +61,7 @@ def light(scene: Any) -> None:
     )
 
 
-class Stage:
+class WalkScene:
     """Everything that is seen in one browser.
 
     Args:

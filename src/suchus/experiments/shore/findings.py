@@ -10,7 +10,7 @@ from suchus import rotation
 from suchus.design import GRAVITY
 from suchus.experiment import Measure
 from suchus.land import Run
-from suchus.land.waters import up
+from suchus.land.lake import up
 
 FALLEN = np.radians(60)
 """Tilt of the body against gravity beyond which it has fallen [rad]."""
