@@ -269,9 +269,7 @@ def test_the_tail_gives_way_to_its_torque_within_its_range(robot, crawl_gait):
     limbs_gait = GAITS["limbs_tail_lifted"]
     gaits = [crawl_gait, crawl_gait, crawl_gait, limbs_gait]
     rule = TailRule(rate=0.5)
-    tail = TailController(
-        [rule, rule, None, rule], [robot] * 4, gaits, PERIOD
-    )
+    tail = TailController([rule, rule, None, rule], [robot] * 4, gaits, PERIOD)
     pitch = np.array([gait.number("tail_pitch") for gait in gaits])
     targets = np.zeros((4, 19))
     targets[:, PITCH] = pitch

@@ -21,7 +21,7 @@ from suchus.envs.reward import Terms  # noqa: E402
 from suchus.errors import InvalidDesign, OutsideLimits, SuchusError, UnknownName  # noqa: E402
 from suchus.faults import Locked, Weak  # noqa: E402
 from suchus.gaits import GAITS, own_gait  # noqa: E402
-from suchus.motion import intended
+from suchus.motion import intended  # noqa: E402
 from suchus.robots import ROBOTS  # noqa: E402
 
 CRAWL, STAND, FAULT = (envs.TASKS[name] for name in ("Crawl", "Stand", "Fault"))

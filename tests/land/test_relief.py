@@ -1,4 +1,3 @@
-
 import numpy as np
 import pytest
 
@@ -35,9 +34,7 @@ def test_bumps_slow_a_walk_and_shake_it(robot):
 
 def test_the_ground_carries_the_weight_on_bumps_too(robot, crawl_gait):
     start = Ground(relief=Bumps(height=0.03, correlation=0.06, start=-1.0, seed=0))
-    record = between(
-        simulate([Run(robot=robot, gait=crawl_gait.strode(0.0), ground=start)], duration=3.0), 1.0
-    )
+    record = between(simulate([Run(robot=robot, gait=crawl_gait.strode(0.0), ground=start)], duration=3.0), 1.0)
     vertical = record.foot_force.sel(xyz="z").sum("leg") + record.belly_force.sel(xyz="z").sum("segment")
     vertical = vertical + record.tail_force.sel(xyz="z")
     assert vertical.mean("time").values == pytest.approx(record.mass.values * GRAVITY, rel=0.01)

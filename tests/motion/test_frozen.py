@@ -1,4 +1,4 @@
-"""Servo targets of every gait of the shelf on the robots that it was made for, as three kinds of gait gave them once."""
+"""Servo targets of every gait of the shelf on the robots that it was made for, as they were before."""
 
 import json
 from pathlib import Path

@@ -47,7 +47,7 @@ def test_the_metres_of_the_crawls_are_for_the_legs_of_the_article_s_robot():
 
 
 def _published(gait):
-    """Patterns of the paths of what was published: the article's four seconds and diagonal gait, and what files name."""
+    """Patterns of the paths of what was published: the article's period and diagonal gait, and what files name."""
     found = [*GAITS.beside(gait.name, "PUBLISHED", ())] if gait.name in GAITS else []
     if gait.period == CYCLE_PERIOD:
         found.append(r"^period$")
@@ -83,7 +83,9 @@ def test_a_number_without_a_reason_is_found():
     moved = 0
     for left_out in chosen:
         lacking = _without_a_reason(gait, [row for row in chosen if row is not left_out])
-        assert (lacking == set()) == (value_at(gait, left_out.field) == 0.0 or left_out.field in ("axis_lag", "tail_lag"))
+        assert (lacking == set()) == (
+            value_at(gait, left_out.field) == 0.0 or left_out.field in ("axis_lag", "tail_lag")
+        )
         moved += bool(lacking)
     assert moved > 10
     crawl = GAITS["belly_crawl"]

@@ -10,7 +10,7 @@ from jaxtyping import Float
 
 from suchus.control.sensed import Sensed, finite, keep
 from suchus.control.shared import Shared
-from suchus.design import GRAVITY, Robot, Layout, layout
+from suchus.design import GRAVITY, Layout, Robot, layout
 from suchus.design.checks import Checks
 from suchus.errors import OutsideLimits
 from suchus.motion import Gait
@@ -97,9 +97,7 @@ class Loads:
         period: of control [s].
     """
 
-    def __init__(
-        self, laws: Sequence[LimbLaw], robots: Sequence[Robot], gaits: Sequence[Gait], period: float
-    ) -> None:
+    def __init__(self, laws: Sequence[LimbLaw], robots: Sequence[Robot], gaits: Sequence[Gait], period: float) -> None:
         place = layout(robots[0])
         self.felt = any(law.feels for law in laws)
         self._weights = np.array([_weights(law, place) for law in laws])

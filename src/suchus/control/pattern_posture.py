@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float
 
 from suchus.control.oscillators import AxisPart
-from suchus.design import Robot, Crank, Layout, hips_behind_snout, layout, servo_ranges
+from suchus.design import Crank, Layout, Robot, hips_behind_snout, layout, servo_ranges
 from suchus.errors import UnsuitedRobot
 from suchus.kinematics import tail as tail_kinematics
 from suchus.motion import Gait, Held, Sweep, limb_movement, middle_stance, movement

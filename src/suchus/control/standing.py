@@ -11,7 +11,7 @@ from suchus import rotation
 from suchus.control.controller import Command, Runs
 from suchus.control.sensed import Sensed
 from suchus.control.suited import crocodiles
-from suchus.design import Robot, Layout, Leg, crocodile, layout
+from suchus.design import Layout, Leg, Robot, crocodile, layout
 from suchus.design.checks import Checks
 from suchus.motion import Gait, intended
 from suchus.motion.posture import Keyed, hind_leg, plan

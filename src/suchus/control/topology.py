@@ -12,7 +12,7 @@ from suchus.control.sensed import Sensed
 from suchus.control.shared import OWNERS, Shared, silence
 from suchus.control.spine import SpineController
 from suchus.control.tail import TailController
-from suchus.design import Robot, Layout, layout
+from suchus.design import Layout, Robot, layout
 from suchus.design.scale import control_period
 from suchus.motion import Batch, Gait
 

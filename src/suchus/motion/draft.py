@@ -8,7 +8,7 @@ from math import cos, pi, radians
 import numpy as np
 from scipy.spatial import cKDTree
 
-from suchus.design import Robot, Crank, Girdle, Limb, layout, servo_ranges
+from suchus.design import Crank, Girdle, Limb, Robot, layout, servo_ranges
 from suchus.design.scale import gravity_time
 from suchus.errors import NotConverged, OutsideLimits, Unreachable
 from suchus.kinematics import limb as limb_kinematics

@@ -11,7 +11,7 @@ import numpy as np
 from jaxtyping import Float
 from scipy.optimize import least_squares
 
-from suchus.design import Robot, Crank, Girdle, Limb, layout
+from suchus.design import Crank, Girdle, Limb, Robot, layout
 from suchus.errors import OutsideLimits
 from suchus.kinematics import limb as limb_kinematics
 from suchus.motion.gait import Bend, Curve, Gait

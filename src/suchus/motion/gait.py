@@ -1,8 +1,8 @@
 """A gait: the periodic movement of any body, on land or in water.
 
-Four parts say all of it: timing, limbs, axis, and curves as they were measured. Lengths are shares of a limb's reach and
-bends are those of a part of the body, so that a gait fits a body of another size and another number of joints; only its
-period is in seconds.
+Four parts say all of it: timing, limbs, axis, and curves as they were measured. Lengths are shares of a limb's reach
+and bends are those of a part of the body, so that a gait fits a body of another size and another number of joints; only
+its period is in seconds.
 """
 
 from collections.abc import Callable, Mapping
@@ -98,11 +98,11 @@ Limbs = FootPath | Sweep | Held
 class Bend:
     """How a part of the axis bends, evenly shared by its hinges.
 
-    The part bends by ``offset - amplitude cos 2 pi (phase - lag)``, concave to the left (yaw) or below (pitch) where that
-    is positive. The phase is that of the limbs together, 0 a quarter of a cycle before the first limb's mid-stance: with
-    no lag each girdle of a diagonal gait carries its new stance foot ahead. Several numbers are knots from the part's
-    first to its last hinge from head to tail; of n hinges each takes an nth of the value at its place, so that the part
-    bends alike on every body.
+    The part bends by ``offset - amplitude cos 2 pi (phase - lag)``, concave to the left (yaw) or below (pitch) where
+    that is positive. The phase is that of the limbs together, 0 a quarter of a cycle before the first limb's mid-stance:
+    with no lag each girdle of a diagonal gait carries its new stance foot ahead. Several numbers are knots from the
+    part's first to its last hinge from head to tail; of n hinges each takes an nth of the value at its place, so that
+    the part bends alike on every body.
     """
 
     part: Part

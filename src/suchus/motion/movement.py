@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from jaxtyping import Complex, Float
 
-from suchus.design import Robot, Crank, Layout, layout, servo_ranges
+from suchus.design import Crank, Layout, Robot, layout, servo_ranges
 from suchus.errors import OutsideLimits, UnknownName, Unreachable
 from suchus.kinematics import leg as leg_kinematics
 from suchus.kinematics import limb as limb_kinematics
@@ -312,8 +312,8 @@ class Movement:
         except Unreachable as error:
             names = ", ".join(dict.fromkeys(repr(gait.name) for gait in self.gaits))
             raise OutsideLimits(
-                f"gait {names} asks {limb.name} of robot {self.robot.name!r} for a foot path outside its reach: {error} "
-                "Lower stroke, outward or height."
+                f"gait {names} asks {limb.name} of robot {self.robot.name!r} for a foot path outside its reach: "
+                f"{error} Lower stroke, outward or height."
             ) from error
 
     def _turned(self, phase: np.ndarray, stance: np.ndarray, down: np.ndarray) -> np.ndarray:

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import Robot, Leg, crocodile, joint_names, layout, servo_names
+from suchus.design import Leg, Robot, crocodile, joint_names, layout, servo_names
 from suchus.design.checks import Checks
 from suchus.errors import InvalidDesign, OutsideLimits, Unreachable
 from suchus.kinematics import leg as leg_kinematics

@@ -111,9 +111,7 @@ def stretched(robot: Robot) -> float:
     return leg.femur + leg.tibia + robot.spine.length + robot.head.snout
 
 
-def tallest(
-    robot: Robot, lead: Float[np.ndarray, "*batch"], *, stance: float = _STANCE
-) -> Float[np.ndarray, "*batch"]:
+def tallest(robot: Robot, lead: Float[np.ndarray, "*batch"], *, stance: float = _STANCE) -> Float[np.ndarray, "*batch"]:
     """Return how high the snout can be while the centre of mass lies ``lead`` behind the feet [m].
 
     Joint ranges and the length of the legs hold; torques, droop and the last millimetre of a straight knee do not

@@ -48,9 +48,9 @@ class Transition(NamedTuple):
 def transition(robot: Robot, here: Gait, there: Gait, *, slower: float = 1.0) -> Transition:
     """Return the course from one gait's posture to another's: 3.5 s for a body of a metre, less for a smaller one.
 
-    The robot stops and goes to a height at which both postures can stand. Then the limbs that swing in the first half of
-    a cycle, LF and RH of four, are lifted, take their new posture and are put down; the others follow; then it goes to
-    the height of the new gait. The axis is straight and changes its steady bends with the limbs.
+    The robot stops and goes to a height at which both postures can stand. Then the limbs that swing in the first half
+    of a cycle, LF and RH of four, are lifted, take their new posture and are put down; the others follow; then it goes
+    to the height of the new gait. The axis is straight and changes its steady bends with the limbs.
 
     Args:
         robot: the design.

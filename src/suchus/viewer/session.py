@@ -81,8 +81,9 @@ class Settings:
     broken: tuple[Fault, ...] = ()
     """Faults, each from the beginning of the next walk on."""
 
-    def walked(self, robot: Robot) -> Gait:
-        """Return the gait of a robot with the switches of spine and tail."""
+    @property
+    def walked(self) -> Gait:
+        """The gait with the switches of spine and tail."""
         if self.spine and self.tail:
             return self.gait
         still = [*(() if self.spine else ("neck", "trunk")), *(() if self.tail else ("tail",))]
@@ -283,7 +284,7 @@ class Session:
         s = self.settings
         # a locked joint holds the angle that it has as the walk begins
         run = Run(
-            robot=self.robot, gait=s.walked(self.robot), ground=s.ground, lake=s.lake, control=s.control,
+            robot=self.robot, gait=s.walked, ground=s.ground, lake=s.lake, control=s.control,
             faults=s.broken,
         )  # fmt: skip
         self._live = Live(run, timestep=self._timestep)
@@ -297,7 +298,7 @@ class Session:
     def _change(self, settings: Settings) -> str:
         """Walk on by other settings, or keep the old ones and say why."""
         try:
-            self._live.walk(settings.walked(self.robot), settings.control)
+            self._live.walk(settings.walked, settings.control)
         except SuchusError as error:
             return str(error)
         self.settings = settings

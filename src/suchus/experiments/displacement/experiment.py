@@ -301,7 +301,10 @@ class Displacement(TwoGroups):
         return all(getattr(self, name) == getattr(shelf, name) for name in ("robot", "gait", "control"))
 
     def _drawn_map(self, record: xr.Dataset) -> Any:
-        pitched, absolute = record.sizes["pitch"] > 0, self.gait.has("foot paths") and self.gait.number("trunk_bend") > 0
+        pitched, absolute = (
+            record.sizes["pitch"] > 0,
+            self.gait.has("foot paths") and self.gait.number("trunk_bend") > 0,
+        )
         with styled(axes__grid=False):
             ratios = [1.35, 1, 1] if pitched else [1.35, 1]
             figure, axes = panels(1, len(ratios), width=12.5, height=4.3, width_ratios=ratios)
@@ -331,8 +334,8 @@ class Displacement(TwoGroups):
                 ax = axes[0, 1]
                 for arm in _GROUPS:
                     ax.plot(np.degrees(record.pitch), record.pitched.sel(group=arm), marker="o", **LINES[arm])
-                ax.axvline(degrees(self.gait.number("tail_pitch")), color=COLOURS["neutral"], linestyle=":", linewidth=1.2,
-                           label=_SHOWN)  # fmt: skip
+                ours = degrees(self.gait.number("tail_pitch"))
+                ax.axvline(ours, color=COLOURS["neutral"], linestyle=":", linewidth=1.2, label=_SHOWN)
                 ax.set_xlabel("pitch of the tail, down [deg]")
                 ax.set_ylabel("displacement forward [m]")
                 ax.set_ylim(bottom=0.0)
