@@ -9,7 +9,7 @@ import numpy as np
 from suchus.capture.slowed import within_speed
 from suchus.capture.walk import UNSURE, Walk
 from suchus.capture.wave import STANDING
-from suchus.design import LEGS, Robot, layout
+from suchus.design import LEGS, Robot, crocodile_like, layout
 from suchus.errors import OutsideLimits, UnsuitedRobot
 from suchus.motion import Gait, Pattern, check_limits, tail_bend, trunk_bend
 
@@ -53,7 +53,7 @@ def to_gait(walk: Walk, robot: Robot, base: Gait, *, name: str, duty: Duty = "re
     Raises:
         OutsideLimits: the robot cannot follow even with the base's posture and a small stroke.
     """
-    if robot.tables is None:
+    if not crocodile_like(robot):
         raise UnsuitedRobot(f"robot {robot.name!r} walks by a pattern; a captured gait of legs needs a crocodile's.")
     notes: list[str] = []
     gait = _timed(walk, replace(base, name=name), duty, notes)

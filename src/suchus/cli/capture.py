@@ -28,7 +28,7 @@ from suchus.capture import (
 from suchus.cli.commands import BadCommand
 from suchus.cli.options import parse
 from suchus.cli.terminal import working
-from suchus.design import Robot, check_needs
+from suchus.design import Robot, check_needs, crocodile_like
 from suchus.errors import OutsideLimits
 from suchus.figures import captioned, save
 from suchus.figures.gait_diagram import GaitTrack, gait_diagram
@@ -99,7 +99,7 @@ def capture(words: Sequence[str]) -> int:
         move("reading", 0.1)
         tracks = read_tracks(options.tracks, _how(options)).between(options.start, options.end)
         move("looking for the cycle", 0.3)
-        driven = driven_share(robot) if robot.tables is not None else 1.0
+        driven = driven_share(robot) if crocodile_like(robot) else 1.0
         walk = observe(tracks, tail_share=driven if options.tail_share is None else options.tail_share)
         move("writing", 0.8)
         captured = _retargeted(walk, options, base)

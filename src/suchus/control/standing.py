@@ -11,8 +11,9 @@ from suchus import rotation
 from suchus.control.controller import Command
 from suchus.control.sensed import Sensed
 from suchus.control.suited import crocodiles, leg_gaits
-from suchus.design import AnyRobot, Crocodile, Layout, Leg, crocodile, layout
+from suchus.design import AnyRobot, Crocodile, Layout, crocodile, layout
 from suchus.design.checks import Checks
+from suchus.design.measures import LegMeasures
 from suchus.motion import AnyGait, Gait, limb_phase, servo_targets
 from suchus.motion.posture import Keyed, hind_leg, plan
 from suchus.motion.rising import stand_up
@@ -197,7 +198,7 @@ class Stander:
         balances: Sequence[Balance | None],
         course: Course,
         row: np.ndarray,
-        legs: Sequence[Leg],
+        legs: Sequence[LegMeasures],
         place: Layout,
         period: float,
     ) -> None:

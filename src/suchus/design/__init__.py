@@ -17,11 +17,11 @@ from suchus.design.joints import (
 )
 from suchus.design.layout import Layout, LimbPlace, front_segment, hips_ahead, hips_behind_snout, layout, servo_ranges
 from suchus.design.limb import Foot, Girdle, Limb, Link
-from suchus.design.needs import NEEDS, check_needs, lacking
+from suchus.design.needs import NEEDS, check_needs, crocodile_like, lacking
 from suchus.design.physics import GRAVITY, WATER_DENSITY, WATER_VISCOSITY
 from suchus.design.segment import Rod, Segment, Shell
 from suchus.design.servo import Servo
-from suchus.design.servos import with_servos, with_speed_lines
+from suchus.design.servos import with_servos, with_speed_lines, with_spring
 from suchus.design.suited import AnyRobot, Crocodile, crocodile, general
 from suchus.design.tables import Head, Leg, Pelvis, Spine, Tables, Tail, Thorax
 
@@ -65,6 +65,7 @@ __all__ = [
     "cable_joints",
     "check_needs",
     "crocodile",
+    "crocodile_like",
     "fin_joints",
     "front_segment",
     "general",
@@ -81,5 +82,6 @@ __all__ = [
     "value_at",
     "with_servos",
     "with_speed_lines",
+    "with_spring",
     "with_values",
 ]

@@ -1,7 +1,7 @@
 """Which gait belongs to a robot: gaits say for whom they were made, and nothing else does."""
 
 from suchus.catalog import Catalog
-from suchus.design import AnyRobot, layout
+from suchus.design import AnyRobot, crocodile_like, layout
 from suchus.errors import InvalidDesign, NotConverged, OutsideLimits, UnknownName, Unreachable, UnsuitedRobot
 from suchus.motion import AnyGait, check_limits
 
@@ -24,7 +24,7 @@ def gait_of(shelf: Catalog[AnyGait], robot: AnyRobot) -> AnyGait:
     made = {name: tuple(shelf.beside(name, "made_for", ())) for name in shelf}
     named = [name for name, robots in made.items() if robot.name in robots]
     others = [name for name, robots in made.items() if robots and name not in named]
-    for name in named + ([_CRAWL] if robot.tables is not None else others):
+    for name in named + ([_CRAWL] if crocodile_like(robot) else others):
         if suits(robot, shelf[name]):
             return shelf[name]
     limbs = ", ".join(layout(robot).limb_names) or "no limbs"

@@ -5,7 +5,8 @@ from functools import lru_cache
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import LEGS, AnyRobot, Leg, layout, servo_ranges
+from suchus.design import LEGS, AnyRobot, layout, servo_ranges
+from suchus.design.measures import LegMeasures
 from suchus.errors import OutsideLimits, Unreachable
 from suchus.kinematics import leg as leg_kinematics
 from suchus.kinematics import tail as tail_kinematics
@@ -138,7 +139,7 @@ def _leg_angles(leg: PlainLeg, name: str, gait: Gait, foot: np.ndarray, *, clip:
     return angles
 
 
-def within_reach(leg: Leg | PlainLeg, foot: Float[np.ndarray, "*b 3"]) -> Float[np.ndarray, "*b 3"]:
+def within_reach(leg: LegMeasures | PlainLeg, foot: Float[np.ndarray, "*b 3"]) -> Float[np.ndarray, "*b 3"]:
     """Return foot points drawn along the line to the hip into what the leg reaches [m]."""
     hip = np.array([leg.hip_offset, 0.0, 0.0])
     away = foot - hip
