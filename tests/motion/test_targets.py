@@ -99,7 +99,7 @@ def test_longest_stroke_is_reachable_and_little_more_is_not(robot, limbs_gait):
 
 
 def test_a_joint_out_of_range_is_named_with_angle_and_range(robot, crawl_gait):
-    stiff = crocodile(replace(robot.tables, spine=replace(robot.spine, yaw_range=(-0.1, 0.1))))
+    stiff = crocodile(replace(robot.tables, spine=replace(robot.tables.spine, yaw_range=(-0.1, 0.1))))
     with pytest.raises(OutsideLimits, match=r"asks spine_yaw_1 of robot 'caiman' for -?0\.\d+ rad; -0\.100 to 0\.100"):
         check_limits(stiff, crawl_gait)
     with pytest.raises(OutsideLimits, match="bends the tail by"):

@@ -1,5 +1,6 @@
 """What a robot is: frozen values in SI units and without physics."""
 
+from suchus.design.article import tables_of
 from suchus.design.body import Robot
 from suchus.design.chosen import Chosen, unit_at, value_at, with_values
 from suchus.design.contact import Contact
@@ -78,6 +79,7 @@ __all__ = [
     "servo_names",
     "servo_ranges",
     "spine_joints",
+    "tables_of",
     "unit_at",
     "value_at",
     "with_servos",
