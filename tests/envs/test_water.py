@@ -234,7 +234,7 @@ def test_servos_lose_torque_with_speed_in_water_too():
             "Swim",
             {"robot": "strider"},
             SuchusError,
-            "a task that begins swimming needs four legs of yaw, pitch and knee",
+            "a task that begins swimming needs four legs of yaw",
         ),
         ("Swim", {"lake": None}, InvalidDesign, r"needs water: give it a land\.Lake"),
         ("Swim", {"lake": 1.0}, InvalidDesign, "a Lake or None is needed"),
