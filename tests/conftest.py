@@ -63,7 +63,7 @@ def limbs_gait() -> Gait:
 @pytest.fixture(scope="session")
 def long_tail(robot: Robot) -> Robot:
     """A robot of another topology."""
-    return crocodile(replace(robot.tables, name="long_tail", tail=replace(robot.tail, joints=8, fin_segments=4)))
+    return crocodile(replace(robot.tables, name="long_tail", tail=replace(robot.tables.tail, joints=8, fin_segments=4)))
 
 
 @pytest.fixture(scope="session")

@@ -46,7 +46,20 @@ TOWED = "0.1 m/s"
 WHOLE = "whole wave"
 """Name of the motion that the coefficients are fitted to [-]."""
 FITTED = ("cross_drag", "thickening")
-"""WaterCoefficients that are fitted, to the whole wave of the body that is held."""
+"""Coefficients that are fitted, to the whole wave of the body that is held."""
+WORTH = 2.0
+"""Factor by which a correction must lower what the model is off, where nothing was fitted, to be worth having [-]."""
+_JUDGED = {
+    "mean thrust held": ("held", "thrust"),
+    "rms side force held": ("held", "aside"),
+    "power held": ("held", "power"),
+    "speed free": ("free", "speed"),
+    "power free": ("free", "power"),
+    "drag towed": ("towed", "drag"),
+}
+"""Kind of case and quantity that each name on the page stands for."""
+_ASIDE = ("mean thrust held", "drag towed")
+"""What does not decide about a correction for swims: a small difference of large forces, and no swim."""
 PICTURE = Path(__file__).parents[1] / "docs" / "pictures" / "calibration.png"
 HELD_CYCLES, FREE_CYCLES = 3, 6
 """Cycles from rest, of which the last counts [-]."""
@@ -136,6 +149,54 @@ def stated(found: Found) -> Mapping[str, Any]:
         "left_finest": [left(found["held", WHOLE, FINEST], _held(swims[WHOLE], flows[WHOLE], one)) for one in both],
         "all_three": {name: list(asdict(_fit(found, name, GRIDS[0], NAMES)).values()) for name in flows},
     }
+
+
+def off(flow: float, model: float) -> float:
+    """Return by how much a model is off, over the flow [-]."""
+    return model / flow - 1.0
+
+
+def mean_off(rows: Sequence[Sequence[float]], which: int) -> float:
+    """Return the mean size of what a model is off, over the flow.
+
+    Args:
+        rows: flow, model of the runs, fitted model.
+        which: 1 is the model of the runs, 2 the fitted one.
+    """
+    return sum(abs(off(row[0], row[which])) for row in rows) / len(rows)
+
+
+def held_out(m: Mapping[str, Any]) -> dict[str, tuple[float, float]]:
+    """Return how far off both models are in the mean on the grid of the fit, where nothing was fitted [-]."""
+    swims = {"held": {name: swim for name, swim in m["held"].items() if name != WHOLE}, "free": m["free"]}
+    rows = {name: [swim[key] for swim in swims.get(kind, m[kind]).values()] for name, (kind, key) in _JUDGED.items()}
+    return {name: (mean_off(values, 1), mean_off(values, 2)) for name, values in rows.items()}
+
+
+def worth(m: Mapping[str, Any]) -> dict[str, bool]:
+    """Return of every quantity whether the fitted coefficients are worth having.
+
+    They are where they halve what the model of the runs is off, on the grid of the fit where nothing was fitted, and
+    are also nearer than it to where the flow tends as the cells become finer.
+    """
+    good = {}
+    for name, (before, after) in held_out(m).items():
+        place = " ".join(_JUDGED[name])
+        limit, (plain, ours) = m["grids"][place]["limit"], m["models"][place]
+        good[name] = after <= before / WORTH and abs(off(limit, ours)) < abs(off(limit, plain))
+    return good
+
+
+def earned(m: Mapping[str, Any]) -> bool:
+    """Return whether a correction is earned: one set of coefficients must be worth having for all of a swim."""
+    return all(good for name, good in worth(m).items() if name not in _ASIDE)
+
+
+def judged(m: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what the page states, with whether the fitted coefficients are worth having."""
+    good = [name for name, well in worth(m).items() if well]
+    held = {name: list(away) for name, away in held_out(m).items()}
+    return {**m, "held_out": held, "worth_having": good, "earned": earned(m)}
 
 
 def _grids(found: Found) -> dict[str, list[float]]:
@@ -242,7 +303,7 @@ def main(folder: Path) -> None:
     asked += finest
     found = {(one.kind, one.name, one.cells): flow for one, flow in zip(asked, flows, strict=True)}
     found |= from_swim_3d(kept("swim_3d"))
-    keep("calibration", stated(found))
+    keep("calibration", judged(stated(found)))
     write_pages([])
     figure = draw(found)
     figure.savefig(PICTURE, dpi=110)

@@ -59,8 +59,8 @@ def test_any_robot_reads_back_equal(name, femur, joints, tmp_path_factory):
         replace(
             CAIMAN.tables,
             name=name,
-            hind_leg=replace(CAIMAN.hind_leg, femur=femur),
-            tail=replace(CAIMAN.tail, joints=joints),
+            hind_leg=replace(CAIMAN.tables.hind_leg, femur=femur),
+            tail=replace(CAIMAN.tables.tail, joints=joints),
         )
     )
     file = tmp_path_factory.mktemp("any") / "x.toml"
@@ -73,7 +73,7 @@ def test_a_base_lends_what_the_file_does_not_say(tmp_path):
     robot = read(file, Robot, ROBOTS)
     servo = replace(CAIMAN.hind_leg.servo, kp=60.0)
     assert robot == crocodile(
-        replace(CAIMAN.tables, name="long_legs", hind_leg=replace(CAIMAN.hind_leg, femur=0.12, servo=servo))
+        replace(CAIMAN.tables, name="long_legs", hind_leg=replace(CAIMAN.tables.hind_leg, femur=0.12, servo=servo))
     )
 
 
@@ -156,7 +156,7 @@ def test_what_cannot_be_read_is_one_sentence(content, said, tmp_path):
 
 def test_a_part_names_all_its_impossible_fields_when_built_in_python():
     with pytest.raises(InvalidDesign) as error:
-        replace(CAIMAN.hind_leg, femur=-1.0, mass=float("nan"), knee_range=(2.0, 1.0))
+        replace(CAIMAN.tables.hind_leg, femur=-1.0, mass=float("nan"), knee_range=(2.0, 1.0))
     for field in ("leg.femur", "leg.mass", "leg.knee_range"):
         assert field in str(error.value)
 

@@ -5,8 +5,8 @@ import copy
 import pytest
 
 import calibration
+from calibration import WORTH, earned, held_out, judged, mean_off, off, worth
 from pages.stated import kept
-from pages.stated_calibration import WORTH, earned, held_out, mean_off, off, worth
 from suchus.land.calibration import WaterCoefficients
 from suchus.land.prescribed import free_sections, held_sections, towed_sections
 from suchus.water import Outline, Water, recoil
@@ -50,6 +50,10 @@ def test_three_grids_foretell_the_fourth_where_the_page_says_so():
     for name in ("held aside", "held power", "cross_drag"):
         one = KEPT["grids"][name]
         assert one["values"][3] == pytest.approx(one["foretold"], rel=0.08), name
+
+
+def test_the_judgement_that_is_kept_follows_from_what_is_kept():
+    assert judged(KEPT) == KEPT
 
 
 def test_no_correction_is_earned_since_it_is_the_grids():

@@ -13,7 +13,17 @@ ROOT = Path(__file__).parents[2]
 
 @pytest.mark.parametrize(
     "page",
-    ["index", "extending", "getting_started", "own_robot", "own_gait", "own_experiment", "own_fault", "own_controller"],
+    [
+        "index",
+        "extending",
+        "getting_started",
+        "own_robot",
+        "own_gait",
+        "own_experiment",
+        "own_fault",
+        "own_controller",
+        "projects",
+    ],
 )
 def test_following_the_page_gives_what_it_says(page, tmp_path):
     code = (

@@ -5,19 +5,22 @@ import math
 import os
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from itertools import islice
 from typing import Any
 
 import numpy as np
 import pytest
 
 from pages.passages import names
-from pages.stated import MADE, PASSAGES, filled, keep, kept, measured, pages
+from pages.stated import filled, keep, kept, made, measured, pages, sources, text_of, wrapped, write
 from suchus.experiments import EXPERIMENTS
 from suchus.optimise import READY
 from suchus.optimise.evaluate import evaluate
 
-OF_EXPERIMENTS = [source for source in PASSAGES if source in EXPERIMENTS]
-OF_SEARCHES = [source for source in PASSAGES if source.startswith("optimise_")]
+STATED = {source: [name for name in made() if source in sources(name)] for name in made() for source in sources(name)}
+"""Passages by what was measured."""
+OF_EXPERIMENTS = [source for source in STATED if source in EXPERIMENTS]
+OF_SEARCHES = [source for source in STATED if source.startswith("optimise_")]
 
 
 @pytest.fixture(scope="module")
@@ -32,8 +35,27 @@ def test_the_pages_state_what_was_measured(texts):
 
 
 def test_every_passage_stands_on_one_page(texts):
-    found = [name for name in names("".join(texts.values())) if name in MADE]
-    assert sorted(found) == sorted(MADE)
+    placed = [name for name in names("".join(texts.values())) if name in made()]
+    assert sorted(placed) == made()
+    assert all(sources(name) for name in made())
+
+
+@pytest.mark.parametrize(
+    ("value", "form", "text"),
+    [(0.1234, ".2f", "0.12"), (-0.001, ".0%", "0%"), (0.001, "+.0%", "+0%"), (0.0123, "mm.1f", "12.3"),
+     (-1e-9, ".0e", "-1e-09"), (3.14159265, "deg.0f", "180")],
+)  # fmt: skip
+def test_a_number_is_written_as_it_is_named(value, form, text):
+    assert write(value, form) == text
+
+
+def test_paragraphs_and_items_are_filled_and_tables_are_not():
+    row = f"| {'a ' * 80}|"
+    text = f"{row}\n{row}\n\n\n{'word ' * 30}\n\n* {'item ' * 30}\n* short\n"
+    lines = wrapped(text).splitlines()
+    assert lines[:3] == [row, row, ""]
+    assert max(len(line) for line in lines[3:]) <= 118
+    assert [line[:2] for line in lines[6:]] == ["* ", "  ", "* "]
 
 
 def _numbers(value: Any, path: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
@@ -55,13 +77,15 @@ def _changed(value: Any, path: tuple[Any, ...]) -> Any:
     return changed
 
 
-@pytest.mark.parametrize("source", list(PASSAGES))
-def test_other_numbers_make_other_pages(source, texts):
+@pytest.mark.parametrize("source", list(STATED))
+def test_other_numbers_make_other_passages(source):
     """A passage that no measure changes would be prose."""
     before = kept(source)
-    page = next(text for text in texts.values() if set(PASSAGES[source]) & set(names(text)))
-    read = [path for path in _numbers(before) if filled(page, {source: _changed(before, path)}) != page]
-    assert len(read) >= 2
+    texts = [text_of(name) for name in STATED[source]]
+    changed = (
+        [text_of(name, {source: _changed(before, path)}) for name in STATED[source]] for path in _numbers(before)
+    )
+    assert len(list(islice((other for other in changed if other != texts), 2))) == 2
 
 
 @pytest.mark.validate

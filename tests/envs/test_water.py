@@ -230,7 +230,12 @@ def test_servos_lose_torque_with_speed_in_water_too():
     ("task", "changes", "error", "text"),
     [
         ("Swim", {"robot": "caiman"}, InvalidDesign, r"robot 'caiman' sinks: it weighs 3\.52 kg and displaces at most"),
-        ("Swim", {"robot": "strider"}, SuchusError, "a task that begins swimming needs a crocodile-like robot"),
+        (
+            "Swim",
+            {"robot": "strider"},
+            SuchusError,
+            "a task that begins swimming needs four legs of yaw",
+        ),
         ("Swim", {"lake": None}, InvalidDesign, r"needs water: give it a land\.Lake"),
         ("Swim", {"lake": 1.0}, InvalidDesign, "a Lake or None is needed"),
         ("Swim", {"lake": Lake(level=((0.0, 0.4), (5.0, 0.5)))}, InvalidDesign, "give each as one number"),

@@ -93,7 +93,7 @@ def test_a_thinner_fluid_changes_less(in_vacuum):
 
 
 def test_robots_of_several_designs_float_in_one_batch():
-    heavy = crocodile(replace(CAIMAN.tables, head=replace(CAIMAN.head, mass=0.25)))
+    heavy = crocodile(replace(CAIMAN.tables, head=replace(CAIMAN.tables.head, mass=0.25)))
     gait = replace(GAITS["limbs_only"], period=0.5)
     runs = [Run(robot=r, gait=gait, control=Rolling(TRUNK), afloat=VACUUM) for r in (CAIMAN, heavy)]
     both = simulate(runs, duration=0.6, timestep=0.002)

@@ -175,9 +175,9 @@ def test_odd_robots_are_examined_too(femur, tibia, joints, gap):
     odd = crocodile(
         replace(
             robot.tables,
-            hind_leg=replace(robot.hind_leg, femur=femur, tibia=tibia),
-            spine=replace(robot.spine, base=0.2, link=0.03),
-            tail=replace(robot.tail, joints=joints, gap=gap),
+            hind_leg=replace(robot.tables.hind_leg, femur=femur, tibia=tibia),
+            spine=replace(robot.tables.spine, base=0.2, link=0.03),
+            tail=replace(robot.tables.tail, joints=joints, gap=gap),
         )
     )
     for experiment in MODULES.values():

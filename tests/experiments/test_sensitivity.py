@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from suchus.errors import InvalidDesign
-from suchus.experiments import EXPERIMENTS, sensitivity
+from suchus.experiments import EXPERIMENTS
+from suchus.experiments.sensitivity import experiment as sensitivity
 from suchus.gaits import GAITS
 from suchus.study import Claims, Plan
 from suchus.study.claim_measures import RUNS, asked_rules

@@ -110,7 +110,7 @@ def test_a_servo_too_weak_for_the_walk_is_named_with_its_share(robot, limbs_gait
     assert overloaded(borne) == []
     assert 0.2 < borne["LH_pitch"].torque < robot.hind_leg.servo.torque
     weak = crocodile(
-        replace(robot.tables, hind_leg=replace(robot.hind_leg, servo=replace(robot.hind_leg.servo, torque=0.5)))
+        replace(robot.tables, hind_leg=replace(robot.tables.hind_leg, servo=replace(robot.hind_leg.servo, torque=0.5)))
     )
     borne = loads(weak, quick, cycles=1)
     load = borne["LH_pitch"]

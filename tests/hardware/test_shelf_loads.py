@@ -16,7 +16,7 @@ from suchus.robots import ROBOTS
 ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT / "tools"))
 from pages.passages import put  # noqa: E402
-from pages.stated_servos import table  # noqa: E402
+from pages.stated import text_of  # noqa: E402
 
 STATED = ROOT / "tests" / "docs" / "stated" / "servo_loads.json"
 PAGE = ROOT / "docs" / "servo_commands.md"
@@ -46,7 +46,7 @@ def test_every_gait_of_the_shelf_is_below_the_limits_or_it_is_said_which_servo_w
 
 
 def page(found):
-    return put(PAGE.read_text(encoding="utf-8"), {"servo_loads": table(found)})
+    return put(PAGE.read_text(encoding="utf-8"), {"servo_loads": text_of("servo_loads", {"servo_loads": found})})
 
 
 def test_the_page_states_what_the_servos_bear():

@@ -16,8 +16,8 @@ VARIANTS = {
     "other proportions": crocodile(
         replace(
             CAIMAN.tables,
-            spine=replace(CAIMAN.spine, base=0.08, link=0.05),
-            tail=replace(CAIMAN.tail, joints=4, fin_segments=5, fin_length=0.3),
+            spine=replace(CAIMAN.tables.spine, base=0.08, link=0.05),
+            tail=replace(CAIMAN.tables.tail, joints=4, fin_segments=5, fin_length=0.3),
         )
     ),
 }

@@ -14,9 +14,9 @@ CAIMAN = suchus.ROBOTS["caiman"]
 LONG = crocodile(
     replace(
         CAIMAN.tables,
-        spine=replace(CAIMAN.spine, link=0.08, link_mass=0.3),
-        tail=replace(CAIMAN.tail, joints=9, fin_segments=2, mass=0.8),
-        front_leg=replace(CAIMAN.front_leg, mass=0.4),
+        spine=replace(CAIMAN.tables.spine, link=0.08, link_mass=0.3),
+        tail=replace(CAIMAN.tables.tail, joints=9, fin_segments=2, mass=0.8),
+        front_leg=replace(CAIMAN.tables.front_leg, mass=0.4),
     )
 )
 
@@ -57,7 +57,7 @@ def test_the_cantilever_torque_is_the_static_servo_torque():
     mujoco.mj_forward(model, data)
     gravity = data.qfrc_bias[model.joint("spine_pitch_1").dofadr[0]]
     assert mass.cantilever_torque(CAIMAN) == pytest.approx(abs(gravity), rel=1e-6)
-    light = crocodile(replace(CAIMAN.tables, head=replace(CAIMAN.head, mass=0.02)))
+    light = crocodile(replace(CAIMAN.tables, head=replace(CAIMAN.tables.head, mass=0.02)))
     arm = 0.5 * (CAIMAN.thorax.shoulder + CAIMAN.head.snout) + 3 * CAIMAN.spine.link
     drop = mass.cantilever_torque(CAIMAN) - mass.cantilever_torque(light)
     assert drop == pytest.approx(0.20 * 9.81 * arm, rel=1e-9)

@@ -15,7 +15,7 @@ from suchus.robots import ROBOTS
 
 CAIMAN = ROBOTS["caiman"]
 CRAWL = GAITS["belly_crawl"]
-OTHER = crocodile(replace(CAIMAN.tables, head=replace(CAIMAN.head, mass=0.25)))
+OTHER = crocodile(replace(CAIMAN.tables, head=replace(CAIMAN.tables.head, mass=0.25)))
 
 
 def walk(*faults, robot=CAIMAN, gait=CRAWL, duration=3.0, beside=()):
@@ -44,7 +44,9 @@ def test_a_limp_servo_gives_no_torque_and_the_others_do(joint, beside):
 @BATCHES
 def test_the_gear_friction_of_a_limp_servo_stays(beside):
     rough = crocodile(
-        replace(CAIMAN.tables, spine=replace(CAIMAN.spine, yaw_servo=replace(CAIMAN.spine.yaw_servo, friction=2.0)))
+        replace(
+            CAIMAN.tables, spine=replace(CAIMAN.tables.spine, yaw_servo=replace(CAIMAN.spine.yaw_servo, friction=2.0))
+        )
     )
     speed = {}
     for robot in (CAIMAN, rough):
@@ -216,6 +218,6 @@ def test_faults_that_cannot_happen_are_refused_in_one_sentence(faults, error, wo
 
 def test_robots_with_and_without_integral_action_do_not_share_a_batch():
     yaw = replace(CAIMAN.spine.yaw_servo, ki=5.0)
-    integrating = crocodile(replace(CAIMAN.tables, spine=replace(CAIMAN.spine, yaw_servo=yaw)))
+    integrating = crocodile(replace(CAIMAN.tables, spine=replace(CAIMAN.tables.spine, yaw_servo=yaw)))
     with pytest.raises(InvalidDesign, match="integral action"):
         simulate([Run(robot=CAIMAN, gait=CRAWL), Run(robot=integrating, gait=CRAWL)], duration=0.1)

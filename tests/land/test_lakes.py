@@ -192,7 +192,7 @@ def test_experiments_at_the_surface_refuse_a_robot_that_sinks(name):
 def test_a_run_that_diverges_in_water_ends_with_its_time_and_the_others_go_on():
     robot = ROBOTS["caiman"]
     servo = replace(robot.hind_leg.servo, kp=9000.0, kd=0.0, armature=1e-4, damping=0.0, torque=900.0)
-    wild = crocodile(replace(robot.tables, name="wild", hind_leg=replace(robot.hind_leg, servo=servo)))
+    wild = crocodile(replace(robot.tables, name="wild", hind_leg=replace(robot.tables.hind_leg, servo=servo)))
     lake = Lake(level=0.06)
     some = [Run(robot=one, gait="belly_crawl", lake=lake) for one in (wild, robot)]
     record = simulate(some, duration=1.0, timestep=0.005)

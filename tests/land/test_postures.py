@@ -14,7 +14,9 @@ NAMES = ("low_crawl", "semi_erect", "high_walk")
 
 @pytest.fixture(scope="module")
 def limited(robot):
-    front, hind = (replace(leg, servo=leg.servo.with_speed_line()) for leg in (robot.front_leg, robot.hind_leg))
+    front, hind = (
+        replace(leg, servo=leg.servo.with_speed_line()) for leg in (robot.tables.front_leg, robot.tables.hind_leg)
+    )
     return crocodile(replace(robot.tables, name="limited", front_leg=front, hind_leg=hind))
 
 

@@ -56,7 +56,7 @@ faults = st.lists(
 @given(design=designs, changes=gaits, broken=faults, grip=maybe_bad(0.3, 1.5), seed=st.integers(0, 9))
 def test_a_finite_run_or_a_suchus_error(robot, crawl_gait, design, changes, broken, grip, seed):
     try:
-        other = crocodile(replace(robot.tables, hind_leg=replace(robot.hind_leg, **design)))
+        other = crocodile(replace(robot.tables, hind_leg=replace(robot.tables.hind_leg, **design)))
         run = Run(
             robot=other,
             gait=with_metres(crawl_gait, **changes),

@@ -116,7 +116,7 @@ def test_one_run_is_the_same_alone_and_in_a_batch(robot, crawl_gait, arms):
 
 
 def test_robots_of_one_topology_share_a_batch(robot, crawl_gait, arms):
-    heavy = crocodile(replace(robot.tables, name="heavy", pelvis=replace(robot.pelvis, mass=1.2)))
+    heavy = crocodile(replace(robot.tables, name="heavy", pelvis=replace(robot.tables.pelvis, mass=1.2)))
     mixed = simulate([Run(robot=robot, gait=crawl_gait), Run(robot=heavy, gait=crawl_gait)])
     assert mixed.mass.values == pytest.approx([robot.mass, heavy.mass])
     assert (mixed.centre_of_mass.isel(run=0) == arms.centre_of_mass.isel(run=0)).all()
@@ -159,7 +159,7 @@ def test_every_keeps_one_sample_in_so_many(robot, crawl_gait, arms):
 def test_a_run_that_diverges_ends_alone_with_time_and_cause(robot, crawl_gait, arms):
     # a servo without damping at a gain beyond what the time step can integrate
     wild = replace(robot.hind_leg.servo, kp=9000.0, kd=0.0, armature=1e-4, damping=0.0, torque=900.0)
-    broken = crocodile(replace(robot.tables, name="wild", hind_leg=replace(robot.hind_leg, servo=wild)))
+    broken = crocodile(replace(robot.tables, name="wild", hind_leg=replace(robot.tables.hind_leg, servo=wild)))
     record = simulate([Run(robot=robot, gait=crawl_gait), Run(robot=broken, gait=crawl_gait)], timestep=0.005)
     ended = float(record.ended[1])
     assert record.cause.values[0] == ""

@@ -98,6 +98,6 @@ def test_held_is_the_longest_time_without_a_break():
 
 
 def test_a_taller_head_reaches_higher(rising):
-    tall = crocodile(replace(CAIMAN.tables, head=replace(CAIMAN.head, snout=CAIMAN.head.snout + 0.05)))
+    tall = crocodile(replace(CAIMAN.tables, head=replace(CAIMAN.tables.head, snout=CAIMAN.head.snout + 0.05)))
     gain = reach(tall, rising).isel(run=0, time=-1) - reach(CAIMAN, rising).isel(run=0, time=-1)
     assert 0.045 < float(gain) <= 0.05

@@ -31,7 +31,7 @@ def any_robot(request, robot, long_tail):
     if request.param == "caiman":
         return robot
     odd = replace(robot.spine.yaw_servo, ki=1 / 3, kp=100 / 3, speed=22 / 3)
-    leg = replace(robot.hind_leg, femur=0.086 + 1e-9 / 3, servo=odd)
+    leg = replace(robot.tables.hind_leg, femur=0.086 + 1e-9 / 3, servo=odd)
     return crocodile(replace(long_tail.tables, name="odd one", hind_leg=leg))
 
 
@@ -220,7 +220,7 @@ def test_a_folder_says_whose_it_is_and_what_is_missing(kind, robot, crawl_gait, 
     if kind != "mjcf":
         left_out = {"urdf": unsaid, "usd": unsaid_in_usd}[kind]
         assert all(text in readme for text in left_out(robot))
-        stiffer = crocodile(replace(robot.tables, tail=replace(robot.tail, joint_stiffness=0.123)))
+        stiffer = crocodile(replace(robot.tables, tail=replace(robot.tables.tail, joint_stiffness=0.123)))
         assert "0.123 N m/rad" in "".join(left_out(stiffer))
     words = {
         "mjcf": ["gait", "pulley"],

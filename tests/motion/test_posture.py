@@ -100,10 +100,10 @@ def test_nothing_reaches_higher_than_the_stretched_robot():
 
 
 def test_a_longer_leg_makes_a_taller_posture():
-    longer = replace(CAIMAN.hind_leg, femur=CAIMAN.hind_leg.femur + 0.02)
+    longer = replace(CAIMAN.tables.hind_leg, femur=CAIMAN.hind_leg.femur + 0.02)
     hips = [
         stand_up(crocodile(replace(CAIMAN.tables, hind_leg=leg))).postures[-1].hip_height
-        for leg in (CAIMAN.hind_leg, longer)
+        for leg in (CAIMAN.tables.hind_leg, longer)
     ]
     assert hips[1] - hips[0] == pytest.approx(STRETCH * 0.02)
 

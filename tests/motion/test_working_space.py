@@ -68,14 +68,14 @@ def test_no_snout_is_higher_than_a_straight_robot(found, robot):
 
 def test_a_robot_whose_trunk_is_stiff_reaches_less(robot):
     stiff = crocodile(
-        replace(robot.tables, spine=replace(robot.spine, yaw_range=(-0.01, 0.01), pitch_range=(-0.01, 0.01)))
+        replace(robot.tables, spine=replace(robot.tables.spine, yaw_range=(-0.01, 0.01), pitch_range=(-0.01, 0.01)))
     )
     ours, theirs = (reached(one, CRAWL, standing=True, count=2**12).snout for one in (robot, stiff))
     assert np.ptp(theirs[:, 1]) < 0.1 * np.ptp(ours[:, 1])
 
 
 def test_a_leg_keeps_to_a_narrow_range_and_the_trunk_off_the_ground(robot):
-    narrow = crocodile(replace(robot.tables, hind_leg=replace(robot.hind_leg, knee_range=(0.0, 1.0))))
+    narrow = crocodile(replace(robot.tables, hind_leg=replace(robot.tables.hind_leg, knee_range=(0.0, 1.0))))
     for standing in (False, True):
         some = reached(narrow, CRAWL, standing=standing, count=2**14)
         assert some.angles[:, joint_names(robot).index("LH_knee")].max() <= 1.0

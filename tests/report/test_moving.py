@@ -85,7 +85,7 @@ def test_a_replay_cannot_point_out_of_its_folder(make):
 
 
 def test_the_page_shows_the_robot_that_was_run(make):
-    other = crocodile(replace(CAIMAN.tables, name="stranger", head=replace(CAIMAN.head, snout=0.4)))
+    other = crocodile(replace(CAIMAN.tables, name="stranger", head=replace(CAIMAN.tables.head, snout=0.4)))
     results = [load_result(make(name, robot)) for name, robot in zip("abc", (other, CAIMAN, other), strict=True)]
     robot, others = robot_of(results)
     assert robot == other

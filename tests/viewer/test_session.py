@@ -202,7 +202,9 @@ def test_every_fault_of_the_shelf_can_be_let_happen_and_is_there_after_a_reset()
 
 
 def test_the_force_of_a_push_is_told_beside_the_weight_of_whom_it_pushes():
-    heavy = crocodile(replace(ROBOT.tables, name="heavy", pelvis=replace(ROBOT.pelvis, mass=ROBOT.pelvis.mass + 10.0)))
+    heavy = crocodile(
+        replace(ROBOT.tables, name="heavy", pelvis=replace(ROBOT.tables.pelvis, mass=ROBOT.pelvis.mass + 10.0))
+    )
     assert force_on(heavy).hint == f"heavy weighs {(ROBOT.mass + 10.0) * 9.81:.0f} N."
     assert replace(force_on(ROBOT), hint="") == FORCE
     assert force_on(heavy).high == pytest.approx(FORCE.high * heavy.mass / ROBOT.mass, rel=0.02)

@@ -2,8 +2,8 @@
 
 * A block with ``title="NAME"`` is a file to save.
 * Other ``python`` blocks continue one session.
-* In ``sh`` blocks, lines that begin with ``suchus`` are commands; ``python FILE`` runs a file; ``cp FILE
-  src/suchus/SHELF/`` puts a file on a shelf (of this process alone). Lines that set up a machine are left alone.
+* In ``sh`` blocks, lines that begin with ``suchus`` are commands; ``python FILE`` runs a file. Lines that set up a
+  machine are left alone.
 * A ``text`` block is what the block before it prints; ``...`` stands for any lines.
 
 Usage: python tools/pages/blocks.py PAGE.md [--write]: run a page in a new folder, and fill in what it prints.
@@ -17,7 +17,6 @@ import shlex
 import sys
 import tempfile
 from dataclasses import dataclass
-from importlib import import_module
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -108,12 +107,6 @@ def _command(words: list[str]) -> None:
             code = Path(file).read_text(encoding="utf-8")
             sys.argv = [file, *rest]
             exec(compile(code, file, "exec"), {"__name__": "__main__"})
-        case ["cp", file, shelf] if shelf.startswith("src/suchus/"):
-            folder = Path("shelf") / Path(shelf).name
-            folder.mkdir(parents=True, exist_ok=True)
-            (folder / file).write_text(Path(file).read_text(encoding="utf-8"), encoding="utf-8")
-            package = import_module(f"suchus.{Path(shelf).name}")
-            package.__path__.append(str(folder.absolute()))
         case [setup, *_] if setup in _SETUP:
             return
         case _:

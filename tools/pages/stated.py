@@ -1,50 +1,109 @@
-"""Passages of the pages that state what was measured, made from the measures.
+"""Passages of the pages that state what was measured: their words in ``docs/stated``, their numbers filled in by name.
 
-``passages`` says how a passage is marked. What was measured is kept: of an experiment the
-measures of its full form, of a search its outcome, both in ``tests/docs/stated``; the shares of the claims are those
-that suchus ships. A test compares pages and measures; ``make validate`` compares the measures with new runs.
+A passage stands between ``<!-- stated: NAME -->`` and ``<!-- end -->`` of a page; its words are the Jinja template
+``docs/stated/NAME.md``, in which ``{{ swim_3d.speed:.3f }}`` is a measure of the experiment ``swim_3d``, written as
+Python's format does, or in another unit where the format begins with it, as ``mm.1f`` (``suchus.verdict.Reading``).
+What was measured is kept: of an experiment the measures of its full form, of a search its outcome, both in
+``tests/docs/stated``; ``claims`` are the shares that suchus ships. A test compares pages and measures; another, which
+``make validate`` runs, compares the measures with new runs.
 
 Usage: python tools/pages/stated.py OUTCOME.json ...: keep what these outcomes measured, and write the pages anew.
 """
 
 import json
+import re
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from functools import cache
+from math import floor, log10
 from pathlib import Path
+from textwrap import fill
 from typing import Any
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined, meta
+from jinja2.ext import Extension
 
 if __name__ == "__main__":
     sys.path.insert(0, str(Path(__file__).parents[1]))
 
-from pages import (
-    passages,
-    stated_calibration,
-    stated_faults,
-    stated_flow,
-    stated_land,
-    stated_studies,
-    stated_water,
-)
+from pages import passages
 from suchus.experiments import EXPERIMENTS
+from suchus.paper import CLAIMS
+from suchus.verdict import Reading, compared, listed
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
+WORDS = DOCS / "stated"
 KEPT = ROOT / "tests" / "docs" / "stated"
 SHARES = ROOT / "src" / "suchus" / "verdict" / "claims.json"
-Make = Callable[[Mapping[str, Any]], str]
-PASSAGES: Mapping[str, Mapping[str, Make]] = {
-    **stated_calibration.PASSAGES,
-    **stated_faults.PASSAGES,
-    **stated_flow.PASSAGES,
-    **stated_land.PASSAGES,
-    **stated_studies.PASSAGES,
-    **stated_water.PASSAGES,
-}
-"""What makes each passage, by what was measured."""
-MADE: Mapping[str, tuple[str, Make]] = {
-    name: (source, make) for source, makers in PASSAGES.items() for name, make in makers.items()
-}
-"""By passage: what was measured, and what makes the passage of it."""
+WIDTH = 118
+_NUMBER = re.compile(r"\{\{ ([^{}]+?):([a-zA-Z]*\+?(?:\.\d+)?[a-z%]) \}\}")
+
+
+class _Numbers(Extension):
+    """``{{ number:.3f }}`` in a template."""
+
+    def preprocess(self, source: str, name: str | None, filename: str | None = None) -> str:
+        """Return the template with formats as a filter."""
+        del name, filename
+        return _NUMBER.sub(r'{{ (\1) | write("\2") }}', source)
+
+
+def write(value: float, form: str) -> str:
+    """Return a number as written, zero without a minus."""
+    text = format(Reading(value), form)
+    return text.removeprefix("-") if not re.search("[1-9a-z]", text) else text
+
+
+def three_digits(value: float) -> str:
+    """Return a number to three digits, and to whole ones from a hundred on."""
+    return f"{value:.0f}" if abs(value) >= 100.0 else f"{value:.{max(0, 2 - floor(log10(abs(value) or 1.0)))}f}"
+
+
+def explained(experiment: str, measures: Mapping[str, float]) -> str:
+    """Return what an experiment's report says decided it."""
+    return EXPERIMENTS[experiment].explain(measures)
+
+
+def numbers(measures: Mapping[str, float], start: str, end: str = "") -> list[float]:
+    """Return the numbers that names of measures hold between start and end, ``0_03`` for 0.03, in order."""
+    between = (name.removeprefix(start).removesuffix(end) for name in measures if name[: len(start)] == start)
+    return sorted(float(text.replace("_", ".")) for text in between if re.fullmatch(r"\d+(_\d+)?", text))
+
+
+def greatest(measures: Mapping[str, float], start: str) -> float:
+    """Return the greatest of the measures whose names begin so."""
+    return max(value for name, value in measures.items() if name.startswith(start))
+
+
+@cache
+def templates() -> Environment:
+    """Return where the words of the passages come from."""
+    environment = Environment(
+        loader=FileSystemLoader(WORDS),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        extensions=[_Numbers],
+        autoescape=False,
+    )
+    environment.filters |= {"write": write, "three_digits": three_digits}
+    environment.globals |= {"article": CLAIMS, "experiments": EXPERIMENTS, "explained": explained, "numbers": numbers,
+                            "greatest": greatest, "compared": compared, "listed": listed}  # fmt: skip
+    return environment
+
+
+@cache
+def sources(passage: str) -> tuple[str, ...]:
+    """Return the names of what a passage states measures of: experiments, searches, the study of the claims."""
+    environment, text = templates(), (WORDS / f"{passage}.md").read_text(encoding="utf-8")
+    named = meta.find_undeclared_variables(environment.parse(text))
+    return tuple(sorted(named - set(environment.globals)))
+
+
+def made() -> list[str]:
+    """Return the names of all passages whose words we have."""
+    return sorted(file.stem for file in WORDS.glob("[a-z]*.md"))
 
 
 def pages() -> list[Path]:
@@ -52,7 +111,7 @@ def pages() -> list[Path]:
     return [
         page
         for page in [*sorted(DOCS.glob("*.md")), ROOT / "README.md"]
-        if set(passages.names(page.read_text("utf-8"))) & set(MADE)
+        if set(passages.names(page.read_text("utf-8"))) & set(made())
     ]
 
 
@@ -63,14 +122,31 @@ def kept(source: str) -> dict[str, Any]:
     return found
 
 
+def text_of(passage: str, instead: Mapping[str, Mapping[str, Any]] | None = None) -> str:
+    """Return a passage as it says what was measured, ``instead`` taking the place of measures, by source."""
+    measured = {name: kept(name) | dict((instead or {}).get(name, {})) for name in sources(passage)}
+    return wrapped(templates().get_template(f"{passage}.md").render(measured))
+
+
 def filled(page: str, instead: Mapping[str, Mapping[str, Any]] | None = None) -> str:
     """Return a page whose passages say what was measured, ``instead`` taking the place of measures, by source."""
-    texts = {}
-    for name in passages.names(page):
-        if name in MADE:
-            source, make = MADE[name]
-            texts[name] = make(kept(source) | dict((instead or {}).get(source, {})))
-    return passages.put(page, texts)
+    ours = set(made())
+    return passages.put(page, {name: text_of(name, instead) for name in passages.names(page) if name in ours})
+
+
+def wrapped(text: str) -> str:
+    """Return Markdown with paragraphs and items filled, tables as they are, and one empty line between blocks."""
+    blocks = (block.strip("\n") for block in re.split(r"\n\s*\n", text))
+    return "\n\n".join(block if block[0] == "|" else _filled(block) for block in blocks if block) + "\n"
+
+
+def _filled(block: str) -> str:
+    """Return a paragraph, or items each of which begins a line, in lines of a width."""
+    items = [" ".join(item.split()) for item in re.split(r"\n(?=[*-] )", block)]
+    return "\n".join(
+        fill(item, WIDTH, subsequent_indent="  " * (item[:2] in ("* ", "- ")), break_long_words=False,
+             break_on_hyphens=False) for item in items
+    )  # fmt: skip
 
 
 def keep(source: str, measured: Mapping[str, Any]) -> None:

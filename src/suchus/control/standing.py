@@ -11,8 +11,9 @@ from suchus import rotation
 from suchus.control.controller import Command, Runs
 from suchus.control.sensed import Sensed
 from suchus.control.suited import crocodiles
-from suchus.design import Layout, Leg, Robot, crocodile, layout
+from suchus.design import Layout, Robot, crocodile, layout
 from suchus.design.checks import Checks
+from suchus.design.measures import LegMeasures
 from suchus.motion import Gait, intended
 from suchus.motion.posture import Keyed, hind_leg, plan
 from suchus.motion.rising import stand_up
@@ -182,7 +183,7 @@ class Stander:
         balances: Sequence[Balance | None],
         course: Course,
         row: np.ndarray,
-        legs: Sequence[Leg],
+        legs: Sequence[LegMeasures],
         place: Layout,
         period: float,
     ) -> None:

@@ -1,5 +1,6 @@
 """What a robot is: frozen values in SI units and without physics."""
 
+from suchus.design.article import tables_of
 from suchus.design.body import Robot
 from suchus.design.chosen import Chosen, unit_at, value_at, with_values
 from suchus.design.contact import Contact
@@ -17,11 +18,11 @@ from suchus.design.joints import (
 )
 from suchus.design.layout import Layout, LimbPlace, front_segment, hips_ahead, hips_behind_snout, layout, servo_ranges
 from suchus.design.limb import Foot, Girdle, Limb, Link
-from suchus.design.needs import NEEDS, check_needs, lacking
+from suchus.design.needs import NEEDS, check_needs, crocodile_like, lacking
 from suchus.design.physics import GRAVITY, WATER_DENSITY, WATER_VISCOSITY
 from suchus.design.segment import Rod, Segment, Shell
 from suchus.design.servo import Servo
-from suchus.design.servos import with_servos, with_speed_lines
+from suchus.design.servos import with_servos, with_speed_lines, with_spring
 from suchus.design.suited import AnyRobot, Crocodile, crocodile, general
 from suchus.design.tables import Head, Leg, Pelvis, Spine, Tables, Tail, Thorax
 
@@ -65,6 +66,7 @@ __all__ = [
     "cable_joints",
     "check_needs",
     "crocodile",
+    "crocodile_like",
     "fin_joints",
     "front_segment",
     "general",
@@ -77,9 +79,11 @@ __all__ = [
     "servo_names",
     "servo_ranges",
     "spine_joints",
+    "tables_of",
     "unit_at",
     "value_at",
     "with_servos",
     "with_speed_lines",
+    "with_spring",
     "with_values",
 ]

@@ -1,14 +1,20 @@
 """The robot that the article's tables make: segment by segment, joint by joint."""
 
 from collections.abc import Callable
-from typing import Any
+from dataclasses import fields
+from functools import lru_cache
+from typing import Any, NamedTuple, TypeVar
 
 from suchus.design.body import Robot
 from suchus.design.hinge import Cable, Hinge, Spring
 from suchus.design.limb import Foot, Girdle, Limb, Link
+from suchus.design.measures import head_of, leg_of, pelvis_of, spine_of, tail_of, thorax_of
 from suchus.design.segment import Rod, Segment, Shell
 from suchus.design.servo import Servo
-from suchus.design.tables import LEG_SHARES, Leg, Tables, Tail, tail_segments
+from suchus.design.tables import LEG_SHARES, Head, Leg, Pelvis, Spine, Tables, Tail, Thorax, tail_segments
+from suchus.errors import InvalidDesign
+
+T = TypeVar("T")
 
 PASSIVE_RANGE = 1.2
 """Stops of the passive joints of a tail to either side [rad]."""
@@ -50,8 +56,48 @@ def remade(robot: Robot, change: Callable[[Any], Any]) -> Robot:
         robot: the robot; it stays as it is.
         change: takes ``Tables`` or a ``Robot`` and returns the same.
     """
-    changed: Robot = change(robot) if robot.tables is None else crocodile(change(robot.tables))
+    tables = tables_of(robot)
+    changed: Robot = change(robot) if tables is None else crocodile(change(tables))
     return changed
+
+
+@lru_cache(maxsize=256)
+def tables_of(robot: Robot) -> Tables | None:
+    """Return the tables that make a robot: those it was made of, or those read from its measures, which must make it.
+
+    None where no tables make it.
+    """
+    if robot.tables is not None:
+        return robot.tables
+    tail, spine = tail_of(robot), spine_of(robot)
+    pelvis, thorax, head = pelvis_of(robot), thorax_of(robot), head_of(robot)
+    legs = [leg_of(girdle) for girdle in robot.girdles]
+    if tail is None or spine is None or pelvis is None or thorax is None or head is None or len(legs) != 2:
+        return None
+    if not tail.cabled or not spine.link_masses or legs[0] is None or legs[1] is None:
+        return None
+    try:
+        tables = Tables(
+            name=robot.name,
+            hind_leg=_read(Leg, legs[1]),
+            front_leg=_read(Leg, legs[0]),
+            pelvis=_read(Pelvis, pelvis),
+            spine=_read(Spine, spine, link_mass=spine.link_masses[0]),
+            thorax=_read(Thorax, thorax),
+            head=_read(Head, head),
+            tail=_read(Tail, tail, plate=tail.plate, drive="cable"),
+            contact=robot.contact,
+            hull=robot.hull,
+        )
+        return tables if crocodile(tables) == robot else None
+    except InvalidDesign:
+        return None
+
+
+def _read(kind: type[T], measures: NamedTuple, **more: object) -> T:
+    """Return a part of the tables with the measures that carry the names of its fields."""
+    names = {field.name for field in fields(kind)}  # type: ignore[arg-type]
+    return kind(**{name: value for name, value in measures._asdict().items() if name in names}, **more)
 
 
 def cable_names(tail: Tail) -> tuple[str, ...]:
@@ -164,6 +210,7 @@ def _cable(tail: Tail) -> Cable:
         pulley=tail.pulley,
         bend_limit=tail.bend_limit,
         servo=tail.cable_servo,
+        gap=tail.gap,
     )
 
 

@@ -4,16 +4,33 @@ from collections import Counter
 from dataclasses import dataclass, field, fields
 from itertools import pairwise
 from math import fsum
+from typing import TypeVar
 
 from suchus.design.checks import Checks
 from suchus.design.contact import Contact
 from suchus.design.hinge import Cable, Hinge
 from suchus.design.hull import Hull
 from suchus.design.limb import Girdle
+from suchus.design.measures import (
+    HeadMeasures,
+    LegMeasures,
+    PelvisMeasures,
+    SpineMeasures,
+    TailMeasures,
+    ThoraxMeasures,
+    head_of,
+    leg_of,
+    pelvis_of,
+    spine_of,
+    tail_of,
+    thorax_of,
+)
 from suchus.design.segment import Segment
 from suchus.design.servo import Servo
-from suchus.design.tables import Head, Leg, Pelvis, Spine, Tables, Tail, Thorax
+from suchus.design.tables import Tables
+from suchus.errors import UnsuitedRobot
 
+M = TypeVar("M")
 _TRUNK_YAW = "spine_yaw_"
 """How the names begin of the yaw hinges between the root and the foremost girdle, and of no others."""
 MOST_SERVOS = 31
@@ -49,7 +66,7 @@ class Robot(_Hashed):
     hull: Hull | None = None
     """Foam and air that make it float; None for a robot without."""
     tables: Tables | None = field(default=None, init=False, compare=False, repr=False)
-    """The article's tables where ``design.crocodile`` made it of them, for ``with_values`` and files; else None."""
+    """The tables where ``design.crocodile`` made it of them; whoever wants them asks ``design.article.tables_of``."""
 
     def __post_init__(self) -> None:
         with Checks("robot", self) as check:
@@ -94,48 +111,49 @@ class Robot(_Hashed):
         return servos_of(self)[name]
 
     @property
-    def _article(self) -> Tables:
-        assert self.tables is not None
-        return self.tables
+    def hind_leg(self) -> LegMeasures:
+        """The measures of the hind girdle's left limb; ``UnsuitedRobot`` if it is no leg of yaw, pitch and knee."""
+        return self.leg("LH")
 
     @property
-    def hind_leg(self) -> Leg:
-        """Bridge, to be removed."""
-        return self._article.hind_leg
+    def front_leg(self) -> LegMeasures:
+        """The measures of the front girdle's left limb; ``UnsuitedRobot`` if it is no leg of yaw, pitch and knee."""
+        return self.leg("LF")
+
+    def leg(self, name: str) -> LegMeasures:
+        """Return the measures of the left limb of the front (``LF``, ``RF``) or hind girdle (``LH``, ``RH``)."""
+        leg = leg_of(self.girdles[0 if name.endswith("F") else -1]) if self.girdles else None
+        return self._has(leg, "legs of yaw, pitch and knee")
 
     @property
-    def front_leg(self) -> Leg:
-        """Bridge, to be removed."""
-        return self._article.front_leg
+    def spine(self) -> SpineMeasures:
+        """The measures of its spine; ``UnsuitedRobot`` if its joints do not turn by yaw and pitch in turn."""
+        return self._has(spine_of(self), "a spine of equal links whose joints turn by yaw and pitch in turn")
 
     @property
-    def pelvis(self) -> Pelvis:
-        """Bridge, to be removed."""
-        return self._article.pelvis
+    def tail(self) -> TailMeasures:
+        """The measures of its tail; ``UnsuitedRobot`` if it is no row of plates with a passive end."""
+        return self._has(tail_of(self), "a tail that pitches, bends in equal joints and ends in passive segments")
 
     @property
-    def spine(self) -> Spine:
-        """Bridge, to be removed."""
-        return self._article.spine
+    def pelvis(self) -> PelvisMeasures:
+        """The measures of its shell ``pelvis``; ``UnsuitedRobot`` without one."""
+        return self._has(pelvis_of(self), "a shell called pelvis")
 
     @property
-    def thorax(self) -> Thorax:
-        """Bridge, to be removed."""
-        return self._article.thorax
+    def thorax(self) -> ThoraxMeasures:
+        """The measures of its shell ``thorax``; ``UnsuitedRobot`` without one."""
+        return self._has(thorax_of(self), "a shell called thorax")
 
     @property
-    def head(self) -> Head:
-        """Bridge, to be removed."""
-        return self._article.head
+    def head(self) -> HeadMeasures:
+        """The measures of its shell ``head``; ``UnsuitedRobot`` without one."""
+        return self._has(head_of(self), "a shell called head")
 
-    @property
-    def tail(self) -> Tail:
-        """Bridge, to be removed."""
-        return self._article.tail
-
-    def leg(self, name: str) -> Leg:
-        """Bridge, to be removed."""
-        return self.front_leg if name.endswith("F") else self.hind_leg
+    def _has(self, measures: M | None, what: str) -> M:
+        if measures is None:
+            raise UnsuitedRobot(f"robot {self.name!r} lacks {what}: choose another robot.")
+        return measures
 
 
 def servos_of(robot: Robot) -> dict[str, Servo]:

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields, is_dataclass, replace
 from typing import Any, Protocol, Self, TypeVar, runtime_checkable
 
-from suchus.design.article import crocodile
+from suchus.design.article import crocodile, tables_of
 from suchus.design.body import Robot
 from suchus.design.meaning import meanings, unit
 from suchus.errors import UnknownName
@@ -71,7 +71,7 @@ def with_values(design: T, values: Mapping[str, Any]) -> T:
         UnknownName: there is no such field.
         InvalidDesign: the values cannot be, alone or together.
     """
-    tables = design.tables if isinstance(design, Robot) else None
+    tables = tables_of(design) if isinstance(design, Robot) else None
     if tables is not None and all(hasattr(tables, str(_steps(path)[0])) for path in values):
         return crocodile(with_values(tables, values))  # type: ignore[return-value]
     branches: dict[str | int, dict[str, Any]] = {}
@@ -128,7 +128,7 @@ def _numbers(design: Any) -> Mapping[str, str]:
 
 def _holder(design: Any, step: str | int) -> Any:
     """Return the tables of a robot where they, and not the robot itself, have a field; else the design."""
-    tables = design.tables if isinstance(design, Robot) else None
+    tables = tables_of(design) if isinstance(design, Robot) else None
     own = isinstance(design, Robot) and step in {field.name for field in fields(design) if field.init}
     return design if tables is None or own else tables
 

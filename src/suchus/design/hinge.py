@@ -93,6 +93,8 @@ class Cable:
     """Greatest sum of the hinges' angles to either side [rad]."""
     servo: Servo
     """The servo that turns the pulley; torque and angle are those of its own shaft."""
+    gap: float = 0.0
+    """Gap between the plates at each hinge, the article's h [m]; 0: that which closes at the limit of the bend."""
 
     def __post_init__(self) -> None:
         with Checks(f"cable {self.name}", self) as check:
@@ -100,6 +102,7 @@ class Cable:
             check.number("cord_spacing", 1e-5, 10.0, "m")
             check.number("pulley", 1e-5, 10.0, "m")
             check.number("bend_limit", 0.01, 6.2832, "rad")
+            check.number("gap", 0.0, 10.0, "m")
 
     @property
     def joints(self) -> int:

@@ -2,7 +2,6 @@
 
 from typing import Literal
 
-from suchus.design.article import cable_names, fin_names
 from suchus.design.body import Robot
 from suchus.design.layout import layout
 
@@ -23,12 +22,12 @@ def spine_joints() -> tuple[str, ...]:
 
 def cable_joints(robot: Robot) -> tuple[str, ...]:
     """Return the driven yaw joints of the tail from root to tip."""
-    return cable_names(robot.tail)
+    return robot.tail.driven
 
 
 def fin_joints(robot: Robot) -> tuple[str, ...]:
     """Return the passive joints of the tail from root to tip, yaw before pitch in each."""
-    return fin_names(robot.tail)
+    return robot.tail.passive
 
 
 def servo_names(robot: Robot | None = None) -> tuple[str, ...]:

@@ -4,8 +4,10 @@ from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 from typing import NamedTuple
 
+from suchus.design.article import tables_of
 from suchus.design.body import Robot
 from suchus.design.layout import layout
+from suchus.design.measures import head_of, leg_of, pelvis_of, spine_of, tail_of, thorax_of
 from suchus.design.tables import ARTICLE_JOINTS
 from suchus.errors import UnsuitedRobot
 
@@ -28,6 +30,24 @@ def _trunk(robot: Robot) -> bool:
     return bool(layout(robot).trunk_yaw)
 
 
+def _legs(robot: Robot) -> bool:
+    return len(robot.girdles) == 2 and all(leg_of(girdle) is not None for girdle in robot.girdles)
+
+
+def _shells(robot: Robot) -> bool:
+    return None not in (pelvis_of(robot), thorax_of(robot), head_of(robot))
+
+
+def _article_spine(robot: Robot) -> bool:
+    spine = spine_of(robot)
+    return spine is not None and spine.joints == ARTICLE_JOINTS and robot.axis[0].name == robot.girdles[0].segment
+
+
+def _cable_tail(robot: Robot) -> bool:
+    tail = tail_of(robot)
+    return tail is not None and tail.cabled
+
+
 NEEDS: Mapping[str, Need] = MappingProxyType(
     {
         "limbs": Need("limbs to walk on", lambda robot: bool(layout(robot).limbs)),
@@ -38,16 +58,19 @@ NEEDS: Mapping[str, Need] = MappingProxyType(
             "an axis that bends sideways", lambda robot: bool(layout(robot).axial_yaw or layout(robot).cables)
         ),
         "tables": Need(
-            "a crocodile-like robot given by the article's tables, as 'caiman'",
-            lambda robot: robot.tables is not None,
+            "the article's tables, of which it is made, as 'caiman'", lambda robot: tables_of(robot) is not None
         ),
+        "spine": Need("a spine whose joints turn by yaw and pitch in turn", lambda robot: spine_of(robot) is not None),
+        "tail": Need("a tail of equal plates with a passive end", lambda robot: tail_of(robot) is not None),
+        "legs": Need("four legs of yaw, pitch and knee", _legs),
+        "shells": Need("shells called pelvis, thorax and head", _shells),
         "article_spine": Need(
             f"the article's spine of {ARTICLE_JOINTS} joints",
-            lambda robot: robot.tables is not None and robot.spine.joints == ARTICLE_JOINTS,
+            _article_spine,
         ),
         "cable_tail": Need(
             "the article's tail with a cable",
-            lambda robot: robot.tables is not None and robot.tail.drive == "cable",
+            _cable_tail,
         ),
         "salamander_joints": Need(
             "the joints of the robot 'salamander'",
@@ -56,6 +79,11 @@ NEEDS: Mapping[str, Need] = MappingProxyType(
     }
 )
 """Everything that is asked of a robot anywhere, by name."""
+
+
+def crocodile_like(robot: Robot) -> bool:
+    """Tell whether a robot has the measures of a crocodile-like body: legs, spine, tail and shells."""
+    return not lacking(robot, ("legs", "shells", "spine", "tail"))
 
 
 def lacking(robot: Robot, needs: Sequence[str]) -> list[str]:

@@ -1,11 +1,12 @@
-"""A whole robot with other servos, wherever its parts hold one."""
+"""A whole robot with other servos or springs, wherever its parts hold one."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import fields, is_dataclass, replace
 from typing import Any
 
 from suchus.design.article import remade
 from suchus.design.body import Robot
+from suchus.design.hinge import Hinge, Spring
 from suchus.design.servo import Servo
 
 _LIMBS = ("girdles", "front_leg", "hind_leg")
@@ -30,6 +31,24 @@ def with_speed_lines(robot: Robot) -> Robot:
 def with_servos(robot: Robot, change: Callable[[Servo], Servo]) -> Robot:
     """Return a robot with each of its servos changed."""
     return remade(robot, lambda design: _changed(design, change))
+
+
+def with_spring(robot: Robot, hinges: Collection[str], stiffness: float) -> Robot:
+    """Return a robot with another stiffness of the springs in some passive hinges of its axis.
+
+    Args:
+        robot: the robot; it stays as it is.
+        hinges: names of hinges with springs.
+        stiffness: of each [N m/rad].
+    """
+
+    def with_other(hinge: Hinge) -> Hinge:
+        if hinge.name not in hinges or not isinstance(hinge.drive, Spring):
+            return hinge
+        return replace(hinge, drive=replace(hinge.drive, stiffness=stiffness))
+
+    axis = tuple(replace(one, hinges=tuple(with_other(hinge) for hinge in one.hinges)) for one in robot.axis)
+    return replace(robot, axis=axis)
 
 
 def _changed(part: Any, change: Callable[[Servo], Servo]) -> Any:

@@ -4,8 +4,8 @@ from typing import overload
 
 from suchus.design import article
 from suchus.design.body import Robot
-from suchus.design.tables import ARTICLE_JOINTS, Tables
-from suchus.errors import UnsuitedRobot
+from suchus.design.needs import check_needs
+from suchus.design.tables import Tables
 
 AnyRobot = Robot
 Crocodile = Robot
@@ -36,14 +36,5 @@ def crocodile(robot: Robot | Tables, what: str = "") -> Robot:
     """
     if isinstance(robot, Tables):
         return article.crocodile(robot)
-    if robot.tables is None:
-        raise UnsuitedRobot(
-            f"{what} needs a crocodile-like robot given by the article's tables, as 'caiman'; robot {robot.name!r} is "
-            "a body of its own: choose another robot."
-        )
-    if robot.spine.joints != ARTICLE_JOINTS or robot.tail.drive != "cable":
-        raise UnsuitedRobot(
-            f"{what} needs the article's spine of {ARTICLE_JOINTS} joints and a tail with a cable; robot "
-            f"{robot.name!r} has {robot.spine.joints} joints and a tail with {robot.tail.drive}: choose another robot."
-        )
+    check_needs(robot, ("legs", "shells", "article_spine", "cable_tail"), what)
     return robot

@@ -29,8 +29,8 @@ Start = Literal["lying", "upright", "swimming"]
 NEEDED: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
         "lying": (),
-        "upright": ("tables", "article_spine", "cable_tail"),
-        "swimming": ("tables", "article_spine", "cable_tail"),
+        "upright": ("legs", "shells", "article_spine", "cable_tail"),
+        "swimming": ("legs", "shells", "article_spine", "cable_tail"),
     }
 )
 """What a beginning needs of a robot: names of ``design.NEEDS``."""

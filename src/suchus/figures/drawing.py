@@ -7,7 +7,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Polygon
 
-from suchus.design import Leg, Robot, layout
+from suchus.design import Robot, crocodile_like, layout
+from suchus.design.measures import LegMeasures
 from suchus.figures.plan import draw_plan
 from suchus.figures.style import COLOURS, captioned, panels, styled
 
@@ -18,10 +19,10 @@ _EDGE: dict[str, Any] = {"edgecolor": _LIMB, "linewidth": 1.2}
 
 def dimension_drawing(robot: Robot) -> Figure:
     """Return a robot from above and from the side with its main dimensions [mm]."""
-    tables = robot.tables is not None
+    tables = crocodile_like(robot)
     with styled(axes__grid=False):
         figure, axes = panels(2, 1, height=5.4, sharex=True, height_ratios=[1.5, 1])
-        if robot.tables is not None:
+        if crocodile_like(robot):
             _from_above(axes[0, 0], robot)
             _from_the_side(axes[1, 0], robot)
         else:
@@ -31,7 +32,7 @@ def dimension_drawing(robot: Robot) -> Figure:
             ax.set_aspect("equal")
             ax.set_axis_off()
             ax.set_title(title, color=COLOURS["neutral"])
-    tail = f"{_mm(robot.tail.length)} mm of it tail, " if robot.tables is not None else ""
+    tail = f"{_mm(robot.tail.length)} mm of it tail, " if crocodile_like(robot) else ""
     return captioned(
         figure,
         f"The robot {robot.name} from above and from the side: {_mm(robot.length)} mm long, "
@@ -79,11 +80,11 @@ def _from_the_side(ax: Axes, robot: Robot) -> None:
     _measure(ax, front, nose, -0.045)
 
 
-def _stance(leg: Leg) -> float:
+def _stance(leg: LegMeasures) -> float:
     return leg.tibia * cos(_TILT) + leg.foot_radius
 
 
-def _leg(ax: Axes, x: float, leg: Leg, side: int) -> None:
+def _leg(ax: Axes, x: float, leg: LegMeasures, side: int) -> None:
     knee = leg.hip_offset + leg.femur
     foot = knee + leg.tibia * sin(_TILT)
     ax.plot([x, x], [0.0, side * foot], color=_LIMB, linewidth=5, solid_capstyle="round", zorder=0.5)

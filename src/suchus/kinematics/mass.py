@@ -3,25 +3,23 @@
 Everything is in the frame of the pelvis, as in ``suchus.kinematics.body``.
 """
 
+from dataclasses import replace
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import GRAVITY, LEGS, Robot, cable_joints, crocodile, joint_names, layout
-from suchus.design.tables import LEG_SHARES, TailSegments, tail_segments
-from suchus.kinematics import body, leg, spine
+from suchus.design import GRAVITY, LEGS, Robot, cable_joints, check_needs, joint_names, lacking, layout
+from suchus.kinematics import body, leg, spine, tree
 from suchus.kinematics.given import rows
 
 __all__ = [
     "GRAVITY",
-    "LEG_SHARES",
     "Pieces",
-    "TailSegments",
     "cantilever_torque",
     "centre_of_mass",
     "pieces",
-    "tail_segments",
 ]
 
 
@@ -45,11 +43,11 @@ def pieces(robot: Robot, angles: Float[np.ndarray, "*batch joint"]) -> Pieces:
         InvalidDesign: the number of angles is not the robot's number of hinges.
     """
     angles = rows(angles, len(joint_names(robot)), f"the posture of {robot.name}, an angle for each hinge,")
-    robot = crocodile(robot, "the mass of the trunk in closed form")
-    masses = [robot.pelvis.mass, *4 * [robot.spine.link_mass], robot.thorax.mass, robot.head.mass]
-    for name in LEGS:
-        masses += [share * robot.leg(name).mass for share in LEG_SHARES]
-    masses += tail_segments(robot.tail).masses
+    check_needs(robot, ("legs", "shells", "article_spine", "tail"), "the mass of the trunk in closed form")
+    masses = [robot.pelvis.mass, *robot.spine.link_masses, robot.thorax.mass, robot.head.mass]
+    for limb in layout(robot).limbs:
+        masses += limb.girdle.limb.masses
+    masses += robot.tail.masses
     centres = (*_trunk(robot, angles), *_legs(robot, angles), *_tail(robot, angles))
     return Pieces(np.array(masses), np.stack(centres, axis=-2))
 
@@ -64,8 +62,21 @@ def centre_of_mass(robot: Robot, angles: Float[np.ndarray, "*batch joint"]) -> F
     Raises:
         InvalidDesign: the number of angles is not the robot's number of hinges.
     """
+    if not _closed(robot):
+        return tree.centre_of_mass(robot, angles)
     found = pieces(robot, angles)
     return np.einsum("p,...pi->...i", found.masses / found.masses.sum(), found.centres)
+
+
+@lru_cache(maxsize=256)
+def _closed(robot: Robot) -> bool:
+    """Tell whether a robot has the chain of the closed form, and its pieces lie where that has them."""
+    if lacking(robot, ("legs", "shells", "article_spine", "tail")):
+        return False
+    angles = 0.1 * np.arange(1.0, 1.0 + len(joint_names(robot)))
+    found = pieces(robot, angles)
+    centre = np.einsum("p,pi->i", found.masses / found.masses.sum(), found.centres)
+    return bool(np.allclose(centre, tree.centre_of_mass(replace(robot, hull=None), angles), atol=1e-12 * robot.length))
 
 
 def cantilever_torque(robot: Robot) -> float:

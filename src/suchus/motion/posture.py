@@ -11,8 +11,9 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import Leg, Robot, crocodile, joint_names, layout, servo_names
+from suchus.design import Robot, crocodile, joint_names, layout, servo_names
 from suchus.design.checks import Checks
+from suchus.design.measures import LegMeasures
 from suchus.errors import InvalidDesign, OutsideLimits, Unreachable
 from suchus.kinematics import leg as leg_kinematics
 from suchus.kinematics.body import tail_points
@@ -163,7 +164,7 @@ def mass_ahead(robot: Robot, posture: Posture, feet_ahead: float) -> float:
 
 
 def hind_leg(
-    leg: Leg, feet: Float[np.ndarray, "*batch 3"], pitch: Float[np.ndarray, "*batch"], *, clip: bool = False
+    leg: LegMeasures, feet: Float[np.ndarray, "*batch 3"], pitch: Float[np.ndarray, "*batch"], *, clip: bool = False
 ) -> Float[np.ndarray, "*batch 3"]:
     """Return the angles of a hind leg that bring its foot to a point that does not turn with the pelvis.
 

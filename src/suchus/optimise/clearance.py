@@ -9,7 +9,6 @@ from suchus.design import LEGS, Robot, crocodile, layout
 from suchus.kinematics import body, spine
 from suchus.kinematics import leg as leg_kinematics
 from suchus.kinematics.links import LegLinks
-from suchus.kinematics.mass import tail_segments
 
 _GIRDLE = {"F": ("thorax",), "H": ("pelvis",)}
 _SHANK = 0.8  # of the femur's radius, as the model builds it
@@ -86,7 +85,7 @@ def _trunk(robot: Robot, bends: np.ndarray) -> list[_Capsule]:
 
 def _tail(robot: Robot, angles: np.ndarray) -> list[_Capsule]:
     points = body.tail_points(robot, angles)
-    radii = tail_segments(robot.tail).radii
+    radii = robot.tail.radii
     return [
         _Capsule(f"tail_{i}", points[..., i, :], points[..., i + 1, :], radii[i])
         for i in range(1, points.shape[-2] - 1)  # the root lies between the hips

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
-from suchus.design import LEGS, Robot
+from suchus.design import LEGS, Robot, crocodile_like
 from suchus.paper import CLAIMS, CRAWL_END, CRAWL_START
 from suchus.paper.animals import ANIMALS, Animal
 from suchus.report.numbers import number, quantity
@@ -73,11 +73,11 @@ def _measured(results: Results, experiment: str, *names: str) -> list[float] | N
 
 
 def _tail_length(robot: Robot, _: Results) -> float | None:
-    return robot.tail.length / robot.length if robot.tables is not None else None
+    return robot.tail.length / robot.length if crocodile_like(robot) else None
 
 
 def _tail_mass(robot: Robot, _: Results) -> float | None:
-    return robot.tail.mass / robot.mass if robot.tables is not None else None
+    return robot.tail.mass / robot.mass if crocodile_like(robot) else None
 
 
 def _mass(robot: Robot, _: Results) -> float | None:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from suchus import figures
-from suchus.design import Robot
+from suchus.design import Robot, tables_of
 from suchus.gaits import GAITS
 from suchus.paper import AUTHORS, CLAIMS, ERRATA, TITLE
 from suchus.record import new_file, versions
@@ -145,7 +145,7 @@ def _content(results: Sequence[Result], failures: Sequence[Failure]) -> dict[str
         "robot": robot,
         "others": others,
         "drawing": _drawing(robot),
-        "parts": parts(robot),
+        "parts": parts(tables_of(robot) or robot),
         "chosen": {robot.name: choices(robot, named)}
         | {name: choices(gait, GAITS.beside(name, "chosen", ())) for name, gait in GAITS.items() if judged},
         "misprints": tuple(ERRATA.values()) if judged else (),

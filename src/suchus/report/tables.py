@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields, is_dataclass
 from typing import Any
 
-from suchus.design import Chosen
+from suchus.design import Chosen, unit_at, value_at
 from suchus.design.meaning import meanings, unit
 from suchus.report.numbers import number, quantity
 
@@ -69,15 +69,9 @@ def choices(design: Any, chosen: Sequence[Chosen]) -> tuple[ChosenNumber, ...]:
 
 
 def _choice(design: Any, one: Chosen) -> ChosenNumber:
-    value, meaning = design, ""
-    for name, index in re.findall(r"(\w+)|\[(\d+)\]", one.field):
-        if index:
-            value = value[int(index)]
-        else:
-            meaning = meanings(type(value)).get(name, "")
-            value = getattr(value, name)
+    value, own = value_at(design, one.field), unit_at(design, one.field)
     return ChosenNumber(
-        field=one.field, value=_shown(value, unit(meaning)), low=number(one.low), high=number(one.high), why=one.why
+        field=one.field, value=_shown(value, own), low=number(one.low), high=number(one.high), why=one.why
     )
 
 

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from suchus.design import Robot
-from suchus.kinematics.mass import tail_segments
 from suchus.skin.head import Knot, head_knots
 from suchus.skin.look import Look
 from suchus.skin.mesh import Mesh, curve, loft, ring
@@ -42,7 +41,7 @@ def _tail_knots(robot: Robot, look: Look) -> list[Knot]:
     """Return (x, half width, top, bottom) from the tip to the root; it encloses the segments beneath."""
     tail = robot.tail
     tip = -tail.length
-    lengths, radii, _ = tail_segments(tail)
+    lengths, radii = tail.lengths, tail.radii
     starts = -tail.offset - np.cumsum([0.0, *lengths[:-1]])
     at = curve(sorted((float(x), float(r)) for x, r in zip(starts, radii, strict=True)))
     blade = curve([(0.0, look.fin), (0.12, look.fin), (0.45, 1.6), (0.8, 1.15), (1.0, look.margin)])

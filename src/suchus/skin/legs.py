@@ -4,7 +4,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from suchus.design import Leg, Robot
+from suchus.design import Robot
+from suchus.design.measures import LegMeasures
 from suchus.skin.mesh import Mesh, curve, ellipsoid, loft, ring, spike
 from suchus.skin.paint import CLAW, SOLE, mixed, shaded, smooth
 
@@ -25,7 +26,7 @@ def left_leg(robot: Robot, girdle: str) -> list[Mesh]:
     return [_limb(robot, leg, front, ahead), *_foot(leg, front, ahead)]
 
 
-def _limb(robot: Robot, leg: Leg, front: bool, ahead: float) -> Mesh:
+def _limb(robot: Robot, leg: LegMeasures, front: bool, ahead: float) -> Mesh:
     r, hip, knee = leg.radius, leg.hip_offset, leg.hip_offset + leg.femur
     end = knee + leg.tibia
     girdle = robot.thorax if front else robot.pelvis
@@ -58,7 +59,7 @@ def _limb(robot: Robot, leg: Leg, front: bool, ahead: float) -> Mesh:
     return mesh.painted(paint)
 
 
-def _foot(leg: Leg, front: bool, ahead: float) -> list[Mesh]:
+def _foot(leg: LegMeasures, front: bool, ahead: float) -> list[Mesh]:
     """Return palm, toes and claws; the sole faces along the shank."""
     r = leg.foot_radius
     sole = leg.hip_offset + leg.femur + leg.tibia + r

@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from suchus.design import Layout, Robot, layout
+from suchus.design import Layout, Robot, crocodile_like, layout
 from suchus.errors import InvalidDesign
 from suchus.rotation import rotate
 from suchus.skin.body import body, shape
@@ -80,7 +80,7 @@ def skin(robot: Robot, look: Look = SKIN) -> Skin:
         robot: any robot; one of the article's tables is a crocodile, any other a plain hide with rods for limbs.
         look: proportions of the animal where the robot has none.
     """
-    parts = _crocodile(robot, look) if robot.tables is not None else _plain(layout(robot))
+    parts = _crocodile(robot, look) if crocodile_like(robot) else _plain(layout(robot))
     hung = [_hung(robot, mesh.vertices, on) for mesh, on in parts]
     whole = joined([mesh for mesh, _ in parts])
     found = Skin(
@@ -120,7 +120,7 @@ def _hung(robot: Robot, vertices: np.ndarray, on: str | int) -> tuple[np.ndarray
         indices, weights = np.full((len(vertices), _HANGS), on, dtype=np.int32), np.zeros((len(vertices), _HANGS))
         weights[:, 0] = 1.0
         return indices, weights
-    return _on_leg(robot, vertices, on) if on and robot.tables is not None else _on_axis(robot, vertices)
+    return _on_leg(robot, vertices, on) if on and crocodile_like(robot) else _on_axis(robot, vertices)
 
 
 def _axial(robot: Robot, look: Look) -> list[Mesh]:

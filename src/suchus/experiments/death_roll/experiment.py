@@ -37,7 +37,7 @@ class DeathRoll(Experiment):
 
     title = "How fast does it roll about its long axis, and with what?"
     shows = "The roll that section I names; beyond the article"
-    needs = ("tables", "article_spine", "cable_tail")
+    needs = ("legs", "shells", "article_spine", "cable_tail")
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that rolls."""

@@ -11,7 +11,7 @@ import xarray as xr
 
 from suchus import rotation
 from suchus.control import Swimming
-from suchus.design import Robot
+from suchus.design import Robot, crocodile_like
 from suchus.design.checks import Checks
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.experiments.floating import cases
@@ -42,7 +42,7 @@ class Floating(Experiment):
 
     title = "Does it float as Archimedes says, and does it right itself?"
     shows = "Beyond the article, whose robot is amphibious and whose body is not said to float"
-    needs = ("tables", "cable_tail")  # as the controller that holds the limbs out
+    needs = ("legs", "shells", "spine", "cable_tail")  # as the controller that holds the limbs out
 
     robot: Robot = field(default_factory=lambda: ROBOTS["floating_caiman"])
     """The robot that floats."""
@@ -151,7 +151,7 @@ class Floating(Experiment):
         return found
 
     def _posture(self, robot: Robot) -> np.ndarray | None:
-        return Swimming(swim=STILL).targets(robot, np.zeros(1))[0] if robot.tables is not None else None
+        return Swimming(swim=STILL).targets(robot, np.zeros(1))[0] if crocodile_like(robot) else None
 
     def _let_go(self, progress: Any) -> xr.Dataset:
         crawl = GAITS["belly_crawl"]

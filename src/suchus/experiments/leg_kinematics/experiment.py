@@ -7,8 +7,9 @@ from typing import Any, ClassVar
 import numpy as np
 import xarray as xr
 
-from suchus.design import LEGS, Leg, Robot, leg_joints, servo_names
+from suchus.design import LEGS, Robot, leg_joints, servo_names
 from suchus.design.checks import Checks
+from suchus.design.measures import LegMeasures
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Simulated, silent
 from suchus.experiments.leg_kinematics import figure as pictures
 from suchus.gaits import GAITS
@@ -31,7 +32,7 @@ class LegKinematics(Experiment):
 
     title = "Does the printed leg kinematics find the joint angles for every point in reach?"
     shows = "Section III.A: Table I, eqs (1) to (14)"
-    needs = ("tables",)
+    needs = ("legs",)
     judged_with = ("robot", "gait", "other_gait")
     judged_from: ClassVar[Mapping[str, float]] = {"points": 10_000, "phases": 100}
 
@@ -135,7 +136,7 @@ class LegKinematics(Experiment):
         return replace(self, points=2000, phases=50, grid=41)
 
 
-def _shell(hind: Leg, count: int, seed: int) -> np.ndarray:
+def _shell(hind: LegMeasures, count: int, seed: int) -> np.ndarray:
     """Return points spread evenly over what the foot can reach, joint limits aside [m]."""
     rng = np.random.default_rng(seed)
     direction = rng.normal(size=(count, 3))
@@ -144,18 +145,18 @@ def _shell(hind: Leg, count: int, seed: int) -> np.ndarray:
     return np.array([hind.hip_offset, 0, 0]) + direction * np.cbrt(rng.uniform(near**3, far**3, (count, 1)))
 
 
-def _misses(hind: Leg, foot: np.ndarray, *, knee: int, side: int) -> np.ndarray:
+def _misses(hind: LegMeasures, foot: np.ndarray, *, knee: int, side: int) -> np.ndarray:
     angles = leg.inverse(hind, foot, knee=knee, side=side)
     return np.asarray(np.linalg.norm(leg.forward(hind, angles) - foot, axis=-1))
 
 
-def _printed_miss(one: Leg, foot: np.ndarray) -> np.ndarray:
+def _printed_miss(one: LegMeasures, foot: np.ndarray) -> np.ndarray:
     """Return how far from each point (14) sets the foot, infinitely far where it has no value [m]."""
     missed = np.linalg.norm(leg.forward(one, printed.leg_inverse(one, foot)) - foot, axis=-1)
     return np.asarray(np.where(np.isfinite(missed), missed, np.inf))
 
 
-def _points(hind: Leg, foot: np.ndarray) -> xr.Dataset:
+def _points(hind: LegMeasures, foot: np.ndarray) -> xr.Dataset:
     """Return what every solution makes of random points: ours on its worst branch, and the printed ones."""
     ours = [_misses(hind, foot, knee=k, side=s) for k, s in BRANCHES]
     off = np.abs(printed.knee_by_wrong_side(hind, foot) - leg.inverse(hind, foot)[:, 2])
@@ -186,7 +187,7 @@ def _exact(record: xr.Dataset, gait: str) -> float:
     return float((record.step_error.sel(of_gait=gait) <= EXACT).mean())
 
 
-def _within_limits(hind: Leg, foot: np.ndarray) -> np.ndarray:
+def _within_limits(hind: LegMeasures, foot: np.ndarray) -> np.ndarray:
     """Return for each branch which points the joints' limits allow, shape (branch, *batch); outside the reach none."""
     allowed = np.zeros((len(BRANCHES), *foot.shape[:-1]), dtype=bool)
     there = leg.reachable(hind, foot)
@@ -197,7 +198,7 @@ def _within_limits(hind: Leg, foot: np.ndarray) -> np.ndarray:
     return allowed
 
 
-def _dexterity(hind: Leg, foot: np.ndarray) -> np.ndarray:
+def _dexterity(hind: LegMeasures, foot: np.ndarray) -> np.ndarray:
     """Return the greatest |det J| over its branches within the limits, 1 at its greatest; NaN outside."""
     best = np.full(foot.shape[:-1], np.nan)
     for allowed, (knee, side) in zip(_within_limits(hind, foot), BRANCHES, strict=True):
@@ -223,7 +224,7 @@ def _axis(values: np.ndarray, dim: str, what: str) -> tuple[str, np.ndarray, dic
     return dim, values, {"units": "m", "long_name": what}
 
 
-def _section(hind: Leg, grid: int) -> xr.Dataset:
+def _section(hind: LegMeasures, grid: int) -> xr.Dataset:
     """Map the upright plane through the hip, across the body."""
     x = np.linspace(hind.hip_offset - 1.05 * hind.reach[1], hind.hip_offset + 1.05 * hind.reach[1], grid)
     z = np.linspace(-1.05 * hind.reach[1], 1.05 * hind.reach[1], grid)
@@ -243,7 +244,7 @@ def _section(hind: Leg, grid: int) -> xr.Dataset:
     )
 
 
-def _top(hind: Leg, grid: int) -> xr.Dataset:
+def _top(hind: LegMeasures, grid: int) -> xr.Dataset:
     """Map the level plane in which the foot of a sprawled leg stands."""
     x = np.linspace(hind.hip_offset - 1.05 * hind.reach[1], hind.hip_offset + 1.05 * hind.reach[1], grid)
     y = np.linspace(-1.05 * hind.reach[1], 1.05 * hind.reach[1], grid)
@@ -260,7 +261,7 @@ def _top(hind: Leg, grid: int) -> xr.Dataset:
     )
 
 
-def _knee_curve(hind: Leg) -> xr.Dataset:
+def _knee_curve(hind: LegMeasures) -> xr.Dataset:
     distance = np.linspace(hind.reach[0], hind.reach[1], 400)
     foot = np.stack(np.broadcast_arrays(hind.hip_offset + distance, 0.0, 0.0), axis=-1)
     angle = {"units": "rad", "long_name": "knee angle"}
@@ -273,7 +274,7 @@ def _knee_curve(hind: Leg) -> xr.Dataset:
     )
 
 
-def _sweep(hind: Leg) -> xr.Dataset:
+def _sweep(hind: LegMeasures) -> xr.Dataset:
     """Turn the second joint with the rest still, and follow the foot."""
     turn = np.linspace(-np.pi / 3, np.pi / 2, 121)
     angles = np.zeros((121, 4))
@@ -291,7 +292,7 @@ def _sweep(hind: Leg) -> xr.Dataset:
     )
 
 
-def _postures(hind: Leg) -> xr.Dataset:
+def _postures(hind: LegMeasures) -> xr.Dataset:
     """Draw the leg sprawled, semi-erect and erect."""
     a0 = hind.hip_offset
     named = {"sprawled": (0, 0, 90), "semi-erect": (0, 35, 70), "erect": (0, 66, 42)}  # [deg]

@@ -8,8 +8,9 @@ from typing import Any, ClassVar
 import numpy as np
 import xarray as xr
 
-from suchus.design import Robot, Spine, spine_joints
+from suchus.design import Robot, spine_joints
 from suchus.design.checks import Checks
+from suchus.design.measures import SpineMeasures
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Simulated, silent
 from suchus.experiments.spine_kinematics import figure as pictures
 from suchus.experiments.spine_kinematics.rules import EXACT
@@ -29,7 +30,7 @@ class SpineKinematics(Experiment):
 
     title = "Is the printed end of the spine where Table II puts it, and can the spine be inverted?"
     shows = "Section III.B: Table II, eq. (15)"
-    needs = ("tables", "article_spine")
+    needs = ("shells", "article_spine")
     judged_with = ("robot",)
     judged_from: ClassVar[Mapping[str, float]] = {"postures": 10_000}
 
@@ -110,7 +111,7 @@ class SpineKinematics(Experiment):
         }
 
 
-def _random(back: Spine, count: int, seed: int) -> np.ndarray:
+def _random(back: SpineMeasures, count: int, seed: int) -> np.ndarray:
     """Return postures spread evenly over the joints' ranges [rad], shape (count, 5)."""
     low, high = np.array([back.yaw_range, back.pitch_range, back.yaw_range, back.pitch_range, back.yaw_range]).T
     return np.random.default_rng(seed).uniform(low, high, (count, 5))
@@ -120,7 +121,7 @@ def _azimuth(T: np.ndarray) -> np.ndarray:
     return np.asarray(np.arctan2(T[..., 1, 0], T[..., 0, 0]))
 
 
-def _facts(back: Spine) -> dict[str, float]:
+def _facts(back: SpineMeasures) -> dict[str, float]:
     """Return lengths of the straight spine [m], the rank of its Jacobian, and counts of its joints."""
     straight = np.zeros(5)
     return {
@@ -133,7 +134,7 @@ def _facts(back: Spine) -> dict[str, float]:
     }
 
 
-def _inverted(back: Spine, angles: np.ndarray) -> xr.Dataset:
+def _inverted(back: SpineMeasures, angles: np.ndarray) -> xr.Dataset:
     """Return how far the inverse misses the postures that it is asked for, on its worse branch."""
     T = spine.forward(back, angles)
     target, azimuth = T[:, :3, 3], _azimuth(T)
@@ -165,7 +166,7 @@ def _density(x: np.ndarray, y: np.ndarray, cell: float) -> tuple[np.ndarray, np.
     return counts / len(x), *((e[:-1] + e[1:]) / 2 for e in edges)
 
 
-def _workspace(back: Spine, angles: np.ndarray, grid: int) -> xr.Dataset:
+def _workspace(back: SpineMeasures, angles: np.ndarray, grid: int) -> xr.Dataset:
     """Map how often joint 5 is where, from above and from the side, and a few postures."""
     x, y, z = spine.forward(back, angles)[:, :3, 3].T
     cell = float(np.ptp(y)) / grid  # [m]
@@ -197,7 +198,7 @@ def _workspace(back: Spine, angles: np.ndarray, grid: int) -> xr.Dataset:
     )
 
 
-def _polyline(back: Spine, angles: np.ndarray, *, head: float = 0.0) -> np.ndarray:
+def _polyline(back: SpineMeasures, angles: np.ndarray, *, head: float = 0.0) -> np.ndarray:
     """Return girdle, joints and, if it has a length, the head's tip [m], shape (*batch, point, 3)."""
     points = [np.zeros((*angles.shape[:-1], 1, 3)), spine.joints(back, angles)]
     if head:
@@ -206,7 +207,7 @@ def _polyline(back: Spine, angles: np.ndarray, *, head: float = 0.0) -> np.ndarr
     return np.concatenate(points, axis=-2)
 
 
-def _errors(back: Spine, count: int, seed: int) -> xr.Dataset:
+def _errors(back: SpineMeasures, count: int, seed: int) -> xr.Dataset:
     """Return how far off (15) is in mildly bent postures, as printed and with its lost term."""
     angles = np.random.default_rng(seed + 1).uniform(-MILD, MILD, (count, 5))
     end, wrong = spine.forward(back, angles)[:, :3, 3], printed.spine_position(back, angles)
@@ -231,7 +232,7 @@ def _errors(back: Spine, count: int, seed: int) -> xr.Dataset:
     )
 
 
-def _turns(back: Spine) -> xr.Dataset:
+def _turns(back: SpineMeasures) -> xr.Dataset:
     """Follow joint 5 while all yaw joints bend alike, ours and as printed."""
     bend = np.linspace(-pi / 2, pi / 2, 121)
     angles = np.zeros((len(bend), 5))

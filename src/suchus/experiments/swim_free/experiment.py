@@ -11,7 +11,7 @@ import xarray as xr
 
 from suchus import rotation
 from suchus.control import Swimming
-from suchus.design import GRAVITY, Robot, cable_joints, with_values
+from suchus.design import GRAVITY, Robot, cable_joints, with_spring, with_values
 from suchus.design.checks import Checks
 from suchus.design.water import Water
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
@@ -51,7 +51,7 @@ class SwimFree(Experiment):
 
     title = "How does it swim in six degrees of freedom, at the surface?"
     shows = "Section IV.B, eq. (20); beyond the article"
-    needs = ("tables", "article_spine", "cable_tail")
+    needs = ("legs", "shells", "article_spine", "cable_tail")
 
     robot: Robot = field(default_factory=lambda: ROBOTS["floating_caiman"])
     """The robot that swims; it must float."""
@@ -161,7 +161,7 @@ class SwimFree(Experiment):
     def _runs(self, motions: Mapping[str, Swim], factors: Mapping[str, tuple[float, float]]) -> list[Run]:
         """Return every run; their labels say what they are."""
         lake, gait = Lake(level=self.level), GAITS["belly_crawl"]
-        stiff = with_values(self.robot, {"tail.joint_stiffness": self.stiffness})
+        stiff = with_spring(self.robot, cable_joints(self.robot), self.stiffness)
         plain = partial(Swimming, limb_pitch=self.limb_pitch)
         runs = [
             Run(robot=robot, gait=gait, lake=lake, control=plain(swim=one), label=name + ending)

@@ -10,7 +10,7 @@ import xarray as xr
 from suchus import rotation
 from suchus.control import DepthHold, HeadingHold, PitchHold, Swimming
 from suchus.control.holding import neutral_breath
-from suchus.design import Robot, with_values
+from suchus.design import Robot, crocodile_like, with_values
 from suchus.design.pieces import chambers, volumes
 from suchus.experiment import Measure
 from suchus.gaits import GAITS
@@ -91,7 +91,7 @@ def kept(record: xr.Dataset, runs: Sequence[Run]) -> xr.Dataset:
 def _hovering(run: Run) -> float:
     """Return the pitch of a robot that hovers in the first posture of its swim, nose down positive [rad]."""
     assert isinstance(run.control, Swimming)
-    assert run.robot.tables is not None
+    assert crocodile_like(run.robot)
     posture = run.control.targets(run.robot, np.zeros(1))[0]
     return -hydrostatics(run.robot, posture, breath=neutral_breath(run.robot), heels=3).trim_submerged
 

@@ -69,7 +69,7 @@ class Swimming(Experiment):
 
     title = "How does it swim?"
     shows = "Section IV.B, eq. (20), Fig. 17"
-    needs = ("tables", "article_spine", "cable_tail")
+    needs = ("legs", "shells", "article_spine", "cable_tail")
     judged_with = ("robot", "reading", "frequency", "reynolds")
     judged_from: ClassVar[Mapping[str, float]] = {
         "cells": 128, "coarse_cells": 80, "cycles": 4, "free_cycles": 8, "arm_cycles": 6,

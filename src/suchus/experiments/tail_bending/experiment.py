@@ -9,7 +9,8 @@ from typing import Any, ClassVar
 import numpy as np
 import xarray as xr
 
-from suchus.design import Robot, Tail, cable_joints, servo_names
+from suchus.design import Robot, cable_joints, servo_names
+from suchus.design.measures import TailMeasures
 from suchus.errors import OutsideLimits
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Simulated, silent, staged
 from suchus.experiments.tail_bending import figure as pictures
@@ -37,7 +38,7 @@ class TailBending(Experiment):
 
     title = "How good are the tail's formulas, from straight to bent by a half turn and in the crawl?"
     shows = "Section III.C: eqs (16) to (19)"
-    needs = ("tables", "cable_tail")
+    needs = ("cable_tail",)
     judged_with = ("robot", "furthest", "gait", "cycles")
     judged_from: ClassVar[Mapping[str, float]] = {"steps": 91}
 
@@ -96,7 +97,8 @@ class TailBending(Experiment):
         """Return the worst error of (17) at the ends of the plausible ranges of gap and cord spacing [-]."""
         ranges = {c.field: (c.low, c.high) for c in ROBOTS.beside("caiman", "chosen", ())}
         cases = product(ranges["tail.gap"], ranges["tail.cord_spacing"])
-        designs = (replace(self.robot.tail, gap=gap, cord_spacing=spacing) for gap, spacing in cases)
+        own = self.robot.tail
+        designs = (own._replace(gap=gap, pitch=own.plate + gap, cord_spacing=spacing) for gap, spacing in cases)
         worst = [_errors(one, min(furthest, tail.bend_limit(one))).error_at_end.max() for one in designs]
         return float(max(worst))
 
@@ -155,7 +157,7 @@ class TailBending(Experiment):
         }
 
 
-def _cords(plates: Tail, bend: np.ndarray) -> xr.Dataset:
+def _cords(plates: TailMeasures, bend: np.ndarray) -> xr.Dataset:
     """Return cords, their errors and the servo over the bend; the straight tail has no relative error."""
     toward, away = tail.cable_changes(plates, bend)
     kept_toward, kept_away = (plates.joints * c for c in printed.cable_changes_shortened(plates, bend))
@@ -182,7 +184,7 @@ def _cords(plates: Tail, bend: np.ndarray) -> xr.Dataset:
     )
 
 
-def _reached(plates: Tail, pulled: np.ndarray) -> np.ndarray:
+def _reached(plates: TailMeasures, pulled: np.ndarray) -> np.ndarray:
     """Return the bend at which the cord towards it is shorter by ``pulled`` [rad]: (16), solved for theta."""
     far = np.hypot(plates.cord_spacing, plates.gap)
     tilt = np.arctan2(plates.gap, plates.cord_spacing)
@@ -190,7 +192,7 @@ def _reached(plates: Tail, pulled: np.ndarray) -> np.ndarray:
     return np.asarray(2 * plates.joints * half)
 
 
-def _shapes(plates: Tail, furthest: float) -> xr.Dataset:
+def _shapes(plates: TailMeasures, furthest: float) -> xr.Dataset:
     bend = np.array([b for b in SHAPES if b <= furthest + 1e-9])
     place = {"units": "m"}
     return xr.Dataset(
@@ -207,7 +209,7 @@ def _shapes(plates: Tail, furthest: float) -> xr.Dataset:
     )
 
 
-def _errors(plates: Tail, furthest: float) -> xr.Dataset:
+def _errors(plates: TailMeasures, furthest: float) -> xr.Dataset:
     """Return cords and errors of (17) at a few bends, and the greater error at the greatest bend."""
     degrees = [d for d in (30, 90, 180) if np.radians(d) <= furthest + 1e-9]
     bend = np.append(np.radians(degrees), furthest)

@@ -1,0 +1,105 @@
+"""Every example of the how-to pages, put where the page says, goes through the whole battery of its shelf.
+
+In a project, in the package itself, and in a package with entry points; nothing else is added or changed.
+"""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from pages.blocks import blocks
+from suchus.sources import SHELVES
+
+ROOT = Path(__file__).parents[2]
+PAGES = ("own_robot", "own_gait", "own_fault", "own_experiment", "own_controller", "extending")
+BATTERIES = {
+    "robots": "tests/shelves/test_robots.py",
+    "gaits": "tests/shelves/test_gaits.py",
+    "faults": "tests/faults/test_shelf.py",
+    "experiments": "tests/shelves/test_experiments.py",
+    "controllers": "tests/shelves/test_controllers.py",
+    "measures": "tests/shelves/test_measures.py",
+}
+KINDS = {"robots": "robot", "gaits": "gait", "experiments": "experiment"}
+LEAST = {"robots": 8, "gaits": 4, "faults": 8, "experiments": 8, "controllers": 3, "measures": 4}
+"""Tests of a battery that name an entry, at least."""
+
+
+def examples():
+    """Return the modules that the pages put on shelves: shelf, name, text."""
+    for page in PAGES:
+        for block in blocks((ROOT / "docs" / f"{page}.md").read_text()):
+            shelf, _, file = block.title.partition("/")
+            if shelf in SHELVES and file.endswith(".py"):
+                yield shelf, file.removesuffix(".py"), block.text
+
+
+EXAMPLES = list(examples())
+NAMED = pytest.mark.parametrize(("shelf", "name", "text"), EXAMPLES, ids=[name for _, name, _ in EXAMPLES])
+
+
+def test_each_shelf_has_an_example_on_its_page():
+    assert {shelf for shelf, _, _ in EXAMPLES} == set(BATTERIES)
+
+
+def tried(shelf, name, folder, paths=(), **surroundings):
+    """Run the battery of a shelf over one name, in a process of its own, and return how many tests passed."""
+    command = [sys.executable, "-m", "pytest", "-n0", "-p", "no:cacheprovider", "--basetemp", str(folder / "t")]
+    plain = {key: value for key, value in os.environ.items() if not key.startswith("PYTEST_")}
+    path = os.pathsep.join([*map(str, paths), plain.get("PYTHONPATH", str(ROOT / "src"))])
+    done = subprocess.run(
+        [*command, "-m", "not validate", BATTERIES[shelf], "-k", f"[{name}] or [{name}-"],
+        cwd=ROOT, env={**plain, "PYTHONPATH": path, **surroundings}, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-500:]
+    return int(done.stdout.rpartition(" passed")[0].split()[-1])
+
+
+@NAMED
+def test_in_a_project(shelf, name, text, tmp_path):
+    lab = tmp_path / "lab"
+    (lab / shelf).mkdir(parents=True)
+    (lab / "suchus.toml").write_text("")
+    (lab / shelf / f"{name}.py").write_text(text)
+    passed = tried(shelf, name, tmp_path, SUCHUS_PROJECT=str(lab))
+    assert passed >= LEAST[shelf]
+
+
+@pytest.mark.slow("six batteries in a copy of the package")
+@NAMED
+def test_in_the_package(shelf, name, text, tmp_path):
+    copy = tmp_path / "src/suchus"
+    for file in (ROOT / "src/suchus").rglob("*"):
+        if file.is_file() and "__pycache__" not in file.parts:
+            there = copy / file.relative_to(ROOT / "src/suchus")
+            there.parent.mkdir(parents=True, exist_ok=True)
+            there.symlink_to(file)
+    package = copy / Path(*SHELVES[shelf].split(".")[1:])
+    (package / f"{name}.py").write_text(text)
+    passed = tried(shelf, name, tmp_path, [tmp_path / "src"], SUCHUS_GOLDEN=str(tmp_path / "golden"))
+    assert passed >= LEAST[shelf]
+
+
+@pytest.mark.slow("six batteries with an installed package")
+@NAMED
+def test_in_a_package_with_entry_points(shelf, name, text, tmp_path):
+    site = tmp_path / "site"
+    (site / "my_lab-1.0.dist-info").mkdir(parents=True)
+    (site / "my_lab").mkdir()
+    (site / "my_lab/__init__.py").write_text("")
+    (site / "my_lab" / f"{name}.py").write_text(text)
+    (site / "my_lab-1.0.dist-info/METADATA").write_text("Metadata-Version: 2.1\nName: my-lab\nVersion: 1.0\n")
+    (site / "my_lab-1.0.dist-info/entry_points.txt").write_text(
+        f"[suchus.{shelf}]\n{name} = my_lab.{name}:{_object(shelf, name, text)}\n"
+    )
+    passed = tried(shelf, name, tmp_path, [site], SUCHUS_GOLDEN=str(tmp_path / "golden"))
+    assert passed >= LEAST[shelf]
+
+
+def _object(shelf, name, text):
+    """Return the name in the module of what an entry point names."""
+    declared = [line.split(" = ")[1] for line in text.splitlines() if line.startswith(f"{shelf[:-1]} = ")]
+    return declared[0] if declared[0].isidentifier() else KINDS.get(shelf, name)
