@@ -1,7 +1,8 @@
 """Robots and gaits as TOML files that people write, and every mistake in them named at once."""
 
+from suchus.blueprint.gaits import read_gait
 from suchus.blueprint.mistakes import MistakenFile
 from suchus.blueprint.read import described, described_robot, read
 from suchus.blueprint.write import render, write
 
-__all__ = ["MistakenFile", "described", "described_robot", "read", "render", "write"]
+__all__ = ["MistakenFile", "described", "described_robot", "read", "read_gait", "render", "write"]

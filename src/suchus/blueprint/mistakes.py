@@ -1,9 +1,10 @@
 """From what a validator complains of to sentences that a person can act on."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from difflib import get_close_matches
 from itertools import islice
+from types import UnionType
 from typing import Any, get_args
 
 from suchus.design.checks import InvalidFields
@@ -52,17 +53,62 @@ def dotted(place: Place) -> str:
     return "".join(parts).lstrip(".")
 
 
-def explain(error: Mapping[str, Any], kind: type) -> dict[Place, str]:
-    """Return what one of pydantic's errors says, by place; a part can complain of several fields at once."""
-    place: Place = tuple(error["loc"])
+def explain(error: Mapping[str, Any], kind: type, data: Any) -> dict[Place, str]:
+    """Return what one of pydantic's errors says, by place; a part can complain of several fields at once.
+
+    Where a part may be of several kinds, pydantic complains of each; what counts is the kind whose keys the part names.
+
+    Args:
+        error: as pydantic tells it.
+        kind: of the whole.
+        data: what was validated.
+    """
+    meant = _meant(tuple(error["loc"]), kind, data)
+    if meant is None:
+        return {}
+    place, owner = meant
     cause = error.get("ctx", {}).get("error")
     if isinstance(cause, InvalidFields):
         return {(*place, *_keys(c.field)): c.text for c in cause.complaints}
     if error["type"] == "missing":
         return {place: "is missing"}
     if error["type"] == "unexpected_keyword_argument":
-        return {place: _unknown(place, kind)}
+        return {place: _unknown(place, owner, kind)}
     return {place: f"is {_show(error['input'])}; {_needed(error, cause)}"}
+
+
+def _meant(loc: Place, kind: Any, data: Any) -> tuple[Place, Any] | None:
+    """Return the place of an error and the kind of the part that it stands in; None for a kind that was not meant."""
+    place: list[str | int] = []
+    owner = kind
+    for key in loc:
+        kinds = [one for one in get_args(kind) if is_dataclass(one)] if isinstance(kind, UnionType) else []
+        if len(kinds) > 1 and key in [one.__name__ for one in kinds]:  # type: ignore[union-attr]
+            kind = closest(data, kinds)
+            if kind.__name__ != key:
+                return None
+            continue
+        place.append(key)
+        kind = kinds[0] if len(kinds) == 1 else kind
+        owner, kind = kind, _kind_at(kind, key)
+        try:
+            data = data[key]
+        except (KeyError, IndexError, TypeError):
+            data = None
+    return tuple(place), owner
+
+
+def closest(data: Any, kinds: Sequence[Any]) -> Any:
+    """Return the kind of which a table names most fields; the first of those alike."""
+    keys = set(data) if isinstance(data, Mapping) else set()
+    return max(kinds, key=lambda kind: len(keys & {field.name for field in fields(kind) if field.init}))
+
+
+def _kind_at(kind: Any, key: str | int) -> Any:
+    """Return the kind of a field, or of an element of a list."""
+    if isinstance(key, int):
+        return next(iter(get_args(kind)), None)
+    return next((f.type for f in fields(kind) if f.name == key), None) if is_dataclass(kind) else None
 
 
 def _keys(field: str) -> Place:
@@ -82,8 +128,8 @@ def _needed(error: Mapping[str, Any], cause: Exception | None) -> str:
     return _NEEDED.get(error["type"], "something else is needed")
 
 
-def _unknown(place: Place, kind: type) -> str:
-    known = _fields_at(place[:-1], kind)
+def _unknown(place: Place, owner: Any, kind: type) -> str:
+    known = [f.name for f in fields(owner) if f.init] if is_dataclass(owner) else []
     homes = list(islice(_homes(str(place[-1]), kind), _HOMES + 1))
     if 0 < len(homes) <= _HOMES:
         return f"is not known there; it stands at {' and '.join(homes)}: move it"
@@ -101,15 +147,6 @@ def _homes(name: str, kind: Any, place: str = "") -> Iterator[str]:
         if field.name == name:
             yield f"{place}{name}"
         yield from _homes(name, field.type, f"{place}{field.name}.")
-
-
-def _fields_at(place: Place, kind: Any) -> list[str]:
-    for key in place:
-        if isinstance(key, int):
-            kind = next(iter(get_args(kind)), None)
-        else:
-            kind = next((f.type for f in fields(kind) if f.name == key), None) if is_dataclass(kind) else None
-    return [f.name for f in fields(kind) if f.init] if is_dataclass(kind) else []
 
 
 def _show(value: Any) -> str:

@@ -13,7 +13,7 @@ from typing import Any, TypeVar, get_args, overload
 
 from pydantic import TypeAdapter, ValidationError
 
-from suchus.blueprint.mistakes import MistakenFile, Place, explain
+from suchus.blueprint.mistakes import MistakenFile, Place, closest, explain
 from suchus.design import Robot, Tables, crocodile
 from suchus.errors import UnreadableFile
 from suchus.record import read_toml
@@ -53,10 +53,10 @@ def read(path: str | Path, kind: Any, shelf: Mapping[str, Any]) -> Any:
     described: tuple[Any, ...] = (*kinds, Tables) if Robot in kinds else kinds
     if base is not None and known:
         model = shelf[base]
-        if isinstance(model, Robot) and model.tables is not None and _meant(data, (Tables, Robot)) is Tables:
+        if isinstance(model, Robot) and model.tables is not None and closest(data, (Tables, Robot)) is Tables:
             model = model.tables
     else:
-        meant = _meant(data, described)
+        meant = closest(data, described)
         things = (getattr(thing, "tables", None) if meant is Tables else thing for thing in shelf.values())
         model = next(thing for thing in things if isinstance(thing, meant))
     if not isinstance(model, described):
@@ -64,13 +64,13 @@ def read(path: str | Path, kind: Any, shelf: Mapping[str, Any]) -> Any:
             f"{path.name} starts from {base!r}, which is a {type(model).__name__}; a "
             f"{' or '.join(one.__name__ for one in kinds)} is needed here."
         )
-    spare = _plain({name: value for name, value in asdict(model).items() if name in _said(model)})
+    spare = plain({name: value for name, value in asdict(model).items() if name in _said(model)})
     mistakes: dict[Place, str] = {}
     if not known:
         mistakes["base",] = f"is {base!r}; there is {', '.join(shelf)}"
     if base is not None:
-        data = _merge({**spare, "name": path.stem}, data)
-    value = _validated({"name": path.stem, **data}, type(model), spare, path.name, mistakes)
+        data = merged({**spare, "name": path.stem}, data)
+    value = validated({"name": path.stem, **data}, type(model), spare, path.name, mistakes)
     return crocodile(value) if isinstance(value, Tables) else value
 
 
@@ -85,7 +85,7 @@ def described_robot(values: Mapping[str, Any]) -> Robot:
         InvalidDesign: they describe an impossible one.
     """
     values = values.get("tables") or values
-    if _meant(values, (Robot, Tables)) is Tables:
+    if closest(values, (Robot, Tables)) is Tables:
         return crocodile(TypeAdapter(Tables).validate_python(values))
     return TypeAdapter(Robot).validate_python(values)
 
@@ -101,12 +101,7 @@ def described(data: Mapping[str, Any], kind: type[T], about: str) -> T:
     Raises:
         MistakenFile: values are missing, unknown, of the wrong kind or impossible; it names all of them.
     """
-    return _validated(dict(data), kind, {}, about, {})
-
-
-def _meant(data: Mapping[str, Any], kinds: tuple[Any, ...]) -> Any:
-    """Return the kind whose fields the top of a file names best; the first of those alike."""
-    return max(kinds, key=lambda kind: len(set(data) & _said(kind)))
+    return validated(dict(data), kind, {}, about, {})
 
 
 def _said(model: Any) -> set[str]:
@@ -114,17 +109,28 @@ def _said(model: Any) -> set[str]:
     return {field.name for field in fields(model) if field.init}
 
 
-def _plain(value: Any) -> Any:
+def plain(value: Any) -> Any:
     """Return a value without the tables and fields that are None, which TOML does not have."""
     if isinstance(value, dict):
-        return {key: _plain(item) for key, item in value.items() if item is not None}
-    return tuple(_plain(item) for item in value) if isinstance(value, (list, tuple)) else value
+        return {key: plain(item) for key, item in value.items() if item is not None}
+    return tuple(plain(item) for item in value) if isinstance(value, (list, tuple)) else value
 
 
-def _validated(
+def validated(
     data: dict[str, Any], kind: type[T], spare: Mapping[str, Any], name: str, mistakes: dict[Place, str]
 ) -> T:
-    """Validate, mend what is wrong with spare values and look again, until nothing new is found."""
+    """Return the value that a table describes; where it does not, mend it with spare values until nothing new is found.
+
+    Args:
+        data: the table; what is wrong with it is mended in place.
+        kind: of the value.
+        spare: values that are right, to look on with.
+        name: of the file.
+        mistakes: those that are known already, by place.
+
+    Raises:
+        MistakenFile: it describes none; all mistakes are named.
+    """
     adapter = TypeAdapter(kind)
     mended: set[Place] = set()
     while True:
@@ -133,7 +139,7 @@ def _validated(
         except ValidationError as error:
             found: dict[Place, str] = {}
             for one in error.errors(include_url=False):
-                found |= explain(one, kind)
+                found |= explain(one, kind, data)
         else:
             break
         fresh = {p: text for p, text in found.items() if _whole(p) not in mended and not _follows(p, mended)}
@@ -173,9 +179,10 @@ def _mend(data: Any, place: Place, spare: Any) -> bool:
     return True
 
 
-def _merge(base: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:
-    merged = dict(deepcopy(base))
+def merged(base: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a table with what another one says in the place of its own."""
+    whole = dict(deepcopy(base))
     for key, value in over.items():
-        there = merged.get(key)
-        merged[key] = _merge(there, value) if isinstance(there, dict) and isinstance(value, dict) else value
-    return merged
+        there = whole.get(key)
+        whole[key] = merged(there, value) if isinstance(there, dict) and isinstance(value, dict) else value
+    return whole

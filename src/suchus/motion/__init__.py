@@ -1,7 +1,7 @@
 """From phase to posture: one gait for every body, what it asks of servos, and courses of postures."""
 
 from suchus.motion.draft import draft_gait
-from suchus.motion.forms import AxialWave, GaitByAngles, GaitByPlaces, GaitInMetres, limb_reaches
+from suchus.motion.forms import AxialWave, GaitByPlaces, GaitInMetres, form_of, in_metres, limb_reaches
 from suchus.motion.gait import NUMBERS, Bend, Curve, FootPath, Gait, Held, Sweep
 from suchus.motion.limits import (
     as_table,
@@ -44,7 +44,6 @@ __all__ = [
     "Curve",
     "FootPath",
     "Gait",
-    "GaitByAngles",
     "GaitByPlaces",
     "GaitInMetres",
     "Held",
@@ -65,7 +64,9 @@ __all__ = [
     "cycle_targets",
     "draft_gait",
     "excess",
+    "form_of",
     "hip_height",
+    "in_metres",
     "intended",
     "limb_reaches",
     "limb_movement",

@@ -1,11 +1,11 @@
-"""Other ways to write a gait down: in metres for the article's robot, by places along the body, as a table of angles.
+"""Other ways to write a gait down: in metres for the article's robot, and by places along the body.
 
 Files hold them, and the shelf's crawls are written in the first; each becomes a ``Gait`` for a robot, and nothing that
 simulates, draws or measures knows them.
 """
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
 from itertools import pairwise
 from math import pi
 from typing import Any, Literal, Self
@@ -15,14 +15,15 @@ import numpy as np
 from suchus.design import LEGS, Robot, layout
 from suchus.design.checks import Checks
 from suchus.errors import OutsideLimits
-from suchus.motion.gait import Bend, Curve, FootPath, Gait, Held, Limbs, Sweep
-from suchus.motion.limits import servo_parts
-from suchus.motion.movement import yaw_hinges
+from suchus.motion.gait import Bend, FootPath, Gait, Held, Limbs, Sweep
+from suchus.motion.movement import Waves, yaw_hinges
 
 DIAGONAL = (0.0, 0.5, 0.5, 0.0)
 """Phases at which LF, RF, LH and RH pull on the trunk in the article's law [cycle]."""
 _ERECT = (-pi / 2, pi / 2)  # [rad]; the elbow behind, the knee ahead
 _METRES = 12  # digits of a metre that a share of the reach gives back
+_MOST_WAVES = 10.0  # along the body [-]
+_NOTHING, _NEAR = 1e-12, 1e-6  # [rad], below which a hinge does not bend; [cycle] or [rad], by which a wave may be off
 _ALLOWED = {
     "period": (1e-3, 3600.0, "s"),
     "duty_factor": (0.05, 0.95, ""),
@@ -127,32 +128,31 @@ class GaitInMetres:
         )
 
     @classmethod
-    def of(cls, gait: Gait, reaches: Sequence[float]) -> Self:
-        """Return the numbers of a gait in metres, for limbs of these lengths [m].
+    def near(cls, gait: Gait, reaches: Sequence[float]) -> Self:
+        """Return the numbers of a gait in metres, of its first limbs and knots where it has more to say.
+
+        Args:
+            gait: of foot paths for two girdles.
+            reaches: lengths of the front and of the hind limbs [m].
 
         Raises:
-            OutsideLimits: the gait says something that cannot be said so.
+            OutsideLimits: it has other limbs.
         """
         front, hind = reaches
         paths = [limb for limb in gait.limbs if isinstance(limb, FootPath)]
-        lifts = {round(path.lift * reach, _METRES) for path, reach in zip(paths, reaches, strict=False)}
-        strokes = {round(path.stroke * reach, _METRES) for path, reach in zip(paths, reaches, strict=False)}
-        bends = {(bend.part, bend.turn): bend for bend in gait.axis}
-        trunk, tail = bends.get(("trunk", "yaw"), Bend(part="trunk")), bends.get(("tail", "yaw"), Bend(part="tail"))
-        pitch = bends.pop(("tail", "pitch"), Bend(part="tail", turn="pitch"))
-        plain = all(len(bend.amplitude) == len(bend.lag) == 1 for bend in (trunk, tail)) and not any(pitch.amplitude)
-        if len(paths) != 2 or len(lifts) != 1 or len(strokes) != 1 or not plain or gait.curves or len(gait.axis) > 3:
+        if len(paths) != 2 or len(gait.limbs) != 2:
             raise OutsideLimits(
-                f"gait {gait.name!r} cannot be given in metres of stroke, lift and reach, as it moves other limbs or "
-                "bends its axis otherwise: write limbs and axis instead."
+                f"gait {gait.name!r} has no foot paths of two pairs of limbs, which alone can be given in metres: write "
+                "limbs and axis instead."
             )
+        trunk, tail = (_first(gait, part, "yaw") for part in ("trunk", "tail"))
         return cls(
             name=gait.name,
             period=gait.period,
             duty_factor=gait.duty_factor,
             limb_phases=gait.limb_phases,  # type: ignore[arg-type]
-            stroke=strokes.pop(),
-            lift=lifts.pop(),
+            stroke=round(paths[0].stroke * front, _METRES),
+            lift=round(paths[0].lift * front, _METRES),
             front_reach=round(paths[0].outward * front, _METRES),
             hind_reach=round(paths[1].outward * hind, _METRES),
             front_ahead=round(paths[0].ahead * front, _METRES),
@@ -160,11 +160,62 @@ class GaitInMetres:
             legs="erect" if abs(paths[0].swivel) > pi / 4 else "sprawled",
             hip_height=round(gait.height * hind, _METRES),
             trunk_bend=trunk.amplitude[0],
-            spine_phase=trunk.lag[0],
+            spine_phase=_wrapped(trunk.lag[0]),
             tail_bend=tail.amplitude[0],
-            tail_phase=tail.lag[0] - trunk.lag[0] - 0.5,
-            tail_pitch=pitch.offset,
+            tail_phase=_wrapped(tail.lag[0] - trunk.lag[0] - 0.5),
+            tail_pitch=_first(gait, "tail", "pitch").offset,
         )
+
+    def onto(self, base: Gait, named: Collection[str], reaches: Sequence[float]) -> Gait:
+        """Return a gait of which some numbers are these, and the rest is another gait's.
+
+        Args:
+            base: gait of foot paths for two girdles.
+            named: fields to take from here.
+            reaches: lengths of the front and of the hind limbs [m].
+        """
+        mine = self.gait(reaches)
+        fields: dict[str, Any] = {name: getattr(mine, name) for name in ("period", "duty_factor") if name in named}
+        if "limb_phases" in named:
+            fields |= {"limb_phases": mine.limb_phases, "coupling": mine.coupling}
+        if "hip_height" in named:
+            fields["height"] = mine.height
+        limbs = []
+        for girdle, theirs, ours in zip(("front", "hind"), base.limbs, mine.limbs, strict=True):
+            sources = {"stroke": "stroke", "lift": "lift", "outward": f"{girdle}_reach", "ahead": f"{girdle}_ahead"}
+            sources["swivel"] = "legs"
+            taken = {name: getattr(ours, name) for name, source in sources.items() if source in named}
+            limbs.append(replace(theirs, **taken))  # type: ignore[type-var]
+        axis = {(bend.part, bend.turn): bend for bend in base.axis}
+        for bend in mine.axis:
+            there = axis.get((bend.part, bend.turn), Bend(part=bend.part, turn=bend.turn))
+            if bend.turn == "pitch":
+                changed = replace(there, offset=bend.offset) if "tail_pitch" in named else there
+            else:
+                changed = replace(there, amplitude=bend.amplitude) if f"{bend.part}_bend" in named else there
+                later = {"spine_phase"} if bend.part == "trunk" else {"spine_phase", "tail_phase"}
+                changed = replace(changed, lag=bend.lag) if later & set(named) else changed
+            if changed != Bend(part=bend.part, turn=bend.turn) or (bend.part, bend.turn) in axis:
+                axis[bend.part, bend.turn] = changed
+        return replace(base, name=self.name, limbs=tuple(limbs), axis=tuple(axis.values()), **fields)
+
+
+def in_metres(gait: Gait) -> bool:
+    """Return whether a gait moves and bends what a gait in metres does, and nothing else."""
+    bends = [(bend.part, bend.turn) for bend in gait.axis]
+    paths = len(gait.limbs) == 2 and all(isinstance(limb, FootPath) for limb in gait.limbs)
+    return paths and not gait.curves and bends == [("trunk", "yaw"), ("tail", "yaw"), ("tail", "pitch")]
+
+
+def _first(gait: Gait, part: str, turn: str) -> Bend:
+    """Return the first bend of a part, or none at all."""
+    still = Bend(part=part, turn=turn)  # type: ignore[arg-type]
+    return next((bend for bend in gait.axis if (bend.part, bend.turn) == (part, turn)), still)
+
+
+def _wrapped(lag: float) -> float:
+    """Return a lag of -1 to 1, the same in the cycle [cycle]."""
+    return lag - round(lag) if abs(lag) > 1.0 else lag
 
 
 def _opposite(phases: Sequence[float]) -> bool:
@@ -191,7 +242,7 @@ class AxialWave:
 
     def __post_init__(self) -> None:
         with Checks("wave", self) as check:
-            check.number("waves", -10.0, 10.0, "")
+            check.number("waves", -_MOST_WAVES, _MOST_WAVES, "")
             check.number("phase", -1.0, 1.0, "cycle")
             check.number("offset", -pi, pi, "rad")
             knots = self.amplitude
@@ -228,6 +279,43 @@ class AxialWave:
                 )
             )
         return tuple(found)
+
+
+    @classmethod
+    def of(cls, gait: Gait, robot: Robot) -> Self:
+        """Return the wave by which a gait bends the axis of a robot.
+
+        Raises:
+            OutsideLimits: its hinges bend as no such wave does.
+        """
+        hinges = yaw_hinges(robot)
+        asked, places = Waves(hinges, "yaw", [gait]), np.array(hinges.places)
+        swings, offsets = asked.swing[0] / asked.share[0], asked.offset[0] / asked.share[0]
+        bent = np.abs(swings) > _NOTHING
+        lags = np.where(bent, np.mod(-np.angle(-swings) / (2 * pi), 1.0), 0.0)
+        waves = _slope(places[bent], lags[bent])
+        steady = float(offsets[0]) if len(offsets) else 0.0
+        if waves is None or np.any(np.abs(offsets - steady) > _NEAR):
+            raise OutsideLimits(
+                f"gait {gait.name!r} bends robot {robot.name!r} as no wave of one phase does: give the whole wave, "
+                "amplitude, waves and phase."
+            )
+        late = float((lags - waves * places)[bent][0]) if bent.any() else 0.0
+        signed = np.abs(swings) * np.where(np.cos(2 * pi * (lags - waves * places - late)) < 0.0, -1.0, 1.0)
+        knots = tuple((float(place), float(angle)) for place, angle in zip(places, signed, strict=True))
+        return cls(amplitude=knots or ((0.0, 0.0),), waves=waves, phase=late - round(late), offset=steady)
+
+
+def _slope(places: np.ndarray, lags: np.ndarray) -> float | None:
+    """Return how much the lag grows along the body, apart from half cycles, by the slowest such growth [cycle]."""
+    if len(places) < 2:
+        return 0.0
+    first = np.subtract(lags[1] - lags[0], np.arange(-2, 3) / 2) / (places[1] - places[0])
+    for slope in sorted(first, key=abs):
+        halves = 2 * (lags - lags[0] - slope * (places - places[0]))
+        if abs(slope) <= _MOST_WAVES and np.all(np.abs(halves - np.round(halves)) < _NEAR):
+            return float(slope)
+    return None
 
 
 def _plain(row: list[float]) -> tuple[float, ...]:
@@ -296,52 +384,33 @@ class GaitByPlaces:
         )
 
 
+    @classmethod
+    def of(cls, gait: Gait, wave: AxialWave) -> Self:
+        """Return a gait in this form, with a wave in the place of its bends."""
+        return cls(
+            name=gait.name,
+            period=gait.period,
+            duty_factor=gait.duty_factor,
+            limb_phases=gait.limb_phases,
+            girdles=tuple(
+                FootPathByPlane(
+                    stroke=limb.stroke, lift=limb.lift, outward=limb.outward, ahead=limb.ahead, plane=limb.swivel
+                )
+                if isinstance(limb, FootPath)
+                else limb
+                for limb in gait.limbs
+            ),
+            height=gait.height,
+            wave=wave,
+        )
+
+
 def _check_girdles(robot: Robot, name: str, count: int) -> None:
     girdles = layout(robot).robot.girdles
     if len(girdles) != count:
         raise OutsideLimits(
             f"gait {name!r} is for {count} pairs of limbs; robot {robot.name!r} has {len(girdles)}: choose a gait made "
             "for it."
-        )
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class AnglesOfServo:
-    """The angle of one servo over one cycle."""
-
-    servo: str
-    """Name of the servo, as ``suchus.design.layout(robot).servos`` has it."""
-    angles: tuple[float, ...]
-    """Angles at equal steps of the cycle; after the last one the first follows again [rad]."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class GaitByAngles:
-    """A gait given by servo angles alone, as they were measured on an animal; servos without a curve stay at 0."""
-
-    name: str
-    """Name, as messages, tables and files show it."""
-    period: float
-    """Period of one cycle [s]."""
-    duty_factor: float
-    """Share of the cycle in which a foot stands [-]; it moves nothing, measures and diagrams read it."""
-    limb_phases: tuple[float, ...]
-    """Phase of each limb when the movement begins, 0 where its swing begins [cycle]."""
-    curves: tuple[AnglesOfServo, ...]
-    """One for every servo that moves."""
-
-    def gait(self, robot: Robot) -> Gait:
-        """Return the gait for a robot, whose servos say which part of the body each curve moves."""
-        parts = servo_parts(robot)
-        return Gait(
-            name=self.name,
-            period=self.period,
-            duty_factor=self.duty_factor,
-            limb_phases=self.limb_phases,
-            curves=tuple(
-                Curve(servo=curve.servo, part=parts.get(curve.servo, "trunk"), angles=curve.angles)  # type: ignore[arg-type]
-                for curve in self.curves
-            ),
         )
 
 
@@ -360,11 +429,9 @@ def limb_reaches(robot: Robot) -> tuple[float, float]:
     return girdles[0].limb.reach, girdles[1].limb.reach
 
 
-def form_of(data: Mapping[str, Any]) -> type[GaitInMetres | GaitByPlaces | GaitByAngles] | None:
+def form_of(data: Mapping[str, Any]) -> type[GaitInMetres | GaitByPlaces] | None:
     """Return the form whose own fields the top of a file names; None if it is that of a ``Gait``."""
     for form in (GaitInMetres, GaitByPlaces):
         if ({field.name for field in fields(form)} - {field.name for field in fields(Gait)}) & set(data):
             return form
-    curves = data.get("curves")
-    plain = isinstance(curves, Sequence) and not any(isinstance(c, Mapping) and "part" in c for c in curves)
-    return GaitByAngles if plain and not {"limbs", "axis", "base"} & set(data) else None
+    return None
