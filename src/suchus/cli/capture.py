@@ -11,7 +11,6 @@ import tyro
 from suchus import blueprint
 from suchus.capture import (
     NEEDED,
-    Captured,
     ReadingOptions,
     Walk,
     driven_share,
@@ -20,20 +19,18 @@ from suchus.capture import (
     read_angles,
     read_tracks,
     summary,
-    to_angle_table,
+    to_curves,
     to_gait,
-    to_pattern,
     write_gait,
 )
 from suchus.cli.commands import BadCommand
 from suchus.cli.options import parse
 from suchus.cli.terminal import working
 from suchus.design import Robot, check_needs
-from suchus.errors import OutsideLimits
 from suchus.figures import captioned, save
 from suchus.figures.gait_diagram import GaitTrack, gait_diagram
 from suchus.gaits import own_gait
-from suchus.motion import AnyGait, Gait, Pattern, check_limits
+from suchus.motion import Gait, check_limits
 from suchus.record import check_writable
 from suchus.robots import ROBOTS
 
@@ -50,14 +47,16 @@ class CaptureOptions:
     """The gait file; its diagram is saved beside it."""
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot for which the gait is made."""
-    base: AnyGait | None = None
+    base: Gait | None = None
     """Gait from which the numbers are taken that cannot be seen; by default the robot's own."""
     period: float = 1.0
     """Duration of the cycle in a table of joint angles [s]; keypoints need none."""
     duty: Literal["retraction", "contact"] = "retraction"
     """Duty factor as the fraction of the cycle in which feet move back along the body, or rest on the ground."""
+    girdles: Literal["alike", "apart"] = "alike"
+    """Stroke and lift as the mean of all feet, or of the front feet and of the hind feet."""
     tail_share: float | None = None
-    """Place along the tail up to which its bend is measured, 1 at the tip; by default the end of the cable."""
+    """Place along the tail up to which its bend is measured, 1 at the tip; by default the end of what is driven."""
     names: tuple[str, ...] = ()
     """Keypoints that have other names in the file, as THEIRS=OURS."""
     fps: float | None = None
@@ -99,10 +98,11 @@ def capture(words: Sequence[str]) -> int:
         move("reading", 0.1)
         tracks = read_tracks(options.tracks, _how(options)).between(options.start, options.end)
         move("looking for the cycle", 0.3)
-        driven = driven_share(robot) if robot.tables is not None else 1.0
-        walk = observe(tracks, tail_share=driven if options.tail_share is None else options.tail_share)
+        share = driven_share(robot) if options.tail_share is None else options.tail_share
+        walk = observe(tracks, tail_share=share)
         move("writing", 0.8)
-        captured = _retargeted(walk, options, base)
+        name = options.out.stem
+        captured = to_gait(walk, robot, base, name=name, duty=options.duty, girdles=options.girdles)
         write_gait(captured, walk, options.out)
         picture = _draw(walk, options.out)
     who = "" if robot.name == _SHELF else f"--robot {robot.name} "
@@ -111,21 +111,10 @@ def capture(words: Sequence[str]) -> int:
     return 0
 
 
-def _retargeted(walk: Walk, options: CaptureOptions, base: AnyGait) -> Captured:
-    """Return the gait of the kind that lends what was not seen."""
-    if isinstance(base, Gait):
-        return to_gait(walk, options.robot, base, name=options.out.stem, duty=options.duty)
-    if isinstance(base, Pattern):
-        return to_pattern(walk, options.robot, base, name=options.out.stem, duty=options.duty)
-    raise OutsideLimits(
-        f"gait {base.name!r} is a table of angles, which lends nothing to a captured walk: name another --base."
-    )
-
-
 def _play(options: CaptureOptions) -> int:
     """Write the gait that plays a table of joint angles, say what it is, and return 0."""
     cycle = read_angles(options.tracks)
-    gait = to_angle_table(cycle, options.robot, name=options.out.stem, period=options.period)
+    gait = to_curves(cycle, options.robot, name=options.out.stem, period=options.period)
     check_limits(options.robot, gait)
     blueprint.write(gait, options.out)
     left = max(zip(cycle.residual, cycle.joints, strict=True))

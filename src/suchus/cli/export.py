@@ -13,7 +13,7 @@ from suchus.design import Robot
 from suchus.errors import UnknownName
 from suchus.gaits import own_gait
 from suchus.model.export import Format, export
-from suchus.motion import AnyGait
+from suchus.motion import Gait
 from suchus.record import check_name, check_writable
 from suchus.robots import ROBOTS
 
@@ -26,7 +26,7 @@ class ExportOptions:
     """MJCF for MuJoCo, USD for Isaac, Newton and Omniverse (extra usd), URDF for nearly everything else."""
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that is exported."""
-    home: AnyGait | None = None
+    home: Gait | None = None
     """Gait whose mid-stance is the home posture of the MJCF; by default the robot's own."""
     timestep: Annotated[float, tyro.conf.arg(metavar="SECONDS")] = 0.002
     """Time step of the physics in the MJCF [s]."""

@@ -30,7 +30,7 @@ from suchus.hardware import (
     write_map,
 )
 from suchus.hardware.limits import AT_LIMIT, TRACKING
-from suchus.motion import AnyGait
+from suchus.motion import Gait
 from suchus.record import check_name, check_replaceable, check_writable, digest, new_folder, versions
 from suchus.robots import ROBOTS
 
@@ -41,7 +41,7 @@ MARK = "suchus_commands.json"
 class ExportCommandsOptions:
     """Options of ``suchus export-commands``."""
 
-    gait: Annotated[AnyGait, tyro.conf.Positional] = field(default_factory=lambda: GAITS["belly_crawl"])
+    gait: Annotated[Gait, tyro.conf.Positional] = field(default_factory=lambda: GAITS["belly_crawl"])
     """The gait; by default, if the robot cannot follow this one, the robot's own."""
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """Robot whose joints and servos are commanded."""

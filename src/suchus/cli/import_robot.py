@@ -13,7 +13,7 @@ from suchus.cli.options import parse
 from suchus.design import layout
 from suchus.errors import OutsideLimits
 from suchus.model.importing import Draft, Words, import_robot
-from suchus.motion import AngleTable, Pattern, draft_gait
+from suchus.motion import Gait, draft_gait
 from suchus.record import check_writable
 
 _METRES = Annotated[float | None, tyro.conf.arg(metavar="METRES")]
@@ -97,7 +97,7 @@ def _plan(draft: Draft) -> list[str]:
     return lines
 
 
-def _gait(draft: Draft, name: str) -> Pattern | AngleTable | None:
+def _gait(draft: Draft, name: str) -> Gait | None:
     try:
         return draft_gait(draft.robot, name)
     except OutsideLimits as error:

@@ -5,6 +5,7 @@ import re
 from collections.abc import Callable, Sequence
 from contextlib import redirect_stderr
 from dataclasses import dataclass, field, fields, make_dataclass
+from functools import partial
 from itertools import pairwise
 from pathlib import Path
 from textwrap import fill
@@ -21,10 +22,11 @@ from suchus.design import Robot
 from suchus.errors import SuchusError, UnknownName
 from suchus.experiment import Experiment
 from suchus.gaits import GAITS
-from suchus.motion import AngleTable, AnyGait, Gait, Pattern
+from suchus.motion import Gait
 from suchus.record import there
 from suchus.robots import ROBOTS
 
+_SHELF = "caiman"
 _WIDE = 110  # characters of a line of the description in the help
 
 QUICK = Annotated[
@@ -84,7 +86,8 @@ def choose(experiment: Experiment, name: str, words: Sequence[str]) -> RunReques
         ],
     )
     names = ["quick", "out", "csv", *(f.name for f in fields(start))]  # type: ignore[arg-type]
-    chosen = parse(options, prog, words, f"{start.title}\n\nAnswers: {start.shows}", names)
+    about = f"{start.title}\n\nAnswers: {start.shows}"
+    chosen = parse(options, prog, words, about, names, robot=getattr(start, "robot", None))
     return RunRequest(experiment=chosen.experiment, quick=quick, out=chosen.out, csv=chosen.csv)
 
 
@@ -98,13 +101,20 @@ def _robot(words: Sequence[str]) -> Robot | None:
     if not named or named[-1].startswith("-"):
         return None
     try:
-        found: Robot = _find(named[-1], Robot, ROBOTS)
+        found: Robot = _find(named[-1], Robot, ROBOTS, lambda path: blueprint.read(path, Robot, ROBOTS))
     except SuchusError:
         return None
     return found
 
 
-def parse(options: type, prog: str, words: Sequence[str], description: str, names: Sequence[str]) -> Any:
+def parse(
+    options: type,
+    prog: str,
+    words: Sequence[str],
+    description: str,
+    names: Sequence[str],
+    robot: Robot | None = None,
+) -> Any:
     """Let tyro read the words; what it refuses becomes one sentence.
 
     Args:
@@ -113,6 +123,7 @@ def parse(options: type, prog: str, words: Sequence[str], description: str, name
         words: what follows it.
         description: the head of the help.
         names: fields that can be set, for the message about one that cannot.
+        robot: for which gait files are read where the words name none; the caiman if None.
 
     Raises:
         UnknownName: there is no such option.
@@ -128,7 +139,7 @@ def parse(options: type, prog: str, words: Sequence[str], description: str, name
                 prog=prog,
                 description="\n".join(fill(line, _WIDE) for line in description.splitlines()),
                 args=list(words),
-                registry=_registry(),
+                registry=_registry(lambda: _robot(words) or robot or ROBOTS[_SHELF]),
                 return_unknown_args=True,
             )
     except _NoWordError:
@@ -148,31 +159,30 @@ def parse(options: type, prog: str, words: Sequence[str], description: str, name
     return chosen
 
 
-def _registry() -> ConstructorRegistry:
-    """Robots and gaits are named on the command line, or written in a file."""
+def _registry(walker: Callable[[], Robot]) -> ConstructorRegistry:
+    """Robots and gaits are named on the command line, or written in a file.
+
+    Args:
+        walker: returns the robot for which a gait is read.
+    """
     registry = ConstructorRegistry()
-    shelves: tuple[tuple[Any, Catalog[Any], str], ...] = (
-        (Robot, ROBOTS, "ROBOT"),
-        (Robot | None, ROBOTS, "ROBOT"),
-        (AnyGait, GAITS, "GAIT"),
-        (AnyGait | None, GAITS, "GAIT"),
-        (Gait, GAITS, "GAIT"),
-        (Gait | Pattern, GAITS, "GAIT"),
-        (AngleTable, GAITS, "GAIT"),
-    )
-    for kind, shelf, metavar in shelves:
-        registry.primitive_rule(_shelf_rule(kind, shelf, metavar))
+    for kind in (Robot, Robot | None):
+        read = partial(blueprint.read, kind=kind, shelf=ROBOTS)
+        registry.primitive_rule(_shelf_rule(kind, ROBOTS, "ROBOT", "the record's", read))
+    for kind in (Gait, Gait | None):
+        registry.primitive_rule(
+            _shelf_rule(kind, GAITS, "GAIT", "own", lambda path: blueprint.read_gait(path, walker(), GAITS))
+        )
     return registry
 
 
 def _shelf_rule(
-    kind: Any, shelf: Catalog[Any], metavar: str
+    kind: Any, shelf: Catalog[Any], metavar: str, own: str, read: Callable[[Path], Any]
 ) -> Callable[[PrimitiveTypeInfo], PrimitiveConstructorSpec[Any] | None]:
-    own = "own" if shelf is GAITS else "the record's"
     spec: PrimitiveConstructorSpec[Any] = PrimitiveConstructorSpec(
         nargs=1,
         metavar=f"{metavar}|FILE.toml",
-        instance_from_str=lambda words: _find(_first(words), kind, shelf),
+        instance_from_str=lambda words: _find(_first(words), kind, shelf, read),
         is_instance=lambda value: isinstance(value, kind),
         str_from_instance=lambda value: [own if value is None else str(value.name)],
     )
@@ -192,11 +202,11 @@ def _first(words: Any) -> str:
     return words
 
 
-def _find(word: str, kind: Any, shelf: Catalog[Any]) -> Any:
+def _find(word: str, kind: Any, shelf: Catalog[Any], read: Callable[[Path], Any]) -> Any:
     """What a word stands for: a name on the shelf, or a file."""
     try:
         if word not in shelf and (word.endswith(".toml") or there(Path(word))):
-            return blueprint.read(Path(word), kind, shelf)
+            return read(Path(word))
         found = shelf[word]
         if not isinstance(found, kind):
             raise BadCommand(_unsuited(found, kind, shelf))

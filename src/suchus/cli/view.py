@@ -14,7 +14,7 @@ from suchus.cli.options import parse
 from suchus.design import Robot, crocodile, with_values
 from suchus.design.checks import require
 from suchus.gaits import own_gait
-from suchus.motion import AnyGait, Swim
+from suchus.motion import Gait, Swim
 from suchus.record import there
 from suchus.robots import ROBOTS
 from suchus.viewer import Session
@@ -51,7 +51,7 @@ class ViewWalkOptions(Where):
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that walks."""
-    gait: AnyGait | None = None
+    gait: Gait | None = None
     """Gait at the beginning; by default the robot's own."""
     timestep: float | None = None
     """Time step of the physics [s], a whole fraction of the control period; by default half of the period."""
