@@ -17,7 +17,7 @@ def test_tracks_become_a_gait_and_a_diagram(table, tmp_path, capsys):
     assert main(["capture", str(table), "--out", str(out)]) == 0
     gait = blueprint.read(out, Gait, GAITS)
     assert gait.name == "caiman_walk"
-    assert gait.trunk_bend == pytest.approx(GAITS["belly_crawl"].trunk_bend, rel=0.05)
+    assert gait.number("trunk_bend") == pytest.approx(GAITS["belly_crawl"].number("trunk_bend"), rel=0.05)
     kinds = ("toml", "svg", "png", "data.csv")
     assert {file.name for file in out.parent.iterdir()} == {f"caiman_walk.{kind}" for kind in kinds}
     said = capsys.readouterr().out

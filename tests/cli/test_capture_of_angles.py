@@ -10,7 +10,7 @@ from suchus.capture import is_angle_table
 from suchus.cli.capture import capture
 from suchus.errors import UnknownName, UnsuitedRobot
 from suchus.gaits import GAITS
-from suchus.motion import AnyGait
+from suchus.motion import Gait
 
 TABLE = Path(__file__).parent.parent / "data" / "animals" / "salamander_walking.csv"
 
@@ -18,7 +18,7 @@ TABLE = Path(__file__).parent.parent / "data" / "animals" / "salamander_walking.
 def test_a_published_table_becomes_the_gait_of_the_shelf(tmp_path, capsys):
     out = tmp_path / "walk.toml"
     assert capture([str(TABLE), "--robot", "salamander", "--period", "2", "--out", str(out)]) == 0
-    assert blueprint.read(out, AnyGait, GAITS) == replace(GAITS["animal_walk"], name="walk", period=2.0)
+    assert blueprint.read(out, Gait, GAITS) == replace(GAITS["animal_walk"], name="walk", period=2.0)
     assert "24 servos of salamander" in capsys.readouterr().out
 
 

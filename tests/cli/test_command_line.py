@@ -135,7 +135,7 @@ def test_a_robot_and_a_gait_come_from_files(tmp_path):
     settings = json.loads((tmp_path / "wave/outcome.json").read_text())["settings"]
     assert settings["robot"]["name"] == "mine"
     assert (settings["gait"]["name"], settings["gait"]["period"]) == ("slow", 8.0)
-    assert settings["gait"]["stroke"] == GAITS["limbs_only"].stroke
+    assert [limb["stroke"] for limb in settings["gait"]["limbs"]] == [limb.stroke for limb in GAITS["limbs_only"].limbs]
     assert isinstance(GAITS["limbs_only"], Gait)
 
 

@@ -40,7 +40,7 @@ def test_the_commands_of_the_page_choose_its_robot_and_gait():
             assert question.robot.front_leg == ROBOTS["caiman"].front_leg
         else:
             assert (question.gait.name, question.gait.period) == ("my_gait", 3.0)
-            assert question.gait.stroke == GAITS["belly_crawl"].stroke
+            assert question.gait.limbs == GAITS["belly_crawl"].limbs
 
 
 @pytest.mark.usefixtures("desk")

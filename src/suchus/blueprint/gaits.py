@@ -18,10 +18,10 @@ _WAVE = ("amplitude", "waves", "phase")
 def read_gait(path: Path, robot: Robot, shelf: Mapping[str, Gait]) -> Gait:
     """Read a gait from a TOML file.
 
-    Its keys say in which form it is: fields of a ``Gait``; metres, as ``front_reach`` or ``trunk_bend``; or places along
-    the body, ``girdles`` and ``wave``. A curve that does not say its part gets that of its servo. ``base = "belly_crawl"``
-    at the top starts from that gait of the shelf and overrides what the file says. A file without a ``name`` lends its
-    own.
+    Its keys say in which form it is: fields of a ``Gait``; metres, as ``front_reach`` or ``trunk_bend``; or places
+    along the body, ``girdles`` and ``wave``. A curve that does not say its part gets that of its servo. With ``base =
+    "belly_crawl"`` at the top it starts from that gait of the shelf and overrides what the file says. A file without a
+    ``name`` lends its own.
 
     Args:
         path: the file.
@@ -39,6 +39,7 @@ def read_gait(path: Path, robot: Robot, shelf: Mapping[str, Gait]) -> Gait:
     base = shelf[named] if isinstance(named, str) and named in shelf else None
     if named is not None and base is None:
         mistakes["base",] = f"is {named!r}; there is {', '.join(shelf)}"
+        base = _any(shelf)  # to look for further mistakes with
     form = form_of(data)
     # where limbs alone change their phases, the axis goes on as the article's law of a gait in metres says
     if form is None and base is not None and in_metres(base) and "limb_phases" in data and "coupling" not in data:
@@ -55,15 +56,13 @@ def read_gait(path: Path, robot: Robot, shelf: Mapping[str, Gait]) -> Gait:
         raise MistakenFile(path.name, {(): f"on robot {robot.name!r} {str(error).rstrip('.')}"}) from error
     except OutsideLimits as error:
         raise UnreadableFile(f"{path.name}: {error}") from error
-    if base is None:
-        return validated(_with_parts(data, robot), Gait, _spare(shelf), path.name, mistakes)
-    spare = plain(asdict(base))
-    return validated(merged(spare, _with_parts(data, robot)), Gait, spare, path.name, mistakes)
+    spare, data = plain(asdict(base or _any(shelf))), _with_parts(data, robot)
+    return validated(data if base is None else merged(spare, data), Gait, spare, path.name, mistakes)
 
 
-def _spare(shelf: Mapping[str, Gait]) -> dict[str, Any]:
-    """Return the table of a gait with foot paths, to look for mistakes with."""
-    return dict(plain(asdict(next(gait for gait in shelf.values() if gait.has("foot paths")))))
+def _any(shelf: Mapping[str, Gait]) -> Gait:
+    """Return a gait that can be written in every form."""
+    return next(gait for gait in shelf.values() if in_metres(gait))
 
 
 def _with_parts(data: dict[str, Any], robot: Robot) -> dict[str, Any]:
@@ -87,8 +86,7 @@ def _in_metres(
     mistakes: dict[Place, str],
 ) -> Gait:
     reaches, keys = limb_reaches(robot), frozenset(data)
-    lent = base or next(gait for gait in shelf.values() if in_metres(gait))
-    spare = plain(asdict(GaitInMetres.near(lent, reaches)))
+    spare = plain(asdict(GaitInMetres.near(base or _any(shelf), reaches)))
     whole = data if base is None else merged(spare, data)
     metres = validated(whole, GaitInMetres, spare, name, mistakes)
     return metres.gait(reaches) if base is None else metres.onto(base, keys, reaches)
@@ -105,8 +103,11 @@ def _by_places(
     wave = data.get("wave")
     still = AxialWave(amplitude=((0.0, 0.0),), waves=0.0, phase=0.0)
     partly = isinstance(wave, Mapping) and not set(_WAVE) <= set(wave)
-    lent = base or next(gait for gait in shelf.values() if gait.has("foot paths"))
-    spare = plain(asdict(GaitByPlaces.of(lent, AxialWave.of(base, robot) if base is not None and partly else still)))
+    spare = plain(
+        asdict(
+            GaitByPlaces.of(base or _any(shelf), AxialWave.of(base, robot) if base is not None and partly else still)
+        )
+    )
     whole = data if base is None else merged(spare, data)
     gait = validated(whole, GaitByPlaces, spare, name, mistakes).gait(robot)
     return gait if base is None or wave is not None else replace(gait, axis=base.axis)

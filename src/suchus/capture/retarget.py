@@ -74,9 +74,9 @@ def to_gait(
 ) -> Captured:
     """Return the gait by which a robot walks as was measured.
 
-    Phases and angles are taken as they are, lengths in proportion to the trunk from hip to shoulder. Trunk and tail bend
-    by their first harmonics, each shared evenly by its hinges. Quantities that were not measured are the base's. What
-    the robot's limits refuse is changed as little as needed.
+    Phases and angles are taken as they are, lengths in proportion to the trunk from hip to shoulder. Trunk and tail
+    bend by their first harmonics, each shared evenly by its hinges. Quantities that were not measured are the base's.
+    What the robot's limits refuse is changed as little as needed.
 
     Args:
         walk: the measured walk.
@@ -184,11 +184,9 @@ def _most(robot: Robot, part: Literal["trunk", "tail"]) -> list[float]:
     return [cables.get(hinges.servos[k], float(ranges[hinges.servos[k]])) for k in hinges.within(part)]
 
 
-def _stepping(
-    walk: Walk, robot: Robot, gait: Gait, base: Gait, girdles: Girdles, notes: list[str]
-) -> Gait:
+def _stepping(walk: Walk, robot: Robot, gait: Gait, base: Gait, girdles: Girdles, notes: list[str]) -> Gait:
     """Give the feet the measured paths in proportion to the trunk; what the limbs cannot follow becomes the base's."""
-    trunk, reaches = hips_ahead(robot, 0), [girdle.limb.reach for girdle in layout(robot).robot.girdles]
+    reaches = [girdle.limb.reach for girdle in layout(robot).robot.girdles]
     lent = [_feet_of(limb, reach) for limb, reach in zip(base.limbs, reaches, strict=True)]
     feet = _feet(walk, robot, lent, girdles, notes)
     if walk.upright:
@@ -222,9 +220,7 @@ def _stepping(
     )
 
 
-def _feet(
-    walk: Walk, robot: Robot, lent: Sequence[_Feet], girdles: Girdles, notes: list[str]
-) -> list[_Feet]:
+def _feet(walk: Walk, robot: Robot, lent: Sequence[_Feet], girdles: Girdles, notes: list[str]) -> list[_Feet]:
     """Return the measured paths of the feet at the robot's size."""
     trunk, sides = hips_ahead(robot, 0), [girdle.aside for girdle in layout(robot).robot.girdles]
     strokes, stroke = [trunk * mean_of(walk, "stroke", legs) for legs in _PAIRS], trunk * mean_of(walk, "stroke")

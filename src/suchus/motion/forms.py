@@ -142,8 +142,8 @@ class GaitInMetres:
         paths = [limb for limb in gait.limbs if isinstance(limb, FootPath)]
         if len(paths) != 2 or len(gait.limbs) != 2:
             raise OutsideLimits(
-                f"gait {gait.name!r} has no foot paths of two pairs of limbs, which alone can be given in metres: write "
-                "limbs and axis instead."
+                f"gait {gait.name!r} has no foot paths of two pairs of limbs, which alone can be given in metres: "
+                "write limbs and axis instead."
             )
         trunk, tail = (_first(gait, part, "yaw") for part in ("trunk", "tail"))
         return cls(
@@ -280,7 +280,6 @@ class AxialWave:
             )
         return tuple(found)
 
-
     @classmethod
     def of(cls, gait: Gait, robot: Robot) -> Self:
         """Return the wave by which a gait bends the axis of a robot.
@@ -382,7 +381,6 @@ class GaitByPlaces:
             height=self.height,
             axis=self.wave.bends(robot),
         )
-
 
     @classmethod
     def of(cls, gait: Gait, wave: AxialWave) -> Self:

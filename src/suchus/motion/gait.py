@@ -204,10 +204,7 @@ class Gait:
             check.number("duty_factor", 0.05, 0.95, "")
             check.number("height", 0.0, 2.0, "limb reach")
             for name in ("limb_phases", "coupling"):
-                row = getattr(self, name)
-                check.that(
-                    all(-1.0 <= phase <= 1.0 for phase in row), f"gait.{name} is {row}; -1 to 1 cycle is allowed"
-                )
+                check.each(name, getattr(self, name), -1.0, 1.0, "cycle")
             check.that(
                 not self.limbs or len(self.limb_phases) == 2 * len(self.limbs),
                 f"gait {self.name} has {len(self.limb_phases)} limb phases for {len(self.limbs)} girdles; each limb "

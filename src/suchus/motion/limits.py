@@ -1,7 +1,6 @@
 """What a gait asks of joints and servos, and whether a robot can give it."""
 
 from dataclasses import replace
-from typing import Literal
 
 import numpy as np
 
@@ -150,11 +149,11 @@ def as_table(robot: Robot, gait: Gait, samples: int = 64) -> Gait:
     )
 
 
-def servo_parts(robot: Robot) -> dict[str, Literal["limb", "neck", "trunk", "tail"]]:
+def servo_parts(robot: Robot) -> dict[str, ServoPart]:
     """Return the part of the body that each servo moves: ``limb``, ``neck``, ``trunk`` or ``tail``."""
     here = layout(robot)
     trunk = {*here.trunk_yaw, *here.trunk_pitch}
-    parts: dict[str, Literal["limb", "neck", "trunk", "tail"]] = {}
+    parts: dict[str, ServoPart] = {}
     for i, name in enumerate(here.servos):
         if any(i in range(limb.servos.start, limb.servos.stop) for limb in here.limbs):
             parts[name] = "limb"
