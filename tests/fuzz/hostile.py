@@ -32,7 +32,7 @@ from suchus.errors import SuchusError
 from suchus.hardware import read_map, straight, write_map
 from suchus.jobs.store import Store
 from suchus.land import Deaf, Limp, Locked, Push, Run, Weak, simulate
-from suchus.motion import Gait, check_limits
+from suchus.motion import check_limits
 from suchus.optimise import read_optimisation
 from suchus.record import load, save
 from suchus.replay.frames import checked
@@ -281,7 +281,8 @@ def robot_files(self: Range, dice: Random) -> None:
 
 
 def gait_files(self: Range, dice: Random) -> None:
-    check_limits(suchus.ROBOTS["caiman"], blueprint.read(written(self, "gait.toml", dice), Gait, suchus.GAITS))
+    robot = suchus.ROBOTS["caiman"]
+    check_limits(robot, blueprint.read_gait(written(self, "gait.toml", dice), robot, suchus.GAITS))
 
 
 def study_files(self: Range, dice: Random) -> None:

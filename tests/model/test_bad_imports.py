@@ -12,7 +12,6 @@ from suchus import blueprint
 from suchus.cli import main
 from suchus.design import AnyRobot
 from suchus.gaits import GAITS
-from suchus.motion import AnyGait
 from suchus.robots import ROBOTS
 
 BALL = shape('<sphere radius="0.02"/>')
@@ -158,7 +157,7 @@ def test_the_command_writes_a_robot_and_a_gait_that_load(desk, capsys):
     assert sorted(path.name for path in Path().iterdir()) == ["quad.toml", "quad.urdf", "quad_walk.toml"]
     robot = blueprint.read(Path("quad.toml"), AnyRobot, ROBOTS)
     assert (robot.name, len(robot.girdles)) == ("quad", 2)
-    assert blueprint.read(Path("quad_walk.toml"), AnyGait, GAITS).period > 0
+    assert blueprint.read_gait(Path("quad_walk.toml"), robot, GAITS).period > 0
     assert Path("quad.toml").read_text().startswith("# A draft that suchus read from quad.urdf.")
 
 

@@ -9,13 +9,11 @@ from typing import Literal
 from suchus import blueprint
 from suchus.control import Control, OpenLoop, Standing, Walking
 from suchus.design import Robot
-from suchus.gaits import GAITS
 from suchus.land import Ground, Run
-from suchus.motion import Gait
 from suchus.optimise.spec import Aim, Optimisation, Search
 from suchus.robots import ROBOTS
 from suchus.study import Vary
-from suchus.study.page import find
+from suchus.study.page import find, find_gait
 
 Task = Literal["crawl", "turn", "stand"]
 TASKS: Mapping[str, Control] = MappingProxyType(
@@ -61,9 +59,10 @@ def read_optimisation(path: Path) -> Optimisation:
         InvalidDesign: a range that cannot be, or that the start is not in.
     """
     page = blueprint.read(path, SearchFile, {EXAMPLE.name: EXAMPLE})
+    robot = find(page.robot, path.parent, Robot, ROBOTS)
     run = Run(
-        robot=find(page.robot, path.parent, Robot, ROBOTS),
-        gait=find(page.gait, path.parent, Gait, GAITS),
+        robot=robot,
+        gait=find_gait(page.gait, path.parent, robot),
         ground=page.ground,
         control=TASKS[page.task],
     )

@@ -83,9 +83,10 @@ def read_study(path: Path) -> Study:
         InvalidDesign: a field cannot take one of its values.
     """
     page = blueprint.read(path, StudyFile, {EXAMPLE.name: EXAMPLE})
+    robot = find(page.robot, path.parent, Robot, ROBOTS)
     run = Run(
-        robot=find(page.robot, path.parent, Robot, ROBOTS),
-        gait=find(page.gait, path.parent, Gait, GAITS),
+        robot=robot,
+        gait=find_gait(page.gait, path.parent, robot),
         ground=page.ground,
         faults=tuple(from_table(table) for table in page.faults),
         control=_control(page.control),
@@ -93,8 +94,8 @@ def read_study(path: Path) -> Study:
     )
     return Study(
         run=run,
-        vary=tuple(_resolved(vary, path.parent) for vary in page.vary),
-        arms=tuple(resolved_arm(arm, path.parent) for arm in page.arms),
+        vary=tuple(_resolved(vary, path.parent, robot) for vary in page.vary),
+        arms=tuple(resolved_arm(arm, path.parent, robot) for arm in page.arms),
         **{f.name: getattr(page, f.name) for f in fields(Study) if f.name not in ("run", "vary", "arms")},
     )
 
@@ -115,32 +116,33 @@ def _control(table: Mapping[str, Any]) -> Control:
     return control
 
 
-def resolved_arm(arm: Arm, place: Path) -> Arm:
+def resolved_arm(arm: Arm, place: Path, robot: Robot) -> Arm:
     """Return an arm with the robots, gaits and faults that its values name.
 
     Args:
         arm: as a file says it.
         place: the folder of that file.
+        robot: of the study, for which gaits are read.
 
     Raises:
         SuchusError: it names nothing that is there.
     """
-    return replace(arm, values={field: _meant(field, value, place) for field, value in arm.values.items()})
+    return replace(arm, values={field: _meant(field, value, place, robot) for field, value in arm.values.items()})
 
 
-def _resolved(vary: Vary, place: Path) -> Vary:
+def _resolved(vary: Vary, place: Path, robot: Robot) -> Vary:
     """Return a field with the things that its values name."""
     if vary.values is None:
         return vary
-    return replace(vary, values=tuple(_meant(vary.field, value, place) for value in vary.values))
+    return replace(vary, values=tuple(_meant(vary.field, value, place, robot) for value in vary.values))
 
 
-def _meant(field: str, value: Any, place: Path) -> Any:
+def _meant(field: str, value: Any, place: Path, robot: Robot) -> Any:
     """Return what a value of a file stands for: robots and gaits have names, faults are tables, lists are tuples."""
     if field == "robot" and isinstance(value, str):
         return find(value, place, Robot, ROBOTS)
     if field == "gait" and isinstance(value, str):
-        return find(value, place, Gait, GAITS)
+        return find_gait(value, place, robot)
     if field == "faults":
         return _faults(value)
     return tuple(value) if isinstance(value, list) else value
@@ -164,3 +166,14 @@ def find(name: str, place: Path, kind: type, shelf: Catalog[Any]) -> Any:
         MistakenFile: the file describes nothing that can be.
     """
     return blueprint.read(place / name, kind, shelf) if name.endswith(".toml") else shelf[name]
+
+
+def find_gait(name: str, place: Path, robot: Robot) -> Gait:
+    """Return the gait that a file names: one of the shelf, or described by a TOML file beside it.
+
+    Raises:
+        UnknownName: it is not on the shelf.
+        UnreadableFile: there is no such file, or it is no TOML.
+        MistakenFile: the file describes no gait that can be.
+    """
+    return blueprint.read_gait(place / name, robot, GAITS) if name.endswith(".toml") else GAITS[name]
