@@ -6,7 +6,7 @@ A file of a robot describes it part by part, or gives the article's tables, of w
 import json
 from collections.abc import Mapping
 from copy import deepcopy
-from dataclasses import asdict
+from dataclasses import asdict, fields
 from pathlib import Path
 from types import UnionType
 from typing import Any, TypeVar, get_args, overload
