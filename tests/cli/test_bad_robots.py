@@ -61,8 +61,14 @@ BAD = {
     "a field nearly right": ('base = "caiman"\n[tail]\njoint = 5\n', "(did you mean tail.joints?)"),
 }
 GAITS_OF_OTHERS = {
-    "four legs for six": (["--robot", "strider", "--gait", "belly_crawl"], "is for four legs of yaw, pitch and knee"),
-    "six legs for four": (["--robot", "salamander", "--gait", "tripod"], "is for 3 pairs of limbs"),
+    "four legs for six": (
+        ["--robot", "strider", "--gait", "belly_crawl"],
+        "has phases for 4 limbs; robot 'strider' has 6",
+    ),
+    "six legs for four": (
+        ["--robot", "salamander", "--gait", "tripod"],
+        "has phases for 6 limbs; robot 'salamander' has 4",
+    ),
     "paths for cranks": (["--robot", "salamandra", "--gait", "salamander_walk"], "limbs are cranks: choose a gait"),
     "legs for none": (["--robot", "swimmer", "--gait", "belly_crawl"], "swimmer"),
 }

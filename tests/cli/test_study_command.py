@@ -106,7 +106,7 @@ steps = 2
     asked = read_study(tmp_path / "s.toml")
     assert asked.name == "s"
     assert asked.run.faults == (Weak("LH_knee", 0.25),)
-    assert [g.stroke for g in asked.vary[0].values] == [0.027, 0.01]
+    assert [g.limbs[0].stroke * 0.1575 for g in asked.vary[0].values] == pytest.approx([0.027, 0.01])
     (tmp_path / "f.toml").write_text("""
 measure = ["slip"]
 [[vary]]

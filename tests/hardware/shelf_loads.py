@@ -3,18 +3,18 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from suchus.design import AnyRobot
+from suchus.design import Robot
 from suchus.errors import OutsideLimits
 from suchus.gaits import GAITS, suits
 from suchus.hardware import ServoLoad, check_loads, loads_of_each, overloaded, share_at_limit
 from suchus.hardware.limits import AT_LIMIT, stronger
 from suchus.land import Run, simulate
 from suchus.metrics import between
-from suchus.motion import START, AnyGait
+from suchus.motion import START, Gait
 
 
 def measured(
-    robot: AnyRobot, *, cycles: int, timestep: float | None = None, names: Sequence[str] = tuple(GAITS)
+    robot: Robot, *, cycles: int, timestep: float | None = None, names: Sequence[str] = tuple(GAITS)
 ) -> dict[str, dict[str, Any]]:
     """Return for each gait whether it is exported, what is said, and for each servo at its limit how it is.
 
@@ -40,8 +40,8 @@ def _servo(load: ServoLoad, then: float) -> dict[str, Any]:
 
 
 def _with_named(
-    robot: AnyRobot,
-    gaits: Sequence[AnyGait],
+    robot: Robot,
+    gaits: Sequence[Gait],
     weak: Sequence[Mapping[str, ServoLoad]],
     cycles: int,
     timestep: float | None,
@@ -59,7 +59,7 @@ def _with_named(
     return found
 
 
-def _exported(robot: AnyRobot, gait: AnyGait, borne: Mapping[str, ServoLoad]) -> bool:
+def _exported(robot: Robot, gait: Gait, borne: Mapping[str, ServoLoad]) -> bool:
     try:
         check_loads(robot, gait, borne)
     except OutsideLimits:

@@ -7,7 +7,7 @@ import pytest
 
 from suchus import blueprint
 from suchus.control import Coordinated
-from suchus.design import AnyRobot, general, layout
+from suchus.design import Robot, general, layout
 from suchus.design.scale import scaled
 from suchus.errors import InvalidDesign, OutsideLimits, UnsuitedRobot
 from suchus.gaits import GAITS
@@ -82,7 +82,7 @@ def test_three_grams_and_sixty_kilograms_walk_alike(name, gait):
 def test_six_spine_joints_and_a_servo_tail_in_five_lines_crawl(tmp_path):
     file = tmp_path / "six.toml"
     file.write_text('base = "caiman"\n[spine]\njoints = 6\n[tail]\ndrive = "servos"\n')
-    robot = blueprint.read(file, AnyRobot, ROBOTS)
+    robot = blueprint.read(file, Robot, ROBOTS)
     assert len(layout(robot).trunk_yaw) == 3
     assert len(layout(robot).trunk_pitch) == 3
     assert len(layout(robot).tail_yaw) == 6

@@ -10,7 +10,7 @@ from hinge_trees import joint, link, pendulum, quadruped, shape, skewed, urdf
 
 from suchus import blueprint
 from suchus.cli import main
-from suchus.design import AnyRobot
+from suchus.design import Robot
 from suchus.gaits import GAITS
 from suchus.robots import ROBOTS
 
@@ -155,7 +155,7 @@ def test_the_command_writes_a_robot_and_a_gait_that_load(desk, capsys):
     assert "limbs LF, RF on base: pitch, roll, roll" in out
     assert "note: Front:" in out
     assert sorted(path.name for path in Path().iterdir()) == ["quad.toml", "quad.urdf", "quad_walk.toml"]
-    robot = blueprint.read(Path("quad.toml"), AnyRobot, ROBOTS)
+    robot = blueprint.read(Path("quad.toml"), Robot, ROBOTS)
     assert (robot.name, len(robot.girdles)) == ("quad", 2)
     assert blueprint.read_gait(Path("quad_walk.toml"), robot, GAITS).period > 0
     assert Path("quad.toml").read_text().startswith("# A draft that suchus read from quad.urdf.")
@@ -172,4 +172,4 @@ def test_an_include_of_its_own_folder_is_read(desk):
     Path("part.xml").write_text(f"<mujocoinclude>{BODY}</mujocoinclude>")
     Path("it.xml").write_text(mjcf().replace(BODY, '<include file="part.xml"/>'))
     assert main(["import", "it.xml"]) == 0
-    assert [s.name for s in blueprint.read(Path("it.toml"), AnyRobot, ROBOTS).axis] == ["b", "a"]
+    assert [s.name for s in blueprint.read(Path("it.toml"), Robot, ROBOTS).axis] == ["b", "a"]

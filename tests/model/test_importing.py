@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 import suchus
 from suchus import blueprint
-from suchus.design import AnyRobot, Crank, Servo, Spring, general, layout
+from suchus.design import Crank, Robot, Servo, Spring, general, layout
 from suchus.design.scale import coarse_step
 from suchus.errors import OutsideLimits, UnknownName, UnreadableFile
 from suchus.gaits import GAITS
@@ -125,7 +125,7 @@ def test_the_draft_says_what_becomes_of_a_cable(shelf):
 def test_the_written_file_is_the_draft_and_it_walks_with_its_own_gait(shelf, tmp_path):
     _, draft, kind = shelf
     file = blueprint.write(draft.robot, tmp_path / "it.toml", notes=draft.notes, head=draft.remarks)
-    assert blueprint.read(file, AnyRobot, ROBOTS) == draft.robot
+    assert blueprint.read(file, Robot, ROBOTS) == draft.robot
     if kind == "mjcf" or not draft.robot.girdles:
         return
     gait = draft_gait(draft.robot, "it_walk")

@@ -129,7 +129,7 @@ def _needed(error: Mapping[str, Any], cause: Exception | None) -> str:
 
 
 def _unknown(place: Place, owner: Any, kind: type) -> str:
-    known = [f.name for f in fields(owner)] if is_dataclass(owner) else []
+    known = [f.name for f in fields(owner) if f.init] if is_dataclass(owner) else []
     homes = list(islice(_homes(str(place[-1]), kind), _HOMES + 1))
     if 0 < len(homes) <= _HOMES:
         return f"is not known there; it stands at {' and '.join(homes)}: move it"

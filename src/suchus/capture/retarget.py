@@ -152,7 +152,8 @@ def _bent(walk: Walk, robot: Robot, gait: Gait, notes: list[str]) -> Gait:
     clock = np.exp(1j * np.pi * (gait.duty_factor - mean_of(walk, "duty")))
     touch_down = 0.75 - gait.duty_factor / 2
     bends = [bend for bend in gait.axis if bend.turn == "pitch"]
-    for part, word in (("trunk", "spine"), ("tail", "tail")):
+    parts: tuple[tuple[Literal["trunk", "tail"], str], ...] = (("trunk", "spine"), ("tail", "tail"))
+    for part, word in parts:
         seen = clock * walk.bends[f"{word}_lateral"]
         most = _most(robot, part)
         if not most:
@@ -254,7 +255,7 @@ def _placed(robot: Robot, gait: Gait, feet: Sequence[_Feet]) -> Gait | None:
     reaches = [girdle.limb.reach for girdle in layout(robot).robot.girdles]
     try:
         limbs = tuple(
-            replace(limb, **{field: _rounded(metres / reach) for field, metres in one._asdict().items()})
+            replace(limb, **{field: _rounded(metres / reach) for field, metres in one._asdict().items()})  # type: ignore[arg-type]
             for limb, one, reach in zip(gait.limbs, feet, reaches, strict=True)
         )
     except InvalidDesign:  # a path longer than the limb

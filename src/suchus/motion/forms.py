@@ -185,7 +185,7 @@ class GaitInMetres:
             sources = {"stroke": "stroke", "lift": "lift", "outward": f"{girdle}_reach", "ahead": f"{girdle}_ahead"}
             sources["swivel"] = "legs"
             taken = {name: getattr(ours, name) for name, source in sources.items() if source in named}
-            limbs.append(replace(theirs, **taken))  # type: ignore[type-var]
+            limbs.append(replace(theirs, **taken))
         axis = {(bend.part, bend.turn): bend for bend in base.axis}
         for bend in mine.axis:
             there = axis.get((bend.part, bend.turn), Bend(part=bend.part, turn=bend.turn))

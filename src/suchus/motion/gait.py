@@ -99,10 +99,10 @@ class Bend:
     """How a part of the axis bends, evenly shared by its hinges.
 
     The part bends by ``offset - amplitude cos 2 pi (phase - lag)``, concave to the left (yaw) or below (pitch) where
-    that is positive. The phase is that of the limbs together, 0 a quarter of a cycle before the first limb's mid-stance:
-    with no lag each girdle of a diagonal gait carries its new stance foot ahead. Several numbers are knots from the
-    part's first to its last hinge from head to tail; of n hinges each takes an nth of the value at its place, so that
-    the part bends alike on every body.
+    that is positive. The phase is that of the limbs together, 0 a quarter of a cycle before the middle of the first
+    limb's stance: with no lag each girdle of a diagonal gait carries its new stance foot ahead. Several numbers are
+    knots from the part's first to its last hinge from head to tail; of n hinges each takes an nth of the value at its
+    place, so that the part bends alike on every body.
     """
 
     part: Part
