@@ -146,6 +146,8 @@ def test_the_narrowest_box_that_is_allowed_holds_the_body():
         check_resolved_swim(ROBOT, MOTION, replace(setting, beside=setting.beside - 1e-3))
 
 
+@pytest.mark.slow("a second and a third run of a swim")
+@pytest.mark.slow("a second run of a swim")
 def test_a_motion_that_the_grid_or_the_joints_cannot_follow_is_refused():
     with pytest.raises(InvalidDesign, match="boundary layer"):
         resolved_swim(ROBOT, MOTION, SwimSetting(axes=3, cells=64, viscosity=1e-6, cycles=1))

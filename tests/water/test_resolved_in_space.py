@@ -36,6 +36,7 @@ def test_a_body_at_rest_feels_nothing():
     assert all(np.abs(found[name].values).max() == 0.0 for name in ("thrust", "aside", "power", "sway", "turn"))
 
 
+@pytest.mark.slow("a second run of a swim")
 def test_a_mirrored_swim_is_pushed_to_the_other_side(swum):
     lags = {"yaw_lag": tuple(lag + 0.5 for lag in MOTION.yaw_lag), "tail_lag": MOTION.tail_lag + 0.5}
     other = held(replace(MOTION, **lags), progress=silent)
