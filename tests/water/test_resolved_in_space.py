@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from suchus.errors import InvalidDesign, OutsideLimits
+from suchus.progress import silent
 from suchus.robots import ROBOTS
 from suchus.water import Outline, Water, fit, printed_wave, recoil
 from suchus.water.resolved import HELD, SwimSetting, resolved_swim, towed_drag
@@ -20,10 +21,6 @@ def held(motion, **given):
     """A swim on the spot whose head moves as the balance of lateral momentum says."""
     sway, turn = recoil(Outline(ROBOT, SETTING.cells + 1), motion, 0.0, Water())
     return resolved_swim(ROBOT, motion, SETTING, sway=sway, turn=turn, **given)
-
-
-def silent(share):
-    del share
 
 
 @pytest.fixture(scope="module")
@@ -50,7 +47,7 @@ def test_a_mirrored_swim_is_pushed_to_the_other_side(swum):
 
 
 def test_a_swim_on_the_spot_that_was_interrupted_goes_on_to_the_same_numbers(swum, tmp_path):
-    def stop(share):
+    def stop(stage, share):
         if share > 0.6:
             raise KeyboardInterrupt
 
