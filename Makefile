@@ -50,6 +50,7 @@ atlas: .venv/.runtime # published flows beside ours, into docs/atlas.md; goes on
 
 .venv/.base:
 	$(PYTHON) -m venv .venv
+	$(PY) -m pip --disable-pip-version-check --quiet install --no-compile "pip>=25" # an old one takes twice as long
 	touch $@
 
 .venv/.runtime: .venv/.base pyproject.toml constraints.txt

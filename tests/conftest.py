@@ -1,6 +1,7 @@
 """What all tests share: shapes that are checked, hypothesis without deadlines, the same examples every time."""
 
 import fcntl
+import gc
 import os
 import pickle
 import sys
@@ -38,6 +39,10 @@ settings.load_profile("suchus")
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     config.stash[COLLECTED] = tuple(items)  # before any are deselected
+
+
+def pytest_collection_finish() -> None:
+    gc.freeze()  # a million objects of modules and of tests stay: nothing looks through them again
 
 
 @pytest.hookimpl(tryfirst=True)

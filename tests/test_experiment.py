@@ -6,6 +6,7 @@ import xarray as xr
 
 from suchus.errors import IncompatibleRecord
 from suchus.experiment import Experiment, Measure, Simulated, silent, staged
+from suchus.progress import portion
 from suchus.verdict import Clause, Rule
 
 
@@ -82,7 +83,15 @@ def test_a_measure_that_a_rule_lacks_is_named():
 def test_progress_of_a_stage_fills_its_part():
     seen = []
     report = staged(lambda stage, share: seen.append((stage, share)), "middle", 0.25, 0.75)
-    report(0.0)
-    report(0.5)
-    report(1.0)
+    report("its own", 0.0)
+    report("its own", 0.5)
+    report("its own", 1.0)
     assert seen == [("middle", 0.25), ("middle", 0.5), ("middle", 0.75)]
+
+
+def test_progress_of_one_part_of_several_keeps_the_names_of_its_stages():
+    seen = []
+    report = portion(lambda stage, share: seen.append((stage, share)), 1, 4)
+    report("begun", 0.0)
+    report("done", 1.0)
+    assert seen == [("begun", 0.25), ("done", 0.5)]

@@ -10,11 +10,12 @@ from pathlib import Path
 import pytest
 
 import suchus
-from suchus import sources, workers
+from suchus import sources
 from suchus.cli import main
 from suchus.errors import AmbiguousName, BrokenFile, InvalidDesign, SuchusError, UnknownName, UnreadableFile
 from suchus.faults import FAULTS, from_table
 from suchus.gaits import GAITS, own_gait
+from suchus.jobs import processes
 from suchus.robots import ROBOTS
 from suchus.study import MEASURES
 
@@ -253,8 +254,8 @@ def part_of(item, tell):
 
 def test_worker_processes_see_the_same_project(lab):
     suchus.project(lab)
-    heard = list(workers.side_by_side(part_of, [FAULTS["tired"]("LF_knee")], 1))
-    assert heard[-1] == (0, workers.Done(("LF_knee", True)))
+    heard = list(processes.side_by_side(part_of, [FAULTS["tired"]("LF_knee")], 1))
+    assert heard[-1] == (0, processes.Done(("LF_knee", True)))
 
 
 def test_what_is_sent_elsewhere_takes_its_project_along(lab):
@@ -268,7 +269,7 @@ def test_what_is_sent_elsewhere_takes_its_project_along(lab):
 
 
 def test_what_makes_the_bytes_includes_the_project(lab):
-    from suchus.study.makers import deciding  # noqa: PLC0415
+    from suchus.jobs.made_by import deciding  # noqa: PLC0415
 
     without = deciding()
     assert "project" not in without

@@ -7,7 +7,6 @@ that it may be stopped and begun again; then what the page states and its pictur
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
-from functools import partial
 from pathlib import Path
 from typing import Any, Literal
 
@@ -116,10 +115,8 @@ def flowed(case: Case, progress: Progress) -> xr.Dataset:
         return xr.Dataset({"drag": ((), towed_drag(ROBOT, case.speed, case.setting()), {"units": "N"})})
     if case.kind == "held":
         sway, turn = recoil(Outline(ROBOT, case.cells + 1), case.swim, 0.0, Water())
-        return resolved_swim(
-            ROBOT, case.swim, case.setting(), sway=sway, turn=turn, progress=partial(progress, "swimming")
-        )
-    swum = resolved_swim(ROBOT, case.swim, case.setting(), progress=partial(progress, "swimming"))
+        return resolved_swim(ROBOT, case.swim, case.setting(), sway=sway, turn=turn, progress=progress)
+    swum = resolved_swim(ROBOT, case.swim, case.setting(), progress=progress)
     return swum[["speed", "thrust", "power"]]
 
 

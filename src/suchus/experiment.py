@@ -13,17 +13,12 @@ from suchus.design import Robot, check_needs
 from suchus.design.scale import coarse_step, scaled_fields
 from suchus.gaits import own_gait
 from suchus.motion import Gait, suits
-from suchus.progress import Progress, silent
+from suchus.progress import Progress, silent, staged
 from suchus.verdict import Rule, Verdict, judge, rules_of
 
 __all__ = [
     "Experiment", "Measure", "Outcome", "Progress", "Replay", "Simulated", "silent", "staged", "stopwatch"
 ]  # fmt: skip
-
-
-def staged(progress: Progress, stage: str, start: float, end: float) -> Callable[[float], None]:
-    """Return a progress of one stage that fills the part from ``start`` to ``end`` of the whole."""
-    return lambda share: progress(stage, start + share * (end - start))
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,10 +12,17 @@ def silent(stage: str, share: float) -> None:
 
 
 def staged(progress: Progress, stage: str, start: float, end: float) -> Progress:
-    """Return the progress of one stage that fills the part from ``start`` to ``end`` of the whole, under its name."""
-    return lambda _, share: progress(stage, start + share * (end - start))
+    """Return the progress of what fills the part from ``start`` to ``end`` of the whole.
+
+    Args:
+        progress: of the whole.
+        stage: name under which all of the part is told; empty for the names of its own stages.
+        start: share of the whole at which the part begins [-].
+        end: share at which it ends [-].
+    """
+    return lambda inner, share: progress(stage or inner, start + share * (end - start))
 
 
 def portion(progress: Progress, number: int, count: int) -> Progress:
     """Return the progress of one part of several equal ones, counted from 0."""
-    return lambda stage, share: progress(stage, (number + share) / count)
+    return staged(progress, "", number / count, (number + 1) / count)

@@ -1,7 +1,7 @@
 """Where things on the shelves come from: the package, a project folder of the user's, other packages of the user's.
 
 A project is a folder with a ``suchus.toml``. Its sub-folders ``robots``, ``gaits``, ``faults``, ``experiments``,
-``controllers``, ``measures`` and ``shapes`` hold files as the shelves of the package do; ``suchus.toml`` names files
+``controllers`` and ``measures`` hold files as the shelves of the package do; ``suchus.toml`` names files
 that stand elsewhere in the folder. A file is read, or a module run, when its name is asked for.
 
 Modules of a project are imported as modules of the shelf, ``suchus.faults.tired``, so that values travel between
@@ -39,7 +39,6 @@ SHELVES: Mapping[str, str] = {
     "experiments": "suchus.experiments",
     "controllers": "suchus.control",
     "measures": "suchus.metrics",
-    "shapes": "suchus.flow",
 }
 """The package of each shelf by its folder in a project; the groups of entry points are ``suchus.robots`` and so on."""
 AS_TOML = ("robots", "gaits")
@@ -66,7 +65,7 @@ class Source:
 
 @dataclass(frozen=True, slots=True)
 class Project:
-    """A folder of the user's own robots, gaits, faults, experiments, controllers, measures and shapes."""
+    """A folder of the user's own robots, gaits, faults, experiments, controllers and measures."""
 
     folder: Path
     """The folder, absolute."""

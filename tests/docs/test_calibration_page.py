@@ -9,6 +9,7 @@ from calibration import WORTH, earned, held_out, judged, mean_off, off, worth
 from pages.stated import kept
 from suchus.land.calibration import WaterCoefficients
 from suchus.land.prescribed import free_sections, held_sections, towed_sections
+from suchus.progress import silent
 from suchus.water import Outline, Water, recoil
 
 KEPT = kept("calibration")
@@ -89,6 +90,6 @@ def test_what_a_model_is_off_is_counted_over_the_flow():
 @pytest.mark.validate
 def test_a_new_flow_around_a_held_body_has_the_forces_that_are_kept():
     case = next(one for one in calibration.cases() if (one.kind, one.name) == ("held", "half the frequency"))
-    found = calibration.numbers("held", calibration.flowed(case, lambda share: None))
+    found = calibration.numbers("held", calibration.flowed(case, silent))
     for name, value in found.items():
         assert value == pytest.approx(KEPT["held"][case.name][name][0], rel=0.02), name

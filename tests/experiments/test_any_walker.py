@@ -85,6 +85,7 @@ def test_it_runs_and_is_not_judged(name, robot):
     answers(name, robot)
 
 
+@pytest.mark.slow("whole experiments on bodies of others")
 @pytest.mark.parametrize(
     ("name", "robot"),
     [("displacement", "strider"), ("crawl_stability", "salamandra"), ("turning", "pleurobot"), ("joint_loops", "six")],

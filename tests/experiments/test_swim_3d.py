@@ -19,6 +19,7 @@ from suchus.experiments.swim_3d.figure import draw_tails
 from suchus.figures import caption
 from suchus.flow import memory
 from suchus.hydro.table import column
+from suchus.progress import silent
 from suchus.robots import ROBOTS
 from suchus.water import Outline, displaced, fit, printed_wave, undulation
 from suchus.water.immersed import folded, half_heights, trunk
@@ -141,11 +142,13 @@ def test_a_layer_says_the_cells_and_hours_that_it_takes():
 def test_the_narrowest_box_that_is_allowed_holds_the_body():
     setting = SwimSetting(axes=3, cells=56, viscosity=2e-3, cycles=1, beside=8 / 56 - 0.05)
     check_resolved_swim(ROBOT, MOTION, setting)
-    resolved_swim(ROBOT, MOTION, setting, progress=lambda _: None)
+    resolved_swim(ROBOT, MOTION, setting, progress=silent)
     with pytest.raises(InvalidDesign, match="the body would leave it"):
         check_resolved_swim(ROBOT, MOTION, replace(setting, beside=setting.beside - 1e-3))
 
 
+@pytest.mark.slow("a second and a third run of a swim")
+@pytest.mark.slow("a second run of a swim")
 def test_a_motion_that_the_grid_or_the_joints_cannot_follow_is_refused():
     with pytest.raises(InvalidDesign, match="boundary layer"):
         resolved_swim(ROBOT, MOTION, SwimSetting(axes=3, cells=64, viscosity=1e-6, cycles=1))
@@ -160,15 +163,17 @@ def test_a_motion_that_the_grid_or_the_joints_cannot_follow_is_refused():
 def test_a_swim_that_was_interrupted_goes_on_to_the_same_numbers(tmp_path):
     setting, seen = SwimSetting(axes=3, cells=54, viscosity=2e-3, cycles=1, frames=4), []
 
-    def stop(share):
+    def stop(stage, share):
         if share > 0.6:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
         resolved_swim(ROBOT, MOTION, setting, checkpoint=tmp_path / "swim", progress=stop)
-    found = resolved_swim(ROBOT, MOTION, setting, checkpoint=tmp_path / "swim", progress=seen.append)
+    found = resolved_swim(
+        ROBOT, MOTION, setting, checkpoint=tmp_path / "swim", progress=lambda _, share: seen.append(share)
+    )
     assert min(seen) > 0.5
-    assert found.identical(resolved_swim(ROBOT, MOTION, setting, progress=lambda _: None))
+    assert found.identical(resolved_swim(ROBOT, MOTION, setting, progress=silent))
     assert found.sizes["z"] * found.sizes["y"] * found.sizes["x"] == pytest.approx(1e6 * float(found.million_cells))
     assert float(found.power[-1]) > 0
     assert found.frame.values == pytest.approx([0.25, 0.5, 0.75, 1.0], abs=0.05)
@@ -186,15 +191,15 @@ def test_a_swim_that_was_interrupted_goes_on_to_the_same_numbers(tmp_path):
 def test_a_motion_that_is_handed_over_joint_by_joint_swims_to_the_same_numbers():
     setting = SwimSetting(axes=3, cells=54, viscosity=2e-3, cycles=1)
     outline = Outline(ROBOT, setting.cells + 1)
-    commanded = resolved_swim(ROBOT, MOTION, setting, progress=lambda _: None)
+    commanded = resolved_swim(ROBOT, MOTION, setting, progress=silent)
     handed = undulation(outline, MOTION)
-    assert resolved_swim(ROBOT, handed, setting, progress=lambda _: None).identical(commanded)
+    assert resolved_swim(ROBOT, handed, setting, progress=silent).identical(commanded)
     folded_end = handed.middles.copy()
     folded_end[1, -4:] += 0.3
-    other = resolved_swim(ROBOT, replace(handed, middles=folded_end), setting, progress=lambda _: None)
+    other = resolved_swim(ROBOT, replace(handed, middles=folded_end), setting, progress=silent)
     assert abs(float(other.speed[-1] / commanded.speed[-1]) - 1.0) > 1e-3
     with pytest.raises(InvalidDesign, match="has 55 stations along the midline, and 57 are asked for"):
-        resolved_swim(ROBOT, handed, replace(setting, cells=56), progress=lambda _: None)
+        resolved_swim(ROBOT, handed, replace(setting, cells=56), progress=silent)
 
 
 def bent():

@@ -14,6 +14,7 @@ from suchus.paper import ERRATA
 from suchus.water import fit, printed_wave, swim
 
 
+@pytest.mark.slow("a second run of an experiment")
 def _no_conditions(self, ours, printed, free, progress):
     """Stand in for five more swims that are kept as the first is."""
     speed = np.ones((len(ARMS), self.arm_cycles))

@@ -56,6 +56,7 @@ def told(script, cache):
     ).stdout.split()  # fmt: skip
 
 
+@pytest.mark.slow("kernels are compiled anew, and run a second and a third time")
 def forget(cache, kernel):
     """Take a kernel out of a cache folder."""
     files = [f for f in Path(cache).rglob("*.nb*") if f".{kernel}-" in f".{f.name}"]

@@ -18,6 +18,7 @@ from suchus.experiments.swim_3d.experiment import Swim3d
 from suchus.flow import signals
 from suchus.flow.added import added_mass
 from suchus.flow.compiled import PAD
+from suchus.progress import silent
 from suchus.water import setting
 from suchus.water.resolved import SwimSetting, resolved_swim
 
@@ -439,7 +440,7 @@ def test_the_box_around_the_swimming_robot(monkeypatch):
     for label, box in (("default", default), ("wide", (0.4, 0.85, 0.575, 0.4))):
         for name, size in zip(sizes, box, strict=True):
             monkeypatch.setattr(setting, name, size)
-        record = resolved_swim(swim.robot, motion, asked, progress=lambda _: None)
+        record = resolved_swim(swim.robot, motion, asked, progress=silent)
         found[label] = np.array([float(record[name][-1]) for name in ("speed", "power")])
     print(f"robot at 64 cells a length, 4th cycle, speed and power in its box {found['default']}, wide {found['wide']}")
     about = "64 cells/L", "ahead, behind, beside, above {:g}, {:g}, {:g}, {:g} L".format(*default)

@@ -200,8 +200,15 @@ def test_the_command_leaves_gaits_numbers_and_a_page(page, tmp_path, monkeypatch
     text = (result / "index.html").read_text()
     for word in ("Is it an optimum?", "free_replay.html", "under other conditions", "data:image/svg+xml"):
         assert word in text
-    before = contents(result)
-    assert main(["optimise", "small.toml", "--evaluations", "4"]) == 0
+
+
+@pytest.mark.slow("a second run of a search")
+def test_the_command_leaves_the_same_files_when_it_is_given_again(page, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    result, before = tmp_path / "out" / "optimise" / "small" / "result", {}
+    for _ in range(2):
+        assert main(["optimise", "small.toml", "--evaluations", "4"]) == 0
+        before = before or contents(result)
     assert contents(result) == before
 
 

@@ -6,6 +6,7 @@ import pytest
 import suchus
 from suchus.errors import InvalidDesign, OutsideLimits
 from suchus.motion import Swim
+from suchus.progress import silent
 from suchus.water import ExactWave, Outline
 from suchus.water.immersed import immersed
 from suchus.water.resolved import HELD, ON_THE_SPOT, SwimSetting, check_resolved_swim, resolved_swim, towed_drag
@@ -126,7 +127,7 @@ def test_a_free_body_is_given_no_motion_of_its_head(robot):
 
 
 def test_a_slice_kept_from_moving_on_stays_and_sways(robot):
-    record = resolved_swim(robot, MOTION, replace(COARSE, free=ON_THE_SPOT), progress=lambda _: None)
+    record = resolved_swim(robot, MOTION, replace(COARSE, free=ON_THE_SPOT), progress=silent)
     assert float(abs(record.speed).max()) == 0.0
     assert float(np.ptp(record.centre_x.values)) == 0.0
     assert float(np.ptp(record.centre_y.values)) > 1e-3

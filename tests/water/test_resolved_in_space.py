@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from suchus.errors import InvalidDesign, OutsideLimits
+from suchus.progress import silent
 from suchus.robots import ROBOTS
 from suchus.water import Outline, Water, fit, printed_wave, recoil
 from suchus.water.resolved import HELD, SwimSetting, resolved_swim, towed_drag
@@ -22,10 +23,6 @@ def held(motion, **given):
     return resolved_swim(ROBOT, motion, SETTING, sway=sway, turn=turn, **given)
 
 
-def silent(share):
-    del share
-
-
 @pytest.fixture(scope="module")
 def swum():
     return held(MOTION, progress=silent)
@@ -36,6 +33,7 @@ def test_a_body_at_rest_feels_nothing():
     assert all(np.abs(found[name].values).max() == 0.0 for name in ("thrust", "aside", "power", "sway", "turn"))
 
 
+@pytest.mark.slow("a second run of a swim")
 def test_a_mirrored_swim_is_pushed_to_the_other_side(swum):
     lags = {"yaw_lag": tuple(lag + 0.5 for lag in MOTION.yaw_lag), "tail_lag": MOTION.tail_lag + 0.5}
     other = held(replace(MOTION, **lags), progress=silent)
@@ -49,7 +47,7 @@ def test_a_mirrored_swim_is_pushed_to_the_other_side(swum):
 
 
 def test_a_swim_on_the_spot_that_was_interrupted_goes_on_to_the_same_numbers(swum, tmp_path):
-    def stop(share):
+    def stop(stage, share):
         if share > 0.6:
             raise KeyboardInterrupt
 

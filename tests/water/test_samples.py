@@ -6,6 +6,7 @@ import pytest
 
 from suchus.errors import UnreadableFile
 from suchus.motion import Swim
+from suchus.progress import silent
 from suchus.record.seal import sealed
 from suchus.water.resolved import FREE, HELD, SwimSetting, resolved_swim
 from suchus.water.samples import Samples
@@ -19,7 +20,7 @@ class _Killed(BaseException):
 
 
 def _killed_at(share):
-    def progress(now):
+    def progress(stage, now):
         if now > share:
             raise _Killed
 
@@ -29,12 +30,16 @@ def _killed_at(share):
 @pytest.mark.parametrize("free", [FREE, HELD])
 def test_a_killed_swim_goes_on_and_ends_with_the_same_numbers(robot, tmp_path, free):
     file, later, setting = tmp_path / "swim.npz", [], replace(SETTING, free=free)
+
+    def tell(stage, share):
+        later.append(share)
+
     with pytest.raises(_Killed):
         resolved_swim(robot, MOTION, setting, checkpoint=file, progress=_killed_at(0.7))
-    again = resolved_swim(robot, MOTION, setting, checkpoint=file, progress=later.append)
+    again = resolved_swim(robot, MOTION, setting, checkpoint=file, progress=tell)
     assert min(later) > 0.5, "it began anew"
-    assert again.identical(resolved_swim(robot, MOTION, setting, progress=lambda _: None))
-    assert resolved_swim(robot, MOTION, setting, checkpoint=file, progress=later.append).identical(again)
+    assert again.identical(resolved_swim(robot, MOTION, setting, progress=silent))
+    assert resolved_swim(robot, MOTION, setting, checkpoint=file, progress=tell).identical(again)
 
 
 def test_another_swim_does_not_go_on_from_it(robot, tmp_path):

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import suchus
 from suchus.cli.perform import perform
-from suchus.errors import IncompatibleRecord, SuchusError, UnreadableFile
+from suchus.errors import SuchusError
 from suchus.experiment import Experiment
 from suchus.experiments import EXPERIMENTS
 from suchus.progress import Progress
@@ -75,7 +75,7 @@ def kept(task: Reproduction) -> Reproduced | None:
         experiment = task.experiment
         result = load_result(task.out / task.name)
         same = made_alike(result.outcome["provenance"], experiment.settings())
-    except (UnreadableFile, IncompatibleRecord):
+    except SuchusError:
         return None
     if not (same and whole(result) and result.outcome["command"] == task.command and _is_ours(experiment)):
         return None

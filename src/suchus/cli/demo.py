@@ -1,6 +1,6 @@
 """``suchus demo``: a first walk, live in the browser where that can be, else as a page."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from importlib.util import find_spec
 from pathlib import Path
@@ -19,6 +19,7 @@ from suchus.design.checks import require
 from suchus.gaits import GAITS
 from suchus.land import Run, simulate
 from suchus.metrics import displacement, speed
+from suchus.progress import Progress, staged
 from suchus.record import check_writable
 from suchus.replay import replay, save
 from suchus.robots import ROBOTS
@@ -70,7 +71,7 @@ def _page(out: Path, opener: BaseBrowser | None, live: bool) -> int:
     check_writable(out.parent)
     with working() as bars:
         move = bars.reporter("demo")
-        walks = _walks(lambda share: move("walking", 0.8 * share))
+        walks = _walks(staged(move, "walking", 0.0, 0.8))
         move("drawing", 0.9)
         path = save(_drawn(walks), out).absolute()
     robot = ROBOTS[ROBOT]
@@ -87,7 +88,7 @@ def _page(out: Path, opener: BaseBrowser | None, live: bool) -> int:
     return 0
 
 
-def _walks(progress: Callable[[float], None]) -> xr.Dataset:
+def _walks(progress: Progress) -> xr.Dataset:
     """Return the record of all gaits that are shown."""
     runs = [Run(robot=ROBOTS[ROBOT], gait=GAITS[name]) for name in GAITS_SHOWN]
     return simulate(runs, progress=progress)

@@ -1,13 +1,16 @@
 """Where the command line begins and ends: words in, an exit code out."""
 
+import os
 import sys
 from collections.abc import Sequence
+from contextlib import suppress
+from shutil import get_terminal_size
 
 from suchus.cli.commands import COMMANDS, PROJECT, BadCommand
-from suchus.cli.streams import drop_output, prepare_streams, printable
 from suchus.errors import Diverged, NotConverged, SuchusError, UnknownName, Unwritable, plain_warnings
 from suchus.sources import within
 
+_NARROWEST, _WIDEST = 40, 500  # columns of a terminal that a help is set for
 _EXAMPLES = (
     ("suchus demo", "a first walk, in the browser"),
     ("suchus reproduce", "everything, into out/report.html"),
@@ -27,7 +30,7 @@ def main(words: Sequence[str] | None = None) -> int:
         words: what follows ``suchus``; by default those of this process.
     """
     words = list(sys.argv[1:] if words is None else words)
-    prepare_streams()
+    _prepare_streams()
     try:
         words, folder = _apart(words)
         with plain_warnings(), within(folder):
@@ -39,7 +42,7 @@ def main(words: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         return _complain("stopped; what was finished is kept, nothing half-written is left.", 130)
     except BrokenPipeError:  # the reader of our output has gone, as in `suchus list | head -1`
-        drop_output()
+        _drop_output()
         return 0
 
 
@@ -79,7 +82,7 @@ def _flushed(words: list[str]) -> int:
     except OSError as error:
         if isinstance(error, SuchusError):
             raise
-        drop_output()
+        _drop_output()
         what = f"{error.filename} cannot be read or written" if error.filename else "what was to be printed is lost"
         raise Unwritable(f"{what}: {(error.strerror or str(error)).lower()}.") from error
 
@@ -123,5 +126,48 @@ def _help() -> str:
 
 
 def _complain(sentence: str, code: int) -> int:
-    print("suchus: " + printable(" ".join(sentence.split())), file=sys.stderr)
+    print("suchus: " + _printable(" ".join(sentence.split())), file=sys.stderr)
     return code
+
+
+# --- the surroundings of a command --------------------------------------------------------------------------------
+
+
+def _prepare_streams() -> None:
+    """Make sure that there are streams that take every letter, a width that text can be set in, and a way to draw.
+
+    A stream that is closed becomes one that swallows everything: the next file that is opened must not take its
+    number, and what is meant for people must not end up in it. Figures are only ever saved, so that no window is
+    needed, whatever ``MPLBACKEND`` says.
+    """
+    if sys.stdout is None or sys.stderr is None:
+        for number in range(3):
+            _hold(number)
+        sys.stdout = sys.stdout or open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115, PTH123  until we end
+        sys.stderr = sys.stderr or open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115, PTH123
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="replace")
+    columns = get_terminal_size().columns
+    if not _NARROWEST <= columns <= _WIDEST:
+        os.environ["COLUMNS"] = str(min(max(columns, _NARROWEST), _WIDEST))
+    if "matplotlib" not in sys.modules:
+        os.environ["MPLBACKEND"] = "agg"
+
+
+def _hold(number: int) -> None:
+    try:
+        os.fstat(number)
+    except OSError:
+        os.open(os.devnull, os.O_RDWR)  # takes the least number that is free
+
+
+def _drop_output() -> None:
+    """Let what is still to be printed go nowhere, so that the end of the process does not complain of it again."""
+    with suppress(OSError, ValueError):  # not every stream is a file
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _printable(text: str) -> str:
+    """Return a text whose letters a terminal shows and does not obey."""
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)

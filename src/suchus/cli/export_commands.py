@@ -31,6 +31,7 @@ from suchus.hardware import (
 )
 from suchus.hardware.limits import AT_LIMIT, TRACKING
 from suchus.motion import Gait
+from suchus.progress import staged
 from suchus.record import check_name, check_replaceable, check_writable, digest, new_folder, versions
 from suchus.robots import ROBOTS
 
@@ -93,7 +94,7 @@ def export_commands(words: Sequence[str]) -> int:
     samples = commands(options.robot, options.gait, servo_map, options.cycles)
     with working() as bars:
         move = bars.task(options.gait.name)
-        borne = loads(options.robot, options.gait, progress=lambda share: move("walking", share))
+        borne = loads(options.robot, options.gait, progress=staged(move, "walking", 0.0, 1.0))
     try:
         check_commands(options.robot, options.gait, servo_map, samples)
         check_loads(options.robot, options.gait, borne, options.at_limit, options.tracking)

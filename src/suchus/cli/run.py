@@ -3,13 +3,14 @@
 import shlex
 from collections.abc import Sequence
 
-from suchus.cli.commands import BadCommand
+from suchus.cli.commands import PROJECT, BadCommand
 from suchus.cli.options import TABLES, choose
 from suchus.cli.perform import perform
 from suchus.cli.shelves import entry, title
 from suchus.cli.terminal import show_outcome, working
 from suchus.experiments import EXPERIMENTS
 from suchus.record import check_writable, write_tables
+from suchus.sources import current
 
 
 def run(words: Sequence[str]) -> int:
@@ -28,11 +29,17 @@ def run(words: Sequence[str]) -> int:
     choice = choose(EXPERIMENTS[name], name, options)
     check_writable(choice.out)
     with working() as bar:
-        done = perform(choice.experiment, name, choice.out, bar.task(name), shlex.join(["suchus", "run", *words]))
+        done = perform(choice.experiment, name, choice.out, bar.task(name), _again(words))
     show_outcome(choice.experiment, done)
     if choice.csv:
         print(f"the record as CSV: {write_tables(done.outcome.record, done.folder / TABLES)}")
     return 0
+
+
+def _again(words: Sequence[str]) -> str:
+    """Return the command that makes the same result again, from any folder."""
+    project = current()
+    return shlex.join(["suchus", "run", *words, *((PROJECT, str(project.folder)) if project else ())])
 
 
 def _help() -> str:

@@ -1,6 +1,6 @@
 """A central pattern generator: phase oscillators of axis and limbs that a single drive lets walk, then swim."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from math import radians
 from typing import NamedTuple
@@ -23,6 +23,7 @@ from suchus.design.checks import Checks, require
 from suchus.design.scale import control_period
 from suchus.errors import InvalidDesign
 from suchus.motion import START, Gait, check_limits
+from suchus.progress import Progress, silent
 
 _SLACK = 1e-9  # [s]; times are multiples of the control period up to rounding
 _LEAST = 1e-9  # [-]; an amplitude below this is none
@@ -306,7 +307,7 @@ def oscillate(
     duration: float,
     seeds: Sequence[int] | None = None,
     every: int = 1,
-    progress: Callable[[float], None] | None = None,
+    progress: Progress = silent,
 ) -> OscillatorStates:
     """Let pattern generators turn without a body, from the time at which a walk begins.
 
@@ -317,7 +318,7 @@ def oscillate(
         duration: of the oscillation [s].
         seeds: one for each run; all 0 if None.
         every: keep one sample of so many control periods.
-        progress: called with the share that is done.
+        progress: told the share that is done.
     """
     require("oscillate", "duration", duration, 0.0, 86400.0, "s")
     period, runs = control_period(robot), len(controls)
@@ -328,8 +329,7 @@ def oscillate(
         generator.advance(tick)
         if (tick - first) % every == 0:
             found.append((tick * period, generator.phase, generator.amplitude, generator.wave))
-            if progress is not None:
-                progress((tick - first) / max(ticks, 1))
+            progress("oscillating", (tick - first) / max(ticks, 1))
     time, phase, amplitude, wave = zip(*found, strict=True)
     return OscillatorStates(
         time=np.array(time),

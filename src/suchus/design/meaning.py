@@ -4,6 +4,7 @@ import ast
 import inspect
 import re
 import textwrap
+from functools import cache
 from itertools import pairwise
 
 
@@ -25,7 +26,9 @@ def _is_text(node: ast.stmt) -> bool:
     return isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, str)
 
 
+@cache
 def _own(kind: type) -> dict[str, str]:
+    """Return what a class's own body says; to find it in the source takes 10 ms."""
     try:
         source = textwrap.dedent(inspect.getsource(kind))
     except (OSError, TypeError):

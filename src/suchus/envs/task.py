@@ -60,7 +60,7 @@ class Breaks:
             check.that(self.joints is None or len(self.joints) > 0, "breaks.joints is empty; name one servo at least")
             check.that(len(self.kinds) > 0, "breaks.kinds is empty; name one fault at least")
             _check_when(check, "breaks", self.earliest, self.latest)
-        allowed = tuple(kind for kind in FAULTS if FAULTS[kind].acts_on == "servo")
+        allowed = tuple(name for name, kind in FAULTS.items() if kind.acts_on == "servo")
         for kind in self.kinds:
             if kind not in allowed:
                 raise UnknownName("fault of a servo", str(kind)[:40], allowed)

@@ -4,6 +4,7 @@ A folder holds ``experiment.py``, which declares ``experiment``, and beside it w
 ``rules``, its ``figure``, tables that it needs. Importing the shelf imports none of them.
 """
 
+from operator import methodcaller
 from typing import TYPE_CHECKING
 
 from suchus.catalog import Catalog
@@ -11,6 +12,8 @@ from suchus.catalog import Catalog
 if TYPE_CHECKING:
     from suchus.experiment import Experiment
 
-EXPERIMENTS: "Catalog[Experiment]" = Catalog("experiment", "suchus.experiments", "suchus.experiment:Experiment")
+EXPERIMENTS: "Catalog[Experiment]" = Catalog(
+    "experiment", "suchus.experiments", "suchus.experiment:Experiment", named=methodcaller("name")
+)
 
 __all__ = ["EXPERIMENTS"]

@@ -179,12 +179,15 @@ def save(figure: Figure, folder: Path, stem: str) -> tuple[Path, Path]:
     """
     svg, png = folder / f"{stem}.svg", folder / f"{stem}.png"
     about = {"Date": None, "Creator": None, "Description": caption(figure)}
-    with styled(svg__hashsalt=stem):
+    layout = figure.get_layout_engine()
+    with styled(svg__hashsalt=stem, figure__constrained_layout__use=False):
         for path, kind, metadata in ((svg, "svg", about), (png, "png", {"Software": None})):
             drawn = BytesIO()
             figure.savefig(drawn, format=kind, metadata=metadata)
+            figure.set_layout_engine(None)  # the axes stand where the first file has them, and are not placed again
             with new_file(path) as draft:
                 draft.write_bytes(drawn.getvalue())
+    figure.set_layout_engine(layout)
     if numbers := table(figure):
         with new_file(folder / f"{stem}{DATA}") as draft:
             draft.write_text(numbers, encoding="utf-8")

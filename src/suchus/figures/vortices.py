@@ -1,7 +1,5 @@
 """Vortices around a swimming body in space: a picture and a film of the surfaces around them and of the body."""
 
-from collections.abc import Callable
-
 import numpy as np
 import xarray as xr
 from matplotlib import colormaps
@@ -16,6 +14,7 @@ from suchus.figures.film import film
 from suchus.figures.solids import Camera, picture
 from suchus.figures.style import captioned, panels, styled
 from suchus.isosurface import IsoSurface, isosurface
+from suchus.progress import Progress, silent
 from suchus.skin.mesh import Mesh, joined, loft
 
 SKIN = (0.42, 0.44, 0.36)
@@ -170,12 +169,12 @@ def draw_vortices(record: xr.Dataset) -> Figure:
     return captioned(figure, _caption(record))
 
 
-def film_vortices(record: xr.Dataset, progress: Callable[[float], None] | None = None) -> bytes:
+def film_vortices(record: xr.Dataset, progress: Progress = silent) -> bytes:
     """Return a film of the last cycle as a GIF.
 
     Args:
         record: of the experiment ``swim_3d``.
-        progress: called with the share that is done.
+        progress: told the share that is done.
     """
     count = record.sizes["frame"]
     with styled(axes__grid=False, figure__dpi=100):
@@ -187,8 +186,7 @@ def film_vortices(record: xr.Dataset, progress: Callable[[float], None] | None =
 
         def show(i: int) -> None:
             image.set_data(still(record, i))
-            if progress is not None:
-                progress((i + 1) / count)
+            progress("drawing", (i + 1) / count)
 
         return film(figure, show, count, seconds=_SECONDS, caption=_caption(record))
 

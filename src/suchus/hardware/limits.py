@@ -1,6 +1,6 @@
 """Whether servos can do what a gait asks: pulses, speed, and torque from a simulated walk."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -14,6 +14,7 @@ from suchus.land import Run, simulate
 from suchus.metrics import between, whole
 from suchus.model.build import servo_of
 from suchus.motion import START, Gait
+from suchus.progress import Progress, silent
 
 AT_LIMIT = 0.02
 """Share of a walk that a servo may spend at its torque limit [-]; chosen so that the peak of a footfall passes."""
@@ -89,16 +90,14 @@ def check_commands(robot: Robot, gait: Gait, servo_map: ServoMap, samples: Comma
             )
 
 
-def loads(
-    robot: Robot, gait: Gait, *, cycles: int = 2, progress: Callable[[float], None] | None = None
-) -> Mapping[str, ServoLoad]:
+def loads(robot: Robot, gait: Gait, *, cycles: int = 2, progress: Progress = silent) -> Mapping[str, ServoLoad]:
     """Return what each servo bears in a simulated walk on level ground.
 
     Args:
         robot: who walks.
         gait: how.
         cycles: how many.
-        progress: called with the share that is done.
+        progress: told the share that is done.
 
     Raises:
         Diverged: the simulation diverged.
@@ -114,7 +113,7 @@ def loads_of_each(
     *,
     cycles: int = 2,
     timestep: float | None = None,
-    progress: Callable[[float], None] | None = None,
+    progress: Progress = silent,
 ) -> list[Mapping[str, ServoLoad]]:
     """Return what each servo bears in each of several gaits, simulated in one batch on level ground.
 
@@ -123,7 +122,7 @@ def loads_of_each(
         gaits: how.
         cycles: how many of each.
         timestep: of the physics [s]; that of the robot's size if None.
-        progress: called with the share that is done.
+        progress: told the share that is done.
 
     Raises:
         Diverged: the simulation diverged.

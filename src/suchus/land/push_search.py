@@ -11,6 +11,7 @@ from jaxtyping import Bool, Float
 from suchus.errors import InvalidDesign
 from suchus.land.run import Push, Run
 from suchus.land.simulation import simulate
+from suchus.progress import Progress, silent, staged
 
 
 def smallest_pushes(
@@ -25,7 +26,7 @@ def smallest_pushes(
     body: str = "thorax",
     wait: float = 3.0,
     timestep: float = 0.005,
-    progress: Callable[[float], None] = lambda _: None,
+    progress: Progress = silent,
 ) -> Float[np.ndarray, "run direction"]:
     """Return the smallest push that topples each run in each direction [N].
 
@@ -45,7 +46,7 @@ def smallest_pushes(
         body: what is pushed.
         wait: how long is waited for the fall [s].
         timestep: of the physics [s].
-        progress: called with the share that is done.
+        progress: told the share that is done.
 
     Raises:
         InvalidDesign: the levels do not increase from above zero.
@@ -57,7 +58,7 @@ def smallest_pushes(
         runs, directions, Push(force=(0.0, 0.0, 0.0), at=at, duration=duration, body=body), fell, wait, timestep
     )
     forces = np.broadcast_to(scan[1:], (len(runs), len(directions), len(levels)))
-    coarse = topples(forces, lambda share: progress(0.6 * share))
+    coarse = topples(forces, staged(progress, "coarse levels", 0.0, 0.6))
     first = np.where(coarse.any(axis=-1), coarse.argmax(axis=-1), len(levels))
     low, smallest = scan[first], np.append(scan[1:], np.inf)[first]
     if finer:
@@ -65,10 +66,10 @@ def smallest_pushes(
             np.isfinite(smallest), smallest - low, 1.0
         )  # of those that never fall any will do: it is not used
         between = low[..., None] + gap[..., None] * (np.arange(1, finer + 1) / (finer + 1))
-        fine = topples(between, lambda share: progress(0.6 + 0.4 * share))
+        fine = topples(between, staged(progress, "finer levels", 0.6, 1.0))
         nearer = np.take_along_axis(between, fine.argmax(axis=-1)[..., None], axis=-1)[..., 0]
         smallest = np.where(fine.any(axis=-1) & np.isfinite(smallest), nearer, smallest)
-    progress(1.0)
+    progress("finer levels", 1.0)
     return smallest
 
 
@@ -83,7 +84,7 @@ class _Trial(NamedTuple):
     timestep: float
 
     def __call__(
-        self, forces: Float[np.ndarray, "run direction force"], progress: Callable[[float], None]
+        self, forces: Float[np.ndarray, "run direction force"], progress: Progress
     ) -> Bool[np.ndarray, "run direction force"]:
         """Tell which of the forces topple [N]."""
         batch = [

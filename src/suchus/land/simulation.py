@@ -1,6 +1,6 @@
 """Simulate a batch of runs from beginning to end, or one: physics in MuJoCo, a controller for the whole batch."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
@@ -19,9 +19,8 @@ from suchus.land.readings import with_equal_variables
 from suchus.land.run import Push, Run, check_pushes
 from suchus.model import topology
 from suchus.motion import START, Gait, check_limits
+from suchus.progress import Progress, portion, silent
 from suchus.robots import ROBOTS
-
-Progress = Callable[[float], None]
 
 
 def simulate(
@@ -30,7 +29,7 @@ def simulate(
     duration: float = 9.0,
     timestep: float | None = None,
     every: int = 1,
-    progress: Progress | None = None,
+    progress: Progress = silent,
 ) -> xr.Dataset:
     """Simulate a batch of runs.
 
@@ -42,7 +41,7 @@ def simulate(
         duration: [s].
         timestep: of the physics [s], a whole part of the control period; that of the robots' size if None.
         every: keep one sample of so many control periods.
-        progress: called with the share that is done.
+        progress: told the share that is done.
 
     Returns:
         A record with the dimensions ``run`` and ``time`` (see ``record.schema``), the first sample at time 0.
@@ -63,12 +62,7 @@ def simulate(
     groups = _groups(runs)
     for number, members in enumerate(groups):
         grouped = [runs[i] for i in members]
-
-        def report(share: float, done: int = number) -> None:
-            if progress is not None:
-                progress((done + share) / len(groups))
-
-        parts.append(_simulate_group(grouped, ticks, timestep, every, report))
+        parts.append(_simulate_group(grouped, ticks, timestep, every, portion(progress, number, len(groups))))
         order.extend(members)
     parts = with_equal_variables(parts)
     record = parts[0] if len(parts) == 1 else xr.concat(parts, "run", join="exact", data_vars="minimal")
@@ -133,8 +127,8 @@ def _simulate_group(runs: Sequence[Run], ticks: int, timestep: float, every: int
         if tick < ticks:
             loop.advance(felt=loop.feels or (tick + 1) % every == 0)
         if tick % 16 == 0:
-            progress(tick / ticks)
-    progress(1.0)
+            progress("simulating", tick / ticks)
+    progress("simulating", 1.0)
     return recorder.record(np.arange(0, ticks + 1, every) * loop.period)
 
 

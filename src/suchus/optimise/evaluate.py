@@ -1,7 +1,6 @@
 """One generation: its candidates in one batch, what each reaches, what each breaks."""
 
 from collections.abc import Mapping, Sequence
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -81,9 +80,7 @@ def _walked(
         return {}
     scales = spec.friction_scales
     laid = [with_values(run, {"ground.friction_scale": scale}) for run in runs.values() for scale in scales]
-    record = simulate(
-        laid, duration=spec.duration, timestep=timestep, every=_EVERY, progress=partial(progress, "walking")
-    )
+    record = simulate(laid, duration=spec.duration, timestep=timestep, every=_EVERY, progress=progress)
     measured = measure(spec, laid, record)
     broken = (record.cause.values != "").reshape(len(runs), -1).any(axis=1)
     found: dict[int, dict[str, float] | None] = {}

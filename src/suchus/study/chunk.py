@@ -1,7 +1,6 @@
 """One batch of a study: from points to a table of results."""
 
 from collections.abc import Mapping, Sequence
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -59,7 +58,7 @@ def _walk(
             duration=study.duration,
             timestep=study.timestep,
             every=study.every,
-            progress=partial(progress, "walking"),
+            progress=progress,
         )
     except SuchusError as error:
         if len(runs) == 1:

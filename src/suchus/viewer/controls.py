@@ -190,7 +190,7 @@ class Controls:
     def _other_faults(self) -> None:
         """Offer every fault of the shelf, with its part and, where it has one, its number."""
         gui, session = self._gui, self._session
-        kinds = tuple(name for name in FAULTS if name not in ("limp", "locked"))
+        kinds = tuple(name for name, _ in FAULTS.items() if name not in ("limp", "locked"))
         kind = gui.add_dropdown("fault", kinds, initial_value=kinds[0])
         part = gui.add_dropdown("part", FAULTS[kinds[0]].parts(session.robot))
         much = gui.add_number("how much", 0.0, step=0.01, hint="In SI units; faults without a number ignore it.")

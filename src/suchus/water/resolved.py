@@ -11,9 +11,10 @@ import xarray as xr
 from suchus import flow
 from suchus.design import Robot
 from suchus.errors import OutsideLimits
+from suchus.progress import Progress
 from suchus.water.outline import Outline
 from suchus.water.plane_record import FreeSlice, HeldSlice
-from suchus.water.samples import Progress, Samples, run_on
+from suchus.water.samples import Samples, run_on
 from suchus.water.setting import DENSITY, FREE, HELD, ON_THE_SPOT, SwimSetting
 from suchus.water.space_record import FreeInSpace, HeldInSpace
 from suchus.water.swim_setup import ResolvedSwim, box_grid, box_sides, straight_body
@@ -72,7 +73,7 @@ def resolved_swim(
         turn: harmonic of the direction of a held body's head [rad]; an exact wave brings its own.
         checkpoint: file that the state is kept in at every quarter of a cycle; if it exists, the swim goes on from
             there. None keeps nothing.
-        progress: called with the share that is done; None shows a progress bar.
+        progress: told the share that is done; None shows a progress bar.
 
     Returns:
         Per metre of depth in the plane. *Free, in the plane*: ``speed`` and ``power`` per cycle, snout, heading, tail

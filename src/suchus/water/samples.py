@@ -17,18 +17,11 @@ from suchus import flow
 from suchus.errors import UnreadableFile
 from suchus.flow import checkpoint as store
 from suchus.flow.progress import Bar
+from suchus.progress import Progress
 from suchus.record import new_file
 from suchus.record.seal import holds, sealed
 
-Progress = Callable[[float], None]
-"""Called with the share that is done."""
-
 _KEPT, _SAMPLES = ".kept-swim", ".samples"  # how the files of an unfinished swim end
-
-
-def portion(progress: Progress, number: int, count: int) -> Progress:
-    """Return the progress of one run of several, counted from 0."""
-    return lambda share: progress((number + share) / count)
 
 
 class Samples:
@@ -134,7 +127,7 @@ def run_on(
         sample: called after every step to take samples.
         about: what this run is, so that it does not go on from another's checkpoint.
         checkpoint: the flow's state; the samples are kept beside it. None keeps nothing.
-        progress: called with the share that is done; None shows a progress bar.
+        progress: told the share that is done; None shows a progress bar.
 
     Raises:
         UnreadableFile: the checkpoint or the samples are broken or belong to another run.
@@ -152,7 +145,7 @@ def run_on(
             sample(sim, samples)
             bar.move(sim.time)
             if progress is not None:
-                progress(sim.time / end)
+                progress("swimming", sim.time / end)
 
         for i in range(round(sim.time / pause), round(end / pause)):
             sim.run((i + 1) * pause, watch=watch, progress=False)

@@ -157,14 +157,14 @@ class BipedalReach(Experiment):
         duration = standing.down_from(self.robot) + self.gait.period
         calm = Run(robot=self.robot, gait=self.gait, control=standing)
         record = simulate(
-            [calm], duration=duration, timestep=self.timestep, every=2, progress=lambda share: progress(0.5 * share)
+            [calm], duration=duration, timestep=self.timestep, every=2, progress=staged(progress, "", 0.0, 0.5)
         )
         blind = replace(calm, control=replace(standing, balance=None))
         shaken = [
             replace(run, noise=self.noise, seed=seed) for run in (calm, blind) for seed in range(1, 1 + self.repeats)
         ]
         repeats = simulate(
-            shaken, duration=duration, timestep=_COARSE, every=10, progress=lambda share: progress(0.5 + 0.5 * share)
+            shaken, duration=duration, timestep=_COARSE, every=10, progress=staged(progress, "", 0.5, 1.0)
         )
         heights = reach(self.robot, repeats).values.reshape(2, self.repeats, -1)
         record = record.assign(reach=reach(self.robot, record), margin=static_margin(record), lead=lead(record))
@@ -217,7 +217,7 @@ class BipedalReach(Experiment):
         """Return the smallest pushes that topple, with feedback and without, over the lead."""
         leads = sorted({*self.leads, LEAD})
         balances = {"on": self.balance, "off": None}
-        stood = self._settled([self.robot] * len(leads), leads, lambda share: progress(0.1 * share))
+        stood = self._settled([self.robot] * len(leads), leads, staged(progress, "", 0.0, 0.1))
         runs = [
             Run(robot=self.robot, gait=self.straight, control=stand_soon(self.robot, lead, balance) or OpenLoop())
             for balance in balances.values()
@@ -232,7 +232,7 @@ class BipedalReach(Experiment):
             wait=self.wait,
             fell=lambda record: record.snout.sel(xyz="z").isel(time=-1) < _UP * stretched(self.robot),
             timestep=_COARSE,
-            progress=lambda share: progress(0.1 + 0.9 * share),
+            progress=staged(progress, "", 0.1, 1.0),
         ).reshape(len(balances), len(leads), len(_DIRECTIONS))
         stands = stood.reach.values > _UP * stretched(self.robot)
         return xr.Dataset(
@@ -251,7 +251,7 @@ class BipedalReach(Experiment):
     def _lengths(self, progress: Any) -> xr.Dataset:
         """Return how crawling and standing reach change with the lengths of legs, spine and head."""
         robots = [self.robot, *(lengthened(self.robot, part, 1 + self.longer) for part in PARTS)]
-        stood = self._settled(robots, [LEAD] * len(robots), lambda share: progress(0.5 * share))
+        stood = self._settled(robots, [LEAD] * len(robots), staged(progress, "", 0.0, 0.5))
         leg = length(self.robot, "leg")
         crawls = [(self.robot, self.gait.with_numbers(height=hips / leg)) for hips in self.hips]
         crawls += [(robot, fitted(self.gait, robot, self.robot)) for robot in robots]
@@ -261,7 +261,7 @@ class BipedalReach(Experiment):
             duration=START + self.gait.period,
             timestep=_COARSE,
             every=5,
-            progress=lambda share: progress(0.5 + 0.5 * share),
+            progress=staged(progress, "", 0.5, 1.0),
         ).sel(time=slice(START, None))
         heights = np.array([float(reach(robot, record.isel(run=i)).max()) for i, (robot, _) in enumerate(crawls)])
         walking = heights[len(self.hips) :]

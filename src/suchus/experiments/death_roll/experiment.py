@@ -17,6 +17,7 @@ from suchus.gaits import GAITS
 from suchus.land import VACUUM, WATER, Afloat, Run, simulate
 from suchus.metrics import between, peak_torque, roll_rate, whole
 from suchus.motion import Roll
+from suchus.progress import portion
 from suchus.robots import ROBOTS
 from suchus.verdict import Reading, compared
 
@@ -147,8 +148,8 @@ class DeathRoll(Experiment):
         phases = {f"phase {p}": self._roll(lag=p) for p in self.phases}
         bends = {f"bend {b}": self._roll(trunk_lateral=b, trunk_vertical=b) for b in self.bends}
         speeds = {f"frequency {f}": self._roll(frequency=f) for f in self.frequencies}
-        lagging = self._simulate(phases, self.coarse_timestep, lambda s: progress(0.25 * s), ("vacuum",))
-        both = self._simulate(bends | speeds, self.coarse_timestep, lambda s: progress(0.25 + 0.75 * s))
+        lagging = self._simulate(phases, self.coarse_timestep, staged(progress, "", 0.0, 0.25), ("vacuum",))
+        both = self._simulate(bends | speeds, self.coarse_timestep, staged(progress, "", 0.25, 1.0))
         by_medium = [both.isel(run=both.medium.values == medium) for medium in _MEDIA]
         count = len(bends)
         bent = [self._rates(part.isel(run=slice(0, count)), self.frequency) for part in by_medium]
@@ -177,9 +178,7 @@ class DeathRoll(Experiment):
         """Return what is left of the angular momentum in vacuum, and the rate, over the time step."""
         left, rate, count = [], [], len(self.timesteps)
         for i, step in enumerate(self.timesteps):
-            rolled = self._simulate(
-                {"trunk": self._roll()}, step, lambda s, i=i: progress((i + s) / count), ("vacuum",)
-            )
+            rolled = self._simulate({"trunk": self._roll()}, step, portion(progress, i, count), ("vacuum",))
             left.append(float(abs(rolled.angular_momentum).max()))
             rate.append(float(self._rates(rolled, self.frequency)[0]))
         data = xr.Dataset(

@@ -1,6 +1,6 @@
 """What do coupled oscillators make of a single drive: walking, swimming, turning, and order from any start?"""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from math import radians
@@ -181,7 +181,7 @@ class PatternGeneratorExperiment(Experiment):
             "walking_by_drive": draw_land(record),
         }
 
-    def _sweep(self, progress: Callable[[float], None]) -> xr.Dataset:
+    def _sweep(self, progress: Progress) -> xr.Dataset:
         """Return settled frequencies, phases and amplitudes at every drive."""
         edge = _NUMBERS.limb_drives[1]
         drives = sorted({*self.drives, self.walk, self.swim, edge, edge + _EDGE})
@@ -215,7 +215,7 @@ class PatternGeneratorExperiment(Experiment):
         """How many times faster than published the oscillators go, so that the gait's period belongs to drive 2."""
         return 1.0 / (self.gait.period * float(_NUMBERS.limbs(np.array(_NUMBERS.reference))[0]))
 
-    def _starts(self, name: str, drive: float, progress: Callable[[float], None]) -> xr.Dataset:
+    def _starts(self, name: str, drive: float, progress: Progress) -> xr.Dataset:
         """Return over time how far the oscillators are from their places, for every random start."""
         walks = drive <= _NUMBERS.limb_drives[1]
         law = _NUMBERS.limbs if walks else _NUMBERS.axis

@@ -1,6 +1,6 @@
 """Does it swim in, touch ground, stand and walk out, and go back into the water?"""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from math import pi, radians, sin, tan
@@ -205,7 +205,7 @@ class Shore(Experiment):
             label=f"{np.degrees(abs(uphill)):.0f} degrees, friction scale {scale:g}",
         )
 
-    def _metres(self, progress: Callable[[float], None]) -> xr.Dataset:
+    def _metres(self, progress: Progress) -> xr.Dataset:
         """Return speed and power of the servos on level dry land, at the surface and at depth."""
         plain = partial(Swimming, swim=self._swim(), limb_pitch=LIMBS_BACK[1], heading=HeadingHold())
         controls: Mapping[str, Control] = {

@@ -146,7 +146,7 @@ class Swim3d(Experiment):
         with nullcontext(self.keep) if self.keep else TemporaryDirectory() as folder:
             found = conduct_sweep(
                 self.name(), partial(swum_in_space, self.robot), items, Path(folder) / "swims", client=client,
-                progress=lambda stage, share: progress(stage, 0.9 * share), jobs=self.jobs,
+                progress=staged(progress, "", 0.0, 0.9), jobs=self.jobs,
                 local=partial(_swum_here, self.robot, self.keep),
             )  # fmt: skip
         beside = self._beside(ours, staged(progress, "the slice", 0.9, 0.95))
@@ -233,13 +233,13 @@ Item = tuple[Motion, SwimSetting]
 
 def swum_in_space(robot: Robot, item: Item, progress: Progress) -> xr.Dataset:
     """Return a swim of a robot, see ``water.resolved``; its bytes follow from robot and item alone."""
-    return resolved_swim(robot, *item, progress=partial(progress, "swimming"))
+    return resolved_swim(robot, *item, progress=progress)
 
 
 def _swum_here(robot: Robot, keep: str, item: Item, progress: Progress) -> xr.Dataset:
     """Return the same, and keep in a folder how far it has come."""
     checkpoint = kept_in(keep, fingerprint(item)[:16])
-    return resolved_swim(robot, *item, checkpoint=checkpoint, progress=partial(progress, "swimming"))
+    return resolved_swim(robot, *item, checkpoint=checkpoint, progress=progress)
 
 
 def _replays(record: xr.Dataset) -> dict[str, Replay]:

@@ -43,9 +43,7 @@ def swum_point(robot: Robot, setting: SwimSetting, motion: Swim, progress: Progr
         motion: how, at 1 Hz.
         progress: called with the share that is done.
     """
-    found = Swum.of(
-        resolved_swim(robot, motion, setting, progress=partial(progress, "swimming")), motion.frequency
-    )._asdict()
+    found = Swum.of(resolved_swim(robot, motion, setting, progress=progress), motion.frequency)._asdict()
     return xr.Dataset({name: ((), found[name], {"units": unit}) for name, unit in _SWUM.items()})
 
 
@@ -119,12 +117,11 @@ class SwimSweep(Experiment):
             return self._simulated(progress, client)
 
     def _simulated(self, progress: Progress, client: Any) -> Simulated:
-        done = staged(progress, "slender-body models", 0.0, 0.3)
         fitted = {waves: self._fit(waves) for waves in {1.0, *self.waves}}
         by_frequency = self._map("frequency", self.frequencies, lambda a, f: scaled(fitted[1.0], a, f))
-        done(0.5)
+        progress("slender-body models", 0.15)
         by_waves = self._map("waves", self.waves, lambda a, w: scaled(fitted[w], a, 1.0))
-        done(1.0)
+        progress("slender-body models", 0.3)
         points = self._points(staged(progress, "CFD", 0.3, 1.0), client)
         record = xr.merge([by_frequency, by_waves, points], join="exact", combine_attrs="no_conflicts")
         return Simulated(record=record, tables={"peers.md": self._peers(record)})
@@ -153,15 +150,13 @@ class SwimSweep(Experiment):
         }
         return xr.Dataset(data, coords=coords)
 
-    def _points(self, progress: Callable[[float], None], client: Any) -> xr.Dataset:
+    def _points(self, progress: Progress, client: Any) -> xr.Dataset:
         """Return the points by CFD at 1 Hz, and their speeds by the slender-body models."""
         motions = [scaled(self._fit(waves), amplitude, 1.0) for amplitude, waves in self.points]
         setting = SwimSetting(cells=self.cells, viscosity=self.robot.length**2 / self.reynolds, cycles=self.cycles)
         work = partial(swum_point, self.robot, setting)
         with nullcontext(self.keep) if self.keep else TemporaryDirectory() as folder:
-            swum = conduct_sweep(
-                self.name(), work, motions, Path(folder), progress=lambda _, share: progress(share), client=client
-            )
+            swum = conduct_sweep(self.name(), work, motions, Path(folder), progress=progress, client=client)
         slender = survey(self.robot, motions)
         data: dict[str, Any] = {
             **{

@@ -1,6 +1,6 @@
 """How does it swim: the pressure around the waving body, and the speed it reaches on its own?"""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar
 
@@ -23,6 +23,7 @@ from suchus.experiments.swimming.figure import (
 from suchus.experiments.swimming.findings import ARMS
 from suchus.kinematics.wave import READINGS
 from suchus.motion import Swim
+from suchus.progress import portion
 from suchus.robots import ROBOTS
 from suchus.water import (
     ExactWave,
@@ -35,7 +36,7 @@ from suchus.water import (
     swim,
 )
 from suchus.water.resolved import FREE, HELD, SwimSetting, resolved_swim, towed_drag
-from suchus.water.samples import forget_kept, kept_in, portion
+from suchus.water.samples import forget_kept, kept_in
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -183,17 +184,15 @@ class Swimming(Experiment):
         wave = printed_wave(self.robot, self.reading, frequency=self.frequency, sign=sign)
         return fit(self.robot, wave, name=f"(20), reading {self.reading}")
 
-    def _held(self, name: str, fitted: Fit, progress: Callable[[float], None]) -> xr.Dataset:
+    def _held(self, name: str, fitted: Fit, progress: Progress) -> xr.Dataset:
         kept, setting = kept_in(self.keep, f"held {name}"), self._setting(HELD, self.cells, self.cycles)
         return resolved_swim(self.robot, fitted.swim, setting, turn=fitted.head, checkpoint=kept, progress=progress)
 
-    def _free(
-        self, name: str, motion: Motion, cells: int, cycles: int, progress: Callable[[float], None]
-    ) -> xr.Dataset:
+    def _free(self, name: str, motion: Motion, cells: int, cycles: int, progress: Progress) -> xr.Dataset:
         kept, setting = kept_in(self.keep, f"free {name}"), self._setting(FREE, cells, cycles)
         return resolved_swim(self.robot, motion, setting, checkpoint=kept, progress=progress)
 
-    def _conditions(self, ours: Fit, printed: Fit, free: xr.Dataset, progress: Callable[[float], None]) -> xr.Dataset:
+    def _conditions(self, ours: Fit, printed: Fit, free: xr.Dataset, progress: Progress) -> xr.Dataset:
         """Return the speed in every condition and cycle; the first is the free swim itself on equal grids."""
         exact = [
             ExactWave(name=name, wave=printed_wave(self.robot, self.reading, frequency=self.frequency, sign=sign))
@@ -211,7 +210,7 @@ class Swimming(Experiment):
         data = xr.Dataset({"arm_speed": (("arm", "cycle"), np.array(speeds), {"units": "m/s"})})
         return data.assign_coords(arm=list(ARMS), cycle=np.arange(1, self.arm_cycles + 1))
 
-    def _taken(self, motion: Swim, progress: Callable[[float], None]) -> list[xr.Dataset]:
+    def _taken(self, motion: Swim, progress: Progress) -> list[xr.Dataset]:
         """Return speeds of the midlines that joints take in six degrees of freedom, and the error of their angles."""
         speeds, away = [], []
         bent = midlines(self.robot, motion, self.coarse_cells + 1)
@@ -227,7 +226,7 @@ class Swimming(Experiment):
         )
         return [data.assign_coords(taken_arm=list(TAKEN), cycle=np.arange(1, self.arm_cycles + 1))]
 
-    def _readings(self, progress: Callable[[float], None]) -> tuple[xr.Dataset, str]:
+    def _readings(self, progress: Progress) -> tuple[xr.Dataset, str]:
         """Return the mean thrust of further readings, and a table of all of them."""
         tried = {one.letter: one for one in attempts(self.robot, frequency=self.frequency)}
         setting, thrust = self._setting(HELD, self.readings_cells, self.cycles, self.readings_reynolds), []
@@ -245,8 +244,8 @@ class Swimming(Experiment):
         data = xr.Dataset({"reading_thrust": ("reading", thrust, {"units": "N/m"})})
         return data.assign_coords(reading=list(self.readings)), readings_table(tried.values(), thrusts)
 
-    def _drag(self, speed: float, progress: Callable[[float], None]) -> float:
-        progress(0.0)
+    def _drag(self, speed: float, progress: Progress) -> float:
+        progress("towing", 0.0)
         least = 0.02 * self.robot.length
         setting = self._setting(HELD, self.coarse_cells, 1)
         return towed_drag(self.robot, max(abs(speed), least), setting, lengths=self.tow)

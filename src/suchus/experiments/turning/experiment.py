@@ -113,13 +113,13 @@ class Turning(Experiment):
         uneven = [Walking(asymmetry=share) for share in self.asymmetries]
         most = min(self.bends[-1], room), self.asymmetries[-1] if gait.has("strokes") and not gait.erect else 0.0
         mixed = [Walking(bend=m * most[0], asymmetry=m * most[1]) for m in self.mixtures]
-        record = self._walk(gait, [*bent, *uneven, *mixed], lambda share: progress(0.7 * share))
+        record = self._walk(gait, [*bent, *uneven, *mixed], staged(progress, "", 0.0, 0.7))
         found = self._curvatures(gait, record)
         a, b = len(bent), len(bent) + len(uneven)
         curve = _curve(most, self.mixtures, found[b:])
         tightest = np.inf if curve is None else curve.tightest
         circles = [mixed[-1] if curve is None else turn(curve, max(radius, 1.001 * tightest)) for radius in self.asked]
-        circled = self._walk(gait, circles, lambda share: progress(0.7 + 0.3 * share))
+        circled = self._walk(gait, circles, staged(progress, "", 0.7, 1.0))
         walked = self._curvatures(gait, circled)
         data = xr.Dataset(
             {
