@@ -166,7 +166,8 @@ def _registry(walker: Callable[[], Robot]) -> ConstructorRegistry:
         walker: returns the robot for which a gait is read.
     """
     registry = ConstructorRegistry()
-    for kind in (Robot, Robot | None):
+    robots: tuple[Any, ...] = (Robot, Robot | None)
+    for kind in robots:
         read = partial(blueprint.read, kind=kind, shelf=ROBOTS)
         registry.primitive_rule(_shelf_rule(kind, ROBOTS, "ROBOT", "the record's", read))
     for kind in (Gait, Gait | None):

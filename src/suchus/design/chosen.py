@@ -122,8 +122,7 @@ def _numbers(design: Any) -> Mapping[str, str]:
     """Return the names and units of the numbers that a value has besides its fields."""
     if not isinstance(design, Numbered):
         return {}
-    own = {field.name for field in fields(design)} if is_dataclass(design) else set()
-    return {name: unit for name, unit in design.numbers().items() if name not in own}
+    return {name: unit for name, unit in design.numbers().items() if not hasattr(design, name)}
 
 
 def _holder(design: Any, step: str | int) -> Any:

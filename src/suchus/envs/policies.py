@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from jaxtyping import Bool, Float
 
-from suchus.control import Control, Controller, HeadingHold
+from suchus.control import Control, Controller, HeadingHold, Runs
 from suchus.control.swimming import bent
 from suchus.design import crocodile, layout
 from suchus.design.scale import control_period
@@ -123,8 +123,8 @@ class Controlled:
         """Call the controller for every control period of the step and return the last commanded angles as actions."""
         task, count = self._task, len(seen)
         if self._controller is None:
-            robots, gaits, seeds = [task.robot] * count, [task.gait] * count, [0] * count
-            self._controller = self._control.start(robots, gaits, seeds, self._ticks, self._period)
+            runs = Runs.alike(self._control, task.robot, task.gait, count=count, ticks=self._ticks)
+            self._controller = self._control.start(runs, self._period)
         sensed = felt(seen, task.robot, self._tick * self._period)
         for _ in range(self._per_step):
             targets = self._controller.command(self._tick, sensed).targets

@@ -444,7 +444,8 @@ def _of_limbs(kind: type[FootPath] | type[Sweep], name: str, unit: str, what: st
         def changed(limb: Any) -> Any:
             if not isinstance(limb, kind) or now == value:
                 return limb
-            return replace(limb, **{name: getattr(limb, name) / now * value if now else value})
+            change: dict[str, Any] = {name: getattr(limb, name) / now * value if now else value}
+            return replace(limb, **change)
 
         return replace(gait, limbs=tuple(changed(limb) for limb in gait.limbs))
 

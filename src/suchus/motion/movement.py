@@ -399,7 +399,7 @@ class Batch:
         """Return the servo angles of every run; see ``Movement.targets`` [rad]."""
         targets = np.zeros((len(limbs), self._servos))
         for movement, runs in self.groups:
-            mine = None if steer is None else Steer(*(field if np.ndim(field) == 0 else field[runs] for field in steer))
+            mine = None if steer is None else Steer(*(_of_runs(field, runs) for field in steer))
             targets[runs] = movement.targets(limbs[runs], axis[runs], mine)
         return targets
 
@@ -578,6 +578,11 @@ def _quarter(swivel: float) -> int:
     return round(min(max(swivel * _SIDEWAYS, -1.0), 1.0))
 
 
+def _of_runs(field: np.ndarray | float, runs: np.ndarray) -> np.ndarray:
+    """Return what a field of a ``Steer`` says of some runs."""
+    return np.asarray(field)[runs] if np.ndim(field) else np.asarray(field)
+
+
 def _of_limb(field: np.ndarray | float, i: int) -> np.ndarray:
     """Return what a field of a ``Steer`` says of one limb."""
     return np.asarray(field)[..., i] if np.ndim(field) else np.asarray(field)
@@ -643,10 +648,10 @@ def _check_girdle(place: Layout, gait: Gait, girdle: Any, limb: Limbs) -> None:
             f"gait {gait.name!r} holds {len(limb.angles)} angles of girdle {girdle.name}; its limbs have {driven} "
             "servos: give one for each."
         )
-    erect = isinstance(limb, FootPath) and _quarter(limb.swivel) != 0
-    if erect and limb.outward != 0.0 and limb_kinematics.kind(girdle.limb) == "leg":
+    outside = isinstance(limb, FootPath) and _quarter(limb.swivel) != 0 and limb.outward
+    if outside and limb_kinematics.kind(girdle.limb) == "leg":
         raise OutsideLimits(
             f"gait {gait.name!r} stands the limbs of girdle {girdle.name} of robot {robot.name!r} erect and "
-            f"{limb.outward:g} of their reach outside their hips; legs of yaw, pitch and knee that stand erect stand "
+            f"{outside:g} of their reach outside their hips; legs of yaw, pitch and knee that stand erect stand "
             "below their hips: set outward to 0, or swivel."
         )

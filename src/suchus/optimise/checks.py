@@ -70,7 +70,7 @@ def checked(spec: Optimisation, runs: Sequence[Run]) -> xr.Dataset:
 
 def _under(run: Run, condition: Condition) -> Run:
     phases = tuple((phase + condition.later + 1.0) % 1.0 for phase in run.gait.limb_phases)
-    gait = replace(run.gait, limb_phases=phases)  # type: ignore[arg-type]
+    gait = replace(run.gait, limb_phases=phases)
     other = replace(run, gait=gait if condition.later else run.gait, noise=condition.noise, seed=condition.seed)
     return with_values(other, {"ground.friction_scale": run.ground.friction_scale * condition.friction_scale})
 
