@@ -19,6 +19,7 @@ from suchus import threads
 from suchus.gaits import GAITS
 from suchus.land import Run, simulate
 from suchus.model import activations, compile_model, standing
+from suchus.motion import hip_height
 from suchus.robots import ROBOTS
 from suchus.study import Study, Vary, conduct, run_chunk
 
@@ -93,7 +94,7 @@ def bare(timestep: float, runs: int = 32, duration: float = 3.0) -> tuple[Spent,
     record = simulate([Run(robot=ROBOT, gait=GAIT)], duration=duration, timestep=timestep)
     targets = np.repeat(record.servo_target.values[0, :-1], round(0.01 / timestep), axis=0)
     data = [mujoco.MjData(model) for _ in range(min(threads.count(), runs))]
-    data[0].qpos[:] = standing(model, ROBOT, GAIT.hip_height, targets[0])
+    data[0].qpos[:] = standing(model, ROBOT, hip_height(ROBOT, GAIT), targets[0])
     data[0].act[:] = activations(model, targets[0])
     begin = np.empty(mujoco.mj_stateSize(model, mujoco.mjtState.mjSTATE_FULLPHYSICS))
     mujoco.mj_getState(model, data[0], begin, mujoco.mjtState.mjSTATE_FULLPHYSICS)

@@ -17,8 +17,8 @@ search = Optimisation(
     name="stride",
     run=Run(robot=suchus.ROBOTS["caiman"], gait=suchus.GAITS["belly_crawl"]),
     vary=(
-        Vary(field="gait.stroke", low=0.0, high=0.08),
-        Vary(field="gait.spine_phase", low=-0.2, high=0.2),
+        Vary(field="gait.stroke", low=0.0, high=0.5),
+        Vary(field="gait.axis_lag", low=-0.2, high=0.2),
     ),
     aims=(Aim(name="displacement"),),
     limits=(Limit(name="clearance", value=0.005),),

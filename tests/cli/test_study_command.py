@@ -18,8 +18,8 @@ field = "ground.friction_scale"
 values = [0.5, 1.0]
 
 [[vary]]
-field = "gait.hip_height"
-values = [0.09, 0.3]
+field = "gait.height"
+values = [0.51, 1.7]
 """
 
 
@@ -39,7 +39,7 @@ def test_a_study_says_where_its_results_are_and_what_failed(tmp_path, capsys):
     assert main(["study", "grip.toml", "--csv"]) == 0
     assert (tmp_path / "out" / "studies" / "grip" / "results.csv").is_file()
     header = (tmp_path / "out" / "studies" / "grip" / "csv" / "sample.csv").read_text().splitlines()[0].split(",")
-    assert header[:3] == ["sample", "ground.friction_scale", "gait.hip_height [m]"]
+    assert header[:3] == ["sample", "ground.friction_scale", "gait.height [limb reach]"]
     assert (tmp_path / "out" / "studies" / "grip" / "results.nc").stat().st_mtime_ns >= before
 
 

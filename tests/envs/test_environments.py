@@ -338,7 +338,7 @@ def test_tasks_are_varied_by_naming_their_fields():
         ({"spam": 1}, UnknownName, "Did you mean 'span'?"),
         ({"task": "Crwl"}, UnknownName, "Did you mean 'Crawl'?"),
         ({"robot": "caimen"}, UnknownName, "Did you mean 'caiman'?"),
-        ({"gait": 3}, InvalidDesign, "task.gait is '3'; a Gait or Pattern or AngleTable is needed"),
+        ({"gait": 3}, InvalidDesign, "task.gait is '3'; a Gait is needed"),
         ({"breaks": "limp"}, InvalidDesign, "a Breaks or None is needed"),
         ({"span": -1.0}, InvalidDesign, "0.01 to 3.2 rad is allowed"),
         ({"decision": 0.025}, InvalidDesign, "must fit the control period of 0.01 s"),

@@ -10,11 +10,13 @@ from suchus.design import servo_names
 from suchus.gaits import GAITS
 from suchus.kinematics.mass import GRAVITY
 from suchus.land import VACUUM, Backlash, Ground, LostFoot, Offset, Run, Slow, simulate
-from suchus.motion import servo_targets
+from suchus.motion import movement
 from suchus.robots import ROBOTS
 
 CAIMAN, CRAWL = ROBOTS["caiman"], GAITS["belly_crawl"]
-LYING = tuple(servo_targets(CAIMAN, CRAWL, np.full((1, 4), 0.8))[0])  # all feet on the ground
+LYING = tuple(
+    movement(CAIMAN, CRAWL).targets(np.full((1, 4), 0.8), movement(CAIMAN, CRAWL).axis_phase(np.full((1, 4), 0.8)))[0]
+)  # all feet on the ground
 FEET = ["LF", "RF", "LH", "RH"]
 
 

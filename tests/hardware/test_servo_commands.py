@@ -31,7 +31,7 @@ from suchus.hardware import (
 )
 from suchus.kinematics.tail import servo_angle
 from suchus.model.export.urdf import urdf
-from suchus.motion import START, limb_phase, servo_targets
+from suchus.motion import START, intended
 from suchus.robots import ROBOTS
 
 STRAIGHT = straight(ROBOTS["caiman"])
@@ -46,8 +46,8 @@ def test_angles_are_the_gaits_own_and_the_last_sample_is_the_first(robot, crawl_
     told = commands(robot, crawl_gait, STRAIGHT, cycles=2)
     assert told.time[-1] == pytest.approx(2 * crawl_gait.period, abs=1e-12)
     np.testing.assert_array_equal(told.angles[-1], told.angles[0])
-    intended = servo_targets(robot, crawl_gait, limb_phase(crawl_gait, START + told.time[:-1]))
-    np.testing.assert_allclose(told.angles[:-1], intended, atol=1e-12)
+    asked = intended(robot, crawl_gait, START + told.time[:-1]).targets
+    np.testing.assert_allclose(told.angles[:-1], asked, atol=1e-12)
     assert np.diff(told.time) == pytest.approx(1 / STRAIGHT.rate)
 
 

@@ -34,7 +34,7 @@ def asked(robot, crawl_gait):
     return Study(
         name="spread",
         run=Run(robot=robot, gait=crawl_gait, noise=0.01),
-        vary=(Vary(field="gait.hip_height", values=(0.088, 0.3)),),
+        vary=(Vary(field="gait.height", values=(0.5, 1.7)),),
         measure=("displacement",),
         seeds=2,
         chunk=1,
@@ -48,7 +48,7 @@ def search(robot, crawl_gait):
     return Optimisation(
         name="small",
         run=Run(robot=robot, gait=crawl_gait),
-        vary=(Vary(field="gait.stroke", low=0.0, high=0.12), Vary(field="gait.trunk_bend", low=0.0, high=2.3)),
+        vary=(Vary(field="gait.stroke", low=0.0, high=0.75), Vary(field="gait.trunk_bend", low=0.0, high=2.3)),
         aims=(Aim(name="displacement"),),
         evaluations=4,
         population=4,

@@ -59,7 +59,7 @@ def test_the_swimmer_swims_and_hardly_moves_on_even_ground():
 
 def test_a_wave_that_runs_backward_swims_backward():
     robot, gait = ROBOTS["swimmer"], GAITS["undulation"]
-    back = replace(gait, name="back", wave=replace(gait.wave, waves=-gait.wave.waves))
+    back = gait.with_numbers(waves=-gait.number("waves"))
     record = simulate([Run(robot=robot, gait=back, afloat=WATER)], duration=START + 2.0).isel(run=0)
     assert stride(record, robot, back, 2) < -0.1
 
@@ -123,6 +123,6 @@ def test_sizes_that_do_not_go_together_are_refused():
 
 def test_a_path_out_of_reach_names_the_limb():
     gait = GAITS["salamander_walk"]
-    far = replace(gait, girdles=(replace(gait.girdles[0], outward=1.0), gait.girdles[1]))
+    far = replace(gait, limbs=(replace(gait.limbs[0], outward=1.0), gait.limbs[1]))
     with pytest.raises(OutsideLimits, match=r"asks LF of robot 'salamander' for a foot path outside its reach"):
         crawl(ROBOTS["salamander"], far, duration=0.5)

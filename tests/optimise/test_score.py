@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import xarray as xr
-from suchus.optimise.excess import excess
 
 from suchus.design import servo_names
 from suchus.errors import SuchusError
 from suchus.gaits import own_gait
 from suchus.kinematics.tail import servo_angle
+from suchus.motion import excess
 from suchus.optimise import Aim, Limit
 from suchus.optimise.score import allowed, excesses, losses, score, units
 from suchus.optimise.search_result import SearchResult
@@ -81,14 +81,14 @@ def test_the_front_is_what_nothing_betters_in_both(small):
 
 def test_a_gait_that_can_be_followed_has_no_excess_and_others_more_the_farther_they_are(robot, crawl_gait):
     assert excess(robot, crawl_gait) == 0.0
-    bends = [excess(robot, replace(crawl_gait, trunk_bend=bend)) for bend in (2.35, 2.4, 2.6, 3.0)]
+    bends = [excess(robot, crawl_gait.with_numbers(trunk_bend=bend)) for bend in (2.35, 2.4, 2.6, 3.0)]
     assert bends[0] == 0.0  # three joints of 45 degrees bear 2.356 rad
     assert bends == sorted(bends)
     assert bends[1] == pytest.approx(3 * (2.4 / 3 - np.pi / 4) / 0.1)
-    high = [excess(robot, replace(crawl_gait, hip_height=height)) for height in (0.15, 0.18, 0.2, 0.3)]
+    high = [excess(robot, crawl_gait.with_numbers(height=height)) for height in (0.86, 1.03, 1.15, 1.7)]
     assert 0.0 < high[1] < high[2] < high[3]
     turned = [float(servo_angle(robot.tail, np.float64(bend))) for bend in (1.7, robot.tail.bend_limit)]
-    assert excess(robot, replace(crawl_gait, tail_bend=1.7)) == pytest.approx((turned[0] - turned[1]) / 0.1)
+    assert excess(robot, crawl_gait.with_numbers(tail_bend=1.7)) == pytest.approx((turned[0] - turned[1]) / 0.1)
     assert excess(robot, replace(crawl_gait, period=0.1)) > 0.0  # too fast for the servos
 
 

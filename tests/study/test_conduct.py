@@ -154,7 +154,7 @@ def test_failing_runs_are_recorded_and_the_others_go_on(asked):
     odd = replace(
         asked,
         vary=(
-            Vary(field="gait.hip_height", values=(0.09, 0.3)),  # 0.3 m is out of the legs' reach
+            Vary(field="gait.height", values=(0.51, 1.7)),  # 1.7 is out of the legs' reach
             Vary(field="robot.head.snout", values=(0.02, 0.2125)),  # 0.02 m is behind the shoulders
             Vary(field="robot.tail.joints", values=(6, 8)),  # two topologies do not fit into one batch
         ),
@@ -170,7 +170,7 @@ def test_failing_runs_are_recorded_and_the_others_go_on(asked):
 
 
 def test_a_batch_in_which_all_fail_still_has_its_columns_in_the_end(asked, tmp_path):
-    high = replace(asked, vary=(Vary(field="gait.hip_height", values=(0.3, 0.31, 0.09)),), design="factorial")
+    high = replace(asked, vary=(Vary(field="gait.height", values=(1.7, 1.8, 0.51)),), design="factorial")
     results = conduct(high, tmp_path / "s")
     assert np.isnan(results.slip.values).tolist() == [True, True, False]
     assert (results.error != "").values.tolist() == [True, True, False]

@@ -292,8 +292,8 @@ def test_every_robot_walks_live_and_is_drawn_pushed_and_broken(name):
 def test_both_ends_of_the_sliders_of_another_body_leave_a_gait_that_it_can_walk(name):
     robot, gait = ROBOTS[name], own_gait(ROBOTS[name])
     knobs = knobs_of(robot, gait)
-    assert {"period", "offset", "bends"} <= set(knobs)
-    assert ("strokes" in knobs, "turned" in knobs) == (name not in ("salamandra", "swimmer"), name == "salamandra")
+    assert {"period", "trunk_offset", "trunk_bend"} <= set(knobs)
+    assert ("stroke" in knobs, "crank" in knobs) == (name not in ("salamandra", "swimmer"), name == "salamandra")
     for field, knob in knobs.items():
         assert knob.low - 1e-9 <= shown(gait, field) <= knob.high + 1e-9
         for end in (knob.low, knob.high):
@@ -302,8 +302,8 @@ def test_both_ends_of_the_sliders_of_another_body_leave_a_gait_that_it_can_walk(
             assert notice or shown(found, field) == pytest.approx(end, rel=1e-3)
             assert notice == "" or knob.label in notice
     session = Session(robot, gait)
-    assert session.tune("offset", 0.5) == ""
-    assert session.settings.gait.wave.offset == pytest.approx(np.radians(0.5))
+    assert session.tune("trunk_offset", 1.0) == ""
+    assert session.settings.gait.number("trunk_offset") == pytest.approx(np.radians(1.0))
     assert session.switch("spine", False) == ""
     assert not session.settings.walked.has("wave")
     assert session.settings.walked.number("trunk_offset") == session.settings.gait.number("trunk_offset")
