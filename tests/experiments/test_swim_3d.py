@@ -13,7 +13,7 @@ from suchus.design import layout
 from suchus.design.pieces import pieces
 from suchus.errors import InvalidDesign, OutsideLimits
 from suchus.experiments import EXPERIMENTS
-from suchus.experiments._taken import TAKEN, Midline
+from suchus.experiments._taken import TAKEN, TakenMidline
 from suchus.experiments.swim_3d import findings
 from suchus.experiments.swim_3d.figure import draw_tails
 from suchus.figures import caption
@@ -205,7 +205,7 @@ def test_a_motion_that_is_handed_over_joint_by_joint_swims_to_the_same_numbers()
 def bent():
     """Midlines that the joints take, by hand."""
     outline = Outline(ROBOT, ASKED.compared_cells + 1)
-    return [Midline(name, undulation(outline, MOTION), 0.4 + i) for i, name in enumerate(TAKEN)]
+    return [TakenMidline(name, undulation(outline, MOTION), 0.4 + i) for i, name in enumerate(TAKEN)]
 
 
 def test_midlines_as_taken_swim_beside_those_commanded(monkeypatch):
