@@ -17,7 +17,7 @@ from suchus.experiments._taken import TAKEN, TakenMidline
 from suchus.experiments.swim_3d import findings
 from suchus.experiments.swim_3d.figure import draw_tails
 from suchus.figures import caption
-from suchus.flow import memory
+from suchus.flow import grid as grids
 from suchus.hydro.table import column
 from suchus.progress import silent
 from suchus.robots import ROBOTS
@@ -112,7 +112,7 @@ REFUSED = {
 @pytest.mark.parametrize("words", REFUSED)
 def test_what_cannot_be_swum_is_one_sentence_before_anything_runs(words, capsys, tmp_path, monkeypatch):
     if "512" in words:
-        monkeypatch.setattr(memory, "machine_memory", lambda: 10**9)
+        monkeypatch.setattr(grids, "machine_memory", lambda: 10**9)
     assert (
         main(["run", "swim_3d", *words.split(), "--keep", str(tmp_path / "keep"), "--out", str(tmp_path / "out")]) == 2
     )

@@ -153,7 +153,7 @@ def test_a_broken_checkpoint_or_one_of_another_setup_is_refused(tmp_path):
 def test_the_eel_swims_head_first_and_its_mirror_image_swims_the_mirror_track():
     def mirrored(time):
         spine = flow.eel(1.0, stations=97).spine(time)
-        return flow.Spine(
+        return flow.MidlineState(
             x=spine.x,
             y=-spine.y,
             heading=-spine.heading,

@@ -11,7 +11,7 @@ PLACES = 33
 """Places along the tail at which the pressures of its two sides are kept [-]."""
 
 
-def joint_torques(outline: Outline, surface: flow.Surface, midline: flow.Spine) -> Float[np.ndarray, " 4"]:
+def joint_torques(outline: Outline, surface: flow.Surface, midline: flow.MidlineState) -> Float[np.ndarray, " 4"]:
     """Return the moment of the water about each yaw joint and the first cable joint, of what lies beyond it [N m/m].
 
     Beyond a joint of the trunk lies the part towards the snout, beyond that of the tail the part towards its tip.
@@ -24,7 +24,7 @@ def joint_torques(outline: Outline, surface: flow.Surface, midline: flow.Spine) 
     return _moments(outline, surface, midline, outline.places[:4], np.ones(surface.markers.station.size))
 
 
-def servo_torques(outline: Outline, surface: flow.Surface, midline: flow.Spine) -> Float[np.ndarray, " 4"]:
+def servo_torques(outline: Outline, surface: flow.Surface, midline: flow.MidlineState) -> Float[np.ndarray, " 4"]:
     """Return what the water asks of the yaw servos and of the cable's servo, each at its own shaft [N m].
 
     Every section is as high as the robot is there and feels the pressures of the flow, which knows no height: water
@@ -43,7 +43,7 @@ def servo_torques(outline: Outline, surface: flow.Surface, midline: flow.Spine) 
 
 
 def _moments(
-    outline: Outline, surface: flow.Surface, midline: flow.Spine, places: np.ndarray, high: np.ndarray
+    outline: Outline, surface: flow.Surface, midline: flow.MidlineState, places: np.ndarray, high: np.ndarray
 ) -> np.ndarray:
     """Return the moment about joints of what the water does beyond them, markers being so high."""
     m = surface.markers
@@ -68,7 +68,7 @@ def tail_sides(outline: Outline, surface: flow.Surface) -> Float[np.ndarray, "2 
     return out
 
 
-def convex_less_concave(outline: Outline, surface: flow.Surface, midline: flow.Spine) -> float:
+def convex_less_concave(outline: Outline, surface: flow.Surface, midline: flow.MidlineState) -> float:
     """Return the mean pressure along the convex side of the tail less that along the concave side [Pa]."""
     m, start = surface.markers, root(outline)
     means = []
@@ -86,7 +86,7 @@ def place_of_difference(sides: Float[np.ndarray, "2 place"]) -> float:
     return float(weight @ np.linspace(0.0, 1.0, sides.shape[1])) / total if total > 0 else 0.5
 
 
-def bend(outline: Outline, midline: flow.Spine) -> float:
+def bend(outline: Outline, midline: flow.MidlineState) -> float:
     """Return how far the tail bends from its root to its tip, to the robot's right [rad]."""
     return float(midline.heading[-1] - np.interp(root(outline), outline.s, midline.heading))
 
