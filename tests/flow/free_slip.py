@@ -24,7 +24,7 @@ from suchus.flow.body import measure_all
 from suchus.flow.compiled import PAD
 from suchus.flow.immerse import LEAST_SHARE, fill_source, immerse
 from suchus.flow.momentum import collect, dilatation_work
-from suchus.flow.water import MOST_ROUNDS, Fluid, Stage
+from suchus.flow.water import MOST_ROUNDS, Fluid, HeunStage
 
 OUT = 1.5
 """Distance from the wall from which the velocity is carried into the body: all its neighbours are wet [cells]."""
@@ -178,13 +178,13 @@ class SlipWater(Fluid):
     def _heun(self, step, push, limits):
         self.solves, half, now = [], self.dtype(0.5), self.velocity
         self.given[:] = 0
-        stage = self._advance(Stage(self._predicted, now, now, now, self.dtype(0)), step, push)
+        stage = self._advance(HeunStage(self._predicted, now, now, now, self.dtype(0)), step, push)
         self._project(self._predicted, step, limits)
         self._collect(stage, step)
         self.border.update_induced(self._predicted, self.window)
         predicted = self._predicted.copy()
         self._unblended(self._predicted)
-        stage = self._advance(Stage(self._corrected, predicted, now, self._predicted, half), step, push)
+        stage = self._advance(HeunStage(self._corrected, predicted, now, self._predicted, half), step, push)
         self._project(self._corrected, half * step, limits)
         self._collect(stage, step)
 
