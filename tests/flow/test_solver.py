@@ -11,8 +11,11 @@ from suchus.flow.setup import LAYER_CELLS
 from suchus.flow.simulation import SLACK
 
 
-def test_taylor_green_decays_at_second_order():
-    coarse, fine = cases.taylor_green(64, until=0.25), cases.taylor_green(128, until=0.25)
+@pytest.mark.parametrize(
+    "precision", ["single", pytest.param("double", marks=pytest.mark.slow("the second precision"))]
+)
+def test_taylor_green_decays_at_second_order(precision):
+    coarse, fine = (cases.taylor_green(n, until=0.25, precision=precision) for n in (64, 128))
     assert np.log2(coarse / fine) > 1.8
     assert fine < 2e-3
 
