@@ -20,7 +20,7 @@ setup = flow.Setup(
     viscosity=1 / 100,
     stream=(1.0, 0.0),
     bodies=(front, rear),
-    contact=flow.Contact(gap=2 / 16, pressure=10.0),  # had they come near each other
+    contact=flow.BodyContact(gap=2 / 16, pressure=10.0),  # had they come near each other
 )
 rake = flow.Rake(points=flow.line((4.0, -2.0), (4.0, 2.0), 21), every=0.25)
 sim = flow.Simulation(setup)

@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib.image import imsave
 
 from suchus import flow, rotation
-from suchus.figures.solids import Camera, picture
+from suchus.figures.solids import Viewpoint, picture
 from suchus.skin.mesh import Mesh, ellipsoid, joined
 
 shape = flow.Ellipsoid(length=1.0, width=1.0, height=0.28)
@@ -28,7 +28,7 @@ found = flow.isosurface(q, 0.3, corner, grid.cell)
 vortices = Mesh(found.points, found.faces, np.full(found.points.shape, (0.45, 0.66, 0.86)))
 middle = 0.5 * (places.min(axis=0) + places.max(axis=0))
 tall = float(np.ptp(places[:, 2])) + 1.7
-camera = Camera(azimuth=-1.2, elevation=0.12, distance=4 * tall, target=tuple(middle), width=0.44 * tall)
+camera = Viewpoint(azimuth=-1.2, elevation=0.12, distance=4 * tall, target=tuple(middle), width=0.44 * tall)
 imsave("flutter.png", picture(solid, vortices, camera, (440, 1000)))
 tilt = np.degrees(np.arccos(turns[:, 2, 2]))
 print(

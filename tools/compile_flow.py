@@ -42,7 +42,9 @@ def in_space() -> None:
     """Run a few steps around an ellipsoid and a free trunk."""
     stations = np.linspace(-0.3, 0.3, 13)
     zero, wide = np.zeros(13), np.full(13, 0.15)
-    spine = flow.Spine(x=stations, y=zero, heading=zero, half_width=wide, x_rate=zero, y_rate=zero, heading_rate=zero)
+    spine = flow.MidlineState(
+        x=stations, y=zero, heading=zero, half_width=wide, x_rate=zero, y_rate=zero, heading_rate=zero
+    )
     trunk = flow.FreeBody(
         shape=flow.Trunk(spine=lambda _: spine, half_height=1.5 * wide), name="trunk", start=(0.0, 0.35, 0.0)
     )

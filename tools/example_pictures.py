@@ -18,7 +18,7 @@ import suchus
 from lighter import lighten
 from suchus import envs
 from suchus.design import with_values
-from suchus.experiments.bipedal_reach.standing_figure import draw_side_views
+from suchus.experiments.bipedal_reach.figure import draw_side_views
 from suchus.experiments.displacement.figure import draw_crawls
 from suchus.figures import COLOURS, dimension_drawing, panels, styled
 from suchus.land import Run, simulate

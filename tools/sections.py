@@ -11,7 +11,7 @@ from typing import Any
 
 from pages.stated import keep
 from pages.stated import main as write_pages
-from suchus.atlas import Outcome, compute_all, sections
+from suchus.atlas import FlowOutcome, compute_all, sections
 from suchus.water.sections import attached, coefficients, held_out, measured, table, write_table
 
 
@@ -36,7 +36,7 @@ def stated() -> Mapping[str, Any]:
 def main(folder: Path, jobs: int) -> None:
     """Compute what is not there yet, and write the table."""
 
-    def tell(outcome: Outcome) -> None:
+    def tell(outcome: FlowOutcome) -> None:
         print(f"{outcome.case}: {outcome.seconds:.0f} s {outcome.failed}", flush=True)
 
     outcomes = compute_all(sections.cases(), folder, jobs=jobs, quick=False, finished=tell)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import atlas_page
-from suchus.atlas import CASES, ROWS, Outcome, compare, digest_of, published, save_outcome
+from suchus.atlas import CASES, ROWS, FlowOutcome, compare, digest_of, published, save_outcome
 from suchus.atlas.comparison import points
 from suchus.errors import IncompatibleRecord
 from suchus.figures.atlas import draw_group, draw_parity, write_atlas
@@ -29,7 +29,7 @@ def outcome(row, factor=1.0, **changes):
         "case": row.case, "digest": digest_of(CASES[row.case], quick=False), "quick": False, "cells": 48,
         "seconds": 61.0, "curves": curves,
     }  # fmt: skip
-    return Outcome(**{**told, **changes})
+    return FlowOutcome(**{**told, **changes})
 
 
 def told(*outcomes, rows=(ROW, NUMBERS)):

@@ -7,12 +7,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from suchus.atlas import Row, bound, compare, rms_over_peak
+from suchus.atlas import AtlasRow, bound, compare, rms_over_peak
 from suchus.atlas.case import FINEST, UNKNOWN_SCATTER
-from suchus.atlas.published import Published
+from suchus.atlas.published import PublishedCurves
 from suchus.errors import IncompatibleRecord
 
-ROW = Row(name="one", title="One", case="cavity_re100", data="one", x="x", y="y", ours="curve")
+ROW = AtlasRow(name="one", title="One", case="cavity_re100", data="one", x="x", y="y", ours="curve")
 
 
 @pytest.fixture
@@ -22,7 +22,7 @@ def data(monkeypatch):
     monkeypatch.setattr("suchus.atlas.comparison.published", known.__getitem__)
 
     def put(name, **columns):
-        known[name] = Published(about=("A table.",), columns={k: tuple(map(str, v)) for k, v in columns.items()})
+        known[name] = PublishedCurves(about=("A table.",), columns={k: tuple(map(str, v)) for k, v in columns.items()})
 
     return put
 

@@ -11,7 +11,7 @@ from suchus.atlas import CASES
 from suchus.atlas.cylinders import wake_length
 from suchus.atlas.marching import march, nudged, shedding
 from suchus.atlas.oscillated import mean_skin
-from suchus.atlas.skin import Skin
+from suchus.atlas.skin import WallValues
 from suchus.atlas.still import flapping, quasi_steady_peaks
 from suchus.flow.record import COLUMNS
 
@@ -133,7 +133,9 @@ def test_a_march_tells_shares_that_rise_to_one():
 
 
 def test_the_mean_of_readings_is_taken_marker_by_marker():
-    one, two = (Skin(angle=np.arange(3.0), pressure=np.full(3, p), vorticity=np.arange(3.0) * p) for p in (1.0, 3.0))
+    one, two = (
+        WallValues(angle=np.arange(3.0), pressure=np.full(3, p), vorticity=np.arange(3.0) * p) for p in (1.0, 3.0)
+    )
     mean = mean_skin([one, two])
     assert mean.pressure.tolist() == [2.0, 2.0, 2.0]
     assert mean.vorticity.tolist() == [0.0, 2.0, 4.0]

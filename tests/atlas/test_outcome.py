@@ -13,7 +13,7 @@ import suchus.atlas
 from suchus.atlas import (
     CASES,
     Case,
-    Effort,
+    RunEffort,
     compute,
     compute_all,
     digest_of,
@@ -43,8 +43,8 @@ def dying_run(effort, progress):
 
 def case(name="one", run=plain_run, cells=4):
     return Case(
-        name=name, setup="{cells}", run=run, full=Effort(cells=cells, until=1.0), quick=Effort(cells=2, until=0.5),
-        code=("skin.py",),
+        name=name, setup="{cells}", run=run, code=("skin.py",),
+        full=RunEffort(cells=cells, until=1.0), quick=RunEffort(cells=2, until=0.5),
     )  # fmt: skip
 
 

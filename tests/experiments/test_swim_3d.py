@@ -13,11 +13,11 @@ from suchus.design import layout
 from suchus.design.pieces import pieces
 from suchus.errors import InvalidDesign, OutsideLimits
 from suchus.experiments import EXPERIMENTS
-from suchus.experiments._taken import TAKEN, Midline
+from suchus.experiments._taken import TAKEN, TakenMidline
 from suchus.experiments.swim_3d import findings
 from suchus.experiments.swim_3d.figure import draw_tails
 from suchus.figures import caption
-from suchus.flow import memory
+from suchus.flow import grid as grids
 from suchus.hydro.table import column
 from suchus.progress import silent
 from suchus.robots import ROBOTS
@@ -112,7 +112,7 @@ REFUSED = {
 @pytest.mark.parametrize("words", REFUSED)
 def test_what_cannot_be_swum_is_one_sentence_before_anything_runs(words, capsys, tmp_path, monkeypatch):
     if "512" in words:
-        monkeypatch.setattr(memory, "machine_memory", lambda: 10**9)
+        monkeypatch.setattr(grids, "machine_memory", lambda: 10**9)
     assert (
         main(["run", "swim_3d", *words.split(), "--keep", str(tmp_path / "keep"), "--out", str(tmp_path / "out")]) == 2
     )
@@ -205,7 +205,7 @@ def test_a_motion_that_is_handed_over_joint_by_joint_swims_to_the_same_numbers()
 def bent():
     """Midlines that the joints take, by hand."""
     outline = Outline(ROBOT, ASKED.compared_cells + 1)
-    return [Midline(name, undulation(outline, MOTION), 0.4 + i) for i, name in enumerate(TAKEN)]
+    return [TakenMidline(name, undulation(outline, MOTION), 0.4 + i) for i, name in enumerate(TAKEN)]
 
 
 def test_midlines_as_taken_swim_beside_those_commanded(monkeypatch):

@@ -8,7 +8,7 @@ from suchus.errors import InvalidDesign
 from suchus.experiments import EXPERIMENTS
 from suchus.experiments._taken import TAKEN
 from suchus.experiments.swimming import findings
-from suchus.experiments.swimming.experiment import Swimming
+from suchus.experiments.swimming.experiment import PlaneSwims
 from suchus.experiments.swimming.findings import ARMS
 from suchus.paper import ERRATA
 from suchus.water import fit, printed_wave, swim
@@ -24,7 +24,7 @@ def _no_conditions(self, ours, printed, free, progress):
 
 def test_what_was_finished_is_kept_and_the_rest_goes_on(tmp_path, monkeypatch):
     quick = EXPERIMENTS["swimming"].quick()
-    monkeypatch.setattr(Swimming, "_conditions", _no_conditions)
+    monkeypatch.setattr(PlaneSwims, "_conditions", _no_conditions)
     experiment, seen = replace(quick, keep=str(tmp_path), readings=(), frames=1), []
 
     def interrupted(stage, share):
@@ -124,7 +124,7 @@ def test_midlines_as_taken_swim_beside_those_commanded(monkeypatch):
         swum.append((name, motion, cells, cycles))
         return xr.Dataset({"speed": ("cycle", np.full(cycles, 0.1 * len(swum)))})
 
-    monkeypatch.setattr(Swimming, "_free", free)
+    monkeypatch.setattr(PlaneSwims, "_free", free)
     for name in ("_SETTLE", "_AVERAGED"):  # of which the experiment itself takes more
         monkeypatch.setattr(f"suchus.experiments._taken.{name}", 2)
     quick = replace(EXPERIMENTS["swimming"].quick(), taken=True, coarse_cells=64)

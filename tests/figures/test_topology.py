@@ -5,7 +5,7 @@ from matplotlib.text import Annotation, Text
 from suchus.control import LAWS, Coordinated
 from suchus.control.shared import OWNERS
 from suchus.control.topology import topology
-from suchus.experiments.feedback.topology import draw_topology
+from suchus.experiments.feedback.figure import draw_topology
 from suchus.figures import caption
 from suchus.gaits import GAITS
 

@@ -8,7 +8,7 @@ from PIL import Image
 from tests.wakes import CORE, RADIUS, ringed
 
 from suchus.figures import caption, vortices
-from suchus.figures.solids import Camera, picture
+from suchus.figures.solids import Viewpoint, picture
 from suchus.skin.mesh import Mesh
 
 
@@ -19,7 +19,7 @@ def square(x, colour, size=1.0):
 
 
 NOTHING = Mesh(np.zeros((0, 3)), np.zeros((0, 3), int), np.zeros((0, 3)))
-AHEAD = Camera(azimuth=0.0, elevation=0.0, distance=10.0, target=(0.0, 0.0, 0.0), width=4.0)
+AHEAD = Viewpoint(azimuth=0.0, elevation=0.0, distance=10.0, target=(0.0, 0.0, 0.0), width=4.0)
 
 
 def test_a_square_is_seen_where_and_as_large_as_perspective_says():

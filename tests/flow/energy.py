@@ -12,7 +12,7 @@ import numpy as np
 
 from suchus import flow
 from suchus.flow.compiled import PAD
-from suchus.flow.water import Water
+from suchus.flow.water import Fluid
 
 
 @dataclass
@@ -60,7 +60,7 @@ class Stage:
 class Spy:
     """Stands between the water and its own bookkeeping, and keeps copies of each stage."""
 
-    water: Water
+    water: Fluid
     stages: list[Stage] = field(default_factory=list)
 
     def __post_init__(self):

@@ -10,12 +10,17 @@ from suchus.flow import signals
 from suchus.flow.compiled import PAD
 
 
-def taylor_green(n, *, viscosity=0.02, until=0.5):
+def taylor_green(n, *, viscosity=0.02, until=0.5, precision="double"):
     """RMS error of the decaying vortices in the unit square [m/s]."""
     grid = flow.Grid(cells=(n, n), cell=1 / n)
     sim = flow.Simulation(
         flow.Setup(
-            grid=grid, viscosity=viscosity, sides=flow.Sides.periodic(), precision="double", tolerance=1e-8, courant=0.5
+            grid=grid,
+            viscosity=viscosity,
+            sides=flow.Sides.periodic(),
+            precision=precision,
+            tolerance=1e-8 if precision == "double" else 1e-6,
+            courant=0.5,
         )
     )
     k = 2 * np.pi

@@ -24,7 +24,7 @@ from suchus.flow.body import measure_all
 from suchus.flow.compiled import PAD
 from suchus.flow.immerse import LEAST_SHARE, fill_source, immerse
 from suchus.flow.momentum import collect, dilatation_work
-from suchus.flow.water import MOST_ROUNDS, Stage, Water
+from suchus.flow.water import MOST_ROUNDS, Fluid, HeunStage
 
 OUT = 1.5
 """Distance from the wall from which the velocity is carried into the body: all its neighbours are wet [cells]."""
@@ -118,8 +118,8 @@ def _leave_divergence(raw, w, first, dt):
                     raw[c, k, j, i] += 0.5 * dt * w[c, z, y, x] * net
 
 
-class SlipWater(Water):
-    """``Water`` whose bodies only keep the water out; ``velocity`` is w between the steps."""
+class SlipWater(Fluid):
+    """``Fluid`` whose bodies only keep the water out; ``velocity`` is w between the steps."""
 
     _blended = None  # u of ``velocity``
     _distance = _normal = _bare = None
@@ -178,13 +178,13 @@ class SlipWater(Water):
     def _heun(self, step, push, limits):
         self.solves, half, now = [], self.dtype(0.5), self.velocity
         self.given[:] = 0
-        stage = self._advance(Stage(self._predicted, now, now, now, self.dtype(0)), step, push)
+        stage = self._advance(HeunStage(self._predicted, now, now, now, self.dtype(0)), step, push)
         self._project(self._predicted, step, limits)
         self._collect(stage, step)
         self.border.update_induced(self._predicted, self.window)
         predicted = self._predicted.copy()
         self._unblended(self._predicted)
-        stage = self._advance(Stage(self._corrected, predicted, now, self._predicted, half), step, push)
+        stage = self._advance(HeunStage(self._corrected, predicted, now, self._predicted, half), step, push)
         self._project(self._corrected, half * step, limits)
         self._collect(stage, step)
 

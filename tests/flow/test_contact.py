@@ -11,7 +11,7 @@ from suchus.errors import InvalidDesign
 from suchus.flow import contact
 from suchus.flow.swimmer import Swimmer
 
-LAW = flow.Contact(gap=0.1, pressure=50.0)
+LAW = flow.BodyContact(gap=0.1, pressure=50.0)
 ROUND, LONG = flow.Cylinder(diameter=1.0), flow.Ellipse(length=1.4, width=0.6)
 
 
@@ -84,11 +84,11 @@ def pressed_together(law):
 
 
 def test_two_bodies_in_the_water_do_not_run_through_each_other():
-    assert pressed_together(flow.Contact(gap=0.15, pressure=120.0)) > 0.6
+    assert pressed_together(flow.BodyContact(gap=0.15, pressure=120.0)) > 0.6
     assert pressed_together(None) < 0.5
 
 
 @pytest.mark.parametrize("values", [{"gap": 0.0, "pressure": 1.0}, {"gap": 1.0, "pressure": float("nan")}])
 def test_a_contact_that_cannot_be_is_refused(values):
     with pytest.raises(InvalidDesign, match=r"the contact's .*; a positive number is needed"):
-        flow.Contact(**values)
+        flow.BodyContact(**values)

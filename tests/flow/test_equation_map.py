@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from suchus.flow.water import Water
+from suchus.flow.water import Fluid
 
 PAGE = (Path(__file__).parents[2] / "docs" / "flow_theory.md").read_text(encoding="utf-8")
 TABLE = PAGE.split("## Which function computes what", 1)[1].split("\n## ", 1)[0]
@@ -39,10 +39,10 @@ def test_the_functions_of_the_page_exist(name):
 
 
 def test_a_name_that_is_gone_would_be_noticed():
-    assert there("water.Water.nothing") is None
+    assert there("water.Fluid.nothing") is None
     assert there("nowhere.nothing") is None
 
 
 def test_the_step_predicts_projects_corrects_and_projects():
-    told = re.findall(r"self\._(predict|project|correct)\(", inspect.getsource(Water._heun))
+    told = re.findall(r"self\._(predict|project|correct)\(", inspect.getsource(Fluid._heun))
     assert told == ["predict", "project", "correct", "project"]

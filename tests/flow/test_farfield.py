@@ -8,8 +8,7 @@ from hypothesis import strategies as st
 from suchus import flow
 from suchus.flow.added import added_mass
 from suchus.flow.compiled import PAD
-from suchus.flow.farfield import IMAGES, FarField
-from suchus.flow.openwater import Fading
+from suchus.flow.farfield import IMAGES, Fading, FarField
 
 NONE = (0,) * 6
 """A window without bodies."""

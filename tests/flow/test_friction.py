@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from suchus.errors import InvalidDesign
-from suchus.flow.friction import SLOWEST, Band, along_stations, blasius, ittc
+from suchus.flow.friction import SLOWEST, FrictionBand, along_stations, blasius, ittc
 
 WATER = {"viscosity": 1e-6, "density": 1000.0}
 
@@ -88,7 +88,7 @@ def over_plate(slenderness, reynolds):
     """Friction of a spheroid over that of a plate of its length and area, at both ends of the band."""
     arc, girth, speed, along, area = meridian(slenderness)
     ours = along_stations(arc, girth, speed, viscosity=1 / reynolds, density=2.0, slope=along)
-    return Band(
+    return FrictionBand(
         ours.laminar / (1.328 * reynolds**-0.5 * area), ours.turbulent * (np.log10(reynolds) - 2) ** 2 / 0.075 / area
     )
 

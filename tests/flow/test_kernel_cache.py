@@ -6,10 +6,10 @@ from pathlib import Path
 import pytest
 
 from suchus import kernel_cache
-from suchus.flow import cache
+from suchus.flow import compiled
 from suchus.hydro import vectors
 
-ROOM = Path(cache.__file__).parent
+ROOM = Path(compiled.__file__).parent
 MAKERS = {"compiled", "threaded", "part", "threaded_part"}
 
 
@@ -22,7 +22,7 @@ def decorated(file):
 
 
 def test_every_file_with_kernels_counts():
-    counted = set(cache.kernel_files())
+    counted = set(compiled.kernel_files())
     assert {file for file in ROOM.glob("*.py") if decorated(file)} <= counted
     assert ROOM / "record.py" not in counted
 
@@ -35,19 +35,19 @@ def room(tmp_path, monkeypatch):
     (here / "a.py").write_text("from suchus.flow.compiled import PAD, part\n\n@part\ndef f(x):\n    return x\n")
     (here / "b.py").write_text("from suchus.flow.compiled import compiled\nfrom a import f\n")
     (here / "c.py").write_text("from suchus.flow.compiled import PAD\n")
-    monkeypatch.setattr(cache, "_HERE", here)
+    monkeypatch.setattr(compiled, "_HERE", here)
     monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "the user's"))
     return here
 
 
 def test_an_edit_of_a_kernel_that_others_call_is_another_folder(room):
-    before = cache.folder()
+    before = compiled.folder()
     assert before.parent == room / "__pycache__"
     (room / "c.py").write_text("from suchus.flow.compiled import PAD, UNIT\n")
-    assert cache.folder() == before
+    assert compiled.folder() == before
     (room / "a.py").write_text((room / "a.py").read_text().replace("return x", "return 2 * x"))
-    assert cache.folder() != before
+    assert compiled.folder() != before
     assert before.is_dir()
 
 
@@ -64,20 +64,20 @@ def test_the_forces_of_water_have_such_a_folder_too(tmp_path, monkeypatch):
 
 def test_where_the_package_cannot_be_written_the_users_folder_is_taken(room, tmp_path):
     (room / "__pycache__").write_text("no folder")  # root may write everywhere, so that permissions would not do
-    assert cache.folder().parent == tmp_path / "the user's" / "suchus"
+    assert compiled.folder().parent == tmp_path / "the user's" / "suchus"
 
 
 def test_where_nothing_can_be_written_there_is_none(room, monkeypatch):
     (room / "__pycache__").write_text("no folder")
     monkeypatch.setenv("XDG_CACHE_HOME", "/dev/null")
-    assert cache.folder() is None
+    assert compiled.folder() is None
 
 
 def test_numbas_own_setting_comes_first_and_alone(room, tmp_path, monkeypatch):
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "asked"))
-    assert cache.folder().parent == tmp_path / "asked"
+    assert compiled.folder().parent == tmp_path / "asked"
     monkeypatch.setenv("NUMBA_CACHE_DIR", "/dev/null")
-    assert cache.folder() is None
+    assert compiled.folder() is None
 
 
 def test_the_latest_few_states_are_kept_and_nothing_else_is_touched(room):
@@ -86,7 +86,7 @@ def test_the_latest_few_states_are_kept_and_nothing_else_is_touched(room):
     made = []
     for n in range(7):
         (room / "a.py").write_text(f"from suchus.flow.compiled import part\nN = {n}\n")
-        made.append(cache.folder())
+        made.append(compiled.folder())
     kept = [one for one in made if one.is_dir()]
     assert len(kept) == kernel_cache.KEPT
     assert made[-1] in kept

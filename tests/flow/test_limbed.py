@@ -147,7 +147,7 @@ def test_a_turning_body_has_the_swirl_of_a_rigid_one():
     """A midline that turns as a whole: the angular momentum is the moment of inertia times the rate."""
     s, spin = np.linspace(0.0, 1.0, 41), 0.7
     zero = np.zeros(41)
-    spine = flow.Spine(x=s, y=zero, heading=zero, half_width=zero + 0.06, x_rate=zero, y_rate=spin * s,
+    spine = flow.MidlineState(x=s, y=zero, heading=zero, half_width=zero + 0.06, x_rate=zero, y_rate=spin * s,
                        heading_rate=zero + spin)  # fmt: skip
     mass = flow.Limbed(spine=lambda _: spine, half_height=zero + 0.06, limbs=LIMBS).mass(0.0)
     assert mass.swirl == pytest.approx((0.0, 0.0, spin * mass.moments[2, 2]), rel=1e-9)

@@ -14,7 +14,7 @@ from suchus.flow import compiled, linking
 
 FEW = """
 import hashlib, numba, numpy as np
-from suchus.flow import openwater, project
+from suchus.flow import farfield, project
 random = np.random.default_rng(3)
 u, v, source = (random.standard_normal((68, 100)).astype(np.float32) for _ in range(3))
 points, place, strength = random.random((2, 70)), random.random((2, 90)), random.random((4, 90))
@@ -25,10 +25,10 @@ for threads in (1, 2):
     project.residual(
         r, np.stack([u, v]), source, np.ones_like(u), where, where, np.float32(0.1), inner, (False, False), sums
     )
-    openwater.induce(points, place, strength, out)
+    farfield.induce(points, place, strength, out)
     print(hashlib.sha256(r.tobytes() + sums.tobytes() + out.tobytes()).hexdigest())
 print(project.residual.stats.cache_misses and "compiled" or "loaded")
-print(openwater.induce.stats.cache_misses and "compiled" or "loaded")
+print(farfield.induce.stats.cache_misses and "compiled" or "loaded")
 """
 """Two kernels, of those that once differed."""
 

@@ -6,7 +6,7 @@ import pytest
 
 from suchus import flow
 from suchus.flow.compiled import PAD
-from suchus.flow.openwater import Fading, OpenWater
+from suchus.flow.farfield import Fading, OpenWater
 
 NO_BODY = (PAD, PAD, PAD, PAD)
 

@@ -138,7 +138,7 @@ def test_naca_0012_is_twelve_percent_thick():
         (lambda: flow.Plate(length=0.1, thick=0.2), "0.2 m thick"),
         (lambda: flow.foil(1.0, thickness=0.9), "thickness 0.9"),
         (
-            lambda: flow.Spine(
+            lambda: flow.MidlineState(
                 x=np.zeros(3),
                 y=np.zeros(4),
                 heading=np.zeros(3),

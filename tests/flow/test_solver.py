@@ -11,8 +11,11 @@ from suchus.flow.setup import LAYER_CELLS
 from suchus.flow.simulation import SLACK
 
 
-def test_taylor_green_decays_at_second_order():
-    coarse, fine = cases.taylor_green(64, until=0.25), cases.taylor_green(128, until=0.25)
+@pytest.mark.parametrize(
+    "precision", ["single", pytest.param("double", marks=pytest.mark.slow("the second precision"))]
+)
+def test_taylor_green_decays_at_second_order(precision):
+    coarse, fine = (cases.taylor_green(n, until=0.25, precision=precision) for n in (64, 128))
     assert np.log2(coarse / fine) > 1.8
     assert fine < 2e-3
 
@@ -153,7 +156,7 @@ def test_a_broken_checkpoint_or_one_of_another_setup_is_refused(tmp_path):
 def test_the_eel_swims_head_first_and_its_mirror_image_swims_the_mirror_track():
     def mirrored(time):
         spine = flow.eel(1.0, stations=97).spine(time)
-        return flow.Spine(
+        return flow.MidlineState(
             x=spine.x,
             y=-spine.y,
             heading=-spine.heading,

@@ -9,13 +9,13 @@ from hypothesis import strategies as st
 
 from suchus import flow
 from suchus.errors import InvalidDesign, OutsideLimits, UnknownName
-from suchus.flow import memory
+from suchus.flow import grid as grids
 from suchus.flow.added import added_mass
 from suchus.flow.compiled import PAD
 from suchus.flow.immerse import THINNEST
 from suchus.flow.momentum import Reaction
 from suchus.flow.watch import vorticity_size
-from suchus.flow.water import Water
+from suchus.flow.water import Fluid
 
 HELD = flow.Stream(unbounded=False)
 NAMES = (("left", "right"), ("bottom", "top"), ("low", "high"))
@@ -205,14 +205,14 @@ def test_what_counts_around_bodies_is_kept_there_alone():
     small, large = (ball(grid=flow.Grid(cells=(n, 24, 24), cell=1 / 8, origin=(-1.5,) * 3), steps=0) for n in (24, 48))
     grown = [sim.water.arrays * sim.water.p.size for sim in (small, large)]
     assert (grown[1] - grown[0]) / (large.water.p.size - small.water.p.size) == pytest.approx(
-        memory.arrays_of(3), rel=0.05
+        grids.arrays_of(3), rel=0.05
     )
     assert large.water.mu1.shape == (3, 3, *(end - first + 1 for first, end in np.reshape(large.water.window, (3, 2))))
 
 
 @cache
 def empty_water():
-    return Water(flow.Grid(cells=(16, 16, 16), cell=1.0), flow.Sides(), 1.0, np.float32)
+    return Fluid(flow.Grid(cells=(16, 16, 16), cell=1.0), flow.Sides(), 1.0, np.float32)
 
 
 @given(st.lists(st.tuples(st.integers(2, 9), st.integers(1, 5)), min_size=6, max_size=6))
@@ -336,7 +336,7 @@ def test_a_disc_of_a_cell_has_the_added_mass_of_potential_flow(cells, turn):
     ratio, h = cells / 16, 1 / 16
     shape = flow.Ellipsoid(length=1.0, width=ratio, height=1.0)
     pose = flow.Pose(position=(0.011, 0.007, 0.003), angle=turn, roll=0.8 * turn)
-    water = Water(flow.Grid(cells=(32,) * 3, cell=h, origin=(-1.0,) * 3), flow.Sides(), 1e-9, np.float32)
+    water = Fluid(flow.Grid(cells=(32,) * 3, cell=h, origin=(-1.0,) * 3), flow.Sides(), 1e-9, np.float32)
     water.place([flow.Body(shape=shape, motion=pose)], [pose], 0.0)
     mass = added_mass(water, shape.markers(0.0, pose, h), pose.position, 1.0)[:3, :3]
     across = pose.matrix[:, 1]
@@ -413,7 +413,7 @@ HALF = flow.Grid(cells=(24, 24, 12), cell=1 / 8, origin=(-1.5, -1.5, 0.0))
             "a shape in space, and the grid has two axes",
         ),
         (lambda: flow.FreeBody(shape=1.0), "a Shape or a SpaceShape is needed"),
-        (lambda: ball(contact=flow.Contact(gap=0.1, pressure=1.0)), "contact acts between plane outlines"),
+        (lambda: ball(contact=flow.BodyContact(gap=0.1, pressure=1.0)), "contact acts between plane outlines"),
         (lambda: ball().surface(), "is for plane grids"),
         (lambda: ball().control(0.1), "a control volume is for plane grids"),
         (lambda: ball().probe((0.0, 0.0)), "take velocity and pressure at the cell centres"),
@@ -470,15 +470,15 @@ def test_a_box_covers_what_was_asked_for():
 
 def test_fields_beyond_the_machine_are_refused_with_the_number(monkeypatch):
     grid = flow.Grid(cells=(64, 32, 32), cell=0.1)
-    need = memory.needed_memory(grid, np.float32)
+    need = grids.needed_memory(grid, np.float32)
     sim = flow.Simulation(flow.Setup(grid=grid, viscosity=1.0))
     own = sim.water.arrays * sim.water.p.size * 4
     assert need == pytest.approx(own, rel=0.1)  # what is promised is what is taken
-    monkeypatch.setattr(memory, "machine_memory", lambda: need)
+    monkeypatch.setattr(grids, "machine_memory", lambda: need)
     flow.Setup(grid=grid, viscosity=1.0)
-    monkeypatch.setattr(memory, "machine_memory", lambda: need - 1)
+    monkeypatch.setattr(grids, "machine_memory", lambda: need - 1)
     with pytest.raises(InvalidDesign, match=rf"64 x 32 x 32 cells takes {need / 1e9:.3g} GB of memory") as caught:
         flow.Setup(grid=grid, viscosity=1.0)
     assert "take cells of at least" in str(caught.value)
-    monkeypatch.setattr(memory, "machine_memory", lambda: None)
+    monkeypatch.setattr(grids, "machine_memory", lambda: None)
     flow.Setup(grid=grid, viscosity=1.0)

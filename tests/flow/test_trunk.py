@@ -14,7 +14,7 @@ from suchus.flow import body as bodies
 from suchus.flow.added import added_mass
 from suchus.flow.immerse import LEAST_SHARE, close_surface
 from suchus.flow.sections import ellipse_foot
-from suchus.flow.water import Water
+from suchus.flow.water import Fluid
 
 STATIONS = 61
 
@@ -22,7 +22,9 @@ STATIONS = 61
 def rod(s, half_width, half_height, *, cuts=()):
     """A straight trunk along x with these half-axes at the stations."""
     zero = np.zeros(s.size)
-    spine = flow.Spine(x=s, y=zero, heading=zero, half_width=half_width, x_rate=zero, y_rate=zero, heading_rate=zero)
+    spine = flow.MidlineState(
+        x=s, y=zero, heading=zero, half_width=half_width, x_rate=zero, y_rate=zero, heading_rate=zero
+    )
     return flow.Trunk(spine=lambda _: spine, half_height=half_height, cuts=cuts, deforms=False)
 
 
@@ -48,7 +50,7 @@ def eel(*, cuts=(), taper=True):
         a = share * size * np.cos(phase)
         b = size * (rate * np.cos(phase) + 2 * np.pi * share * np.sin(phase))
         (heading, turn), (middle, spin) = (a[::2], b[::2]), (a[1::2], b[1::2])
-        return flow.Spine(
+        return flow.MidlineState(
             x=summed(np.cos(middle)), y=summed(np.sin(middle)), heading=heading, half_width=wide,
             x_rate=summed(-np.sin(middle) * spin), y_rate=summed(np.cos(middle) * spin), heading_rate=turn,
         )  # fmt: skip
@@ -386,7 +388,7 @@ def test_water_does_not_pass_through_a_disc_of_two_cells(pose):
     shape, cells = egg(1.0, 0.125, 1.0), 16
     grid = flow.Grid(cells=(2 * cells,) * 3, cell=1 / cells, origin=(-1.0,) * 3)
     body = flow.Body(shape=shape, motion=pose)
-    water = Water(grid, flow.Sides(), 1e-9, np.float32)
+    water = Fluid(grid, flow.Sides(), 1e-9, np.float32)
     water.place([body], [pose], 0.0)
     mass = added_mass(water, shape.markers(0.0, pose, 1 / cells), pose.position, 1.0)[:3, :3]
     across = pose.matrix[:, 1]

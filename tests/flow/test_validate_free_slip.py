@@ -17,7 +17,7 @@ from suchus import flow
 from suchus.design.water import Water
 from suchus.flow import simulation
 from suchus.flow.compiled import PAD
-from suchus.flow.friction import Band, along_stations
+from suchus.flow.friction import FrictionBand, along_stations
 from suchus.robots import ROBOTS
 from suchus.water import Outline, cycle, fit, printed_wave, recoil, resolved
 from suchus.water.sections import coefficients
@@ -133,7 +133,7 @@ def test_a_towed_spheroid_has_the_drag_of_its_friction():
     for cells in (48, 64, 96):
         pressure, exchanged, impulse, slip, (arc, girth, along, area) = towed_spheroid(cells)
         band = along_stations(arc, girth, slip, viscosity=1e-6, density=2.0, slope=along)
-        rub = Band(band.laminar / area, band.turbulent / area)
+        rub = FrictionBand(band.laminar / area, band.turbulent / area)
         total = (pressure + rub.turbulent) / plate
         where = f"{cells} cells/L", "1.8 L x 0.7 L x 0.7 L", "Hoerner 1965"
         note("free slip", "drag of a spheroid 6:1 over a plate's, turbulent, Re 1e6", total, published, *where)
@@ -210,7 +210,7 @@ def test_the_robot_swims_stably_but_its_sections_swing_too_far():
     keulegan = swing[high > 0] / (2 * high[high > 0])  # at 1 Hz
     behind = keulegan[outline.s[high > 0] > 2 / 3 * robot.length]
     speeds = {}
-    for end in Band._fields:
+    for end in FrictionBand._fields:
         with slipping(), rubbed(outline, end), patch.object(resolved, "check_resolved_swim", lambda *_, **__: None):
             swum = resolved.resolved_swim(
                 robot, motion, resolved.SwimSetting(axes=3, cells=56, viscosity=1e-6, cycles=16)

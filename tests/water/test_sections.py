@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from suchus.atlas import sections
-from suchus.atlas.outcome import Outcome, compute
+from suchus.atlas.outcome import FlowOutcome, compute
 from suchus.design.water import Water
 from suchus.errors import InvalidDesign, UnreadableFile
 from suchus.progress import silent
@@ -101,7 +101,7 @@ def test_outside_the_table_there_is_nothing(aspect, keulegan, message):
 def test_a_table_is_written_whole_or_not_at_all(tmp_path):
     rows = dict(zip(points(), table(), strict=True))
     outcomes = {
-        name: Outcome(
+        name: FlowOutcome(
             case=name, digest=one.digest, quick=False, cells=one.cells, seconds=1.0,
             curves={"drag": np.array([[1.5, 2.5], [one.drag_before, one.drag]]),
                     "added": np.array([[1.5, 2.5], [one.added_before, one.added]]),

@@ -9,7 +9,7 @@ from suchus.errors import InvalidDesign
 from suchus.motion import Swim
 from suchus.robots import ROBOTS
 from suchus.water import Outline, taken, undulation, unevenness
-from suchus.water.taken import lateral_joints
+from suchus.water.undulation import lateral_joints
 
 SWIM = Swim(name="w", frequency=0.8, yaw=(0.5, 0.4, 0.2), yaw_lag=(0.3, 0.1, 0.0), tail=0.6, tail_lag=0.6)
 ROBOT = ROBOTS["caiman"]

@@ -1,31 +1,31 @@
 """The atlas: published data of flows around bodies, many of which move, beside the results of the flow solver.
 
-A ``Case`` is a flow that is computed once; a ``Row`` is one published data set that it is compared with. The bound of
-a row follows from the scatter of its sources, before anything is computed.
+A ``Case`` is a flow that is computed once; an ``AtlasRow`` is one published data set that it is compared with. The
+bound of a row follows from the scatter of its sources, before anything is computed.
 """
 
-from suchus.atlas.case import Case, Curves, Effort, Row, bound
-from suchus.atlas.comparison import Comparison, compare, rms_over_peak
+from suchus.atlas.case import AtlasRow, Case, Curves, RunEffort, bound
+from suchus.atlas.comparison import CurveComparison, compare, rms_over_peak
 from suchus.atlas.computing import compute_all, finished_outcome
-from suchus.atlas.outcome import Outcome, compute, digest_of, load_outcome, save_outcome
-from suchus.atlas.published import Published, published
+from suchus.atlas.outcome import FlowOutcome, compute, digest_of, load_outcome, save_outcome
+from suchus.atlas.published import PublishedCurves, published
 from suchus.atlas.refine import refined
 from suchus.atlas.rows import CASES, GROUPS, LONGEST, ROWS, chosen
-from suchus.atlas.skin import Skin, read_skin
+from suchus.atlas.skin import WallValues, read_skin
 
 __all__ = [
     "CASES",
     "GROUPS",
     "LONGEST",
     "ROWS",
+    "AtlasRow",
     "Case",
-    "Comparison",
+    "CurveComparison",
     "Curves",
-    "Effort",
-    "Outcome",
-    "Published",
-    "Row",
-    "Skin",
+    "FlowOutcome",
+    "PublishedCurves",
+    "RunEffort",
+    "WallValues",
     "bound",
     "chosen",
     "compare",

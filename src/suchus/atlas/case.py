@@ -19,7 +19,7 @@ FINEST = 0.02
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Effort:
+class RunEffort:
     """Resolution and duration of the computation of a flow."""
 
     cells: int
@@ -40,18 +40,18 @@ class Case:
     """Name of the flow, and of the file of its outcome."""
     setup: str
     """Domain, motion and averaging in one or two sentences; ``{cells}`` stands for the cells."""
-    run: Callable[[Effort, Progress], Curves]
+    run: Callable[[RunEffort, Progress], Curves]
     """Function that computes its curves."""
-    full: Effort
+    full: RunEffort
     """The effort of a judged run."""
-    quick: Effort
+    quick: RunEffort
     """The effort of a quick trial, whose result is drawn and not judged."""
     code: tuple[str, ...]
     """Files of this package that decide its curves, beside the flow solver itself."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Row:
+class AtlasRow:
     """One published data set beside the same quantity of ours."""
 
     name: str
@@ -87,7 +87,7 @@ class Row:
     any_cycle: bool = False
     """Whether the source shows one instant of a flow that may beat and does not say in which cycle: each cycle of ours
     counts then, curves named ``ours`` with a number behind it, and the nearest is compared."""
-    cycle_of: "Row | None" = None
+    cycle_of: "AtlasRow | None" = None
     """Row of the same source whose nearest cycle is taken, so that this one chooses nothing; None for its own."""
     skin: bool = False
     """Whether it is read along the skin, where the reading has an error of its own."""

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from suchus.atlas.case import Curves, Row, bound
-from suchus.atlas.published import Published, published
+from suchus.atlas.case import AtlasRow, Curves, bound
+from suchus.atlas.published import PublishedCurves, published
 from suchus.errors import IncompatibleRecord
 
 LEAST_SHARE = 0.5
@@ -15,7 +15,7 @@ _FEWEST = 5  # points in common that two sources need for a scatter
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Comparison:
+class CurveComparison:
     """A row's data beside ours."""
 
     x: np.ndarray
@@ -45,7 +45,7 @@ class Comparison:
         return self.rms <= self.bound
 
 
-def compare(row: Row, curves: Curves) -> Comparison:
+def compare(row: AtlasRow, curves: Curves) -> CurveComparison:
     """Return the published data of a row beside ours.
 
     Raises:
@@ -67,13 +67,13 @@ def compare(row: Row, curves: Curves) -> Comparison:
             f"needed; run longer."
         )
     x, y, at = x[there], y[there], at[there]
-    return Comparison(
+    return CurveComparison(
         x=x, theirs=y, ours=at, rms=rms_over_peak(at, y), scatter=_scatter(row, x, y), curve=name,
         cycles=tuple(_cycles(row, curves).values()) if row.any_cycle else (),
     )  # fmt: skip
 
 
-def _cycles(row: Row, curves: Curves) -> dict[str, float]:
+def _cycles(row: AtlasRow, curves: Curves) -> dict[str, float]:
     """Return the difference of each cycle of ours from a row's published points, by the cycle's number [-]."""
     x, y = points(row, published(row.data))
     cycles = {name.removeprefix(f"{row.ours} "): curve for name, curve in curves.items() if name.startswith(row.ours)}
@@ -83,13 +83,13 @@ def _cycles(row: Row, curves: Curves) -> dict[str, float]:
     }  # fmt: skip
 
 
-def _nearest_cycle(row: Row, curves: Curves) -> str:
+def _nearest_cycle(row: AtlasRow, curves: Curves) -> str:
     """Return the number of the cycle of ours that is nearest to a row's published points; "1" where there is none."""
     cycles = _cycles(row, curves)
     return min(cycles, key=cycles.__getitem__) if cycles else "1"
 
 
-def points(row: Row, table: Published) -> tuple[np.ndarray, np.ndarray]:
+def points(row: AtlasRow, table: PublishedCurves) -> tuple[np.ndarray, np.ndarray]:
     """Return the published points that a row compares, in our units, two arrays of shape (point,)."""
     x = table.values(row.x) * row.scale[0] + row.shift[0]
     y = table.values(row.y) * row.scale[1] + row.shift[1]
@@ -133,7 +133,7 @@ def _on_loop(curve: np.ndarray, x: np.ndarray, y: np.ndarray) -> np.ndarray:
     return at
 
 
-def _numbers(table: Published, curves: Curves) -> Comparison:
+def _numbers(table: PublishedCurves, curves: Curves) -> CurveComparison:
     """Return the comparison of single numbers: theirs is the mean of the sources."""
     names = table.columns["quantity"]
     missing = [name for name in names if name not in curves]
@@ -143,13 +143,13 @@ def _numbers(table: Published, curves: Curves) -> Comparison:
     theirs = np.nanmean(sources, axis=0)
     off = sources / theirs - 1
     ours = np.array([float(curves[name]) for name in names])
-    return Comparison(
+    return CurveComparison(
         x=np.arange(len(names)), theirs=theirs, ours=ours, rms=float(np.sqrt(np.mean((ours / theirs - 1) ** 2))),
         scatter=float(np.sqrt(np.nanmean(off**2))) if len(sources) > 1 else None,
     )  # fmt: skip
 
 
-def _scatter(row: Row, x: np.ndarray, y: np.ndarray) -> float | None:
+def _scatter(row: AtlasRow, x: np.ndarray, y: np.ndarray) -> float | None:
     """Return the largest rms difference over the peak between a row's source and another one, where both are known."""
     found = []
     for name, abscissa, ordinate, factor in row.others:

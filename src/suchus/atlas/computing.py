@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from suchus.atlas.case import Case
-from suchus.atlas.outcome import Outcome, compute, digest_of, load_outcome, save_outcome
+from suchus.atlas.outcome import FlowOutcome, compute, digest_of, load_outcome, save_outcome
 from suchus.errors import UnreadableFile
 from suchus.jobs import Job, deciding, finish, place_for
 from suchus.progress import Progress, silent
@@ -21,8 +21,8 @@ def compute_all(
     quick: bool,
     client: Any = None,
     each: Callable[[str], Progress] = lambda _: silent,
-    finished: Callable[[Outcome], None] = lambda _: None,
-) -> dict[str, Outcome]:
+    finished: Callable[[FlowOutcome], None] = lambda _: None,
+) -> dict[str, FlowOutcome]:
     """Compute flows that are not there yet, ``jobs`` at a time, and return the outcomes of all by name.
 
     An outcome is written as soon as it is there. One of the same set-up by the same code is kept.
@@ -67,7 +67,7 @@ def compute_all(
     return {case.name: outcomes.get(number) for number, case in enumerate(flows)}
 
 
-def finished_outcome(case: Case, folder: Path, *, quick: bool) -> Outcome | None:
+def finished_outcome(case: Case, folder: Path, *, quick: bool) -> FlowOutcome | None:
     """Return the outcome of a flow if it is there and of this set-up and code; one that is broken does not count."""
     with suppress(UnreadableFile):
         old = load_outcome(folder, case.name)
@@ -89,24 +89,24 @@ class _Outcomes:
         """Return whether an outcome is there."""
         return number in self._outcomes
 
-    def get(self, number: int) -> Outcome:
+    def get(self, number: int) -> FlowOutcome:
         """Return an outcome that is there."""
         return self._outcomes[number]
 
-    def put(self, number: int, outcome: Outcome) -> None:
+    def put(self, number: int, outcome: FlowOutcome) -> None:
         """Write an outcome."""
         if outcome.digest:  # that of a process that died says nothing of the flow
             save_outcome(outcome, self._folder)
         self._outcomes[number] = outcome
 
 
-def _computed(case: Case, progress: Progress, quick: bool) -> Outcome:
+def _computed(case: Case, progress: Progress, quick: bool) -> FlowOutcome:
     return compute(case, quick=quick, progress=progress)
 
 
-def _died(quick: bool, case: Case, code: int | None) -> Outcome:
+def _died(quick: bool, case: Case, code: int | None) -> FlowOutcome:
     effort = case.quick if quick else case.full
-    return Outcome(
+    return FlowOutcome(
         case=case.name, digest="", quick=quick, cells=effort.cells, seconds=0.0,
         failed=f"its process ended with exit code {code}; where memory was short, --jobs 1 takes less of it.",
     )  # fmt: skip

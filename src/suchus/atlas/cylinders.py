@@ -7,10 +7,10 @@ from functools import partial
 import numpy as np
 
 from suchus import flow
-from suchus.atlas.case import Case, Curves, Effort
+from suchus.atlas.case import Case, Curves, RunEffort
 from suchus.atlas.marching import march, middles, nudged, shedding
 from suchus.atlas.refine import refined
-from suchus.atlas.skin import Skin, read_skin
+from suchus.atlas.skin import WallValues, read_skin
 from suchus.progress import Progress, staged
 
 _CODE = ("cylinders.py", "marching.py", "refine.py", "skin.py")
@@ -41,7 +41,7 @@ def wake_length(sim: flow.Simulation) -> float:
 
 
 def _started(
-    effort: Effort, progress: Progress, *, reynolds: float, x: tuple[float, float], y: tuple[float, float]
+    effort: RunEffort, progress: Progress, *, reynolds: float, x: tuple[float, float], y: tuple[float, float]
 ) -> Curves:
     sim = flow.Simulation(_cylinder(effort.cells, reynolds, x, y))
     lengths: list[tuple[float, float]] = []
@@ -53,7 +53,7 @@ def _started(
     return {"drag": np.stack([middles(record), 2 * record.force()[:, 0]]), "length": np.array(lengths).T}
 
 
-def _steady(effort: Effort, progress: Progress) -> Curves:
+def _steady(effort: RunEffort, progress: Progress) -> Curves:
     sim = _on_two_grids(effort, 40.0, (1.0, 0.0), progress)
     record = march(sim, effort.until, staged(progress, "fine grid", 0.5, 1.0))
     skin = read_skin(sim)
@@ -63,9 +63,9 @@ def _steady(effort: Effort, progress: Progress) -> Curves:
     }  # fmt: skip
 
 
-def _shedding(effort: Effort, progress: Progress) -> Curves:
+def _shedding(effort: RunEffort, progress: Progress) -> Curves:
     sim = _on_two_grids(effort, 100.0, nudged, progress)
-    skins: list[tuple[float, Skin]] = []
+    skins: list[tuple[float, WallValues]] = []
 
     def note(now: flow.Simulation) -> None:
         skins.append((now.time, read_skin(now)))
@@ -75,11 +75,11 @@ def _shedding(effort: Effort, progress: Progress) -> Curves:
     since = effort.until - _PERIODS / float(numbers["Strouhal"])
     late = [skin for time, skin in skins if time > since]
     mean = np.mean([skin.pressure for skin in late], axis=0)
-    both = Skin(angle=late[0].angle, pressure=mean, vorticity=mean)
+    both = WallValues(angle=late[0].angle, pressure=mean, vorticity=mean)
     return {**numbers, "pressure": both.curve("pressure")}
 
 
-def _on_two_grids(effort: Effort, reynolds: float, stream: Stream, progress: Progress) -> flow.Simulation:
+def _on_two_grids(effort: RunEffort, reynolds: float, stream: Stream, progress: Progress) -> flow.Simulation:
     """Return a wake in 24 x 16 diameters that has formed on the coarse grid, at the start of its time on the fine."""
     box = ((-8.0, 16.0), (-8.0, 8.0))
     wake = flow.Simulation(replace(_cylinder(effort.coarse, reynolds, *box), stream=stream))
@@ -90,30 +90,30 @@ def _on_two_grids(effort: Effort, reynolds: float, stream: Stream, progress: Pro
 CASES = (
     Case(
         name="started_re40", run=partial(_started, reynolds=40.0, x=(-5.0, 7.0), y=(-5.0, 5.0)),
-        full=Effort(cells=48, until=5.0), quick=Effort(cells=12, until=1.0), code=_CODE,
+        full=RunEffort(cells=48, until=5.0), quick=RunEffort(cells=12, until=1.0), code=_CODE,
         setup="A cylinder that starts at once in water at rest; {cells} cells a diameter, unbounded "
         "domain, of which 12 x 10 diameters are computed. The length of the recirculation ends where the velocity on "
         "the axis is zero.",
     ),
     Case(
         name="started_re550", run=partial(_started, reynolds=550.0, x=(-2.5, 4.0), y=(-2.5, 2.5)),
-        full=Effort(cells=96, until=3.5), quick=Effort(cells=16, until=1.0), code=_CODE,
+        full=RunEffort(cells=96, until=3.5), quick=RunEffort(cells=16, until=1.0), code=_CODE,
         setup="The same in 6.5 x 5 diameters, {cells} cells a diameter.",
     ),
     Case(
         name="started_re3000", run=partial(_started, reynolds=3000.0, x=(-1.5, 2.5), y=(-1.5, 1.5)),
-        full=Effort(cells=192, until=3.0), quick=Effort(cells=24, until=0.8), code=_CODE,
+        full=RunEffort(cells=192, until=3.0), quick=RunEffort(cells=24, until=0.8), code=_CODE,
         setup="The same in 4 x 3 diameters, {cells} cells a diameter.",
     ),
     Case(
-        name="steady_re40", run=_steady, code=_CODE, full=Effort(cells=32, until=8.0, coarse=12, before=40.0),
-        quick=Effort(cells=12, until=1.0, coarse=6, before=2.0),
+        name="steady_re40", run=_steady, code=_CODE, full=RunEffort(cells=32, until=8.0, coarse=12, before=40.0),
+        quick=RunEffort(cells=12, until=1.0, coarse=6, before=2.0),
         setup="A cylinder in a stream, in an unbounded domain, of which 24 x 16 diameters are computed; 40 diameters "
         "of travel with {coarse} cells a diameter and eight with {cells}.",
     ),
     Case(
-        name="shedding_re100", run=_shedding, code=_CODE, full=Effort(cells=28, until=45.0, coarse=12, before=80.0),
-        quick=Effort(cells=10, until=45.0, coarse=8, before=50.0),
+        name="shedding_re100", run=_shedding, code=_CODE, full=RunEffort(cells=28, until=45.0, coarse=12, before=80.0),
+        quick=RunEffort(cells=10, until=45.0, coarse=8, before=50.0),
         setup="A cylinder in a stream with a short gust at the start, in an unbounded domain, of which 24 x 16 "
         "diameters are computed; 80 diameters of travel with {coarse} cells a diameter and 45 with {cells}, means "
         "over the last five periods of shedding.",

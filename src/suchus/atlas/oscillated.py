@@ -6,10 +6,10 @@ from functools import partial
 import numpy as np
 
 from suchus import flow
-from suchus.atlas.case import Case, Curves, Effort
+from suchus.atlas.case import Case, Curves, RunEffort
 from suchus.atlas.marching import march, middles, nudged, shedding
 from suchus.atlas.refine import refined
-from suchus.atlas.skin import Skin, read_skin
+from suchus.atlas.skin import WallValues, read_skin
 from suchus.progress import Progress, staged
 
 RATIOS = (0.8, 0.9, 1.0, 1.1, 1.12, 1.2)
@@ -36,7 +36,7 @@ _SETTLED = 6.0  # [s] on the finer grid until the wake is its own
 _PERIODS = 5  # of vortex shedding, over which is averaged
 
 
-def _oscillated(effort: Effort, progress: Progress, *, ratio: float) -> Curves:
+def _oscillated(effort: RunEffort, progress: Progress, *, ratio: float) -> Curves:
     """Compute ``effort.before`` periods and then ``effort.until`` finer ones, of which all but the first are read."""
     rate = 2 * np.pi * ratio * NATURAL
     period = 2 * np.pi / rate
@@ -44,7 +44,7 @@ def _oscillated(effort: Effort, progress: Progress, *, ratio: float) -> Curves:
     wake = flow.Simulation(_setup(effort.coarse, rate))
     march(wake, first * period, staged(progress, "coarse grid", 0.0, _COARSE_SHARE))
     sim = refined(wake, _setup(effort.cells, rate))
-    uppermost, down = list[Skin](), list[Skin]()
+    uppermost, down = list[WallValues](), list[WallValues]()
 
     def onward(until: float) -> flow.Record:
         return march(sim, until * period, staged(progress, "fine grid", _COARSE_SHARE, 1.0), end=whole * period)
@@ -79,7 +79,7 @@ def _setup(cells: int, rate: float) -> flow.Setup:
     )  # fmt: skip
 
 
-def _at_rest(effort: Effort, progress: Progress) -> Curves:
+def _at_rest(effort: RunEffort, progress: Progress) -> Curves:
     """Compute the cylinder at rest, first on the coarse grid with a gust."""
     wake = flow.Simulation(replace(_setup(effort.coarse, 0.0), stream=nudged))
     march(wake, effort.before, staged(progress, "coarse grid", 0.0, _COARSE_SHARE))
@@ -88,10 +88,10 @@ def _at_rest(effort: Effort, progress: Progress) -> Curves:
     return shedding(record.after(_SETTLED), _PERIODS)
 
 
-def mean_skin(skins: list[Skin]) -> Skin:
+def mean_skin(skins: list[WallValues]) -> WallValues:
     """Return the mean over several readings at the same phase."""
     pressure = np.mean([one.pressure for one in skins], axis=0)
-    return Skin(
+    return WallValues(
         angle=skins[0].angle, pressure=pressure, vorticity=np.mean([one.vorticity for one in skins], axis=0)
     )  # fmt: skip
 
@@ -101,10 +101,10 @@ CASES = (
         Case(
             name=f"shaken_{ratio:g}".replace(".", "p"),
             run=partial(_oscillated, ratio=ratio),
-            full=Effort(cells=32, until=9.0, coarse=_COARSE, before=9.0)
+            full=RunEffort(cells=32, until=9.0, coarse=_COARSE, before=9.0)
             if ratio > _BEATS
-            else Effort(cells=48, until=3.0, coarse=_COARSE, before=9.0),
-            quick=Effort(cells=16, until=1.0, coarse=8, before=1.0),
+            else RunEffort(cells=48, until=3.0, coarse=_COARSE, before=9.0),
+            quick=RunEffort(cells=16, until=1.0, coarse=8, before=1.0),
             code=_CODE,
             setup=f"Re 185, amplitude 0.2 diameters across the stream, frequency {ratio:g} times 0.195 U/D; unbounded "
             "domain, of which 16 x 10 diameters are computed; nine periods from rest with {coarse} cells a diameter "
@@ -115,8 +115,8 @@ CASES = (
     Case(
         name="held_re185",
         run=_at_rest,
-        full=Effort(cells=64, until=38.0, coarse=16, before=60.0),
-        quick=Effort(cells=12, until=36.0, coarse=8, before=40.0),
+        full=RunEffort(cells=64, until=38.0, coarse=16, before=60.0),
+        quick=RunEffort(cells=12, until=36.0, coarse=8, before=40.0),
         code=_CODE,
         setup="The same cylinder at rest, with a short gust at the start; 60 diameters of travel with {coarse} cells a "
         "diameter and 38 with {cells}, the last five periods of shedding.",

@@ -17,7 +17,7 @@ _DIGITS = 7  # of the numbers that are kept: single precision
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Outcome:
+class FlowOutcome:
     """Result of the computation of a flow."""
 
     case: str
@@ -43,7 +43,7 @@ def digest_of(case: Case, *, quick: bool) -> str:
     return digest({"case": case.name, "effort": effort, "quick": quick, "code": code})
 
 
-def compute(case: Case, *, quick: bool, progress: Progress = silent) -> Outcome:
+def compute(case: Case, *, quick: bool, progress: Progress = silent) -> FlowOutcome:
     """Compute a flow; an error of the solver is kept as an outcome too, with its sentence."""
     effort = case.quick if quick else case.full
     began = time.process_time()
@@ -52,7 +52,7 @@ def compute(case: Case, *, quick: bool, progress: Progress = silent) -> Outcome:
         curves = {name: np.asarray(curve, float) for name, curve in case.run(effort, progress).items()}
     except SuchusError as error:
         failed = str(error)
-    return Outcome(
+    return FlowOutcome(
         case=case.name, digest=digest_of(case, quick=quick), quick=quick, cells=effort.cells, failed=failed,
         seconds=time.process_time() - began, curves=curves,
     )  # fmt: skip
@@ -63,14 +63,14 @@ def place(folder: Path, case: str) -> Path:
     return folder / "flows" / f"{case}.json"
 
 
-def save_outcome(outcome: Outcome, folder: Path) -> None:
+def save_outcome(outcome: FlowOutcome, folder: Path) -> None:
     """Write an outcome; an earlier one stays until it is whole.
 
     Raises:
         Unwritable: the place cannot be written to.
     """
     curves = {name: _short(curve) for name, curve in outcome.curves.items()}
-    values = {name: getattr(outcome, name) for name in Outcome.__dataclass_fields__}
+    values = {name: getattr(outcome, name) for name in FlowOutcome.__dataclass_fields__}
     with new_file(place(folder, outcome.case)) as draft:
         draft.write_text(json.dumps({**values, "curves": curves}) + "\n", encoding="utf-8")
 
@@ -80,7 +80,7 @@ def _short(curve: np.ndarray) -> object:
     return plain(rounded)
 
 
-def load_outcome(folder: Path, case: str) -> Outcome | None:
+def load_outcome(folder: Path, case: str) -> FlowOutcome | None:
     """Return a flow's outcome, None if there is none.
 
     Raises:
@@ -90,7 +90,7 @@ def load_outcome(folder: Path, case: str) -> Outcome | None:
     if not path.is_file():
         return None
     values = read_json(path)
-    if not isinstance(values, Mapping) or set(values) != set(Outcome.__dataclass_fields__):
+    if not isinstance(values, Mapping) or set(values) != set(FlowOutcome.__dataclass_fields__):
         raise UnreadableFile(f"{path} holds no outcome of the atlas; delete it and compute the row anew.")
     curves = {name: np.array(curve, float) for name, curve in values["curves"].items()}
-    return Outcome(**{**values, "curves": curves})
+    return FlowOutcome(**{**values, "curves": curves})

@@ -14,7 +14,7 @@ _FOLDER = Path(__file__).parent / "data"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Published:
+class PublishedCurves:
     """A table of numbers and where it comes from."""
 
     about: tuple[str, ...]
@@ -28,7 +28,7 @@ class Published:
 
 
 @cache
-def published(name: str) -> Published:
+def published(name: str) -> PublishedCurves:
     """Return one of the tables of this package by the name of its file without the ending.
 
     Raises:
@@ -39,7 +39,7 @@ def published(name: str) -> Published:
         raise UnreadableFile(f"the atlas has no data named {name!r}; its tables are the files of {_FOLDER}.")
     lines = path.read_text(encoding="utf-8").splitlines()
     rows = list(csv.DictReader(line for line in lines if not line.startswith("#")))
-    return Published(
+    return PublishedCurves(
         about=tuple(line.removeprefix("# ") for line in lines if line.startswith("#")),
         columns={name: tuple(row[name] for row in rows) for name in rows[0]},
     )

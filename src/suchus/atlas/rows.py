@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 from suchus.atlas import cylinders, oscillated, snake, still, walls
-from suchus.atlas.case import Case, Row
+from suchus.atlas.case import AtlasRow, Case
 from suchus.errors import UnknownName
 
 _ANGLE = "angle from the front, over the upper side [deg]"
@@ -14,14 +14,14 @@ _COMPUTED_40 = (("koumoutsakos1995_drag_re40", "t_star", "cd", 0.5), ("taira2007
 _DRAG_40 = (*_COMPUTED_40, ("barlev1975_drag_re40", "t", "cd", 1.0))  # the last is a theory, no measure of the others
 
 
-def _started() -> tuple[Row, ...]:
+def _started() -> tuple[AtlasRow, ...]:
     titles = {
         "koumoutsakos1995_drag_re40": ("koumoutsakos_re40", "drag, Koumoutsakos and Leonard 1995"),
         "taira2007_drag_re40": ("taira_re40", "drag, Taira and Colonius 2007"),
         "barlev1975_drag_re40": ("barlev_re40", "drag for short times, Bar-Lev and Yang 1975"),
     }
     drags = tuple(
-        Row(
+        AtlasRow(
             name=titles[data][0], title=f"Started cylinder, Re 40: {titles[data][1]}", case="started_re40", data=data,
             x=x, y=y, scale=(factor, 1.0), window=_FIRST, ours="drag", labels=(_TIME, "drag coefficient [-]"),
             others=tuple(one for one in _COMPUTED_40 if one[0] != data),
@@ -29,7 +29,7 @@ def _started() -> tuple[Row, ...]:
         for data, x, y, factor in _DRAG_40
     )  # fmt: skip
     faster = tuple(
-        Row(
+        AtlasRow(
             name=f"koumoutsakos_re{reynolds}", case=f"started_re{reynolds}",
             title=f"Started cylinder, Re {reynolds}: drag, Koumoutsakos and Leonard 1995", x="t_star", y="cd",
             data=f"koumoutsakos1995_drag_re{reynolds}", scale=(0.5, 1.0), window=_FIRST, ours="drag",
@@ -37,7 +37,7 @@ def _started() -> tuple[Row, ...]:
         )
         for reynolds in (550, 3000)
     )  # fmt: skip
-    length = Row(
+    length = AtlasRow(
         name="coutanceau_re40", title="Started cylinder, Re 40: recirculation, Coutanceau and Bouard 1977",
         case="started_re40", data="coutanceau1977_length_re40", x="t", y="length", ours="length",
         labels=(_TIME, "length of the recirculation / diameter [-]"),
@@ -45,15 +45,15 @@ def _started() -> tuple[Row, ...]:
     return (*drags, length, *faster)
 
 
-def _oscillated() -> tuple[Row, ...]:
+def _oscillated() -> tuple[AtlasRow, ...]:
     rows = []
     for ratio in oscillated.RATIOS:
         key = f"{ratio:g}".replace(".", "p") if ratio != 1 else "1p0"
         case = f"shaken_{ratio:g}".replace(".", "p")
-        pressure: Row | None = None
+        pressure: AtlasRow | None = None
         for quantity, label in (("pressure", "pressure coefficient [-]"), ("vorticity", "vorticity x D / U [-]")):
             rows.append(
-                Row(
+                AtlasRow(
                     any_cycle=True,
                     cycle_of=pressure,
                     name=f"guilmineau_{quantity}_{key}",
@@ -71,11 +71,11 @@ def _oscillated() -> tuple[Row, ...]:
             )
             pressure = rows[-1]
     rows.append(
-        Row(name="re185_numbers", title="Cylinder at rest, Re 185: Strouhal number", case="held_re185",
+        AtlasRow(name="re185_numbers", title="Cylinder at rest, Re 185: Strouhal number", case="held_re185",
             data="re185_numbers", kind="numbers")
     )  # fmt: skip
     rows.append(
-        Row(
+        AtlasRow(
             name="schneiders_drag",
             title="Cylinder oscillated transversely at 0.8 times its natural frequency, Re 185: drag, "
             "Schneiders 2013",
@@ -85,7 +85,7 @@ def _oscillated() -> tuple[Row, ...]:
         )
     )  # fmt: skip
     rows.append(
-        Row(
+        AtlasRow(
             name="schneiders_pressure", case="shaken_0p8", data="schneiders2013_pressure", x="angle", y="cp",
             title="Cylinder oscillated transversely at 0.8 times its natural frequency, Re 185: "
             "pressure going down, Schneiders 2013",
@@ -95,9 +95,9 @@ def _oscillated() -> tuple[Row, ...]:
     return tuple(rows)
 
 
-def _resting() -> tuple[Row, ...]:
+def _resting() -> tuple[AtlasRow, ...]:
     pressures = tuple(
-        Row(
+        AtlasRow(
             name=f"li_pressure_re{reynolds}", case=case, data=f"li2016_pressure_re{reynolds}", x="angle", y="cp",
             title=f"Cylinder, Re {reynolds}: {mean}pressure, Li et al. 2016", period=360.0, skin=True, ours="pressure",
             labels=(_ANGLE, "pressure coefficient [-]"),
@@ -105,17 +105,17 @@ def _resting() -> tuple[Row, ...]:
         for reynolds, case, mean in ((40, "steady_re40", ""), (100, "shedding_re100", "mean "))
     )  # fmt: skip
     return (
-        Row(name="re40_numbers", title="Cylinder, Re 40: drag and length of the wake", case="steady_re40",
+        AtlasRow(name="re40_numbers", title="Cylinder, Re 40: drag and length of the wake", case="steady_re40",
             data="re40_numbers", kind="numbers"),
-        Row(name="re100_numbers", title="Cylinder, Re 100: drag, lift and Strouhal number", case="shedding_re100",
+        AtlasRow(name="re100_numbers", title="Cylinder, Re 100: drag, lift and Strouhal number", case="shedding_re100",
             data="re100_numbers", kind="numbers"),
         *pressures,
     )  # fmt: skip
 
 
-def _still() -> tuple[Row, ...]:
+def _still() -> tuple[AtlasRow, ...]:
     strokes = tuple(
-        Row(
+        AtlasRow(
             name=f"eldredge_{name}", title=f"Flapping ellipse, Re 75: {name}, Eldredge 2007", case="flapping",
             data=f"eldredge2007_flapping_{name}", x="t_over_period", y=name, ours=name,
             labels=("time / period [-]", f"{name} over its largest quasi-steady value [-]"),
@@ -127,7 +127,7 @@ def _still() -> tuple[Row, ...]:
         )
     )  # fmt: skip
     return (
-        Row(
+        AtlasRow(
             name="duetsch_force", title="Cylinder that oscillates in water at rest, Re 100, KC 5: force, Duetsch 1998",
             case="in_line", data="duetsch1998_force", x="t_over_period", y="force", ours="force", period=1.0,
             labels=("time / period [-]", "force / (density x speed^2 x diameter) [-]"),
@@ -136,9 +136,9 @@ def _still() -> tuple[Row, ...]:
     )  # fmt: skip
 
 
-def _walls() -> tuple[Row, ...]:
+def _walls() -> tuple[AtlasRow, ...]:
     lines = tuple(
-        Row(
+        AtlasRow(
             name=f"ghia_{line}_re{reynolds}", title=f"Lid-driven cavity, Re {reynolds}: {line}, Ghia et al. 1982",
             case=f"cavity_re{reynolds}", data="ghia1982_cavity", x=place, y=f"{line}_re{reynolds}", ours=line,
             window=(0.01, 0.99), labels=(f"{place} / width [-]", f"{line} / speed of the lid [-]"),
@@ -149,13 +149,13 @@ def _walls() -> tuple[Row, ...]:
     )  # fmt: skip
     return (
         *lines,
-        Row(name="dfg_2d1", title="Cylinder in a channel, DFG 2D-1", case="dfg_2d1", data="dfg_2d1_numbers",
+        AtlasRow(name="dfg_2d1", title="Cylinder in a channel, DFG 2D-1", case="dfg_2d1", data="dfg_2d1_numbers",
             kind="numbers"),
-        Row(name="dfg_2d2", title="Cylinder in a channel, DFG 2D-2", case="dfg_2d2", data="dfg_2d2_numbers",
+        AtlasRow(name="dfg_2d2", title="Cylinder in a channel, DFG 2D-2", case="dfg_2d2", data="dfg_2d2_numbers",
             kind="numbers"),
-        Row(name="wachs_numbers", title="Settling cylinder: terminal speed, Wachs 2009", case="settling",
+        AtlasRow(name="wachs_numbers", title="Settling cylinder: terminal speed, Wachs 2009", case="settling",
             data="wachs2009_numbers", kind="numbers"),
-        Row(
+        AtlasRow(
             name="wachs_path", title="Settling cylinder: path, Wachs 2009", case="settling", data="wachs2009_path",
             x="y", y="x", shift=(0.0, -2.0), window=(-20.0, 40.0), ours="path",
             labels=("height / diameter [-]", "distance from the middle / diameter [-]"),
@@ -163,9 +163,9 @@ def _walls() -> tuple[Row, ...]:
     )  # fmt: skip
 
 
-def _snakes() -> tuple[Row, ...]:
+def _snakes() -> tuple[AtlasRow, ...]:
     return tuple(
-        Row(
+        AtlasRow(
             name=f"snake_{degrees}_re{reynolds}", case=f"snake_{degrees}_re{reynolds}", kind="numbers",
             title=f"Flying snake's cross-section at {degrees} degrees, Re {reynolds}, Krishnan et al. 2014",
             data=f"snake_{degrees}_re{reynolds}_numbers",
@@ -175,7 +175,7 @@ def _snakes() -> tuple[Row, ...]:
     )  # fmt: skip
 
 
-GROUPS: Mapping[str, tuple[Row, ...]] = MappingProxyType(
+GROUPS: Mapping[str, tuple[AtlasRow, ...]] = MappingProxyType(
     {
         "Boxes and channels": _walls(),
         "Started cylinders": _started(),
@@ -187,7 +187,7 @@ GROUPS: Mapping[str, tuple[Row, ...]] = MappingProxyType(
 )
 """The rows by what they have in common, in the order of the page."""
 
-ROWS: Mapping[str, Row] = MappingProxyType({row.name: row for rows in GROUPS.values() for row in rows})
+ROWS: Mapping[str, AtlasRow] = MappingProxyType({row.name: row for rows in GROUPS.values() for row in rows})
 """The rows by their names."""
 
 CASES: Mapping[str, Case] = MappingProxyType(
@@ -203,7 +203,7 @@ LONGEST = (
 """Flows that are begun first, so that no process idles in the end."""
 
 
-def chosen(names: tuple[str, ...]) -> tuple[Row, ...]:
+def chosen(names: tuple[str, ...]) -> tuple[AtlasRow, ...]:
     """Return rows by their names, all if there are none.
 
     Raises:

@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 
 from suchus import flow
-from suchus.atlas.case import Case, Curves, Effort
+from suchus.atlas.case import Case, Curves, RunEffort
 from suchus.atlas.marching import march, middles
 from suchus.progress import Progress
 
@@ -35,7 +35,7 @@ def name_of(aspect: float, keulegan: float, cells: int = _CELLS) -> str:
     return f"section_{aspect:g}_{keulegan:g}" + (f"_on_{cells}" if cells != _CELLS else "")
 
 
-def _moved(effort: Effort, progress: Progress, *, aspect: float, keulegan: float) -> Curves:
+def _moved(effort: RunEffort, progress: Progress, *, aspect: float, keulegan: float) -> Curves:
     """Compute a section of height 1 that moves with ``-keulegan cos(2 pi t)``; read every period but the first."""
     swing, thickness = keulegan / (2 * np.pi), 1 / aspect
     shape = flow.Cylinder(diameter=1.0) if aspect == 1.0 else flow.Ellipse(length=thickness, width=1.0)
@@ -62,7 +62,7 @@ def _moved(effort: Effort, progress: Progress, *, aspect: float, keulegan: float
 def _case(aspect: float, keulegan: float, cells: int = _CELLS) -> Case:
     return Case(
         name=name_of(aspect, keulegan, cells), run=partial(_moved, aspect=aspect, keulegan=keulegan),
-        full=Effort(cells=cells, until=_PERIODS), quick=Effort(cells=8, until=2.0), code=_CODE,
+        full=RunEffort(cells=cells, until=_PERIODS), quick=RunEffort(cells=8, until=2.0), code=_CODE,
         setup=f"A section {aspect:g} times as high as thick that oscillates across its height in water at rest, KC "
         f"{keulegan:g}, beta {STOKES:g}; {_MARGIN:g} heights of water around its path in an unbounded domain, "
         "{cells} cells a height; three periods from rest.",

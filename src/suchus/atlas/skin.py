@@ -25,7 +25,7 @@ PLACES = (1.5, 2.5, 3.5)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Skin:
+class WallValues:
     """Values along the skin of a cylinder of diameter 1 in a stream of 1 with density 1, each of shape (marker,)."""
 
     angle: np.ndarray
@@ -41,7 +41,7 @@ class Skin:
         return np.stack([self.angle[order], getattr(self, name)[order]])
 
 
-def read_skin(sim: flow.Simulation, acceleration: tuple[float, float] = (0.0, 0.0)) -> Skin:
+def read_skin(sim: flow.Simulation, acceleration: tuple[float, float] = (0.0, 0.0)) -> WallValues:
     """Return pressure and vorticity along a cylinder's surface at the present time.
 
     Args:
@@ -51,7 +51,7 @@ def read_skin(sim: flow.Simulation, acceleration: tuple[float, float] = (0.0, 0.
     surface, (body,) = sim.surface(), sim.setup.bodies
     marks, pose = surface.markers, sim.pose(body.name)
     theta = np.arctan2(marks.y - pose.position[1], marks.x - pose.position[0])
-    return Skin(
+    return WallValues(
         angle=np.degrees(np.pi - theta) % 360, pressure=2 * (surface.pressure - far_pressure(sim)),
         vorticity=_vorticity(sim, theta, surface.pressure, np.array(acceleration)),
     )  # fmt: skip

@@ -5,7 +5,7 @@ from functools import partial
 import numpy as np
 
 from suchus import flow
-from suchus.atlas.case import Case, Curves, Effort
+from suchus.atlas.case import Case, Curves, RunEffort
 from suchus.atlas.marching import march, middles
 from suchus.atlas.published import published
 from suchus.atlas.refine import refined
@@ -17,7 +17,7 @@ _CODE = ("snake.py", "marching.py", "published.py", "refine.py")
 _SETTLED = 8.0  # [s] on the finer grid until the wake is its own
 
 
-def _snake(effort: Effort, progress: Progress, *, reynolds: float, degrees: int) -> Curves:
+def _snake(effort: RunEffort, progress: Progress, *, reynolds: float, degrees: int) -> Curves:
     wake = flow.Simulation(_setup(effort.coarse, reynolds, degrees))
     march(wake, effort.before, staged(progress, "coarse grid", 0.0, 0.2))
     sim = refined(wake, _setup(effort.cells, reynolds, degrees))
@@ -41,8 +41,8 @@ CASES = tuple(
     Case(
         name=f"snake_{degrees}_re{reynolds}",
         run=partial(_snake, reynolds=float(reynolds), degrees=degrees),
-        full=Effort(cells=64, until=40.0, coarse=32, before=48.0),
-        quick=Effort(cells=24, until=18.0, coarse=16, before=6.0),
+        full=RunEffort(cells=64, until=40.0, coarse=32, before=48.0),
+        quick=RunEffort(cells=24, until=18.0, coarse=16, before=6.0),
         code=_CODE,
         setup="The cross-section of a flying snake in a stream, in an unbounded domain, of which 9 x 6 chords are "
         "computed; 48 chords of travel from rest with {coarse} cells a chord and 40 with {cells}, means over the last "

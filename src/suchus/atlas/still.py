@@ -3,7 +3,7 @@
 import numpy as np
 
 from suchus import flow
-from suchus.atlas.case import Case, Curves, Effort
+from suchus.atlas.case import Case, Curves, RunEffort
 from suchus.atlas.marching import march, middles
 from suchus.progress import Progress
 
@@ -14,7 +14,7 @@ _FREQUENCY = 0.25  # [Hz]
 _SWING = np.pi / 4  # [rad]
 
 
-def _in_line(effort: Effort, progress: Progress) -> Curves:
+def _in_line(effort: RunEffort, progress: Progress) -> Curves:
     """Compute a cylinder that moves with ``-U cos(2 pi t / T)``; diameter and period are 1."""
     speed = _KEULEGAN
     motion = flow.Oscillation(frequency=1.0, heave=(-speed / (2 * np.pi), 0.0))
@@ -52,7 +52,7 @@ def quasi_steady_peaks() -> tuple[float, float]:
     return float(drag.max()), float(lift.max())
 
 
-def _flapping(effort: Effort, progress: Progress) -> Curves:
+def _flapping(effort: RunEffort, progress: Progress) -> Curves:
     speed = np.pi * _FREQUENCY * _STROKE
     sim = flow.Simulation(
         flow.Setup(
@@ -70,12 +70,13 @@ def _flapping(effort: Effort, progress: Progress) -> Curves:
 
 CASES = (
     Case(
-        name="in_line", run=_in_line, full=Effort(cells=64, until=5.0), quick=Effort(cells=12, until=1.0), code=_CODE,
+        name="in_line", run=_in_line, code=_CODE,
+        full=RunEffort(cells=64, until=5.0), quick=RunEffort(cells=12, until=1.0),
         setup="A cylinder that oscillates in water at rest, Re 100, KC 5; unbounded domain, of which 10 x 8 diameters "
         "are computed; {cells} cells a diameter; the last of five periods.",
     ),
     Case(
-        name="flapping", run=_flapping, full=Effort(cells=64, until=16.0), quick=Effort(cells=32, until=4.0),
+        name="flapping", run=_flapping, full=RunEffort(cells=64, until=16.0), quick=RunEffort(cells=32, until=4.0),
         code=_CODE,
         setup="An ellipse 10:1 that flaps in water at rest with a stroke of 2.8 chords and a swing of 45 degrees, Re "
         "75; unbounded domain, of which 7 x 9 chords are computed, most of them below; {cells} cells a chord; four "

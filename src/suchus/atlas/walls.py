@@ -5,7 +5,7 @@ from functools import partial
 import numpy as np
 
 from suchus import flow
-from suchus.atlas.case import Case, Curves, Effort
+from suchus.atlas.case import Case, Curves, RunEffort
 from suchus.atlas.marching import march, middles
 from suchus.atlas.refine import refined
 from suchus.flow.signals import last_periods
@@ -18,7 +18,7 @@ _SINKING = 2.1  # [m/s]; of the frame that a settling cylinder is seen from
 _VISCOSITY = 0.008088  # [m^2/s]; of the water that it settles in
 
 
-def _cavity(effort: Effort, progress: Progress, *, reynolds: float) -> Curves:
+def _cavity(effort: RunEffort, progress: Progress, *, reynolds: float) -> Curves:
     n = effort.cells
     sides = flow.Sides(left=flow.Wall(), right=flow.Wall(), bottom=flow.Wall(), top=flow.Wall(speed=1.0))
     sim = flow.Simulation(
@@ -31,7 +31,7 @@ def _cavity(effort: Effort, progress: Progress, *, reynolds: float) -> Curves:
     return {"u": np.stack([mids, up.velocity[:, 0]]), "v": np.stack([mids, across.velocity[:, 1]])}
 
 
-def _channel(effort: Effort, progress: Progress, *, mean_speed: float) -> Curves:
+def _channel(effort: RunEffort, progress: Progress, *, mean_speed: float) -> Curves:
     """Compute the DFG channel, 2.2 m long: from rest on the coarse grid, then on the finer one."""
     before = flow.Simulation(_channel_setup(effort.coarse, effort.coarse, mean_speed))
     march(before, effort.before, staged(progress, "coarse grid", 0.0, 0.3))
@@ -75,7 +75,7 @@ def _pressure_drop(sim: flow.Simulation) -> float:
     return float(front - rear)
 
 
-def _settling(effort: Effort, progress: Progress) -> Curves:
+def _settling(effort: RunEffort, progress: Progress) -> Curves:
     """Compute a cylinder of relative density 1.5 that settles from (1, 40) in a channel of width 4; gravity is 10.
 
     In a frame that sinks with ``_SINKING`` the walls and the water go up, and 40 diameters of the channel are enough.
@@ -110,32 +110,32 @@ def _settling(effort: Effort, progress: Progress) -> Curves:
 
 CASES = (
     Case(
-        name="cavity_re100", run=partial(_cavity, reynolds=100.0), full=Effort(cells=96, until=25.0),
-        quick=Effort(cells=16, until=3.0), code=_CODE,
+        name="cavity_re100", run=partial(_cavity, reynolds=100.0), full=RunEffort(cells=96, until=25.0),
+        quick=RunEffort(cells=16, until=3.0), code=_CODE,
         setup="A square box whose lid slides, from rest until it is steady; {cells} cells a side.",
     ),
     Case(
-        name="cavity_re1000", run=partial(_cavity, reynolds=1000.0), full=Effort(cells=128, until=50.0),
-        quick=Effort(cells=16, until=3.0), code=_CODE,
+        name="cavity_re1000", run=partial(_cavity, reynolds=1000.0), full=RunEffort(cells=128, until=50.0),
+        quick=RunEffort(cells=16, until=3.0), code=_CODE,
         setup="A square box whose lid slides, from rest until it is steady; {cells} cells a side.",
     ),
     Case(
         name="dfg_2d1", run=partial(_channel, mean_speed=0.2), code=_CODE,
-        full=Effort(cells=62, until=1.0, coarse=31, before=6.0),
-        quick=Effort(cells=16, until=0.3, coarse=8, before=0.7),
+        full=RunEffort(cells=62, until=1.0, coarse=31, before=6.0),
+        quick=RunEffort(cells=16, until=0.3, coarse=8, before=0.7),
         setup="The DFG channel, 22 x 4.1 diameters: six seconds from rest with {coarse} cells a diameter and one with "
         f"{{cells}}, of which the last {_STEADY:g} s count.",
     ),
     Case(
         name="dfg_2d2", run=partial(_channel, mean_speed=1.0), code=_CODE,
-        full=Effort(cells=62, until=2.7, coarse=31, before=6.0),
-        quick=Effort(cells=20, until=2.7, coarse=10, before=5.0),
+        full=RunEffort(cells=62, until=2.7, coarse=31, before=6.0),
+        quick=RunEffort(cells=20, until=2.7, coarse=10, before=5.0),
         setup="The DFG channel, 22 x 4.1 diameters: six seconds from rest with {coarse} cells a diameter and 2.7 with "
         "{cells}, of which the last five periods count.",
     ),
     Case(
-        name="settling", run=_settling, code=_CODE, full=Effort(cells=32, until=46.0),
-        quick=Effort(cells=12, until=2.0),
+        name="settling", run=_settling, code=_CODE, full=RunEffort(cells=32, until=46.0),
+        quick=RunEffort(cells=12, until=2.0),
         setup="A cylinder of relative density 1.5 that settles from rest, one diameter from a wall, in a channel 4 "
         "diameters wide, seen from a frame that sinks with 2.1 m/s: 40 diameters of the channel, {cells} cells a "
         "diameter. Means over the last two fifths of the time.",

@@ -9,7 +9,7 @@ from typing import Annotated
 import tyro
 
 from suchus import threads
-from suchus.atlas import CASES, LONGEST, Outcome, chosen, compute_all
+from suchus.atlas import CASES, LONGEST, FlowOutcome, chosen, compute_all
 from suchus.cli.commands import BadCommand
 from suchus.cli.options import SCHEDULER, parse
 from suchus.cli.terminal import working
@@ -73,6 +73,6 @@ def flow_atlas(words: Sequence[str]) -> int:
     return 1 if any(outcome.failed for outcome in outcomes.values()) else 0
 
 
-def _line(outcome: Outcome) -> str:
+def _line(outcome: FlowOutcome) -> str:
     ended = f"failed: {outcome.failed}" if outcome.failed else "done"
     return f"{outcome.case}, {ended} ({outcome.seconds:.0f} s of processor time)"

@@ -26,7 +26,7 @@ def swim() -> dict[str, Any]:
     import numba  # noqa: PLC0415
     import numpy as np  # noqa: PLC0415
 
-    from suchus.flow import cache, linking  # noqa: PLC0415
+    from suchus.flow import compiled, linking  # noqa: PLC0415
 
     @numba.njit(parallel=True)  # type: ignore[untyped-decorator]
     def doubled(values: Any) -> Any:
@@ -36,7 +36,7 @@ def swim() -> dict[str, Any]:
         return out
 
     doubled(np.ones(8))
-    kept = cache.folder()
+    kept = compiled.FOLDER
     return {
         "layer": numba.threading_layer(),
         "folder": None if kept is None else str(kept),

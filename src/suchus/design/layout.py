@@ -23,7 +23,7 @@ LIMB_AXES: Mapping[str, Axis] = {"yaw": (0.0, 0.0, -1.0), "pitch": (-1.0, 0.0, 0
 
 
 @dataclass(frozen=True, slots=True)
-class Body:
+class LayoutBody:
     """A moving body: a segment of the axis or a link of a limb."""
 
     name: str
@@ -70,7 +70,7 @@ class Layout:
 
     robot: Robot
     """The robot in the general form."""
-    bodies: tuple[Body, ...]
+    bodies: tuple[LayoutBody, ...]
     """Every moving body; a parent stands before its children."""
     hinges: tuple[str, ...]
     """Every hinge."""
@@ -141,7 +141,7 @@ def layout(robot: Robot) -> Layout:
     root = body.root_place
     ahead = [_ahead_body(body, i) for i in range(root - 1, -1, -1)]
     behind = [_behind_body(body, i) for i in range(root + 1, len(body.axis))]
-    bodies = [Body(body.root, -1, (0.0, 0.0, 0.0), 0.0, ())]
+    bodies = [LayoutBody(body.root, -1, (0.0, 0.0, 0.0), 0.0, ())]
     bodies += [_placed(one, i) for i, one in enumerate(ahead)]
     tips = []
     for girdle, name, side in _pairs(body):
@@ -237,24 +237,24 @@ def _pairs(robot: Robot) -> list[tuple[Girdle, str, float]]:
     return [(girdle, word + girdle.name, side) for girdle in robot.girdles for word, side in (("L", 1.0), ("R", -1.0))]
 
 
-def _placed(body: Body, parent: int) -> Body:
-    return Body(body.name, 0 if parent == -1 else parent, body.offset, body.shift, body.hinges)
+def _placed(body: LayoutBody, parent: int) -> LayoutBody:
+    return LayoutBody(body.name, 0 if parent == -1 else parent, body.offset, body.shift, body.hinges)
 
 
-def _ahead_body(robot: Robot, i: int) -> Body:
+def _ahead_body(robot: Robot, i: int) -> LayoutBody:
     segment, before = robot.axis[i], robot.axis[i + 1]
     shift = 0.0 if before.name == robot.root else before.rear
     offset = shift + before.front
     hinges = tuple((hinge, hinge.name, _AHEAD[hinge.turn]) for hinge in segment.hinges)
-    return Body(segment.name, -1, (offset, 0.0, 0.0), segment.rear, hinges)
+    return LayoutBody(segment.name, -1, (offset, 0.0, 0.0), segment.rear, hinges)
 
 
-def _behind_body(robot: Robot, i: int) -> Body:
+def _behind_body(robot: Robot, i: int) -> LayoutBody:
     segment, before = robot.axis[i], robot.axis[i - 1]
     shift = 0.0 if before.name == robot.root else 0.0 - before.front
     offset = shift - before.rear
     hinges = tuple((hinge, hinge.name, _BEHIND[hinge.turn]) for hinge in before.hinges)
-    return Body(segment.name, -1, (offset, 0.0, 0.0), 0.0 - segment.front, hinges)
+    return LayoutBody(segment.name, -1, (offset, 0.0, 0.0), 0.0 - segment.front, hinges)
 
 
 def mirrored(axis: Axis, side: float) -> Axis:
@@ -262,11 +262,11 @@ def mirrored(axis: Axis, side: float) -> Axis:
     return side * axis[0] + 0.0, axis[1], side * axis[2] + 0.0
 
 
-def _limb_bodies(girdle: Girdle, name: str, side: float, parent: int, first: int, shift: float) -> list[Body]:
+def _limb_bodies(girdle: Girdle, name: str, side: float, parent: int, first: int, shift: float) -> list[LayoutBody]:
     found, offset = [], (shift + girdle.at, side * girdle.aside, girdle.above)
     for i, link in enumerate(girdle.limb.links):
         hinges = tuple((h, f"{name}_{h.name}", mirrored(LIMB_AXES[h.turn], side)) for h in link.hinges)
-        found.append(Body(f"{name}_{link.name}", parent if i == 0 else first + i - 1, offset, 0.0, hinges))
+        found.append(LayoutBody(f"{name}_{link.name}", parent if i == 0 else first + i - 1, offset, 0.0, hinges))
         offset = (link.end[0], side * link.end[1], link.end[2])
     return found
 

@@ -17,7 +17,7 @@ TAKEN = tuple(motion + AS_TAKEN for motion in ("trunk and tail", "tail only"))
 _SETTLE, _AVERAGED = 5, 3  # [cycle]; before the joints' angles are taken and while they are
 
 
-class Midline(NamedTuple):
+class TakenMidline(NamedTuple):
     """What the joints take of one command."""
 
     name: str
@@ -28,7 +28,7 @@ class Midline(NamedTuple):
     """Rms angle off what was commanded, over that [-]."""
 
 
-def midlines(robot: Robot, motion: Swim, stations: int) -> list[Midline]:
+def midlines(robot: Robot, motion: Swim, stations: int) -> list[TakenMidline]:
     """Return the midlines of trunk and tail, and of the tail alone, as the joints take them at the surface.
 
     Args:
@@ -47,5 +47,5 @@ def midlines(robot: Robot, motion: Swim, stations: int) -> list[Midline]:
     outline, found = Outline(bare, stations), []
     for i, (name, one) in enumerate(zip(TAKEN, meant, strict=True)):
         bends = taken(outline, record.isel(run=i), frequency=motion.frequency, cycles=_AVERAGED, name=name)
-        found.append(Midline(name, bends, unevenness(bends, undulation(outline, one))))
+        found.append(TakenMidline(name, bends, unevenness(bends, undulation(outline, one))))
     return found

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from suchus.atlas import GROUPS, ROWS, Comparison, Outcome, Row, published
+from suchus.atlas import GROUPS, ROWS, AtlasRow, CurveComparison, FlowOutcome, published
 from suchus.figures.atlas_page import Entry, entries, page, picture
 from suchus.figures.style import COLOURS, styled
 from suchus.record import new_file
@@ -20,7 +20,9 @@ _SMALL: dict[str, Any] = {"fontsize": 8}
 _FARTHEST = 1.4  # times the published peak, to which the plot of all points reaches
 
 
-def write_atlas(outcomes: Mapping[str, Outcome], folder: Path, rows: Sequence[Row] = tuple(ROWS.values())) -> Path:
+def write_atlas(
+    outcomes: Mapping[str, FlowOutcome], folder: Path, rows: Sequence[AtlasRow] = tuple(ROWS.values())
+) -> Path:
     """Write ``atlas.md`` and its pictures to a folder from the outcomes of the flows by name, and return the page.
 
     Raises:
@@ -68,7 +70,7 @@ def _draw(axes: Axes, entry: Entry) -> None:
     axes.tick_params(labelsize=8)
 
 
-def _draw_curve(axes: Axes, entry: Entry, found: Comparison) -> None:
+def _draw_curve(axes: Axes, entry: Entry, found: CurveComparison) -> None:
     row, curve = entry.row, entry.curves[found.curve]
     low, high = found.x.min(), found.x.max()
     if row.kind == "loop":
@@ -83,7 +85,7 @@ def _draw_curve(axes: Axes, entry: Entry, found: Comparison) -> None:
     axes.legend(loc="best", fontsize=7)
 
 
-def _draw_numbers(axes: Axes, row: Row, found: Comparison) -> None:
+def _draw_numbers(axes: Axes, row: AtlasRow, found: CurveComparison) -> None:
     table = published(row.data)
     places = np.arange(len(found.x))
     for column in table.columns:

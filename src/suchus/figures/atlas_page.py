@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from statistics import median
 
-from suchus.atlas import CASES, GROUPS, Comparison, Curves, Outcome, Row, compare, digest_of, published
+from suchus.atlas import CASES, GROUPS, AtlasRow, CurveComparison, Curves, FlowOutcome, compare, digest_of, published
 from suchus.errors import SuchusError
 from suchus.flow import ALONG_THE_SKIN
 
@@ -21,11 +21,11 @@ _HEAD = ("row", "rms over peak", "bound", "scatter of sources", "verdict", "cell
 class Entry:
     """A row and its result."""
 
-    row: Row
+    row: AtlasRow
     """The row."""
-    outcome: Outcome | None
+    outcome: FlowOutcome | None
     """Outcome of its flow; None if it was not computed."""
-    comparison: Comparison | None = None
+    comparison: CurveComparison | None = None
     """Difference from the published data; None if there is nothing to compare."""
     failed: str = ""
     """The error, if there is no comparison; else empty."""
@@ -49,7 +49,7 @@ class Entry:
         return self.word in ("above its bound", "failed")
 
 
-def entries(rows: Sequence[Row], outcomes: Mapping[str, Outcome]) -> list[Entry]:
+def entries(rows: Sequence[AtlasRow], outcomes: Mapping[str, FlowOutcome]) -> list[Entry]:
     """Return each row with its result; outcomes are found by the names of the flows."""
     listed = []
     for row in rows:

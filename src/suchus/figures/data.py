@@ -34,7 +34,7 @@ Cells = dict[str, str]
 
 
 @dataclass(frozen=True, slots=True)
-class Carried:
+class CarriedField:
     """A field as it was computed, where what is drawn of it is smoothed or turned into lines."""
 
     values: np.ndarray
@@ -56,7 +56,7 @@ def carry(
         x: places along x, in the unit of the axis; not needed of a picture.
         y: the same along y.
     """
-    setattr(artist, _CARRIED, Carried(np.asarray(values), x, y))
+    setattr(artist, _CARRIED, CarriedField(np.asarray(values), x, y))
 
 
 def table(figure: Figure) -> str:

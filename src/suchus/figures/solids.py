@@ -13,7 +13,7 @@ _LIGHT = np.array([-0.35, 0.75, 0.56])  # to the right, up, towards the camera; 
 _FINER = 2  # pixels along each side of one that is shown
 
 
-class Camera(NamedTuple):
+class Viewpoint(NamedTuple):
     """Where a picture is taken from."""
 
     azimuth: float
@@ -43,7 +43,7 @@ class Camera(NamedTuple):
         return np.stack([0.5 * size[0] + scale * right, 0.5 * size[1] + scale * up], axis=1), self.distance - near
 
 
-def picture(solid: Mesh, clear: Mesh, camera: Camera, size: tuple[int, int], *, share: float = 0.8) -> np.ndarray:
+def picture(solid: Mesh, clear: Mesh, camera: Viewpoint, size: tuple[int, int], *, share: float = 0.8) -> np.ndarray:
     """Return a picture on white of a solid and of surfaces that it is seen through, (row, column, 3) uint8.
 
     Args:
@@ -57,7 +57,7 @@ def picture(solid: Mesh, clear: Mesh, camera: Camera, size: tuple[int, int], *, 
     return np.round(share * both + (1.0 - share) * alone).astype(np.uint8)
 
 
-def _drawn(meshes: Sequence[Mesh], camera: Camera, size: tuple[int, int]) -> np.ndarray:
+def _drawn(meshes: Sequence[Mesh], camera: Viewpoint, size: tuple[int, int]) -> np.ndarray:
     """Return the picture of surfaces that hide what is behind them, (row, column, 3) [0 to 255]."""
     whole = joined(meshes)
     fine = (_FINER * size[0], _FINER * size[1])
@@ -77,7 +77,7 @@ def _drawn(meshes: Sequence[Mesh], camera: Camera, size: tuple[int, int]) -> np.
     return total / _FINER**2
 
 
-def _lit(mesh: Mesh, camera: Camera) -> np.ndarray:
+def _lit(mesh: Mesh, camera: Viewpoint) -> np.ndarray:
     """Return the colours of a mesh under a high light from behind the camera's left shoulder, (n, 3) [0 to 1]."""
     axes = camera.axes
     normal, light = normals(mesh), axes.T @ _LIGHT

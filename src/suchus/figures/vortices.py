@@ -11,7 +11,7 @@ from scipy.ndimage import map_coordinates
 from suchus.errors import IncompatibleRecord
 from suchus.figures.fields import VORTICITY
 from suchus.figures.film import film
-from suchus.figures.solids import Camera, picture
+from suchus.figures.solids import Viewpoint, picture
 from suchus.figures.style import captioned, panels, styled
 from suchus.isosurface import IsoSurface, isosurface
 from suchus.progress import Progress, silent
@@ -131,12 +131,12 @@ def colour_limit(record: xr.Dataset) -> float:
     return float(2.0 * (2.0 * record.vortex_level) ** 0.5)
 
 
-def camera(record: xr.Dataset) -> Camera:
+def camera(record: xr.Dataset) -> Viewpoint:
     """Return where pictures of a record are taken from: obliquely from above, beside the body."""
     x, y = record.film_x.values, record.y.values
     length, middle = float(np.ptp(x[0])), 0.5 * float(x.min() + x.max())
     target, width = (middle + 0.26 * length, -0.14 * length, 0.0), 1.2 * length + 0.25 * float(np.ptp(y))
-    return Camera(azimuth=-1.05, elevation=0.62, distance=3.2 * length, target=target, width=width)
+    return Viewpoint(azimuth=-1.05, elevation=0.62, distance=3.2 * length, target=target, width=width)
 
 
 def hexed(share: float) -> str:

@@ -2,14 +2,14 @@
 
 from suchus.flow.added import added_mass
 from suchus.flow.body import Body
-from suchus.flow.contact import Contact
+from suchus.flow.contact import BodyContact
 from suchus.flow.eel import eel, eel_in_space
 from suchus.flow.force import Load, Surface
 from suchus.flow.free import FreeBody
 from suchus.flow.grid import Grid
 from suchus.flow.limbed import Capsule, Limbed
 from suchus.flow.mass import Mass, SpaceMass
-from suchus.flow.midline import Midline, Spine, foil
+from suchus.flow.midline import Midline, MidlineState, foil
 from suchus.flow.outline import Implicit, Polygon, difference, from_outline, from_sdf, scaled, union
 from suchus.flow.output import FieldSeries, save_vti, snapshot
 from suchus.flow.pose import Glide, Motion, Oscillation, Pose
@@ -21,7 +21,7 @@ from suchus.flow.shape import Cylinder, Ellipse, Field, Markers, Plate, Shape, S
 from suchus.flow.sides import Inflow, Mirror, Outflow, Periodic, Side, Sides, Slip, Stream, Wall
 from suchus.flow.signals import frequency, morison, noise, strouhal
 from suchus.flow.simulation import Simulation
-from suchus.flow.solid import Ellipsoid, Skin, SpaceField, SpaceShape, Sphere
+from suchus.flow.solid import Ellipsoid, SkinMarkers, SpaceField, SpaceShape, Sphere
 from suchus.flow.trunk import Trunk
 from suchus.flow.vortices import lambda2, second_invariant, velocity_gradient
 from suchus.isosurface import IsoSurface, isosurface
@@ -29,9 +29,9 @@ from suchus.isosurface import IsoSurface, isosurface
 __all__ = [
     "ALONG_THE_SKIN",
     "Body",
+    "BodyContact",
     "Capsule",
     "Coefficients",
-    "Contact",
     "Cylinder",
     "Ellipse",
     "Ellipsoid",
@@ -48,6 +48,7 @@ __all__ = [
     "Markers",
     "Mass",
     "Midline",
+    "MidlineState",
     "Mirror",
     "Motion",
     "Oscillation",
@@ -64,14 +65,13 @@ __all__ = [
     "Side",
     "Sides",
     "Simulation",
-    "Skin",
+    "SkinMarkers",
     "Slip",
     "Solid",
     "SpaceField",
     "SpaceMass",
     "SpaceShape",
     "Sphere",
-    "Spine",
     "Stream",
     "Surface",
     "Trunk",

@@ -7,15 +7,15 @@ import numpy as np
 
 from suchus.flow.pose import TURNS
 from suchus.flow.shape import Markers
-from suchus.flow.solid import Skin
-from suchus.flow.water import Water
+from suchus.flow.solid import SkinMarkers
+from suchus.flow.water import Fluid
 
 _LIMIT = 1e-5
 """Divergence left over, relative to the accelerations [-]."""
 
 
 def added_mass(
-    water: Water, markers: Markers | Skin, about: tuple[float, ...], density: float, body: int = 0,
+    water: Fluid, markers: Markers | SkinMarkers, about: tuple[float, ...], density: float, body: int = 0,
     wanted: Sequence[bool] | np.ndarray | None = None,
 ) -> np.ndarray:  # fmt: skip
     """Return the added mass for accelerations along each axis and about a point, in the plane of shape (3, 3).
@@ -68,7 +68,7 @@ def symmetric(cut: tuple[bool, ...]) -> list[bool]:
     return [*(not off for off in across), *(not (across[a] or across[b]) for a, b in TURNS[len(across)])]
 
 
-def _modes(water: Water, about: tuple[float, ...]) -> list[list[np.ndarray]]:
+def _modes(water: Fluid, about: tuple[float, ...]) -> list[list[np.ndarray]]:
     """Return the velocity of each mode on the faces of the window, mode by mode and component by component."""
     axes, here = water.axes, water.here
     shape = tuple(s.stop - s.start for s in here)
@@ -109,7 +109,7 @@ def _work(mode: list[np.ndarray], shares: list[np.ndarray], parts: list[np.ndarr
     return total
 
 
-def _rim(water: Water, markers: Markers | Skin, about: tuple[float, ...], cut: tuple[bool, ...]) -> np.ndarray:
+def _rim(water: Fluid, markers: Markers | SkinMarkers, about: tuple[float, ...], cut: tuple[bool, ...]) -> np.ndarray:
     """Return the mass over the density of the skin that the immersion holds with the body, per mode and mode."""
     axes, turns = water.axes, TURNS[water.axes]
     off = [points - place for points, place in zip(markers.points, about, strict=True)]

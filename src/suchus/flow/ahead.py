@@ -19,21 +19,21 @@ from suchus.flow.pose import Pose
 from suchus.flow.shape import Cylinder
 from suchus.flow.sides import Sides
 from suchus.flow.solid import Sphere
-from suchus.flow.water import Water
+from suchus.flow.water import Fluid
 
 _CELLS = 32
 """Cells of the small domain along each axis [-]."""
 _LIMITS = 1e-5, 1e-4  # what a pressure solve leaves [m/s per cell]
 
 
-class _Unsolved(Water):
+class _Unsolved(Fluid):
     """Water whose pressure is not solved for."""
 
     def _solve(self, limits: tuple[float, float]) -> tuple[poisson.Solve, tuple[float, float]]:
         return poisson.Solve(1, *limits), (self.dtype(0), self.dtype(0))
 
 
-class _Solved(Water):
+class _Solved(Fluid):
     """Water whose pressure can be solved for by itself."""
 
     def solve(self) -> poisson.Solve:
@@ -79,12 +79,12 @@ def _domain(axes: int) -> tuple[Grid, Sides, float]:
     return Grid.covering(*[(-2.0, 2.0)] * axes, cell=4.0 / _CELLS), Sides(), 0.05
 
 
-def _placed(water: Water) -> None:
+def _placed(water: Fluid) -> None:
     shape = Cylinder(diameter=1.0) if water.axes == 2 else Sphere(diameter=1.0)
     water.place([Body(shape=shape)], [Pose().along(water.axes)], 0.0)
 
 
-def _step(water: Water) -> None:
+def _step(water: Fluid) -> None:
     still = (0.0,) * water.axes
     _placed(water)
     water.step(0.01, still, still, _LIMITS)

@@ -9,9 +9,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from suchus.flow.compiled import PAD, Window, compiled, part, unsigned
-from suchus.flow.farfield import FarField
+from suchus.flow.farfield import Fading, FarField, OpenWater
 from suchus.flow.grid import Grid
-from suchus.flow.openwater import Fading, OpenWater
 from suchus.flow.pose import length
 from suchus.flow.sides import NAMES, Inflow, Mirror, Outflow, Periodic, Side, Sides, Slip, Stream, Wall, inflow
 

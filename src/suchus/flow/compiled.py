@@ -7,8 +7,10 @@ them is as much as the work on 512 cells. Threads share rows in blocks of ``BLOC
 in order, so that the same bytes come out on any number of threads.
 """
 
+import re
 import sys
 from collections.abc import Callable
+from pathlib import Path
 from time import monotonic
 from typing import Generic, ParamSpec, TypeVar
 
@@ -16,8 +18,8 @@ import numba
 import numpy as np
 from numba.core import event
 
-from suchus.flow import cache, linking
-from suchus.kernel_cache import kept_in
+from suchus import kernel_cache
+from suchus.flow import linking
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -49,7 +51,25 @@ _FAST = {"contract", "reassoc", "nsz", "arcp"}
 
 _OPTIONS = {"fastmath": _FAST, "error_model": "numpy", "nogil": True, "no_cfunc_wrapper": True, **linking.options()}
 
-FOLDER = cache.folder()
+_HERE = Path(__file__).parent
+_MAKERS = re.compile(
+    r"^from suchus\.flow\.compiled import .*\b(?:compiled|threaded|part|ordered_part|threaded_part)\b", re.M
+)
+_OWN = ("compiled.py", "linking.py")
+
+
+def folder() -> Path | None:
+    """Return where the code of these sources is kept; None where no place can be written to."""
+    return kernel_cache.folder(_HERE, kernel_files(), "kernels-")
+
+
+def kernel_files() -> list[Path]:
+    """Return the files of this room that hold kernels or parts of them, and those that say how they are compiled."""
+    files = sorted(_HERE.glob("*.py"))
+    return [file for file in files if file.name in _OWN or _MAKERS.search(file.read_text(encoding="utf-8"))]
+
+
+FOLDER = folder()
 """Where the machine code is kept between runs; None where no place can be written to."""
 
 
@@ -90,7 +110,7 @@ def _compile(function: Callable[P, R], parallel: bool) -> Callable[P, R]:
     if FOLDER is None:  # compile anew every time
         made = numba.njit(parallel=parallel, **_OPTIONS)(function)
     else:
-        with kept_in(numba.config, FOLDER):
+        with kernel_cache.kept_in(numba.config, FOLDER):
             made = numba.njit(cache=True, parallel=parallel, **_OPTIONS)(function)
     return made
 

@@ -17,7 +17,7 @@ from suchus.flow.shape import Markers
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Contact:
+class BodyContact:
     """A pressure ``pressure (1 - d / gap)^2`` between outlines whose distance d is below ``gap``.
 
     It pushes both bodies alike, hardly takes energy, and knows no friction. A body whose motion is given is not moved
@@ -37,7 +37,7 @@ class Contact:
                 raise InvalidDesign(f"the contact's {name} is {value} {unit}; a positive number is needed.")
 
 
-def forces(contact: Contact, outlines: list[Markers], centres: list[np.ndarray]) -> np.ndarray:
+def forces(contact: BodyContact, outlines: list[Markers], centres: list[np.ndarray]) -> np.ndarray:
     """Return the force (x, y) and the torque about its centre on each body, shape (body, 3) [N/m, N].
 
     Args:
@@ -63,7 +63,7 @@ def _near(one: Markers, other: Markers, gap: float) -> bool:
     )  # fmt: skip
 
 
-def _pushes(contact: Contact, one: Markers, other: Markers) -> np.ndarray:
+def _pushes(contact: BodyContact, one: Markers, other: Markers) -> np.ndarray:
     """Return where the markers of one outline are pushed off the other and how hard: x, y and force, shape (4, marker).
 
     An edge of the other outline is the stretch of its length about its marker.

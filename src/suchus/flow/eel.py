@@ -6,7 +6,7 @@ from math import pi
 import numpy as np
 from scipy.integrate import cumulative_simpson
 
-from suchus.flow.midline import Midline, Spine
+from suchus.flow.midline import Midline, MidlineState
 from suchus.flow.trunk import Trunk
 
 HEAD = 0.04
@@ -45,12 +45,12 @@ def eel(length: float, *, period: float = 1.0, stations: int = 257) -> Midline:
     amplitude, slope = 0.125 * (x + 0.03125) / 1.03125, 0.125 / 1.03125
     wave = 2 * np.pi
 
-    def spine(time: float) -> Spine:
+    def spine(time: float) -> MidlineState:
         phase = wave * (x - time / period)
         sin, cos = np.sin(phase), np.cos(phase)
         tangent = slope * sin + amplitude * wave * cos
         tangent_rate = (-slope * wave * cos + amplitude * wave**2 * sin) / period
-        return Spine(
+        return MidlineState(
             x=length * x, y=length * amplitude * sin, heading=np.arctan(tangent), half_width=length * half,
             x_rate=np.zeros_like(x), y_rate=-length * amplitude * wave / period * cos,
             heading_rate=tangent_rate / (1 + tangent**2),
@@ -78,13 +78,13 @@ def eel_in_space(length: float, *, period: float = 1.0, stations: int = 257) -> 
     high = length * HEIGHT * np.sqrt(np.maximum(1 - ((s - MIDDLE) / MIDDLE) ** 2, 0))
     along = partial(cumulative_simpson, x=s, initial=0.0)
 
-    def spine(time: float) -> Spine:
+    def spine(time: float) -> MidlineState:
         t = time / period
         phase, grown = 2 * pi * (t - WAVES * s), np.tanh(pi * t)
         bend_rate = largest * (2 * pi * np.cos(phase) * grown + np.sin(phase) * pi * (1 - grown**2)) / period
         heading, turn = along(largest * np.sin(phase) * grown), along(bend_rate)
         cos, sin = np.cos(heading), np.sin(heading)
-        return Spine(
+        return MidlineState(
             x=length * along(cos), y=length * along(sin), heading=heading, half_width=half,
             x_rate=-length * along(turn * sin), y_rate=length * along(turn * cos), heading_rate=turn,
         )  # fmt: skip

@@ -11,14 +11,14 @@ from suchus.flow.log import Log
 from suchus.flow.rake import Sample, read
 from suchus.flow.record import Record
 from suchus.flow.setup import Setup
-from suchus.flow.water import Water
+from suchus.flow.water import Fluid
 
 
 class Fields:
     """Views of the water of a simulation, without the cells around the domain."""
 
     setup: Setup
-    water: Water
+    water: Fluid
     time: float
     """Time that the run has reached [s]."""
     frame: np.ndarray

@@ -6,11 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from suchus.flow.compiled import PAD, compiled
+from suchus.flow.compiled import PAD, compiled, part
 from suchus.flow.grid import Grid
-from suchus.flow.probe import wall_pressure, wall_shear
 from suchus.flow.shape import Markers
-from suchus.flow.water import Water
+from suchus.flow.water import Fluid
 
 GAP = 1.0
 """Spacing of the points off the wall from which wall pressure and wall shear are fitted [cells]."""
@@ -75,7 +74,7 @@ def padded(markers: Markers, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
     )  # fmt: skip
 
 
-def sample(water: Water, markers: Markers, density: float) -> Surface:
+def sample(water: Fluid, markers: Markers, density: float) -> Surface:
     """Return pressure and friction at the markers; densities in [kg/m^3]."""
     h = water.grid.cell
     x, y = padded(markers, water.grid)
@@ -142,7 +141,7 @@ class ControlVolume:
     before: np.ndarray | None = None
     """Momentum of water and bodies, and flow through the sides, at the last step, shape (3, 2)."""
 
-    def force(self, water: Water, dt: float, push: tuple[float, ...], density: float) -> tuple[float, float]:
+    def force(self, water: Fluid, dt: float, push: tuple[float, ...], density: float) -> tuple[float, float]:
         """Return the mean force on the bodies in the box over the step that just ended [N/m].
 
         Not a number in the first step.
@@ -166,3 +165,45 @@ class ControlVolume:
         body = (cells - inside) * h * h * np.array(push)
         total = density * (h * 0.5 * (now[2] + old[2]) - rate + body)
         return float(total[0]), float(total[1])
+
+
+@part
+def at(a, x, y):
+    """Return the bilinear interpolation of ``a`` at padded indices (x, y), which may lie between nodes."""
+    i, j = int(x), int(y)
+    f, g = x - i, y - j
+    return (1 - g) * ((1 - f) * a[j, i] + f * a[j, i + 1]) + g * ((1 - f) * a[j + 1, i] + f * a[j + 1, i + 1])
+
+
+@compiled
+def wall_pressure(p, x, y, nx, ny, gap, out):
+    """Write the pressure at the markers from a parabola through three points off the wall.
+
+    The points lie 1, 2 and 3 times ``gap`` cells off the wall; marker positions in padded indices of the cells.
+    Read on the wall itself, the pressures of both sides of a thin tail mix and the force is ten times as noisy.
+    """
+    for m in range(x.size):
+        a = at(p, x[m] + gap * nx[m], y[m] + gap * ny[m])
+        b = at(p, x[m] + 2 * gap * nx[m], y[m] + 2 * gap * ny[m])
+        c = at(p, x[m] + 3 * gap * nx[m], y[m] + 3 * gap * ny[m])
+        out[m] = 3 * (a - b) + c
+
+
+@compiled
+def wall_shear(u, v, x, y, nx, ny, bu, bv, spin, gap, out):
+    """Write the rate of shear (x, y) at the markers from a cubic through the wall and three points off it.
+
+    ``u`` and ``v`` are the velocities, ``bu`` and ``bv`` the wall's [m/s], ``spin`` its turning rate in m/s per cell;
+    the points lie 1, 2 and 3 times ``gap`` cells off the wall. The result is in m/s per cell.
+    """
+    for m in range(x.size):
+        sx, sy = 0.0, 0.0
+        for k in range(1, 4):
+            weight = (3.0, -1.5, 1.0 / 3.0)[k - 1] / gap
+            dx, dy = k * gap * nx[m], k * gap * ny[m]
+            px, py = x[m] + dx, y[m] + dy
+            sx += weight * (at(u, px + 0.5, py) - (bu[m] - spin[m] * dy))
+            sy += weight * (at(v, px, py + 0.5) - (bv[m] + spin[m] * dx))
+        across = sx * nx[m] + sy * ny[m]
+        out[0, m] = sx - across * nx[m]
+        out[1, m] = sy - across * ny[m]

@@ -42,7 +42,7 @@ def ittc(reynolds: Float[np.ndarray, " *n"]) -> Float[np.ndarray, " *n"]:
     return np.where(reynolds < SLOWEST, blasius(reynolds), line)
 
 
-class Band(NamedTuple):
+class FrictionBand(NamedTuple):
     """A quantity at the two ends of the law."""
 
     laminar: float
@@ -59,7 +59,7 @@ def along_stations(
     viscosity: float,
     density: float,
     slope: Float[np.ndarray, " station"] | float = 1.0,
-) -> Band:
+) -> FrictionBand:
     """Return the force of friction along a body whose layer stays attached [N].
 
     Between two stations girth, speed and slope are taken as even and the layer grows as on a plate, so that on a plate
@@ -90,7 +90,7 @@ def along_stations(
         end, start = _plate(arc, wide, fast, of_girth, of_speed)
         rubbed = total(fast * end / viscosity) - total(fast * start / viscosity)
         forces.append(float((0.5 * density * fast * viscosity * wide * tilt * rubbed).sum()))
-    return Band(*forces)
+    return FrictionBand(*forces)
 
 
 _LAMINAR, _TURBULENT = (2.0, 5.0), (7.0 / 6.0, 10.0 / 3.0)

@@ -7,10 +7,10 @@ import numpy as np
 
 from suchus.errors import InvalidDesign
 from suchus.flow.mass import SpaceMass, tensor
-from suchus.flow.midline import Spine
+from suchus.flow.midline import MidlineState
 from suchus.flow.pose import Pose, turned
 from suchus.flow.shape import positive
-from suchus.flow.solid import Skin, SpaceField
+from suchus.flow.solid import SkinMarkers, SpaceField
 from suchus.flow.trunk import Trunk, in_world
 from suchus.kinds import show
 
@@ -46,7 +46,7 @@ class Capsule:
             if not np.isfinite(getattr(self, name)).all():
                 raise InvalidDesign(f"{name} of a capsule is {show(getattr(self, name))} m; give finite numbers.")
 
-    def placed(self, spine: Spine) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
+    def placed(self, spine: MidlineState) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
         """Return both ends, the velocity of the first end and the rate of turning, shapes (2,) and a number."""
         x, y, heading, u, v, turn = (
             float(np.interp(self.at, spine.arc, part))
@@ -57,12 +57,12 @@ class Capsule:
         rate = np.array([u - turn * (first[1] - y), v + turn * (first[0] - x)])
         return first, last, rate, turn
 
-    def distance(self, px: np.ndarray, py: np.ndarray, pz: np.ndarray, spine: Spine) -> np.ndarray:
+    def distance(self, px: np.ndarray, py: np.ndarray, pz: np.ndarray, spine: MidlineState) -> np.ndarray:
         """Return the signed distance from points, pz from the plane of the midline [m]."""
         return self.reach(px, py, pz, spine)[1] - self.radius
 
     def reach(
-        self, px: np.ndarray, py: np.ndarray, pz: np.ndarray, spine: Spine
+        self, px: np.ndarray, py: np.ndarray, pz: np.ndarray, spine: MidlineState
     ) -> tuple[tuple[np.ndarray, ...], np.ndarray]:
         """Return the vectors from the capsule's axis to points, and their lengths [m]."""
         first, last, *_ = self.placed(spine)
@@ -114,7 +114,7 @@ class Limbed(Trunk):
         lumps = [self._lump(straight, limb, self.limbs[:i]) for i, limb in enumerate(self.limbs)]
         object.__setattr__(self, "lumps", tuple(lumps))
 
-    def _lump(self, straight: Spine, limb: Capsule, others: tuple[Capsule, ...]) -> Lump:
+    def _lump(self, straight: MidlineState, limb: Capsule, others: tuple[Capsule, ...]) -> Lump:
         low, high = np.minimum(limb.start, limb.end) - limb.radius, np.maximum(limb.start, limb.end) + limb.radius
         step = 2 * limb.radius / _ACROSS
         x, y, z = (a + (np.arange(n) + 0.5) * (b - a) / n for a, b, n in (
@@ -136,7 +136,7 @@ class Limbed(Trunk):
         second = np.array([[xx, xy, 0.0], [xy, yy, 0.0], [0.0, 0.0, zz]])
         return Lump(volume=each * x.size, centre=(cx, cy), second=second)
 
-    def _holds(self, px: np.ndarray, py: np.ndarray, pz: np.ndarray, spine: Spine) -> np.ndarray:
+    def _holds(self, px: np.ndarray, py: np.ndarray, pz: np.ndarray, spine: MidlineState) -> np.ndarray:
         """Return which points lie inside the trunk alone, pz from the plane of the midline [m]."""
         near = ((px[:, None] - spine.x) ** 2 + (py[:, None] - spine.y) ** 2).argmin(axis=1)
         cos, sin = np.cos(spine.heading[near]), np.sin(spine.heading[near])
@@ -156,7 +156,13 @@ class Limbed(Trunk):
         return found
 
     def _add(
-        self, found: SpaceField, limb: Capsule, spine: Spine, frame: Pose, axes: tuple[np.ndarray, ...], reach: float
+        self,
+        found: SpaceField,
+        limb: Capsule,
+        spine: MidlineState,
+        frame: Pose,
+        axes: tuple[np.ndarray, ...],
+        reach: float,
     ) -> None:
         """Write a capsule to the points that are nearer to it."""
         first, last, rate, turn = limb.placed(spine)
@@ -190,7 +196,7 @@ class Limbed(Trunk):
     def _part(self, limb: Capsule) -> int:
         return int(np.searchsorted(self.cuts, limb.at, side="right"))
 
-    def markers(self, time: float, pose: Pose, spacing: float) -> Skin:
+    def markers(self, time: float, pose: Pose, spacing: float) -> SkinMarkers:
         """Return points over what is outside of trunk and capsules: those inside stand for no area."""
         spine, frame = self.placed(time, pose)
         skin = self._skin(spine, spacing)
@@ -213,7 +219,7 @@ class Limbed(Trunk):
                     inside = limb.distance(one[0], one[1], one[2], spine) < -1e-9 * limb.radius
                     area[inside] = 0.0
         parts = np.concatenate(part) if part else None
-        whole = Skin(np.concatenate(points, axis=1), np.concatenate(share), np.concatenate(rates, axis=1), parts)
+        whole = SkinMarkers(np.concatenate(points, axis=1), np.concatenate(share), np.concatenate(rates, axis=1), parts)
         return in_world(whole, frame)
 
     def bounds(self, time: float, pose: Pose) -> tuple[float, ...]:
@@ -252,9 +258,9 @@ class Limbed(Trunk):
         )  # fmt: skip
 
 
-def _straight(spine: Spine) -> Spine:
+def _straight(spine: MidlineState) -> MidlineState:
     zero = np.zeros(spine.x.size)
-    return Spine(x=spine.arc, y=zero, heading=zero, half_width=spine.half_width, x_rate=zero, y_rate=zero,
+    return MidlineState(x=spine.arc, y=zero, heading=zero, half_width=spine.half_width, x_rate=zero, y_rate=zero,
                  heading_rate=zero)  # fmt: skip
 
 

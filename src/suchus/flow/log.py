@@ -6,15 +6,16 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from suchus.errors import Diverged
-from suchus.flow.body import rows_of
+from suchus.flow.body import AnyBody, rows_of
 from suchus.flow.force import ControlVolume, Load
 from suchus.flow.momentum import Reaction, contents_of, reaction, skin
-from suchus.flow.pose import Pose
+from suchus.flow.pose import Pose, cross
 from suchus.flow.record import COLUMNS, HEAD, PART_COLUMNS, SPACE_COLUMNS, Record
 from suchus.flow.setup import Setup
 from suchus.flow.shape import Markers
-from suchus.flow.solid import Skin
-from suchus.flow.water import Water
+from suchus.flow.solid import SkinMarkers
+from suchus.flow.trunk import Trunk
+from suchus.flow.water import Fluid
 
 FASTEST = 100.0
 """Speed, over that of stream and bodies, above which a simulation counts as diverged [-]."""
@@ -38,7 +39,7 @@ class Log:
     def __post_init__(self) -> None:
         self.held = np.zeros((0, contents_of(self.setup.grid.axes)))
 
-    def hold(self, water: Water, outlines: Sequence[Markers | Skin]) -> np.ndarray:
+    def hold(self, water: Fluid, outlines: Sequence[Markers | SkinMarkers]) -> np.ndarray:
         """Note what the placed bodies' regions hold now; return what they held before.
 
         Of a body that mirrors cut that is the part inside the domain.
@@ -53,7 +54,7 @@ class Log:
         return before
 
     def reactions(
-        self, water: Water, outlines: Sequence[Markers | Skin], about: list[tuple[float, ...]], dt: float,
+        self, water: Fluid, outlines: Sequence[Markers | SkinMarkers], about: list[tuple[float, ...]], dt: float,
         push: tuple[float, ...],
     ) -> list[list[Reaction]]:  # fmt: skip
         """Return, per body, what the water did to the whole body in the step that just ended, and to its parts."""
@@ -75,7 +76,7 @@ class Log:
             for rows, point, cut in zip(water.rows, about, water.cut, strict=True)
         ]
 
-    def control(self, water: Water, dt: float, push: tuple[float, ...]) -> None:
+    def control(self, water: Fluid, dt: float, push: tuple[float, ...]) -> None:
         """Note the force from the box, if there is one."""
         for box in self.controls:
             self.control_rows.append(box.force(water, dt, push, self.setup.density))
@@ -116,12 +117,12 @@ class Log:
         )  # fmt: skip
 
 
-def _parts(outline: Markers | Skin, count: int) -> list[Markers | Skin]:
+def _parts(outline: Markers | SkinMarkers, count: int) -> list[Markers | SkinMarkers]:
     """Return the skin of each part of a body, or its whole outline where there is one part."""
-    if count == 1 or not isinstance(outline, Skin) or outline.part is None:
+    if count == 1 or not isinstance(outline, SkinMarkers) or outline.part is None:
         return [outline]
     return [
-        Skin(outline.points[:, mine], outline.share[mine], outline.velocities[:, mine])
+        SkinMarkers(outline.points[:, mine], outline.share[mine], outline.velocities[:, mine])
         for mine in (outline.part == k for k in range(count))
     ]
 
@@ -144,3 +145,28 @@ def columns(load: Load | None, act: Reaction, frame: np.ndarray, place: Pose, er
     return [
         *along, *act.moment, power, *place.position, *angles, *place.velocity, *spins, *act.force, error
     ]  # fmt: skip
+
+
+def part_columns(
+    body: AnyBody, acts: Sequence[Reaction], about: tuple[float, ...], pose: Pose, time: float, frame: np.ndarray
+) -> list[float]:
+    """Return ``record.PART_COLUMNS`` of a body's parts one after the other; nothing of a body of one part.
+
+    Args:
+        body: which.
+        acts: what the water did to each part, its torque about one point.
+        about: that point, in the frame of the grid [m].
+        pose: of the body, in the frame of the grid.
+        time: end of the step [s].
+        frame: mean velocity of the grid [m/s].
+    """
+    if len(acts) < 2 or not isinstance(body.shape, Trunk):
+        return []
+    force, torque = (np.array([getattr(act, what) for act in acts]) for what in ("force", "moment"))
+    power = np.array([act.power for act in acts]) - force[:, :2] @ frame[:2] - force[:, 2] * frame[2]
+    behind, moment = (part[::-1].cumsum(axis=0)[::-1] for part in (force, torque))
+    ends = body.shape.at(time, pose, np.array([0.0, *body.shape.cuts])) - np.array(about)
+    axis = pose.matrix[:, 2]  # the midline bends about the body's z
+    joint = (moment - np.stack(cross(ends.T, behind.T), axis=1)) @ axis
+    columns: list[float] = np.column_stack([force[:, :2], torque[:, 2], power, joint]).ravel().tolist()
+    return columns

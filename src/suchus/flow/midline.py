@@ -13,7 +13,7 @@ from suchus.flow.shape import Field, Markers, Shape, positive
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Spine:
+class MidlineState:
     """A midline at one time, in the body's own frame; arrays of shape (station,), from one end to the other.
 
     Raises:
@@ -68,7 +68,7 @@ class Spine:
         """Arc length from the first station, shape (station,) [m]."""
         return np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(self.x), np.diff(self.y)))])
 
-    def thickened(self, least: float) -> "Spine":
+    def thickened(self, least: float) -> "MidlineState":
         """Return the midline with half-widths of at least ``least`` and round ends.
 
         A tail that tapers to nothing is thinner than any grid, and its force is noisy. The solver never thickens a
@@ -81,7 +81,7 @@ class Spine:
         cap = np.sqrt(np.maximum(least**2 - np.maximum(least - inward, 0.0) ** 2, 0.0))
         return replace(self, half_width=np.maximum(self.half_width, cap))
 
-    def placed(self, pose: Pose) -> "Spine":
+    def placed(self, pose: Pose) -> "MidlineState":
         """Return the midline in the world."""
         x, y = pose.to_world(self.x, self.y)
         vx, vy = pose.turn(self.x_rate, self.y_rate)
@@ -96,7 +96,7 @@ class Spine:
 class Midline(Shape):
     """A body that bends: its cross-sections stay straight and square to the midline."""
 
-    spine: Callable[[float], Spine]
+    spine: Callable[[float], MidlineState]
     """The midline at every time [s]."""
     deforms: bool = True
     """Whether the midline changes with time; False saves work."""
@@ -190,7 +190,7 @@ def foil(
     y = camber * np.where(front, (2 * p * x - x**2) / p**2, (1 - 2 * p + 2 * p * x - x**2) / (1 - p) ** 2)
     slope = camber * np.where(front, 2 * (p - x) / p**2, 2 * (p - x) / (1 - p) ** 2)
     zero = np.zeros(stations)
-    spine = Spine(
+    spine = MidlineState(
         x=chord * x, y=chord * y, heading=np.arctan(slope), half_width=chord * np.maximum(half, 0),
         x_rate=zero, y_rate=zero, heading_rate=zero,
     )  # fmt: skip

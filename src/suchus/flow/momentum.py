@@ -18,7 +18,7 @@ from suchus.flow.compiled import PAD, compiled, part, signed
 from suchus.flow.pose import TURNS
 from suchus.flow.shape import Markers
 from suchus.flow.slab import row_length
-from suchus.flow.solid import Skin
+from suchus.flow.solid import SkinMarkers
 
 
 def sums_of(axes: int) -> int:
@@ -144,7 +144,7 @@ def contents(sums, b, mu0, owner, component, place, near, inner):
                     sums[m, turn + 5] += part_of * z
 
 
-def skin(markers: Markers | Skin, offset: float, origin: tuple[float, ...], h: float) -> np.ndarray:
+def skin(markers: Markers | SkinMarkers, offset: float, origin: tuple[float, ...], h: float) -> np.ndarray:
     """Return what ``contents`` counts too much: the skin ``offset`` cells thick, which is water, (``contents_of``,)."""
     axes = len(origin)
     w = offset * markers.share / h ** (axes - 1)

@@ -10,8 +10,7 @@ from suchus.errors import InvalidDesign
 from suchus.flow.compiled import PAD
 from suchus.flow.force import edge_mean
 from suchus.flow.grid import Grid
-from suchus.flow.pace import due_after
-from suchus.flow.water import Water
+from suchus.flow.water import Fluid
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -37,7 +36,7 @@ def line(start: tuple[float, float], end: tuple[float, float], count: int) -> np
     return np.linspace(np.asarray(start, float), np.asarray(end, float), count)
 
 
-def read(water: Water, points: np.ndarray, frame: np.ndarray, density: float) -> Sample:
+def read(water: Fluid, points: np.ndarray, frame: np.ndarray, density: float) -> Sample:
     """Return velocity and pressure at points, linear between the nodes.
 
     Inside a body and within a cell of its surface they are the body's as much as the water's.
@@ -131,3 +130,8 @@ class Rake:
     def pressure(self) -> np.ndarray:
         """Pressure, zero on the average along the sides of the domain, shape (time, point) [Pa]."""
         return np.array([sample.pressure for sample in self._samples])
+
+
+def due_after(time: float, every: float | None) -> float:
+    """Return the next multiple of ``every`` after a time [s]; 0, which is always past, if that is None."""
+    return 0.0 if every is None else float((np.floor(time / every * (1 + 1e-12)) + 1) * every * (1 - 1e-12))

@@ -16,7 +16,7 @@ from suchus.flow.ellipsoid import TINY, foot_parameter
 from suchus.flow.paint import find_section, section_velocity
 
 X, Y, HEADING, WIDE, X_RATE, Y_RATE, TURN, HIGH, SWELL, ARC = range(10)
-"""Rows of the stations: those of ``Spine.rows``, then half-height, rate of the half-width, and arc length."""
+"""Rows of the stations: those of ``MidlineState.rows``, then half-height, rate of the half-width, and arc length."""
 
 PAINTED = 8
 """Values painted at each point: distance, normal (3), velocity (2), thickness, which part of the body [-]."""

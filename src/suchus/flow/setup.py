@@ -9,15 +9,14 @@ import numpy as np
 
 from suchus.errors import InvalidDesign
 from suchus.flow.body import Body, cuts, thin_share, window_of
-from suchus.flow.contact import Contact
+from suchus.flow.contact import BodyContact
 from suchus.flow.free import FreeBody
-from suchus.flow.grid import Grid, check_kinds
-from suchus.flow.memory import check_memory
+from suchus.flow.grid import Grid, check_kinds, check_memory
 from suchus.flow.pose import speeds
 from suchus.flow.resolution import DOUBTED, REFUSED, cells_across, estimate, needed
 from suchus.flow.shape import Markers
 from suchus.flow.sides import Sides
-from suchus.flow.solid import Skin
+from suchus.flow.solid import SkinMarkers
 from suchus.flow.swimmer import Swimmer
 from suchus.kinds import show
 
@@ -45,7 +44,7 @@ class Setup:
     """What happens on the sides of the domain."""
     bodies: tuple[Body | FreeBody, ...] = ()
     """The bodies in the water."""
-    contact: Contact | None = None
+    contact: BodyContact | None = None
     """Force between bodies that nearly touch; None lets them run into each other."""
     follow: str | None = None
     """Name of the body whose centre the grid travels with; None keeps the grid where it is."""
@@ -174,7 +173,7 @@ class Setup:
     def layer_error(
         self,
         body: Body | FreeBody,
-        markers: Markers | Skin,
+        markers: Markers | SkinMarkers,
         stream: tuple[float, ...],
         time: float,
         *,

@@ -21,18 +21,17 @@ from suchus.flow.fields import Fields
 from suchus.flow.force import ControlVolume, Surface, sample
 from suchus.flow.free import FreeBody
 from suchus.flow.immerse import wall_offset
-from suchus.flow.log import Log, columns
-from suchus.flow.pace import due_after, even
-from suchus.flow.parts import columns_of
+from suchus.flow.log import Log, columns, part_columns
 from suchus.flow.pose import Pose, length, speeds
 from suchus.flow.progress import Bar
+from suchus.flow.rake import due_after
 from suchus.flow.record import Record
 from suchus.flow.setup import Setup
 from suchus.flow.shape import Markers
-from suchus.flow.solid import Skin
+from suchus.flow.solid import SkinMarkers
 from suchus.flow.swimmer import Swimmer
 from suchus.flow.watch import EVERY, Watch
-from suchus.flow.water import Water
+from suchus.flow.water import Fluid
 
 ADDED_EVERY = 8
 """Steps after which a free body's added mass is computed anew [-]."""
@@ -44,7 +43,7 @@ OFFSET_CHANGE = 1e-3
 """Change of the wall's offset from which bodies that stand still are placed anew [cells]: 0.04 % of a force."""
 
 
-def _fastest_marker(markers: Markers | Skin) -> float:
+def _fastest_marker(markers: Markers | SkinMarkers) -> float:
     """Return the fastest speed of a body's surface in the frame of the grid [m/s]."""
     return float(speeds(markers.velocities).max())
 
@@ -53,6 +52,9 @@ Watcher = Callable[["Simulation"], None]
 """What looks at a simulation on its way."""
 
 _CHANGING = ("time", "_last", "_speed", "_reference")
+
+LANDING = 16
+"""Steps before the end of a run over which the time step is evened out, so that the last one is no jolt [-]."""
 
 
 class Simulation(Fields):
@@ -71,7 +73,7 @@ class Simulation(Fields):
         self.thin = setup.check()
         compile_ahead(setup.grid.axes, setup.dtype)
         self.time = 0.0
-        self.water = Water(setup.grid, setup.sides, setup.viscosity, setup.dtype)
+        self.water = Fluid(setup.grid, setup.sides, setup.viscosity, setup.dtype)
         self.axes = setup.grid.axes
         self.frame = np.zeros((2, self.axes))  # position and velocity of the grid
         self.swimmers = {b.name: Swimmer.of(b) for b in setup.bodies if isinstance(b, FreeBody)}
@@ -233,7 +235,7 @@ class Simulation(Fields):
         self,
         dt: float,
         poses: list[Pose],
-        outlines: Sequence[Markers | Skin],
+        outlines: Sequence[Markers | SkinMarkers],
         push: tuple[float, ...],
         drift: np.ndarray,
     ) -> None:
@@ -256,7 +258,7 @@ class Simulation(Fields):
                     added = added_mass(water, markers, point, setup.density, k, asked)
                     swimmer.added = np.nan_to_num(added)
             values += columns(load, act, drift, place, self._watch.errors[k])
-            along += columns_of(body, parts, point, poses[k], self.time, drift)
+            along += part_columns(body, parts, point, poses[k], self.time, drift)
             body_speed = max(body_speed, _fastest_marker(markers))
         self._speed = max(length(water.border.stream), body_speed, min(fastest, 10 * self._speed), 1e-12)
         self._reference = max(self._reference, length(water.border.stream), body_speed, setup.sides.fastest(setup.grid))
@@ -335,7 +337,7 @@ class Simulation(Fields):
         with Bar(self.time, until, cells, show=progress) as bar:
             try:
                 while self.time < until * (1 - 1e-12):
-                    self.advance(even(self.next_step(), until - self.time))
+                    self.advance(_even(self.next_step(), until - self.time))
                     if until - self.time < 1e-6 * self._last:  # rounding must not leave a tiny last step
                         self.time = until
                     bar.move(self.time)
@@ -388,3 +390,9 @@ class Simulation(Fields):
         outline = body.shape.markers(self.time, pose, self.setup.grid.cell)
         assert isinstance(outline, Markers)
         return sample(self.water, outline, self.setup.density)
+
+
+def _even(dt: float, left: float) -> float:
+    """Return the step that arrives in whole steps, once the end is near [s]."""
+    count = np.ceil(left / dt * (1 - 1e-9))
+    return float(left / count) if count <= LANDING else dt

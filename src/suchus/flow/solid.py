@@ -42,7 +42,7 @@ class SpaceField:
 
 
 @dataclass(slots=True)
-class Skin:
+class SkinMarkers:
     """Points spread over the surface of a body in space."""
 
     points: np.ndarray
@@ -70,7 +70,7 @@ class SpaceShape(ABC):
         """
 
     @abstractmethod
-    def markers(self, time: float, pose: Pose, spacing: float) -> Skin:
+    def markers(self, time: float, pose: Pose, spacing: float) -> SkinMarkers:
         """Return points over the skin, about ``spacing`` [m] apart."""
 
     @abstractmethod
@@ -140,7 +140,7 @@ class Ellipsoid(SpaceShape):
         )  # fmt: skip
         return SpaceField(out[0], (out[1], out[2], out[3]), (out[4], out[5], out[6]), out[7])
 
-    def markers(self, time: float, pose: Pose, spacing: float) -> Skin:
+    def markers(self, time: float, pose: Pose, spacing: float) -> SkinMarkers:
         """Return points on rings about the body's z axis, each of which stands for the same part of a unit sphere."""
         place, rings = pose.along(3), max(_FEWEST, int(np.ceil(np.pi * float(self.half.max()) / spacing)))
         cos = (np.arange(rings) + 0.5) * 2 / rings - 1
@@ -151,7 +151,7 @@ class Ellipsoid(SpaceShape):
         a = self.half[:, None]
         share = float(np.prod(self.half)) * np.sqrt(((unit / a) ** 2).sum(axis=0)) * (4 * np.pi / unit.shape[1])
         points = np.stack(place.place(a * unit))
-        return Skin(points, share, np.stack(place.rates(points)))
+        return SkinMarkers(points, share, np.stack(place.rates(points)))
 
     def bounds(self, time: float, pose: Pose) -> tuple[float, ...]:
         """Return the box around the ellipsoid."""

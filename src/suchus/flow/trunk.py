@@ -9,11 +9,11 @@ import numpy as np
 
 from suchus.errors import InvalidDesign
 from suchus.flow.mass import SpaceMass, of_trunk
-from suchus.flow.midline import Spine
+from suchus.flow.midline import MidlineState
 from suchus.flow.paint import ring
 from suchus.flow.pose import Pose, turned
 from suchus.flow.sections import PAINTED, paint_sections, paint_turned_sections
-from suchus.flow.solid import Skin, SpaceField, SpaceShape
+from suchus.flow.solid import SkinMarkers, SpaceField, SpaceShape
 
 MOST_PARTS = 64
 """Parts that a body may be divided into [-]; those of all bodies are counted in one byte."""
@@ -35,7 +35,7 @@ class Trunk(SpaceShape):
 
     even: ClassVar[tuple[bool, bool, bool]] = (False, False, True)
 
-    spine: Callable[[float], Spine]
+    spine: Callable[[float], MidlineState]
     """The midline at every time, with the half-widths in the plane [s]."""
     half_height: np.ndarray
     """Half of the height across the plane at the stations, shape (station,) [m]."""
@@ -67,7 +67,7 @@ class Trunk(SpaceShape):
         """Parts that the cuts leave [-]."""
         return len(self.cuts) + 1
 
-    def placed(self, time: float, pose: Pose) -> tuple[Spine, Pose]:
+    def placed(self, time: float, pose: Pose) -> tuple[MidlineState, Pose]:
         """Return the midline at a time [s] in the plane z = 0 of a frame, and the frame's pose in the world.
 
         The frame of a body that turns about z alone has the axes of the world.
@@ -81,7 +81,7 @@ class Trunk(SpaceShape):
         up, rate = place.position[2], place.velocity[2]
         return spine.placed(pose), Pose(position=(0.0, 0.0, up), velocity=(0.0, 0.0, rate))
 
-    def _spine(self, time: float) -> Spine:
+    def _spine(self, time: float) -> MidlineState:
         spine = self.spine(time)
         if spine.x.size != self.half_height.size:
             raise InvalidDesign(
@@ -110,12 +110,12 @@ class Trunk(SpaceShape):
         u, v, w = (a + b for a, b in zip(rigid, turned(matrix, (out[4], out[5], 0 * out[5])), strict=True))
         return SpaceField(out[0], turned(matrix, out[1:4]), (u, v, w), out[6], part)
 
-    def markers(self, time: float, pose: Pose, spacing: float) -> Skin:
+    def markers(self, time: float, pose: Pose, spacing: float) -> SkinMarkers:
         """Return the middles of patches between stations, as many around as the widest section needs."""
         spine, frame = self.placed(time, pose)
         return in_world(self._skin(spine, spacing), frame)
 
-    def _skin(self, spine: Spine, spacing: float) -> Skin:
+    def _skin(self, spine: MidlineState, spacing: float) -> SkinMarkers:
         """Return the same in the frame of a midline."""
         wide, high = (np.concatenate([[0.0], part, [0.0]]) for part in (spine.half_width, self.half_height))
         station = np.clip(np.arange(-1, spine.x.size + 1), 0, spine.x.size - 1)  # the ends' faces too
@@ -139,7 +139,7 @@ class Trunk(SpaceShape):
         arc = np.broadcast_to(spine.arc[station, None], aside.shape)
         at = _middles(arc[None])[0]
         part = np.searchsorted(self.cuts, at.ravel(), side="right") if self.cuts else None
-        return Skin(_middles(corner).reshape(3, -1), share.ravel(), _middles(rate).reshape(3, -1), part)
+        return SkinMarkers(_middles(corner).reshape(3, -1), share.ravel(), _middles(rate).reshape(3, -1), part)
 
     def bounds(self, time: float, pose: Pose) -> tuple[float, ...]:
         """Return the box around the body."""
@@ -196,11 +196,11 @@ class Trunk(SpaceShape):
         return np.column_stack(frame.place((x, y, 0 * x)))
 
 
-def in_world(skin: Skin, frame: Pose) -> Skin:
+def in_world(skin: SkinMarkers, frame: Pose) -> SkinMarkers:
     """Return a skin whose points and velocities are those of a frame in the world, where the frame moves."""
     points = np.array(frame.place(skin.points))
     velocities = np.array(turned(frame.matrix, skin.velocities)) + frame.rates(points)
-    return Skin(points, skin.share, velocities, skin.part)
+    return SkinMarkers(points, skin.share, velocities, skin.part)
 
 
 def _middles(corners: np.ndarray) -> np.ndarray:

@@ -9,7 +9,7 @@ from suchus.errors import Doubtful
 from suchus.flow.compiled import PAD
 from suchus.flow.setup import Setup
 from suchus.flow.sides import NAMES, Stream
-from suchus.flow.water import Water
+from suchus.flow.water import Fluid
 
 EVERY = 256
 """Steps after which the sides are looked at, and at a run's end [-]."""
@@ -59,7 +59,7 @@ class Watch:
             if text is not None:
                 self._say(f"layer {body.name}", text)
 
-    def sides(self, water: Water, time: float) -> None:
+    def sides(self, water: Fluid, time: float) -> None:
         """Warn of vortices at a side that is held to the far stream, which they should move."""
         held = [
             (edge, name) for edge, name in zip(water.border.edges, NAMES, strict=False)

@@ -46,7 +46,7 @@ def _inflow(given: np.ndarray, axis: int) -> np.ndarray:
     return (faces[:-1] - faces[1:])[:, *(slice(None, -1),) * (given.ndim - 1)]
 
 
-class Stage(NamedTuple):
+class HeunStage(NamedTuple):
     """One stage of Heun's method, ``out = keep blend + (1 - keep) B[base + step (f(rate) + push) - step grad p]``.
 
     B is the immersion, f advection and diffusion. All fields are velocities, shape (axis, ...) [m/s].
@@ -64,7 +64,7 @@ class Stage(NamedTuple):
     """Share of ``blend`` [-]."""
 
 
-class Water:
+class Fluid:
     """Velocity and pressure on a grid, and the bodies as the equations see them.
 
     Attributes:
@@ -319,18 +319,20 @@ class Water:
         self._project(self._corrected, half * step, limits)
         self._collect(stage, step)
 
-    def _predict(self, step: float, push: tuple[float, ...]) -> Stage:
+    def _predict(self, step: float, push: tuple[float, ...]) -> HeunStage:
         """On return ``_predicted`` is Euler's step, immersed, before its divergence is projected out."""
         now = self.velocity
-        return self._advance(Stage(self._predicted, now, now, now, self.dtype(0)), step, push)
+        return self._advance(HeunStage(self._predicted, now, now, now, self.dtype(0)), step, push)
 
-    def _correct(self, step: float, push: tuple[float, ...]) -> Stage:
+    def _correct(self, step: float, push: tuple[float, ...]) -> HeunStage:
         """On return ``_corrected`` is the mean of ``_predicted`` and of a step with its rates, immersed."""
         predicted = self._predicted
-        return self._advance(Stage(self._corrected, predicted, self.velocity, predicted, self.dtype(0.5)), step, push)
+        return self._advance(
+            HeunStage(self._corrected, predicted, self.velocity, predicted, self.dtype(0.5)), step, push
+        )
 
-    def _advance(self, stage: Stage, step: float, push: tuple[float, ...]) -> Stage:
-        """On return ``out`` of the stage is what ``Stage`` says, and fits the sides."""
+    def _advance(self, stage: HeunStage, step: float, push: tuple[float, ...]) -> HeunStage:
+        """On return ``out`` of the stage is what ``HeunStage`` says, and fits the sides."""
         out, blend, base, rate = (self._flat(a) for a in stage[:4])
         place, raw, p = self._layout[0], self._flat(self._raw), self._flat(self.p)
         advance(
@@ -364,7 +366,7 @@ class Water:
                     image, source = (PAD - 1 - start, PAD - start) if low else (n, n - 1)
                     planes[image] = planes[source]
 
-    def _collect(self, stage: Stage, step: float) -> None:
+    def _collect(self, stage: HeunStage, step: float) -> None:
         """Add half of what the immersion gave in this stage: the step is the mean of its two stages."""
         if self.window[1] <= self.window[0]:
             return

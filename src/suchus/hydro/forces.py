@@ -15,7 +15,7 @@ from math import cos, exp, pi, sin, sqrt
 import numpy as np
 
 from suchus.hydro import lanes as at
-from suchus.hydro.lanes import Water
+from suchus.hydro.lanes import WaterProperties
 from suchus.hydro.table import BALL, CURRENT, DISC, LANES, LEVEL, WAVE
 from suchus.hydro.vectors import Vector, blend, compiled, cross, dot, lane, part, plus, put, three, times, turned
 
@@ -160,7 +160,7 @@ def flow(rows: np.ndarray, user: np.ndarray, time: float, up: Vector) -> None:
 
 
 @part
-def meet(table: np.ndarray, rows: np.ndarray, water: Water) -> None:
+def meet(table: np.ndarray, rows: np.ndarray, water: WaterProperties) -> None:
     """Compare pieces with the surface and with the water around them: how deep they are, how they move against it."""
     for n in range(LANES):
         a, b, t = lane(rows, at.E_A, n), lane(rows, at.E_B, n), lane(rows, at.E_T, n)
@@ -180,7 +180,7 @@ def meet(table: np.ndarray, rows: np.ndarray, water: Water) -> None:
 
 
 @part
-def rub(rows: np.ndarray, water: Water) -> None:
+def rub(rows: np.ndarray, water: WaterProperties) -> None:
     """Say how turbulent water rubs, where it does."""
     per_speed = water.length / water.viscosity
     for n in range(LANES):
@@ -191,7 +191,7 @@ def rub(rows: np.ndarray, water: Water) -> None:
 
 
 @part
-def press(table: np.ndarray, rows: np.ndarray, water: Water) -> None:
+def press(table: np.ndarray, rows: np.ndarray, water: WaterProperties) -> None:
     """Say what the water does to each piece: force, couple about the point of reference, volume under water."""
     per_speed, (front, rear) = water.length / water.viscosity, water.breath
     for n in range(LANES):
@@ -230,7 +230,7 @@ def press(table: np.ndarray, rows: np.ndarray, water: Water) -> None:
 
 
 @part
-def added_mass(table: np.ndarray, rows: np.ndarray, water: Water) -> None:
+def added_mass(table: np.ndarray, rows: np.ndarray, water: WaterProperties) -> None:
     """Add the added mass of each piece, as a spatial inertia about the point of reference, and its bias force."""
     for n in range(LANES):
         dense = water.density * rows[at.SHARE, n] * water.added

@@ -9,7 +9,7 @@ from numba import carray
 
 from suchus.hydro import lanes, memory
 from suchus.hydro.forces import added_mass, flow, meet, place, press, rub
-from suchus.hydro.lanes import MIXED, PUSHED, ROWS, SPUN, SUMS, Water
+from suchus.hydro.lanes import MIXED, PUSHED, ROWS, SPUN, SUMS, WaterProperties
 from suchus.hydro.memory import Bodies, Motion, pointer, read_bodies, read_motion, read_water
 from suchus.hydro.table import COLUMNS, FORCE, HEADER, LANES, MAGIC, NUMBERS, POWER, UNDER, WAVE, WIDTH
 from suchus.hydro.vectors import Vector, compiled, dot, part, plus, put, three, times, write
@@ -55,7 +55,7 @@ def wet(model: int, data: int, at: np.ndarray) -> bool:
 
 
 @part
-def _all_dry(table: np.ndarray, count: int, water: Water, height: float, motion: Motion) -> bool:
+def _all_dry(table: np.ndarray, count: int, water: WaterProperties, height: float, motion: Motion) -> bool:
     """Return whether all pieces are far above the surface, waves of a height included."""
     for n in range(count):
         block, lane = n // LANES, n % LANES
@@ -66,7 +66,7 @@ def _all_dry(table: np.ndarray, count: int, water: Water, height: float, motion:
 
 
 @part
-def _gathered(table: np.ndarray, count: int, water: Water, bodies: Bodies, motion: Motion) -> np.ndarray:
+def _gathered(table: np.ndarray, count: int, water: WaterProperties, bodies: Bodies, motion: Motion) -> np.ndarray:
     """Return inertia, couple and force of the water on each body, shape (body, ``SUMS``)."""
     bias = _bias(bodies, motion)
     rows, sums, under = np.zeros((ROWS, LANES)), np.zeros((len(bodies.parent), SUMS)), 0.0

@@ -71,7 +71,7 @@ ROWS = FOUND + SUMS
 """Rows in all."""
 
 
-class Water(NamedTuple):
+class WaterProperties(NamedTuple):
     """What the water is, read once."""
 
     level: float

@@ -8,7 +8,7 @@ from numba import carray, types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
-from suchus.hydro.lanes import Water
+from suchus.hydro.lanes import WaterProperties
 from suchus.hydro.table import ADDED, BREATH, CROSS_DRAG, DENSITY, LEVEL, NUMBERS, SHEDDING, THICKENING, VISCOSITY
 from suchus.hydro.vectors import dot, part, three, times
 
@@ -131,12 +131,12 @@ def read_motion(model: int, data: int, at: np.ndarray) -> Motion:
 
 
 @part
-def read_water(model: int, user: np.ndarray, at: np.ndarray, length: float) -> Water:
+def read_water(model: int, user: np.ndarray, at: np.ndarray, length: float) -> WaterProperties:
     """Return what the water is."""
     down = three(carray(model, (4096,), np.float64), at[_GRAVITY] // 8)
     gravity = sqrt(dot(down, down))
     up = times(-1.0 / gravity, down) if gravity > 0.0 else (0.0, 0.0, 1.0)
-    return Water(
+    return WaterProperties(
         user[LEVEL], user[DENSITY], (user[BREATH], user[BREATH + 1]), user[VISCOSITY], user[CROSS_DRAG],
         user[THICKENING], user[ADDED], user[SHEDDING], up, gravity, length,
     )  # fmt: skip

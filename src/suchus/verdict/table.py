@@ -31,7 +31,7 @@ def examples_of(experiment: str) -> Examples:
     return examples
 
 
-class Rules(Mapping[str, Rule]):
+class ClaimRules(Mapping[str, Rule]):
     """The rules of all experiments of suchus, by claim; they are read when the first is asked for."""
 
     @cached_property
@@ -49,5 +49,5 @@ class Rules(Mapping[str, Rule]):
         return len(self._by_claim)
 
 
-RULES = Rules()
+RULES = ClaimRules()
 """By claim."""

@@ -4,16 +4,13 @@ Swims by CFD stand in ``suchus.water.resolved``, which loads the flow solver.
 """
 
 from suchus.design.water import Water
-from suchus.water.fit import Fit, fit, head_base
+from suchus.water.fit import Attempt, Fit, attempts, fit, head_base, readings_table
 from suchus.water.measures import Quarters, Sway, Swum, convex_higher, efficiency, level, swing, wave_form
 from suchus.water.outline import Base, BodySilhouette, MidlineCurve, Outline, silhouette
 from suchus.water.passive import sprung
-from suchus.water.readings import Attempt, attempts, readings_table
 from suchus.water.slender import Cruise, Effort, cruise, cycle, reactive, recoil, resistive
-from suchus.water.sweep import greatest, scaled, survey
-from suchus.water.swimming import MODELS, displaced, swim, wave_speed
-from suchus.water.taken import taken, unevenness
-from suchus.water.undulation import ExactWave, Motion, Undulation, undulation
+from suchus.water.swimming import MODELS, displaced, greatest, scaled, survey, swim, wave_speed
+from suchus.water.undulation import ExactWave, Motion, Undulation, taken, undulation, unevenness
 from suchus.water.waves import BodyWave, EelWave, PrintedWave, printed_wave
 
 __all__ = [

@@ -67,11 +67,11 @@ class FieldWindow:
         return xr.Dataset(data, coords={"x": ("x", self.x, {"units": "m"}), "y": ("y", self.y, {"units": "m"})})
 
 
-def midline(sim: flow.Simulation) -> flow.Spine:
+def midline(sim: flow.Simulation) -> flow.MidlineState:
     """Return the midline of the only body, in the frame of the grid."""
     body, (position, _) = sim.setup.bodies[0], sim.frame
     placed = body.shape.spine(sim.time).placed(sim.pose(body.name))  # type: ignore[union-attr]
-    return flow.Spine(
+    return flow.MidlineState(
         x=placed.x - position[0],
         y=placed.y - position[1],
         heading=placed.heading,
@@ -82,7 +82,7 @@ def midline(sim: flow.Simulation) -> flow.Spine:
     )
 
 
-def midline_values(spine: flow.Spine) -> dict[str, np.ndarray]:
+def midline_values(spine: flow.MidlineState) -> dict[str, np.ndarray]:
     """Return what is sampled of a midline, by name."""
     return {f"midline_{name}": getattr(spine, name) for name, _ in SPINE}
 

@@ -4,17 +4,20 @@ The article commands a continuous wave; the robot has three yaw joints and one c
 fitted by least squares, and what remains is reported.
 """
 
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Float
 
 from suchus.design import Robot, cable_joints, layout
 from suchus.errors import InvalidDesign, OutsideLimits
+from suchus.kinematics.wave import READINGS
 from suchus.motion import Swim, bends
 from suchus.motion.swim import trunk_yaws
 from suchus.water.outline import Base, Outline
-from suchus.water.waves import BodyWave, along
+from suchus.water.waves import BodyWave, along, printed_wave
 
 _TIMES = 48
 """Instants of a cycle at which wave and joints are compared [-]."""
@@ -130,3 +133,47 @@ def _check_amplitudes(robot: Robot, name: str, amplitudes: np.ndarray) -> None:
                 f"either side, {amplitude - limit:.2f} rad more than the {limit:.2f} rad it has: take a longer or a "
                 "flatter wave."
             )
+
+
+class Attempt(NamedTuple):
+    """A reading that was tried."""
+
+    letter: str
+    """Letter of ``kinematics.wave.READINGS``."""
+    fitted: Fit | None
+    """The nearest motion of the joints, None if they cannot make the wave."""
+    refusal: str
+    """Why not: the joint and by how much."""
+
+
+def attempts(robot: Robot, *, frequency: float, sign: int = -1) -> list[Attempt]:
+    """Return what a robot's joints make of (20) in each of its readings.
+
+    Args:
+        robot: whose joints.
+        frequency: which the article does not give [Hz].
+        sign: -1 runs from head to tail; 1 as printed.
+    """
+    found = []
+    for letter in READINGS:
+        wave = printed_wave(robot, letter, frequency=frequency, sign=sign)
+        try:
+            found.append(Attempt(letter, fit(robot, wave, name=f"(20), reading {letter}"), ""))
+        except OutsideLimits as refused:
+            found.append(Attempt(letter, None, str(refused)))
+    return found
+
+
+def readings_table(tried: Iterable[Attempt], thrust: Mapping[str, str]) -> str:
+    """Return a Markdown table of readings: units, misfit, what the joints make of it, thrust.
+
+    Args:
+        tried: the readings.
+        thrust: what was measured of some of them, by letter.
+    """
+    lines = ["| reading of (20) | units | misfit | joints | thrust |", "|---|---|---|---|---|"]
+    for letter, fitted, refusal in tried:
+        misfit = "" if fitted is None else f"{100 * fitted.misfit:.1f} %"
+        joints = refusal or READINGS[letter].verdict
+        lines.append(f"| {letter} | {READINGS[letter].meaning} | {misfit} | {joints} | {thrust.get(letter, '')} |")
+    return "\n".join(lines) + "\n"

@@ -37,9 +37,9 @@ def immersed(
     half_width = outline.silhouette.half_width
 
     @lru_cache(maxsize=2)  # the flow asks up to ten times for the same two instants of a step
-    def spine(time: float) -> flow.Spine:
+    def spine(time: float) -> flow.MidlineState:
         curve = bent.curve(np.asarray(time), *_grown(time, grow))
-        bare = flow.Spine(**curve._asdict(), half_width=half_width)
+        bare = flow.MidlineState(**curve._asdict(), half_width=half_width)
         return bare.thickened(least) if least > 0.0 else bare
 
     return flow.Midline(spine=spine)

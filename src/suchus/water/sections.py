@@ -18,7 +18,7 @@ from jaxtyping import Float
 from scipy.interpolate import RegularGridInterpolator
 
 from suchus.atlas import sections
-from suchus.atlas.outcome import Outcome
+from suchus.atlas.outcome import FlowOutcome
 from suchus.atlas.published import published
 from suchus.design.water import Water
 from suchus.errors import InvalidDesign, UnreadableFile
@@ -30,7 +30,7 @@ TABLE = Path(__file__).parent / "data" / "sections.csv"
 _COLUMNS = ("aspect", "keulegan", "cells", "drag", "added", "drag_before", "added_before", "left", "digest")
 
 
-class Section(NamedTuple):
+class SectionFlow(NamedTuple):
     """What one section feels."""
 
     aspect: float
@@ -119,7 +119,7 @@ def measured(instants: int = 200) -> tuple[float, float]:
     return morison(time, keulegan**2 * force, frequency=1.0, speed=keulegan, diameter=1.0, density=1.0)
 
 
-def write_table(outcomes: Mapping[str, Outcome], path: Path = TABLE) -> str:
+def write_table(outcomes: Mapping[str, FlowOutcome], path: Path = TABLE) -> str:
     """Write the table of finished flows, and return what it says of itself.
 
     Args:
@@ -153,7 +153,7 @@ def write_table(outcomes: Mapping[str, Outcome], path: Path = TABLE) -> str:
 
 
 @lru_cache(maxsize=4)
-def table(path: Path = TABLE) -> tuple[Section, ...]:
+def table(path: Path = TABLE) -> tuple[SectionFlow, ...]:
     """Return every point of a table, held-out ones and those on a finer grid too.
 
     Raises:
@@ -163,7 +163,9 @@ def table(path: Path = TABLE) -> tuple[Section, ...]:
         lines = [line for line in path.read_text(encoding="utf-8").splitlines() if not line.startswith("#")]
         rows = list(csv.DictReader(lines))
         return tuple(
-            Section(*(kind(row[name]) for name, kind in zip(_COLUMNS, Section.__annotations__.values(), strict=True)))
+            SectionFlow(
+                *(kind(row[name]) for name, kind in zip(_COLUMNS, SectionFlow.__annotations__.values(), strict=True))
+            )
             for row in rows
         )
     except (OSError, KeyError, TypeError, ValueError) as error:

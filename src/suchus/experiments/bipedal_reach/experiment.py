@@ -14,8 +14,14 @@ from suchus.design import Robot
 from suchus.design.checks import Checks
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.experiments.bipedal_reach import findings
-from suchus.experiments.bipedal_reach.figure import draw_ceiling, draw_heights, draw_limits, draw_pushes
-from suchus.experiments.bipedal_reach.standing_figure import draw_angles, draw_side_views
+from suchus.experiments.bipedal_reach.figure import (
+    draw_angles,
+    draw_ceiling,
+    draw_heights,
+    draw_limits,
+    draw_pushes,
+    draw_side_views,
+)
 from suchus.experiments.bipedal_reach.variants import PARTS, fitted, heavier, length, lengthened, stand_soon, up_at
 from suchus.gaits import GAITS
 from suchus.kinematics.mass import cantilever_torque

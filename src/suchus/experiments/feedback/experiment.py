@@ -15,8 +15,7 @@ from suchus.design.checks import Checks
 from suchus.design.scale import coarse_step, control_period
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.experiments.feedback import findings
-from suchus.experiments.feedback.figure import draw_fans, draw_gain, draw_onset, draw_tracks
-from suchus.experiments.feedback.topology import draw_topology
+from suchus.experiments.feedback.figure import draw_fans, draw_gain, draw_onset, draw_topology, draw_tracks
 from suchus.gaits import GAITS, own_gait
 from suchus.land import Ground, Limp, Locked, Push, Run, simulate
 from suchus.metrics import heading

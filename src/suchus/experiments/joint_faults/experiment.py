@@ -19,7 +19,6 @@ from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Si
 from suchus.experiments.joint_faults import findings
 from suchus.experiments.joint_faults.figure import draw_held, draw_losses, draw_over_time, draw_tracks
 from suchus.experiments.joint_faults.findings import ARMS
-from suchus.experiments.joint_faults.records import lay, support
 from suchus.gaits import GAITS, conditions_of
 from suchus.land import (
     KINDS,
@@ -40,6 +39,10 @@ from suchus.metrics import (
     displacement,
     heading_change,
     path_length,
+    swing_height,
+    swing_lift,
+    swing_loads,
+    swing_unloaded,
     whole,
 )
 from suchus.motion import START, Gait, suits
@@ -392,6 +395,31 @@ def _with_axis(gait: Gait, other: Gait) -> Gait:
     limbs = tuple(curve for curve in gait.curves if curve.part == "limb")
     axial = tuple(curve for curve in other.curves if curve.part != "limb")
     return replace(gait, name=other.name, axis=other.axis, curves=(*limbs, *axial))
+
+
+def lay(data: xr.Dataset, name: str, values: np.ndarray, more: tuple[str, ...], unit: str, what: str) -> None:
+    """Put values of shape (variation, arm, 1 + fault, ...) into a dataset: the intact apart from the faults."""
+    about = {"units": unit, "long_name": what}
+    data[f"intact_{name}"] = (("variation", "arm", *more), values[:, :, 0], about)
+    shape = (*values.shape[:2], data.sizes["joint"], len(KINDS), len(LEGS_FAILED), *values.shape[3:])
+    data[name] = (("variation", "arm", "joint", "kind", "legs", *more), values[:, :, 1:].reshape(shape), about)
+
+
+def support(lost_pitch: xr.Dataset) -> xr.Dataset:
+    """Return what carries the body while the last limb, the right hind leg, is meant to swing."""
+    leg = str(lost_pitch.leg.values[-1])
+    loads = swing_loads(lost_pitch, leg).transpose("run", "part")
+    lifted, free = swing_lift(lost_pitch, leg).values, swing_unloaded(lost_pitch, leg).values
+    height = swing_height(lost_pitch, leg).values
+    return xr.Dataset(
+        {
+            "support": (("state", "part"), loads.values, {"units": "N", "long_name": f"mean load while {leg} swings"}),
+            "lifted": ("state", lifted, {"units": "m", "long_name": f"rise of the {leg} foot"}),
+            "free": ("state", free, {"units": "1", "long_name": f"share of its swing in which the {leg} foot is free"}),
+            "swing_height": ("state", height, {"units": "m", "long_name": f"centre of mass while {leg} swings"}),
+        },
+        coords={"state": ["intact", *KINDS], "part": [str(name) for name in loads.part.values]},
+    )
 
 
 experiment = JointFaults()

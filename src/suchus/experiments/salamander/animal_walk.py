@@ -18,7 +18,7 @@ PAIRS = ("fore", "hind")
 PARTS = ("vertical", "sideways", "foreaft")
 
 
-class Published(NamedTuple):
+class AnimalValue(NamedTuple):
     """A number of the animal."""
 
     value: float
@@ -35,12 +35,12 @@ _KINEMATICS = "Pleurodeles waltl; Karakasiliotis et al. 2013, Biol. Cybern. 107,
 _FORCES = "Ambystoma tigrinum; computed from the public data of Kawano and Blob (FinsAndLimbs/mudskipperKinematics)"
 
 
-def _force(value: float, spread: float = nan) -> Published:
-    return Published(value, spread, "body weight", _FORCES)
+def _force(value: float, spread: float = nan) -> AnimalValue:
+    return AnimalValue(value, spread, "body weight", _FORCES)
 
 
-ANIMAL: Mapping[str, Published] = {
-    "standing_index_walk": Published(0.91, nan, "-", _KINEMATICS),
+ANIMAL: Mapping[str, AnimalValue] = {
+    "standing_index_walk": AnimalValue(0.91, nan, "-", _KINEMATICS),
     "foot_force_peak_fore": _force(0.447),
     "foot_force_peak_hind": _force(0.439),
     "foot_force_net_fore": _force(0.457, 0.063),
@@ -49,8 +49,8 @@ ANIMAL: Mapping[str, Published] = {
     "foot_force_sideways_hind": _force(0.071),
     "foot_force_foreaft_fore": _force(-0.028),
     "foot_force_foreaft_hind": _force(0.151),
-    "foot_force_time_fore": Published(0.61, nan, "stance", _FORCES),
-    "foot_force_time_hind": Published(0.33, nan, "stance", _FORCES),
+    "foot_force_time_fore": AnimalValue(0.61, nan, "stance", _FORCES),
+    "foot_force_time_hind": AnimalValue(0.33, nan, "stance", _FORCES),
 }
 """Numbers of the animals by the names of the measures beside which they stand.
 

@@ -14,7 +14,7 @@ from suchus.design import Robot
 from suchus.design.checks import Checks
 from suchus.design.water import Water
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
-from suchus.experiments._taken import Midline, midlines
+from suchus.experiments._taken import TakenMidline, midlines
 from suchus.experiments.swim_3d import findings
 from suchus.experiments.swim_3d.figure import draw_joints, draw_speeds, draw_tails, draw_wake
 from suchus.figures.vortices import draw_vortices, film_vortices
@@ -171,7 +171,7 @@ class Swim3d(Experiment):
         return SwimSetting(cells=self.slice_cells, viscosity=self.viscosity, cycles=self.cycles)
 
     def _runs(
-        self, ours: Swim, printed: Swim, bent: Sequence[Midline] = ()
+        self, ours: Swim, printed: Swim, bent: Sequence[TakenMidline] = ()
     ) -> Sequence[tuple[str, Motion, SwimSetting]]:
         """Return name, motion, grid and time of every swim in space."""
 

@@ -9,7 +9,7 @@ import xarray as xr
 from suchus.design import GRAVITY, Robot
 from suchus.design.water import Water
 from suchus.experiment import Measure
-from suchus.experiments._taken import TAKEN, Midline
+from suchus.experiments._taken import TAKEN, TakenMidline
 from suchus.verdict import Reading
 
 WHOLE = "trunk and tail"
@@ -18,8 +18,8 @@ LIMBS = "limbs folded"
 """The same with the limbs in the water."""
 
 
-class Asked(Protocol):
-    """What the experiment is asked."""
+class Swim3dParameters(Protocol):
+    """What the experiment is asked: its fields that lay out the record."""
 
     @property
     def cells(self) -> tuple[int, ...]:
@@ -42,7 +42,7 @@ class Asked(Protocol):
         """Frequency times length squared over viscosity [-]."""
 
 
-def record(swims: Mapping[str, xr.Dataset], beside: xr.Dataset, asked: Asked) -> xr.Dataset:
+def record(swims: Mapping[str, xr.Dataset], beside: xr.Dataset, asked: Swim3dParameters) -> xr.Dataset:
     """Return the record of the experiment from the swims by name, and what slice and models say."""
     grids = [swims[f"{cells} cells"] for cells in asked.cells]
     whole = swims.get("compared", swims.get(f"{asked.compared_cells} cells"))
@@ -74,7 +74,7 @@ def record(swims: Mapping[str, xr.Dataset], beside: xr.Dataset, asked: Asked) ->
     return data.merge(finest).merge(beside)
 
 
-def with_midlines(beside: xr.Dataset, bent: Sequence[Midline]) -> xr.Dataset:
+def with_midlines(beside: xr.Dataset, bent: Sequence[TakenMidline]) -> xr.Dataset:
     """Return what stands beside the swims, with how far the midlines that the joints took are off, if there are any."""
     if not bent:
         return beside

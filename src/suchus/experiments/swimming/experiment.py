@@ -40,7 +40,7 @@ from suchus.water.samples import forget_kept, kept_in
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Swimming(Experiment):
+class PlaneSwims(Experiment):
     """The robot's own outline in a two-dimensional flow, its joints fitted to (20).
 
     Tethered, as in the article's Fig. 17: the snout is fixed, and every cycle but the first is measured. Values are
@@ -126,7 +126,7 @@ class Swimming(Experiment):
             for name in ("cycles", "free_cycles", "arm_cycles"):
                 check.whole(name, 2, 100)
 
-    def quick(self) -> "Swimming":
+    def quick(self) -> "PlaneSwims":
         """A coarse grid, viscous water, few cycles."""
         return replace(
             self, cells=32, coarse_cells=32, cycles=2, free_cycles=2, arm_cycles=2, reynolds=1000.0, readings=("H",),
@@ -266,4 +266,4 @@ def _prefixed(record: xr.Dataset, name: str) -> xr.Dataset:
     return record.rename({str(old): f"{name}_{old}" for old in {*record.variables, *record.dims}})
 
 
-experiment = Swimming()
+experiment = PlaneSwims()
