@@ -338,7 +338,7 @@ def test_tasks_are_varied_by_naming_their_fields():
         ({"spam": 1}, UnknownName, "Did you mean 'span'?"),
         ({"task": "Crwl"}, UnknownName, "Did you mean 'Crawl'?"),
         ({"robot": "caimen"}, UnknownName, "Did you mean 'caiman'?"),
-        ({"gait": 3}, InvalidDesign, "task.gait is '3'; a Gait or Pattern or AngleTable is needed"),
+        ({"gait": 3}, InvalidDesign, "task.gait is '3'; a Gait is needed"),
         ({"breaks": "limp"}, InvalidDesign, "a Breaks or None is needed"),
         ({"span": -1.0}, InvalidDesign, "0.01 to 3.2 rad is allowed"),
         ({"decision": 0.025}, InvalidDesign, "must fit the control period of 0.01 s"),
@@ -489,7 +489,7 @@ def test_the_senses_of_the_article_s_robot_are_its_readings_over_fixed_scales():
 @pytest.mark.parametrize(
     ("changes", "text"),
     [
-        ({"task": "Stand", "robot": "strider"}, "a task that begins upright needs a crocodile-like robot"),
+        ({"task": "Stand", "robot": "strider"}, "a task that begins upright needs four legs of yaw"),
         ({"robot": "strider", "gait": "belly_crawl"}, "choose a gait made for it"),
         ({"robot": "strider", "breaks": envs.Breaks(joints=("tail_cable",))}, "no servo named 'tail_cable'"),
         ({"robot": "strider", "timestep": 0.02}, "task.timestep is 0.02"),
