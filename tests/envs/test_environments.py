@@ -489,7 +489,7 @@ def test_the_senses_of_the_article_s_robot_are_its_readings_over_fixed_scales():
 @pytest.mark.parametrize(
     ("changes", "text"),
     [
-        ({"task": "Stand", "robot": "strider"}, "a task that begins upright needs a crocodile-like robot"),
+        ({"task": "Stand", "robot": "strider"}, "a task that begins upright needs four legs of yaw"),
         ({"robot": "strider", "gait": "belly_crawl"}, "choose a gait made for it"),
         ({"robot": "strider", "breaks": envs.Breaks(joints=("tail_cable",))}, "no servo named 'tail_cable'"),
         ({"robot": "strider", "timestep": 0.02}, "task.timestep is 0.02"),

@@ -6,17 +6,25 @@ from math import radians, sin
 from types import MappingProxyType
 from typing import Any, get_args
 
-import gymnasium
-
 from suchus.design import Robot
 from suchus.envs.goals import AnyGoal, Goal, Landing
 from suchus.envs.reward import Rewards
 from suchus.envs.task import Breaks, Pushes, Task
-from suchus.errors import InvalidDesign, UnknownName
+from suchus.errors import InvalidDesign, SuchusError, UnknownName
 from suchus.gaits import GAITS
 from suchus.land import Ground, Lake
 from suchus.motion import Gait, Swim
 from suchus.robots import ROBOTS
+
+
+class NoGymnasium(SuchusError, ImportError):
+    """The environments without the library that they are for."""
+
+
+try:
+    import gymnasium
+except ImportError as _error:
+    raise NoGymnasium("environments need gymnasium; install it with: pip install 'suchus[gym]'.") from _error
 
 STANDING_SPAN = 0.3
 """Span of the actions in the task Stand [rad]: enough for a hop, too little for another posture."""

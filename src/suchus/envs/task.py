@@ -226,7 +226,7 @@ class Task:
         changes: dict[str, Any] = {}
         if slower != 1.0:
             changes = {name: round(slower * getattr(self, name), 12) for name in ("decision", "timestep")}
-        if not suits(robot, self.gait):
+        if slower != 1.0 or not suits(robot, self.gait):
             changes |= scaled_fields(self, ["least_height"], length=longer, mass=heavier)
             changes |= {"gait": gait or own_gait(robot)}
             for name in ("rewards", "breaks", "pushes", "goal"):

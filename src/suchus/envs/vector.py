@@ -12,8 +12,15 @@ from gymnasium.vector.utils import batch_space
 from suchus.design.checks import require
 from suchus.envs.pack import Pack
 from suchus.envs.shelf import chosen
-from suchus.envs.single import metadata, portrait, step_info
-from suchus.envs.spaces import action_space, check_render_mode, checked, observation_space
+from suchus.envs.single import (
+    action_space,
+    check_render_mode,
+    checked,
+    metadata,
+    observation_space,
+    portrait,
+    step_info,
+)
 from suchus.envs.task import Task
 from suchus.errors import InvalidDesign
 
