@@ -15,8 +15,9 @@ from suchus.control.shared import silence
 from suchus.control.spine import SpineController
 from suchus.control.tail import TailController
 from suchus.design import layout
+from suchus.design.scale import control_period
 from suchus.errors import InvalidDesign, OutsideLimits
-from suchus.gaits import GAITS
+from suchus.gaits import GAITS, own_gait
 from suchus.land import Run, simulate
 from suchus.motion import START, Batch, cycle_targets
 from suchus.robots import ROBOTS
@@ -126,6 +127,29 @@ def test_spine_and_tail_follow_the_limbs_by_the_open_loop_law(robot, crawl_gait,
     for name, law in (("trunk", trunk_bend), ("tail", tail_bend)):
         assert getattr(shared, f"{name}_bend") == pytest.approx(law(gait, np.array([phase])), abs=1e-12)
         assert getattr(shared, f"{name}_direction") == pytest.approx(law(gait, np.array([phase]) + 0.25), abs=1e-12)
+
+
+@pytest.mark.parametrize("name", ["caiman", "salamander", "strider"])
+def test_without_sharing_the_axis_of_any_body_stays_with_the_clock_after_a_kick(name):
+    robot, gait = ROBOTS[name], own_gait(ROBOTS[name])
+    place, limbs = layout(robot), len(layout(robot).limbs)
+    kicked = Coordinated(limbs=LAWS["off"], spine=None, tail=None, kicks=(Kick(START + 0.1, (0.25,) * limbs),))
+    period = control_period(robot)
+    tick = round((START + 0.3) / period)
+
+    def after(control):
+        closed = start_batch(control, [robot], [gait], [0], tick + 2, period)
+        for i in range(tick):
+            closed.command(i, None)
+        return closed.command(tick, None).targets[0]
+
+    table = start_batch(OpenLoop(), [robot], [gait], [0], tick + 2, period).command(tick, None).targets[0]
+    sharing, alone = after(kicked), after(replace(kicked, sharing=False))
+    axis = list(place.axial_yaw)
+    assert alone[axis] == pytest.approx(table[axis], abs=1e-12)
+    assert np.abs(sharing[axis] - table[axis]).max() > 0.01
+    legs = [i for limb in place.limbs for i in range(limb.servos.start, limb.servos.stop)]
+    assert (sharing[legs] == alone[legs]).all()
 
 
 def test_without_sharing_spine_and_tail_follow_the_clock(robot, crawl_gait):
