@@ -11,6 +11,7 @@ import pytest
 
 import suchus
 from suchus import sources
+from suchus.blueprint import read_gait
 from suchus.cli import main
 from suchus.errors import AmbiguousName, BrokenFile, InvalidDesign, SuchusError, UnknownName, UnreadableFile
 from suchus.faults import FAULTS, from_table
@@ -44,6 +45,7 @@ def _no_project_stays(monkeypatch):
     monkeypatch.delenv(sources.VARIABLE, raising=False)
     monkeypatch.setattr(sources, "_AT_START", None)
     yield
+    os.environ.pop(sources.VARIABLE, None)
     for name in [name for name in sys.modules if name in ("suchus.faults.tired", "suchus.robots.broken")]:
         del sys.modules[name]
 
@@ -78,6 +80,15 @@ def test_the_shelves_hold_what_stands_in_the_project(lab):
     assert own_gait(ROBOTS["short"]) is GAITS["belly_crawl"]
     suchus.project(None)
     assert [*FAULTS] == before
+
+
+def test_metres_of_a_gait_are_those_of_the_robot_that_its_base_is_made_for(lab):
+    suchus.project(lab)
+    (lab / "gaits/bent.toml").write_text('base = "belly_crawl"\ntrunk_bend = 0.5\nstroke = 0.02\n')
+    assert GAITS["bent"] == read_gait(lab / "gaits/bent.toml", ROBOTS["caiman"], GAITS)
+    (lab / "gaits/alone.toml").write_text((lab / "gaits/bent.toml").read_text().replace('base = "belly_crawl"\n', ""))
+    with pytest.raises(BrokenFile, match="gives metres or places along the body, which are those of a robot"):
+        GAITS["alone"]
 
 
 def test_the_working_folder_is_the_project_where_it_has_the_file(lab, monkeypatch):
@@ -152,7 +163,7 @@ def test_our_own_errors_in_a_file_of_the_user_are_told_with_its_line(lab):
     suchus.project(lab)
     (lab / "robots/broken.py").write_text(
         "from dataclasses import replace\n\nfrom suchus.robots import caiman\n\n"
-        "robot = replace(caiman.robot.tail, joints=0)\n"
+        "robot = replace(caiman.tables.tail, joints=0)\n"
     )
     with pytest.raises(BrokenFile, match=r"^robots/broken.py, line 5, cannot be loaded: tail.joints is 0"):
         ROBOTS["broken"]

@@ -8,9 +8,10 @@ from mkdocs.config.defaults import MkDocsConfig
 from mkdocs.structure.files import File, Files
 from mkdocs.structure.pages import Page
 
-from pages import article, gallery, questions, reference, verdicts
+from pages import article, gallery, reference
 from pages.code import rooms as rooms_of_code
 from pages.mathml import Formulas
+from pages.stated import page as stated_page
 
 _FETCHED = '<script src="https://unpkg.com/iframe-worker/shim"></script>'
 _formulas: dict[str, Formulas] = {}
@@ -31,8 +32,8 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
     made = {
         "paper_map.md": article.paper_map(),
         "misprints.md": article.misprints(),
-        "questions.md": questions.page(),
-        "verdicts.md": verdicts.page(),
+        "questions.md": stated_page("questions"),
+        "verdicts.md": stated_page("verdicts"),
     }
     for path, text in (made | reference.pages() | gallery.pages()).items():
         files.append(File.generated(config, path, content=text))

@@ -5,10 +5,11 @@ import pytest
 pytest.importorskip("latex2mathml")
 
 import suchus
-from pages import article, gallery, questions, reference
+from pages import article, gallery, reference
 from pages.code import exported, papers, rooms
 from pages.mathml import Formulas
 from pages.references import named
+from pages.stated import page as stated_page
 from suchus.experiments import EXPERIMENTS
 from suchus.paper import CLAIMS, ERRATA
 
@@ -59,7 +60,7 @@ def test_every_misprint_has_its_place():
 
 
 def test_every_experiment_is_a_question_of_its_own():
-    page = questions.page()
+    page = stated_page("questions")
     assert all(f"{{#{name}}}" in page and one.title in page for name, one in EXPERIMENTS.items())
 
 

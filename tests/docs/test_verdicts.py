@@ -5,7 +5,7 @@ import json
 import pytest
 
 import verdict_table
-from pages import verdicts
+from pages.stated import page as stated_page
 from suchus.experiments import EXPERIMENTS
 from suchus.paper import CLAIMS
 from suchus.verdict import RULES
@@ -33,7 +33,7 @@ def test_the_readme_counts_what_the_table_says():
 
 
 def test_the_page_gives_the_words_the_rule_and_the_verdict_of_every_claim():
-    page = verdicts.page()
+    page = stated_page("verdicts")
     for claim, rule in RULES.items():
         entry = page.split(f"{{#{claim}}}")[1].split("\n###")[0]
         assert CLAIMS[claim].quote in entry

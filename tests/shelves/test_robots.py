@@ -8,6 +8,7 @@ import pytest
 
 from suchus.design import GRAVITY, general, joint_names, layout, leg_joints, servo_names, spine_joints
 from suchus.design.scale import gravity_time, physics_step
+from suchus.gaits import own_gait, suits
 from suchus.model import build, compile_model, joint_addresses, sensor_names
 from suchus.model.build import servo_of
 from suchus.robots import ROBOTS
@@ -58,6 +59,10 @@ def test_every_number_not_from_the_article_has_a_range_and_a_reason(shelved):
     for path, entry in chosen.items():
         assert entry.low <= values[path] <= entry.high, path
         assert len(entry.why) > 10
+
+
+def test_a_gait_of_the_shelf_is_its_own(shelved):
+    assert suits(shelved, own_gait(shelved))
 
 
 def test_mass_and_dimensions_arrive_in_the_model(shelved):

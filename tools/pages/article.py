@@ -6,6 +6,7 @@ from typing import Any
 
 from pages.code import PaperReference, papers
 from pages.references import named
+from pages.stated import page
 from suchus.experiment import Experiment
 from suchus.experiments import EXPERIMENTS
 from suchus.paper import CLAIMS, ERRATA, Claim
@@ -58,7 +59,6 @@ FIGURES = {
     23: "crawling and standing, from the side",
     24: "height reached while it stands up",
 }
-_HEAD = "| article | what it is | in the code | shown by | misprints |"
 TABLES = {"I": "D-H table of the hind leg", "II": "D-H table of the trunk"}
 
 
@@ -93,25 +93,18 @@ def questions_of(shelf: Mapping[str, Experiment]) -> dict[str, list[str]]:
 def paper_map() -> str:
     """Return the page that leads from the article to the code."""
     code, questions, flaws = code_of(papers()), questions_of(EXPERIMENTS), misprints_of()
-    lines = [
-        "---",
-        "hide: [toc]",
-        "---",
-        "",
-        "# Paper map",
-        "",
-        "Where each table, equation and figure of the article lives here, and the command that shows it. The page is",
-        "made at every build from the docstrings that say `Paper: ...`, from the experiments and from `suchus.paper`.",
-        "",
-    ]
+    parts: dict[str, list[tuple[str, ...]]] = {}
     for title, kind in (("Tables", "table"), ("Equations", "eq"), ("Figures", "fig")):
-        lines += [f"## {title}", "", _HEAD, "|---|---|---|---|---|"]
-        for key, text in items().items():
-            if key.startswith(f"{kind} "):
-                cells = (_code(code[key]), _commands(questions[key]), _flaws(flaws[key]))
-                lines.append(f"| {_label(key)} | {text} | {' | '.join(cells)} |")
-        lines.append("")
-    return "\n".join([*lines, *_claims(questions_by_claim()), ""])
+        parts[title] = [
+            (_label(key), text, _code(code[key]), _commands(questions[key]), _flaws(flaws[key]))
+            for key, text in items().items()
+            if key.startswith(f"{kind} ")
+        ]
+    judged = questions_by_claim()
+    statements = [
+        (claim.where, _plain(claim.sense), _value(claim), _commands(judged[key])) for key, claim in CLAIMS.items()
+    ]
+    return page("paper_map", parts=parts, statements=statements)
 
 
 def misprints_of() -> dict[str, list[str]]:
@@ -126,47 +119,12 @@ def questions_by_claim() -> dict[str, list[str]]:
 
 def misprints() -> str:
     """Return the page of the misprints."""
-    lines = [
-        "# Misprints",
-        "",
-        f"{len(ERRATA)} places where the article says something else than it means, defines too little, or",
-        "contradicts itself. The printed formulas can be run: they stand in",
-        "[`suchus.kinematics.printed`][suchus.kinematics.printed], and a test sets each beside ours.",
-        "From Python: `suchus.paper.ERRATA`.",
-        "",
+    shown = [
+        {"key": one.key, "where": _sentence(one.where)}
+        | {name: _plain(getattr(one, name)) for name in ("printed", "ours", "shows")}
+        for one in ERRATA.values()
     ]
-    for one in ERRATA.values():
-        lines += [
-            f"### {_sentence(one.where)} {{#{one.key}}}",
-            "",
-            '<div class="misprint" markdown>',
-            "",
-            f"**Printed:** {_plain(one.printed)}",
-            "",
-            f"**Ours:** {_plain(one.ours)}",
-            "",
-            f"{_plain(one.shows)}",
-            "",
-            "</div>",
-            "",
-        ]
-    return "\n".join(lines)
-
-
-def _claims(judged: Mapping[str, list[str]]) -> list[str]:
-    lines = [
-        "## Statements",
-        "",
-        f"{len(CLAIMS)} statements of the article, in its order, and the experiment that judges each. The result is",
-        "in the report that `suchus reproduce` writes.",
-        "",
-        "| where | statement | printed | judged by |",
-        "|---|---|---|---|",
-    ]
-    return lines + [
-        f"| {claim.where} | {_plain(claim.sense)} | {_value(claim)} | {_commands(judged[key])} |"
-        for key, claim in CLAIMS.items()
-    ]
+    return page("misprints", misprints=shown)
 
 
 def _value(claim: Claim) -> str:

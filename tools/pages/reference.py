@@ -75,5 +75,5 @@ def _of_module(path: str) -> list[str]:
 
 def _own(room: str, below: list[str]) -> list[str]:
     if not (SOURCE / room).is_dir():
-        return public(f"suchus.{room}")
+        return list(dict.fromkeys([*public(f"suchus.{room}"), *exported(room)]))
     return [name for name in exported(room) if name not in below or room in BY_MODULE]

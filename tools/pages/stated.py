@@ -28,14 +28,16 @@ if __name__ == "__main__":
 
 from pages import passages
 from suchus.experiments import EXPERIMENTS
-from suchus.paper import CLAIMS
-from suchus.verdict import Reading, compared, listed
+from suchus.paper import AUTHORS, CLAIMS, TITLE
+from suchus.verdict import SHARES, Reading, compared, listed
+from suchus.verdict.shares import ROBUST
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
 WORDS = DOCS / "stated"
 KEPT = ROOT / "tests" / "docs" / "stated"
-SHARES = ROOT / "src" / "suchus" / "verdict" / "claims.json"
+CLAIM_SHARES = ROOT / "src" / "suchus" / "verdict" / "claims.json"
+VERDICTS = DOCS / "verdicts.json"
 WIDTH = 118
 _NUMBER = re.compile(r"\{\{ ([^{}]+?):([a-zA-Z]*\+?(?:\.\d+)?[a-z%]) \}\}")
 
@@ -117,7 +119,7 @@ def pages() -> list[Path]:
 
 def kept(source: str) -> dict[str, Any]:
     """Return what was measured by an experiment, a search, or the study of the claims."""
-    place = SHARES if source == "claims" else KEPT / f"{source}.json"
+    place = CLAIM_SHARES if source == "claims" else KEPT / f"{source}.json"
     found: dict[str, Any] = json.loads(place.read_text(encoding="utf-8"))
     return found
 
@@ -134,19 +136,26 @@ def filled(page: str, instead: Mapping[str, Mapping[str, Any]] | None = None) ->
     return passages.put(page, {name: text_of(name, instead) for name in passages.names(page) if name in ours})
 
 
-def wrapped(text: str) -> str:
+def wrapped(text: str, width: int = WIDTH) -> str:
     """Return Markdown with paragraphs and items filled, tables as they are, and one empty line between blocks."""
     blocks = (block.strip("\n") for block in re.split(r"\n\s*\n", text))
-    return "\n\n".join(block if block[0] == "|" else _filled(block) for block in blocks if block) + "\n"
+    return "\n\n".join(block if block[0] == "|" else _filled(block, width) for block in blocks if block) + "\n"
 
 
-def _filled(block: str) -> str:
+def _filled(block: str, width: int) -> str:
     """Return a paragraph, or items each of which begins a line, in lines of a width."""
     items = [" ".join(item.split()) for item in re.split(r"\n(?=[*-] )", block)]
     return "\n".join(
-        fill(item, WIDTH, subsequent_indent="  " * (item[:2] in ("* ", "- ")), break_long_words=False,
+        fill(item, width, subsequent_indent="  " * (item[:2] in ("* ", "- ")), break_long_words=False,
              break_on_hyphens=False) for item in items
     )  # fmt: skip
+
+
+def page(name: str, **content: Any) -> str:
+    """Return a whole page that is made of what the shelves hold, its words in ``docs/stated/pages``."""
+    verdicts = json.loads(VERDICTS.read_text(encoding="utf-8")) if VERDICTS.is_file() else {}
+    known = {"authors": AUTHORS, "title": TITLE, "robust": ROBUST, "shares": SHARES, "verdicts": verdicts}
+    return templates().get_template(f"pages/{name}.md").render(known | content) + "\n"
 
 
 def keep(source: str, measured: Mapping[str, Any]) -> None:

@@ -11,18 +11,22 @@ from suchus.gaits._conditions import CONDITIONS, conditions_of
 from suchus.gaits._own import gait_of
 from suchus.motion import Gait, form_of, suits
 from suchus.record import read_toml
+from suchus.robots import ROBOTS
 
 
 def _read(path: Path) -> Gait:
     from suchus import blueprint  # noqa: PLC0415  half of the time of an import that reads no file
 
-    if form_of(read_toml(path)) is not None:
+    data = read_toml(path)
+    base = data.get("base")
+    made_for = GAITS.beside(base, "made_for", ()) if base in GAITS else ()
+    if form_of(data) is not None and not made_for:
         raise UnreadableFile(
-            f"{path.name} gives metres or places along the body, which are those of a robot: give the file's path with "
-            "its robot, or write the gait in limbs and axis, whose lengths are shares of the limbs' reach."
+            f"{path.name} gives metres or places along the body, which are those of a robot: start it from a gait that "
+            "is made for one (base), give the file's path with its robot, or write the gait in limbs and axis, whose "
+            "lengths are shares of the limbs' reach."
         )
-    gait: Gait = blueprint.read(path, Gait, GAITS)
-    return gait
+    return blueprint.read_gait(path, ROBOTS[made_for[0] if made_for else "caiman"], GAITS)
 
 
 GAITS: Catalog[Gait] = Catalog("gait", "suchus.gaits", "suchus.motion:Gait", named=attrgetter("name"), read=_read)
