@@ -25,6 +25,7 @@ def shelf(tmp_path, monkeypatch):
 
 def test_listing_reads_names_and_imports_no_module(shelf):
     assert list(shelf) == ["empty", "good", "wrong"]
+    assert ["good"] not in shelf
     assert "shelf_under_test.good" not in sys.modules
 
 

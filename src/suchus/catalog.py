@@ -70,7 +70,7 @@ class Catalog(Mapping[str, T], Generic[T]):
         return len(self.sources())
 
     def __contains__(self, name: object) -> bool:
-        return name in self.sources()
+        return isinstance(name, str) and name in self.sources()
 
     def __getitem__(self, name: str) -> T:
         sources = self.sources()

@@ -19,7 +19,7 @@ def _read(path: Path) -> Gait:
 
     data = read_toml(path)
     base = data.get("base")
-    made_for = GAITS.beside(base, "made_for", ()) if base in GAITS else ()
+    made_for = GAITS.beside(base, "made_for", ()) if isinstance(base, str) and base in GAITS else ()
     if form_of(data) is not None and not made_for:
         raise UnreadableFile(
             f"{path.name} gives metres or places along the body, which are those of a robot: start it from a gait that "
