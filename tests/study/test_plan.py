@@ -178,3 +178,15 @@ def test_an_impossible_combination_of_possible_values_is_that_runs_own_error(bas
     with pytest.raises(SuchusError, match="ahead of the shoulders"):
         [plan.run(i) for i in range(len(plan))]
     assert not isinstance(plan.run(0), OutsideLimits)
+
+
+@pytest.mark.parametrize(("samples", "chunk"), [(1, 32), (32, 32), (33, 32), (100, 32), (7, 3), (5, 5), (6, 1)])
+def test_batches_hold_every_run_once_in_order_and_are_as_equal_as_can_be(base, samples, chunk):
+    vary = Vary(field="gait.stroke", values=tuple(0.001 * i for i in range(samples)))
+    plan = Plan(study(base, vary, chunk=chunk))
+    batches = [plan.chunk(number) for number in range(plan.chunks)]
+    assert [run for batch in batches for run in batch] == list(range(len(plan)))
+    sizes = [len(batch) for batch in batches]
+    assert max(sizes) <= chunk
+    assert max(sizes) - min(sizes) <= 1
+    assert len(sizes) == -(-len(plan) // chunk)

@@ -7,6 +7,7 @@ from typing import Any
 import mujoco
 
 from suchus.design import GRAVITY, Layout, Robot, Servo, layout
+from suchus.design.body import servos_of
 from suchus.design.relief import Relief
 from suchus.errors import InvalidDesign
 from suchus.model.bodies import add_bodies, add_foam, lay_cables
@@ -43,8 +44,9 @@ def build(robot: Robot, *, timestep: float = TIMESTEP, relief: Relief | None = N
     add_bodies(root, place)
     add_foam(spec, place)
     lay_cables(spec, place.robot)
-    for number, servo in enumerate(place.servos):
-        _add_servo(spec, number, servo, place)
+    servos = servos_of(place.robot)
+    for number, name in enumerate(place.servos):
+        _add_servo(spec, number, name, servos[name], place)
     _add_sensors(spec, place)
     return spec
 
@@ -75,7 +77,8 @@ def topology(robot: Robot) -> tuple[object, ...]:
     """
     place = layout(robot)
     bodies = tuple((body.name, body.parent, tuple(name for _, name, _ in body.hinges)) for body in place.bodies)
-    integrating = tuple(name for name in place.servos if servo_of(robot, name).ki > 0)
+    servos = servos_of(robot)
+    integrating = tuple(name for name in place.servos if servos[name].ki > 0)
     shapes = tuple(len(segment.shapes) for segment in place.robot.axis)
     foam = () if place.robot.hull is None else tuple(one.body for one in place.robot.hull.foam)
     return bodies, foam, place.servos, shapes, tuple(cable.hinges for cable in place.robot.cables), integrating
@@ -102,8 +105,7 @@ def _set_options(spec: Any, timestep: float) -> None:
     option.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET  # divergence ends a run, it does not restart it
 
 
-def _add_servo(spec: Any, number: int, name: str, place: Layout) -> None:
-    servo = place.robot.servo(name)
+def _add_servo(spec: Any, number: int, name: str, servo: Servo, place: Layout) -> None:
     actuator = spec.add_actuator(name=name, group=number)
     actuator.set_to_pid(
         kp=servo.kp,

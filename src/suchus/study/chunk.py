@@ -98,19 +98,21 @@ def _table(
     rows: Mapping[int, Mapping[str, float]],
     errors: Mapping[int, str],
 ) -> xr.Dataset:
-    table = xr.Dataset(coords={"sample": np.asarray(samples, dtype=np.int64)})
+    columns: dict[str, Any] = {}
     for vary in study.vary:
         column = _column([point.values[vary.field] for point in points], vary.ends)
-        table[vary.field] = ("sample", column, _units(unit_at(study.run, vary.field)) if column.dtype == float else {})
-    table["seed"] = ("sample", np.array([point.seed for point in points], dtype=np.int64), _units("-"))
+        units = _units(unit_at(study.run, vary.field)) if column.dtype == float else {}
+        columns[vary.field] = ("sample", column, units)
+    columns["seed"] = ("sample", np.array([point.seed for point in points], dtype=np.int64), _units("-"))
     if study.arms:
-        table["arm"] = ("sample", np.array([point.arm.name for point in points]))
+        columns["arm"] = ("sample", np.array([point.arm.name for point in points]))
+    units_of = {measure: _units(unit_of(measure)) for measure in study.measure}
     for name in dict.fromkeys(name for row in rows.values() for name in row):
         measure = max((m for m in study.measure if name == m or name.startswith(f"{m}_")), key=len)
         numbers = np.array([rows.get(s, {}).get(name, np.nan) for s in samples])
-        table[name] = ("sample", numbers, _units(unit_of(measure)))
-    table["error"] = ("sample", np.array([errors.get(s, "") for s in samples]))
-    return table
+        columns[name] = ("sample", numbers, units_of[measure])
+    columns["error"] = ("sample", np.array([errors.get(s, "") for s in samples]))
+    return xr.Dataset(columns, coords={"sample": np.asarray(samples, dtype=np.int64)})
 
 
 def _units(unit: str) -> dict[str, str]:
