@@ -25,7 +25,7 @@ from suchus.progress import Progress, portion, silent
 
 LIBRARIES = ("cma", "comocma", "moarchiving")
 """Packages whose versions decide which candidates are tried."""
-ROOMS = (*MADE_BY, *(f"optimise/{module}.py" for module in ("aims", "clearance", "evaluate", "excess", "spec")))
+ROOMS = (*MADE_BY, *(f"optimise/{module}.py" for module in ("aims", "clearance", "evaluate", "spec")))
 """Whose code decides what a candidate reaches."""
 _DECIDING = partial(deciding, ROOMS, LIBRARIES)
 _CHECKED, _AROUND = 900_000, 950_000  # first numbers of the last parts; the budget's generations are added
