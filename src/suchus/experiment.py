@@ -179,7 +179,7 @@ class Experiment(ABC):
             return replace(self, robot=robot)  # type: ignore[type-var]
         here: Robot = values["robot"]
         plain = [name for name, value in values.items() if name != "robot" and not _gaits(value)]
-        sized = scaled_fields(self, plain, length=robot.length / here.length, mass=robot.mass / here.mass)
+        sized = scaled_fields(self, plain, length_factor=robot.length / here.length, mass_factor=robot.mass / here.mass)
         if "timestep" in values:  # it divides the control period
             sized["timestep"] = values["timestep"] / coarse_step(here) * coarse_step(robot)
         return replace(self, robot=robot, **(sized | self.gaits_on(robot)))  # type: ignore[type-var]

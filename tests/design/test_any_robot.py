@@ -15,7 +15,7 @@ from suchus.robots import ROBOTS
 
 CAIMAN, SALAMANDER, STRIDER = ROBOTS["caiman"], ROBOTS["salamander"], ROBOTS["strider"]
 BODY = general(CAIMAN)
-SMALL = scaled(BODY, length=0.1)
+SMALL = scaled(BODY, length_factor=0.1)
 STRONG = replace(SMALL.axis[5].hinges[0], drive=CAIMAN.tail.pitch_servo)
 
 
@@ -184,25 +184,27 @@ def test_who_needs_a_crocodile_says_so():
 @given(factor=st.floats(0.2, 5.0), heavier=st.floats(1e-2, 1e2))
 def test_scaling_there_and_back_is_nothing(factor, heavier):
     servo = CAIMAN.hind_leg.servo
-    back = scaled(scaled(servo, length=factor, mass=heavier), length=1 / factor, mass=1 / heavier)
+    back = scaled(
+        scaled(servo, length_factor=factor, mass_factor=heavier), length_factor=1 / factor, mass_factor=1 / heavier
+    )
     for name in ("kp", "kd", "torque", "speed", "armature", "friction", "damping"):
         assert getattr(back, name) == pytest.approx(getattr(servo, name), rel=1e-9)
 
 
 def test_each_unit_scales_by_its_powers():
-    big = scaled(CAIMAN.hind_leg.servo, length=4.0, mass=10.0)
+    big = scaled(CAIMAN.hind_leg.servo, length_factor=4.0, mass_factor=10.0)
     own = CAIMAN.hind_leg.servo
     assert big.torque == pytest.approx(40 * own.torque)  # N m: mass times length
     assert big.speed == pytest.approx(own.speed / 2)  # rad/s: one over the root of the length
     assert big.armature == pytest.approx(160 * own.armature)
     assert big.kd == pytest.approx(80 * own.kd)
-    gait = scaled(GAITS["belly_crawl"], length=4.0)
+    gait = scaled(GAITS["belly_crawl"], length_factor=4.0)
     assert gait.period == pytest.approx(2 * GAITS["belly_crawl"].period)
     assert (gait.limbs, gait.axis) == (GAITS["belly_crawl"].limbs, GAITS["belly_crawl"].axis)  # shares and angles
-    spring = scaled(Spring(stiffness=1.0, damping=1.0, armature=1.0), length=4.0, mass=1.0)
+    spring = scaled(Spring(stiffness=1.0, damping=1.0, armature=1.0), length_factor=4.0, mass_factor=1.0)
     assert (spring.stiffness, spring.damping, spring.armature) == pytest.approx((4.0, 8.0, 16.0))
-    with pytest.raises(InvalidDesign, match=r"scaled.length is 0"):
-        scaled(CAIMAN, length=0.0)
+    with pytest.raises(InvalidDesign, match=r"scaled.length_factor is 0"):
+        scaled(CAIMAN, length_factor=0.0)
 
 
 def test_the_rules_give_back_the_articles_servo():
@@ -213,7 +215,7 @@ def test_the_rules_give_back_the_articles_servo():
 
 @pytest.mark.parametrize(("length", "period"), [(0.1, 0.005), (0.5, 0.01), (1.01, 0.01), (3.0, 0.02)])
 def test_the_time_step_follows_the_length(length, period):
-    robot = scaled(BODY, length=length / BODY.length)
+    robot = scaled(BODY, length_factor=length / BODY.length)
     assert control_period(robot) == period
     assert gravity_time(length) / 640 < physics_step(robot) < gravity_time(length) / 20
     check_step(robot, physics_step(robot))

@@ -69,8 +69,8 @@ def test_three_grams_and_sixty_kilograms_walk_alike(name, gait):
     body, strides = general(ROBOTS[name]), []
     for length, mass in ((0.1, 0.003), (3.0, 60.0)):
         factor = length / body.length
-        robot = scaled(body, length=factor, mass=mass / body.mass)
-        step = scaled(GAITS[gait], length=factor)
+        robot = scaled(body, length_factor=factor, mass_factor=mass / body.mass)
+        step = scaled(GAITS[gait], length_factor=factor)
         assert (robot.mass, robot.length) == pytest.approx((mass, length))
         record = crawl(robot, step, duration=round(START + step.period, 2))
         strides.append(stride(record, robot, step, 1))

@@ -15,7 +15,7 @@ from suchus.errors import InvalidDesign
 from suchus.experiments.floating.experiment import STILL
 from suchus.hydro import column, unpacked
 from suchus.model.build import TIMESTEP
-from suchus.model.hydrostatics import Hydrostatics, hydrostatics
+from suchus.model.hydrostatics import Hydrostatics, _root, hydrostatics
 from suchus.model.wet import wet_model
 from suchus.robots import ROBOTS
 from suchus.rotation import about
@@ -42,7 +42,10 @@ def test_the_published_robot_sinks_by_what_it_is_too_heavy(bare):
     assert np.isnan(bare.draft)
     salty = hydrostatics(BARE, density=1.001 * BARE.mass / volume, heels=3)
     assert salty.floats
-    assert salty.draft > 0
+    assert np.isnan([salty.trim, salty.draft]).all()  # it hangs upright: no trim up to 80 degrees balances it
+    saltier = hydrostatics(BARE, density=1.2 * BARE.mass / volume, heels=3)
+    assert saltier.draft > 0
+    assert abs(saltier.trim) < radians(80)
 
 
 def test_under_water_the_lever_is_that_of_buoyancy_over_mass(bare):
@@ -107,6 +110,12 @@ def test_where_the_lever_vanishes(floating, lever, expected):
 def test_bad_hydrostatics_are_refused(given, message):
     with pytest.raises(InvalidDesign, match=message):
         hydrostatics(BARE, **given)
+
+
+def test_a_moment_that_never_vanishes_is_told_and_one_that_does_is_found():
+    for zero in (-1.2, 0.0, 0.3):
+        assert _root(lambda trim: trim - zero, 0.1) == pytest.approx(zero, abs=1e-6)  # noqa: B023  called at once
+    assert np.isnan(_root(lambda _: 1.0, 0.1))
 
 
 def test_heel_is_told_all_round():

@@ -310,7 +310,7 @@ def test_both_ends_of_the_sliders_of_another_body_leave_a_gait_that_it_can_walk(
 
 
 def test_a_smaller_crocodile_has_smaller_sliders():
-    small = scaled(ROBOT, length=0.5)
+    small = scaled(ROBOT, length_factor=0.5)
     half = knobs_of(small, CRAWL)
     assert half["stroke"].high == pytest.approx(50.0)
     assert half["period"] == GAIT_KNOBS["period"]

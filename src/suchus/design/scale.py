@@ -130,7 +130,7 @@ def contact_for(length: float, *, foot_friction: float, skin_friction: float) ->
     )
 
 
-def scaled(design: T, *, length: float, mass: float | None = None) -> T:
+def scaled(design: T, *, length_factor: float, mass_factor: float | None = None) -> T:
     """Return a robot, a gait or a part in another size: every number by the power of its unit, gravity as it is.
 
     Times go with the square root of the length. A robot of the article's kind is then one
@@ -138,31 +138,34 @@ def scaled(design: T, *, length: float, mass: float | None = None) -> T:
 
     Args:
         design: a frozen value whose docstrings name the units.
-        length: factor on lengths [-].
-        mass: factor on masses [-]; the cube of ``length`` if None.
+        length_factor: on lengths [-].
+        mass_factor: on masses [-]; the cube of ``length_factor`` if None.
 
     Raises:
         InvalidDesign: a factor is not positive, or the scaled value cannot be.
     """
-    require("scaled", "length", length, 1e-4, 1e4, "")
-    heavier = length**3 if mass is None else mass
-    require("scaled", "mass", heavier, 1e-12, 1e12, "")
-    return _scaled(design, (heavier, length, sqrt(length)))
+    require("scaled", "length_factor", length_factor, 1e-4, 1e4, "")
+    heavier = length_factor**3 if mass_factor is None else mass_factor
+    require("scaled", "mass_factor", heavier, 1e-12, 1e12, "")
+    return _scaled(design, (heavier, length_factor, sqrt(length_factor)))
 
 
-def scaled_fields(design: Any, names: Iterable[str], *, length: float, mass: float) -> dict[str, Any]:
+def scaled_fields(design: Any, names: Iterable[str], *, length_factor: float, mass_factor: float) -> dict[str, Any]:
     """Return some fields of a frozen value in another size, each by the power of its unit.
 
     Args:
         design: whose docstrings name the units.
         names: of the fields.
-        length: factor on lengths [-].
-        mass: factor on masses [-].
+        length_factor: on lengths [-].
+        mass_factor: on masses [-].
     """
     about = meanings(type(design))
     found = {}
     for name in names:
-        value, factor = getattr(design, name), _factor(unit(about.get(name, "")), (mass, length, sqrt(length)))
+        value, factor = (
+            getattr(design, name),
+            _factor(unit(about.get(name, "")), (mass_factor, length_factor, sqrt(length_factor))),
+        )
         numbers = isinstance(value, float) or (_numbers(value) and any(isinstance(one, float) for one in value))
         if numbers and factor != 1.0:
             found[name] = tuple(factor * one for one in value) if isinstance(value, tuple) else factor * value

@@ -227,11 +227,11 @@ class Task:
         if slower != 1.0:
             changes = {name: round(slower * getattr(self, name), 12) for name in ("decision", "timestep")}
         if slower != 1.0 or not suits(robot, self.gait):
-            changes |= scaled_fields(self, ["least_height"], length=longer, mass=heavier)
+            changes |= scaled_fields(self, ["least_height"], length_factor=longer, mass_factor=heavier)
             changes |= {"gait": gait or own_gait(robot)}
             for name in ("rewards", "breaks", "pushes", "goal"):
                 if getattr(self, name) is not None:
-                    changes[name] = scaled(getattr(self, name), length=longer, mass=heavier)
+                    changes[name] = scaled(getattr(self, name), length_factor=longer, mass_factor=heavier)
         return replace(self, robot=robot, **(changes | ({"gait": gait} if gait is not None else {})))
 
     def __post_init__(self) -> None:

@@ -1,7 +1,7 @@
 """Hydrostatics of a robot at rest, as naval architects draw them: draft, trim, metacentric height, righting curve."""
 
 from dataclasses import dataclass
-from math import atan2, cos, radians, sin
+from math import atan2, cos, isnan, nan, radians, sin
 from typing import Any
 
 import mujoco
@@ -39,9 +39,9 @@ class Hydrostatics:
     surplus: float
     """Mass by which it is too heavy; negative where it could carry more [kg]."""
     draft: float
-    """Distance from the surface down to its lowest point, upright; NaN if it sinks [m]."""
+    """Distance from the surface down to its lowest point, upright; NaN if it sinks or no trim balances it [m]."""
     trim: float
-    """Pitch at rest, upright, nose up positive; NaN if it sinks [rad]."""
+    """Pitch at rest, upright, nose up positive; NaN if it sinks, or none up to 80 degrees balances it [rad]."""
     trim_submerged: float
     """Pitch at which, wholly under water, its centre of buoyancy is above that of mass, nose up positive [rad]."""
     metacentric_height: float
@@ -50,7 +50,8 @@ class Hydrostatics:
     heel: Float[np.ndarray, " heel"]
     """Angles of heel [rad]."""
     lever: Float[np.ndarray, " heel"]
-    """Righting lever GZ at each, trim and draft free, under water the trim held level; positive rights it [m]."""
+    """Righting lever GZ at each, trim and draft free, under water the trim held level; positive rights it; NaN where
+    no trim balances it [m]."""
 
     @property
     def vanishing(self) -> float:
@@ -100,7 +101,10 @@ class _Rigid:
         return atan2(arm[0], arm[2])
 
     def rest(self, heel: float, near: float) -> tuple[float, float, float]:
-        """Return trim [rad], righting lever and level [m] at a heel; afloat the trim is free, from one nearby on."""
+        """Return trim [rad], righting lever and level [m] at a heel; afloat the trim is free, from one nearby on.
+
+        All three are NaN where no trim up to 80 degrees balances it: it would hang upright in the water.
+        """
 
         def along(trim: float) -> float:
             up, arm, _ = self.at(heel, trim)
@@ -108,6 +112,8 @@ class _Rigid:
             return float(arm @ ahead)
 
         trim = 0.0 if self.sunk else _root(along, near)
+        if isnan(trim):
+            return nan, nan, nan
         up, arm, level = self.at(heel, trim)
         ahead = np.array([1.0, 0.0, 0.0]) - up[0] * up
         left = np.cross(up, ahead / np.linalg.norm(ahead))
@@ -115,12 +121,12 @@ class _Rigid:
 
 
 def _root(function: Any, near: float) -> float:
-    """Return the zero that lies nearest to a place, by widening around it."""
+    """Return the zero that lies nearest to a place, by widening around it; NaN if none lies up to the steepest."""
     for width in np.geomspace(radians(0.5), 2 * _STEEPEST, 12):
         low, high = max(near - width, -_STEEPEST), min(near + width, _STEEPEST)
         if function(low) * function(high) <= 0:
             return float(brentq(function, low, high, xtol=1e-7))
-    return near
+    return float("nan")
 
 
 def _bend(model: Any, data: Any, robot: Robot, servos: np.ndarray) -> None:
@@ -161,12 +167,13 @@ def hydrostatics(
     floats = body.volume * density > body.mass
     trim, _, level = body.rest(0.0, 0.0)
     heel = np.linspace(0.0, np.pi, int(heels))
-    lever, near = np.zeros(len(heel)), trim
+    lever, near = np.zeros(len(heel)), 0.0 if isnan(trim) else trim
     for i, angle in enumerate(heel):
-        near, lever[i], _ = body.rest(float(angle), near)
-    slope = (body.rest(_SMALL, trim)[1] - body.rest(-_SMALL, trim)[1]) / (2 * _SMALL)
-    up = body.at(0.0, trim)[0]
-    ends = _lowest(body, up)
+        balanced, lever[i], _ = body.rest(float(angle), near)
+        near = near if isnan(balanced) else balanced
+    near = 0.0 if isnan(trim) else trim
+    slope = (body.rest(_SMALL, near)[1] - body.rest(-_SMALL, near)[1]) / (2 * _SMALL)
+    ends = nan if isnan(trim) else _lowest(body, body.at(0.0, trim)[0])
     return Hydrostatics(
         mass=body.mass,
         volume=body.volume,

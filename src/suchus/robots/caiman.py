@@ -1,9 +1,11 @@
-"""The article's robot: its dimensions, and for what it does not give our numbers with their reasons."""
+"""The article's robot: its dimensions with their sources, and for all others our numbers with their reasons.
+
+A number without a source beside it is chosen: ``chosen`` says why, and how far it could be off.
+"""
 
 from math import pi, radians
 
 from suchus.design import Chosen, Contact, Head, Leg, Pelvis, Servo, Spine, Tables, Tail, Thorax, crocodile
-from suchus.paper import FEMUR, HIP_OFFSET, SPINE_BASE, SPINE_LINK, TAIL_JOINTS, TIBIA
 
 _KP, _KD, _SPEED = 40.0, 0.6, 7.0
 
@@ -25,9 +27,9 @@ def _servo(torque: float) -> Servo:
 _LIMB_SERVO, _TRUNK_SERVO = _servo(3.0), _servo(4.0)
 
 _hind_leg = Leg(
-    hip_offset=HIP_OFFSET,
-    femur=FEMUR,
-    tibia=TIBIA,
+    hip_offset=0.070,  # Table I, a0
+    femur=0.086,  # Table I, a2
+    tibia=0.089,  # Table I, a3
     foot_radius=0.014,
     radius=0.011,
     mass=0.25,
@@ -38,9 +40,9 @@ _hind_leg = Leg(
 )
 _FORE = 0.9  # fore legs of crocodilians are 0.8 to 0.9 of the hind legs
 _front_leg = Leg(
-    hip_offset=_FORE * HIP_OFFSET,
-    femur=_FORE * FEMUR,
-    tibia=_FORE * TIBIA,
+    hip_offset=_FORE * _hind_leg.hip_offset,
+    femur=_FORE * _hind_leg.femur,
+    tibia=_FORE * _hind_leg.tibia,
     foot_radius=0.014,
     radius=0.011,
     mass=0.25,
@@ -56,8 +58,8 @@ tables = Tables(
     front_leg=_front_leg,
     pelvis=Pelvis(mass=0.75, length=0.090, width=0.110, height=0.064),
     spine=Spine(
-        base=SPINE_BASE,
-        link=SPINE_LINK,
+        base=0.0505,  # Table II, a0
+        link=0.0605,  # Table II, a1 to a4
         radius=0.032,
         link_mass=0.18,
         yaw_range=(radians(-45), radians(45)),
@@ -70,7 +72,7 @@ tables = Tables(
     tail=Tail(
         offset=0.045,
         root=0.040,
-        joints=TAIL_JOINTS,
+        joints=6,  # section III.C, N
         plate=0.030,
         gap=0.015,
         cord_spacing=0.050,
