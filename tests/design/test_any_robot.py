@@ -7,14 +7,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from suchus.design import Cable, Hinge, Spring, crocodile, general, layout, servo_names, servo_ranges
+from suchus.design import ARTICLE_BODY, Cable, Hinge, Spring, check_needs, crocodile, layout, servo_names, servo_ranges
 from suchus.design.scale import check_step, control_period, gravity_time, physics_step, scaled, servo_for
 from suchus.errors import InvalidDesign, UnknownName, UnsuitedRobot
 from suchus.gaits import GAITS
 from suchus.robots import ROBOTS
 
 CAIMAN, SALAMANDER, STRIDER = ROBOTS["caiman"], ROBOTS["salamander"], ROBOTS["strider"]
-BODY = general(CAIMAN)
+BODY = CAIMAN
 SMALL = scaled(BODY, length_factor=0.1)
 STRONG = replace(SMALL.axis[5].hinges[0], drive=CAIMAN.tail.pitch_servo)
 
@@ -169,15 +169,15 @@ def test_a_field_of_another_kind_is_named_once():
 
 
 def test_who_needs_a_crocodile_says_so():
-    assert crocodile(CAIMAN, "it") is CAIMAN
+    assert check_needs(CAIMAN, ARTICLE_BODY, "it") is CAIMAN
     with pytest.raises(UnsuitedRobot, match=r"standing up needs four legs of yaw, pitch and knee.*'salamander'"):
-        crocodile(SALAMANDER, "standing up")
+        check_needs(SALAMANDER, ARTICLE_BODY, "standing up")
     six = crocodile(replace(CAIMAN.tables, spine=replace(CAIMAN.tables.spine, joints=6)))
     with pytest.raises(UnsuitedRobot, match=r"needs the article's spine of 5 joints"):
-        crocodile(six, "standing up")
+        check_needs(six, ARTICLE_BODY, "standing up")
     servos = crocodile(replace(CAIMAN.tables, tail=replace(CAIMAN.tables.tail, drive="servos")))
     with pytest.raises(UnsuitedRobot, match="the article's tail with a cable"):
-        crocodile(servos, "standing up")
+        check_needs(servos, ARTICLE_BODY, "standing up")
     assert "tail_yaw_6" in servo_names(servos)
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from suchus import blueprint
 from suchus.cli.options import choose
-from suchus.design import NEEDS, Robot, general, lacking, layout
+from suchus.design import NEEDS, Robot, lacking, layout
 from suchus.design.scale import coarse_step
 from suchus.errors import OutsideLimits, UnsuitedRobot
 from suchus.experiments import EXPERIMENTS
@@ -130,7 +130,7 @@ def test_every_robot_has_one_gait_of_its_own_that_it_can_follow(robot):
 
 
 def test_a_robot_that_no_gait_suits_is_refused_in_a_sentence():
-    body = general(ROBOTS["strider"])
+    body = ROBOTS["strider"]
     limb = body.girdles[0].limb
     short = replace(limb, links=tuple(replace(link, end=tuple(0.55 * x for x in link.end)) for link in limb.links))
     stiff = tuple(

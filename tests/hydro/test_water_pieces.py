@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.stats import qmc
 
-from suchus.design import Foam, Hull, Rod, Segment, Shell, general
+from suchus.design import Foam, Hull, Rod, Segment, Shell
 from suchus.design.flotation import float_hull
 from suchus.design.pieces import masses, pieces, swollen, volumes
 from suchus.design.profile import profile, stations
@@ -19,7 +19,7 @@ from suchus.robots import ROBOTS
 
 @pytest.mark.parametrize("name", ["caiman", "salamandra", "swimmer"])
 def test_the_axis_displaces_the_union_of_its_shapes(name):
-    robot = replace(general(ROBOTS[name]), hull=None)
+    robot = replace(ROBOTS[name], hull=None)
     sections = profile(robot, np.linspace(0.0, robot.length, 200))
     wide, high = 1.02 * sections.half_width.max(), 1.5 * sections.half_height.max()
     size = np.array([robot.length, 2 * wide, 2 * high])

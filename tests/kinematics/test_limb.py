@@ -7,13 +7,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from suchus.design import Hinge, Limb, Link, general
+from suchus.design import Hinge, Limb, Link
 from suchus.errors import NotConverged, Unreachable
 from suchus.kinematics import leg, limb
 from suchus.robots import ROBOTS
 
 CAIMAN, SALAMANDER, PLEUROBOT = ROBOTS["caiman"], ROBOTS["salamander"], ROBOTS["pleurobot"]
-LEG, ARM = general(CAIMAN).girdles[1].limb, SALAMANDER.girdles[0].limb
+LEG, ARM = CAIMAN.girdles[1].limb, SALAMANDER.girdles[0].limb
 SERVO = CAIMAN.hind_leg.servo
 
 

@@ -7,7 +7,7 @@ import pytest
 
 from suchus import blueprint
 from suchus.control import Coordinated
-from suchus.design import Robot, general, layout
+from suchus.design import Robot, layout
 from suchus.design.scale import scaled
 from suchus.errors import InvalidDesign, OutsideLimits, UnsuitedRobot
 from suchus.gaits import GAITS
@@ -66,7 +66,7 @@ def test_a_wave_that_runs_backward_swims_backward():
 
 @pytest.mark.parametrize(("name", "gait"), [("caiman", "belly_crawl"), ("salamander", "salamander_walk")])
 def test_three_grams_and_sixty_kilograms_walk_alike(name, gait):
-    body, strides = general(ROBOTS[name]), []
+    body, strides = ROBOTS[name], []
     for length, mass in ((0.1, 0.003), (3.0, 60.0)):
         factor = length / body.length
         robot = scaled(body, length_factor=factor, mass_factor=mass / body.mass)

@@ -6,7 +6,6 @@ from math import tau
 import numpy as np
 import pytest
 
-from suchus.design import general
 from suchus.design.pieces import pieces
 from suchus.design.water import Water
 from suchus.hydro import column
@@ -17,7 +16,7 @@ from suchus.motion import Swim
 from suchus.robots import ROBOTS
 
 ROBOT = ROBOTS["caiman"]
-TABLE = pieces(replace(general(ROBOT), girdles=(), hull=None))
+TABLE = pieces(replace(ROBOT, girdles=(), hull=None))
 SWIM = Swim(name="w", frequency=0.8, yaw=(0.36, 0.13, 0.11), yaw_lag=(0.08, -0.11, -0.29), tail=0.75, tail_lag=-0.11)
 STILL = replace(SWIM, yaw=(0.0, 0.0, 0.0), tail=0.0)
 HEAD = {"sway": -0.03 + 0.01j, "turn": 0.13 + 0.02j}

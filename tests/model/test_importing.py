@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 import suchus
 from suchus import blueprint
-from suchus.design import Crank, Robot, Servo, Spring, general, layout
+from suchus.design import Crank, Robot, Servo, Spring, layout
 from suchus.design.scale import coarse_step
 from suchus.errors import OutsideLimits, UnknownName, UnreadableFile
 from suchus.gaits import GAITS
@@ -91,14 +91,14 @@ def test_our_own_exports_come_back_with_every_joint_where_it_was(shelf):
     assert {match.theirs for match in draft.matches} == set(layout(robot).hinges)
     assert layout(draft.robot).hinges == layout(robot).hinges
     assert all(match.ours == match.theirs and match.sign == 1.0 and match.zero == 0.0 for match in draft.matches)
-    assert draft.robot.root == general(robot).root
+    assert draft.robot.root == robot.root
 
 
 def test_our_own_exports_come_back_with_feet_masses_and_ranges(shelf):
     robot, draft, _ = shelf
     here, there = compile_model(draft.robot), compile_model(robot)
     assert draft.robot.mass == pytest.approx(robot.mass, rel=1e-9)
-    for one, two in zip(draft.robot.girdles, general(robot).girdles, strict=True):
+    for one, two in zip(draft.robot.girdles, robot.girdles, strict=True):
         assert one.name == two.name
         assert one.limb.foot.radius == pytest.approx(two.limb.foot.radius, abs=PLACES)
         ends = [np.sum([link.end for link in limb.links], axis=0) for limb in (one.limb, two.limb)]
@@ -112,7 +112,7 @@ def test_our_own_exports_come_back_with_feet_masses_and_ranges(shelf):
 
 def test_the_draft_says_what_becomes_of_a_cable(shelf):
     robot, draft, kind = shelf
-    cables = general(robot).cables
+    cables = robot.cables
     if kind == "urdf":
         assert "holds no cables" in told(draft)
     assert (kind == "mjcf" and "pulls a tendon over tail_yaw_1" in told(draft)) == (kind == "mjcf" and bool(cables))

@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from suchus.design import GRAVITY, general, joint_names, layout, leg_joints, servo_names, spine_joints
+from suchus.design import GRAVITY, joint_names, layout, leg_joints, servo_names, spine_joints
 from suchus.design.scale import gravity_time, physics_step
 from suchus.gaits import own_gait, suits
 from suchus.model import build, compile_model, joint_addresses, sensor_names
@@ -98,7 +98,7 @@ def test_the_jacobian_is_sparse_and_the_robot_takes_friction_precedence(shelved)
     assert set(model.geom_priority[1:]) == {1}
     for limb in layout(shelved).limb_names:
         assert model.geom(f"{limb}_foot").friction[0] == shelved.contact.foot_friction
-    assert model.geom(general(shelved).axis[0].shapes[0].name).friction[0] == shelved.contact.skin_friction
+    assert model.geom(shelved.axis[0].shapes[0].name).friction[0] == shelved.contact.skin_friction
 
 
 def test_standing_forces_sum_to_its_weight(shelved):

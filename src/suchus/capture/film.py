@@ -8,7 +8,7 @@ import xarray as xr
 
 from suchus import rotation
 from suchus.capture.tracks import Tracks
-from suchus.design import LEGS, Robot, crocodile, leg_joints, spine_joints
+from suchus.design import ARTICLE_BODY, LEGS, Robot, check_needs, leg_joints, spine_joints
 from suchus.design.checks import Checks
 from suchus.kinematics import body, spine
 from suchus.motion import START
@@ -91,7 +91,7 @@ def keypoints(robot: Robot, record: xr.Dataset) -> dict[str, np.ndarray]:
         robot: whose record it is.
         record: of one run, without the dimension ``run``.
     """
-    robot = crocodile(robot, "a made-up film")
+    check_needs(robot, ARTICLE_BODY, "a made-up film")
     angles = record.joint_angle.values.astype(float)
     legs, trunk = len(leg_joints()), len(leg_joints()) + len(spine_joints())
     points = _midline(robot, angles[:, legs:trunk]) | _tail(robot, angles[:, trunk:])

@@ -11,7 +11,7 @@ import tyro
 from suchus.capture import ReadingOptions, read_tracks
 from suchus.cli.commands import BadCommand
 from suchus.cli.options import parse
-from suchus.design import Robot, crocodile, with_values
+from suchus.design import ARTICLE_BODY, Robot, check_needs, with_values
 from suchus.design.checks import require
 from suchus.gaits import own_gait
 from suchus.motion import Gait, Swim
@@ -147,7 +147,7 @@ def _wave_of(robot: Robot) -> Swim:
     Raises:
         UnsuitedRobot: it does not swim by trunk and cable.
     """
-    bare = with_values(crocodile(robot, "suchus view --lake"), {"hull": None})
+    bare = with_values(check_needs(robot, ARTICLE_BODY, "suchus view --lake"), {"hull": None})
     return fit(bare, printed_wave(bare, "I", frequency=_SWIM, sign=-1)).swim
 
 

@@ -12,7 +12,7 @@ from suchus.control.controller import Command, Controller, Runs
 from suchus.control.heading import Heading, HeadingRule
 from suchus.control.sensed import Sensed, finite, keep
 from suchus.control.swimming import Swimming
-from suchus.design import GRAVITY, Robot, general, layout
+from suchus.design import GRAVITY, Robot, layout
 from suchus.design.checks import Checks
 from suchus.errors import InvalidDesign
 from suchus.motion import START, Batch, Gait, Steer
@@ -102,7 +102,7 @@ class Amphibious:
         for gait in (*gaits, *wades):
             gait.needs_steering("a walk that begins and ends in water")
         for control, robot in zip(controls, robots, strict=True):
-            hull = general(robot).hull
+            hull = robot.hull
             if control.breathe_out > 0.0 and (hull is None or hull.air == 0.0):
                 raise InvalidDesign(
                     f"amphibious.breathe_out is {control.breathe_out:g}, and robot {robot.name!r} has no air that it "

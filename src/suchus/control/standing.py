@@ -11,7 +11,7 @@ from suchus import rotation
 from suchus.control.controller import Command, Runs
 from suchus.control.sensed import Sensed
 from suchus.control.suited import crocodiles
-from suchus.design import Layout, Robot, crocodile, layout
+from suchus.design import ARTICLE_BODY, Layout, Robot, check_needs, layout
 from suchus.design.checks import Checks
 from suchus.design.measures import LegMeasures
 from suchus.motion import Gait, intended
@@ -124,7 +124,7 @@ class Standing:
         return self.upright_until(robot) + self.slower_down * self._rise(robot).duration + self.blend
 
     def _rise(self, robot: Robot) -> Keyed:
-        return stand_up(crocodile(robot, "standing up")) if self.rise is None else self.rise
+        return stand_up(check_needs(robot, ARTICLE_BODY, "standing up")) if self.rise is None else self.rise
 
     @staticmethod
     def start(runs: Runs, period: float) -> "Stander":

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from suchus.design import Robot, crocodile
+from suchus.design import ARTICLE_BODY, Robot, check_needs
 
 
 def crocodiles(robots: Sequence[Robot], what: str) -> list[Robot]:
@@ -15,4 +15,4 @@ def crocodiles(robots: Sequence[Robot], what: str) -> list[Robot]:
     Raises:
         UnsuitedRobot: one is another kind.
     """
-    return [crocodile(robot, what) for robot in robots]
+    return [check_needs(robot, ARTICLE_BODY, what) for robot in robots]

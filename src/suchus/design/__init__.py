@@ -1,6 +1,6 @@
 """What a robot is: frozen values in SI units and without physics."""
 
-from suchus.design.article import tables_of
+from suchus.design.article import crocodile, tables_of
 from suchus.design.body import Robot
 from suchus.design.chosen import Chosen, unit_at, value_at, with_values
 from suchus.design.contact import Contact
@@ -18,27 +18,25 @@ from suchus.design.joints import (
 )
 from suchus.design.layout import Layout, LimbPlace, front_segment, hips_ahead, hips_behind_snout, layout, servo_ranges
 from suchus.design.limb import Foot, Girdle, Limb, Link
-from suchus.design.needs import NEEDS, check_needs, crocodile_like, lacking
+from suchus.design.needs import ARTICLE_BODY, NEEDS, check_needs, crocodile_like, lacking
 from suchus.design.physics import GRAVITY, WATER_DENSITY, WATER_VISCOSITY
 from suchus.design.segment import Rod, Segment, Shell
 from suchus.design.servo import Servo
 from suchus.design.servos import with_servos, with_speed_lines, with_spring
-from suchus.design.suited import AnyRobot, Crocodile, crocodile, general
 from suchus.design.tables import Head, Leg, Pelvis, Spine, Tables, Tail, Thorax
 
 __all__ = [
+    "ARTICLE_BODY",
     "GRAVITY",
     "LEGS",
     "NEEDS",
     "WATER_DENSITY",
     "WATER_VISCOSITY",
-    "AnyRobot",
     "Cable",
     "Chamber",
     "Chosen",
     "Contact",
     "Crank",
-    "Crocodile",
     "Foam",
     "Foot",
     "Girdle",
@@ -69,7 +67,6 @@ __all__ = [
     "crocodile_like",
     "fin_joints",
     "front_segment",
-    "general",
     "hips_ahead",
     "hips_behind_snout",
     "joint_names",

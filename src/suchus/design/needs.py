@@ -79,6 +79,8 @@ NEEDS: Mapping[str, Need] = MappingProxyType(
     }
 )
 """Everything that is asked of a robot anywhere, by name."""
+ARTICLE_BODY = ("legs", "shells", "article_spine", "cable_tail")
+"""What the article's closed forms need of a whole body: standing up, the death roll, swimming by trunk and cable."""
 
 
 def crocodile_like(robot: Robot) -> bool:
@@ -91,8 +93,8 @@ def lacking(robot: Robot, needs: Sequence[str]) -> list[str]:
     return [name for name in needs if not NEEDS[name].met(robot)]
 
 
-def check_needs(robot: Robot, needs: Sequence[str], what: str) -> None:
-    """Refuse a robot that lacks something.
+def check_needs(robot: Robot, needs: Sequence[str], what: str) -> Robot:
+    """Return a robot that has what is needed; refuse one that lacks something.
 
     Args:
         robot: in either form.
@@ -106,3 +108,4 @@ def check_needs(robot: Robot, needs: Sequence[str], what: str) -> None:
     if missing:
         words = ", and ".join(NEEDS[name].words for name in missing)
         raise UnsuitedRobot(f"{what} needs {words}; robot {robot.name!r} lacks that: choose another robot.")
+    return robot

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from suchus.control import Standing
-from suchus.design import Robot, crocodile
+from suchus.design import ARTICLE_BODY, Robot, check_needs
 from suchus.design.scale import control_period
 from suchus.envs.task import Task, swimming
 from suchus.errors import Diverged, InvalidDesign
@@ -38,7 +38,7 @@ def begin(task: Task) -> Beginning:
         OutsideLimits: its joints cannot follow its swimming motion.
     """
     if task.start == "upright":
-        return _upright(crocodile(task.body, "standing up"), task.ground, task.timestep)
+        return _upright(check_needs(task.body, ARTICLE_BODY, "standing up"), task.ground, task.timestep)
     model = compile_model(task.body, task.timestep)
     if task.start == "swimming":
         return _afloat(task, model)
@@ -62,7 +62,7 @@ def off_by(task: Task, at: Beginning, jitter: np.ndarray) -> Beginning:
 def _afloat(task: Task, model: Any) -> Beginning:
     """Put a robot on the water in the mean posture of its swimming motion."""
     assert task.lake is not None  # see ``Task``
-    motion, robot = swimming(task.robot, task.swim), crocodile(task.robot, "a swim")
+    motion, robot = swimming(task.robot, task.swim), check_needs(task.robot, ARTICLE_BODY, "a swim")
     check_swim(robot, motion.swim)
     servos = replace(motion, ramp=1.0).targets(robot, np.zeros(1))[0]  # amplitudes that grow are zero at first
     stands = standing(model, task.robot, hip_height(task.robot, task.gait), servos)

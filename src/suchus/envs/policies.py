@@ -8,7 +8,7 @@ from jaxtyping import Bool, Float
 
 from suchus.control import Control, Controller, HeadingHold, Runs
 from suchus.control.swimming import bent
-from suchus.design import crocodile, layout
+from suchus.design import ARTICLE_BODY, check_needs, layout
 from suchus.design.scale import control_period
 from suchus.envs.senses import felt, part, turning
 from suchus.envs.shelf import STEPS
@@ -87,7 +87,7 @@ class SwimToGoal:
     def __call__(self, seen: Float[np.ndarray, "run n"]) -> Float[np.ndarray, "run servo"]:
         """Return the actions that bring the servos to the steered swim's angles at the end of the step."""
         task = self.task
-        robot = crocodile(task.robot, "a swim")
+        robot = check_needs(task.robot, ARTICLE_BODY, "a swim")
         sine, cosine = part(seen, "clock", robot).astype(float).T
         time = task.period * np.arctan2(sine, cosine) / (2 * np.pi) + task.decision
         targets = swimming(robot, task.swim).targets(robot, time)

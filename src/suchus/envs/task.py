@@ -9,7 +9,7 @@ from typing import Any, Literal, get_args
 import numpy as np
 
 from suchus.control import Swimming
-from suchus.design import Robot, check_needs, crocodile, front_segment, layout, with_speed_lines, with_values
+from suchus.design import ARTICLE_BODY, Robot, check_needs, front_segment, layout, with_speed_lines, with_values
 from suchus.design.checks import Checks
 from suchus.design.scale import control_period, scaled, scaled_fields
 from suchus.envs.goals import AnyGoal
@@ -289,7 +289,7 @@ def swimming(robot: Robot, swim: Swim | None) -> Swimming:
         UnsuitedRobot: the robot is given by another table.
     """
     if swim is None:
-        bare = with_values(crocodile(robot, "a swim"), {"hull": None})
+        bare = with_values(check_needs(robot, ARTICLE_BODY, "a swim"), {"hull": None})
         swim = fit(bare, printed_wave(bare, "I", frequency=_FREQUENCY, sign=-1)).swim
     return Swimming(swim=swim, limb_pitch=LIMBS_BACK[1], ramp=0.0)
 

@@ -3,7 +3,7 @@
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import WATER_DENSITY, Chamber, Robot, general, layout
+from suchus.design import WATER_DENSITY, Chamber, Robot, layout
 from suchus.design.pieces import pieces, volumes
 from suchus.errors import InvalidDesign, UnknownName
 from suchus.hydro import column
@@ -56,7 +56,7 @@ def spare_volume(robot: Robot) -> float:
     Raises:
         InvalidDesign: its hull has no air, or not enough of it.
     """
-    hull = general(robot).hull
+    hull = robot.hull
     air = 0.0 if hull is None else hull.air
     spare = sum(volumes(robot).values()) - robot.mass / WATER_DENSITY
     if not 0.0 < spare <= air:

@@ -14,7 +14,7 @@ import numpy as np
 from jaxtyping import Float
 
 from suchus import hydro
-from suchus.design import GRAVITY, Robot, general
+from suchus.design import GRAVITY, Robot
 from suchus.design.checks import Checks
 from suchus.design.ground import Ground
 from suchus.design.water import Water
@@ -140,7 +140,7 @@ def check_lake(robot: Robot, lake: Lake) -> None:
     Raises:
         InvalidDesign: breath is let out, and the robot has no hull with air.
     """
-    hull = general(robot).hull
+    hull = robot.hull
     if (hull is None or hull.air == 0.0) and lake.breath != 1.0:
         raise InvalidDesign(
             f"lake.breath is {str(lake.breath)[:60]}, and robot {robot.name!r} has no air that it could let out: leave "

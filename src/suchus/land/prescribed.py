@@ -18,7 +18,7 @@ from jaxtyping import Float
 from scipy.integrate import solve_ivp
 
 from suchus import hydro
-from suchus.design import Robot, cable_joints, general
+from suchus.design import Robot, cable_joints
 from suchus.design.pieces import pieces
 from suchus.hydro import column, unpacked
 from suchus.land import wetting
@@ -126,7 +126,7 @@ class _Submerged:
     """The model of a robot without limbs, wholly under water and without weight."""
 
     def __init__(self, robot: Robot, lake: Lake) -> None:
-        self._robot, bare = robot, replace(general(robot), girdles=(), hull=None)
+        self._robot, bare = robot, replace(robot, girdles=(), hull=None)
         wetting.install()
         self._model = copy(wet_model(bare, _TIMESTEP, None, len(pieces(bare)), acting=True))
         self._model.opt.gravity[:] = 0.0

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import Robot, crocodile, joint_names, layout, servo_names
+from suchus.design import ARTICLE_BODY, Robot, check_needs, joint_names, layout, servo_names
 from suchus.design.checks import Checks
 from suchus.design.measures import LegMeasures
 from suchus.errors import InvalidDesign, OutsideLimits, Unreachable
@@ -130,7 +130,7 @@ def plan(robot: Robot, sequence: Keyed, time: Float[np.ndarray, "*batch"]) -> Pl
     Raises:
         OutsideLimits: a hind foot or a joint cannot get there; the message names it.
     """
-    robot = crocodile(robot, "a sequence of keyed postures")
+    check_needs(robot, ARTICLE_BODY, "a sequence of keyed postures")
     keys = np.array([[getattr(p, name) for name in FIELDS] for p in sequence.postures])
     behind = _balance(robot, keys)
     numbers = _eased(np.array(sequence.times), np.column_stack([keys, behind]), time)

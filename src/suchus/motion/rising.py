@@ -6,7 +6,7 @@ from math import radians
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import Robot, crocodile, joint_names, layout
+from suchus.design import ARTICLE_BODY, Robot, check_needs, joint_names, layout
 from suchus.kinematics.body import landmarks
 from suchus.kinematics.mass import centre_of_mass
 from suchus.motion.posture import Keyed, Posture, hind_leg, mass_ahead
@@ -52,7 +52,7 @@ def stand_up(
         lead: where the centre of mass is commanded behind the feet when standing [m].
         slower: factor on all times [-].
     """
-    robot = crocodile(robot, "standing up")
+    check_needs(robot, ARTICLE_BODY, "standing up")
     leg = robot.hind_leg
     length = leg.femur + leg.tibia
     ground = max(robot.pelvis.height / 2, robot.spine.radius) + 0.002
@@ -106,7 +106,7 @@ def _feet_ahead(robot: Robot, level: Posture) -> float:
 
 def stretched(robot: Robot) -> float:
     """Return hind leg, spine and head in one straight line [m]; no posture reaches higher over the feet's centres."""
-    robot = crocodile(robot, "standing up")
+    check_needs(robot, ARTICLE_BODY, "standing up")
     leg = robot.hind_leg
     return leg.femur + leg.tibia + robot.spine.length + robot.head.snout
 
@@ -122,7 +122,7 @@ def tallest(robot: Robot, lead: Float[np.ndarray, "*batch"], *, stance: float = 
         lead: how far the centre of mass lies behind the feet [m].
         stance: how far a hind foot stands outside its hip [m].
     """
-    robot = crocodile(robot, "standing up")
+    check_needs(robot, ARTICLE_BODY, "standing up")
     pitch, first, second = (
         g.ravel()
         for g in np.meshgrid(*(np.radians(np.arange(a, b, c)) for a, b, c in ((46, 91, 2), (-15, 46, 5), (-15, 46, 5))))

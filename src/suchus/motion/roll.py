@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import Robot, crocodile, layout, servo_names
+from suchus.design import ARTICLE_BODY, Robot, check_needs, layout, servo_names
 from suchus.design.checks import Checks
 from suchus.errors import OutsideLimits
 from suchus.kinematics import tail as tail_kinematics
@@ -55,7 +55,7 @@ def roll_targets(robot: Robot, roll: Roll, time: Float[np.ndarray, "*b"]) -> Flo
         roll: the motion.
         time: since its beginning [s].
     """
-    robot = crocodile(robot, "a death roll")
+    check_needs(robot, ARTICLE_BODY, "a death roll")
     cycles = roll.frequency * time
     grown = np.clip(cycles, 0.0, 1.0)
     grown = grown**2 * (3.0 - 2.0 * grown)
@@ -81,7 +81,7 @@ def check_roll(robot: Robot, roll: Roll) -> None:
         OutsideLimits: a joint would have to leave its range, or a servo to turn faster than it can; the message names
             it.
     """
-    robot = crocodile(robot, "a death roll")
+    check_needs(robot, ARTICLE_BODY, "a death roll")
     if roll.tail_lateral > robot.tail.bend_limit:
         raise OutsideLimits(
             f"the roll bends the tail by {roll.tail_lateral:.3f} rad; robot {robot.name!r} allows up to "

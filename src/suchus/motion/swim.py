@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import Robot, crocodile, layout
+from suchus.design import ARTICLE_BODY, Robot, check_needs, layout
 from suchus.design.checks import Checks, require
 from suchus.errors import InvalidDesign, OutsideLimits
 from suchus.kinematics import tail as tail_kinematics
@@ -114,7 +114,7 @@ def swim_targets(robot: Robot, swim: Swim, time: Float[np.ndarray, "*b"]) -> Flo
         swim: the motion.
         time: [s].
     """
-    robot = crocodile(robot, "the swim by trunk and cable")
+    check_needs(robot, ARTICLE_BODY, "the swim by trunk and cable")
     place = layout(robot)
     now = bends(swim, time)
     targets = np.zeros((*np.shape(time), len(place.servos)))
@@ -131,7 +131,7 @@ def check_swim(robot: Robot, swim: Swim) -> None:
         OutsideLimits: a joint would have to leave its range, or a servo to turn faster than it can; the message names
             it and by how much.
     """
-    robot = crocodile(robot, "the swim by trunk and cable")
+    check_needs(robot, ARTICLE_BODY, "the swim by trunk and cable")
     low, high = robot.spine.yaw_range
     asked = [(name, amplitude, min(-low, high)) for name, amplitude in zip(trunk_yaws(robot), swim.yaw, strict=True)]
     place = layout(robot)

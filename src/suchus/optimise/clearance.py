@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from suchus.design import LEGS, Robot, crocodile, layout
+from suchus.design import ARTICLE_BODY, LEGS, Robot, check_needs, layout
 from suchus.kinematics import body, spine
 from suchus.kinematics import leg as leg_kinematics
 from suchus.kinematics.links import LegLinks
@@ -51,7 +51,7 @@ def between_parts(robot: Robot, angles: np.ndarray) -> np.ndarray:
         robot: the robot.
         angles: of every hinge in the order of ``joint_names(robot)``, shape (..., joint) [rad].
     """
-    robot = crocodile(robot, "the distance between parts")
+    check_needs(robot, ARTICLE_BODY, "the distance between parts")
     trunk, tail = _trunk(robot, angles[..., layout(robot).ahead]), _tail(robot, angles[..., layout(robot).behind])
     legs = {name: _leg(robot, name, angles) for name in LEGS}
     pairs = [(a, b) for i, one in enumerate(LEGS) for two in LEGS[i + 1 :] for a in legs[one] for b in legs[two]]

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import Robot, cable_joints, crocodile, general
+from suchus.design import ARTICLE_BODY, Robot, cable_joints, check_needs
 from suchus.design.profile import profile
 from suchus.errors import InvalidDesign
 from suchus.motion import Bends
@@ -36,7 +36,7 @@ def silhouette(robot: Robot, s: Float[np.ndarray, " station"]) -> BodySilhouette
         robot: the design.
         s: from the snout [m].
     """
-    found = profile(general(crocodile(robot, "the outline in the water")), s)
+    found = profile(check_needs(robot, ARTICLE_BODY, "the outline in the water"), s)
     return BodySilhouette(found.half_width, found.half_height)
 
 

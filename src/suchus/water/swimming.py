@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
-from suchus.design import GRAVITY, WATER_DENSITY, Robot, crocodile
+from suchus.design import ARTICLE_BODY, GRAVITY, WATER_DENSITY, Robot, check_needs
 from suchus.design.water import Water
 from suchus.errors import OutsideLimits
 from suchus.motion import Swim, check_swim
@@ -43,7 +43,7 @@ def swim(robot: Robot | str, motion: Motion, *, water: Water | None = None, stat
         OutsideLimits: the joints or servos cannot follow the motion.
         NotConverged: thrust and drag never balance.
     """
-    found = crocodile(ROBOTS.resolve(robot), "swimming in the outline of a crocodile")
+    found = check_needs(ROBOTS.resolve(robot), ARTICLE_BODY, "swimming in the outline of a crocodile")
     if isinstance(motion, Swim):
         check_swim(found, motion)
     outline, still = Outline(found, stations), water or Water()
