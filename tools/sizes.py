@@ -4,12 +4,11 @@ What a room is for is the first line of its docstring. The processor time is wha
 clone printed; where there was none in this checkout, the passage keeps what it says.
 """
 
-import ast
 from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
-from pages import passages
+from pages import code, passages
 
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "CONTRIBUTING.md"
@@ -29,7 +28,7 @@ class Room(NamedTuple):
     """A room of the package, or a folder beside it."""
 
     name: str
-    """Its folder or file, from ``src/suchus`` or from the checkout."""
+    """Its folder or module in ``src/suchus``, or its folder in the checkout, with a stroke at its end."""
     files: int
     """Python files [-]."""
     lines: int
@@ -39,13 +38,9 @@ class Room(NamedTuple):
 
 
 def rooms() -> Iterator[Room]:
-    """Yield all rooms of the package, files that stand alone last, and then the folders beside it."""
-    places = sorted((ROOT / "src" / "suchus").iterdir(), key=lambda place: (place.is_file(), place.name))
-    for place in places:
-        if place.is_dir() and (place / "__init__.py").exists():
-            yield _room(place.name, place, _purpose(place / "__init__.py"))
-        elif place.suffix == ".py":
-            yield _room(place.name, place, _purpose(place))
+    """Yield all rooms of the package, modules that stand alone last, and then the folders beside it."""
+    for name in sorted(code.rooms(), key=lambda name: (not (code.SOURCE / name).is_dir(), name)):
+        yield _room(name, code.SOURCE / name, code.about(name))
     for name, purpose in BESIDE.items():
         yield _room(f"{name}/", ROOT / name, purpose)
 
@@ -53,7 +48,7 @@ def rooms() -> Iterator[Room]:
 def table(found: list[Room]) -> str:
     """Return the rooms as a table with the sum of the package."""
     package = [room for room in found if not room.name.endswith("/")]
-    total = Room("**src/suchus**", sum(room.files for room in package), sum(room.lines for room in package), "")
+    total = Room("**all rooms**", sum(room.files for room in package), sum(room.lines for room in package), "")
     told = [*package, total, *found[len(package) :]]
     rows = [f"| {room.name} | {room.files} | {room.lines} | {room.purpose} |\n" for room in told]
     return "| room | files | lines | what it is for |\n|---|---:|---:|---|\n" + "".join(rows)
@@ -76,14 +71,9 @@ def main() -> None:
 
 
 def _room(name: str, place: Path, purpose: str) -> Room:
-    """Count the Python files of a folder, or a file alone."""
-    files = [place] if place.is_file() else list(place.rglob("*.py"))
+    """Count the Python files of a folder, or a module alone."""
+    files = list(place.rglob("*.py")) if place.is_dir() else [place.with_suffix(".py")]
     return Room(name, len(files), sum(len(file.read_bytes().splitlines()) for file in files), purpose)
-
-
-def _purpose(file: Path) -> str:
-    """Return the first line of a module's docstring."""
-    return (ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))) or "").partition("\n")[0]
 
 
 if __name__ == "__main__":
