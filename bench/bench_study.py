@@ -57,7 +57,7 @@ def study(samples: int, duration: float, timestep: float) -> Study:
         name="bench",
         run=Run(robot=ROBOT, gait=GAIT),
         vary=(
-            Vary(field="gait.stroke", low=0.01, high=0.05),
+            Vary(field="gait.stroke", low=0.06, high=0.32),
             Vary(field="robot.contact.foot_friction", low=0.5, high=1.0),
         ),
         measure=MEASURES,

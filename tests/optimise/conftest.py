@@ -15,7 +15,7 @@ def small(robot, crawl_gait):
     return Optimisation(
         name="small",
         run=Run(robot=robot, gait=crawl_gait),
-        vary=(Vary(field="gait.stroke", low=0.0, high=0.12), Vary(field="gait.trunk_bend", low=0.0, high=2.3)),
+        vary=(Vary(field="gait.stroke", low=0.0, high=0.75), Vary(field="gait.trunk_bend", low=0.0, high=2.3)),
         aims=(Aim(name="displacement"),),
         limits=(Limit(name="clearance", value=0.005),),
         evaluations=12,

@@ -38,7 +38,7 @@ timestep = 0.01
 [[vary]]
 field = "gait.stroke"
 low = 0.0
-high = 0.12
+high = 0.75
 [[vary]]
 field = "gait.trunk_bend"
 low = 0.0

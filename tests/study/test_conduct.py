@@ -66,7 +66,7 @@ def test_results_are_what_the_simulation_and_the_metrics_say(asked, tmp_path):
     np.testing.assert_array_equal(results.displacement_x, displacement(record).sel(xyz="x"))
     np.testing.assert_array_equal(results["gait.stroke"], [p.values["gait.stroke"] for p in plan])
     units = {name: results[name].attrs["units"] for name in ("displacement_x", "gait.stroke", "slip", "seed")}
-    assert units == {"displacement_x": "m", "gait.stroke": "m", "slip": "1", "seed": "1"}
+    assert units == {"displacement_x": "m", "gait.stroke": "limb reach", "slip": "1", "seed": "1"}
     assert set(results.error.values) == {""}
     stored = load(tmp_path / "s" / RESULTS)
     np.testing.assert_array_equal(stored.slip, results.slip)
